@@ -1,0 +1,1 @@
+"""What the stages are made of. No stage and no command line in here."""

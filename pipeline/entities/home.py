@@ -1,0 +1,56 @@
+"""A home: a plan and the things placed in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.plan import Plan
+
+
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """A placed asset.
+
+    `position` (3,) [m]: world position of the bottom centre of the asset's box with all joints at 0, storey
+    elevation included; `yaw` [rad] in (-pi, pi]; `size` (3,) [m] full extents (w, d, h) in the object frame, equal to
+    asset size * `scale`; `scale` (3,) is 1 for articulated assets. `latent` (32,) and `retrieval_distance` are what
+    the layout model asked for and how far the match is.
+    """
+
+    object_id: str
+    room_id: str
+    category: str
+    asset_id: str
+    position: NDArray[np.float64]
+    yaw: float
+    size: NDArray[np.float64]
+    scale: NDArray[np.float64] = field(default_factory=lambda: np.ones(3))
+    latent: NDArray[np.float32] = field(default_factory=lambda: np.zeros(32, np.float32))
+    retrieval_distance: float = 0.0
+
+    def footprint(self) -> NDArray[np.float64]:
+        """Return the corners (4, 2) of the box in plan, counter-clockwise [m, world]."""
+        w, d = self.size[0] / 2, self.size[1] / 2
+        corners = np.array([[-w, -d], [w, -d], [w, d], [-w, d]])
+        c, s = np.cos(self.yaw), np.sin(self.yaw)
+        return corners @ np.array([[c, s], [-s, c]]) + self.position[:2]
+
+
+@dataclass(frozen=True, slots=True)
+class Home:
+    """One home of a dataset. `scene_id` is `s<seed>_<index:08d>`; `program` is the typed request as JSON."""
+
+    scene_id: str
+    seed: int
+    index: int
+    prompt: str
+    program: str
+    plan: Plan
+    placements: tuple[Placement, ...]
+
+    def in_room(self, room_id: str) -> tuple[Placement, ...]:
+        """Return the placements of one room."""
+        return tuple(p for p in self.placements if p.room_id == room_id)

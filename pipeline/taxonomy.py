@@ -1,0 +1,72 @@
+"""The factory's vocabulary: categories, layout types, and the names that other people give them."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import yaml
+
+PATH = Path(__file__).resolve().parent.parent / "manifests" / "taxonomy.yaml"
+
+
+@dataclass(frozen=True, slots=True)
+class Category:
+    """One object category. `future` are 3D-FUTURE's names (normalised), `partnet` the model_cat it can come from."""
+
+    name: str
+    super: str
+    future: tuple[str, ...]
+    partnet: tuple[str, ...]
+    mount: Literal["floor", "wall", "ceiling"]
+    size: tuple[float, float, float] | None
+
+
+@dataclass(frozen=True, slots=True)
+class Taxonomy:
+    """Categories by name, in the order of the layout model's classes, and the maps of room types."""
+
+    categories: Mapping[str, Category]
+    layout_types: tuple[str, ...]
+    front_rooms: Mapping[str, str | None]
+    plan_rooms: Mapping[str, str | None]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Category names in class order."""
+        return tuple(self.categories)
+
+    def from_future(self, name: str) -> str | None:
+        """Return the category for a 3D-FUTURE name of any spelling, or None."""
+        wanted = normalise(name)
+        return next((c.name for c in self.categories.values() if wanted in c.future), None)
+
+    def from_partnet(self, model_cat: str) -> tuple[str, ...]:
+        """Return the categories that a PartNet-Mobility object of that model_cat may serve as."""
+        return tuple(c.name for c in self.categories.values() if model_cat in c.partnet)
+
+
+def normalise(name: str) -> str:
+    """Lower-case and strip the blanks around slashes, as in "Corner / Side Table"."""
+    return "/".join(part.strip() for part in name.lower().split("/"))
+
+
+@functools.cache
+def load() -> Taxonomy:
+    """Read manifests/taxonomy.yaml."""
+    raw = yaml.safe_load(PATH.read_text(encoding="utf-8"))
+    categories = {
+        name: Category(
+            name,
+            entry["super"],
+            tuple(normalise(n) for n in entry.get("future", ())),
+            tuple(entry.get("partnet", ())),
+            entry.get("mount", "floor"),
+            tuple(entry["size"]) if "size" in entry else None,
+        )
+        for name, entry in raw["categories"].items()
+    }
+    return Taxonomy(categories, tuple(raw["layout_types"]), raw["front_rooms"], raw["plan_rooms"])

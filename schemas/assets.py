@@ -1,0 +1,57 @@
+"""assets and asset_joints: the library of things that can be placed."""
+
+import pyarrow as pa
+
+from schemas.table import VEC3, Column, Table
+
+ASSETS = Table(
+    "assets",
+    "One row per asset (a model at a scale; one PartNet object may serve several categories).",
+    (
+        Column("asset_id", pa.string(), "unique in the library; matches [a-z][a-z0-9_]*"),
+        Column("source", pa.string(), "3d-future, partnet-mobility, gapartnet ..."),
+        Column("source_id", pa.string(), "id in that source"),
+        Column("category", pa.string(), "object category, see manifests/taxonomy.yaml"),
+        Column("super_category", pa.string(), "super-category"),
+        Column("style", pa.string(), "style, empty when unknown"),
+        Column("material", pa.string(), "main material, empty when unknown"),
+        Column("split", pa.string(), "train, val or test, by model"),
+        Column("size", VEC3, "full extents (w, d, h) with all joints at 0", "m", "object"),
+        Column("unit_scale", pa.float64(), "factor from the source's units to metres"),
+        Column("articulated", pa.bool_(), "has joints"),
+        Column("openable", pa.bool_(), "has a door, drawer or lid that opens"),
+        Column("joints", pa.int32(), "number of joints"),
+        Column("triangles", pa.int32(), "triangles of the visual meshes"),
+        Column("mass", pa.float64(), "mass of all links", "kg"),
+        Column("licence", pa.string(), "SPDX id or name of the asset's licence"),
+        Column("file", pa.string(), "path of the asset file, relative to the folder of the library"),
+        Column("sha256", pa.string(), "digest of that file"),
+    ),
+)
+
+ASSET_JOINTS = Table(
+    "asset_joints",
+    "One row per joint of an asset.",
+    (
+        Column("asset_id", pa.string(), "row of the assets table"),
+        Column("joint_id", pa.string(), "unique in the asset; matches [a-z][a-z0-9_]*"),
+        Column("type", pa.string(), "revolute, prismatic or continuous"),
+        Column("part_class", pa.string(), "GAPartNet part class"),
+        Column("axis", VEC3, "unit axis; positive motion opens", "", "object"),
+        Column("origin", VEC3, "a point on the axis at rest", "m", "object"),
+        Column("lower", pa.float64(), "lower limit (rad or m)"),
+        Column("upper", pa.float64(), "upper limit (rad or m)"),
+        Column("sweep_min", VEC3, "lower corner of the box that the moving part sweeps", "m", "object"),
+        Column("sweep_max", VEC3, "upper corner of that box", "m", "object"),
+        Column("handle", VEC3, "where a hand takes hold, at rest", "m", "object"),
+    ),
+)
+
+LATENTS = Table(
+    "latents",
+    "One row per asset: its shape latent.",
+    (
+        Column("asset_id", pa.string(), "row of the assets table"),
+        Column("latent", pa.list_(pa.float32(), 32), "posterior mean of the point-cloud VAE"),
+    ),
+)

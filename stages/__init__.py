@@ -1,0 +1,1 @@
+"""One file per DVC stage or command: read tables, call the library, write tables."""
