@@ -1,0 +1,123 @@
+"""The catalogue: which models there are. Cheap: ids, categories and sizes need no mesh."""
+
+from __future__ import annotations
+
+import functools
+import uuid
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeline import seeds, taxonomy
+from pipeline.corpus.furniture import sizes
+from pipeline.corpus.furniture.lines import LINES, OTHER_SUPER_CATEGORY, STYLES, SUPER_CATEGORIES, Form, Line
+from pipeline.entities.asset import Asset
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """One model. `size` (w, d, h) [m] is the box at rest in the object frame; `build` makes its meshes and joints.
+
+    `model_id` is a uuid4 for 3D-FUTURE, digits for PartNet-Mobility; `future_name` and `super_category` are what
+    model_info.json calls it, `partnet_category` what meta.json does ("" for static models); `form` and `seed` decide its look.
+    """
+
+    model_id: str
+    category: str
+    size: tuple[float, float, float]
+    style: str
+    form: str
+    future_name: str
+    super_category: str
+    partnet_category: str
+    seed: int
+
+    @property
+    def material(self) -> str:
+        """Return 3D-FUTURE's word for the main material."""
+        from pipeline.corpus.furniture.assembly import main_material
+
+        return main_material(self)
+
+    @property
+    def articulated(self) -> bool:
+        """Whether the model is of the articulated library."""
+        return bool(self.partnet_category)
+
+    def build(self) -> Asset:
+        """Make the asset: meshes, convex colliders, masses and (of articulated models) joints, in the object frame."""
+        from pipeline.corpus.furniture.assembly import build
+
+        return build(self)
+
+
+@dataclass(frozen=True, slots=True)
+class Catalogue:
+    """All models: `future` static ones, written as 3D-FUTURE folders; `partnet` articulated ones, as PartNet-Mobility folders."""
+
+    future: tuple[Model, ...]
+    partnet: tuple[Model, ...]
+
+    def future_by_category(self) -> Mapping[str, tuple[Model, ...]]:
+        """Group the static models by category; every category of the taxonomy has at least one."""
+        groups: dict[str, list[Model]] = {}
+        for model in self.future:
+            groups.setdefault(model.category, []).append(model)
+        return {name: tuple(models) for name, models in groups.items()}
+
+
+@functools.lru_cache(maxsize=8)
+def catalogue(seed: int, size: float = 1.0) -> Catalogue:
+    """Return the models of a seed. `size` scales their number: 1 gives about 170 static and 120 articulated ones."""
+    future: list[Model] = []
+    partnet: list[Model] = []
+    for category, line in LINES.items():
+        future += _models(seed, category, line, max(1, round(line.static * size)), articulated=False)
+        if line.moving:
+            partnet += _models(seed, category, line, max(1, round(line.moving * size)), articulated=True)
+    return Catalogue(tuple(future), tuple(_renumbered(seed, partnet)))
+
+
+def _models(seed: int, category: str, line: Line, count: int, *, articulated: bool) -> list[Model]:
+    """Draw `count` models of one category: forms in turn, styles at random, sizes in strata."""
+    library = "partnet" if articulated else "future"
+    rng = seeds.generator(seed, "corpus.furniture", library, category)
+    entry = taxonomy.load().categories[category]
+    forms = _turns(rng, line, count)
+    styles = rng.choice(list(STYLES), size=count, p=np.array(list(STYLES.values())) / sum(STYLES.values()))
+    boxes = sizes.draw(rng, sizes.load()[category], count)
+    models = []
+    for form, style, box in zip(forms, styles, boxes, strict=True):
+        w, d, h = (round(float(x), 3) for x in box)
+        if form.round:
+            d = w
+        models.append(
+            Model(
+                model_id=str(uuid.UUID(bytes=rng.bytes(16), version=4)),
+                category=category,
+                size=(w, d, h),
+                style=str(style),
+                form=form.name,
+                future_name=form.future,
+                super_category=SUPER_CATEGORIES.get(entry.super, OTHER_SUPER_CATEGORY),
+                partnet_category=entry.partnet[0] if articulated else "",
+                seed=int(rng.integers(2**31)),
+            )
+        )
+    return models
+
+
+def _turns(rng: np.random.Generator, line: Line, count: int) -> list[Form]:
+    """Deal the forms round robin from a random start, so that each comes equally often."""
+    start = int(rng.integers(len(line.forms)))
+    return [line.forms[(start + i) % len(line.forms)] for i in range(count)]
+
+
+def _renumbered(seed: int, models: list[Model]) -> list[Model]:
+    """Give the articulated models PartNet-Mobility's kind of id: distinct numbers of five digits, in no order."""
+    import dataclasses
+
+    rng = seeds.generator(seed, "corpus.furniture", "partnet_ids")
+    numbers = rng.choice(np.arange(10_000, 100_000), size=len(models), replace=False)
+    return [dataclasses.replace(model, model_id=str(number)) for model, number in zip(models, numbers, strict=True)]
