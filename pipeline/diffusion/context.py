@@ -1,0 +1,80 @@
+"""What the layout model is asked (a room) and what it answers (proposals): plain numpy, world frame."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.plan import Opening, OpeningKind, Plan
+
+# Boxes that the moving parts of one slot's asset would sweep: (categories (B, N) str or None for an empty slot,
+# sizes (B, N, 3) [m], latents (B, N, 32)) -> (B, N, K, 2, 3) [m], lower and upper corner in the object frame at the
+# asked size; NaN where a slot has fewer than K of them. The retrieval index of the layer above gives it.
+Sweeps = Callable[[Sequence[Sequence[str | None]], NDArray[np.float64], NDArray[np.float32]], NDArray[np.float32]]
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """An opening as one of its rooms sees it.
+
+    `segment` (2, 2) [m, world]; `hinge` is the end of the segment (0 or 1) about which the leaf turns into THIS room,
+    or -1 where it turns elsewhere or has none. `sill` [m] above the floor.
+    """
+
+    kind: OpeningKind
+    segment: NDArray[np.float64]
+    sill: float = 0.0
+    hinge: int = -1
+
+    @classmethod
+    def of(cls, opening: Opening, room_id: str) -> Gap:
+        """See `opening` from the room `room_id`."""
+        inwards = opening.swing is not None and opening.swing.room_id == room_id
+        return cls(opening.kind, opening.segment, opening.sill, opening.swing.hinge if inwards and opening.swing else -1)
+
+
+@dataclass(frozen=True, slots=True)
+class RoomContext:
+    """A room to furnish.
+
+    `polygon` (n, 2) [m, world], inner wall faces, counter-clockwise. `n_target` is the exact number of objects that is
+    asked for, or None. `elevation` [m] is the z of the floor, `height` [m] that of the ceiling above it.
+    """
+
+    layout_type: str
+    polygon: NDArray[np.float64]
+    gaps: tuple[Gap, ...] = ()
+    n_target: int | None = None
+    elevation: float = 0.0
+    height: float = 2.7
+
+    @classmethod
+    def of(cls, plan: Plan, room_id: str, layout_type: str, n_target: int | None = None) -> RoomContext:
+        """Take one room out of a plan."""
+        room = plan.room(room_id)
+        gaps = tuple(Gap.of(o, room_id) for o in plan.openings if room_id in o.rooms)
+        return cls(layout_type, room.polygon, gaps, n_target, plan.elevation(room_id), room.height)
+
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """Centre of the polygon's box (2,) [m, world]: the origin of the room frame, whose axes are the world's."""
+        middle: NDArray[np.float64] = (self.polygon.min(0) + self.polygon.max(0)) / 2
+        return middle
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """One object that the model places.
+
+    `position` (3,) [m, world]: bottom centre of the box, storey elevation included; `yaw` [rad] in (-pi, pi]; `size`
+    (3,) [m] full extents (w, d, h); `latent` (32,) the shape that is asked for.
+    """
+
+    category: str
+    position: NDArray[np.float64]
+    yaw: float
+    size: NDArray[np.float64]
+    latent: NDArray[np.float32]

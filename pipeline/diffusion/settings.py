@@ -1,0 +1,69 @@
+"""The numbers of training and sampling that stand in params.yaml."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+Target = Literal["v", "x0", "eps"]
+Articulation = Literal["none", "heuristic", "joints"]
+
+
+@dataclass(frozen=True, slots=True)
+class ModelSettings:
+    """The denoiser's shape."""
+
+    width: int = 96
+    layers: int = 4
+    heads: int = 4
+    relation: int = 24  # channels of the pairwise geometric features
+    target: Target = "v"  # what the network predicts for the continuous channels
+
+
+@dataclass(frozen=True, slots=True)
+class TrainSettings:
+    """How the denoiser is trained (section `train` of params.yaml)."""
+
+    model: ModelSettings = field(default_factory=ModelSettings)
+    slots: int = 24
+    timesteps: int = 1000
+    steps: int = 1500
+    epochs: int = 0  # > 0: so many passes instead of `steps`
+    batch: int = 64
+    learning_rate: float = 2e-3
+    warmup: int = 60
+    decay: Literal["cosine", "step"] = "cosine"
+    decay_every: int = 20000  # step decay: epochs between halvings
+    weight_decay: float = 0.0
+    clip: float = 1.0
+    ema: float = 0.998
+    low_noise: float = 0.5  # share of the batch whose t is drawn log-uniformly instead of uniformly
+    count_known: float = 0.5  # share of the batch that is told the number of objects
+    class_weight: float = 0.3  # weight of the class cross-entropy beside eq. 1
+    latent_weight: float = 0.25  # weight of the shape latent's channels in eq. 1
+    constraint: bool = True  # eq. 1 with its constraint term
+    constraint_scale: float = 1.0  # lambda of eq. 1
+    constraint_below: int = 100  # noise levels t below which the term acts
+    tilt: float = 0.0  # augmentation: largest extra rotation [rad]
+    checkpoint_every: int = 250
+    validate_every: int = 500
+
+
+@dataclass(frozen=True, slots=True)
+class SampleSettings:
+    """How rooms are sampled (section `sample` of params.yaml)."""
+
+    sampler: Literal["ddim", "ancestral"] = "ddim"
+    steps_coarse: int = 20  # DDIM evaluations at t >= 100
+    steps_middle: int = 12  # evaluations at 10 <= t < 100
+    steps_fine: int = 10  # evaluations at t < 10
+    batch: int = 32  # rooms per padded batch
+    count_condition: bool = True  # tell the denoiser the number of objects, beside the quantity guidance
+    quantity: bool = True
+    quantity_scale: float = 3.0
+    quantity_below: int = 100
+    articulation: Articulation = "joints"
+    articulation_scale: float = 1.0
+    articulation_below: int = 10
+    room_scale: float = 1.0
+    clip: float = 0.1  # largest move of a normalised channel in one guided step

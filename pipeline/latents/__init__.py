@@ -1,0 +1,1 @@
+"""Shape latents: a point-cloud variational auto-encoder over the surfaces of assets."""

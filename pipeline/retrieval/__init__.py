@@ -1,0 +1,1 @@
+"""From what the layout model asked for to what the library has."""

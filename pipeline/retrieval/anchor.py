@@ -1,0 +1,38 @@
+"""A retrieved asset is rarely as large as what was asked for: keep the side that stood at a wall where it was."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def anchored(
+    position: NDArray[np.float64], yaw: float, asked: NDArray[np.float64], size: NDArray[np.float64], polygon: NDArray[np.float64], reach: float = 0.12
+) -> NDArray[np.float64]:
+    """Return the position (3,) [m] at which a box of `size` keeps the asked box's sides that lie at walls.
+
+    `position` is the asked bottom centre, `asked` and `size` (3,) are full extents [m], `polygon` (n, 2) the room in the
+    same frame. Along each horizontal axis of the object, the side that is within `reach` of a wall parallel to it stays;
+    with a wall at both sides or none the centre stays. A gap left by the model below `reach` is thus kept as it is.
+    """
+    u = np.array([np.cos(yaw), np.sin(yaw)])
+    v = np.array([-np.sin(yaw), np.cos(yaw)])
+    moved = np.array(position, float)
+    for axis, extent in ((u, 0), (v, 1)):
+        near = [_wall_within(position[:2] + sign * axis * asked[extent] / 2, sign * axis, polygon, reach) for sign in (1, -1)]
+        shift = (asked[extent] - size[extent]) / 2
+        moved[:2] += axis * shift * (int(near[0]) - int(near[1]))
+    return moved
+
+
+def _wall_within(point: NDArray[np.float64], outward: NDArray[np.float64], polygon: NDArray[np.float64], reach: float) -> bool:
+    """Whether a wall that faces `outward` squarely passes within `reach` of the point."""
+    start, end = polygon, np.roll(polygon, -1, 0)
+    along = end - start
+    length = np.maximum(np.linalg.norm(along, axis=1), 1e-9)
+    along = along / length[:, None]
+    normal = np.stack([along[:, 1], -along[:, 0]], 1)  # outward for a counter-clockwise polygon
+    offset = ((start - point) * normal).sum(1)
+    place = ((point - start) * along).sum(1)
+    square = normal @ outward > 0.98
+    return bool((square & (np.abs(offset) < reach) & (place > -0.1) & (place < length + 0.1)).any())

@@ -1,0 +1,187 @@
+"""The library as arrays: what can be retrieved, how far it is from what was asked, and what its joints sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.errors import ContentError
+from pipeline.retrieval.settings import RetrievalSettings
+from pipeline.retrieval.sweeps import merged_boxes
+
+Row = Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """One retrieved asset: `scale` (3,) on its own size is 1 for articulated ones; `size` (3,) [m] is what it then has."""
+
+    asset_id: str
+    distance: float
+    scale: NDArray[np.float64]
+    size: NDArray[np.float64]
+    openable: bool
+
+
+@dataclass(frozen=True, slots=True)
+class AssetIndex:
+    """All assets of the library, ordered by asset_id.
+
+    `sizes` (A, 3) [m]; `latents` (A, 32), standardised by `mean` and `spread`; `sweeps` (A, K, 2, 3) [m] object frame,
+    NaN where an asset has fewer than K boxes; `shelves` lists the rows of each category.
+    """
+
+    asset_ids: tuple[str, ...]
+    categories: tuple[str, ...]
+    sizes: NDArray[np.float64]
+    latents: NDArray[np.float64]
+    mean: NDArray[np.float64]
+    spread: NDArray[np.float64]
+    articulated: NDArray[np.bool_]
+    openable: NDArray[np.bool_]
+    sweep_boxes: NDArray[np.float32]
+    shelves: Mapping[str, NDArray[np.int64]]
+    settings: RetrievalSettings
+
+    @classmethod
+    def from_tables(
+        cls,
+        assets: Iterable[Row],
+        latents: Iterable[Row],
+        joints: Iterable[Row] = (),
+        settings: RetrievalSettings | None = None,
+        splits: Sequence[str] = ("train", "val", "test"),
+    ) -> AssetIndex:
+        """Build the index from rows of `assets`, `latents` and `asset_joints`.
+
+        Raises ContentError when an asset has no latent: the tables are then not of one run.
+        """
+        settings = settings or RetrievalSettings()
+        rows = sorted((a for a in assets if a["split"] in splits or not a["split"]), key=lambda a: str(a["asset_id"]))
+        known = {r["asset_id"]: r["latent"] for r in latents}
+        lost = [r["asset_id"] for r in rows if r["asset_id"] not in known]
+        if lost:
+            raise ContentError(f"{len(lost)} assets have no latent ({lost[0]} ...)", "run `dvc repro encode` again")
+        swept: dict[str, list[Any]] = {}
+        for joint in joints:
+            swept.setdefault(joint["asset_id"], []).append([joint["sweep_min"], joint["sweep_max"]])
+        boxes = np.full((len(rows), settings.sweep_boxes, 2, 3), np.nan, np.float32)
+        for i, row in enumerate(rows):
+            merged = merged_boxes(np.array(swept.get(row["asset_id"], []), float).reshape(-1, 2, 3), settings.sweep_boxes)
+            boxes[i, : len(merged)] = merged
+        raw = np.array([known[r["asset_id"]] for r in rows], float).reshape(len(rows), -1)
+        mean = raw.mean(0) if len(rows) else np.zeros(raw.shape[1])
+        # A latent channel that the encoder does not use must not be blown up by its tiny spread.
+        spread = np.maximum(raw.std(0), 0.05) if len(rows) else np.ones(raw.shape[1])
+        names = tuple(str(r["category"]) for r in rows)
+        shelves = {name: np.flatnonzero(np.array(names) == name) for name in sorted(set(names))}
+        return cls(
+            tuple(str(r["asset_id"]) for r in rows),
+            names,
+            np.array([r["size"] for r in rows], float).reshape(-1, 3),
+            (raw - mean) / spread,
+            mean,
+            spread,
+            np.array([r["articulated"] for r in rows], bool),
+            np.array([r["openable"] for r in rows], bool),
+            boxes,
+            shelves,
+            settings,
+        )
+
+    def match(
+        self, categories: Sequence[str], sizes: NDArray[np.float64], latents: NDArray[np.float32] | NDArray[np.float64]
+    ) -> list[Match | None]:
+        """Return the nearest asset for each of P asks, None where the library has nothing of that category.
+
+        `sizes` (P, 3) [m], `latents` (P, 32). Ties go to the smaller asset_id. One call per batch: every category is
+        one matrix of distances.
+        """
+        rows, distances = self.nearest(categories, sizes, latents)
+        return [None if row < 0 else self._match(int(row), float(d), sizes[p]) for p, (row, d) in enumerate(zip(rows, distances, strict=True))]
+
+    def nearest(
+        self, categories: Sequence[str | None], sizes: NDArray[np.float64], latents: NDArray[np.float32] | NDArray[np.float64]
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Return the row (P,) of the nearest asset, -1 where there is none, and its distance (P,)."""
+        asked = np.array([c or "" for c in categories])
+        rows = np.full(len(asked), -1, np.int64)
+        distances = np.full(len(asked), np.inf)
+        for name in sorted(set(asked.tolist())):
+            shelf = self.shelves.get(name)
+            if shelf is None:
+                continue
+            where = np.flatnonzero(asked == name)
+            table = self.distance(shelf, np.asarray(sizes, float)[where], np.asarray(latents, float)[where])
+            best = table.argmin(1)
+            rows[where], distances[where] = shelf[best], table[np.arange(len(where)), best]
+        return rows, distances
+
+    def distance(self, shelf: NDArray[np.int64], sizes: NDArray[np.float64], latents: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the distances (P, S) between P asks and the S assets of a shelf.
+
+        Root mean square of the standardised latent difference, plus the root mean square log ratio of the sizes; where
+        the category has articulated assets, those that do not open are `prefer_openable` times as far.
+        """
+        s = self.settings
+        asked = (latents - self.mean) / self.spread
+        shape = np.sqrt(((asked[:, None] - self.latents[shelf][None]) ** 2).mean(-1))
+        ratio = np.log(np.maximum(sizes[:, None], 0.02) / np.maximum(self.sizes[shelf][None], 0.02))
+        size = np.sqrt((ratio**2).mean(-1))
+        total: NDArray[np.float64] = s.latent_weight * shape + s.size_weight * size
+        openable = self.openable[shelf]
+        if openable.any():
+            total = np.where(openable[None], total, (total + s.prefer_offset) * s.prefer_openable)
+        return total
+
+    def smaller(self, asset_id: str, max_area: float) -> Match | None:
+        """Return the closest asset of the same category whose footprint w * d is below `max_area` [m2] (algorithm 2).
+
+        Closeness is measured from `asset_id` itself; an articulated asset is followed by another that opens, when the
+        category has one small enough, so that nothing is gained by replacing cabinets with boxes. Scale is 1.
+        """
+        row = self.row(asset_id)
+        shelf = self.shelves[self.categories[row]]
+        areas = self.sizes[shelf, 0] * self.sizes[shelf, 1]
+        fits = shelf[(areas < max_area - 1e-9) & (shelf != row)]
+        alike = fits[self.openable[fits]] if self.openable[row] else fits
+        fits = alike if len(alike) else fits
+        if not len(fits):
+            return None
+        raw = self.latents[row] * self.spread + self.mean
+        table = self.distance(fits, self.sizes[row][None], raw[None])[0]
+        best = int(table.argmin())
+        found = int(fits[best])
+        return Match(self.asset_ids[found], float(table[best]), np.ones(3), self.sizes[found].copy(), bool(self.openable[found]))
+
+    def sweeps(
+        self, categories: Sequence[Sequence[str | None]], sizes: NDArray[np.float64], latents: NDArray[np.float32]
+    ) -> NDArray[np.float32]:
+        """Return what the joints of each slot's nearest asset sweep: (B, N, K, 2, 3) [m], object frame, NaN for none.
+
+        Boxes are stretched from the asset's size to the asked one, so that they stay attached to the slot's box.
+        """
+        flat = [c for row in categories for c in row]
+        asked = np.asarray(sizes, float).reshape(-1, 3)
+        rows, _ = self.nearest(flat, asked, np.asarray(latents, float).reshape(len(flat), -1))
+        safe = np.maximum(rows, 0)
+        factor = np.maximum(asked, 0.02) / np.maximum(self.sizes[safe], 0.02)
+        boxes = self.sweep_boxes[safe] * factor[:, None, None, :].astype(np.float32)
+        boxes[rows < 0] = np.nan
+        return boxes.reshape(len(categories), -1, *boxes.shape[1:])
+
+    def row(self, asset_id: str) -> int:
+        """Return the row of an asset."""
+        at = int(np.searchsorted(np.array(self.asset_ids), asset_id))
+        if at == len(self.asset_ids) or self.asset_ids[at] != asset_id:
+            raise ContentError(f"asset {asset_id!r} is not in the library", "run `dvc repro` so that library and samples agree")
+        return at
+
+    def _match(self, row: int, distance: float, asked: NDArray[np.float64]) -> Match:
+        limit = 0.0 if self.articulated[row] else self.settings.stretch
+        scale = np.clip(np.asarray(asked, float) / self.sizes[row], 1 - limit, 1 + limit)
+        return Match(self.asset_ids[row], distance, scale, self.sizes[row] * scale, bool(self.openable[row]))

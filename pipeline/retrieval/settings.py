@@ -1,0 +1,17 @@
+"""The numbers of retrieval that stand in params.yaml."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class RetrievalSettings:
+    """How an asset is chosen (section `retrieval` of params.yaml)."""
+
+    latent_weight: float = 0.3  # weight of the standardised latent's rms difference
+    size_weight: float = 1.0  # weight of the rms log ratio of the sizes
+    prefer_openable: float = 1.5  # assets that do not open are so many times as far, where the category has some that do
+    prefer_offset: float = 0.15  # and this much farther, so that a near-perfect static match does not always win
+    stretch: float = 0.15  # largest change of a static asset's size per axis; articulated ones are never scaled
+    sweep_boxes: int = 4  # boxes kept per asset for the articulated-collision guidance
