@@ -1,0 +1,81 @@
+"""Commit files: the digest, length and number of rows of everything in a shard, or in the asset library."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pipeline.errors import ContentError
+from pipeline.manifest import sha256_file
+from pipeline.shards.layout import commit_path
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One file of a commit: its digest and its length in bytes."""
+
+    sha256: str
+    bytes: int
+
+
+@dataclass(frozen=True, slots=True)
+class Commit:
+    """What makes a shard exist: its `files` by path relative to the dataset, its `rows` by table."""
+
+    name: str
+    files: Mapping[str, Entry]
+    rows: Mapping[str, int]
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the JSON object of the commit file."""
+        files = {path: {"sha256": e.sha256, "bytes": e.bytes} for path, e in sorted(self.files.items())}
+        return {"name": self.name, "files": files, "rows": dict(self.rows)}
+
+    def damaged(self, folder: Path) -> str | None:
+        """Return the first file that is missing or not of its length, None when all are well (digests are not read)."""
+        for path, entry in self.files.items():
+            try:
+                if (folder / path).stat().st_size != entry.bytes:
+                    return path
+            except OSError:
+                return path
+        return None
+
+
+def record(staging: Path, name: str, rows: Mapping[str, int], only: str = "") -> Commit:
+    """Digest every file below `staging` (below its folder `only`), and flush it to disk with the folders around it."""
+    files = {}
+    for place, folders, names in os.walk(staging / only if only else staging):
+        folders.sort()
+        for file in sorted(names):
+            path = Path(place) / file
+            _flush(path)
+            files[path.relative_to(staging).as_posix()] = Entry(sha256_file(path), path.stat().st_size)
+        _flush(Path(place))
+    return Commit(name, dict(sorted(files.items())), rows)
+
+
+def read_commit(folder: Path, name: str) -> Commit | None:
+    """Read a commit file, or return None where there is none. Raises ContentError when it is broken."""
+    path = folder / commit_path(name)
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        files = {k: Entry(str(v["sha256"]), int(v["bytes"])) for k, v in data["files"].items()}
+        rows = {str(k): int(v) for k, v in data["rows"].items()}
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise ContentError(f"{path} is not a commit file", "delete it: the next run makes the shard again") from error
+    return Commit(str(data["name"]), files, rows)
+
+
+def _flush(path: Path) -> None:
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

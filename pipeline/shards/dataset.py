@@ -1,0 +1,224 @@
+"""A dataset folder that is being filled: opened or created, locked, resumed; shards are written whole or not at all.
+
+One process writes; workers return a shard's content. So no two writers ever meet, workers need no shared disk, and
+what a killed run leaves behind is told apart by one question: is there a commit file?
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import shutil
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import pyarrow.parquet as pq
+
+from pipeline.errors import ContentError, UsageError
+from pipeline.manifest import write_json
+from pipeline.shards.commits import Commit, read_commit, record
+from pipeline.shards.header import Header, read_header
+from pipeline.shards.layout import ASSETS, COMMITS, HEADER, STAGING, TABLES, TEMPORARY, commit_path, require_inside, shard_name, table_path
+
+Row = Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class ShardContent:
+    """What a shard holds: rows by table name, and files by path relative to the dataset (`usd/shard-00000/...`)."""
+
+    rows: Mapping[str, Sequence[Row]]
+    files: Mapping[str, bytes] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Dataset:
+    """An open dataset: where it lies and what it is."""
+
+    folder: Path
+    header: Header
+
+    def missing(self) -> list[int]:
+        """Return the numbers of the shards that are still to be made."""
+        return [n for n in range(self.header.shards) if not committed(self, n)]
+
+
+@contextmanager
+def open_or_create(folder: Path, header: Header, *, discard: bool = False) -> Iterator[Dataset]:
+    """Open a dataset for writing: create it, or resume an equal one; the folder is locked meanwhile.
+
+    A dataset of full shards may grow: the same header with a larger count resumes it. With `discard`, an unequal
+    dataset is deleted first (for folders that DVC owns). Raises UsageError for a folder that holds another dataset or
+    other files, or that another run is writing; ContentError when dataset.json is broken. Nothing is touched then.
+    """
+    if header.count < 1 or header.shard_size < 1:
+        raise UsageError(f"a dataset of {header.count} homes in shards of {header.shard_size} cannot be", "give numbers from 1 on")
+    if folder.exists() and not folder.is_dir():
+        raise UsageError(f"{folder} is not a folder", "give a folder that is new, empty, or holds this very dataset")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UsageError(f"cannot make the folder {folder} ({error.strerror})", "give a place that you may write to") from error
+    with _locked(folder):
+        if (folder / HEADER).exists():
+            if not _resumes(folder, header, discard=discard):
+                _wipe(folder)
+        elif any(not p.name.startswith((TEMPORARY, STAGING)) for p in folder.iterdir()):
+            raise UsageError(f"{folder} holds other files", "give a folder that is new or empty")
+        dataset = Dataset(folder, header)
+        _clean(dataset)
+        if not (folder / HEADER).exists() or read_header(folder) != header:
+            write_json(folder / HEADER, header.to_json())
+        yield dataset
+
+
+def committed(dataset: Dataset, number: int) -> bool:
+    """Tell whether shard `number` is there, with every file of its commit at its full length."""
+    commit = read_commit(dataset.folder, shard_name(number))
+    return commit is not None and not commit.damaged(dataset.folder)
+
+
+def commit_shard(dataset: Dataset, number: int, content: ShardContent) -> Commit:
+    """Write shard `number` whole: stage, fsync, rename, commit file last. A committed shard is never rewritten.
+
+    Raises ContentError for a table or file that has no place in the shard, or a scene that is not its.
+    """
+    name = shard_name(number)
+    if committed(dataset, number):
+        raise ContentError(f"{name} of {dataset.folder} is committed already", "a committed shard is never rewritten")
+    _require_whole(dataset.header, number, content)
+    staging = dataset.folder / STAGING / name
+    shutil.rmtree(staging, ignore_errors=True)
+    for table, schema in TABLES.items():
+        path = staging / table_path(table, number)
+        path.parent.mkdir(parents=True)
+        pq.write_table(schema.from_rows(content.rows.get(table, ())), path, compression="zstd", store_schema=True)
+    for file, data in content.files.items():
+        path = staging / file
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
+    commit = record(staging, name, {t: len(content.rows.get(t, ())) for t in TABLES})
+    _forget(dataset.folder, name)
+    for family in sorted(staging.iterdir()):
+        (dataset.folder / family.name).mkdir(exist_ok=True)
+        for item in sorted(family.iterdir()):
+            item.rename(dataset.folder / family.name / item.name)
+        _sync(dataset.folder / family.name)
+    _sync(dataset.folder)
+    write_json(dataset.folder / commit_path(name), commit.to_json())
+    _sync(dataset.folder / COMMITS)
+    shutil.rmtree(staging)
+    return commit
+
+
+def commit_library(dataset: Dataset, write: Callable[[Path], object]) -> Commit:
+    """Let `write` fill the asset library, once: a library that is committed is left as it is. Done before any shard."""
+    there = read_commit(dataset.folder, ASSETS)
+    if there is not None and not there.damaged(dataset.folder):
+        return there
+    staging = dataset.folder / STAGING / ASSETS
+    shutil.rmtree(staging, ignore_errors=True)
+    staging.mkdir(parents=True)
+    write(staging)
+    commit = record(staging.parent, ASSETS, {}, only=ASSETS)
+    _forget(dataset.folder, ASSETS)
+    staging.rename(dataset.folder / ASSETS)
+    _sync(dataset.folder)
+    write_json(dataset.folder / commit_path(ASSETS), commit.to_json())
+    _sync(dataset.folder / COMMITS)
+    return commit
+
+
+def _require_whole(header: Header, number: int, content: ShardContent) -> None:
+    name = shard_name(number)
+    unknown = sorted(content.rows.keys() - TABLES.keys())
+    if unknown:
+        raise ContentError(f"{name} brings unknown tables {', '.join(unknown)}", f"tables are {', '.join(TABLES)}")
+    for file in content.files:
+        require_inside(file, name)
+    indices = [row["index"] for row in content.rows.get("scenes", ())]
+    if indices != list(header.indices(number)):
+        raise ContentError(f"{name} brings homes {indices}, not {list(header.indices(number))}", "one scenes row per index, in order")
+
+
+def _resumes(folder: Path, header: Header, *, discard: bool) -> bool:
+    """Tell whether the dataset in `folder` is an equal or a smaller one (True) or is to be discarded (False)."""
+    try:
+        there = read_header(folder)
+    except ContentError:
+        if discard:
+            return False
+        raise
+    grown = replace(there, count=header.count)
+    full = there.count % there.shard_size == 0
+    if grown == header and (header.count == there.count or (header.count > there.count and full)):
+        return True
+    if discard:
+        return False
+    what = "; ".join(there.differences(header))
+    remedy = "give another --out, or the options of the run that made it"
+    if grown == header and header.count > there.count:
+        remedy = f"its last shard is not full, and committed shards are never rewritten: give another --out, or --count {there.count}"
+    raise UsageError(f"{folder} holds another dataset ({what})", remedy)
+
+
+def _clean(dataset: Dataset) -> None:
+    """Remove what a killed run left: staging, temporary files, shards without (or that do not fit) a commit."""
+    folder = dataset.folder
+    shutil.rmtree(folder / STAGING, ignore_errors=True)
+    for place in (folder, folder / COMMITS):
+        for left in place.glob(f"{TEMPORARY}*"):
+            left.unlink()
+    seen = {p.name.removesuffix(".parquet") for p in folder.glob("*/shard-*")}
+    for name in sorted(n for n in seen if "." not in n):
+        commit = read_commit(folder, name)
+        if commit is None or commit.damaged(folder):
+            _forget(folder, name)
+
+
+def _forget(folder: Path, name: str) -> None:
+    """Remove a shard, or the library: its commit first, so that no commit ever vouches for files that are gone."""
+    (folder / commit_path(name)).unlink(missing_ok=True)
+    if name == ASSETS:
+        shutil.rmtree(folder / ASSETS, ignore_errors=True)
+    for item in sorted([*folder.glob(f"*/{name}"), *folder.glob(f"*/{name}.parquet")]):
+        if item.parent.name in {STAGING, ASSETS}:
+            continue
+        if item.is_dir() and not item.is_symlink():
+            shutil.rmtree(item)
+        else:
+            item.unlink()
+
+
+def _wipe(folder: Path) -> None:
+    """Remove a whole dataset, its header first; files and folders that are no dataset's stay."""
+    (folder / HEADER).unlink()
+    ours = {*TABLES, COMMITS, ASSETS, STAGING, *(p.parent.name for p in folder.glob("*/shard-*"))}
+    for name in sorted(ours):
+        shutil.rmtree(folder / name, ignore_errors=True)
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Hold the folder's lock; the kernel frees it when the process dies."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            raise UsageError(f"another run is writing {folder}", "wait for it, or give another --out") from error
+        yield
+    finally:
+        os.close(descriptor)
+
+
+def _sync(folder: Path) -> None:
+    """Flush a folder's entries to disk."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

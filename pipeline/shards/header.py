@@ -1,0 +1,79 @@
+"""dataset.json: what a dataset is, so that a run resumes an equal one and leaves every other alone."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+from pipeline.errors import ContentError
+from pipeline.manifest import sha256
+from pipeline.shards.layout import HEADER
+from schemas.table import SCHEMA_VERSION
+
+FORMAT = "sfgen-dataset-1"
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """The identity of a dataset.
+
+    Homes have the indices 0 ... count - 1; shard k holds those from k * `shard_size` on. `digests` names everything
+    else that a home depends on: params, weights, library, code, prompts. `licence` is the one that binds the whole.
+    """
+
+    seed: int
+    count: int
+    shard_size: int
+    licence: str
+    digests: Mapping[str, str] = field(default_factory=dict)
+    schema_version: str = SCHEMA_VERSION
+    format: str = FORMAT
+
+    @property
+    def shards(self) -> int:
+        """Number of shards."""
+        return -(-self.count // self.shard_size)
+
+    def indices(self, number: int) -> range:
+        """Return the indices of the homes of shard `number`."""
+        return range(number * self.shard_size, min(self.count, (number + 1) * self.shard_size))
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the JSON object of dataset.json."""
+        return {**asdict(self), "digests": dict(self.digests)}
+
+    def differences(self, other: Header) -> list[str]:
+        """Return what differs, in words: `seed 1, not 2`."""
+        mine, theirs = ({**h.to_json(), **{f"digest of {k}": v[:12] for k, v in h.digests.items()}} for h in (self, other))
+        names = [n for n in {**mine, **theirs} if n != "digests" and mine.get(n) != theirs.get(n)]
+        return [f"{name} {mine.get(name)}, not {theirs.get(name)}" for name in names]
+
+
+def read_header(folder: Path) -> Header:
+    """Read a dataset's header. Raises ContentError when it is missing, broken, or of another format."""
+    path = folder / HEADER
+    remedy = "give a folder that `sfgen shard`, `sfgen generate` or `dvc repro` made"
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise ContentError(f"{folder} holds no dataset ({HEADER} is missing)", remedy) from error
+    except (OSError, ValueError) as error:
+        raise ContentError(f"cannot read {path} ({str(error).splitlines()[0]})", remedy) from error
+    names = {f.name for f in fields(Header)}
+    if not isinstance(data, dict) or data.get("format") != FORMAT or data.keys() != names:
+        raise ContentError(f"{path} does not describe a dataset of format {FORMAT}", remedy)
+    header = Header(**data)
+    numbers = (header.seed, header.count, header.shard_size)
+    if not all(type(n) is int for n in numbers) or header.count < 1 or header.shard_size < 1 or not isinstance(header.digests, dict):
+        raise ContentError(f"{path} holds numbers that cannot be (seed, count, shard_size = {numbers})", remedy)
+    return header
+
+
+def code_digest(root: Path) -> str:
+    """Return the digest of the code that homes depend on: everything under schemas/, pipeline/ and manifests/."""
+    found = [p for part in ("schemas", "pipeline", "manifests") for p in (root / part).rglob("*") if p.is_file()]
+    kept = sorted((p.relative_to(root).as_posix(), p) for p in found if "__pycache__" not in p.parts)
+    return sha256("\n".join(f"{name} {sha256(path.read_bytes())}" for name, path in kept).encode())

@@ -1,0 +1,61 @@
+"""Where things lie in a dataset folder, and the two names that never last: staging and temporary files.
+
+dataset.json                      what the dataset is
+scenes/shard-00000.parquet ...    one folder per table
+usd/shard-00000/...               one folder per family of files: usd, plans, previews ...
+assets/...                        the asset library that every shard reads
+commits/shard-00000.json          digest of every file of the shard; written last, it makes the shard exist
+commits/assets.json               the same for the library
+"""
+
+from __future__ import annotations
+
+from pathlib import PurePosixPath
+
+from pipeline.errors import ContentError
+from schemas.joints import JOINTS
+from schemas.objects import OBJECTS
+from schemas.openings import OPENINGS
+from schemas.rejects import REJECTS
+from schemas.rooms import ROOMS
+from schemas.scenes import SCENES
+
+TABLES = {table.name: table for table in (SCENES, ROOMS, OPENINGS, OBJECTS, JOINTS, REJECTS)}
+HEADER = "dataset.json"
+COMMITS = "commits"
+ASSETS = "assets"
+STAGING = ".staging"
+TEMPORARY = ".tmp-"  # how pipeline/manifest.py begins the names of files that are being written
+
+
+def shard_name(number: int) -> str:
+    """Return the name that every file and folder of shard `number` carries."""
+    return f"shard-{number:05d}"
+
+
+def scene_id(seed: int, index: int) -> str:
+    """Return the id of home `index` of a dataset made with `seed`; it is a valid USD name."""
+    return f"s{seed}_{index:08d}"
+
+
+def table_path(table: str, number: int) -> str:
+    """Return where shard `number` of a table lies, relative to the dataset."""
+    return f"{table}/{shard_name(number)}.parquet"
+
+
+def file_path(family: str, number: int, name: str) -> str:
+    """Return where file `name` of a shard lies, relative to the dataset: `usd/shard-00000/s1_00000000.usdc`."""
+    return f"{family}/{shard_name(number)}/{name}"
+
+
+def commit_path(name: str) -> str:
+    """Return where the commit file of a shard, or of the library (`assets`), lies."""
+    return f"{COMMITS}/{name}.json"
+
+
+def require_inside(path: str, name: str) -> None:
+    """Raise ContentError unless `path` is relative and lies in a folder `<family>/<name>/` of the dataset."""
+    parts = PurePosixPath(path).parts
+    odd = path != str(PurePosixPath(path)) or "\\" in path or ".." in parts or path.startswith("/") or len(parts) < 3
+    if odd or parts[0] in {*TABLES, COMMITS, ASSETS} or parts[0].startswith(".") or parts[1] != name:
+        raise ContentError(f"a file of {name} may not lie at {path!r}", f"name it <family>/{name}/<file>")
