@@ -27,10 +27,14 @@ class Category:
 
 @dataclass(frozen=True, slots=True)
 class Taxonomy:
-    """Categories by name, in the order of the layout model's classes, and the maps of room types."""
+    """Categories by name, in the order of the layout model's classes, and the maps of room types.
+
+    `essentials` lists per layout type groups of categories; a room needs one of each group to serve as that room.
+    """
 
     categories: Mapping[str, Category]
     layout_types: tuple[str, ...]
+    essentials: Mapping[str, tuple[tuple[str, ...], ...]]
     front_rooms: Mapping[str, str | None]
     plan_rooms: Mapping[str, str | None]
 
@@ -69,4 +73,5 @@ def load() -> Taxonomy:
         )
         for name, entry in raw["categories"].items()
     }
-    return Taxonomy(categories, tuple(raw["layout_types"]), raw["front_rooms"], raw["plan_rooms"])
+    essentials = {kind: tuple(tuple(group) for group in groups) for kind, groups in raw["essentials"].items()}
+    return Taxonomy(categories, tuple(raw["layout_types"]), essentials, raw["front_rooms"], raw["plan_rooms"])
