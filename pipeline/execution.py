@@ -25,6 +25,7 @@ THREADS = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_
 RETRIES = 2  # of a step that raised something that is not ours: a network disk that hiccups
 DEATHS = 3  # of a worker at one shard, before that shard is blamed
 IN_FLIGHT = 2  # shards per worker: one at work, one waiting
+PATIENCE = "20s"  # with a scheduler that does not answer
 QUIET = 30.0  # seconds between two lines of progress where there is no terminal
 
 
@@ -112,7 +113,7 @@ def _client(workers: int, scheduler: str | None, memory: str) -> Iterator[Any]:
         "distributed.scheduler.allowed-failures": DEATHS,
         "distributed.worker.daemon": True,
         "distributed.admin.log-format": "%(name)s: %(message)s",
-        "distributed.comm.timeouts.connect": "20s",
+        "distributed.comm.timeouts.connect": PATIENCE,
     }
     with dask.config.set(quiet):
         if scheduler is not None:
@@ -122,7 +123,7 @@ def _client(workers: int, scheduler: str | None, memory: str) -> Iterator[Any]:
                     f"the scheduler {scheduler!r} is neither an address nor a file", "give tcp://host:port or a scheduler file"
                 )
             try:
-                client = Client(**where, timeout="20s", set_as_default=False)
+                client = Client(**where, timeout=PATIENCE, set_as_default=False)
             except (OSError, ValueError, TimeoutError) as error:
                 raise UsageError(f"no Dask scheduler answers at {scheduler}", "start one, or leave --scheduler out") from error
             with client:

@@ -1,0 +1,208 @@
+"""The `sfgen` command: options, messages and exit codes. What the commands do stands in stages/.
+
+Exit codes: 0 done; 1 wrong content, or a run that failed; 2 something wrong in the command line; 3 a request that
+cannot be met; 130 interrupted. Whatever goes wrong is one line on stderr: `sfgen: <thing>; <remedy>`.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+PROMPT_HELP = "What the home shall be, in words."
+SEED_HELP = "Every random choice follows from it."
+
+app = typer.Typer(
+    name="sfgen",
+    help="A factory for datasets of homes that robots can use.",
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+Prompt = Annotated[str, typer.Argument(help=PROMPT_HELP, show_default=False)]
+Seed = Annotated[int, typer.Option(min=0, max=2**31 - 1, help=SEED_HELP)]
+
+
+@app.command()
+def generate(
+    prompt: Prompt,
+    out: Annotated[Path, typer.Option(help="New or empty folder for the home.")] = Path("home"),
+    seed: Seed = 0,
+) -> None:
+    r"""Make one home from words: USD, tables, plan and preview.
+
+    \b
+    Example:
+      sfgen generate "a two-bedroom apartment with an open kitchen" --out home/
+    """
+    root = factory_root()
+    stage("generate").main(root, prompt=prompt, out=out, seed=seed)
+
+
+@app.command()
+def shard(
+    count: Annotated[int, typer.Option(min=1, help="Number of homes.", show_default=False)],
+    out: Annotated[Path | None, typer.Option(help="Folder of the dataset; a killed run resumes. [default: datasets/<seed>]")] = None,
+    seed: Seed = 0,
+    workers: Annotated[int, typer.Option(min=1, help="Processes of a local Dask cluster, one thread each; 1 runs without Dask.")] = 1,
+    prompts: Annotated[Path | None, typer.Option(help="Text file, a prompt a line; or YAML list of {prompt, weight}.")] = None,
+    scheduler: Annotated[str | None, typer.Option(help="A Dask scheduler, tcp://host:port or its file, instead of --workers.")] = None,
+) -> None:
+    r"""Make a dataset of many homes; started again, it goes on where it was killed.
+
+    \b
+    Example:
+      sfgen shard --count 200 --out datasets/mine --seed 7 --workers 2
+      sfgen shard --count 1000 --prompts prompts.txt --scheduler tcp://10.0.0.1:8786
+    """
+    root = factory_root()
+    stage("shard").main(root, count=count, out=out, seed=seed, workers=workers, prompts=prompts, scheduler=scheduler)
+
+
+@app.command()
+def plan(
+    prompt: Prompt,
+    seed: Seed = 0,
+    json: Annotated[Path | None, typer.Option(help="Write the plan here as JSON.")] = None,
+    svg: Annotated[Path | None, typer.Option(help="Draw the plan here as SVG.")] = None,
+    png: Annotated[Path | None, typer.Option(help="Draw the plan here as PNG.")] = None,
+) -> None:
+    r"""Turn words into a floor plan and show it.
+
+    \b
+    Example:
+      sfgen plan "three bedrooms, two bathrooms, a kitchen that is open to the living room" --svg plan.svg
+    """
+    root = factory_root()
+    stage("plan").main(root, prompt=prompt, seed=seed, json_path=json, svg_path=svg, png_path=png)
+
+
+@app.command()
+def verify(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a dataset.", show_default=False)],
+) -> None:
+    r"""Check a dataset: every sha256, row count, id and reference; the first wrong thing is named.
+
+    \b
+    Example:
+      sfgen verify data/shards
+    """
+    root = factory_root()
+    stage("verify").main(root, folder=folder)
+
+
+@app.command()
+def doctor() -> None:
+    r"""Say what is installed, what is made, what is missing, and the command that makes it.
+
+    \b
+    Example:
+      sfgen doctor
+    """
+    root = factory_root()
+    stage("doctor").main(root)
+
+
+@app.callback(invoke_without_command=True)
+def version(*, version: Annotated[bool, typer.Option("--version", help="Show the version and exit.")] = False) -> None:
+    """Make datasets of homes that robots can use."""
+    if version:
+        from sfgen import __version__
+
+        typer.echo(__version__)
+        raise typer.Exit
+
+
+class Complaint(Exception):  # noqa: N818 - not an error of the program
+    """Something that the command line itself has to say; `exit_code` as in the factory's errors."""
+
+    def __init__(self, text: str, exit_code: int) -> None:
+        self.exit_code = exit_code
+        super().__init__(text)
+
+
+def factory_root() -> Path:
+    """Return the checkout that this package lies in, and make its code importable. Raises Complaint from a bare wheel."""
+    root = Path(__file__).resolve().parents[1]
+    if not (root / "dvc.yaml").is_file() or not (root / "stages").is_dir():
+        text = "this command needs the factory, and only the loaders are installed; clone sfgen's repository and type `make run` in it"
+        raise Complaint(text, 1)
+    if str(root) not in sys.path:
+        sys.path.insert(0, str(root))
+    return root
+
+
+def stage(name: str) -> Any:
+    """Import what a command does; heavy packages come with it."""
+    return importlib.import_module(f"stages.{name}")
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run one command line and return its exit code; what went wrong is said in one line on stderr."""
+    try:
+        code = app(args=list(arguments), prog_name="sfgen", standalone_mode=False)
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:
+        # The reader (head, less) is gone: nothing is wrong, and nobody listens.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except Exception as error:  # the last line of defence: users get a line, not a traceback
+        if os.environ.get("SFGEN_DEBUG"):
+            raise
+        text, code = explain(error)
+        if text:
+            sys.stderr.write(f"sfgen: {text}\n")
+        return code
+    return code if isinstance(code, int) else 0
+
+
+def explain(error: Exception) -> tuple[str, int]:
+    """Return the text that explains an error, and the exit code."""
+    kinds = {kind.__name__ for kind in type(error).__mro__}
+    if "ClickException" in kinds or "TyperException" in kinds or "Abort" in kinds:  # typer carries a click of its own
+        return explain_usage(error, kinds)
+    if isinstance(code := getattr(error, "exit_code", None), int):
+        return one_line(str(error)), code
+    if isinstance(error, ModuleNotFoundError) and (error.name or "").split(".")[0] not in {"stages", "pipeline", "schemas", "sfgen"}:
+        return f"the package {error.name} is not installed; type `make run`, or `pip install -c constraints.txt -e '.[factory,render]'`", 1
+    if isinstance(error, OSError) and error.strerror:
+        where = f": {error.filename}" if error.filename else ""
+        return f"{error.strerror}{where}; see to the disk, or give another place", 1
+    if isinstance(error, MemoryError):
+        return "out of memory; give fewer --workers", 1
+    return f"unexpected {type(error).__name__}: {one_line(str(error))}; SFGEN_DEBUG=1 shows where: please report it", 1
+
+
+def explain_usage(error: Exception, kinds: set[str]) -> tuple[str, int]:
+    """Return the text for what the command-line parser raises, and the exit code."""
+    context = getattr(error, "ctx", None)
+    if "Abort" in kinds:
+        return "", 130
+    if "NoArgsIsHelpError" in kinds and context:
+        return "no command is given; choose one\n\n" + context.get_help(), 2
+    text = one_line(error.format_message()).rstrip(".")  # type: ignore[attr-defined]
+    return f"{text}; see `{context.command_path if context else 'sfgen'} --help`", 2
+
+
+def one_line(text: str) -> str:
+    """Join the lines of a message."""
+    return " ".join(text.split())
+
+
+def main() -> None:
+    """Entry point of the console command."""
+    sys.exit(run(sys.argv[1:]))
+
+
+if __name__ == "__main__":
+    main()
