@@ -1,0 +1,103 @@
+"""Convex tilings of plan polygons: rectangles where all edges are axis-parallel, merged triangles elsewhere."""
+
+from __future__ import annotations
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import MultiPolygon, Polygon
+
+GRID = 1e-5  # coordinates closer than this are one [m]; poses and plans are rounded to 1e-4
+
+
+def convex_pieces(region: Polygon | MultiPolygon) -> list[NDArray[np.float64]]:
+    """Tile `region` [m] with convex polygons (n, 2), counter-clockwise, that meet at their edges only."""
+    pieces: list[NDArray[np.float64]] = []
+    for part in polygons(region):
+        pieces.extend(_rectangles(part) if _rectilinear(part) else _merged_triangles(part))
+    return pieces
+
+
+def polygons(region: shapely.Geometry) -> list[Polygon]:
+    """Return the polygons of any geometry, in a fixed order, without slivers."""
+    parts = [p for p in shapely.get_parts(region, return_index=False) if p.geom_type == "Polygon" and p.area > 1e-6]
+    return sorted(parts, key=lambda p: (p.bounds, p.area))
+
+
+def _rings(part: Polygon) -> list[NDArray[np.float64]]:
+    return [np.asarray(ring.coords)[:-1] for ring in (part.exterior, *part.interiors)]
+
+
+def _rectilinear(part: Polygon) -> bool:
+    steps = np.concatenate([np.abs(np.roll(r, -1, axis=0) - r) for r in _rings(part)])
+    return bool(np.all(steps.min(axis=1) < GRID))
+
+
+def _rectangles(part: Polygon) -> list[NDArray[np.float64]]:
+    """Tile an axis-parallel polygon greedily: at each free grid cell, the larger of the row-first and column-first run."""
+    points = np.concatenate(_rings(part))
+    xs, ys = _ticks(points[:, 0]), _ticks(points[:, 1])
+    cx, cy = np.meshgrid((xs[1:] + xs[:-1]) / 2, (ys[1:] + ys[:-1]) / 2, indexing="ij")
+    free = shapely.contains_xy(part, cx, cy)
+    rectangles: list[NDArray[np.float64]] = []
+    while free.any():
+        i, j = map(int, np.argwhere(free)[0])
+        runs = [_grow(free, i, j, rows_first=True), _grow(free, i, j, rows_first=False)]
+        i1, j1 = max(runs, key=lambda e: (xs[e[0]] - xs[i]) * (ys[e[1]] - ys[j]))
+        free[i:i1, j:j1] = False
+        rectangles.append(np.array([[xs[i], ys[j]], [xs[i1], ys[j]], [xs[i1], ys[j1]], [xs[i], ys[j1]]]))
+    return rectangles
+
+
+def _ticks(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    ordered = np.sort(values)
+    return ordered[np.concatenate([[True], np.diff(ordered) > GRID])]
+
+
+def _grow(free: NDArray[np.bool_], i: int, j: int, *, rows_first: bool) -> tuple[int, int]:
+    """Return the exclusive end (i1, j1) of a free block that starts at cell (i, j)."""
+    if not rows_first:
+        j1, i1 = _grow(free.T, j, i, rows_first=True)
+        return i1, j1
+    i1 = i + 1
+    while i1 < free.shape[0] and free[i1, j]:
+        i1 += 1
+    j1 = j + 1
+    while j1 < free.shape[1] and free[i:i1, j1].all():
+        j1 += 1
+    return i1, j1
+
+
+def _merged_triangles(part: Polygon) -> list[NDArray[np.float64]]:
+    """Tile any polygon: constrained Delaunay triangles, merged while the union stays convex (Hertel and Mehlhorn 1983)."""
+    triangles = polygons(shapely.constrained_delaunay_triangles(part))
+    pieces = [np.asarray(shapely.geometry.polygon.orient(t).exterior.coords)[:-1] for t in triangles]
+    merged = True
+    while merged:
+        merged = False
+        for i in range(len(pieces)):
+            for j in range(i + 1, len(pieces)):
+                union = _merge(pieces[i], pieces[j])
+                if union is not None:
+                    pieces[i] = union
+                    del pieces[j]
+                    merged = True
+                    break
+            if merged:
+                break
+    return pieces
+
+
+def _merge(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """Join two counter-clockwise convex polygons along a shared edge, if the result is convex."""
+    near = np.linalg.norm(a[:, None] - b[None], axis=2) < GRID
+    for i in range(len(a)):
+        k = (i + 1) % len(a)
+        for j in range(len(b)):
+            if near[i, (j + 1) % len(b)] and near[k, j]:
+                ring = np.concatenate([np.roll(a, -k, axis=0), np.roll(b, -(j + 1), axis=0)[1:-1]])
+                before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
+                turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+                if np.all(turn > -1e-9):
+                    return ring[np.abs(turn) > 1e-9]
+    return None

@@ -1,0 +1,262 @@
+"""The shell of a plan: wall solids between the rooms' inner faces, holes for the openings, and the door leaves in them.
+
+Everything is in world plan coordinates (x, y) [m]; z is measured from the floor of the storey.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import LineString, Polygon
+
+from pipeline.entities.plan import Opening, Plan, Room
+from pipeline.geometry.tiling import convex_pieces, polygons
+
+LEAF_THICKNESS = 0.04  # [m]
+LEAF_GAP = 0.005  # between leaf and jamb, lintel, floor [m]: the leaf is 1 cm narrower and lower than its opening
+SLAB = 0.10  # thickness of floors and ceilings; walls rise this far above the ceiling, which makes rooms light-tight [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Cut:
+    """The hole of an opening. `quad` (4, 2): from the segment's start, on its right, counter-clockwise around the hole."""
+
+    opening: Opening
+    quad: NDArray[np.float64]
+    bottom: float
+    top: float
+
+
+@dataclass(frozen=True, slots=True)
+class Prism:
+    """A convex upright solid: `polygon` (n, 2) counter-clockwise, from z = `bottom` to `top`."""
+
+    kind: Literal["wall", "lintel", "sill"]
+    polygon: NDArray[np.float64]
+    bottom: float
+    top: float
+    opening_id: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """A flat visible face: `corners` (n, 3) counter-clockwise from its visible side; `owner` a room, "" outside, or an opening."""
+
+    owner: str
+    corners: NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Leaf:
+    """A hinged door leaf, closed. It opens about the vertical axis through `hinge`, from `along` towards `normal`.
+
+    The hinge stands at the segment's end, on the wall's centre line; the closed leaf lies behind that line, on the side
+    away from the room it swings into, so that the open leaf clears the jamb. `turn` is +1 where opening is
+    counter-clockwise seen from above. `front` and `back` are the wall's depth on both sides of its centre line [m].
+    """
+
+    opening_id: str
+    hinge: NDArray[np.float64]
+    along: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    turn: int
+    angle: float
+    width: float
+    bottom: float
+    top: float
+    front: float
+    back: float
+    clear: float
+
+    def outline(self, angle: float = 0.0) -> NDArray[np.float64]:
+        """Return the leaf's rectangle (4, 2) in plan, opened by `angle` [rad]."""
+        c, s = np.cos(angle), np.sin(angle)
+        along, normal = c * self.along + s * self.normal, c * self.normal - s * self.along
+        near = self.hinge + LEAF_GAP * self.along
+        far, back = near + self.width * along, -LEAF_THICKNESS * normal
+        return np.array([near, far, far + back, near + back])
+
+
+@dataclass(frozen=True, slots=True)
+class Shell:
+    """The walls of one storey. `height` is the ceiling of its highest room; `outline` the outer edge; `region` the cut walls."""
+
+    height: float
+    outline: shapely.Geometry
+    region: shapely.Geometry
+    cuts: tuple[Cut, ...]
+    prisms: tuple[Prism, ...]
+    leaves: tuple[Leaf, ...]
+
+
+def levels(plan: Plan) -> list[int]:
+    """Return the storeys of a plan, lowest first."""
+    return sorted({room.level for room in plan.rooms})
+
+
+def shell(plan: Plan, level: int) -> Shell:
+    """Build the wall solids of one storey: what lies between the rooms and the outer edge, less the openings."""
+    rooms = [room for room in plan.rooms if room.level == level]
+    inner = {room.room_id: Polygon(room.polygon) for room in rooms}
+    height = max(room.height for room in rooms)
+    outline = shapely.union_all([p.buffer(plan.outer_wall, join_style="mitre") for p in inner.values()])
+    solid = shapely.set_precision(outline.difference(shapely.union_all(list(inner.values()))), 1e-6)
+    cuts = tuple(_cut(o, inner, plan) for o in plan.openings if o.level == level)
+    region = solid
+    if cuts:
+        region = shapely.set_precision(solid.difference(shapely.union_all([_widened(c) for c in cuts])), 1e-6)
+    top = height + SLAB
+    prisms = [Prism("wall", piece, 0.0, top) for piece in convex_pieces(region)]
+    for cut in cuts:
+        if top - cut.top > 1e-3:
+            prisms.append(Prism("lintel", cut.quad, cut.top, top, cut.opening.opening_id))
+        if cut.bottom > 1e-3:
+            prisms.append(Prism("sill", cut.quad, 0.0, cut.bottom, cut.opening.opening_id))
+    leaves = tuple(leaf for cut in cuts if (leaf := _leaf(cut, inner)) is not None)
+    return Shell(height, outline, region, cuts, tuple(prisms), leaves)
+
+
+def room_panels(room: Room, cuts: tuple[Cut, ...]) -> list[Panel]:
+    """Return the visible wall faces of a room, with holes where openings are."""
+    return _ring_panels(room.room_id, room.polygon, cuts, room.height)
+
+
+def outer_panels(built: Shell) -> list[Panel]:
+    """Return the visible faces outside, and the tops of the walls."""
+    top = built.height + SLAB
+    panels: list[Panel] = []
+    for part in polygons(built.outline):
+        # Reversed, so that, as in rooms, what is visible lies on the left of each edge.
+        turned = shapely.geometry.polygon.orient(part, -1.0)
+        for ring in (turned.exterior, *turned.interiors):
+            panels.extend(_ring_panels("", np.asarray(ring.coords)[:-1], built.cuts, top))
+    panels.extend(Panel("", _lift(p.polygon, p.top)) for p in built.prisms if p.kind != "sill")
+    return panels
+
+
+def reveals(cut: Cut) -> list[Panel]:
+    """Return the faces inside an opening: two jambs, the lintel's underside, the sill's top."""
+    a, b, c, d = cut.quad
+    owner = cut.opening.opening_id
+    panels = [Panel(owner, _wall(d, a, cut.bottom, cut.top)), Panel(owner, _wall(b, c, cut.bottom, cut.top))]
+    panels.append(Panel(owner, _lift(cut.quad[::-1], cut.top)))
+    if cut.bottom > 1e-3:
+        panels.append(Panel(owner, _lift(cut.quad, cut.bottom)))
+    return panels
+
+
+def _side(segment: NDArray[np.float64], polygon: Polygon) -> tuple[int, float]:
+    """Return on which side of the segment (+1 left, -1 right) a room lies, and how far its face is from the centre line."""
+    middle = segment.mean(axis=0)
+    normal = _left(segment)
+    for reach in (0.5, 2.0):
+        for side in (1, -1):
+            ray = LineString([middle, middle + side * reach * normal])
+            hit = ray.intersection(polygon)
+            if not hit.is_empty and hit.length > 1e-3:
+                return side, float(hit.distance(shapely.Point(middle)))
+    centre = np.asarray(polygon.representative_point().coords)[0]
+    return (1 if (centre - middle) @ normal > 0 else -1), float(polygon.distance(shapely.Point(middle)))
+
+
+def _left(segment: NDArray[np.float64]) -> NDArray[np.float64]:
+    along = segment[1] - segment[0]
+    normal: NDArray[np.float64] = np.array([-along[1], along[0]]) / np.linalg.norm(along)
+    return normal
+
+
+def _cut(opening: Opening, inner: dict[str, Polygon], plan: Plan) -> Cut:
+    depth: dict[int, float] = {}
+    for room_id in opening.rooms:
+        if room_id in inner:
+            side, distance = _side(opening.segment, inner[room_id])
+            depth[side] = distance
+    wall = plan.inner_wall if len(opening.rooms) > 1 else plan.outer_wall
+    left = depth.get(1, wall - depth.get(-1, wall / 2))
+    right = depth.get(-1, wall - depth.get(1, wall / 2))
+    n, (a, b) = _left(opening.segment), opening.segment
+    quad = np.array([a - right * n, b - right * n, b + left * n, a + left * n])
+    return Cut(opening, quad, opening.sill, opening.sill + opening.height)
+
+
+def _widened(cut: Cut) -> Polygon:
+    """Return the hole, a millimetre deeper than the wall, so that no film of wall remains."""
+    a, b, c, d = cut.quad
+    n = 1e-3 * _left(cut.opening.segment)
+    return Polygon([a - n, b - n, c + n, d + n])
+
+
+def _leaf(cut: Cut, inner: dict[str, Polygon]) -> Leaf | None:
+    opening, swing = cut.opening, cut.opening.swing
+    if swing is None or opening.kind not in {"door", "entrance"}:
+        return None
+    hinge, other = opening.segment[swing.hinge], opening.segment[1 - swing.hinge]
+    along = (other - hinge) / opening.width
+    side = _side(opening.segment, inner[swing.room_id])[0] if swing.room_id in inner else 1
+    normal = side * _left(opening.segment)
+    turn = 1 if along[0] * normal[1] - along[1] * normal[0] > 0 else -1
+    right, left = (float(np.linalg.norm(cut.quad[k] - opening.segment[0])) for k in (0, 3))
+    front, back = (left, right) if side > 0 else (right, left)
+    return Leaf(
+        opening.opening_id,
+        hinge,
+        along,
+        normal,
+        turn,
+        swing.angle,
+        opening.width - 2 * LEAF_GAP,
+        cut.bottom + LEAF_GAP,
+        cut.top - LEAF_GAP,
+        front,
+        back,
+        opening.width,
+    )
+
+
+def _ring_panels(owner: str, ring: NDArray[np.float64], cuts: tuple[Cut, ...], height: float) -> list[Panel]:
+    """Return the upright faces along a ring whose visible side is on its left, around the holes that touch it."""
+    panels: list[Panel] = []
+    for a, b in zip(ring, np.roll(ring, -1, axis=0), strict=True):
+        length = float(np.linalg.norm(b - a))
+        if length < 1e-6:
+            continue
+        along = (b - a) / length
+        start = 0.0
+        for t0, t1, bottom, top in sorted(_touching(a, along, length, cuts)):
+            if t0 > start + 1e-6:
+                panels.append(Panel(owner, _wall(a + start * along, a + t0 * along, 0.0, height)))
+            for z0, z1 in ((0.0, bottom), (top, height)):
+                if z1 - z0 > 1e-3:
+                    panels.append(Panel(owner, _wall(a + t0 * along, a + t1 * along, z0, z1)))
+            start = max(start, t1)
+        if length > start + 1e-6:
+            panels.append(Panel(owner, _wall(a + start * along, b, 0.0, height)))
+    return panels
+
+
+def _touching(
+    a: NDArray[np.float64], along: NDArray[np.float64], length: float, cuts: tuple[Cut, ...]
+) -> list[tuple[float, float, float, float]]:
+    """Return (start, end, bottom, top) of the holes in the edge from `a`, as distances along it."""
+    found = []
+    for cut in cuts:
+        offset = (cut.quad - a) @ np.array([-along[1], along[0]])
+        for pair in ((0, 1), (2, 3)):
+            if np.all(np.abs(offset[list(pair)]) < 2e-3):
+                t = np.clip((cut.quad[list(pair)] - a) @ along, 0.0, length)
+                if t.max() - t.min() > 1e-3:
+                    found.append((float(t.min()), float(t.max()), cut.bottom, cut.top))
+    return found
+
+
+def _wall(a: NDArray[np.float64], b: NDArray[np.float64], z0: float, z1: float) -> NDArray[np.float64]:
+    """Return the upright rectangle over a → b, counter-clockwise for one who stands on the left of a → b."""
+    return np.array([[*b, z0], [*a, z0], [*a, z1], [*b, z1]])
+
+
+def _lift(polygon: NDArray[np.float64], z: float) -> NDArray[np.float64]:
+    return np.column_stack([polygon, np.full(len(polygon), z)])

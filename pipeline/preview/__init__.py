@@ -1,0 +1,1 @@
+"""Pictures of homes: top views, contact sheets, path-traced views."""

@@ -1,0 +1,1 @@
+"""The rasteriser and the colours that previews, thumbnails and image metrics share."""

@@ -1,0 +1,112 @@
+"""Room doors and windows as assets, made to measure for their openings.
+
+Fitting frame: x along the opening, z up from the floor, y to the left of x; a door's origin is the foot of its hinge.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.asset import Asset, Joint, Mesh
+from pipeline.geometry.walls import LEAF_GAP, LEAF_THICKNESS, Cut, Leaf
+from pipeline.rendering.boxes import box, solid_link
+from pipeline.rendering.palette import ENTRANCE_LEAF, GLASS, JAMB, LEAF, METAL, WINDOW_FRAME
+
+LINING = 0.003  # thickness of the door frame's lining, inside the gap around the leaf [m]
+CASING = (0.06, 0.012)  # width and thickness of the trim around a door [m]
+HANDLE_HEIGHT = 1.02  # [m]
+LEAF_DENSITY = 320.0  # hollow-core door [kg/m3]
+
+
+def door(leaf: Leaf, *, entrance: bool) -> tuple[Asset, NDArray[np.float64], float]:
+    """Make the door of an opening: an asset in the fitting frame, its position (2,) [m] and yaw [rad]."""
+    side = leaf.turn  # +1: the room it swings into lies towards +y
+    frame = solid_link("frame", (*_lining(leaf), *_casing(leaf)), _lining(leaf), 12.0)
+    panel = _span("leaf", (LEAF_GAP, LEAF_GAP + leaf.width), (-side * LEAF_THICKNESS, 0.0), (leaf.bottom, leaf.top), 1)
+    handles = _handles(leaf)
+    mass = LEAF_DENSITY * leaf.width * LEAF_THICKNESS * (leaf.top - leaf.bottom)
+    moving = solid_link("leaf", (panel, *handles), (panel, *handles), mass)
+    hinge = Joint("hinge", "revolute", 0, 1, np.array([0.0, 0.0, float(side)]), np.zeros(3), 0.0, leaf.angle, "hinge_door")
+    asset = Asset(
+        asset_id=leaf.opening_id,
+        category="entrance_door" if entrance else "door",
+        size=np.array([leaf.clear, leaf.front + leaf.back, leaf.top + LEAF_GAP]),
+        links=(frame, moving),
+        joints=(hinge,),
+        materials=(JAMB, ENTRANCE_LEAF if entrance else LEAF, METAL),
+        source="fitting",
+        source_id=leaf.opening_id,
+        licence="Apache-2.0",
+    )
+    return asset, leaf.hinge, float(np.arctan2(leaf.along[1], leaf.along[0]))
+
+
+def window(cut: Cut) -> tuple[Asset, NDArray[np.float64], float]:
+    """Make the window of an opening: frame, mullion, glass; static. Position and yaw as for a door."""
+    a, b = (cut.quad[0] + cut.quad[3]) / 2, (cut.quad[1] + cut.quad[2]) / 2
+    width, z0, z1, bar, depth = float(np.linalg.norm(b - a)), cut.bottom, cut.top, 0.05, 0.035
+    parts = [
+        box("frame_left", (0, -depth, z0), (bar, depth, z1)),
+        box("frame_right", (width - bar, -depth, z0), (width, depth, z1)),
+        box("frame_bottom", (bar, -depth, z0), (width - bar, depth, z0 + bar)),
+        box("frame_top", (bar, -depth, z1 - bar), (width - bar, depth, z1)),
+    ]
+    panes = max(1, round(width / 0.8))
+    for k in range(1, panes):
+        x = width * k / panes
+        parts.append(box(f"mullion_{k}", (x - bar / 2, -depth, z0 + bar), (x + bar / 2, depth, z1 - bar)))
+    parts.append(box("glass", (bar, -0.006, z0 + bar), (width - bar, 0.006, z1 - bar), 1))
+    asset = Asset(
+        asset_id=cut.opening.opening_id,
+        category="window",
+        size=np.array([width, 2 * depth, z1]),
+        links=(solid_link("frame", tuple(parts), tuple(parts), 30.0),),
+        joints=(),
+        materials=(WINDOW_FRAME, GLASS),
+        source="fitting",
+        source_id=cut.opening.opening_id,
+        licence="Apache-2.0",
+    )
+    return asset, a, float(np.arctan2(*(b - a)[::-1]))
+
+
+def _span(name: str, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], material: int, part: str = "") -> Mesh:
+    """Make a box from unordered ranges."""
+    low, high = (min(x), min(y), min(z)), (max(x), max(y), max(z))
+    return box(name, low, high, material, part)
+
+
+def _lining(leaf: Leaf) -> tuple[Mesh, ...]:
+    y = (-leaf.turn * leaf.back, leaf.turn * leaf.front)
+    top = leaf.top + LEAF_GAP
+    return (
+        _span("lining_hinge", (0, LINING), y, (0, top), 0),
+        _span("lining_lock", (leaf.clear - LINING, leaf.clear), y, (0, top), 0),
+        _span("lining_top", (LINING, leaf.clear - LINING), y, (top - LINING, top), 0),
+    )
+
+
+def _casing(leaf: Leaf) -> tuple[Mesh, ...]:
+    """Make the trim on both faces of the wall; to look at only, so that furniture may stand against it."""
+    wide, thick = CASING
+    top = leaf.top + LEAF_GAP
+    parts = []
+    for name, face, out in (("front", leaf.turn * leaf.front, leaf.turn), ("back", -leaf.turn * leaf.back, -leaf.turn)):
+        y = (face, face + out * thick)
+        parts.append(_span(f"casing_{name}_hinge", (-wide, 0), y, (0, top + wide), 0))
+        parts.append(_span(f"casing_{name}_lock", (leaf.clear, leaf.clear + wide), y, (0, top + wide), 0))
+        parts.append(_span(f"casing_{name}_top", (0, leaf.clear), y, (top, top + wide), 0))
+    return tuple(parts)
+
+
+def _handles(leaf: Leaf) -> tuple[Mesh, ...]:
+    """Make a lever on each face, near the lock edge, pointing to the hinge."""
+    x, z = leaf.width - 0.055, leaf.bottom + HANDLE_HEIGHT
+    parts = []
+    for name, face, out in (("front", 0.0, leaf.turn), ("back", -leaf.turn * LEAF_THICKNESS, -leaf.turn)):
+        parts.append(_span(f"handle_{name}_neck", (x - 0.01, x + 0.01), (face, face + out * 0.045), (z - 0.01, z + 0.01), 2, "line_fixed_handle"))
+        parts.append(
+            _span(f"handle_{name}_lever", (x - 0.12, x + 0.01), (face + out * 0.045, face + out * 0.06), (z - 0.01, z + 0.01), 2, "line_fixed_handle")
+        )
+    return tuple(parts)

@@ -1,0 +1,165 @@
+"""A small z-buffer rasteriser: orthographic, flat shaded, the same pixels on every run.
+
+Camera frame: u to the right and v down, in pixels; depth grows towards the viewer.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+LIGHT = np.array([-0.35, -0.45, 0.82])  # towards the light, world frame; from the front left, high up
+AMBIENT = 0.45
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """An orthographic view: `axes` (3, 3) rows are the world directions of u, v and towards the viewer.
+
+    `centre` (3,) [m, world] falls on the middle of the image; `scale` is pixels per metre; `width`, `height` pixels.
+    """
+
+    axes: NDArray[np.float64]
+    centre: NDArray[np.float64]
+    scale: float
+    width: int
+    height: int
+
+    def project(self, points: NDArray[np.float64]) -> NDArray[np.float32]:
+        """Map world points (..., 3) [m] to (u, v, depth): pixels, pixels, metres."""
+        local = (points - self.centre) @ self.axes.T
+        out = np.empty(local.shape, np.float32)
+        out[..., 0] = local[..., 0] * self.scale + self.width / 2
+        out[..., 1] = local[..., 1] * self.scale + self.height / 2
+        out[..., 2] = local[..., 2]
+        return out
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """What was drawn: `colour` (H, W, 3) in [0, 1], `depth` (H, W) [m] (-inf where empty), `item` (H, W) (-1 where empty)."""
+
+    colour: NDArray[np.float32]
+    depth: NDArray[np.float32]
+    item: NDArray[np.int32]
+
+
+def top_down(low: NDArray[np.float64], high: NDArray[np.float64], width: int, height: int, margin: float = 0.0) -> View:
+    """Look straight down at the plan rectangle low..high (2,), +y up in the image; `margin` [m] is left around it."""
+    span = np.maximum(high - low + 2 * margin, 1e-3)
+    axes = np.array([[1.0, 0, 0], [0, -1.0, 0], [0, 0, 1.0]])
+    centre = np.array([*(low + high) / 2, 0.0])
+    return View(axes, centre, float(min(width / span[0], height / span[1])), width, height)
+
+
+def oblique(points: NDArray[np.float64], azimuth: float, elevation: float, size: int, margin: float = 0.06) -> View:
+    """Look at `points` (N, 3) so that they fill the image: from `azimuth` about +Z (0: from -Y), `elevation` above the floor [rad]."""
+    ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
+    right = np.array([ca, sa, 0.0])
+    back = np.array([sa * ce, -ca * ce, se])
+    axes = np.array([right, np.cross(right, back), back])
+    local = points @ axes.T
+    low, high = local.min(axis=0), local.max(axis=0)
+    scale = size * (1 - 2 * margin) / max(float((high - low)[:2].max()), 1e-3)
+    return View(axes, axes.T @ ((low + high) / 2), scale, size, size)
+
+
+def render(
+    view: View,
+    triangles: NDArray[np.float64],
+    colours: NDArray[np.float32],
+    items: NDArray[np.int32] | None = None,
+    background: tuple[float, float, float] = (1.0, 1.0, 1.0),
+) -> Frame:
+    """Draw `triangles` (T, 3, 3) [m, world] with `colours` (T, 3), Lambert shaded from both sides; `items` (T,) label them."""
+    frame = Frame(
+        np.broadcast_to(np.asarray(background, np.float32), (view.height, view.width, 3)).copy(),
+        np.full((view.height, view.width), -np.inf, np.float32),
+        np.full((view.height, view.width), -1, np.int32),
+    )
+    if len(triangles):
+        normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+        length = np.linalg.norm(normals, axis=1, keepdims=True)
+        normals = normals / np.maximum(length, 1e-12)
+        normals *= np.where(normals @ view.axes[2] < 0, -1.0, 1.0)[:, None]  # shade the side that is seen
+        lambert = np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0, 1)
+        shade = (AMBIENT + (1 - AMBIENT) * lambert).astype(np.float32)
+        labels = np.arange(len(triangles), dtype=np.int32) if items is None else items.astype(np.int32)
+        shaded = np.ascontiguousarray(colours.astype(np.float32) * shade[:, None])
+        _fill(np.ascontiguousarray(view.project(triangles)), shaded, labels, frame.colour, frame.depth, frame.item)
+    return frame
+
+
+def darken_edges(frame: Frame, radius: int, strength: float, reach: float = 0.6, ground: float | None = None) -> Frame:
+    """Darken what lies below its surroundings: the unsharp mask of the depth buffer (Luft et al. 2006), a cheap ambient occlusion.
+
+    `radius` [pixels]; `reach` [m] is the height difference that gives the full effect; empty pixels count as lying at depth
+    `ground` and are darkened too, or, without it, are left alone.
+    """
+    drawn = np.isfinite(frame.depth)
+    if not drawn.any():
+        return frame
+    level = float(frame.depth[drawn].min()) if ground is None else ground
+    filled = np.where(drawn, frame.depth, level).astype(np.float32)
+    low = filled
+    for _ in range(2):  # two box passes come close to a Gaussian
+        low = ndimage.uniform_filter(low, 2 * radius + 1, mode="nearest")
+    occlusion = np.clip((low - filled) / reach, 0.0, 1.0) * strength
+    if ground is None:
+        occlusion *= drawn
+    return Frame(frame.colour * (1 - occlusion[..., None]), frame.depth, frame.item)
+
+
+def shrink(image: NDArray[np.float32], factor: int) -> NDArray[np.float32]:
+    """Average blocks of `factor` x `factor` pixels of (H, W, C)."""
+    h, w, c = image.shape
+    out: NDArray[np.float32] = image.reshape(h // factor, factor, w // factor, factor, c).mean(axis=(1, 3))
+    return out
+
+
+def to_bytes(image: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """Map [0, 1] to 8 bits."""
+    return np.asarray(np.clip(image * 255.0 + 0.5, 0, 255), np.uint8)
+
+
+@numba.njit(cache=True)  # type: ignore[misc, unused-ignore]
+def _fill(
+    projected: NDArray[np.float32],
+    colours: NDArray[np.float32],
+    items: NDArray[np.int32],
+    colour: NDArray[np.float32],
+    depth: NDArray[np.float32],
+    item: NDArray[np.int32],
+) -> None:
+    """Scan-convert triangles (T, 3, 3) of (u, v, depth) in their order; a pixel counts when its centre is inside."""
+    height, width = depth.shape
+    for t in range(projected.shape[0]):
+        x0, y0, z0 = projected[t, 0]
+        x1, y1, z1 = projected[t, 1]
+        x2, y2, z2 = projected[t, 2]
+        area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+        if abs(area) < 1e-9:
+            continue
+        left, right = max(int(np.ceil(min(x0, x1, x2) - 0.5)), 0), min(int(np.floor(max(x0, x1, x2) - 0.5)), width - 1)
+        top, bottom = max(int(np.ceil(min(y0, y1, y2) - 0.5)), 0), min(int(np.floor(max(y0, y1, y2) - 0.5)), height - 1)
+        inverse = 1.0 / area
+        for row in range(top, bottom + 1):
+            py = row + 0.5
+            for column in range(left, right + 1):
+                px = column + 0.5
+                w0 = ((x1 - px) * (y2 - py) - (x2 - px) * (y1 - py)) * inverse
+                w1 = ((x2 - px) * (y0 - py) - (x0 - px) * (y2 - py)) * inverse
+                w2 = 1.0 - w0 - w1
+                if w0 < 0 or w1 < 0 or w2 < 0:
+                    continue
+                z = w0 * z0 + w1 * z1 + w2 * z2
+                if z > depth[row, column]:
+                    depth[row, column] = z
+                    item[row, column] = items[t]
+                    colour[row, column, 0] = colours[t, 0]
+                    colour[row, column, 1] = colours[t, 1]
+                    colour[row, column, 2] = colours[t, 2]

@@ -1,0 +1,107 @@
+"""Links and joints of an asset under its root prim: an articulation, or colliders alone where nothing moves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from pxr import Sdf
+
+from pipeline.entities.asset import Asset, Link, Mesh
+from pipeline.usd.joints import convert_fixed, convert_joint
+from pipeline.usd.layer import apply, identifiers, label, prim
+from pipeline.usd.material import bind
+from pipeline.usd.mesh import convert_mesh
+from pipeline.usd.physics import convert_body, convert_collider, convert_filter, hide, volume
+
+RESERVED = ("joints", "materials")  # scopes beside the links
+MOVERS = {"hinge_door": "door", "slider_drawer": "drawer", "hinge_lid": "lid", "slider_lid": "lid", "hinge_knob": "knob", "slider_button": "button"}
+HANDLES = {"line_fixed_handle": "handle", "round_fixed_handle": "handle", "hinge_handle": "handle"}
+TOUCH = 0.005  # parts whose boxes come this close at rest may rub [m]
+
+
+def link_names(asset: Asset) -> list[str]:
+    """Return the prim names of the links, in order."""
+    return identifiers((link.name for link in asset.links), RESERVED)
+
+
+def joint_names(asset: Asset) -> list[str]:
+    """Return the prim names of the joints, in order."""
+    return identifiers((joint.name for joint in asset.joints), ("world_fixed",))
+
+
+def convert_asset(root: Sdf.PrimSpec, asset: Asset, materials: Sequence[Sdf.Path]) -> None:
+    """Write all links, and where anything moves the joints, under `root`."""
+    names = link_names(asset)
+    links = [prim(root, name) for name in names]
+    moving = {joint.child: joint for joint in asset.joints}
+    for i, (spec, link) in enumerate(zip(links, asset.links, strict=True)):
+        if asset.articulated:
+            convert_body(spec, link)
+        if i in moving:
+            part = moving[i].part_class
+            label(spec, "class", [MOVERS.get(part, HANDLES.get(part, "part"))])
+            label(spec, "part", [part])
+        _convert_pieces(spec, link, asset, materials, weigh=asset.articulated)
+    if asset.articulated:
+        apply(root, ["PhysicsArticulationRootAPI"])
+        scope = prim(root, "joints", "Scope")
+        convert_fixed(scope, root.path, links[0].path)
+        for name, joint in zip(joint_names(asset), asset.joints, strict=True):
+            convert_joint(scope, name, joint, links[joint.parent].path, links[joint.child].path)
+        for i, spec in enumerate(links):
+            convert_filter(spec, [links[k].path for k in _passes(asset, i)])
+
+
+def _convert_pieces(spec: Sdf.PrimSpec, link: Link, asset: Asset, materials: Sequence[Sdf.Path], *, weigh: bool) -> None:
+    """Write visuals and colliders; where a collider is the very mesh that one sees, one prim is both."""
+    volumes = {_key(c): volume(c) for c in link.colliders}
+    total = sum(volumes.values())
+    seen = set()
+    visual_names = identifiers(m.name for m in link.visuals)
+    for name, mesh in zip(visual_names, link.visuals, strict=True):
+        material = asset.materials[mesh.material] if asset.materials else None
+        made = convert_mesh(spec, name, mesh, material.base_color if material else (0.8, 0.8, 0.8))
+        if materials:
+            bind(made, materials[mesh.material])
+        if mesh.part:
+            label(made, "class", [HANDLES.get(mesh.part, MOVERS.get(mesh.part, "part"))])
+            label(made, "part", [mesh.part])
+        key = _key(mesh)
+        if key in volumes and key not in seen:
+            seen.add(key)
+            convert_collider(made, link.mass * volumes[key] / total if weigh else None)
+    hidden = [c for c in link.colliders if _key(c) not in seen]
+    for name, mesh in zip(identifiers((f"{c.name}_collider" for c in hidden), visual_names), hidden, strict=True):
+        key = _key(mesh)
+        if key in seen:
+            continue
+        seen.add(key)
+        made = convert_mesh(spec, name, Mesh(mesh.name, mesh.vertices, mesh.faces), None)
+        hide(made)
+        convert_collider(made, link.mass * volumes[key] / total if weigh else None)
+        if materials:
+            bind(made, materials[min(mesh.material, len(materials) - 1)])
+
+
+def _key(mesh: Mesh) -> tuple[bytes, bytes]:
+    return np.ascontiguousarray(mesh.vertices, np.float32).tobytes(), np.ascontiguousarray(mesh.faces, np.int32).tobytes()
+
+
+def _passes(asset: Asset, link: int) -> list[int]:
+    """Return the later links that `link` must not collide with: the base's and its own movers, and movers it touches at rest."""
+    boxes = [_box(entry) for entry in asset.links]
+    joined = {(j.parent, j.child) for j in asset.joints} | {(j.child, j.parent) for j in asset.joints}
+    found = []
+    for other in range(link + 1, len(asset.links)):
+        (low, high), (low2, high2) = boxes[link], boxes[other]
+        touch = bool(np.all(low <= high2 + TOUCH) and np.all(low2 <= high + TOUCH))
+        if link == 0 or (link, other) in joined or touch:
+            found.append(other)
+    return found
+
+
+def _box(link: Link) -> tuple[np.ndarray, np.ndarray]:
+    meshes = link.colliders or link.visuals
+    points = np.concatenate([m.vertices for m in meshes]) if meshes else np.zeros((1, 3))
+    return points.min(axis=0), points.max(axis=0)

@@ -1,0 +1,71 @@
+"""Joints: fixed to the asset's own Xform, prismatic in metres, revolute in degrees; closed is 0."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Gf, Sdf
+
+from pipeline.entities.asset import Joint
+from pipeline.usd.layer import apply, attribute, label, prim, relationship
+from pipeline.usd.physics import quaternion
+
+HINGE_DAMPING = 0.02  # [N m s / degree]: a door stops within a second or two
+SLIDE_DAMPING = 12.0  # [N s / m]: a drawer on its rails
+AXES = {"X": (1, 0, 0), "Y": (0, 1, 0), "Z": (0, 0, 1)}
+
+
+def convert_fixed(scope: Sdf.PrimSpec, root: Sdf.Path, base: Sdf.Path) -> Sdf.PrimSpec:
+    """Fix the base link to the asset's own Xform, wherever that is placed."""
+    spec = prim(scope, "world_fixed", "PhysicsFixedJoint")
+    relationship(spec, "physics:body0", [root])
+    relationship(spec, "physics:body1", [base])
+    _frames(spec, np.zeros(3), Gf.Quatf(1.0))
+    return spec
+
+
+def convert_joint(scope: Sdf.PrimSpec, name: str, joint: Joint, parent: Sdf.Path, child: Sdf.Path) -> Sdf.PrimSpec:
+    """Write a joint between two links whose frames are the asset's frame; it stands at 0 when all is closed."""
+    hinge = joint.type != "prismatic"
+    spec = prim(scope, name, "PhysicsRevoluteJoint" if hinge else "PhysicsPrismaticJoint")
+    relationship(spec, "physics:body0", [parent])
+    relationship(spec, "physics:body1", [child])
+    token, rotation = axis_frame(joint.axis)
+    attribute(spec, "physics:axis", "token", token, uniform=True)
+    _frames(spec, joint.origin, rotation)
+    unit = math.degrees(1.0) if hinge else 1.0
+    if math.isfinite(joint.lower) and math.isfinite(joint.upper):
+        attribute(spec, "physics:lowerLimit", "float", joint.lower * unit)
+        attribute(spec, "physics:upperLimit", "float", joint.upper * unit)
+    drive = "angular" if hinge else "linear"
+    apply(spec, [f"PhysicsDriveAPI:{drive}"])
+    attribute(spec, f"drive:{drive}:physics:type", "token", "force", uniform=True)
+    attribute(spec, f"drive:{drive}:physics:stiffness", "float", 0.0)
+    attribute(spec, f"drive:{drive}:physics:damping", "float", HINGE_DAMPING if hinge else SLIDE_DAMPING)
+    attribute(spec, f"drive:{drive}:physics:targetVelocity", "float", 0.0)
+    label(spec, "part", [joint.part_class])
+    return spec
+
+
+def axis_frame(axis: NDArray[np.float64]) -> tuple[str, Gf.Quatf]:
+    """Return the axis token and the joint frame's rotation that lay the token's axis along `axis` (3,), a unit vector."""
+    unit = np.asarray(axis, np.float64) / np.linalg.norm(axis)
+    for token, direction in AXES.items():
+        if unit @ np.array(direction) > 1 - 1e-9:
+            return token, Gf.Quatf(1.0)
+    token = "XYZ"[int(np.argmax(np.abs(unit)))]
+    start = np.array(AXES[token], np.float64)
+    other = np.array(AXES["Z" if token != "Z" else "X"], np.float64)
+    if unit @ start < -1 + 1e-9:  # half a turn about any axis square to it
+        return token, Gf.Quatf(0.0, *map(float, other))
+    v = np.cross(start, unit)
+    K = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+    return token, quaternion(np.eye(3) + K + K @ K / (1 + start @ unit))
+
+
+def _frames(spec: Sdf.PrimSpec, origin: NDArray[np.float64], rotation: Gf.Quatf) -> None:
+    for body in "01":
+        attribute(spec, f"physics:localPos{body}", "point3f", Gf.Vec3f(*map(float, origin)))
+        attribute(spec, f"physics:localRot{body}", "quatf", rotation)

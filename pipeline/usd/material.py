@@ -1,0 +1,91 @@
+"""Materials: UsdPreviewSurface and physics in one prim, because some engines read only the all-purpose binding."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from pxr import Gf, Sdf
+
+from pipeline.entities.asset import Material
+from pipeline.usd.layer import attribute, identifiers, label, prim, relationship
+
+FRICTION = (0.7, 0.6)  # static, dynamic: dry wood, painted board
+SLIPPERY = (0.35, 0.3)  # metal, glass, glazed tiles
+
+
+def convert_materials(parent: Sdf.PrimSpec, materials: Sequence[Material]) -> list[Sdf.Path]:
+    """Write all materials in a scope "materials" and return their paths in order."""
+    scope = prim(parent, "materials", "Scope")
+    names = identifiers(m.name for m in materials)
+    return [convert_material(scope, name, material) for name, material in zip(names, materials, strict=True)]
+
+
+def convert_material(scope: Sdf.PrimSpec, name: str, material: Material) -> Sdf.Path:
+    """Write one material: surface, texture if it has one, friction."""
+    spec = prim(scope, name, "Material", ["PhysicsMaterialAPI"])
+    label(spec, "material", [material.name])
+    surface = prim(spec, "surface", "Shader")
+    attribute(surface, "info:id", "token", "UsdPreviewSurface", uniform=True)
+    diffuse = attribute(surface, "inputs:diffuseColor", "color3f", Gf.Vec3f(*material.base_color))
+    attribute(surface, "inputs:roughness", "float", material.roughness)
+    attribute(surface, "inputs:metallic", "float", material.metallic)
+    if material.opacity < 1:
+        attribute(surface, "inputs:opacity", "float", material.opacity)
+    if material.texture is not None:
+        diffuse.connectionPathList.explicitItems = [_texture(spec, material).path.AppendProperty("outputs:rgb")]
+    attribute(surface, "outputs:surface", "token")
+    out = attribute(spec, "outputs:surface", "token")
+    out.connectionPathList.explicitItems = [surface.path.AppendProperty("outputs:surface")]
+    smooth = material.metallic > 0.5 or material.roughness < 0.3
+    static, dynamic = SLIPPERY if smooth else FRICTION
+    attribute(spec, "physics:staticFriction", "float", static)
+    attribute(spec, "physics:dynamicFriction", "float", dynamic)
+    attribute(spec, "physics:restitution", "float", 0.1)
+    return spec.path
+
+
+def _texture(spec: Sdf.PrimSpec, material: Material) -> Sdf.PrimSpec:
+    reader = prim(spec, "st", "Shader")
+    attribute(reader, "info:id", "token", "UsdPrimvarReader_float2", uniform=True)
+    attribute(reader, "inputs:varname", "string", "st")
+    attribute(reader, "outputs:result", "float2")
+    texture = prim(spec, "diffuse", "Shader")
+    attribute(texture, "info:id", "token", "UsdUVTexture", uniform=True)
+    attribute(texture, "inputs:file", "asset", Sdf.AssetPath(f"./{material.texture}"))
+    attribute(texture, "inputs:sourceColorSpace", "token", "sRGB")
+    attribute(texture, "inputs:wrapS", "token", "repeat")
+    attribute(texture, "inputs:wrapT", "token", "repeat")
+    st = attribute(texture, "inputs:st", "float2")
+    st.connectionPathList.explicitItems = [reader.path.AppendProperty("outputs:result")]
+    attribute(texture, "outputs:rgb", "float3")
+    return texture
+
+
+class Palette:
+    """The materials that a home's own parts use, written when they are first asked for, in a scope of their own."""
+
+    def __init__(self, parent: Sdf.PrimSpec) -> None:
+        self._scope = prim(parent, "Materials", "Scope")
+        self._paths: dict[str, Sdf.Path] = {}
+
+    def path(self, material: Material) -> Sdf.Path:
+        """Return the prim of a material."""
+        if material.name not in self._paths:
+            self._paths[material.name] = convert_material(self._scope, material.name, material)
+        return self._paths[material.name]
+
+    def paths(self, materials: Sequence[Material]) -> list[Sdf.Path]:
+        """Return the prims of several materials."""
+        return [self.path(m) for m in materials]
+
+    def known(self) -> Mapping[str, Sdf.Path]:
+        """Return what has been written so far."""
+        return self._paths
+
+
+def bind(spec: Sdf.PrimSpec, material: Sdf.Path) -> None:
+    """Bind a material for all purposes, rendering and physics."""
+    from pipeline.usd.layer import apply
+
+    apply(spec, ["MaterialBindingAPI"])
+    relationship(spec, "material:binding", [material])

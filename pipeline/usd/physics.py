@@ -1,0 +1,85 @@
+"""Bodies, masses, colliders: UsdPhysics without any engine's own schemas."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Gf, Sdf
+
+from pipeline.entities.asset import Link, Mesh
+from pipeline.usd.layer import apply, attribute, prim, relationship
+
+GRAVITY = 9.81  # [m/s2]
+LEAST_INERTIA = 1e-7  # engines divide by it [kg m2]
+
+
+def convert_scene(layer: Sdf.Layer) -> Sdf.PrimSpec:
+    """Write /PhysicsScene, beside the default prim, so that a reference to the home brings no second scene."""
+    spec = prim(layer, "PhysicsScene", "PhysicsScene")
+    attribute(spec, "physics:gravityDirection", "vector3f", Gf.Vec3f(0, 0, -1))
+    attribute(spec, "physics:gravityMagnitude", "float", GRAVITY)
+    return spec
+
+
+def convert_body(spec: Sdf.PrimSpec, link: Link) -> None:
+    """Make the prim of a link a rigid body with its mass, centre of mass and principal inertia."""
+    apply(spec, ["PhysicsRigidBodyAPI", "PhysicsMassAPI"])
+    moments, rotation = principal(link.inertia)
+    attribute(spec, "physics:mass", "float", float(link.mass))
+    attribute(spec, "physics:centerOfMass", "point3f", Gf.Vec3f(*map(float, link.com)))
+    attribute(spec, "physics:diagonalInertia", "float3", Gf.Vec3f(*map(float, moments)))
+    attribute(spec, "physics:principalAxes", "quatf", quaternion(rotation))
+
+
+def convert_collider(spec: Sdf.PrimSpec, mass: float | None = None) -> None:
+    """Make a mesh a convex collider; `mass` [kg] is its share of the body, for engines that weigh colliders."""
+    apply(spec, ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"])
+    attribute(spec, "physics:approximation", "token", "convexHull", uniform=True)
+    if mass is not None:
+        apply(spec, ["PhysicsMassAPI"])
+        attribute(spec, "physics:mass", "float", float(mass))
+
+
+def hide(spec: Sdf.PrimSpec) -> None:
+    """Mark a mesh that is there for physics only."""
+    attribute(spec, "purpose", "token", "guide", uniform=True)
+    attribute(spec, "visibility", "token", "invisible")
+
+
+def convert_filter(spec: Sdf.PrimSpec, others: Iterable[Sdf.Path]) -> None:
+    """Let a body pass through others; jointed and adjoining parts overlap by construction."""
+    targets = list(others)
+    if targets:
+        apply(spec, ["PhysicsFilteredPairsAPI"])
+        relationship(spec, "physics:filteredPairs", targets)
+
+
+def principal(inertia: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return principal moments (3,) [kg m2] and axes (3, 3), columns of a rotation; axis-parallel bodies keep their axes."""
+    diagonal = np.diag(inertia)
+    if np.abs(inertia - np.diag(diagonal)).max() < 1e-6 * max(diagonal.max(), LEAST_INERTIA):
+        return np.maximum(diagonal, LEAST_INERTIA), np.eye(3)
+    moments, axes = np.linalg.eigh((inertia + inertia.T) / 2)
+    if np.linalg.det(axes) < 0:
+        axes = axes * np.array([1.0, 1.0, -1.0])
+    return np.maximum(moments, LEAST_INERTIA), axes
+
+
+def quaternion(R: NDArray[np.float64]) -> Gf.Quatf:
+    """Convert a rotation matrix (columns are the rotated axes) to a quaternion with w >= 0."""
+    made = Gf.Matrix3d(*map(float, R.T.ravel())).ExtractRotation().GetQuat()
+    q = np.array([made.GetReal(), *made.GetImaginary()])
+    q = q / np.linalg.norm(q) * (-1.0 if q[0] < 0 else 1.0)
+    return Gf.Quatf(*map(float, q))
+
+
+def volume(mesh: Mesh) -> float:
+    """Return a convex piece's volume [m3]: signed tetrahedra, or a tenth of its box where the mesh is degenerate."""
+    v = mesh.vertices.astype(np.float64)
+    v = v - v.mean(axis=0)
+    a, b, c = (v[mesh.faces[:, k]] for k in range(3))
+    signed = abs(float(np.einsum("ij,ij->", a, np.cross(b, c)))) / 6
+    extent = np.maximum(v.max(axis=0) - v.min(axis=0), 1e-4)
+    return max(signed, 0.1 * float(extent.prod()))
