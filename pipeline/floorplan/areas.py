@@ -1,0 +1,117 @@
+"""Target areas: what is stated holds, the rest follows defaults, relations between rooms and the total."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pipeline.floorplan.defaults import DEFAULTS, EATIN_KITCHEN, OUTSIDE, PRIMARY_BEDROOM
+from pipeline.floorplan.program import FloorProgram, Range, RoomReq
+
+HALL_SHARE, HALL_LEAST = 0.08, 4.0
+LEAST_SCALE, MOST_SCALE = 0.45, 2.6  # how far defaults may shrink or stretch to meet a stated total
+SLACK = 1.06  # a target lies this far inside a one-sided bound
+
+
+def with_areas(program: FloorProgram) -> FloorProgram:
+    """Return the program with a target area for each room and for the whole; what was stated is not moved."""
+    rooms = list(program.rooms)
+    free = [r.area.target is None and r.area.min is None and r.area.max is None for r in rooms]
+    target = [_first_guess(r, rooms, program.scale) for r in rooms]
+    _halls(rooms, target, free)
+    _relate(program, rooms, target, free)
+    _total(program, rooms, target, free)
+    _relate(program, rooms, target, free)
+    filled = tuple(
+        r.model_copy(update={"area": Range(min=r.area.min, max=r.area.max, target=round(t, 3), stated=r.area.stated)})
+        for r, t in zip(rooms, target, strict=True)
+    )
+    inside = sum(t for r, t in zip(rooms, target, strict=True) if r.type not in OUTSIDE)
+    total = program.total_area.model_copy(update={"target": program.total_area.target or round(inside, 3)})
+    return program.model_copy(update={"rooms": filled, "total_area": total})
+
+
+def _first_guess(room: RoomReq, rooms: Sequence[RoomReq], scale: float) -> float:
+    low, high = room.area.min, room.area.max
+    if room.area.target is not None:
+        return room.area.target
+    if low is not None and high is not None:
+        return (low + high) / 2
+    guess = _default(room, rooms) * scale
+    if low is not None:
+        return max(guess, low * SLACK)
+    return min(guess, high / SLACK) if high is not None else guess
+
+
+def _default(room: RoomReq, rooms: Sequence[RoomReq]) -> float:
+    if room.type == "bedroom":
+        beds = [r for r in rooms if r.type == "bedroom"]
+        named = [r for r in beds if r.role == "primary"]
+        if room in named or (not named and len(beds) > 1 and room is beds[0]):
+            return PRIMARY_BEDROOM
+        return (PRIMARY_BEDROOM + DEFAULTS["bedroom"].area) / 2 if len(beds) == 1 else DEFAULTS["bedroom"].area
+    if room.type == "kitchen" and "dining" in room.functions:
+        return EATIN_KITCHEN
+    if room.type == "living_room" and {"cooking", "dining"} <= set(room.functions):
+        return DEFAULTS["living_room"].area + DEFAULTS["kitchen"].area
+    return DEFAULTS[room.type].area
+
+
+def _halls(rooms: Sequence[RoomReq], target: list[float], free: Sequence[bool]) -> None:
+    """Give free hallways their share of what the other rooms of their storeys take."""
+    for level in {r.level for r in rooms}:
+        halls = [i for i, r in enumerate(rooms) if r.type == "hallway" and free[i] and r.level == level]
+        others = sum(t for r, t in zip(rooms, target, strict=True) if r.type not in {"hallway", *OUTSIDE} and r.level == level)
+        for i in halls:
+            target[i] = max(HALL_LEAST, HALL_SHARE * others / len(halls))
+
+
+def _relate(program: FloorProgram, rooms: Sequence[RoomReq], target: list[float], free: Sequence[bool]) -> None:
+    """Move free targets until the area relations hold with some air."""
+    index = {r.id: i for i, r in enumerate(rooms)}
+
+    def pick(selector: str | None) -> list[int]:
+        return [index[r.id] for r in program.select(selector)] if selector else []
+
+    for relation in program.relations:
+        larger = pick(relation.a)
+        smaller = [i for i in pick(relation.b) if i not in larger]
+        if relation.kind == "area_equal" and larger:
+            mean = sum(target[i] for i in larger) / len(larger)
+            for i in larger:
+                target[i] = mean if free[i] or rooms[i].area.target is None else target[i]
+        elif relation.kind in {"area_order", "largest"} and smaller:
+            ratio = relation.value * 1.08 if relation.kind == "area_order" else 1.08
+            most = max(target[i] for i in smaller)
+            for i in larger:
+                if target[i] < ratio * most:
+                    if free[i] or rooms[i].area.max is None:
+                        target[i] = ratio * most
+                    for j in smaller:
+                        if free[j]:
+                            target[j] = min(target[j], target[i] / ratio)
+        elif relation.kind == "area_share":
+            whole = sum(t for r, t in zip(rooms, target, strict=True) if r.type not in OUTSIDE)
+            for i in larger:
+                if target[i] < relation.value * whole and free[i] and relation.value < 0.95:
+                    target[i] = relation.value * 1.03 / (1 - relation.value * 1.03) * (whole - target[i])
+
+
+def _total(program: FloorProgram, rooms: Sequence[RoomReq], target: list[float], free: Sequence[bool]) -> None:
+    """Scale the free targets so that the interior meets the stated total."""
+    wish = program.total_area
+    inside = [i for i, r in enumerate(rooms) if r.type not in OUTSIDE]
+    now = sum(target[i] for i in inside)
+    goal = now
+    if wish.target is not None and wish.stated:
+        goal = wish.target
+    elif wish.min is not None and now < wish.min * 1.03:
+        goal = wish.min * 1.03
+    elif wish.max is not None and now > wish.max * 0.95:
+        goal = wish.max * 0.95
+    loose = [i for i in inside if free[i]]
+    flexible = sum(target[i] for i in loose)
+    if flexible <= 0 or goal == now:
+        return
+    factor = min(max((goal - (now - flexible)) / flexible, LEAST_SCALE), MOST_SCALE)
+    for i in loose:
+        target[i] *= factor

@@ -1,0 +1,168 @@
+"""The graph of links: selectors resolved to rooms, and what nobody stated filled in until every room can be reached."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from pipeline.floorplan.defaults import DEFAULTS, HUBS
+from pipeline.floorplan.program import FloorProgram, Link, RoomReq
+
+PARENTS: dict[str, tuple[str, ...]] = {
+    "living_room": ("entry", "hallway", "dining_room", "kitchen"),
+    "family_room": ("living_room", "kitchen", "dining_room", "hallway", "entry"),
+    "kitchen": ("dining_room", "living_room", "studio_room", "family_room", "entry", "hallway", "office"),
+    "dining_room": ("living_room", "kitchen", "family_room", "hallway", "entry"),
+    "bedroom": ("hallway", "living_room", "family_room", "entry", "studio_room", "dining_room", "kitchen"),
+    "bathroom": ("hallway", "entry", "studio_room", "living_room", "family_room", "bedroom", "office", "kitchen"),
+    "wc": ("entry", "hallway", "living_room", "family_room", "studio_room", "office", "kitchen"),
+    "hallway": ("entry", "living_room", "staircase", "hallway", "family_room", "dining_room", "kitchen"),
+    "entry": ("living_room", "hallway", "studio_room", "kitchen", "dining_room"),
+    "closet": ("bedroom", "hallway", "entry", "living_room", "studio_room"),
+    "utility": ("kitchen", "hallway", "entry", "living_room", "bathroom"),
+    "storage": ("hallway", "entry", "kitchen", "utility", "office", "living_room", "studio_room"),
+    "garage": ("utility", "entry", "hallway", "kitchen", "living_room"),
+    "balcony": ("living_room", "studio_room", "family_room", "dining_room", "kitchen", "bedroom"),
+    "staircase": ("entry", "hallway", "living_room", "family_room", "dining_room", "kitchen"),
+    "sunroom": ("living_room", "family_room", "dining_room", "kitchen", "hallway"),
+}
+ANY_HUB = ("hallway", "entry", "living_room", "family_room", "studio_room", "dining_room", "kitchen", "office", "staircase")
+# Who stands for a group of joined rooms when the group is attached to the rest.
+FRONT = (*HUBS, "library", "media_room", "playroom", "gym", "meeting_room", "sunroom", "utility", "bedroom", "storage", "closet")
+OPENABLE = {"door", "open", "portal", "any"}
+MAX_DOORS_INTO = {"bathroom": 2, "wc": 1, "storage": 2, "closet": 2, "balcony": 3}
+
+
+def resolve(program: FloorProgram) -> tuple[Link, ...]:
+    """Expand selectors to room ids: `each` gives every room of `a` a partner of `b`, `some` joins one pair."""
+    found: dict[tuple[str, str], Link] = {}
+    for link in program.links:
+        ones, others = program.select(link.a), program.select(link.b)
+        pairs: list[tuple[RoomReq, RoomReq]] = []
+        for k, one in enumerate(ones):
+            partners = [o for o in others if o.id != one.id and _meet(one, o)]
+            if partners:
+                pairs.append((one, partners[k % len(partners)] if len(partners) == len(ones) else partners[0]))
+        for one, other in pairs[:1] if link.quant == "some" else pairs:
+            key = (min(one.id, other.id), max(one.id, other.id))
+            old = found.get(key)
+            if old is None or (old.kind in {"any", "wall"} and link.kind not in {"any", "wall"}):
+                found[key] = link.model_copy(update={"a": one.id, "b": other.id, "quant": "each"})
+    return tuple(found.values())
+
+
+def _meet(a: RoomReq, b: RoomReq) -> bool:
+    return a.level is None or b.level is None or "staircase" in {a.type, b.type} or a.level == b.level
+
+
+def connect(program: FloorProgram) -> tuple[Link, ...]:
+    """Add links until the rooms form one piece. Groups are attached by the usual parent of the room that stands for them."""
+    links = list(resolve(program))
+    groups = components([r.id for r in program.rooms], links)
+    if len(groups) <= 1:
+        return tuple(links)
+    by_id = {r.id: r for r in program.rooms}
+    root = _root(program, links)
+    while len(groups) > 1:
+        main = next(g for g in groups if root in g)
+        waiting = sorted((g for g in groups if root not in g), key=lambda g: _order(_front(program, g, links)))
+        for group in waiting:
+            made = _attach(program, _front(program, group, links), main, links, by_id)
+            if made is not None:
+                links.append(made)
+                break
+        else:
+            front = _front(program, waiting[0], links)
+            links.append(Link(a=root, b=front.id, kind="open" if "staircase" in {front.type, by_id[root].type} else "door"))
+        groups = components([r.id for r in program.rooms], links)
+    return tuple(links)
+
+
+def components(ids: Sequence[str], links: Iterable[Link]) -> list[frozenset[str]]:
+    """Return the groups of rooms that links with an opening join, in the order of their first room."""
+    parent = {i: i for i in ids}
+
+    def find(i: str) -> str:
+        while parent[i] != i:
+            i = parent[i]
+        return i
+
+    for link in links:
+        if link.kind in OPENABLE:
+            parent[find(link.a)] = find(link.b)
+    groups: dict[str, set[str]] = {}
+    for i in ids:
+        groups.setdefault(find(i), set()).add(i)
+    return [frozenset(g) for g in groups.values()]
+
+
+def _root(program: FloorProgram, links: Sequence[Link]) -> str:
+    """Return the room that the rest is attached to: the entrance if stated, else the busiest hub of the lowest storey."""
+    if program.entrance.into:
+        stated = program.select(program.entrance.into)
+        if stated:
+            return stated[0].id
+    degree = {r.id: sum(r.id in {k.a, k.b} for k in links) for r in program.rooms}
+    ground = [r for r in program.rooms if not r.level] or list(program.rooms)
+    for kind in ("living_room", "studio_room", "entry", "hallway", *HUBS):
+        same = [r for r in ground if r.type == kind]
+        if same:
+            return max(same, key=lambda r: degree[r.id]).id
+    return ground[0].id
+
+
+def _front(program: FloorProgram, group: frozenset[str], links: Sequence[Link]) -> RoomReq:
+    members = [r for r in program.rooms if r.id in group]
+    full = {m.id for m in members if _is_full(program, m, links)}
+    rank = {t: i for i, t in enumerate(FRONT)}
+    return min(members, key=lambda r: (r.id in full, rank.get(r.type, len(rank))))
+
+
+def _order(room: RoomReq) -> int:
+    """Attach circulation first, so that others find it."""
+    order = ("entry", "hallway", "staircase", "living_room", "studio_room", "family_room", "dining_room", "kitchen", "utility")
+    return order.index(room.type) if room.type in order else len(order)
+
+
+def _attach(
+    program: FloorProgram, front: RoomReq, main: frozenset[str], links: Sequence[Link], by_id: dict[str, RoomReq]
+) -> Link | None:
+    for wanted in PARENTS.get(front.type, ANY_HUB):
+        hosts = [r for r in program.rooms if r.type == wanted and r.id in main and _meet(r, front)]
+        hosts = [h for h in hosts if not _is_full(program, h, links) and not _is_forbidden(program, h, front)]
+        hosts = [h for h in hosts if h.type != "hallway" or h.level == front.level or "staircase" in {front.type}] or hosts
+        if wanted == "bedroom" and front.type in {"closet", "bathroom"}:
+            hosts = [h for h in hosts if not _has(program, h, front.type, links)] or hosts
+        if hosts:
+            host = min(hosts, key=lambda h: _load(h, links)) if wanted == "hallway" else hosts[0]
+            kind = "open" if "staircase" in {front.type, host.type} else "door"
+            return Link(a=host.id, b=front.id, kind=kind)
+    return None
+
+
+def _load(room: RoomReq, links: Sequence[Link]) -> int:
+    return sum(room.id in {k.a, k.b} for k in links)
+
+
+def _has(program: FloorProgram, host: RoomReq, kind: str, links: Sequence[Link]) -> bool:
+    mates = {k.b if k.a == host.id else k.a for k in links if host.id in {k.a, k.b}}
+    return any(r.type == kind and r.id in mates for r in program.rooms)
+
+
+def _is_full(program: FloorProgram, room: RoomReq, links: Sequence[Link]) -> bool:
+    """Whether a `degree` relation or the type leaves no room for another opening."""
+    load = sum(room.id in {k.a, k.b} for k in links if k.kind in OPENABLE)
+    asked = [r.value for r in program.relations if r.kind == "degree" and room in program.select(r.a)]
+    if asked:
+        return load >= min(asked)
+    return load >= 1 and not DEFAULTS[room.type].through and room.type in {"bathroom", "wc", "balcony", "storage", "closet"}
+
+
+def _is_forbidden(program: FloorProgram, a: RoomReq, b: RoomReq) -> bool:
+    for f in program.forbids:
+        if f.what in {"adjacent", "connected"} and f.b:
+            ones, others = program.select(f.a), program.select(f.b)
+            if (a in ones and b in others) or (b in ones and a in others):
+                return True
+        if f.what == "through" and f.avoid and b in program.select(f.a) and a in program.select(f.avoid):
+            return True
+    return False

@@ -1,0 +1,321 @@
+"""The twelve energy terms of a floor plan, and the measure of what must not be violated.
+
+Terms, names and forms follow the twelve weights of Infinigen's room solver (v1.7.0), of which the paper's "twelve reward
+functions" are the best reading; ours differ where said: areas are absolute, not shares, and each term is normalised so that one
+set of weights serves homes of any size. Each term is a pure function of the plan's measures; smaller is better; 0 is ideal
+except for `alignment`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.floorplan.compiled import compiled
+from pipeline.floorplan.grid import Labels, Measures, hull_area, inner_area, opening, simple
+
+Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
+
+TERMS = (
+    "circulation",
+    "area",
+    "squareness",
+    "convexity",
+    "simplicity",
+    "exterior",
+    "corner_light",
+    "alignment",
+    "useful_area",
+    "min_width",
+    "stair_fit",
+    "stair_snug",
+)
+WEIGHTS = (0.5, 12.0, 1.6, 14.0, 1.6, 1.0, 0.3, 0.12, 1.0, 0.5, 2.0, 1.0)
+SPLIT = 4.5  # m2 charged when a room falls apart at a neck; the legacy solver charges 45 in its units of 0.25 m2 x 0.4
+
+
+class Spec(NamedTuple):
+    """One storey's request in numbers, for n rooms. `unit` is the cell's side [m]."""
+
+    unit: float
+    root: int  # the room from which walks start
+    target: Floats  # (n,) wanted inner areas [m2]
+    low: Floats  # (n,) least and
+    high: Floats  # (n,) largest inner area [m2]
+    total: Floats  # (2,) bounds of the sum over `inside` [m2]
+    inside: Ints  # (n,) counts for the total
+    least: Ints  # (n,) wanted least width [cells]
+    strict: Ints  # (n,) a square of this side must fit somewhere (everywhere, for circulation)
+    square: Ints  # (n,) 1: a square shape is wanted
+    habitable: Ints  # (n,)
+    useful: Ints  # (n,)
+    corridor: Ints  # (n,) 1: must be `strict` wide everywhere
+    link: Ints  # (n, n) 1: joined by an opening
+    need: Ints  # (n, n) straight common wall that is required [cells]
+    ban: Ints  # (n, n) 1: must not share a wall
+    outside: Ints  # (n,) straight outside wall that is required [cells]
+    outside_sum: Ints  # (n,) outside wall in all that is required [cells]
+    apart: Floats  # (n, n) least distance of centroids / diagonal
+    order: Floats  # (n, n) area[a] >= order * area[b]
+    stair_room: int  # index of the staircase, or -1
+    stair: Ints  # (4,) its rectangle x0, y0, x1, y1 [cells]
+    nonrect: int  # at least so many rooms that are not rectangles
+
+
+@compiled
+def tree(link: Ints, root: int) -> Ints:
+    """Return rows (room, parent) of the breadth-first tree of links from `root`, the root left out."""
+    n = link.shape[0]
+    found = np.full((max(n - 1, 0), 2), -1, np.int64)
+    queue = np.empty(n, np.int64)
+    seen = np.zeros(n, np.int64)
+    queue[0] = root
+    seen[root] = 1
+    head, tail, size = 0, 1, 0
+    while head < tail:
+        a = queue[head]
+        head += 1
+        for b in range(n):
+            if link[a, b] > 0 and seen[b] == 0:
+                seen[b] = 1
+                found[size, 0], found[size, 1] = b, a
+                size += 1
+                queue[tail] = b
+                tail += 1
+    return found[:size]
+
+
+@compiled
+def circulation(out: Measures, edges: Ints, root: int) -> float:
+    """Term 1: ways from the entrance that double back.
+
+    Mean over rooms of (|D|_1 / (max(D_right, D_left) + max(D_up, D_down)) - 1)^2, where D is the travel in the four directions
+    along the tree of links, each hop from centroid to the middle of the common wall to centroid.
+    """
+    n = out.cells.size - 1
+    travel = np.zeros((n, 4))
+    total = 0.0
+    for k in range(edges.shape[0]):
+        room, parent = edges[k, 0], edges[k, 1]
+        travel[room] = travel[parent]
+        if out.run[room, parent] == 0:
+            continue
+        for leg in range(2):
+            one = out.centre[parent] if leg == 0 else out.middle[parent, room]
+            two = out.middle[parent, room] if leg == 0 else out.centre[room]
+            dx, dy = two[0] - one[0], two[1] - one[1]
+            travel[room, 0] += max(dx, 0.0)
+            travel[room, 1] += max(-dx, 0.0)
+            travel[room, 2] += max(dy, 0.0)
+            travel[room, 3] += max(-dy, 0.0)
+        d = travel[room]
+        straight = max(d[0], d[1]) + max(d[2], d[3])
+        if straight > 0.0:
+            total += (d.sum() / straight - 1.0) ** 2
+    return total / max(n - 1, 1) * 4.0
+
+
+@compiled
+def area(areas: Floats, target: Floats) -> float:
+    """Term 2: mean over rooms of max(q, 1/q) - 1 with q = inner area / target (absolute, unlike the legacy shares)."""
+    total = 0.0
+    for i in range(target.size):
+        q = max(areas[i], 0.05) / target[i]
+        total += max(q, 1.0 / q) - 1.0
+    return total / target.size * 4.0
+
+
+@compiled
+def squareness(box: Ints, square: Ints) -> float:
+    """Term 3: mean over square types of max(w/h, h/w) - 1 of bounding boxes."""
+    total, count = 0.0, 0
+    for i in range(square.size):
+        if square[i] > 0:
+            w, h = box[i, 2] - box[i, 0], box[i, 3] - box[i, 1]
+            total += max(w, h) / max(min(w, h), 1) - 1.0
+            count += 1
+    return total / max(count, 1) * 4.0
+
+
+@compiled
+def convexity(hull: Floats, cells: Ints) -> float:
+    """Term 4: mean over rooms of (hull area / area - 1)^2."""
+    total = 0.0
+    for i in range(hull.size):
+        total += (hull[i] / max(cells[i], 1) - 1.0) ** 2
+    return total / hull.size * 4.0
+
+
+@compiled
+def simplicity(corners: Ints, n: int) -> float:
+    """Term 5: mean over rooms of (vertices / 4 - 1)^2; an L-shaped room counts 0.25."""
+    total = 0.0
+    for i in range(n):
+        total += ((corners[i, 0] + corners[i, 1]) / 4.0 - 1.0) ** 2
+    return total / n * 4.0
+
+
+@compiled
+def exterior(walls: Ints, habitable: Ints) -> float:
+    """Term 6: (share of the outline that habitable rooms own - 1)^2."""
+    n = habitable.size
+    own, whole = 0, 0
+    for i in range(n):
+        whole += walls[i, n]
+        own += walls[i, n] * habitable[i]
+    return (own / max(whole, 1) - 1.0) ** 2 * 4.0
+
+
+@compiled
+def corner_light(outline_corners: Ints, habitable: Ints) -> float:
+    """Term 7: (share of the outline's convex corners that habitable rooms own - 1)^2."""
+    own, whole = 0, 0
+    for i in range(habitable.size):
+        whole += outline_corners[i]
+        own += outline_corners[i] * habitable[i]
+    return (own / max(whole, 1) - 1.0) ** 2 * 4.0
+
+
+@compiled
+def alignment(columns: Ints, rows: Ints) -> float:
+    """Term 8: number of distinct lines on which walls lie."""
+    return float(columns.sum() + rows.sum())
+
+
+@compiled
+def useful_area(areas: Floats, useful: Ints) -> float:
+    """Term 9: (1 - share of the area that is useful)^2."""
+    own = (areas * useful).sum()
+    return (1.0 - own / max(areas.sum(), 1e-9)) ** 2 * 4.0
+
+
+@compiled
+def min_width(missed: Floats, split: Ints) -> float:
+    """Term 10: area [m2] that squares of half and of the whole wanted width do not reach, plus a charge per room that splits."""
+    return missed.sum() + SPLIT * split.sum()
+
+
+@compiled
+def overlap(grid: Labels, room: int, stair: Ints) -> int:
+    """Cells of `room` inside the stair rectangle."""
+    both = 0
+    for y in range(stair[1], stair[3]):
+        for x in range(stair[0], stair[2]):
+            both += grid[y + 1, x + 1] == room
+    return both
+
+
+@compiled
+def stair_fit(both: float, stair: float) -> float:
+    """Term 11: (share of the stair rectangle that the staircase covers - 1)^2."""
+    return (both / max(stair, 1.0) - 1.0) ** 2
+
+
+@compiled
+def stair_snug(both: float, stair: float, own: float) -> float:
+    """Term 12: (IoU of staircase and stair rectangle - 1)^2."""
+    return (both / max(own + stair - both, 1.0) - 1.0) ** 2
+
+
+@compiled
+def terms(grid: Labels, out: Measures, spec: Spec, edges: Ints, values: Floats, areas: Floats) -> float:
+    """Write the twelve terms to `values` (12,) and inner areas to `areas` (n,); return the hard violation (0: none).
+
+    Infinity when a room is not one simple piece.
+    """
+    n = spec.target.size
+    for i in range(n):
+        if not simple(out, i):
+            return np.inf
+        areas[i] = inner_area(out, i, n, spec.unit)
+    hull = np.empty(n)
+    missed = np.zeros(n)
+    split = np.zeros(n, np.int64)
+    hard = 0.0
+    bent = 0
+    square_metre = spec.unit * spec.unit
+    for i in range(n):
+        box = out.box[i]
+        w, h = box[2] - box[0], box[3] - box[1]
+        if out.cells[i] == w * h:
+            hull[i] = w * h
+            short = min(w, h)
+            missed[i] += square_metre * out.cells[i] * ((short < spec.least[i]) + (short < (spec.least[i] + 1) // 2))
+            if short < spec.strict[i]:
+                hard += 0.5 + (spec.strict[i] - short) / spec.strict[i]
+            continue
+        bent += 1
+        hull[i] = hull_area(grid, i, box)
+        for part in range(2):
+            side = spec.least[i] if part == 0 else (spec.least[i] + 1) // 2
+            reached, pieces = opening(grid, i, box, side)
+            missed[i] += square_metre * (out.cells[i] - reached)
+            split[i] += pieces > 1
+        if spec.strict[i] > 1:
+            reached, pieces = opening(grid, i, box, spec.strict[i])
+            if reached == 0:
+                hard += 1.0
+            elif spec.corridor[i] > 0 and (pieces > 1 or reached < out.cells[i]):
+                hard += 0.3 + (out.cells[i] - reached) / out.cells[i]
+    if bent < spec.nonrect:
+        hard += 0.3 * (spec.nonrect - bent)
+    values[0] = circulation(out, edges, spec.root)
+    values[1] = area(areas, spec.target)
+    values[2] = squareness(out.box, spec.square)
+    values[3] = convexity(hull, out.cells)
+    values[4] = simplicity(out.corners, n)
+    values[5] = exterior(out.walls, spec.habitable)
+    values[6] = corner_light(out.outline_corners, spec.habitable)
+    values[7] = alignment(out.columns, out.rows)
+    values[8] = useful_area(areas, spec.useful)
+    values[9] = min_width(missed, split)
+    values[10], values[11] = 0.0, 0.0
+    if spec.stair_room >= 0:
+        rectangle = float((spec.stair[2] - spec.stair[0]) * (spec.stair[3] - spec.stair[1]))
+        both = float(overlap(grid, spec.stair_room, spec.stair))
+        values[10] = n * stair_fit(both, rectangle)
+        values[11] = n * stair_snug(both, rectangle, float(out.cells[spec.stair_room]))
+    return hard + violations(out, spec, areas)
+
+
+@compiled
+def violations(out: Measures, spec: Spec, areas: Floats) -> float:
+    """Hard conditions on walls and areas: 0 when all hold, else roughly the number of violated ones."""
+    n = spec.target.size
+    width, height = out.columns.size - 1, out.rows.size - 1
+    diagonal = (width * width + height * height) ** 0.5
+    hard = 0.0
+    total = 0.0
+    for a in range(n):
+        total += areas[a] * spec.inside[a]
+        if areas[a] < spec.low[a]:
+            hard += 0.1 + 2.0 * (spec.low[a] - areas[a]) / spec.low[a]
+        elif areas[a] > spec.high[a]:
+            hard += 0.1 + 2.0 * (areas[a] - spec.high[a]) / spec.high[a]
+        if out.run[a, n] < spec.outside[a]:
+            hard += 0.5 + (spec.outside[a] - out.run[a, n]) / spec.outside[a]
+        if out.walls[a, n] < spec.outside_sum[a]:
+            hard += 0.2 + (spec.outside_sum[a] - out.walls[a, n]) / spec.outside_sum[a]
+        for b in range(n):
+            if spec.order[a, b] > 0.0 and areas[a] < spec.order[a, b] * areas[b]:
+                hard += 0.1 + 1.0 - areas[a] / (spec.order[a, b] * areas[b])
+            if b <= a:
+                continue
+            if out.run[a, b] < spec.need[a, b]:
+                hard += 0.5 + (spec.need[a, b] - out.run[a, b]) / spec.need[a, b]
+            if spec.ban[a, b] > 0 and out.walls[a, b] > 0:
+                hard += 0.5 + 0.1 * out.walls[a, b]
+            if spec.apart[a, b] > 0.0:
+                dx = out.centre[a, 0] - out.centre[b, 0]
+                dy = out.centre[a, 1] - out.centre[b, 1]
+                far = (dx * dx + dy * dy) ** 0.5 / diagonal
+                if far < spec.apart[a, b]:
+                    hard += 0.2 + 3.0 * (spec.apart[a, b] - far)
+    if total < spec.total[0]:
+        hard += 0.1 + 3.0 * (spec.total[0] - total) / spec.total[0]
+    elif total > spec.total[1]:
+        hard += 0.1 + 3.0 * (total - spec.total[1]) / spec.total[1]
+    return hard

@@ -1,0 +1,276 @@
+"""Measures of a plan on a grid of cells.
+
+A plan is an integer array (rows, columns) of room indices with a border of `n`, the outside. Walls lie on the lines between
+cells; row and column are y and x. One pass over the grid's vertices finds areas, walls, corners and common walls of all rooms.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.floorplan.compiled import compiled
+
+Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
+Labels = NDArray[np.int16]
+
+INNER, OUTER = 0.06, 0.12  # half the thickness of inner and outer walls [m]
+
+
+class Measures(NamedTuple):
+    """What `measure` finds, for n rooms. Lengths in cells; row n stands for the outside."""
+
+    cells: Ints  # (n+1,) area
+    box: Ints  # (n+1, 4) x0, y0, x1, y1
+    corners: Ints  # (n+1, 2) convex, concave
+    pinched: Ints  # (n+1,) vertices at which a room touches itself or another diagonally across
+    walls: Ints  # (n+1, n+1) length of common walls
+    run: Ints  # (n+1, n+1) longest straight common wall
+    middle: Floats  # (n+1, n+1, 2) its middle (x, y)
+    centre: Floats  # (n+1, 2) centroid (x, y)
+    columns: Ints  # (columns+1,) whether a vertical wall lies there
+    rows: Ints  # (rows+1,) whether a horizontal wall lies there
+    outline_corners: Ints  # (n+1,) corners of the outline that a room owns
+
+
+def empty(n: int, height: int, width: int) -> Measures:
+    """Return scratch space for a grid of `height` x `width` cells (border not counted)."""
+    m = n + 1
+    return Measures(
+        np.zeros(m, np.int64),
+        np.zeros((m, 4), np.int64),
+        np.zeros((m, 2), np.int64),
+        np.zeros(m, np.int64),
+        np.zeros((m, m), np.int64),
+        np.zeros((m, m), np.int64),
+        np.zeros((m, m, 2)),
+        np.zeros((m, 2)),
+        np.zeros(width + 1, np.int64),
+        np.zeros(height + 1, np.int64),
+        np.zeros(m, np.int64),
+    )
+
+
+@compiled
+def _wall(out: Measures, a: int, b: int, length: int, x: float, y: float) -> None:
+    """Record a straight common wall of rooms a and b, seen so far up to `length` with middle (x, y)."""
+    out.walls[a, b] += 1
+    out.walls[b, a] += 1
+    if length > out.run[a, b]:
+        out.run[a, b] = length
+        out.run[b, a] = length
+        out.middle[a, b, 0] = x
+        out.middle[a, b, 1] = y
+        out.middle[b, a, 0] = x
+        out.middle[b, a, 1] = y
+
+
+@compiled
+def measure(grid: Labels, n: int, out: Measures) -> None:
+    """Fill `out` from the bordered grid (rows+2, columns+2)."""
+    height, width = grid.shape[0] - 2, grid.shape[1] - 2
+    out.cells[:] = 0
+    out.corners[:] = 0
+    out.pinched[:] = 0
+    out.walls[:] = 0
+    out.run[:] = 0
+    out.centre[:] = 0.0
+    out.columns[:] = 0
+    out.rows[:] = 0
+    out.outline_corners[:] = 0
+    for i in range(n + 1):
+        out.box[i, 0], out.box[i, 1], out.box[i, 2], out.box[i, 3] = width, height, 0, 0
+    down_key = np.full(width + 1, -1, np.int64)
+    down_len = np.zeros(width + 1, np.int64)
+    for y in range(height + 1):
+        row_key = -1
+        row_len = 0
+        start = 0
+        for x in range(width + 1):
+            a, b = grid[y, x], grid[y, x + 1]
+            c, d = grid[y + 1, x], grid[y + 1, x + 1]
+            if d != c:  # a vertical wall on column line x, beside row y
+                key = min(c, d) * 64 + max(c, d)
+                down_len[x] = down_len[x] + 1 if down_key[x] == key else 1
+                down_key[x] = key
+                out.columns[x] = 1
+                _wall(out, c, d, down_len[x], float(x), y + 1 - 0.5 * down_len[x])
+                if c != n:  # the span of room c in row y ends here
+                    first, count = start, x - start
+                    out.cells[c] += count
+                    out.centre[c, 0] += count * 0.5 * (first + x)
+                    out.centre[c, 1] += count * (y + 0.5)
+                    if y < out.box[c, 1]:
+                        out.box[c, 1] = y
+                    if y + 1 > out.box[c, 3]:
+                        out.box[c, 3] = y + 1
+                    if first < out.box[c, 0]:
+                        out.box[c, 0] = first
+                    if x > out.box[c, 2]:
+                        out.box[c, 2] = x
+                start = x
+            else:
+                down_key[x] = -1
+            if d != b:  # a horizontal wall on row line y, above column x
+                key = min(b, d) * 64 + max(b, d)
+                row_len = row_len + 1 if row_key == key else 1
+                row_key = key
+                out.rows[y] = 1
+                _wall(out, b, d, row_len, x + 1 - 0.5 * row_len, float(y))
+            else:
+                row_key = -1
+            if a == b and c == d and a == c:
+                continue
+            if (a == b and c == d) or (a == c and b == d):
+                continue
+            _corner(out, a, b, c, d, n)
+    for i in range(n + 1):
+        if out.cells[i] > 0:
+            out.centre[i] /= out.cells[i]
+
+
+@compiled
+def _corner(out: Measures, a: int, b: int, c: int, d: int, n: int) -> None:
+    """Count the corners that meet in a vertex with the four cells a b / c d around it."""
+    if a == d and b != a and c != a:
+        out.pinched[a] += 1
+    if b == c and a != b and d != b:
+        out.pinched[b] += 1
+    outside = (a == n) + (b == n) + (c == n) + (d == n)
+    for k in range(4):
+        own = a if k == 0 else (b if k == 1 else (c if k == 2 else d))
+        across = d if k == 0 else (c if k == 1 else (b if k == 2 else a))
+        same = (a == own) + (b == own) + (c == own) + (d == own)
+        if same == 1 or (same == 2 and across == own):  # alone, or one of two that touch diagonally
+            out.corners[own, 0] += 1
+            if own != n and outside == 3:
+                out.outline_corners[own] += 1
+        elif same == 3 and across != own:  # the cell opposite to the odd one: its room has a concave corner here
+            out.corners[own, 1] += 1
+
+
+@compiled
+def inner_area(out: Measures, room: int, n: int, unit: float) -> float:
+    """Area between inner wall faces [m2]: cells less half a wall along each side, corners counted once."""
+    outer = out.walls[room, n]
+    inner = 0
+    for b in range(n):
+        inner += out.walls[room, b]
+    turn = out.corners[room, 0] - out.corners[room, 1]
+    mean = INNER if outer + inner == 0 else (INNER * inner + OUTER * outer) / (inner + outer)
+    return out.cells[room] * unit * unit - unit * (INNER * inner + OUTER * outer) + turn * mean * mean
+
+
+@compiled
+def simple(out: Measures, room: int) -> bool:
+    """Whether the room is one piece without holes that nowhere touches itself (Euler number of a 4-connected region)."""
+    return out.cells[room] > 0 and out.pinched[room] == 0 and out.corners[room, 0] - out.corners[room, 1] == 4
+
+
+@compiled
+def hull_area(grid: Labels, room: int, box: Ints) -> float:
+    """Area of the room's convex hull [cells], from the extremes of its rows (monotone chain)."""
+    rows = box[3] - box[1]
+    left = np.empty((2 * rows, 2), np.float64)
+    right = np.empty((2 * rows, 2), np.float64)
+    for k in range(rows):
+        y = box[1] + k
+        x0 = box[0]
+        while grid[y + 1, x0 + 1] != room:
+            x0 += 1
+        x1 = box[2]
+        while grid[y + 1, x1] != room:
+            x1 -= 1
+        left[2 * k, 0], left[2 * k, 1] = x0, y
+        left[2 * k + 1, 0], left[2 * k + 1, 1] = x0, y + 1
+        right[2 * k, 0], right[2 * k, 1] = x1, y
+        right[2 * k + 1, 0], right[2 * k + 1, 1] = x1, y + 1
+    return _chain(right, 1.0) - _chain(left, -1.0)
+
+
+@compiled
+def _chain(points: Floats, side: float) -> float:
+    """Integral of x dy under the outer chain of points that are sorted by y; `side` 1: the right one, -1: the left one."""
+    hull = np.empty_like(points)
+    size = 0
+    for k in range(points.shape[0]):
+        while size >= 2:
+            ax, ay = hull[size - 1, 0] - hull[size - 2, 0], hull[size - 1, 1] - hull[size - 2, 1]
+            bx, by = points[k, 0] - hull[size - 1, 0], points[k, 1] - hull[size - 1, 1]
+            if side * (ax * by - ay * bx) <= 0.0:
+                size -= 1
+            else:
+                break
+        hull[size] = points[k]
+        size += 1
+    area = 0.0
+    for k in range(size - 1):
+        area += 0.5 * (hull[k, 0] + hull[k + 1, 0]) * (hull[k + 1, 1] - hull[k, 1])
+    return area
+
+
+@compiled
+def opening(grid: Labels, room: int, box: Ints, side: int) -> tuple[int, int]:
+    """Cells of the room that a square of `side` cells reaches inside it, and the pieces that the square's places form."""
+    x0, y0, x1, y1 = box[0], box[1], box[2], box[3]
+    h, w = y1 - y0, x1 - x0
+    if side > h or side > w:
+        return 0, 0
+    size = np.zeros((h + 1, w + 1), np.int64)
+    place = np.zeros((h + 1, w + 1), np.int64)
+    for y in range(h):
+        for x in range(w):
+            if grid[y0 + y + 1, x0 + x + 1] == room:
+                size[y + 1, x + 1] = min(size[y, x], size[y, x + 1], size[y + 1, x]) + 1
+                if size[y + 1, x + 1] >= side:
+                    place[y + 1, x + 1] = 1
+    cover = np.zeros((h + side + 1, w + side + 1), np.int64)
+    for y in range(1, h + 1):
+        for x in range(1, w + 1):
+            if place[y, x] == 1:
+                cover[y - side, x - side] += 1
+                cover[y, x - side] -= 1
+                cover[y - side, x] -= 1
+                cover[y, x] += 1
+    reached = 0
+    for y in range(h):
+        for x in range(w):
+            if y > 0:
+                cover[y, x] += cover[y - 1, x]
+            if x > 0:
+                cover[y, x] += cover[y, x - 1]
+            if x > 0 and y > 0:
+                cover[y, x] -= cover[y - 1, x - 1]
+            if cover[y, x] > 0:
+                reached += 1
+    return reached, _pieces(place)
+
+
+@compiled
+def _pieces(mask: Ints) -> int:
+    """Number of 4-connected pieces of a mask with an empty first row and column; the mask is consumed."""
+    h, w = mask.shape
+    stack = np.empty((h * w + 1, 2), np.int64)
+    pieces = 0
+    for y in range(h):
+        for x in range(w):
+            if mask[y, x] == 0:
+                continue
+            pieces += 1
+            top = 1
+            stack[0, 0], stack[0, 1] = y, x
+            mask[y, x] = 0
+            while top > 0:
+                top -= 1
+                cy, cx = stack[top, 0], stack[top, 1]
+                for k in range(4):
+                    ny = cy + (1 if k == 0 else (-1 if k == 1 else 0))
+                    nx = cx + (1 if k == 2 else (-1 if k == 3 else 0))
+                    if 0 <= ny < h and 0 <= nx < w and mask[ny, nx] == 1:
+                        mask[ny, nx] = 0
+                        stack[top, 0], stack[top, 1] = ny, nx
+                        top += 1
+    return pieces

@@ -1,0 +1,215 @@
+"""FloorProgram: the typed, versioned request that language is turned into and floor plans are solved from."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+VERSION = 1
+MAX_ROOMS = 40
+
+RoomType = Literal[
+    "living_room",
+    "family_room",
+    "kitchen",
+    "dining_room",
+    "bedroom",
+    "bathroom",
+    "wc",
+    "hallway",
+    "entry",
+    "closet",
+    "utility",
+    "storage",
+    "garage",
+    "balcony",
+    "staircase",
+    "office",
+    "studio_room",
+    "media_room",
+    "gym",
+    "library",
+    "playroom",
+    "meeting_room",
+    "workshop",
+    "sunroom",
+]
+Role = Literal["", "primary", "guest", "child", "elder", "staff", "carer", "shared"]
+LinkKind = Literal["door", "open", "portal", "any", "wall"]
+Slug = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")]
+Selector = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$", description="a room's id, or a room type: every room of it")]
+Metres2 = Annotated[float, Field(gt=0.0, le=5000.0)]
+Metres = Annotated[float, Field(gt=0.0, le=100.0)]
+Knob = Annotated[int, Field(ge=-3, le=3)]
+
+
+class Model(BaseModel):
+    """Strict base: unknown fields are errors, instances do not change."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Range(Model):
+    """A wish for a number. `stated` says whether a person asked for it or a default filled it in."""
+
+    min: Metres2 | None = None
+    max: Metres2 | None = None
+    target: Metres2 | None = None
+    stated: bool = False
+
+
+class RoomReq(Model):
+    """One room (or `count` like ones). `area` in m2 between inner wall faces, `min_width` in m.
+
+    `objects` and `walkable` are wishes for the furniture: the number of pieces, and the share of the floor that stays free.
+    `inferred` rooms were not named; the plan needs them.
+    """
+
+    id: Slug
+    type: RoomType
+    count: Annotated[int, Field(ge=1, le=MAX_ROOMS)] = 1
+    role: Role = ""
+    functions: tuple[Literal["living", "sleeping", "cooking", "dining", "working"], ...] = ()
+    area: Range = Range()
+    min_width: Metres | None = None
+    level: Annotated[int, Field(ge=0, le=2)] | None = None
+    exterior: Literal["none", "wall", "corner", "door"] | None = None
+    exterior_length: Metres | None = None
+    window: Literal["required", "forbidden", "auto"] = "auto"
+    objects: Annotated[int, Field(ge=0, le=60)] | None = None
+    walkable: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
+    stated: bool = True
+    inferred: bool = False
+
+
+class Link(Model):
+    """Two rooms that are joined: by a door, an open front, a portal, any of these, or only a common wall."""
+
+    a: Selector
+    b: Selector
+    kind: LinkKind = "door"
+    quant: Literal["each", "some"] = "each"
+    stated: bool = False
+
+
+class Forbid(Model):
+    """Something that must not be: a room type, a common wall, an opening, an open front, or a way that leads through `avoid`."""
+
+    what: Literal["room_type", "adjacent", "connected", "open", "through"]
+    a: Selector
+    b: Selector | None = None
+    avoid: Selector | None = None
+    stated: bool = True
+
+
+class Relation(Model):
+    """A relation between rooms.
+
+    area_order: every room of `a` is at least `value` times as large as every room of `b`. area_equal: the rooms of `a` differ by
+    at most the share `value`. largest: `a` is the largest of `b`. separation: centroids of `a` and `b` are at least `value`
+    of the outline's diagonal apart. hops: at least `value` openings lie on the way from `a` to `b`. degree: `a` has exactly
+    `value` openings. area_share: `a` takes at least `value` of the total area.
+    """
+
+    kind: Literal["area_order", "area_equal", "largest", "separation", "hops", "degree", "area_share"]
+    a: Selector
+    b: Selector | None = None
+    value: Annotated[float, Field(ge=0.0, le=100.0)] = 1.0
+    stated: bool = True
+
+
+class Footprint(Model):
+    """The outline: its shape, and the ratio of its longer to its shorter side."""
+
+    shape: Literal["rectangle", "L", "T", "any"] = "rectangle"
+    min_aspect: Annotated[float, Field(ge=1.0, le=5.0)] = 1.0
+    max_aspect: Annotated[float, Field(ge=1.0, le=5.0)] = 1.6
+    stated: bool = False
+
+
+class Accessibility(Model):
+    """Clear width of doors and corridors [m]."""
+
+    step_free: bool = False
+    min_door: Annotated[float, Field(ge=0.7, le=1.2)] = 0.8
+    min_corridor: Annotated[float, Field(ge=0.8, le=3.0)] = 1.0
+
+
+class Style(Model):
+    """Twelve knobs, one per energy term: the term's weight is multiplied by 2**knob."""
+
+    circulation: Knob = 0
+    area: Knob = 0
+    squareness: Knob = 0
+    convexity: Knob = 0
+    simplicity: Knob = 0
+    exterior: Knob = 0
+    corner_light: Knob = 0
+    alignment: Knob = 0
+    useful_area: Knob = 0
+    min_width: Knob = 0
+    stair_fit: Knob = 0
+    stair_snug: Knob = 0
+
+
+class Entrance(Model):
+    """The room that one enters, and rooms with an outside door of their own."""
+
+    into: Selector | None = None
+    separate: tuple[Selector, ...] = ()
+    stated: bool = False
+
+
+class Evidence(Model):
+    """Words `text` = prompt[start:end] that `field` was read from."""
+
+    start: Annotated[int, Field(ge=0)]
+    end: Annotated[int, Field(ge=0)]
+    text: str
+    field: str
+    source: Literal["rule", "llm"] = "rule"
+
+
+class Span(Model):
+    """Words of the prompt that were not understood."""
+
+    start: Annotated[int, Field(ge=0)]
+    end: Annotated[int, Field(ge=0)]
+    text: str
+
+
+class FloorProgram(Model):
+    """A request for a home. Every field is optional; `total_area` [m2] counts neither balconies nor garages.
+
+    `only` closes the list of rooms: nothing is added that was not named. `nonrect` is the least number of rooms that are not
+    rectangles. `irregular` widens what an outline may look like.
+    """
+
+    version: Literal[1] = VERSION
+    storeys: Annotated[int, Field(ge=1, le=3)] = 1
+    total_area: Range = Range()
+    footprint: Footprint = Footprint()
+    rooms: tuple[RoomReq, ...] = ()
+    links: tuple[Link, ...] = ()
+    forbids: tuple[Forbid, ...] = ()
+    relations: tuple[Relation, ...] = ()
+    entrance: Entrance = Entrance()
+    accessibility: Accessibility = Accessibility()
+    style: Style = Style()
+    nonrect: Annotated[int, Field(ge=0, le=10)] = 0
+    scale: Annotated[float, Field(ge=0.5, le=2.0)] = 1.0
+    only: bool = False
+    language: str | None = None
+    evidence: tuple[Evidence, ...] = ()
+    unparsed: tuple[Span, ...] = ()
+
+    def select(self, selector: str) -> tuple[RoomReq, ...]:
+        """Return the rooms that a selector names: the room of that id, else every room of that type."""
+        exact = tuple(r for r in self.rooms if r.id == selector)
+        return exact or tuple(r for r in self.rooms if r.type == selector)
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the JSON Schema of FloorProgram: what `docs/floorplan.md` describes and language models are asked to fill."""
+    return FloorProgram.model_json_schema()

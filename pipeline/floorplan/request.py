@@ -1,0 +1,203 @@
+"""One storey of a completed program as numbers for the searches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.floorplan.defaults import DEFAULTS, OUTSIDE
+from pipeline.floorplan.energy import TERMS, WEIGHTS, Spec
+from pipeline.floorplan.grid import INNER, OUTER
+from pipeline.floorplan.program import FloorProgram, RoomReq
+
+UNIT = 0.25  # side of a cell [m]
+# Straight common wall that an opening needs [m]: clear width, 0.1 m beside the frame on both sides, half a wall at both ends.
+SIDES = 0.45
+OPEN_FRONT, PORTAL = 1.5, 1.2  # least clear widths [m]
+LOOSE = 0.32  # how far an unstated area may miss its target
+STATED = 0.10  # how far a stated target may be missed
+EDGE = 0.012  # hard bounds are drawn in by this share, so that rounding cannot cross them
+FREE_HALL = (0.6, 1.7)  # how far an unstated hallway's area may move
+
+
+@dataclass(frozen=True)
+class Storey:
+    """A storey's rooms, its numbers, and what the slicing search needs beside them: gross areas and their bounds [cells]."""
+
+    level: int
+    rooms: tuple[RoomReq, ...]
+    spec: Spec
+    weights: NDArray[np.float64]
+    gross: NDArray[np.float64]
+    gross_low: NDArray[np.float64]
+    gross_high: NDArray[np.float64]
+
+
+def cells(metres: float) -> int:
+    """Return the number of cells that cover a length."""
+    return int(np.ceil(metres / UNIT - 1e-9))
+
+
+def wall_for(kind: str, door: float, small: bool) -> int:
+    """Return the straight wall [cells] that a link of that kind needs."""
+    if kind == "wall":
+        return 2
+    if kind == "open":
+        return cells((1.1 if small else OPEN_FRONT) + SIDES)
+    if kind == "portal":
+        return cells((1.0 if small else PORTAL) + SIDES)
+    return cells(door + SIDES)
+
+
+def weights_of(program: FloorProgram) -> NDArray[np.float64]:
+    """Return the twelve weights: defaults times two to the power of the knobs."""
+    knobs = np.array([getattr(program.style, name) for name in TERMS], dtype=float)
+    return np.asarray(np.array(WEIGHTS) * np.exp2(knobs))
+
+
+def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, int] | None = None) -> Storey:
+    """Translate one storey of a completed program. `stair_cells` is the rectangle that the staircase must take, if it is fixed."""
+    rooms = tuple(r for r in program.rooms if r.level == level or (r.type == "staircase" and level < program.storeys))
+    index = {r.id: i for i, r in enumerate(rooms)}
+    n = len(rooms)
+    target = np.array([r.area.target or DEFAULTS[r.type].area for r in rooms])
+    low, high = _bounds(rooms, target)
+    door = program.accessibility.min_door
+    link, need = np.zeros((n, n), np.int64), np.zeros((n, n), np.int64)
+    for k in program.links:
+        if k.a in index and k.b in index:
+            a, b = index[k.a], index[k.b]
+            need[a, b] = need[b, a] = wall_for(k.kind, door, min(target[a], target[b]) < 7.0)
+            if k.kind != "wall":
+                link[a, b] = link[b, a] = 1
+    here = program.model_copy(update={"rooms": rooms})
+    ban, apart, order = _relations(here, index)
+    widths = [max(_width(r, program), 0.0) for r in rooms]
+    # a small room cannot be as wide as its type usually is
+    least = np.array([cells(min(w, 0.92 * t**0.5) + 2 * INNER) for w, t in zip(widths, target, strict=True)])
+    strict = np.maximum((0.8 * least).astype(np.int64), 3)
+    corridor = np.array([int(r.type == "hallway") for r in rooms])
+    for i, r in enumerate(rooms):
+        if r.min_width is not None or r.type in {"hallway", "entry"}:
+            strict[i] = least[i]
+        if r.type == "wc":
+            strict[i] = cells(0.85 + 2 * INNER)
+    total = np.array([0.0, np.inf])
+    wish = program.total_area
+    if program.storeys == 1 and wish.stated:
+        total[0] = (wish.min or 0.0) * (1 + EDGE)
+        total[1] = (wish.max or np.inf) * (1 - EDGE)
+    spec = Spec(
+        UNIT,
+        _root(program, rooms, index),
+        target,
+        low,
+        high,
+        total,
+        np.array([int(r.type not in OUTSIDE) for r in rooms]),
+        least,
+        strict,
+        np.array([int(DEFAULTS[r.type].square) for r in rooms]),
+        np.array([int(DEFAULTS[r.type].habitable) for r in rooms]),
+        np.array([int(DEFAULTS[r.type].useful) for r in rooms]),
+        corridor,
+        link,
+        need,
+        ban,
+        np.array([_outside(r, program, level) for r in rooms]),
+        np.array([cells(r.exterior_length or 0.0) for r in rooms]),
+        apart,
+        order,
+        index[_stairs(rooms)] if stair_cells is not None else -1,
+        np.array(stair_cells or (0, 0, 0, 0)),
+        program.nonrect if level == 0 else 0,
+    )
+    gross = _gross(target)
+    gross_low, gross_high = gross.copy(), gross.copy()
+    for i, r in enumerate(rooms):
+        if r.type in {"hallway", "entry"} and not r.area.stated:
+            gross_low[i], gross_high[i] = gross[i] * 0.75, gross[i] * 1.3
+    return Storey(level, rooms, spec, weights_of(program), gross, gross_low, gross_high)
+
+
+def _gross(target: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Area up to wall centre lines [cells] of a room of that inner area, were it nearly square."""
+    side = np.sqrt(target) + 2 * (0.65 * INNER + 0.35 * OUTER)
+    return np.asarray(side * side / UNIT**2)
+
+
+def _bounds(rooms: tuple[RoomReq, ...], target: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    low, high = target * (1 - LOOSE), target * (1 + LOOSE)
+    for i, r in enumerate(rooms):
+        if r.type in {"hallway", "entry"} and not r.area.stated:
+            low[i], high[i] = target[i] * FREE_HALL[0], target[i] * FREE_HALL[1]
+        if r.area.stated and r.area.target is not None and r.area.min is None and r.area.max is None:
+            low[i], high[i] = target[i] * (1 - STATED), target[i] * (1 + STATED)
+        if r.area.min is not None:
+            low[i] = max(low[i], r.area.min * (1 + EDGE))
+        if r.area.max is not None:
+            high[i] = min(high[i], r.area.max * (1 - EDGE))
+    return low, high
+
+
+def _width(room: RoomReq, program: FloorProgram) -> float:
+    if room.min_width is not None:
+        return room.min_width
+    if room.type == "hallway":
+        return max(DEFAULTS["hallway"].width, program.accessibility.min_corridor)
+    return DEFAULTS[room.type].width
+
+
+def _outside(room: RoomReq, program: FloorProgram, level: int) -> int:
+    """Straight outside wall that a room needs [cells]."""
+    into = level == 0 and program.entrance.into == room.id
+    own = any(room in program.select(s) for s in program.entrance.separate)
+    if room.type == "garage":
+        return cells(2.4 + SIDES)
+    if into or own or room.exterior == "door":
+        return cells(0.9 + SIDES)
+    if room.exterior == "none":
+        return 0
+    if room.exterior in {"wall", "corner"} or room.window == "required":
+        return cells(1.0 + SIDES)
+    return cells(0.8 + SIDES) if DEFAULTS[room.type].exterior and room.type != "entry" else 0
+
+
+def _relations(
+    program: FloorProgram, index: dict[str, int]
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    n = len(index)
+    ban, apart, order = np.zeros((n, n), np.int64), np.zeros((n, n)), np.zeros((n, n))
+
+    def pairs(one: str, other: str | None) -> list[tuple[int, int]]:
+        ones = [index[r.id] for r in program.select(one)]
+        others = [index[r.id] for r in program.select(other or one)]
+        return [(a, b) for a in ones for b in others if a != b]
+
+    for f in program.forbids:
+        if f.what == "adjacent":
+            for a, b in pairs(f.a, f.b):
+                ban[a, b] = ban[b, a] = 1
+    for r in program.relations:
+        for a, b in pairs(r.a, r.b):
+            if r.kind == "separation":
+                apart[a, b] = apart[b, a] = max(apart[a, b], r.value * (1 + 3 * EDGE))
+            elif r.kind == "area_order":
+                order[a, b] = max(order[a, b], r.value * (1 + EDGE))
+            elif r.kind == "largest":
+                order[a, b] = max(order[a, b], 1 + EDGE)
+            elif r.kind == "area_equal":
+                order[a, b] = max(order[a, b], 1 - r.value + EDGE)
+    return ban, apart, order
+
+
+def _stairs(rooms: tuple[RoomReq, ...]) -> str:
+    return next(r.id for r in rooms if r.type == "staircase")
+
+
+def _root(program: FloorProgram, rooms: tuple[RoomReq, ...], index: dict[str, int]) -> int:
+    if program.entrance.into in index and index:
+        return index[program.entrance.into or ""]
+    return next((i for i, r in enumerate(rooms) if r.type == "staircase"), 0)
