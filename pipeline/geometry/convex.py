@@ -1,0 +1,139 @@
+"""Convex polygons in plan, compiled: separating axes, clipping, distance to a point.
+
+A polygon is (V, 2) [m], counter-clockwise; repeated vertices are allowed (they pad batches of unequal polygons).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.geometry.compiled import compiled
+
+Floats = NDArray[np.float64]
+
+
+@compiled
+def gap(a: Floats, b: Floats) -> float:
+    """Return the largest gap [m] over the edge normals of both polygons; negative: they overlap by that depth."""
+    best = -np.inf
+    for turn in range(2):
+        p, q = (a, b) if turn == 0 else (b, a)
+        n = p.shape[0]
+        for k in range(n):
+            dx = p[(k + 1) % n, 0] - p[k, 0]
+            dy = p[(k + 1) % n, 1] - p[k, 1]
+            length = math.sqrt(dx * dx + dy * dy)
+            if length < 1e-9:
+                continue
+            nx, ny = dy / length, -dx / length
+            nearest = np.inf
+            for i in range(q.shape[0]):
+                along = nx * (q[i, 0] - p[k, 0]) + ny * (q[i, 1] - p[k, 1])
+                nearest = min(nearest, along)
+            best = max(best, nearest)
+    return best
+
+
+@compiled
+def gaps(a: Floats, b: Floats) -> Floats:
+    """Return `gap` of P pairs: (P, V, 2) and (P, W, 2) -> (P,)."""
+    found = np.empty(a.shape[0])
+    for k in range(a.shape[0]):
+        found[k] = gap(a[k], b[k])
+    return found
+
+
+@compiled
+def clipped_area(a: Floats, b: Floats) -> float:
+    """Return the area [m2] of the intersection (Sutherland and Hodgman 1974: `a` is cut by each edge of `b`)."""
+    room = a.shape[0] + b.shape[0] + 2
+    now = np.empty((room, 2))
+    after = np.empty((room, 2))
+    count = a.shape[0]
+    now[:count] = a
+    for k in range(b.shape[0]):
+        x0, y0 = b[k, 0], b[k, 1]
+        dx = b[(k + 1) % b.shape[0], 0] - x0
+        dy = b[(k + 1) % b.shape[0], 1] - y0
+        if dx * dx + dy * dy < 1e-18:
+            continue
+        kept = 0
+        for i in range(count):
+            px, py = now[i, 0], now[i, 1]
+            qx, qy = now[(i + 1) % count, 0], now[(i + 1) % count, 1]
+            side_p = dx * (py - y0) - dy * (px - x0)
+            side_q = dx * (qy - y0) - dy * (qx - x0)
+            if side_p >= 0.0:
+                after[kept, 0], after[kept, 1] = px, py
+                kept += 1
+            if (side_p > 0.0 and side_q < 0.0) or (side_p < 0.0 and side_q > 0.0):
+                t = side_p / (side_p - side_q)
+                after[kept, 0], after[kept, 1] = px + t * (qx - px), py + t * (qy - py)
+                kept += 1
+        count = kept
+        now[:count] = after[:count]
+        if count == 0:
+            return 0.0
+    area = 0.0
+    for i in range(count):
+        j = (i + 1) % count
+        area += now[i, 0] * now[j, 1] - now[j, 0] * now[i, 1]
+    return max(0.0, 0.5 * area)
+
+
+@compiled
+def clipped_areas(a: Floats, b: Floats) -> Floats:
+    """Return `clipped_area` of P pairs: (P, V, 2) and (P, W, 2) -> (P,) [m2]."""
+    found = np.empty(a.shape[0])
+    for k in range(a.shape[0]):
+        found[k] = clipped_area(a[k], b[k])
+    return found
+
+
+@compiled
+def distance_to(x: float, y: float, polygon: Floats) -> float:
+    """Return the distance [m] from a point to a convex polygon, 0 inside."""
+    n = polygon.shape[0]
+    inside = True
+    best = np.inf
+    for k in range(n):
+        x0, y0 = polygon[k, 0], polygon[k, 1]
+        dx, dy = polygon[(k + 1) % n, 0] - x0, polygon[(k + 1) % n, 1] - y0
+        square = dx * dx + dy * dy
+        if square > 1e-18 and dx * (y - y0) - dy * (x - x0) < 0.0:
+            inside = False
+        t = 0.0 if square < 1e-18 else min(1.0, max(0.0, (dx * (x - x0) + dy * (y - y0)) / square))
+        ex, ey = x - x0 - t * dx, y - y0 - t * dy
+        best = min(best, ex * ex + ey * ey)
+    return 0.0 if inside else math.sqrt(best)
+
+
+def hull(points: Floats) -> Floats:
+    """Return the convex hull (H, 2) of points (N, 2), counter-clockwise (monotone chain); fewer than 3 if degenerate."""
+    ordered = np.unique(np.round(points, 7), axis=0)
+    if len(ordered) < 3:
+        return ordered
+    return _chain(ordered)
+
+
+@compiled
+def _chain(ordered: Floats) -> Floats:
+    n = ordered.shape[0]
+    found = np.empty((2 * n, 2))
+    size = 0
+    for turn in range(2):
+        floor = 2 if turn == 0 else size + 1
+        for step in range(turn, n):
+            i = step if turn == 0 else n - 1 - step
+            while size >= floor:
+                ax, ay = found[size - 2, 0], found[size - 2, 1]
+                bx, by = found[size - 1, 0], found[size - 1, 1]
+                if (bx - ax) * (ordered[i, 1] - ay) - (by - ay) * (ordered[i, 0] - ax) > 1e-12:
+                    break
+                size -= 1
+            found[size, 0], found[size, 1] = ordered[i, 0], ordered[i, 1]
+            size += 1
+    return found[: size - 1].copy()

@@ -1,0 +1,130 @@
+"""Forward kinematics of assets, and the boxes that their joints sweep.
+
+Everything is in the object frame (origin bottom centre of the box at rest, front -Y). Positive motion opens.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.asset import Asset, Joint, Link
+
+HANDLES = ("line_fixed_handle", "round_fixed_handle", "hinge_handle")  # part classes that a hand takes hold of
+OPENERS = ("hinge_door", "slider_drawer", "hinge_lid", "slider_lid")  # part classes that open something
+
+
+def joint_motion(joint: Joint, position: float) -> NDArray[np.float64]:
+    """Return the transform (4, 4) by which `joint` alone moves its child from rest, at `position` [rad or m]."""
+    T = np.eye(4)
+    if joint.type == "prismatic":
+        T[:3, 3] = joint.axis * position
+        return T
+    T[:3, :3] = rotation(joint.axis, position)
+    T[:3, 3] = joint.origin - T[:3, :3] @ joint.origin
+    return T
+
+
+def rotation(axis: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
+    """Return the rotation matrix (3, 3) about a unit `axis` (3,) by `angle` [rad] (Rodrigues' formula)."""
+    x, y, z = axis
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    turned: NDArray[np.float64] = np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K)
+    return turned
+
+
+def link_transforms(asset: Asset, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return T (L, 4, 4) that carries each link's points from rest to joint `positions` (J,) [rad or m]."""
+    T = np.broadcast_to(np.eye(4), (len(asset.links), 4, 4)).copy()
+    for joint, position in zip(asset.joints, positions, strict=True):
+        T[joint.child] = T[joint.parent] @ joint_motion(joint, float(position))
+    return T
+
+
+def joint_range(joint: Joint) -> tuple[float, float]:
+    """Return the limits of a joint [rad or m]; one turn from rest for a joint without limits."""
+    lower = joint.lower if math.isfinite(joint.lower) else 0.0
+    upper = joint.upper if math.isfinite(joint.upper) else 2 * math.pi
+    return lower, upper
+
+
+def moved_links(asset: Asset, joint_index: int) -> list[int]:
+    """Return the links that a joint moves: its child and all that hangs on it, in the order of the joints."""
+    moved = [asset.joints[joint_index].child]
+    for joint in asset.joints:
+        if joint.parent in moved and joint.child not in moved:
+            moved.append(joint.child)
+    return moved
+
+
+def link_points(link: Link) -> NDArray[np.float64]:
+    """Return the vertices (V, 3) [m, object frame at rest] of a link's colliders, or of its visuals if it has none."""
+    meshes = link.colliders or link.visuals
+    if not meshes:
+        return np.zeros((0, 3))
+    return np.concatenate([np.asarray(m.vertices, np.float64) for m in meshes])
+
+
+def sweep_box(asset: Asset, joint_index: int, steps: int = 9) -> NDArray[np.float64]:
+    """Return the box (2, 3) [m, object frame], lower and upper corner, of all that a joint moves over its range.
+
+    Other joints stay at 0. `steps` positions are taken; what an arc bulges between them is added.
+    """
+    joint = asset.joints[joint_index]
+    points = np.concatenate([link_points(asset.links[i]) for i in moved_links(asset, joint_index)])
+    if not len(points):
+        return np.array([joint.origin, joint.origin])
+    lower, upper = joint_range(joint)
+    positions = np.linspace(lower, upper, max(steps, 2))
+    motions = np.stack([joint_motion(joint, q) for q in positions])
+    moved = np.einsum("kij,pj->kpi", motions[:, :3, :3], points) + motions[:, None, :3, 3]
+    corners = np.stack([moved.min((0, 1)), moved.max((0, 1))])
+    if joint.type != "prismatic":
+        away = points - joint.origin
+        radius = np.linalg.norm(away - np.outer(away @ joint.axis, joint.axis), axis=1).max()
+        bulge = radius * (1.0 - math.cos((positions[1] - positions[0]) / 2)) * np.sqrt(1.0 - joint.axis**2)
+        corners += np.stack([-bulge, bulge])
+    return corners
+
+
+def handle_point(asset: Asset, joint_index: int) -> NDArray[np.float64]:
+    """Return where a hand takes hold (3,) [m, object frame at rest].
+
+    The middle of the handle that moves with the joint; without one, for a slider the middle of its face ahead, for a
+    hinge the middle of the moving part's edge farthest from the axis.
+    """
+    joint = asset.joints[joint_index]
+    for i in moved_links(asset, joint_index):
+        grips = [m.vertices for m in asset.links[i].visuals if m.part in HANDLES]
+        if grips:
+            return _middle(np.asarray(grips[0], np.float64))
+    points = link_points(asset.links[joint.child])
+    if not len(points):
+        return joint.origin.copy()
+    if joint.type == "prismatic":
+        middle = _middle(points)
+        ahead = float(((points - middle) @ joint.axis).max())
+        face: NDArray[np.float64] = middle + joint.axis * ahead
+        return face
+    away = points - joint.origin
+    radial = away - np.outer(away @ joint.axis, joint.axis)
+    radius = np.linalg.norm(radial, axis=1)
+    far: NDArray[np.float64] = points[radius > 0.98 * radius.max()].mean(0)
+    return far
+
+
+def opening_direction(asset: Asset, joint_index: int) -> NDArray[np.float64]:
+    """Return the unit direction (3,) in which the handle starts to move when the joint opens [object frame]."""
+    joint = asset.joints[joint_index]
+    if joint.type == "prismatic":
+        return joint.axis.copy()
+    start = np.cross(joint.axis, handle_point(asset, joint_index) - joint.origin)
+    length = float(np.linalg.norm(start))
+    return start / length if length > 1e-9 else np.array([0.0, -1.0, 0.0])
+
+
+def _middle(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    middle: NDArray[np.float64] = (points.min(0) + points.max(0)) / 2
+    return middle

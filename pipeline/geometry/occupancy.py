@@ -1,0 +1,113 @@
+"""Free floor as a raster: what a round robot can stand on, and what of it hangs together.
+
+A raster covers a box in plan; cell (i, j) has its centre at origin + cell * (i + 0.5, j + 0.5).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from pipeline.geometry.compiled import compiled
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Raster:
+    """A grid in plan: `origin` (2,) [m] is its lower corner, `cell` [m] the side of a cell, `shape` the counts (x, y)."""
+
+    origin: Floats
+    cell: float
+    shape: tuple[int, int]
+
+    @classmethod
+    def around(cls, polygons: Sequence[Floats], cell: float, margin: float = 0.3) -> Raster:
+        """Return the raster over polygons and a margin [m]. Its origin hangs on their corner, so it moves with them."""
+        points = np.concatenate(polygons)
+        low, high = points.min(0) - margin, points.max(0) + margin
+        counts = np.maximum(np.ceil((high - low) / cell - 1e-9), 1).astype(int)
+        return cls(low, cell, (int(counts[0]), int(counts[1])))
+
+    def empty(self) -> Mask:
+        """Return a mask of False."""
+        return np.zeros(self.shape, np.bool_)
+
+    def index(self, points: Floats) -> NDArray[np.int64]:
+        """Return the cells (N, 2) in which points (N, 2) lie, clipped to the raster."""
+        found = np.floor((points - self.origin) / self.cell).astype(np.int64)
+        clipped: NDArray[np.int64] = np.clip(found, 0, np.array(self.shape) - 1)
+        return clipped
+
+    def fill(self, mask: Mask, polygons: Sequence[Floats], *, value: bool = True) -> Mask:
+        """Set the cells whose centre lies in any of the (simple) polygons; returns the same mask."""
+        for polygon in polygons:
+            fill(mask, np.ascontiguousarray((polygon - self.origin) / self.cell, np.float64), value)
+        return mask
+
+    def area(self, mask: Mask) -> float:
+        """Return the area of a mask [m2]."""
+        return float(np.count_nonzero(mask)) * self.cell**2
+
+
+@compiled
+def fill(mask: Mask, polygon: Floats, value: bool) -> None:
+    """Set the cells whose centre lies in a simple polygon (n, 2) given in cells (even-odd rule, column by column)."""
+    n = polygon.shape[0]
+    first = max(0, int(np.floor(polygon[:, 0].min() - 0.5)))
+    last = min(mask.shape[0] - 1, int(np.ceil(polygon[:, 0].max() - 0.5)))
+    crossings = np.empty(n)
+    for i in range(first, last + 1):
+        x = i + 0.5
+        count = 0
+        for k in range(n):
+            x0, y0 = polygon[k, 0], polygon[k, 1]
+            x1, y1 = polygon[(k + 1) % n, 0], polygon[(k + 1) % n, 1]
+            if (x0 > x) != (x1 > x):
+                crossings[count] = y0 + (x - x0) * (y1 - y0) / (x1 - x0)
+                count += 1
+        ordered = np.sort(crossings[:count])
+        for k in range(0, count - 1, 2):
+            # A centre j + 0.5 lies in [start, end); the small slack keeps shapes that meet edge to edge without a seam.
+            j0 = max(0, int(np.ceil(ordered[k] - 0.5 - 1e-9)))
+            j1 = min(mask.shape[1], int(np.ceil(ordered[k + 1] - 0.5 - 1e-9)))
+            for j in range(j0, j1):
+                mask[i, j] = value
+
+
+def standing(free: Mask, radius_cells: float) -> Mask:
+    """Return the cells at which the centre of a disc of that radius can stand: all of it is free floor."""
+    if not free.any():
+        return free.copy()
+    distance = ndimage.distance_transform_edt(np.pad(free, 1))[1:-1, 1:-1]
+    # The distance is to the centre of the nearest blocked cell, whose edge is half a cell nearer.
+    found: Mask = distance - 0.5 >= radius_cells - 1e-9
+    return found
+
+
+def covered(centres: Mask, radius_cells: float) -> Mask:
+    """Return the cells that a disc covers while its centre runs over `centres`."""
+    if not centres.any():
+        return centres.copy()
+    found: Mask = ndimage.distance_transform_edt(~centres) <= radius_cells + 0.5 + 1e-9
+    return found
+
+
+def components(mask: Mask) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    """Label the 4-connected parts of a mask from 1, and return their sizes in cells (entry 0 counts what is outside)."""
+    labels, count = ndimage.label(mask)
+    return labels.astype(np.int32), np.bincount(labels.ravel(), minlength=count + 1)
+
+
+def largest_component(mask: Mask) -> Mask:
+    """Return the largest 4-connected part of a mask (the first of equal ones)."""
+    labels, sizes = components(mask)
+    if len(sizes) == 1:
+        return mask.copy()
+    largest: Mask = labels == 1 + int(np.argmax(sizes[1:]))
+    return largest

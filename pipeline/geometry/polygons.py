@@ -1,0 +1,98 @@
+"""Room polygons: points inside, how far a convex shape leaves them, insides shared with boxes.
+
+A room polygon is (n, 2) [m], counter-clockwise, simple, not closed, not necessarily convex.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from pipeline.geometry.compiled import compiled
+from pipeline.geometry.convex import gap
+
+Floats = NDArray[np.float64]
+
+SKIN = 0.05  # thickness given to walls where a shape's crossing is tested [m]; thinner than any wall
+
+
+@compiled
+def contains(x: float, y: float, polygon: Floats) -> bool:
+    """Tell whether a point is in a polygon (even-odd rule)."""
+    inside = False
+    n = polygon.shape[0]
+    for k in range(n):
+        x0, y0 = polygon[k, 0], polygon[k, 1]
+        x1, y1 = polygon[(k + 1) % n, 0], polygon[(k + 1) % n, 1]
+        if (y0 > y) != (y1 > y) and x < x0 + (y - y0) * (x1 - x0) / (y1 - y0):
+            inside = not inside
+    return inside
+
+
+@compiled
+def boundary_distance(x: float, y: float, polygon: Floats) -> float:
+    """Return the distance [m] from a point to a polygon's boundary."""
+    best = np.inf
+    n = polygon.shape[0]
+    for k in range(n):
+        x0, y0 = polygon[k, 0], polygon[k, 1]
+        dx, dy = polygon[(k + 1) % n, 0] - x0, polygon[(k + 1) % n, 1] - y0
+        square = dx * dx + dy * dy
+        t = 0.0 if square < 1e-18 else min(1.0, max(0.0, (dx * (x - x0) + dy * (y - y0)) / square))
+        ex, ey = x - x0 - t * dx, y - y0 - t * dy
+        best = min(best, ex * ex + ey * ey)
+    return math.sqrt(best)
+
+
+@compiled
+def excess(shape: Floats, polygon: Floats) -> float:
+    """Return how far [m] a convex shape (V, 2) sticks out of a polygon: 0 when it is inside.
+
+    The farthest vertex outside, or, where a reflex corner pokes into the shape, the depth to which it does.
+    """
+    worst = 0.0
+    for i in range(shape.shape[0]):
+        x, y = shape[i, 0], shape[i, 1]
+        if not contains(x, y, polygon):
+            worst = max(worst, boundary_distance(x, y, polygon))
+    n = polygon.shape[0]
+    wall = np.empty((4, 2))
+    for k in range(n):
+        x0, y0 = polygon[k, 0], polygon[k, 1]
+        x1, y1 = polygon[(k + 1) % n, 0], polygon[(k + 1) % n, 1]
+        length = math.sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2)
+        if length < 1e-9:
+            continue
+        nx, ny = (y1 - y0) / length * SKIN, (x0 - x1) / length * SKIN
+        wall[0, 0], wall[0, 1] = x1, y1
+        wall[1, 0], wall[1, 1] = x0, y0
+        wall[2, 0], wall[2, 1] = x0 + nx, y0 + ny
+        wall[3, 0], wall[3, 1] = x1 + nx, y1 + ny
+        worst = max(worst, -gap(shape, wall))
+    return worst
+
+
+@compiled
+def excesses(shapes: Floats, polygon: Floats) -> Floats:
+    """Return `excess` of N shapes (N, V, 2) -> (N,) [m]."""
+    found = np.empty(shapes.shape[0])
+    for k in range(shapes.shape[0]):
+        found[k] = excess(shapes[k], polygon)
+    return found
+
+
+def contains_points(points: Floats, polygon: Floats) -> NDArray[np.bool_]:
+    """Tell which points (N, 2) are in a polygon, its boundary included."""
+    found: NDArray[np.bool_] = shapely.intersects_xy(shapely.Polygon(polygon), points[:, 0], points[:, 1])
+    return found
+
+
+def inside_ratios(shapes: Floats, polygon: Floats) -> Floats:
+    """Return the share (N,) of the area of convex shapes (N, V, 2) that is in a polygon; 1 for a degenerate shape."""
+    drawn = shapely.polygons(shapes)
+    area = shapely.area(drawn)
+    shared = shapely.area(shapely.intersection(drawn, shapely.Polygon(polygon)))
+    return np.where(area > 1e-12, shared / np.maximum(area, 1e-12), 1.0)
