@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import functools
 import uuid
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -84,7 +84,7 @@ def _models(seed: int, category: str, line: Line, count: int, *, articulated: bo
     library = "partnet" if articulated else "future"
     rng = seeds.generator(seed, "corpus.furniture", library, category)
     entry = taxonomy.load().categories[category]
-    forms = _turns(rng, line, count)
+    forms = _turns(rng, [f for f in line.forms if not (articulated and f.still)], count)
     styles = rng.choice(list(STYLES), size=count, p=np.array(list(STYLES.values())) / sum(STYLES.values()))
     boxes = sizes.draw(rng, sizes.load()[category], count)
     models = []
@@ -108,16 +108,14 @@ def _models(seed: int, category: str, line: Line, count: int, *, articulated: bo
     return models
 
 
-def _turns(rng: np.random.Generator, line: Line, count: int) -> list[Form]:
+def _turns(rng: np.random.Generator, forms: Sequence[Form], count: int) -> list[Form]:
     """Deal the forms round robin from a random start, so that each comes equally often."""
-    start = int(rng.integers(len(line.forms)))
-    return [line.forms[(start + i) % len(line.forms)] for i in range(count)]
+    start = int(rng.integers(len(forms)))
+    return [forms[(start + i) % len(forms)] for i in range(count)]
 
 
 def _renumbered(seed: int, models: list[Model]) -> list[Model]:
     """Give the articulated models PartNet-Mobility's kind of id: distinct numbers of five digits, in no order."""
-    import dataclasses
-
     rng = seeds.generator(seed, "corpus.furniture", "partnet_ids")
     numbers = rng.choice(np.arange(10_000, 100_000), size=len(models), replace=False)
-    return [dataclasses.replace(model, model_id=str(number)) for model, number in zip(models, numbers, strict=True)]
+    return [replace(model, model_id=str(number)) for model, number in zip(models, numbers, strict=True)]

@@ -36,13 +36,13 @@ STYLES: Mapping[str, float] = {
 class Form:
     """One form of a category. `name` is what the builder knows it by, `future` the category name to write.
 
-    A `round` form has one diameter: its depth is set to its width. `depth` replaces the drawn depth by a share of the width.
+    A `round` form has one diameter: its depth is set to its width. A `still` form has nothing that moves.
     """
 
     name: str
     future: str
     round: bool = False
-    depth: float | None = None
+    still: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,11 +55,11 @@ class Line:
 
 
 def _line(future: str, names: str, static: int, moving: int = 0) -> Line:
-    """Read a line from words: `name`, `name*` (round), `name=Other future name`."""
+    """Read a line from words: `name`, `name*` (round), `-name` (still), `name=Other future name`."""
     forms = []
     for word in names.split(", "):
         name, _, other = word.partition("=")
-        forms.append(Form(name.rstrip("*"), other or future, name.endswith("*")))
+        forms.append(Form(name.strip("-*"), other or future, name.endswith("*"), name.startswith("-")))
     return Line(tuple(forms), static, moving)
 
 
@@ -70,18 +70,18 @@ LINES: Mapping[str, Line] = {
     "nightstand": _line("Nightstand", "drawers, shelf_drawer, door_drawer", 6, 10),
     "wardrobe": _line("Wardrobe", "doors, doors_drawers, doors_open", 6, 11),
     "cabinet": _line("Drawer Chest / Corner cabinet", "drawers, mixed, doors", 4, 10),
-    "children_cabinet": _line("Children Cabinet", "cubes, doors_drawers", 3, 4),
-    "sideboard": _line("Sideboard / Side Cabinet / Console Table", "doors, mixed, console", 4, 8),
-    "bookshelf": _line("Bookcase / jewelry Armoire", "doors_below, glass", 4, 5),
+    "children_cabinet": _line("Children Cabinet", "-cubes, doors_drawers, cubes_doors", 3, 4),
+    "sideboard": _line("Sideboard / Side Cabinet / Console Table", "doors, mixed, console", 5, 8),
+    "bookshelf": _line("Bookcase / jewelry Armoire", "-open, doors_below, glass, -ladder", 4, 5),
     "shelf": _line("Shelf", "ladder, frame, cubes", 3),
     "tv_stand": _line("TV Stand", "drawers, doors, mixed", 5, 8),
     "wine_cabinet": _line("Wine Cabinet", "glass, rack", 2, 4),
     "shoe_cabinet": _line("Shoe Cabinet", "doors, flaps", 2, 4),
-    "desk": _line("Desk", "pedestal, drawers, plain", 4, 8),
+    "desk": _line("Desk", "pedestal, drawers, -plain", 4, 8),
     "dressing_table": _line("Dressing Table", "mirror, round_mirror", 3, 5),
     "dining_table": _line("Dining Table", "legs, trestle, pedestal*, slab", 7),
-    "coffee_table": _line("Coffee Table", "legs, drum*, sled, drawer", 6, 4),
-    "corner_side_table": _line("Corner/Side Table", "legs, pedestal*, c_shape, drawer", 5, 4),
+    "coffee_table": _line("Coffee Table", "-legs, -drum*, -sled, drawer", 6, 4),
+    "corner_side_table": _line("Corner/Side Table", "-legs, -pedestal*, -c_shape, drawer", 5, 4),
     "round_end_table": _line("Round End Table", "tripod*, drum*", 2),
     "dining_chair": _line("Dining Chair", "wood, shell, upholstered, spindle", 8),
     "lounge_chair": _line("Lounge Chair / Cafe Chair / Office Chair", "easy, office, wing", 6),

@@ -1,0 +1,53 @@
+"""Which function builds which category."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from pipeline.corpus.furniture import seating, sofas, storage, tables
+from pipeline.corpus.furniture.finishes import Scheme
+from pipeline.corpus.furniture.shape import Shape
+
+Builder = Callable[[np.random.Generator, str, Sequence[float], Scheme], Shape]
+
+BUILDERS: Mapping[str, Builder] = {
+    "nightstand": storage.nightstand,
+    "wardrobe": storage.wardrobe,
+    "cabinet": storage.cabinet,
+    "children_cabinet": storage.children_cabinet,
+    "sideboard": storage.sideboard,
+    "bookshelf": storage.bookshelf,
+    "shelf": storage.shelf,
+    "tv_stand": storage.tv_stand,
+    "wine_cabinet": storage.wine_cabinet,
+    "shoe_cabinet": storage.shoe_cabinet,
+    "desk": tables.desk,
+    "dressing_table": tables.dressing_table,
+    "dining_table": tables.dining_table,
+    "coffee_table": tables.coffee_table,
+    "corner_side_table": tables.corner_side_table,
+    "round_end_table": tables.round_end_table,
+    "dining_chair": seating.dining_chair,
+    "lounge_chair": seating.lounge_chair,
+    "dressing_chair": seating.dressing_chair,
+    "chinese_chair": seating.chinese_chair,
+    "barstool": seating.barstool,
+    "stool": seating.stool,
+    "multi_seat_sofa": sofas.sofa,
+    "loveseat_sofa": sofas.sofa,
+    "armchair": sofas.sofa,
+    "l_shaped_sofa": sofas.l_shaped_sofa,
+    "lazy_sofa": sofas.lazy_sofa,
+    "chaise_longue_sofa": sofas.chaise_longue,
+}
+
+# 3D-FUTURE's word for the main material where it does not follow from the wood or lacquer; "soft": that of the cover.
+MATERIALS: Mapping[str, str] = dict.fromkeys(
+    [
+        "lounge_chair", "dressing_chair", "stool", "multi_seat_sofa", "loveseat_sofa", "armchair", "l_shaped_sofa", "lazy_sofa",
+        "chaise_longue_sofa",
+    ],
+    "soft",
+)

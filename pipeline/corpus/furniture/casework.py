@@ -1,0 +1,198 @@
+"""Casework: hollow carcasses of panels, cut into columns of cells that hold drawers, doors or open shelves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from pipeline.corpus.furniture.finishes import Finish
+from pipeline.corpus.furniture.fronts import GAP, FrontStyle, Rect, Side, door, drawer, reach
+from pipeline.corpus.furniture.shape import Mover, Piece, Shape, pieces
+from pipeline.corpus.furniture.solids import Solid, beam, box, rod
+
+Feet = Literal["plinth", "tapered", "square", "sled", "none", "hairpin"]
+CellKind = Literal["drawer", "left", "right", "pair", "open", "flap", "blank"]
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A compartment of a column: `share` of its height (or fixed metres if `fixed`), `shelves` inside, what closes it."""
+
+    kind: CellKind
+    share: float = 1.0
+    shelves: int = 0
+    panel: FrontStyle | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column of cells from the top down; `share` of the carcass's width."""
+
+    share: float
+    cells: tuple[Cell, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """How a carcass is made. Lengths in metres.
+
+    `inset` fronts lie between the panels, others cover them. `overhang` is how far the top reaches out in front and at
+    the sides; `top` its thickness; `back_open` leaves the open cells without a back.
+    """
+
+    body: Finish
+    style: FrontStyle
+    feet: Feet
+    feet_height: float
+    feet_finish: Finish
+    top: Finish | None = None
+    top_thickness: float = 0.022
+    overhang: float = 0.0
+    board: float = 0.018
+    inset: bool = False
+
+
+def case(size: Sequence[float], columns: Sequence[Column], how: Case, *, reserve: float | None = None) -> Shape:
+    """Return a piece of case furniture of `size` (w, d, h) [m]; `reserve` [m] in front of the fronts is kept for handles."""
+    w, d, h = size
+    b = how.board
+    stand = reach(how.style.handle) if reserve is None else reserve
+    face = -d / 2 + max(stand, how.overhang)  # plane of the fronts
+    x = (-w / 2 + how.overhang, w / 2 - how.overhang)
+    y = (face if how.inset else face + how.style.thickness + 0.002, d / 2)
+    top = how.top_thickness
+    z = (how.feet_height, h - top)
+    base: list[Piece] = []
+    base += pieces("top", box((-w / 2, w / 2), (face - how.overhang, d / 2), (z[1], h), 0.003), how.top or how.body)
+    base += pieces("side_left", box((x[0], x[0] + b), y, z, 0.0015), how.body)
+    base += pieces("side_right", box((x[1] - b, x[1]), y, z, 0.0015), how.body)
+    inner = (x[0] + b, x[1] - b)
+    base += pieces("bottom", box(inner, y, (z[0], z[0] + b)), how.body)
+    base += pieces("back", box(inner, (y[1] - 0.008, y[1]), (z[0] + b, z[1])), how.body)
+    movers: list[Mover] = []
+    shares = np.cumsum([0.0, *(c.share for c in columns)]) / sum(c.share for c in columns)
+    cuts = inner[0] + shares * (inner[1] - inner[0])
+    for i, column in enumerate(columns):
+        left = float(cuts[i]) + (b / 2 if i else 0)
+        right = float(cuts[i + 1]) - (b / 2 if i < len(columns) - 1 else 0)
+        if i:
+            base += pieces(f"divider_{i}", box((left - b, left), (y[0], y[1] - 0.008), (z[0] + b, z[1])), how.body)
+        outer = (left, right) if how.inset else (_half(left, b, first=i == 0), _half(right, -b, first=i == len(columns) - 1))
+        ends = (i == 0, i == len(columns) - 1)
+        fixed, moving = _column(f"c{i}", column, (left, right), outer, y, (z[0] + b, z[1]), face, how, ends)
+        base += fixed
+        movers += moving
+    base += feet(how.feet, x, (face + 0.01, d / 2), how.feet_height, how.feet_finish)
+    return Shape(tuple(base), tuple(movers))
+
+
+def _half(edge: float, board: float, *, first: bool) -> float:
+    """Return where an overlaid front ends beside a panel: it covers an outer one wholly, an inner one by half."""
+    return edge - board if first else edge - board / 2
+
+
+def _column(
+    name: str,
+    column: Column,
+    x: tuple[float, float],
+    outer: tuple[float, float],
+    y: tuple[float, float],
+    z: tuple[float, float],
+    face: float,
+    how: Case,
+    ends: tuple[bool, bool],
+) -> tuple[list[Piece], list[Mover]]:
+    """Fill one column between `x`, its fronts over `outer`."""
+    b = how.board
+    base: list[Piece] = []
+    movers: list[Mover] = []
+    total = sum(c.share for c in column.cells)
+    free = z[1] - z[0] - b * (len(column.cells) - 1)
+    upper_edge = z[1]
+    for k, cell in enumerate(column.cells):
+        height = free * cell.share / total
+        low, high = upper_edge - height, upper_edge
+        if k < len(column.cells) - 1:
+            base += pieces(f"{name}_shelf_{k}", box(x, (y[0], y[1] - 0.008), (low - b, low)), how.body)
+        if how.inset:
+            rect = Rect(x, (low, high), face).shrunk(GAP)
+        else:
+            bottom = low - (b if k == len(column.cells) - 1 else b / 2)
+            rect = Rect(outer, (bottom, high + (b / 2 if k else 0)), face).shrunk(GAP / 2)
+        depth = (y[0] + (how.style.thickness + 0.002 if how.inset else 0.0), y[1] - 0.008)
+        fixed, moving = _cell(f"{name}_{k}", cell, x, depth, (low, high), rect, how, ends)
+        base += fixed
+        movers += moving
+        upper_edge = low - b
+    return base, movers
+
+
+def _cell(
+    name: str,
+    cell: Cell,
+    x: tuple[float, float],
+    y: tuple[float, float],
+    z: tuple[float, float],
+    rect: Rect,
+    how: Case,
+    ends: tuple[bool, bool],
+) -> tuple[list[Piece], list[Mover]]:
+    """Fill one compartment over `x`, `y`, `z` with its shelves and its front over `rect`."""
+    style = cell.panel or how.style
+    base: list[Piece] = []
+    movers: list[Mover] = []
+    setback = 0.004 if cell.kind == "open" else 0.02
+    for j in range(cell.shelves):
+        level = z[0] + (z[1] - z[0]) * (j + 1) / (cell.shelves + 1)
+        base += pieces(f"{name}_board_{j}", box(x, (y[0] + setback, y[1]), (level - 0.008, level + 0.008)), how.body)
+    wide, square = math.radians(105), math.radians(90)
+    sides: dict[str, tuple[Side, ...]] = {"left": ("left",), "right": ("right",), "pair": ("left", "right"), "flap": ("bottom",)}
+    if cell.kind == "drawer":
+        movers.append(drawer(f"{name}_drawer", rect, style, (x, z, y[1]), how.body))
+    elif cell.kind == "pair":
+        middle = (rect.x[0] + rect.x[1]) / 2
+        halves = (Rect((rect.x[0], middle - GAP / 2), rect.z, rect.y), Rect((middle + GAP / 2, rect.x[1]), rect.z, rect.y))
+        for half, side, end in zip(halves, ("left", "right"), ends, strict=True):
+            movers.append(door(f"{name}_door_{side}", half, style, side, wide if end else square))  # type: ignore[arg-type]
+    elif cell.kind in sides:
+        side = sides[cell.kind][0]
+        free = cell.kind == "flap" or ends[0 if side == "left" else 1]
+        movers.append(door(f"{name}_door", rect, style, side, wide if free and cell.kind != "flap" else square))
+    elif cell.kind == "blank":
+        base += pieces(f"{name}_blank", box(rect.x, (rect.y, rect.y + style.thickness), rect.z, 0.002), style.finish)
+    return base, movers
+
+
+def feet(kind: Feet, x: tuple[float, float], y: tuple[float, float], height: float, finish: Finish) -> tuple[Piece, ...]:
+    """Return what a piece stands on, under the rectangle `x`, `y`, from the floor to `height` [m]."""
+    if height <= 0 or kind == "none":
+        return ()
+    inset = min(0.05, 0.12 * (x[1] - x[0]))
+    corners = [(cx, cy) for cx in (x[0] + inset, x[1] - inset) for cy in (y[0] + inset, y[1] - inset)]
+    solids: list[Solid] = []
+    if kind == "plinth":
+        return pieces("plinth", box((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.03, y[1] - 0.005), (0, height)), finish)
+    if kind == "tapered":
+        spread = 0.022 if height > 0.1 else 0.0
+        for cx, cy in corners:
+            out = (math.copysign(spread, cx - (x[0] + x[1]) / 2), math.copysign(spread, cy - (y[0] + y[1]) / 2))
+            solids.append(rod((cx + out[0], cy + out[1], 0), (cx, cy, height), 0.012, 0.022, 10))
+    elif kind == "square":
+        side = 0.018 if height > 0.08 else 0.025
+        solids = [beam((cx, cy, 0), (cx, cy, height), 2 * side, 2 * side, 0.75) for cx, cy in corners]
+    elif kind == "hairpin":
+        for cx, cy in corners:
+            solids += [rod((cx + s * 0.003, cy, 0), (cx + s * 0.03, cy, height), 0.006, 0.006, 6) for s in (-1, 1)]
+    else:  # sled: two closed frames of square tube
+        t = 0.012
+        for cx in (x[0] + inset, x[1] - inset):
+            span = (y[0] + inset / 2, y[1] - inset / 2)
+            solids.append(box((cx - t, cx + t), span, (0, 2 * t), 0.002))
+            solids += [box((cx - t, cx + t), (cy - t, cy + t), (2 * t, height), 0.002) for cy in (span[0] + t, span[1] - t)]
+    if x[1] - x[0] > 1.6 and kind in ("tapered", "square"):  # long pieces stand on six
+        solids += [rod((0, cy, 0), (0, cy, height), 0.014, 0.02, 10) for cy in (y[0] + inset, y[1] - inset)]
+    return pieces("feet", solids, finish)

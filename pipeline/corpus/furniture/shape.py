@@ -1,0 +1,129 @@
+"""Shapes: pieces of convex solids on a base and on movers, before they become an asset or files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.corpus.furniture.finishes import Finish
+from pipeline.corpus.furniture.solids import Solid, Vector
+
+Axis3 = tuple[float, float, float]
+FRONT: Axis3 = (0.0, -1.0, 0.0)
+UP: Axis3 = (0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """One convex solid of a component: pieces of one `name` on one body belong together (a panel, a handle).
+
+    `part` is a GAPartNet class where the component is a fixed handle, else "".
+    """
+
+    name: str
+    solid: Solid
+    finish: Finish
+    part: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Mover:
+    """A body that moves against its parent (a mover's name, or "base").
+
+    `axis` (unit) and `origin` [m] in the object frame at rest; motion goes from `lower` <= 0 to `upper` >= 0 [rad or m] and
+    positive opens. `outward` is the direction its face looks at rest (GAPartNet's z axis).
+    """
+
+    name: str
+    pieces: tuple[Piece, ...]
+    type: Literal["revolute", "prismatic", "continuous"]
+    axis: Axis3
+    origin: Axis3
+    upper: float
+    part_class: str
+    semantic: str
+    outward: Axis3 = FRONT
+    parent: str = "base"
+    lower: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """A model's geometry: the fixed base and its movers, parents first."""
+
+    base: tuple[Piece, ...]
+    movers: tuple[Mover, ...] = ()
+
+    def pieces(self) -> Iterator[Piece]:
+        """Iterate over all pieces."""
+        yield from self.base
+        for mover in self.movers:
+            yield from mover.pieces
+
+    def bounds(self) -> NDArray[np.float64]:
+        """Return the box at rest (2, 3) [m]."""
+        corners = np.stack([piece.solid.bounds() for piece in self.pieces()])
+        return np.stack([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])
+
+
+def pieces(name: str, solids: Solid | Iterable[Solid], finish: Finish, part: str = "") -> tuple[Piece, ...]:
+    """Return the pieces of one component."""
+    if isinstance(solids, Solid):
+        return (Piece(name, solids, finish, part),)
+    return tuple(Piece(name, solid, finish, part) for solid in solids)
+
+
+def fitted(shape: Shape, size: Vector) -> Shape:
+    """Return the shape scaled to `size` (w, d, h) exactly and centred over the origin, bottom at 0.
+
+    Builders come within a few percent of their box; this takes up the rest. Lengths of sliding joints scale along.
+    """
+    low, high = shape.bounds()
+    factors = np.asarray(size, float) / (high - low)
+    offset = -np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
+
+    def place(parts: tuple[Piece, ...]) -> tuple[Piece, ...]:
+        return tuple(replace(p, solid=p.solid.moved(offset).scaled(factors)) for p in parts)
+
+    movers = []
+    for mover in shape.movers:
+        x, y, z = ((np.asarray(mover.origin) + offset) * factors).tolist()
+        stretch = float(np.abs(np.asarray(mover.axis)) @ factors) if mover.type == "prismatic" else 1.0
+        movers.append(
+            replace(mover, pieces=place(mover.pieces), origin=(x, y, z), upper=mover.upper * stretch, lower=mover.lower * stretch)
+        )
+    return Shape(place(shape.base), tuple(movers))
+
+
+def frozen(shape: Shape) -> Shape:
+    """Return the shape with every mover fixed where it rests."""
+    return Shape(tuple(shape.pieces()))
+
+
+def moved(shape: Shape, offset: Vector, prefix: str = "") -> Shape:
+    """Return the shape translated by `offset` (3,) [m]; `prefix` goes before the names of its pieces and movers."""
+    dx, dy, dz = (float(v) for v in offset)
+
+    def place(parts: tuple[Piece, ...]) -> tuple[Piece, ...]:
+        return tuple(replace(p, name=prefix + p.name, solid=p.solid.moved(offset)) for p in parts)
+
+    movers = tuple(
+        replace(
+            m,
+            name=prefix + m.name,
+            pieces=place(m.pieces),
+            origin=(m.origin[0] + dx, m.origin[1] + dy, m.origin[2] + dz),
+            parent=m.parent if m.parent == "base" else prefix + m.parent,
+        )
+        for m in shape.movers
+    )
+    return Shape(place(shape.base), movers)
+
+
+def joined(*shapes: Shape) -> Shape:
+    """Return the shapes on one base."""
+    return Shape(tuple(p for s in shapes for p in s.base), tuple(m for s in shapes for m in s.movers))

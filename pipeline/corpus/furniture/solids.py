@@ -1,0 +1,194 @@
+"""Convex solids: polyhedra with outward faces, from which all furniture is made. Lengths in metres."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Face = tuple[int, ...]
+Vector = Sequence[float] | NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Solid:
+    """A convex polyhedron. `vertices` (V, 3) [m]; `faces` are polygons, counter-clockwise seen from outside."""
+
+    vertices: NDArray[np.float64]
+    faces: tuple[Face, ...]
+
+    def triangles(self) -> NDArray[np.int32]:
+        """Return the faces cut into fans of triangles (F, 3)."""
+        return np.array([(f[0], f[i], f[i + 1]) for f in self.faces for i in range(1, len(f) - 1)], np.int32)
+
+    def bounds(self) -> NDArray[np.float64]:
+        """Return the lower and upper corner (2, 3)."""
+        return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+
+    def moved(self, offset: Vector) -> Solid:
+        """Return the solid translated by `offset` (3,)."""
+        return Solid(self.vertices + np.asarray(offset, float), self.faces)
+
+    def scaled(self, factors: NDArray[np.float64]) -> Solid:
+        """Return the solid scaled per axis by positive `factors` (3,) about the origin."""
+        return Solid(self.vertices * factors, self.faces)
+
+    def turned(self, axis: str, angle: float, about: Vector = (0.0, 0.0, 0.0)) -> Solid:
+        """Return the solid rotated by `angle` [rad], right-handed, about the `axis` (x, y or z) through a point."""
+        c, s = math.cos(angle), math.sin(angle)
+        i, j = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[axis]
+        R = np.eye(3)
+        R[i, i], R[i, j], R[j, i], R[j, j] = c, -s, s, c
+        pivot = np.asarray(about, float)
+        return Solid((self.vertices - pivot) @ R.T + pivot, self.faces)
+
+    def mirrored(self) -> Solid:
+        """Return the mirror image in x, faces turned so that they still look outwards."""
+        return Solid(self.vertices * np.array([-1.0, 1.0, 1.0]), tuple(f[::-1] for f in self.faces))
+
+
+def stack(rings: Sequence[NDArray[np.float64]]) -> Solid:
+    """Return the solid between rings (n, 3) of equal length, counter-clockwise seen from the last ring's side.
+
+    It is convex where corresponding edges are parallel and the profile over the rings is concave.
+    """
+    n = len(rings[0])
+    faces: list[Face] = [tuple(range(n - 1, -1, -1)), tuple(range((len(rings) - 1) * n, len(rings) * n))]
+    for k in range(len(rings) - 1):
+        a, b = k * n, (k + 1) * n
+        faces += [(a + i, a + (i + 1) % n, b + (i + 1) % n, b + i) for i in range(n)]
+    return Solid(np.concatenate(rings), tuple(faces))
+
+
+def box(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], bevel: float = 0.0) -> Solid:
+    """Return the box over three intervals; a positive `bevel` [m] cuts its twelve edges at 45 degrees."""
+    bevel = min(bevel, 0.3 * min(x[1] - x[0], y[1] - y[0], z[1] - z[0]))
+    if bevel <= 0:
+        ring = np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])])
+        return stack([_at(ring, z[0]), _at(ring, z[1])])
+    rings = []
+    for height, inset in ((z[0], 1), (z[0] + bevel, 0), (z[1] - bevel, 0), (z[1], 1)):
+        rings.append(_at(_octagon(x, y, bevel, inset * bevel), height))
+    return stack(rings)
+
+
+def _octagon(x: tuple[float, float], y: tuple[float, float], bevel: float, inset: float) -> NDArray[np.float64]:
+    """Return a rectangle with cut corners (8, 2), drawn in by `inset` along x and y; its edges keep their directions."""
+    x0, x1, y0, y1 = x[0] + inset, x[1] - inset, y[0] + inset, y[1] - inset
+    b = bevel * (1 - 0.5 * (inset > 0))
+    corners = [(x0 + b, y0), (x1 - b, y0), (x1, y0 + b), (x1, y1 - b), (x1 - b, y1), (x0 + b, y1), (x0, y1 - b), (x0, y0 + b)]
+    return np.array(corners)
+
+
+def cushion(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], radius: float, steps: int = 2) -> Solid:
+    """Return a box whose edges and corners are rounded with `radius` [m], `steps` facets to the quarter turn."""
+    radius = min(radius, 0.49 * min(x[1] - x[0], y[1] - y[0], z[1] - z[0]))
+    angles = np.concatenate([q * np.pi / 2 + np.linspace(0, np.pi / 2, steps + 1) for q in range(4)])
+    corner_x = np.repeat([x[1] - radius, x[0] + radius, x[0] + radius, x[1] - radius], steps + 1)
+    corner_y = np.repeat([y[1] - radius, y[1] - radius, y[0] + radius, y[0] + radius], steps + 1)
+    rings = []
+    top = math.pi / 2 * (1 - 0.5 / (steps + 1))  # the poles are cut flat, so that no facet degenerates
+    rise = np.linspace(0, top, steps + 1)
+    for phi, base in [(-p, z[0] + radius) for p in rise[::-1]] + [(p, z[1] - radius) for p in rise]:
+        r, height = radius * math.cos(phi), base + radius * math.sin(phi) / math.sin(top)
+        rings.append(np.stack([corner_x + r * np.cos(angles), corner_y + r * np.sin(angles), np.full(len(angles), height)], axis=1))
+    return stack(rings)
+
+
+def slab(outline: NDArray[np.float64], z: tuple[float, float], bevel: float = 0.0) -> Solid:
+    """Return the prism over a convex outline (n, 2), counter-clockwise; `bevel` draws its rims in by a scaling."""
+    centre = outline.mean(axis=0)
+    reach = float(np.abs(outline - centre).max())
+    inner = centre + (outline - centre) * (1 - bevel / reach)
+    if bevel <= 0:
+        return stack([_at(outline, z[0]), _at(outline, z[1])])
+    return stack([_at(inner, z[0]), _at(outline, z[0] + bevel), _at(outline, z[1] - bevel), _at(inner, z[1])])
+
+
+def circle(radius: float, n: int = 20, centre: tuple[float, float] = (0.0, 0.0), squash: float = 1.0) -> NDArray[np.float64]:
+    """Return a regular polygon (n, 2) that touches its box on both axes (n a multiple of 4); `squash` scales y."""
+    angles = np.arange(n) * (2 * np.pi / n)
+    return np.stack([centre[0] + radius * np.cos(angles), centre[1] + radius * squash * np.sin(angles)], axis=1)
+
+
+def rounded(x: tuple[float, float], y: tuple[float, float], radius: float, steps: int = 4) -> NDArray[np.float64]:
+    """Return a rectangle's outline with rounded corners (4 * steps + 4, 2), counter-clockwise."""
+    radius = min(radius, 0.499 * min(x[1] - x[0], y[1] - y[0]))
+    points = []
+    for q, (cx, cy) in enumerate(((x[1], y[1]), (x[0], y[1]), (x[0], y[0]), (x[1], y[0]))):
+        ox = cx - math.copysign(radius, cx - (x[0] + x[1]) / 2)
+        oy = cy - math.copysign(radius, cy - (y[0] + y[1]) / 2)
+        for t in np.linspace(0, math.pi / 2, steps + 1) + q * math.pi / 2:
+            points.append((ox + radius * math.cos(t), oy + radius * math.sin(t)))
+    return np.array(points)
+
+
+def rod(start: Vector, end: Vector, radius: float, end_radius: float | None = None, n: int = 8) -> Solid:
+    """Return a (tapered) round bar between two points."""
+    a, b = np.asarray(start, float), np.asarray(end, float)
+    direction = (b - a) / np.linalg.norm(b - a)
+    helper = np.array([1.0, 0, 0]) if abs(direction[0]) < 0.9 else np.array([0, 1.0, 0])
+    u = np.cross(direction, helper)
+    u /= np.linalg.norm(u)
+    v = np.cross(direction, u)
+    angles = (np.arange(n) + 0.5) * (2 * np.pi / n)
+    ring = np.cos(angles)[:, None] * u + np.sin(angles)[:, None] * v
+    return stack([a + radius * ring, b + (radius if end_radius is None else end_radius) * ring])
+
+
+def beam(start: Vector, end: Vector, width: float, depth: float, taper: float = 1.0) -> Solid:
+    """Return a bar of horizontal rectangular section (`width` along x, `depth` along y), raked from `start` up to `end`."""
+    a, b = np.asarray(start, float), np.asarray(end, float)
+    section = np.array([(-width, -depth), (width, -depth), (width, depth), (-width, depth)]) / 2
+    ring = np.concatenate([section, np.zeros((4, 1))], axis=1)
+    return stack([a + ring * taper, b + ring])
+
+
+def revolve(profile: Sequence[tuple[float, float]], n: int = 20, centre: tuple[float, float] = (0.0, 0.0)) -> list[Solid]:
+    """Return solids of revolution about a vertical axis: `profile` lists (radius, height) upwards.
+
+    Convex runs of the profile become one solid each, so that every piece is convex.
+    """
+    runs: list[list[tuple[float, float]]] = [[profile[0], profile[1]]]
+    for point in profile[2:]:
+        (r0, z0), (r1, z1) = runs[-1][-2:]
+        if (r1 - r0) * (point[1] - z1) >= (point[0] - r1) * (z1 - z0) - 1e-12:
+            runs[-1].append(point)
+        else:
+            runs.append([runs[-1][-1], point])
+    return [stack([_at(circle(max(r, 1e-3), n, centre), z) for r, z in run]) for run in runs]
+
+
+def shell(
+    outer: Sequence[NDArray[np.float64]],
+    inner: Sequence[NDArray[np.float64]],
+) -> list[Solid]:
+    """Return the wall between two outlines, each given at its lower and its upper end (n, 3), as n convex staves."""
+    n = len(outer[0])
+    staves = []
+    for i in range(n):
+        j = (i + 1) % n
+        low = np.array([outer[0][i], outer[0][j], inner[0][j], inner[0][i]])
+        high = np.array([outer[1][i], outer[1][j], inner[1][j], inner[1][i]])
+        staves.append(stack([low, high]))
+    return staves
+
+
+def ring(
+    outer: tuple[float, float],
+    inner: tuple[float, float],
+    z: tuple[float, float],
+    n: int = 16,
+    centre: tuple[float, float] = (0.0, 0.0),
+    squash: float = 1.0,
+) -> list[Solid]:
+    """Return a round wall with radii (at the bottom, at the top) `outer` and `inner`, as n staves; `squash` scales y."""
+    rims = [[_at(circle(r[k], n, centre, squash), z[k]) for k in (0, 1)] for r in (outer, inner)]
+    return shell(rims[0], rims[1])
+
+
+def _at(outline: NDArray[np.float64], height: float) -> NDArray[np.float64]:
+    return np.concatenate([outline, np.full((len(outline), 1), height)], axis=1)

@@ -1,0 +1,293 @@
+"""Storage furniture: nightstands, wardrobes, chests, sideboards, bookcases, TV stands, cabinets for wine, shoes and children."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from pipeline.corpus.furniture.casework import Case, Cell, Column, Feet, case
+from pipeline.corpus.furniture.finishes import DARK_GLASS, LACQUERS, Finish, Scheme, shade
+from pipeline.corpus.furniture.fronts import FrontStyle, HandleStyle, PanelStyle
+from pipeline.corpus.furniture.shape import Piece, Shape, pieces
+from pipeline.corpus.furniture.solids import box, rod
+
+Size = Sequence[float]
+
+
+def pick(rng: np.random.Generator, words: str) -> str:
+    """Draw one of the words."""
+    return str(rng.choice(words.split()))
+
+
+def front_style(rng: np.random.Generator, scheme: Scheme, panels: str = "slab slab shaker", handles: str = "bar flat knob edge") -> FrontStyle:
+    """Draw how the fronts of a model look."""
+    panel: PanelStyle = pick(rng, panels)  # type: ignore[assignment]
+    handle: HandleStyle = pick(rng, handles)  # type: ignore[assignment]
+    return FrontStyle(panel, handle, scheme.front, scheme.handle)
+
+
+def case_style(rng: np.random.Generator, scheme: Scheme, style: FrontStyle, feet: str, height: tuple[float, float]) -> Case:
+    """Draw how a carcass is made."""
+    kind: Feet = pick(rng, feet)  # type: ignore[assignment]
+    low = {"plinth": 0.05, "none": 0.0}.get(kind)
+    tall = float(rng.uniform(*height))
+    metal_feet = kind in ("sled", "hairpin")
+    return Case(
+        body=scheme.body,
+        style=style,
+        feet=kind,
+        feet_height=tall if low is None else low,
+        feet_finish=scheme.handle if metal_feet else (scheme.body if kind == "plinth" else scheme.accent),
+        top_thickness=float(rng.uniform(0.018, 0.03)),
+        overhang=float(rng.choice([0.0, 0.0, 0.008])),
+        inset=bool(rng.random() < 0.4),
+    )
+
+
+def nightstand(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """One column: drawers, a drawer over a shelf, or a drawer over a door."""
+    style = front_style(rng, scheme)
+    how = case_style(rng, scheme, style, "tapered square sled plinth hairpin", (0.07, min(0.2, 0.35 * size[2])))
+    if form == "drawers":
+        count = 2 if size[2] - how.feet_height < 0.5 else 3
+        cells = tuple(Cell("drawer") for _ in range(count))
+    elif form == "shelf_drawer":
+        cells = (Cell("drawer", 1.0), Cell("open", float(rng.uniform(0.9, 1.6))))
+    else:
+        cells = (Cell("drawer", 0.6), Cell("left" if rng.random() < 0.5 else "right", 1.2, 1))
+    return case(size, [Column(1, cells)], how)
+
+
+def wardrobe(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Columns of paired doors with a rail and a hat shelf behind, over drawers or beside open shelves."""
+    style = front_style(rng, scheme, "slab slab shaker slats dark_glass", "bar flat edge bar knob")
+    how = replace(case_style(rng, scheme, style, "plinth plinth square none", (0.08, 0.12)), board=0.02)
+    count = max(1, round(size[0] / 0.95))
+    doors = (Cell("pair", 3.6, 1),)
+    if form == "doors_drawers":
+        row = tuple(Cell("drawer", 0.42) for _ in range(int(rng.integers(1, 3))))
+        doors = (*doors, *row)
+    columns = [Column(1.0, doors) for _ in range(count)]
+    if form == "doors_open" and size[0] > 1.2:
+        shelves = Column(0.45, (Cell("open", 1.0, 3), Cell("drawer", 0.3), Cell("drawer", 0.3)))
+        columns.insert(int(rng.integers(0, 2)) * len(columns), shelves)
+    elif size[0] / count < 0.6:
+        columns = [Column(1.0, (Cell("left", 3.6, 1), *doors[1:]))]
+    shape = case(size, columns, how)
+    return Shape(shape.base + _rails(shape, scheme), shape.movers)
+
+
+def _rails(shape: Shape, scheme: Scheme) -> tuple[Piece, ...]:
+    """Return a hanging rail under every hat shelf."""
+    made: list[Piece] = []
+    for piece in shape.base:
+        if piece.name.endswith("_board_0"):
+            low, high = piece.solid.bounds()
+            if high[0] - low[0] > 0.5:
+                y, z = (low[1] + high[1]) / 2, low[2] + (0.55 if high[2] < 1.4 else -0.06)
+                made += pieces(f"{piece.name}_rail", rod((low[0] + 1e-3, y, z), (high[0] - 1e-3, y, z), 0.012), scheme.handle)
+    return tuple(made)
+
+
+def cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """A chest: a grid of drawers, drawers over doors, or doors."""
+    style = front_style(rng, scheme)
+    how = case_style(rng, scheme, style, "tapered square sled plinth", (0.08, 0.18))
+    inner = size[2] - how.feet_height
+    count = max(1, min(3, round(size[0] / 0.55)))
+    rows = max(2, min(6, round(inner / 0.22)))
+    if form == "drawers":
+        columns = [Column(1, tuple(Cell("drawer") for _ in range(rows))) for _ in range(count)]
+        if rows >= 4 and count >= 2:  # a row of small drawers on top of wide ones
+            columns = [Column(1, tuple(Cell("drawer", 0.7 if k == 0 else 1.0) for k in range(rows)))] * count
+    elif form == "mixed":
+        columns = [Column(1, (Cell("drawer", 0.5), _doors(rng, size[0] / count, 1.5, 1))) for _ in range(count)]
+        columns[0] = Column(1, tuple(Cell("drawer") for _ in range(rows)))
+    else:
+        columns = [Column(1, (_doors(rng, size[0] / count, 1.0, max(1, rows // 2)),)) for _ in range(count)]
+    return case(size, columns, how)
+
+
+def _doors(rng: np.random.Generator, width: float, share: float, shelves: int) -> Cell:
+    """Return a cell with one door, or a pair where it is wide."""
+    if width > 0.56:
+        return Cell("pair", share, shelves)
+    return Cell("left" if rng.random() < 0.5 else "right", share, shelves)
+
+
+def children_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Cubes, open and closed, or doors over drawers, in two gay colours."""
+    names = sorted({"mint", "dusty_blue", "blush", "mustard", "white"})
+    first, second = (str(n) for n in rng.choice(names, 2, replace=False))
+    gay = [Finish(f"lacquer_{n}", shade(rng, LACQUERS[n], 0.05), 0.4, density=680) for n in (first, second)]
+    style = FrontStyle("slab", "knob", gay[0], scheme.accent)
+    other = replace(style, finish=gay[1])
+    how = replace(case_style(rng, scheme, style, "plinth square", (0.06, 0.1)), body=scheme.body)
+    count = max(1, min(4, round(size[0] / 0.5)))
+    rows = max(2, min(5, round(size[2] / 0.42)))
+    if form == "doors_drawers":
+        cells = (Cell("pair" if size[0] / count > 0.5 else "left", 1.4, 2), Cell("drawer", 0.4, 0, other), Cell("drawer", 0.4))
+        return case(size, [Column(1, cells)] * count, how)
+    columns = []
+    for i in range(count):
+        kinds = ["open"] * rows
+        if form == "cubes_doors" or rng.random() < 0.7:
+            kinds[int(rng.integers(0, rows))] = "left" if i < count / 2 else "right"
+            kinds[-1] = "drawer"
+        columns.append(Column(1, tuple(Cell(k, 1.0, 0, other if (i + j) % 2 else None) for j, k in enumerate(kinds))))  # type: ignore[arg-type]
+    return case(size, columns, how)
+
+
+def sideboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """A low row of doors, doors around drawers, or a console on tall legs; tall ones carry a glazed hutch."""
+    style = front_style(rng, scheme, "slab shaker slats slab")
+    w, _, h = size
+    count = max(2, min(4, round(w / 0.5)))
+    if form == "console" and h < 1.15:
+        how = case_style(rng, scheme, style, "square sled tapered", (0.62 * h, 0.72 * h))
+        return case(size, [Column(1, (Cell("drawer"),)) for _ in range(max(1, count - 1))], how)
+    how = case_style(rng, scheme, style, "tapered square sled plinth", (0.09, 0.2))
+    if h > 1.35:
+        glass = replace(style, panel="glass")
+        upper, lower = Cell("pair", 1.3, 2, glass), Cell("pair", 0.8, 1)
+        return case(size, [Column(1, (upper, Cell("drawer", 0.25), lower)) for _ in range(max(1, round(w / 0.8)))], how)
+    columns = [Column(1, (Cell("left" if i < count / 2 else "right", 1, 1),)) for i in range(count)]
+    if form == "mixed":
+        rows = max(2, round((h - how.feet_height) / 0.2))
+        columns[count // 2] = Column(1.1, tuple(Cell("drawer") for _ in range(rows)))
+    return case(size, columns, how)
+
+
+def bookshelf(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Open shelves, open shelves over doors, or glass doors."""
+    w, _, h = size
+    style = front_style(rng, scheme, "slab shaker")
+    how = replace(case_style(rng, scheme, style, "plinth plinth none square", (0.07, 0.1)), overhang=0.0)
+    if form == "ladder":
+        return ladder_shelf(size, scheme, max(4, round(h / 0.38)))
+    count = max(1, round(w / 0.8))
+    rows = max(3, round(h / 0.36))
+    if form == "open":
+        columns = [Column(1, (Cell("open", 1, rows - 1),)) for _ in range(count)]
+    elif form == "glass":
+        glass = replace(style, panel="glass")
+        door = _doors(rng, w / count, 1.0, rows - 2)
+        columns = [Column(1, (replace(door, panel=glass, share=3.0), Cell("drawer", 0.55))) for _ in range(count)]
+    else:
+        columns = [Column(1, (Cell("open", 1.9, rows - 3), _doors(rng, w / count, 0.9, 1))) for _ in range(count)]
+    shape = case(size, columns, how)
+    return Shape(shape.base + (books(rng, shape, scheme) if form == "open" else ()), shape.movers)
+
+
+BOOK_COLORS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dusty_blue")
+
+
+def books(rng: np.random.Generator, shape: Shape, scheme: Scheme) -> tuple[Piece, ...]:
+    """Return a few rows of books on the boards of open shelves."""
+    made: list[Piece] = []
+    palette = [Finish(f"book_{n}", LACQUERS[n], 0.8, density=600) for n in BOOK_COLORS[:4]]
+    boards = [p for p in shape.base if "_board_" in p.name or p.name == "bottom"]
+    for board in boards:
+        low, high = board.solid.bounds()
+        if rng.random() < 0.45 or high[0] - low[0] < 0.2:
+            continue
+        x, y = low[0] + 0.01 + float(rng.uniform(0, 0.4)) * (high[0] - low[0]), low[1] + 0.02
+        for _ in range(int(rng.integers(2, 6))):
+            t, tall, deep = float(rng.uniform(0.02, 0.05)), float(rng.uniform(0.16, 0.24)), float(rng.uniform(0.12, 0.17))
+            if x + t > high[0] - 0.01:
+                break
+            made += pieces(
+                "books", box((x, x + t), (y, min(y + deep, high[1])), (high[2], high[2] + tall)), palette[int(rng.integers(len(palette)))]
+            )
+            x += t + 0.0015
+    return tuple(made)
+
+
+def ladder_shelf(size: Size, scheme: Scheme, rows: int) -> Shape:
+    """Boards in two side frames of square posts, open at the back."""
+    w, d, h = size
+    t = 0.028
+    posts = [box((x, x + t), (y, y + t), (0, h), 0.002) for x in (-w / 2, w / 2 - t) for y in (-d / 2, d / 2 - t)]
+    rungs = [
+        box((x + 0.004, x + t - 0.004), (-d / 2 + t, d / 2 - t), (z, z + 0.03)) for x in (-w / 2, w / 2 - t) for z in (0.08, h - 0.06)
+    ]
+    base = pieces("frame", posts + rungs, scheme.accent)
+    for k in range(rows):
+        z = 0.12 + (h - 0.2) * k / (rows - 1)
+        base += pieces(f"board_{k}", box((-w / 2 + t, w / 2 - t), (-d / 2 + 0.002, d / 2 - 0.002), (z, z + 0.02), 0.002), scheme.body)
+    return Shape(base)
+
+
+def shelf(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """A ladder shelf, a frame with uprights, or stacked cubes."""
+    if form == "cubes":
+        style = front_style(rng, scheme)
+        how = replace(case_style(rng, scheme, style, "none plinth", (0, 0)), overhang=0.0)
+        rows = max(1, round(size[2] / 0.36))
+        count = max(1, round(size[0] / 0.4))
+        columns = [Column(1, tuple(Cell("open") for _ in range(rows)))] * count
+        shape = case(size, columns, how, reserve=0.0)
+        return Shape(shape.base + books(rng, shape, scheme))
+    return ladder_shelf(size, scheme, max(2, round(size[2] / (0.3 if form == "frame" else 0.4))))
+
+
+def tv_stand(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """A long low case of drawers, doors or both around an open middle."""
+    style = front_style(rng, scheme, "slab slab shaker slats")
+    w, _, h = size
+    how = case_style(rng, scheme, style, "tapered sled square plinth", (0.06, min(0.18, 0.35 * h)))
+    count = max(2, min(4, round(w / 0.58)))
+    rows = 2 if h - how.feet_height > 0.42 else 1
+    drawers = tuple(Cell("drawer") for _ in range(rows))
+    if form == "drawers":
+        columns = [Column(1, drawers)] * count
+    elif form == "doors":
+        columns = [Column(1, (Cell("left" if i < count / 2 else "right", 1, rows - 1),)) for i in range(count)]
+    else:
+        columns = [Column(1, drawers), Column(1.3, (Cell("open", 1, 1),)), Column(1, (Cell("right", 1, 0),))]
+        if count == 4:
+            columns.insert(2, Column(1.3, (Cell("open", 1, 1),)))
+    return case(size, columns, how)
+
+
+def wine_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Glass doors over shelves, or a rack of bottles over doors."""
+    style = front_style(rng, scheme, "shaker slab")
+    how = case_style(rng, scheme, style, "plinth square tapered", (0.08, 0.14))
+    w, _, h = size
+    count = max(1, round(w / 0.6))
+    rows = max(2, round(h / 0.4))
+    glass = replace(style, panel="glass")
+    if form == "glass":
+        door = _doors(rng, w / count, 2.0, rows)
+        columns = [Column(1, (replace(door, panel=glass), Cell("drawer", 0.35))) for _ in range(count)]
+        return case(size, columns, how)
+    columns = [Column(1, (Cell("open", 1.3, 2), _doors(rng, w / count, 1.0, 1))) for _ in range(count)]
+    shape = case(size, columns, how)
+    bottle = replace(DARK_GLASS, name="bottle", color=(0.02, 0.05, 0.025))
+    made: list[Piece] = []
+    for board in [p for p in shape.base if "_board_" in p.name and p.name.split("_")[1] == "0"]:
+        low, high = board.solid.bounds()
+        for k in range(min(6, int((high[0] - low[0]) / 0.105))):
+            x, z = low[0] + 0.06 + 0.105 * k, high[2] + 0.041
+            start = low[1] + 0.03
+            made += pieces("bottles", [rod((x, start, z), (x, start + 0.08, z), 0.014, n=8)], bottle)
+            made += pieces("bottles", [rod((x, start + 0.08, z), (x, min(start + 0.28, high[1] - 0.005), z), 0.038, n=10)], bottle)
+    return Shape(shape.base + tuple(made), shape.movers)
+
+
+def shoe_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Louvred doors over shelves, or flaps that tip forward."""
+    style = front_style(rng, scheme, "slats shaker slab" if form == "doors" else "slab slab shaker")
+    how = case_style(rng, scheme, style, "plinth square tapered", (0.06, 0.12))
+    w, _, h = size
+    count = max(1, round(w / 0.8))
+    if form == "doors":
+        columns = [Column(1, (Cell("pair", 1, max(2, round(h / 0.25))),)) for _ in range(count)]
+        return case(size, columns, how)
+    rows = max(2, round((h - how.feet_height) / 0.38))
+    shape = case(size, [Column(1, tuple(Cell("flap") for _ in range(rows)))] * count, how)
+    return Shape(shape.base, tuple(replace(m, upper=math.radians(50)) for m in shape.movers))
