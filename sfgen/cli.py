@@ -89,15 +89,16 @@ def plan(
 @app.command()
 def verify(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a dataset.", show_default=False)],
+    quick: Annotated[bool, typer.Option("--quick", help="Leave out opening every stage with USD.")] = False,
 ) -> None:
-    r"""Check a dataset: every sha256, row count, id and reference; the first wrong thing is named.
+    r"""Check a dataset: every sha256, row, id, reference and stage; the first wrong thing is named.
 
     \b
     Example:
       sfgen verify data/shards
     """
     root = factory_root()
-    stage("verify").main(root, folder=folder)
+    stage("verify").main(root, folder=folder, quick=quick)
 
 
 @app.command()

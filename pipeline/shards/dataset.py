@@ -9,29 +9,19 @@ from __future__ import annotations
 import fcntl
 import os
 import shutil
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import pyarrow.parquet as pq
 
 from pipeline.errors import ContentError, UsageError
 from pipeline.manifest import write_json
 from pipeline.shards.commits import Commit, read_commit, record
+from pipeline.shards.content import ShardContent
 from pipeline.shards.header import Header, read_header
 from pipeline.shards.layout import ASSETS, COMMITS, HEADER, STAGING, TABLES, TEMPORARY, commit_path, require_inside, shard_name, table_path
-
-Row = Mapping[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
-class ShardContent:
-    """What a shard holds: rows by table name, and files by path relative to the dataset (`usd/shard-00000/...`)."""
-
-    rows: Mapping[str, Sequence[Row]]
-    files: Mapping[str, bytes] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,92 @@
+"""`sfgen doctor`: what is installed, what is made, what is missing and the command that makes it."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import os
+import platform
+import shutil
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+# (package, what it is for): what the factory cannot do without, then what some commands want
+NEEDED = (
+    "numpy",
+    "pyarrow",
+    "torch",
+    "scipy",
+    "trimesh",
+    "shapely",
+    "usd-core",
+    "numba",
+    "pydantic",
+    "safetensors",
+    "dask",
+    "distributed",
+    "dvc",
+)
+WANTED = (("mitsuba", "path-traced views"), ("mujoco", "tests in a physics engine"))
+
+# (path, what it is, the command that makes it), in the order in which the stages make them
+MADE = (
+    ("data/raw", "raw sources", "dvc repro corpus"),
+    ("data/tables", "training tables", "dvc repro preprocess"),
+    ("models/vae.safetensors", "shape encoder", "dvc repro encode"),
+    ("models/denoiser.safetensors", "layout model", "dvc repro train"),
+    ("data/samples", "sampled layouts", "dvc repro sample"),
+    ("data/shards/dataset.json", "dataset", "dvc repro postopt"),
+    ("metrics/metrics.json", "metrics", "dvc repro metrics"),
+    ("report", "report", "dvc repro metrics"),
+)
+
+
+def main(root: Path) -> None:
+    """Print one line per thing; `-` marks what is missing."""
+    for line in [*machine(), *packages(), *made(root)]:
+        sys.stdout.write(f"{line}\n")
+
+
+def machine() -> Iterator[str]:
+    """Yield what this machine is."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
+    yield f"+ Python {platform.python_version()} on {platform.system()} {platform.machine()}, {cores} cores, {memory:.0f} GiB"
+    if not (shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")):
+        yield "- a C compiler is missing; install gcc or clang"
+
+
+def packages() -> Iterator[str]:
+    """Yield the versions of what the factory stands on."""
+    for name in NEEDED:
+        version = installed(name)
+        yield f"+ {name} {version}" if version else f"- {name} is not installed; type `make run`"
+    if installed("torch"):
+        import torch
+
+        if torch.cuda.is_available():
+            yield f"+ CUDA {torch.version.cuda}: {torch.cuda.get_device_name(0)}"
+        else:
+            yield "+ CUDA is not there: training and sampling run on the CPU"
+    for name, use in WANTED:
+        version = installed(name)
+        yield f"+ {name} {version}" if version else f"- {name} is not installed ({use}); pip install -c constraints.txt -e '.[render,dev]'"
+
+
+def made(root: Path) -> Iterator[str]:
+    """Yield what the stages have made, and the first command to type."""
+    missing = []
+    for path, what, command in MADE:
+        there = (root / path).exists()
+        yield f"+ {what}: {path}" if there else f"- {what}: {path} is missing; {command}"
+        if not there:
+            missing.append(path)
+    yield f"type `make run` in {root}: it makes what is missing" if missing else "all is made; try `sfgen generate` or `sfgen shard`"
+
+
+def installed(name: str) -> str | None:
+    """Return a package's version, None when it is not installed."""
+    try:
+        return importlib.metadata.version(name)
+    except importlib.metadata.PackageNotFoundError:
+        return None

@@ -1,0 +1,33 @@
+"""`sfgen generate`: one home from words, as a dataset of one with the assets that it uses."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from pipeline import params
+from pipeline.errors import ContentError
+from pipeline.execution import single_thread
+from pipeline.homes.factory import load_factory
+from pipeline.homes.request import Request
+from pipeline.manifest import digest
+from pipeline.shards import Header, commit_library, commit_shard, gather, open_or_create, require_prompt
+
+
+def main(root: Path, *, prompt: str, out: Path, seed: int = 0) -> None:
+    """Make the home that `prompt` asks for in the folder `out`."""
+    asked = require_prompt(prompt)
+    path = root / "models" / "denoiser.safetensors"
+    if not path.is_file():
+        raise ContentError(f"there are no trained weights ({path} is missing)", f"type `make run` in {root}")
+    single_thread()
+    factory = load_factory(root, params.read(root / "params.yaml"), seed)
+    header = Header(seed, 1, factory.shard_size, factory.licence, {**factory.digests, "prompts": digest(asked)})
+    with open_or_create(out, header) as dataset:
+        if dataset.missing():
+            (outcome,) = factory.make([Request(0, asked)])
+            used = sorted({p.asset_id for p in outcome.home.placements})
+            commit_library(dataset, lambda folder: factory.write_library(folder, used))
+            commit_shard(dataset, 0, gather(0, [(outcome.rows, outcome.files)]))
+    for file in sorted(p for p in out.glob("*/shard-00000/*") if p.is_file()):
+        sys.stdout.write(f"{file}\n")
