@@ -10,6 +10,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from stages.runner import run
+
 # (package, what it is for): what the factory cannot do without, then what some commands want
 NEEDED = (
     "numpy",
@@ -45,6 +47,17 @@ def main(root: Path) -> None:
     """Print one line per thing; `-` marks what is missing."""
     for line in [*machine(), *packages(), *made(root)]:
         sys.stdout.write(f"{line}\n")
+
+
+def places(root: Path) -> None:
+    """Print where the dataset, the report and the pictures lie: how `make run` ends."""
+    for what, path in (
+        ("dataset", "data/shards"),
+        ("report", "report/index.html"),
+        ("pictures", "report"),
+        ("metrics", "metrics/metrics.json"),
+    ):
+        sys.stdout.write(f"{what + ':':9} {root / path}\n")
 
 
 def machine() -> Iterator[str]:
@@ -90,3 +103,7 @@ def installed(name: str) -> str | None:
         return importlib.metadata.version(name)
     except importlib.metadata.PackageNotFoundError:
         return None
+
+
+if __name__ == "__main__":
+    run(places if "--places" in sys.argv[1:] else main)

@@ -1,0 +1,51 @@
+"""Make a scratch clone of this working tree, uncommitted changes included, with another preset chosen.
+
+    python .ci/scratch.py build/smoke smoke
+
+A clone that is there already is brought up to date: what its stages have made, and DVC's cache, stay.
+"""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+
+def main(target: Path, preset: str) -> None:
+    """Fill `target` and set the preset in its params.yaml."""
+    if not (target / ".git").exists():
+        shutil.rmtree(target, ignore_errors=True)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        git("clone", "--quiet", "--no-hardlinks", ".", str(target))
+    for name in listed("-C", str(target), "ls-files", "-z"):
+        if name != "dvc.lock":
+            (target / name).unlink(missing_ok=True)
+    for name in listed("ls-files", "-z", "--cached", "--others", "--exclude-standard"):
+        source, copy = Path(name), target / name
+        if source.is_file() and not (name == "dvc.lock" and copy.exists()):
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(source, copy)
+    choose(target / "params.yaml", preset)
+
+
+def choose(path: Path, preset: str) -> None:
+    """Set the key `preset` of params.yaml."""
+    text, found = re.subn(r"(?m)^preset: *\w+", f"preset: {preset}", path.read_text(encoding="utf-8"))
+    if found != 1 or not re.search(rf"(?m)^  {re.escape(preset)}:", text):
+        sys.exit(f"sfgen: params.yaml has no preset {preset!r}; give PRESET= one of those under its key `presets`")
+    path.write_text(text, encoding="utf-8")
+
+
+def listed(*arguments: str) -> list[str]:
+    """Return the file names that a git command lists."""
+    return [name for name in git(*arguments).split("\0") if name]
+
+
+def git(*arguments: str) -> str:
+    """Run git and return what it prints."""
+    return subprocess.run(["git", *arguments], check=True, stdout=subprocess.PIPE, text=True).stdout  # noqa: S607 - found on PATH
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), sys.argv[2])

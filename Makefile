@@ -1,0 +1,61 @@
+# sfgen: `make help` lists what there is. Each target makes .venv first when it is missing or out of date.
+#
+# PRESET=smoke|quick|full|paper  works on a scratch clone in build/<preset>, so that no tracked file changes
+# PYTHON=python3.12              the interpreter that .venv is made with (CPython 3.11 or newer)
+# TORCH_INDEX=URL                a package index for torch alone, such as PyTorch's CPU index
+# JOBS=2                         processes of the tests
+
+SHELL := bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: run test check bench clean help
+
+PRESET ?=
+TORCH_INDEX ?=
+JOBS ?= 2
+PYTHON ?= $(shell for p in python3.11 python3.12 python3.13 python3 python; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
+
+BIN := $(CURDIR)/.venv/bin
+READY := .venv/.ready
+SCRATCH := build/$(PRESET)
+export PATH := $(BIN):$(PATH)
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+export DVC_NO_ANALYTICS := 1
+
+run: $(READY) ## the whole factory: installs, runs every stage, says where dataset, report and pictures lie
+ifeq ($(PRESET),)
+	dvc repro
+	python -m stages.doctor --places
+else
+	python .ci/scratch.py $(SCRATCH) $(PRESET)
+	cd $(SCRATCH) && dvc repro && python -m stages.doctor --places
+endif
+
+test: $(READY) ## all tests
+	OMP_NUM_THREADS=1 python -m pytest -n $(JOBS)
+
+check: $(READY) ## format, lint, types, imports
+	ruff format --check
+	ruff check
+	mypy
+	lint-imports --no-logo
+
+bench: $(READY) ## every benchmark in benchmarks/
+	python benchmarks/run.py
+
+clean: ## scratch clones and caches; what DVC made stays
+	rm -rf build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
+	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-6s %s\n", $$1, $$2} /^# [A-Z_]+=/ {sub(/^# /, "    "); print}' Makefile
+
+$(READY): pyproject.toml constraints.txt
+	@test -n "$(PYTHON)" || { echo "sfgen: no CPython 3.11 or newer is found; install one, or give PYTHON=/path/to/python" >&2; exit 1; }
+	@# from inside an activated .venv, venv must be made by the Python that it was made from
+	test -x .venv/bin/python || "$$($(PYTHON) -c 'import sys; print(sys._base_executable)')" -m venv .venv
+	$(if $(TORCH_INDEX),python -m pip install --quiet -c constraints.txt --index-url $(TORCH_INDEX) torch)
+	python -m pip install --quiet -c constraints.txt -e '.[factory,render,dev]'
+	touch $@
