@@ -8,31 +8,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.entities.asset import Asset, Joint
+from pipeline.entities.asset import Asset
+from pipeline.geometry.kinematics import link_transforms
 from pipeline.rendering.boxes import triangles
 
 FREE_TURN = math.pi / 2  # how far a joint without limits turns when it is shown open [rad]
-
-
-def motion(joint: Joint, value: float) -> NDArray[np.float64]:
-    """Return the transform (4, 4) of the child in the object frame when the joint alone stands at `value` [rad or m]."""
-    T = np.eye(4)
-    if joint.type == "prismatic":
-        T[:3, 3] = joint.axis * value
-        return T
-    x, y, z = joint.axis
-    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    T[:3, :3] = np.eye(3) + math.sin(value) * K + (1 - math.cos(value)) * K @ K  # Rodrigues
-    T[:3, 3] = joint.origin - T[:3, :3] @ joint.origin
-    return T
-
-
-def link_transforms(asset: Asset, values: Mapping[str, float]) -> list[NDArray[np.float64]]:
-    """Return T_object_link (4, 4) of every link, against its pose at rest, with joints at `values` by name (0 elsewhere)."""
-    found = [np.eye(4) for _ in asset.links]
-    for joint in asset.joints:
-        found[joint.child] = found[joint.parent] @ motion(joint, values.get(joint.name, 0.0))
-    return found
 
 
 def opened(asset: Asset, fraction: float) -> dict[str, float]:
@@ -54,7 +34,7 @@ def placement_transform(
 
 def asset_triangles(asset: Asset, values: Mapping[str, float] | None = None) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Return all visual triangles (T, 3, 3) [m, object frame] and the material of each (T,)."""
-    transforms = link_transforms(asset, values or {})
+    transforms = link_transforms(asset, np.array([(values or {}).get(joint.name, 0.0) for joint in asset.joints]))
     faces: list[NDArray[np.float64]] = []
     materials: list[NDArray[np.int32]] = []
     for link, T in zip(asset.links, transforms, strict=True):

@@ -9,7 +9,7 @@ from PIL import Image
 
 from pipeline.entities.asset import Asset
 from pipeline.rendering.pose import asset_triangles, colours, opened
-from pipeline.rendering.raster import darken_edges, oblique, render, shrink, to_bytes
+from pipeline.rendering.raster import darken_edges, oblique, render, shrink
 
 BACKGROUND = (0.96, 0.96, 0.95)
 
@@ -21,5 +21,5 @@ def thumbnail(asset: Asset, size: int = 256, open_fraction: float = 0.35) -> Ima
         return Image.new("RGB", (size, size), tuple(int(255 * c) for c in BACKGROUND))
     view = oblique(faces.reshape(-1, 3), math.radians(-32), math.radians(24), 2 * size)
     frame = render(view, faces, colours(asset)[materials], background=BACKGROUND)
-    frame = darken_edges(frame, max(2, size // 32), 0.35, reach=0.25 * float(np.linalg.norm(asset.size)))
-    return Image.fromarray(to_bytes(shrink(frame.colour, 2)))
+    frame = darken_edges(shrink(frame, 2), max(2, size // 64), 0.35, reach=0.25 * float(np.linalg.norm(asset.size)))
+    return Image.fromarray(frame.colour)

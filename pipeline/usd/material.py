@@ -40,7 +40,6 @@ def convert_material(scope: Sdf.PrimSpec, name: str, material: Material) -> Sdf.
     static, dynamic = SLIPPERY if smooth else FRICTION
     attribute(spec, "physics:staticFriction", "float", static)
     attribute(spec, "physics:dynamicFriction", "float", dynamic)
-    attribute(spec, "physics:restitution", "float", 0.1)
     return spec.path
 
 

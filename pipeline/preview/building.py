@@ -1,0 +1,84 @@
+"""The building as the top view shows it: patterned floors, walls cut through, windows in them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
+
+from pipeline.entities.asset import Material
+from pipeline.entities.plan import Plan
+from pipeline.geometry.tiling import convex_pieces
+from pipeline.geometry.walls import Shell
+from pipeline.rendering import palette
+
+WALL = (0.20, 0.21, 0.24)
+WINDOW = (0.62, 0.76, 0.86)
+WALL_TOP = 2.4  # depth at which cut walls are drawn: above furniture [m]
+WOOD = frozenset(m.name for m in (palette.OAK, palette.LIGHT_OAK, palette.WALNUT))
+PLANK = (1.35, 0.19)  # length, width [m]
+TILE = (0.45, 0.45)
+PALENESS = 0.42  # floors are mixed with white, so that furniture stands out
+
+
+@dataclass(frozen=True, slots=True)
+class Soup:
+    """Coloured triangles: `faces` (T, 3, 3) [m], `colours` (T, 3) sRGB, `items` (T,): 0 for the building."""
+
+    faces: NDArray[np.float64]
+    colours: NDArray[np.float32]
+    items: NDArray[np.int32]
+
+
+def building(plan: Plan, level: int, shell: Shell) -> Soup:
+    """Return one storey's floors, thresholds, cut walls and windows as triangles; heights above the storey's floor."""
+    quads: list[tuple[NDArray[np.float64], tuple[float, float, float], float]] = []
+    for room in plan.rooms:
+        if room.level == level:
+            material = palette.floor(room.type)
+            for piece in convex_pieces(Polygon(room.polygon)):
+                quads.extend((ring, colour, 0.0) for ring, colour in pattern(piece, material))
+    for cut in shell.cuts:
+        threshold = pale(palette.OAK)
+        quads.append((cut.quad, WINDOW, WALL_TOP) if cut.bottom > 0.05 or cut.opening.kind == "window" else (cut.quad, threshold, 0.0))
+    quads.extend((prism.polygon, WALL, WALL_TOP) for prism in shell.prisms if prism.kind == "wall")
+    faces = [fan(ring, z) for ring, _, z in quads]
+    colours = [np.tile(np.asarray(colour, np.float32), (len(f), 1)) for f, (_, colour, _) in zip(faces, quads, strict=True)]
+    stacked = np.concatenate(faces)
+    return Soup(stacked, np.concatenate(colours), np.zeros(len(stacked), np.int32))
+
+
+def fan(ring: NDArray[np.float64], z: float) -> NDArray[np.float64]:
+    """Triangulate a convex ring (n, 2) at height z: (n - 2, 3, 3)."""
+    flat = np.column_stack([ring, np.full(len(ring), z)])
+    return np.stack([np.stack([flat[0], flat[k], flat[k + 1]]) for k in range(1, len(ring) - 1)])
+
+
+def pale(material: Material) -> tuple[float, float, float]:
+    """Return the display colour of a floor material."""
+    red, green, blue = ((1 - PALENESS) * c + PALENESS for c in palette.to_srgb(material.base_color))
+    return red, green, blue
+
+
+def pattern(piece: NDArray[np.float64], material: Material) -> list[tuple[NDArray[np.float64], tuple[float, float, float]]]:
+    """Cut an axis-parallel rectangle into planks or tiles of slightly different shades; other shapes stay plain."""
+    base = pale(material)
+    (x0, y0), (x1, y1) = piece.min(axis=0), piece.max(axis=0)
+    rectangle = len(piece) == 4 and abs((x1 - x0) * (y1 - y0) - Polygon(piece).area) < 1e-6
+    if not rectangle or material.name == palette.CONCRETE.name:
+        return [(piece, base)]
+    length, width = PLANK if material.name in WOOD else TILE
+    out = []
+    for row in range(int(np.floor(y0 / width)), int(np.ceil(y1 / width))):
+        shift = length * ((row * 7) % 5) / 5 if material.name in WOOD else 0.0
+        for column in range(int(np.floor((x0 - shift) / length)), int(np.ceil((x1 - shift) / length))):
+            a, b = max(x0, column * length + shift), min(x1, (column + 1) * length + shift)
+            c, d = max(y0, row * width), min(y1, (row + 1) * width)
+            if b - a > 1e-6 and d - c > 1e-6:
+                # A fixed scramble of (row, column): planks differ, runs do not.
+                grain = 1 + 0.05 * (((row * 73856093) ^ (column * 19349663)) % 17 / 8 - 1)
+                red, green, blue = (min(1.0, v * grain) for v in base)
+                out.append((np.array([[a, c], [b, c], [b, d], [a, d]]), (red, green, blue)))
+    return out

@@ -1,0 +1,93 @@
+"""A home as triangles by material, posed and without its ceilings: what a renderer needs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
+
+from pipeline.entities.asset import Asset, Material
+from pipeline.entities.home import Home
+from pipeline.geometry.tiling import convex_pieces
+from pipeline.geometry.walls import Panel, Shell, outer_panels, reveals, room_panels, shell
+from pipeline.rendering import fittings, palette
+from pipeline.rendering.pose import asset_triangles, opened, placement_transform
+from pipeline.taxonomy import load
+
+CUT = 2.15  # walls are cut here, so that one sees into the rooms; doors stay whole [m]
+WALL_TOP = Material("wall_cut", (0.05, 0.055, 0.065), 0.9)
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """All triangles (T, 3, 3) [m, world] of one material."""
+
+    material: Material
+    faces: NDArray[np.float64]
+
+
+def home_batches(home: Home, assets: Mapping[str, Asset], level: int, open_fraction: float) -> list[Batch]:
+    """Return one storey of a home: building, doors and windows, furniture with its doors and drawers partly open."""
+    built = shell(home.plan, level)
+    heaps: dict[Material, list[NDArray[np.float64]]] = {}
+    _building(home, level, built, heaps)
+    for leaf in built.leaves:
+        kind = next(c.opening.kind for c in built.cuts if c.opening.opening_id == leaf.opening_id)
+        asset, (x, y), yaw = fittings.door(leaf, entrance=kind == "entrance")
+        _add(heaps, asset, placement_transform(np.array([x, y, 0.0]), yaw), open_fraction)
+    for cut in built.cuts:
+        if cut.opening.kind == "window":
+            asset, (x, y), yaw = fittings.window(cut)
+            _add(heaps, asset, placement_transform(np.array([x, y, 0.0]), yaw), 0.0)
+    categories = load().categories
+    rooms = {room.room_id for room in home.plan.rooms if room.level == level}
+    lift = np.array([0.0, 0.0, level * home.plan.storey_height])
+    for placement in home.placements:
+        hanging = placement.category in categories and categories[placement.category].mount == "ceiling"
+        if placement.room_id in rooms and placement.asset_id in assets and not hanging:
+            T = placement_transform(placement.position - lift, placement.yaw, placement.scale)
+            _add(heaps, assets[placement.asset_id], T, open_fraction)
+    return [Batch(material, np.concatenate(parts)) for material, parts in heaps.items()]
+
+
+def _building(home: Home, level: int, built: Shell, heaps: dict[Material, list[NDArray[np.float64]]]) -> None:
+    for room in home.plan.rooms:
+        if room.level == level:
+            ground = [_flat(piece, 0.0) for piece in convex_pieces(Polygon(room.polygon))]
+            heaps.setdefault(palette.floor(room.type), []).extend(ground)
+            _panels(heaps, palette.wall(room.type), room_panels(room, built.cuts))
+    tops = [_flat(p.polygon, min(p.top, CUT)) for p in built.prisms if p.bottom < CUT]
+    heaps.setdefault(WALL_TOP, []).extend(tops)
+    _panels(heaps, palette.FACADE, [p for p in outer_panels(built) if np.ptp(p.corners[:, 2]) > 1e-6])
+    for cut in built.cuts:
+        _panels(heaps, palette.JAMB, reveals(cut))
+        if cut.bottom < 1e-3:
+            heaps.setdefault(palette.OAK, []).append(_flat(cut.quad, 0.0))
+
+
+def _panels(heaps: dict[Material, list[NDArray[np.float64]]], material: Material, panels: list[Panel]) -> None:
+    """Add upright and flat faces, cut at CUT."""
+    for panel in panels:
+        if panel.corners[:, 2].min() < CUT:
+            corners = panel.corners.copy()
+            corners[:, 2] = np.minimum(corners[:, 2], CUT)
+            heaps.setdefault(material, []).append(_fan(corners))
+
+
+def _flat(ring: NDArray[np.float64], z: float) -> NDArray[np.float64]:
+    return _fan(np.column_stack([ring, np.full(len(ring), z)]))
+
+
+def _fan(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.stack([np.stack([corners[0], corners[k], corners[k + 1]]) for k in range(1, len(corners) - 1)])
+
+
+def _add(heaps: dict[Material, list[NDArray[np.float64]]], asset: Asset, T: NDArray[np.float64], open_fraction: float) -> None:
+    faces, materials = asset_triangles(asset, opened(asset, open_fraction) if open_fraction else None)
+    world = faces @ T[:3, :3].T + T[:3, 3]
+    for index in np.unique(materials):
+        material = asset.materials[index] if asset.materials else palette.PLASTER
+        heaps.setdefault(material, []).append(world[materials == index])

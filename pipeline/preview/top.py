@@ -1,0 +1,87 @@
+"""The top view of a home: ceiling off, walls cut, doors with their swing, furniture shaded, rooms labelled."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw
+
+from pipeline.entities.asset import Asset
+from pipeline.entities.home import Home, Placement
+from pipeline.geometry.walls import Shell, levels, shell
+from pipeline.preview.building import Soup, building
+from pipeline.preview.labels import SMALL, draw_label, summed
+from pipeline.preview.symbols import draw_openings, draw_reach
+from pipeline.rendering.pose import asset_triangles, colours, placement_transform
+from pipeline.rendering.raster import Frame, View, darken_edges, render, top_down
+from pipeline.taxonomy import load
+
+MARGIN = 0.45  # around the outer walls [m]
+BACKGROUND = (0.955, 0.955, 0.945)
+SAMPLES = 2  # per pixel and axis
+
+
+def top_view(home: Home, assets: Mapping[str, Asset], size: int = 1024) -> Image.Image:
+    """Draw every storey side by side; the longer side of the image has `size` pixels."""
+    shells = [shell(home.plan, level) for level in levels(home.plan)]
+    bounds = np.array([s.outline.bounds for s in shells])
+    low, high = bounds[:, :2].min(axis=0) - MARGIN, bounds[:, 2:].max(axis=0) + MARGIN
+    span = (high - low) * np.array([len(shells), 1])
+    scale = size / span.max()
+    width, height = (max(16, round(s * scale)) for s in (high - low))
+    image = Image.new("RGB", (width * len(shells), height))
+    for i, (level, built) in enumerate(zip(levels(home.plan), shells, strict=True)):
+        image.paste(_storey(home, assets, level, built, top_down(low, high, SAMPLES * width, SAMPLES * height)), (i * width, 0))
+    return image
+
+
+def _storey(home: Home, assets: Mapping[str, Asset], level: int, built: Shell, view: View) -> Image.Image:
+    ids = {room.room_id for room in home.plan.rooms if room.level == level}
+    placed = [p for p in home.placements if p.room_id in ids and p.asset_id in assets]
+    elevation = level * home.plan.storey_height
+    categories = load().categories
+    hanging = [p for p in placed if p.category in categories and categories[p.category].mount == "ceiling"]
+    standing = [p for p in placed if p not in hanging]
+    parts = [building(home.plan, level, built), *(_triangles(p, assets[p.asset_id], i + 1, elevation) for i, p in enumerate(standing))]
+    frame = render(
+        view,
+        np.concatenate([s.faces for s in parts]),
+        np.concatenate([s.colours for s in parts]),
+        np.concatenate([s.items for s in parts]),
+        BACKGROUND,
+    )
+    image = Image.fromarray(frame.colour)
+    draw = ImageDraw.Draw(image)
+
+    def project(points: NDArray[np.float64]) -> list[tuple[float, float]]:
+        flat = np.column_stack([points, np.zeros(len(points))])
+        return [(float(u), float(v)) for u, v, _ in view.project(flat)]
+
+    line = max(2, view.width // 900)
+    draw_openings(draw, built, project, line)
+    for placement in standing:
+        draw_reach(draw, placement, assets[placement.asset_id], project, line)
+    for placement in hanging:
+        draw.line(project(placement.footprint()[[0, 1, 2, 3, 0]]), fill=(150, 150, 150), width=line)
+    image = _shade(image.reduce(SAMPLES), frame)
+    size = max(9, round(0.26 * view.scale / SAMPLES))
+    if size >= SMALL:
+        busy = summed(frame.item[::SAMPLES, ::SAMPLES] > 0)
+        for room in home.plan.rooms:
+            if room.level == level:
+                draw_label(image, room, np.array(project(room.polygon)) / SAMPLES, busy, min(size, 22))
+    return image
+
+
+def _triangles(placement: Placement, asset: Asset, item: int, elevation: float) -> Soup:
+    faces, materials = asset_triangles(asset)
+    T = placement_transform(placement.position - np.array([0, 0, elevation]), placement.yaw, placement.scale)
+    return Soup(faces @ T[:3, :3].T + T[:3, 3], colours(asset)[materials], np.full(len(faces), item, np.int32))
+
+
+def _shade(image: Image.Image, frame: Frame) -> Image.Image:
+    """Add the soft shadows that the depth buffer gives, at the final resolution."""
+    coarse = Frame(np.asarray(image), frame.depth[::SAMPLES, ::SAMPLES], frame.item[::SAMPLES, ::SAMPLES])
+    return Image.fromarray(darken_edges(coarse, max(2, image.width // 120), 0.38, reach=1.4, ground=0.0).colour)

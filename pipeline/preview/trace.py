@@ -1,0 +1,146 @@
+"""Path-traced views by Mitsuba (an extra): ceiling off, some doors and drawers open, sky and a low sun."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.asset import Asset, Material
+from pipeline.entities.home import Home
+from pipeline.errors import UsageError
+from pipeline.preview.solids import Batch, home_batches
+from pipeline.rendering.normals import corner_normals
+
+ELEVATION = math.radians(56)  # of the camera above the horizon
+AZIMUTH = math.radians(-18)  # of the camera about +Z, from the front (-Y)
+FIELD_OF_VIEW = 32.0  # along the image's longer side [degrees]
+SKY = (0.62, 0.74, 0.95)
+SUN = (-0.55, -0.45, 1.0)  # direction towards the sun
+SUN_IRRADIANCE = 3.2
+SUN_ANGLE = math.radians(4.0)  # radius of the sun's disc, larger than the real one for soft shadows
+EXPOSURE = 0.78
+
+
+def path_trace(
+    home: Home,
+    assets: Mapping[str, Asset],
+    path: Path,
+    size: tuple[int, int] = (640, 480),
+    spp: int = 64,
+    open_fraction: float = 0.6,
+    level: int = 0,
+) -> Path:
+    """Render one storey to a PNG of `size` (width, height) pixels with `spp` samples each; returns its path.
+
+    Doors, drawers and lids stand at `open_fraction` of their range. Raises UsageError where Mitsuba is not installed.
+    """
+    mi = _mitsuba()
+    batches = home_batches(home, assets, level, open_fraction)
+    points = np.concatenate([b.faces.reshape(-1, 3) for b in batches])
+    target, eye = _camera(points, size)
+    scene: dict[str, Any] = {
+        "type": "scene",
+        "integrator": {"type": "path", "max_depth": 7},
+        "sky": {"type": "constant", "radiance": {"type": "rgb", "value": list(SKY)}},
+        "sun": _sun(mi, points),
+        "sensor": {
+            "type": "perspective",
+            "fov": FIELD_OF_VIEW,
+            "fov_axis": "larger",
+            "to_world": mi.ScalarTransform4f().look_at(origin=eye.tolist(), target=target.tolist(), up=[0, 0, 1]),
+            "film": {"type": "hdrfilm", "width": size[0], "height": size[1], "rfilter": {"type": "gaussian"}},
+            "sampler": {"type": "multijitter", "sample_count": spp},
+        },
+    }
+    for i, batch in enumerate(batches):
+        scene[f"mesh_{i:03d}"] = _mesh(mi, f"mesh_{i:03d}", batch)
+    image = np.asarray(mi.render(mi.load_dict(scene), seed=0))[..., :3]
+    _save(image, path)
+    return path
+
+
+def _mitsuba() -> ModuleType:
+    try:
+        import mitsuba as mi
+    except ImportError as error:
+        raise UsageError("path-traced views need Mitsuba, which is not installed", "pip install mitsuba (or the extra: pip install '.[render]')") from error
+    mi.set_variant("scalar_rgb")  # the llvm variants abort with some systems' LLVM, the cuda ones want a GPU
+    return mi
+
+
+def _camera(points: NDArray[np.float64], size: tuple[int, int]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return target and eye (3,) such that all points (N, 3) are in the picture, with a small margin."""
+    ca, sa, ce, se = math.cos(AZIMUTH), math.sin(AZIMUTH), math.cos(ELEVATION), math.sin(ELEVATION)
+    back, right = np.array([sa * ce, -ca * ce, se]), np.array([ca, sa, 0.0])
+    up = np.cross(back, right)
+    half = np.tan(np.radians(FIELD_OF_VIEW) / 2) * np.array([size[0], size[1]]) / max(size) * 0.95
+    target = (points.min(axis=0) + points.max(axis=0)) / 2
+    distance = 10.0
+    for _ in range(4):  # centring and distance depend on each other; four rounds settle below a pixel
+        local = points - target
+        away = local @ back
+        u, v = local @ right, local @ up
+        distance = float(np.max([np.abs(u) / half[0] + away, np.abs(v) / half[1] + away]))
+        for axis, values in ((right, u), (up, v)):
+            slopes = values / (distance - away)
+            target = target + axis * distance * (slopes.max() + slopes.min()) / 2
+    return target, target + distance * back
+
+
+def _sun(mi: ModuleType, points: NDArray[np.float64]) -> dict[str, Any]:
+    """Place the sun as a far glowing ball; its radiance gives SUN_IRRADIANCE whatever its size."""
+    centre = (points.min(axis=0) + points.max(axis=0)) / 2
+    direction = np.asarray(SUN) / np.linalg.norm(SUN)
+    distance = 20 * float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
+    radius = distance * math.tan(SUN_ANGLE)
+    radiance = SUN_IRRADIANCE / (math.pi * math.sin(SUN_ANGLE) ** 2)
+    value = [radiance, 0.90 * radiance, 0.74 * radiance]
+    return {
+        "type": "sphere",
+        "to_world": mi.ScalarTransform4f().translate((centre + distance * direction).tolist()).scale(radius),
+        "emitter": {"type": "area", "radiance": {"type": "rgb", "value": value}},
+    }
+
+
+def _mesh(mi: ModuleType, name: str, batch: Batch) -> Any:
+    """Make one mesh of all triangles of a material, with a normal per corner."""
+    count = len(batch.faces)
+    properties = mi.Properties()
+    properties["bsdf"] = mi.load_dict(_surface(batch.material))
+    mesh = mi.Mesh(name, vertex_count=3 * count, face_count=count, has_vertex_normals=True, props=properties)
+    values = mi.traverse(mesh)
+    values["vertex_positions"] = batch.faces.astype(np.float32).ravel()
+    values["vertex_normals"] = corner_normals(batch.faces).astype(np.float32).ravel()
+    values["faces"] = np.arange(3 * count, dtype=np.uint32)
+    values.update()
+    return mesh
+
+
+def _surface(material: Material) -> dict[str, Any]:
+    if material.opacity < 0.9:
+        return {"type": "thindielectric"}
+    inner = {
+        "type": "principled",
+        "base_color": {"type": "rgb", "value": list(material.base_color)},
+        "roughness": max(0.08, material.roughness),
+        "metallic": material.metallic,
+        "specular": 0.4,
+    }
+    return {"type": "twosided", "bsdf": inner}
+
+
+def _save(image: NDArray[np.float32], path: Path) -> None:
+    """Expose, compress the highlights (Hable's shoulder is not needed: x / (1 + x) above the middle), encode as sRGB."""
+    from PIL import Image
+
+    exposed = np.maximum(image * EXPOSURE, 0.0)
+    toned = np.where(exposed < 0.6, exposed, 0.6 + 0.4 * (exposed - 0.6) / (exposed - 0.6 + 0.4))
+    encoded = np.where(toned <= 0.0031308, 12.92 * toned, 1.055 * np.maximum(toned, 1e-6) ** (1 / 2.4) - 0.055)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    Image.fromarray((np.clip(encoded, 0, 1) * 255 + 0.5).astype(np.uint8)).save(path)
