@@ -1,0 +1,131 @@
+"""The moves that all room types share: a piece against a wall, beside another, a chair at a desk, a lamp overhead."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from pipeline.corpus.houses.records import Model
+from pipeline.corpus.houses.space import Space, Spot, against, ahead, box_of, shifted
+from pipeline.corpus.houses.stock import Stock
+
+# Free depth before a front that opens or is sat at [m].
+FRONTS = {
+    "wardrobe": 0.65,
+    "children_cabinet": 0.55,
+    "cabinet": 0.5,
+    "sideboard": 0.5,
+    "shoe_cabinet": 0.5,
+    "bookshelf": 0.5,
+    "wine_cabinet": 0.5,
+    "shelf": 0.4,
+    "tv_stand": 0.5,
+    "dressing_table": 0.7,
+    "desk": 0.75,
+    "refrigerator": 0.75,
+    "washing_machine": 0.6,
+    "toilet": 0.5,
+    "vanity": 0.55,
+    "bathtub": 0.45,
+    "shower": 0.45,
+    "armchair": 0.4,
+    "lounge_chair": 0.4,
+}
+LAMP_DROP = 0.02
+
+
+class Arranger:
+    """Furnishes one room: the generator, the room, the stock and the house's style in one hand."""
+
+    def __init__(self, rng: np.random.Generator, space: Space, stock: Stock, style: str) -> None:
+        self.rng = rng
+        self.space = space
+        self.stock = stock
+        self.style = style
+
+    def chance(self, share: float) -> bool:
+        """Return True in that share of cases."""
+        return bool(self.rng.random() < share)
+
+    def pick(self, category: str, width: float = math.inf, depth: float = math.inf, height: float = math.inf) -> Model | None:
+        """Draw a model of the category within the limits [m]."""
+        return self.stock.pick(self.rng, category, self.style, width=width, depth=depth, height=min(height, self.space.height - 0.02))
+
+    def at_wall(self, category: str, *, corner: float = 0.6, sides: Sequence[int] | None = None, tries: int = 3) -> bool:
+        """Put a piece of the category with its back to a wall, its front free; smaller models after a failure."""
+        front = FRONTS.get(category, 0.35)
+        width = math.inf
+        for _ in range(tries):
+            model = self.pick(category, width=width)
+            if model is None:
+                return False
+            spot = against(self.rng, self.space, model, front=front, corner=corner, sides=sides)
+            if spot is not None and self.space.try_add(model, spot, keep=[ahead(spot, model.size[1], front, model.size[0])]):
+                return True
+            width = model.size[0] * 0.95
+        return False
+
+    def pair_at_wall(self, table: str, chairs: Sequence[str], share: float) -> bool:
+        """Put a desk or dressing table to a wall and, in that share of cases, a chair before it that faces it."""
+        desk = self.pick(table)
+        seat = self.pick(str(self.rng.choice(list(chairs)))) if self.chance(share) else None
+        if desk is None:
+            return False
+        front = max(FRONTS[table], seat.size[1] + 0.3 if seat else 0.0)
+        spot = against(self.rng, self.space, desk, front=front, corner=0.55)
+        if spot is None or not self.space.try_add(desk, spot):
+            return False
+        if seat is not None:
+            off = float(self.rng.uniform(0.02, 0.1))
+            turn = math.pi + (float(self.rng.normal(0, 0.35)) if self.chance(0.2) else 0.0)
+            place = shifted(spot, float(self.rng.normal(0, 0.04)), desk.size[1] / 2 + seat.size[1] / 2 + off, turn)
+            if turn != math.pi:
+                place = shifted(place, 0.0, -0.1)
+            self.space.try_add(seat, place)
+        return True
+
+    def in_corner(self, category: str) -> bool:
+        """Put a chair or plant into a corner, often turned towards the room."""
+        model = self.pick(category)
+        if model is None:
+            return False
+        spot = against(self.rng, self.space, model, front=FRONTS.get(category, 0.0), corner=0.85)
+        if spot is None:
+            return False
+        if category in {"armchair", "lounge_chair", "lazy_sofa", "chaise_longue_sofa"} and self.chance(0.45):
+            turn = float(self.rng.choice([-1, 1])) * float(self.rng.uniform(0.3, 0.8))
+            bounds = box_of(0, 0, turn, model.size[0], model.size[1])
+            turned = shifted(spot, 0.0, bounds[3] - model.size[1] / 2, turn)
+            if self.space.try_add(model, turned):
+                return True
+        return self.space.try_add(model, spot)
+
+    def lamp(self, category: str, x: float, y: float, yaw: float = 0.0) -> bool:
+        """Hang a lamp at (x, y) under the ceiling."""
+        most = self.space.height - (1.5 if category == "pendant_lamp" else 1.9)
+        model = self.pick(category, height=most)
+        if model is None:
+            return False
+        box = box_of(x, y, yaw, model.size[0], model.size[1])
+        z = round(self.space.height - model.size[2] - (LAMP_DROP if category == "pendant_lamp" else 0.0), 3)
+        if not self.space.fits(box, z, z + model.size[2]):
+            return False
+        self.space.add(model, Spot(x, y, yaw), z)
+        return True
+
+    def light(self, pendant: float, ceiling: float) -> None:
+        """Hang at most one lamp in the middle of the room: a pendant or a ceiling lamp with these chances."""
+        mark = self.rng.random()
+        category = "pendant_lamp" if mark < pendant else "ceiling_lamp" if mark < pendant + ceiling else None
+        if category is None:
+            return
+        for x, y in self.middles():
+            if self.lamp(category, x + float(self.rng.normal(0, 0.04)), y + float(self.rng.normal(0, 0.04))):
+                return
+
+    def middles(self) -> list[tuple[float, float]]:
+        """Return middles of the room: of its bounds, then of the largest rectangle-like part of an L."""
+        x0, y0, x1, y1 = self.space.bounds
+        return [((x0 + x1) / 2, (y0 + y1) / 2), *((x0 + (x1 - x0) * a, y0 + (y1 - y0) * b) for a in (0.3, 0.7) for b in (0.3, 0.7))]

@@ -1,0 +1,88 @@
+"""Kitchens: a run of base units along a wall, appliances in it, the fridge at its end, wall units above."""
+
+from __future__ import annotations
+
+import math
+
+from pipeline.corpus.houses.arranger import FRONTS, Arranger
+from pipeline.corpus.houses.records import Model
+from pipeline.corpus.houses.space import Spot, ahead, on_side
+
+FRONT = 0.75
+"""Free floor before a run: an open door and a cook [m]."""
+SEAM = 0.002
+HUNG_AT = 1.45
+"""Underside of the wall units [m]."""
+
+
+def furnish_kitchen(arranger: Arranger) -> None:
+    """Furnish a kitchen with one run, or two that meet in a corner or face each other."""
+    wanted = ["sink_cabinet", "kitchen_cabinet", "oven"]
+    wanted += ["dishwasher"] if arranger.chance(0.6) else []
+    wanted += ["kitchen_cabinet"] if arranger.chance(0.8) else []
+    middle = wanted[1:]
+    arranger.rng.shuffle(middle)
+    wanted = [*middle[:1], "sink_cabinet", *middle[1:], "kitchen_cabinet", "kitchen_cabinet", "kitchen_cabinet"]
+    if arranger.chance(0.5):
+        wanted = ["refrigerator", *wanted]
+    left = run(arranger, wanted)
+    if any(c not in {"kitchen_cabinet"} for c in left):
+        left = run(arranger, [*[c for c in left if c != "refrigerator"], "kitchen_cabinet"])
+    if not any(i.model.category == "refrigerator" for i in arranger.space.items):
+        arranger.at_wall("refrigerator", corner=0.95)
+    for category, share in (("trash_can", 0.35),):
+        if arranger.chance(share):
+            arranger.in_corner(category)
+    arranger.light(0.15, 0.65)
+
+
+def run(arranger: Arranger, wanted: list[str]) -> list[str]:
+    """Fill the longest free stretch of wall with units side by side; return what did not fit."""
+    space, rng = arranger.space, arranger.rng
+    depth = 0.66
+    stretches = [(b - a, i, a, b) for i, side in enumerate(space.sides) for a, b in space.spans(side, depth, FRONT, 0.0, 0.95)]
+    stretches = [s for s in stretches if s[0] >= 0.65]
+    if not stretches:
+        return wanted
+    longest = max(s[0] for s in stretches)
+    good = [s for s in stretches if s[0] > 0.8 * longest]
+    length, i, a, b = good[int(rng.integers(len(good)))]
+    forward = arranger.chance(0.5)
+    at, left, placed = 0.005, [], []
+    for category in wanted:
+        model = arranger.pick(category, width=length - at, depth=0.75)
+        if model is None or (category == "kitchen_cabinet" and length - at < 0.3):
+            left.append(category)
+            continue
+        s = a + at + model.size[0] / 2 if forward else b - at - model.size[0] / 2
+        spot = on_side(space, i, s, model.size[1], 0.004)
+        if not space.try_add(model, spot, keep=[ahead(spot, model.size[1], FRONTS.get(category, 0.65), model.size[0])]):
+            left.append(category)
+            continue
+        placed.append((model, s))
+        at += model.size[0] + SEAM
+    above(arranger, i, placed)
+    return left
+
+
+def above(arranger: Arranger, side: int, placed: list[tuple[Model, float]]) -> None:
+    """Hang wall units over the base units, clear of windows, and stand a microwave on one base unit."""
+    space = arranger.space
+    microwave = arranger.chance(0.5) and not any(i.model.category == "microwave" for i in space.items)
+    edge = -math.inf
+    for model, s in sorted(placed, key=lambda p: p[1]):
+        category = model.category
+        if category == "refrigerator":
+            continue
+        low, high = max(edge, s - model.size[0] / 2), s + model.size[0] / 2
+        unit = arranger.pick("wall_cabinet", width=high - low, height=space.height - HUNG_AT - 0.1)
+        if unit is not None and category != "oven" and arranger.chance(0.85):
+            spot = on_side(space, side, min(high, low + (high - low)) - unit.size[0] / 2 - SEAM, unit.size[1], 0.004)
+            if space.try_add(unit, spot, HUNG_AT):
+                edge = high
+        if category == "kitchen_cabinet" and microwave:
+            oven = arranger.pick("microwave", width=model.size[0] - 0.02, depth=model.size[1] - 0.02)
+            if oven is not None:
+                top = on_side(space, side, s, oven.size[1], 0.05)
+                if space.try_add(oven, Spot(top.x, top.y, top.yaw), model.size[2] + 0.001):
+                    microwave = False

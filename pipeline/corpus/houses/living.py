@@ -1,0 +1,199 @@
+"""Living rooms: a sofa that looks at the TV, a coffee table between them, seats around it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeline.corpus.houses.arranger import Arranger
+from pipeline.corpus.houses.dining import furnish_dining_corner
+from pipeline.corpus.houses.records import Model
+from pipeline.corpus.houses.space import Side, Space, Spot, ahead, back_gap, box_of, on_side, shifted
+
+# Wall pieces tried in a living room: category -> chance. From the counts of some 650 filtered living rooms (11.2 objects a room).
+WALL_PIECES = {
+    "sideboard": 0.47,
+    "cabinet": 0.29,
+    "bookshelf": 0.27,
+    "wine_cabinet": 0.16,
+    "shelf": 0.05,
+    "wardrobe": 0.035,
+    "desk": 0.012,
+    "children_cabinet": 0.015,
+}
+SOFAS = (("multi_seat_sofa", 0.60), ("loveseat_sofa", 0.24), ("l_shaped_sofa", 0.135), ("chaise_longue_sofa", 0.015), ("lazy_sofa", 0.01))
+
+
+@dataclass(frozen=True, slots=True)
+class Lounge:
+    """The seating group: the sofa's model and spot, and the spot of the coffee table if there is one."""
+
+    sofa: Model
+    spot: Spot
+    table: tuple[Model, Spot] | None
+
+
+def furnish_living(arranger: Arranger, *, dining: bool) -> None:
+    """Furnish a living room, with a dining corner if asked for."""
+    lounge = place_lounge(arranger)
+    if lounge is not None:
+        seats(arranger, lounge)
+    if dining:
+        furnish_dining_corner(arranger, chance=0.99)
+    for category, share in WALL_PIECES.items():
+        if arranger.chance(share):
+            arranger.at_wall(category)
+    for category, share in (("plant", 0.13), ("floor_lamp", 0.06), ("round_end_table", 0.06)):
+        if arranger.chance(share):
+            arranger.in_corner(category)
+    lamps(arranger, lounge)
+
+
+def lamps(arranger: Arranger, lounge: Lounge | None) -> None:
+    """Hang a pendant or a ceiling lamp over the coffee table or the middle of the room."""
+    mark = arranger.rng.random()
+    if mark > 0.96:
+        return
+    category = "pendant_lamp" if mark < 0.77 else "ceiling_lamp"
+    spot = lounge.table[1] if lounge is not None and lounge.table is not None else None
+    if spot is None or not arranger.lamp(category, spot.x, spot.y, spot.yaw):
+        arranger.light(*((1.0, 0.0) if category == "pendant_lamp" else (0.0, 1.0)))
+
+
+def place_lounge(arranger: Arranger) -> Lounge | None:
+    """Choose sofa, TV wall and coffee table together: the best of many tries."""
+    space, rng = arranger.space, arranger.rng
+    with_tv = arranger.chance(0.80)
+    names, shares = zip(*SOFAS, strict=True)
+    category = str(rng.choice(names, p=np.array(shares) / sum(shares)))
+    width = 3.4
+    for _ in range(6):
+        sofa = arranger.pick(category, width=width)
+        stand = arranger.pick("tv_stand", width=2.6) if with_tv else None
+        if sofa is None:
+            return None
+        found = [c for c in _sofa_places(arranger, sofa, stand) if c[0] > 0]
+        if found:
+            _, spot, tv = max(found, key=lambda c: c[0])
+            return _set_lounge(arranger, sofa, spot, stand, tv)
+        width = sofa.size[0] * 0.93
+        if category in {"l_shaped_sofa", "multi_seat_sofa"} and width < 2.1:
+            category, width = "loveseat_sofa", 2.2
+    return None
+
+
+def _sofa_places(arranger: Arranger, sofa: Model, stand: Model | None) -> list[tuple[float, Spot, Spot | None]]:
+    """Return (score, sofa, TV stand): backs to a wall, or drawn forward where the room is deep."""
+    space, rng = arranger.space, arranger.rng
+    w, d, h = sofa.size
+    gap = back_gap(rng) + 0.02
+    found: list[tuple[float, Spot, Spot | None]] = []
+    for i, side in enumerate(space.sides):
+        for a, b in space.spans(side, d + gap, 1.1, 0.0, h):
+            if b - a < w + 0.02:
+                continue
+            for s in np.unique(np.clip([(a + b) / 2, *rng.uniform(a, b, 3)], a + w / 2, b - w / 2)):
+                depth = _sight(space, side, float(s))
+                if depth < d + 1.3:
+                    continue
+                spot, tv, look = on_side(space, i, float(s), d, gap), None, depth - d / 2
+                if stand is not None:
+                    look = depth - gap - d / 2 - stand.size[1] / 2
+                    if look > 4.2:  # too far for the TV: the sofa comes forward and leaves a passage behind it
+                        shift = look - float(rng.uniform(2.7, 3.9))
+                        if shift > 0.75:
+                            spot, look = shifted(spot, 0.0, shift), look - shift
+                    tv = _tv_place(arranger, spot, side, stand, depth)
+                score = 1.0 + rng.random() + min(b - a - w, 2.0) * 0.3
+                score += 3.0 if tv is not None else -1.0 if stand is not None else 0.0
+                score -= 2.0 * max(0.0, look - 4.2) + 2.0 * max(0.0, 2.1 - look)
+                if space.fits(box_of(spot.x, spot.y, spot.yaw, w, d), 0.0, h):
+                    found.append((score, spot, tv))
+    return found
+
+
+def _sight(space: Space, side: Side, s: float) -> float:
+    """Return how far one sees from a wall at `s`, in a lane 1 m wide, up to the first thing that stands [m]."""
+    lane = side.strip(max(0.0, s - 0.5), min(side.length, s + 0.5), 0.01, 12.0)
+    depths = [max(0.0, side.off(r)[0]) for r, low, _ in space.solids if low < 1.0 and _crosses(lane, r)]
+    return min(depths, default=0.0)
+
+
+def _crosses(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> bool:
+    return a[0] < b[2] - 0.01 and b[0] < a[2] - 0.01 and a[1] < b[3] - 0.01 and b[1] < a[3] - 0.01
+
+
+def _tv_place(arranger: Arranger, sofa: Spot, side: Side, stand: Model, depth: float) -> Spot | None:
+    """Return the TV stand's place at the wall that the sofa looks at; None where there is a door or no wall."""
+    w, d, h = stand.size
+    gap = back_gap(arranger.rng)
+    s, _ = side.along((sofa.x, sofa.y, sofa.x, sofa.y))
+    x, y = side.point(s + float(arranger.rng.normal(0, 0.08)), depth - gap - d / 2)
+    spot = Spot(x, y, math.remainder(sofa.yaw + math.pi, 2 * math.pi))
+    return spot if arranger.space.fits(box_of(x, y, spot.yaw, w, d), 0.0, h) else None
+
+
+def _set_lounge(arranger: Arranger, sofa: Model, spot: Spot, stand: Model | None, tv: Spot | None) -> Lounge:
+    """Put the chosen group down, and a coffee table 0.3-0.5 m in front of the sofa."""
+    space, rng = arranger.space, arranger.rng
+    d = sofa.size[1]
+    space.add(sofa, spot)
+    reach = 1.2
+    if stand is not None and tv is not None:
+        space.add(stand, tv)
+        reach = abs((tv.x - spot.x) * math.sin(spot.yaw) - (tv.y - spot.y) * math.cos(spot.yaw)) - d / 2 - stand.size[1] / 2
+    placed = None
+    if arranger.chance(0.97):
+        table = arranger.pick("coffee_table", width=max(0.6, sofa.size[0] * 0.75), depth=max(0.5, reach - 0.95))
+        if table is not None:
+            place = shifted(spot, float(rng.normal(0, 0.06)), d / 2 + table.size[1] / 2 + float(rng.uniform(0.3, 0.5)))
+            if space.try_add(table, place):
+                placed = (table, place)
+    if placed is None and arranger.chance(0.5):
+        table = arranger.pick("round_end_table") or arranger.pick("corner_side_table")
+        if table is not None:
+            space.try_add(table, shifted(spot, float(rng.normal(0, 0.1)), d / 2 + table.size[1] / 2 + 0.35))
+    if tv is not None:  # nobody dines between sofa and TV
+        space.keeps.append(ahead(spot, d, max(0.4, reach), min(1.4, sofa.size[0])))
+    return Lounge(sofa, spot, placed)
+
+
+def seats(arranger: Arranger, lounge: Lounge) -> None:
+    """Put side tables beside the sofa; armchairs, lounge chairs and stools around the coffee table, facing it."""
+    rng, space = arranger.rng, arranger.space
+    count = int(rng.choice([0, 1, 2], p=[0.30, 0.36, 0.34]))
+    signs = [-1, 1] if count == 2 else [int(rng.choice([-1, 1]))] * count
+    side_table = arranger.pick("corner_side_table")
+    for sign in signs:
+        if side_table is not None:
+            back = -(lounge.sofa.size[1] - side_table.size[1]) / 2 + float(abs(rng.normal(0, 0.05)))
+            across = sign * (lounge.sofa.size[0] / 2 + side_table.size[0] / 2 + float(rng.uniform(0.02, 0.1)))
+            space.try_add(side_table, shifted(lounge.spot, across, back))
+    wanted = [c for c, share in (("armchair", 0.40), ("armchair", 0.27), ("lounge_chair", 0.30), ("lounge_chair", 0.15), ("stool", 0.27)) if arranger.chance(share)]
+    if arranger.chance(0.02):
+        wanted += ["chinese_chair", "chinese_chair"]
+    free = [-1, 1] if arranger.chance(0.5) else [1, -1]
+    twin: dict[str, Model | None] = {}
+    for category in wanted:
+        model = twin.setdefault(category, arranger.pick(category))
+        if model is not None and not _around(arranger, lounge, model, free):
+            arranger.in_corner(category)
+
+
+def _around(arranger: Arranger, lounge: Lounge, model: Model, free: list[int]) -> bool:
+    """Put a seat at a free flank of the coffee table, square to the sofa or a little oblique."""
+    rng = arranger.rng
+    table = lounge.table
+    reach = table[0].size[0] / 2 if table else 0.4
+    ahead_by = (lounge.sofa.size[1] / 2 + 0.4 + (table[0].size[1] / 2 if table else 0.4)) + 0.1
+    for sign in list(free):
+        oblique = float(rng.uniform(0.25, 0.7)) * (-sign) if arranger.chance(0.3) else 0.0
+        half = max(model.size[0], model.size[1]) / 2 if oblique else model.size[1] / 2
+        across = sign * (reach + half + float(rng.uniform(0.35, 0.6)))
+        place = shifted(lounge.spot, across, ahead_by + (0.1 if oblique else 0.0), -sign * math.pi / 2 + oblique)
+        if arranger.space.try_add(model, place):
+            free.remove(sign)
+            return True
+    return False

@@ -1,0 +1,68 @@
+"""An apartment's plan from one generator: program, draft, openings; drafts that do not work are drawn again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pipeline.corpus.houses import draft, openings, outline, program
+from pipeline.entities.plan import Plan, Room
+from pipeline.errors import ContentError
+
+PROGRAMS = 20
+DRAFTS = 30
+SHAFT_SHARE = 0.25
+# Narrowest clear side by room type [m].
+NARROWEST = {"Kitchen": 1.55, "Balcony": 0.9, "Bathroom": 1.38, "SecondBathroom": 1.38, "MasterBathroom": 1.4, "LaundryRoom": 1.2}
+NARROWEST |= {"StorageRoom": 1.05, "CloakRoom": 1.4, "Hallway": 1.0, "Aisle": 1.0, "Corridor": 1.0, "Library": 2.1, "KidsRoom": 2.4}
+
+
+def make_plan(rng: np.random.Generator) -> Plan:
+    """Draw a plan: rooms `room_<i>` with 3D-FRONT types, polygons of inner faces, doors, windows and an entrance."""
+    for _ in range(PROGRAMS):
+        wanted = program.sample(rng)
+        for _ in range(DRAFTS):  # redrawn for one program, so that hard programs are not crowded out by easy ones
+            plan = _attempt(rng, wanted)
+            if plan is not None:
+                return plan
+    raise ContentError(f"no house plan after {PROGRAMS} programs", "choose another seed in params.yaml")
+
+
+def _attempt(rng: np.random.Generator, wanted: program.Program) -> Plan | None:
+    make = draft.spine if rng.random() < 0.55 else draft.centre
+    sketch = make(rng, wanted)
+    rooms = [p for i, p in enumerate(sketch.patches) if sketch.types[p[0]] not in openings.CORRIDORS and p[0] not in {q[0] for q in sketch.patches[:i]}]
+    patches = draft.turned(rng, draft.shafts(rng, sketch.patches, rooms, SHAFT_SHARE))
+    stretches = outline.walls(*outline.paint(patches))
+    loops = [outline.outline(i, stretches) for i in range(len(sketch.types))]
+    height = float(rng.choice([2.6, 2.8], p=[0.45, 0.55]))
+    made = []
+    for i, (room_type, loop) in enumerate(zip(sketch.types, loops, strict=True)):
+        if loop is None or not _usable(loop, room_type):
+            return None
+        made.append(Room(f"room_{i}", room_type, outline.inset(loop), height=height))
+    holes = openings.plan_holes(rng, sketch.types, sketch.parents, stretches)
+    if holes is None:
+        return None
+    angle = float(rng.uniform(1.45, 1.57))
+    ways = tuple(openings.opening(k, hole, stretches, angle) for k, hole in enumerate(holes))
+    entrance = next(w.rooms[0] for w in ways if w.kind == "entrance")
+    return Plan(tuple(made), ways, entrance)
+
+
+def _usable(loop: Sequence[tuple[int, int]], room_type: str) -> bool:
+    """Whether no edge is a sliver and the room is neither too narrow nor far from its type's usual area."""
+    points = np.array(loop, float)
+    steps = np.abs(points - np.roll(points, 1, axis=0)).sum(axis=1)
+    if steps.min() < 25:
+        return False
+    clear = (points.max(axis=0) - points.min(axis=0)).min() / 100 - 0.12
+    if clear < NARROWEST.get(room_type, 2.6):
+        return False
+    x, y = outline.inset(loop).T
+    size = 0.5 * abs(float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))
+    if room_type in program.AREAS:
+        _, _, least, most = program.AREAS[room_type]
+        return 0.82 * least <= size <= 1.15 * most
+    return 0.9 <= size <= 12.0

@@ -1,0 +1,165 @@
+"""The surfaces of a house: floors, ceilings, walls with their holes, and the reveals of doors and windows.
+
+Everything in our frame [m, Z up]; a quad's corners run counter-clockwise seen from where it is looked at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from pipeline.corpus.houses.space import Side, _distance, inside_intervals
+from pipeline.entities.plan import Opening, Plan, Room
+
+Point = tuple[float, float, float]
+Quad = tuple[Point, Point, Point, Point]
+INNER = 0.12
+OUTER = 0.24
+FRAME = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """A mesh of the shell: its 3D-FRONT type, the room that lists it, its quads, the opening that it belongs to or -1."""
+
+    type: str
+    room: int
+    quads: tuple[Quad, ...]
+    opening: int = -1
+
+
+def surfaces(plan: Plan) -> tuple[Surface, ...]:
+    """Return all surfaces of a plan, room by room, then opening by opening."""
+    made: list[Surface] = []
+    sides = [sides_of(room) for room in plan.rooms]
+    for number, room in enumerate(plan.rooms):
+        made.append(Surface("Floor", number, tuple(_flat(room, 0.0, up=True))))
+        made.append(Surface("Ceiling", number, tuple(_flat(room, room.height, up=False))))
+        for side in sides[number]:
+            made.append(Surface("WallInner", number, tuple(_wall(side, 0.0, holes_on(side, plan, room), room.height, inside=True))))
+            bare = list(_outer_parts(side, [s for k, other in enumerate(sides) if k != number for s in other]))
+            quads = [q for low, high in bare for q in _wall(side, -OUTER, holes_on(side, plan, room), room.height, inside=False, low=low, high=high)]
+            if quads:
+                made.append(Surface("WallOuter", number, tuple(quads)))
+                tops = tuple(_level(side, low, high, room.height) for low, high in bare)
+                made.append(Surface("WallTop", number, tops))
+    for k, opening in enumerate(plan.openings):
+        made += _reveals(plan, sides, k, opening)
+    return tuple(made)
+
+
+def sides_of(room: Room) -> list[Side]:
+    """Return the walls of a room as directed sides, interior on the left."""
+    points = [(float(x), float(y)) for x, y in room.polygon]
+    made = []
+    for p, q in zip(points, points[1:] + points[:1], strict=True):
+        length = abs(q[0] - p[0]) + abs(q[1] - p[1])
+        made.append(Side(p[0], p[1], round((q[0] - p[0]) / length), round((q[1] - p[1]) / length), length))
+    return made
+
+
+def holes_on(side: Side, plan: Plan, room: Room) -> list[tuple[float, float, float, float]]:
+    """Return (low, high, sill, top) of the openings of a room that lie in one of its sides [m]."""
+    found = []
+    for opening in plan.openings:
+        if room.room_id not in opening.rooms:
+            continue
+        (ax, ay), (bx, by) = opening.segment.tolist()
+        if abs(_distance(side, (ax + bx) / 2, (ay + by) / 2)) > OUTER / 2 + 1e-6 or (abs(bx - ax) > 1e-9) != (side.tx != 0):
+            continue
+        low, high = side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
+        found.append((low, high, opening.sill, opening.sill + opening.height))
+    return found
+
+
+def _flat(room: Room, z: float, *, up: bool) -> Iterator[Quad]:
+    """Cut a rectilinear polygon into rectangles between the x of its vertices."""
+    points = [(float(x), float(y)) for x, y in room.polygon]
+    xs = sorted({x for x, _ in points})
+    for a, b in zip(xs, xs[1:], strict=False):
+        for low, high in inside_intervals(points, (a + b) / 2):
+            quad = ((a, low, z), (b, low, z), (b, high, z), (a, high, z))
+            yield quad if up else (quad[3], quad[2], quad[1], quad[0])
+
+
+def _wall(
+    side: Side,
+    off: float,
+    holes: Sequence[tuple[float, float, float, float]],
+    height: float,
+    *,
+    inside: bool,
+    low: float = 0.0,
+    high: float | None = None,
+) -> Iterator[Quad]:
+    """Cover a wall from `low` to `high` along it, `off` in front of it, with upright rectangles around its holes."""
+    end = side.length if high is None else high
+    cuts = sorted({low, end, *(v for h in holes for v in h[:2] if low < v < end)})
+    for a, b in zip(cuts, cuts[1:], strict=False):
+        at = (a + b) / 2
+        hole = next((h for h in holes if h[0] < at < h[1]), None)
+        bands = [(0.0, height)] if hole is None else [(0.0, hole[2]), (hole[3], height)]
+        for z0, z1 in bands:
+            if z1 - z0 < 1e-6:
+                continue
+            (ax, ay), (bx, by) = side.point(a, off), side.point(b, off)
+            # Walking along the side the room is on the left, so a quad seen from inside runs against it.
+            quad = ((bx, by, z0), (ax, ay, z0), (ax, ay, z1), (bx, by, z1))
+            yield quad if inside else (quad[1], quad[0], quad[3], quad[2])
+
+
+def _outer_parts(side: Side, others: Sequence[Side]) -> Iterator[tuple[float, float]]:
+    """Return the stretches of a side behind which there is no other room within a wall's thickness."""
+    blocked = []
+    for other in others:
+        if (other.tx, other.ty) != (-side.tx, -side.ty):
+            continue
+        near, _ = side.off((other.x, other.y, other.x, other.y))
+        if -OUTER - 0.02 < near < 0:
+            start, _ = side.along((other.x, other.y, other.x, other.y))
+            blocked.append((start - other.length - INNER, start + INNER))
+    at = 0.0
+    for low, high in sorted(blocked):
+        if low - at > 0.05:
+            yield at, low
+        at = max(at, high)
+    if side.length - at > 0.05:
+        yield at, side.length
+
+
+def _level(side: Side, low: float, high: float, z: float) -> Quad:
+    """Return the horizontal strip on top of an outer wall."""
+    (ax, ay), (bx, by) = side.point(low, 0.0), side.point(high, 0.0)
+    (cx, cy), (dx, dy) = side.point(high, -OUTER), side.point(low, -OUTER)
+    return ((dx, dy, z), (cx, cy, z), (bx, by, z), (ax, ay, z))
+
+
+def _reveals(plan: Plan, sides: Sequence[Sequence[Side]], k: int, opening: Opening) -> list[Surface]:
+    """Return the jambs, head and sill inside a wall, and around doors the frame on the room's face."""
+    number = next(i for i, r in enumerate(plan.rooms) if r.room_id == opening.rooms[0])
+    (ax, ay), (bx, by) = opening.segment.tolist()
+    side = min(sides[number], key=lambda s: _distance(s, (ax + bx) / 2, (ay + by) / 2))
+    low, high = side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
+    thick = INNER if len(opening.rooms) == 2 else OUTER
+    z0, z1 = opening.sill, opening.sill + opening.height
+
+    def at(s: float, v: float, z: float) -> Point:
+        return (*side.point(s, v), z)
+
+    quads: list[Quad] = [
+        (at(low, 0, z0), at(low, -thick, z0), at(low, -thick, z1), at(low, 0, z1)),
+        (at(high, -thick, z0), at(high, 0, z0), at(high, 0, z1), at(high, -thick, z1)),
+        (at(low, 0, z1), at(low, -thick, z1), at(high, -thick, z1), at(high, 0, z1)),
+        (at(low, -thick, z0), at(low, 0, z0), at(high, 0, z0), at(high, -thick, z0)),
+    ]
+    kind = {"window": "Window", "open": "Hole", "portal": "Hole"}.get(opening.kind, "Door")
+    made = [Surface(kind, number, tuple(quads), k)]
+    if kind == "Door":
+        f = 0.004
+        frame: list[Quad] = [
+            (at(low, f, 0), at(low - FRAME, f, 0), at(low - FRAME, f, z1), at(low, f, z1)),
+            (at(high + FRAME, f, 0), at(high, f, 0), at(high, f, z1), at(high + FRAME, f, z1)),
+            (at(high + FRAME, f, z1), at(low - FRAME, f, z1), at(low - FRAME, f, z1 + FRAME), at(high + FRAME, f, z1 + FRAME)),
+        ]
+        made.append(Surface("Pocket", number, tuple(frame), k))
+    return made

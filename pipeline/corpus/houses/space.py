@@ -1,0 +1,249 @@
+"""A room while it is furnished: its walls, what stands in it, and what must stay free.
+
+Everything that stands is kept as an axis-aligned box in plan with a range of heights; oblique pieces by their bounds.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeline.corpus.houses.records import Item, Model, Rect, wrap
+from pipeline.entities.plan import Opening, Room
+
+FAR = 50.0
+LOW = 1.0
+"""Boxes that start above this height do not stand in the way on the floor [m]."""
+EPSILON = 1e-4
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """A wall of the room: from (x, y) along the unit vector (tx, ty); the room lies on its left, at (nx, ny) = (-ty, tx)."""
+
+    x: float
+    y: float
+    tx: float
+    ty: float
+    length: float
+
+    @property
+    def yaw(self) -> float:
+        """Yaw of a piece with its back to this wall [rad]: its front, (sin yaw, -cos yaw), is the wall's inward normal."""
+        return wrap(math.atan2(-self.ty, -self.tx))
+
+    def strip(self, low: float, high: float, near: float, far: float) -> Rect:
+        """Return the rectangle from `low` to `high` along the wall and from `near` to `far` in front of it [m]."""
+        xs = [self.x + s * self.tx - v * self.ty for s in (low, high) for v in (near, far)]
+        ys = [self.y + s * self.ty + v * self.tx for s in (low, high) for v in (near, far)]
+        return (min(xs), min(ys), max(xs), max(ys))
+
+    def along(self, box: Rect) -> tuple[float, float]:
+        """Return the interval that a rectangle covers along the wall [m]."""
+        s = [(x - self.x) * self.tx + (y - self.y) * self.ty for x, y in ((box[0], box[1]), (box[2], box[3]))]
+        return min(s), max(s)
+
+    def off(self, box: Rect) -> tuple[float, float]:
+        """Return the nearest and farthest distance of a rectangle from the wall's line, inwards [m]."""
+        v = [-(x - self.x) * self.ty + (y - self.y) * self.tx for x, y in ((box[0], box[1]), (box[2], box[3]))]
+        return min(v), max(v)
+
+    def point(self, s: float, v: float) -> tuple[float, float]:
+        """Return the point `s` along and `v` in front of the wall."""
+        return self.x + s * self.tx - v * self.ty, self.y + s * self.ty + v * self.tx
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """A place for a piece: centre [m, world], yaw, and where it came from along a side."""
+
+    x: float
+    y: float
+    yaw: float
+    side: int = -1
+    s: float = 0.0
+
+
+def meets(a: Rect, b: Rect) -> bool:
+    """Whether two rectangles overlap by more than a hair."""
+    return a[0] < b[2] - EPSILON and b[0] < a[2] - EPSILON and a[1] < b[3] - EPSILON and b[1] < a[3] - EPSILON
+
+
+def box_of(x: float, y: float, yaw: float, width: float, depth: float) -> Rect:
+    """Return the bounds of a turned rectangle."""
+    c, s = abs(math.cos(yaw)), abs(math.sin(yaw))
+    w, d = (width * c + depth * s) / 2, (width * s + depth * c) / 2
+    return (x - w, y - d, x + w, y + d)
+
+
+def ahead(spot: Spot, depth: float, reach: float, width: float) -> Rect:
+    """Return the rectangle of `width` that reaches `reach` beyond the front of a piece of that depth, square to the axes."""
+    fx, fy = math.sin(spot.yaw), -math.cos(spot.yaw)
+    middle = depth / 2 + reach / 2
+    return box_of(spot.x + fx * middle, spot.y + fy * middle, spot.yaw, width, reach)
+
+
+def shifted(spot: Spot, right: float, front: float, turn: float = 0.0) -> Spot:
+    """Return the spot moved in its own frame (x to the right as its width runs, front forwards) and turned."""
+    c, s = math.cos(spot.yaw), math.sin(spot.yaw)
+    return Spot(spot.x + c * right + s * front, spot.y + s * right - c * front, wrap(spot.yaw + turn), spot.side, spot.s)
+
+
+class Space:
+    """The state of one room while it is being furnished."""
+
+    def __init__(self, number: int, room: Room, openings: Sequence[Opening]) -> None:
+        self.number = number
+        self.height = room.height
+        self.area = room.area
+        self.polygon = [(float(x), float(y)) for x, y in room.polygon]
+        self.bounds: Rect = (*(float(v) for v in room.polygon.min(axis=0)), *(float(v) for v in room.polygon.max(axis=0)))  # type: ignore[assignment]
+        self.sides = [_side(p, q) for p, q in zip(self.polygon, self.polygon[1:] + self.polygon[:1], strict=True)]
+        self.solids: list[tuple[Rect, float, float]] = [(r, -FAR, FAR) for r in outside_rects(self.polygon)]
+        self.keeps: list[Rect] = []
+        self.panes: list[tuple[Rect, float]] = []
+        self.doors: list[tuple[float, float]] = []
+        self.items: list[Item] = []
+        self.blind = False
+        for opening in openings:
+            self._open(room.room_id, opening)
+
+    def _open(self, room_id: str, opening: Opening) -> None:
+        """Keep free what an opening needs: the leaf's sweep, a step in front of it, the light of a window."""
+        (ax, ay), (bx, by) = opening.segment.tolist()
+        wall = min(range(len(self.sides)), key=lambda i: _distance(self.sides[i], (ax + bx) / 2, (ay + by) / 2))
+        side = self.sides[wall]
+        low, high = side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
+        if opening.kind == "window":
+            self.panes.append((side.strip(low, high, 0.0, 0.65), opening.sill))
+            return
+        swings_here = opening.swing is not None and opening.swing.room_id == room_id
+        reach = (high - low) + 0.05 if swings_here else 0.75
+        self.keeps.append(side.strip(low - 0.03, high + 0.03, 0.0, max(reach, 0.75)))
+        self.doors.append(side.point((low + high) / 2, 0.36))
+
+    def fits(self, box: Rect, low: float, high: float) -> bool:
+        """Whether a box is inside the room and clear of everything that stands or must stay free."""
+        if any(meets(box, r) and low < z1 - EPSILON and z0 < high - EPSILON for r, z0, z1 in self.solids):
+            return False
+        if low < LOW and any(meets(box, r) for r in self.keeps):
+            return False
+        return self.blind or not any(high > sill + 0.05 and meets(box, r) for r, sill in self.panes)
+
+    def clear(self, box: Rect, margin: float = 0.0) -> bool:
+        """Whether nothing stands on the floor of a rectangle."""
+        grown = (box[0] - margin, box[1] - margin, box[2] + margin, box[3] + margin)
+        return not any(z0 < LOW and meets(grown, r) for r, z0, _ in self.solids)
+
+    def spans(self, side: Side, depth: float, front: float, low: float, high: float) -> list[tuple[float, float]]:
+        """Return the free stretches of a wall for a box of that depth with `front` metres free before it."""
+        body = side.strip(EPSILON, side.length - EPSILON, EPSILON, depth)
+        whole = side.strip(EPSILON, side.length - EPSILON, EPSILON, depth + front)
+        blocked = [side.along(r) for r, z0, z1 in self.solids if low < z1 and z0 < high and meets(body, r)]
+        if low < LOW:
+            blocked += [side.along(r) for r, z0, _ in self.solids if z0 < LOW and meets(whole, r)]
+            blocked += [side.along(r) for r in self.keeps if meets(body, r)]
+        if not self.blind:
+            blocked += [side.along(r) for r, sill in self.panes if high > sill + 0.05 and meets(body, r)]
+        found, at = [], 0.0
+        for a, b in sorted(blocked):
+            if a > at:
+                found.append((at, min(a, side.length)))
+            at = max(at, b)
+        if at < side.length:
+            found.append((at, side.length))
+        return found
+
+    def add(self, model: Model, spot: Spot, z: float = 0.0, *, keep: Sequence[Rect] = ()) -> Item:
+        """Put a piece down and keep the given rectangles free from now on."""
+        item = Item(model, self.number, (spot.x, spot.y, z), wrap(spot.yaw))
+        self.items.append(item)
+        self.solids.append((item.rect(), z, z + model.size[2]))
+        self.keeps.extend(keep)
+        return item
+
+    def try_add(self, model: Model, spot: Spot, z: float = 0.0, *, keep: Sequence[Rect] = ()) -> bool:
+        """Put a piece down if it fits there and its free rectangles are free."""
+        w, d, h = model.size
+        if not self.fits(box_of(spot.x, spot.y, spot.yaw, w, d), z, z + h) or not all(self.clear(r) for r in keep):
+            return False
+        self.add(model, spot, z, keep=keep)
+        return True
+
+
+def against(
+    rng: np.random.Generator,
+    space: Space,
+    model: Model,
+    *,
+    front: float,
+    corner: float = 0.5,
+    low: float = 0.0,
+    sides: Sequence[int] | None = None,
+) -> Spot | None:
+    """Return a place with the back to a wall, `front` metres free before it; with chance `corner` at a stretch's end."""
+    w, d, h = model.size
+    gap = back_gap(rng)
+    found: list[tuple[int, float, float]] = []
+    for i in range(len(space.sides)) if sides is None else sides:
+        found += [(i, a, b) for a, b in space.spans(space.sides[i], d + gap, front, low, low + h) if b - a >= w + 0.02]
+    if not found:
+        return None
+    i, a, b = found[int(rng.integers(len(found)))]
+    slack = b - a - w
+    if rng.random() < corner:
+        into = min(slack, abs(float(rng.normal(0.0, 0.02))) + 0.005)
+        s = a + w / 2 + into if rng.random() < 0.5 else b - w / 2 - into
+    else:
+        s = a + w / 2 + slack * float(np.clip(rng.normal(0.5, 0.22), 0.0, 1.0))
+    return on_side(space, i, s, d, gap)
+
+
+def on_side(space: Space, side: int, s: float, depth: float, gap: float) -> Spot:
+    """Return the spot of a piece of that depth, `s` along a wall, `gap` off it [m]."""
+    x, y = space.sides[side].point(s, gap + depth / 2)
+    return Spot(x, y, space.sides[side].yaw, side, s)
+
+
+def back_gap(rng: np.random.Generator) -> float:
+    """Draw how far a back stands off the wall: a centimetre or so (medians of 12 real scenes: 0.00-0.04) [m]."""
+    return float(np.clip(abs(rng.normal(0.0, 0.015)) + 0.003, 0.003, 0.06))
+
+
+def outside_rects(polygon: Sequence[tuple[float, float]]) -> list[Rect]:
+    """Return rectangles that cover the plane around a rectilinear polygon, out to FAR metres."""
+    xs = sorted({x for x, _ in polygon})
+    ys = sorted({y for _, y in polygon})
+    x0, x1, y0, y1 = xs[0], xs[-1], ys[0], ys[-1]
+    around: list[Rect] = [
+        (x0 - FAR, y0 - FAR, x0, y1 + FAR),
+        (x1, y0 - FAR, x1 + FAR, y1 + FAR),
+        (x0 - FAR, y0 - FAR, x1 + FAR, y0),
+        (x0 - FAR, y1, x1 + FAR, y1 + FAR),
+    ]
+    for a, b in zip(xs, xs[1:], strict=False):
+        inside = inside_intervals(polygon, (a + b) / 2)
+        edges = [y0, *(v for span in inside for v in span), y1]
+        around += [(a, low, b, high) for low, high in zip(edges[::2], edges[1::2], strict=True) if high - low > EPSILON]
+    return around
+
+
+def inside_intervals(polygon: Sequence[tuple[float, float]], x: float) -> list[tuple[float, float]]:
+    """Return the intervals of y in which the vertical line at `x` runs inside a rectilinear polygon."""
+    crossings = sorted(p[1] for p, q in zip(polygon, [*polygon[1:], polygon[0]], strict=True) if min(p[0], q[0]) < x < max(p[0], q[0]))
+    return list(zip(crossings[::2], crossings[1::2], strict=True))
+
+
+def _side(p: tuple[float, float], q: tuple[float, float]) -> Side:
+    length = math.hypot(q[0] - p[0], q[1] - p[1])
+    return Side(p[0], p[1], round((q[0] - p[0]) / length), round((q[1] - p[1]) / length), length)
+
+
+def _distance(side: Side, x: float, y: float) -> float:
+    """Distance of a point from a wall's segment [m]."""
+    s = (x - side.x) * side.tx + (y - side.y) * side.ty
+    v = -(x - side.x) * side.ty + (y - side.y) * side.tx
+    return math.hypot(v, max(0.0, -s, s - side.length))

@@ -1,0 +1,24 @@
+"""What params.yaml says about the embedded corpus."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pipeline.errors import ContentError
+
+MOST_HOUSES = 1_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class CorpusSettings:
+    """`houses` in number; `models` as a factor on the catalogue (1 is some hundreds); `mess`: with the defects of real files."""
+
+    houses: int
+    models: float
+    mess: bool
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.houses <= MOST_HOUSES:
+            raise ContentError(f"params.yaml: corpus.houses = {self.houses} is not valid", f"give a number from 1 to {MOST_HOUSES}")
+        if not 0 < self.models <= 100:
+            raise ContentError(f"params.yaml: corpus.models = {self.models} is not valid", "give a factor above 0, at most 100")

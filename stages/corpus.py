@@ -1,0 +1,112 @@
+"""The embedded corpus: 3D-FRONT houses, 3D-FUTURE models, PartNet-Mobility/GAPartNet objects, in the formats of the real sets."""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import os
+import shutil
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from functools import partial
+from pathlib import Path
+
+from tqdm import tqdm
+
+from pipeline import params
+from pipeline.corpus.front_writer import DIALECTS, scene_json
+from pipeline.corpus.furniture.catalogue import Catalogue, catalogue
+from pipeline.corpus.future_writer import write_future
+from pipeline.corpus.houses import mess
+from pipeline.corpus.houses.house import make_house
+from pipeline.corpus.houses.stock import Stock
+from pipeline.corpus.partnet_writer import write_partnet
+from pipeline.corpus.settings import CorpusSettings
+from pipeline.seeds import generator
+from stages import runner
+
+RAW = Path("data/raw")
+BATCH = 10
+Task = Callable[[], int]
+
+
+def main(root: Path) -> None:
+    """Make the corpus of params.yaml under data/raw: in a temporary folder, which takes its place when it is whole."""
+    tree = params.read(root / "params.yaml")
+    settings = params.section(CorpusSettings, tree, "corpus")
+    target = root / RAW
+    make(target, int(tree["seed"]), settings, workers=os.cpu_count() or 1)
+
+
+def make(target: Path, seed: int, settings: CorpusSettings, workers: int) -> None:
+    """Write the corpus to `target`, whole or not at all."""
+    making, old = target.with_name(f".{target.name}.making"), target.with_name(f".{target.name}.old")
+    for leftover in (making, old):
+        shutil.rmtree(leftover, ignore_errors=True)
+    making.mkdir(parents=True)
+    jobs = list(tasks(making, seed, settings))
+    with tqdm(total=sum(n for n, _ in jobs), desc="corpus", unit="file", mininterval=0.5) as bar:
+        for done in completed([job for _, job in jobs], workers):
+            bar.update(done)
+    if target.exists():
+        target.replace(old)
+    making.replace(target)
+    shutil.rmtree(old, ignore_errors=True)
+
+
+def tasks(folder: Path, seed: int, settings: CorpusSettings) -> Iterator[tuple[int, Task]]:
+    """Cut the work into batches that depend on nothing but their arguments; yields (number of things, task)."""
+    models = catalogue(seed, settings.models)
+    front = folder / "3d-front"
+    for name in ("3D-FRONT", "3D-FUTURE-model"):
+        (front / name).mkdir(parents=True)
+    (folder / "partnet").mkdir()
+    yield len(models.future), partial(_future, models, front / "3D-FUTURE-model")
+    for start in range(0, len(models.partnet), BATCH):
+        part = models.partnet[start : start + BATCH]
+        yield len(part), partial(_partnet, part, folder / "partnet")
+    for start in range(0, settings.houses, BATCH):
+        indices = range(start, min(start + BATCH, settings.houses))
+        yield len(indices), partial(write_houses, front / "3D-FRONT", seed, settings, indices)
+
+
+def completed(jobs: Sequence[Task], workers: int) -> Iterator[int]:
+    """Run the tasks on that many processes and yield how many things each wrote."""
+    if workers == 1:
+        for job in jobs:
+            yield job()
+        return
+    method = "fork" if "fork" in multiprocessing.get_all_start_methods() else "spawn"
+    with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context(method)) as pool:
+        for future in as_completed([pool.submit(job) for job in jobs]):
+            yield future.result()
+
+
+def write_houses(folder: Path, seed: int, settings: CorpusSettings, indices: range) -> int:
+    """Write the houses of these indices, one scene file each, the two dialects in their observed shares."""
+    stock = Stock(catalogue(seed, settings.models).future)
+    for index in indices:
+        house = make_house(seed, index, stock)
+        rng = generator(seed, "front", index)
+        dialect = DIALECTS[int(rng.random() >= 5 / 12)]
+        litter = mess.Litter()
+        if settings.mess:
+            house = mess.disturb(rng, house, stock)
+            litter = mess.litter(rng, len(house.items))
+        text = json.dumps(scene_json(house, dialect, rng, litter), separators=(",", ":"))
+        (folder / f"{house.uid}.json").write_text(text, encoding="utf-8")
+    return len(indices)
+
+
+def _future(models: Catalogue, folder: Path) -> int:
+    write_future(models.future, folder)
+    return len(models.future)
+
+
+def _partnet(models: Sequence[object], folder: Path) -> int:
+    write_partnet(models, folder)
+    return len(models)
+
+
+if __name__ == "__main__":
+    runner.run(main)
