@@ -79,7 +79,7 @@ def _refuse_strangers(folder: Path, commits: list[Commit], header: Header) -> No
     """Raise for a file in the dataset's folders that no commit vouches for; other files at the top are nobody's business."""
     known = {path for commit in commits for path in commit.files}
     known |= {f"{COMMITS}/{name}.json" for name in (*map(shard_name, range(header.shards)), ASSETS)}
-    families = {PurePosixPath(path).parts[0] for path in known}
+    families = {ASSETS, *(PurePosixPath(path).parts[0] for path in known)}
     for path in _files(folder):
         name = path.relative_to(folder).as_posix()
         first = PurePosixPath(name).parts[0]

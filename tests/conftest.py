@@ -1,0 +1,19 @@
+"""Fixtures that several packages' tests share."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture(scope="session")
+def dataset_folder(tmp_path_factory):
+    """A dataset of ten made-up homes in three shards; nobody writes to it."""
+    sys.path.insert(0, str(ROOT / "tests" / "shards"))
+    import made
+
+    folder = tmp_path_factory.mktemp("datasets") / "made"
+    made.fill(folder)
+    return folder

@@ -1,0 +1,102 @@
+"""Rows and files of made-up homes, and a program that makes a dataset of them slowly enough to be killed."""
+
+import hashlib
+import sys
+import time
+from pathlib import Path
+
+import pyarrow as pa
+
+from pipeline.shards import TABLES, Header, ShardContent, commit_library, commit_shard, gather, open_or_create, scene_id
+
+HEADER = Header(seed=5, count=10, shard_size=4, licence="CC0-1.0", digests={"params": "p" * 64, "weights": "w" * 64})
+
+
+def value(column, index):
+    """A value of a column's type that depends on the home's index."""
+    kind = column.type
+    if column.nullable and index % 2:
+        return None
+    if pa.types.is_fixed_size_list(kind):
+        return [0.25 * index] * kind.list_size
+    if pa.types.is_list(kind):
+        if pa.types.is_string(kind.value_type):
+            return []
+        return [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0 + index], [0.0, 3.0 + index]]
+    if pa.types.is_boolean(kind):
+        return bool(index % 2)
+    if pa.types.is_integer(kind):
+        return index
+    if pa.types.is_floating(kind):
+        return index / 2
+    return ""
+
+
+def row(table, home, base=5, /, **given):
+    columns = {c.name: value(c, home) for c in TABLES[table].columns}
+    if "scene_id" in columns:
+        columns["scene_id"] = scene_id(base, home)
+    return {**columns, **given}
+
+
+def home(index, seed=5):
+    """Rows and files of one home, as the factory hands them over."""
+    name = scene_id(seed, index)
+    split = ("train", "val", "test")[index % 3]
+    program = '{"version": 1}' if index % 2 else ""
+    rows = {
+        "scenes": [
+            row("scenes", index, seed, index=index, seed=seed, split=split, usd=f"usd/{name}.usdc", prompt=f"home {index}", program=program)
+        ],
+        "rooms": [row("rooms", index, seed, room_id=f"room_{i}", type=("bedroom", "kitchen")[i]) for i in range(2)],
+        "openings": [
+            row("openings", index, seed, opening_id="door_0", rooms=["room_0", "room_1"], kind="door", segment=[[1.0, 0.0], [1.9, 0.0]])
+        ],
+        "objects": [
+            row(
+                "objects",
+                index,
+                seed,
+                object_id=f"thing_{i}",
+                room_id=f"room_{i % 2}",
+                asset_id=f"asset_{i % 2}",
+                category=("bed", "stove")[i % 2],
+            )
+            for i in range(1 + index % 3)
+        ],
+        "joints": [row("joints", index, seed, object_id=o, joint_id="joint_0") for o in ("thing_0", "door_0")],
+        "rejects": [row("rejects", index, seed, what="home", where=name, reason="too_crowded")] if index % 4 == 3 else [],
+    }
+    return rows, {f"usd/{name}.usdc": hashlib.sha256(name.encode()).digest() * 20, f"previews/{name}.png": name.encode()}
+
+
+def shard(number, header=HEADER):
+    return gather(number, (home(i, header.seed) for i in header.indices(number)))
+
+
+def library(folder):
+    for i in range(2):
+        (folder / f"asset_{i}" / "textures").mkdir(parents=True)
+        (folder / f"asset_{i}" / f"asset_{i}.usda").write_text(f"#usda 1.0 {i}")
+        (folder / f"asset_{i}" / "textures" / "wood.png").write_bytes(bytes([i] * 100))
+
+
+def fill(folder, header=HEADER, nap=0.0, numbers=None):
+    """Make what is missing of a dataset; returns the numbers of the shards that were made."""
+    with open_or_create(Path(folder), header) as dataset:
+        commit_library(dataset, library)
+        missing = [n for n in dataset.missing() if numbers is None or n in numbers]
+        for number in missing:
+            content: ShardContent = shard(number, header)
+            time.sleep(nap)
+            commit_shard(dataset, number, content)
+    return missing
+
+
+def snapshot(folder):
+    """Every file of a folder: its bytes by its relative path."""
+    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in Path(folder).rglob("*") if p.is_file()}
+
+
+if __name__ == "__main__":
+    fill(sys.argv[1], Header(seed=5, count=24, shard_size=4, licence="CC0-1.0"), nap=float(sys.argv[2]))

@@ -1,0 +1,194 @@
+"""Datasets on disk: whole or not at all, resumed when equal, refused when not, never rewritten."""
+
+import json
+import os
+import shutil
+from dataclasses import replace
+
+import pytest
+
+import made
+from pipeline.errors import ContentError, UsageError
+from pipeline.shards import Header, ShardContent, check, commit_library, commit_shard, committed, open_or_create, read_header
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return tmp_path / "set"
+
+
+def test_same_homes_same_bytes_in_any_order(tmp_path):
+    made.fill(tmp_path / "a")
+    for number in (2, 0, 1):
+        made.fill(tmp_path / "b", numbers={number})
+    assert made.snapshot(tmp_path / "a") == made.snapshot(tmp_path / "b")
+
+
+def test_layout_is_that_of_the_documentation(dataset_folder):
+    names = set(made.snapshot(dataset_folder))
+    assert {
+        "dataset.json",
+        "commits/assets.json",
+        "commits/shard-00002.json",
+        "scenes/shard-00001.parquet",
+        "rejects/shard-00000.parquet",
+    } <= names
+    assert "usd/shard-00001/s5_00000004.usdc" in names
+    assert not [n for n in names if "tmp" in n or "staging" in n]
+
+
+def test_nothing_in_a_dataset_tells_where_or_when_it_was_made(dataset_folder):
+    everything = b"".join(made.snapshot(dataset_folder).values())
+    assert str(dataset_folder).encode() not in everything
+    assert os.uname().nodename.encode() not in everything
+
+
+def test_header_round_trips(dataset_folder):
+    assert read_header(dataset_folder) == made.HEADER
+
+
+def test_an_equal_dataset_is_resumed_and_committed_shards_stay(folder):
+    made.fill(folder, numbers={1})
+    before = {p: (p.stat().st_mtime_ns, p.stat().st_ino) for p in folder.rglob("*shard-00001*")}
+    assert made.fill(folder) == [0, 2]
+    assert made.fill(folder) == []
+    assert {p: (p.stat().st_mtime_ns, p.stat().st_ino) for p in before} == before
+
+
+def test_full_shards_may_grow(tmp_path):
+    made.fill(tmp_path / "a", replace(made.HEADER, count=8))
+    assert made.fill(tmp_path / "a", made.HEADER) == [2]
+    made.fill(tmp_path / "b", made.HEADER)
+    assert made.snapshot(tmp_path / "a") == made.snapshot(tmp_path / "b")
+
+
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [
+        ({"seed": 6}, "seed 5, not 6"),
+        ({"count": 9}, "count 10, not 9"),
+        ({"count": 12}, "not full"),
+        ({"licence": "MIT"}, "licence"),
+        ({"digests": {"params": "p" * 64, "weights": "x" * 64}}, "digest of weights wwwwwwwwwwww, not xxxxxxxxxxxx"),
+    ],
+)
+def test_another_dataset_is_refused_and_left_alone(folder, change, word):
+    made.fill(folder)
+    before = made.snapshot(folder)
+    with pytest.raises(UsageError, match=word):
+        made.fill(folder, replace(made.HEADER, **change))
+    assert made.snapshot(folder) == before
+
+
+def test_a_folder_that_dvc_owns_may_discard(folder):
+    made.fill(folder)
+    (folder / "notes.txt").write_text("mine")
+    other = replace(made.HEADER, seed=6, count=4)
+    with open_or_create(folder, other, discard=True) as dataset:
+        assert dataset.missing() == [0]
+        commit_library(dataset, made.library)
+        commit_shard(dataset, 0, made.shard(0, other))
+    assert check(folder).homes == 4
+    assert (folder / "notes.txt").read_text() == "mine"
+
+
+def test_a_folder_with_other_files_is_refused_and_left_alone(folder):
+    folder.mkdir()
+    (folder / "thesis.tex").write_text("precious")
+    with pytest.raises(UsageError, match="other files"):
+        made.fill(folder)
+    assert made.snapshot(folder) == {"thesis.tex": b"precious"}
+
+
+def test_a_file_in_the_place_of_the_folder_is_refused(folder):
+    folder.write_text("precious")
+    with pytest.raises(UsageError, match="not a folder"):
+        made.fill(folder)
+    with pytest.raises(UsageError, match="cannot make"):
+        made.fill(folder / "below")
+    assert folder.read_text() == "precious"
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "{}", '{"format": "sfgen-dataset-1"}'])
+def test_a_broken_header_is_named(folder, text):
+    made.fill(folder)
+    (folder / "dataset.json").write_text(text)
+    with pytest.raises(ContentError, match=r"dataset\.json"):
+        made.fill(folder)
+
+
+def test_impossible_numbers_in_a_header_are_named(folder):
+    made.fill(folder)
+    data = json.loads((folder / "dataset.json").read_text())
+    (folder / "dataset.json").write_text(json.dumps({**data, "shard_size": 0}))
+    with pytest.raises(ContentError, match="cannot be"):
+        made.fill(folder)
+
+
+def test_two_runs_never_write_one_dataset(folder):
+    with open_or_create(folder, made.HEADER), pytest.raises(UsageError, match="another run"):
+        made.fill(folder)
+    made.fill(folder)
+
+
+def test_leftovers_of_a_killed_run_are_cleaned(folder, dataset_folder):
+    made.fill(folder)
+    (folder / "commits" / "shard-00001.json").unlink()  # killed between the last rename and the commit
+    (folder / "usd" / "shard-00001" / "stray.usdc").write_text("half")
+    (folder / ".staging" / "shard-00002").mkdir(parents=True)
+    (folder / ".staging" / "shard-00002" / "half").write_text("half")
+    (folder / "commits" / ".tmp-1-shard-00001.json").write_text("half")
+    assert made.fill(folder) == [1]
+    assert made.snapshot(folder) == made.snapshot(dataset_folder)
+
+
+def test_a_shard_that_lost_a_file_is_made_again(folder, dataset_folder):
+    made.fill(folder)
+    (folder / "objects" / "shard-00000.parquet").unlink()
+    assert made.fill(folder) == [0]
+    assert made.snapshot(folder) == made.snapshot(dataset_folder)
+
+
+def test_a_library_that_lost_a_file_is_made_again(folder, dataset_folder):
+    made.fill(folder)
+    shutil.rmtree(folder / "assets" / "asset_1")
+    made.fill(folder)
+    assert made.snapshot(folder) == made.snapshot(dataset_folder)
+
+
+def test_a_committed_shard_is_never_rewritten(folder):
+    made.fill(folder)
+    with open_or_create(folder, made.HEADER) as dataset:
+        assert committed(dataset, 0)
+        with pytest.raises(ContentError, match="never rewritten"):
+            commit_shard(dataset, 0, made.shard(0))
+
+
+@pytest.mark.parametrize(
+    "path", ["/etc/x", "../x", "usd/x", "usd/shard-00001/x", "scenes/shard-00000/x", ".x/shard-00000/y", "usd/shard-00000/../../x"]
+)
+def test_a_file_outside_the_shards_folders_is_refused(folder, path):
+    content = made.shard(0)
+    with open_or_create(folder, made.HEADER) as dataset, pytest.raises(ContentError, match="may not lie"):
+        commit_shard(dataset, 0, ShardContent(content.rows, {path: b""}))
+    assert list(made.snapshot(folder)) == ["dataset.json"]
+
+
+def test_a_shard_must_bring_its_own_homes(folder):
+    with open_or_create(folder, made.HEADER) as dataset:
+        with pytest.raises(ContentError, match="brings homes"):
+            commit_shard(dataset, 1, ShardContent(made.shard(0).rows))
+        with pytest.raises(ContentError, match="unknown tables"):
+            commit_shard(dataset, 0, ShardContent({"chairs": []}))
+
+
+@pytest.mark.parametrize("numbers", [{"count": 0}, {"count": -5}, {"shard_size": 0}])
+def test_a_dataset_of_nothing_is_refused(folder, numbers):
+    with pytest.raises(UsageError):
+        made.fill(folder, replace(made.HEADER, **numbers))
+    assert not folder.exists()
+
+
+def test_shards_of_a_header():
+    header = Header(0, 130, 64, "x")
+    assert [len(header.indices(n)) for n in range(header.shards)] == [64, 64, 2]
