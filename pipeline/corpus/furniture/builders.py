@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from pipeline.corpus.furniture import seating, sofas, storage, tables
+from pipeline.corpus.furniture import appliances, bath, beds, decor, kitchen, lamps, seating, sofas, storage, tables
 from pipeline.corpus.furniture.finishes import Scheme
 from pipeline.corpus.furniture.shape import Shape
 
@@ -23,6 +23,27 @@ BUILDERS: Mapping[str, Builder] = {
     "tv_stand": storage.tv_stand,
     "wine_cabinet": storage.wine_cabinet,
     "shoe_cabinet": storage.shoe_cabinet,
+    "double_bed": beds.bed,
+    "single_bed": beds.bed,
+    "kids_bed": beds.kids_bed,
+    "pendant_lamp": lamps.pendant_lamp,
+    "ceiling_lamp": lamps.ceiling_lamp,
+    "floor_lamp": lamps.floor_lamp,
+    "wall_lamp": lamps.wall_lamp,
+    "kitchen_cabinet": kitchen.kitchen_cabinet,
+    "wall_cabinet": kitchen.wall_cabinet,
+    "sink_cabinet": kitchen.sink_cabinet,
+    "vanity": kitchen.vanity,
+    "refrigerator": appliances.refrigerator,
+    "oven": appliances.oven,
+    "dishwasher": appliances.dishwasher,
+    "microwave": appliances.microwave,
+    "washing_machine": appliances.washing_machine,
+    "toilet": bath.toilet,
+    "bathtub": bath.bathtub,
+    "shower": bath.shower,
+    "plant": decor.plant,
+    "trash_can": decor.trash_can,
     "desk": tables.desk,
     "dressing_table": tables.dressing_table,
     "dining_table": tables.dining_table,

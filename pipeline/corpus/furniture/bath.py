@@ -1,0 +1,119 @@
+"""Bathroom fixtures: toilet, bathtub, shower."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.corpus.furniture.finishes import CERAMIC, GLASS, PLASTIC_WHITE, STEEL, Scheme
+from pipeline.corpus.furniture.fronts import lid
+from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, pieces
+from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, ring, rod, rounded, shell, slab, stack
+from pipeline.corpus.furniture.storage import Size
+
+
+def _oval(rx: float, y: tuple[float, float], z: float, n: int = 24) -> NDArray[np.float64]:
+    """Return an ellipse (n, 3) that spans +-rx and the interval `y` at height `z`."""
+    ry = (y[1] - y[0]) / 2
+    return np.column_stack([circle(rx, n, (0.0, (y[0] + y[1]) / 2), ry / rx), np.full(n, z)])
+
+
+def toilet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """A bowl on a foot, a tank with a button or a lever, and a seat and a lid that fold up against the tank."""
+    w, d, h = size
+    rim = 0.52 * h
+    tank_y = (d / 2 - 0.27 * d, d / 2)
+    bowl_y = (-d / 2 + 0.004, tank_y[0] - 0.035)
+    rx = 0.47 * w
+    cy, ry = (bowl_y[0] + bowl_y[1]) / 2, (bowl_y[1] - bowl_y[0]) / 2
+
+    def span(share: float) -> tuple[float, float]:
+        return (cy - share * ry, cy + share * ry)
+
+    foot = stack([_oval(0.62 * rx, span(0.72), 0.0), _oval(0.58 * rx, span(0.70), 0.12 * h)])
+    neck = stack([_oval(0.58 * rx, span(0.70), 0.12 * h), _oval(0.70 * rx, span(0.80), 0.62 * rim)])
+    wall = shell([_oval(0.70 * rx, span(0.80), 0.62 * rim), _oval(rx, span(1.0), rim)], [_oval(0.42 * rx, span(0.45), 0.62 * rim), _oval(0.72 * rx, span(0.78), rim)])
+    bridge = box((-0.36 * w, 0.36 * w), (bowl_y[1] - 0.06, d / 2 - 0.02), (0.45 * rim, rim), 0.012)
+    tank = cushion((-0.5 * w, 0.5 * w), tank_y, (rim, h - 0.03), 0.025)
+    base = pieces("bowl", [foot, neck, *wall], CERAMIC) + pieces("bridge", bridge, CERAMIC) + pieces("tank", tank, CERAMIC)
+    base += pieces("tank_lid", cushion((-0.5 * w, 0.5 * w), (tank_y[0] - 0.006, tank_y[1]), (h - 0.029, h - 0.006), 0.01), CERAMIC)
+    hinge_y = bowl_y[1] - 0.012
+    seat_z, lid_z = (rim + 0.004, rim + 0.019), (rim + 0.022, rim + 0.036)
+    sx = 0.98 * rx
+    rims = [
+        [_oval(sx, (bowl_y[0] - 0.002, hinge_y), z) for z in seat_z],
+        [_oval(0.66 * sx, (cy - 0.74 * ry, hinge_y - 0.09), z) for z in seat_z],
+    ]
+    seat = pieces("seat", shell(rims[0], rims[1]), PLASTIC_WHITE)
+    cover = pieces("lid", slab(_oval(sx, (bowl_y[0] - 0.002, hinge_y), 0.0)[:, :2], lid_z, 0.004), PLASTIC_WHITE)
+    opening = math.radians(92)
+    movers: list[Mover] = [
+        lid("seat", seat, (0.0, hinge_y, seat_z[1]), opening),
+        lid("lid", cover, (0.0, hinge_y, lid_z[1]), opening),
+    ]
+    if form == "lever":
+        movers.append(_lever(w, tank_y[0], h))
+    else:
+        cap = pieces("button", revolve([(0.022, h - 0.0045), (0.022, h - 0.001), (0.018, h)], 16, (0.0, sum(tank_y) / 2)), STEEL)
+        movers.append(Mover("button", cap, "prismatic", (0, 0, -1), (0.0, sum(tank_y) / 2, h), 0.0015, "slider_button", "button", UP))
+    return Shape(base, tuple(movers))
+
+
+def _lever(w: float, y: float, h: float) -> Mover:
+    """Return the flushing lever at the front of the tank: turns down by half a radian."""
+    at = (-0.34 * w, y - 0.004, h - 0.1)
+    solids = [rod((at[0], at[1], at[2]), (at[0], at[1] - 0.014, at[2]), 0.010, n=10), box((at[0] - 0.004, at[0] + 0.075), (at[1] - 0.022, at[1] - 0.014), (at[2] - 0.007, at[2] + 0.007), 0.002)]
+    return Mover("lever", pieces("lever", solids, STEEL), "revolute", (0, 1, 0), at, 0.5, "hinge_handle", "lever")
+
+
+def bathtub(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """A tub with aprons, or one that stands free on its oval foot; a tap at its head."""
+    w, d, h = size
+    n = 32
+    rim = h if form == "free" else h - 0.12
+    outer = [rounded((-w / 2, w / 2), (-d / 2, d / 2), 0.02 if form == "apron" else 0.45 * d, n // 4 - 1)] * 2
+    if form == "free":
+        outer = [0.82 * outer[0], outer[1]]
+    inner_high = rounded((-w / 2 + 0.07, w / 2 - 0.07), (-d / 2 + 0.07, d / 2 - 0.07), 0.4 * (d - 0.14), n // 4 - 1)
+    inner_low = inner_high * np.array([0.84, 0.78])
+    z = (0.14, rim)
+    wall = shell(
+        [np.column_stack([o, np.full(len(o), zz)]) for o, zz in zip(outer, z, strict=True)],
+        [np.column_stack([o, np.full(len(o), zz)]) for o, zz in ((inner_low, z[0]), (inner_high, z[1]))],
+    )
+    floor = slab(outer[0], (0.0, 0.14))
+    base = pieces("tub", [*wall, floor], CERAMIC)
+    if form == "apron":
+        x = w / 2 - 0.035
+        spout = [rod((x, 0, rim), (x, 0, h - 0.01), 0.014, n=10), rod((x, 0, h - 0.018), (x - 0.13, 0, h - 0.03), 0.012, n=10)]
+        spout += [rod((x, s * 0.09, rim), (x, s * 0.09, rim + 0.05), 0.016, 0.02, 10) for s in (-1, 1)]
+        base += pieces("tap", spout, scheme.handle)
+    return Shape(base)
+
+
+def shower(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """A tray with two glass walls, an open entrance at the front, a rail with a head and a mixer at the back wall."""
+    w, d, h = size
+    tray = 0.06
+    metal = scheme.handle
+    rimmed = [
+        box((-w / 2, w / 2), (-d / 2, d / 2), (0, tray - 0.02), 0.003),
+        *(box((s * w / 2 - 0.04 if s > 0 else -w / 2, w / 2 if s > 0 else -w / 2 + 0.04), (-d / 2, d / 2), (tray - 0.02, tray)) for s in (-1, 1)),
+        *(box((-w / 2 + 0.04, w / 2 - 0.04), (-d / 2, -d / 2 + 0.04) if s < 0 else (d / 2 - 0.04, d / 2), (tray - 0.02, tray)) for s in (-1, 1)),
+    ]
+    base: tuple[Piece, ...] = pieces("tray", rimmed, CERAMIC)
+    side = -1 if rng.random() < 0.5 else 1
+    gx = (side * (w / 2 - 0.012) - 0.004, side * (w / 2 - 0.012) + 0.004)
+    base += pieces("glass_side", box(gx, (-d / 2 + 0.012, d / 2 - 0.002), (tray, h)), GLASS)
+    half = (side * (w / 2 - 0.018), side * (w / 2 - 0.02 - 0.42 * w))
+    base += pieces("glass_front", box((min(half), max(half)), (-d / 2 + 0.008, -d / 2 + 0.016), (tray, h)), GLASS)
+    posts = [box((half[1] - 0.01, half[1] + 0.01), (-d / 2 + 0.002, -d / 2 + 0.022), (tray, h), 0.002), box((gx[0] - 0.006, gx[1] + 0.006), (-d / 2 + 0.002, -d / 2 + 0.022), (tray, h), 0.002)]
+    base += pieces("posts", posts, metal)
+    pole: list[Solid] = [rod((0, d / 2 - 0.05, 0.95), (0, d / 2 - 0.05, h - 0.01), 0.011, n=8), rod((0, d / 2 - 0.05, h - 0.02), (0, d / 2 - 0.33, h - 0.02), 0.010, n=8)]
+    pole += [rod((0, d / 2, z), (0, d / 2 - 0.05, z), 0.009, n=8) for z in (1.0, h - 0.12)]
+    pole += revolve([(0.11, h - 0.055), (0.11, h - 0.045), (0.03, h - 0.022)], 20, (0.0, d / 2 - 0.33))
+    base += pieces("rail", pole, metal) + pieces("mixer", box((-0.13, 0.13), (d / 2 - 0.05, d / 2), (1.02, 1.07), 0.008), metal)
+    drain = ring((0.045, 0.045), (0.03, 0.03), (tray - 0.02, tray - 0.017), 16)
+    return Shape(base + pieces("drain", drain, STEEL))

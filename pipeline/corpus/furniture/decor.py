@@ -1,0 +1,113 @@
+"""Plants and waste bins."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pipeline.corpus.furniture.finishes import CERAMIC, LEAF, PLASTIC, SOIL, STEEL, Finish, Scheme, shade
+from pipeline.corpus.furniture.fronts import lid
+from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, pieces
+from pipeline.corpus.furniture.solids import Solid, box, revolve, ring, rod, slab, stack
+from pipeline.corpus.furniture.solids import circle as circle_outline
+from pipeline.corpus.furniture.storage import Size, pick
+
+
+def leaf(root: np.ndarray, tip: np.ndarray, width: float, sag: float) -> Solid:
+    """Return a leaf as a thin rhombic bipyramid from `root` to `tip` [m], its middle `width` wide and lowered by `sag`."""
+    axis = tip - root
+    side = np.cross(axis, (0.0, 0.0, 1.0))
+    side = side / np.linalg.norm(side) if np.linalg.norm(side) > 1e-6 else np.array([1.0, 0, 0])
+    up = np.cross(side, axis / np.linalg.norm(axis))
+    middle = root + 0.45 * axis + up * sag
+    belt = [middle + side * width / 2, middle + up * 0.004, middle - side * width / 2, middle - up * 0.004]
+    vertices = np.array([root, tip, *belt])
+    faces = []
+    for k in range(4):
+        a, b = 2 + k, 2 + (k + 1) % 4
+        faces += [(0, a, b), (1, b, a)]
+    solid = Solid(vertices, tuple(faces))
+    centre = vertices.mean(axis=0)
+    a, b, c = (vertices[list(solid.faces[0])][k] for k in range(3))
+    if np.dot(np.cross(b - a, c - a), (a + b + c) / 3 - centre) < 0:
+        return Solid(vertices, tuple(f[::-1] for f in faces))
+    return solid
+
+
+def plant(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """A pot with a bush, a palm, or upright leaves."""
+    w, d, h = size
+    pot_r, pot_h = min(0.34 * w, 0.2), min(0.32 * h, 0.36)
+    pot = ring((0.75 * pot_r, pot_r), (0.75 * pot_r - 0.012, pot_r - 0.012), (0.012, pot_h), 20)
+    clay = Finish("clay", (0.42, 0.17, 0.09), 0.8, density=1800)
+    finish = (CERAMIC, clay, scheme.front)[int(rng.integers(3))]
+    base: tuple[Piece, ...] = pieces("pot", [*pot, slab(circle_outline(0.75 * pot_r, 20), (0.0, 0.012))], finish)
+    base += pieces("soil", revolve([(0.72 * pot_r, 0.012), (0.92 * pot_r - 0.012, 0.9 * pot_h)], 20), SOIL)
+    green = Finish("leaf", shade(rng, LEAF.color, 0.25), 0.6, density=300)
+    crown, top = 0.9 * pot_h, h
+    leaves: list[Solid] = []
+    stems: list[Solid] = []
+    golden = math.pi * (3 - math.sqrt(5))
+    if form == "tall":  # upright sword-like leaves
+        for k in range(18):
+            a, share = k * golden, (k + 0.5) / 18
+            reach = 0.5 * w * share
+            root = np.array([0.3 * pot_r * math.cos(a), 0.3 * pot_r * math.sin(a), crown])
+            tip = np.array([reach * math.cos(a), reach * math.sin(a), top - (top - crown) * 0.55 * share**1.5])
+            leaves.append(leaf(root, tip, 0.055 + 0.02 * (1 - share), -0.05 * share))
+    elif form == "palm":
+        trunk = crown + 0.45 * (top - crown)
+        stems = [rod((0, 0, crown - 0.02), (0.01, 0.0, trunk), 0.02, 0.014, 8)]
+        for k in range(22):
+            a, share = k * golden, (k + 0.5) / 22
+            reach = 0.5 * w * (0.5 + 0.5 * share)
+            root = np.array([0.01, 0.0, trunk - 0.02])
+            tip = np.array([reach * math.cos(a), reach * math.sin(a), trunk + (top - trunk) * (1 - 1.3 * share**2)])
+            leaves.append(leaf(root, tip, 0.06, 0.10 * share * (top - trunk) + 0.02))
+    else:
+        count = 64
+        for k in range(count):
+            share = (k + 0.5) / count
+            a, polar = k * golden, math.acos(1 - 1.75 * share)
+            middle = crown + 0.55 * (top - crown)
+            direction = np.array([math.sin(polar) * math.cos(a), math.sin(polar) * math.sin(a), math.cos(polar)])
+            radius = np.array([0.5 * w, 0.5 * d, 0.45 * (top - crown)])
+            tip = np.array([0, 0, middle]) + radius * direction * float(rng.uniform(0.9, 1.0))
+            root = np.array([0, 0, middle]) + radius * direction * 0.45
+            leaves.append(leaf(root, tip, 0.13 * w + 0.03, 0.02))
+            if k % 4 == 0:
+                stems.append(rod((0, 0, crown - 0.01), tuple(0.8 * root + 0.2 * tip), 0.006, 0.004, 5))
+    bark = Finish("bark", (0.12, 0.07, 0.035), 0.9, density=500)
+    return Shape(base + pieces("stems", stems, bark) + pieces("leaves", leaves, green))
+
+
+def trash_can(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """A bin with a lid: round with a hinge at the back, square, or with a lid that slides."""
+    w, d, h = size
+    finish = (STEEL, PLASTIC, Finish("enamel_bin", shade(rng, (0.6, 0.58, 0.52), 0.3), 0.35, density=900))[int(rng.integers(3))]
+    top = h - 0.035
+    if form == "round":
+        r = w / 2 - 0.006
+        body = ring((0.9 * r, r), (0.9 * r - 0.008, r - 0.008), (0.015, top), 24)
+        base = pieces("body", [*body, slab(circle_outline(0.9 * r, 24), (0.0, 0.015))], finish)
+        hinge = (0.0, r + 0.002, top + 0.004)
+        cover = pieces("lid", revolve([(w / 2 - 0.004, top + 0.003), (w / 2 - 0.004, top + 0.015), (0.7 * r, h)], 24), finish)
+        return Shape(base, (lid("lid", cover, hinge, math.radians(85)),))
+    x, y, t = (-w / 2 + 0.004, w / 2 - 0.004), (-d / 2 + 0.004, d / 2 - 0.004), 0.008
+    walls = [
+        box(x, y, (0.0, t)),
+        box((x[0], x[0] + t), y, (t, top)),
+        box((x[1] - t, x[1]), y, (t, top)),
+        box((x[0] + t, x[1] - t), (y[0], y[0] + t), (t, top)),
+        box((x[0] + t, x[1] - t), (y[1] - t, y[1]), (t, top)),
+    ]
+    base = pieces("body", walls, finish)
+    low = np.column_stack([np.array([(-w / 2, -d / 2), (w / 2, -d / 2), (w / 2, d / 2), (-w / 2, d / 2)]), np.full(4, top + 0.003)])
+    shrink = 0.9 if form == "box" else 0.97
+    cover_solid = stack([low, low + np.array([0, 0, 0.012]), low * np.array([shrink, shrink, 1]) + np.array([0, 0, h - top - 0.003])])
+    cover = pieces("lid", cover_solid, finish if pick(rng, "same dark") == "same" else PLASTIC)
+    if form == "box":
+        return Shape(base, (lid("lid", cover, (0.0, d / 2, top + 0.003), math.radians(88)),))
+    axis = (1.0, 0.0, 0.0) if rng.random() < 0.5 else (-1.0, 0.0, 0.0)
+    return Shape(base, (Mover("lid", cover, "prismatic", axis, (0.0, 0.0, h), 0.8 * w, "slider_lid", "lid", UP),))
