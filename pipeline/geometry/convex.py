@@ -111,14 +111,6 @@ def distance_to(x: float, y: float, polygon: Floats) -> float:
     return 0.0 if inside else math.sqrt(best)
 
 
-def hull(points: Floats) -> Floats:
-    """Return the convex hull (H, 2) of points (N, 2), counter-clockwise (monotone chain); fewer than 3 if degenerate."""
-    ordered = np.unique(np.round(points, 7), axis=0)
-    if len(ordered) < 3:
-        return ordered
-    return _chain(ordered)
-
-
 @compiled
 def _chain(ordered: Floats) -> Floats:
     n = ordered.shape[0]
@@ -131,9 +123,16 @@ def _chain(ordered: Floats) -> Floats:
             while size >= floor:
                 ax, ay = found[size - 2, 0], found[size - 2, 1]
                 bx, by = found[size - 1, 0], found[size - 1, 1]
-                if (bx - ax) * (ordered[i, 1] - ay) - (by - ay) * (ordered[i, 0] - ax) > 1e-12:
+                if (bx - ax) * (ordered[i, 1] - ay) - (by - ay) * (ordered[i, 0] - ax) > 1e-10:
                     break
                 size -= 1
             found[size, 0], found[size, 1] = ordered[i, 0], ordered[i, 1]
             size += 1
     return found[: size - 1].copy()
+
+
+@compiled
+def hull(points: Floats) -> Floats:
+    """Return the convex hull (H, 2) of points (N, 2), counter-clockwise (Andrew 1979); fewer than 3 if degenerate."""
+    by_y = points[np.argsort(points[:, 1], kind="mergesort")]
+    return _chain(by_y[np.argsort(by_y[:, 0], kind="mergesort")])

@@ -120,6 +120,18 @@ def shell(plan: Plan, level: int) -> Shell:
     return Shell(height, outline, region, cuts, tuple(prisms), leaves)
 
 
+def leaves(plan: Plan) -> tuple[Leaf, ...]:
+    """Return the door leaves of all storeys, in the order of the openings, without building walls."""
+    found = []
+    for opening in plan.openings:
+        if opening.swing is not None:
+            inner = {room.room_id: Polygon(room.polygon) for room in plan.rooms if room.room_id in opening.rooms}
+            leaf = _leaf(_cut(opening, inner, plan), inner)
+            if leaf is not None:
+                found.append(leaf)
+    return tuple(found)
+
+
 def room_panels(room: Room, cuts: tuple[Cut, ...]) -> list[Panel]:
     """Return the visible wall faces of a room, with holes where openings are."""
     return _ring_panels(room.room_id, room.polygon, cuts, room.height)

@@ -1,0 +1,99 @@
+"""The floor of rooms as a raster: where a round robot can stand, and which of it hangs together through the openings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.plan import Opening, Room
+from pipeline.geometry.occupancy import Mask, Raster, components, covered, standing
+from pipeline.geometry.prisms import Prisms
+
+Floats = NDArray[np.float64]
+
+PASSABLE = ("door", "open", "portal", "entrance")  # kinds of openings that one walks through
+
+
+@dataclass(frozen=True, slots=True)
+class Floor:
+    """Bare floor: `room` (x, y) holds the number of the room of each cell, -1 elsewhere; `free` adds the passages."""
+
+    raster: Raster
+    room: NDArray[np.int16]
+    free: Mask
+
+
+@dataclass(frozen=True, slots=True)
+class Walk:
+    """Furnished floor: `labels` (x, y) number the connected places of the robot's centre from 1; `radius` in cells."""
+
+    floor: Floor
+    labels: NDArray[np.int32]
+    radius: float
+
+    def label_near(self, point: Floats, within: float) -> int:
+        """Return the label of the standing place nearest to `point` (2,) [m], 0 when none is `within` [m]."""
+        raster = self.floor.raster
+        reach = int(np.ceil(within / raster.cell)) + 1
+        i, j = raster.index(point[None])[0]
+        i0, j0 = max(0, i - reach), max(0, j - reach)
+        window = self.labels[i0 : i + reach + 1, j0 : j + reach + 1]
+        x, y = np.nonzero(window)
+        if not len(x):
+            return 0
+        centres = raster.origin + (np.stack([x + i0, y + j0], 1) + 0.5) * raster.cell
+        squares = ((centres - point) ** 2).sum(1)
+        best = int(np.argmin(squares))
+        return int(window[x[best], y[best]]) if squares[best] <= within**2 else 0
+
+    def largest_label(self, where: Mask) -> int:
+        """Return the label with most cells in a mask, 0 when there is none."""
+        counts = np.bincount(self.labels[where], minlength=1)
+        counts[0] = 0
+        return int(np.argmax(counts)) if counts.any() else 0
+
+    def reached(self, label: int) -> Mask:
+        """Return the places of the robot's centre in one connected part."""
+        return (self.labels == label) if label else np.zeros(self.labels.shape, np.bool_)
+
+    def covered(self, label: int) -> Mask:
+        """Return the floor that the robot covers while it moves about one connected part."""
+        return covered(self.reached(label), self.radius)
+
+    def shares(self, mask: Mask, rooms: int) -> Floats:
+        """Return the share (rooms,) of each room's cells that are in a mask."""
+        inside = self.floor.room >= 0
+        total = np.bincount(self.floor.room[inside], minlength=rooms)
+        part = np.bincount(self.floor.room[inside & mask], minlength=rooms)
+        return part / np.maximum(total, 1)
+
+
+def bare_floor(rooms: Sequence[Room], openings: Sequence[Opening], wall: float, cell: float) -> Floor:
+    """Rasterise rooms of one storey and the passages through walls of at most `wall` [m] between them."""
+    raster = Raster.around([r.polygon for r in rooms], cell)
+    room = np.full(raster.shape, -1, np.int16)
+    for number, r in enumerate(rooms):
+        room[raster.fill(raster.empty(), [r.polygon])] = number
+    free = room >= 0
+    raster.fill(free, [passage(o, wall / 2 + cell) for o in openings if o.kind in PASSABLE])
+    return Floor(raster, room, free)
+
+
+def passage(opening: Opening, depth: float) -> Floats:
+    """Return the rectangle (4, 2) that an opening cuts, `depth` [m] to both sides of its segment."""
+    a, b = opening.segment
+    along = (b - a) / max(opening.width, 1e-9)
+    n = depth * np.array([-along[1], along[0]])
+    return np.array([a - n, b - n, b + n, a + n])
+
+
+def walk(floor: Floor, obstacles: Prisms, radius: float, heights: tuple[float, float]) -> Walk:
+    """Take obstacles off the floor that reach into `heights` (low, high) [m, world]; find where the robot can stand."""
+    free = floor.free.copy()
+    hit = np.flatnonzero((obstacles.z[:, 0] < heights[1]) & (obstacles.z[:, 1] > heights[0]))
+    floor.raster.fill(free, [obstacles.polygon(int(i)) for i in hit], value=False)
+    labels, _ = components(standing(free, radius / floor.raster.cell))
+    return Walk(floor, labels, radius / floor.raster.cell)

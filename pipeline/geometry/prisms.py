@@ -1,0 +1,167 @@
+"""Upright convex prisms: what assets occupy at rest, and what their joints sweep.
+
+Objects only yaw, so a convex collider is covered by the convex hull of its plan projection over its z interval: exactly
+for upright boxes and cylinders, conservatively otherwise. Sweeps join neighbouring positions of a moving piece by
+their hull; positions are taken so close that an arc bulges less than `BULGE` beyond it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.asset import Asset, Joint, Link
+from pipeline.geometry.convex import hull
+from pipeline.geometry.kinematics import joint_motion, joint_range, moved_links
+
+Floats = NDArray[np.float64]
+
+CORNERS = 12  # vertices kept per prism; rounder ones are covered by a polygon of that many sides
+STEPS = 12  # least number of positions per joint
+MOST_STEPS = 48
+BULGE = 0.002  # [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Prisms:
+    """P upright prisms: `corners` (P, CORNERS, 2) [m] of which `count` (P,) are used, `z` (P, 2) [m], `part` (P,)."""
+
+    corners: Floats
+    count: NDArray[np.int64]
+    z: Floats
+    part: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        return len(self.count)
+
+    def polygon(self, i: int) -> Floats:
+        """Return the plan polygon (n, 2) of prism i."""
+        found: Floats = self.corners[i, : self.count[i]]
+        return found
+
+    def placed(self, position: Floats, yaw: float, scale: Floats) -> Prisms:
+        """Return the prisms in the world: scaled, turned by `yaw` [rad], moved to `position` (3,) [m]."""
+        c, s = math.cos(yaw), math.sin(yaw)
+        corners = (self.corners * scale[:2]) @ np.array([[c, s], [-s, c]]) + position[:2]
+        return Prisms(corners, self.count, self.z * scale[2] + position[2], self.part)
+
+    def boxes(self) -> Floats:
+        """Return the plan boxes (P, 4): x0, y0, x1, y1 (padding repeats the last vertex, so all may be used)."""
+        return np.concatenate([self.corners.min(1), self.corners.max(1)], axis=1)
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """What one joint moves. Prism k covers the way to `reached[part[k]]` from the position before; 0 is at rest.
+
+    `reached` (S,) ascends from the first step above 0 to the upper limit, then, for joints that also turn back,
+    descends from the first step below 0 to the lower limit.
+    """
+
+    prisms: Prisms
+    reached: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Solid:
+    """An asset's prisms in the object frame: at rest (`part` is the link), and per joint (`part` is the step)."""
+
+    rest: Prisms
+    sweeps: tuple[Sweep, ...]
+
+
+def stacked(groups: list[Prisms]) -> Prisms:
+    """Join groups of prisms into one."""
+    if not groups:
+        return Prisms(np.zeros((0, CORNERS, 2)), np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0, np.int64))
+    return Prisms(
+        np.concatenate([g.corners for g in groups]),
+        np.concatenate([g.count for g in groups]),
+        np.concatenate([g.z for g in groups]),
+        np.concatenate([g.part for g in groups]),
+    )
+
+
+def prism(points: Floats, part: int = 0) -> Prisms | None:
+    """Return the one prism that covers points (N, 3), or None when their projection is degenerate."""
+    outline = hull(np.ascontiguousarray(np.round(points[:, :2], 7)))
+    if len(outline) < 3:
+        return None
+    outline = _fewer(outline, CORNERS)
+    corners = np.concatenate([outline, np.repeat(outline[-1:], CORNERS - len(outline), axis=0)])
+    z = np.array([[points[:, 2].min(), points[:, 2].max()]])
+    return Prisms(corners[None], np.array([len(outline)]), z, np.array([part]))
+
+
+_SOLIDS: dict[int, tuple[Asset, Solid]] = {}
+
+
+def solid(asset: Asset) -> Solid:
+    """Return an asset's prisms. They depend on the asset alone and are kept while the process lives."""
+    # Keyed by identity (an asset holds arrays and has no hash); the asset is kept too, so an id is never reused.
+    found = _SOLIDS.get(id(asset))
+    if found is None:
+        found = (asset, make_solid(asset))
+        _SOLIDS[id(asset)] = found
+    return found[1]
+
+
+def make_solid(asset: Asset) -> Solid:
+    """Compute the prisms of an asset at rest and in motion."""
+    pieces = [p for i, link in enumerate(asset.links) for points in _pieces(link) if (p := prism(points, i)) is not None]
+    return Solid(stacked(pieces), tuple(_sweep(asset, j) for j in range(len(asset.joints))))
+
+
+def _pieces(link: Link) -> list[Floats]:
+    return [np.asarray(mesh.vertices, np.float64) for mesh in (link.colliders or link.visuals)]
+
+
+def _sweep(asset: Asset, index: int) -> Sweep:
+    joint = asset.joints[index]
+    pieces = [points for i in moved_links(asset, index) for points in _pieces(asset.links[i])]
+    lower, upper = joint_range(joint)
+    groups: list[Prisms] = []
+    reached: list[float] = []
+    for limit in (upper, lower):
+        if abs(limit) < 1e-9:
+            continue
+        positions = np.linspace(0.0, limit, _steps(joint, limit, pieces) + 1)
+        motions = np.stack([joint_motion(joint, float(q)) for q in positions])
+        for points in pieces:
+            moved = np.einsum("kij,pj->kpi", motions[:, :3, :3], points) + motions[:, None, :3, 3]
+            for k in range(len(positions) - 1):
+                made = prism(moved[k : k + 2].reshape(-1, 3), len(reached) + k)
+                if made is not None:
+                    groups.append(made)
+        reached += positions[1:].tolist()
+    return Sweep(stacked(groups), np.array(reached))
+
+
+def _steps(joint: Joint, limit: float, pieces: list[Floats]) -> int:
+    if joint.type == "prismatic" or not pieces:
+        return STEPS
+    away = np.concatenate(pieces) - joint.origin
+    radius = float(np.linalg.norm(away - np.outer(away @ joint.axis, joint.axis), axis=1).max())
+    step = 2 * math.acos(max(0.0, 1.0 - BULGE / max(radius, BULGE)))
+    return min(MOST_STEPS, max(STEPS, math.ceil(abs(limit) / max(step, 1e-6))))
+
+
+def _fewer(outline: Floats, most: int) -> Floats:
+    """Cover a convex polygon by one of at most `most` vertices: edges are dropped, the cheapest in area first."""
+    while len(outline) > most:
+        before, a, b, after = (np.roll(outline, k, axis=0) for k in (1, 0, -1, -2))
+        u, v = a - before, b - after
+        det = u[:, 0] * -v[:, 1] - u[:, 1] * -v[:, 0]
+        w = after - before
+        t = (w[:, 0] * -v[:, 1] - w[:, 1] * -v[:, 0]) / np.where(np.abs(det) < 1e-12, np.nan, det)
+        apex = before + t[:, None] * u
+        cost = np.abs((b - a)[:, 0] * (apex - a)[:, 1] - (b - a)[:, 1] * (apex - a)[:, 0])
+        cost = np.where((t >= 1.0 - 1e-9) & np.isfinite(cost), cost, np.inf)
+        k = int(np.argmin(cost))
+        kept = np.delete(outline, (k + 1) % len(outline), axis=0)
+        kept[k if (k + 1) % len(outline) > k else k - 1] = apex[k]
+        outline = kept
+    return outline

@@ -1,0 +1,83 @@
+"""Floors: what of each room a robot can walk on, and how it hangs together with the entrance."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline import taxonomy
+from pipeline.entities.home import Home, Placement
+from pipeline.entities.plan import Plan, Room
+from pipeline.geometry.freefloor import Walk, bare_floor, walk
+from pipeline.verify.bodies import Bodies
+from pipeline.verify.certificate import RoomCheck
+from pipeline.verify.settings import VerifySettings
+
+NEAR_ENTRANCE = 1.0  # the robot must find a place this near to the entrance door [m]
+
+
+def walk_level(home: Home, level: int, made: Bodies, settings: VerifySettings) -> tuple[Walk, int]:
+    """Return the furnished floor of one storey, and the label of the part that one enters."""
+    plan, robot = home.plan, settings.robot
+    rooms = [r for r in plan.rooms if r.level == level]
+    openings = [o for o in plan.openings if o.level == level]
+    floor = bare_floor(rooms, openings, max(plan.inner_wall, plan.outer_wall), settings.cell)
+    base = level * plan.storey_height
+    walked = walk(floor, made.prisms, robot.radius, (base + robot.step, base + robot.height))
+    return walked, _entered(plan, level, rooms, walked)
+
+
+def _entered(plan: Plan, level: int, rooms: list[Room], walked: Walk) -> int:
+    """Return the label of the part one comes into: at the entrance door, else in the entrance room, else by the stairs."""
+    doors = [o for o in plan.openings if o.level == level and o.kind == "entrance"]
+    if doors:
+        return walked.label_near(doors[0].segment.mean(0), NEAR_ENTRANCE)
+    where = np.zeros(walked.labels.shape, np.bool_)
+    for number, room in enumerate(rooms):
+        if room.room_id == plan.entrance or room.type == "staircase":
+            where |= walked.floor.room == number
+    return walked.largest_label(where if where.any() else walked.floor.room >= 0)
+
+
+def check_rooms(home: Home, walks: dict[int, tuple[Walk, int]]) -> dict[str, RoomCheck]:
+    """Return the figures of every room."""
+    found: dict[str, RoomCheck] = {}
+    for level, (walked, label) in walks.items():
+        rooms = [r for r in home.plan.rooms if r.level == level]
+        shares = walked.shares(walked.covered(label), len(rooms))
+        inside = walked.floor.room[walked.reached(label)]
+        entered = np.bincount(inside[inside >= 0], minlength=len(rooms))
+        for number, room in enumerate(rooms):
+            own = home.in_room(room.room_id)
+            found[room.room_id] = RoomCheck(
+                room.room_id,
+                room.area,
+                occupied_ratio(room, tuple(p for p in own if _floor_standing(p, home.plan))),
+                occupied_ratio(room, own),
+                float(shares[number]),
+                bool(entered[number] > 0),
+            )
+    return found
+
+
+def occupied_ratio(room: Room, placements: tuple[Placement, ...]) -> float:
+    """Return the paper's R_walkable, (A_room - sum A_i) / A_room: footprints are summed, not united; no robot."""
+    taken = sum(float(p.size[0] * p.size[1]) for p in placements)
+    return (room.area - taken) / room.area
+
+
+def _floor_standing(placement: Placement, plan: Plan) -> bool:
+    known = taxonomy.load().categories.get(placement.category)
+    if known is not None and known.mount == "ceiling":
+        return False
+    return bool(placement.position[2] - plan.elevation(placement.room_id) < 0.1)
+
+
+def stand_points(walked: Walk, label: int, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell at which points (N, 2) [m] the robot can stand, coming from the entrance."""
+    raster = walked.floor.raster
+    cells = np.floor((points - raster.origin) / raster.cell).astype(np.int64)
+    valid = ((cells >= 0) & (cells < np.array(raster.shape))).all(1)
+    cells = np.clip(cells, 0, np.array(raster.shape) - 1)
+    found: NDArray[np.bool_] = valid & (walked.labels[cells[:, 0], cells[:, 1]] == label) & (label > 0)
+    return found

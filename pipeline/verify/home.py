@@ -1,0 +1,29 @@
+"""The judge's one entry: a home in, its certificate out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pipeline.entities.asset import Asset
+from pipeline.entities.home import Home
+from pipeline.geometry.walls import levels
+from pipeline.verify.bodies import bodies
+from pipeline.verify.certificate import Certificate
+from pipeline.verify.floors import check_rooms, walk_level
+from pipeline.verify.joints import check_joints, check_leaves
+from pipeline.verify.objects import check_objects
+from pipeline.verify.settings import VerifySettings
+
+
+def verify_home(home: Home, assets: Mapping[str, Asset], settings: VerifySettings | None = None) -> Certificate:
+    """Judge one home: every joint swept, every object at rest, every room's floor."""
+    settings = settings or VerifySettings()
+    made = bodies(home.placements, assets)
+    walks = {level: walk_level(home, level, made, settings) for level in levels(home.plan)}
+    rooms = check_rooms(home, walks)
+    return Certificate(
+        home.scene_id,
+        (*check_joints(home, assets, made, walks, settings), *check_leaves(home, made, walks, settings)),
+        check_objects(home, made, settings),
+        tuple(rooms[room.room_id] for room in home.plan.rooms),
+    )

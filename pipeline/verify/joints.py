@@ -1,0 +1,178 @@
+"""Joints: how far each one opens before it touches something, and where a robot can stand to open it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.asset import Asset
+from pipeline.entities.home import Home, Placement
+from pipeline.geometry.contact import first_hits, wall_excesses
+from pipeline.geometry.convex import distance_to
+from pipeline.geometry.freefloor import Walk
+from pipeline.geometry.kinematics import handle_point, joint_range, opening_direction, rotation
+from pipeline.geometry.leaves import leaf_handles, leaf_sweep
+from pipeline.geometry.polygons import contains
+from pipeline.geometry.prisms import Prisms, Sweep
+from pipeline.geometry.walls import Leaf, leaves
+from pipeline.verify.bodies import Bodies
+from pipeline.verify.certificate import JointCheck
+from pipeline.verify.floors import stand_points
+from pipeline.verify.settings import Robot, VerifySettings
+
+Floats = NDArray[np.float64]
+Walks = Mapping[int, tuple[Walk, int]]
+
+WALL = "wall"  # blocker's name where a part meets a wall
+
+
+def check_joints(home: Home, assets: Mapping[str, Asset], made: Bodies, walks: Walks, settings: VerifySettings) -> list[JointCheck]:
+    """Check every joint of every placed object, in order."""
+    checks = []
+    for g, placement in enumerate(home.placements):
+        asset = assets[placement.asset_id]
+        if not asset.joints:
+            continue
+        turn = rotation(np.array([0.0, 0.0, 1.0]), placement.yaw)
+        room = np.ascontiguousarray(home.plan.room(placement.room_id).polygon, np.float64)
+        walked, label = walks[home.plan.room(placement.room_id).level]
+        floor = home.plan.elevation(placement.room_id)
+        for index, joint in enumerate(asset.joints):
+            sweep = made.solids[g].sweeps[index]
+            moved = sweep.prisms.placed(placement.position, placement.yaw, placement.scale)
+            hits = _hits(moved, g, made, settings.touch)
+            hits[(hits < 0) & (wall_excesses(moved.corners, moved.count, room) > settings.wall)] = -2
+            clear_upper, clear, blocker = _progress(sweep, moved, hits, home)
+            grip = placement.position + turn @ (handle_point(asset, index) * placement.scale)
+            heading = turn @ opening_direction(asset, index)
+            lower, upper = joint_range(joint)
+            checks.append(
+                JointCheck(
+                    placement.object_id,
+                    joint.name,
+                    joint.type,
+                    joint.part_class,
+                    turn @ joint.axis,
+                    placement.position + turn @ (joint.origin * placement.scale),
+                    lower,
+                    upper,
+                    clear_upper,
+                    clear,
+                    blocker,
+                    _stand(grip[:2], _facing(heading, placement), moved, floor, walked, label, settings.robot),
+                )
+            )
+    return checks
+
+
+def check_leaves(home: Home, made: Bodies, walks: Walks, settings: VerifySettings) -> list[JointCheck]:
+    """Check every room door, in the order of the openings."""
+    levels = {o.opening_id: o.level for o in home.plan.openings}
+    swings = {o.opening_id: o.swing.room_id for o in home.plan.openings if o.swing is not None}
+    checks = []
+    for leaf in leaves(home.plan):
+        level = levels[leaf.opening_id]
+        elevation = level * home.plan.storey_height
+        sweep = leaf_sweep(leaf, elevation)
+        hits = _hits(sweep.prisms, -1, made, settings.touch)
+        room = next((r.polygon for r in home.plan.rooms if r.room_id == swings[leaf.opening_id]), None)
+        if room is not None:
+            hits[_through_wall(leaf, sweep, np.ascontiguousarray(room, np.float64), hits)] = -2
+        clear_upper, clear, blocker = _progress(sweep, sweep.prisms, hits, home)
+        walked, label = walks[level]
+        stand = None
+        for handle, heading in zip(leaf_handles(leaf), (leaf.normal, -leaf.normal), strict=True):
+            stand = stand or _stand(handle, heading, sweep.prisms, elevation, walked, label, settings.robot)
+        checks.append(
+            JointCheck(
+                leaf.opening_id,
+                "hinge",
+                "revolute",
+                "door_leaf",
+                np.array([0.0, 0.0, float(leaf.turn)]),
+                np.array([*leaf.hinge, elevation]),
+                0.0,
+                leaf.angle,
+                clear_upper,
+                clear,
+                blocker,
+                stand,
+            )
+        )
+    return checks
+
+
+def _hits(moved: Prisms, owner: int, made: Bodies, touch: float) -> NDArray[np.int64]:
+    p = made.prisms
+    owners = np.full(len(moved), owner)
+    return first_hits(
+        moved.corners, moved.count, moved.z, moved.boxes(), owners, p.corners, p.count, p.z, made.flat, made.start, made.boxes, touch
+    )
+
+
+def _progress(sweep: Sweep, moved: Prisms, hits: NDArray[np.int64], home: Home) -> tuple[float, bool, str]:
+    """Return the largest free position, whether the whole range is free, and what is touched first.
+
+    `hits` (P,) is per prism the object touched, -1 none, -2 a wall.
+    """
+    struck = np.flatnonzero(hits != -1)
+    upward = sweep.reached > 0
+    end = float(sweep.reached[upward].max()) if upward.any() else 0.0
+    if not len(struck):
+        return end, True, ""
+    order = struck[np.argsort(moved.part[struck], kind="stable")]
+    first = int(order[0])
+    blocker = WALL if hits[first] == -2 else home.placements[int(hits[first])].object_id
+    step = int(moved.part[order[upward[moved.part[order]]]].min()) if upward[moved.part[order]].any() else int(upward.sum())
+    reached = 0.0 if step == 0 else float(sweep.reached[min(step, int(upward.sum())) - 1])
+    return reached, False, blocker
+
+
+def _through_wall(leaf: Leaf, sweep: Sweep, room: Floats, hits: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Return which prisms of a leaf lie past the angle at which its free end, once in the room, leaves it again."""
+    angles = np.concatenate([[0.0], sweep.reached])
+    ends = np.stack([leaf.outline(float(a))[1] for a in angles])
+    inside = np.array([contains(float(x), float(y), room) for x, y in ends])
+    if not inside.any():
+        return np.zeros(len(hits), np.bool_)
+    entered = int(np.argmax(inside))
+    left = np.flatnonzero(~inside[entered:])
+    if not len(left):
+        return np.zeros(len(hits), np.bool_)
+    beyond: NDArray[np.bool_] = (hits == -1) & (sweep.prisms.part >= entered + int(left[0]) - 1)
+    return beyond
+
+
+def _facing(heading: Floats, placement: Placement) -> Floats:
+    """Return the plan direction from which a part is opened: where its handle sets off to, or the object's front."""
+    flat = heading[:2]
+    length = float(np.linalg.norm(flat))
+    if length > 0.5:
+        return flat / length
+    return np.array([math.sin(placement.yaw), -math.cos(placement.yaw)])
+
+
+def _stand(
+    grip: Floats, heading: Floats, swept: Prisms, floor: float, walked: Walk, label: int, robot: Robot
+) -> tuple[float, float, float] | None:
+    """Return (x, y, yaw) at which the robot, coming from the entrance, reaches the grip and is clear of the moving part.
+
+    Straight ahead is tried before the sides, middle distances before near and far. At yaw 0 the robot looks along +x.
+    """
+    near, far = robot.reach
+    distances = np.linspace(near, far, 11)
+    distances = distances[np.argsort(np.abs(distances - (near + far) / 2), kind="stable")]
+    turns = np.array([k * side * 15.0 for k in range(int(robot.cone // 15) + 1) for side in ((1, -1) if k else (1,))])
+    angle = math.atan2(float(heading[1]), float(heading[0])) + np.radians(turns)
+    ways = np.stack([np.cos(angle), np.sin(angle)], 1)
+    points = (grip + ways[:, None] * distances[None, :, None]).reshape(-1, 2)
+    flat = [swept.polygon(int(i)) for i in np.flatnonzero(swept.z[:, 0] < floor + robot.height)]
+    for k in np.flatnonzero(stand_points(walked, label, points)):
+        x, y = float(points[k, 0]), float(points[k, 1])
+        if all(distance_to(x, y, polygon) >= robot.radius - 1e-9 for polygon in flat):
+            yaw = math.atan2(float(grip[1]) - y, float(grip[0]) - x)
+            return round(x, 4) + 0.0, round(y, 4) + 0.0, round(yaw, 5) + 0.0
+    return None
