@@ -9,7 +9,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: run test check bench clean help
+.PHONY: run test check deps bench clean help
 
 PRESET ?=
 TORCH_INDEX ?=
@@ -41,6 +41,9 @@ check: $(READY) ## format, lint, types, imports
 	ruff check
 	mypy
 	lint-imports --no-logo
+
+deps: $(READY) ## write the code that each stage runs into dvc.yaml
+	python .ci/deps.py --write
 
 bench: $(READY) ## every benchmark in benchmarks/
 	python benchmarks/run.py

@@ -3,10 +3,10 @@
 import json
 import shutil
 
+import made
 import pyarrow.parquet as pq
 import pytest
 
-import made
 from pipeline.errors import ContentError, UsageError
 from pipeline.manifest import sha256
 from pipeline.shards import check

@@ -5,9 +5,9 @@ import os
 import shutil
 from dataclasses import replace
 
+import made
 import pytest
 
-import made
 from pipeline.errors import ContentError, UsageError
 from pipeline.shards import Header, ShardContent, check, commit_library, commit_shard, committed, open_or_create, read_header
 

@@ -8,9 +8,9 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+import made
 import pytest
 
-import made
 from pipeline.shards import check
 
 ROOT = Path(__file__).parents[2]
