@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
@@ -17,8 +18,12 @@ from pipeline.rendering import fittings, palette
 from pipeline.rendering.pose import asset_triangles, opened, placement_transform
 from pipeline.taxonomy import load
 
-CUT = 2.15  # walls are cut here, so that one sees into the rooms; doors stay whole [m]
+CUT = 2.15  # walls are cut here; doors stay whole [m]
+LOW_CUT = 0.9  # outer walls between the eye and the rooms are cut here, so that one sees in [m]
 WALL_TOP = Material("wall_cut", (0.05, 0.055, 0.065), 0.9)
+
+Heaps = dict[Material, list[NDArray[np.float64]]]
+CutHeight = Callable[[NDArray[np.float64]], float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,17 +34,29 @@ class Batch:
     faces: NDArray[np.float64]
 
 
-def home_batches(home: Home, assets: Mapping[str, Asset], level: int, open_fraction: float) -> list[Batch]:
-    """Return one storey of a home: building, doors and windows, furniture with its doors and drawers partly open."""
+def home_batches(
+    home: Home, assets: Mapping[str, Asset], level: int, open_fraction: float, towards_eye: NDArray[np.float64] | None = None
+) -> list[Batch]:
+    """Return one storey of a home: building, doors and windows, furniture with its doors and drawers partly open.
+
+    With `towards_eye` (2,), a direction in plan, the outer walls on that side are cut low. Window panes are left out.
+    """
     built = shell(home.plan, level)
-    heaps: dict[Material, list[NDArray[np.float64]]] = {}
-    _building(home, level, built, heaps)
+    heaps: Heaps = {}
+
+    def cut_height(points: NDArray[np.float64]) -> float:
+        if towards_eye is None:
+            return CUT
+        x, y = points[:, :2].mean(axis=0) + 0.3 * towards_eye  # further than half an outer wall's thickness
+        return CUT if shapely.contains_xy(built.outline, x, y) else LOW_CUT
+
+    _building(home, level, built, heaps, cut_height)
     for leaf in built.leaves:
         kind = next(c.opening.kind for c in built.cuts if c.opening.opening_id == leaf.opening_id)
         asset, (x, y), yaw = fittings.door(leaf, entrance=kind == "entrance")
         _add(heaps, asset, placement_transform(np.array([x, y, 0.0]), yaw), open_fraction)
     for cut in built.cuts:
-        if cut.opening.kind == "window":
+        if cut.opening.kind == "window" and cut_height(cut.quad) == CUT:
             asset, (x, y), yaw = fittings.window(cut)
             _add(heaps, asset, placement_transform(np.array([x, y, 0.0]), yaw), 0.0)
     categories = load().categories
@@ -53,27 +70,28 @@ def home_batches(home: Home, assets: Mapping[str, Asset], level: int, open_fract
     return [Batch(material, np.concatenate(parts)) for material, parts in heaps.items()]
 
 
-def _building(home: Home, level: int, built: Shell, heaps: dict[Material, list[NDArray[np.float64]]]) -> None:
+def _building(home: Home, level: int, built: Shell, heaps: Heaps, cut_height: CutHeight) -> None:
     for room in home.plan.rooms:
         if room.level == level:
             ground = [_flat(piece, 0.0) for piece in convex_pieces(Polygon(room.polygon))]
             heaps.setdefault(palette.floor(room.type), []).extend(ground)
-            _panels(heaps, palette.wall(room.type), room_panels(room, built.cuts))
-    tops = [_flat(p.polygon, min(p.top, CUT)) for p in built.prisms if p.bottom < CUT]
+            _panels(heaps, palette.wall(room.type), room_panels(room, built.cuts), cut_height)
+    tops = [_flat(p.polygon, min(p.top, cut_height(p.polygon))) for p in built.prisms if p.bottom < cut_height(p.polygon)]
     heaps.setdefault(WALL_TOP, []).extend(tops)
-    _panels(heaps, palette.FACADE, [p for p in outer_panels(built) if np.ptp(p.corners[:, 2]) > 1e-6])
+    _panels(heaps, palette.FACADE, [p for p in outer_panels(built) if np.ptp(p.corners[:, 2]) > 1e-6], cut_height)
     for cut in built.cuts:
-        _panels(heaps, palette.JAMB, reveals(cut))
+        _panels(heaps, palette.JAMB, reveals(cut), cut_height)
         if cut.bottom < 1e-3:
             heaps.setdefault(palette.OAK, []).append(_flat(cut.quad, 0.0))
 
 
-def _panels(heaps: dict[Material, list[NDArray[np.float64]]], material: Material, panels: list[Panel]) -> None:
-    """Add upright and flat faces, cut at CUT."""
+def _panels(heaps: Heaps, material: Material, panels: list[Panel], cut_height: CutHeight) -> None:
+    """Add upright and flat faces, cut at their height."""
     for panel in panels:
-        if panel.corners[:, 2].min() < CUT:
+        height = cut_height(panel.corners)
+        if panel.corners[:, 2].min() < height:
             corners = panel.corners.copy()
-            corners[:, 2] = np.minimum(corners[:, 2], CUT)
+            corners[:, 2] = np.minimum(corners[:, 2], height)
             heaps.setdefault(material, []).append(_fan(corners))
 
 
@@ -85,9 +103,10 @@ def _fan(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.stack([np.stack([corners[0], corners[k], corners[k + 1]]) for k in range(1, len(corners) - 1)])
 
 
-def _add(heaps: dict[Material, list[NDArray[np.float64]]], asset: Asset, T: NDArray[np.float64], open_fraction: float) -> None:
+def _add(heaps: Heaps, asset: Asset, T: NDArray[np.float64], open_fraction: float) -> None:
     faces, materials = asset_triangles(asset, opened(asset, open_fraction) if open_fraction else None)
     world = faces @ T[:3, :3].T + T[:3, 3]
     for index in np.unique(materials):
         material = asset.materials[index] if asset.materials else palette.PLASTER
-        heaps.setdefault(material, []).append(world[materials == index])
+        if material is not palette.GLASS:  # sunlight behind glass is all noise to a path tracer
+            heaps.setdefault(material, []).append(world[materials == index])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -14,8 +15,10 @@ from numpy.typing import NDArray
 from pipeline.entities.asset import Asset, Material
 from pipeline.entities.home import Home
 from pipeline.errors import UsageError
+from pipeline.preview.denoise import Guides, denoise
 from pipeline.preview.solids import Batch, home_batches
 from pipeline.rendering.normals import corner_normals
+from pipeline.rendering.raster import face_normals, fill
 
 ELEVATION = math.radians(56)  # of the camera above the horizon
 AZIMUTH = math.radians(-18)  # of the camera about +Z, from the front (-Y)
@@ -25,6 +28,7 @@ SUN = (-0.55, -0.45, 1.0)  # direction towards the sun
 SUN_IRRADIANCE = 3.2
 SUN_ANGLE = math.radians(4.0)  # radius of the sun's disc, larger than the real one for soft shadows
 EXPOSURE = 0.78
+PAPER = 1.15  # what is behind the home: almost white after exposure
 
 
 def path_trace(
@@ -32,7 +36,7 @@ def path_trace(
     assets: Mapping[str, Asset],
     path: Path,
     size: tuple[int, int] = (640, 480),
-    spp: int = 64,
+    spp: int = 25,
     open_fraction: float = 0.6,
     level: int = 0,
 ) -> Path:
@@ -41,27 +45,30 @@ def path_trace(
     Doors, drawers and lids stand at `open_fraction` of their range. Raises UsageError where Mitsuba is not installed.
     """
     mi = _mitsuba()
-    batches = home_batches(home, assets, level, open_fraction)
+    back = np.array([math.sin(AZIMUTH), -math.cos(AZIMUTH)])
+    batches = home_batches(home, assets, level, open_fraction, back)
     points = np.concatenate([b.faces.reshape(-1, 3) for b in batches])
-    target, eye = _camera(points, size)
+    camera = _camera(points, size)
     scene: dict[str, Any] = {
         "type": "scene",
-        "integrator": {"type": "path", "max_depth": 7},
+        "integrator": {"type": "path", "max_depth": 5},
         "sky": {"type": "constant", "radiance": {"type": "rgb", "value": list(SKY)}},
         "sun": _sun(mi, points),
         "sensor": {
             "type": "perspective",
             "fov": FIELD_OF_VIEW,
             "fov_axis": "larger",
-            "to_world": mi.ScalarTransform4f().look_at(origin=eye.tolist(), target=target.tolist(), up=[0, 0, 1]),
-            "film": {"type": "hdrfilm", "width": size[0], "height": size[1], "rfilter": {"type": "gaussian"}},
-            "sampler": {"type": "multijitter", "sample_count": spp},
+            "to_world": mi.ScalarTransform4f().look_at(origin=camera.eye.tolist(), target=(camera.eye - camera.back).tolist(), up=[0, 0, 1]),
+            "film": {"type": "hdrfilm", "width": size[0], "height": size[1], "rfilter": {"type": "box"}, "pixel_format": "rgb"},
+            "sampler": {"type": "multijitter", "sample_count": round(math.sqrt(spp)) ** 2},
         },
     }
     for i, batch in enumerate(batches):
         scene[f"mesh_{i:03d}"] = _mesh(mi, f"mesh_{i:03d}", batch)
-    image = np.asarray(mi.render(mi.load_dict(scene), seed=0))[..., :3]
-    _save(image, path)
+    image = np.asarray(mi.render(mi.load_dict(scene), seed=0), np.float32)
+    guides = _guides(camera, batches)
+    image = denoise(image, guides)
+    _save(np.where((guides.depth > 0)[..., None], image, np.float32(PAPER)), path)
     return path
 
 
@@ -70,16 +77,38 @@ def _mitsuba() -> ModuleType:
         import mitsuba as mi
     except ImportError as error:
         raise UsageError("path-traced views need Mitsuba, which is not installed", "pip install mitsuba (or the extra: pip install '.[render]')") from error
+    mi.set_log_level(mi.LogLevel.Error)
     mi.set_variant("scalar_rgb")  # the llvm variants abort with some systems' LLVM, the cuda ones want a GPU
     return mi
 
 
-def _camera(points: NDArray[np.float64], size: tuple[int, int]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return target and eye (3,) such that all points (N, 3) are in the picture, with a small margin."""
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """A perspective camera: `right`, `up`, `back` (3,) unit; `focal` [pixels]; `size` width and height [pixels]."""
+
+    eye: NDArray[np.float64]
+    right: NDArray[np.float64]
+    up: NDArray[np.float64]
+    back: NDArray[np.float64]
+    focal: float
+    size: tuple[int, int]
+
+    def project(self, points: NDArray[np.float64], samples: int) -> NDArray[np.float32]:
+        """Map (..., 3) to u, v [pixels, `samples` per pixel] and the inverse of the distance along the view, which is linear in u, v."""
+        local = points - self.eye
+        away = -(local @ self.back)
+        u = self.size[0] / 2 + self.focal * (local @ self.right) / away
+        v = self.size[1] / 2 - self.focal * (local @ self.up) / away
+        return np.stack([u * samples, v * samples, 1 / away], axis=-1).astype(np.float32)
+
+
+def _camera(points: NDArray[np.float64], size: tuple[int, int]) -> Camera:
+    """Stand where all points (N, 3) are in the picture, with a small margin."""
     ca, sa, ce, se = math.cos(AZIMUTH), math.sin(AZIMUTH), math.cos(ELEVATION), math.sin(ELEVATION)
     back, right = np.array([sa * ce, -ca * ce, se]), np.array([ca, sa, 0.0])
     up = np.cross(back, right)
-    half = np.tan(np.radians(FIELD_OF_VIEW) / 2) * np.array([size[0], size[1]]) / max(size) * 0.95
+    tangent = math.tan(math.radians(FIELD_OF_VIEW) / 2)
+    half = tangent * np.array([size[0], size[1]]) / max(size) * 0.95
     target = (points.min(axis=0) + points.max(axis=0)) / 2
     distance = 10.0
     for _ in range(4):  # centring and distance depend on each other; four rounds settle below a pixel
@@ -90,7 +119,22 @@ def _camera(points: NDArray[np.float64], size: tuple[int, int]) -> tuple[NDArray
         for axis, values in ((right, u), (up, v)):
             slopes = values / (distance - away)
             target = target + axis * distance * (slopes.max() + slopes.min()) / 2
-    return target, target + distance * back
+    return Camera(target + distance * back, right, up, back, max(size) / 2 / tangent, size)
+
+
+def _guides(camera: Camera, batches: list[Batch], samples: int = 3) -> Guides:
+    """Rasterise what each pixel shows: its colour averaged over `samples` x `samples` points, normal and depth at its middle."""
+    faces = np.concatenate([b.faces for b in batches])
+    colours = np.concatenate([np.tile(np.float32(b.material.base_color), (len(b.faces), 1)) for b in batches])
+    width, height = camera.size
+    frame = fill(camera.project(faces, samples), colours, None, (samples * width, samples * height), (1.0, 1.0, 1.0))
+    albedo = frame.colour.reshape(height, samples, width, samples, 3).mean(axis=(1, 3), dtype=np.float32) / 255
+    middle = slice(samples // 2, None, samples)
+    item, inverse = frame.item[middle, middle], frame.depth[middle, middle]
+    hit = item >= 0
+    normals = np.where(hit[..., None], face_normals(faces)[item], 0.0).astype(np.float32)
+    depth = np.where(hit, 1 / np.maximum(inverse, 1e-6), 0.0).astype(np.float32)
+    return Guides(albedo, normals, depth)
 
 
 def _sun(mi: ModuleType, points: NDArray[np.float64]) -> dict[str, Any]:
@@ -123,8 +167,8 @@ def _mesh(mi: ModuleType, name: str, batch: Batch) -> Any:
 
 
 def _surface(material: Material) -> dict[str, Any]:
-    if material.opacity < 0.9:
-        return {"type": "thindielectric"}
+    if material.roughness >= 0.55 and material.metallic < 0.5:
+        return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": list(material.base_color)}}}
     inner = {
         "type": "principled",
         "base_color": {"type": "rgb", "value": list(material.base_color)},

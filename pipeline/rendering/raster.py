@@ -77,22 +77,36 @@ def render(
     background: tuple[float, float, float] = (1.0, 1.0, 1.0),
 ) -> Frame:
     """Draw `triangles` (T, 3, 3) [m, world] with `colours` (T, 3) in [0, 1], Lambert shaded from both sides; `items` (T,) label them."""
-    frame = Frame(
-        _plain(background, view.width, view.height),
-        np.full((view.height, view.width), -np.inf, np.float32),
-        np.full((view.height, view.width), -1, np.int32),
-    )
+    shade = np.ones((0, 1), np.float32)
     if len(triangles):
-        normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-        length = np.linalg.norm(normals, axis=1, keepdims=True)
-        normals = normals / np.maximum(length, 1e-12)
+        normals = face_normals(triangles)
         normals *= np.where(normals @ view.axes[2] < 0, -1.0, 1.0)[:, None]  # shade the side that is seen
         lambert = np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0, 1)
-        shade = (AMBIENT + (1 - AMBIENT) * lambert).astype(np.float32)
-        labels = np.arange(len(triangles), dtype=np.int32) if items is None else items.astype(np.int32)
-        shaded = to_bytes(colours.astype(np.float32) * shade[:, None])
-        _fill(np.ascontiguousarray(view.project(triangles)), shaded, labels, frame.colour, frame.depth, frame.item)
+        shade = (AMBIENT + (1 - AMBIENT) * lambert).astype(np.float32)[:, None]
+    return fill(view.project(triangles), colours * shade, items, (view.width, view.height), background)
+
+
+def fill(
+    projected: NDArray[np.float32],
+    colours: NDArray[np.float32],
+    items: NDArray[np.int32] | None,
+    size: tuple[int, int],
+    background: tuple[float, float, float],
+) -> Frame:
+    """Draw triangles (T, 3, 3) that are projected to (u, v, depth) already, in plain `colours` (T, 3); `size` is width, height."""
+    width, height = size
+    frame = Frame(_plain(background, width, height), np.full((height, width), -np.inf, np.float32), np.full((height, width), -1, np.int32))
+    if len(projected):
+        labels = np.arange(len(projected), dtype=np.int32) if items is None else items.astype(np.int32)
+        _fill(np.ascontiguousarray(projected), to_bytes(colours.astype(np.float32)), labels, frame.colour, frame.depth, frame.item)
     return frame
+
+
+def face_normals(triangles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the unit normals (T, 3) of triangles (T, 3, 3); zero for degenerate ones."""
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    unit: NDArray[np.float64] = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    return unit
 
 
 def darken_edges(frame: Frame, radius: int, strength: float, reach: float = 0.6, ground: float | None = None) -> Frame:
