@@ -38,7 +38,7 @@ def generate(
     out: Annotated[Path, typer.Option(help="New or empty folder for the home.")] = Path("home"),
     seed: Seed = 0,
 ) -> None:
-    r"""Make one home from words: USD, tables, plan and preview.
+    """Make one home from words: USD, tables, plan and preview.
 
     \b
     Example:
@@ -57,7 +57,7 @@ def shard(
     prompts: Annotated[Path | None, typer.Option(help="Text file, a prompt a line; or YAML list of {prompt, weight}.")] = None,
     scheduler: Annotated[str | None, typer.Option(help="A Dask scheduler, tcp://host:port or its file, instead of --workers.")] = None,
 ) -> None:
-    r"""Make a dataset of many homes; started again, it goes on where it was killed.
+    """Make a dataset of many homes; started again, it goes on where it was killed.
 
     \b
     Example:
@@ -76,7 +76,7 @@ def plan(
     svg: Annotated[Path | None, typer.Option(help="Draw the plan here as SVG.")] = None,
     png: Annotated[Path | None, typer.Option(help="Draw the plan here as PNG.")] = None,
 ) -> None:
-    r"""Turn words into a floor plan and show it.
+    """Turn words into a floor plan and show it.
 
     \b
     Example:
@@ -91,7 +91,7 @@ def verify(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a dataset.", show_default=False)],
     quick: Annotated[bool, typer.Option("--quick", help="Leave out opening every stage with USD.")] = False,
 ) -> None:
-    r"""Check a dataset: every sha256, row, id, reference and stage; the first wrong thing is named.
+    """Check a dataset: every sha256, row, id, reference and stage; the first wrong thing is named.
 
     \b
     Example:
@@ -103,7 +103,7 @@ def verify(
 
 @app.command()
 def doctor() -> None:
-    r"""Say what is installed, what is made, what is missing, and the command that makes it.
+    """Say what is installed, what is made, what is missing, and the command that makes it.
 
     \b
     Example:

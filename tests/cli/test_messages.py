@@ -1,0 +1,187 @@
+"""The command line: fast, and whatever goes wrong is one line that names the thing and the remedy, with its exit code."""
+
+import os
+import re
+import resource
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from pipeline.errors import ContentError, RefusedError, UsageError
+from sfgen import cli
+
+ROOT = Path(__file__).parents[2]
+COMMANDS = ("generate", "shard", "plan", "verify", "doctor")
+
+
+@pytest.fixture
+def sfgen(capsys, monkeypatch, tmp_path):
+    """Run one command line in an empty folder; returns (exit code, stdout, stderr)."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("SFGEN_DEBUG", raising=False)
+
+    def run(*arguments):
+        code = cli.run([str(a) for a in arguments])
+        said = capsys.readouterr()
+        return code, said.out, said.err
+
+    return run
+
+
+def one_line(err):
+    return err.startswith("sfgen: ") and err.count("\n") == 1 and ";" in err and "Traceback" not in err and len(err) < 500
+
+
+def test_help_is_fast_and_light():
+    program = "import sys\nfrom sfgen.cli import run\nassert run(['--help']) == 0\nassert not {'numpy', 'pyarrow', 'torch', 'rich', 'dask', 'pipeline'} & sys.modules.keys()"
+    spent = []
+    for _ in range(3):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    assert min(spent) < 0.3
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help_with_an_example(sfgen, command):
+    code, out, err = sfgen(command, "--help")
+    assert (code, err) == (0, "")
+    example = re.search(rf"Example:\n +(sfgen {command}.*)", out)
+    assert example
+
+
+def test_commands_are_those_that_are_tested():
+    assert {c.callback.__name__ for c in cli.app.registered_commands} == set(COMMANDS)
+
+
+def test_version(sfgen):
+    assert sfgen("--version")[:2] == (0, "0.1.0\n")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["shar"], "shar"),
+        (["shard"], "--count"),
+        (["shard", "--count", "0"], "--count"),
+        (["shard", "--count", "-5"], "--count"),
+        (["shard", "--count", "many"], "--count"),
+        (["shard", "--count", "5", "--workers", "0"], "--workers"),
+        (["shard", "--count", "5", "--seed", "-1"], "--seed"),
+        (["shard", "--count", "5", "--colour", "red"], "--colour"),
+        (["shard", "5"], "--count"),
+        (["generate"], "prompt"),
+        (["verify"], "DIR"),
+        (["verify", "nowhere"], "nowhere is missing"),
+        (["verify", __file__], "not a folder"),
+        (["plan"], "prompt"),
+    ],
+)
+def test_a_wrong_command_line_is_2(sfgen, arguments, word):
+    code, out, err = sfgen(*arguments)
+    assert (code, out) == (2, "")
+    assert one_line(err), err
+    assert word in err
+
+
+def test_no_command_shows_the_commands(sfgen):
+    code, _out, err = sfgen()
+    assert code == 2
+    assert all(command in err for command in COMMANDS)
+
+
+def test_wrong_content_is_1(sfgen, dataset_folder, tmp_path):
+    folder = shutil.copytree(dataset_folder, tmp_path / "copy")
+    (folder / "rooms" / "shard-00001.parquet").write_bytes(b"PAR1")
+    code, _, err = sfgen("verify", folder)
+    assert code == 1
+    assert one_line(err)
+    assert "rooms/shard-00001.parquet" in err
+    (folder / "dataset.json").write_text("{")
+    assert sfgen("verify", folder)[0] == 1
+
+
+def test_verify_counts(sfgen, dataset_folder):
+    code, out, err = sfgen("verify", "--quick", dataset_folder)
+    assert (code, err) == (0, "")
+    assert "10 homes in 3 shards" in out
+
+
+def test_verify_opens_the_stages(sfgen, dataset_folder):
+    """The made-up stages are no USD: without --quick, the first is named."""
+    code, _, err = sfgen("verify", dataset_folder)
+    assert code == 1
+    assert "s5_00000000.usdc" in err
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "text"),
+    [
+        (ContentError("a.json is cut", "copy it again"), 1, "a.json is cut; copy it again"),
+        (UsageError("no such path"), 2, "no such path"),
+        (RefusedError("two lines\nof text", "ask for less"), 3, "two lines of text; ask for less"),
+        (KeyboardInterrupt(), 130, ""),
+        (ModuleNotFoundError("No module named 'trimesh'", name="trimesh"), 1, "the package trimesh is not installed; type `make run`"),
+        (OSError(28, "No space left on device", "/data/x"), 1, "No space left on device: /data/x"),
+        (MemoryError(), 1, "out of memory"),
+        (ZeroDivisionError("division by zero"), 1, "unexpected ZeroDivisionError: division by zero; SFGEN_DEBUG=1"),
+    ],
+)
+def test_every_failure_is_one_line_with_its_code(sfgen, monkeypatch, error, code, text):
+    class Failing:
+        @staticmethod
+        def main(*_args, **_options):
+            raise error
+
+    monkeypatch.setattr(cli, "stage", lambda _name: Failing)
+    got, out, err = sfgen("doctor")
+    assert (got, out) == (code, "")
+    assert err.startswith(f"sfgen: {text}") if text else err == ""
+    assert err.count("\n") <= 1
+
+
+def test_a_traceback_is_there_for_who_asks(sfgen, monkeypatch):
+    monkeypatch.setattr(cli, "stage", lambda _name: None)
+    monkeypatch.setenv("SFGEN_DEBUG", "1")
+    with pytest.raises(AttributeError):
+        sfgen("doctor")
+
+
+def test_doctor_says_what_is_there(sfgen):
+    code, out, err = sfgen("doctor")
+    assert (code, err) == (0, "")
+    assert re.search(r"\+ Python 3\.\d+", out)
+    assert re.search(r"\+ torch \d", out)
+    assert "layout model" in out
+
+
+def test_stages_explain_their_errors_too(tmp_path):
+    program = "from stages.runner import run\nfrom pipeline.errors import RefusedError\ndef main(root):\n    raise RefusedError('a\\nb', 'c')\nrun(main)"
+    answer = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (answer.returncode, answer.stdout, answer.stderr) == (3, "", "sfgen: a b; c\n")
+
+
+def test_without_the_factory_loaders_work_and_commands_say_how_to_get_it(tmp_path, dataset_folder):
+    shutil.copytree(ROOT / "sfgen", tmp_path / "site" / "sfgen", ignore=shutil.ignore_patterns("__pycache__"))
+    program = "import sys, sfgen.cli, sfgen\nassert len(sfgen.load(sys.argv[1])) == 10\nsys.exit(sfgen.cli.run(['doctor']))"
+    answer = subprocess.run(
+        [sys.executable, "-P", "-c", program, str(dataset_folder)],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(tmp_path / "site")},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert answer.returncode == 1, answer.stderr
+    assert one_line(answer.stderr)
+    assert "make run" in answer.stderr
+
+
+def test_a_reader_that_leaves_is_no_error(dataset_folder):
+    command = f"{sys.executable} -m sfgen.cli doctor | true"
+    answer = subprocess.run(["bash", "-c", f"{command}; exit ${{PIPESTATUS[0]}}"], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert answer.stderr == ""
