@@ -15,7 +15,7 @@ SLACK = 1.06  # a target lies this far inside a one-sided bound
 def with_areas(program: FloorProgram) -> FloorProgram:
     """Return the program with a target area for each room and for the whole; what was stated is not moved."""
     rooms = list(program.rooms)
-    free = [r.area.target is None and r.area.min is None and r.area.max is None for r in rooms]
+    free = [not r.area.stated for r in rooms]
     target = [_first_guess(r, rooms, program.scale) for r in rooms]
     _halls(rooms, target, free)
     _relate(program, rooms, target, free)
@@ -59,7 +59,7 @@ def _default(room: RoomReq, rooms: Sequence[RoomReq]) -> float:
 def _halls(rooms: Sequence[RoomReq], target: list[float], free: Sequence[bool]) -> None:
     """Give free hallways their share of what the other rooms of their storeys take."""
     for level in {r.level for r in rooms}:
-        halls = [i for i, r in enumerate(rooms) if r.type == "hallway" and free[i] and r.level == level]
+        halls = [i for i, r in enumerate(rooms) if r.type == "hallway" and r.area.target is None and free[i] and r.level == level]
         others = sum(t for r, t in zip(rooms, target, strict=True) if r.type not in {"hallway", *OUTSIDE} and r.level == level)
         for i in halls:
             target[i] = max(HALL_LEAST, HALL_SHARE * others / len(halls))

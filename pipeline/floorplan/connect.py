@@ -126,7 +126,8 @@ def _order(room: RoomReq) -> int:
 def _attach(
     program: FloorProgram, front: RoomReq, main: frozenset[str], links: Sequence[Link], by_id: dict[str, RoomReq]
 ) -> Link | None:
-    for wanted in PARENTS.get(front.type, ANY_HUB):
+    second = front.type == "kitchen" and front.role not in {"", "primary"}  # a kitchen of somebody's own stands by itself
+    for wanted in PARENTS["bedroom"][1:] if second else PARENTS.get(front.type, ANY_HUB):
         hosts = [r for r in program.rooms if r.type == wanted and r.id in main and _meet(r, front)]
         hosts = [h for h in hosts if not _is_full(program, h, links) and not _is_forbidden(program, h, front)]
         hosts = [h for h in hosts if h.type != "hallway" or h.level == front.level or "staircase" in {front.type}] or hosts
