@@ -1,0 +1,210 @@
+"""Reading whole sources: one task per model, object or house, spread over processes, results in the sources' order."""
+
+from __future__ import annotations
+
+import functools
+import multiprocessing
+import os
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pipeline import taxonomy
+from pipeline.entities.asset import Asset
+from pipeline.entities.files import save_asset
+from pipeline.errors import ContentError
+from pipeline.sources import articulated
+from pipeline.sources.decomposition import decompose
+from pipeline.sources.front_house import HouseRows, read_house, split_of
+from pipeline.sources.front_objects import Model
+from pipeline.sources.future import ModelInfo, read_model, read_model_info
+from pipeline.sources.guarded import Folder
+from pipeline.sources.library_rows import asset_row, joint_rows
+from pipeline.sources.partnet import URDFS, read_shape
+from pipeline.sources.reasons import Row, SourceError, reject
+from pipeline.sources.settings import FrontFilters, ModelLimits
+
+T = TypeVar("T")
+R = TypeVar("R")
+HOUSES, MODELS = "3D-FRONT", "3D-FUTURE-model"
+AHEAD = 64  # tasks handed to the pool before results are taken: memory stays flat over thousands of files
+DEPTH = 4  # folders below the root in which objects are looked for
+
+
+@dataclass(slots=True)
+class LibraryRows:
+    """What models give: rows, and what houses need to know of each 3D-FUTURE model."""
+
+    assets: list[Row] = field(default_factory=list)
+    joints: list[Row] = field(default_factory=list)
+    rejects: list[Row] = field(default_factory=list)
+    models: dict[str, Model] = field(default_factory=dict)
+
+    def add(self, other: LibraryRows) -> None:
+        """Append what another gave."""
+        self.assets += other.assets
+        self.joints += other.joints
+        self.rejects += other.rejects
+        self.models.update(other.models)
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryTask:
+    """What every model task needs: where assets go, limits, licence, and the cache of convex pieces."""
+
+    source: Path
+    out: Path
+    limits: ModelLimits
+    licence: str
+    cache: Path
+
+    def pieces(self) -> Callable[..., Any] | None:
+        """Return the decomposition that the limits ask for."""
+        return functools.partial(decompose, cache=self.cache) if self.limits.coacd else None
+
+
+def future_models(source: Path) -> tuple[list[ModelInfo], list[Row]]:
+    """Return the models that have an entry in model_info.json, by id, and rejects of entries and of folders without one."""
+    folder = Folder.at(source)
+    infos, rejects = read_model_info(folder, f"{MODELS}/model_info.json")
+    there = {p.name for p in (folder.root / MODELS).iterdir() if p.is_dir()}
+    rejects += [reject("model", name, "no_model_info") for name in sorted(there - infos.keys())]
+    return [infos[k] for k in sorted(infos)], rejects
+
+
+def partnet_objects(source: Path) -> list[str]:
+    """Return the folders below `source` that hold a URDF of PartNet-Mobility or GAPartNet, sorted, relative."""
+    names = {name for name, _ in URDFS}
+    found = []
+    for base, folders, files in os.walk(source):
+        folders.sort()
+        here = Path(base).relative_to(source)
+        if names & set(files) or "meta.json" in files:
+            found.append(here.as_posix())
+            folders.clear()
+        elif len(here.parts) >= DEPTH:
+            folders.clear()
+    return found
+
+
+def read_future(task: LibraryTask, info: ModelInfo) -> LibraryRows:
+    """Read one 3D-FUTURE model and write its asset file."""
+    made = LibraryRows()
+
+    def work() -> None:
+        models = Folder.at(task.source).sub(MODELS)
+        model = read_model(models, info, taxonomy.load(), task.limits, task.licence, task.pieces())
+        asset = model.asset
+        _keep(made, task, asset, material=info.material, unit_scale=model.box.unit)
+        made.rejects += model.rejects
+        w, d, h = asset.size.tolist()
+        made.models[info.model_id] = Model(model.box, asset.category, asset.asset_id, (w, d, h), asset.openable)
+
+    return _guarded(made, "model", info.model_id, work)
+
+
+def read_partnet(task: LibraryTask, name: str) -> LibraryRows:
+    """Read one PartNet object and write an asset file for each category that it serves."""
+    made = LibraryRows()
+    source_id = name.rsplit("/", 1)[-1]
+
+    def work() -> None:
+        shape = read_shape(Folder.at(task.source).sub(name), source_id, task.limits.max_texture)
+        for asset, scale, rejects in articulated.assets(shape, taxonomy.load(), task.limits, task.licence, task.pieces()):
+            _keep(made, task, asset, material="", unit_scale=scale)
+            made.rejects += rejects
+
+    return _guarded(made, "model", source_id, work)
+
+
+def _keep(made: LibraryRows, task: LibraryTask, asset: Asset, *, material: str, unit_scale: float) -> None:
+    file = f"{asset.asset_id}.safetensors"
+    digest = save_asset(task.out / file, asset)
+    split = split_of(asset.source_id)
+    made.assets.append(asset_row(asset, material=material, split=split, unit_scale=unit_scale, file=file, sha256=digest))
+    made.joints += joint_rows(asset)
+
+
+def _guarded(made: LibraryRows, what: str, where: str, work: Callable[[], None]) -> LibraryRows:
+    """Do the work; whatever goes wrong in one file becomes a reject of that file."""
+    try:
+        work()
+    except SourceError as error:
+        made.rejects.append(reject(what, where, error.code, f"{error.where}: {error.detail}"))
+    except Exception as error:  # noqa: BLE001 - one bad file of thousands must not end the run; the table tells
+        made.rejects.append(reject(what, where, "internal", f"{type(error).__name__}: {error}"))
+    return made
+
+
+@dataclass(frozen=True, slots=True)
+class HouseTask:
+    """What every house task needs."""
+
+    source: Path
+    models: Mapping[str, Model]
+    filters: FrontFilters
+    licence: str
+
+
+def house_files(source: Path) -> list[str]:
+    """Return the house files, sorted, relative to the source."""
+    return [f"{HOUSES}/{p.name}" for p in sorted((source / HOUSES).glob("*.json"))]
+
+
+def read_front(task: HouseTask, file: str) -> HouseRows:
+    """Read one house."""
+    try:
+        return read_house(Folder.at(task.source), file, task.models, taxonomy.load(), task.filters, task.licence)
+    except Exception as error:  # noqa: BLE001 - as in _guarded
+        return HouseRows(rejects=[reject("house", Path(file).stem, "internal", f"{type(error).__name__}: {error}")])
+
+
+def each(step: Callable[[T, R], Any], common: T, items: Sequence[R], workers: int) -> Iterator[Any]:
+    """Yield step(common, item) for each item in order, over `workers` processes; `common` is sent to each process once."""
+    if workers <= 1 or len(items) < 2 * workers:
+        yield from (step(common, item) for item in items)
+        return
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(workers, context, _receive, (step, common)) as pool:
+        waiting: deque[Future[Any]] = deque()
+        try:
+            for item in items:
+                waiting.append(pool.submit(_do, item))
+                if len(waiting) >= AHEAD:
+                    yield waiting.popleft().result()
+            while waiting:
+                yield waiting.popleft().result()
+        except Exception:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+_work: Callable[[Any], Any] | None = None
+
+
+def _receive(step: Callable[[Any, Any], Any], common: Any) -> None:
+    global _work  # noqa: PLW0603 - what a pool's process is started with has no other place
+    _work = functools.partial(step, common)
+
+
+def _do(item: Any) -> Any:
+    if _work is None:
+        raise ContentError("a worker was not set up", "report this")
+    return _work(item)
+
+
+def flat(rows: Iterable[HouseRows]) -> HouseRows:
+    """Join the rows of all houses, scenes numbered in order."""
+    whole = HouseRows()
+    for part in rows:
+        for scene in part.scenes:
+            scene["index"] = len(whole.scenes)
+            whole.scenes.append(scene)
+        whole.rooms += part.rooms
+        whole.openings += part.openings
+        whole.objects += part.objects
+        whole.rejects += part.rejects
+    return whole

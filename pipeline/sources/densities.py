@@ -1,0 +1,47 @@
+"""Densities [kg/m3] by which masses are estimated: of the material that a model names, else typical of its kind.
+
+Values are those of usual materials (softwood board 600, particle board 650, glass 2500, marble 2700, upholstery with
+foam and frame 90); metal furniture is tube and sheet, so its closed volumes weigh far less than solid steel.
+"""
+
+from __future__ import annotations
+
+MATERIALS: dict[str, float] = {
+    "cloth": 90.0,
+    "rough cloth": 90.0,
+    "leather": 120.0,
+    "smooth leather": 120.0,
+    "suede": 110.0,
+    "glass": 2500.0,
+    "metal": 1500.0,
+    "solid wood": 650.0,
+    "wood": 600.0,
+    "plywood": 600.0,
+    "composite board": 650.0,
+    "bamboo rattan": 400.0,
+    "stone": 2600.0,
+    "marble": 2700.0,
+}
+KINDS: dict[str, float] = {
+    "bed": 110.0,
+    "sofa": 90.0,
+    "chair": 400.0,
+    "stool": 250.0,
+    "table": 600.0,
+    "cabinet": 600.0,
+    "kitchen": 600.0,
+    "appliance": 450.0,
+    "bath": 900.0,
+    "lighting": 500.0,
+    "other": 300.0,
+}
+DEFAULT = 500.0
+SOFT = frozenset({"bed", "sofa"})  # mostly filling, whatever the frame's material
+MINIMUM = 0.05  # [kg] of a link
+
+
+def density(super_category: str, material: str) -> float:
+    """Return the density for a model of our super-category whose source names `material` ("" when it does not)."""
+    if super_category in SOFT:
+        return min(MATERIALS.get(material.lower(), 1e9), KINDS[super_category])
+    return MATERIALS.get(material.lower(), KINDS.get(super_category, DEFAULT))

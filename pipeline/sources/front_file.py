@@ -1,0 +1,211 @@
+"""A 3D-FRONT house file as records, whatever its dialect; nothing is interpreted yet.
+
+Frame of everything here: the file's own (y up, metres, front +z; plan coordinates are (x, z)).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.sources.reasons import Row, SourceError, reject
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Furniture:
+    """A furniture record. `box` is the declared (w, d, h) [m] in our axis order, or None."""
+
+    uid: str
+    jid: str
+    valid: bool | None
+    category: str
+    title: str
+    box: tuple[float, float, float] | None
+
+
+@dataclass(frozen=True, slots=True)
+class MeshRecord:
+    """A mesh of the building; the arrays stay lists until somebody needs them."""
+
+    uid: str
+    type: str
+    xyz: Any
+    faces: Any
+
+    def vertices(self) -> Floats:
+        """Return (V, 3) world coordinates. Raises SourceError for anything that is not finite triples."""
+        values = floats(self.xyz, f"mesh {self.uid}")
+        if len(values) % 3:
+            raise SourceError("bad_structure", f"mesh {self.uid}", "xyz is not a list of triples")
+        return values.reshape(-1, 3)
+
+    def triangles(self) -> Floats:
+        """Return (T, 3, 3) corner coordinates."""
+        vertices = self.vertices()
+        try:
+            index = np.asarray(self.faces, dtype=np.int64)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise SourceError("bad_structure", f"mesh {self.uid}", "faces are not integers") from error
+        if index.ndim != 1 or len(index) % 3 or (len(index) and (index.min() < 0 or index.max() >= len(vertices))):
+            raise SourceError("bad_structure", f"mesh {self.uid}", "faces do not index its vertices by triples")
+        return vertices[index.reshape(-1, 3)]
+
+
+@dataclass(frozen=True, slots=True)
+class Child:
+    """A reference of a room: `position` [m], `rotation` quaternion (x, y, z, w), `scale`."""
+
+    ref: str
+    instance: str
+    position: Floats
+    rotation: Floats
+    scale: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class RoomRecord:
+    """A room: `instance` is unique in its house at best."""
+
+    instance: str
+    type: str
+    children: tuple[Child, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class HouseFile:
+    """A house: records by uid (the first of each uid), rooms in file order, the rooms that an entry door names."""
+
+    uid: str
+    furniture: Mapping[str, Furniture]
+    meshes: Mapping[str, MeshRecord]
+    rooms: tuple[RoomRecord, ...]
+    entry_rooms: tuple[str, ...]
+    rejects: tuple[Row, ...]
+
+
+def floats(values: Any, where: str) -> Floats:
+    """Return a flat list of finite numbers as an array, or raise SourceError `bad_number`."""
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise SourceError("bad_number", where, "holds something that is no number") from error
+    if array.ndim != 1 or not np.isfinite(array).all():
+        raise SourceError("bad_number", where, "holds a number that is not finite")
+    return array
+
+
+def parse_house(tree: Any, name: str) -> HouseFile:
+    """Read a parsed house file; `name` is the file's stem. Raises SourceError `bad_structure` when the frame is missing."""
+    scene = tree.get("scene") if isinstance(tree, dict) else None
+    if not isinstance(scene, dict) or not isinstance(scene.get("room"), list):
+        raise SourceError("bad_structure", name, "has no scene.room list; it is no 3D-FRONT house")
+    rejects: list[Row] = []
+    uid = _text(tree.get("uid"))
+    if uid != name:
+        rejects.append(reject("house", name, "uid_mismatch", f"the file says {uid!r}"))
+    furniture = _first_by_uid((_furniture(r) for r in _records(tree, "furniture")), name, "furniture", rejects)
+    meshes = _first_by_uid((_mesh(r) for r in _records(tree, "mesh")), name, "mesh", rejects)
+    rooms = tuple(_room(r, name, rejects) for r in scene["room"] if isinstance(r, dict))
+    return HouseFile(name, furniture, meshes, rooms, _entry_rooms(tree), tuple(rejects))
+
+
+def declared_box(record: Mapping[str, Any]) -> tuple[float, float, float] | None:
+    """Return the declared (w, d, h) in our axis order, or None.
+
+    3D-FRONT format: `size`, and a flat `bbox` beside a `size`, are (width, depth, height); a nested `bbox`, and a flat
+    one without `size`, are (width, height, depth).
+    """
+    size, bbox = record.get("size"), record.get("bbox")
+    if isinstance(bbox, list) and bbox and isinstance(bbox[0], list):
+        return _whd(bbox[0], y_up=True)
+    if bbox and size:
+        return _whd(bbox, y_up=False)
+    if bbox:
+        return _whd(bbox, y_up=True)
+    return _whd(size, y_up=False)
+
+
+def _whd(values: Any, *, y_up: bool) -> tuple[float, float, float] | None:
+    try:
+        a, b, c = (abs(float(v)) for v in values)
+    except (TypeError, ValueError, OverflowError):
+        return None
+    if not all(math.isfinite(v) and v > 0 for v in (a, b, c)):
+        return None
+    return (a, c, b) if y_up else (a, b, c)
+
+
+def _records(tree: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
+    """Return the records of a list that another dialect may lack."""
+    found = tree.get(key)
+    return [r for r in found if isinstance(r, dict)] if isinstance(found, list) else []
+
+
+def _first_by_uid(records: Iterable[Any], house: str, kind: str, rejects: list[Row]) -> dict[str, Any]:
+    kept: dict[str, Any] = {}
+    surplus = 0
+    for record in records:
+        if record.uid in kept:
+            surplus += 1
+        else:
+            kept[record.uid] = record
+    if surplus:
+        rejects.append(reject("house", house, "duplicate_record", f"{surplus} surplus {kind} records"))
+    return kept
+
+
+def _furniture(record: Mapping[str, Any]) -> Furniture:
+    valid = record.get("valid")
+    title = _text(record.get("title")) or _text(record.get("type"))
+    return Furniture(
+        _text(record.get("uid")),
+        _text(record.get("jid")),
+        valid if isinstance(valid, bool) else None,
+        _text(record.get("category")),
+        title.lower(),
+        declared_box(record),
+    )
+
+
+def _mesh(record: Mapping[str, Any]) -> MeshRecord:
+    return MeshRecord(_text(record.get("uid")), _text(record.get("type")), record.get("xyz") or [], record.get("faces") or [])
+
+
+def _room(record: Mapping[str, Any], house: str, rejects: list[Row]) -> RoomRecord:
+    instance = _text(record.get("instanceid")) or _text(record.get("type"))
+    children = []
+    for entry in _records(record, "children"):
+        try:
+            children.append(_child(entry))
+        except SourceError as error:
+            rejects.append(reject("object", f"{house}/{instance}/{_text(entry.get('ref'))}", "bad_number", error.detail))
+    return RoomRecord(instance, _text(record.get("type")), tuple(children))
+
+
+def _child(record: Mapping[str, Any]) -> Child:
+    ref = _text(record.get("ref"))
+
+    def vector(key: str, default: tuple[float, ...]) -> Floats:
+        values = floats(record.get(key, default), f"{key} of {ref}")
+        if len(values) != len(default):
+            raise SourceError("bad_number", ref, f"{key} has {len(values)} numbers, not {len(default)}")
+        return values
+
+    return Child(ref, _text(record.get("instanceid")), vector("pos", (0, 0, 0)), vector("rot", (0, 0, 0, 1)), vector("scale", (1, 1, 1)))
+
+
+def _entry_rooms(tree: Mapping[str, Any]) -> tuple[str, ...]:
+    extension = tree.get("extension")
+    doors = _records(extension, "door") if isinstance(extension, dict) else []
+    return tuple(_text(d.get("roomId")) for d in doors if d.get("type") == "entryDoor")
+
+
+def _text(value: Any) -> str:
+    return value if isinstance(value, str) else "" if value is None else str(value)[:80]

@@ -1,0 +1,356 @@
+"""One 3D-FRONT house file to rows of scenes, rooms, openings, objects and rejects."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
+
+from pipeline.entities.plan import Opening
+from pipeline.seeds import key
+from pipeline.sources import front_openings
+from pipeline.sources.front_file import HouseFile, RoomRecord, parse_house
+from pipeline.sources.front_floor import Floor, outline
+from pipeline.sources.front_objects import Model, Placed, overlapping, placed
+from pipeline.sources.front_poses import yaw_and_tilt
+from pipeline.sources.guarded import Folder, read_json
+from pipeline.sources.reasons import Row, SourceError, reject
+from pipeline.sources.settings import FrontFilters
+from pipeline.taxonomy import Taxonomy
+
+Floats = NDArray[np.float64]
+WALLS = frozenset({"WallInner", "WallOuter"})
+INNER_WALL, OUTER_WALL = 0.12, 0.24  # [m] 3D-FRONT's usual thicknesses, where no reveal tells
+
+
+@dataclass(slots=True)
+class HouseRows:
+    """What a house gives; all lists are empty but `rejects` when it is left out."""
+
+    scenes: list[Row] = field(default_factory=list)
+    rooms: list[Row] = field(default_factory=list)
+    openings: list[Row] = field(default_factory=list)
+    objects: list[Row] = field(default_factory=list)
+    rejects: list[Row] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class _Room:
+    record: RoomRecord
+    room_id: str
+    type: str
+    floor: Floor
+    polygon: Polygon
+    height: float
+    objects: list[Placed]
+
+
+def read_house(folder: Folder, file: str, models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, licence: str) -> HouseRows:
+    """Read one house. A file that is refused gives one reject row with its reason."""
+    name = file.rsplit("/", 1)[-1].removesuffix(".json")
+    try:
+        return house_rows(parse_house(read_json(folder, file), name), models, taxonomy, limits, licence)
+    except SourceError as error:
+        return HouseRows(rejects=[reject("house", name, error.code, error.detail)])
+
+
+def house_rows(house: HouseFile, models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, licence: str) -> HouseRows:
+    """Turn a house's records into rows."""
+    rows = HouseRows(rejects=list(house.rejects))
+    rooms = _rooms(house, taxonomy, limits, rows.rejects)
+    if not rooms:
+        rows.rejects.append(reject("house", house.uid, "no_rooms"))
+        return rows
+    _fill(house, rooms, models, taxonomy, limits, rows.rejects)
+    if not any(room.objects for room in rooms):
+        rows.rejects.append(reject("house", house.uid, "no_objects"))
+        return rows
+    scene_id = slug("h", house.uid)
+    openings, walls = _openings(house, rooms, limits, rows.rejects)
+    rows.rooms = [_room_row(scene_id, house.uid, room, taxonomy) for room in rooms]
+    rows.openings = [_opening_row(scene_id, o) for o in openings]
+    rows.objects = [
+        _object_row(scene_id, room.room_id, k, o, f"{house.uid}/{room.record.instance}/{o.child.instance}")
+        for room in rooms
+        for k, o in enumerate(room.objects)
+    ]
+    rows.scenes = [_scene_row(scene_id, house, rooms, openings, walls, licence)]
+    return rows
+
+
+def split_of(uid: str) -> str:
+    """Return train (8 of 10), val or test for a house or model, from its id alone."""
+    draw = key(0, "split", uid) % 10
+    return "val" if draw == 8 else "test" if draw == 9 else "train"
+
+
+def slug(prefix: str, name: str) -> str:
+    """Return an id that matches [a-z][a-z0-9_]*."""
+    return f"{prefix}_{re.sub(r'[^a-z0-9]+', '_', name.lower()).strip('_')}"
+
+
+def _rooms(house: HouseFile, taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]) -> list[_Room]:
+    """Return the rooms with a usable floor, in file order."""
+    made: list[_Room] = []
+    taken: set[str] = set()
+    for number, record in enumerate(house.rooms):
+        where = f"{house.uid}/{record.instance or number}"
+        try:
+            floor = _floor(house, record)
+        except SourceError as error:
+            rejects.append(reject("room", where, error.code, error.detail))
+            continue
+        if floor is None:
+            rejects.append(reject("room", where, "no_floor", f"type {record.type!r}, {len(record.children)} children"))
+            continue
+        if floor.area < limits.min_room_area:
+            rejects.append(reject("room", where, "too_small", f"{floor.area:.2f} m2"))
+            continue
+        polygon = Polygon(floor.polygon)
+        room_id = slug("r", record.instance or record.type or str(number))
+        double = next((r for r in made if r.polygon.intersection(polygon).area > 0.5 * min(r.polygon.area, polygon.area)), None)
+        if room_id in taken or double:
+            rejects.append(reject("room", where, "duplicate_room", f"as {double.record.instance}" if double else "same id"))
+            continue
+        taken.add(room_id)
+        if floor.pieces > 1 or floor.lost > 0.05:
+            rejects.append(reject("room", where, "floor_pieces", f"{floor.pieces} pieces, {floor.lost:.2f} m2 left out or filled"))
+        kind = record.type.lower().replace(" ", "")
+        if kind not in taxonomy.front_rooms:
+            rejects.append(reject("room", where, "unknown_room_type", f"type {record.type!r}"))
+        made.append(_Room(record, room_id, kind, floor, polygon, _height(house, record, limits.ceiling), []))
+    return made
+
+
+def _floor(house: HouseFile, record: RoomRecord) -> Floor | None:
+    meshes = [house.meshes[c.ref] for c in record.children if c.ref in house.meshes]
+    triangles = [m.triangles() for m in {m.uid: m for m in meshes}.values() if m.type == "Floor"]
+    triangles = [t for t in triangles if len(t)]
+    return outline(np.concatenate(triangles)) if triangles else None
+
+
+def _height(house: HouseFile, record: RoomRecord, default: float) -> float:
+    """Return the room's height: the middle height of its Ceiling meshes, else the top of its walls, else the default."""
+    tops: dict[str, list[float]] = {"ceiling": [], "wall": []}
+    for child in record.children:
+        mesh = house.meshes.get(child.ref)
+        if mesh is None or (mesh.type != "Ceiling" and mesh.type not in WALLS):
+            continue
+        try:
+            up = mesh.vertices()[:, 1]
+        except SourceError:
+            continue  # a broken wall: the other meshes tell
+        if len(up):
+            tops["ceiling" if mesh.type == "Ceiling" else "wall"].append(float(np.median(up) if mesh.type == "Ceiling" else up.max()))
+    for found in (tops["ceiling"], tops["wall"]):
+        if found and 1.8 < max(found) < 8.0:
+            return round(max(found), 4)
+    return default
+
+
+def _fill(
+    house: HouseFile, rooms: list[_Room], models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]
+) -> None:
+    """Give each room its objects; every child that is left out gets a reason, dangling and built-in ones by the room."""
+    seen: set[tuple[Any, ...]] = set()
+    for room in rooms:
+        where = f"{house.uid}/{room.record.instance}"
+        candidates: list[Placed] = []
+        dangling = built_in = 0
+        for child in room.record.children:
+            record = house.furniture.get(child.ref)
+            if record is None:
+                dangling += child.ref not in house.meshes
+                continue
+            if record.valid is None:
+                built_in += not record.title.startswith(("door/", "window/"))
+                continue
+            name = f"{where}/{child.instance}"
+            pose = (record.jid, *np.round(child.position, 3).tolist(), *np.round(child.rotation, 3).tolist())
+            if record.valid and pose in seen:
+                rejects.append(reject("object", name, "duplicate", f"model {record.jid}"))
+                continue
+            seen.add(pose)
+            made = placed(child, record, models, room.polygon, taxonomy, limits)
+            if isinstance(made, Placed):
+                candidates.append(made)
+            else:
+                rejects.append(reject("object", name, *made))
+        for reason, count in (("dangling_ref", dangling), ("built_in", built_in)):
+            if count:
+                rejects.append(reject("room", where, reason, f"{count} of {len(room.record.children)} children"))
+        dropped = overlapping(candidates, limits)
+        for i, made in enumerate(candidates):
+            name = f"{where}/{made.child.instance}"
+            if i in dropped:
+                j, share = dropped[i]
+                detail = f"{made.category} has {share:.0%} in {candidates[j].category} {candidates[j].child.instance}"
+                rejects.append(reject("object", name, "overlap", detail))
+                continue
+            rejects.extend(reject("object", name, reason, detail) for reason, detail in made.notes)
+            room.objects.append(made)
+
+
+def _openings(house: HouseFile, rooms: list[_Room], limits: FrontFilters, rejects: list[Row]) -> tuple[list[Opening], tuple[float, float]]:
+    """Return the openings, and the thickness of inner and outer walls as the reveals show it."""
+    outlines = [front_openings.Outline(room.room_id, room.polygon) for room in rooms]
+    holes = front_openings.merge(_holes(house, rejects))
+    found: list[Opening] = []
+    depths: dict[int, list[float]] = {1: [], 2: []}
+    for hole in holes:
+        opening = front_openings.resolve(hole, outlines, f"opening_{len(found)}", limits.wall_reach)
+        if opening is None:
+            at = ", ".join(f"{v:.2f}" for v in hole.centre)
+            rejects.append(reject("opening", house.uid, "opening_unresolved", f"{hole.evidence} at ({at}), {hole.width:.2f} m wide"))
+            continue
+        found.append(opening)
+        if 0.05 <= hole.depth <= 0.5:
+            depths[len(opening.rooms)].append(hole.depth)
+    height = float(np.median([room.height for room in rooms]))
+    found += front_openings.touching(outlines, height, len(found))
+    inner = round(float(np.median(depths[2])), 4) if depths[2] else INNER_WALL
+    outer = round(float(np.median(depths[1])), 4) if depths[1] else OUTER_WALL
+    return found, (inner, outer)
+
+
+def _holes(house: HouseFile, rejects: list[Row]) -> list[front_openings.Hole]:
+    holes: list[front_openings.Hole] = []
+    for mesh in house.meshes.values():
+        evidence = front_openings.MESHES.get(mesh.type)
+        if evidence is None:
+            continue
+        try:
+            hole = front_openings.from_mesh(evidence, mesh.vertices())
+        except SourceError as error:
+            rejects.append(reject("opening", f"{house.uid}/{mesh.uid}", "opening_unresolved", error.detail))
+            continue
+        if hole:
+            holes.append(hole)
+    for room in house.rooms:
+        for child in room.children:
+            record = house.furniture.get(child.ref)
+            if record is None or record.valid:
+                continue
+            yaw, _ = yaw_and_tilt(child.rotation)
+            hole = front_openings.from_furniture(record.title, child.position, yaw, record.box)
+            if hole:
+                holes.append(hole)
+    return holes
+
+
+def _room_row(scene_id: str, uid: str, room: _Room, taxonomy: Taxonomy) -> Row:
+    area = room.floor.area
+    covered = sum(float(np.prod(o.pose.size[:2])) for o in room.objects if o.span[0] < 0.3)
+    free = room.polygon
+    for o in room.objects:
+        if o.span[0] < 0.3:
+            free = free.difference(o.footprint())
+    return {
+        "scene_id": scene_id,
+        "room_id": room.room_id,
+        "type": room.type,
+        "layout_type": taxonomy.front_rooms.get(room.type) or "",
+        "role": "",
+        "level": 0,
+        "height": room.height,
+        "area": round(area, 4),
+        "polygon": room.floor.polygon.tolist(),
+        "objects": len(room.objects),
+        "asked_objects": None,
+        "openable": sum(o.openable for o in room.objects),
+        "openable_sampled": None,
+        "walkable_paper": round(1 - covered / area, 4),
+        "walkable_free": round(float(free.area) / area, 4),
+        "walkable_target": None,
+        "source_id": f"{uid}/{room.record.instance}",
+    }
+
+
+def _opening_row(scene_id: str, opening: Opening) -> Row:
+    return {
+        "scene_id": scene_id,
+        "opening_id": opening.opening_id,
+        "kind": opening.kind,
+        "rooms": list(opening.rooms),
+        "segment": opening.segment.tolist(),
+        "width": round(opening.width, 4),
+        "height": opening.height,
+        "sill": opening.sill,
+        "swing_room": "",
+        "swing_hinge": None,
+        "swing_angle": None,
+        "level": 0,
+    }
+
+
+def _object_row(scene_id: str, room_id: str, number: int, made: Placed, source: str) -> Row:
+    return {
+        "scene_id": scene_id,
+        "object_id": f"{made.category}_{room_id}_{number}",
+        "room_id": room_id,
+        "category": made.category,
+        "asset_id": made.asset_id,
+        "position": made.pose.position.tolist(),
+        "yaw": made.pose.yaw,
+        "size": made.pose.size.tolist(),
+        "scale": made.scale.tolist(),
+        "openable": made.openable,
+        "latent": [0.0] * 32,
+        "retrieval_distance": 0.0,
+        "source_id": f"{source}#{made.jid}",
+    }
+
+
+def _scene_row(
+    scene_id: str, house: HouseFile, rooms: list[_Room], openings: list[Opening], walls: tuple[float, float], licence: str
+) -> Row:
+    area = sum(room.floor.area for room in rooms)
+    objects = [o for room in rooms for o in room.objects]
+    covered = sum(float(np.prod(o.pose.size[:2])) for o in objects if o.span[0] < 0.3)
+    return {
+        "scene_id": scene_id,
+        "index": 0,
+        "seed": 0,
+        "split": split_of(house.uid),
+        "prompt": "",
+        "program": "",
+        "storeys": 1,
+        "storey_height": round(max(room.height for room in rooms) + 0.3, 4),
+        "inner_wall": walls[0],
+        "outer_wall": walls[1],
+        "entrance": _entrance(house, rooms, openings),
+        "area": round(area, 4),
+        "rooms": len(rooms),
+        "objects": len(objects),
+        "openable": sum(o.openable for o in objects),
+        "joints": 0,
+        "joints_clear": 0,
+        "collisions": 0,
+        "reach": 0.0,
+        "walkable_paper": round(1 - covered / area, 4),
+        "walkable_free": 0.0,
+        "attempts": 1,
+        "licence": licence,
+        "usd": "",
+        "usd_sha256": "",
+    }
+
+
+def _entrance(house: HouseFile, rooms: list[_Room], openings: list[Opening]) -> str:
+    """Return the room that the file's entry door names, else one with a door to outside, halls and living rooms first."""
+    by_instance = {room.record.instance: room.room_id for room in rooms}
+    for name in house.entry_rooms:
+        if name in by_instance:
+            return by_instance[name]
+    outside = {o.rooms[0] for o in openings if o.kind == "entrance"}
+    wanted = ("hallway", "aisle", "corridor", "livingdiningroom", "livingroom", "diningroom", "lounge")
+    for kind in wanted:
+        for room in rooms:
+            if room.type == kind and room.room_id in outside:
+                return room.room_id
+    return ""

@@ -1,0 +1,179 @@
+"""Furniture of a 3D-FRONT room as placed boxes, each kept or left out with a reason."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
+
+from pipeline.entities.home import Placement
+from pipeline.sources.front_file import Child, Furniture
+from pipeline.sources.front_poses import Box, Pose, place, unit_of, yaw_and_tilt
+from pipeline.sources.settings import FrontFilters
+from pipeline.taxonomy import Taxonomy
+
+Floats = NDArray[np.float64]
+
+# Kinds in scene titles ("group/kind") that are no 3D-FUTURE name; used when neither model nor record has a category.
+TITLES: dict[str, str] = {
+    "night table": "nightstand",
+    "armoire": "wardrobe",
+    "bookcase": "bookshelf",
+    "multi seat sofa": "multi_seat_sofa",
+    "two seat sofa": "loveseat_sofa",
+    "double bed": "double_bed",
+    "tea table": "coffee_table",
+    "tv cabinet": "tv_stand",
+    "side cabinet": "sideboard",
+    "chandelier": "pendant_lamp",
+    "dressing table": "dressing_table",
+    "shoe cabinet": "shoe_cabinet",
+}
+SEATS = frozenset({"dining_chair", "lounge_chair", "dressing_chair", "chinese_chair", "barstool", "stool", "armchair"})
+TABLES = frozenset({"dining_table", "desk", "dressing_table", "coffee_table", "corner_side_table"})
+MAX_SIZE = 8.0  # [m] no movable furniture is longer
+MIN_SIZE = 0.01  # [m]
+BELOW = 0.05  # [m] under the floor: rounding of the source
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """What a house needs to know of a model: its box, its category, and whether an asset was made of it."""
+
+    box: Box
+    category: str
+    asset_id: str
+    asset_size: tuple[float, float, float]
+    openable: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """An accepted object: `scale` (3,) on the asset's size; `notes` are (reason, detail) of what was repaired."""
+
+    child: Child
+    jid: str
+    category: str
+    asset_id: str
+    pose: Pose
+    scale: Floats
+    openable: bool
+    notes: tuple[tuple[str, str], ...]
+
+    def footprint(self) -> Polygon:
+        """Return the box in plan."""
+        return Polygon(Placement("", "", "", "", self.pose.position, self.pose.yaw, self.pose.size).footprint())
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Return bottom and top [m]."""
+        return float(self.pose.position[2]), float(self.pose.position[2] + self.pose.size[2])
+
+
+def category_of(record: Furniture, taxonomy: Taxonomy) -> str | None:
+    """Return the category that the scene's own record gives: its category, else the kind in its title."""
+    named = taxonomy.from_future(record.category)
+    if named:
+        return named
+    kind = record.title.rsplit("/", 1)[-1].strip()
+    return TITLES.get(kind) or taxonomy.from_future(kind) or taxonomy.from_future(record.title)
+
+
+def placed(  # noqa: PLR0911 - one return per reason
+    child: Child,
+    record: Furniture,
+    models: Mapping[str, Model],
+    floor: Polygon,
+    taxonomy: Taxonomy,
+    limits: FrontFilters,
+) -> Placed | tuple[str, str]:
+    """Return the object, or (reason, detail) for leaving it out. `floor` is the room's polygon in our plan frame."""
+    if record.valid is not True:
+        return "invalid_flag", f"valid is {record.valid}, category {record.category!r}"
+    model = models.get(record.jid)
+    category = model.category if model else category_of(record, taxonomy)
+    if category is None:
+        return "unknown_category", f"category {record.category!r}, title {record.title!r}"
+    if model is None and not (limits.keep_without_model and record.box):
+        return "missing_model", f"no asset of model {record.jid}"
+    magnitude = np.abs(child.scale)
+    if magnitude.min() < 1e-5 or magnitude.max() > limits.max_scale:
+        return "bad_scale", f"scale {child.scale.tolist()}"
+    yaw, tilt = yaw_and_tilt(child.rotation)
+    if tilt > limits.max_tilt or child.scale[1] < 0:
+        return "tilted", f"by {tilt:.3f} rad, scale {child.scale.tolist()}"
+    pose, scale, notes = _pose(child, record, model, yaw)
+    if pose.size.max() > MAX_SIZE or pose.size.min() < MIN_SIZE:
+        return "bad_size", f"size {np.round(pose.size, 3).tolist()}"
+    made = Placed(child, record.jid, category, model.asset_id if model else "", pose, scale, bool(model and model.openable), notes)
+    low, top = made.span
+    if low < -BELOW or top > limits.max_top:
+        return "bad_height", f"from {low:.2f} to {top:.2f} m"
+    footprint = made.footprint()
+    inside = float(footprint.intersection(floor).area / footprint.area)
+    if inside < limits.min_inside:
+        return "outside_room", f"{inside:.0%} of the footprint inside"
+    return made
+
+
+def _pose(child: Child, record: Furniture, model: Model | None, yaw: float) -> tuple[Pose, Floats, tuple[tuple[str, str], ...]]:
+    """Return pose, scale on the asset, and notes; position and size rounded to 0.1 mm."""
+    notes: list[tuple[str, str]] = []
+    if model is None:
+        w, d, h = record.box or (0.0, 0.0, 0.0)
+        box, unit = Box((-w / 2, 0.0, -d / 2), (w / 2, h, d / 2)), 1.0
+        notes.append(("size_from_bbox", f"model {record.jid}"))
+    else:
+        box = model.box
+        unit = unit_of(box.extent, record.box, box.unit)
+        if unit == 0.01:
+            notes.append(("centimetres", f"model {record.jid}, declared {record.box}"))
+    raw = place(box, unit, child.position, yaw, child.scale)
+    pose = Pose(np.round(raw.position, 4) + 0.0, raw.yaw, np.round(raw.size, 4), raw.mirrored)
+    if pose.mirrored:
+        notes.append(("mirrored", f"scale {child.scale.tolist()}"))
+    scale = np.round(pose.size / np.array(model.asset_size), 6) if model else np.ones(3)
+    return pose, scale, tuple(notes)
+
+
+def shared_volume(a: Placed, b: Placed) -> float:
+    """Return the volume that two boxes share, as a share of the smaller one's."""
+    height = min(a.span[1], b.span[1]) - max(a.span[0], b.span[0])
+    if height <= 0:
+        return 0.0
+    area = float(a.footprint().intersection(b.footprint()).area)
+    return area * height / float(min(np.prod(a.pose.size), np.prod(b.pose.size)))
+
+
+def overlapping(objects: list[Placed], limits: FrontFilters) -> dict[int, tuple[int, float]]:
+    """Return {index of the object to drop: (index of what it is in, share)}.
+
+    Rule: largest box first, an object is dropped when it shares more than `max_overlap` of the smaller one's volume
+    with one that was kept; a seat at a table may share up to `max_overlap_tucked`, for its box reaches under the top.
+    """
+    order = sorted(range(len(objects)), key=lambda i: (-float(np.prod(objects[i].pose.size)), i))
+    shapes = [o.footprint() for o in objects]
+    tree = shapely.STRtree(shapes) if shapes else None
+    near: dict[int, list[int]] = {}
+    if tree is not None:
+        for i, j in zip(*tree.query(shapes, predicate="intersects"), strict=True):
+            near.setdefault(int(i), []).append(int(j))
+    dropped: dict[int, tuple[int, float]] = {}
+    kept: set[int] = set()
+    for i in order:
+        for j in near.get(i, ()):
+            if j not in kept:
+                continue
+            share = shared_volume(objects[i], objects[j])
+            pair = {objects[i].category, objects[j].category}
+            tucked = bool(pair & SEATS) and bool(pair & TABLES)
+            if share > (limits.max_overlap_tucked if tucked else limits.max_overlap):
+                dropped[i] = (j, share)
+                break
+        else:
+            kept.add(i)
+    return dropped

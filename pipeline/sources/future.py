@@ -1,0 +1,123 @@
+"""3D-FUTURE models to assets: one folder with raw_model.obj, model.mtl and texture.png each, and model_info.json."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.asset import Asset, Mesh
+from pipeline.sources.calibration import sizes
+from pipeline.sources.colliders import Body, Decompose, Ints, link
+from pipeline.sources.densities import density
+from pipeline.sources.front_objects import MAX_SIZE, MIN_SIZE
+from pipeline.sources.front_poses import Box, to_ours
+from pipeline.sources.guarded import Folder, read_json
+from pipeline.sources.reasons import Row, SourceError, reject
+from pipeline.sources.settings import ModelLimits
+from pipeline.sources.surfaces import Palette, read_obj, visual
+from pipeline.taxonomy import Taxonomy
+
+Floats = NDArray[np.float64]
+CENTIMETRES = 25.0  # a model this many times as large as its category's mean is in centimetres
+CENTIMETRES_EXTENT = 15.0  # [m] the same, where the category has no statistics
+
+
+@dataclass(frozen=True, slots=True)
+class ModelInfo:
+    """An entry of model_info.json; names as written, "" for null."""
+
+    model_id: str
+    category: str
+    super_category: str
+    style: str
+    theme: str
+    material: str
+
+
+def read_model_info(folder: Folder, file: str) -> tuple[dict[str, ModelInfo], list[Row]]:
+    """Read model_info.json: entries by model id, the first of each; and a reject row per surplus or broken entry."""
+    tree = read_json(folder, file)
+    if not isinstance(tree, list):
+        raise SourceError("bad_structure", file, "is no list of models")
+    found: dict[str, ModelInfo] = {}
+    rejects: list[Row] = []
+    for number, entry in enumerate(tree):
+        model_id = entry.get("model_id") if isinstance(entry, dict) else None
+        if not isinstance(model_id, str) or not model_id:
+            rejects.append(reject("model", f"{file}#{number}", "bad_structure", "no model_id"))
+        elif model_id in found:
+            rejects.append(reject("model", model_id, "duplicate", "a second entry in model_info.json"))
+        else:
+            names = (entry.get(k) for k in ("category", "super-category", "style", "theme", "material"))
+            found[model_id] = ModelInfo(model_id, *(n if isinstance(n, str) else "" for n in names))
+    return found, rejects
+
+
+def asset_id(jid: str) -> str:
+    """Return the asset id of a model."""
+    return f"ff_{''.join(c if c.isalnum() and c.isascii() else '_' for c in jid.lower())}"
+
+
+@dataclass(frozen=True, slots=True)
+class FutureModel:
+    """An asset, the box of its file, and what was repaired."""
+
+    asset: Asset
+    box: Box
+    rejects: tuple[Row, ...]
+
+
+def read_model(
+    models: Folder, info: ModelInfo, taxonomy: Taxonomy, limits: ModelLimits, licence: str, decompose: Decompose | None = None
+) -> FutureModel:
+    """Read the model of `info` from its folder in `models`.
+
+    The mesh is turned into our frame, (x, y, z) -> (x, -z, y), scaled to metres, and its box set bottom-centred at the
+    origin. Raises SourceError for what cannot be an asset.
+    """
+    category = taxonomy.from_future(info.category)
+    if category is None:
+        raise SourceError("unknown_category", info.model_id, f"category {info.category!r}")
+    folder = models.sub(info.model_id)
+    file = read_obj(folder, "raw_model.obj")
+    used = np.unique(np.concatenate([g.faces.ravel() for g in file.groups]))
+    low, high = file.vertices[used].min(axis=0), file.vertices[used].max(axis=0)
+    extent = (high - low)[[0, 2, 1]]
+    unit = unit_factor(extent, category)
+    size = np.round(extent * unit, 4)
+    if size.max() > MAX_SIZE or size.min() < MIN_SIZE:
+        raise SourceError("bad_size", info.model_id, f"size {size.tolist()}")
+    box = Box(tuple(low.tolist()), tuple(high.tolist()), unit)
+    middle = np.array([(low[0] + high[0]) / 2, low[1], (low[2] + high[2]) / 2])
+    points = to_ours((file.vertices - middle) * unit)
+    palette = Palette(folder, limits.max_texture)
+    visuals: list[Mesh] = []
+    collisions: list[tuple[Floats, Ints]] = []
+    for group in file.groups:
+        mesh = visual(group, file, points, f"mesh_{len(visuals):03d}", palette.index(file.library, "", group.material))
+        if mesh:
+            visuals.append(mesh)
+            collisions.append((points, group.faces))
+    kind = taxonomy.categories[category].super
+    base, notes = link(Body("base", tuple(visuals), tuple(collisions)), density(kind, info.material), limits, decompose)
+    if not base.visuals or not base.colliders:
+        raise SourceError("not_obj", info.model_id, "has no face with an area")
+    asset = Asset(
+        asset_id(info.model_id), category, size, (base,), (), tuple(palette.materials), "3d-future", info.model_id, licence,
+        info.style, kind, dict(palette.textures),
+    )  # fmt: skip
+    if unit != 1.0:
+        notes.append(("centimetres", f"extent {np.round(extent, 2).tolist()}"))
+    notes += palette.notes
+    return FutureModel(asset, box, tuple(reject("model", info.model_id, reason, detail) for reason, detail in notes))
+
+
+def unit_factor(extent: Floats, category: str) -> float:
+    """Return the factor to metres of a model of extent (w, d, h): 0.01 where it is far too large for its category."""
+    known = sizes().get(category)
+    if known is None:
+        return 0.01 if extent.max() > CENTIMETRES_EXTENT else 1.0
+    ratio = float(np.exp(np.log(np.maximum(extent, 1e-9) / known.mean).mean()))
+    return 0.01 if ratio > CENTIMETRES else 1.0

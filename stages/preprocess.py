@@ -1,0 +1,117 @@
+"""DVC stage `preprocess`: 3D-FRONT, 3D-FUTURE and PartNet folders to tables and assets. Nothing here knows which copies they are.
+
+Reads data/raw/ (or the user's copies), writes data/tables/*.parquet and data/assets/*.safetensors.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from tqdm import tqdm
+
+from pipeline import params, tables
+from pipeline.errors import ContentError
+from pipeline.sources import batch
+from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
+from pipeline.sources.front_house import HouseRows
+from pipeline.sources.reasons import Row
+from pipeline.sources.settings import PreprocessSettings
+from schemas.assets import ASSET_JOINTS, ASSETS
+from schemas.objects import OBJECTS
+from schemas.openings import OPENINGS
+from schemas.rejects import REJECTS
+from schemas.rooms import ROOMS
+from schemas.scenes import SCENES
+from stages.runner import run
+
+
+def main(root: Path) -> None:
+    """Read the sources that section `preprocess` of params.yaml names."""
+    settings = params.section(PreprocessSettings, params.read(root / "params.yaml"), "preprocess")
+    workers = settings.workers or cores()
+    front = folder(root, "front", settings.front, (batch.HOUSES, batch.MODELS))
+    partnet = folder(root, "partnet", settings.partnet, ()) if settings.partnet else None
+    library = read_library(root, front, partnet, settings, workers)
+    houses = batch.house_files(front)
+    task = HouseTask(front, library.models, settings.filters, settings.front_licence)
+    rows = batch.flat(progress(batch.each(batch.read_front, task, houses, workers), "houses", len(houses)))
+    if not rows.scenes:
+        reasons = ", ".join(f"{reason} {n}" for reason, n in Counter(r["reason"] for r in rows.rejects).most_common(3))
+        raise ContentError(f"{front} gives no usable house ({reasons or 'no files'})", "docs/reasons.md explains the codes")
+    write(root / "data" / "tables", library, rows)
+    report(library, rows)
+
+
+def read_library(root: Path, front: Path, partnet: Path | None, settings: PreprocessSettings, workers: int) -> LibraryRows:
+    """Read all models, write their assets, and remove assets of earlier runs."""
+    out, cache = root / "data" / "assets", root / ".cache" / "coacd"
+    library = LibraryRows()
+    infos, library.rejects = batch.future_models(front)
+    task = LibraryTask(front, out, settings.models, settings.front_licence, cache)
+    for made in progress(batch.each(batch.read_future, task, infos, workers), "models", len(infos)):
+        library.add(made)
+    if partnet:
+        names = batch.partnet_objects(partnet)
+        task = LibraryTask(partnet, out, settings.models, settings.partnet_licence, cache)
+        for made in progress(batch.each(batch.read_partnet, task, names, workers), "articulated", len(names)):
+            library.add(made)
+    if not library.assets:
+        raise ContentError(f"{front} gives no usable model", "check the folders in section preprocess of params.yaml")
+    kept = {row["file"] for row in library.assets}
+    for path in out.glob("*.safetensors"):
+        if path.name not in kept:
+            path.unlink()
+    return library
+
+
+def folder(root: Path, key: str, path: str, parts: Iterable[str]) -> Path:
+    """Return a source folder. Raises ContentError naming the key of params.yaml when it, or a part of it, is missing."""
+    found = root / path
+    for part in (found, *(found / p for p in parts)):
+        if not part.is_dir():
+            remedy = f"set preprocess.{key} in params.yaml to the folder of the data, or run `dvc repro corpus`"
+            raise ContentError(f"{part} is {'no folder' if part.exists() else 'missing'}", remedy)
+    return found
+
+
+def progress(results: Iterable[Any], name: str, total: int) -> Iterable[Any]:
+    """Show a progress bar on long work."""
+    bar: Iterable[Any] = tqdm(results, name, total, unit="", mininterval=1.0, disable=None)
+    return bar
+
+
+def cores() -> int:
+    """Return the cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def write(out: Path, library: LibraryRows, rows: HouseRows) -> None:
+    """Write all tables."""
+    for table, content in (
+        (SCENES, rows.scenes),
+        (ROOMS, rows.rooms),
+        (OPENINGS, rows.openings),
+        (OBJECTS, rows.objects),
+        (ASSETS, library.assets),
+        (ASSET_JOINTS, library.joints),
+        (REJECTS, library.rejects + rows.rejects),
+    ):
+        tables.write(out / f"{table.name}.parquet", table, content)
+
+
+def report(library: LibraryRows, rows: HouseRows) -> None:
+    """Print what was read and what was left out."""
+    rejects: list[Row] = library.rejects + rows.rejects
+    counts = (("houses", rows.scenes), ("rooms", rows.rooms), ("openings", rows.openings), ("objects", rows.objects))
+    sys.stdout.write(", ".join(f"{len(v)} {k}" for k, v in (*counts, ("assets", library.assets), ("joints", library.joints))) + "\n")
+    for (what, reason), count in sorted(Counter((r["what"], r["reason"]) for r in rejects).items()):
+        sys.stdout.write(f"  {what} {reason}: {count}\n")
+
+
+if __name__ == "__main__":
+    run(main)
