@@ -136,10 +136,11 @@ def mesh_record(surface: shell.Surface, uid: str, material: str, dialect: Dialec
 
 def _normal(quad: shell.Quad) -> list[float]:
     """Return the unit normal of a quad in 3D-FRONT's frame."""
-    a, b, c = (np.array(p) for p in quad[:3])
-    n = np.cross(b - a, c - a)
-    n = n / np.linalg.norm(n)
-    return [round(float(n[0])) + 0, round(float(n[2])) + 0, -round(float(n[1])) + 0]
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = quad[:3]
+    u, v = (bx - ax, by - ay, bz - az), (cx - ax, cy - ay, cz - az)
+    n = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+    length = math.hypot(*n)
+    return [round(n[0] / length), round(n[2] / length), round(-n[1] / length)]
 
 
 def _add_leaves(

@@ -69,14 +69,21 @@ class Arranger:
 
     def pair_at_wall(self, table: str, chairs: Sequence[str], share: float) -> bool:
         """Put a desk or dressing table to a wall and, in that share of cases, a chair before it that faces it."""
-        desk = self.pick(table)
         seat = self.pick(str(self.rng.choice(list(chairs)))) if self.chance(share) else None
-        if desk is None:
+        front = max(FRONTS[table], seat.size[1] + 0.15 if seat else 0.0)
+        width = math.inf
+        for _ in range(4):
+            desk = self.pick(table, width=width)
+            if desk is None:
+                return False
+            spot = against(self.rng, self.space, desk, front=front, corner=0.55)
+            if spot is not None and self.space.try_add(desk, spot):
+                break
+            width = desk.size[0] * 0.9
+        else:
             return False
-        front = max(FRONTS[table], seat.size[1] + 0.3 if seat else 0.0)
-        spot = against(self.rng, self.space, desk, front=front, corner=0.55)
-        if spot is None or not self.space.try_add(desk, spot):
-            return False
+        assert desk is not None
+        assert spot is not None
         if seat is not None:
             off = float(self.rng.uniform(0.02, 0.1))
             turn = math.pi + (float(self.rng.normal(0, 0.35)) if self.chance(0.2) else 0.0)
@@ -86,12 +93,12 @@ class Arranger:
             self.space.try_add(seat, place)
         return True
 
-    def in_corner(self, category: str) -> bool:
+    def in_corner(self, category: str, front: float | None = None) -> bool:
         """Put a chair or plant into a corner, often turned towards the room."""
         model = self.pick(category)
         if model is None:
             return False
-        spot = against(self.rng, self.space, model, front=FRONTS.get(category, 0.0), corner=0.85)
+        spot = against(self.rng, self.space, model, front=FRONTS.get(category, 0.0) if front is None else front, corner=0.85)
         if spot is None:
             return False
         if category in {"armchair", "lounge_chair", "lazy_sofa", "chaise_longue_sofa"} and self.chance(0.45):

@@ -17,16 +17,14 @@ SIDE = 0.5
 # Single pieces tried in a bedroom after bed, nightstands, wardrobe and TV stand: category -> chance.
 EXTRAS = {
     "cabinet": 0.11,
-    "desk": 0.085,
-    "dressing_table": 0.14,
     "bookshelf": 0.045,
     "shelf": 0.05,
-    "children_cabinet": 0.045,
-    "corner_side_table": 0.05,
+    "children_cabinet": 0.06,
+    "corner_side_table": 0.08,
     "round_end_table": 0.04,
     "sideboard": 0.015,
-    "armchair": 0.02,
-    "lounge_chair": 0.05,
+    "armchair": 0.03,
+    "lounge_chair": 0.06,
     "chaise_longue_sofa": 0.005,
     "lazy_sofa": 0.005,
     "plant": 0.04,
@@ -42,12 +40,18 @@ def furnish_bedroom(arranger: Arranger) -> None:
     if bed is None and category == "double_bed":
         bed = place_bed(arranger, "single_bed")
     if bed is not None:
-        nightstands(arranger, bed, int(arranger.rng.choice([0, 1, 2], p=[0.13, 0.27, 0.60])))
-    for _ in range(2 if arranger.chance(0.05) else 1):
-        if arranger.chance(0.88):
-            arranger.at_wall("wardrobe", corner=0.8, tries=5)
-    if bed is not None and arranger.chance(0.2):
+        nightstands(arranger, bed, int(arranger.rng.choice([0, 1, 2], p=[0.06, 0.20, 0.74])))
+    if bed is not None and arranger.chance(0.42):
         tv_opposite(arranger, bed)
+    pieces = [w for w, share in (("desk", 0.11), ("dressing_table", 0.15), ("wardrobe", 0.98), ("wardrobe", 0.04)) if arranger.chance(share)]
+    if arranger.chance(0.5):
+        pieces.reverse()
+    for piece in pieces:
+        if piece == "wardrobe":
+            arranger.at_wall("wardrobe", corner=0.8, tries=6)
+        else:
+            chairs = ("dining_chair", "lounge_chair", "lounge_chair") if piece == "desk" else ("dressing_chair", "dressing_chair", "stool")
+            arranger.pair_at_wall(piece, chairs, 0.95)
     if bed is not None and arranger.chance(0.07):
         bed_end_stool(arranger, bed)
     extras(arranger, EXTRAS)
@@ -77,8 +81,6 @@ def extras(arranger: Arranger, rates: dict[str, float]) -> None:
             continue
         if category == "desk":
             arranger.pair_at_wall("desk", ("dining_chair", "lounge_chair", "lounge_chair"), 0.75)
-        elif category == "dressing_table":
-            arranger.pair_at_wall("dressing_table", ("dressing_chair", "stool", "dining_chair"), 0.7)
         elif category in {"armchair", "lounge_chair", "lazy_sofa", "chaise_longue_sofa", "plant", "floor_lamp"}:
             arranger.in_corner(category)
         else:
@@ -89,13 +91,13 @@ def place_bed(arranger: Arranger, category: str) -> tuple[Model, Spot] | None:
     """Put the bed's head to a wall where both its long sides can be reached, or at least one."""
     space, rng = arranger.space, arranger.rng
     short = min(space.bounds[2] - space.bounds[0], space.bounds[3] - space.bounds[1])
-    width = max(short * 0.72, 1.3)
-    for attempt in range(5):
+    width = max(short - (1.0 if category == "double_bed" else 0.6), 1.5)
+    for attempt in range(6):
         model = arranger.pick(category, width=width, depth=max(short - 0.5, 2.05))
         if model is None:
             return None
         space.blind = attempt >= 2 or arranger.chance(0.15)  # a headboard before a window: now and then
-        found = _bed_spots(arranger, model, both=attempt < 3 and category == "double_bed")
+        found = _bed_spots(arranger, model, both=attempt < 4 and category == "double_bed")
         space.blind = False
         if found:
             weights = np.array([w for w, _ in found])
@@ -108,7 +110,7 @@ def place_bed(arranger: Arranger, category: str) -> tuple[Model, Spot] | None:
                     keep.append(lane)
             space.add(model, spot, keep=keep)
             return model, spot
-        width = model.size[0] * 0.95
+        width = max(model.size[0] * 0.9, arranger.stock.least(category)[0])
     return None
 
 
@@ -121,7 +123,7 @@ def _bed_spots(arranger: Arranger, model: Model, *, both: bool) -> list[tuple[fl
     for i, side in enumerate(space.sides):
         for a, b in space.spans(side, d + gap, FOOT, 0.0, h):
             room = b - a
-            beside = SIDE + 0.05 if both else 0.0
+            beside = SIDE + 0.08 if both else 0.0
             if room < w + 2 * beside:
                 continue
             middle = (a + b) / 2 + float(rng.normal(0, 0.08)) if room > w + 2 * beside + 0.2 else (a + b) / 2
@@ -137,28 +139,28 @@ def nightstands(arranger: Arranger, bed: tuple[Model, Spot], count: int) -> None
     model, spot = bed
     signs = [-1, 1] if count == 2 else [int(arranger.rng.choice([-1, 1]))] * count
     width = 0.75
-    for _ in range(3):
+    for attempt in range(5):
         stand = arranger.pick("nightstand", width=width)
-        if stand is None or not signs:
+        if stand is None:
             return
-        gap = float(abs(arranger.rng.normal(0.05, 0.03)) + 0.01)
-        done = 0
-        for sign in list(signs):
-            place = shifted(spot, sign * (model.size[0] / 2 + stand.size[0] / 2 + gap), -(model.size[1] - stand.size[1]) / 2)
-            if _beside(arranger.space, stand, place):
-                signs.remove(sign)
-                done += 1
-        if done or not signs:
+        gap = float(abs(arranger.rng.normal(0.04, 0.03)) + 0.01)
+        back = -(model.size[1] - stand.size[1]) / 2
+        places = [shifted(spot, sign * (model.size[0] / 2 + stand.size[0] / 2 + gap), back) for sign in signs]
+        fitting = [p for p in places if _beside(arranger.space, stand, p, dry=True)]
+        if len(fitting) == len(places) or attempt == 4:
+            for place in fitting:
+                _beside(arranger.space, stand, place)
             return
-        width = stand.size[0] * 0.9
+        width = max(stand.size[0] * 0.9, arranger.stock.least("nightstand")[0])
 
 
-def _beside(space: Space, model: Model, spot: Spot) -> bool:
-    """Add a piece that may stand in the bed's own side lane, near the head, but not before a door."""
+def _beside(space: Space, model: Model, spot: Spot, *, dry: bool = False) -> bool:
+    """Add a piece that may stand in the bed's own side lane, near the head, but not before a door; `dry`: only try."""
     lanes = space.keeps
     doors = len(space.doors)
     space.keeps = lanes[:doors]
-    added = space.try_add(model, spot)
+    w, d, h = model.size
+    added = space.fits(box_of(spot.x, spot.y, spot.yaw, w, d), 0.0, h) if dry else space.try_add(model, spot)
     space.keeps = lanes
     return added
 

@@ -83,13 +83,17 @@ def _place(arranger: Arranger, table: Model, chair: Model, count: int) -> bool:
     depth = table.size[1] + 2 * (chair.size[1] + gap)
     x0, y0, x1, y1 = space.bounds
     best: tuple[float, Spot] | None = None
-    for _ in range(40):
+    for _ in range(60):
         yaw = float(rng.choice([0.0, math.pi / 2]))
-        spot = Spot(float(rng.uniform(x0, x1)), float(rng.uniform(y0, y1)), yaw)
+        half = (width / 2 + 0.08, depth / 2 + 0.08) if yaw == 0.0 else (depth / 2 + 0.08, width / 2 + 0.08)
+        spare = (x1 - x0 - 2 * half[0], y1 - y0 - 2 * half[1])
+        if min(spare) <= 0:
+            continue
+        spot = Spot(x0 + half[0] + spare[0] * float(rng.random()), y0 + half[1] + spare[1] * float(rng.random()), yaw)
         box = box_of(spot.x, spot.y, yaw, width, depth)
         if not space.fits(box, 0.0, 0.75) or not space.clear(box, 0.08):
             continue
-        air = sum(space.clear(box, BEHIND * k / 2) for k in (1, 2, 3, 4)) + float(rng.random())
+        air = sum(space.clear(box, BEHIND * k / 2) for k in (1, 2, 3)) + float(rng.random())
         if best is None or air > best[0]:
             best = air, spot
     if best is None:

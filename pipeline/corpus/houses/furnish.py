@@ -30,17 +30,18 @@ RECIPES: Mapping[str, Callable[[Arranger], None]] = {
     "utility": small_rooms.furnish_utility,
     "storage": small_rooms.furnish_storage,
 }
-# Without these a room of the type is not furnished: another try.
-MUSTS = {
-    "bedroom": {"double_bed", "single_bed", "kids_bed"},
-    "kids_room": {"kids_bed", "single_bed"},
-    "living_room": {"multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa", "chaise_longue_sofa", "lazy_sofa"},
-    "living_dining_room": {"multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa", "chaise_longue_sofa", "lazy_sofa"},
-    "dining_room": {"dining_table"},
-    "kitchen": {"sink_cabinet"},
-    "bathroom": {"toilet"},
-    "study": {"desk"},
-    "utility": {"washing_machine"},
+SOFAS = {"multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa", "chaise_longue_sofa", "lazy_sofa"}
+# One of each set, or the room is tried again.
+MUSTS: Mapping[str, tuple[set[str], ...]] = {
+    "bedroom": ({"double_bed", "single_bed", "kids_bed"},),
+    "kids_room": ({"kids_bed", "single_bed"},),
+    "living_room": (SOFAS,),
+    "living_dining_room": (SOFAS, {"dining_table"}),
+    "dining_room": ({"dining_table"},),
+    "kitchen": ({"sink_cabinet"}, {"refrigerator"}, {"oven"}),
+    "bathroom": ({"toilet"}, {"vanity"}, {"shower", "bathtub"}),
+    "study": ({"desk"},),
+    "utility": ({"washing_machine"},),
 }
 
 
@@ -62,8 +63,9 @@ def furnish_room(seed: int, index: int, number: int, plan: Plan, stock: Stock, s
         space = Space(number, room, openings)
         RECIPES[kind](Arranger(rng, space, stock, style))
         cut_off, far = walkable.problems(space)
-        missing = kind in MUSTS and not any(i.model.category in MUSTS[kind] for i in space.items)
-        score = (int(missing), cut_off, len(far))
+        present = {i.model.category for i in space.items}
+        missing = sum(not (wanted & present) for wanted in MUSTS.get(kind, ()))
+        score = (missing, cut_off, len(far))
         if best is None or score < best[0]:
             best = score, space
         if score == (0, 0, 0):

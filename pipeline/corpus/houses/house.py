@@ -11,7 +11,7 @@ from pipeline.corpus.houses.stock import Stock
 from pipeline.seeds import generator, key
 
 # Share of rooms that were never furnished, by layout type (most kitchens and baths of 3D-FRONT hold no released models; ours do).
-EMPTY = {"bedroom": 0.02, "kids_room": 0.02, "hallway": 0.25, "balcony": 0.25, "storage": 0.2}
+EMPTY = {"bedroom": 0.02, "kids_room": 0.02, "hallway": 0.08, "balcony": 0.08, "storage": 0.08}
 
 
 def make_house(seed: int, index: int, stock: Stock) -> House:

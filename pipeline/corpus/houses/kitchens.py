@@ -27,12 +27,11 @@ def furnish_kitchen(arranger: Arranger) -> None:
         wanted = ["refrigerator", *wanted]
     left = run(arranger, wanted)
     if any(c not in {"kitchen_cabinet"} for c in left):
-        left = run(arranger, [*[c for c in left if c != "refrigerator"], "kitchen_cabinet"])
+        left = run(arranger, ["kitchen_cabinet", *[c for c in left if c not in {"refrigerator", "kitchen_cabinet"}], "kitchen_cabinet", "kitchen_cabinet"])
     if not any(i.model.category == "refrigerator" for i in arranger.space.items):
         arranger.at_wall("refrigerator", corner=0.95)
-    for category, share in (("trash_can", 0.35),):
-        if arranger.chance(share):
-            arranger.in_corner(category)
+    if arranger.chance(0.35):
+        arranger.in_corner("trash_can")
     arranger.light(0.15, 0.65)
 
 

@@ -14,16 +14,16 @@ from pipeline.corpus.houses.space import Side, Space, Spot, ahead, back_gap, box
 
 # Wall pieces tried in a living room: category -> chance. From the counts of some 650 filtered living rooms (11.2 objects a room).
 WALL_PIECES = {
-    "sideboard": 0.47,
-    "cabinet": 0.29,
+    "sideboard": 0.52,
+    "cabinet": 0.33,
     "bookshelf": 0.27,
     "wine_cabinet": 0.16,
-    "shelf": 0.05,
+    "shelf": 0.08,
     "wardrobe": 0.035,
     "desk": 0.012,
     "children_cabinet": 0.015,
 }
-SOFAS = (("multi_seat_sofa", 0.60), ("loveseat_sofa", 0.24), ("l_shaped_sofa", 0.135), ("chaise_longue_sofa", 0.015), ("lazy_sofa", 0.01))
+SOFAS = (("multi_seat_sofa", 0.52), ("loveseat_sofa", 0.22), ("l_shaped_sofa", 0.26), ("chaise_longue_sofa", 0.015), ("lazy_sofa", 0.01))
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ class Lounge:
 
 def furnish_living(arranger: Arranger, *, dining: bool) -> None:
     """Furnish a living room, with a dining corner if asked for."""
-    lounge = place_lounge(arranger)
+    lounge = place_lounge(arranger, aside=dining)
     if lounge is not None:
         seats(arranger, lounge)
     if dining:
@@ -56,35 +56,38 @@ def lamps(arranger: Arranger, lounge: Lounge | None) -> None:
     mark = arranger.rng.random()
     if mark > 0.96:
         return
-    category = "pendant_lamp" if mark < 0.77 else "ceiling_lamp"
+    category = "pendant_lamp" if mark < 0.72 else "ceiling_lamp"
     spot = lounge.table[1] if lounge is not None and lounge.table is not None else None
     if spot is None or not arranger.lamp(category, spot.x, spot.y, spot.yaw):
         arranger.light(*((1.0, 0.0) if category == "pendant_lamp" else (0.0, 1.0)))
 
 
-def place_lounge(arranger: Arranger) -> Lounge | None:
-    """Choose sofa, TV wall and coffee table together: the best of many tries."""
+def place_lounge(arranger: Arranger, *, aside: bool) -> Lounge | None:
+    """Choose sofa, TV wall and coffee table together: the best of many tries. `aside`: leave one end of the room to dining."""
     space, rng = arranger.space, arranger.rng
-    with_tv = arranger.chance(0.80)
+    with_tv = arranger.chance(0.93)
     names, shares = zip(*SOFAS, strict=True)
     category = str(rng.choice(names, p=np.array(shares) / sum(shares)))
-    width = 3.4
+    width, widest = 3.4, 2.7
+    best: tuple[float, Model, Spot, Model | None, Spot | None] | None = None
     for _ in range(6):
         sofa = arranger.pick(category, width=width)
-        stand = arranger.pick("tv_stand", width=2.6) if with_tv else None
+        stand = arranger.pick("tv_stand", width=widest) if with_tv else None
         if sofa is None:
-            return None
-        found = [c for c in _sofa_places(arranger, sofa, stand) if c[0] > 0]
-        if found:
-            _, spot, tv = max(found, key=lambda c: c[0])
-            return _set_lounge(arranger, sofa, spot, stand, tv)
-        width = sofa.size[0] * 0.93
-        if category in {"l_shaped_sofa", "multi_seat_sofa"} and width < 2.1:
+            break
+        for score, spot, tv in _sofa_places(arranger, sofa, stand, aside=aside):
+            if score > 0 and (best is None or score > best[0]):
+                best = score, sofa, spot, stand, tv
+        if best is not None and (best[4] is not None or not with_tv):
+            break
+        width = sofa.size[0] * 0.95
+        widest = stand.size[0] * 0.9 if stand is not None else widest
+        if category in {"l_shaped_sofa", "multi_seat_sofa"} and width < 2.0 and best is None:
             category, width = "loveseat_sofa", 2.2
-    return None
+    return None if best is None else _set_lounge(arranger, *best[1:])
 
 
-def _sofa_places(arranger: Arranger, sofa: Model, stand: Model | None) -> list[tuple[float, Spot, Spot | None]]:
+def _sofa_places(arranger: Arranger, sofa: Model, stand: Model | None, *, aside: bool) -> list[tuple[float, Spot, Spot | None]]:
     """Return (score, sofa, TV stand): backs to a wall, or drawn forward where the room is deep."""
     space, rng = arranger.space, arranger.rng
     w, d, h = sofa.size
@@ -94,7 +97,7 @@ def _sofa_places(arranger: Arranger, sofa: Model, stand: Model | None) -> list[t
         for a, b in space.spans(side, d + gap, 1.1, 0.0, h):
             if b - a < w + 0.02:
                 continue
-            for s in np.unique(np.clip([(a + b) / 2, *rng.uniform(a, b, 3)], a + w / 2, b - w / 2)):
+            for s in np.unique(np.clip([(a + b) / 2, a + w / 2 + 0.55, b - w / 2 - 0.55, *rng.uniform(a, b, 2)], a + w / 2, b - w / 2)):
                 depth = _sight(space, side, float(s))
                 if depth < d + 1.3:
                     continue
@@ -108,10 +111,18 @@ def _sofa_places(arranger: Arranger, sofa: Model, stand: Model | None) -> list[t
                     tv = _tv_place(arranger, spot, side, stand, depth)
                 score = 1.0 + rng.random() + min(b - a - w, 2.0) * 0.3
                 score += 3.0 if tv is not None else -1.0 if stand is not None else 0.0
+                score += 3.0 * _off_centre(space, spot) if aside else 0.0
                 score -= 2.0 * max(0.0, look - 4.2) + 2.0 * max(0.0, 2.1 - look)
                 if space.fits(box_of(spot.x, spot.y, spot.yaw, w, d), 0.0, h):
                     found.append((score, spot, tv))
     return found
+
+
+def _off_centre(space: Space, spot: Spot) -> float:
+    """Return how far a spot is from the middle of the room's longer side: 0 in the middle, 1 at an end."""
+    x0, y0, x1, y1 = space.bounds
+    across, value, low, high = (x1 - x0, spot.x, x0, x1) if x1 - x0 > y1 - y0 else (y1 - y0, spot.y, y0, y1)
+    return abs(2 * value - low - high) / across
 
 
 def _sight(space: Space, side: Side, s: float) -> float:
@@ -140,18 +151,21 @@ def _set_lounge(arranger: Arranger, sofa: Model, spot: Spot, stand: Model | None
     space, rng = arranger.space, arranger.rng
     d = sofa.size[1]
     space.add(sofa, spot)
-    reach = 1.2
+    reach = 2.2
     if stand is not None and tv is not None:
         space.add(stand, tv)
         reach = abs((tv.x - spot.x) * math.sin(spot.yaw) - (tv.y - spot.y) * math.cos(spot.yaw)) - d / 2 - stand.size[1] / 2
     placed = None
-    if arranger.chance(0.97):
-        table = arranger.pick("coffee_table", width=max(0.6, sofa.size[0] * 0.75), depth=max(0.5, reach - 0.95))
-        if table is not None:
-            place = shifted(spot, float(rng.normal(0, 0.06)), d / 2 + table.size[1] / 2 + float(rng.uniform(0.3, 0.5)))
-            if space.try_add(table, place):
-                placed = (table, place)
-    if placed is None and arranger.chance(0.5):
+    deepest = reach - 0.85
+    for _ in range(4):
+        table = arranger.pick("coffee_table", width=max(0.9, sofa.size[0] * 0.75), depth=deepest)
+        if table is None or placed is not None:
+            break
+        place = shifted(spot, float(rng.normal(0, 0.06)), d / 2 + table.size[1] / 2 + float(rng.uniform(0.3, 0.48)))
+        if space.try_add(table, place):
+            placed = (table, place)
+        deepest = table.size[1] * 0.85
+    if placed is None and arranger.chance(0.3):
         table = arranger.pick("round_end_table") or arranger.pick("corner_side_table")
         if table is not None:
             space.try_add(table, shifted(spot, float(rng.normal(0, 0.1)), d / 2 + table.size[1] / 2 + 0.35))
@@ -163,7 +177,7 @@ def _set_lounge(arranger: Arranger, sofa: Model, spot: Spot, stand: Model | None
 def seats(arranger: Arranger, lounge: Lounge) -> None:
     """Put side tables beside the sofa; armchairs, lounge chairs and stools around the coffee table, facing it."""
     rng, space = arranger.rng, arranger.space
-    count = int(rng.choice([0, 1, 2], p=[0.30, 0.36, 0.34]))
+    count = int(rng.choice([0, 1, 2], p=[0.14, 0.34, 0.52]))
     signs = [-1, 1] if count == 2 else [int(rng.choice([-1, 1]))] * count
     side_table = arranger.pick("corner_side_table")
     for sign in signs:
@@ -171,8 +185,8 @@ def seats(arranger: Arranger, lounge: Lounge) -> None:
             back = -(lounge.sofa.size[1] - side_table.size[1]) / 2 + float(abs(rng.normal(0, 0.05)))
             across = sign * (lounge.sofa.size[0] / 2 + side_table.size[0] / 2 + float(rng.uniform(0.02, 0.1)))
             space.try_add(side_table, shifted(lounge.spot, across, back))
-    wanted = [c for c, share in (("armchair", 0.40), ("armchair", 0.27), ("lounge_chair", 0.30), ("lounge_chair", 0.15), ("stool", 0.27)) if arranger.chance(share)]
-    if arranger.chance(0.02):
+    wanted = [c for c, share in (("armchair", 0.40), ("armchair", 0.27), ("lounge_chair", 0.30), ("lounge_chair", 0.15), ("stool", 0.36)) if arranger.chance(share)]
+    if arranger.chance(0.025):
         wanted += ["chinese_chair", "chinese_chair"]
     free = [-1, 1] if arranger.chance(0.5) else [1, -1]
     twin: dict[str, Model | None] = {}

@@ -32,7 +32,7 @@ def furnish_hall(arranger: Arranger) -> None:
     for category, share in (("stool", 0.3), ("plant", 0.25)):
         if arranger.chance(share):
             arranger.in_corner(category)
-    arranger.light(0.2, 0.7)
+    arranger.light(0.15, 0.82)
 
 
 def furnish_study(arranger: Arranger) -> None:
@@ -51,10 +51,10 @@ def furnish_balcony(arranger: Arranger) -> None:
     """Furnish a balcony: plants, a chair and a small table, sometimes the washing machine."""
     if arranger.chance(0.3):
         arranger.at_wall("washing_machine", corner=1.0)
-    for category, share in (("plant", 0.75), ("lounge_chair", 0.5), ("round_end_table", 0.35), ("plant", 0.35), ("lounge_chair", 0.15)):
+    for category, share in (("plant", 0.8), ("lounge_chair", 0.6), ("round_end_table", 0.4), ("plant", 0.5), ("lounge_chair", 0.2)):
         if arranger.chance(share):
-            arranger.in_corner(category)
-    arranger.light(0.0, 0.4)
+            arranger.in_corner(category, front=0.0)
+    arranger.light(0.0, 0.55)
 
 
 def furnish_utility(arranger: Arranger) -> None:

@@ -18,6 +18,11 @@ FAR = 50.0
 LOW = 1.0
 """Boxes that start above this height do not stand in the way on the floor [m]."""
 EPSILON = 1e-4
+STEP = 0.5
+"""Free floor before an opening [m]; less before a wide one in a room narrower than NARROW, such as a balcony."""
+NARROW = 1.7
+LOW_PIECE = 0.65
+"""What is no higher than this may stand before any window [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,11 +123,12 @@ class Space:
         side = self.sides[wall]
         low, high = side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
         if opening.kind == "window":
-            self.panes.append((side.strip(low, high, 0.0, 0.65), opening.sill))
+            self.panes.append((side.strip(low, high, 0.0, 0.65), max(opening.sill, LOW_PIECE)))
             return
         swings_here = opening.swing is not None and opening.swing.room_id == room_id
-        reach = (high - low) + 0.05 if swings_here else 0.75
-        self.keeps.append(side.strip(low - 0.03, high + 0.03, 0.0, max(reach, 0.75)))
+        narrow = min(self.bounds[2] - self.bounds[0], self.bounds[3] - self.bounds[1]) < NARROW
+        step = 0.35 if narrow and opening.width > 1.0 else STEP
+        self.keeps.append(side.strip(low - 0.03, high + 0.03, 0.0, max((high - low) + 0.05, step) if swings_here else step))
         self.doors.append(side.point((low + high) / 2, 0.36))
 
     def fits(self, box: Rect, low: float, high: float) -> bool:
@@ -192,9 +198,14 @@ def against(
         found += [(i, a, b) for a, b in space.spans(space.sides[i], d + gap, front, low, low + h) if b - a >= w + 0.02]
     if not found:
         return None
+    if corner >= 0.95:  # the room's own corners first
+        found = [f for f in found if f[1] < 0.01 or f[2] > space.sides[f[0]].length - 0.01] or found
     i, a, b = found[int(rng.integers(len(found)))]
     slack = b - a - w
     if rng.random() < corner:
+        if corner >= 0.95 and (a < 0.01) != (b > space.sides[i].length - 0.01):
+            near = a + w / 2 + 0.004 if a < 0.01 else b - w / 2 - 0.004
+            return on_side(space, i, near, d, gap)
         into = min(slack, abs(float(rng.normal(0.0, 0.02))) + 0.005)
         s = a + w / 2 + into if rng.random() < 0.5 else b - w / 2 - into
     else:

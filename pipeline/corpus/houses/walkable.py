@@ -48,8 +48,13 @@ def problems(space: Space) -> tuple[int, list[int]]:
         return float(reach[min(max(i, 0), reach.shape[0] - 1), min(max(j, 0), reach.shape[1] - 1)])
 
     cut_off = sum(away(x, y) > 0.25 for x, y in space.doors)
-    far = [k for k, item in enumerate(space.items) if item.position[2] < LOW and _nearest(reach, item.rect(), (x0, y0)) > 0.55]
+    far = [k for k, i in enumerate(space.items) if i.position[2] < LOW and _nearest(reach, i.rect(), (x0, y0)) > _arm(i)]
     return cut_off, far
+
+
+def _arm(item: Item) -> float:
+    """Return how far from the walkable floor a piece may be [m]: chairs are pulled, so they may stand between others."""
+    return 0.9 if item.model.category.endswith(("chair", "stool")) else 0.55
 
 
 def _nearest(reach: NDArray[np.float64], box: Rect, origin: tuple[float, float]) -> float:
