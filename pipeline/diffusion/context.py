@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.plan import Opening, OpeningKind, Plan
 
-# Boxes that the moving parts of one slot's asset would sweep: (categories (B, N) str or None for an empty slot,
-# sizes (B, N, 3) [m], latents (B, N, 32)) -> (B, N, K, 2, 3) [m], lower and upper corner in the object frame at the
-# asked size; NaN where a slot has fewer than K of them. The retrieval index of the layer above gives it.
-Sweeps = Callable[[Sequence[Sequence[str | None]], NDArray[np.float64], NDArray[np.float32]], NDArray[np.float32]]
+
+class Library(Protocol):
+    """What the sampler asks of the asset library while it guides: the retrieval index of a layer above is one."""
+
+    def lookup(
+        self, categories: Sequence[Sequence[str | None]], sizes: NDArray[np.float64], latents: NDArray[np.float32]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
+        """Find the nearest asset of each slot: categories (B, N), None for an empty slot; sizes (B, N, 3) [m]; latents (B, N, 32).
+
+        Returns its size as placed (B, N, 3) [m] (the asked one where there is none), and the boxes that its joints sweep
+        (B, N, K, 2, 3) [m]: lower and upper corner in the object frame, NaN where a slot has fewer than K.
+        """
+        ...
 
 
 @dataclass(frozen=True, slots=True)

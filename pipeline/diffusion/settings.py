@@ -51,19 +51,20 @@ class TrainSettings:
 
 @dataclass(frozen=True, slots=True)
 class SampleSettings:
-    """How rooms are sampled (section `sample` of params.yaml)."""
+    """How rooms are sampled (section `sample` of params.yaml). Window limits are levels of T = 1000."""
 
     sampler: Literal["ddim", "ancestral"] = "ddim"
     steps_coarse: int = 20  # DDIM evaluations at t >= 100
     steps_middle: int = 12  # evaluations at 10 <= t < 100
-    steps_fine: int = 10  # evaluations at t < 10
+    steps_fine: int = 12  # evaluations at t < 10
     batch: int = 32  # rooms per padded batch
     count_condition: bool = True  # tell the denoiser the number of objects, beside the quantity guidance
-    quantity: bool = True
-    quantity_scale: float = 3.0
+    quantity: bool = True  # guide the number of objects
+    quantity_scale: float = 1.0  # step along the descent of phi_quantity, in channel units
     quantity_below: int = 100
-    articulation: Articulation = "joints"
-    articulation_scale: float = 1.0
+    articulation: Articulation = "joints"  # what counts as extended state: joints' sweeps, the paper's heuristic, or no guidance
+    articulation_scale: float = 0.5  # step along the descent of phi_articoll [m per m]
     articulation_below: int = 10
-    room_scale: float = 1.0
-    clip: float = 0.1  # largest move of a normalised channel in one guided step
+    turn_scale: float = 0.1  # step of the yaw, per step of the position
+    clip: float = 0.15  # largest move in one guided step [m]
+    snap_below: int = 30  # from this level on slots take the size of the asset that they would retrieve

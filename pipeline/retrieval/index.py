@@ -158,21 +158,24 @@ class AssetIndex:
         found = int(fits[best])
         return Match(self.asset_ids[found], float(table[best]), np.ones(3), self.sizes[found].copy(), bool(self.openable[found]))
 
-    def sweeps(
+    def lookup(
         self, categories: Sequence[Sequence[str | None]], sizes: NDArray[np.float64], latents: NDArray[np.float32]
-    ) -> NDArray[np.float32]:
-        """Return what the joints of each slot's nearest asset sweep: (B, N, K, 2, 3) [m], object frame, NaN for none.
+    ) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
+        """Return the placed size (B, N, 3) and the sweep boxes (B, N, K, 2, 3) [m] of each slot's nearest asset.
 
-        Boxes are stretched from the asset's size to the asked one, so that they stay attached to the slot's box.
+        The size is the asset's own, static ones stretched as `match` would; a slot without an asset keeps what it asked.
         """
         flat = [c for row in categories for c in row]
         asked = np.asarray(sizes, float).reshape(-1, 3)
         rows, _ = self.nearest(flat, asked, np.asarray(latents, float).reshape(len(flat), -1))
-        safe = np.maximum(rows, 0)
-        factor = np.maximum(asked, 0.02) / np.maximum(self.sizes[safe], 0.02)
-        boxes = self.sweep_boxes[safe] * factor[:, None, None, :].astype(np.float32)
-        boxes[rows < 0] = np.nan
-        return boxes.reshape(len(categories), -1, *boxes.shape[1:])
+        safe, found = np.maximum(rows, 0), rows >= 0
+        limit = np.where(self.articulated[safe], 0.0, self.settings.stretch)[:, None]
+        scale = np.clip(asked / self.sizes[safe], 1 - limit, 1 + limit)
+        placed = np.where(found[:, None], self.sizes[safe] * scale, asked)
+        boxes = self.sweep_boxes[safe].copy()
+        boxes[~found] = np.nan
+        shape = (len(categories), -1)
+        return placed.reshape(*shape, 3), boxes.reshape(*shape, *boxes.shape[1:])
 
     def row(self, asset_id: str) -> int:
         """Return the row of an asset."""

@@ -1,0 +1,126 @@
+"""Batches of rooms as tensors, and the augmentation that maps a room onto its mirror images and rotations."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from pipeline.diffusion.codec import CONTINUOUS, POSITION, YAW, Codec
+from pipeline.diffusion.floor import KINDS, Floor
+from pipeline.diffusion.rooms import SWEEPS, Example
+
+
+@dataclass(frozen=True, slots=True)
+class RoomBatch:
+    """B rooms as the denoiser is told about them; M floor tokens each (see `floor.Floor`).
+
+    `layout` (B,), `count` (B,) the number of objects or -1 for "not said", `height` (B,) of the ceiling [m].
+    """
+
+    ends: Tensor
+    normal: Tensor
+    kind: Tensor
+    hinge: Tensor
+    sill: Tensor
+    mask: Tensor
+    layout: Tensor
+    count: Tensor
+    height: Tensor
+
+    def __len__(self) -> int:
+        return len(self.layout)
+
+    def to(self, device: torch.device) -> RoomBatch:
+        """Move all tensors."""
+        return RoomBatch(*(getattr(self, f.name).to(device) for f in fields(self)))
+
+    def rows(self, index: Tensor) -> RoomBatch:
+        """Take some rooms."""
+        return RoomBatch(*(getattr(self, f.name)[index] for f in fields(self)))
+
+    def told(self, count: Tensor) -> RoomBatch:
+        """Say other counts."""
+        return replace(self, count=count)
+
+    @property
+    def walls(self) -> Tensor:
+        """Which tokens (B, M) are walls, the polygon's edges."""
+        return self.mask & (self.kind == KINDS.index("wall"))
+
+
+@dataclass(frozen=True, slots=True)
+class Objects:
+    """The slots of B rooms: `classes` (B, N), C for empty; `continuous` (B, N, 40) normalised; `sweeps` (B, N, K, 2, 3) [m]."""
+
+    classes: Tensor
+    continuous: Tensor
+    sweeps: Tensor
+
+    def rows(self, index: Tensor) -> Objects:
+        """Take some rooms."""
+        return Objects(self.classes[index], self.continuous[index], self.sweeps[index])
+
+
+def room_batch(floors: Sequence[Floor], layouts: Sequence[int], counts: Sequence[int], heights: Sequence[float]) -> RoomBatch:
+    """Stack rooms."""
+    stacked = [torch.from_numpy(np.stack([getattr(f, name) for f in floors])) for name in ("ends", "normal", "kind", "hinge", "sill", "mask")]
+    return RoomBatch(*stacked, torch.tensor(layouts), torch.tensor(counts), torch.tensor(heights, dtype=torch.float32))
+
+
+def stacked(examples: Sequence[Example], codec: Codec, slots: int) -> tuple[RoomBatch, Objects]:
+    """Pad examples to `slots` and stack them; a room's `count` is the number of its objects."""
+    classes = torch.full((len(examples), slots), codec.classes)
+    continuous = torch.zeros(len(examples), slots, CONTINUOUS)
+    sweeps = torch.full((len(examples), slots, SWEEPS, 2, 3), torch.nan)
+    for i, example in enumerate(examples):
+        n = len(example.classes)
+        classes[i, :n] = torch.from_numpy(example.classes)
+        continuous[i, :n] = codec.normalised(torch.from_numpy(example.continuous).float())
+        sweeps[i, :n] = torch.from_numpy(example.sweeps)
+    rooms = room_batch(
+        [e.floor for e in examples], [e.layout for e in examples], [len(e.classes) for e in examples], [e.height for e in examples]
+    )
+    return rooms, Objects(classes, continuous, sweeps)
+
+
+def motions(rng: torch.Generator, count: int, tilt: float = 0.0) -> Tensor:
+    """Draw orthogonal matrices (count, 2, 2): the 8 symmetries of the square, then a rotation of up to `tilt` [rad]."""
+    quarter = torch.randint(4, (count,), generator=rng) * (math.pi / 2)
+    angle = quarter + tilt * (2 * torch.rand(count, generator=rng) - 1)
+    flip = 1.0 - 2.0 * torch.randint(2, (count,), generator=rng)
+    cos, sin = angle.cos(), angle.sin()
+    if tilt == 0:  # quarter turns are exact
+        cos, sin = cos.round(), sin.round()
+    return torch.stack([torch.stack([cos * flip, -sin], -1), torch.stack([sin * flip, cos], -1)], -2)
+
+
+def moved_rooms(rooms: RoomBatch, motion: Tensor) -> RoomBatch:
+    """Apply motions (B, 2, 2) to rooms. A mirror image turns segments round, so that the polygon stays counter-clockwise."""
+    mirrored = torch.linalg.det(motion) < 0
+    ends = rooms.ends @ motion.transpose(1, 2)[:, None]
+    ends = torch.where(mirrored[:, None, None, None], ends.flip(2), ends)
+    hinge = torch.where(mirrored[:, None] & (rooms.hinge >= 0), 1 - rooms.hinge, rooms.hinge)
+    return replace(rooms, ends=ends, normal=rooms.normal @ motion.transpose(1, 2), hinge=hinge)
+
+
+def moved_objects(objects: Objects, motion: Tensor, codec: Codec) -> Objects:
+    """Apply motions (B, 2, 2) to objects.
+
+    A box is symmetric, so its size (w, d, h) stays; the front (sin yaw, -cos yaw) is moved as a vector, which for a
+    mirror image gives the reflected yaw; what joints sweep is mirrored in the object's x. The shape latent is kept: the
+    mirror image of a model is taken for the model.
+    """
+    x = objects.continuous.clone()
+    scale = codec.scale[POSITION][:2]  # one scale for x and y, mean 0: the motion commutes with the normalisation
+    x[..., :2] = ((x[..., :2] * scale) @ motion.transpose(1, 2)) / scale
+    front = torch.stack([x[..., YAW.start + 1], -x[..., YAW.start]], -1) @ motion.transpose(1, 2)
+    x[..., YAW] = torch.stack([-front[..., 1], front[..., 0]], -1)
+    mirrored = (torch.linalg.det(motion) < 0)[:, None, None, None]
+    low, high = objects.sweeps[..., 0, :], objects.sweeps[..., 1, :]
+    turned = torch.stack([torch.cat([-high[..., :1], low[..., 1:]], -1), torch.cat([-low[..., :1], high[..., 1:]], -1)], -2)
+    return Objects(objects.classes, x, torch.where(mirrored[..., None], turned, objects.sweeps))

@@ -1,0 +1,174 @@
+"""The constraint functions phi: penalties, lower is better, differentiable in the slots they judge.
+
+The paper prints the guidance as mu + lambda Sigma grad phi, with phi a loss (a cross-entropy, a sum of overlaps). Followed
+to the letter that CLIMBS the penalty. Everything here that is called a `descent` is therefore -grad phi, and is added.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import torch
+from torch import Tensor
+
+from pipeline.diffusion.batch import RoomBatch
+from pipeline.diffusion.floor import KINDS
+from pipeline.diffusion.relations import Boxes
+
+CLEARANCE = 0.45  # [m] kept free at a doorway whose leaf does not turn into the room
+LEAF_HEIGHT = 2.0  # [m] a door leaf and a person need that much
+
+
+class Prisms(NamedTuple):
+    """Upright rotated boxes (..., K): `centre`, `half` (..., K, 2), `axis` (..., K, 2) unit width direction, `low`, `high` [m]."""
+
+    centre: Tensor
+    half: Tensor
+    axis: Tensor
+    low: Tensor
+    high: Tensor
+
+
+def bodies(boxes: Boxes) -> Prisms:
+    """Return each slot's own box, its yaw direction made unit."""
+    axis = boxes.axis / torch.linalg.vector_norm(boxes.axis, dim=-1, keepdim=True).clamp_min(1e-3)
+    return Prisms(boxes.centre, boxes.half, axis, boxes.bottom, boxes.bottom + boxes.height)
+
+
+def swept(body: Prisms, sweeps: Tensor) -> tuple[Prisms, Tensor]:
+    """Place what joints sweep: boxes (B, N, K, 2, 3) in the object frame to prisms (B, N, K) and a mask of those that exist.
+
+    Without gradient through the boxes themselves: a slot moves and turns with its sweep.
+    """
+    there = torch.isfinite(sweeps).all(-1).all(-1)
+    boxes = torch.nan_to_num(sweeps)
+    middle, half = boxes.mean(-2), (boxes[..., 1, :] - boxes[..., 0, :]) / 2
+    axis = body.axis[:, :, None].expand(*there.shape, 2)
+    depth = torch.stack([-axis[..., 1], axis[..., 0]], -1)  # object y: from front to back
+    centre = body.centre[:, :, None] + middle[..., :1] * axis + middle[..., 1:2] * depth
+    low = body.low[:, :, None] + middle[..., 2] - half[..., 2]
+    return Prisms(centre, half[..., :2], axis, low, low + 2 * half[..., 2]), there
+
+
+def heuristic_sweeps(size: Tensor, opens: Tensor) -> Tensor:
+    """Return the paper's stand-in for joints (B, N, 1, 2, 3): the box grows by a third of its depth to the front.
+
+    `size` (B, N, 3) [m]; `opens` (B, N) says which classes count as articulated. Depth h becomes h + h / 3.
+    """
+    w, d, h = size.unbind(-1)
+    low = torch.stack([-w / 2, -d / 2 - d / 3, torch.zeros_like(h)], -1)
+    high = torch.stack([w / 2, d / 2, h], -1)
+    box = torch.stack([low, high], -2)[:, :, None]
+    return torch.where(opens[:, :, None, None, None], box, torch.full_like(box, torch.nan))
+
+
+def doorways(rooms: RoomBatch) -> tuple[Prisms, Tensor]:
+    """Return what must stay free before doors (B, M) and its mask: the square around the leaf's quarter disc, or a strip."""
+    start, stop = rooms.ends[:, :, 0], rooms.ends[:, :, 1]
+    width = torch.linalg.vector_norm(stop - start + 1e-9, dim=-1)
+    depth = torch.where(rooms.hinge >= 0, width, torch.full_like(width, CLEARANCE))
+    along = torch.stack([rooms.normal[..., 1], -rooms.normal[..., 0]], -1)
+    centre = (start + stop) / 2 + rooms.normal * depth[..., None] / 2
+    doors = torch.zeros_like(rooms.mask)
+    for name in ("door", "open", "portal", "entrance"):
+        doors |= rooms.kind == KINDS.index(name)
+    low = torch.zeros_like(width)
+    return Prisms(centre, torch.stack([width, depth], -1) / 2, along, low, low + LEAF_HEIGHT), doors & rooms.mask
+
+
+def overlap(a: Prisms, b: Prisms) -> Tensor:
+    """Return how deep the prisms overlap [m], 0 where they do not; a and b broadcast.
+
+    Separating axes: the least push along one of the four side directions that parts the footprints; counted only where
+    the heights overlap, with a ramp over the first 5 cm. A true depth, unlike IoU, does not fade when one box swallows
+    the other, and its gradient is the unit direction of the push; both have the same zeros.
+    """
+    apart = b.centre - a.centre
+    turn_a, turn_b = torch.stack([-a.axis[..., 1], a.axis[..., 0]], -1), torch.stack([-b.axis[..., 1], b.axis[..., 0]], -1)
+    same = (a.axis * b.axis).sum(-1).abs()
+    cross = (a.axis * turn_b).sum(-1).abs()
+    (wa, da), (wb, db) = a.half.unbind(-1), b.half.unbind(-1)
+    depth = torch.stack(
+        [
+            wa + wb * same + db * cross - (apart * a.axis).sum(-1).abs(),
+            da + wb * cross + db * same - (apart * turn_a).sum(-1).abs(),
+            wb + wa * same + da * cross - (apart * b.axis).sum(-1).abs(),
+            db + wa * cross + da * same - (apart * turn_b).sum(-1).abs(),
+        ],
+        -1,
+    ).amin(-1)
+    rise = torch.minimum(a.high, b.high) - torch.maximum(a.low, b.low)
+    return depth.clamp_min(0) * (rise.detach() / 0.05).clamp(0, 1)
+
+
+def outside(prisms: Prisms, rooms: RoomBatch) -> Tensor:
+    """Return half the squared distances [m2] by which corners and side middles of prisms (B, P) lie out of their room, summed."""
+    w, d = prisms.half.unbind(-1)
+    steps = torch.tensor([[-1, -1], [1, -1], [1, 1], [-1, 1], [0, -1], [0, 1], [-1, 0], [1, 0]], dtype=w.dtype, device=w.device)
+    depth = torch.stack([-prisms.axis[..., 1], prisms.axis[..., 0]], -1)
+    points = prisms.centre[:, :, None] + steps[:, :1] * (prisms.axis * w[..., None])[:, :, None] + steps[:, 1:] * (depth * d[..., None])[:, :, None]
+    walls = rooms.walls.shape[1] - 12  # the wall tokens come first
+    start, stop, there = rooms.ends[:, :walls, 0], rooms.ends[:, :walls, 1], rooms.walls[:, :walls]
+    at = points[:, :, :, None]
+    a, b = start[:, None, None], stop[:, None, None]
+    edge = b - a
+    place = (((at - a) * edge).sum(-1) / (edge**2).sum(-1).clamp_min(1e-6)).clamp(0, 1)
+    nearest = torch.linalg.vector_norm(at - a - place[..., None] * edge + 1e-9, dim=-1)
+    nearest = nearest.masked_fill(~there[:, None, None], 1e3).amin(-1)
+    crosses = ((a[..., 1] > at[..., 1]) != (b[..., 1] > at[..., 1])) & (
+        at[..., 0] < edge[..., 0] * (at[..., 1] - a[..., 1]) / torch.where(edge[..., 1] == 0, torch.ones_like(edge[..., 1]), edge[..., 1]) + a[..., 0]
+    )
+    inside = (crosses & there[:, None, None]).sum(-1) % 2 == 1
+    beyond = torch.where(inside, torch.zeros_like(nearest), nearest)
+    return (beyond**2).sum(-1) / 2  # a side of a box has two corners or more beyond a wall
+
+
+def articulated_collision(
+    boxes: Boxes, occupied: Tensor, sweeps: Tensor | None, rooms: RoomBatch, room_scale: float = 1.0
+) -> Tensor:
+    """Return phi_articoll (B,) of B rooms [m2]: how deep bodies and what their joints sweep reach into each other.
+
+    Paper eq. articoll sums IoU(b'_i, b_j) over ordered pairs, b' the extended state. Here b' is the body and, per joint,
+    the box that it really sweeps (`sweeps` (B, N, K, 2, 3), None for bodies alone); in place of the IoU stands half the
+    square of the depth (see `overlap`), whose descent is the depth itself, along the shortest way out. Doorways are obstacles too, and so is what lies outside the room. `occupied` (B, N) selects slots.
+    """
+    body = bodies(boxes)
+    both = occupied[:, :, None] & occupied[:, None]
+    other = ~torch.eye(occupied.shape[1], dtype=torch.bool, device=occupied.device)
+    static = Prisms(*(part[:, None] for part in body))
+    phi = 0.25 * (overlap(Prisms(*(part[:, :, None] for part in body)), static) ** 2 * (both & other)).sum((1, 2))
+    doors, there = doorways(rooms)
+    door = Prisms(*(part[:, None] for part in doors))
+    blocked = occupied[:, :, None] & there[:, None]
+    phi = phi + 0.5 * (overlap(Prisms(*(part[:, :, None] for part in body)), door) ** 2 * blocked).sum((1, 2))
+    phi = phi + 0.5 * room_scale * (outside(body, rooms) * occupied).sum(1)
+    if sweeps is None:
+        return phi
+    moving, real = swept(body, sweeps)
+    real = real & occupied[:, :, None]
+    flat = Prisms(*(part.flatten(1, 2)[:, :, None] for part in moving))
+    used = real.flatten(1)
+    hits = (used[:, :, None] & occupied[:, None]) & other.repeat_interleave(sweeps.shape[2], 0)
+    phi = phi + 0.5 * (overlap(flat, static) ** 2 * hits).sum((1, 2))
+    phi = phi + 0.5 * (overlap(flat, door) ** 2 * (used[:, :, None] & there[:, None])).sum((1, 2))
+    return phi + 0.25 * room_scale * (outside(Prisms(*(part.flatten(1, 2) for part in moving)), rooms) * used).sum(1)
+
+
+def quantity_target(empty_logit: Tensor, count: Tensor) -> Tensor:
+    """Return the target vector T (B, N) of paper eq. num_control: 0 for the `count` (B,) most non-empty slots, 1 for the rest.
+
+    Ties go to the earlier slot.
+    """
+    order = empty_logit.argsort(dim=1, stable=True)
+    rank = torch.empty_like(order).scatter_(1, order, torch.arange(order.shape[1], device=order.device).expand_as(order))
+    return (rank >= count[:, None]).to(empty_logit.dtype)
+
+
+def quantity(empty_logit: Tensor, count: Tensor) -> Tensor:
+    """Return phi_quantity (B,): binary cross-entropy of the empty logits (B, N) against T, summed over slots.
+
+    The target is chosen anew at each call. Rooms with count < 0 have none, and cost nothing.
+    """
+    target = quantity_target(empty_logit.detach(), count)
+    loss = torch.nn.functional.binary_cross_entropy_with_logits(empty_logit, target, reduction="none").sum(1)
+    return torch.where(count >= 0, loss, torch.zeros_like(loss))

@@ -1,0 +1,63 @@
+"""Training of the VAE: a loop that yields, so that the caller logs and stops."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import torch
+from torch import Tensor
+
+from pipeline import seeds
+from pipeline.latents.settings import EncodeSettings
+from pipeline.latents.vae import PointVae, chamfer, kl_to_standard_normal
+
+
+class Step(NamedTuple):
+    """What one step of training reports."""
+
+    step: int
+    chamfer: float
+    kl: float
+
+
+def seeded(seed: int, settings: EncodeSettings) -> PointVae:
+    """Build the untrained net from the seed alone."""
+    with torch.random.fork_rng(devices=[]):
+        torch.manual_seed(seeds.key(seed, "vae-init") % 2**63)
+        return PointVae.of(settings)
+
+
+def train(seed: int, net: PointVae, clouds: Tensor, settings: EncodeSettings, device: torch.device) -> Iterator[Step]:
+    """Train `net` in place on clouds (M, P, 3): Chamfer + 0.001 KL; the learning rate falls as a cosine to zero.
+
+    Every step draws from a generator of its own, keyed by (seed, step).
+    """
+    net.to(device).train()
+    clouds = clouds.to(device)
+    optimiser = torch.optim.Adam(net.parameters(), lr=settings.learning_rate)
+    for step in range(settings.steps):
+        rng = torch.Generator().manual_seed(seeds.key(seed, "vae-step", step) % 2**63)
+        rows = torch.randint(len(clouds), (settings.batch,), generator=rng).to(device)
+        seen = torch.randperm(clouds.shape[1], generator=rng)[: settings.train_points].to(device)
+        batch = clouds[rows][:, seen]
+        mean, logvar = net.encoder(batch)
+        noise = torch.randn(mean.shape, generator=rng).to(device)
+        made = net.decoder(mean + (0.5 * logvar).exp() * noise)
+        distance, kl = chamfer(batch, made).mean(), kl_to_standard_normal(mean, logvar).mean()
+        for group in optimiser.param_groups:
+            group["lr"] = settings.learning_rate * min(1.0, (step + 1) / 20) * 0.5 * (1 + math.cos(math.pi * step / settings.steps))
+        optimiser.zero_grad(set_to_none=True)
+        (distance + settings.kl_weight * kl).backward()
+        torch.nn.utils.clip_grad_norm_(net.parameters(), 1.0)
+        optimiser.step()
+        yield Step(step, float(distance.detach()), float(kl.detach()))
+    net.eval()
+
+
+@torch.no_grad()
+def encode(net: PointVae, clouds: Tensor, device: torch.device, batch: int = 16) -> Tensor:
+    """Return the posterior means (M, 32) of clouds (M, P, 3)."""
+    net.to(device).eval()
+    return torch.cat([net.encoder(part.to(device))[0].cpu() for part in clouds.split(batch)] or [torch.zeros(0, 32)])

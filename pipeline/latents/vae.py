@@ -1,0 +1,72 @@
+"""The point-cloud VAE: PointNet encoder, MLP decoder, Chamfer distance and KL.
+
+Shapes: clouds (B, P, 3) in the cube [-0.5, 0.5]^3; mean and log-variance (B, 32).
+"""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor, nn
+
+from pipeline.latents.settings import EncodeSettings
+
+
+class Encoder(nn.Module):
+    """Per-point MLP on coordinates and their Fourier features, pooled by maximum and mean (permutation-invariant)."""
+
+    frequencies: Tensor
+
+    def __init__(self, width: int, latent: int) -> None:
+        super().__init__()
+        self.register_buffer("frequencies", torch.tensor([1.0, 2.0, 4.0]) * torch.pi, persistent=False)
+        self.points = nn.Sequential(nn.Linear(21, width), nn.GELU(), nn.Linear(width, width), nn.GELU(), nn.Linear(width, 2 * width))
+        self.pooled = nn.Sequential(nn.Linear(4 * width, 2 * width), nn.GELU(), nn.Linear(2 * width, 2 * latent))
+
+    def forward(self, cloud: Tensor) -> tuple[Tensor, Tensor]:
+        """Return the posterior's mean and log-variance."""
+        angles = (cloud[..., None, :] * self.frequencies[:, None]).flatten(-2)
+        features = self.points(torch.cat([2 * cloud, angles.sin(), angles.cos()], -1))
+        mean, logvar = self.pooled(torch.cat([features.amax(1), features.mean(1)], -1)).chunk(2, -1)
+        return mean, logvar.clamp(-12, 6)
+
+
+class Decoder(nn.Module):
+    """MLP from the latent to a fixed number of points."""
+
+    def __init__(self, width: int, latent: int, points: int) -> None:
+        super().__init__()
+        self.count = points
+        self.net = nn.Sequential(
+            nn.Linear(latent, 2 * width), nn.GELU(), nn.Linear(2 * width, 4 * width), nn.GELU(), nn.Linear(4 * width, 3 * points)
+        )
+
+    def forward(self, latent: Tensor) -> Tensor:
+        """Return a cloud (B, points, 3)."""
+        points: Tensor = 0.5 * self.net(latent).unflatten(-1, (self.count, 3))
+        return points
+
+
+class PointVae(nn.Module):
+    """Encoder and decoder."""
+
+    def __init__(self, width: int = 64, latent: int = 32, decoded_points: int = 384) -> None:
+        super().__init__()
+        self.encoder = Encoder(width, latent)
+        self.decoder = Decoder(width, latent, decoded_points)
+
+    @classmethod
+    def of(cls, settings: EncodeSettings) -> PointVae:
+        """Build the net that the settings describe."""
+        return cls(settings.width, settings.latent, settings.decoded_points)
+
+
+def chamfer(a: Tensor, b: Tensor) -> Tensor:
+    """Return the Chamfer distance (B,) of clouds (B, P, 3) and (B, Q, 3): mean distance to the nearest, both ways summed."""
+    squared = (a**2).sum(-1)[:, :, None] + (b**2).sum(-1)[:, None, :] - 2 * a @ b.transpose(1, 2)
+    there, back = squared.amin(2), squared.amin(1)
+    return (there.clamp_min(1e-8).sqrt().mean(1) + back.clamp_min(1e-8).sqrt().mean(1)).float()
+
+
+def kl_to_standard_normal(mean: Tensor, logvar: Tensor) -> Tensor:
+    """Return KL(N(mean, exp(logvar)) || N(0, I)) per cloud (B,) [nats]."""
+    return 0.5 * (mean**2 + logvar.exp() - 1 - logvar).sum(-1)
