@@ -41,8 +41,10 @@ def building(plan: Plan, level: int, shell: Shell) -> Soup:
             for piece in convex_pieces(Polygon(room.polygon)):
                 quads.extend((ring, colour, 0.0) for ring, colour in pattern(piece, material))
     for cut in shell.cuts:
-        threshold = pale(palette.OAK)
-        quads.append((cut.quad, WINDOW, WALL_TOP) if cut.bottom > 0.05 or cut.opening.kind == "window" else (cut.quad, threshold, 0.0))
+        if cut.bottom > 0.05 or cut.opening.kind == "window":
+            quads.append((cut.quad, WINDOW, WALL_TOP))
+        else:
+            quads.append((cut.quad, pale(palette.threshold(plan, cut.opening)), 0.0))
     quads.extend((prism.polygon, WALL, WALL_TOP) for prism in shell.prisms if prism.kind == "wall")
     faces = [fan(ring, z) for ring, _, z in quads]
     colours = [np.tile(np.asarray(colour, np.float32), (len(f), 1)) for f, (_, colour, _) in zip(faces, quads, strict=True)]
@@ -78,7 +80,7 @@ def pattern(piece: NDArray[np.float64], material: Material) -> list[tuple[NDArra
             c, d = max(y0, row * width), min(y1, (row + 1) * width)
             if b - a > 1e-6 and d - c > 1e-6:
                 # A fixed scramble of (row, column): planks differ, runs do not.
-                grain = 1 + 0.05 * (((row * 73856093) ^ (column * 19349663)) % 17 / 8 - 1)
+                grain = 1 + 0.03 * (((row * 73856093) ^ (column * 19349663)) % 17 / 8 - 1)
                 red, green, blue = (min(1.0, v * grain) for v in base)
                 out.append((np.array([[a, c], [b, c], [b, d], [a, d]]), (red, green, blue)))
     return out

@@ -82,7 +82,7 @@ def _building(home: Home, level: int, built: Shell, heaps: Heaps, cut_height: Cu
     for cut in built.cuts:
         _panels(heaps, palette.JAMB, reveals(cut), cut_height)
         if cut.bottom < 1e-3:
-            heaps.setdefault(palette.OAK, []).append(_flat(cut.quad, 0.0))
+            heaps.setdefault(palette.threshold(home.plan, cut.opening), []).append(_flat(cut.quad, 0.0))
 
 
 def _panels(heaps: Heaps, material: Material, panels: list[Panel], cut_height: CutHeight) -> None:

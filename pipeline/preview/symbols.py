@@ -6,12 +6,14 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from PIL import ImageDraw
 
 from pipeline.entities.asset import Asset, Joint
 from pipeline.entities.home import Placement
 from pipeline.geometry.kinematics import joint_motion
+from pipeline.geometry.tiling import polygons
 from pipeline.geometry.walls import Cut, Leaf, Shell
 from pipeline.rendering.pose import placement_transform
 
@@ -45,30 +47,27 @@ def swing_arc(leaf: Leaf, steps: int = 16) -> NDArray[np.float64]:
 
 
 def draw_reach(draw: ImageDraw.ImageDraw, placement: Placement, asset: Asset, project: Project, line: int) -> None:
-    """Outline where each door, drawer and lid of a placed object moves."""
+    """Outline where each door, drawer and lid of a placed object moves, as far as that lies before its box."""
     T = placement_transform(placement.position, placement.yaw, placement.scale)
+    w, d = asset.size[0] / 2, asset.size[1] / 2
+    body = shapely.box(-w, -d, w, d)
     for joint in asset.joints:
         if joint.part_class in OPENERS:
-            path = reach(asset, joint)
-            world = path @ T[:2, :2].T + T[:2, 3]
-            draw.line(project(np.concatenate([world, world[:1]])), fill=OPENS, width=line)
+            for part in polygons(reach(asset, joint).difference(body)):
+                ring = np.asarray(part.exterior.coords)
+                draw.line(project(ring @ T[:2, :2].T + T[:2, 3]), fill=OPENS, width=line)
 
 
-def reach(asset: Asset, joint: Joint, steps: int = 10) -> NDArray[np.float64]:
-    """Return the outline (n, 2) [m, object frame] of what the joint's child covers in plan on its way: the hull of its poses."""
-    from scipy.spatial import ConvexHull, QhullError
-
+def reach(asset: Asset, joint: Joint, steps: int = 9) -> shapely.Geometry:
+    """Return what the joint's child covers in plan on its way [m, object frame]: the hull of the box around it in `steps` poses."""
     meshes = asset.links[joint.child].visuals or asset.links[joint.child].colliders
     points = np.concatenate([m.vertices for m in meshes]).astype(np.float64)
-    low, high = points.min(axis=0), points.max(axis=0)
-    corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+    (x0, y0, z0), (x1, y1, z1) = points.min(axis=0), points.max(axis=0)
+    corners = np.array([[x, y, z] for x in (x0, x1) for y in (y0, y1) for z in (z0, z1)])
     upper = joint.upper if math.isfinite(joint.upper) else math.pi / 2
-    poses = [joint_motion(joint, value) for value in np.linspace(0, upper, 2 if joint.type == "prismatic" else steps)]
-    covered = np.concatenate([corners @ T[:3, :3].T + T[:3, 3] for T in poses])[:, :2]
-    try:
-        return covered[ConvexHull(covered).vertices]
-    except QhullError:
-        return covered[:2]
+    poses = np.stack([joint_motion(joint, value) for value in np.linspace(0, upper, 2 if joint.type == "prismatic" else steps)])
+    covered = np.einsum("tij,pj->tpi", poses[:, :2, :3], corners) + poses[:, None, :2, 3]
+    return shapely.convex_hull(shapely.multipoints(covered.reshape(-1, 2)))
 
 
 def _arrow(draw: ImageDraw.ImageDraw, cut: Cut, shell: Shell, project: Project) -> None:

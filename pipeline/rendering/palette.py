@@ -5,6 +5,7 @@ from __future__ import annotations
 from types import MappingProxyType
 
 from pipeline.entities.asset import Material
+from pipeline.entities.plan import Opening, Plan
 
 OAK = Material("oak_floor", (0.42, 0.27, 0.15), 0.45)
 LIGHT_OAK = Material("light_oak_floor", (0.55, 0.40, 0.25), 0.5)
@@ -64,6 +65,12 @@ GLASS = Material("window_glass", (0.85, 0.93, 0.95), 0.02, 0.0, 0.18)
 def floor(room_type: str) -> Material:
     """Return the floor of a room type; oak where nothing else is usual."""
     return FLOORS.get(room_type, OAK)
+
+
+def threshold(plan: Plan, opening: Opening) -> Material:
+    """Return the floor between the two sides of an opening: that of the first room it joins."""
+    types = {room.room_id: room.type for room in plan.rooms}
+    return floor(types.get(opening.rooms[0], "")) if opening.rooms else OAK
 
 
 def wall(room_type: str) -> Material:

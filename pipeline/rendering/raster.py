@@ -80,6 +80,9 @@ def render(
     shade = np.ones((0, 1), np.float32)
     if len(triangles):
         normals = face_normals(triangles)
+        seen = np.abs(normals @ view.axes[2]) > 1e-3  # what is seen edge-on covers no pixel
+        triangles, colours, normals = triangles[seen], colours[seen], normals[seen]
+        items = np.flatnonzero(seen) if items is None else items[seen]
         normals *= np.where(normals @ view.axes[2] < 0, -1.0, 1.0)[:, None]  # shade the side that is seen
         lambert = np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0, 1)
         shade = (AMBIENT + (1 - AMBIENT) * lambert).astype(np.float32)[:, None]

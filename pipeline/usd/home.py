@@ -35,7 +35,7 @@ def write_home(home: Home, assets: Mapping[str, Asset], path: Path, library: str
     convert_dome(lights)
     for level in levels(home.plan):
         built, elevation = shell(home.plan, level), level * home.plan.storey_height
-        convert_walls(walls, level, elevation, built, materials)
+        convert_walls(walls, home.plan, level, built, materials)
         convert_doors(doors, elevation, built, materials)
         convert_windows(windows, elevation, built, materials)
         for room in home.plan.rooms:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from pipeline.geometry.tiling import convex_pieces
 from pipeline.geometry.walls import SLAB, Panel, Shell, outer_panels, reveals, room_panels
 from pipeline.rendering import fittings, palette
 from pipeline.usd.articulation import convert_asset
-from pipeline.usd.layer import attribute, identifiers, label, place, prim
+from pipeline.usd.layer import attribute, label, place, prim
 from pipeline.usd.material import Palette, bind
 from pipeline.usd.mesh import convert_mesh, convert_polygons
 from pipeline.usd.physics import convert_collider, hide
@@ -40,10 +40,10 @@ def convert_room(parent: Sdf.PrimSpec, room: Room, elevation: float, shell: Shel
     return spec
 
 
-def convert_walls(parent: Sdf.PrimSpec, level: int, elevation: float, shell: Shell, materials: Palette) -> Sdf.PrimSpec:
+def convert_walls(parent: Sdf.PrimSpec, plan: Plan, level: int, shell: Shell, materials: Palette) -> Sdf.PrimSpec:
     """Write a storey's wall solids (colliders, one convex piece each), facade, jambs and thresholds."""
     spec = prim(parent, f"level_{level}")
-    place(spec, (0.0, 0.0, elevation))
+    place(spec, (0.0, 0.0, level * plan.storey_height))
     label(spec, "class", ["wall"])
     solids = prim(spec, "solids", "Scope")
     for i, solid in enumerate(shell.prisms):
@@ -59,7 +59,7 @@ def convert_walls(parent: Sdf.PrimSpec, level: int, elevation: float, shell: She
     for cut in shell.cuts:
         if cut.bottom < 1e-3 and cut.opening.kind != "window":
             name = f"threshold_{cut.opening.opening_id}"
-            label(_slab(spec, name, cut.quad, -SLAB, 0.0, palette.OAK, materials), "class", ["floor"])
+            label(_slab(spec, name, cut.quad, -SLAB, 0.0, palette.threshold(plan, cut.opening), materials), "class", ["floor"])
     return spec
 
 
@@ -100,11 +100,6 @@ def prism_mesh(name: str, polygon: NDArray[np.float64], bottom: float, top: floa
         j = (k + 1) % n
         faces += [[k, j, n + j], [k, n + j, n + k]]
     return Mesh(name, vertices, np.array(faces, np.int32))
-
-
-def room_names(plan: Plan) -> Sequence[str]:
-    """Return the rooms' prim names: their ids, which are USD names by the dataset's rules."""
-    return identifiers(room.room_id for room in plan.rooms)
 
 
 def _scope(parent: Sdf.PrimSpec, name: str) -> Sdf.PrimSpec:
