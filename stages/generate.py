@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 
 from pipeline import params
-from pipeline.errors import ContentError
 from pipeline.execution import single_thread
+from pipeline.floorplan import parse
 from pipeline.homes.factory import load_factory
 from pipeline.homes.request import Request
 from pipeline.manifest import digest
@@ -17,9 +17,7 @@ from pipeline.shards import Header, commit_library, commit_shard, gather, open_o
 def main(root: Path, *, prompt: str, out: Path, seed: int = 0) -> None:
     """Make the home that `prompt` asks for in the folder `out`."""
     asked = require_prompt(prompt)
-    path = root / "models" / "denoiser.safetensors"
-    if not path.is_file():
-        raise ContentError(f"there are no trained weights ({path} is missing)", f"type `make run` in {root}")
+    parse(asked)
     single_thread()
     factory = load_factory(root, params.read(root / "params.yaml"), seed)
     header = Header(seed, 1, factory.shard_size, factory.licence, {**factory.digests, "prompts": digest(asked)})

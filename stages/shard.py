@@ -8,8 +8,8 @@ from functools import lru_cache, partial
 from pathlib import Path
 
 from pipeline import params
-from pipeline.errors import ContentError
 from pipeline.execution import map_shards, track
+from pipeline.floorplan import parse
 from pipeline.homes.factory import Factory, load_factory
 from pipeline.homes.request import Request
 from pipeline.manifest import digest
@@ -30,7 +30,8 @@ def main(
 ) -> None:
     """Fill the folder `out` (by default datasets/<seed>) with `count` homes."""
     mix = read_mix(prompts) if prompts else Mix()
-    require_weights(root)
+    for asked in mix.prompts:
+        parse(asked)  # what cannot be understood is refused now, not after hours
     factory = opened(root, seed)
     header = Header(seed, count, factory.shard_size, factory.licence, {**factory.digests, "prompts": mix.digest()})
     with open_or_create(out or Path("datasets") / str(seed), header) as dataset:
@@ -67,10 +68,3 @@ def chunks(asked: tuple[Request, ...], size: int) -> Iterator[tuple[Request, ...
 def opened(root: Path, seed: int) -> Factory:
     """Return this process's factory: models and library are loaded once."""
     return load_factory(root, params.read(root / "params.yaml"), seed)
-
-
-def require_weights(root: Path) -> None:
-    """Raise ContentError when the layout model has not been trained yet."""
-    path = root / "models" / "denoiser.safetensors"
-    if not path.is_file():
-        raise ContentError(f"there are no trained weights ({path} is missing)", f"type `make run` in {root}")

@@ -14,7 +14,7 @@ from pipeline.errors import ContentError, UsageError
 from pipeline.manifest import digest
 from pipeline.seeds import generator
 
-LONGEST = 4000  # characters of a prompt; the longest of the paper's has some 300
+LONGEST = 20_000  # characters of a prompt; the longest of the paper has some 300
 
 
 @dataclass(frozen=True, slots=True)

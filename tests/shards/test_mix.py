@@ -36,7 +36,7 @@ def test_digest_tells_mixes_apart():
     assert len({m.digest() for m in mixes}) == len(mixes)
 
 
-@pytest.mark.parametrize("text", ["", "  \n\t", "x" * 4001, "x" * 1_000_000, "a\0b", "a\x1b[2Jb"])
+@pytest.mark.parametrize("text", ["", "  \n\t", "x" * 20_001, "x" * 1_000_000, "a\0b", "a\x1b[2Jb"])
 def test_prompts_that_are_none_are_the_users_error(text):
     with pytest.raises(UsageError) as caught:
         require_prompt(text)
