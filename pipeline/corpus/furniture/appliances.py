@@ -66,8 +66,8 @@ def oven(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     count = 4 if form == "range" else 2
     xs = np.linspace(-0.38 * w, 0.38 * w, count + 1)
     movers = [knob(f"knob_{k}", (float(x), face, z), 0.019, STEEL) for k, x in enumerate(xs) if k != count // 2 or count % 2]
-    base = shape.base + pieces("display", box((-0.07, 0.07), (face - 0.002, face), (z - 0.014, z + 0.014)), DARK_GLASS)
-    movers.append(button("button_0", (0.085, 0.105), (z - 0.008, z + 0.008), face, PLASTIC))
+    base = shape.base + pieces("display", box((-0.05, 0.05), (face - 0.002, face), (z - 0.014, z + 0.014)), DARK_GLASS)
+    movers.append(button("button_0", (0.062, 0.08), (z - 0.008, z + 0.008), face, PLASTIC))
     if form == "range":
         zone = Finish("hob_zone", (0.10, 0.10, 0.105), 0.3, density=2500)
         rings = [revolve([(r, h - hob), (r, h)], 20, (sx * 0.23 * w, 0.03 + sy * 0.2 * d))[0] for sx in (-1, 1) for sy, r in ((-1, 0.075), (1, 0.09))]

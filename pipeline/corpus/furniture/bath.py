@@ -32,9 +32,11 @@ def toilet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     def span(share: float) -> tuple[float, float]:
         return (cy - share * ry, cy + share * ry)
 
-    foot = stack([_oval(0.62 * rx, span(0.72), 0.0), _oval(0.58 * rx, span(0.70), 0.12 * h)])
-    neck = stack([_oval(0.58 * rx, span(0.70), 0.12 * h), _oval(0.70 * rx, span(0.80), 0.62 * rim)])
-    wall = shell([_oval(0.70 * rx, span(0.80), 0.62 * rim), _oval(rx, span(1.0), rim)], [_oval(0.42 * rx, span(0.45), 0.62 * rim), _oval(0.72 * rx, span(0.78), rim)])
+    foot = stack([_oval(0.66 * rx, span(0.66), 0.0), _oval(0.60 * rx, span(0.60), 0.12 * h)])
+    neck = stack([_oval(0.60 * rx, span(0.60), 0.12 * h), _oval(0.76 * rx, span(0.76), 0.62 * rim)])
+    outer = [_oval(k * rx, span(k), z) for k, z in ((0.76, 0.62 * rim), (1.0, rim))]
+    inner = [_oval(k * rx, span(k), z) for k, z in ((0.42, 0.62 * rim), (0.76, rim))]
+    wall = shell(outer, inner)
     bridge = box((-0.36 * w, 0.36 * w), (bowl_y[1] - 0.06, d / 2 - 0.02), (0.45 * rim, rim), 0.012)
     tank = cushion((-0.5 * w, 0.5 * w), tank_y, (rim, h - 0.03), 0.025)
     base = pieces("bowl", [foot, neck, *wall], CERAMIC) + pieces("bridge", bridge, CERAMIC) + pieces("tank", tank, CERAMIC)
@@ -68,22 +70,43 @@ def _lever(w: float, y: float, h: float) -> Mover:
     return Mover("lever", pieces("lever", solids, STEEL), "revolute", (0, 1, 0), at, 0.5, "hinge_handle", "lever")
 
 
+def _rays(w: float, d: float) -> NDArray[np.float64]:
+    """Return angles (32,) around the centre that include the directions of a rectangle's corners.
+
+    Outlines along the same rays make staves with plane sides, so each is convex.
+    """
+    corner = math.atan2(d, w)
+    return np.sort(np.concatenate([np.linspace(0, 2 * math.pi, 28, endpoint=False), [corner, math.pi - corner, math.pi + corner, -corner + 2 * math.pi]]))
+
+
+def _along(angles: NDArray[np.float64], a: float, b: float, power: float) -> NDArray[np.float64]:
+    """Return the superellipse |x/a|^p + |y/b|^p = 1 at `angles`, (n, 2)."""
+    u = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    reach = (np.abs(u[:, 0] / a) ** power + np.abs(u[:, 1] / b) ** power) ** (-1 / power)
+    return np.asarray(u * reach[:, None])
+
+
+def _to_rectangle(angles: NDArray[np.float64], a: float, b: float) -> NDArray[np.float64]:
+    """Return where rays leave the rectangle +-a, +-b, (n, 2)."""
+    u = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    return np.asarray(u / np.maximum(np.abs(u[:, :1]) / a, np.abs(u[:, 1:]) / b))
+
+
 def bathtub(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """A tub with aprons, or one that stands free on its oval foot; a tap at its head."""
     w, d, h = size
-    n = 32
     rim = h if form == "free" else h - 0.12
-    outer = [rounded((-w / 2, w / 2), (-d / 2, d / 2), 0.02 if form == "apron" else 0.45 * d, n // 4 - 1)] * 2
-    if form == "free":
-        outer = [0.82 * outer[0], outer[1]]
-    inner_high = rounded((-w / 2 + 0.07, w / 2 - 0.07), (-d / 2 + 0.07, d / 2 - 0.07), 0.4 * (d - 0.14), n // 4 - 1)
-    inner_low = inner_high * np.array([0.84, 0.78])
-    z = (0.14, rim)
-    wall = shell(
-        [np.column_stack([o, np.full(len(o), zz)]) for o, zz in zip(outer, z, strict=True)],
-        [np.column_stack([o, np.full(len(o), zz)]) for o, zz in ((inner_low, z[0]), (inner_high, z[1]))],
-    )
-    floor = slab(outer[0], (0.0, 0.14))
+    angles = _rays(w, d)
+    outer = _along(angles, w / 2, d / 2, 2.6) if form == "free" else _to_rectangle(angles, w / 2, d / 2)
+    inner = _along(angles, w / 2 - 0.07, d / 2 - 0.07, 3.0)
+    low, high = 0.14, rim
+
+    def at(outline: NDArray[np.float64], z: float) -> NDArray[np.float64]:
+        return np.column_stack([outline, np.full(len(outline), z)])
+
+    foot = 0.82 * outer if form == "free" else outer
+    wall = shell([at(foot, low), at(outer, high)], [at(0.8 * inner, low), at(inner, high)])
+    floor = box((-w / 2, w / 2), (-d / 2, d / 2), (0.0, 0.14)) if form == "apron" else slab(foot, (0.0, 0.14))
     base = pieces("tub", [*wall, floor], CERAMIC)
     if form == "apron":
         x = w / 2 - 0.035

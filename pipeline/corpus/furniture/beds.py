@@ -97,9 +97,9 @@ def _headboard(form: str, x: Span, y: Span, lift: float, h: float) -> list[Solid
 def kids_bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """A bed with rails all around, a bunk bed with a ladder, or a bed in a house's frame. The sleeper lies along x where it is wide."""
     w, d, h = size
-    if form == "bunk" and h > 1.35:
+    if form == "bunk":
         return _bunk(rng, size, scheme)
-    if form == "house" and h > 1.2:
+    if form == "house":
         return _house(rng, size, scheme)
     lift = 0.12
     t = 0.04

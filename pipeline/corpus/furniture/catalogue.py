@@ -90,7 +90,8 @@ def _models(seed: int, category: str, line: Line, count: int, *, articulated: bo
     models = []
     for form, style, box in zip(forms, styles, boxes, strict=True):
         w, d, h = (round(float(x), 3) for x in box)
-        if form.round:
+        kind = form if h >= form.least_height else line.forms[0]
+        if kind.round:
             d = w
         models.append(
             Model(
@@ -98,8 +99,8 @@ def _models(seed: int, category: str, line: Line, count: int, *, articulated: bo
                 category=category,
                 size=(w, d, h),
                 style=str(style),
-                form=form.name,
-                future_name=form.future,
+                form=kind.name,
+                future_name=kind.future,
                 super_category=SUPER_CATEGORIES.get(entry.super, OTHER_SUPER_CATEGORY),
                 partnet_category=entry.partnet[0] if articulated else "",
                 seed=int(rng.integers(2**31)),

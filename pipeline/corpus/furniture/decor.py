@@ -5,34 +5,25 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.finishes import CERAMIC, LEAF, PLASTIC, SOIL, STEEL, Finish, Scheme, shade
 from pipeline.corpus.furniture.fronts import lid
 from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, revolve, ring, rod, slab, stack
+from pipeline.corpus.furniture.solids import Solid, box, hull, revolve, ring, rod, slab, stack
 from pipeline.corpus.furniture.solids import circle as circle_outline
 from pipeline.corpus.furniture.storage import Size, pick
 
 
-def leaf(root: np.ndarray, tip: np.ndarray, width: float, sag: float) -> Solid:
-    """Return a leaf as a thin rhombic bipyramid from `root` to `tip` [m], its middle `width` wide and lowered by `sag`."""
+def leaf(root: NDArray[np.float64], tip: NDArray[np.float64], width: float, sag: float) -> Solid:
+    """Return a leaf as a thin convex blade from `root` to `tip` [m], its middle `width` wide and lowered by `sag`."""
     axis = tip - root
     side = np.cross(axis, (0.0, 0.0, 1.0))
     side = side / np.linalg.norm(side) if np.linalg.norm(side) > 1e-6 else np.array([1.0, 0, 0])
     up = np.cross(side, axis / np.linalg.norm(axis))
     middle = root + 0.45 * axis + up * sag
     belt = [middle + side * width / 2, middle + up * 0.004, middle - side * width / 2, middle - up * 0.004]
-    vertices = np.array([root, tip, *belt])
-    faces = []
-    for k in range(4):
-        a, b = 2 + k, 2 + (k + 1) % 4
-        faces += [(0, a, b), (1, b, a)]
-    solid = Solid(vertices, tuple(faces))
-    centre = vertices.mean(axis=0)
-    a, b, c = (vertices[list(solid.faces[0])][k] for k in range(3))
-    if np.dot(np.cross(b - a, c - a), (a + b + c) / 3 - centre) < 0:
-        return Solid(vertices, tuple(f[::-1] for f in faces))
-    return solid
+    return hull(np.array([root, tip, *belt]))
 
 
 def plant(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -40,6 +41,9 @@ def hanging(scheme: Scheme, z: tuple[float, float], centre: tuple[float, float] 
 def pendant_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """A shade or globe on a cord, a bar over a table, or a cluster of small ones."""
     w, d, h = size
+    if form == "linear" and d > w:  # built along x, turned to the longer side
+        along = pendant_lamp(rng, form, (d, w, h), scheme)
+        return Shape(tuple(replace(p, solid=p.solid.turned("z", math.pi / 2)) for p in along.base))
     rose = revolve([(0.05, h - 0.025), (0.05, h)], 16)
     metal = scheme.handle
     if form in ("shade", "globe"):
@@ -86,8 +90,9 @@ def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         base += pieces("stem", revolve([(0.012, 0.05 * h), (0.012, 0.94 * h), (0.08, h)], 16), metal)
         return Shape(base)
     if form == "disc":
-        base = pieces("mount", [s.scaled(np.array([1, d / w, 1])) for s in revolve([(0.5 * w, 0.55 * h), (0.5 * w, h)], 28)], metal)
-        profile = [(0.30 * w, 0.0), (0.42 * w, 0.12 * h), (0.47 * w, 0.35 * h), (0.48 * w, 0.55 * h)]
+        rim = min(0.4 * h, 0.05)
+        base = pieces("mount", [s.scaled(np.array([1, d / w, 1])) for s in revolve([(0.5 * w, h - rim), (0.5 * w, h)], 28)], metal)
+        profile = [(0.30 * w, 0.0), (0.42 * w, 0.15 * h), (0.47 * w, 0.45 * h), (0.48 * w, h - rim)]
         return Shape(base + pieces("diffuser", [s.scaled(np.array([1, d / w, 1])) for s in revolve(profile, 28)], GLOW))
     if form == "square":
         base = pieces("mount", box((-w / 2, w / 2), (-d / 2, d / 2), (0.5 * h, h), 0.004), metal)

@@ -36,13 +36,15 @@ STYLES: Mapping[str, float] = {
 class Form:
     """One form of a category. `name` is what the builder knows it by, `future` the category name to write.
 
-    A `round` form has one diameter: its depth is set to its width. A `still` form has nothing that moves.
+    A `round` form has one diameter: its depth is set to its width. A `still` form has nothing that moves. Models lower than
+    `least_height` [m] take the category's first form instead.
     """
 
     name: str
     future: str
     round: bool = False
     still: bool = False
+    least_height: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,18 +57,19 @@ class Line:
 
 
 def _line(future: str, names: str, static: int, moving: int = 0) -> Line:
-    """Read a line from words: `name`, `name*` (round), `-name` (still), `name=Other future name`."""
+    """Read a line from words: `name`, `name*` (round), `-name` (still), `name>1.2` (least height), `name=Other future name`."""
     forms = []
     for word in names.split(", "):
-        name, _, other = word.partition("=")
-        forms.append(Form(name.strip("-*"), other or future, name.endswith("*"), name.startswith("-")))
+        left, _, other = word.partition("=")
+        name, _, least = left.partition(">")
+        forms.append(Form(name.strip("-*"), other or future, name.endswith("*"), name.startswith("-"), float(least or 0)))
     return Line(tuple(forms), static, moving)
 
 
 LINES: Mapping[str, Line] = {
     "double_bed": _line("King-size Bed", "panel, upholstered, slatted, tufted=Bed Frame", 8),
     "single_bed": _line("Single bed", "panel, upholstered, slatted", 4),
-    "kids_bed": _line("Kids Bed", "rails, bunk=Bunk Bed, house", 4),
+    "kids_bed": _line("Kids Bed", "rails, bunk>1.35=Bunk Bed, house>1.2", 4),
     "nightstand": _line("Nightstand", "drawers, shelf_drawer, door_drawer", 6, 10),
     "wardrobe": _line("Wardrobe", "doors, doors_drawers, doors_open", 6, 11),
     "cabinet": _line("Drawer Chest / Corner cabinet", "drawers, mixed, doors", 4, 10),

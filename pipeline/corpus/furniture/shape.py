@@ -15,6 +15,7 @@ from pipeline.corpus.furniture.solids import Solid, Vector
 Axis3 = tuple[float, float, float]
 FRONT: Axis3 = (0.0, -1.0, 0.0)
 UP: Axis3 = (0.0, 0.0, 1.0)
+CLEARANCE = 1e-4  # [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +82,9 @@ def fitted(shape: Shape, size: Vector) -> Shape:
     """Return the shape scaled to `size` (w, d, h) exactly and centred over the origin, bottom at 0.
 
     Builders come within a few percent of their box; this takes up the rest. Lengths of sliding joints scale along.
+    Every solid is drawn in by CLEARANCE first, so that no two share a corner and readers that weld vertices keep them apart.
     """
+    shape = Shape(_drawn_in(shape.base), tuple(replace(m, pieces=_drawn_in(m.pieces)) for m in shape.movers))
     low, high = shape.bounds()
     factors = np.asarray(size, float) / (high - low)
     offset = -np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
@@ -97,6 +100,17 @@ def fitted(shape: Shape, size: Vector) -> Shape:
             replace(mover, pieces=place(mover.pieces), origin=(x, y, z), upper=mover.upper * stretch, lower=mover.lower * stretch)
         )
     return Shape(place(shape.base), tuple(movers))
+
+
+def _drawn_in(parts: tuple[Piece, ...]) -> tuple[Piece, ...]:
+    """Return the pieces, each scaled about the centre of its box so that it is CLEARANCE smaller on every side."""
+    made = []
+    for piece in parts:
+        low, high = piece.solid.bounds()
+        centre, extent = (low + high) / 2, high - low
+        factors = 1 - 2 * np.minimum(CLEARANCE, 0.1 * extent) / extent
+        made.append(replace(piece, solid=Solid((piece.solid.vertices - centre) * factors + centre, piece.solid.faces)))
+    return tuple(made)
 
 
 def frozen(shape: Shape) -> Shape:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
 
 Face = tuple[int, ...]
 Vector = Sequence[float] | NDArray[np.float64]
@@ -188,6 +189,19 @@ def ring(
     """Return a round wall with radii (at the bottom, at the top) `outer` and `inner`, as n staves; `squash` scales y."""
     rims = [[_at(circle(r[k], n, centre, squash), z[k]) for k in (0, 1)] for r in (outer, inner)]
     return shell(rims[0], rims[1])
+
+
+def hull(points: NDArray[np.float64]) -> Solid:
+    """Return the convex hull of `points` (n, 3)."""
+    found = ConvexHull(points)
+    keep = np.unique(found.simplices)
+    number = {int(old): new for new, old in enumerate(keep)}
+    faces = []
+    for corners, normal in zip(found.simplices, found.equations[:, :3], strict=True):
+        a, b, c = points[corners]
+        turned = corners if np.dot(np.cross(b - a, c - a), normal) > 0 else corners[::-1]
+        faces.append(tuple(number[int(v)] for v in turned))
+    return Solid(points[keep], tuple(faces))
 
 
 def _at(outline: NDArray[np.float64], height: float) -> NDArray[np.float64]:

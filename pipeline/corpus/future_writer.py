@@ -1,0 +1,60 @@
+"""Static models as 3D-FUTURE's folders: model_info.json and, per model, OBJ files, a material library and a texture.
+
+Frame of the OBJ files ("3D-FRONT format", canonical model frame): metres, y up, front +z, bottom centre at the origin.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from pipeline import seeds
+from pipeline.corpus.furniture import texture, wavefront
+from pipeline.corpus.furniture.assembly import shape_of
+from pipeline.corpus.furniture.catalogue import Model
+
+# 3D-FUTURE's themes that fit parametric furniture; half of the real records have none.
+THEMES = ("Smooth Net", "Lines", None, None)
+
+
+def write_future(models: Sequence[Model], folder: Path) -> None:
+    """Write `folder` (3D-FUTURE-model): model_info.json and one folder per model."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for model in models:
+        write_model(model, folder / model.model_id)
+    records = [info(model) for model in models]
+    (folder / "model_info.json").write_bytes((json.dumps(records, indent=1) + "\n").encode())
+
+
+def info(model: Model) -> dict[str, str | None]:
+    """Return the record of a model in model_info.json."""
+    return {
+        "model_id": model.model_id,
+        "super-category": model.super_category,
+        "category": model.future_name,
+        "style": model.style,
+        "theme": THEMES[model.seed % len(THEMES)],
+        "material": model.material,
+    }
+
+
+def write_model(model: Model, folder: Path) -> None:
+    """Write one model's folder: raw_model.obj, normalized_model.obj (centred, longest side 1), model.mtl, texture.png."""
+    folder.mkdir(parents=True, exist_ok=True)
+    shape = shape_of(model)
+    finishes = list(dict.fromkeys(piece.finish for piece in shape.pieces()))
+    names = {finish: wavefront.material_name(finish, k) for k, finish in enumerate(finishes)}
+    sheet = texture.atlas(finishes)
+    groups = [
+        wavefront.Group(f"solid_{k + 1:03d}", names[finish], tuple(p for p in shape.pieces() if p.finish == finish))
+        for k, finish in enumerate(finishes)
+    ]
+    text = wavefront.text(groups, "model.mtl", sheet)
+    w, d, h = model.size
+    (folder / "raw_model.obj").write_bytes(text.obj())
+    (folder / "normalized_model.obj").write_bytes(text.obj(1 / max(w, d, h), np.array([0.0, -h / 2, 0.0])))
+    (folder / "model.mtl").write_bytes(wavefront.mtl([(names[f], f) for f in finishes], "./texture.png"))
+    (folder / "texture.png").write_bytes(texture.paint(seeds.generator(model.seed, "corpus.furniture.texture"), sheet))
