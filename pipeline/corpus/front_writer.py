@@ -125,13 +125,25 @@ def mesh_record(surface: shell.Surface, uid: str, material: str, dialect: Dialec
     for k, quad in enumerate(surface.quads):
         n = GARBAGE_NORMAL if surface.type == "Floor" and dialect == "0.4" else _normal(quad)
         width = math.dist(quad[0], quad[1])
-        for (x, y, z), (u, v) in zip(quad, ((0, 0), (width, 0), (width, math.dist(quad[1], quad[2])), (0, math.dist(quad[1], quad[2]))), strict=True):
+        for (x, y, z), (u, v) in zip(
+            quad, ((0, 0), (width, 0), (width, math.dist(quad[1], quad[2])), (0, math.dist(quad[1], quad[2]))), strict=True
+        ):
             xyz += [_r(x), _r(z), _r(-y)]
             normal += n
             uv += [_r(u), _r(v)]
         faces += [4 * k, 4 * k + 1, 4 * k + 2, 4 * k, 4 * k + 2, 4 * k + 3]
-    record = {"aid": [], "jid": "", "uid": uid, "xyz": xyz, "normal": normal, "uv": uv, "faces": faces, "material": material, "type": surface.type}
-    return record | ({"constructid": uid.split("/")[0], "instanceid": ""} if dialect == "0.11" else {})
+    record = {
+        "aid": [],
+        "jid": "",
+        "uid": uid,
+        "xyz": xyz,
+        "normal": normal,
+        "uv": uv,
+        "faces": faces,
+        "material": material,
+        "type": surface.type,
+    }
+    return record | ({"constructid": uid.split("/", maxsplit=1)[0], "instanceid": ""} if dialect == "0.11" else {})
 
 
 def _normal(quad: shell.Quad) -> list[float]:
@@ -200,7 +212,7 @@ def _add_items(house: House, dialect: Dialect, ids: Ids, furniture: list[Json], 
         furniture.append(record)
         x, y, z = item.position
         sx, sy, sz = item.scale
-        pose = {"pos": [_r(x), _r(z), _r(-y)], "rot": quaternion(item.yaw), "scale": [_s(sx), _s(sz), _s(sy)]}
+        pose: Json = {"pos": [_r(x), _r(z), _r(-y)], "rot": quaternion(item.yaw), "scale": [_s(sx), _s(sz), _s(sy)]}
         if replaced:
             w, d, h = item.model.size
             pose |= {"replace_jid": item.model.model_id, "replace_bbox": {"xLen": _r(100 * w), "yLen": _r(100 * d), "zLen": _r(100 * h)}}
@@ -243,7 +255,7 @@ def _add_litter(
         _child(real[int(rng.integers(len(real)))], "furniture", ids.uid("model"), counter, _anywhere(rng, house))
     for _ in range(litter.invalid):
         w, d, h = (_r(v) for v in rng.uniform(0.1, 0.8, 3))
-        record = {"jid": ids.uuid(), "uid": ids.uid("model"), "aid": [], "category": "Others", "bbox": [w, h, d], "valid": False}
+        record: Json = {"jid": ids.uuid(), "uid": ids.uid("model"), "aid": [], "category": "Others", "bbox": [w, h, d], "valid": False}
         furniture.append(record)
         _child(real[int(rng.integers(len(real)))], "furniture", record["uid"], counter, _anywhere(rng, house))
     if furniture:
@@ -291,7 +303,14 @@ def _material(ids: Ids, color: list[int], dialect: Dialect) -> Json:
 
 
 def _top(
-    house: House, dialect: Dialect, ids: Ids, furniture: list[Json], meshes: list[Json], materials: list[Json], doors: list[Json], rooms: list[Json]
+    house: House,
+    dialect: Dialect,
+    ids: Ids,
+    furniture: list[Json],
+    meshes: list[Json],
+    materials: list[Json],
+    doors: list[Json],
+    rooms: list[Json],
 ) -> Json:
     scene: Json = {"ref": "-1", **_identity(), "room": rooms}
     extension: Json = {"door": doors, "outdoor": "", "pano": [], "mini_map": "", "perspective_view": {}, "area": []}
@@ -314,7 +333,13 @@ def _lights(house: House, ids: Ids, rooms: Sequence[Json]) -> list[Json]:
     lights: list[Json] = [{"nodeType": "VraySun", "uid": ids.uid("light"), "roomId": "", "intensity": 0.05, "size": 10}]
     for room, record in zip(house.plan.rooms, rooms, strict=False):
         x, y = (float(v) for v in room.polygon.mean(axis=0))
-        light = {"nodeType": "VRayLight", "uid": ids.uid("light"), "roomId": record["instanceid"], "intensity": 3, "color_temperature": 5000}
+        light = {
+            "nodeType": "VRayLight",
+            "uid": ids.uid("light"),
+            "roomId": record["instanceid"],
+            "intensity": 3,
+            "color_temperature": 5000,
+        }
         lights.append(light | {"src_position": [_r(x), _r(room.height - 0.1), _r(-y)], "direction": [0, -1, 0]})
     return lights
 

@@ -24,7 +24,7 @@ EXTRAS = {
     "round_end_table": 0.04,
     "sideboard": 0.015,
     "armchair": 0.03,
-    "lounge_chair": 0.06,
+    "lounge_chair": 0.10,
     "chaise_longue_sofa": 0.005,
     "lazy_sofa": 0.005,
     "plant": 0.04,
@@ -43,7 +43,9 @@ def furnish_bedroom(arranger: Arranger) -> None:
         nightstands(arranger, bed, int(arranger.rng.choice([0, 1, 2], p=[0.06, 0.20, 0.74])))
     if bed is not None and arranger.chance(0.42):
         tv_opposite(arranger, bed)
-    pieces = [w for w, share in (("desk", 0.11), ("dressing_table", 0.15), ("wardrobe", 0.98), ("wardrobe", 0.04)) if arranger.chance(share)]
+    pieces = [
+        w for w, share in (("desk", 0.11), ("dressing_table", 0.15), ("wardrobe", 0.98), ("wardrobe", 0.04)) if arranger.chance(share)
+    ]
     if arranger.chance(0.5):
         pieces.reverse()
     for piece in pieces:
@@ -127,7 +129,12 @@ def _bed_spots(arranger: Arranger, model: Model, *, both: bool) -> list[tuple[fl
             if room < w + 2 * beside:
                 continue
             middle = (a + b) / 2 + float(rng.normal(0, 0.08)) if room > w + 2 * beside + 0.2 else (a + b) / 2
-            found.append((3.0 * (1.0 + min(room - w, 2.5)), on_side(space, i, float(np.clip(middle, a + w / 2 + beside, b - w / 2 - beside)), d, gap)))
+            found.append(
+                (
+                    3.0 * (1.0 + min(room - w, 2.5)),
+                    on_side(space, i, float(np.clip(middle, a + w / 2 + beside, b - w / 2 - beside)), d, gap),
+                )
+            )
             lean = w / 2 + (beside if both else 0.02)
             if room > w + 2 * beside + 0.4:
                 found += [(0.8, on_side(space, i, a + lean, d, gap)), (0.8, on_side(space, i, b - lean, d, gap))]
@@ -182,7 +189,9 @@ def tv_opposite(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
                 continue
             place = on_side(space, i, s + float(arranger.rng.normal(0, 0.04)), stand.size[1], back_gap(arranger.rng))
             away = abs((place.x - spot.x) * np.sin(spot.yaw) - (place.y - spot.y) * np.cos(spot.yaw))
-            if away - model.size[1] / 2 - stand.size[1] / 2 > 0.6 and space.try_add(stand, place, keep=[ahead(place, stand.size[1], 0.4, stand.size[0])]):
+            if away - model.size[1] / 2 - stand.size[1] / 2 > 0.6 and space.try_add(
+                stand, place, keep=[ahead(place, stand.size[1], 0.4, stand.size[0])]
+            ):
                 return True
         width = stand.size[0] * 0.9
     return False

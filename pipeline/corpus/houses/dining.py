@@ -11,7 +11,7 @@ from pipeline.corpus.houses.records import Model
 from pipeline.corpus.houses.space import Spot, box_of, shifted
 
 # Chairs at a table: number -> share. Counts of living rooms give 3.7 chairs a table.
-CHAIRS = {2: 0.18, 4: 0.55, 6: 0.24, 8: 0.03}
+CHAIRS = {2: 0.10, 4: 0.55, 6: 0.31, 8: 0.04}
 BEHIND = 0.3
 """Free floor behind a chair [m]."""
 
@@ -104,6 +104,9 @@ def _place(arranger: Arranger, table: Model, chair: Model, count: int) -> bool:
         # Turned away from the table's front by `turn`: the chair looks back at the table.
         sway = float(np.clip(rng.normal(0, 0.012), -0.02, 0.02))
         seat = shifted(spot, across + (sway if abs(forward) > 1e-9 else 0.0), forward, turn)
+        left_open = arranger.chance(0.05)  # pulled out and turned, as somebody left it
+        if left_open and space.try_add(chair, shifted(seat, 0.0, -0.22, float(rng.normal(0, 0.5)))):
+            continue
         space.try_add(chair, seat)
     if arranger.chance(0.86):
         arranger.lamp("pendant_lamp", spot.x + float(rng.normal(0, 0.03)), spot.y + float(rng.normal(0, 0.03)), spot.yaw)

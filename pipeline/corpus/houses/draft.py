@@ -13,6 +13,8 @@ from pipeline.corpus.houses.program import Program
 Wish = tuple[str, float]
 LINE = 0.12
 """Half a wall on each side of a room: wall lines lie this much further apart than the faces [m]."""
+LONGEST_NOOK = 5.5
+"""A corridor longer than this is a room of its own, not a part of the living room [m]."""
 SHORTEST = {"Kitchen": 1.8, "Bathroom": 1.6, "SecondBathroom": 1.55, "Library": 2.35}
 """Least distance between the wall lines of a room in a strip [m]; 2.75 for all others."""
 
@@ -63,7 +65,11 @@ def spine(rng: np.random.Generator, program: Program) -> Draft:
     easel = Easel()
     above, corridor = rng.uniform(3.4, 4.3), rng.uniform(1.15, 1.4)
     top, bottom = _two_strips(rng, program)
-    below = rng.uniform(2.9, 3.6) if any(t in {"SecondBedroom", "Bedroom", "KidsRoom", "ElderlyRoom"} for t, _ in bottom) else rng.uniform(2.2, 3.0)
+    below = (
+        rng.uniform(2.9, 3.6)
+        if any(t in {"SecondBedroom", "Bedroom", "KidsRoom", "ElderlyRoom"} for t, _ in bottom)
+        else rng.uniform(2.2, 3.0)
+    )
     depth = above + corridor + below
     top_ends, bottom_ends = _even(_ends(top, above), _ends(bottom, below))
     length = max(top_ends[-1], bottom_ends[-1])
@@ -73,9 +79,10 @@ def spine(rng: np.random.Generator, program: Program) -> Draft:
     tops = [easel.room(t, a, depth - above, b, depth) for (t, _), a, b in zip(top, [0.0, *top_ends], top_ends, strict=False)]
     lows = [easel.room(t, a, 0.0, b, below) for (t, _), a, b in zip(bottom, [0.0, *bottom_ends], bottom_ends, strict=False)]
     _close_corridor(easel, reach, (top_ends, bottom_ends), (tops, lows), (below, depth - above))
-    width = _public_width(program, depth, reach * corridor if program.merged_corridor else 0.0)
+    merged = program.merged_corridor and reach < LONGEST_NOOK
+    width = _public_width(program, depth, reach * corridor if merged else 0.0)
     public = _public_column(rng, easel, program, (-width, 0.0, 0.0, depth))
-    if program.merged_corridor:
+    if merged:
         easel.add(public[0] if easel.types[public[0]] == "LivingDiningRoom" else public[-1], 0.0, below, reach, depth - above)
     else:
         name = str(rng.choice(["Aisle", "Corridor", "Hallway"], p=[0.5, 0.2, 0.3]))

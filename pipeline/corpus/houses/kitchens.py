@@ -26,8 +26,11 @@ def furnish_kitchen(arranger: Arranger) -> None:
     if arranger.chance(0.5):
         wanted = ["refrigerator", *wanted]
     left = run(arranger, wanted)
-    if any(c not in {"kitchen_cabinet"} for c in left):
-        left = run(arranger, ["kitchen_cabinet", *[c for c in left if c not in {"refrigerator", "kitchen_cabinet"}], "kitchen_cabinet", "kitchen_cabinet"])
+    if any(c != "kitchen_cabinet" for c in left):
+        left = run(
+            arranger,
+            ["kitchen_cabinet", *[c for c in left if c not in {"refrigerator", "kitchen_cabinet"}], "kitchen_cabinet", "kitchen_cabinet"],
+        )
     if not any(i.model.category == "refrigerator" for i in arranger.space.items):
         arranger.at_wall("refrigerator", corner=0.95)
     if arranger.chance(0.35):
@@ -46,7 +49,8 @@ def run(arranger: Arranger, wanted: list[str]) -> list[str]:
     longest = max(s[0] for s in stretches)
     good = [s for s in stretches if s[0] > 0.8 * longest]
     length, i, a, b = good[int(rng.integers(len(good)))]
-    forward = arranger.chance(0.5)
+    low_corner, high_corner = a < 0.05, b > space.sides[i].length - 0.05
+    forward = low_corner if low_corner != high_corner else arranger.chance(0.5)
     at, left, placed = 0.005, [], []
     for category in wanted:
         model = arranger.pick(category, width=length - at, depth=0.75)

@@ -19,11 +19,11 @@ WALL_PIECES = {
     "bookshelf": 0.27,
     "wine_cabinet": 0.16,
     "shelf": 0.08,
-    "wardrobe": 0.035,
-    "desk": 0.012,
+    "wardrobe": 0.06,
+    "desk": 0.02,
     "children_cabinet": 0.015,
 }
-SOFAS = (("multi_seat_sofa", 0.52), ("loveseat_sofa", 0.22), ("l_shaped_sofa", 0.26), ("chaise_longue_sofa", 0.015), ("lazy_sofa", 0.01))
+SOFAS = {"multi_seat_sofa": 0.52, "loveseat_sofa": 0.22, "l_shaped_sofa": 0.26, "chaise_longue_sofa": 0.015, "lazy_sofa": 0.01}
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,10 +64,9 @@ def lamps(arranger: Arranger, lounge: Lounge | None) -> None:
 
 def place_lounge(arranger: Arranger, *, aside: bool) -> Lounge | None:
     """Choose sofa, TV wall and coffee table together: the best of many tries. `aside`: leave one end of the room to dining."""
-    space, rng = arranger.space, arranger.rng
+    _space, rng = arranger.space, arranger.rng
     with_tv = arranger.chance(0.93)
-    names, shares = zip(*SOFAS, strict=True)
-    category = str(rng.choice(names, p=np.array(shares) / sum(shares)))
+    category = str(rng.choice(list(SOFAS), p=np.array(list(SOFAS.values())) / sum(SOFAS.values())))
     width, widest = 3.4, 2.7
     best: tuple[float, Model, Spot, Model | None, Spot | None] | None = None
     for _ in range(6):
@@ -177,7 +176,7 @@ def _set_lounge(arranger: Arranger, sofa: Model, spot: Spot, stand: Model | None
 def seats(arranger: Arranger, lounge: Lounge) -> None:
     """Put side tables beside the sofa; armchairs, lounge chairs and stools around the coffee table, facing it."""
     rng, space = arranger.rng, arranger.space
-    count = int(rng.choice([0, 1, 2], p=[0.14, 0.34, 0.52]))
+    count = int(rng.choice([0, 1, 2], p=[0.08, 0.32, 0.60]))
     signs = [-1, 1] if count == 2 else [int(rng.choice([-1, 1]))] * count
     side_table = arranger.pick("corner_side_table")
     for sign in signs:
@@ -185,7 +184,11 @@ def seats(arranger: Arranger, lounge: Lounge) -> None:
             back = -(lounge.sofa.size[1] - side_table.size[1]) / 2 + float(abs(rng.normal(0, 0.05)))
             across = sign * (lounge.sofa.size[0] / 2 + side_table.size[0] / 2 + float(rng.uniform(0.02, 0.1)))
             space.try_add(side_table, shifted(lounge.spot, across, back))
-    wanted = [c for c, share in (("armchair", 0.40), ("armchair", 0.27), ("lounge_chair", 0.30), ("lounge_chair", 0.15), ("stool", 0.36)) if arranger.chance(share)]
+    wanted = [
+        c
+        for c, share in (("armchair", 0.40), ("armchair", 0.27), ("lounge_chair", 0.30), ("lounge_chair", 0.15), ("stool", 0.36))
+        if arranger.chance(share)
+    ]
     if arranger.chance(0.025):
         wanted += ["chinese_chair", "chinese_chair"]
     free = [-1, 1] if arranger.chance(0.5) else [1, -1]
@@ -203,7 +206,7 @@ def _around(arranger: Arranger, lounge: Lounge, model: Model, free: list[int]) -
     reach = table[0].size[0] / 2 if table else 0.4
     ahead_by = (lounge.sofa.size[1] / 2 + 0.4 + (table[0].size[1] / 2 if table else 0.4)) + 0.1
     for sign in list(free):
-        oblique = float(rng.uniform(0.25, 0.7)) * (-sign) if arranger.chance(0.3) else 0.0
+        oblique = float(rng.uniform(0.25, 0.7)) * (-sign) if arranger.chance(0.5) else 0.0
         half = max(model.size[0], model.size[1]) / 2 if oblique else model.size[1] / 2
         across = sign * (reach + half + float(rng.uniform(0.35, 0.6)))
         place = shifted(lounge.spot, across, ahead_by + (0.1 if oblique else 0.0), -sign * math.pi / 2 + oblique)

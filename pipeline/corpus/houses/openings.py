@@ -140,11 +140,11 @@ def _door(
 def _door_kind(rng: np.random.Generator, room_type: str, host_type: str, length: int) -> tuple[OpeningKind, int]:
     """Return the kind of connection and its width [cm]. A `door` wider than 1 m slides and has no leaf that swings."""
     if room_type in PUBLIC or room_type in CORRIDORS:
-        return "open", int(min(length - 24, rng.integers(20, 45) * 5))
+        return "open", min(length - 24, 5 * int(rng.integers(20, 45)))
     if room_type == "Balcony":
-        return "door", int(min(length - 40, rng.integers(32, 56) * 5))
+        return "door", min(length - 40, 5 * int(rng.integers(32, 56)))
     if room_type == "Kitchen" and host_type in PUBLIC and rng.random() < 0.55 and length > 190:
-        return ("open" if rng.random() < 0.35 else "door"), int(min(length - 40, rng.integers(24, 36) * 5))
+        return ("open" if rng.random() < 0.35 else "door"), min(length - 40, 5 * int(rng.integers(24, 36)))
     narrow = room_type in {"Bathroom", "SecondBathroom", "MasterBathroom", "StorageRoom", "LaundryRoom", "CloakRoom"}
     return "door", int(rng.choice([70, 75, 80] if narrow else [80, 85, 90]))
 
@@ -206,11 +206,13 @@ def opening(number: int, hole: Hole, walls: Sequence[Wall], angle: float) -> Ope
         out = (OUTER_WALL - 12) / 2
         shift = out if wall.b == OUTSIDE else -out
     at = (wall.at + shift) / 100
-    ends = np.array([[at, hole.low / 100], [at, hole.high / 100]]) if wall.vertical else np.array([[hole.low / 100, at], [hole.high / 100, at]])
-    swing = None if hole.swing_room is None else Swing(f"room_{hole.swing_room}", hole.hinge, angle)
-    return Opening(
-        f"opening_{number}", hole.kind, tuple(f"room_{r}" for r in hole.rooms), ends, hole.height, hole.sill, swing
+    ends = (
+        np.array([[at, hole.low / 100], [at, hole.high / 100]])
+        if wall.vertical
+        else np.array([[hole.low / 100, at], [hole.high / 100, at]])
     )
+    swing = None if hole.swing_room is None else Swing(f"room_{hole.swing_room}", hole.hinge, angle)
+    return Opening(f"opening_{number}", hole.kind, tuple(f"room_{r}" for r in hole.rooms), ends, hole.height, hole.sill, swing)
 
 
 def leaf_corner(hole: Opening, into: tuple[float, float]) -> tuple[float, float, float, float]:

@@ -12,7 +12,7 @@ from pipeline.errors import ContentError
 
 PROGRAMS = 20
 DRAFTS = 30
-SHAFT_SHARE = 0.25
+SHAFT_SHARE = 0.33
 # Narrowest clear side by room type [m].
 NARROWEST = {"Kitchen": 1.55, "Balcony": 0.9, "Bathroom": 1.38, "SecondBathroom": 1.38, "MasterBathroom": 1.4, "LaundryRoom": 1.2}
 NARROWEST |= {"StorageRoom": 1.05, "CloakRoom": 1.4, "Hallway": 1.0, "Aisle": 1.0, "Corridor": 1.0, "Library": 2.1, "KidsRoom": 2.4}
@@ -32,7 +32,11 @@ def make_plan(rng: np.random.Generator) -> Plan:
 def _attempt(rng: np.random.Generator, wanted: program.Program) -> Plan | None:
     make = draft.spine if rng.random() < 0.55 else draft.centre
     sketch = make(rng, wanted)
-    rooms = [p for i, p in enumerate(sketch.patches) if sketch.types[p[0]] not in openings.CORRIDORS and p[0] not in {q[0] for q in sketch.patches[:i]}]
+    rooms = [
+        p
+        for i, p in enumerate(sketch.patches)
+        if sketch.types[p[0]] not in openings.CORRIDORS and p[0] not in {q[0] for q in sketch.patches[:i]}
+    ]
     patches = draft.turned(rng, draft.shafts(rng, sketch.patches, rooms, SHAFT_SHARE))
     stretches = outline.walls(*outline.paint(patches))
     loops = [outline.outline(i, stretches) for i in range(len(sketch.types))]

@@ -56,7 +56,9 @@ def sample(rng: np.random.Generator) -> Program:
     """Draw a program. Shares of room types follow the furnished rooms of the 2022 release."""
     count = int(rng.choice([1, 2, 3, 4], p=[0.12, 0.30, 0.38, 0.20]))
     first = "MasterBedroom" if count > 1 and rng.random() < 0.92 else "Bedroom"
-    others = [str(rng.choice(["SecondBedroom", "Bedroom", "KidsRoom", "ElderlyRoom"], p=[0.46, 0.26, 0.22, 0.06])) for _ in range(count - 1)]
+    others = [
+        str(rng.choice(["SecondBedroom", "Bedroom", "KidsRoom", "ElderlyRoom"], p=[0.46, 0.26, 0.22, 0.06])) for _ in range(count - 1)
+    ]
     if rng.random() < 0.36:
         others.append("Library")
     together = rng.random() < 0.70

@@ -5,6 +5,7 @@ Everything in our frame [m, Z up]; a quad's corners run counter-clockwise seen f
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -38,7 +39,11 @@ def surfaces(plan: Plan) -> tuple[Surface, ...]:
         for side in sides[number]:
             made.append(Surface("WallInner", number, tuple(_wall(side, 0.0, holes_on(side, plan, room), room.height, inside=True))))
             bare = list(_outer_parts(side, [s for k, other in enumerate(sides) if k != number for s in other]))
-            quads = [q for low, high in bare for q in _wall(side, -OUTER, holes_on(side, plan, room), room.height, inside=False, low=low, high=high)]
+            quads = [
+                q
+                for low, high in bare
+                for q in _wall(side, -OUTER, holes_on(side, plan, room), room.height, inside=False, low=low, high=high)
+            ]
             if quads:
                 made.append(Surface("WallOuter", number, tuple(quads)))
                 tops = tuple(_level(side, low, high, room.height) for low, high in bare)
@@ -76,7 +81,7 @@ def _flat(room: Room, z: float, *, up: bool) -> Iterator[Quad]:
     """Cut a rectilinear polygon into rectangles between the x of its vertices."""
     points = [(float(x), float(y)) for x, y in room.polygon]
     xs = sorted({x for x, _ in points})
-    for a, b in zip(xs, xs[1:], strict=False):
+    for a, b in itertools.pairwise(xs):
         for low, high in inside_intervals(points, (a + b) / 2):
             quad = ((a, low, z), (b, low, z), (b, high, z), (a, high, z))
             yield quad if up else (quad[3], quad[2], quad[1], quad[0])
@@ -95,7 +100,7 @@ def _wall(
     """Cover a wall from `low` to `high` along it, `off` in front of it, with upright rectangles around its holes."""
     end = side.length if high is None else high
     cuts = sorted({low, end, *(v for h in holes for v in h[:2] if low < v < end)})
-    for a, b in zip(cuts, cuts[1:], strict=False):
+    for a, b in itertools.pairwise(cuts):
         at = (a + b) / 2
         hole = next((h for h in holes if h[0] < at < h[1]), None)
         bands = [(0.0, height)] if hole is None else [(0.0, hole[2]), (hole[3], height)]

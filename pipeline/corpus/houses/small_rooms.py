@@ -7,12 +7,11 @@ from pipeline.corpus.houses.arranger import Arranger
 
 def furnish_bathroom(arranger: Arranger) -> None:
     """Furnish a bathroom: tub or shower in a corner, toilet, vanity, sometimes the washing machine."""
-    large = arranger.space.area > 5.0
-    washing = "tub" if large and arranger.chance(0.4) else "shower"
-    if washing == "tub" and not arranger.at_wall("bathtub", corner=1.0):
-        washing = "shower"
-    if washing == "shower" and arranger.chance(0.9):
+    arranger.space.blind = True  # a high window above tub or shower is usual
+    tub = arranger.space.area > 4.6 and arranger.chance(0.45) and arranger.at_wall("bathtub", corner=1.0)
+    if not tub:
         arranger.at_wall("shower", corner=1.0)
+    arranger.space.blind = False
     arranger.at_wall("toilet", corner=0.5, tries=5)
     arranger.at_wall("vanity", corner=0.5, tries=5)
     if arranger.chance(0.4):
@@ -41,7 +40,14 @@ def furnish_study(arranger: Arranger) -> None:
     for category, share in (("bookshelf", 0.9), ("bookshelf", 0.3), ("cabinet", 0.22), ("shelf", 0.25), ("sideboard", 0.08)):
         if arranger.chance(share):
             arranger.at_wall(category, corner=0.75)
-    for category, share in (("armchair", 0.2), ("lazy_sofa", 0.06), ("lounge_chair", 0.1), ("plant", 0.3), ("floor_lamp", 0.15), ("corner_side_table", 0.15)):
+    for category, share in (
+        ("armchair", 0.2),
+        ("lazy_sofa", 0.06),
+        ("lounge_chair", 0.1),
+        ("plant", 0.3),
+        ("floor_lamp", 0.15),
+        ("corner_side_table", 0.15),
+    ):
         if arranger.chance(share):
             arranger.in_corner(category)
     arranger.light(0.55, 0.35)

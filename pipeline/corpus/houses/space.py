@@ -5,6 +5,7 @@ Everything that stands is kept as an axis-aligned box in plan with a range of he
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -235,7 +236,7 @@ def outside_rects(polygon: Sequence[tuple[float, float]]) -> list[Rect]:
         (x0 - FAR, y0 - FAR, x1 + FAR, y0),
         (x0 - FAR, y1, x1 + FAR, y1 + FAR),
     ]
-    for a, b in zip(xs, xs[1:], strict=False):
+    for a, b in itertools.pairwise(xs):
         inside = inside_intervals(polygon, (a + b) / 2)
         edges = [y0, *(v for span in inside for v in span), y1]
         around += [(a, low, b, high) for low, high in zip(edges[::2], edges[1::2], strict=True) if high - low > EPSILON]

@@ -88,7 +88,9 @@ def statistics(houses: Sequence[House]) -> dict[str, Any]:
         "oblique": float(np.mean([abs(np.sin(2 * i.yaw)) > 0.035 for h in houses for i in h.items])),
     }
     for name, peers in PEERS.items():
-        figures[name] = class_figures([(h.plan.rooms[k].polygon, i) for h, k, i in peopled if peers.word in h.plan.rooms[k].type.lower()], peers)
+        figures[name] = class_figures(
+            [(h.plan.rooms[k].polygon, i) for h, k, i in peopled if peers.word in h.plan.rooms[k].type.lower()], peers
+        )
     return figures
 
 

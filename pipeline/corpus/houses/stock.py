@@ -36,9 +36,7 @@ class Stock:
     ) -> Model | None:
         """Draw a model of a category no larger than the limits [m]; None if there is none."""
         fitting = [
-            m
-            for m in self.by_category.get(category, ())
-            if narrowest <= m.size[0] <= width and m.size[1] <= depth and m.size[2] <= height
+            m for m in self.by_category.get(category, ()) if narrowest <= m.size[0] <= width and m.size[1] <= depth and m.size[2] <= height
         ]
         if not fitting:
             return None
