@@ -1,11 +1,12 @@
 """Floor plans: language → typed program → annealed plan."""
 
-from pipeline.floorplan.complete import complete
-from pipeline.floorplan.describe import describe
+from pipeline.floorplan.ask import request
+from pipeline.floorplan.completion import complete
+from pipeline.floorplan.description import describe
 from pipeline.floorplan.document import plan_from_json, plan_json, refusal_json
 from pipeline.floorplan.language import parse
-from pipeline.floorplan.prior import prior
+from pipeline.floorplan.priors import prior
 from pipeline.floorplan.program import FloorProgram, json_schema
-from pipeline.floorplan.solve import solve
+from pipeline.floorplan.solver import solve
 
-__all__ = ["FloorProgram", "complete", "describe", "json_schema", "parse", "plan_from_json", "plan_json", "prior", "refusal_json", "solve"]
+__all__ = ["FloorProgram", "complete", "describe", "json_schema", "parse", "plan_from_json", "plan_json", "prior", "refusal_json", "request", "solve"]

@@ -23,6 +23,7 @@ PARENTS: dict[str, tuple[str, ...]] = {
     "garage": ("utility", "entry", "hallway", "kitchen", "living_room"),
     "balcony": ("living_room", "studio_room", "family_room", "dining_room", "kitchen", "bedroom"),
     "staircase": ("entry", "hallway", "living_room", "family_room", "dining_room", "kitchen"),
+    "media_room": ("living_room", "family_room", "hallway", "entry", "dining_room", "kitchen"),
     "sunroom": ("living_room", "family_room", "dining_room", "kitchen", "hallway"),
 }
 ANY_HUB = ("hallway", "entry", "living_room", "family_room", "studio_room", "dining_room", "kitchen", "office", "staircase")

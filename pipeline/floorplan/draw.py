@@ -156,7 +156,7 @@ def image(plan: Plan, scale: float = 60.0) -> Image.Image:
                 pen.line(at(turned[1], level), fill=colour, width=factor)
         for r in rooms:
             (x, y) = at(np.array([_label_point(r)]), level)[0]
-            pen.text((x, y), f"{r.room_id}\n{r.area:.1f} m²", fill="#333333", font=font, anchor="mm", align="center")
+            pen.text((x, y), f"{r.room_id}\n{r.area:.1f} m2", fill="#333333", font=font, anchor="mm", align="center")
     return picture.resize((picture.width // factor, picture.height // factor), Image.Resampling.LANCZOS)
 
 
@@ -165,3 +165,54 @@ def png(plan: Plan, scale: float = 60.0) -> bytes:
     buffer = io.BytesIO()
     image(plan, scale).save(buffer, format="PNG")
     return buffer.getvalue()
+
+
+def terminal(plan: Plan, columns: int = 76) -> str:
+    """Return the plan in box-drawing characters with a list of its rooms; one storey below the other."""
+    x0, y0, x1, y1 = _bounds(plan)
+    across = (x1 - x0) / columns  # a character is about twice as high as wide
+    down = 2 * across
+    width, height = columns + 1, math.ceil((y1 - y0) / down) + 1
+    text = ""
+    for level in _levels(plan):
+        rooms = _on(plan, level)
+        owner = _sampled(rooms, x0 + across * (np.arange(width + 1) - 0.5), y1 - down * (np.arange(height + 1) - 0.5))
+        canvas = [[_box(owner, i, j) for j in range(width)] for i in range(height)]
+        for o in (o for o in plan.openings if o.level == level):
+            mark = {"window": "░", "entrance": "▒", "door": "·", "open": " ", "portal": " "}[o.kind]
+            for share in np.linspace(0.0, 1.0, 40):
+                x, y = o.segment[0] + share * (o.segment[1] - o.segment[0])
+                i, j = round((y1 - y) / down), round((x - x0) / across)
+                for di, dj in ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)):
+                    if 0 <= i + di < height and 0 <= j + dj < width and canvas[i + di][j + dj] in "─│":
+                        canvas[i + di][j + dj] = mark
+                        break
+        for r in rooms:
+            x, y = _label_point(r)
+            i, j = round((y1 - y) / down), round((x - x0) / across)
+            for k, line in enumerate((r.room_id, f"{r.area:.1f} m²")):
+                start = max(j - len(line) // 2, 0)
+                for d, letter in enumerate(line):
+                    if 0 <= i + k < height and start + d < width and canvas[i + k][start + d] == " ":
+                        canvas[i + k][start + d] = letter
+        title = f"level {level}\n" if len(_levels(plan)) > 1 else ""
+        text += title + "\n".join("".join(row).rstrip() for row in canvas).strip("\n") + "\n"
+    total = sum(r.area for r in plan.rooms)
+    doors = sum(o.kind == "door" for o in plan.openings)
+    return text + f"{len(plan.rooms)} rooms, {total:.1f} m², {doors} doors; · door  ▒ entrance  ░ window\n"
+
+
+def _sampled(rooms: Sequence[Room], xs: np.ndarray, ys: np.ndarray) -> np.ndarray:
+    """Index of the nearest room within a wall's thickness at each point of a raster, -1 outside."""
+    points = shapely.points(*np.meshgrid(xs, ys))
+    gaps = np.stack([shapely.distance(shapely.Polygon(r.polygon), points) for r in rooms])
+    nearest = gaps.argmin(axis=0)
+    return np.where(gaps.min(axis=0) <= 0.13, nearest, -1)
+
+
+BOX = " ╵╶└╷│┌├╴┘─┴┐┤┬┼"  # by bits: up 1, right 2, down 4, left 8
+
+
+def _box(owner: np.ndarray, i: int, j: int) -> str:
+    a, b, c, d = owner[i, j], owner[i, j + 1], owner[i + 1, j], owner[i + 1, j + 1]
+    return BOX[(a != b) * 1 + (b != d) * 2 + (c != d) * 4 + (a != c) * 8]

@@ -81,7 +81,7 @@ def assemble(prompt: str, tokens: list[Token], parsed: list[list[Item]], state: 
     _sizes(draft, state, text)
     _comparisons(draft, stock, text)
     _whole(draft, state, text)
-    _style(draft, text)
+    _style(draft, re.sub(r"(square|sq\.?) ?(m|f)\w*", " ", text))
     spans = sorted(
         (s, e, t) for s, e, t in _rest(state, draft) if not any(v["start"] <= s < v["end"] for v in draft.evidence)
     )
@@ -184,11 +184,11 @@ def _belongings(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
         if any(f.what == "open_kitchen" and room.id in f.a for f in facts) and not draft.linked(room.id):
             host = [r for kind in ("living_room", "dining_room", "studio_room", "family_room") for r in stock.of(kind)]
             fact = next(f for f in facts if f.what == "open_kitchen")
-            if host:
-                draft.link(host[0].id, room.id, "open", fact)
+            draft.link(host[0].id if host else "living_room", room.id, "open", fact)
 
 
 def _joined(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
+    owned = {i for f in facts if f.what in {"own", "ensuite"} for i in f.a}
     names = {lexicon.DOOR: "door", lexicon.LEADS: "door", lexicon.NEAR: "any", lexicon.OPEN: "open", lexicon.WALL: "wall"}
     for fact in facts:
         if any(i.startswith("*") for i in fact.a + fact.b):
@@ -197,6 +197,8 @@ def _joined(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
             for a, b in _pairs(fact.a, fact.b):
                 if fact.what == lexicon.DOOR and len(fact.b) > 1 and draft.linked(a) & set(fact.b):
                     continue
+                if a in owned and len(fact.a) > 1 and stock.get(b).type in HALLS:
+                    continue  # "two baths on the corridor, one en suite"
                 draft.link(a, b, names[fact.what], fact)
         elif fact.what == lexicon.BETWEEN and len(fact.b) == 2:
             for a in fact.a:

@@ -24,8 +24,8 @@ LEVELS = {
     "downstairs": 0, "ground floor": 0, "on the ground floor": 0, "lower floor": 0, "lower level": 0, "upstairs": 1, "first floor": 1, "upper floor": 1, "upper level": 1, "top floor": 1, "second floor": 1, "upper storey": 1, "third floor": 2,
 }  # fmt: skip
 ENTRANCES = ("come in through", "comes in through", "enter through", "enter via", "enter into", "entrance into", "entrance through", "entrance is in", "front door opens into", "front door leads into", "front door leads to", "enters through",
-             "front door in", "enters into", "entered through", "entrance via", "walk straight into", "come in via", "step into", "enter directly into", "entrance to", "front door opens onto", "entered via")  # fmt: skip
-MUTES = ("closed off", "walled off", "shut off", "front door", "door to the outside", "doors to the outside", "apart from that", "of its own", "of their own", "its own door", "their own door", "for living and sleeping", "for living", "living side", "along the wall",
+             "front door in", "enters into", "entrance via", "walk straight into", "come in via", "step into", "enter directly into", "entrance to", "front door opens onto")  # fmt: skip
+MUTES = ("closed off", "walled off", "shut off", "front door", "door to the outside", "doors to the outside", "apart from that", "of its own", "of their own", "its own door", "their own door", "for living and sleeping", "for living", "along the wall",
          "in one corner", "work from home", "works from home", "working from home", "at home", "eat in", "big enough to eat in", "for two desks", "bed and breakfast", "no wasted corridor space", "wasted corridor", "window to the outside",
          "windows to the outside", "one and a half", "master planner", "without stairs", "no stairs", "no steps", "no walls in between", "walls in between", "grid of boxes", "under one roof", "on one level", "all on one level", "on one side",
          "on the other side", "on the opposite side", "at the other end", "next door", "no elevator", "home office layout", "office layout", "living in", "two storey living", "on one floor", "at the front", "at the back", "for living and cooking",

@@ -135,7 +135,7 @@ FILLER = frozenset(
     equally equals times half twice size much many lot lots bit of cm m mm daylight natural light quiet shut shutting closed close near next beside away far opposite end buffer zone zones side sides way total overall
     including include includes such however while because since around stick connected connect connects downstairs upstairs ground first upper lower stairs steps step free also galley nook eat one's ones' guest's chef's chef walk walking walks
     passing going without welcome proportions shapes unusual irregular grid boxes box panoramic glazing glazed wraparound spa-like spa like airy luxury combined unit efficiency very compact rectangular wasted corridor wheelchair carer carer's
-    now hi hello thanks thank dear""".split()
+    now hi hello thanks thank dear needs wants wish wishes someone somebody anyone able likes love prefer preferred prefers plenty main-floor owned rent budget new old young retired student's""".split()
 )  # fmt: skip
 
 

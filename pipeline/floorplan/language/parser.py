@@ -6,7 +6,7 @@ import re
 
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan.check import check
-from pipeline.floorplan.complete import complete
+from pipeline.floorplan.completion import complete
 from pipeline.floorplan.language import items as kinds
 from pipeline.floorplan.language.assemble import assemble
 from pipeline.floorplan.language.items import sentences

@@ -47,7 +47,7 @@ class Reading:
     studio: Item | None = None
     storeys: tuple[int, Item] | None = None
     level: int | None = None
-    recent: list[tuple[str, ...]] = field(default_factory=list)  # groups, the latest last
+    past: list[tuple[str, ...]] = field(default_factory=list)  # groups named in earlier sentences, the latest last
     owner: str = ""
     owning: str = ""  # the bedroom of the owner whose rooms are being listed
     used: set[int] = field(default_factory=set)
@@ -69,6 +69,7 @@ def read(tokens: list[Token], parsed: list[list[Item]]) -> Reading:
         state.owner, state.owning = "", ""
         _mentions(state, sentence)
         _relations(state, sentence)
+        state.past = _heard(state, sentence, len(sentence))
         state.level = state.level if any(i.kind == kinds.LEVEL and i.first == sentence[0].first for i in sentence) else None
     return state
 
@@ -110,7 +111,6 @@ def _mentions(state: Reading, sentence: list[Item]) -> None:
                 suites = tuple(item.ids)
                 state.say("suite", tuple(item.ids), (), item)
                 item.kind = kinds.ROOM
-            state.recent.append(tuple(item.ids))
             _adjectives(state, item)
             _belongings(state, item)
         elif item.kind == kinds.PRONOUN and item.role == "group" and suites and item.words == "each":
@@ -251,6 +251,9 @@ def _name(state: Reading, sentence: list[Item], k: int, suites: tuple[str, ...])
         return [stock.specialise(item.type, "", surface) or stock.add(item.type, "", surface, level) for _ in suites]
     if definite and not (number == 1 and not set(item.mods) & {"the", "that", "this"}):
         found = stock.refer(item.type, role, surface, many or (number or 0) > 1, other, ordinal, state.level)
+        last = surface.split()[-1]
+        if item.type == "hallway" and not any(last in r.surface.split() for r in found):
+            found = [r for r in stock.of("entry") if last in r.surface.split()] or found
         if not found and item.type == "hallway":
             found = stock.refer("entry", "", surface, False, False, 0, state.level)
         if not found and role == "primary" and "the" in item.mods and item.type == "bedroom" and not many:
@@ -283,11 +286,14 @@ def _new(state: Reading, item: Item, role: str, surface: str, number: int | None
         if len(stock.of("bedroom")) >= ordinal and rest:
             rest[0].open_slot = False
             return rest[:1]
-    if not role and not ordinal and item.mods[-1:] == [] and count == 1 and len(stock.of(item.type)) == 1 and not slots:
+    if item.type in {"hallway", "staircase"} and stock.of(item.type) and not (ordinal > 1 or {"another", "own"} & set(item.mods)):
+        return stock.refer(item.type, "", surface, False, False, 0, level) or stock.of(item.type)[:1]
+    if not role and not ordinal and not item.mods and item.type not in PERSONAL and count == 1 and len(stock.of(item.type)) == 1 and not slots:
         return stock.of(item.type)  # a bare name: "dining next to both"
     made: list[Named] = []
     for _ in range(count):
-        taken = None if "another" in item.mods or (count > 1 and not role) else stock.specialise(item.type, role, surface)
+        fresh = "another" in item.mods or (count > 1 and not role) or len(made) >= len(slots)
+        taken = None if fresh else stock.specialise(item.type, role, surface)
         made.append(taken or stock.add(item.type, role, surface, level, open_slot=count > 1))
     if item.role == "shared":
         for room in made:
@@ -344,13 +350,15 @@ def _relations(state: Reading, sentence: list[Item]) -> None:
                 near = ()
                 index += 1
                 continue
-            group = _point(state, item, subject, near)
+            group = _point(state, sentence, index, subject, near)
             if item.kind == kinds.ROOM or item.role in {"both", "one", "rest"} or item.kind == kinds.EVERY or not near:
                 near = group
             if item.kind != kinds.PRONOUN or item.role != "it":
                 objects = ()
             if not subject or item.role in {"group", "both", "one", "rest"}:
                 subject = group
+            elif item.words in {"that", "which"}:
+                subject = near
             elif item.kind == kinds.PRONOUN and item.role == "it" and group:
                 near = subject if not objects else near
         elif item.kind == kinds.AMOUNT:
@@ -358,9 +366,16 @@ def _relations(state: Reading, sentence: list[Item]) -> None:
         elif item.kind == kinds.CUE:
             index, subject, near, objects = _cue(state, sentence, index, subject, near, objects)
             continue
+        elif item.kind == kinds.MUTE and item.words in {"window to the outside", "windows to the outside"} and near:
+            state.say("window", near, (), item)
         elif item.kind == kinds.WORD:
             _word(state, sentence, index, near)
         index += 1
+
+
+def _heard(state: Reading, sentence: list[Item], k: int) -> list[tuple[str, ...]]:
+    """Return the groups of rooms named before item k, the latest last."""
+    return [*state.past, *(tuple(i.ids) for i in sentence[:k] if i.kind == kinds.ROOM and i.ids)]
 
 
 def _word(state: Reading, sentence: list[Item], k: int, near: tuple[str, ...]) -> None:
@@ -374,20 +389,22 @@ def _word(state: Reading, sentence: list[Item], k: int, near: tuple[str, ...]) -
         state.say("only", state.facts[-1].a, (), sentence[k])
 
 
-def _point(state: Reading, item: Item, subject: tuple[str, ...], near: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the rooms that an item points at."""
+def _point(
+    state: Reading, sentence: list[Item], k: int, subject: tuple[str, ...], near: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Return the rooms that item k points at."""
+    item = sentence[k]
     if item.kind == kinds.ROOM or item.ids:
         return tuple(item.ids)
     if item.kind == kinds.EVERY:
         return ("*" + item.type,)
-    recent = [g for g in state.recent if g]
+    recent = _heard(state, sentence, k)
     if item.role == "it":
         return near or subject or (recent[-1] if recent else ())
     if item.role == "both":
         if near and len(near) == 2:
             return near
-        flat = list(dict.fromkeys(i for g in recent[-4:] for i in g))
-        return tuple(flat[-2:])
+        return tuple(dict.fromkeys(i for g in recent[-2:] for i in g))
     if item.role in {"one", "rest"} and recent:
         plural = next((g for g in reversed(recent) if len(g) > 1), recent[-1])
         kind = state.inventory.get(plural[0]).type
@@ -396,7 +413,8 @@ def _point(state: Reading, item: Item, subject: tuple[str, ...], near: tuple[str
             taken = free[:1]
             for room in taken:
                 room.open_slot = False
-            return tuple(r.id for r in taken)
+            item.ids = [r.id for r in taken]
+            return tuple(item.ids)
         return tuple(r.id for r in free)
     if item.role == "group":
         plural = next((g for g in reversed(recent) if len(g) > 1), None)
@@ -418,7 +436,7 @@ def _object_group(
                 break
             if group and _starts_clause(sentence, index):
                 break
-            if only is not None and state.inventory.get(item.ids[0]).type not in only:
+            if only is not None and state.inventory.get(item.ids[0]).type not in only and not set(item.ids) <= set(subject):
                 break
             if group and only is not None and comma and not (set(item.mods) & {"own", "its", "their", "a", "an", "private"}):
                 break
@@ -429,9 +447,10 @@ def _object_group(
             if item.role in {"each other"}:
                 return ("<each other>",), index + 1
             # an object "it" points past the subject
-            others = [g for g in state.recent if g and not set(g) & set(subject)]
+            others = [g for g in _heard(state, sentence, index) if not set(g) & set(subject)]
             if item.role == "both":
-                flat = list(dict.fromkeys(i for g in others for i in g))
+                here = [g for g in others if g not in state.past] or others
+                flat = list(dict.fromkeys(i for g in (here if len(here) > 1 else others) for i in g))
                 group = _last_two(state, flat, subject)
             elif item.role == "it" and others:
                 group = list(others[-1])
@@ -449,10 +468,7 @@ def _object_group(
             if group or item.cue not in {lexicon.BETWEEN, lexicon.HAS}:
                 break
         elif item.kind == kinds.AMOUNT:
-            if group or item.unit in {"area", "length"}:
-                if group and only is not None:
-                    index += 1
-                    continue
+            if only is None and (group or item.unit in {"area", "length"}):
                 break
         elif item.kind == kinds.MUTE and group and comma:
             break
@@ -490,7 +506,9 @@ def _cue(
     item = sentence[k]
     cue = item.cue
     unchanged = (k + 1, subject, near, objects)
-    if item.words in {"on", "along", "around", "by", "has", "have", "with", "get", "gets", "near", "connects", "serves"}:
+    if k + 1 < len(sentence) and sentence[k + 1].kind == kinds.COMMA and sentence[k + 1].words != ":":
+        return unchanged
+    if cue == lexicon.HAS or item.words in {"on", "along", "around", "by", "near", "connects", "serves"}:
         ahead = next((i for i in sentence[k + 1 : k + 8] if i.kind not in {kinds.WORD}), None)
         if ahead is None or ahead.kind not in {kinds.ROOM, kinds.PRONOUN} or not (ahead.ids or ahead.kind == kinds.PRONOUN):
             if not (cue == lexicon.HAS and ahead is not None and ahead.kind == kinds.AMOUNT):
@@ -501,7 +519,7 @@ def _cue(
     negative = any(i.words in {"not", "n't", "never", "shouldn't", "mustn't", "don't"} for i in sentence[max(0, k - 3) : k])
     chain = item.words in {"on to", "through to"}
     if not near and not subject and objects == ():
-        subject = next((g for g in reversed(state.recent) if g), ()) if cue != lexicon.HAS else ()
+        subject = next(reversed(_heard(state, sentence, k)), ()) if cue != lexicon.HAS else ()
         near = subject
     source = objects if chain and objects else (subject if objects and not chain else (near or subject))
     if cue == lexicon.HAS:
@@ -518,7 +536,7 @@ def _cue(
         return unchanged
     state.understood(item)
     halls = [i for i in group if not i.startswith(("*", "<")) and state.inventory.get(i).type in HALLS]
-    if cue == lexicon.DOOR and halls and source and not source[0].startswith("*"):
+    if cue == lexicon.DOOR and halls and not objects and source and not source[0].startswith("*"):
         listed = _conjuncts(state, sentence, k)
         source = tuple(i for i in listed if state.inventory.get(i).type in ON_HALL and i not in halls) or source
     if group == ("<each other>",):
@@ -556,7 +574,7 @@ def _conjuncts(state: Reading, sentence: list[Item], k: int) -> tuple[str, ...]:
             if group or item.kind != kinds.CUE:
                 break
         elif item.kind == kinds.PRONOUN and item.role in {"both", "rest", "one"}:
-            return tuple(group) or _point(state, item, (), ())
+            return tuple(group) or _point(state, sentence, sentence.index(item), (), ())
     return tuple(dict.fromkeys(group))
 
 
@@ -565,6 +583,9 @@ def _has(
 ) -> tuple[int, tuple[str, ...], tuple[str, ...], tuple[str, ...]]:
     """"X with its own bathroom": rooms that belong to a room hang on it."""
     item = sentence[k]
+    before = next((i for i in reversed(sentence[:k]) if i.kind in {kinds.ROOM, kinds.HOME, kinds.PRONOUN}), None)
+    if before is not None and before.kind == kinds.HOME:
+        return k + 1, subject, near, ()
     source = near or source or subject
     named = [i for i in source if not i.startswith("*")]
     owner = [i for i in named if state.inventory.get(i).type == "bedroom"]
@@ -578,15 +599,14 @@ def _has(
                 state.say(lexicon.DOOR, group, tuple(living), item)
                 return end, subject, tuple(living), ()
         return k + 1, subject, near, ()
-    group, end = _object_group(state, sentence, k + 1, wide=True, subject=tuple(named), only=PERSONAL | {"bedroom"})
-    group = tuple(i for i in group if state.inventory.get(i).type != "bedroom")
+    group, end = _object_group(state, sentence, k + 1, wide=True, subject=tuple(named), only=PERSONAL)
     if not group:
         return k + 1, subject, near, ()
     state.understood(item)
     for kind in dict.fromkeys(state.inventory.get(i).type for i in group):
         things = tuple(i for i in group if state.inventory.get(i).type == kind)
         state.say("own", things, tuple(owner), item)
-    return end, tuple(owner), group, ()
+    return end, tuple(owner), group, group
 
 
 def _through(

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.floorplan.complete import complete
+from pipeline.floorplan.completion import complete
 from pipeline.floorplan.program import Accessibility, FloorProgram, Footprint, Forbid, Link, Range, RoomReq, Style
 
 BEDROOMS = (0.12, 0.24, 0.28, 0.20, 0.11, 0.05)  # probability of 0 (studio) to 5 bedrooms

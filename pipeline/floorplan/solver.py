@@ -10,11 +10,11 @@ from pipeline.entities.plan import Plan, Room
 from pipeline.errors import RefusedError
 from pipeline.floorplan import anneal, energy, slicing, trace
 from pipeline.floorplan.check import check
-from pipeline.floorplan.complete import complete
+from pipeline.floorplan.completion import complete
 from pipeline.floorplan.grid import INNER, OUTER, Labels
 from pipeline.floorplan.openings import Run, place
 from pipeline.floorplan.program import FloorProgram
-from pipeline.floorplan.request import UNIT, Storey, storey
+from pipeline.floorplan.storeys import UNIT, Storey, storey
 
 TRIES = 24  # whole attempts before a program is refused
 STARTS = 3  # slicing trees per attempt

@@ -1,0 +1,68 @@
+"""`sfgen plan`: words → floor plan; drawn in the terminal, or written as JSON, SVG or PNG."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+from pipeline.entities.plan import Plan
+from pipeline.errors import RefusedError, UsageError
+from pipeline.floorplan import FloorProgram, plan_json, refusal_json, request, solve
+from pipeline.floorplan.draw import png, svg, terminal
+from pipeline.manifest import write_bytes, write_json
+
+STDOUT = "-"
+
+
+def main(
+    _root: Path,
+    *,
+    prompt: str,
+    seed: int = 0,
+    json_path: Path | None = None,
+    svg_path: Path | None = None,
+    png_path: Path | None = None,
+) -> None:
+    """Plan the prompt and show it. A refusal is written to the JSON file too, then raised."""
+    for path in (svg_path, png_path, json_path):
+        _check_target(path)
+    try:
+        program = request(prompt)
+        plan = solve(program, seed)
+    except RefusedError as error:
+        _write_json(json_path, refusal_json(error))
+        raise
+    _write_json(json_path, plan_json(plan, program))
+    if svg_path is not None:
+        write_bytes(svg_path, svg(plan).encode())
+    if png_path is not None:
+        write_bytes(png_path, png(plan))
+    if json_path is None and svg_path is None and png_path is None:
+        sys.stdout.write(show(plan, program))
+
+
+def show(plan: Plan, program: FloorProgram) -> str:
+    """Return the plan in characters, with the words that were not understood."""
+    text = terminal(plan)
+    if program.unparsed:
+        text += "not understood: " + ", ".join(s.text for s in program.unparsed) + "\n"
+    return text
+
+
+def _check_target(path: Path | None) -> None:
+    if path is None or str(path) == STDOUT:
+        return
+    if path.is_dir():
+        raise UsageError(f"{path} is a folder", "name a file")
+    if not path.absolute().parent.is_dir():
+        raise UsageError(f"the folder {path.parent} does not exist", "make it first")
+
+
+def _write_json(path: Path | None, document: object) -> None:
+    if path is None:
+        return
+    if str(path) == STDOUT:
+        sys.stdout.write(json.dumps(document, indent=2, ensure_ascii=False) + "\n")
+    else:
+        write_json(path, document)
