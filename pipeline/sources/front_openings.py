@@ -64,7 +64,8 @@ def from_mesh(evidence: Evidence, vertices: Floats) -> Hole | None:
     points = to_ours(vertices)
     if len(points) < 3:
         return None
-    frame = np.asarray(shapely.MultiPoint(points[:, :2]).minimum_rotated_rectangle.boundary.coords if len(points) else [])
+    around = shapely.MultiPoint(points[:, :2]).minimum_rotated_rectangle
+    frame = np.asarray(around.exterior.coords if isinstance(around, Polygon) else [])
     if len(frame) < 5:  # the points are on one line: a flat leaf
         low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
         if np.ptp(points[:, 0]) and np.ptp(points[:, 1]) and np.corrcoef(points[:, 0], points[:, 1])[0, 1] < 0:
