@@ -71,14 +71,14 @@ class Walk:
         return part / np.maximum(total, 1)
 
 
-def bare_floor(rooms: Sequence[Room], openings: Sequence[Opening], wall: float, cell: float) -> Floor:
-    """Rasterise rooms of one storey and the passages through walls of at most `wall` [m] between them."""
-    raster = Raster.around([r.polygon for r in rooms], cell)
+def bare_floor(rooms: Sequence[Room], openings: Sequence[Opening], depth: float, cell: float) -> Floor:
+    """Rasterise rooms of one storey and the passages through walls, `depth` [m] to both sides of the walls' centre lines."""
+    raster = Raster.around([r.polygon for r in rooms], cell, depth + cell)
     room = np.full(raster.shape, -1, np.int16)
     for number, r in enumerate(rooms):
         room[raster.fill(raster.empty(), [r.polygon])] = number
     free = room >= 0
-    raster.fill(free, [passage(o, wall / 2 + cell) for o in openings if o.kind in PASSABLE])
+    raster.fill(free, [passage(o, depth) for o in openings if o.kind in PASSABLE])
     return Floor(raster, room, free)
 
 

@@ -54,8 +54,10 @@ def excess(shape: Floats, polygon: Floats) -> float:
     The farthest vertex outside, or, where a reflex corner pokes into the shape, the depth to which it does.
     """
     worst = 0.0
+    low_x, low_y, high_x, high_y = np.inf, np.inf, -np.inf, -np.inf
     for i in range(shape.shape[0]):
         x, y = shape[i, 0], shape[i, 1]
+        low_x, low_y, high_x, high_y = min(low_x, x), min(low_y, y), max(high_x, x), max(high_y, y)
         if not contains(x, y, polygon):
             worst = max(worst, boundary_distance(x, y, polygon))
     n = polygon.shape[0]
@@ -63,6 +65,8 @@ def excess(shape: Floats, polygon: Floats) -> float:
     for k in range(n):
         x0, y0 = polygon[k, 0], polygon[k, 1]
         x1, y1 = polygon[(k + 1) % n, 0], polygon[(k + 1) % n, 1]
+        if max(x0, x1) + SKIN < low_x or min(x0, x1) - SKIN > high_x or max(y0, y1) + SKIN < low_y or min(y0, y1) - SKIN > high_y:
+            continue
         length = math.sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2)
         if length < 1e-9:
             continue

@@ -21,7 +21,7 @@ def walk_level(home: Home, level: int, made: Bodies, settings: VerifySettings) -
     plan, robot = home.plan, settings.robot
     rooms = [r for r in plan.rooms if r.level == level]
     openings = [o for o in plan.openings if o.level == level]
-    floor = bare_floor(rooms, openings, max(plan.inner_wall, plan.outer_wall), settings.cell)
+    floor = bare_floor(rooms, openings, max(plan.inner_wall, plan.outer_wall) / 2 + settings.cell, settings.cell)
     base = level * plan.storey_height
     walked = walk(floor, made.prisms, robot.radius, (base + robot.step, base + robot.height))
     return walked, _entered(plan, level, rooms, walked)

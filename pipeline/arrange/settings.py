@@ -1,0 +1,39 @@
+"""Settings of the post-optimisation: section `postopt` of params.yaml."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+
+@dataclass(frozen=True, slots=True)
+class WalkableSettings:
+    """Algorithm 2: objects are exchanged for smaller ones until the walkable share reaches its target."""
+
+    ratio: Literal["free", "paper"] = "free"  # what is controlled: the robot's connected free floor, or the paper's formula
+    top: int = 3  # k: how many of the largest objects are exchanged per iteration
+    iterations: int = 20  # M: most iterations per room
+    skip_exhausted: bool = True  # the k largest that have something smaller; false: the k largest, as printed
+
+
+@dataclass(frozen=True, slots=True)
+class SeparateSettings:
+    """Separation: the nearest poses without collisions are searched, one object after the other."""
+
+    touch: float = 0.002  # prisms that are in each other by no more may stay [m]; below what the judge allows
+    snap_angle: float = 12.0  # a yaw is turned to the walls' directions when it is this near to one [deg]
+    wall_reach: float = 0.5  # an object that wants a wall is put to one whose distance is below this [m]
+    turn_cost: float = 0.3  # what turning costs, in metres of displacement per radian [m/rad]
+    access_cost: float = 0.25  # what blocking the place in front of a door or drawer costs, in metres of displacement [m]
+    access_depth: float = 0.55  # depth of that place beyond the opened part [m]
+    candidates: int = 16  # free poses that are weighed against each other per object
+    rounds: int = 3  # times a room is started over with the objects first for which nothing was free
+    shrink: int = 3  # smaller assets that are tried for an object that finds no place
+
+
+@dataclass(frozen=True, slots=True)
+class PostoptSettings:
+    """Section `postopt` of params.yaml. The robot's radius, height and raster cell are those of section `verify`."""
+
+    walkable: WalkableSettings = field(default_factory=WalkableSettings)
+    separate: SeparateSettings = field(default_factory=SeparateSettings)

@@ -1,0 +1,73 @@
+"""What an asset takes of a room: its body, the space its parts move through, the place in front of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.asset import Asset, Joint
+from pipeline.geometry.convex import hull
+from pipeline.geometry.kinematics import OPENERS
+from pipeline.geometry.prisms import Prisms, Sweep, prism, solid, stacked
+
+Floats = NDArray[np.float64]
+
+STRIDE = 3  # steps of a hinge that are covered by one prism
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """All in the object frame, scaled: `body` at rest, `keep` what joints sweep, `access` where one stands to open.
+
+    `outline` (n, 2) is the convex hull of the body in plan.
+    """
+
+    body: Prisms
+    keep: Prisms
+    access: Prisms
+    outline: Floats
+
+
+def shape(asset: Asset, scale: Floats, access_depth: float) -> Shape:
+    """Return the shape of an asset at a scale; `access_depth` [m] is the place kept free beyond opened parts."""
+    made = solid(asset)
+    origin = np.zeros(3)
+    body = made.rest.placed(origin, 0.0, scale)
+    keep = stacked([p for sweep, j in zip(made.sweeps, asset.joints, strict=True) for p in _coarse(sweep, j)]).placed(origin, 0.0, scale)
+    opening = [s for s, j in zip(made.sweeps, asset.joints, strict=True) if j.part_class in OPENERS]
+    access = _access(stacked([s.prisms for s in opening]).placed(origin, 0.0, scale), asset, scale, access_depth)
+    points = body.corners.reshape(-1, 2) if len(body) else np.zeros((1, 2))
+    return Shape(body, keep, access, hull(np.ascontiguousarray(points)))
+
+
+def _coarse(sweep: Sweep, joint: Joint) -> list[Prisms]:
+    """Cover a sweep by few prisms: for sliders one, for hinges one per `STRIDE` steps."""
+    found = []
+    steps = len(sweep.reached)
+    stride = max(steps, 1) if joint.type == "prismatic" else STRIDE
+    for first in range(0, steps, stride):
+        own = np.flatnonzero((sweep.prisms.part >= first) & (sweep.prisms.part < first + stride))
+        if not len(own):
+            continue
+        flat = sweep.prisms.corners[own].reshape(-1, 2)
+        low, high = sweep.prisms.z[own, 0].min(), sweep.prisms.z[own, 1].max()
+        points = np.concatenate([np.column_stack([flat, np.full(len(flat), z)]) for z in (low, high)])
+        made = prism(points)
+        if made is not None:
+            found.append(made)
+    return found
+
+
+def _access(swept: Prisms, asset: Asset, scale: Floats, depth: float) -> Prisms:
+    """Return the box before the front, as wide as the asset, from its face to `depth` beyond what opens."""
+    if not len(swept):
+        return stacked([])
+    half_w, half_d = float(asset.size[0] * scale[0]) / 2, float(asset.size[1] * scale[1]) / 2
+    front = min(float(swept.corners[..., 1].min()), -half_d)
+    low, high = np.array([-half_w, front - depth]), np.array([half_w, -half_d])
+    corners = np.array([[low[0], low[1], z] for z in (0.02, 1.4)] + [[high[0], low[1], z] for z in (0.02, 1.4)])
+    corners = np.concatenate([corners, np.array([[x, high[1], z] for x in (low[0], high[0]) for z in (0.02, 1.4)])])
+    made = prism(corners)
+    return stacked([]) if made is None else made

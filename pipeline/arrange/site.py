@@ -1,0 +1,86 @@
+"""A room as the arranger sees it: walls, the space that its doors need, the floor that must hang together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.plan import Plan
+from pipeline.geometry.freefloor import PASSABLE, Floor, Walk, bare_floor, walk
+from pipeline.geometry.leaves import leaf_sweep
+from pipeline.geometry.prisms import Prisms, stacked
+from pipeline.geometry.walls import leaves
+
+Floats = NDArray[np.float64]
+
+NEAR_DOOR = 0.15  # the robot must find a place this near to the middle of each opening, so that it gets through [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """One room.
+
+    `polygon` (n, 2) [m]; floor at `elevation`, ceiling at `ceiling` [m]; `swung` are the prisms that room doors sweep;
+    `doors` (D, 2) [m] the middles of the openings that one walks through; `radius`, `step`, `height` [m] the robot's.
+    """
+
+    room_id: str
+    polygon: Floats
+    elevation: float
+    ceiling: float
+    swung: Prisms
+    doors: Floats
+    floor: Floor
+    radius: float
+    step: float
+    height: float
+
+    @classmethod
+    def of(cls, plan: Plan, room_id: str, *, radius: float = 0.25, step: float = 0.02, height: float = 1.4, cell: float = 0.05) -> Site:
+        """Take one room out of a plan; the numbers are the robot's radius, climb and height, and the raster's cell [m]."""
+        room = plan.room(room_id)
+        openings = [o for o in plan.openings if room_id in o.rooms and o.level == room.level]
+        elevation = plan.elevation(room_id)
+        own = {o.opening_id for o in openings}
+        swung = stacked([leaf_sweep(leaf, elevation).prisms for leaf in leaves(plan) if leaf.opening_id in own])
+        return cls(
+            room_id,
+            np.ascontiguousarray(room.polygon, np.float64),
+            elevation,
+            elevation + room.height,
+            swung,
+            np.array([o.segment.mean(0) for o in openings if o.kind in PASSABLE]).reshape(-1, 2),
+            # Beyond each opening lies floor on which the robot can stand whole: one passes through, not up to the wall.
+            bare_floor([room], openings, 2 * radius + cell, cell),
+            radius,
+            step,
+            height,
+        )
+
+    def walk(self, obstacles: Prisms) -> Walk:
+        """Find where the robot can stand with these obstacles in the room."""
+        return walk(self.floor, obstacles, self.radius, (self.elevation + self.step, self.elevation + self.height))
+
+    def door_labels(self, walked: Walk) -> list[int]:
+        """Return per opening the label of the free part that it opens to, 0 where the robot cannot stand in it."""
+        return [walked.label_near(door, NEAR_DOOR) for door in self.doors]
+
+    def entered(self, walked: Walk) -> int:
+        """Return the label of the free part that most doors open to (the largest of equals); without doors the largest."""
+        near = self.door_labels(walked)
+        sizes = np.bincount(walked.labels.ravel(), minlength=1)
+        votes = sorted({label for label in near if label}, key=lambda label: (-near.count(label), -int(sizes[label]), label))
+        if votes:
+            return votes[0]
+        return 0 if len(self.doors) else walked.largest_label(self.floor.room >= 0)
+
+    def joined(self, walked: Walk) -> bool:
+        """Tell whether one can walk from every door to every other."""
+        near = set(self.door_labels(walked))
+        return len(near) <= 1 and 0 not in near
+
+    def free_share(self, walked: Walk) -> float:
+        """Return the true walkable ratio: what the robot covers, moving about from the doors, over the floor."""
+        return float(walked.shares(walked.covered(self.entered(walked)), 1)[0])
