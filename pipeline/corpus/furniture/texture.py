@@ -45,13 +45,17 @@ class Atlas:
 
 
 def normals(solid: Solid) -> NDArray[np.float64]:
-    """Return the unit normal of each face (F, 3), by its first three corners that span one."""
-    made = np.zeros((len(solid.faces), 3))
-    for k, face in enumerate(solid.faces):
-        p = solid.vertices[list(face)]
-        n = np.cross(p[1] - p[0], p[2] - p[0]) if len(face) < 5 else np.cross(p, np.roll(p, -1, axis=0)).sum(axis=0)
-        made[k] = n / (float(np.linalg.norm(n)) or 1.0)
-    return made
+    """Return the unit normal of each face (F, 3), by Newell's sum over its edges."""
+    corners = np.fromiter((v for face in solid.faces for v in face), np.int64)
+    lengths = np.fromiter((len(face) for face in solid.faces), np.int64)
+    starts = np.concatenate([[0], np.cumsum(lengths)[:-1]])
+    following = np.arange(1, len(corners) + 1)
+    following[starts + lengths - 1] = starts
+    p = solid.vertices[corners] - solid.vertices[corners[starts]].repeat(lengths, axis=0)
+    q = p[following]
+    crossed = np.stack([p[:, i] * q[:, j] - p[:, j] * q[:, i] for i, j in ((1, 2), (2, 0), (0, 1))], axis=1)
+    made = np.add.reduceat(crossed, starts, axis=0)
+    return np.asarray(made / np.maximum(np.sqrt((made**2).sum(axis=1, keepdims=True)), 1e-30))
 
 
 def atlas(finishes: Sequence[Finish]) -> Atlas:

@@ -1,0 +1,325 @@
+"""Articulated models as PartNet-Mobility folders with GAPartNet's annotation.
+
+Meshes lie in the mesh frame (x right, y up, z front), centred and scaled to about the unit sphere, without metric size;
+the base joint turns that into PartNet's world (z up, front -x): world = (-z, -x, y).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as ET
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline import seeds
+from pipeline.corpus.furniture import wavefront
+from pipeline.corpus.furniture.assembly import shape_of
+from pipeline.corpus.furniture.catalogue import Model
+from pipeline.corpus.furniture.finishes import Finish
+from pipeline.corpus.furniture.shape import Mover, Piece, Shape
+from pipeline.corpus.furniture.wavefront import mesh_frame
+
+BASE_RPY = "1.570796326794897 0 -1.570796326794897"
+WORLD = np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # mesh frame to PartNet's world
+# Corners of a part's box in its own axes, in GAPartNet's order.
+CORNERS = np.array([(-1, 1, 1), (1, 1, 1), (1, -1, 1), (-1, -1, 1), (-1, 1, -1), (1, 1, -1), (1, -1, -1), (-1, -1, -1)], float) / 2
+# PartNet's word for a moving link; storage furniture and tables turn "door" into this.
+ROTATION_DOOR = "rotation_door"
+FURNITURE = frozenset({"StorageFurniture", "Table"})
+JOINT_WORDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slider"}
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """A mesh file: pieces of one finish on one link, or one handle; `number` counts the object's files."""
+
+    number: int
+    name: str
+    part: str
+    pieces: tuple[Piece, ...]
+
+    @property
+    def file(self) -> str:
+        """Path of its OBJ file in the object's folder."""
+        return f"textured_objs/original-{self.number}.obj"
+
+
+@dataclass(frozen=True, slots=True)
+class LinkRecord:
+    """A link of the URDF. `mover` is None for the body and for handles, which are fixed to `parent`.
+
+    `origin` (3,) of its frame in the mesh frame, normalised; `part` the GAPartNet class or "".
+    """
+
+    name: str
+    parent: str
+    mover: Mover | None
+    origin: NDArray[np.float64]
+    components: tuple[Component, ...]
+    part: str
+    outward: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """The normalisation: mesh = (mesh_frame(point) - centre) * scale."""
+
+    centre: NDArray[np.float64]
+    scale: float
+
+    def point(self, p: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return a point (..., 3) of our object frame in normalised mesh coordinates."""
+        return (mesh_frame(np.asarray(p, float)) - self.centre) * self.scale
+
+
+def write_partnet(models: Sequence[Model], folder: Path) -> None:
+    """Write one folder per model under `folder`."""
+    for model in models:
+        write_model(model, folder / model.model_id)
+
+
+def write_model(model: Model, folder: Path) -> None:
+    """Write one object's folder."""
+    shape = shape_of(model)
+    frame = normalisation(model, shape)
+    links = link_records(shape, frame)
+    objects = folder / "textured_objs"
+    objects.mkdir(parents=True, exist_ok=True)
+    for component in (c for link in links for c in link.components):
+        _write_component(component, frame, objects)
+    merged = _without_handles(links)
+    name = f"partnet_{seeds.key(model.seed, 'corpus.furniture.shapenet'):032x}"
+    _write_text(folder / "mobility.urdf", urdf(name, merged, frame))
+    _write_text(folder / "mobility_annotation_gapartnet.urdf", urdf(name, links, frame))
+    words = _words(model, merged)
+    _write_text(folder / "semantics.txt", "".join(f"{link} {joint} {word}\n" for link, joint, word in words))
+    _write_text(folder / "semantics_gapartnet.txt", "".join(f"{a} {b} {c}\n" for a, b, c in _gapartnet_words(links, words[-1][2])))
+    _write_json(folder / "mobility_v2.json", mobility(merged, words, frame))
+    _write_json(folder / "link_annotation_gapartnet.json", annotation(links, frame))
+    low, high = frame.point(shape.bounds()).min(axis=0), frame.point(shape.bounds()).max(axis=0)
+    _write_json(folder / "bounding_box.json", {"min": _numbers(low), "max": _numbers(high)})
+    _write_json(folder / "meta.json", meta(model, name))
+    _write_json(folder / "result.json", [{"id": 0, "name": model.partnet_category.lower(), "children": []}])
+
+
+def normalisation(model: Model, shape: Shape) -> Frame:
+    """Return the frame that centres the box at rest and gives it a diagonal of about 2."""
+    low, high = mesh_frame(shape.bounds()).min(axis=0), mesh_frame(shape.bounds()).max(axis=0)
+    spread = seeds.generator(model.seed, "corpus.furniture.normalise").uniform(0.95, 1.15)
+    return Frame((low + high) / 2, 2.0 * float(spread) / float(np.linalg.norm(high - low)))
+
+
+def link_records(shape: Shape, frame: Frame) -> list[LinkRecord]:
+    """Return the links of GAPartNet's cut: movers, then handles, then the body."""
+    count = len(shape.movers)
+    handles: list[tuple[str, str, Mover, tuple[Component, ...]]] = []
+    records: list[LinkRecord] = []
+    names = {"base": ""} | {mover.name: f"link_{k}" for k, mover in enumerate(shape.movers)}
+    number = 0
+    for mover in shape.movers:
+        made = _components(mover.pieces, number)
+        number += len(made)
+        records.append(
+            LinkRecord(
+                names[mover.name],
+                names[mover.parent],
+                mover,
+                frame.point(mover.origin),
+                tuple(c for c in made if not c.part),
+                mover.part_class,
+                mover.outward,
+            )
+        )
+        handles += [(names[mover.name], c.part, mover, (c,)) for c in made if c.part]
+    for k, (parent, part, mover, components) in enumerate(handles):
+        records.append(LinkRecord(f"link_{count + k}", parent, None, frame.point(mover.origin), components, part, mover.outward))
+    body = f"link_{count + len(handles)}"
+    records.append(LinkRecord(body, "base", None, np.zeros(3), _components(shape.base, number), "", (0.0, -1.0, 0.0)))
+    return [
+        record if record.parent else LinkRecord(record.name, body, record.mover, record.origin, record.components, record.part, record.outward)
+        for record in records
+    ]
+
+
+def _components(parts: tuple[Piece, ...], first: int) -> tuple[Component, ...]:
+    """Group pieces into mesh files: each handle by itself, the rest by what it is made of."""
+    groups: dict[tuple[str, Finish | str], list[Piece]] = {}
+    for piece in parts:
+        groups.setdefault((piece.part, piece.name if piece.part else piece.finish), []).append(piece)
+    return tuple(Component(first + k, found[0].name, part, tuple(found)) for k, ((part, _), found) in enumerate(groups.items()))
+
+
+def _without_handles(links: Sequence[LinkRecord]) -> list[LinkRecord]:
+    """Return the links of PartNet-Mobility's own cut: handles belong to their doors and drawers. Numbers close up."""
+    extra: dict[str, tuple[Component, ...]] = {}
+    for link in links:
+        if link.mover is None and link.part:
+            extra[link.parent] = extra.get(link.parent, ()) + link.components
+    kept = [link for link in links if link.mover is not None or not link.part]
+    body = f"link_{len(kept) - 1}"
+    merged = []
+    for link in kept:
+        last = link.mover is None
+        parent = "base" if last else (body if link.parent == links[-1].name else link.parent)
+        name = body if last else link.name
+        components = link.components + extra.get(link.name, ())
+        merged.append(LinkRecord(name, parent, link.mover, link.origin, components, link.part, link.outward))
+    return merged
+
+
+def urdf(name: str, links: Sequence[LinkRecord], frame: Frame) -> str:
+    """Return the URDF: an empty base, the body fixed to it, movers and handles; no inertials, limits without effort."""
+    robot = ET.Element("robot", name=name)
+    ET.SubElement(robot, "link", name="base")
+    origins = {link.name: link.origin for link in links} | {"base": np.zeros(3)}
+    for number, link in enumerate(links):
+        element = ET.SubElement(robot, "link", name=link.name)
+        for kind in ("visual", "collision"):
+            for component in link.components:
+                attributes = {"name": f"{component.name}-{component.number}"} if kind == "visual" else {}
+                shape = ET.SubElement(element, kind, attributes)
+                ET.SubElement(shape, "origin", xyz=_xyz(-link.origin))
+                ET.SubElement(ET.SubElement(shape, "geometry"), "mesh", filename=component.file)
+        mover = link.mover
+        joint = ET.SubElement(robot, "joint", name=f"joint_{number}", type=mover.type if mover else "fixed")
+        if link.parent == "base":
+            ET.SubElement(joint, "origin", rpy=BASE_RPY, xyz="0 0 0")
+        else:
+            ET.SubElement(joint, "origin", xyz=_xyz(link.origin - origins[link.parent]))
+        if mover:
+            ET.SubElement(joint, "axis", xyz=_xyz(mesh_frame(np.array(mover.axis))))
+        ET.SubElement(joint, "child", link=link.name)
+        ET.SubElement(joint, "parent", link=link.parent)
+        if mover and mover.type != "continuous":
+            lower, upper = _range(mover, frame)
+            ET.SubElement(joint, "limit", lower=_number(lower), upper=_number(upper))
+    ET.indent(robot, "\t")
+    return '<?xml version="1.0" ?>\n' + ET.tostring(robot, encoding="unicode") + "\n"
+
+
+def _range(mover: Mover, frame: Frame) -> tuple[float, float]:
+    """Return the joint's limits [rad or normalised units]."""
+    unit = frame.scale if mover.type == "prismatic" else 1.0
+    return mover.lower * unit, mover.upper * unit
+
+
+def mobility(links: Sequence[LinkRecord], words: Sequence[tuple[str, str, str]], frame: Frame) -> list[dict[str, Any]]:
+    """Return mobility_v2.json: the tree of parts, hinges in degrees, sliders in length units.
+
+    Every second joint is written against its direction with limit b < a, as about half of the real ones are.
+    """
+    number = {link.name: k for k, link in enumerate(links)}
+    entries = []
+    for k, (link, (_, joint, word)) in enumerate(zip(links, words, strict=True)):
+        mover = link.mover
+        data: dict[str, Any] = {}
+        if mover:
+            lower, upper = (np.degrees(v) if mover.type != "prismatic" else v for v in _range(mover, frame))
+            sign = -1.0 if k % 2 else 1.0
+            limit = {"a": float(sign * lower), "b": float(sign * upper), "noLimit": mover.type == "continuous"}
+            if mover.type == "prismatic":
+                limit |= {"rotates": False, "noRotationLimit": False, "rotationLimit": 0}
+            direction = sign * mesh_frame(np.array(mover.axis))
+            data = {"axis": {"origin": _numbers(link.origin), "direction": _numbers(direction)}, "limit": limit}
+        parts = [{"id": c.number, "name": c.name, "children": []} for c in link.components]
+        parent = -1 if link.parent == "base" else number[link.parent]
+        entries.append({"id": k, "parent": parent, "joint": joint, "name": word, "parts": parts, "jointData": data})
+    return entries
+
+
+def _words(model: Model, links: Sequence[LinkRecord]) -> list[tuple[str, str, str]]:
+    """Return (link, joint, semantic) of semantics.txt."""
+    furniture = model.partnet_category in FURNITURE
+    body = "furniture_body" if furniture else f"{model.partnet_category.lower()}_body"
+    words = []
+    for link in links:
+        if link.mover is None:
+            words.append((link.name, "heavy", body))
+        else:
+            word = ROTATION_DOOR if furniture and link.mover.semantic == "door" else link.mover.semantic
+            words.append((link.name, JOINT_WORDS[link.mover.type], word))
+    return words
+
+
+def _gapartnet_words(links: Sequence[LinkRecord], body: str) -> list[tuple[str, str, str]]:
+    """Return the lines of semantics_gapartnet.txt: part classes for semantics, handles fixed."""
+    return [(k.name, JOINT_WORDS[k.mover.type], k.part) if k.mover else (k.name, "fixed" if k.part else "heavy", k.part or body) for k in links]
+
+
+def annotation(links: Sequence[LinkRecord], frame: Frame) -> list[dict[str, Any]]:
+    """Return link_annotation_gapartnet.json: per link its class and, of a part, its box (8, 3) in the world at rest."""
+    entries: list[dict[str, Any]] = [{"link_name": "base", "is_gapart": False, "category": "", "bbox": []}]
+    for link in links:
+        box = part_box(link, frame).tolist() if link.part else []
+        entries.append({"link_name": link.name, "is_gapart": bool(link.part), "category": link.part, "bbox": box})
+    return entries
+
+
+def part_box(link: LinkRecord, frame: Frame) -> NDArray[np.float64]:
+    """Return the corners (8, 3) of a part's box in PartNet's world, ordered in the part's own axes.
+
+    z looks outwards; x is a hinge's axis in the opening sense or a handle's long axis, else the horizontal; y = z x x.
+    """
+    points = np.concatenate([frame.point(p.solid.vertices) for c in link.components for p in c.pieces])
+    low, high = points.min(axis=0), points.max(axis=0)
+    extent = high - low
+    z = mesh_frame(np.array(link.outward))
+    if link.mover is not None and link.part in {"hinge_door", "hinge_lid"}:
+        x = mesh_frame(np.array(link.mover.axis))
+    elif link.part == "line_fixed_handle":
+        across = extent * (np.abs(z) < 0.5)
+        x = np.eye(3)[int(np.argmax(across))]
+    else:
+        x = np.array([1.0, 0.0, 0.0])
+    axes = np.stack([x, np.cross(z, x), z])
+    lengths = np.abs(axes) @ extent
+    corners = (CORNERS * lengths) @ axes + (low + high) / 2
+    return np.asarray(np.round(corners @ WORLD.T, 8))
+
+
+def meta(model: Model, name: str) -> dict[str, str]:
+    """Return meta.json; all values are strings."""
+    return {
+        "user_id": "embedded",
+        "model_cat": model.partnet_category,
+        "model_id": name.removeprefix("partnet_"),
+        "version": "1",
+        "anno_id": model.model_id,
+        "time_in_sec": "0",
+    }
+
+
+def _write_component(component: Component, frame: Frame, folder: Path) -> None:
+    """Write the OBJ and MTL of one component, a group per material."""
+    finishes = list(dict.fromkeys(piece.finish for piece in component.pieces))
+    names = {finish: wavefront.material_name(finish, k) for k, finish in enumerate(finishes)}
+    stem = f"original-{component.number}"
+    groups = [wavefront.Group(stem, names[f], tuple(p for p in component.pieces if p.finish == f)) for f in finishes]
+    text = wavefront.text(groups, f"{stem}.mtl")
+    (folder / f"{stem}.obj").write_bytes(text.obj(frame.scale, -frame.centre))
+    (folder / f"{stem}.mtl").write_bytes(wavefront.mtl([(names[f], f) for f in finishes]))
+
+
+def _xyz(vector: NDArray[np.float64]) -> str:
+    return " ".join(_number(v) for v in vector)
+
+
+def _number(value: float) -> str:
+    return f"{round(float(value), 9) + 0.0:.10g}"
+
+
+def _numbers(vector: NDArray[np.float64]) -> list[float]:
+    return [round(float(v), 9) + 0.0 for v in vector]
+
+
+def _write_json(path: Path, value: Mapping[str, Any] | Sequence[Any]) -> None:
+    path.write_bytes((json.dumps(value) + "\n").encode())
+
+
+def _write_text(path: Path, value: str) -> None:
+    path.write_bytes(value.encode())
