@@ -186,7 +186,7 @@ def _absolute(line: bytes, vertices: int, uvs: int, where: str) -> bytes:
                     parts[k] = str(count + 1 + int(parts[k])).encode()
         except ValueError as error:
             raise SourceError("not_obj", where, f"has a face index {word[:20]!r}") from error
-        corners.append(b"/".join(parts[:2]))
+        corners.append(b"/".join(parts[:2]).rstrip(b"/"))
     return b"f " + b" ".join(corners)
 
 

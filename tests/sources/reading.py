@@ -1,0 +1,41 @@
+"""Read a made folder as the stage does, in this process, and return all rows."""
+
+import dataclasses
+from pathlib import Path
+from types import SimpleNamespace
+
+from pipeline.sources import batch
+from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
+from pipeline.sources.settings import FrontFilters, ModelLimits
+
+
+def read(root, *, front="front", partnet="partnet", filters=None, limits=None):
+    """`filters` and `limits` are changes of the default settings."""
+    root = Path(root)
+    library, houses = LibraryRows(), batch.flat([])
+    made_limits = dataclasses.replace(ModelLimits(), **(limits or {}))
+    made_filters = dataclasses.replace(FrontFilters(), **(filters or {}))
+    if (root / front / batch.MODELS).is_dir():
+        infos, library.rejects = batch.future_models(root / front)
+        task = LibraryTask(root / front, root / "assets", made_limits, "CC0-1.0", root / "cache")
+        for entry in infos:
+            library.add(batch.read_future(task, entry))
+    if (root / partnet).is_dir():
+        task = LibraryTask(root / partnet, root / "assets", made_limits, "CC0-1.0", root / "cache")
+        for name in batch.partnet_objects(root / partnet):
+            library.add(batch.read_partnet(task, name))
+    if (root / front / batch.HOUSES).is_dir():
+        task = HouseTask(root / front, library.models, made_filters, "CC0-1.0")
+        houses = batch.flat(batch.read_front(task, file) for file in batch.house_files(root / front))
+    rejects = library.rejects + houses.rejects
+    return SimpleNamespace(
+        scenes=houses.scenes,
+        rooms=houses.rooms,
+        openings=houses.openings,
+        objects=houses.objects,
+        assets=library.assets,
+        joints=library.joints,
+        models=library.models,
+        rejects=rejects,
+        reasons={r["reason"] for r in rejects},
+    )

@@ -1,0 +1,96 @@
+import pytest
+
+from pipeline import taxonomy
+from pipeline.sources.front_file import Furniture, declared_box, parse_house
+from pipeline.sources.front_objects import category_of
+from pipeline.sources.reasons import SourceError
+from tests.sources import making
+from tests.sources.making import BED
+from tests.sources.reading import read
+
+
+@pytest.mark.parametrize("dialect", ["0.4", "0.11"])
+@pytest.mark.parametrize("variant", ["plain", "nested", "later"])
+def test_both_dialects_and_all_records_give_the_same_rows(dialect, variant, tmp_path):
+    making.write_library(tmp_path / "front")
+    making.write_house(tmp_path / "front", making.two_rooms(dialect=dialect, variant=variant))
+    made = read(tmp_path)
+    assert [(o["category"], o["position"], o["yaw"], o["size"]) for o in made.objects] == [
+        ("double_bed", [2.0, -1.1, 0.0], 0.0, [1.8, 2.2, 1.1]),
+        ("nightstand", [3.4, -0.3, 0.0], 0.0, [0.5, 0.4, 0.5]),
+        ("pendant_lamp", [2.0, -2.0, 2.0], 0.0, [0.6, 0.6, 0.5]),
+    ]
+    assert [(r["type"], r["layout_type"], r["area"], r["height"]) for r in made.rooms] == [
+        ("masterbedroom", "bedroom", 16.0, 2.8),
+        ("hallway", "hallway", 7.52, 2.7),
+    ]
+    assert made.scenes[0]["entrance"] == "r_hallway_2"
+    assert (made.scenes[0]["inner_wall"], made.scenes[0]["outer_wall"]) == (0.12, 0.24)
+
+
+@pytest.mark.parametrize(
+    ("record", "box"),
+    [
+        ({"size": [1.8, 2.2, 1.1]}, (1.8, 2.2, 1.1)),
+        ({"size": [1.8, 2.2, 1.1], "bbox": [1.8, 2.2, 1.1]}, (1.8, 2.2, 1.1)),
+        ({"size": [1.8, 2.2, 1.1], "bbox": [[1.8, 1.1, 2.2]]}, (1.8, 2.2, 1.1)),
+        ({"bbox": [1.8, 1.1, 2.2]}, (1.8, 2.2, 1.1)),
+        ({"bbox": [[1.8, 1.1, 2.2]]}, (1.8, 2.2, 1.1)),
+        ({"bbox": [1.8, "x", 2.2]}, None),
+        ({"bbox": [1.8, 0, 2.2]}, None),
+        ({"bbox": [1.8, 2.2]}, None),
+        ({"bbox": 7}, None),
+        ({}, None),
+    ],
+)
+def test_axis_order_of_declared_boxes(record, box):
+    assert declared_box(record) == box
+
+
+@pytest.mark.parametrize(
+    ("category", "title", "want"),
+    [
+        ("King-size Bed", "", "double_bed"),
+        ("Corner / Side Table", "", "corner_side_table"),
+        ("Double Bed", "", "double_bed"),
+        ("Tea Table", "", "coffee_table"),
+        ("Others", "bed/king-size bed", "double_bed"),
+        ("", "sofa/ multi seat sofa", "multi_seat_sofa"),
+        ("", "table/night table", "nightstand"),
+        ("", "storage unit/armoire", "wardrobe"),
+        ("Lighting", "", None),
+        ("", "", None),
+    ],
+)
+def test_category_of_a_record(category, title, want):
+    assert category_of(Furniture("u", BED, True, category, title, None), taxonomy.load()) == want
+
+
+@pytest.mark.parametrize("tree", [[], {}, {"scene": []}, {"scene": {"room": 3}}, None, "text", 5])
+def test_no_house(tree):
+    with pytest.raises(SourceError) as caught:
+        parse_house(tree, "x")
+    assert caught.value.code == "bad_structure"
+
+
+def test_odd_types_do_not_stop_it():
+    """Everything that can be of another type is: the house is read, and empty."""
+    tree = {
+        "uid": 5,
+        "furniture": [3, {"uid": None, "valid": "yes"}],
+        "mesh": {"a": 1},
+        "extension": [],
+        "scene": {"room": [7, {"children": 3}]},
+    }
+    house = parse_house(tree, "x")
+    assert house.furniture[""].valid is None
+    assert house.rooms[0].children == ()
+
+
+def test_same_room_id_in_two_houses_is_two_rooms(tmp_path):
+    making.write_library(tmp_path / "front")
+    for name in ("house-a", "house-b"):
+        making.write_house(tmp_path / "front", making.two_rooms(name))
+    made = read(tmp_path)
+    assert len({(r["scene_id"], r["room_id"]) for r in made.rooms}) == 4
+    assert [s["index"] for s in made.scenes] == [0, 1]

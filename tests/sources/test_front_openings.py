@@ -1,0 +1,97 @@
+import numpy as np
+import pytest
+from shapely.geometry import box
+
+from pipeline.sources import front_openings
+from pipeline.sources.front_openings import Outline, from_furniture, from_mesh, merge, resolve, touching
+from tests.sources import making
+from tests.sources.making import floor, slab
+from tests.sources.reading import read
+
+# Two rooms side by side in plan, a wall of 0.12 m between; the file's z is minus our y.
+ROOMS = [Outline("left", box(0, -4, 4, 0)), Outline("right", box(4.12, -4, 6, 0))]
+
+
+def reveal(kind, low, high):
+    return from_mesh(kind, np.array(slab("m", "Door", low, high)["xyz"]).reshape(-1, 3))
+
+
+def opening(hole):
+    return resolve(hole, ROOMS, "o", 0.4)
+
+
+def test_door_between_two_rooms():
+    made = opening(reveal("door", (4, 0, 1), (4.12, 2.1, 1.9)))
+    assert (made.kind, made.rooms, made.sill, made.height) == ("door", ("left", "right"), 0.0, 2.1)
+    assert np.allclose(made.segment, [[4.06, -1.9], [4.06, -1.0]])
+
+
+@pytest.mark.parametrize(
+    ("kind", "low", "high", "want", "rooms"),
+    [
+        ("door", (6, 0, 1), (6.24, 2.1, 2), "entrance", ("right",)),
+        ("window", (0.5, 0.9, 0), (2, 2.1, -0.24), "window", ("left",)),
+        ("hole", (0.5, 0.9, 0), (2, 2.1, -0.24), "window", ("left",)),
+        ("hole", (4, 0, 1), (4.12, 2.1, 2), "portal", ("left", "right")),
+        ("hole", (4, 0, 1), (4.12, 2.1, 3.4), "open", ("left", "right")),
+    ],
+)
+def test_kinds(kind, low, high, want, rooms):
+    made = opening(reveal(kind, low, high))
+    assert (made.kind, made.rooms) == (want, rooms)
+
+
+def test_far_and_narrow_are_nothing():
+    assert opening(reveal("door", (50, 0, 1), (50.12, 2.1, 2))) is None
+    assert reveal("door", (4, 0, 1), (4.12, 2.1, 1.2)) is None
+
+
+def test_leaf_in_its_reveal_is_one_door():
+    hole = reveal("hole", (4, 0, 1), (4.12, 2.1, 1.9))
+    leaf = from_furniture("door/single swing door", np.array([4.06, 0, 1.45]), 1.2, None)
+    (both,) = merge([leaf, hole])
+    assert opening(both).kind == "door"
+    assert opening(both).width == pytest.approx(0.9)
+
+
+def test_leaf_alone_takes_the_direction_of_the_wall():
+    leaf = from_furniture("door/sliding door", np.array([4.05, 0, 2.0]), 0.4, None)
+    made = opening(leaf)
+    assert (made.kind, made.rooms) == ("door", ("left", "right"))
+    assert abs(made.segment[1, 0] - made.segment[0, 0]) < 1e-6
+    assert from_furniture("curtain/curtain", np.zeros(3), 0.0, None) is None
+
+
+def test_reveals_of_both_sides_are_one():
+    a, b = reveal("door", (4, 0, 1), (4.06, 2.1, 1.9)), reveal("door", (4.06, 0, 1), (4.12, 2.1, 1.9))
+    assert len(merge([a, b])) == 1
+
+
+def test_doors_side_by_side_stay_two():
+    assert len(merge([reveal("door", (4, 0, 0.2), (4.12, 2.1, 1)), reveal("door", (4, 0, 1.2), (4.12, 2.1, 2))])) == 2
+
+
+def test_oblique_wall():
+    """A reveal turned by 30 degrees keeps its width and its direction."""
+    points = np.array(slab("m", "Door", (-0.45, 0, -0.06), (0.45, 2.1, 0.06))["xyz"]).reshape(-1, 3)
+    c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
+    hole = from_mesh("door", points @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]).T)
+    assert hole.width == pytest.approx(0.9)
+    assert abs(hole.along @ np.array([c, s])) == pytest.approx(1)
+
+
+def test_rooms_without_a_wall_between_are_open():
+    rooms = [Outline("a", box(0, 0, 4, 4)), Outline("b", box(4, 1, 7, 3)), Outline("c", box(4.12, 5, 7, 8))]
+    (made,) = touching(rooms, 2.7, 5)
+    assert (made.kind, made.rooms, made.opening_id) == ("open", ("a", "b"), "opening_5")
+    assert made.width == pytest.approx(2, abs=0.1)
+
+
+def test_broken_mesh_is_told(tmp_path):
+    bad = {**slab("d9", "Door", (4, 0, 3), (4.12, 2.1, 3.9)), "xyz": [0, 1, "x"]}
+    making.write_library(tmp_path / "front")
+    making.write_house(tmp_path / "front", making.two_rooms(more_meshes=[bad, floor("f9", 0, 0, 1, 1)]))
+    made = read(tmp_path)
+    assert made.reasons == {"opening_unresolved"}
+    assert len(made.openings) == 3
+    assert front_openings.MESHES["Hole"] == "hole"
