@@ -9,6 +9,7 @@ from pipeline.floorplan.program import FloorProgram, Range, RoomReq
 
 HALL_SHARE, HALL_LEAST = 0.08, 4.0
 LEAST_SCALE, MOST_SCALE = 0.45, 2.6  # how far defaults may shrink or stretch to meet a stated total
+MOST_STRETCH = 1.35  # how far rooms of a smaller storey may grow
 SLACK = 1.06  # a target lies this far inside a one-sided bound
 
 
@@ -21,6 +22,7 @@ def with_areas(program: FloorProgram) -> FloorProgram:
     _relate(program, rooms, target, free)
     _total(program, rooms, target, free)
     _relate(program, rooms, target, free)
+    _balance(rooms, target, free)
     filled = tuple(
         r.model_copy(update={"area": Range(min=r.area.min, max=r.area.max, target=round(t, 3), stated=r.area.stated)})
         for r, t in zip(rooms, target, strict=True)
@@ -94,6 +96,23 @@ def _relate(program: FloorProgram, rooms: Sequence[RoomReq], target: list[float]
             for i in larger:
                 if target[i] < relation.value * whole and free[i] and relation.value < 0.95:
                     target[i] = relation.value * 1.03 / (1 - relation.value * 1.03) * (whole - target[i])
+
+
+def _balance(rooms: Sequence[RoomReq], target: list[float], free: Sequence[bool]) -> None:
+    """Stretch the free rooms of smaller storeys towards the size of the largest, so that walls stand above walls."""
+    levels = sorted({r.level or 0 for r in rooms})
+    if len(levels) == 1:
+        return
+    stairs = sum(t for r, t in zip(rooms, target, strict=True) if r.type == "staircase")
+    sums = {v: sum(t for r, t in zip(rooms, target, strict=True) if (r.level or 0) == v) + stairs * (v > 0) for v in levels}
+    most = max(sums.values())
+    for level in levels:
+        loose = [i for i, r in enumerate(rooms) if (r.level or 0) == level and free[i] and r.type != "staircase"]
+        flexible = sum(target[i] for i in loose)
+        if flexible > 0 and sums[level] < 0.999 * most:
+            factor = min(1.0 + (most - sums[level]) / flexible, MOST_STRETCH)
+            for i in loose:
+                target[i] *= factor
 
 
 def _total(program: FloorProgram, rooms: Sequence[RoomReq], target: list[float], free: Sequence[bool]) -> None:

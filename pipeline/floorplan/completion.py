@@ -57,10 +57,10 @@ def _add_missing(program: FloorProgram) -> tuple[RoomReq, ...]:
             types.add(kind)
 
     if not program.only and not work:
-        if not rooms:
-            add("studio_room", "studio")
-        if not types & {"living_room", "family_room", "studio_room"} and "living" not in functions and len(types & {"bedroom"}):
-            add("living_room", "living")
+        if not types & {"living_room", "family_room", "studio_room"} and "living" not in functions:
+            social = "bedroom" in types and not (program.select("bedroom")[3:] and "kitchen" in types)
+            if social or "bedroom" not in types:
+                add("living_room" if "bedroom" in types else "studio_room", "living" if "bedroom" in types else "studio")
         if "kitchen" not in types and "cooking" not in functions:
             add("kitchen", "kitchen")
         if "bathroom" not in types:

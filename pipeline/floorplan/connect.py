@@ -58,7 +58,7 @@ def _meet(a: RoomReq, b: RoomReq) -> bool:
 def connect(program: FloorProgram) -> tuple[Link, ...]:
     """Add links until the rooms form one piece. Groups are attached by the usual parent of the room that stands for them."""
     links = list(resolve(program))
-    groups = components([r.id for r in program.rooms], links)
+    groups = _groups(program, links)
     if len(groups) <= 1:
         return tuple(links)
     by_id = {r.id: r for r in program.rooms}
@@ -74,8 +74,24 @@ def connect(program: FloorProgram) -> tuple[Link, ...]:
         else:
             front = _front(program, waiting[0], links)
             links.append(Link(a=root, b=front.id, kind="open" if "staircase" in {front.type, by_id[root].type} else "door"))
-        groups = components([r.id for r in program.rooms], links)
+        groups = _groups(program, links)
     return tuple(links)
+
+
+def _groups(program: FloorProgram, links: Sequence[Link]) -> list[frozenset[str]]:
+    """Return the groups of rooms that one can walk between without passing through a bathroom."""
+    dead = {r.id: r for r in program.rooms if r.type in {"bathroom", "wc"}}
+    rank = {t: i for i, t in enumerate(HUBS)}
+    kinds = {r.id: r.type for r in program.rooms}
+    kept: list[Link] = []
+    used: set[str] = set()
+    # of a bathroom's doors the one to the most public room counts
+    for link in sorted(links, key=lambda k: min(rank.get(kinds[k.a], 99), rank.get(kinds[k.b], 99))):
+        ends = {link.a, link.b} & set(dead)
+        if link.kind in OPENABLE and not ends & used:
+            kept.append(link)
+            used |= ends
+    return components([r.id for r in program.rooms], kept)
 
 
 def components(ids: Sequence[str], links: Iterable[Link]) -> list[frozenset[str]]:

@@ -207,7 +207,7 @@ def _sampled(rooms: Sequence[Room], xs: np.ndarray, ys: np.ndarray) -> np.ndarra
     points = shapely.points(*np.meshgrid(xs, ys))
     gaps = np.stack([shapely.distance(shapely.Polygon(r.polygon), points) for r in rooms])
     nearest = gaps.argmin(axis=0)
-    return np.where(gaps.min(axis=0) <= 0.13, nearest, -1)
+    return np.where(gaps.min(axis=0) <= 0.175, nearest, -1)
 
 
 BOX = " ╵╶└╷│┌├╴┘─┴┐┤┬┼"  # by bits: up 1, right 2, down 4, left 8

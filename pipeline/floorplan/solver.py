@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline import seeds
 from pipeline.entities.plan import Plan, Room
 from pipeline.errors import RefusedError
-from pipeline.floorplan import anneal, energy, slicing, trace
+from pipeline.floorplan import anneal, slicing, trace
 from pipeline.floorplan.check import check
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.grid import INNER, OUTER, Labels
@@ -21,7 +23,7 @@ STARTS = 3  # slicing trees per attempt
 SLICES = 700  # slicing proposals per room and start
 PROPOSALS = 160  # annealing proposals per room and run
 HOT, COLD, PENALTY = 1.2, 0.01, 40.0
-ASPECTS = (1.0, 1.6)
+SLICE_HOT, SLICE_COLD = 6.0, 0.05
 
 
 def solve(program: FloorProgram, seed: int, keys: tuple[int, ...] = ()) -> Plan:
@@ -42,69 +44,127 @@ def solve(program: FloorProgram, seed: int, keys: tuple[int, ...] = ()) -> Plan:
     )
 
 
+class Outline(NamedTuple):
+    """The building's rectangle [cells] that all storeys share, and how many of its corners are cut out."""
+
+    width: int
+    height: int
+    cuts: int
+
+
 def _attempt(program: FloorProgram, rng: np.random.Generator, attempt: int) -> Plan | None:
-    request = storey(program, 0)
-    grid = _storey_grid(request, program, rng, attempt)
-    if grid is None:
-        return None
-    return _build(program, [(request, grid)], rng)
-
-
-def _storey_grid(request: Storey, program: FloorProgram, rng: np.random.Generator, attempt: int) -> Labels | None:
-    """Return a grid without violations: the best of several slicing trees, annealed."""
-    starts = [_slice(request, program, rng) for _ in range(STARTS)]
-    best = min(starts, key=lambda s: s[1])[0]
-    n = len(request.rooms)
+    requests = [storey(program, level) for level in range(program.storeys)]
+    outline = _outline(program, requests, rng)
     effort = 1 + attempt // 6
+    solved: list[tuple[Storey, Labels]] = []
+    stair: tuple[int, int, int, int] | None = None
+    for level in range(program.storeys):
+        request = requests[level] if stair is None else storey(program, level, stair)
+        grid = _storey_grid(request, program, outline, rng, effort)
+        if grid is None:
+            return None
+        if program.storeys > 1 and stair is None:
+            stair = _rectangle(grid, next(i for i, r in enumerate(request.rooms) if r.type == "staircase"))
+            if stair is None:
+                return None
+        solved.append((request, grid))
+    return _build(program, solved, rng)
+
+
+def _outline(program: FloorProgram, requests: list[Storey], rng: np.random.Generator) -> Outline:
+    """Draw the building's rectangle: large enough for the largest storey and for what is cut out of its corners."""
+    shape = program.footprint.shape
+    if shape == "any":
+        shape = ("rectangle", "L", "T")[int(rng.integers(3))]
+    cuts = {"rectangle": 0, "L": 1, "T": 2}[shape]
+    low = max(program.footprint.min_aspect * (1.03 if program.footprint.stated else 1.0), 1.0)
+    high = max(program.footprint.max_aspect, low)
+    aspect = np.exp(rng.uniform(np.log(low), np.log(high)))
+    whole = max(r.gross.sum() for r in requests) * (1.0 + (0.16, 0.2)[cuts - 1] * (cuts > 0))
+    width = max(int(round((whole * aspect) ** 0.5)), 2)
+    return Outline(width, max(int(round(whole / width)), 2), cuts)
+
+
+def _rectangle(grid: Labels, room: int) -> tuple[int, int, int, int] | None:
+    """Return a room's rectangle (x0, y0, x1, y1) [cells], or None when it is none."""
+    ys, xs = np.nonzero(grid[1:-1, 1:-1] == room)
+    box = (int(xs.min()), int(ys.min()), int(xs.max()) + 1, int(ys.max()) + 1)
+    return box if xs.size == (box[2] - box[0]) * (box[3] - box[1]) else None
+
+
+def _storey_grid(
+    request: Storey, program: FloorProgram, outline: Outline, rng: np.random.Generator, effort: int
+) -> Labels | None:
+    """Return a grid without violations: the best of several slicing trees, annealed."""
+    starts = [_slice(request, program, outline, rng) for _ in range(STARTS)]
+    best, cost = min(starts, key=lambda s: s[1])
+    if not np.isfinite(cost):
+        return None
+    n = len(request.rooms)
     draws = rng.random((PROPOSALS * n * effort, anneal.DRAWS))
     fixed = np.zeros(n + 1, np.int64)
+    if request.spec.stair_room >= 0:
+        fixed[request.spec.stair_room] = 1
     grid, _, hard, _, _ = anneal.anneal(best, request.spec, request.weights, fixed, draws, HOT, COLD, PENALTY)
     return grid if hard <= 1e-9 else None
 
 
-def _slice(request: Storey, program: FloorProgram, rng: np.random.Generator) -> tuple[Labels, float]:
-    """Anneal one slicing tree in an outline of a drawn aspect; return its bordered grid and cost."""
-    n = len(request.rooms)
-    spec = request.spec
-    low, high = max(program.footprint.min_aspect, ASPECTS[0]), max(program.footprint.max_aspect, program.footprint.min_aspect)
-    aspect = np.exp(rng.uniform(np.log(low), np.log(high)))
-    whole = request.gross.sum()
-    width = max(int(round((whole * aspect) ** 0.5)), 2)
-    height = max(int(round(whole / width)), 2)
-    expr = np.empty(2 * n - 1, np.int64)
-    expr[0] = 0
-    order = rng.permutation(n)
+def _slice(request: Storey, program: FloorProgram, outline: Outline, rng: np.random.Generator) -> tuple[Labels, float]:
+    """Anneal one slicing tree in the outline; return its bordered grid and cost (infinite when a cut-out is misplaced)."""
+    n, spec, width, height = len(request.rooms), request.spec, outline.width, outline.height
+    spare = width * height - request.gross.sum()
+    # a storey that is clearly smaller than the outline leaves a corner free
+    voids = max(outline.cuts, int(spare > 0.1 * width * height))
+    empty = np.full(voids, max(spare, 1.0) / max(voids, 1))
+    gross = np.concatenate([request.gross, empty])
+    m = n + voids
+    order = rng.permutation(m)
+    expr = np.empty(2 * m - 1, np.int64)
     expr[0] = order[0]
-    for k in range(1, n):
+    for k in range(1, m):
         expr[2 * k - 1] = order[k]
         expr[2 * k] = slicing.V if k % 2 else slicing.H
-    draws = rng.random((SLICES * n, slicing.DRAWS))
-    square = np.where(spec.square > 0, 0.6, 0.08) * 2.0 ** program.style.squareness
-    rects, cost = slicing.search(
-        expr,
-        draws,
-        6.0,
-        0.05,
-        width,
-        height,
-        n,
-        request.gross,
-        request.gross_low,
-        request.gross_high,
-        spec.need,
-        spec.ban,
-        spec.outside,
-        spec.strict,
-        square,
-        spec.apart,
-        spec.stair,
-        spec.stair_room,
-        request.weights[10:],
-    )
+    draws = rng.random((SLICES * m, slicing.DRAWS))
+    square = np.where(spec.square > 0, 0.6, 0.08) * 2.0**program.style.squareness
+    low = np.concatenate([request.gross_low, empty * 0.7])
+    high = np.concatenate([request.gross_high, empty * 1.3])
+    numbers = (spec.need, spec.ban, spec.outside, spec.strict, square, spec.apart, spec.stair, spec.stair_room, request.weights[10:])
+    rects, cost = slicing.search(expr, draws, SLICE_HOT, SLICE_COLD, width, height, n, gross, low, high, *numbers)
     grid = np.full((height + 2, width + 2), n, np.int16)
     for i, (x0, y0, x1, y1) in enumerate(rects.tolist()):
-        grid[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = i
+        grid[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = min(i, n)
+    cut = rects[n:]
+    corners = [((x0 == 0) or (x1 == width)) and ((y0 == 0) or (y1 == height)) for x0, y0, x1, y1 in cut.tolist()]
+    if not all(corners) or (voids == 2 and not _same_side(cut, width, height)):
+        return grid, np.inf
+    if spec.stair_room >= 0:
+        _stamp(grid, spec.stair_room, tuple(spec.stair.tolist()), n)
     return grid, float(cost)
+
+
+def _same_side(cut: NDArray[np.int64], width: int, height: int) -> bool:
+    """Whether two cut-outs lie in different corners of one side."""
+    a, b = cut
+    across = {(a[0] == 0, a[1] == 0), (b[0] == 0, b[1] == 0)}
+    return len(across) == 2 and ((a[0] == 0) == (b[0] == 0) or (a[1] == 0) == (b[1] == 0)) and a[2] - a[0] < width and a[3] - a[1] < height
+
+
+def _stamp(grid: Labels, room: int, stair: tuple[int, ...], n: int) -> None:
+    """Put the staircase where it stands on the other storeys; what it leaves goes to the rooms beside it, cell by cell."""
+    x0, y0, x1, y1 = stair
+    left = grid == room
+    grid[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = room
+    left[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = False
+    while left.any():
+        before = int(left.sum())
+        for y, x in np.argwhere(left).tolist():
+            beside = [int(grid[y + dy, x + dx]) for dy, dx in ((0, 1), (0, -1), (1, 0), (-1, 0)) if not left[y + dy, x + dx]]
+            beside = [b for b in beside if b not in {n, room}]
+            if beside:
+                grid[y, x], left[y, x] = beside[0], False
+        if int(left.sum()) == before:
+            grid[left] = n
+            return
 
 
 def _build(program: FloorProgram, storeys: list[tuple[Storey, Labels]], rng: np.random.Generator) -> Plan | None:
@@ -118,6 +178,8 @@ def _build(program: FloorProgram, storeys: list[tuple[Storey, Labels]], rng: np.
         metres = [np.array(c, dtype=float) * UNIT for c in corners]
         sides = [_inner_sides(grid, corners[i], i, n) for i in range(n)]
         for i, room in enumerate(request.rooms):
+            if room.type == "staircase" and request.level > 0:
+                continue  # one room with its lowest level
             polygon = np.round(trace.faces(corners[i], metres[i], sides[i]), 4)
             rooms.append(Room(room.id, room.type, polygon, request.level, role=room.role))
         runs += _runs(request, walls, rooms)
@@ -194,5 +256,3 @@ def _depths(program: FloorProgram) -> dict[str, int]:
                 frontier.append(other)
     return {r.id: depth.get(r.id, 99) for r in program.rooms}
 
-
-__all__ = ["energy", "solve"]

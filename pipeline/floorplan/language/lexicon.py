@@ -51,7 +51,7 @@ ROOMS: dict[str, tuple[str, str]] = {
 SUITES = {"master suite": "primary", "primary suite": "primary", "guest suite": "guest", "owners' suite": "primary", "owner's suite": "primary", "suite": "", "bedroom suite": ""}  # fmt: skip
 IRREGULAR = {"wc": "wcs", "stairs": "stairs", "storage": "storages", "en suite": "en suites", "dining": "dining", "living": "living", "store": "stores", "utility": "utilities"}  # fmt: skip
 HOMES = frozenset(
-    "apartment flat house home loft townhouse penthouse unit villa bungalow maisonette condo condominium duplex residence dwelling place cottage layout plan office_layout efficiency terraced terrace_house".split()
+    "apartment flat house home loft townhouse penthouse unit villa bungalow maisonette condo condominium duplex residence dwelling place cottage efficiency pad".split()
 )
 ADJECTIVES: dict[str, str] = {
     "master": "primary", "main": "primary", "primary": "primary", "principal": "primary", "guest": "guest", "parents'": "primary", "parents": "primary", "owners'": "primary", "owner's": "primary",

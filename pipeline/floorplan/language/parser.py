@@ -36,7 +36,8 @@ def understand(prompt: str) -> FloorProgram:
         raise UsageError(f"the prompt is {len(prompt)} characters long", f"keep it under {LONGEST}")
     tokens = repair(tokenize(prompt))
     parsed = sentences(tokens)
-    if not any(i.kind in {kinds.ROOM, kinds.HOME, kinds.SUITE} for s in parsed for i in s):
+    known = {kinds.ROOM, kinds.HOME, kinds.SUITE}
+    if not any(i.kind in known or (i.kind == kinds.AMOUNT and i.unit == "rooms") for s in parsed for i in s):
         shown = re.sub(r"\s+", " ", prompt.strip())[:60]
         raise RefusedError(f"nothing in the prompt names a room or a home: {shown!r}", "name rooms, e.g. living room, two bedrooms, bathroom")
     return assemble(prompt, tokens, parsed, read(tokens, parsed))

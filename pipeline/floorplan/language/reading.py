@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from pipeline.floorplan.defaults import DEFAULTS
 from pipeline.floorplan.language import items as kinds
 from pipeline.floorplan.language import lexicon
 from pipeline.floorplan.language.inventory import Inventory, Named
@@ -16,6 +17,7 @@ NEGATIONS = {"no", "without", "not", "never", "don't", "doesn't", "nor", "neithe
 OWN = {"own", "private", "ensuite", "personal", "attached"}
 OTHER = {"other", "remaining"}
 NEEDLESS = ("needed", "necessary", "required", "wanted")
+OPEN_ROOMS = {"kitchen", "dining_room", "living_room", "family_room"}
 HALLS = {"hallway", "entry"}
 ON_HALL = {"bedroom", "bathroom", "wc", "office", "closet", "storage", "utility", "playroom", "library", "media_room", "gym", "meeting_room"}
 PERSONAL = {"bathroom", "wc", "closet", "balcony", "office", "storage"}
@@ -379,14 +381,30 @@ def _heard(state: Reading, sentence: list[Item], k: int) -> list[tuple[str, ...]
 
 
 def _word(state: Reading, sentence: list[Item], k: int, near: tuple[str, ...]) -> None:
-    """Single words that say something about the latest room: "and no smaller", "quiet", "daylight"."""
+    """Single words that say something about rooms: "daylight", "only", "open plan"."""
     word = sentence[k].words
+    if word == "plan" and k and sentence[k - 1].words == "open":
+        _open_plan(state, sentence, k)
     if word in {"daylight", "windows", "window"} and near:
         before = {i.words for i in sentence[max(0, k - 3) : k]}
         what = "no_window" if before & {"no", "without", "windowless"} else "window"
         state.say(what, near, (), sentence[k])
     if word == "only" and state.facts and state.facts[-1].what == lexicon.DOOR and near:
         state.say("only", state.facts[-1].a, (), sentence[k])
+
+
+def _open_plan(state: Reading, sentence: list[Item], k: int) -> None:
+    """"Open-plan kitchen/living/dining" joins the rooms of the list; "open-plan kitchen" is open to where one lives."""
+    listed: list[str] = []
+    for item in sentence[k + 1 :]:
+        if item.kind == kinds.ROOM and item.type in OPEN_ROOMS:
+            listed += item.ids
+        elif item.kind not in {kinds.COMMA, kinds.AND, kinds.WORD} or item.words in {":", "with"}:
+            break
+    if len(listed) > 1:
+        state.say("merge", tuple(dict.fromkeys(listed)), (), sentence[k])
+    elif listed and state.inventory.get(listed[0]).type == "kitchen":
+        state.say("open_kitchen", tuple(listed), (), sentence[k])
 
 
 def _point(
@@ -449,7 +467,7 @@ def _object_group(
             # an object "it" points past the subject
             others = [g for g in _heard(state, sentence, index) if not set(g) & set(subject)]
             if item.role == "both":
-                here = [g for g in others if g not in state.past] or others
+                here = [tuple(i.ids) for i in sentence[:index] if i.kind == kinds.ROOM and not set(i.ids) & set(subject)]
                 flat = list(dict.fromkeys(i for g in (here if len(here) > 1 else others) for i in g))
                 group = _last_two(state, flat, subject)
             elif item.role == "it" and others:
@@ -470,6 +488,7 @@ def _object_group(
         elif item.kind == kinds.AMOUNT:
             if only is None and (group or item.unit in {"area", "length"}):
                 break
+            _amount(state, sentence, index, subject, subject)
         elif item.kind == kinds.MUTE and group and comma:
             break
         index += 1
@@ -634,12 +653,19 @@ def _amount(state: Reading, sentence: list[Item], k: int, subject: tuple[str, ..
         return
     before = [i for i in sentence[:k] if i.kind in {kinds.ROOM, kinds.HOME}]
     latest = before[-1] if before else None
+    words = [i.words for i in sentence[max(0, k - 3) : k + 3] if i.kind == kinds.WORD] + item.words.split()
+    if set(words) & {"total", "altogether", "overall", "totalling"} or (words[:2] == ["in", "all"]):
+        state.amounts.append((item, None))
+        return
     if latest is not None and latest.kind == kinds.ROOM and latest.ids:
         target = tuple(latest.ids)
         # "a balcony off the living room (6 m2)" measures the balcony
         if set(latest.mods) & {"the", "that"} and subject and target[0] not in subject and item.unit == "area":
             target = tuple(i for i in (near or subject) if not i.startswith("*"))
-        state.amounts.append((item, target))
+        loose = sentence[k - 1].kind == kinds.COMMA and sentence[k - 1].words == "," and latest.first >= sentence[k - 1].first - 4
+        usual = sum(DEFAULTS[state.inventory.get(i).type].area for i in target)
+        whole = state.home is not None and loose and item.unit == "area" and (item.number or 0.0) > 2.5 * usual
+        state.amounts.append((item, None if whole else target))
         return
     after = next((i for i in sentence[k + 1 :] if i.kind not in {kinds.WORD}), None)
     if latest is None and after is not None and after.kind == kinds.ROOM and after.ids:
