@@ -26,7 +26,8 @@ def read(path: Path, table: Table) -> list[dict[str, Any]]:
 
     Raises ContentError when the file is missing, truncated, or lacks one of the schema's columns.
     """
-    return read_arrow(path, table).to_pylist()
+    rows: list[dict[str, Any]] = read_arrow(path, table).to_pylist()
+    return rows
 
 
 def read_arrow(path: Path, table: Table) -> pa.Table:

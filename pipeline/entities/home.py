@@ -36,7 +36,8 @@ class Placement:
         w, d = self.size[0] / 2, self.size[1] / 2
         corners = np.array([[-w, -d], [w, -d], [w, d], [-w, d]])
         c, s = np.cos(self.yaw), np.sin(self.yaw)
-        return corners @ np.array([[c, s], [-s, c]]) + self.position[:2]
+        placed: NDArray[np.float64] = corners @ np.array([[c, s], [-s, c]]) + self.position[:2]
+        return placed
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,1 @@
+"""Composes homes: plan, layout, retrieval, arrangement, verification, export. What every command calls."""

@@ -1,0 +1,57 @@
+"""First drafts as table rows and back: what stage `sample` hands to stage `postopt`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from pipeline.entities.asset import Asset
+from pipeline.entities.home import Home
+from pipeline.homes.factory import Factory, HomeDraft
+from pipeline.homes.furnish import Draft
+from pipeline.homes.request import Request
+from pipeline.homes.rows import Row, homes_of, object_row, opening_row, reject_row, room_row, scene_row
+from pipeline.shards import scene_id
+
+NO_ASSET = "no_asset"
+
+
+def draft_rows(drafts: Iterable[HomeDraft], seed: int, assets: Mapping[str, Asset]) -> dict[str, list[Row]]:
+    """Return the rows of scenes, rooms, openings, objects and rejects of first drafts."""
+    rows: dict[str, list[Row]] = {name: [] for name in ("scenes", "rooms", "openings", "objects", "rejects")}
+    for made in drafts:
+        name = scene_id(seed, made.request.index)
+        placed = tuple(p for draft in made.drafts for p in draft.placements)
+        home = Home(name, seed, made.request.index, made.prompt, made.program, made.plan, placed)
+        openable = {p.object_id: assets[p.asset_id].openable for p in placed}
+        kinds = {draft.job.room_id: draft for draft in made.drafts}
+        rows["scenes"].append(scene_row(home) | {"openable": sum(openable.values())})
+        for room in made.plan.rooms:
+            draft = kinds.get(room.room_id)
+            row = room_row(name, room, draft.job.layout_type if draft else None)
+            if draft:
+                count = sum(openable[p.object_id] for p in draft.placements)
+                row |= {"objects": len(draft.placements), "openable": count, "openable_sampled": count}
+                row |= {"asked_objects": draft.job.count, "walkable_target": draft.job.walkable}
+            rows["rooms"].append(row)
+        rows["openings"] += [opening_row(name, opening) for opening in made.plan.openings]
+        rows["objects"] += [object_row(name, p, openable=openable[p.object_id]) for p in placed]
+        for draft in made.drafts:
+            rows["rejects"] += [reject_row(name, draft.job.room_id, draft.job.attempt, ("object", NO_ASSET, lost)) for lost in draft.lost]
+    return rows
+
+
+def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], factory: Factory) -> list[HomeDraft]:
+    """Rebuild the first drafts of `requests` from their rows."""
+    homes = {home.index: home for home in homes_of(tables)}
+    asked = {(r["scene_id"], r["room_id"]): (r["asked_objects"], r["walkable_target"]) for r in tables["rooms"]}
+    lost: dict[str, list[str]] = {}
+    for row in tables["rejects"]:
+        if row["reason"] == NO_ASSET:
+            lost.setdefault(row["where"], []).append(row["detail"])
+    made = []
+    for request in requests:
+        home = homes[request.index]
+        jobs = factory.jobs(home.plan, request.index, 0, {room: wish for (scene, room), wish in asked.items() if scene == home.scene_id})
+        drafts = tuple(Draft(job, home.in_room(job.room_id), tuple(lost.get(f"{home.scene_id}/{job.room_id}#0", ()))) for job in jobs)
+        made.append(HomeDraft(request, home.prompt, home.program, home.plan, drafts))
+    return made

@@ -1,0 +1,304 @@
+"""The factory: requests in, homes with certificates, rows and files out; the same for every command that asks.
+
+A home is a function of (program, seed, index, weights). Rooms are drafted in batches, finished one by one, and tried
+again where they fail; the whole home is then judged, and what the judge faults sends its room back once more.
+"""
+
+from __future__ import annotations
+
+import functools
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from pipeline import floorplan, params, seeds, tables, taxonomy
+from pipeline.arrange.settings import PostoptSettings
+from pipeline.diffusion.sampling import Sampler
+from pipeline.diffusion.settings import SampleSettings
+from pipeline.entities.home import Home
+from pipeline.entities.plan import Plan
+from pipeline.errors import ContentError
+from pipeline.floorplan.language import parse
+from pipeline.homes.exports import files_of, write_assets
+from pipeline.homes.finish import RoomResult, finish
+from pipeline.homes.furnish import Draft, furnish
+from pipeline.homes.guilt import Guilt, guilty_objects
+from pipeline.homes.library import Library
+from pipeline.homes.request import Request, RoomJob, layout_type
+from pipeline.homes.rows import Row, home_rows, reject_row
+from pipeline.homes.settings import ShardSettings
+from pipeline.manifest import digest, sha256_file
+from pipeline.retrieval.index import AssetIndex
+from pipeline.retrieval.settings import RetrievalSettings
+from pipeline.shards import code_digest, scene_id
+from pipeline.verify import Certificate, VerifySettings, verify_home
+from schemas.assets import LATENTS
+
+Wish = tuple[int | None, float | None]  # exact number of objects, share of free floor
+
+
+@dataclass(frozen=True, slots=True)
+class HomeDraft:
+    """The first attempt at a home: its plan, and a draft of each room that is furnished."""
+
+    request: Request
+    prompt: str
+    program: str
+    plan: Plan
+    drafts: tuple[Draft, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """A home that ships. `rows` by table, `files` by `<family>/<name>`."""
+
+    home: Home
+    certificate: Certificate
+    rows: dict[str, list[Row]]
+    files: dict[str, bytes]
+
+
+@dataclass
+class _Work:
+    """One home in the making. `tries` counts the tries of its rooms."""
+
+    request: Request
+    attempt: int
+    prompt: str
+    program: str
+    plan: Plan
+    pending: list[RoomJob]
+    last: dict[str, int]  # attempt number that each room has reached
+    results: dict[str, RoomResult] = field(default_factory=dict)
+    first: dict[str, Draft] = field(default_factory=dict)
+    rejects: list[Row] = field(default_factory=list)
+    tries: int = 0
+    certificate: Certificate | None = None
+
+
+@dataclass(frozen=True)
+class Factory:
+    """Everything that making homes needs, loaded once per process. `seconds` sums CPU seconds by part."""
+
+    seed: int
+    sampler: Sampler
+    index: AssetIndex
+    library: Library
+    shard: ShardSettings
+    postopt: PostoptSettings
+    verify: VerifySettings
+    digests: Mapping[str, str]
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def shard_size(self) -> int:
+        """Homes per shard."""
+        return self.shard.homes
+
+    @property
+    def chunk(self) -> int:
+        """Homes that are sampled together."""
+        return self.shard.chunk
+
+    @property
+    def licence(self) -> str:
+        """The licence that binds what is made."""
+        return self.shard.licence
+
+    @contextmanager
+    def timed(self, part: str) -> Iterator[None]:
+        """Add the CPU seconds (user + system) of the block to `seconds[part]`."""
+        start = time.process_time()
+        try:
+            yield
+        finally:
+            self.seconds[part] = self.seconds.get(part, 0.0) + time.process_time() - start
+
+    # -- drafting ----------------------------------------------------------------------------------------------------
+
+    def plan(self, request: Request, attempt: int) -> tuple[str, str, Plan, list[RoomJob]]:
+        """Return (prompt, program as JSON, plan, one job per room that is furnished) of one attempt at a home."""
+        with self.timed("plan"):
+            if request.prompt:
+                program, prompt = parse(request.prompt), request.prompt
+            else:
+                program = floorplan.prior(seeds.generator(self.seed, "program", request.index))
+                prompt = floorplan.describe(program)
+            program = floorplan.complete(program)
+            solved = floorplan.solve(program, self.seed, (request.index, attempt))
+        wishes = {room.id: (room.objects, room.walkable) for room in program.rooms}
+        return prompt, program.model_dump_json(exclude_defaults=True), solved, self.jobs(solved, request.index, attempt, wishes)
+
+    def jobs(self, plan: Plan, index: int, attempt: int, wishes: Mapping[str, Wish]) -> list[RoomJob]:
+        """Return one job per room that the layout model furnishes; `wishes` by room id.
+
+        The first plan's rooms count their attempts from 0, those of plan k from 100 k, so that no draw is made twice.
+        """
+        found = []
+        for number, room in enumerate(plan.rooms):
+            kind = layout_type(room, plan, taxonomy.load())
+            if kind is None:
+                continue
+            count, walkable = wishes.get(room.room_id, (None, None))
+            found.append(RoomJob(plan, room.room_id, kind, index, number, 100 * attempt, count, walkable))
+        return found
+
+    def draft(self, jobs: Sequence[RoomJob]) -> list[Draft]:
+        """Furnish a batch of rooms: diffusion and retrieval, nothing moved yet."""
+        with self.timed("sample"):
+            return furnish(jobs, self.sampler, self.index, taxonomy.load())
+
+    def first_drafts(self, requests: Sequence[Request]) -> list[HomeDraft]:
+        """Return the first attempt at each home: what the stage `sample` writes."""
+        planned = [self.plan(request, 0) for request in requests]
+        drafts = iter(self.draft([job for *_, jobs in planned for job in jobs]))
+        return [
+            HomeDraft(request, prompt, program, plan, tuple(next(drafts) for _ in jobs))
+            for request, (prompt, program, plan, jobs) in zip(requests, planned, strict=True)
+        ]
+
+    # -- making ------------------------------------------------------------------------------------------------------
+
+    def make(self, requests: Sequence[Request], first: Sequence[HomeDraft] | None = None, *, files: bool = True) -> list[Outcome]:
+        """Make a batch of homes. `first` are their first drafts, where a stage has made them already.
+
+        Raises RefusedError for a request that cannot be met, ContentError naming an index that failed too often.
+        """
+        drafts = {d.request.index: d for d in first} if first is not None else {}
+        works = [self._started(request, drafts.get(request.index)) for request in requests]
+        for work in works:
+            self._judge(work)  # homes without a room to furnish are done here
+        while pending := [(work, job) for work in works for job in work.pending]:
+            ready = [work.first.pop(job.room_id, None) for work, job in pending]
+            made = iter(self.draft([job for (_, job), draft in zip(pending, ready, strict=True) if draft is None]))
+            for (work, job), draft in zip(pending, ready, strict=True):
+                self._try(work, job, draft or next(made))
+            for work in works:
+                self._judge(work)
+        return [self._outcome(work, files=files) for work in works]
+
+    def _started(self, request: Request, draft: HomeDraft | None, attempt: int = 0) -> _Work:
+        if draft is None:
+            prompt, program, plan, jobs = self.plan(request, attempt)
+            return _Work(request, attempt, prompt, program, plan, jobs, {job.room_id: job.attempt for job in jobs})
+        jobs = [d.job for d in draft.drafts]
+        last = {job.room_id: 0 for job in jobs}
+        return _Work(request, 0, draft.prompt, draft.program, draft.plan, jobs, last, first={d.job.room_id: d for d in draft.drafts})
+
+    def _try(self, work: _Work, job: RoomJob, draft: Draft) -> None:
+        """Finish one draft of a room; keep the better of it and what was there; queue another try if it is needed."""
+        work.pending.remove(job)
+        work.tries += 1
+        with self.timed("postopt"):
+            result = finish(draft, self.library, self.index, self.postopt, self.verify.robot, taxonomy.load())
+        before = work.results.get(job.room_id)
+        work.rejects.extend(reject_row(scene_id(self.seed, job.index), job.room_id, job.attempt, r) for r in result.rejects)
+        if before is None or result.rank() > before.rank():
+            work.results[job.room_id] = result
+        self._retry(work, job, result.failure, result.detail)
+
+    def _retry(self, work: _Work, job: RoomJob, failure: str, detail: str) -> None:
+        """Note why a try of a room failed, and queue the next one; a wish that stays unmet needs another plan."""
+        if not failure:
+            return
+        work.rejects.append(reject_row(scene_id(self.seed, job.index), job.room_id, job.attempt, ("room", failure, detail)))
+        if work.last[job.room_id] % 100 + 1 < self.shard.room_attempts:
+            work.last[job.room_id] += 1
+            work.pending.append(replace(job, attempt=work.last[job.room_id]))
+        elif work.results[job.room_id].binding:
+            self._replan(work, failure, f"{job.room_id}: {detail}")
+
+    def _replan(self, work: _Work, failure: str, detail: str) -> None:
+        """Start a home again with another plan. Raises ContentError when it has had all its attempts."""
+        index = work.request.index
+        if work.attempt + 1 >= self.shard.home_attempts:
+            raise ContentError(
+                f"home {index} (seed {self.seed}) failed {self.shard.home_attempts} times, last by {failure} ({detail})",
+                "ask for fewer or smaller things, or larger rooms",
+            )
+        work.rejects.append(reject_row(scene_id(self.seed, index), "", work.attempt, ("home", failure, detail)))
+        fresh = self._started(work.request, None, work.attempt + 1)
+        work.attempt, work.program, work.plan = fresh.attempt, fresh.program, fresh.plan
+        work.pending, work.last, work.results, work.first = fresh.pending, fresh.last, {}, {}
+
+    def _judge(self, work: _Work) -> None:
+        """Verify the whole home; what is at fault goes, and a room that is then not good enough is tried again."""
+        while work.certificate is None and not work.pending:
+            home = self._home(work)
+            with self.timed("verify"):
+                certificate = verify_home(home, self.library, self.verify)
+            guilty = guilty_objects(home, certificate)
+            if guilty:
+                self._expel(work, guilty)
+            elif faults := certificate.faults(self.verify.policy):
+                self._replan(work, *faults[0])
+            else:
+                work.certificate = certificate
+
+    def _expel(self, work: _Work, guilty: Mapping[str, Guilt]) -> None:
+        """Take the guilty objects out of their rooms, each with its reason."""
+        where = scene_id(self.seed, work.request.index)
+        for room_id in sorted({guilt.room_id for guilt in guilty.values()}):
+            mine = {k: guilt for k, guilt in sorted(guilty.items()) if guilt.room_id == room_id}
+            result = work.results[room_id] = work.results[room_id].without(mine, taxonomy.load())
+            job = result.draft.job
+            work.rejects.extend(
+                reject_row(where, room_id, job.attempt, ("object", guilt.reason, f"{object_id}: {guilt.detail}"))
+                for object_id, guilt in mine.items()
+            )
+            self._retry(work, job, result.failure, result.detail)
+
+    def _home(self, work: _Work) -> Home:
+        placed = tuple(p for room in work.plan.rooms if room.room_id in work.results for p in work.results[room.room_id].placements)
+        index = work.request.index
+        return Home(scene_id(self.seed, index), self.seed, index, work.prompt, work.program, work.plan, placed)
+
+    def _outcome(self, work: _Work, *, files: bool) -> Outcome:
+        assert work.certificate is not None
+        home = self._home(work)
+        exported: dict[str, bytes] = {}
+        if files:
+            with self.timed("export"):
+                exported = files_of(home, self.library, self.shard.preview)
+        rows = home_rows(home, work.certificate, work.results, self.library, taxonomy.load(), work.tries, self.licence)
+        rows["rejects"] = work.rejects
+        return Outcome(home, work.certificate, rows, exported)
+
+    def write_library(self, folder: Path, asset_ids: Sequence[str] | None = None) -> None:
+        """Write the asset library (or those of it that are named) with its tables and thumbnails."""
+        write_assets(self.library, folder, sorted(asset_ids if asset_ids is not None else self.library))
+
+
+def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
+    """Load models, tables and settings of the checkout at `root`. Raises ContentError for what is missing or broken."""
+    data, weights = root / "data", root / "models" / "denoiser.safetensors"
+    if not weights.is_file():
+        raise ContentError(f"there are no trained weights ({weights} is missing)", f"type `make run` in {root}")
+    library = Library.read(data / "tables", data / "assets")
+    latents = tables.read(data / "latents" / "latents.parquet", LATENTS)
+    index = AssetIndex.from_tables(library.rows.values(), latents, library.joints, params.section(RetrievalSettings, tree, "retrieval"))
+    names = ("sample", "retrieval", "postopt", "verify", "shard")
+    return Factory(
+        seed,
+        Sampler.load(weights, params.section(SampleSettings, tree, "sample"), seed, index),
+        index,
+        library,
+        params.section(ShardSettings, tree, "shard"),
+        params.section(PostoptSettings, tree, "postopt"),
+        params.section(VerifySettings, tree, "verify"),
+        {
+            "code": code_digest(root),
+            "library": library.digest(),
+            "params": digest({name: tree[name] for name in names}),
+            "weights": sha256_file(weights),
+        },
+    )
+
+
+@functools.lru_cache(maxsize=1)
+def open_factory(root: Path, seed: int) -> Factory:
+    """Return this process's factory for the checkout at `root`: models and library are loaded once."""
+    return load_factory(root, params.read(root / "params.yaml"), seed)

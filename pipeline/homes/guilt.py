@@ -1,0 +1,64 @@
+"""What must leave a home so that it can ship."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeline.entities.home import Home, Placement
+from pipeline.verify import Certificate
+
+
+@dataclass(frozen=True, slots=True)
+class Guilt:
+    """Why an object must go: its room, a reason code, and words."""
+
+    room_id: str
+    reason: str
+    detail: str
+
+
+def guilty_objects(home: Home, certificate: Certificate) -> dict[str, Guilt]:
+    """Return what must go, by object_id.
+
+    Of two objects in each other the smaller goes; of a blocked joint what blocks it, or its owner where a wall does; of a
+    room that cannot be entered the floor-standing object nearest to one of its doors.
+    """
+    placed = {p.object_id: p for p in home.placements}
+    guilty: dict[str, Guilt] = {}
+    for check in certificate.objects:
+        if not check.inside:
+            guilty[check.object_id] = Guilt(check.room_id, "outside_room", f"{check.outside:.3f} m beyond the walls")
+        elif not check.supported:
+            guilty[check.object_id] = Guilt(check.room_id, "unsupported", "floats, or sticks through the ceiling")
+        for other in check.hits:
+            smaller = min((placed[check.object_id], placed[other]), key=lambda p: (float(p.size.prod()), p.object_id))
+            guilty[smaller.object_id] = Guilt(smaller.room_id, "collision", f"{check.object_id} and {other} are in each other")
+    for joint in certificate.joints:
+        if joint.clear:
+            continue
+        blamed = placed.get(joint.blocker) or placed.get(joint.object_id)
+        if blamed is not None:
+            detail = f"{joint.object_id}/{joint.joint_id} stops at {joint.blocker}"
+            guilty.setdefault(blamed.object_id, Guilt(blamed.room_id, "blocks_joint", detail))
+    for room in certificate.rooms:
+        nearest = None if room.connected else _nearest_to_door(home, room.room_id)
+        if nearest is not None:
+            guilty.setdefault(nearest.object_id, Guilt(room.room_id, "blocks_way", f"no way into {room.room_id}"))
+    return guilty
+
+
+def _nearest_to_door(home: Home, room_id: str) -> Placement | None:
+    doors = [o.segment.mean(0) for o in home.plan.openings if room_id in o.rooms and o.kind != "window"]
+    floor = home.plan.elevation(room_id)
+    standing = [p for p in home.in_room(room_id) if p.position[2] < floor + 0.1]
+    if not doors or not standing:
+        return None
+    # Footprint corners and centre stand in for the outline: the order matters here, not the distance.
+    return min(standing, key=lambda p: (_distance(p, doors), p.object_id))
+
+
+def _distance(placement: Placement, doors: list[np.ndarray[tuple[int], np.dtype[np.float64]]]) -> float:
+    points = np.vstack([placement.footprint(), placement.position[None, :2]])
+    return float(min(np.linalg.norm(points - door, axis=1).min() for door in doors))

@@ -1,0 +1,49 @@
+"""The library of assets on disk: files are read when first asked for, and kept."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from pipeline import tables
+from pipeline.entities.asset import Asset
+from pipeline.entities.files import load_asset
+from pipeline.errors import ContentError
+from pipeline.manifest import digest
+from schemas.assets import ASSET_JOINTS, ASSETS
+
+
+class Library(Mapping[str, Asset]):
+    """Assets by id. `rows` are the assets table's rows by id, `joints` those of asset_joints."""
+
+    def __init__(self, folder: Path, rows: list[dict[str, Any]], joints: list[dict[str, Any]]) -> None:
+        self.folder = folder
+        self.joints = joints
+        self.rows = {row["asset_id"]: row for row in rows}
+        self._loaded: dict[str, Asset] = {}
+
+    @classmethod
+    def read(cls, folder: Path, files: Path) -> Library:
+        """Read the tables assets and asset_joints of `folder`; the asset files lie in `files`."""
+        return cls(files, tables.read(folder / "assets.parquet", ASSETS), tables.read(folder / "asset_joints.parquet", ASSET_JOINTS))
+
+    def __getitem__(self, asset_id: str) -> Asset:
+        if asset_id not in self._loaded:
+            if asset_id not in self.rows:
+                raise KeyError(asset_id)
+            path = self.folder / self.rows[asset_id]["file"]
+            if not path.is_file():
+                raise ContentError(f"asset file {path} is missing", "run `dvc repro preprocess`")
+            self._loaded[asset_id] = load_asset(path)
+        return self._loaded[asset_id]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.rows)
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def digest(self) -> str:
+        """Return the digest of all asset files, from the sums in the table."""
+        return digest({row["asset_id"]: row["sha256"] for row in self.rows.values()})
