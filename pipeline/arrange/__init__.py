@@ -1,1 +1,20 @@
 """Post-optimisation: walkable area (algorithm 2 of the paper), then what is left of collisions is separated."""
+
+from pipeline.arrange.separate import Reject, Separated, separate
+from pipeline.arrange.settings import PostoptSettings, SeparateSettings, WalkableSettings
+from pipeline.arrange.site import Site
+from pipeline.arrange.walkable import Controlled, control_walkable, free_ratio, paper_ratio
+
+__all__ = [
+    "Controlled",
+    "PostoptSettings",
+    "Reject",
+    "Separated",
+    "SeparateSettings",
+    "Site",
+    "WalkableSettings",
+    "control_walkable",
+    "free_ratio",
+    "paper_ratio",
+    "separate",
+]

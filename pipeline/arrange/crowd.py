@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.item import Item
+from pipeline.arrange.item import Item, turned
 from pipeline.arrange.search import free_poses
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
@@ -14,8 +14,8 @@ from pipeline.geometry.prisms import Prisms, stacked
 
 Floats = NDArray[np.float64]
 
-SPREAD = 0.12  # when a pose cuts the floor, poses nearer to it than this are not tried [m]
-TRIES = 12  # poses whose floor is looked at per object
+SPREAD = 0.12  # when a pose cuts the floor, poses nearer to it than this are not tried [m]; more after every try
+TRIES = 24  # poses whose floor is looked at per object
 UNIT = np.ones(3)
 
 
@@ -30,7 +30,9 @@ class Crowd:
         self.keeps = site.swung
         self.accesses = stacked([])
         self.strips: list[NDArray[np.bool_]] = []
-        self.doors = self._doors(site.walk(self.bodies))
+        bare = site.walk(self.bodies)
+        self.doors = self._doors(bare)
+        self.enters = self._enters(bare, site.entered(bare))
 
     def settle(self, item: Item, poses: Floats, costs: Floats) -> Item | None:
         """Add the item at the cheapest of its poses that is free and leaves the floor in one piece; None if there is none."""
@@ -39,13 +41,14 @@ class Crowd:
         while start < len(poses) and tries < TRIES:
             totals, start = self._totals(item, poses, costs, start)
             for k in np.argsort(np.round(totals, 9), kind="stable")[: int(np.isfinite(totals).sum())]:
-                if any(np.linalg.norm(poses[k, :2] - f) < SPREAD for f in failed):
+                apart = SPREAD * (1.0 + 0.15 * tries)
+                if any(np.linalg.norm(poses[k, :2] - f[:2]) < apart and turned(f[3], poses[k, 3]) < 0.3 for f in failed):
                     continue
                 moved = item.at(poses[k])
                 if self._open_floor(moved):
                     self.add(moved)
                     return moved
-                failed.append(poses[k, :2])
+                failed.append(poses[k])
                 tries += 1
                 if tries >= TRIES:
                     break
@@ -93,9 +96,15 @@ class Crowd:
         if self._doors(walked) < self.doors:
             return False
         label = self.site.entered(walked)
+        if self.enters and not self._enters(walked, label):
+            return False
         own = self._strip(item)
         strips = self.strips if own is None else [*self.strips, own]
         return all(bool((walked.labels[strip] == label).any()) for strip in strips)
+
+    def _enters(self, walked: Walk, label: int) -> bool:
+        """Whether the robot gets from the doors into the room itself."""
+        return bool((walked.labels[self.site.floor.room >= 0] == label).any()) and label > 0
 
     def _doors(self, walked: Walk) -> int:
         """Return how many doors open to the part that most doors open to."""

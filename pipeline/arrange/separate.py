@@ -69,8 +69,10 @@ def separate(
     `smaller` finds smaller assets for what does not fit; with `keep_count` a room that loses an object has failed.
     """
     settings = settings or SeparateSettings()
-    items = [make_item(p, assets, settings.access_depth) for p in placements]
+    asked = [make_item(p, assets, settings.access_depth) for p in placements]
+    items = list(asked)
     order = sorted(range(len(items)), key=lambda i: (*_rank(items[i]), i))
+    losses = [0] * len(items)
     best: dict[int, Item] = {}
     for _ in range(max(1, settings.rounds)):
         placed = _place(site, items, order, settings)
@@ -79,19 +81,22 @@ def separate(
         lost = [i for i in order if i not in placed]
         if not lost:
             break
+        for i in lost:
+            losses[i] += 1
+            # To be the first and still find no place is to be too large.
+            if losses[i] > 1 and smaller is not None:
+                items[i] = _exchanged(items[i], assets, settings, smaller) or items[i]
         order = lost + [i for i in order if i in placed]
     rejects: list[Reject] = []
-    for i in (i for i in order if i not in best):
-        shrunk = _shrunk(site, items[i], list(best.values()), assets, settings, smaller)
-        if shrunk is not None:
-            best[i] = shrunk
-            was, now = items[i].placement.asset_id, shrunk.placement.asset_id
-            rejects.append(Reject(items[i].placement.object_id, "shrunk_to_fit", f"{was} gave way to {now}"))
-        else:
-            rejects.append(Reject(items[i].placement.object_id, "unplaceable", f"no free place for {items[i].placement.category}"))
+    for i, item in enumerate(asked):
+        what = item.placement
+        if i not in best:
+            rejects.append(Reject(what.object_id, "unplaceable", f"no free place for {what.category}"))
+        elif best[i].placement.asset_id != what.asset_id:
+            rejects.append(Reject(what.object_id, "shrunk_to_fit", f"{what.asset_id} gave way to {best[i].placement.asset_id}"))
     kept = sorted(best)
-    moved = tuple(float(np.linalg.norm(best[i].placement.position[:2] - items[i].wished[:2])) for i in kept)
-    return Separated(tuple(best[i].placement for i in kept), tuple(rejects), moved, keep_count and len(kept) < len(items))
+    moved = tuple(float(np.linalg.norm(best[i].placement.position[:2] - asked[i].wished[:2])) for i in kept)
+    return Separated(tuple(best[i].placement for i in kept), tuple(rejects), moved, keep_count and len(kept) < len(asked))
 
 
 def _rank(item: Item) -> tuple[int, float]:
@@ -100,10 +105,11 @@ def _rank(item: Item) -> tuple[int, float]:
     return item.trait.order, -area * (1.5 if len(item.shape.access) else 1.0)
 
 
-def _score(placed: Mapping[int, Item], items: Sequence[Item]) -> tuple[int, float]:
-    """Return (objects left out, total displacement): less is better."""
+def _score(placed: Mapping[int, Item], items: Sequence[Item]) -> tuple[float, float]:
+    """Return (what is left out, total displacement): less is better. A bed that is lost weighs more than a plant."""
+    lost = sum(1.0 + float(np.prod(items[i].placement.size[:2])) for i in range(len(items)) if i not in placed)
     moved = sum(float(np.linalg.norm(item.placement.position[:2] - item.wished[:2])) for item in placed.values())
-    return len(items) - len(placed), round(moved, 6)
+    return round(lost, 6), round(moved, 6)
 
 
 def _place(site: Site, items: Sequence[Item], order: Sequence[int], settings: SeparateSettings) -> dict[int, Item]:
@@ -117,24 +123,12 @@ def _place(site: Site, items: Sequence[Item], order: Sequence[int], settings: Se
     return placed
 
 
-def _shrunk(
-    site: Site, item: Item, others: Sequence[Item], assets: Mapping[str, Asset], settings: SeparateSettings, smaller: Smaller | None
-) -> Item | None:
-    """Try smaller assets of the category, each by at least a tenth, among what stands."""
-    if smaller is None:
-        return None
-    crowd = Crowd(site, settings)
-    for other in others:
-        crowd.add(other)
+def _exchanged(item: Item, assets: Mapping[str, Asset], settings: SeparateSettings, smaller: Smaller) -> Item | None:
+    """Return the item as a smaller asset of its category, by at least a tenth, wished where it was; None if there is none."""
     now = item.placement
-    for _ in range(settings.shrink):
-        match = smaller(now.asset_id, 0.9 * float(now.size[0] * now.size[1]))
-        if match is None:
-            return None
-        size = assets[match.asset_id].size * match.scale
-        now = replace(now, asset_id=match.asset_id, size=size, scale=match.scale, retrieval_distance=match.distance)
-        made = replace(make_item(now, assets, settings.access_depth), wished=item.wished)
-        found = crowd.settle(made, *candidates(made, site, others, settings))
-        if found is not None:
-            return found
-    return None
+    match = smaller(now.asset_id, 0.9 * float(now.size[0] * now.size[1]))
+    if match is None:
+        return None
+    size = assets[match.asset_id].size * match.scale
+    now = replace(now, asset_id=match.asset_id, size=size, scale=match.scale, retrieval_distance=match.distance)
+    return replace(make_item(now, assets, settings.access_depth), wished=item.wished)

@@ -27,8 +27,7 @@ class SeparateSettings:
     access_cost: float = 0.25  # what blocking the place in front of a door or drawer costs, in metres of displacement [m]
     access_depth: float = 0.55  # depth of that place beyond the opened part [m]
     candidates: int = 16  # free poses that are weighed against each other per object
-    rounds: int = 3  # times a room is started over with the objects first for which nothing was free
-    shrink: int = 3  # smaller assets that are tried for an object that finds no place
+    rounds: int = 5  # times a room is started over, those first that found nothing free; from the third on as smaller assets
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,7 @@ from pipeline.geometry.walls import leaves
 
 Floats = NDArray[np.float64]
 
+PASS_WIDTH = 0.9  # of a wide opening, this much about its middle is kept passable [m]
 NEAR_DOOR = 0.15  # the robot must find a place this near to the middle of each opening, so that it gets through [m]
 
 
@@ -38,7 +39,7 @@ class Site:
     height: float
 
     @classmethod
-    def of(cls, plan: Plan, room_id: str, *, radius: float = 0.25, step: float = 0.02, height: float = 1.4, cell: float = 0.05) -> Site:
+    def of(cls, plan: Plan, room_id: str, *, radius: float = 0.28, step: float = 0.02, height: float = 1.4, cell: float = 0.05) -> Site:
         """Take one room out of a plan; the numbers are the robot's radius, climb and height, and the raster's cell [m]."""
         room = plan.room(room_id)
         openings = [o for o in plan.openings if room_id in o.rooms and o.level == room.level]
@@ -53,7 +54,8 @@ class Site:
             swung,
             np.array([o.segment.mean(0) for o in openings if o.kind in PASSABLE]).reshape(-1, 2),
             # Beyond each opening lies floor on which the robot can stand whole: one passes through, not up to the wall.
-            bare_floor([room], openings, 2 * radius + cell, cell),
+            # Wide openings must be free in the middle, seen from both of their rooms: so both agree on where to pass.
+            bare_floor([room], openings, 2 * radius + cell, cell, PASS_WIDTH),
             radius,
             step,
             height,

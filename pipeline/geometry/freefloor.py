@@ -71,21 +71,26 @@ class Walk:
         return part / np.maximum(total, 1)
 
 
-def bare_floor(rooms: Sequence[Room], openings: Sequence[Opening], depth: float, cell: float) -> Floor:
-    """Rasterise rooms of one storey and the passages through walls, `depth` [m] to both sides of the walls' centre lines."""
+def bare_floor(rooms: Sequence[Room], openings: Sequence[Opening], depth: float, cell: float, widest: float = np.inf) -> Floor:
+    """Rasterise rooms of one storey and the passages through walls, `depth` [m] to both sides of the walls' centre lines.
+
+    Passages are narrowed to `widest` [m] about their middles.
+    """
     raster = Raster.around([r.polygon for r in rooms], cell, depth + cell)
     room = np.full(raster.shape, -1, np.int16)
     for number, r in enumerate(rooms):
         room[raster.fill(raster.empty(), [r.polygon])] = number
     free = room >= 0
-    raster.fill(free, [passage(o, depth) for o in openings if o.kind in PASSABLE])
+    raster.fill(free, [passage(o, depth, widest) for o in openings if o.kind in PASSABLE])
     return Floor(raster, room, free)
 
 
-def passage(opening: Opening, depth: float) -> Floats:
-    """Return the rectangle (4, 2) that an opening cuts, `depth` [m] to both sides of its segment."""
+def passage(opening: Opening, depth: float, widest: float = np.inf) -> Floats:
+    """Return the rectangle (4, 2) that an opening cuts, `depth` [m] to both sides of its segment, at most `widest` [m]."""
     a, b = opening.segment
     along = (b - a) / max(opening.width, 1e-9)
+    spare = max(0.0, opening.width - widest) / 2
+    a, b = a + spare * along, b - spare * along
     n = depth * np.array([-along[1], along[0]])
     return np.array([a - n, b - n, b + n, a + n])
 
