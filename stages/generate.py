@@ -5,10 +5,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from pipeline import params
 from pipeline.execution import single_thread
 from pipeline.floorplan import parse
-from pipeline.homes.factory import load_factory
+from pipeline.homes.factory import open_factory
 from pipeline.homes.request import Request
 from pipeline.manifest import digest
 from pipeline.shards import Header, commit_library, commit_shard, gather, open_or_create, require_prompt
@@ -19,7 +18,7 @@ def main(root: Path, *, prompt: str, out: Path, seed: int = 0) -> None:
     asked = require_prompt(prompt)
     parse(asked)
     single_thread()
-    factory = load_factory(root, params.read(root / "params.yaml"), seed)
+    factory = open_factory(root, seed)
     header = Header(seed, 1, factory.shard_size, factory.licence, {**factory.digests, "prompts": digest(asked)})
     with open_or_create(out, header) as dataset:
         if dataset.missing():

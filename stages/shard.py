@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from functools import lru_cache, partial
+from functools import partial
 from pathlib import Path
 
-from pipeline import params
 from pipeline.execution import map_shards, track
 from pipeline.floorplan import parse
-from pipeline.homes.factory import Factory, load_factory
+from pipeline.homes.factory import open_factory
 from pipeline.homes.request import Request
 from pipeline.manifest import digest
 from pipeline.shards import Header, Mix, ShardContent, commit_library, commit_shard, gather, open_or_create, read_mix
@@ -32,7 +31,7 @@ def main(
     mix = read_mix(prompts) if prompts else Mix()
     for asked in mix.prompts:
         parse(asked)  # what cannot be understood is refused now, not after hours
-    factory = opened(root, seed)
+    factory = open_factory(root, seed)
     header = Header(seed, count, factory.shard_size, factory.licence, {**factory.digests, "prompts": mix.digest()})
     with open_or_create(out or Path("datasets") / str(seed), header) as dataset:
         commit_library(dataset, factory.write_library)
@@ -55,16 +54,10 @@ def requests(mix: Mix, seed: int, indices: range) -> tuple[Request, ...]:
 def make_shard(root: Path, seed: int, job: Job) -> ShardContent:
     """Make one shard: the step that workers run, in batches of a chunk."""
     number, asked = job
-    factory = opened(root, seed)
+    factory = open_factory(root, seed)
     return gather(number, ((o.rows, o.files) for chunk in chunks(asked, factory.chunk) for o in factory.make(chunk)))
 
 
 def chunks(asked: tuple[Request, ...], size: int) -> Iterator[tuple[Request, ...]]:
     """Cut a shard's requests into the batches that are sampled together."""
     return (asked[i : i + size] for i in range(0, len(asked), size))
-
-
-@lru_cache(maxsize=1)
-def opened(root: Path, seed: int) -> Factory:
-    """Return this process's factory: models and library are loaded once."""
-    return load_factory(root, params.read(root / "params.yaml"), seed)

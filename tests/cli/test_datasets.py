@@ -43,9 +43,8 @@ def factory(monkeypatch, tmp_path):
 
     monkeypatch.chdir(tmp_path)
     paper = Paper(3)
-    monkeypatch.setattr(shard, "opened", lambda _root, seed: setattr(paper, "seed", seed) or paper)
-    monkeypatch.setattr(generate, "load_factory", lambda _root, _tree, seed: setattr(paper, "seed", seed) or paper)
-    monkeypatch.setattr("pipeline.params.read", lambda *_: {})
+    monkeypatch.setattr(shard, "open_factory", lambda _root, seed: setattr(paper, "seed", seed) or paper)
+    monkeypatch.setattr(generate, "open_factory", lambda _root, seed: setattr(paper, "seed", seed) or paper)
     return paper
 
 
