@@ -15,8 +15,8 @@ from tqdm import tqdm
 
 from pipeline import params
 from pipeline.corpus.front_writer import DIALECTS, scene_json
-from pipeline.corpus.furniture.catalogue import Catalogue, catalogue
-from pipeline.corpus.future_writer import write_future
+from pipeline.corpus.furniture.catalogue import Model, catalogue
+from pipeline.corpus.future_writer import info, write_model
 from pipeline.corpus.houses import mess
 from pipeline.corpus.houses.house import make_house
 from pipeline.corpus.houses.stock import Stock
@@ -61,7 +61,11 @@ def tasks(folder: Path, seed: int, settings: CorpusSettings) -> Iterator[tuple[i
     for name in ("3D-FRONT", "3D-FUTURE-model"):
         (front / name).mkdir(parents=True)
     (folder / "partnet").mkdir()
-    yield len(models.future), partial(_future, models, front / "3D-FUTURE-model")
+    for start in range(0, len(models.future), BATCH):
+        part = models.future[start : start + BATCH]
+        yield len(part), partial(_future, part, front / "3D-FUTURE-model")
+    records = [info(model) for model in models.future]
+    (front / "3D-FUTURE-model" / "model_info.json").write_text(json.dumps(records, indent=1) + "\n", encoding="utf-8")
     for start in range(0, len(models.partnet), BATCH):
         part = models.partnet[start : start + BATCH]
         yield len(part), partial(_partnet, part, folder / "partnet")
@@ -98,12 +102,13 @@ def write_houses(folder: Path, seed: int, settings: CorpusSettings, indices: ran
     return len(indices)
 
 
-def _future(models: Catalogue, folder: Path) -> int:
-    write_future(models.future, folder)
-    return len(models.future)
+def _future(models: Sequence[Model], folder: Path) -> int:
+    for model in models:
+        write_model(model, folder / model.model_id)
+    return len(models)
 
 
-def _partnet(models: Sequence[object], folder: Path) -> int:
+def _partnet(models: Sequence[Model], folder: Path) -> int:
     write_partnet(models, folder)
     return len(models)
 

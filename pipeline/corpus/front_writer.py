@@ -124,13 +124,11 @@ def mesh_record(surface: shell.Surface, uid: str, material: str, dialect: Dialec
     faces: list[int] = []
     for k, quad in enumerate(surface.quads):
         n = GARBAGE_NORMAL if surface.type == "Floor" and dialect == "0.4" else _normal(quad)
-        width = math.dist(quad[0], quad[1])
-        for (x, y, z), (u, v) in zip(
-            quad, ((0, 0), (width, 0), (width, math.dist(quad[1], quad[2])), (0, math.dist(quad[1], quad[2]))), strict=True
-        ):
-            xyz += [_r(x), _r(z), _r(-y)]
+        for x, y, z in quad:
+            xyz += [round(x, 5), round(z, 5), round(0.0 - y, 5)]
             normal += n
-            uv += [_r(u), _r(v)]
+        width, height = round(math.dist(quad[0], quad[1]), 3), round(math.dist(quad[1], quad[2]), 3)
+        uv += [0, 0, width, 0, width, height, 0, height]
         faces += [4 * k, 4 * k + 1, 4 * k + 2, 4 * k, 4 * k + 2, 4 * k + 3]
     record = {
         "aid": [],

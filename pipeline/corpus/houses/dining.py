@@ -83,7 +83,7 @@ def _place(arranger: Arranger, table: Model, chair: Model, count: int) -> bool:
     depth = table.size[1] + 2 * (chair.size[1] + gap)
     x0, y0, x1, y1 = space.bounds
     best: tuple[float, Spot] | None = None
-    for _ in range(60):
+    for _ in range(45):
         yaw = float(rng.choice([0.0, math.pi / 2]))
         half = (width / 2 + 0.08, depth / 2 + 0.08) if yaw == 0.0 else (depth / 2 + 0.08, width / 2 + 0.08)
         spare = (x1 - x0 - 2 * half[0], y1 - y0 - 2 * half[1])

@@ -69,7 +69,7 @@ def furnish_room(seed: int, index: int, number: int, plan: Plan, stock: Stock, s
         if best is None or score < best[0]:
             best = score, space
         if score == (0, 0, 0):
-            break
+            return tuple(space.items)
     assert best is not None
     return tidied(best[1])
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
 from pipeline.corpus.houses.arranger import FRONTS, Arranger
 from pipeline.corpus.houses.records import Model
-from pipeline.corpus.houses.space import Spot, ahead, on_side
+from pipeline.corpus.houses.space import ahead, on_side
 
 FRONT = 0.75
 """Free floor before a run: an open door and a cook [m]."""
@@ -23,7 +21,7 @@ def furnish_kitchen(arranger: Arranger) -> None:
     middle = wanted[1:]
     arranger.rng.shuffle(middle)
     wanted = [*middle[:1], "sink_cabinet", *middle[1:], "kitchen_cabinet", "kitchen_cabinet", "kitchen_cabinet"]
-    if arranger.chance(0.5):
+    if arranger.chance(0.65):
         wanted = ["refrigerator", *wanted]
     left = run(arranger, wanted)
     if any(c != "kitchen_cabinet" for c in left):
@@ -69,23 +67,30 @@ def run(arranger: Arranger, wanted: list[str]) -> list[str]:
 
 
 def above(arranger: Arranger, side: int, placed: list[tuple[Model, float]]) -> None:
-    """Hang wall units over the base units, clear of windows, and stand a microwave on one base unit."""
+    """Hang wall units over a run, clear of windows and fridge, and stand a microwave on one base unit."""
+    base = [(model, s) for model, s in placed if model.category != "refrigerator"]
+    if not base:
+        return
+    hang(arranger, side, min(s - m.size[0] / 2 for m, s in base), max(s + m.size[0] / 2 for m, s in base))
     space = arranger.space
-    microwave = arranger.chance(0.5) and not any(i.model.category == "microwave" for i in space.items)
-    edge = -math.inf
-    for model, s in sorted(placed, key=lambda p: p[1]):
-        category = model.category
-        if category == "refrigerator":
-            continue
-        low, high = max(edge, s - model.size[0] / 2), s + model.size[0] / 2
-        unit = arranger.pick("wall_cabinet", width=high - low, height=space.height - HUNG_AT - 0.1)
-        if unit is not None and category != "oven" and arranger.chance(0.85):
-            spot = on_side(space, side, min(high, low + (high - low)) - unit.size[0] / 2 - SEAM, unit.size[1], 0.004)
-            if space.try_add(unit, spot, HUNG_AT):
-                edge = high
-        if category == "kitchen_cabinet" and microwave:
+    if arranger.chance(0.5) or any(i.model.category == "microwave" for i in space.items):
+        return
+    for model, s in base:
+        if model.category == "kitchen_cabinet":
             oven = arranger.pick("microwave", width=model.size[0] - 0.02, depth=model.size[1] - 0.02)
-            if oven is not None:
-                top = on_side(space, side, s, oven.size[1], 0.05)
-                if space.try_add(oven, Spot(top.x, top.y, top.yaw), model.size[2] + 0.001):
-                    microwave = False
+            spot = None if oven is None else on_side(space, side, s, oven.size[1], 0.05)
+            if oven is not None and spot is not None and space.try_add(oven, spot, model.size[2] + 0.001):
+                return
+
+
+def hang(arranger: Arranger, side: int, low: float, high: float) -> None:
+    """Fill the wall above a run from `low` to `high` along it with wall units; here and there one is left out."""
+    space = arranger.space
+    tallest = space.height - HUNG_AT - 0.1
+    for a, b in space.spans(space.sides[side], 0.42, 0.0, HUNG_AT, HUNG_AT + 0.7):
+        at, end = max(a, low), min(b, high)
+        while (unit := arranger.pick("wall_cabinet", width=end - at - SEAM, height=tallest)) is not None:
+            spot = on_side(space, side, at + SEAM + unit.size[0] / 2, unit.size[1], 0.004)
+            if arranger.chance(0.85):
+                space.try_add(unit, spot, HUNG_AT)
+            at += SEAM + unit.size[0]

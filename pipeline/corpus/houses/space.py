@@ -22,6 +22,8 @@ EPSILON = 1e-4
 STEP = 0.5
 """Free floor before an opening [m]; less before a wide one in a room narrower than NARROW, such as a balcony."""
 NARROW = 1.7
+LEAF_TOP = 2.12
+"""Nothing hangs lower than this where a door leaf swings [m]."""
 LOW_PIECE = 0.65
 """What is no higher than this may stand before any window [m]."""
 
@@ -110,6 +112,7 @@ class Space:
         self.sides = [_side(p, q) for p, q in zip(self.polygon, self.polygon[1:] + self.polygon[:1], strict=True)]
         self.solids: list[tuple[Rect, float, float]] = [(r, -FAR, FAR) for r in outside_rects(self.polygon)]
         self.keeps: list[Rect] = []
+        self.sweeps: list[Rect] = []
         self.panes: list[tuple[Rect, float]] = []
         self.doors: list[tuple[float, float]] = []
         self.items: list[Item] = []
@@ -130,6 +133,8 @@ class Space:
         narrow = min(self.bounds[2] - self.bounds[0], self.bounds[3] - self.bounds[1]) < NARROW
         step = 0.35 if narrow and opening.width > 1.0 else STEP
         self.keeps.append(side.strip(low - 0.03, high + 0.03, 0.0, max((high - low) + 0.05, step) if swings_here else step))
+        if swings_here:
+            self.sweeps.append(self.keeps[-1])
         self.doors.append(side.point((low + high) / 2, 0.36))
 
     def fits(self, box: Rect, low: float, high: float) -> bool:
@@ -137,6 +142,8 @@ class Space:
         if any(meets(box, r) and low < z1 - EPSILON and z0 < high - EPSILON for r, z0, z1 in self.solids):
             return False
         if low < LOW and any(meets(box, r) for r in self.keeps):
+            return False
+        if low < LEAF_TOP and any(meets(box, r) for r in self.sweeps):
             return False
         return self.blind or not any(high > sill + 0.05 and meets(box, r) for r, sill in self.panes)
 
