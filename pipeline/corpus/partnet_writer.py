@@ -141,7 +141,9 @@ def link_records(shape: Shape, frame: Frame) -> list[LinkRecord]:
     body = f"link_{count + len(handles)}"
     records.append(LinkRecord(body, "base", None, np.zeros(3), _components(shape.base, number), "", (0.0, -1.0, 0.0)))
     return [
-        record if record.parent else LinkRecord(record.name, body, record.mover, record.origin, record.components, record.part, record.outward)
+        record
+        if record.parent
+        else LinkRecord(record.name, body, record.mover, record.origin, record.components, record.part, record.outward)
         for record in records
     ]
 
@@ -248,7 +250,9 @@ def _words(model: Model, links: Sequence[LinkRecord]) -> list[tuple[str, str, st
 
 def _gapartnet_words(links: Sequence[LinkRecord], body: str) -> list[tuple[str, str, str]]:
     """Return the lines of semantics_gapartnet.txt: part classes for semantics, handles fixed."""
-    return [(k.name, JOINT_WORDS[k.mover.type], k.part) if k.mover else (k.name, "fixed" if k.part else "heavy", k.part or body) for k in links]
+    return [
+        (k.name, JOINT_WORDS[k.mover.type], k.part) if k.mover else (k.name, "fixed" if k.part else "heavy", k.part or body) for k in links
+    ]
 
 
 def annotation(links: Sequence[LinkRecord], frame: Frame) -> list[dict[str, Any]]:

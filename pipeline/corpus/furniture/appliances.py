@@ -1,5 +1,7 @@
 """Appliances: refrigerator, oven, dishwasher, microwave, washing machine."""
 
+# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
+
 from __future__ import annotations
 
 import math
@@ -42,13 +44,13 @@ def refrigerator(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     return Shape(base, shape.movers)
 
 
-def _plane(movers: tuple[Mover, ...], size: Size, stand: float) -> float:
+def _plane(size: Size, stand: float) -> float:
     """Return the y of the fronts' faces [m]."""
     return -size[1] / 2 + stand
 
 
 def oven(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A range with a hob, dials, a glazed door and a drawer, or a tower of two ovens."""
+    """Build a range with a hob, dials, a glazed door and a drawer, or a tower of two ovens."""
     w, d, h = size
     outside = _finish(rng)
     style = FrontStyle("dark_glass", "bar", outside, STEEL if outside is not STEEL else GRAPHITE, thickness=0.03)
@@ -62,7 +64,7 @@ def oven(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
         cells = (Cell("blank", 0.09, 0, flat), Cell("flap", 0.3, 1), Cell("flap", 0.4, 2))
     shape = case((w, d, h - hob), [Column(1, cells)], how)
     plate = next(p.solid.bounds() for p in shape.base if p.name.endswith("_blank"))
-    z, face = (plate[0, 2] + plate[1, 2]) / 2, _plane(shape.movers, size, stand)
+    z, face = (plate[0, 2] + plate[1, 2]) / 2, _plane(size, stand)
     count = 4 if form == "range" else 2
     xs = np.linspace(-0.38 * w, 0.38 * w, count + 1)
     movers = [knob(f"knob_{k}", (float(x), face, z), 0.019, STEEL) for k, x in enumerate(xs) if k != count // 2 or count % 2]
@@ -70,30 +72,36 @@ def oven(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     movers.append(button("button_0", (0.062, 0.08), (z - 0.008, z + 0.008), face, PLASTIC))
     if form == "range":
         zone = Finish("hob_zone", (0.10, 0.10, 0.105), 0.3, density=2500)
-        rings = [revolve([(r, h - hob), (r, h)], 20, (sx * 0.23 * w, 0.03 + sy * 0.2 * d))[0] for sx in (-1, 1) for sy, r in ((-1, 0.075), (1, 0.09))]
+        rings = [
+            revolve([(r, h - hob), (r, h)], 20, (sx * 0.23 * w, 0.03 + sy * 0.2 * d))[0]
+            for sx in (-1, 1)
+            for sy, r in ((-1, 0.075), (1, 0.09))
+        ]
         base += pieces("hob_zones", rings, zone)
     racks = tuple(replace(p, finish=STEEL) if "_board_" in p.name else p for p in base)
     return Shape(racks, shape.movers + tuple(movers))
 
 
 def dishwasher(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A door that folds down under a strip with buttons, and racks inside."""
-    w, d, h = size
+    """Build a door that folds down under a strip with buttons, and racks inside."""
+    _w, _d, _h = size
     outside = _finish(rng)
     style = FrontStyle("slab", pick(rng, "bar flat"), outside, STEEL if outside is not STEEL else GRAPHITE, thickness=0.03)  # type: ignore[arg-type]
     how = Case(outside, style, "plinth", 0.08, PLASTIC, outside, 0.025, board=0.03)
     shape = case(size, [Column(1, (Cell("blank", 0.12), Cell("flap", 1.0, 2)))], how)
     plate = next(p.solid.bounds() for p in shape.base if p.name.endswith("_blank"))
-    z, face = float(plate[:, 2].mean()), _plane(shape.movers, size, reach(style.handle))
-    movers = [button(f"button_{k}", (x - 0.011, x + 0.011), (z - 0.009, z + 0.009), face, PLASTIC) for k, x in enumerate((0.12, 0.155, 0.19))]
+    z, face = float(plate[:, 2].mean()), _plane(size, reach(style.handle))
+    movers = [
+        button(f"button_{k}", (x - 0.011, x + 0.011), (z - 0.009, z + 0.009), face, PLASTIC) for k, x in enumerate((0.12, 0.155, 0.19))
+    ]
     base = tuple(replace(p, finish=STEEL) if "_board_" in p.name else p for p in shape.base)
     base += pieces("display", box((-0.05, 0.05), (face - 0.002, face), (z - 0.012, z + 0.012)), DARK_GLASS)
     return Shape(base, shape.movers + tuple(movers))
 
 
 def microwave(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A glazed door hinged at the left, a panel with buttons and a dial at the right, a turntable inside."""
-    w, d, h = size
+    """Build a glazed door hinged at the left, a panel with buttons and a dial at the right, a turntable inside."""
+    w, d, _h = size
     outside = (ENAMEL, GRAPHITE, STEEL)[int(rng.integers(3))]
     style = FrontStyle("dark_glass", "flat", outside, STEEL if outside is not STEEL else GRAPHITE, thickness=0.024)
     plain = replace(style, panel="slab")
@@ -101,22 +109,30 @@ def microwave(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     columns = [Column(0.74, (Cell("left"),)), Column(0.26, (Cell("blank", 1, 0, plain),))]
     shape = case(size, columns, how)
     plate = next(p.solid.bounds() for p in shape.base if p.name.endswith("_blank"))
-    x, face = float(plate[:, 0].mean()), _plane(shape.movers, size, reach("flat"))
+    x, face = float(plate[:, 0].mean()), _plane(size, reach("flat"))
     z0, z1 = plate[0, 2], plate[1, 2]
     movers = [knob("knob_0", (x, face, z0 + 0.26 * (z1 - z0)), 0.021, STEEL)]
     for k in range(4):
         bx, bz = x + (-1 + 2 * (k % 2)) * 0.019, z0 + (0.52 + 0.12 * (k // 2)) * (z1 - z0)
-        movers.append(button(f"button_{k}", (bx - 0.012, bx + 0.012), (bz - 0.009, bz + 0.009), face, PLASTIC_WHITE if outside is GRAPHITE else PLASTIC))
+        movers.append(
+            button(
+                f"button_{k}", (bx - 0.012, bx + 0.012), (bz - 0.009, bz + 0.009), face, PLASTIC_WHITE if outside is GRAPHITE else PLASTIC
+            )
+        )
     feet = [revolve([(0.012, 0.0), (0.015, 0.012)], 10, (sx * 0.42 * w, sy * 0.3 * d))[0] for sx in (-1, 1) for sy in (-1, 1)]
     cavity = next(p.solid.bounds() for p in shape.movers[0].pieces if p.name == "front_frame")
     table = revolve([(0.02, 0.027), (0.02, 0.035), (0.11, 0.035), (0.12, 0.042)], 20, (float(cavity[:, 0].mean()), 0.03))
-    base = shape.base + pieces("feet", feet, PLASTIC) + pieces("display", box((x - 0.035, x + 0.035), (face - 0.002, face), (z1 - 0.05, z1 - 0.02)), DARK_GLASS)
+    base = (
+        shape.base
+        + pieces("feet", feet, PLASTIC)
+        + pieces("display", box((x - 0.035, x + 0.035), (face - 0.002, face), (z1 - 0.05, z1 - 0.02)), DARK_GLASS)
+    )
     base += pieces("turntable", table, GLASS)
     return Shape(base, shape.movers + tuple(movers))
 
 
 def washing_machine(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A round door in front of a drum, a detergent drawer, a dial and buttons."""
+    """Build a round door in front of a drum, a detergent drawer, a dial and buttons."""
     w, d, h = size
     outside = ENAMEL if rng.random() < 0.65 else GRAPHITE
     t, proud = 0.02, 0.045
@@ -129,7 +145,10 @@ def washing_machine(rng: np.random.Generator, form: str, size: Size, scheme: Sch
     rims = [[np.column_stack([o[:, 0], o[:, 1], np.full(24, k * t)]) for k in (0, 1)] for o in (square, hole)]
     front = [s.turned("x", math.pi / 2).moved((0, face + t, 0)) for s in shell(rims[0], rims[1])]
     base += pieces("front", front, outside) + pieces("kick", box(x, (face + 0.01, face + 0.03), (0.012, 0.1)), outside)
-    drum = [s.turned("x", math.pi / 2).moved((0, 0, zc)) for s in ring((r - 0.025, r - 0.025), (r - 0.035, r - 0.035), (-d / 2 + 0.1, -face - t - 0.002), 24)]
+    drum = [
+        s.turned("x", math.pi / 2).moved((0, 0, zc))
+        for s in ring((r - 0.025, r - 0.025), (r - 0.035, r - 0.035), (-d / 2 + 0.1, -face - t - 0.002), 24)
+    ]
     end = revolve([(r - 0.03, -d / 2 + 0.085), (r - 0.03, -d / 2 + 0.1)], 24)[0].turned("x", math.pi / 2).moved((0, 0, zc))
     base += pieces("drum", [*drum, end], STEEL)
     drawer_x = (-w / 2 + 0.03, -w / 2 + 0.2)
@@ -150,10 +169,16 @@ def washing_machine(rng: np.random.Generator, form: str, size: Size, scheme: Sch
 def _cabinet(x: tuple[float, float], y: tuple[float, float], h: float, t: float, finish: Finish) -> tuple[Piece, ...]:
     """Return the housing without its front: sides, top, bottom, back and four feet."""
     made = pieces("top", box(x, y, (h - 0.03, h), 0.004), finish)
-    made += pieces("sides", [box((x[0], x[0] + t), (y[0] + t, y[1]), (0.012, h - 0.03)), box((x[1] - t, x[1]), (y[0] + t, y[1]), (0.012, h - 0.03))], finish)
+    made += pieces(
+        "sides",
+        [box((x[0], x[0] + t), (y[0] + t, y[1]), (0.012, h - 0.03)), box((x[1] - t, x[1]), (y[0] + t, y[1]), (0.012, h - 0.03))],
+        finish,
+    )
     made += pieces("bottom", box((x[0] + t, x[1] - t), (y[0] + 0.03, y[1]), (0.012, 0.03)), finish)
     made += pieces("back", box((x[0] + t, x[1] - t), (y[1] - 0.01, y[1]), (0.03, h - 0.03)), finish)
-    feet = [revolve([(0.02, 0.0), (0.02, 0.012)], 10, (px, py))[0] for px in (x[0] + 0.06, x[1] - 0.06) for py in (y[0] + 0.06, y[1] - 0.06)]
+    feet = [
+        revolve([(0.02, 0.0), (0.02, 0.012)], 10, (px, py))[0] for px in (x[0] + 0.06, x[1] - 0.06) for py in (y[0] + 0.06, y[1] - 0.06)
+    ]
     return made + pieces("feet", feet, PLASTIC)
 
 
@@ -170,10 +195,14 @@ def _on_square(angle: float, x: tuple[float, float], z: tuple[float, float], zc:
 def _porthole(r: float, zc: float, face: float, finish: Finish) -> Mover:
     """Return the round door: a rim and a bulging glass, hinged at the left."""
     rim = [s.turned("x", math.pi / 2).moved((0, face, zc)) for s in ring((r, r - 0.012), (r - 0.055, r - 0.055), (0.003, 0.035), 24)]
-    glass = [s.turned("x", math.pi / 2).moved((0, face, zc)) for s in revolve([(r - 0.055, 0.006), (r - 0.055, 0.02), (0.6 * r, 0.032)], 24)]
+    glass = [
+        s.turned("x", math.pi / 2).moved((0, face, zc)) for s in revolve([(r - 0.055, 0.006), (r - 0.055, 0.02), (0.6 * r, 0.032)], 24)
+    ]
     grip = box((r - 0.045, r - 0.012), (face - 0.043, face - 0.03), (zc - 0.05, zc + 0.05), 0.003)
     rim_finish = Finish("door_rim", (0.3, 0.3, 0.31), 0.3, 0.5, density=1500)
-    made: tuple[Piece, ...] = pieces("door_rim", rim, rim_finish) + pieces("door_glass", glass, replace(DARK_GLASS, opacity=0.45, name="door_glass"))
+    made: tuple[Piece, ...] = pieces("door_rim", rim, rim_finish) + pieces(
+        "door_glass", glass, replace(DARK_GLASS, opacity=0.45, name="door_glass")
+    )
     made += pieces("handle", grip, finish if finish is not ENAMEL else PLASTIC_WHITE, "line_fixed_handle")
     return Mover("door", made, "revolute", (0, 0, -1), (-r, face - 0.035, zc), math.radians(100), "hinge_door", "door")
 
@@ -193,5 +222,10 @@ def _detergent(x: tuple[float, float], z: tuple[float, float], face: float, t: f
     ]
     made = pieces("front", box(x, (face, face + t), z, 0.003), finish) + pieces("drawer_box", solids, PLASTIC_WHITE)
     middle = (x[0] + x[1]) / 2
-    made += pieces("handle", box((middle - 0.045, middle + 0.045), (face - 0.012, face), (z[1] - 0.012, z[1] - 0.004), 0.001), PLASTIC, "line_fixed_handle")
+    made += pieces(
+        "handle",
+        box((middle - 0.045, middle + 0.045), (face - 0.012, face), (z[1] - 0.012, z[1] - 0.004), 0.001),
+        PLASTIC,
+        "line_fixed_handle",
+    )
     return Mover("detergent", made, "prismatic", (0, -1, 0), (middle, rect.y, (z[0] + z[1]) / 2), 0.15, "slider_drawer", "drawer")

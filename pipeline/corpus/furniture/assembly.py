@@ -15,7 +15,7 @@ from pipeline.corpus.furniture.finishes import Finish, Scheme
 from pipeline.corpus.furniture.shape import Mover, Piece, Shape, fitted, frozen
 from pipeline.entities.asset import Asset, Joint, Link, Material, Mesh
 
-LICENCE = "Apache-2.0"
+LICENCE = "CC0-1.0"
 
 
 def scheme_of(model: Model) -> Scheme:
@@ -84,9 +84,7 @@ def _link(name: str, parts: tuple[Piece, ...], palette: list[Finish]) -> Link:
 
 
 def _mesh(piece: Piece, palette: list[Finish]) -> Mesh:
-    return Mesh(
-        piece.name, piece.solid.vertices.astype(np.float32), piece.solid.triangles(), palette.index(piece.finish), None, piece.part
-    )
+    return Mesh(piece.name, piece.solid.vertices.astype(np.float32), piece.solid.triangles(), palette.index(piece.finish), None, piece.part)
 
 
 def mass_properties(parts: tuple[Piece, ...]) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:

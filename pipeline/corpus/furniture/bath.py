@@ -1,5 +1,7 @@
 """Bathroom fixtures: toilet, bathtub, shower."""
 
+# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
+
 from __future__ import annotations
 
 import math
@@ -10,7 +12,7 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.finishes import CERAMIC, GLASS, PLASTIC_WHITE, STEEL, Scheme
 from pipeline.corpus.furniture.fronts import lid
 from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, ring, rod, rounded, shell, slab, stack
+from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, ring, rod, shell, slab, stack
 from pipeline.corpus.furniture.storage import Size
 
 
@@ -21,7 +23,7 @@ def _oval(rx: float, y: tuple[float, float], z: float, n: int = 24) -> NDArray[n
 
 
 def toilet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A bowl on a foot, a tank with a button or a lever, and a seat and a lid that fold up against the tank."""
+    """Build a bowl on a foot, a tank with a button or a lever, and a seat and a lid that fold up against the tank."""
     w, d, h = size
     rim = 0.52 * h
     tank_y = (d / 2 - 0.27 * d, d / 2)
@@ -66,7 +68,10 @@ def toilet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
 def _lever(w: float, y: float, h: float) -> Mover:
     """Return the flushing lever at the front of the tank: turns down by half a radian."""
     at = (-0.34 * w, y - 0.004, h - 0.1)
-    solids = [rod((at[0], at[1], at[2]), (at[0], at[1] - 0.014, at[2]), 0.010, n=10), box((at[0] - 0.004, at[0] + 0.075), (at[1] - 0.022, at[1] - 0.014), (at[2] - 0.007, at[2] + 0.007), 0.002)]
+    solids = [
+        rod((at[0], at[1], at[2]), (at[0], at[1] - 0.014, at[2]), 0.010, n=10),
+        box((at[0] - 0.004, at[0] + 0.075), (at[1] - 0.022, at[1] - 0.014), (at[2] - 0.007, at[2] + 0.007), 0.002),
+    ]
     return Mover("lever", pieces("lever", solids, STEEL), "revolute", (0, 1, 0), at, 0.5, "hinge_handle", "lever")
 
 
@@ -76,7 +81,11 @@ def _rays(w: float, d: float) -> NDArray[np.float64]:
     Outlines along the same rays make staves with plane sides, so each is convex.
     """
     corner = math.atan2(d, w)
-    return np.sort(np.concatenate([np.linspace(0, 2 * math.pi, 28, endpoint=False), [corner, math.pi - corner, math.pi + corner, -corner + 2 * math.pi]]))
+    return np.sort(
+        np.concatenate(
+            [np.linspace(0, 2 * math.pi, 28, endpoint=False), [corner, math.pi - corner, math.pi + corner, -corner + 2 * math.pi]]
+        )
+    )
 
 
 def _along(angles: NDArray[np.float64], a: float, b: float, power: float) -> NDArray[np.float64]:
@@ -93,7 +102,7 @@ def _to_rectangle(angles: NDArray[np.float64], a: float, b: float) -> NDArray[np
 
 
 def bathtub(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A tub with aprons, or one that stands free on its oval foot; a tap at its head."""
+    """Build a tub with aprons, or one that stands free on its oval foot; a tap at its head."""
     w, d, h = size
     rim = h if form == "free" else h - 0.12
     angles = _rays(w, d)
@@ -117,14 +126,20 @@ def bathtub(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
 
 
 def shower(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A tray with two glass walls, an open entrance at the front, a rail with a head and a mixer at the back wall."""
+    """Build a tray with two glass walls, an open entrance at the front, a rail with a head and a mixer at the back wall."""
     w, d, h = size
     tray = 0.06
     metal = scheme.handle
     rimmed = [
         box((-w / 2, w / 2), (-d / 2, d / 2), (0, tray - 0.02), 0.003),
-        *(box((s * w / 2 - 0.04 if s > 0 else -w / 2, w / 2 if s > 0 else -w / 2 + 0.04), (-d / 2, d / 2), (tray - 0.02, tray)) for s in (-1, 1)),
-        *(box((-w / 2 + 0.04, w / 2 - 0.04), (-d / 2, -d / 2 + 0.04) if s < 0 else (d / 2 - 0.04, d / 2), (tray - 0.02, tray)) for s in (-1, 1)),
+        *(
+            box((s * w / 2 - 0.04 if s > 0 else -w / 2, w / 2 if s > 0 else -w / 2 + 0.04), (-d / 2, d / 2), (tray - 0.02, tray))
+            for s in (-1, 1)
+        ),
+        *(
+            box((-w / 2 + 0.04, w / 2 - 0.04), (-d / 2, -d / 2 + 0.04) if s < 0 else (d / 2 - 0.04, d / 2), (tray - 0.02, tray))
+            for s in (-1, 1)
+        ),
     ]
     base: tuple[Piece, ...] = pieces("tray", rimmed, CERAMIC)
     side = -1 if rng.random() < 0.5 else 1
@@ -132,9 +147,15 @@ def shower(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     base += pieces("glass_side", box(gx, (-d / 2 + 0.012, d / 2 - 0.002), (tray, h)), GLASS)
     half = (side * (w / 2 - 0.018), side * (w / 2 - 0.02 - 0.42 * w))
     base += pieces("glass_front", box((min(half), max(half)), (-d / 2 + 0.008, -d / 2 + 0.016), (tray, h)), GLASS)
-    posts = [box((half[1] - 0.01, half[1] + 0.01), (-d / 2 + 0.002, -d / 2 + 0.022), (tray, h), 0.002), box((gx[0] - 0.006, gx[1] + 0.006), (-d / 2 + 0.002, -d / 2 + 0.022), (tray, h), 0.002)]
+    posts = [
+        box((half[1] - 0.01, half[1] + 0.01), (-d / 2 + 0.002, -d / 2 + 0.022), (tray, h), 0.002),
+        box((gx[0] - 0.006, gx[1] + 0.006), (-d / 2 + 0.002, -d / 2 + 0.022), (tray, h), 0.002),
+    ]
     base += pieces("posts", posts, metal)
-    pole: list[Solid] = [rod((0, d / 2 - 0.05, 0.95), (0, d / 2 - 0.05, h - 0.01), 0.011, n=8), rod((0, d / 2 - 0.05, h - 0.02), (0, d / 2 - 0.33, h - 0.02), 0.010, n=8)]
+    pole: list[Solid] = [
+        rod((0, d / 2 - 0.05, 0.95), (0, d / 2 - 0.05, h - 0.01), 0.011, n=8),
+        rod((0, d / 2 - 0.05, h - 0.02), (0, d / 2 - 0.33, h - 0.02), 0.010, n=8),
+    ]
     pole += [rod((0, d / 2, z), (0, d / 2 - 0.05, z), 0.009, n=8) for z in (1.0, h - 0.12)]
     pole += revolve([(0.11, h - 0.055), (0.11, h - 0.045), (0.03, h - 0.022)], 20, (0.0, d / 2 - 0.33))
     base += pieces("rail", pole, metal) + pieces("mixer", box((-0.13, 0.13), (d / 2 - 0.05, d / 2), (1.02, 1.07), 0.008), metal)

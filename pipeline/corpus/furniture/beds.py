@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 from pipeline.corpus.furniture.finishes import BEDDING, MATTRESS, Scheme
@@ -13,7 +15,7 @@ Span = tuple[float, float]
 
 
 def bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A bed with a panel, padded, slatted or tufted headboard."""
+    """Build a bed with a panel, padded, slatted or tufted headboard."""
     w, d, h = size
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
     lift = float(rng.uniform(0.1, 0.16))
@@ -49,11 +51,13 @@ def bedding(rng: np.random.Generator, x: Span, y: Span, low: float, top: float, 
     fold = y[1] - 0.62
     duvet = cushion((x[0] - 0.005, x[1] + 0.005), (y[0] + 0.003, fold), (top - 0.09, top + 0.045), 0.045, 3)
     made += pieces("duvet", duvet, BEDDING if rng.random() < 0.5 else scheme.second)
-    made += pieces("duvet_fold", cushion((x[0] - 0.003, x[1] + 0.003), (fold - 0.2, fold + 0.02), (top + 0.02, top + 0.065), 0.022), BEDDING)
+    made += pieces(
+        "duvet_fold", cushion((x[0] - 0.003, x[1] + 0.003), (fold - 0.2, fold + 0.02), (top + 0.02, top + 0.065), 0.022), BEDDING
+    )
     count = 2 if x[1] - x[0] > 1.25 else 1
     xs = np.linspace(x[0] + 0.03, x[1] - 0.03, count + 1)
     pillows = []
-    for a, b in zip(xs[:-1], xs[1:], strict=True):
+    for a, b in itertools.pairwise(xs):
         middle, half = (a + b) / 2, min(0.36, 0.48 * (b - a))
         pad = cushion((middle - half, middle + half), (y[1] - 0.47, y[1] - 0.07), (top + 0.005, top + 0.135), 0.06, 3)
         pillows.append(pad.turned("x", 0.16, (0, y[1] - 0.47, top)))
@@ -72,16 +76,14 @@ def _headboard(form: str, x: Span, y: Span, lift: float, h: float) -> list[Solid
         count = max(2, round(w / 0.45))
         xs = np.linspace(x[0], x[1], count + 1)
         return [box(x, (y[0] + 0.05, y[1]), (lift, h - 0.01), 0.006)] + [
-            cushion((a + 0.001, b - 0.001), (y[0], y[0] + 0.06), (lift + 0.12, h), 0.028) for a, b in zip(xs[:-1], xs[1:], strict=True)
+            cushion((a + 0.001, b - 0.001), (y[0], y[0] + 0.06), (lift + 0.12, h), 0.028) for a, b in itertools.pairwise(xs)
         ]
     if form == "tufted":
         rows, columns = 3, max(3, round(w / 0.35))
         xs, zs = np.linspace(x[0] + 0.05, x[1] - 0.05, columns + 1), np.linspace(lift + 0.2, h - 0.05, rows + 1)
         frame = [cushion(x, (y[0] + 0.045, y[1]), (lift, h), 0.025)]
         pads = [
-            cushion((a, b), (y[0], y[0] + 0.06), (c, e), 0.028, 1)
-            for a, b in zip(xs[:-1], xs[1:], strict=True)
-            for c, e in zip(zs[:-1], zs[1:], strict=True)
+            cushion((a, b), (y[0], y[0] + 0.06), (c, e), 0.028, 1) for a, b in itertools.pairwise(xs) for c, e in itertools.pairwise(zs)
         ]
         return frame + pads
     posts = [box((px, px + 0.05), y, (0, h), 0.006) for px in (x[0], x[1] - 0.05)]
@@ -91,11 +93,15 @@ def _headboard(form: str, x: Span, y: Span, lift: float, h: float) -> list[Solid
         xs = np.linspace(inner[0] + 0.05, inner[1] - 0.05, count)
         rails = [box(inner, (y[0] + 0.008, y[1] - 0.008), z, 0.004) for z in ((lift + 0.12, lift + 0.2), (h - 0.09, h - 0.01))]
         return posts + rails + [box((a - 0.014, a + 0.014), (y[0] + 0.015, y[1] - 0.015), (lift + 0.2, h - 0.09), 0.002) for a in xs]
-    return [*posts, box(inner, (y[0] + 0.012, y[1] - 0.008), (lift, h - 0.02), 0.006), box((x[0] - 0.0, x[1]), y, (h - 0.001, h + 0.02), 0.006)]
+    return [
+        *posts,
+        box(inner, (y[0] + 0.012, y[1] - 0.008), (lift, h - 0.02), 0.006),
+        box((x[0] - 0.0, x[1]), y, (h - 0.001, h + 0.02), 0.006),
+    ]
 
 
 def kids_bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A bed with rails all around, a bunk bed with a ladder, or a bed in a house's frame. The sleeper lies along x where it is wide."""
+    """Build a bed with rails all around, a bunk bed with a ladder, or a bed in a house's frame. The sleeper lies along x where it is wide."""
     w, d, h = size
     if form == "bunk":
         return _bunk(rng, size, scheme)
@@ -141,17 +147,21 @@ def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
         base += pieces(f"berth_{k}", boards, scheme.front)
         if deep > 0.5:
             base += tuple(
-                Piece(f"{p.name}_{k}", p.solid, p.finish) for p in bedding(rng, inner_x, inner_y, z + 0.04, z + 0.19, scheme) if p.name != "throw"
+                Piece(f"{p.name}_{k}", p.solid, p.finish)
+                for p in bedding(rng, inner_x, inner_y, z + 0.04, z + 0.19, scheme)
+                if p.name != "throw"
             )
     ladder: list[Solid] = []
     lx = (x[1] - 0.56, x[1] - 0.12)
     ladder += [box((px - 0.02, px + 0.02), (-d / 2, -d / 2 + 0.05), (0, min(h, levels[1] + 0.5)), 0.004) for px in lx]
-    ladder += [box((lx[0] + 0.02, lx[1] - 0.02), (-d / 2 + 0.008, -d / 2 + 0.045), (z, z + 0.03), 0.003) for z in np.arange(0.25, levels[1], 0.27)]
+    ladder += [
+        box((lx[0] + 0.02, lx[1] - 0.02), (-d / 2 + 0.008, -d / 2 + 0.045), (z, z + 0.03), 0.003) for z in np.arange(0.25, levels[1], 0.27)
+    ]
     return Shape(base + pieces("ladder", ladder, scheme.accent))
 
 
 def _house(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
-    """A low bed inside a frame with a pitched roof."""
+    """Build a low bed inside a frame with a pitched roof."""
     w, d, h = size
     t = 0.05
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from pipeline.corpus.furniture import appliances, bath, beds, decor, kitchen, lamps, seating, sofas, storage, tables
+from pipeline.corpus.furniture import appliances, bath, beds, decor, desks, kitchen, lamps, seating, shelves, sofas, storage, tables
 from pipeline.corpus.furniture.finishes import Scheme
 from pipeline.corpus.furniture.shape import Shape
 
@@ -18,8 +18,8 @@ BUILDERS: Mapping[str, Builder] = {
     "cabinet": storage.cabinet,
     "children_cabinet": storage.children_cabinet,
     "sideboard": storage.sideboard,
-    "bookshelf": storage.bookshelf,
-    "shelf": storage.shelf,
+    "bookshelf": shelves.bookshelf,
+    "shelf": shelves.shelf,
     "tv_stand": storage.tv_stand,
     "wine_cabinet": storage.wine_cabinet,
     "shoe_cabinet": storage.shoe_cabinet,
@@ -44,8 +44,8 @@ BUILDERS: Mapping[str, Builder] = {
     "shower": bath.shower,
     "plant": decor.plant,
     "trash_can": decor.trash_can,
-    "desk": tables.desk,
-    "dressing_table": tables.dressing_table,
+    "desk": desks.desk,
+    "dressing_table": desks.dressing_table,
     "dining_table": tables.dining_table,
     "coffee_table": tables.coffee_table,
     "corner_side_table": tables.corner_side_table,
@@ -67,7 +67,14 @@ BUILDERS: Mapping[str, Builder] = {
 # 3D-FUTURE's word for the main material where it does not follow from the wood or lacquer; "soft": that of the cover.
 MATERIALS: Mapping[str, str] = dict.fromkeys(
     [
-        "lounge_chair", "dressing_chair", "stool", "multi_seat_sofa", "loveseat_sofa", "armchair", "l_shaped_sofa", "lazy_sofa",
+        "lounge_chair",
+        "dressing_chair",
+        "stool",
+        "multi_seat_sofa",
+        "loveseat_sofa",
+        "armchair",
+        "l_shaped_sofa",
+        "lazy_sofa",
         "chaise_longue_sofa",
     ],
     "soft",

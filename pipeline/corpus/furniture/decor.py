@@ -1,5 +1,7 @@
 """Plants and waste bins."""
 
+# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
+
 from __future__ import annotations
 
 import math
@@ -27,7 +29,7 @@ def leaf(root: NDArray[np.float64], tip: NDArray[np.float64], width: float, sag:
 
 
 def plant(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A pot with a bush, a palm, or upright leaves."""
+    """Build a pot with a bush, a palm, or upright leaves."""
     w, d, h = size
     pot_r, pot_h = min(0.34 * w, 0.2), min(0.32 * h, 0.36)
     pot = ring((0.75 * pot_r, pot_r), (0.75 * pot_r - 0.012, pot_r - 0.012), (0.012, pot_h), 20)
@@ -53,7 +55,7 @@ def plant(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
         for k in range(22):
             a, share = k * golden, (k + 0.5) / 22
             reach = 0.5 * w * (0.5 + 0.5 * share)
-            root = np.array([0.01, 0.0, trunk - 0.02])
+            root = np.array([0.01 + 0.012 * math.cos(a), 0.012 * math.sin(a), trunk - 0.02 + 0.02 * share])
             tip = np.array([reach * math.cos(a), reach * math.sin(a), trunk + (top - trunk) * (1 - 1.3 * share**2)])
             leaves.append(leaf(root, tip, 0.06, 0.10 * share * (top - trunk) + 0.02))
     else:
@@ -74,7 +76,7 @@ def plant(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
 
 
 def trash_can(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A bin with a lid: round with a hinge at the back, square, or with a lid that slides."""
+    """Build a bin with a lid: round with a hinge at the back, square, or with a lid that slides."""
     w, d, h = size
     finish = (STEEL, PLASTIC, Finish("enamel_bin", shade(rng, (0.6, 0.58, 0.52), 0.3), 0.35, density=900))[int(rng.integers(3))]
     top = h - 0.035

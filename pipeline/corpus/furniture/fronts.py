@@ -95,7 +95,9 @@ def handle(style: FrontStyle, rect: Rect, *, upright: bool, at: tuple[float, flo
     if style.handle == "none":
         return ()
     if style.handle == "knob":
-        made = [s.turned("x", math.pi / 2) for s in revolve([(0.006, 0.0), (0.0055, 0.010), (0.013, 0.018), (0.014, 0.022), (0.010, 0.026)], 12)]
+        made = [
+            s.turned("x", math.pi / 2) for s in revolve([(0.006, 0.0), (0.0055, 0.010), (0.013, 0.018), (0.014, 0.022), (0.010, 0.026)], 12)
+        ]
         made = [s.moved((x, y, z)) for s in made]
         part = "round_fixed_handle"
     elif style.handle == "edge":

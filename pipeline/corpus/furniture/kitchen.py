@@ -1,7 +1,10 @@
 """Kitchen units and bathroom vanities: base and wall cabinets, counters with a sink bowl and tap."""
 
+# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
+
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -26,7 +29,7 @@ def unit_style(rng: np.random.Generator, scheme: Scheme, panels: str = "slab sha
 
 
 def kitchen_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A base unit with doors, drawers, or a drawer over doors, under a counter."""
+    """Build a base unit with doors, drawers, or a drawer over doors, under a counter."""
     how = unit_style(rng, scheme)
     w = size[0]
     count = max(1, round(w / 0.6))
@@ -41,7 +44,7 @@ def kitchen_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Sch
 
 
 def wall_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A wall unit with doors, plain or glazed."""
+    """Build a wall unit with doors, plain or glazed."""
     how = replace(unit_style(rng, scheme, "glass" if form == "glass" else "slab shaker"), feet="none", feet_height=0.0)
     how = replace(how, top=scheme.body, top_thickness=0.018)
     w = size[0]
@@ -49,7 +52,9 @@ def wall_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     return case(size, [cells] * max(1, round(w / 0.9)), how)
 
 
-def bowl(x: tuple[float, float], y: tuple[float, float], top: float, depth: float, finish: Finish, wall: float = 0.006) -> tuple[Piece, ...]:
+def bowl(
+    x: tuple[float, float], y: tuple[float, float], top: float, depth: float, finish: Finish, wall: float = 0.006
+) -> tuple[Piece, ...]:
     """Return an open basin under the rectangle `x`, `y`: a bottom and four walls whose rims end at `top` [m]."""
     low = top - depth
     solids = [
@@ -64,7 +69,14 @@ def bowl(x: tuple[float, float], y: tuple[float, float], top: float, depth: floa
     return pieces("bowl", solids, finish) + pieces("drain", drain, STEEL)
 
 
-def counter(x: tuple[float, float], y: tuple[float, float], hole_x: tuple[float, float], hole_y: tuple[float, float], z: tuple[float, float], finish: Finish) -> tuple[Piece, ...]:
+def counter(
+    x: tuple[float, float],
+    y: tuple[float, float],
+    hole_x: tuple[float, float],
+    hole_y: tuple[float, float],
+    z: tuple[float, float],
+    finish: Finish,
+) -> tuple[Piece, ...]:
     """Return a worktop with a rectangular hole, as four convex strips."""
     strips = [
         box((x[0], hole_x[0]), y, z, 0.002),
@@ -81,7 +93,7 @@ def tap(x: float, y: float, z: float, height: float, reach_out: float, finish: F
     steps = np.linspace(0, math.pi * 0.85, 6)
     radius = reach_out / 2
     points = [(y, z)] + [(y - radius + radius * math.cos(a), z + height - radius + radius * math.sin(a)) for a in steps]
-    solids: list[Solid] = [rod((x, a[0], a[1]), (x, b[0], b[1]), r, n=10) for a, b in zip(points[:-1], points[1:], strict=True)]
+    solids: list[Solid] = [rod((x, a[0], a[1]), (x, b[0], b[1]), r, n=10) for a, b in itertools.pairwise(points)]
     solids += revolve([(0.024, z), (0.022, z + 0.02)], 14, (x, y))
     solids.append(rod((x, y, z + 0.06), (x + 0.06, y, z + 0.085), 0.006, n=8))
     return pieces("tap", solids, finish)
@@ -93,7 +105,7 @@ def _topless(shape: Shape, top: Sequence[Piece]) -> Shape:
 
 
 def sink_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A base unit whose counter holds a bowl and a tap, over doors."""
+    """Build a base unit whose counter holds a bowl and a tap, over doors."""
     w, d, h = size
     tall = 0.28 if rng.random() < 0.5 else 0.22
     body = h - tall  # the tap stands above the counter
@@ -112,7 +124,7 @@ def sink_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
 
 
 def vanity(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A washstand: doors or drawers under a counter with a vessel or an inset basin and a tap."""
+    """Build a washstand: doors or drawers under a counter with a vessel or an inset basin and a tap."""
     w, d, h = size
     body = h - 0.17
     legs = rng.random() < 0.4

@@ -1,7 +1,10 @@
 """Chairs and stools."""
 
+# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
+
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -33,7 +36,7 @@ def chair_legs(rng: np.random.Generator, half: Spot, height: float, kind: str) -
 
 
 def dining_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A chair of wood, with a shell, upholstered, or with spindles."""
+    """Build a chair of wood, with a shell, upholstered, or with spindles."""
     w, d, h = size
     seat = min(0.47, 0.56 * h)
     kind = pick(rng, "square round metal") if form != "wood" else "square"
@@ -46,9 +49,19 @@ def dining_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         shell = scheme.soft if rng.random() < 0.5 else scheme.front
         base += pieces("seat", cushion((-x, x), (-y, y - 0.08), (seat - 0.05, seat), 0.024), shell)
         back = [
-            cushion((-0.96 * x, 0.96 * x), (back_y - 0.03, back_y + 0.02), (seat - 0.03, h), 0.02).turned("x", -lean / (h - seat), (0, back_y, seat)),
+            cushion((-0.96 * x, 0.96 * x), (back_y - 0.03, back_y + 0.02), (seat - 0.03, h), 0.02).turned(
+                "x", -lean / (h - seat), (0, back_y, seat)
+            ),
         ]
-        wings = [cushion((s * x - 0.03 if s > 0 else -x, x if s > 0 else -x + 0.03), (-0.2 * y, back_y), (seat - 0.03, seat + 0.4 * (h - seat)), 0.014) for s in (-1, 1)]
+        wings = [
+            cushion(
+                (s * x - 0.03 if s > 0 else -x, x if s > 0 else -x + 0.03),
+                (-0.2 * y, back_y),
+                (seat - 0.03, seat + 0.4 * (h - seat)),
+                0.014,
+            )
+            for s in (-1, 1)
+        ]
         return Shape(base + pieces("back", back, shell) + (pieces("arms", wings, shell) if rng.random() < 0.5 else ()))
     rail = box((-x + 0.01, x - 0.01), (-y + 0.02, back_y + 0.01), (seat - 0.075, seat - 0.04), 0.003)
     base += pieces("seat_frame", rail, frame if kind != "metal" else scheme.body)
@@ -67,7 +80,9 @@ def dining_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
 
     if form == "upholstered":
         z0 = seat + 0.12 * (h - seat)
-        pad = cushion((-0.96 * x, 0.96 * x), (back_y - 0.03, back_y + 0.03), (z0, h), 0.024).turned("x", -lean / (h - seat), (0, back_y, z0))
+        pad = cushion((-0.96 * x, 0.96 * x), (back_y - 0.03, back_y + 0.03), (z0, h), 0.024).turned(
+            "x", -lean / (h - seat), (0, back_y, z0)
+        )
         return Shape(base + pieces("back", pad, scheme.soft) + pieces("posts", [s.scaled(np.array([0.9, 1, 0.96])) for s in posts], frame))
     bars = [bar(0.82, 1.0)]
     if form == "spindle":
@@ -79,33 +94,50 @@ def dining_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
 
 
 def lounge_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """An easy chair in a wooden frame, an office chair on castors, or a wing chair."""
+    """Build an easy chair in a wooden frame, an office chair on castors, or a wing chair."""
     if form == "office":
         return _office_chair(size, scheme)
     w, d, h = size
     seat = min(0.42, 0.48 * h)
     x, y = w / 2, d / 2
     if form == "wing":
-        legs = [rod((s * (x - 0.07), t * (y - 0.08), 0), (s * (x - 0.09), t * (y - 0.1), 0.16), 0.013, 0.022, 10) for s in (-1, 1) for t in (-1, 1)]
+        legs = [
+            rod((s * (x - 0.07), t * (y - 0.08), 0), (s * (x - 0.09), t * (y - 0.1), 0.16), 0.013, 0.022, 10)
+            for s in (-1, 1)
+            for t in (-1, 1)
+        ]
         base = pieces("legs", legs, scheme.accent)
         base += pieces("body", cushion((-x + 0.02, x - 0.02), (-y + 0.02, y - 0.02), (0.16, seat - 0.09), 0.03), scheme.soft)
         base += pieces("seat", cushion((-x + 0.1, x - 0.1), (-y, y - 0.14), (seat - 0.09, seat + 0.02), 0.04), scheme.soft)
         base += pieces("back", cushion((-x + 0.06, x - 0.06), (y - 0.15, y), (seat - 0.08, h), 0.05), scheme.soft)
-        arms = [cushion((s * x - 0.1 if s > 0 else -x, x if s > 0 else -x + 0.1), (-y + 0.04, y - 0.05), (0.2, seat + 0.17), 0.035) for s in (-1, 1)]
-        wings = [cushion((s * x - 0.07 if s > 0 else -x + 0.01, x - 0.01 if s > 0 else -x + 0.07), (y - 0.3, y - 0.04), (seat + 0.1, h - 0.03), 0.03) for s in (-1, 1)]
+        arms = [
+            cushion((s * x - 0.1 if s > 0 else -x, x if s > 0 else -x + 0.1), (-y + 0.04, y - 0.05), (0.2, seat + 0.17), 0.035)
+            for s in (-1, 1)
+        ]
+        wings = [
+            cushion(
+                (s * x - 0.07 if s > 0 else -x + 0.01, x - 0.01 if s > 0 else -x + 0.07), (y - 0.3, y - 0.04), (seat + 0.1, h - 0.03), 0.03
+            )
+            for s in (-1, 1)
+        ]
         return Shape(base + pieces("arms", arms + wings, scheme.soft))
     frame: list[Solid] = []
     arm = seat + 0.17
     for s in (-1, 1):
         px = s * (x - 0.02)
-        frame += [beam((px, -y + 0.04, 0), (px, -y + 0.06, arm - 0.025), 0.032, 0.04), beam((px, y - 0.03, 0), (px, y - 0.12, arm - 0.025), 0.032, 0.04)]
+        frame += [
+            beam((px, -y + 0.04, 0), (px, -y + 0.06, arm - 0.025), 0.032, 0.04),
+            beam((px, y - 0.03, 0), (px, y - 0.12, arm - 0.025), 0.032, 0.04),
+        ]
         frame += [box((px - 0.028 if s > 0 else -x, x if s > 0 else px + 0.028), (-y + 0.01, y - 0.06), (arm - 0.025, arm), 0.006)]
         frame += [box((px - 0.012, px + 0.012), (-y + 0.06, y - 0.06), (seat - 0.17, seat - 0.12), 0.003)]
     frame += [box((-x + 0.03, x - 0.03), (sy - 0.012, sy + 0.012), (seat - 0.17, seat - 0.12), 0.003) for sy in (-y + 0.09, y - 0.15)]
     tilt = -0.22
     pads = [
         cushion((-x + 0.045, x - 0.045), (-y + 0.02, y - 0.16), (seat - 0.12, seat), 0.04),
-        cushion((-x + 0.045, x - 0.045), (y - 0.26, y - 0.14), (seat - 0.02, h / math.cos(tilt) - 0.01), 0.045).turned("x", tilt, (0, y - 0.2, seat)),
+        cushion((-x + 0.045, x - 0.045), (y - 0.26, y - 0.14), (seat - 0.02, h / math.cos(tilt) - 0.01), 0.045).turned(
+            "x", tilt, (0, y - 0.2, seat)
+        ),
     ]
     return Shape(pieces("frame", frame, scheme.accent) + pieces("pads", pads, scheme.soft))
 
@@ -139,12 +171,15 @@ def _office_chair(size: Size, scheme: Scheme) -> Shape:
 
 
 def dressing_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A round upholstered stool, with a low back where it is tall."""
+    """Build a round upholstered stool, with a low back where it is tall."""
     w, d, h = size
     seat = h if h < 0.56 else min(0.48, 0.6 * h)
     half = 0.36 * w
     base = pieces("legs", chair_legs(rng, (half, half * d / w), seat - 0.09, pick(rng, "round metal")), scheme.accent)
-    pad = [s.scaled(np.array([1.0, d / w, 1.0])) for s in revolve([(0.47 * w, seat - 0.09), (0.5 * w, seat - 0.07), (0.5 * w, seat - 0.03), (0.45 * w, seat)], 24)]
+    pad = [
+        s.scaled(np.array([1.0, d / w, 1.0]))
+        for s in revolve([(0.47 * w, seat - 0.09), (0.5 * w, seat - 0.07), (0.5 * w, seat - 0.03), (0.45 * w, seat)], 24)
+    ]
     base += pieces("seat", pad, scheme.soft)
     if h > seat + 0.1:
         back = cushion((-0.46 * w, 0.46 * w), (0.5 * d - 0.07, 0.5 * d), (seat - 0.03, h), 0.034)
@@ -153,7 +188,7 @@ def dressing_chair(rng: np.random.Generator, form: str, size: Size, scheme: Sche
 
 
 def chinese_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """The official's chair: round posts, stretchers near the floor, a splat, arms and a yoke."""
+    """Build the official's chair: round posts, stretchers near the floor, a splat, arms and a yoke."""
     w, d, h = size
     seat = min(0.5, 0.55 * h)
     x, y = 0.5 * w - 0.03, 0.5 * d - 0.03
@@ -174,7 +209,7 @@ def chinese_chair(rng: np.random.Generator, form: str, size: Size, scheme: Schem
 
 
 def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A high seat on legs with a foot ring, or on a column."""
+    """Build a high seat on legs with a foot ring, or on a column."""
     w, d, h = size
     seat = h if h < 0.85 else 0.72 * h
     made: tuple[Piece, ...]
@@ -187,27 +222,35 @@ def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
         half = (0.45 * w, 0.45 * d)
         made = pieces("legs", chair_legs(rng, half, seat - 0.06, kind), scheme.accent)
         z = 0.3 * seat
-        made += pieces("foot_rest", [rod((-half[0], sy * half[1] * 0.97, z), (half[0], sy * half[1] * 0.97, z), 0.01, n=8) for sy in (-1, 1)], scheme.handle)
+        made += pieces(
+            "foot_rest",
+            [rod((-half[0], sy * half[1] * 0.97, z), (half[0], sy * half[1] * 0.97, z), 0.01, n=8) for sy in (-1, 1)],
+            scheme.handle,
+        )
     made += pieces("seat", cushion((-0.5 * w, 0.5 * w), (-0.5 * d, 0.42 * d), (seat - 0.07, seat), 0.028), scheme.soft)
     if h > seat + 0.1:
         back = cushion((-0.45 * w, 0.45 * w), (0.5 * d - 0.05, 0.5 * d), (seat + 0.05, h), 0.022)
-        struts = [box((s * 0.3 * w - 0.012, s * 0.3 * w + 0.012), (0.38 * d, 0.5 * d - 0.03), (seat - 0.06, seat + 0.12), 0.002) for s in (-1, 1)]
+        struts = [
+            box((s * 0.3 * w - 0.012, s * 0.3 * w + 0.012), (0.38 * d, 0.5 * d - 0.03), (seat - 0.06, seat + 0.12), 0.002) for s in (-1, 1)
+        ]
         made += pieces("back", back, scheme.soft) + pieces("struts", struts, scheme.handle)
     return Shape(made)
 
 
 def _foot_ring(radius: float, z: float) -> list[Solid]:
     points = circle(radius, 12)
-    return [rod((*points[i], z), (*points[(i + 1) % 12], z), 0.009, n=6) for i in range(12)] + [
-        rod((0, 0, z), (0, -radius, z), 0.009, n=6)
-    ]
+    return [rod((*points[i], z), (*points[(i + 1) % 12], z), 0.009, n=6) for i in range(12)] + [rod((0, 0, z), (0, -radius, z), 0.009, n=6)]
 
 
 def stool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A bed-end bench, an ottoman or a stool on legs."""
+    """Build a bed-end bench, an ottoman or a stool on legs."""
     w, d, h = size
     if form == "ottoman":
-        foot = pieces("feet", [rod((s * 0.38 * w, t * 0.36 * d, 0), (s * 0.38 * w, t * 0.36 * d, 0.05), 0.02, 0.02, 10) for s in (-1, 1) for t in (-1, 1)], scheme.accent)
+        foot = pieces(
+            "feet",
+            [rod((s * 0.38 * w, t * 0.36 * d, 0), (s * 0.38 * w, t * 0.36 * d, 0.05), 0.02, 0.02, 10) for s in (-1, 1) for t in (-1, 1)],
+            scheme.accent,
+        )
         body = pieces("body", cushion((-0.5 * w, 0.5 * w), (-0.5 * d, 0.5 * d), (0.05, 0.68 * h), 0.02), scheme.soft)
         return Shape(foot + body + pieces("seat", cushion((-0.5 * w, 0.5 * w), (-0.5 * d, 0.5 * d), (0.68 * h, h), 0.045), scheme.soft))
     half = (0.5 * w - 0.05, 0.5 * d - 0.05)
@@ -217,5 +260,5 @@ def stool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     base += pieces("frame", box((-0.47 * w, 0.47 * w), (-0.45 * d, 0.45 * d), (h - thick - 0.03, h - thick), 0.003), scheme.body)
     count = max(1, round(w / 0.6)) if form == "bench" else 1
     xs = np.linspace(-0.5 * w, 0.5 * w, count + 1)
-    pads = [cushion((a + 0.001, b - 0.001), (-0.5 * d, 0.5 * d), (h - thick, h), 0.035) for a, b in zip(xs[:-1], xs[1:], strict=True)]
+    pads = [cushion((a + 0.001, b - 0.001), (-0.5 * d, 0.5 * d), (h - thick, h), 0.035) for a, b in itertools.pairwise(xs)]
     return Shape(base + pieces("seat", pads, scheme.soft))

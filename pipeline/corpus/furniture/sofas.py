@@ -1,6 +1,10 @@
 """Sofas, armchairs, chaises and bean bags."""
 
+# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
+
 from __future__ import annotations
+
+import itertools
 
 import numpy as np
 
@@ -11,7 +15,7 @@ from pipeline.corpus.furniture.storage import Size, pick
 
 
 def sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A frame on feet, arms, seat and back cushions, one per seat, and throw pillows."""
+    """Build a frame on feet, arms, seat and back cushions, one per seat, and throw pillows."""
     w, d, h = size
     seats = max(1, round((w - 0.4) / 0.72))
     seat = float(rng.uniform(0.40, 0.45)) * min(1.0, h / 0.78)
@@ -21,7 +25,9 @@ def sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     base = _feet((-w / 2, w / 2), (-d / 2, d / 2), lift, form, scheme)
     base += pieces("frame", cushion((-w / 2 + 0.01, w / 2 - 0.01), (-d / 2 + 0.02, d / 2 - 0.005), (lift, seat - 0.13), 0.02), scheme.soft)
     base += _arms(form, w, d, lift, seat, arm, h, scheme)
-    base += pieces("back", cushion((-w / 2 + 0.5 * arm, w / 2 - 0.5 * arm), (d / 2 - 0.6 * deep, d / 2), (lift + 0.01, h - 0.05), 0.045), scheme.soft)
+    base += pieces(
+        "back", cushion((-w / 2 + 0.5 * arm, w / 2 - 0.5 * arm), (d / 2 - 0.6 * deep, d / 2), (lift + 0.01, h - 0.05), 0.045), scheme.soft
+    )
     base += _cushions((-w / 2 + arm, w / 2 - arm), (-d / 2, d / 2 - 0.6 * deep), seat, h, seats, deep, scheme)
     if w > 1.2:
         base += _pillows(rng, w / 2 - arm, d / 2 - 1.5 * deep, seat, scheme)
@@ -53,10 +59,12 @@ def _arms(form: str, w: float, d: float, lift: float, seat: float, arm: float, h
     return pieces("arms", made, scheme.soft)
 
 
-def _cushions(x: tuple[float, float], y: tuple[float, float], seat: float, h: float, seats: int, deep: float, scheme: Scheme) -> tuple[Piece, ...]:
+def _cushions(
+    x: tuple[float, float], y: tuple[float, float], seat: float, h: float, seats: int, deep: float, scheme: Scheme
+) -> tuple[Piece, ...]:
     xs = np.linspace(x[0] + 0.002, x[1] - 0.002, seats + 1)
     pads, backs = [], []
-    for a, b in zip(xs[:-1], xs[1:], strict=True):
+    for a, b in itertools.pairwise(xs):
         pads.append(cushion((a + 0.002, b - 0.002), (y[0], y[1] - 0.3 * deep), (seat - 0.13, seat + 0.02), 0.05, 3))
         tilted = cushion((a + 0.004, b - 0.004), (y[1] - 0.75 * deep, y[1] - 0.02), (seat + 0.02, h), 0.06, 3)
         backs.append(tilted.turned("x", -0.1, (0, y[1] - 0.3 * deep, seat + 0.1)))
@@ -73,7 +81,7 @@ def _pillows(rng: np.random.Generator, x: float, y: float, seat: float, scheme: 
 
 
 def l_shaped_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A sofa along the back and a chaise that reaches forward at one end (`form`: left or right, seen from the front)."""
+    """Build a sofa along the back and a chaise that reaches forward at one end (`form`: left or right, seen from the front)."""
     w, d, h = size
     main = min(0.98, 0.55 * d)
     style = pick(rng, "track legs")
@@ -84,7 +92,9 @@ def l_shaped_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     chaise_x = (-w / 2, -w / 2 + long)
     base = _feet((-w / 2, w / 2), (y0, d / 2), lift, style, scheme) + _feet(chaise_x, (-d / 2, y0), lift, style, scheme)
     base += pieces("frame", cushion((-w / 2 + 0.01, w / 2 - 0.01), (y0 + 0.02, d / 2), (lift, seat - 0.13), 0.02), scheme.soft)
-    base += pieces("frame_chaise", cushion((chaise_x[0] + 0.01, chaise_x[1]), (-d / 2 + 0.02, y0 + 0.05), (lift, seat - 0.13), 0.02), scheme.soft)
+    base += pieces(
+        "frame_chaise", cushion((chaise_x[0] + 0.01, chaise_x[1]), (-d / 2 + 0.02, y0 + 0.05), (lift, seat - 0.13), 0.02), scheme.soft
+    )
     base += pieces("back", cushion((-w / 2, w / 2), (d / 2 - 0.6 * deep, d / 2), (lift, h - 0.05), 0.045), scheme.soft)
     top = seat + 0.2
     base += pieces("arms", cushion((w / 2 - arm, w / 2), (y0 + 0.01, d / 2 - 0.02), (lift, top), 0.04), scheme.soft)
@@ -102,7 +112,7 @@ def l_shaped_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Schem
 
 
 def lazy_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A bean bag with a raised back."""
+    """Build a bean bag with a raised back."""
     w, d, h = size
     seat = min(0.4, 0.55 * h)
     bag = revolve([(0.40 * w, 0.0), (0.48 * w, 0.25 * seat), (0.5 * w, 0.5 * seat), (0.46 * w, 0.82 * seat), (0.36 * w, seat)], 24)
@@ -112,7 +122,7 @@ def lazy_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
 
 
 def chaise_longue(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A long seat with a raised back at its end and one arm."""
+    """Build a long seat with a raised back at its end and one arm."""
     w, d, h = size
     seat = 0.42
     base = _feet((-w / 2, w / 2), (-d / 2, d / 2), 0.14, "legs", scheme)

@@ -122,8 +122,8 @@ def rounded(x: tuple[float, float], y: tuple[float, float], radius: float, steps
     for q, (cx, cy) in enumerate(((x[1], y[1]), (x[0], y[1]), (x[0], y[0]), (x[1], y[0]))):
         ox = cx - math.copysign(radius, cx - (x[0] + x[1]) / 2)
         oy = cy - math.copysign(radius, cy - (y[0] + y[1]) / 2)
-        for t in np.linspace(0, math.pi / 2, steps + 1) + q * math.pi / 2:
-            points.append((ox + radius * math.cos(t), oy + radius * math.sin(t)))
+        turn = np.linspace(0, math.pi / 2, steps + 1) + q * math.pi / 2
+        points += [(ox + radius * math.cos(t), oy + radius * math.sin(t)) for t in turn]
     return np.array(points)
 
 

@@ -1,4 +1,4 @@
-"""Storage furniture: nightstands, wardrobes, chests, sideboards, bookcases, TV stands, cabinets for wine, shoes and children."""
+"""Storage furniture: nightstands, wardrobes, chests, sideboards, TV stands, cabinets for wine, shoes and children."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pipeline.corpus.furniture.casework import Case, Cell, Column, Feet, case
 from pipeline.corpus.furniture.finishes import DARK_GLASS, LACQUERS, Finish, Scheme, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, HandleStyle, PanelStyle
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import box, rod
+from pipeline.corpus.furniture.solids import rod
 
 Size = Sequence[float]
 
@@ -22,7 +22,9 @@ def pick(rng: np.random.Generator, words: str) -> str:
     return str(rng.choice(words.split()))
 
 
-def front_style(rng: np.random.Generator, scheme: Scheme, panels: str = "slab slab shaker", handles: str = "bar flat knob edge") -> FrontStyle:
+def front_style(
+    rng: np.random.Generator, scheme: Scheme, panels: str = "slab slab shaker", handles: str = "bar flat knob edge"
+) -> FrontStyle:
     """Draw how the fronts of a model look."""
     panel: PanelStyle = pick(rng, panels)  # type: ignore[assignment]
     handle: HandleStyle = pick(rng, handles)  # type: ignore[assignment]
@@ -66,7 +68,7 @@ def wardrobe(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     style = front_style(rng, scheme, "slab slab shaker slats dark_glass", "bar flat edge bar knob")
     how = replace(case_style(rng, scheme, style, "plinth plinth square none", (0.08, 0.12)), board=0.02)
     count = max(1, round(size[0] / 0.95))
-    doors = (Cell("pair", 3.6, 1),)
+    doors: tuple[Cell, ...] = (Cell("pair", 3.6, 1),)
     if form == "doors_drawers":
         row = tuple(Cell("drawer", 0.42) for _ in range(int(rng.integers(1, 3))))
         doors = (*doors, *row)
@@ -93,7 +95,7 @@ def _rails(shape: Shape, scheme: Scheme) -> tuple[Piece, ...]:
 
 
 def cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A chest: a grid of drawers, drawers over doors, or doors."""
+    """Build a chest: a grid of drawers, drawers over doors, or doors."""
     style = front_style(rng, scheme)
     how = case_style(rng, scheme, style, "tapered square sled plinth", (0.08, 0.18))
     inner = size[2] - how.feet_height
@@ -104,14 +106,14 @@ def cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
         if rows >= 4 and count >= 2:  # a row of small drawers on top of wide ones
             columns = [Column(1, tuple(Cell("drawer", 0.7 if k == 0 else 1.0) for k in range(rows)))] * count
     elif form == "mixed":
-        columns = [Column(1, (Cell("drawer", 0.5), _doors(rng, size[0] / count, 1.5, 1))) for _ in range(count)]
+        columns = [Column(1, (Cell("drawer", 0.5), doors_of(rng, size[0] / count, 1.5, 1))) for _ in range(count)]
         columns[0] = Column(1, tuple(Cell("drawer") for _ in range(rows)))
     else:
-        columns = [Column(1, (_doors(rng, size[0] / count, 1.0, max(1, rows // 2)),)) for _ in range(count)]
+        columns = [Column(1, (doors_of(rng, size[0] / count, 1.0, max(1, rows // 2)),)) for _ in range(count)]
     return case(size, columns, how)
 
 
-def _doors(rng: np.random.Generator, width: float, share: float, shelves: int) -> Cell:
+def doors_of(rng: np.random.Generator, width: float, share: float, shelves: int) -> Cell:
     """Return a cell with one door, or a pair where it is wide."""
     if width > 0.56:
         return Cell("pair", share, shelves)
@@ -142,7 +144,7 @@ def children_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Sc
 
 
 def sideboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A low row of doors, doors around drawers, or a console on tall legs; tall ones carry a glazed hutch."""
+    """Build a low row of doors, doors around drawers, or a console on tall legs; tall ones carry a glazed hutch."""
     style = front_style(rng, scheme, "slab shaker slats slab")
     w, _, h = size
     count = max(2, min(4, round(w / 0.5)))
@@ -161,81 +163,8 @@ def sideboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     return case(size, columns, how)
 
 
-def bookshelf(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Open shelves, open shelves over doors, or glass doors."""
-    w, _, h = size
-    style = front_style(rng, scheme, "slab shaker")
-    how = replace(case_style(rng, scheme, style, "plinth plinth none square", (0.07, 0.1)), overhang=0.0)
-    if form == "ladder":
-        return ladder_shelf(size, scheme, max(4, round(h / 0.38)))
-    count = max(1, round(w / 0.8))
-    rows = max(3, round(h / 0.36))
-    if form == "open":
-        columns = [Column(1, (Cell("open", 1, rows - 1),)) for _ in range(count)]
-    elif form == "glass":
-        glass = replace(style, panel="glass")
-        door = _doors(rng, w / count, 1.0, rows - 2)
-        columns = [Column(1, (replace(door, panel=glass, share=3.0), Cell("drawer", 0.55))) for _ in range(count)]
-    else:
-        columns = [Column(1, (Cell("open", 1.9, rows - 3), _doors(rng, w / count, 0.9, 1))) for _ in range(count)]
-    shape = case(size, columns, how)
-    return Shape(shape.base + (books(rng, shape, scheme) if form == "open" else ()), shape.movers)
-
-
-BOOK_COLORS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dusty_blue")
-
-
-def books(rng: np.random.Generator, shape: Shape, scheme: Scheme) -> tuple[Piece, ...]:
-    """Return a few rows of books on the boards of open shelves."""
-    made: list[Piece] = []
-    palette = [Finish(f"book_{n}", LACQUERS[n], 0.8, density=600) for n in BOOK_COLORS[:4]]
-    boards = [p for p in shape.base if "_board_" in p.name or p.name == "bottom"]
-    for board in boards:
-        low, high = board.solid.bounds()
-        if rng.random() < 0.45 or high[0] - low[0] < 0.2:
-            continue
-        x, y = low[0] + 0.01 + float(rng.uniform(0, 0.4)) * (high[0] - low[0]), low[1] + 0.02
-        for _ in range(int(rng.integers(2, 6))):
-            t, tall, deep = float(rng.uniform(0.02, 0.05)), float(rng.uniform(0.16, 0.24)), float(rng.uniform(0.12, 0.17))
-            if x + t > high[0] - 0.01:
-                break
-            made += pieces(
-                "books", box((x, x + t), (y, min(y + deep, high[1])), (high[2], high[2] + tall)), palette[int(rng.integers(len(palette)))]
-            )
-            x += t + 0.0015
-    return tuple(made)
-
-
-def ladder_shelf(size: Size, scheme: Scheme, rows: int) -> Shape:
-    """Boards in two side frames of square posts, open at the back."""
-    w, d, h = size
-    t = 0.028
-    posts = [box((x, x + t), (y, y + t), (0, h), 0.002) for x in (-w / 2, w / 2 - t) for y in (-d / 2, d / 2 - t)]
-    rungs = [
-        box((x + 0.004, x + t - 0.004), (-d / 2 + t, d / 2 - t), (z, z + 0.03)) for x in (-w / 2, w / 2 - t) for z in (0.08, h - 0.06)
-    ]
-    base = pieces("frame", posts + rungs, scheme.accent)
-    for k in range(rows):
-        z = 0.12 + (h - 0.2) * k / (rows - 1)
-        base += pieces(f"board_{k}", box((-w / 2 + t, w / 2 - t), (-d / 2 + 0.002, d / 2 - 0.002), (z, z + 0.02), 0.002), scheme.body)
-    return Shape(base)
-
-
-def shelf(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A ladder shelf, a frame with uprights, or stacked cubes."""
-    if form == "cubes":
-        style = front_style(rng, scheme)
-        how = replace(case_style(rng, scheme, style, "none plinth", (0, 0)), overhang=0.0)
-        rows = max(1, round(size[2] / 0.36))
-        count = max(1, round(size[0] / 0.4))
-        columns = [Column(1, tuple(Cell("open") for _ in range(rows)))] * count
-        shape = case(size, columns, how, reserve=0.0)
-        return Shape(shape.base + books(rng, shape, scheme))
-    return ladder_shelf(size, scheme, max(2, round(size[2] / (0.3 if form == "frame" else 0.4))))
-
-
 def tv_stand(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A long low case of drawers, doors or both around an open middle."""
+    """Build a long low case of drawers, doors or both around an open middle."""
     style = front_style(rng, scheme, "slab slab shaker slats")
     w, _, h = size
     how = case_style(rng, scheme, style, "tapered sled square plinth", (0.06, min(0.18, 0.35 * h)))
@@ -262,10 +191,10 @@ def wine_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     rows = max(2, round(h / 0.4))
     glass = replace(style, panel="glass")
     if form == "glass":
-        door = _doors(rng, w / count, 2.0, rows)
+        door = doors_of(rng, w / count, 2.0, rows)
         columns = [Column(1, (replace(door, panel=glass), Cell("drawer", 0.35))) for _ in range(count)]
         return case(size, columns, how)
-    columns = [Column(1, (Cell("open", 1.3, 2), _doors(rng, w / count, 1.0, 1))) for _ in range(count)]
+    columns = [Column(1, (Cell("open", 1.3, 2), doors_of(rng, w / count, 1.0, 1))) for _ in range(count)]
     shape = case(size, columns, how)
     bottle = replace(DARK_GLASS, name="bottle", color=(0.02, 0.05, 0.025))
     made: list[Piece] = []

@@ -1,17 +1,16 @@
-"""Tables: dining, coffee, side and end tables, desks and dressing tables."""
+"""Tables: dining, coffee, side and end tables."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.corpus.furniture.casework import Case, Cell, Column, case
-from pipeline.corpus.furniture.finishes import GLASS, MARBLE, MIRROR, Finish, Scheme
-from pipeline.corpus.furniture.shape import Piece, Shape, joined, moved, pieces
+from pipeline.corpus.furniture.casework import Cell, Column, case
+from pipeline.corpus.furniture.finishes import GLASS, MARBLE, Finish, Scheme
+from pipeline.corpus.furniture.shape import Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, beam, box, circle, revolve, ring, rod, rounded, slab
 from pipeline.corpus.furniture.storage import Size, case_style, front_style, pick
 
@@ -41,7 +40,9 @@ def legs(rng: np.random.Generator, w: float, d: float, height: float, kind: str,
             elif kind == "tapered":
                 made.append(beam((x, y, 0), (x, y, height), thick, thick, 0.55))
             elif kind == "splayed":
-                made.append(rod((x + sx * inset * 0.7, y + sy * inset * 0.7, 0), (x - sx * 0.03, y - sy * 0.03, height), 0.014, 0.6 * thick, 10))
+                made.append(
+                    rod((x + sx * inset * 0.7, y + sy * inset * 0.7, 0), (x - sx * 0.03, y - sy * 0.03, height), 0.014, 0.6 * thick, 10)
+                )
             else:
                 profile = [(0.4 * thick, 0.0), (0.55 * thick, 0.08 * height), (0.42 * thick, 0.2 * height), (0.6 * thick, 0.75 * height)]
                 profile += [(0.45 * thick, 0.82 * height), (0.62 * thick, 0.86 * height), (0.62 * thick, height)]
@@ -61,7 +62,7 @@ def apron(w: float, d: float, z: tuple[float, float], inset: float, thick: float
 
 
 def legged(rng: np.random.Generator, size: Size, scheme: Scheme, *, kinds: str = "square tapered splayed turned") -> Shape:
-    """A top on an apron and four legs."""
+    """Build a top on an apron and four legs."""
     w, d, h = size
     t = float(rng.uniform(0.022, 0.04))
     kind = pick(rng, kinds)
@@ -89,13 +90,12 @@ def dining_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     x = 0.33 * w
     if form == "trestle":
         for s in (-1, 1):
-            for sy in (-1, 1):
-                solids.append(beam((s * x, sy * 0.4 * d, 0), (s * x, sy * 0.12 * d, h - t), 0.05, 0.06))
+            solids += [beam((s * x, sy * 0.4 * d, 0), (s * x, sy * 0.12 * d, h - t), 0.05, 0.06) for sy in (-1, 1)]
             solids.append(box((s * x - 0.025, s * x + 0.025), (-0.36 * d, 0.36 * d), (h - t - 0.04, h - t - 0.001), 0.004))
         solids.append(box((-x, x), (-0.02, 0.02), (0.35 * h, 0.35 * h + 0.07), 0.004))
     else:
-        for s in (-1, 1):
-            solids.append(box((s * (x + 0.06) - 0.03, s * (x + 0.06) + 0.03), (-0.4 * d, 0.4 * d), (0, h - t), 0.006))
+        middles = (-x - 0.06, x + 0.06)
+        solids += [box((m - 0.03, m + 0.03), (-0.4 * d, 0.4 * d), (0, h - t), 0.006) for m in middles]
         solids.append(box((-x - 0.03, x + 0.03), (-0.015, 0.015), (0.5 * h, h - t), 0.003))
     return Shape(base + pieces("trestle", solids, scheme.accent if form == "trestle" else scheme.body))
 
@@ -128,8 +128,18 @@ def coffee_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         if rng.random() < 0.5:
             body = revolve([(0.40 * w, 0.0), (0.43 * w, 0.03), (0.43 * w, h - 0.025)], n)
             return Shape(base + pieces("drum", body, scheme.body))
-        rods = [rod((*(0.42 * w * np.array([math.cos(a), math.sin(a)])), 0.015), (*(0.42 * w * np.array([math.cos(a), math.sin(a)])), h - 0.025), 0.006, n=6) for a in np.arange(n) * 2 * math.pi / n]
-        return Shape(base + pieces("foot", slab(circle(0.44 * w, 32), (0, 0.015), 0.003), scheme.handle) + pieces("rods", rods, scheme.handle))
+        rods = [
+            rod(
+                (*(0.42 * w * np.array([math.cos(a), math.sin(a)])), 0.015),
+                (*(0.42 * w * np.array([math.cos(a), math.sin(a)])), h - 0.025),
+                0.006,
+                n=6,
+            )
+            for a in np.arange(n) * 2 * math.pi / n
+        ]
+        return Shape(
+            base + pieces("foot", slab(circle(0.44 * w, 32), (0, 0.015), 0.003), scheme.handle) + pieces("rods", rods, scheme.handle)
+        )
     if form == "sled":
         t = float(rng.uniform(0.02, 0.035))
         base = pieces("top", slab(outline(rng, w, d), (h - t, h), 0.004), top_finish(rng, scheme, stone=0.3, glass=0.25))
@@ -149,7 +159,7 @@ def hoops(w: float, d: float, height: float, thick: float) -> list[Solid]:
 
 
 def cased_table(rng: np.random.Generator, size: Size, scheme: Scheme, *, drawer_height: float, count: int) -> Shape:
-    """A top over a shallow case of drawers on tall legs."""
+    """Build a top over a shallow case of drawers on tall legs."""
     style = front_style(rng, scheme, "slab slab shaker", "bar knob edge flat")
     how = case_style(rng, scheme, style, "square tapered sled", (0.1, 0.1))
     how = replace(how, feet_height=size[2] - drawer_height - how.top_thickness - how.board, inset=True, overhang=0.012)
@@ -179,7 +189,7 @@ def corner_side_table(rng: np.random.Generator, form: str, size: Size, scheme: S
 
 
 def round_end_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A round top on three legs or on a cage of rods."""
+    """Build a round top on three legs or on a cage of rods."""
     w, _, h = size
     if form == "drum":
         return coffee_table(rng, "drum", size, scheme)
@@ -191,92 +201,3 @@ def round_end_table(rng: np.random.Generator, form: str, size: Size, scheme: Sch
         solids.append(rod((*(0.42 * w * u), 0), (*(0.2 * w * u), h - 0.022), 0.012, 0.02, 10))
     solids += ring((0.3 * w, 0.3 * w), (0.3 * w - 0.012, 0.3 * w - 0.012), (0.4 * h, 0.4 * h + 0.012), 16)
     return Shape(base + pieces("legs", solids, scheme.accent))
-
-
-def desk(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A desk with a pedestal of drawers, a row of drawers, or a plain top; tall ones carry a shelf at the back."""
-    w, d, h = size
-    work = min(h, 0.78) if h > 0.95 else h
-    hutch = h - work
-    if form == "pedestal":
-        shape = _pedestal_desk(rng, (w, d, work), scheme)
-    elif form == "drawers":
-        shape = cased_table(rng, (w, d, work), scheme, drawer_height=0.11, count=2 if w < 1.5 else 3)
-    else:
-        shape = legged(rng, (w, d, work), scheme, kinds="square tapered splayed")
-        shape = Shape(shape.base + pieces("modesty", box((-0.44 * w, 0.44 * w), (0.3 * d, 0.3 * d + 0.015), (0.4 * work, work - 0.05)), scheme.body))
-    if hutch > 0.1:
-        shape = joined(shape, Shape(_hutch(w, d, work, hutch, scheme)))
-    return shape
-
-
-def _hutch(w: float, d: float, z: float, height: float, scheme: Scheme) -> tuple[Piece, ...]:
-    """Return a shelf that stands at the back of a desk."""
-    depth = min(0.24, 0.4 * d)
-    y = (d / 2 - depth, d / 2)
-    count = max(1, round(w / 0.7))
-    xs = np.linspace(-w / 2 + 0.01, w / 2 - 0.01 - 0.018, count + 1)
-    made = pieces("hutch_sides", [box((x, x + 0.018), y, (z, z + height - 0.018)) for x in xs], scheme.body)
-    made += pieces("hutch_top", box((-w / 2 + 0.01, w / 2 - 0.01), y, (z + height - 0.018, z + height), 0.002), scheme.body)
-    middle = z + 0.55 * height
-    if height > 0.3:
-        boards = [box((a + 0.018, b), (y[0] + 0.01, y[1]), (middle, middle + 0.016)) for a, b in zip(xs[:-1], xs[1:], strict=True)]
-        made += pieces("hutch_boards", boards, scheme.body)
-    return made
-
-
-def _pedestal_desk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
-    """A top on a chest of drawers at one side and a panel or a frame at the other."""
-    w, d, h = size
-    t = 0.028
-    style = front_style(rng, scheme, "slab slab shaker")
-    side = -1 if rng.random() < 0.5 else 1
-    wide = min(0.46, 0.32 * w)
-    how = Case(scheme.body, style, "plinth", 0.04, scheme.body, top_thickness=0.016, inset=False)
-    rows = int(rng.integers(2, 5))
-    cells = tuple(Cell("drawer", 0.8 if k < rows - 1 else 1.3) for k in range(rows))
-    chest = case((wide, d - 0.03, h - t), [Column(1, cells)], how)
-    base = pieces("top", box((-w / 2, w / 2), (-d / 2, d / 2), (h - t, h), 0.004), top_finish(rng, scheme, stone=0.0, glass=0.0))
-    x = -side * (w / 2 - 0.03)
-    if rng.random() < 0.5:
-        base += pieces("panel", box((x - 0.014, x + 0.014), (-0.44 * d, 0.46 * d), (0, h - t), 0.002), scheme.body)
-    else:
-        posts = [box((x - 0.02, x + 0.02), (s * 0.42 * d - 0.02, s * 0.42 * d + 0.02), (0, h - t), 0.003) for s in (-1, 1)]
-        posts.append(box((x - 0.015, x + 0.015), (-0.42 * d + 0.02, 0.42 * d - 0.02), (0.06, 0.09), 0.003))
-        base += pieces("frame", posts, scheme.accent)
-    inner = side * (w / 2 - 0.02 - wide)
-    span = (min(inner, x), max(inner, x))
-    base += pieces("modesty", box(span, (0.36 * d, 0.36 * d + 0.015), (0.45 * h, h - t)), scheme.body)
-    return joined(Shape(base), moved(chest, (side * (w / 2 - 0.02 - wide / 2), 0.0, 0.0), "pedestal_"))
-
-
-def dressing_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """A table with drawers and a mirror that stands at its back."""
-    w, d, h = size
-    work = h if h < 0.95 else min(0.8, 0.62 * h)
-    table = cased_table(rng, (w, d, work), scheme, drawer_height=0.12, count=2 if w > 0.9 else 1)
-    if h - work < 0.2:
-        return table
-    tall = h - work
-    y = d / 2 - 0.05
-    base: tuple[Piece, ...]
-    if form == "round_mirror":
-        r = min(0.47 * tall, 0.4 * w)
-        z = h - r
-        glass = [s.turned("x", math.pi / 2).moved((0, y, z)) for s in revolve([(0.93 * r, 0.0), (0.93 * r, 0.006)], 28)]
-        frame = [s.turned("x", math.pi / 2).moved((0, y, z)) for s in ring((r, r), (0.93 * r, 0.93 * r), (-0.008, 0.012), 28)]
-        stem = box((-0.02, 0.02), (y + 0.012, y + 0.03), (work, z), 0.003)
-        base = pieces("mirror", glass, MIRROR) + pieces("mirror_frame", frame, scheme.accent) + pieces("mirror_stem", stem, scheme.accent)
-    else:
-        half = min(0.4 * w, 0.45)
-        x, z, f = (-half, half), (work + 0.03, h), 0.035
-        frame = [
-            box((x[0], x[0] + f), (y, y + 0.024), z, 0.003),
-            box((x[1] - f, x[1]), (y, y + 0.024), z, 0.003),
-            box((x[0] + f, x[1] - f), (y, y + 0.024), (z[0], z[0] + f), 0.003),
-            box((x[0] + f, x[1] - f), (y, y + 0.024), (z[1] - f, z[1]), 0.003),
-        ]
-        feet = [box((s * 0.7 * half - 0.02, s * 0.7 * half + 0.02), (y + 0.004, y + 0.02), (work, work + 0.03)) for s in (-1, 1)]
-        glass = [box((x[0] + f, x[1] - f), (y + 0.006, y + 0.014), (z[0] + f, z[1] - f))]
-        base = pieces("mirror", glass, MIRROR) + pieces("mirror_frame", frame + feet, scheme.body)
-    return joined(table, Shape(base))

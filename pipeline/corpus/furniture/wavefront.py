@@ -98,7 +98,11 @@ def mtl(finishes: Iterable[tuple[str, Finish]], texture: str | None = None) -> b
     for name, finish in finishes:
         shininess = min(900.0, max(1.0, 2 / finish.roughness**4 - 2))
         lines += [f"newmtl {name}", "illum 2", "Ka 0 0 0", "Kd {:g} {:g} {:g}".format(*srgb(finish.color))]
-        lines += ["Ks {0:g} {0:g} {0:g}".format(0.5 if finish.metallic else 0.1), f"Ns {shininess:.1f}", f"d {finish.opacity:g}"]
+        lines += [
+            f"Ks {0.5 if finish.metallic else 0.1:g} {0.5 if finish.metallic else 0.1:g} {0.5 if finish.metallic else 0.1:g}",
+            f"Ns {shininess:.1f}",
+            f"d {finish.opacity:g}",
+        ]
         if texture and finish.opacity == 1.0:
             lines.append(f"map_Kd {texture}")
         lines.append("")

@@ -1,0 +1,106 @@
+"""Desks and dressing tables."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+
+from pipeline.corpus.furniture.casework import Case, Cell, Column, case
+from pipeline.corpus.furniture.finishes import MIRROR, Scheme
+from pipeline.corpus.furniture.shape import Piece, Shape, joined, moved, pieces
+from pipeline.corpus.furniture.solids import box, revolve, ring
+from pipeline.corpus.furniture.storage import Size, front_style
+from pipeline.corpus.furniture.tables import cased_table, legged, top_finish
+
+
+def desk(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a desk with a pedestal of drawers, a row of drawers, or a plain top; tall ones carry a shelf at the back."""
+    w, d, h = size
+    work = min(h, 0.78) if h > 0.95 else h
+    hutch = h - work
+    if form == "pedestal":
+        shape = _pedestal_desk(rng, (w, d, work), scheme)
+    elif form == "drawers":
+        shape = cased_table(rng, (w, d, work), scheme, drawer_height=0.11, count=2 if w < 1.5 else 3)
+    else:
+        shape = legged(rng, (w, d, work), scheme, kinds="square tapered splayed")
+        shape = Shape(
+            shape.base + pieces("modesty", box((-0.44 * w, 0.44 * w), (0.3 * d, 0.3 * d + 0.015), (0.4 * work, work - 0.05)), scheme.body)
+        )
+    if hutch > 0.1:
+        shape = joined(shape, Shape(_hutch(w, d, work, hutch, scheme)))
+    return shape
+
+
+def _hutch(w: float, d: float, z: float, height: float, scheme: Scheme) -> tuple[Piece, ...]:
+    """Return a shelf that stands at the back of a desk."""
+    depth = min(0.24, 0.4 * d)
+    y = (d / 2 - depth, d / 2)
+    count = max(1, round(w / 0.7))
+    xs = np.linspace(-w / 2 + 0.01, w / 2 - 0.01 - 0.018, count + 1)
+    made = pieces("hutch_sides", [box((x, x + 0.018), y, (z, z + height - 0.018)) for x in xs], scheme.body)
+    made += pieces("hutch_top", box((-w / 2 + 0.01, w / 2 - 0.01), y, (z + height - 0.018, z + height), 0.002), scheme.body)
+    middle = z + 0.55 * height
+    if height > 0.3:
+        boards = [box((a + 0.018, b), (y[0] + 0.01, y[1]), (middle, middle + 0.016)) for a, b in itertools.pairwise(xs)]
+        made += pieces("hutch_boards", boards, scheme.body)
+    return made
+
+
+def _pedestal_desk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
+    """Build a top on a chest of drawers at one side and a panel or a frame at the other."""
+    w, d, h = size
+    t = 0.028
+    style = front_style(rng, scheme, "slab slab shaker")
+    side = -1 if rng.random() < 0.5 else 1
+    wide = min(0.46, 0.32 * w)
+    how = Case(scheme.body, style, "plinth", 0.04, scheme.body, top_thickness=0.016, inset=False)
+    rows = int(rng.integers(2, 5))
+    cells = tuple(Cell("drawer", 0.8 if k < rows - 1 else 1.3) for k in range(rows))
+    chest = case((wide, d - 0.03, h - t), [Column(1, cells)], how)
+    base = pieces("top", box((-w / 2, w / 2), (-d / 2, d / 2), (h - t, h), 0.004), top_finish(rng, scheme, stone=0.0, glass=0.0))
+    x = -side * (w / 2 - 0.03)
+    if rng.random() < 0.5:
+        base += pieces("panel", box((x - 0.014, x + 0.014), (-0.44 * d, 0.46 * d), (0, h - t), 0.002), scheme.body)
+    else:
+        posts = [box((x - 0.02, x + 0.02), (s * 0.42 * d - 0.02, s * 0.42 * d + 0.02), (0, h - t), 0.003) for s in (-1, 1)]
+        posts.append(box((x - 0.015, x + 0.015), (-0.42 * d + 0.02, 0.42 * d - 0.02), (0.06, 0.09), 0.003))
+        base += pieces("frame", posts, scheme.accent)
+    inner = side * (w / 2 - 0.02 - wide)
+    span = (min(inner, x), max(inner, x))
+    base += pieces("modesty", box(span, (0.36 * d, 0.36 * d + 0.015), (0.45 * h, h - t)), scheme.body)
+    return joined(Shape(base), moved(chest, (side * (w / 2 - 0.02 - wide / 2), 0.0, 0.0), "pedestal_"))
+
+
+def dressing_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a table with drawers and a mirror that stands at its back."""
+    w, d, h = size
+    work = h if h < 0.95 else min(0.8, 0.62 * h)
+    table = cased_table(rng, (w, d, work), scheme, drawer_height=0.12, count=2 if w > 0.9 else 1)
+    if h - work < 0.2:
+        return table
+    tall = h - work
+    y = d / 2 - 0.05
+    base: tuple[Piece, ...]
+    if form == "round_mirror":
+        r = min(0.47 * tall, 0.4 * w)
+        z = h - r
+        glass = [s.turned("x", math.pi / 2).moved((0, y, z)) for s in revolve([(0.93 * r, 0.0), (0.93 * r, 0.006)], 28)]
+        frame = [s.turned("x", math.pi / 2).moved((0, y, z)) for s in ring((r, r), (0.93 * r, 0.93 * r), (-0.008, 0.012), 28)]
+        stem = box((-0.02, 0.02), (y + 0.012, y + 0.03), (work, z), 0.003)
+        base = pieces("mirror", glass, MIRROR) + pieces("mirror_frame", frame, scheme.accent) + pieces("mirror_stem", stem, scheme.accent)
+    else:
+        half = min(0.4 * w, 0.45)
+        span, rise, f = (-half, half), (work + 0.03, h), 0.035
+        frame = [
+            box((span[0], span[0] + f), (y, y + 0.024), rise, 0.003),
+            box((span[1] - f, span[1]), (y, y + 0.024), rise, 0.003),
+            box((span[0] + f, span[1] - f), (y, y + 0.024), (rise[0], rise[0] + f), 0.003),
+            box((span[0] + f, span[1] - f), (y, y + 0.024), (rise[1] - f, rise[1]), 0.003),
+        ]
+        feet = [box((s * 0.7 * half - 0.02, s * 0.7 * half + 0.02), (y + 0.004, y + 0.02), (work, work + 0.03)) for s in (-1, 1)]
+        glass = [box((span[0] + f, span[1] - f), (y + 0.006, y + 0.014), (rise[0] + f, rise[1] - f))]
+        base = pieces("mirror", glass, MIRROR) + pieces("mirror_frame", frame + feet, scheme.body)
+    return joined(table, Shape(base))
