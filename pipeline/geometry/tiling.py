@@ -51,7 +51,8 @@ def _rectangles(part: Polygon) -> list[NDArray[np.float64]]:
 
 def _ticks(values: NDArray[np.float64]) -> NDArray[np.float64]:
     ordered = np.sort(values)
-    return ordered[np.concatenate([[True], np.diff(ordered) > GRID])]
+    kept: NDArray[np.float64] = ordered[np.concatenate([[True], np.diff(ordered) > GRID])]
+    return kept
 
 
 def _grow(free: NDArray[np.bool_], i: int, j: int, *, rows_first: bool) -> tuple[int, int]:
@@ -99,5 +100,6 @@ def _merge(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64
                 before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
                 turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
                 if np.all(turn > -1e-9):
-                    return ring[np.abs(turn) > 1e-9]
+                    kept: NDArray[np.float64] = ring[np.abs(turn) > 1e-9]
+                    return kept
     return None

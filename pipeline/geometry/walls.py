@@ -232,13 +232,16 @@ def _leaf(cut: Cut, inner: dict[str, Polygon]) -> Leaf | None:
 def _ring_panels(owner: str, ring: NDArray[np.float64], cuts: tuple[Cut, ...], height: float) -> list[Panel]:
     """Return the upright faces along a ring whose visible side is on its left, around the holes that touch it."""
     panels: list[Panel] = []
+    sides = np.array([(cut.quad[:2], cut.quad[2:]) for cut in cuts]).reshape(-1, 2, 2)  # both mouths of every hole
+    spans = [(cut.bottom, cut.top) for cut in cuts for _ in range(2)]
     for a, b in zip(ring, np.roll(ring, -1, axis=0), strict=True):
         length = float(np.linalg.norm(b - a))
         if length < 1e-6:
             continue
         along = (b - a) / length
         start = 0.0
-        for t0, t1, bottom, top in sorted(_touching(a, along, length, cuts)):
+        for t0, t1, k in _touching(a, along, length, sides):
+            bottom, top = spans[k]
             if t0 > start + 1e-6:
                 panels.append(Panel(owner, _wall(a + start * along, a + t0 * along, 0.0, height)))
             for z0, z1 in ((0.0, bottom), (top, height)):
@@ -251,18 +254,14 @@ def _ring_panels(owner: str, ring: NDArray[np.float64], cuts: tuple[Cut, ...], h
 
 
 def _touching(
-    a: NDArray[np.float64], along: NDArray[np.float64], length: float, cuts: tuple[Cut, ...]
-) -> list[tuple[float, float, float, float]]:
-    """Return (start, end, bottom, top) of the holes in the edge from `a`, as distances along it."""
-    found = []
-    for cut in cuts:
-        offset = (cut.quad - a) @ np.array([-along[1], along[0]])
-        for pair in ((0, 1), (2, 3)):
-            if np.all(np.abs(offset[list(pair)]) < 2e-3):
-                t = np.clip((cut.quad[list(pair)] - a) @ along, 0.0, length)
-                if t.max() - t.min() > 1e-3:
-                    found.append((float(t.min()), float(t.max()), cut.bottom, cut.top))
-    return found
+    a: NDArray[np.float64], along: NDArray[np.float64], length: float, sides: NDArray[np.float64]
+) -> list[tuple[float, float, int]]:
+    """Return (start, end, side) of the holes whose `sides` (2C, 2, 2) lie in the edge from `a`, in the order along it."""
+    away = sides - a
+    offset = np.abs(away @ np.array([-along[1], along[0]])).max(axis=1)
+    t = np.clip(away @ along, 0.0, length)
+    low, high = t.min(axis=1), t.max(axis=1)
+    return sorted((float(low[k]), float(high[k]), int(k)) for k in np.flatnonzero((offset < 2e-3) & (high - low > 1e-3)))
 
 
 def _wall(a: NDArray[np.float64], b: NDArray[np.float64], z0: float, z1: float) -> NDArray[np.float64]:

@@ -23,7 +23,7 @@ class Guides:
 def denoise(image: NDArray[np.float32], guides: Guides, rounds: int = 4) -> NDArray[np.float32]:
     """Smooth linear `image` (H, W, 3) within surfaces. Colours are divided out first, so that their detail survives."""
     albedo = np.maximum(guides.albedo, 0.02)
-    light = calm(image / albedo)
+    light = calm(np.asarray(image / albedo, np.float32))
     spread = 0.6
     for level in range(rounds):
         light = _pass(light, guides, 1 << level, spread)

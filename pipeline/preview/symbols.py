@@ -77,4 +77,7 @@ def _arrow(draw: ImageDraw.ImageDraw, cut: Cut, shell: Shell, project: Project) 
         return
     middle = cut.opening.segment.mean(axis=0) - 0.32 * inward
     across = np.array([-inward[1], inward[0]])
-    draw.polygon(project(np.array([middle + 0.16 * inward, middle - 0.12 * inward + 0.16 * across, middle - 0.12 * inward - 0.16 * across])), fill=ENTRANCE)
+    draw.polygon(
+        project(np.array([middle + 0.16 * inward, middle - 0.12 * inward + 0.16 * across, middle - 0.12 * inward - 0.16 * across])),
+        fill=ENTRANCE,
+    )

@@ -58,7 +58,9 @@ def path_trace(
             "type": "perspective",
             "fov": FIELD_OF_VIEW,
             "fov_axis": "larger",
-            "to_world": mi.ScalarTransform4f().look_at(origin=camera.eye.tolist(), target=(camera.eye - camera.back).tolist(), up=[0, 0, 1]),
+            "to_world": mi.ScalarTransform4f().look_at(
+                origin=camera.eye.tolist(), target=(camera.eye - camera.back).tolist(), up=[0, 0, 1]
+            ),
             "film": {"type": "hdrfilm", "width": size[0], "height": size[1], "rfilter": {"type": "box"}, "pixel_format": "rgb"},
             "sampler": {"type": "multijitter", "sample_count": round(math.sqrt(spp)) ** 2},
         },
@@ -76,7 +78,9 @@ def _mitsuba() -> ModuleType:
     try:
         import mitsuba as mi
     except ImportError as error:
-        raise UsageError("path-traced views need Mitsuba, which is not installed", "pip install mitsuba (or the extra: pip install '.[render]')") from error
+        raise UsageError(
+            "path-traced views need Mitsuba, which is not installed", "pip install mitsuba (or the extra: pip install '.[render]')"
+        ) from error
     mi.set_log_level(mi.LogLevel.Error)
     mi.set_variant("scalar_rgb")  # the llvm variants abort with some systems' LLVM, the cuda ones want a GPU
     return mi
@@ -125,7 +129,7 @@ def _camera(points: NDArray[np.float64], size: tuple[int, int]) -> Camera:
 def _guides(camera: Camera, batches: list[Batch], samples: int = 3) -> Guides:
     """Rasterise what each pixel shows: its colour averaged over `samples` x `samples` points, normal and depth at its middle."""
     faces = np.concatenate([b.faces for b in batches])
-    colours = np.concatenate([np.tile(np.float32(b.material.base_color), (len(b.faces), 1)) for b in batches])
+    colours = np.concatenate([np.tile(np.array(b.material.base_color, np.float32), (len(b.faces), 1)) for b in batches])
     width, height = camera.size
     frame = fill(camera.project(faces, samples), colours, None, (samples * width, samples * height), (1.0, 1.0, 1.0))
     albedo = frame.colour.reshape(height, samples, width, samples, 3).mean(axis=(1, 3), dtype=np.float32) / 255

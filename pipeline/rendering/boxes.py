@@ -20,6 +20,13 @@ def box(name: str, low: tuple[float, float, float], high: tuple[float, float, fl
     return Mesh(name, corner + CORNERS * extent, FACES, material, None, part)
 
 
+def joined(name: str, meshes: tuple[Mesh, ...]) -> Mesh:
+    """Make one mesh of several, with the material of the first."""
+    starts = np.cumsum([0, *(len(m.vertices) for m in meshes[:-1])])
+    faces = np.concatenate([m.faces + start for m, start in zip(meshes, starts, strict=True)]).astype(np.int32)
+    return Mesh(name, np.concatenate([m.vertices for m in meshes]), faces, meshes[0].material)
+
+
 def solid_link(name: str, visuals: tuple[Mesh, ...], colliders: tuple[Mesh, ...], mass: float) -> Link:
     """Make a link whose mass [kg] is spread evenly over the boxes that its colliders span."""
     low = np.array([c.vertices.min(axis=0) for c in colliders], np.float64)

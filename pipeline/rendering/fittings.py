@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Joint, Mesh
 from pipeline.geometry.walls import LEAF_GAP, LEAF_THICKNESS, Cut, Leaf
-from pipeline.rendering.boxes import box, solid_link
+from pipeline.rendering.boxes import box, joined, solid_link
 from pipeline.rendering.palette import ENTRANCE_LEAF, GLASS, JAMB, LEAF, METAL, WINDOW_FRAME
 
 LINING = 0.003  # thickness of the door frame's lining, inside the gap around the leaf [m]
@@ -94,9 +94,12 @@ def _casing(leaf: Leaf) -> tuple[Mesh, ...]:
     parts = []
     for name, face, out in (("front", leaf.turn * leaf.front, leaf.turn), ("back", -leaf.turn * leaf.back, -leaf.turn)):
         y = (face, face + out * thick)
-        parts.append(_span(f"casing_{name}_hinge", (-wide, 0), y, (0, top + wide), 0))
-        parts.append(_span(f"casing_{name}_lock", (leaf.clear, leaf.clear + wide), y, (0, top + wide), 0))
-        parts.append(_span(f"casing_{name}_top", (0, leaf.clear), y, (top, top + wide), 0))
+        boards = (
+            _span("hinge", (-wide, 0), y, (0, top + wide), 0),
+            _span("lock", (leaf.clear, leaf.clear + wide), y, (0, top + wide), 0),
+            _span("top", (0, leaf.clear), y, (top, top + wide), 0),
+        )
+        parts.append(joined(f"casing_{name}", boards))
     return tuple(parts)
 
 
@@ -105,8 +108,17 @@ def _handles(leaf: Leaf) -> tuple[Mesh, ...]:
     x, z = leaf.width - 0.055, leaf.bottom + HANDLE_HEIGHT
     parts = []
     for name, face, out in (("front", 0.0, leaf.turn), ("back", -leaf.turn * LEAF_THICKNESS, -leaf.turn)):
-        parts.append(_span(f"handle_{name}_neck", (x - 0.01, x + 0.01), (face, face + out * 0.045), (z - 0.01, z + 0.01), 2, "line_fixed_handle"))
         parts.append(
-            _span(f"handle_{name}_lever", (x - 0.12, x + 0.01), (face + out * 0.045, face + out * 0.06), (z - 0.01, z + 0.01), 2, "line_fixed_handle")
+            _span(f"handle_{name}_neck", (x - 0.01, x + 0.01), (face, face + out * 0.045), (z - 0.01, z + 0.01), 2, "line_fixed_handle")
+        )
+        parts.append(
+            _span(
+                f"handle_{name}_lever",
+                (x - 0.12, x + 0.01),
+                (face + out * 0.045, face + out * 0.06),
+                (z - 0.01, z + 0.01),
+                2,
+                "line_fixed_handle",
+            )
         )
     return tuple(parts)

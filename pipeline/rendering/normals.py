@@ -35,7 +35,7 @@ def smooth_normals(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> N
     total = np.zeros((len(owner), 3))
     np.add.at(total, first[soft], cross[b[soft]])
     normals = total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-15)
-    return normals.astype(np.float32)
+    return np.asarray(normals, np.float32)
 
 
 def corner_normals(triangles: NDArray[np.float64]) -> NDArray[np.float64]:

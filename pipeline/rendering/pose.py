@@ -21,9 +21,7 @@ def opened(asset: Asset, fraction: float) -> dict[str, float]:
     return {j.name: fraction * (j.upper if math.isfinite(j.upper) else FREE_TURN) for j in asset.joints if j.part_class in openers}
 
 
-def placement_transform(
-    position: NDArray[np.float64], yaw: float, scale: NDArray[np.float64] | None = None
-) -> NDArray[np.float64]:
+def placement_transform(position: NDArray[np.float64], yaw: float, scale: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
     """Return T_world_object (4, 4): scale, then yaw about +Z, then translation."""
     c, s = math.cos(yaw), math.sin(yaw)
     T = np.eye(4)

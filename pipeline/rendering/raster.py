@@ -82,7 +82,7 @@ def render(
         normals = face_normals(triangles)
         seen = np.abs(normals @ view.axes[2]) > 1e-3  # what is seen edge-on covers no pixel
         triangles, colours, normals = triangles[seen], colours[seen], normals[seen]
-        items = np.flatnonzero(seen) if items is None else items[seen]
+        items = np.flatnonzero(seen).astype(np.int32) if items is None else items[seen]
         normals *= np.where(normals @ view.axes[2] < 0, -1.0, 1.0)[:, None]  # shade the side that is seen
         lambert = np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0, 1)
         shade = (AMBIENT + (1 - AMBIENT) * lambert).astype(np.float32)[:, None]
@@ -164,25 +164,36 @@ def _fill(
     """Scan-convert triangles (T, 3, 3) of (u, v, depth) in their order; a pixel counts when its centre is inside."""
     height, width = depth.shape
     for t in range(projected.shape[0]):
-        x0, y0, z0 = projected[t, 0]
-        x1, y1, z1 = projected[t, 1]
-        x2, y2, z2 = projected[t, 2]
+        x0, y0, z0 = float(projected[t, 0, 0]), float(projected[t, 0, 1]), float(projected[t, 0, 2])
+        x1, y1, z1 = float(projected[t, 1, 0]), float(projected[t, 1, 1]), float(projected[t, 1, 2])
+        x2, y2, z2 = float(projected[t, 2, 0]), float(projected[t, 2, 1]), float(projected[t, 2, 2])
         area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
         if abs(area) < 1e-9:
             continue
-        left, right = max(int(np.ceil(min(x0, x1, x2) - 0.5)), 0), min(int(np.floor(max(x0, x1, x2) - 0.5)), width - 1)
         top, bottom = max(int(np.ceil(min(y0, y1, y2) - 0.5)), 0), min(int(np.floor(max(y0, y1, y2) - 0.5)), height - 1)
-        inverse = 1.0 / area
+        # Depth and the three edge functions are affine in (u, v): value = u * slope + rest(v), inside where all edges are >= 0.
+        sign = 1.0 if area > 0 else -1.0
+        zu = ((z1 - z0) * (y2 - y0) - (z2 - z0) * (y1 - y0)) / area
+        zv = ((z2 - z0) * (x1 - x0) - (z1 - z0) * (x2 - x0)) / area
+        slopes = (sign * (y1 - y2), sign * (y2 - y0), sign * (y0 - y1))
         for row in range(top, bottom + 1):
-            py = row + 0.5
-            for column in range(left, right + 1):
-                px = column + 0.5
-                w0 = ((x1 - px) * (y2 - py) - (x2 - px) * (y1 - py)) * inverse
-                w1 = ((x2 - px) * (y0 - py) - (x0 - px) * (y2 - py)) * inverse
-                w2 = 1.0 - w0 - w1
-                if w0 < 0 or w1 < 0 or w2 < 0:
-                    continue
-                z = w0 * z0 + w1 * z1 + w2 * z2
+            v = row + 0.5
+            rests = (
+                sign * (x1 * (y2 - v) - x2 * (y1 - v)),
+                sign * (x2 * (y0 - v) - x0 * (y2 - v)),
+                sign * (x0 * (y1 - v) - x1 * (y0 - v)),
+            )
+            low, high = 0.0, float(width)
+            for k in range(3):
+                if slopes[k] > 0:
+                    low = max(low, -rests[k] / slopes[k])
+                elif slopes[k] < 0:
+                    high = min(high, -rests[k] / slopes[k])
+                elif rests[k] < 0:
+                    high = -1.0
+            first, last = int(np.ceil(low - 0.5)), min(int(np.floor(high - 0.5)), width - 1)
+            for column in range(first, last + 1):
+                z = z0 + zu * (column + 0.5 - x0) + zv * (v - y0)
                 if z > depth[row, column]:
                     depth[row, column] = z
                     item[row, column] = items[t]

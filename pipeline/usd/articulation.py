@@ -15,7 +15,14 @@ from pipeline.usd.mesh import convert_mesh
 from pipeline.usd.physics import convert_body, convert_collider, convert_filter, hide, volume
 
 RESERVED = ("joints", "materials")  # scopes beside the links
-MOVERS = {"hinge_door": "door", "slider_drawer": "drawer", "hinge_lid": "lid", "slider_lid": "lid", "hinge_knob": "knob", "slider_button": "button"}
+MOVERS = {
+    "hinge_door": "door",
+    "slider_drawer": "drawer",
+    "hinge_lid": "lid",
+    "slider_lid": "lid",
+    "hinge_knob": "knob",
+    "slider_button": "button",
+}
 HANDLES = {"line_fixed_handle": "handle", "round_fixed_handle": "handle", "hinge_handle": "handle"}
 TOUCH = 0.005  # parts whose boxes come this close at rest may rub [m]
 

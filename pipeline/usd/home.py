@@ -29,7 +29,9 @@ def write_home(home: Home, assets: Mapping[str, Asset], path: Path, library: str
     world.kind = "assembly"
     convert_scene(layer)
     materials = Palette(world)
-    rooms, walls, doors, windows, objects, lights = (prim(world, name) for name in ("Rooms", "Walls", "Doors", "Windows", "Objects", "Lights"))
+    rooms, walls, doors, windows, objects, lights = (
+        prim(world, name) for name in ("Rooms", "Walls", "Doors", "Windows", "Objects", "Lights")
+    )
     for group in (rooms, walls, doors, windows, objects, lights):
         group.kind = "group"
     convert_dome(lights)
@@ -51,9 +53,13 @@ def convert_placement(parent: Sdf.PrimSpec, placement: Placement, assets: Mappin
     """Write one placed object: a reference, where it stands, its room; articulated ones at their own size only."""
     asset = assets.get(placement.asset_id)
     if asset is None:
-        raise ContentError(f"object {placement.object_id} places asset {placement.asset_id!r}, which is not in the library", "run preprocess again")
+        raise ContentError(
+            f"object {placement.object_id} places asset {placement.asset_id!r}, which is not in the library", "run preprocess again"
+        )
     if asset.articulated and any(abs(s - 1) > 1e-9 for s in placement.scale):
-        raise ContentError(f"object {placement.object_id} scales the articulated asset {asset.asset_id}", "place it with scale 1: joints break otherwise")
+        raise ContentError(
+            f"object {placement.object_id} scales the articulated asset {asset.asset_id}", "place it with scale 1: joints break otherwise"
+        )
     spec = prim(parent, placement.object_id)
     spec.referenceList.prependedItems = [Sdf.Reference(f"{library}/{asset.asset_id}/{asset.asset_id}.usda")]
     place(spec, placement.position.tolist(), placement.yaw, placement.scale.tolist())

@@ -57,7 +57,7 @@ def axis_frame(axis: NDArray[np.float64]) -> tuple[str, Gf.Quatf]:
             return token, Gf.Quatf(1.0)
     token = "XYZ"[int(np.argmax(np.abs(unit)))]
     start = np.array(AXES[token], np.float64)
-    other = np.array(AXES["Z" if token != "Z" else "X"], np.float64)
+    other = np.array(AXES["X" if abs(unit[0]) < 0.5 else "Z"], np.float64)
     if unit @ start < -1 + 1e-9:  # half a turn about any axis square to it
         return token, Gf.Quatf(0.0, *map(float, other))
     v = np.cross(start, unit)

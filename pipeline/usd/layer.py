@@ -22,6 +22,7 @@ VALUE_TYPES = {
         "float2": "Float2",
         "float3[]": "Float3Array",
         "double3": "Double3",
+        "double[]": "DoubleArray",
         "quatf": "Quatf",
         "quatd": "Quatd",
         "point3f": "Point3f",
@@ -84,8 +85,10 @@ def apply(spec: Sdf.PrimSpec, apis: Iterable[str]) -> None:
     spec.SetInfo("apiSchemas", operation)
 
 
-def attribute(spec: Sdf.PrimSpec, name: str, kind: str, value: Any = None, *, uniform: bool = False, custom: bool = False) -> Sdf.AttributeSpec:
-    """Author an attribute of a type of VALUE_TYPES."""
+def attribute(
+    spec: Sdf.PrimSpec, name: str, kind: str, value: Any = None, *, uniform: bool = False, custom: bool = False
+) -> Sdf.AttributeSpec:
+    """Write an attribute of a type of VALUE_TYPES."""
     variability = Sdf.VariabilityUniform if uniform else Sdf.VariabilityVarying
     made = Sdf.AttributeSpec(spec, name, VALUE_TYPES[kind], variability, custom)
     if value is not None:
@@ -94,7 +97,7 @@ def attribute(spec: Sdf.PrimSpec, name: str, kind: str, value: Any = None, *, un
 
 
 def relationship(spec: Sdf.PrimSpec, name: str, targets: Iterable[Sdf.Path | str]) -> Sdf.RelationshipSpec:
-    """Author a relationship with explicit targets (none: explicitly empty)."""
+    """Write a relationship with explicit targets (none: explicitly empty)."""
     made = Sdf.RelationshipSpec(spec, name, False)
     made.targetPathList.ClearEditsAndMakeExplicit()
     made.targetPathList.explicitItems = [Sdf.Path(str(t)) for t in targets]
@@ -102,7 +105,7 @@ def relationship(spec: Sdf.PrimSpec, name: str, targets: Iterable[Sdf.Path | str
 
 
 def place(spec: Sdf.PrimSpec, position: Sequence[float], yaw: float = 0.0, scale: Sequence[float] | None = None) -> None:
-    """Author translate, orient and scale, the three operations that physics engines expect."""
+    """Write translate, orient and scale, the three operations that physics engines expect."""
     attribute(spec, "xformOp:translate", "double3", Gf.Vec3d(*map(float, position)))
     attribute(spec, "xformOp:orient", "quatd", Gf.Quatd(float(np.cos(yaw / 2)), 0.0, 0.0, float(np.sin(yaw / 2))))
     attribute(spec, "xformOp:scale", "float3", Gf.Vec3f(*(map(float, scale) if scale is not None else (1.0, 1.0, 1.0))))

@@ -6,17 +6,34 @@ fixed to its own Xform would float there. The overlays say the same thing in its
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 
-from pxr import Sdf
+import numpy as np
+from pxr import Sdf, Vt
 
-from pipeline.entities.asset import Asset
+from pipeline.entities.asset import Asset, Joint
 from pipeline.usd.articulation import joint_names, link_names
 from pipeline.usd.layer import apply, attribute, new_layer, over, relationship, save
+from pipeline.usd.physics import GRAVITY
 
 ROOT_API = "PhysicsArticulationRootAPI"
 HINGE = (0.02, 0.1)  # damping [N m s / degree], dry friction [N m]: a push opens a door, a touch does not
 SLIDE = (12.0, 1.5)  # damping [N s / m], dry friction [N]
+HOLD = 1.3  # dry friction, in multiples of what gravity does to a closed flap or lid, so that it stays closed
+ARMATURE = {"hinge": 0.002, "slide": 0.05}  # inertia of the works behind knobs and buttons [kg m2, kg]; nothing beside a door's own
+STOP = ((0.008, 1.0), (0.99, 0.999, 1e-4, 0.5, 2.0))  # solref and solimp of the limits: hard stops even for light knobs and buttons
+
+
+@dataclass(frozen=True, slots=True)
+class Resistance:
+    """What holds a joint back; `damping` per degree for hinges, `friction` [N m or N]; `armature` [kg m2 or kg]."""
+
+    name: str
+    damping: float
+    friction: float
+    armature: float
 
 
 def asset_overlay(asset: Asset) -> Sdf.Layer:
@@ -43,31 +60,40 @@ def write_mujoco_overlay(scene: Path) -> Path:
     if doors is not None:
         scope = over(root, "Doors")
         for spec in doors.nameChildren:
-            _convert_over(over(scope, spec.name), "frame", [(j.name, j.typeName) for j in spec.nameChildren["joints"].nameChildren])
+            _convert_over(over(scope, spec.name), "frame", [Resistance("hinge", *HINGE, ARMATURE["hinge"])])
     return save(layer, scene.with_name(f"{scene.stem}.mujoco.usda"))
 
 
 def _convert_root(root: Sdf.PrimSpec, asset: Asset) -> None:
-    kinds = [
-        (name, "PhysicsPrismaticJoint" if joint.type == "prismatic" else "PhysicsRevoluteJoint")
-        for name, joint in zip(joint_names(asset), asset.joints, strict=True)
-    ]
-    _convert_over(root, link_names(asset)[0], kinds)
+    resistances = [_resistance(name, joint, asset) for name, joint in zip(joint_names(asset), asset.joints, strict=True)]
+    _convert_over(root, link_names(asset)[0], resistances)
 
 
-def _convert_over(root: Sdf.PrimSpec, base: str, joints: list[tuple[str, str]]) -> None:
-    """Move the articulation root to the base, hang the base on the world, and damp the joints."""
+def _resistance(name: str, joint: Joint, asset: Asset) -> Resistance:
+    """Choose a joint's resistance; what gravity would pull open is held closed by friction."""
+    link = asset.links[joint.child]
+    weight = np.array([0.0, 0.0, -GRAVITY * link.mass])
+    if joint.type == "prismatic":
+        damping, friction, load = *SLIDE, float(weight @ joint.axis)
+    else:
+        damping, friction, load = *HINGE, float(np.cross(link.com - joint.origin, weight) @ joint.axis)
+    armature = ARMATURE["slide" if joint.type == "prismatic" else "hinge"]
+    return Resistance(name, damping, friction + HOLD * max(0.0, load), armature)
+
+
+def _convert_over(root: Sdf.PrimSpec, base: str, joints: Iterable[Resistance]) -> None:
+    """Move the articulation root to the base, hang the base on the world, give the joints their resistance."""
     removal = Sdf.TokenListOp()
     removal.deletedItems = [ROOT_API]
     root.SetInfo("apiSchemas", removal)
     apply(over(root, base), [ROOT_API])
     scope = over(root, "joints")
     relationship(over(scope, "world_fixed"), "physics:body0", [])
-    for name, kind in joints:
-        if name == "world_fixed":
-            continue
-        damping, friction = SLIDE if kind == "PhysicsPrismaticJoint" else HINGE
-        spec = over(scope, name)
-        apply(spec, ["NewtonJointAPI"])  # MuJoCo reads no DriveAPI, but these
-        attribute(spec, "newton:damping", "float", damping)
-        attribute(spec, "newton:friction", "float", friction)
+    for joint in joints:
+        spec = over(scope, joint.name)
+        apply(spec, ["NewtonJointAPI", "MjcJointAPI"])  # MuJoCo reads no DriveAPI, but these
+        attribute(spec, "newton:damping", "float", joint.damping)
+        attribute(spec, "newton:friction", "float", joint.friction)
+        attribute(spec, "newton:armature", "float", joint.armature)
+        for attribute_name, values in zip(("mjc:solreflimit", "mjc:solimplimit"), STOP, strict=True):
+            attribute(spec, attribute_name, "double[]", Vt.DoubleArray(values), uniform=True)

@@ -35,10 +35,9 @@ def convert_body(spec: Sdf.PrimSpec, link: Link) -> None:
 
 def convert_collider(spec: Sdf.PrimSpec, mass: float | None = None) -> None:
     """Make a mesh a convex collider; `mass` [kg] is its share of the body, for engines that weigh colliders."""
-    apply(spec, ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"])
+    apply(spec, ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI", *(["PhysicsMassAPI"] if mass is not None else [])])
     attribute(spec, "physics:approximation", "token", "convexHull", uniform=True)
     if mass is not None:
-        apply(spec, ["PhysicsMassAPI"])
         attribute(spec, "physics:mass", "float", float(mass))
 
 
@@ -79,7 +78,7 @@ def volume(mesh: Mesh) -> float:
     """Return a convex piece's volume [m3]: signed tetrahedra, or a tenth of its box where the mesh is degenerate."""
     v = mesh.vertices.astype(np.float64)
     v = v - v.mean(axis=0)
-    a, b, c = (v[mesh.faces[:, k]] for k in range(3))
-    signed = abs(float(np.einsum("ij,ij->", a, np.cross(b, c)))) / 6
+    corners = v[mesh.faces]
+    signed = abs(float(np.linalg.det(corners).sum())) / 6
     extent = np.maximum(v.max(axis=0) - v.min(axis=0), 1e-4)
     return max(signed, 0.1 * float(extent.prod()))
