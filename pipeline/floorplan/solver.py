@@ -10,19 +10,21 @@ from numpy.typing import NDArray
 from pipeline import seeds
 from pipeline.entities.plan import Plan, Room
 from pipeline.errors import RefusedError
-from pipeline.floorplan import anneal, slicing, trace
+from pipeline.floorplan import anneal, lines, slicing, trace
 from pipeline.floorplan.check import check
 from pipeline.floorplan.completion import complete
+from pipeline.floorplan.defaults import OUTSIDE
 from pipeline.floorplan.grid import INNER, OUTER, Labels
 from pipeline.floorplan.openings import Run, place
 from pipeline.floorplan.program import FloorProgram
-from pipeline.floorplan.storeys import UNIT, Storey, storey
+from pipeline.floorplan.storeys import EDGE, UNIT, Storey, storey
 
 TRIES = 24  # whole attempts before a program is refused
 STARTS = 3  # slicing trees per attempt
 SLICES = 700  # slicing proposals per room and start
 PROPOSALS = 160  # annealing proposals per room and run
 HOT, COLD, PENALTY = 1.2, 0.01, 40.0
+SHARES = (1.0, 0.4, 0.0)  # how much of their freedom the walls' lines use; less when openings then find no place
 SLICE_HOT, SLICE_COLD = 6.0, 0.05
 
 
@@ -169,25 +171,56 @@ def _stamp(grid: Labels, room: int, stair: tuple[int, ...], n: int) -> None:
 
 def _build(program: FloorProgram, storeys: list[tuple[Storey, Labels]], rng: np.random.Generator) -> Plan | None:
     """Turn the grids into rooms and openings; None when an opening finds no place."""
-    rooms: list[Room] = []
-    runs: list[Run] = []
-    for request, grid in storeys:
-        n = len(request.rooms)
-        walls = trace.walls(grid, n)
-        corners = [trace.outline(grid, i) for i in range(n)]
-        metres = [np.array(c, dtype=float) * UNIT for c in corners]
-        sides = [_inner_sides(grid, corners[i], i, n) for i in range(n)]
-        for i, room in enumerate(request.rooms):
-            if room.type == "staircase" and request.level > 0:
-                continue  # one room with its lowest level
-            polygon = np.round(trace.faces(corners[i], metres[i], sides[i]), 4)
-            rooms.append(Room(room.id, room.type, polygon, request.level, role=room.role))
-        runs += _runs(request, walls, rooms)
     depth = _depths(program)
-    openings = place(program, rooms, runs, depth, rng)
-    if openings is None:
-        return None
-    return Plan(tuple(rooms), openings, program.entrance.into or rooms[0].room_id, 2 * INNER, 2 * OUTER)
+    draw = rng.bit_generator.state
+    for share in SHARES:
+        rng.bit_generator.state = draw
+        rooms: list[Room] = []
+        runs: list[Run] = []
+        for request, grid in storeys:
+            _realise(request, grid, share, rooms, runs)
+        if not _within(program, storeys, rooms):
+            continue
+        openings = place(program, rooms, runs, depth, rng)
+        if openings is not None:
+            return Plan(tuple(rooms), openings, program.entrance.into or rooms[0].room_id, 2 * INNER, 2 * OUTER)
+    return None
+
+
+def _realise(request: Storey, grid: Labels, share: float, rooms: list[Room], runs: list[Run]) -> None:
+    """Append a storey's rooms and the stretches of wall that openings can stand in; lines move by `share` of what they may."""
+    spec, n = request.spec, len(request.rooms)
+    corners = [trace.outline(grid, i) for i in range(n)]
+    sides = [_inner_sides(grid, corners[i], i, n) for i in range(n)]
+    found = lines.find(grid, UNIT)
+    slack = np.where(spec.corridor > 0, (spec.strict * UNIT - request.clear) / 2, lines.FARTHEST)
+    trust = np.where(np.array([r.type in {"hallway", "entry"} and not r.area.stated for r in request.rooms]), 0.2, 1.0)
+    held = np.zeros(found.at.size, dtype=bool)
+    for i in (i for i, r in enumerate(request.rooms) if r.type == "staircase"):
+        held |= lines.outer(found, grid, n)  # outside walls and stairs stand above each other
+        held[lines.corner_lines(found, corners[i])] = True
+    at = lines.fit(found, corners, sides, spec.target, trust, np.maximum(slack, 0.0), held, share)
+    for i, room in enumerate(request.rooms):
+        if room.type == "staircase" and request.level > 0:
+            continue  # one room with its lowest level
+        polygon = np.round(trace.faces(corners[i], at[lines.corner_lines(found, corners[i])], sides[i]), 3)
+        rooms.append(Room(room.id, room.type, polygon, request.level, role=room.role))
+    runs += _runs(request, trace.walls(grid, n), rooms, found, at)
+
+
+def _within(program: FloorProgram, storeys: list[tuple[Storey, Labels]], rooms: list[Room]) -> bool:
+    """Whether the rooms' true areas keep every bound."""
+    area = {r.room_id: r.area for r in rooms}
+    for request, _ in storeys:
+        spec = request.spec
+        areas = np.array([area[r.id] for r in request.rooms])
+        if np.any(areas < spec.low / (1 + EDGE)) or np.any(areas > spec.high * (1 + EDGE)):
+            return False
+        if np.any(areas[:, None] * (1 + EDGE) < spec.order * areas[None, :]):
+            return False
+    wish = program.total_area
+    inside = sum(r.area for r in rooms if r.type not in OUTSIDE)
+    return not wish.stated or (wish.min or 0.0) <= inside <= (wish.max or np.inf)
 
 
 def _inner_sides(grid: Labels, corners: trace.Corners, room: int, n: int) -> list[bool]:
@@ -204,43 +237,52 @@ def _inner_sides(grid: Labels, corners: trace.Corners, room: int, n: int) -> lis
     return sides
 
 
-def _runs(request: Storey, walls: list[trace.Wall], rooms: list[Room]) -> list[Run]:
+def _runs(request: Storey, walls: list[trace.Wall], rooms: list[Room], found: lines.Lines, at: NDArray[np.float64]) -> list[Run]:
     """Return the stretches of wall that openings can stand in: where both rooms' inner faces lie opposite each other."""
     by_id = {r.room_id: r for r in rooms}
     runs: list[Run] = []
     for wall in walls:
         names = (request.rooms[wall.a].id,) + ((request.rooms[wall.b].id,) if wall.b >= 0 else ())
         axis = 1 if wall.vertical else 0
-        face = [_face(by_id[name].polygon, wall, low) for name, low in zip(names, (wall.a_low, not wall.a_low), strict=False)]
-        if any(f is None for f in face):
+        line = float(at[found.upright[wall.start, wall.at] if wall.vertical else found.level[wall.at, wall.start]])
+        ends = [_crossing(found, at, wall, k) for k in (wall.start, wall.end)]
+        middle = (ends[0] + ends[1]) / 2
+        lows = (wall.a_low, not wall.a_low)
+        faces = [_face(by_id[name].polygon, axis, line, middle, low) for name, low in zip(names, lows, strict=False)]
+        if any(f is None for f in faces):
             continue
-        spans: list[tuple[float, float, float]] = [f for f in face if f is not None]
-        start = max(max(f[0] for f in spans), wall.start * UNIT)
-        end = min(min(f[1] for f in spans), wall.end * UNIT)
+        spans = [f for f in faces if f is not None]
+        start, end = max(f[0] for f in spans), min(f[1] for f in spans)
+        if len(spans) == 1:  # a face may run on behind a room that the wall turns to
+            start, end = max(start, ends[0] + INNER), min(end, ends[1] - INNER)
+            line = spans[0][2] + (OUTER if wall.a_low else -OUTER)
         if end - start < 0.5:
             continue
-        line = (spans[0][2] + spans[1][2]) / 2 if len(spans) == 2 else spans[0][2] + (OUTER if wall.a_low else -OUTER)
         point, along, inward = np.zeros(2), np.zeros(2), np.zeros(2)
         point[1 - axis], point[axis] = line, start
         along[axis] = 1.0
         inward[1 - axis] = -1.0 if wall.a_low else 1.0
-        runs.append(Run(names, np.round(point, 4), along, inward, end - start, request.level, wall.vertical))
+        runs.append(Run(names, np.round(point, 3), along, inward, round(end - start, 3), request.level, wall.vertical))
     return runs
 
 
-def _face(polygon: NDArray[np.float64], wall: trace.Wall, low: bool) -> tuple[float, float, float] | None:
-    """Return (start, end, line) of the polygon's side that faces the wall; `low`: the room lies on its low side."""
-    axis = 1 if wall.vertical else 0
-    at, middle = wall.at * UNIT, (wall.start + wall.end) / 2 * UNIT
-    best: tuple[float, float, float] | None = None
+def _crossing(found: lines.Lines, at: NDArray[np.float64], wall: trace.Wall, k: int) -> float:
+    """Return the coordinate [m] at which a wall's stretch ends: that of the line that meets it there."""
+    beside = found.level[k] if wall.vertical else found.upright[:, k]
+    ids = [beside[i] for i in (wall.at - 1, wall.at) if 0 <= i < beside.size and beside[i] >= 0]
+    return float(at[ids[0]]) if ids else k * UNIT
+
+
+def _face(polygon: NDArray[np.float64], axis: int, line: float, middle: float, low: bool) -> tuple[float, float, float] | None:
+    """Return (start, end, line) of the polygon's side that faces a wall; `low`: the room lies on its low side."""
     for p, q in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
         if p[1 - axis] != q[1 - axis]:
             continue
-        line, start, end = float(p[1 - axis]), float(min(p[axis], q[axis])), float(max(p[axis], q[axis]))
-        distance = at - line if low else line - at
-        if 0 < distance < 2.5 * OUTER and start < middle < end and (best is None or distance < abs(best[2] - at)):
-            best = (start, end, line)
-    return best
+        face, start, end = float(p[1 - axis]), float(min(p[axis], q[axis])), float(max(p[axis], q[axis]))
+        distance = line - face if low else face - line
+        if 0.5 * INNER < distance < 1.5 * OUTER and start < middle < end:
+            return start, end, face
+    return None
 
 
 def _depths(program: FloorProgram) -> dict[str, int]:

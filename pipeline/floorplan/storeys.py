@@ -33,6 +33,7 @@ class Storey:
     gross: NDArray[np.float64]
     gross_low: NDArray[np.float64]
     gross_high: NDArray[np.float64]
+    clear: NDArray[np.float64]  # (n,) clear width plus walls that corridors must keep [m]
 
 
 def cells(metres: float) -> int:
@@ -74,7 +75,7 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
                 link[a, b] = link[b, a] = 1
     here = program.model_copy(update={"rooms": rooms})
     ban, apart, order = _relations(here, index)
-    widths = [max(_width(r, program), 0.0) for r in rooms]
+    widths = [_width(r, program) for r in rooms]
     # a small room cannot be as wide as its type usually is
     least = np.array([cells(min(w, 0.92 * t**0.5) + 2 * INNER) for w, t in zip(widths, target, strict=True)])
     strict = np.maximum((0.8 * least).astype(np.int64), 3)
@@ -119,7 +120,7 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
     for i, r in enumerate(rooms):
         if r.type in {"hallway", "entry"} and not r.area.stated:
             gross_low[i], gross_high[i] = gross[i] * 0.75, gross[i] * 1.3
-    return Storey(level, rooms, spec, weights_of(program), gross, gross_low, gross_high)
+    return Storey(level, rooms, spec, weights_of(program), gross, gross_low, gross_high, np.array(widths) + 2 * INNER)
 
 
 def _gross(target: NDArray[np.float64]) -> NDArray[np.float64]:
