@@ -13,6 +13,7 @@ from ruamel.yaml import YAML
 
 ROOT = Path(__file__).resolve().parents[1]
 CODE = ("stages", "pipeline", "schemas")
+MOST = 0.4  # share of a package's modules from which on the package is named
 
 
 def closure(graph: grimp.ImportGraph, module: str) -> set[str]:
@@ -36,12 +37,13 @@ def file_of(module: str) -> str:
 
 
 def shortest(files: Iterable[str]) -> list[str]:
-    """Name whole folders where all their modules are listed."""
+    """Name a package instead of its modules where most of them are listed: a page stays a page."""
     left = set(files)
     for top in CODE[1:]:
-        for folder in sorted((p for p in [ROOT / top, *(ROOT / top).rglob("*")] if p.is_dir()), key=lambda p: len(p.parts)):
+        folders = [p.parent for p in (ROOT / top).rglob("__init__.py") if p.parent != ROOT / "pipeline"]
+        for folder in sorted(folders, key=lambda p: (len(p.parts), p)):
             inside = {p.relative_to(ROOT).as_posix() for p in folder.rglob("*.py")}
-            if inside and inside <= left:
+            if len(inside & left) > MOST * len(inside):
                 left = left - inside | {folder.relative_to(ROOT).as_posix()}
     return sorted(left)
 
