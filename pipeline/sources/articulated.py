@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.entities.asset import Asset, Joint, Link
+from pipeline.entities.asset import Asset, Joint, Mesh
 from pipeline.sources import metric_scale
-from pipeline.sources.colliders import Body, Decompose, link
+from pipeline.sources.colliders import Decompose, Solids, link, solids
 from pipeline.sources.densities import density
 from pipeline.sources.partnet import ArticulatedShape, ShapeBody, ShapeJoint
 from pipeline.sources.reasons import Row, SourceError, reject
@@ -37,29 +37,29 @@ def assets(
     if not fits:
         raise SourceError("no_metric_fit", shape.source_id, f"{shape.model_cat} of proportions {np.round(extent, 3).tolist()}")
     middle = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
+    bodies = _unique(shape.bodies)
+    matter = [solids(body.name, body.collisions, limits, decompose) for body in bodies]
     for number, fit in enumerate(fits):
         kind = taxonomy.categories[fit.category].super
-        links: list[Link] = []
-        notes: list[tuple[str, str]] = []
-        for k, body in enumerate(_unique(shape.bodies)):
-            made, odd = link(_metric(body, middle, fit.scale), density(kind, ""), limits, decompose)
-            links.append(made if k else replace(made, name="base"))
-            notes += odd
+        links = [
+            link(body.name, _metric(body, middle, fit.scale), solid.scaled(middle, fit.scale), density(kind, ""))
+            for body, solid in zip(bodies, matter, strict=True)
+        ]
         asset = Asset(
             f"{SHORT[shape.source]}_{_plain(shape.source_id)}_{fit.category}", fit.category, np.round(extent * fit.scale, 4),
             tuple(links), tuple(_joint(j, middle, fit.scale) for j in shape.joints), tuple(shape.palette.materials),
             shape.source, shape.source_id, licence, "", kind, dict(shape.palette.textures),
         )  # fmt: skip
-        where = f"{shape.source_id} as {fit.category}"
-        rows = [reject("model", where, reason, detail) for reason, detail in notes]
-        if number == 0:  # what befell the folder is told once
-            rows += [reject(what, shape.source_id, reason, detail) for what, reason, detail in shape.notes]
-        yield asset, fit.scale, rows
+        yield asset, fit.scale, _rejects(shape, matter) if number == 0 else []  # what befell the folder is told once
 
 
-def _metric(body: ShapeBody, middle: Floats, scale: float) -> Body:
-    visuals = tuple(replace(m, vertices=((m.vertices - middle) * scale).astype(np.float32)) for m in body.visuals)
-    return Body(body.name, visuals, tuple(((v - middle) * scale, f) for v, f in body.collisions))
+def _rejects(shape: ArticulatedShape, matter: list[Solids]) -> list[Row]:
+    rows = [reject(what, shape.source_id, reason, detail) for what, reason, detail in shape.notes]
+    return rows + [reject("model", shape.source_id, reason, detail) for solid in matter for reason, detail in solid.notes]
+
+
+def _metric(body: ShapeBody, middle: Floats, scale: float) -> list[Mesh]:
+    return [replace(m, vertices=((m.vertices - middle) * scale).astype(np.float32)) for m in body.visuals]
 
 
 def _joint(joint: ShapeJoint, middle: Floats, scale: float) -> Joint:
@@ -73,8 +73,8 @@ def _joint(joint: ShapeJoint, middle: Floats, scale: float) -> Joint:
 def _unique(bodies: tuple[ShapeBody, ...]) -> list[ShapeBody]:
     """Return the bodies under names that differ."""
     taken: set[str] = {"base"}
-    named = []
-    for k, body in enumerate(bodies):
+    named = [replace(bodies[0], name="base")]
+    for k, body in enumerate(bodies[1:], 1):
         name = body.name if body.name not in taken else f"{body.name}_n{k}"
         taken.add(name)
         named.append(replace(body, name=name))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,27 +19,31 @@ Decompose = Callable[[Floats, Ints], list[tuple[Floats, Ints]]]
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
-    """What makes a link: visual meshes, and the meshes (vertices (V, 3) [m], faces (F, 3)) that it collides by."""
+class Solids:
+    """What a link weighs and collides by: all connected parts, the convex pieces, (reason, detail) of simplifications."""
 
-    name: str
-    visuals: tuple[Mesh, ...]
-    collisions: tuple[tuple[Floats, Ints], ...]
+    parts: tuple[Part, ...]
+    pieces: tuple[Part, ...]
+    notes: tuple[tuple[str, str], ...] = ()
+
+    def scaled(self, shift: Floats, factor: float) -> Solids:
+        """Return the same moved by -`shift` (3,), then scaled by `factor`."""
+        return Solids(tuple(p.scaled(shift, factor) for p in self.parts), tuple(p.scaled(shift, factor) for p in self.pieces), self.notes)
 
 
-def link(body: Body, density: float, limits: ModelLimits, decompose: Decompose | None) -> tuple[Link, list[tuple[str, str]]]:
-    """Return the link and (reason, detail) of what was simplified.
+def solids(name: str, meshes: Iterable[tuple[Floats, Ints]], limits: ModelLimits, decompose: Decompose | None) -> Solids:
+    """Take meshes (vertices (V, 3), faces (F, 3)) apart.
 
-    A connected part that fills `convex_fill` of its hull is a convex piece. Any other is cut by `decompose`, or, where
-    that is None, stands as its hull.
+    A connected part that fills `convex_fill` of its hull is a convex piece. A mesh with any other is cut by
+    `decompose`, or, where that is None, each part stands as its hull. Beyond `max_pieces` the smallest are left out.
     """
     notes: list[tuple[str, str]] = []
-    solids: list[Part] = []
+    every: list[Part] = []
     pieces: list[Part] = []
     hollow = 0
-    for vertices, faces in body.collisions:
+    for vertices, faces in meshes:
         found = parts(vertices, faces)
-        solids += found
+        every += found
         odd = sum(p.fill < limits.convex_fill for p in found)
         if odd and decompose is not None:
             pieces += [p for cut in decompose(vertices, faces) for p in parts(*cut)]
@@ -47,17 +51,21 @@ def link(body: Body, density: float, limits: ModelLimits, decompose: Decompose |
         hollow += odd
         pieces += found
     if hollow:
-        notes.append(("hull_collider", f"{body.name}: {hollow} of {len(solids)} parts"))
+        notes.append(("hull_collider", f"{name}: {hollow} of {len(every)} parts"))
     if len(pieces) > limits.max_pieces:
-        notes.append(("colliders_capped", f"{body.name}: {len(pieces)} pieces, the largest {limits.max_pieces} kept"))
+        notes.append(("colliders_capped", f"{name}: {len(pieces)} pieces, the largest {limits.max_pieces} kept"))
         pieces = sorted(pieces, key=lambda p: -p.hull_volume)[: limits.max_pieces]
-    colliders = tuple(_piece(k, p) for k, p in enumerate(pieces))
-    mass, com, inertia = mass_properties([(p, density) for p in solids])
+    return Solids(tuple(every), tuple(pieces), tuple(notes))
+
+
+def link(name: str, visuals: Iterable[Mesh], matter: Solids, density: float) -> Link:
+    """Return the link [m, kg] of visual meshes and solids of one `density` [kg/m3]."""
+    mass, com, inertia = mass_properties([(p, density) for p in matter.parts])
     if 0 < mass < MINIMUM:
         inertia = inertia * (MINIMUM / mass)
     least = 1e-6 * np.eye(3)  # engines refuse inertias of thin parts that round to zero
-    rounded = np.round(inertia, 9) + least
-    return Link(body.name, body.visuals, colliders, round(max(mass, MINIMUM), 5), np.round(com, 6), rounded), notes
+    colliders = tuple(_piece(k, p) for k, p in enumerate(matter.pieces))
+    return Link(name, tuple(visuals), colliders, round(max(mass, MINIMUM), 5), np.round(com, 6), np.round(inertia, 9) + least)
 
 
 def _piece(number: int, part: Part) -> Mesh:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Mesh
 from pipeline.sources.calibration import sizes
-from pipeline.sources.colliders import Body, Decompose, Ints, link
+from pipeline.sources.colliders import Decompose, Ints, link, solids
 from pipeline.sources.densities import density
 from pipeline.sources.front_objects import MAX_SIZE, MIN_SIZE
 from pipeline.sources.front_poses import Box, to_ours
@@ -101,7 +101,9 @@ def read_model(
             visuals.append(mesh)
             collisions.append((points, group.faces))
     kind = taxonomy.categories[category].super
-    base, notes = link(Body("base", tuple(visuals), tuple(collisions)), density(kind, info.material), limits, decompose)
+    matter = solids("base", collisions, limits, decompose)
+    base = link("base", visuals, matter, density(kind, info.material))
+    notes = list(matter.notes)
     if not base.visuals or not base.colliders:
         raise SourceError("not_obj", info.model_id, "has no face with an area")
     asset = Asset(

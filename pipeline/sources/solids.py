@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, QhullError
 
 Floats = NDArray[np.float64]
@@ -21,14 +19,31 @@ SHELL = 0.008  # [m] thickness of an open surface, when its mass is estimated
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """One connected part: its hull (vertices (V, 3), faces (F, 3) outwards), `fill` of that hull, `volume` [m3] of matter."""
+    """One connected part: its hull (vertices (V, 3), faces (F, 3) outwards), `fill` of that hull, `volume` [m3] of matter.
+
+    `centre` (3,) and `inertia` (3, 3) about it are those of the hull at unit density.
+    """
 
     hull: Floats
     faces: Ints
     hull_volume: float
     fill: float
     volume: float
-    closed: bool
+    centre: Floats
+    inertia: Floats
+
+    def scaled(self, shift: Floats, factor: float) -> Part:
+        """Return the part moved by -`shift` (3,), then scaled by `factor`."""
+        cubed = factor**3
+        return Part(
+            (self.hull - shift) * factor,
+            self.faces,
+            self.hull_volume * cubed,
+            self.fill,
+            self.volume * cubed,
+            (self.centre - shift) * factor,
+            self.inertia * cubed * factor**2,
+        )
 
 
 def parts(vertices: Floats, faces: Ints) -> list[Part]:
@@ -55,12 +70,10 @@ def components(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]:
     faces = faces[proper]
     if not len(faces):
         return []
-    links = np.concatenate([faces[:, :2], faces[:, 1:]])
-    count, owner = connected_components(
-        coo_matrix((np.ones(len(links), bool), (links[:, 0], links[:, 1])), (len(points), len(points))), directed=False
-    )
-    if count == 1:
-        return [(points, faces)]
+    owner = _owners(faces, len(points))
+    if (owner[faces[:, 0]] == owner[faces[0, 0]]).all():
+        inside, compact = np.unique(faces, return_inverse=True)
+        return [(points[inside], compact.reshape(faces.shape))]
     order = np.argsort(owner[faces[:, 0]], kind="stable")
     sorted_faces = faces[order]
     cuts = np.flatnonzero(np.diff(owner[sorted_faces[:, 0]])) + 1
@@ -69,6 +82,18 @@ def components(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]:
         inside, compact = np.unique(block, return_inverse=True)
         made.append((points[inside], compact.reshape(block.shape)))
     return made
+
+
+def _owners(faces: Ints, count: int) -> Ints:
+    """Return a label per vertex (count,), the same for vertices that faces connect: the least index of its part."""
+    owner = np.arange(count)
+    while True:
+        least = owner[faces].min(axis=1)
+        before = owner.copy()
+        np.minimum.at(owner, faces.ravel(), np.repeat(least, 3))
+        owner = owner[owner]
+        if (owner == before).all():
+            return owner
 
 
 def _hash(grid: Ints) -> Ints:
@@ -80,20 +105,45 @@ def _hash(grid: Ints) -> Ints:
 def _part(points: Floats, faces: Ints) -> Part | None:
     if np.ptp(points, axis=0).max() < 1e-4:
         return None
-    made = hull(points)
+    closed = _closed(faces)
+    inside = abs(signed_volume(points, faces)) if closed else 0.0
+    made = _itself(points, faces, inside) if closed else None
+    made = made or hull(points)
     if made is None:
         return None
     corners, hull_faces, hull_volume = made
-    closed = _closed(faces)
-    inside = abs(signed_volume(points, faces)) if closed else 0.0
     fill = inside / hull_volume if hull_volume > 0 else 0.0
     if closed and inside > 1e-12:
         matter = min(inside, hull_volume)
     else:  # an open sheet: what its surface weighs as a shell, but no more than its hull holds
         a, b, c = points[faces[:, 0]], points[faces[:, 1]], points[faces[:, 2]]
-        area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+        area = 0.5 * float(np.linalg.norm(cross(b - a, c - a), axis=1).sum())
         matter = min(hull_volume, area * SHELL)
-    return Part(corners, hull_faces, hull_volume, fill, matter, closed)
+    _, centre, inertia = _hull_moments(corners, hull_faces)
+    return Part(corners, hull_faces, hull_volume, fill, matter, centre, inertia)
+
+
+def _itself(points: Floats, faces: Ints, volume: float) -> tuple[Floats, Ints, float] | None:
+    """Return a closed part as its own hull where no vertex lies outside any face's plane, else None."""
+    if len(points) > MAX_HULL or volume < 1e-12:
+        return None
+    if signed_volume(points, faces) < 0:
+        faces = faces[:, ::-1]
+    a = points[faces[:, 0]]
+    normals = cross(points[faces[:, 1]] - a, points[faces[:, 2]] - a)
+    lengths = np.sqrt((normals**2).sum(axis=1))
+    span = float(np.ptp(points, axis=0).max())
+    if lengths.min() < 1e-9 * span * span:
+        return None
+    height = (normals @ points.T - (normals * a).sum(axis=1)[:, None]) / lengths[:, None]
+    return (points, faces, volume) if height.max() < 1e-6 * span else None
+
+
+def cross(a: Floats, b: Floats) -> Floats:
+    """Return the cross products of rows (N, 3); np.cross takes several times as long on short arrays."""
+    x, y, z = a.T
+    u, v, w = b.T
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=1)
 
 
 def hull(points: Floats) -> tuple[Floats, Ints, float] | None:
@@ -127,7 +177,7 @@ def hull(points: Floats) -> tuple[Floats, Ints, float] | None:
     faces = where[found.simplices]
     corners = found.points[index]
     a, b, c = corners[faces[:, 0]], corners[faces[:, 1]], corners[faces[:, 2]]
-    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), found.equations[:, :3]) < 0
+    inward = np.einsum("ij,ij->i", cross(b - a, c - a), found.equations[:, :3]) < 0
     faces[inward] = faces[inward][:, ::-1]
     order = np.lexsort(np.sort(faces, axis=1).T)
     return np.asarray(corners), faces[order], float(found.volume)
@@ -153,7 +203,7 @@ def _closed(faces: Ints) -> bool:
 def signed_volume(points: Floats, faces: Ints) -> float:
     """Return the volume that a closed mesh encloses, positive for outward faces (divergence theorem)."""
     a, b, c = points[faces[:, 0]], points[faces[:, 1]], points[faces[:, 2]]
-    return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
+    return float((a * cross(b, c)).sum() / 6)
 
 
 def mass_properties(solids: list[tuple[Part, float]]) -> tuple[float, Floats, Floats]:
@@ -164,13 +214,12 @@ def mass_properties(solids: list[tuple[Part, float]]) -> tuple[float, Floats, Fl
     """
     masses, centres, inertias = [], [], []
     for part, density in solids:
-        volume, centre, inertia = _hull_moments(part.hull, part.faces)
-        if volume <= 0:
+        if part.hull_volume <= 0:
             continue
         mass = part.volume * density
         masses.append(mass)
-        centres.append(centre)
-        inertias.append(inertia * (mass / volume))
+        centres.append(part.centre)
+        inertias.append(part.inertia * (mass / part.hull_volume))
     total = float(sum(masses))
     if total <= 0:
         return 0.0, np.zeros(3), np.eye(3) * 1e-6
@@ -186,15 +235,13 @@ def _hull_moments(points: Floats, faces: Ints) -> tuple[float, Floats, Floats]:
     """Return volume, centroid and inertia at unit density about the centroid of a convex solid (sum of tetrahedra)."""
     origin = points.mean(axis=0)
     a, b, c = (points[faces[:, k]] - origin for k in range(3))
-    det = np.einsum("ij,ij->i", a, np.cross(b, c))
+    det = (a * cross(b, c)).sum(axis=1)
     volume = float(det.sum() / 6)
     if volume <= 1e-15:
         return 0.0, origin, np.zeros((3, 3))
     s = a + b + c
     centroid = (det[:, None] * s).sum(axis=0) / (24 * volume)
-    second = np.zeros((3, 3))  # integral of x x^T over the solid (Blow and Binstock 2004)
-    for p in (a, b, c, s):
-        second += np.einsum("i,ij,ik->jk", det / 120, p, p)
+    second = sum((p.T @ (p * (det / 120)[:, None]) for p in (a, b, c, s)), np.zeros((3, 3)))  # integral of x x^T (Blow and Binstock 2004)
     second -= volume * np.outer(centroid, centroid)
     inertia = np.trace(second) * np.eye(3) - second
     return volume, centroid + origin, inertia

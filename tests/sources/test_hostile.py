@@ -58,7 +58,7 @@ URDFS = {  # content of a URDF -> reason
     "many_elements": (HEAD + "<link/>" * 200_000 + "</robot>", "too_large"),
     "deep_elements": ("<robot>" + "<a>" * 90_000, "not_urdf"),
     "no_geometry": ("<robot><link name='a'/></robot>", "no_base"),
-    "nan_origin": (making.partnet_urdf(("nan", 0, 0)), "bad_number"),
+    "nan_origin": (making.partnet_urdf((float("nan"), 0, 0)), "bad_number"),
     "absurd_limit": (making.partnet_urdf((0, 0, 0)).replace('upper="1.57"', 'upper="1e400"'), "bad_number"),
     "nan_axis": (making.partnet_urdf((0, 0, 0)).replace("0 -1 0", "nan 0 0"), "bad_number"),
     "loop": (making.partnet_urdf((0, 0, 0)).replace('<parent link="base"/>', '<parent link="link_0"/>'), "not_urdf"),
