@@ -18,6 +18,13 @@ from pipeline.geometry.polygons import excess
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Own = tuple[Floats, Ints, Floats]  # corners, counts, z of prisms in the object's frame
+Others = tuple[Floats, Ints, Floats, Floats]  # the same in the world, and their plan boxes
+Placed = tuple[Others, Others, Others]  # body, keep, access
+Room = tuple[Others, Others, Others, Floats]  # bodies, keeps, accesses; the room's polygon
+
+SOFT = 0.1  # a body may reach this far into an access place at no cost [m]
+SOFT_WALL = 0.3  # and a wall this far [m]
 
 
 @compiled
@@ -63,31 +70,61 @@ def touches(
 
 
 @compiled
+def blocked(own: Placed, room: Room, ceiling: float, tolerance: float) -> bool:
+    """Tell whether an object, its prisms placed, breaks a hard rule; its outline is known to be within the walls."""
+    (body, body_count, body_z, body_flat), (keep, keep_count, keep_z, keep_flat), _ = own
+    bodies, keeps, _, polygon = room
+    if body_count.shape[0] and body_z[:, 1].max() > ceiling + tolerance:
+        return True
+    if touches(body, body_count, body_z, body_flat, bodies[0], bodies[1], bodies[2], bodies[3], tolerance):
+        return True
+    if touches(body, body_count, body_z, body_flat, keeps[0], keeps[1], keeps[2], keeps[3], tolerance):
+        return True
+    for i in range(keep_count.shape[0]):
+        if excess(keep[i, : keep_count[i]], polygon) > tolerance:
+            return True
+    return touches(keep, keep_count, keep_z, keep_flat, bodies[0], bodies[1], bodies[2], bodies[3], tolerance)
+
+
+@compiled
+def hindrance(own: Placed, room: Room) -> int:
+    """Return how many soft rules are broken: own access place taken, own access place in a wall, another's taken."""
+    (body, body_count, body_z, body_flat), _, (access, access_count, access_z, access_flat) = own
+    bodies, _, accesses, polygon = room
+    broken = 0
+    if access_count.shape[0]:
+        if touches(access, access_count, access_z, access_flat, bodies[0], bodies[1], bodies[2], bodies[3], SOFT):
+            broken += 1
+        if excess(access[0, : access_count[0]], polygon) > SOFT_WALL:
+            broken += 1
+    if touches(body, body_count, body_z, body_flat, accesses[0], accesses[1], accesses[2], accesses[3], SOFT):
+        broken += 1
+    return broken
+
+
+@compiled
 def free_poses(
     poses: Floats,
     costs: Floats,
     first: int,
     wanted: int,
     outline: Floats,
-    body: tuple[Floats, Ints, Floats],
-    keep: tuple[Floats, Ints, Floats],
-    access: tuple[Floats, Ints, Floats],
-    bodies: tuple[Floats, Ints, Floats, Floats],
-    keeps: tuple[Floats, Ints, Floats, Floats],
-    accesses: tuple[Floats, Ints, Floats, Floats],
-    polygon: Floats,
+    own: tuple[Own, Own, Own],
+    room: Room,
     ceiling: float,
     tolerance: float,
     access_cost: float,
 ) -> tuple[Floats, int]:
     """Return the cost of poses from `first` on, inf where not free, until `wanted` are found; and where it stopped.
 
-    Poses are given in ascending order of `costs`, to which the soft rules add.
+    `own` are the object's body, keep and access; `room` the bodies, keeps and access places that stand, and the room's
+    polygon. Poses are given in ascending order of `costs`, to which the soft rules add.
     """
     found = np.full(poses.shape[0], np.inf)
-    body_at = (np.empty_like(body[0]), np.empty_like(body[2]), np.empty((body[1].shape[0], 4)))
-    keep_at = (np.empty_like(keep[0]), np.empty_like(keep[2]), np.empty((keep[1].shape[0], 4)))
-    access_at = (np.empty_like(access[0]), np.empty_like(access[2]), np.empty((access[1].shape[0], 4)))
+    body, keep, access = own
+    body_at = (np.empty_like(body[0]), body[1], np.empty_like(body[2]), np.empty((body[1].shape[0], 4)))
+    keep_at = (np.empty_like(keep[0]), keep[1], np.empty_like(keep[2]), np.empty((keep[1].shape[0], 4)))
+    access_at = (np.empty_like(access[0]), access[1], np.empty_like(access[2]), np.empty((access[1].shape[0], 4)))
     shell = np.empty_like(outline)
     have = 0
     for k in range(first, poses.shape[0]):
@@ -98,33 +135,14 @@ def free_poses(
         for i in range(outline.shape[0]):
             shell[i, 0] = c * outline[i, 0] - s * outline[i, 1] + pose[0]
             shell[i, 1] = s * outline[i, 0] + c * outline[i, 1] + pose[1]
-        if excess(shell, polygon) > tolerance:
+        if excess(shell, room[3]) > tolerance:
             continue
-        place(body[0], body[1], body[2], pose, body_at[0], body_at[1], body_at[2])
-        if body_at[1].shape[0] and body_at[1][:, 1].max() > ceiling + tolerance:
+        place(body[0], body[1], body[2], pose, body_at[0], body_at[2], body_at[3])
+        place(keep[0], keep[1], keep[2], pose, keep_at[0], keep_at[2], keep_at[3])
+        place(access[0], access[1], access[2], pose, access_at[0], access_at[2], access_at[3])
+        placed = (body_at, keep_at, access_at)
+        if blocked(placed, room, ceiling, tolerance):
             continue
-        if touches(body_at[0], body[1], body_at[1], body_at[2], bodies[0], bodies[1], bodies[2], bodies[3], tolerance):
-            continue
-        if touches(body_at[0], body[1], body_at[1], body_at[2], keeps[0], keeps[1], keeps[2], keeps[3], tolerance):
-            continue
-        if keep[1].shape[0]:
-            place(keep[0], keep[1], keep[2], pose, keep_at[0], keep_at[1], keep_at[2])
-            blocked = False
-            for i in range(keep[1].shape[0]):
-                if excess(keep_at[0][i, : keep[1][i]], polygon) > tolerance:
-                    blocked = True
-                    break
-            if blocked or touches(keep_at[0], keep[1], keep_at[1], keep_at[2], bodies[0], bodies[1], bodies[2], bodies[3], tolerance):
-                continue
-        total = costs[k]
-        if access[1].shape[0]:
-            place(access[0], access[1], access[2], pose, access_at[0], access_at[1], access_at[2])
-            if touches(access_at[0], access[1], access_at[1], access_at[2], bodies[0], bodies[1], bodies[2], bodies[3], 0.1):
-                total += access_cost
-            if excess(access_at[0][0, : access[1][0]], polygon) > 0.3:
-                total += access_cost
-        if touches(body_at[0], body[1], body_at[1], body_at[2], accesses[0], accesses[1], accesses[2], accesses[3], 0.1):
-            total += access_cost
-        found[k] = total
+        found[k] = costs[k] + access_cost * hindrance(placed, room)
         have += 1
     return found, poses.shape[0]

@@ -1,0 +1,1 @@
+"""Metrics: one module per family, pure functions over table rows. They import nothing of what they judge."""

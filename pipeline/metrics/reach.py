@@ -1,0 +1,80 @@
+"""Reach: R_reach as the peers code it, and the share of openable objects that a robot can really stand at and open."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from pipeline.geometry.boxes import footprints
+from pipeline.geometry.kinematics import OPENERS
+from pipeline.geometry.occupancy import Raster
+from pipeline.metrics.intervals import Mean, Rate, bootstrap, rate
+from pipeline.metrics.rows import Row, boxes, by_room
+
+PIXELS = 256  # side of the raster
+ROBOT = 0.3  # width of the robot [m]
+LIMIT = 1.5  # objects whose centre is higher are no obstacles [m]
+MARGIN = 0.2  # of the raster around the room [m]
+
+
+def room_reach(polygon: NDArray[np.float64], objects: Sequence[Row], elevation: float = 0.0) -> float:
+    """Return R_reach of one room as PhyScene codes it; 1 for a room without objects.
+
+    The floor is eroded by half the robot's width, boxes are grown by it; what is left falls into 8-connected parts k.
+    Sum over k of (share of objects whose grown mask, widened by one pixel, meets part k) * (area_k / area of all parts).
+    Closed footprints; no test of fronts or handles.
+    """
+    position, yaw, size = boxes(objects)
+    low = position[:, 2] + size[:, 2] / 2 - elevation < LIMIT
+    if not low.any():
+        return 1.0
+    centre = (polygon.min(0) + polygon.max(0)) / 2
+    half = float(np.abs(polygon - centre).max()) + MARGIN
+    raster = Raster(centre - half, 2 * half / PIXELS, (PIXELS, PIXELS))
+    robot = max(1, int(ROBOT / raster.cell))
+    floor = raster.fill(raster.empty(), [polygon])
+    free = ndimage.binary_erosion(floor, np.ones((robot, robot)))
+    masks = []
+    for corners in footprints(position[low], yaw[low], size[low]):
+        mask = raster.fill(raster.empty(), [corners])
+        grown = ndimage.distance_transform_edt(~mask) <= robot / 2 if mask.any() else mask
+        masks.append(grown)
+        free &= ~grown
+    labels, count = ndimage.label(free, np.ones((3, 3)))
+    areas = np.bincount(labels.ravel(), minlength=count + 1)[1:]
+    if not count:
+        return 0.0
+    touched = np.zeros((len(masks), count), np.bool_)
+    for i, grown in enumerate(masks):
+        met = np.unique(labels[ndimage.binary_dilation(grown, np.ones((3, 3)))])
+        touched[i, met[met > 0] - 1] = True
+    return float((touched.mean(0) * areas).sum() / areas.sum())
+
+
+def reach(rng: np.random.Generator, rooms: Iterable[Row], objects: Iterable[Row], storey_height: Mapping[str, float] | float = 3.0) -> Mean:
+    """Return the mean R_reach over rooms with objects, as the peers code it."""
+    grouped = by_room(objects)
+    values = []
+    for room in rooms:
+        own = grouped.get((room["scene_id"], room["room_id"]), [])
+        if own:
+            height = storey_height if isinstance(storey_height, float) else storey_height[room["scene_id"]]
+            values.append(room_reach(np.array(room["polygon"], float), own, room["level"] * height))
+    return bootstrap(rng, values)
+
+
+def openable_reach(joints: Iterable[Row]) -> dict[str, Rate]:
+    """Return the share of openable objects with a part that opens wholly with a robot at its handle, and of such joints."""
+    listed = [j for j in joints if j["part_class"] in OPENERS]
+    good: dict[tuple[str, str], bool] = {}
+    for j in listed:
+        key = (j["scene_id"], j["object_id"])
+        good[key] = good.get(key, False) or _works(j)
+    return {"objects": rate(sum(good.values()), len(good)), "joints": rate(sum(_works(j) for j in listed), len(listed))}
+
+
+def _works(joint: Row) -> bool:
+    return bool(joint["clear"]) and joint["stand"] is not None

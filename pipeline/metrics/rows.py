@@ -1,0 +1,36 @@
+"""Rows of tables as the arrays that metrics need."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Row = Mapping[str, Any]
+Floats = NDArray[np.float64]
+Boxes = tuple[Floats, Floats, Floats]  # bottom centres (N, 3) [m], yaws (N,) [rad], full extents (N, 3) [m]
+
+
+def by_room(rows: Iterable[Row]) -> dict[tuple[str, str], list[Row]]:
+    """Group rows by (scene_id, room_id), in order of appearance: the paper's "scene" is our room."""
+    grouped: dict[tuple[str, str], list[Row]] = {}
+    for row in rows:
+        grouped.setdefault((row["scene_id"], row["room_id"]), []).append(row)
+    return grouped
+
+
+def by_scene(rows: Iterable[Row]) -> dict[str, list[Row]]:
+    """Group rows by scene_id, in order of appearance."""
+    grouped: dict[str, list[Row]] = {}
+    for row in rows:
+        grouped.setdefault(row["scene_id"], []).append(row)
+    return grouped
+
+
+def boxes(objects: Sequence[Row]) -> Boxes:
+    """Return the boxes of objects."""
+    position = np.array([o["position"] for o in objects], float).reshape(-1, 3)
+    yaw = np.array([o["yaw"] for o in objects], float)
+    return position, yaw, np.array([o["size"] for o in objects], float).reshape(-1, 3)

@@ -1,0 +1,48 @@
+"""Walkable area: SR(tau) and both meanings of R_walkable.
+
+`paper` is (A_room - sum A_i) / A_room, as the paper prints it, over floor-standing objects: occupancy, without union and
+without a robot. `free` is the share of the floor that a round robot really covers, coming from the entrance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from pipeline.metrics.intervals import Mean, Rate, bootstrap, rate
+from pipeline.metrics.rows import Row
+
+MEANINGS = ("paper", "free")
+
+
+def success_rate(ratios: Sequence[float], tau: float) -> Rate:
+    """Return SR(tau): the share of rooms whose ratio is at least `tau` (paper eq. success_rate)."""
+    # A ratio computed in floating point from sizes rounded to 0.1 mm must not miss its target by the last bit.
+    return rate(sum(r >= tau - 1e-9 for r in ratios), len(ratios))
+
+
+def success_rates(ratios: Sequence[float], taus: Sequence[float]) -> dict[str, Rate]:
+    """Return SR(tau) over the same rooms for several thresholds, keyed by tau as text."""
+    return {f"{tau:.2f}": success_rate(ratios, tau) for tau in taus}
+
+
+def from_rooms(rooms: Iterable[Row]) -> dict[str, dict[str, Rate]]:
+    """Return SR(tau) per meaning from rooms that carry a target, each judged at its own target."""
+    wanted = [r for r in rooms if r["walkable_target"] is not None]
+    targets = sorted({round(float(r["walkable_target"]), 4) for r in wanted})
+    return {
+        meaning: {
+            f"{tau:.2f}": success_rate(
+                [float(r[f"walkable_{meaning}"]) for r in wanted if abs(float(r["walkable_target"]) - tau) < 5e-5], tau
+            )
+            for tau in targets
+        }
+        for meaning in MEANINGS
+    }
+
+
+def means(rng: np.random.Generator, rooms: Iterable[Row]) -> dict[str, Mean]:
+    """Return the mean R_walkable over rooms, in both meanings."""
+    listed = list(rooms)
+    return {meaning: bootstrap(rng, [float(r[f"walkable_{meaning}"]) for r in listed]) for meaning in MEANINGS}
