@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("sfgen", "stages", "pipeline", "schemas")
 MODULES = sorted(p for name in PACKAGES for p in (ROOT / name).rglob("*.py"))
-SOURCES = [*MODULES, *sorted(p for name in ("tests", "benchmarks", "examples", ".ci") for p in (ROOT / name).rglob("*.py"))]
+SOURCES = [*MODULES, *sorted(p for name in ("benchmarks", "examples", ".ci") for p in (ROOT / name).rglob("*.py"))]
 DRAWERS = {"utils", "util", "helpers", "helper", "misc", "common", "base2", "tools", "stuff"}
 
 
