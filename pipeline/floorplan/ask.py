@@ -2,10 +2,37 @@
 
 from __future__ import annotations
 
+import logging
+
+from pipeline.errors import RefusedError, UsageError
+from pipeline.floorplan.check import check
+from pipeline.floorplan.completion import complete
 from pipeline.floorplan.language import parse
+from pipeline.floorplan.language.llm import Server, UnansweredError, ask, configured
+from pipeline.floorplan.language.parser import bounded
 from pipeline.floorplan.program import FloorProgram
 
+LOG = logging.getLogger(__name__)
 
-def request(prompt: str) -> FloorProgram:
-    """Return the completed program of a prompt."""
-    return parse(prompt)
+
+def request(prompt: str, server: Server | None = None) -> FloorProgram:
+    """Return the completed program of a prompt: by the language model that `server` or the environment names, else built in.
+
+    What the model answers is checked like everything else; when it gives no usable program, a warning says so and the built-in
+    parser takes over. Raises UsageError and RefusedError as `parse` does.
+    """
+    server = server or configured()
+    if server is None:
+        return parse(prompt)
+    bounded(prompt)
+    try:
+        program = complete(ask(prompt, server))
+        check(program)
+    except UnansweredError as error:
+        LOG.warning("the language model gave no program (%s); the built-in parser takes over", error)
+        return parse(prompt)
+    except (RefusedError, UsageError):
+        # the model may have invented the contradiction: the words decide
+        LOG.warning("the language model's program contradicts itself; the built-in parser takes over")
+        return parse(prompt)
+    return program

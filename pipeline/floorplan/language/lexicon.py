@@ -120,7 +120,7 @@ STYLES: dict[str, dict[str, int]] = {
 }  # fmt: skip
 IRREGULAR_WORDS = frozenset(["irregular", "organic", "unconventional", "non rectangular", "not a grid", "grid of boxes"])
 LUXURY = frozenset(["luxury", "luxurious", "generous", "huge", "spacious", "grand"])
-BIG = {"huge": 1.5, "very large": 1.5, "enormous": 1.6, "vast": 1.6, "large": 1.25, "big": 1.25, "generous": 1.25, "spacious": 1.25, "roomy": 1.2, "spa like": 1.5, "small": 0.75, "tiny": 0.6, "little": 0.8, "compact": 0.8, "cosy": 0.85, "cozy": 0.85, "short": 0.9, "galley": 0.7}  # fmt: skip
+BIG = {"huge": 1.5, "very large": 1.5, "enormous": 1.6, "vast": 1.6, "large": 1.35, "big": 1.3, "generous": 1.35, "spacious": 1.35, "roomy": 1.2, "spa like": 1.5, "small": 0.75, "tiny": 0.6, "little": 0.8, "compact": 0.8, "cosy": 0.85, "cozy": 0.85, "short": 0.9, "galley": 0.7}  # fmt: skip
 # Words that carry no request: understood without effect.
 FILLER = frozenset(
     """i i'd i'm i've need want like would please design make build create draw generate give me us we with and or the a an of for to in at on by is are be been being that this these those there's there it its it's

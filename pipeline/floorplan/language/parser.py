@@ -30,10 +30,7 @@ def parse(prompt: str) -> FloorProgram:
 
 def understand(prompt: str) -> FloorProgram:
     """Return what the prompt says, and no more: nothing is filled in or checked."""
-    if not prompt.strip():
-        raise UsageError("the prompt is empty", 'say what you want, e.g. "a two-bedroom flat with an open kitchen"')
-    if len(prompt) > LONGEST:
-        raise UsageError(f"the prompt is {len(prompt)} characters long", f"keep it under {LONGEST}")
+    bounded(prompt)
     tokens = repair(tokenize(prompt))
     parsed = sentences(tokens)
     known = {kinds.ROOM, kinds.HOME, kinds.SUITE}
@@ -41,3 +38,11 @@ def understand(prompt: str) -> FloorProgram:
         shown = re.sub(r"\s+", " ", prompt.strip())[:60]
         raise RefusedError(f"nothing in the prompt names a room or a home: {shown!r}", "name rooms, e.g. living room, two bedrooms, bathroom")
     return assemble(prompt, tokens, parsed, read(tokens, parsed))
+
+
+def bounded(prompt: str) -> None:
+    """Raise UsageError for a prompt that is empty or too long."""
+    if not prompt.strip():
+        raise UsageError("the prompt is empty", 'say what you want, e.g. "a two-bedroom flat with an open kitchen"')
+    if len(prompt) > LONGEST:
+        raise UsageError(f"the prompt is {len(prompt)} characters long", f"keep it under {LONGEST}")
