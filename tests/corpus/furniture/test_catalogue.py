@@ -1,0 +1,79 @@
+import uuid
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from pipeline import taxonomy
+from pipeline.corpus.furniture import sizes
+from pipeline.corpus.furniture.catalogue import catalogue
+from pipeline.corpus.furniture.lines import LINES
+from pipeline.seeds import generator
+
+
+def test_every_category_of_the_taxonomy_has_static_models():
+    made = catalogue(0)
+    assert set(made.future_by_category()) == set(taxonomy.load().names) == set(LINES) == set(sizes.load())
+
+
+def test_numbers_at_size_one():
+    made = catalogue(0)
+    assert len(made.future) + len(made.partnet) >= 200
+    assert len(made.partnet) >= 80
+    assert len({m.category for m in made.partnet}) >= 20
+
+
+def test_size_scales_the_number_of_models():
+    small, big = catalogue(0, 0.25), catalogue(0, 2.0)
+    assert len(small.future) == pytest.approx(0.25 * len(catalogue(0).future), rel=0.35)
+    assert len(big.partnet) == 2 * len(catalogue(0).partnet)
+    assert set(small.future_by_category()) == set(LINES)
+
+
+def test_ids_are_unique_and_of_the_sources_kind():
+    made = catalogue(0)
+    assert len({m.model_id for m in made.future}) == len(made.future)
+    assert len({m.model_id for m in made.partnet}) == len(made.partnet)
+    assert all(uuid.UUID(m.model_id).version == 4 for m in made.future)
+    assert all(m.model_id.isdigit() for m in made.partnet)
+
+
+def test_names_are_those_that_the_taxonomy_reads():
+    known = taxonomy.load()
+    for model in catalogue(0).future:
+        assert known.from_future(model.future_name) == model.category
+        assert model.partnet_category == ""
+    for model in catalogue(0).partnet:
+        assert model.category in known.from_partnet(model.partnet_category)
+
+
+def test_sizes_lie_between_the_percentiles():
+    known = sizes.load()
+    for model in (*catalogue(0).future, *catalogue(1).partnet):
+        statistics = known[model.category]
+        form = next(f for f in LINES[model.category].forms if f.name == model.form)
+        for axis in (0, 2) if form.round else (0, 1, 2):
+            assert statistics.p05[axis] - 1e-3 <= model.size[axis] <= statistics.p95[axis] + 1e-3
+
+
+def test_strata_keep_the_mean():
+    statistics = sizes.load()["dining_table"]
+    drawn = sizes.draw(generator(1, "test"), statistics, 40)
+    assert np.allclose(drawn.mean(axis=0), statistics.mean, atol=0.25 * statistics.std)
+    assert (drawn.std(axis=0) > 0.6 * statistics.std).all()
+
+
+def test_same_seed_same_models_other_seed_other_models():
+    again = catalogue.__wrapped__(0, 1.0)
+    assert again == catalogue(0)
+    other = catalogue(1)
+    assert not {m.model_id for m in other.future} & {m.model_id for m in again.future}
+    same = sum(a.size == b.size for a, b in zip(other.future, again.future, strict=True))
+    assert same < 0.02 * len(again.future)
+
+
+def test_forms_come_equally_often():
+    for category, count in Counter(m.category for m in catalogue(0).future).items():
+        forms = Counter(m.form for m in catalogue(0).future if m.category == category)
+        if all(f.least_height == 0 for f in LINES[category].forms):
+            assert max(forms.values()) - min(forms.values()) <= 1 or count < len(LINES[category].forms)
