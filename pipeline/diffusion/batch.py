@@ -47,6 +47,13 @@ class RoomBatch:
         """Say other counts."""
         return replace(self, count=count)
 
+    def trimmed(self) -> RoomBatch:
+        """Drop token places that no room uses; real tokens first, in their order. For training, where shapes may vary."""
+        order = (~self.mask).to(torch.uint8).argsort(dim=1, stable=True)[:, : int(self.mask.sum(1).max())]
+        row = torch.arange(len(self), device=order.device)[:, None]
+        taken = {name: getattr(self, name)[row, order] for name in ("ends", "normal", "kind", "hinge", "sill", "mask")}
+        return replace(self, **taken)
+
     @property
     def walls(self) -> Tensor:
         """Which tokens (B, M) are walls, the polygon's edges."""
@@ -61,6 +68,10 @@ class Objects:
     continuous: Tensor
     sweeps: Tensor
 
+    def to(self, device: torch.device) -> Objects:
+        """Move all tensors."""
+        return Objects(self.classes.to(device), self.continuous.to(device), self.sweeps.to(device))
+
     def rows(self, index: Tensor) -> Objects:
         """Take some rooms."""
         return Objects(self.classes[index], self.continuous[index], self.sweeps[index])
@@ -68,8 +79,11 @@ class Objects:
 
 def room_batch(floors: Sequence[Floor], layouts: Sequence[int], counts: Sequence[int], heights: Sequence[float]) -> RoomBatch:
     """Stack rooms."""
-    stacked = [torch.from_numpy(np.stack([getattr(f, name) for f in floors])) for name in ("ends", "normal", "kind", "hinge", "sill", "mask")]
-    return RoomBatch(*stacked, torch.tensor(layouts), torch.tensor(counts), torch.tensor(heights, dtype=torch.float32))
+    ends, normal, kind, hinge, sill, mask = (
+        torch.from_numpy(np.stack([getattr(f, name) for f in floors])) for name in ("ends", "normal", "kind", "hinge", "sill", "mask")
+    )
+    said = torch.tensor(layouts), torch.tensor(counts), torch.tensor(heights, dtype=torch.float32)
+    return RoomBatch(ends, normal, kind, hinge, sill, mask, *said)
 
 
 def stacked(examples: Sequence[Example], codec: Codec, slots: int) -> tuple[RoomBatch, Objects]:

@@ -50,7 +50,10 @@ def load_weights(path: Path) -> tuple[Denoiser, Header]:
     tensors, value = _read(path, "denoiser")
     try:
         header = Header(
-            Normalisation.of_json(value["norm"]), tuple(value["layouts"]), value["slots"], value["timesteps"],
+            Normalisation.of_json(value["norm"]),
+            tuple(value["layouts"]),
+            value["slots"],
+            value["timesteps"],
             build(ModelSettings, value["model"], "train.model"),
         )
         net = build_net(header)

@@ -68,7 +68,7 @@ class Codec:
         return (continuous - self.mean) / self.scale
 
     def metric(self, continuous: Tensor) -> Tensor:
-        """The inverse of `normalised`; also takes the first k <= 40 channels alone."""
+        """Undo `normalised`; also takes the first k <= 40 channels alone."""
         k = continuous.shape[-1]
         return continuous * self.scale[:k] + self.mean[:k]
 

@@ -106,9 +106,12 @@ def outside(prisms: Prisms, rooms: RoomBatch) -> Tensor:
     w, d = prisms.half.unbind(-1)
     steps = torch.tensor([[-1, -1], [1, -1], [1, 1], [-1, 1], [0, -1], [0, 1], [-1, 0], [1, 0]], dtype=w.dtype, device=w.device)
     depth = torch.stack([-prisms.axis[..., 1], prisms.axis[..., 0]], -1)
-    points = prisms.centre[:, :, None] + steps[:, :1] * (prisms.axis * w[..., None])[:, :, None] + steps[:, 1:] * (depth * d[..., None])[:, :, None]
-    walls = rooms.walls.shape[1] - 12  # the wall tokens come first
-    start, stop, there = rooms.ends[:, :walls, 0], rooms.ends[:, :walls, 1], rooms.walls[:, :walls]
+    points = (
+        prisms.centre[:, :, None]
+        + steps[:, :1] * (prisms.axis * w[..., None])[:, :, None]
+        + steps[:, 1:] * (depth * d[..., None])[:, :, None]
+    )
+    start, stop, there = rooms.ends[:, :, 0], rooms.ends[:, :, 1], rooms.walls
     at = points[:, :, :, None]
     a, b = start[:, None, None], stop[:, None, None]
     edge = b - a
@@ -116,16 +119,15 @@ def outside(prisms: Prisms, rooms: RoomBatch) -> Tensor:
     nearest = torch.linalg.vector_norm(at - a - place[..., None] * edge + 1e-9, dim=-1)
     nearest = nearest.masked_fill(~there[:, None, None], 1e3).amin(-1)
     crosses = ((a[..., 1] > at[..., 1]) != (b[..., 1] > at[..., 1])) & (
-        at[..., 0] < edge[..., 0] * (at[..., 1] - a[..., 1]) / torch.where(edge[..., 1] == 0, torch.ones_like(edge[..., 1]), edge[..., 1]) + a[..., 0]
+        at[..., 0]
+        < edge[..., 0] * (at[..., 1] - a[..., 1]) / torch.where(edge[..., 1] == 0, torch.ones_like(edge[..., 1]), edge[..., 1]) + a[..., 0]
     )
     inside = (crosses & there[:, None, None]).sum(-1) % 2 == 1
     beyond = torch.where(inside, torch.zeros_like(nearest), nearest)
     return (beyond**2).sum(-1) / 2  # a side of a box has two corners or more beyond a wall
 
 
-def articulated_collision(
-    boxes: Boxes, occupied: Tensor, sweeps: Tensor | None, rooms: RoomBatch, room_scale: float = 1.0
-) -> Tensor:
+def articulated_collision(boxes: Boxes, occupied: Tensor, sweeps: Tensor | None, rooms: RoomBatch, room_scale: float = 1.0) -> Tensor:
     """Return phi_articoll (B,) of B rooms [m2]: how deep bodies and what their joints sweep reach into each other.
 
     Paper eq. articoll sums IoU(b'_i, b_j) over ordered pairs, b' the extended state. Here b' is the body and, per joint,

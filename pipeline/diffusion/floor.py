@@ -35,7 +35,12 @@ def floor_tokens(context: RoomContext) -> Floor:
     """Return the tokens of a room. The origin is the centre of the polygon's box, the axes are the world's."""
     polygon = simplified(np.asarray(context.polygon, float), WALLS) - context.centre
     ends, normal = np.zeros((TOKENS, 2, 2), np.float32), np.zeros((TOKENS, 2), np.float32)
-    kind, hinge, sill, mask = np.zeros(TOKENS, np.int64), np.full(TOKENS, -1, np.int64), np.zeros(TOKENS, np.float32), np.zeros(TOKENS, bool)
+    kind, hinge, sill, mask = (
+        np.zeros(TOKENS, np.int64),
+        np.full(TOKENS, -1, np.int64),
+        np.zeros(TOKENS, np.float32),
+        np.zeros(TOKENS, bool),
+    )
     walls = np.stack([polygon, np.roll(polygon, -1, 0)], 1)
     inward = inward_normals(walls)
     count = len(walls)

@@ -96,6 +96,8 @@ def _looked_up(guide: Guide, codec: Codec, x0: Tensor) -> tuple[Tensor, Tensor |
     if guide.library is None:
         return size, None
     labels, occupied = codec.labels(x0).tolist(), codec.occupied(x0).tolist()
-    names = [[codec.norm.classes[c] if there else None for c, there in zip(*row, strict=True)] for row in zip(labels, occupied, strict=True)]
+    names = [
+        [codec.norm.classes[c] if there else None for c, there in zip(*row, strict=True)] for row in zip(labels, occupied, strict=True)
+    ]
     placed, sweeps = guide.library.lookup(names, size.double().cpu().numpy(), metric[..., SHAPE].cpu().numpy())
     return torch.from_numpy(placed).to(x0), torch.from_numpy(sweeps).to(x0)

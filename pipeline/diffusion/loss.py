@@ -29,7 +29,9 @@ class Levels(NamedTuple):
     @classmethod
     def of(cls, schedule: Schedule, device: torch.device) -> Levels:
         """Convert."""
-        return cls(*(torch.tensor(v, dtype=torch.float32, device=device) for v in (schedule.alpha, schedule.sigma, schedule.posterior_variance)))
+        return cls(
+            *(torch.tensor(v, dtype=torch.float32, device=device) for v in (schedule.alpha, schedule.sigma, schedule.posterior_variance))
+        )
 
 
 class Draw(NamedTuple):

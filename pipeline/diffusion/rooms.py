@@ -62,8 +62,15 @@ def context_of(room: Row, openings: Iterable[Row]) -> RoomContext:
 
 
 def example_of(
-    room: Row, objects: Sequence[Row], context: RoomContext, split: str, layout: int, classes: tuple[str, ...],
-    latents: Mapping[str, NDArray[np.float32]], sweeps: Mapping[str, NDArray[np.float32]], floor_z: float,
+    room: Row,
+    objects: Sequence[Row],
+    context: RoomContext,
+    split: str,
+    layout: int,
+    classes: tuple[str, ...],
+    latents: Mapping[str, NDArray[np.float32]],
+    sweeps: Mapping[str, NDArray[np.float32]],
+    floor_z: float,
 ) -> Example:
     """Build one example from the rows of a room."""
     position = np.array([o["position"] for o in objects], float).reshape(-1, 3) - [*context.centre, floor_z]
@@ -75,14 +82,24 @@ def example_of(
         if boxes is not None and row["openable"]:
             swept[i, : len(boxes)] = boxes[:SWEEPS] * np.array(row["scale"], np.float32)
     return Example(
-        f"{room['scene_id']}/{room['room_id']}", split, layout, class_indices([o["category"] for o in objects], classes),
-        continuous_rows(position, size, yaw, latent), swept, floor_tokens(context), float(room["height"]),
+        f"{room['scene_id']}/{room['room_id']}",
+        split,
+        layout,
+        class_indices([o["category"] for o in objects], classes),
+        continuous_rows(position, size, yaw, latent),
+        swept,
+        floor_tokens(context),
+        float(room["height"]),
     )
 
 
 def sets_of(
-    tables: Mapping[str, Sequence[Row]], latents: Mapping[str, NDArray[np.float32]], sweeps: Mapping[str, NDArray[np.float32]],
-    classes: tuple[str, ...], layouts: tuple[str, ...], slots: int,
+    tables: Mapping[str, Sequence[Row]],
+    latents: Mapping[str, NDArray[np.float32]],
+    sweeps: Mapping[str, NDArray[np.float32]],
+    classes: tuple[str, ...],
+    layouts: tuple[str, ...],
+    slots: int,
 ) -> Sets:
     """Collect the rooms of the tables scenes, rooms, openings and objects.
 
@@ -101,9 +118,7 @@ def sets_of(
         scene = room["scene_id"]
         context = context_of(room, openings.get((scene,), []))
         floor_z = room["level"] * storey[scene]
-        example = example_of(
-            room, rows, context, split[scene], layouts.index(room["layout_type"]), classes, latents, sweeps, floor_z
-        )
+        example = example_of(room, rows, context, split[scene], layouts.index(room["layout_type"]), classes, latents, sweeps, floor_z)
         found[example.split].append(example)
     return Sets(tuple(found["train"]), tuple(found["val"]), tuple(found["test"]), dict(sorted(left.items())))
 
@@ -121,6 +136,18 @@ def _grouped(rows: Iterable[Row], *keys: str) -> dict[tuple[Any, ...], list[Row]
     for row in rows:
         grouped.setdefault(tuple(row[k] for k in keys), []).append(row)
     return grouped
+
+
+def sweeps_by_asset(joints: Iterable[Row]) -> dict[str, NDArray[np.float32]]:
+    """Return, per asset, the boxes (k <= K, 2, 3) [m] that its joints sweep: the K largest, in the object frame."""
+    boxes: dict[str, list[NDArray[np.float64]]] = {}
+    for joint in joints:
+        boxes.setdefault(joint["asset_id"], []).append(np.array([joint["sweep_min"], joint["sweep_max"]], float))
+    found = {}
+    for asset, listed in boxes.items():
+        volume = [-float(np.prod(box[1] - box[0])) for box in listed]
+        found[asset] = np.array([listed[i] for i in np.argsort(volume, kind="stable")[:SWEEPS]], np.float32)
+    return found
 
 
 def layout_weights(examples: Sequence[Example], power: float = 0.5) -> NDArray[np.float64]:

@@ -74,7 +74,7 @@ class Sampler:
         return cls(net.to(torch.device(device)), header, settings, seed, library)
 
     def unguided(self) -> Sampler:
-        """The baseline: same weights, same noise, no guidance and no count told."""
+        """Return the baseline: same weights, same noise, no guidance and no count told."""
         plain = replace(self.settings, quantity=False, articulation="none", count_condition=False, snap_below=0)
         return replace(self, settings=plain)
 

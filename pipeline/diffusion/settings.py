@@ -47,6 +47,7 @@ class TrainSettings:
     tilt: float = 0.0  # augmentation: largest extra rotation [rad]
     checkpoint_every: int = 250
     validate_every: int = 500
+    threads: int = 0  # torch threads, part of the checkpoint's digest; 0: one per core
 
 
 @dataclass(frozen=True, slots=True)

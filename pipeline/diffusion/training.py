@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -41,7 +42,9 @@ class Trainer:
         self.average = copy.deepcopy(self.net).eval().requires_grad_(False)
         self.seed, self.settings, self.total, self.per_epoch, self.device, self.done = seed, settings, total, per_epoch, device, 0
         self.levels = Levels.of(linear(settings.timesteps), device)
-        self.optimiser = torch.optim.AdamW(self.net.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay, betas=(0.9, 0.98))
+        self.optimiser = torch.optim.AdamW(
+            self.net.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay, betas=(0.9, 0.98)
+        )
 
     def rate(self, step: int) -> float:
         """Learning rate at a step: a short warm-up, then a cosine to zero, or halving every `decay_every` epochs."""
@@ -60,7 +63,7 @@ class Trainer:
         drawn = draw(rng, s.batch, objects.classes.shape[1], self.net.norm.channels, s.timesteps, s.low_noise, s.count_known)
         rows = rows.to(self.device)
         seen = moved_objects(objects.rows(rows), motion, self.net.codec)
-        told = moved_rooms(rooms.rows(rows), motion)
+        told = moved_rooms(rooms.rows(rows).trimmed(), motion)
         loss = denoising_loss(self.net.train(), self.levels, told, seen, type(drawn)(*(v.to(self.device) for v in drawn)), s)
         geometry, shape, classes = (term.mean() for term in loss)
         rate = self.rate(self.done)
@@ -112,7 +115,9 @@ def train(
 
 
 @torch.no_grad()
-def validation(net: Denoiser, levels: Levels, rooms: RoomBatch, objects: Objects, settings: TrainSettings, seed: int) -> dict[str, dict[str, float]]:
+def validation(
+    net: Denoiser, levels: Levels, rooms: RoomBatch, objects: Objects, settings: TrainSettings, seed: int
+) -> dict[str, dict[str, float]]:
     """Return the mean loss terms at five noise levels, with noise keyed by (seed, level): the same at every call."""
     found: dict[str, dict[str, float]] = {}
     device = rooms.layout.device
@@ -123,15 +128,8 @@ def validation(net: Denoiser, levels: Levels, rooms: RoomBatch, objects: Objects
         for rows in torch.arange(len(rooms)).split(settings.batch):
             drawn = draw(rng, len(rows), objects.classes.shape[1], net.norm.channels, settings.timesteps, 0.0, 1.0)
             drawn = type(drawn)(*(v.to(device) for v in drawn))._replace(t=torch.full((len(rows),), level, device=device))
-            plain = _plain(settings)
+            plain = replace(settings, constraint=False)  # validation measures denoising alone
             terms.append(torch.stack(denoising_loss(net.eval(), levels, rooms.rows(rows), objects.rows(rows), drawn, plain)))
         mean = torch.cat(terms, 1).mean(1).tolist()
         found[f"t{t}"] = dict(zip(("geometry", "shape", "classes"), (round(v, 6) for v in mean), strict=True))
     return found
-
-
-def _plain(settings: TrainSettings) -> TrainSettings:
-    """The same settings without the constraint term: validation measures denoising alone."""
-    from dataclasses import replace
-
-    return replace(settings, constraint=False)

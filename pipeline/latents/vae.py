@@ -19,8 +19,8 @@ class Encoder(nn.Module):
     def __init__(self, width: int, latent: int) -> None:
         super().__init__()
         self.register_buffer("frequencies", torch.tensor([1.0, 2.0, 4.0]) * torch.pi, persistent=False)
-        self.points = nn.Sequential(nn.Linear(21, width), nn.GELU(), nn.Linear(width, width), nn.GELU(), nn.Linear(width, 2 * width))
-        self.pooled = nn.Sequential(nn.Linear(4 * width, 2 * width), nn.GELU(), nn.Linear(2 * width, 2 * latent))
+        self.points = nn.Sequential(nn.Linear(21, width), nn.SiLU(), nn.Linear(width, width), nn.SiLU(), nn.Linear(width, 2 * width))
+        self.pooled = nn.Sequential(nn.Linear(4 * width, 2 * width), nn.SiLU(), nn.Linear(2 * width, 2 * latent))
 
     def forward(self, cloud: Tensor) -> tuple[Tensor, Tensor]:
         """Return the posterior's mean and log-variance."""
@@ -36,13 +36,13 @@ class Decoder(nn.Module):
     def __init__(self, width: int, latent: int, points: int) -> None:
         super().__init__()
         self.count = points
-        self.net = nn.Sequential(
-            nn.Linear(latent, 2 * width), nn.GELU(), nn.Linear(2 * width, 4 * width), nn.GELU(), nn.Linear(4 * width, 3 * points)
-        )
+        last = nn.Linear(4 * width, 3 * points)
+        nn.init.uniform_(last.bias, -0.4, 0.4)  # the first cloud fills the cube, so that no point starts idle
+        self.net = nn.Sequential(nn.Linear(latent, 2 * width), nn.SiLU(), nn.Linear(2 * width, 4 * width), nn.SiLU(), last)
 
     def forward(self, latent: Tensor) -> Tensor:
         """Return a cloud (B, points, 3)."""
-        points: Tensor = 0.5 * self.net(latent).unflatten(-1, (self.count, 3))
+        points: Tensor = self.net(latent).unflatten(-1, (self.count, 3))
         return points
 
 
@@ -61,10 +61,20 @@ class PointVae(nn.Module):
 
 
 def chamfer(a: Tensor, b: Tensor) -> Tensor:
-    """Return the Chamfer distance (B,) of clouds (B, P, 3) and (B, Q, 3): mean distance to the nearest, both ways summed."""
-    squared = (a**2).sum(-1)[:, :, None] + (b**2).sum(-1)[:, None, :] - 2 * a @ b.transpose(1, 2)
-    there, back = squared.amin(2), squared.amin(1)
-    return (there.clamp_min(1e-8).sqrt().mean(1) + back.clamp_min(1e-8).sqrt().mean(1)).float()
+    """Return the Chamfer distance (B,) of clouds (B, P, 3) and (B, Q, 3): mean distance to the nearest, both ways summed.
+
+    The neighbours are found without a gradient, so that the backward pass never sees the P x Q matrix.
+    """
+    with torch.no_grad():
+        squared = torch.baddbmm((b**2).sum(-1)[:, None], a, b.transpose(1, 2), alpha=-2) + (a**2).sum(-1)[:, :, None]
+        there, back = squared.argmin(2), squared.argmin(1)
+    return _mean_distance(a, b, there) + _mean_distance(b, a, back)
+
+
+def _mean_distance(a: Tensor, b: Tensor, nearest: Tensor) -> Tensor:
+    """Return the mean distance (B,) of the points a (B, P, 3) to b's points (B, Q, 3) of the given indices (B, P)."""
+    apart = a - b.gather(1, nearest[..., None].expand(-1, -1, 3))
+    return ((apart**2).sum(-1) + 1e-10).sqrt().mean(1)
 
 
 def kl_to_standard_normal(mean: Tensor, logvar: Tensor) -> Tensor:

@@ -7,7 +7,12 @@ from numpy.typing import NDArray
 
 
 def anchored(
-    position: NDArray[np.float64], yaw: float, asked: NDArray[np.float64], size: NDArray[np.float64], polygon: NDArray[np.float64], reach: float = 0.12
+    position: NDArray[np.float64],
+    yaw: float,
+    asked: NDArray[np.float64],
+    size: NDArray[np.float64],
+    polygon: NDArray[np.float64],
+    reach: float = 0.12,
 ) -> NDArray[np.float64]:
     """Return the position (3,) [m] at which a box of `size` keeps the asked box's sides that lie at walls.
 

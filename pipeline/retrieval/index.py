@@ -74,9 +74,9 @@ class AssetIndex:
             merged = merged_boxes(np.array(swept.get(row["asset_id"], []), float).reshape(-1, 2, 3), settings.sweep_boxes)
             boxes[i, : len(merged)] = merged
         raw = np.array([known[r["asset_id"]] for r in rows], float).reshape(len(rows), -1)
-        mean = raw.mean(0) if len(rows) else np.zeros(raw.shape[1])
+        mean = raw.mean(0) if rows else np.zeros(raw.shape[1])
         # A latent channel that the encoder does not use must not be blown up by its tiny spread.
-        spread = np.maximum(raw.std(0), 0.05) if len(rows) else np.ones(raw.shape[1])
+        spread = np.maximum(raw.std(0), 0.05) if rows else np.ones(raw.shape[1])
         names = tuple(str(r["category"]) for r in rows)
         shelves = {name: np.flatnonzero(np.array(names) == name) for name in sorted(set(names))}
         return cls(
@@ -102,7 +102,9 @@ class AssetIndex:
         one matrix of distances.
         """
         rows, distances = self.nearest(categories, sizes, latents)
-        return [None if row < 0 else self._match(int(row), float(d), sizes[p]) for p, (row, d) in enumerate(zip(rows, distances, strict=True))]
+        return [
+            None if row < 0 else self._match(int(row), float(d), sizes[p]) for p, (row, d) in enumerate(zip(rows, distances, strict=True))
+        ]
 
     def nearest(
         self, categories: Sequence[str | None], sizes: NDArray[np.float64], latents: NDArray[np.float32] | NDArray[np.float64]

@@ -28,7 +28,14 @@ def room_rows(rng, number):
         "scene_id": f"h{number}", "kind": "door", "rooms": ["r0", "r1"], "segment": [[at, -0.06], [at + 0.85, -0.06]],
         "sill": 0.0, "swing_room": "r0", "swing_hinge": 0, "swing_angle": 1.5,
     }  # fmt: skip
-    window = {**door, "kind": "window", "segment": [[w + 0.1, d / 2 - 0.5], [w + 0.1, d / 2 + 0.5]], "sill": 0.9, "swing_room": "", "swing_hinge": None}
+    window = {
+        **door,
+        "kind": "window",
+        "segment": [[w + 0.1, d / 2 - 0.5], [w + 0.1, d / 2 + 0.5]],
+        "sill": 0.9,
+        "swing_room": "",
+        "swing_hinge": None,
+    }
     placed = []
 
     def place(name, x, y, yaw, z=0.0):

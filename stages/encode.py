@@ -1,0 +1,104 @@
+"""DVC stage `encode`: a point-cloud VAE over the assets' surfaces; stores the mean of the posterior.
+
+Reads data/tables/assets.parquet and data/assets/, writes data/latents/latents.parquet, models/vae.safetensors and
+metrics/encode.json.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from tqdm import tqdm
+
+from pipeline import params, seeds, tables
+from pipeline.entities.files import load_asset
+from pipeline.errors import ContentError
+from pipeline.latents.ranking import Ranking, self_ranking
+from pipeline.latents.settings import EncodeSettings
+from pipeline.latents.surface import surface_points, triangles
+from pipeline.latents.training import encode, seeded, train
+from pipeline.latents.vae import PointVae, chamfer
+from pipeline.latents.weights import save_vae
+from pipeline.manifest import write_json
+from schemas.assets import ASSETS, LATENTS
+from stages.runner import run
+
+Row = dict[str, Any]
+
+
+def main(root: Path) -> None:
+    """Train on the assets of split train, encode all, and measure how well shapes are told apart."""
+    tree = params.read(root / "params.yaml")
+    settings, seed = params.section(EncodeSettings, tree, "encode"), int(tree["seed"])
+    torch.set_num_threads(settings.threads or os.cpu_count() or 1)
+    device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
+    rows = sorted(tables.read(root / "data/tables/assets.parquet", ASSETS), key=lambda r: str(r["asset_id"]))
+    if not rows:
+        raise ContentError(f"{root / 'data/tables/assets.parquet'} lists no asset", "run `dvc repro preprocess` again")
+    # Assets that are one model at several scales (PartNet objects serving several categories) have one shape.
+    shapes = {(r["source"], r["source_id"]): r for r in reversed(rows)}
+    order = sorted(shapes)
+    first, second = clouds(root / "data/assets", [shapes[k] for k in order], settings.points, seed)
+    learnt = [i for i, k in enumerate(order) if shapes[k]["split"] == "train"] or list(range(len(order)))
+    net, untrained = seeded(seed, settings), seeded(seed, settings)
+    bar = tqdm(train(seed, net, first[learnt], settings, device), total=settings.steps, desc="encode", unit="step")
+    last = [(step.chamfer, step.kl) for step in bar][-50:]
+    save_vae(root / "models/vae.safetensors", net, settings)
+    means = encode(net, first, device).numpy()
+    at = {k: i for i, k in enumerate(order)}
+    made = [{"asset_id": r["asset_id"], "latent": means[at[r["source"], r["source_id"]]].tolist()} for r in rows]
+    tables.write(root / "data/latents/latents.parquet", LATENTS, made)
+    held = [i for i, k in enumerate(order) if shapes[k]["split"] != "train"]
+    served: dict[tuple[str, str], set[str]] = {}
+    for row in rows:
+        served.setdefault((row["source"], row["source_id"]), set()).add(row["category"])
+    report = {
+        "shapes": len(order),
+        "assets": len(rows),
+        "chamfer": round(float(np.mean([c for c, _ in last])), 6),
+        "kl": round(float(np.mean([k for _, k in last])), 6),
+        "chamfer_two_samples": round(
+            float(torch.cat([chamfer(a, b) for a, b in zip(first.split(8), second.split(8), strict=True)]).mean()), 6
+        ),
+    }
+    for name, model in (("trained", net), ("untrained", untrained)):
+        for part, asked in (("held_out", held), ("all", list(range(len(order))))):
+            ranking = ranked(model, first, second, [sorted(served[k]) for k in order], asked, device)
+            report[f"self_rank_{part}_{name}"] = round(ranking.rate, 6)
+            report[f"asked_{part}"] = ranking.asked
+            report[f"twins_{part}_{name}"] = ranking.excused
+    write_json(root / "metrics/encode.json", report)
+
+
+def clouds(folder: Path, rows: list[Row], points: int, seed: int) -> tuple[torch.Tensor, torch.Tensor]:
+    """Return two independent surface samples (M, P, 3) of each row's asset; the first is the one that is stored."""
+    samples: tuple[list[np.ndarray[Any, Any]], list[np.ndarray[Any, Any]]] = ([], [])
+    for row in tqdm(rows, desc="surfaces", unit="asset"):
+        corners = triangles(load_asset(folder / row["file"]))
+        for number, sample in enumerate(samples):
+            rng = seeds.generator(seed, "surface", row["source"], row["source_id"], number)
+            sample.append(surface_points(rng, corners, points))
+    return torch.from_numpy(np.stack(samples[0])), torch.from_numpy(np.stack(samples[1]))
+
+
+def ranked(
+    net: PointVae, first: torch.Tensor, second: torch.Tensor, categories: list[list[str]], asked: list[int], device: torch.device
+) -> Ranking:
+    """Rank shapes from their second samples. A shape is compared with all that share its (alphabetically first) category."""
+
+    def between(i: int, j: int) -> float:
+        return float(chamfer(first[i : i + 1], first[j : j + 1])[0])
+
+    def itself(i: int) -> float:
+        return float(chamfer(first[i : i + 1], second[i : i + 1])[0])
+
+    stored, queries = encode(net, first, device).numpy(), encode(net, second, device).numpy()
+    return self_ranking(stored, queries, [c[0] for c in categories], asked, between, itself)
+
+
+if __name__ == "__main__":
+    run(main)
