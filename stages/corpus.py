@@ -11,8 +11,6 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import partial
 from pathlib import Path
 
-from tqdm import tqdm
-
 from pipeline import params
 from pipeline.corpus.front_writer import DIALECTS, scene_json
 from pipeline.corpus.furniture.catalogue import Model, catalogue
@@ -22,6 +20,7 @@ from pipeline.corpus.houses.house import make_house
 from pipeline.corpus.houses.stock import Stock
 from pipeline.corpus.partnet_writer import write_partnet
 from pipeline.corpus.settings import CorpusSettings
+from pipeline.execution import track
 from pipeline.seeds import generator
 from stages import runner
 
@@ -35,19 +34,21 @@ def main(root: Path) -> None:
     tree = params.read(root / "params.yaml")
     settings = params.section(CorpusSettings, tree, "corpus")
     target = root / RAW
-    make(target, int(tree["seed"]), settings, workers=os.cpu_count() or 1)
+    make(target, params.convert(int, tree.get("seed"), "seed"), settings, workers=os.cpu_count() or 1)
 
 
 def make(target: Path, seed: int, settings: CorpusSettings, workers: int) -> None:
     """Write the corpus to `target`, whole or not at all."""
     making, old = target.with_name(f".{target.name}.making"), target.with_name(f".{target.name}.old")
+    if old.exists() and not target.exists():  # a run was killed while it swapped the two
+        old.replace(target)
     for leftover in (making, old):
         shutil.rmtree(leftover, ignore_errors=True)
     making.mkdir(parents=True)
     jobs = list(tasks(making, seed, settings))
-    with tqdm(total=sum(n for n, _ in jobs), desc="corpus", unit="file", mininterval=0.5) as bar:
-        for done in completed([job for _, job in jobs], workers):
-            bar.update(done)
+    total = sum(n for n, _ in jobs)
+    for _ in track(completed([job for _, job in jobs], workers), total, "corpus", unit="file", size=int):
+        pass
     if target.exists():
         target.replace(old)
     making.replace(target)
@@ -82,8 +83,11 @@ def completed(jobs: Sequence[Task], workers: int) -> Iterator[int]:
         return
     method = "fork" if "fork" in multiprocessing.get_all_start_methods() else "spawn"
     with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context(method)) as pool:
-        for future in as_completed([pool.submit(job) for job in jobs]):
-            yield future.result()
+        try:
+            for future in as_completed([pool.submit(job) for job in jobs]):
+                yield future.result()
+        finally:
+            pool.shutdown(cancel_futures=True)
 
 
 def write_houses(folder: Path, seed: int, settings: CorpusSettings, indices: range) -> int:

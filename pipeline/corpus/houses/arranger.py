@@ -86,7 +86,7 @@ class Arranger:
         assert spot is not None
         if seat is not None:
             off = float(self.rng.uniform(0.02, 0.1))
-            turn = math.pi + (float(self.rng.normal(0, 0.4)) if self.chance(0.4) else 0.0)
+            turn = math.pi + (float(self.rng.normal(0, 0.4)) if self.chance(0.55) else 0.0)
             place = shifted(spot, float(self.rng.normal(0, 0.04)), desk.size[1] / 2 + seat.size[1] / 2 + off, turn)
             if turn != math.pi:
                 place = shifted(place, 0.0, -0.1)
@@ -101,7 +101,7 @@ class Arranger:
         spot = against(self.rng, self.space, model, front=FRONTS.get(category, 0.0) if front is None else front, corner=0.85)
         if spot is None:
             return False
-        if category in {"armchair", "lounge_chair", "lazy_sofa", "chaise_longue_sofa"} and self.chance(0.65):
+        if category in {"armchair", "lounge_chair", "lazy_sofa", "chaise_longue_sofa"} and self.chance(0.8):
             turn = float(self.rng.choice([-1, 1])) * float(self.rng.uniform(0.3, 0.8))
             bounds = box_of(0, 0, turn, model.size[0], model.size[1])
             turned = shifted(spot, 0.0, bounds[3] - model.size[1] / 2, turn)

@@ -104,7 +104,7 @@ def _place(arranger: Arranger, table: Model, chair: Model, count: int) -> bool:
         # Turned away from the table's front by `turn`: the chair looks back at the table.
         sway = float(np.clip(rng.normal(0, 0.012), -0.02, 0.02))
         seat = shifted(spot, across + (sway if abs(forward) > 1e-9 else 0.0), forward, turn)
-        left_open = arranger.chance(0.05)  # pulled out and turned, as somebody left it
+        left_open = arranger.chance(0.09)  # pulled out and turned, as somebody left it
         if left_open and space.try_add(chair, shifted(seat, 0.0, -0.22, float(rng.normal(0, 0.5)))):
             continue
         space.try_add(chair, seat)

@@ -206,7 +206,7 @@ def _around(arranger: Arranger, lounge: Lounge, model: Model, free: list[int]) -
     reach = table[0].size[0] / 2 if table else 0.4
     ahead_by = (lounge.sofa.size[1] / 2 + 0.4 + (table[0].size[1] / 2 if table else 0.4)) + 0.1
     for sign in list(free):
-        oblique = float(rng.uniform(0.25, 0.7)) * (-sign) if arranger.chance(0.5) else 0.0
+        oblique = float(rng.uniform(0.25, 0.7)) * (-sign) if arranger.chance(0.65) else 0.0
         half = max(model.size[0], model.size[1]) / 2 if oblique else model.size[1] / 2
         across = sign * (reach + half + float(rng.uniform(0.35, 0.6)))
         place = shifted(lounge.spot, across, ahead_by + (0.1 if oblique else 0.0), -sign * math.pi / 2 + oblique)

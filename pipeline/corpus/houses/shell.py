@@ -36,18 +36,16 @@ def surfaces(plan: Plan) -> tuple[Surface, ...]:
     for number, room in enumerate(plan.rooms):
         made.append(Surface("Floor", number, tuple(_flat(room, 0.0, up=True))))
         made.append(Surface("Ceiling", number, tuple(_flat(room, room.height, up=False))))
-        for side in sides[number]:
-            made.append(Surface("WallInner", number, tuple(_wall(side, 0.0, holes_on(side, plan, room), room.height, inside=True))))
-            bare = list(_outer_parts(side, [s for k, other in enumerate(sides) if k != number for s in other]))
-            quads = [
-                q
-                for low, high in bare
-                for q in _wall(side, -OUTER, holes_on(side, plan, room), room.height, inside=False, low=low, high=high)
-            ]
+        others = [s for k, other in enumerate(sides) if k != number for s in other]
+        bare = [_outer_parts(side, others) for side in sides[number]]
+        for k, side in enumerate(sides[number]):
+            holes = holes_on(side, plan, room)
+            made.append(Surface("WallInner", number, tuple(_wall(side, 0.0, holes, room.height, inside=True))))
+            spans = _cornered(k, sides[number], bare)
+            quads = [q for a, b in spans for q in _wall(side, -OUTER, holes, room.height, inside=False, low=a, high=b)]
             if quads:
                 made.append(Surface("WallOuter", number, tuple(quads)))
-                tops = tuple(_level(side, low, high, room.height) for low, high in bare)
-                made.append(Surface("WallTop", number, tops))
+                made.append(Surface("WallTop", number, tuple(_level(side, a, b, room.height) for a, b in bare[k])))
     for k, opening in enumerate(plan.openings):
         made += _reveals(plan, sides, k, opening)
     return tuple(made)
@@ -113,7 +111,7 @@ def _wall(
             yield quad if inside else (quad[1], quad[0], quad[3], quad[2])
 
 
-def _outer_parts(side: Side, others: Sequence[Side]) -> Iterator[tuple[float, float]]:
+def _outer_parts(side: Side, others: Sequence[Side]) -> list[tuple[float, float]]:
     """Return the stretches of a side behind which there is no other room within a wall's thickness."""
     blocked = []
     for other in others:
@@ -123,13 +121,31 @@ def _outer_parts(side: Side, others: Sequence[Side]) -> Iterator[tuple[float, fl
         if -OUTER - 0.02 < near < 0:
             start, _ = side.along((other.x, other.y, other.x, other.y))
             blocked.append((start - other.length - INNER, start + INNER))
-    at = 0.0
+    at, parts = 0.0, []
     for low, high in sorted(blocked):
-        if low - at > 0.05:
-            yield at, low
+        if min(low, side.length) - at > 0.05:
+            parts.append((at, min(low, side.length)))
         at = max(at, high)
     if side.length - at > 0.05:
-        yield at, side.length
+        parts.append((at, side.length))
+    return parts
+
+
+def _cornered(k: int, sides: Sequence[Side], bare: Sequence[Sequence[tuple[float, float]]]) -> list[tuple[float, float]]:
+    """Return the stretches of side `k`'s outer face: longer than the inner one around outer corners, shorter in notches."""
+    side, before, after = sides[k], sides[k - 1], sides[(k + 1) % len(sides)]
+    parts = [list(p) for p in bare[k]]
+    if not parts:
+        return []
+    if parts[0][0] == 0.0:
+        turns_left = before.tx * side.ty - before.ty * side.tx > 0
+        meets = any(b == before.length for _, b in bare[k - 1])
+        parts[0][0] += (-OUTER if meets else 0.0) if turns_left else OUTER
+    if parts[-1][1] == side.length:
+        turns_left = side.tx * after.ty - side.ty * after.tx > 0
+        meets = any(a == 0.0 for a, _ in bare[(k + 1) % len(sides)])
+        parts[-1][1] += (OUTER if meets else 0.0) if turns_left else -OUTER
+    return [(a, b) for a, b in parts if b - a > 0.01]
 
 
 def _level(side: Side, low: float, high: float, z: float) -> Quad:
@@ -152,10 +168,10 @@ def _reveals(plan: Plan, sides: Sequence[Sequence[Side]], k: int, opening: Openi
         return (*side.point(s, v), z)
 
     quads: list[Quad] = [
-        (at(low, 0, z0), at(low, -thick, z0), at(low, -thick, z1), at(low, 0, z1)),
-        (at(high, -thick, z0), at(high, 0, z0), at(high, 0, z1), at(high, -thick, z1)),
-        (at(low, 0, z1), at(low, -thick, z1), at(high, -thick, z1), at(high, 0, z1)),
-        (at(low, -thick, z0), at(low, 0, z0), at(high, 0, z0), at(high, -thick, z0)),
+        (at(low, -thick, z0), at(low, 0, z0), at(low, 0, z1), at(low, -thick, z1)),
+        (at(high, 0, z0), at(high, -thick, z0), at(high, -thick, z1), at(high, 0, z1)),
+        (at(low, -thick, z1), at(low, 0, z1), at(high, 0, z1), at(high, -thick, z1)),
+        (at(low, 0, z0), at(low, -thick, z0), at(high, -thick, z0), at(high, 0, z0)),
     ]
     kind = {"window": "Window", "open": "Hole", "portal": "Hole"}.get(opening.kind, "Door")
     made = [Surface(kind, number, tuple(quads), k)]
