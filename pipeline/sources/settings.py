@@ -10,7 +10,7 @@ class FrontFilters:
     """When something of a 3D-FRONT house is left out; see docs/reasons.md."""
 
     min_room_area: float = 1.0  # m2
-    min_inside: float = 0.5  # share of an object's footprint that must lie in its room
+    min_inside: float = 0.8  # share of an object's footprint that must lie in its room
     max_tilt: float = 0.0175  # rad
     max_scale: float = 5.0  # factor
     max_top: float = 4.0  # m above the floor
