@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pipeline.arrange.item import Item, turned, wrapped
 from pipeline.arrange.settings import SeparateSettings
-from pipeline.arrange.site import Site
+from pipeline.arrange.site import Hole, Site
 
 Floats = NDArray[np.float64]
 
@@ -24,6 +24,8 @@ WAYS = 16
 GRID = 0.25  # of poses tried all over the room [m]
 STRIDE = 0.1  # of poses tried along walls [m]
 WALL_GAP = 0.001  # [m]
+OVERHANG = 0.05  # an object may stand this far before an opening at no cost [m]
+BEFORE_WINDOW = 0.4  # cost of hiding a window behind something high [m]
 
 
 def candidates(item: Item, site: Site, placed: Sequence[Item], settings: SeparateSettings) -> tuple[Floats, Floats]:
@@ -97,7 +99,7 @@ def _along_walls(item: Item, site: Site, placed: Sequence[Item]) -> tuple[Floats
     found, costs = [], []
     w, d = item.half
     ends = np.roll(site.polygon, -1, axis=0)
-    for a, b, yaw in zip(site.polygon, ends, wall_yaws(site.polygon), strict=True):
+    for a, b, yaw, holes in zip(site.polygon, ends, wall_yaws(site.polygon), site.holes, strict=True):
         length = float(np.linalg.norm(b - a))
         if length < 2 * w + 2 * WALL_GAP:
             continue
@@ -107,18 +109,40 @@ def _along_walls(item: Item, site: Site, placed: Sequence[Item]) -> tuple[Floats
         stops = [np.arange(w + WALL_GAP, length - w, STRIDE), [w + WALL_GAP, length - w - WALL_GAP, wished, wished - 0.05, wished + 0.05]]
         for other in placed:
             corners = other.placement.footprint()
-            depth = (corners - a) @ n
-            if depth.min() < 2 * d:
+            if ((corners - a) @ n).min() < 2 * d:
                 s = (corners - a) @ t
                 stops.append([s.min() - w - WALL_GAP, s.max() + w + WALL_GAP])
+        for hole in holes:
+            stops.append([hole.start - w - WALL_GAP, hole.end + w + WALL_GAP])
         s = np.concatenate([np.asarray(x, float) for x in stops])
         s = np.unique(np.round(s[(s >= w) & (s <= length - w)], 4))
         points = a + s[:, None] * t + (d + WALL_GAP) * n
         found.append(_made(points, np.full(len(s), wrapped(float(yaw)))))
-        costs.append(np.linalg.norm(points - item.wished[:2], axis=1))
+        costs.append(np.linalg.norm(points - item.wished[:2], axis=1) + _hole_cost(item, s, holes))
     if not found:
         return np.zeros((0, 4)), np.zeros(0)
-    return np.concatenate(found), np.concatenate(costs)
+    poses, cost = np.concatenate(found), np.concatenate(costs)
+    return poses[np.isfinite(cost)], cost[np.isfinite(cost)]
+
+
+def _hole_cost(item: Item, s: Floats, holes: Sequence[Hole]) -> Floats:
+    """Return what standing before openings costs at places `s` (S,) along an edge: there is no wall to lean on.
+
+    What hangs needs a wall; what is low may stand under a window.
+    """
+    cost = np.zeros(len(s))
+    w = float(item.half[0])
+    for hole in holes:
+        shared = np.minimum(s + w, hole.end) - np.maximum(s - w, hole.start)
+        before = shared > OVERHANG
+        if hole.window and item.mount == "floor":
+            high = float(item.placement.size[2]) > hole.sill + 0.1
+            cost += np.where(before, BEFORE_WINDOW if high else 0.0, 0.0)
+        elif item.mount == "wall":
+            cost[before] = np.inf
+        else:
+            cost += np.where(before, OFF_WALL[item.trait.wall], 0.0)
+    return cost
 
 
 def _partnered(item: Item, placed: Sequence[Item]) -> tuple[Floats, Floats]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.entities.plan import Plan
+from pipeline.entities.plan import Opening, Plan
 from pipeline.geometry.freefloor import PASSABLE, Floor, Walk, bare_floor, walk
 from pipeline.geometry.leaves import leaf_sweep
 from pipeline.geometry.prisms import Prisms, stacked
@@ -15,8 +16,19 @@ from pipeline.geometry.walls import leaves
 
 Floats = NDArray[np.float64]
 
+WALL = 0.3  # an opening's segment is at most this far from the faces of its wall [m]
 PASS_WIDTH = 0.9  # of a wide opening, this much about its middle is kept passable [m]
 NEAR_DOOR = 0.15  # the robot must find a place this near to the middle of each opening, so that it gets through [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Hole:
+    """An opening in one edge of a room: from `start` to `end` [m along the edge], `sill` [m above the floor]."""
+
+    start: float
+    end: float
+    sill: float
+    window: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +36,8 @@ class Site:
     """One room.
 
     `polygon` (n, 2) [m]; floor at `elevation`, ceiling at `ceiling` [m]; `swung` are the prisms that room doors sweep;
-    `doors` (D, 2) [m] the middles of the openings that one walks through; `radius`, `step`, `height` [m] the robot's.
+    `doors` (D, 2) [m] the middles of the openings that one walks through; `holes` are per edge of the polygon the openings
+    in it, as (start, end) [m along the edge], lower edge [m above the floor], and whether it is a window; `radius`, `step`, `height` [m] the robot's.
     """
 
     room_id: str
@@ -33,6 +46,7 @@ class Site:
     ceiling: float
     swung: Prisms
     doors: Floats
+    holes: tuple[tuple[Hole, ...], ...]
     floor: Floor
     radius: float
     step: float
@@ -53,6 +67,7 @@ class Site:
             elevation + room.height,
             swung,
             np.array([o.segment.mean(0) for o in openings if o.kind in PASSABLE]).reshape(-1, 2),
+            _holes(room.polygon, openings),
             # Beyond each opening lies floor on which the robot can stand whole: one passes through, not up to the wall.
             # Wide openings must be free in the middle, seen from both of their rooms: so both agree on where to pass.
             bare_floor([room], openings, 2 * radius + cell, cell, PASS_WIDTH),
@@ -86,3 +101,19 @@ class Site:
     def free_share(self, walked: Walk) -> float:
         """Return the true walkable ratio: what the robot covers, moving about from the doors, over the floor."""
         return float(walked.shares(walked.covered(self.entered(walked)), 1)[0])
+
+
+def _holes(polygon: Floats, openings: Sequence[Opening]) -> tuple[tuple[Hole, ...], ...]:
+    """Return the openings in each edge of a polygon."""
+    found = []
+    for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
+        length = float(np.linalg.norm(b - a))
+        t = (b - a) / max(length, 1e-9)
+        own = []
+        for o in openings:
+            s = (o.segment - a) @ t
+            off = np.abs((o.segment - a) @ np.array([-t[1], t[0]]))
+            if off.max() < WALL and min(length, s.max()) - max(0.0, s.min()) > 0.05:
+                own.append(Hole(float(s.min()), float(s.max()), o.sill, o.kind == "window"))
+        found.append(tuple(own))
+    return tuple(found)
