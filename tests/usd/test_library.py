@@ -103,7 +103,7 @@ def test_textures_are_relative_files_beside_the_asset(tmp_path, textured):
     files = write_library([textured], tmp_path)
     assert (tmp_path / "chair_t/textures/oak.png").read_bytes() == b"png"
     assert tmp_path / "chair_t/textures/oak.png" in files
-    layers, assets, unresolved = UsdUtils.ComputeAllDependencies(str(tmp_path / "chair_t/chair_t.usda"))
+    _, assets, unresolved = UsdUtils.ComputeAllDependencies(str(tmp_path / "chair_t/chair_t.usda"))
     assert not unresolved
     assert [a.endswith("chair_t/textures/oak.png") for a in assets] == [True]
 
