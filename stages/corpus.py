@@ -33,8 +33,7 @@ def main(root: Path) -> None:
     """Make the corpus of params.yaml under data/raw: in a temporary folder, which takes its place when it is whole."""
     tree = params.read(root / "params.yaml")
     settings = params.section(CorpusSettings, tree, "corpus")
-    target = root / RAW
-    make(target, params.convert(int, tree.get("seed"), "seed"), settings, workers=os.cpu_count() or 1)
+    make(root / RAW, params.convert(int, tree.get("seed"), "seed"), settings, workers=os.cpu_count() or 1)
 
 
 def make(target: Path, seed: int, settings: CorpusSettings, workers: int) -> None:

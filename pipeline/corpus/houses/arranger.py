@@ -111,6 +111,12 @@ class Arranger:
             spot = shifted(spot, 0.0, 0.08, float(self.rng.uniform(-0.7, 0.7)))
         return self.space.try_add(model, spot)
 
+    def on_wall(self, category: str, low: float) -> bool:
+        """Fix a piece to a wall, its underside `low` above the floor."""
+        model = self.pick(category, height=self.space.height - low - 0.05)
+        spot = None if model is None else against(self.rng, self.space, model, front=0.0, corner=0.0, low=low)
+        return model is not None and spot is not None and self.space.try_add(model, spot, low)
+
     def lamp(self, category: str, x: float, y: float, yaw: float = 0.0) -> bool:
         """Hang a lamp at (x, y) under the ceiling."""
         most = self.space.height - (1.5 if category == "pendant_lamp" else 1.9)

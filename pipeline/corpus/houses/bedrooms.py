@@ -57,6 +57,8 @@ def furnish_bedroom(arranger: Arranger) -> None:
     if bed is not None and arranger.chance(0.07):
         bed_end_stool(arranger, bed)
     extras(arranger, EXTRAS)
+    if arranger.chance(0.04):
+        arranger.on_wall("wall_lamp", 1.5)
     x, y = (bed[1].x, bed[1].y) if bed is not None and arranger.chance(0.35) else arranger.middles()[0]
     mark = arranger.rng.random()
     if mark < 0.95:
@@ -73,6 +75,8 @@ def furnish_kids_room(arranger: Arranger) -> None:
     if arranger.chance(0.55):
         arranger.at_wall("wardrobe", corner=0.8, tries=5)
     extras(arranger, KIDS_EXTRAS)
+    if arranger.chance(0.12):
+        arranger.on_wall("wall_lamp", 1.5)
     arranger.light(0.5, 0.45)
 
 

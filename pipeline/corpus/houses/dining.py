@@ -22,7 +22,7 @@ def furnish_dining(arranger: Arranger) -> None:
     for category, share in (("sideboard", 0.6), ("wine_cabinet", 0.35), ("cabinet", 0.2), ("shelf", 0.1), ("bookshelf", 0.12)):
         if arranger.chance(share):
             arranger.at_wall(category)
-    for category, share in (("plant", 0.15), ("lounge_chair", 0.08), ("stool", 0.08)):
+    for category, share in (("plant", 0.15), ("lounge_chair", 0.08), ("stool", 0.08), ("barstool", 0.1)):
         if arranger.chance(share):
             arranger.in_corner(category)
 

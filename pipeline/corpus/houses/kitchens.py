@@ -33,6 +33,8 @@ def furnish_kitchen(arranger: Arranger) -> None:
         arranger.at_wall("refrigerator", corner=0.95)
     if arranger.chance(0.35):
         arranger.in_corner("trash_can")
+    if arranger.space.area > 7.0 and arranger.chance(0.2):
+        arranger.in_corner("barstool")
     arranger.light(0.15, 0.65)
 
 

@@ -18,6 +18,8 @@ def furnish_bathroom(arranger: Arranger) -> None:
         arranger.at_wall("washing_machine", corner=0.95)
     if arranger.chance(0.4):
         arranger.in_corner("trash_can")
+    if arranger.chance(0.35):
+        arranger.on_wall("wall_lamp", 1.75)
     arranger.light(0.0, 0.8)
 
 
@@ -31,6 +33,8 @@ def furnish_hall(arranger: Arranger) -> None:
     for category, share in (("stool", 0.3), ("plant", 0.25)):
         if arranger.chance(share):
             arranger.in_corner(category)
+    if arranger.chance(0.15):
+        arranger.on_wall("wall_lamp", 1.6)
     arranger.light(0.15, 0.82)
 
 
