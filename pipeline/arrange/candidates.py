@@ -25,7 +25,7 @@ GRID = 0.25  # of poses tried all over the room [m]
 STRIDE = 0.1  # of poses tried along walls [m]
 WALL_GAP = 0.001  # [m]
 OVERHANG = 0.05  # an object may stand this far before an opening at no cost [m]
-BEFORE_WINDOW = 0.4  # cost of hiding a window behind something high [m]
+BEFORE_WINDOW = 0.2  # cost of hiding a window behind something high [m]
 
 
 def candidates(item: Item, site: Site, placed: Sequence[Item], settings: SeparateSettings) -> tuple[Floats, Floats]:
@@ -112,8 +112,7 @@ def _along_walls(item: Item, site: Site, placed: Sequence[Item]) -> tuple[Floats
             if ((corners - a) @ n).min() < 2 * d:
                 s = (corners - a) @ t
                 stops.append([s.min() - w - WALL_GAP, s.max() + w + WALL_GAP])
-        for hole in holes:
-            stops.append([hole.start - w - WALL_GAP, hole.end + w + WALL_GAP])
+        stops.extend([hole.start - w - WALL_GAP, hole.end + w + WALL_GAP] for hole in holes)
         s = np.concatenate([np.asarray(x, float) for x in stops])
         s = np.unique(np.round(s[(s >= w) & (s <= length - w)], 4))
         points = a + s[:, None] * t + (d + WALL_GAP) * n
@@ -136,7 +135,7 @@ def _hole_cost(item: Item, s: Floats, holes: Sequence[Hole]) -> Floats:
         shared = np.minimum(s + w, hole.end) - np.maximum(s - w, hole.start)
         before = shared > OVERHANG
         if hole.window and item.mount == "floor":
-            high = float(item.placement.size[2]) > hole.sill + 0.1
+            high = float(item.placement.size[2]) > hole.sill + 0.4
             cost += np.where(before, BEFORE_WINDOW if high else 0.0, 0.0)
         elif item.mount == "wall":
             cost[before] = np.inf

@@ -109,10 +109,9 @@ class Crowd:
     def _strip(self, item: Item) -> NDArray[np.bool_] | None:
         """Return the cells in which one can stand to open the item: the outer part of its access place."""
         p = item.placement
-        if not len(item.shape.access):
+        if not item.shape.opens or not len(item.shape.access):
             return None
-        box = item.shape.access.corners[0]
-        low, high = box.min(0), box.max(0)
+        low, high = item.shape.access.corners[0].min(0), item.shape.access.corners[0].max(0)
         near = low[1] + self.settings.access_depth - self.site.radius
         outer = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], near], [low[0], near]])
         c, s = np.cos(p.yaw), np.sin(p.yaw)

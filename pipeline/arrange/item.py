@@ -46,7 +46,8 @@ def make_item(placement: Placement, assets: Mapping[str, Asset], access_depth: f
     """Prepare a placement."""
     asset = assets[placement.asset_id]
     wished = np.array([*placement.position, placement.yaw])
-    return Item(placement, shape(asset, placement.scale, access_depth), trait(placement.category), mount(placement.category), wished)
+    kind = trait(placement.category)
+    return Item(placement, shape(asset, placement.scale, access_depth, kind.access), kind, mount(placement.category), wished)
 
 
 def wrapped(yaw: float) -> float:

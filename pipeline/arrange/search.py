@@ -24,7 +24,7 @@ Placed = tuple[Others, Others, Others]  # body, keep, access
 Room = tuple[Others, Others, Others, Floats]  # bodies, keeps, accesses; the room's polygon
 
 SOFT = 0.1  # a body may reach this far into an access place at no cost [m]
-SOFT_WALL = 0.3  # and a wall this far [m]
+SOFT_WALL = 0.15  # and a wall this far [m]
 
 
 @compiled
@@ -88,14 +88,16 @@ def blocked(own: Placed, room: Room, ceiling: float, tolerance: float) -> bool:
 
 @compiled
 def hindrance(own: Placed, room: Room) -> int:
-    """Return how many soft rules are broken: own access place taken, own access place in a wall, another's taken."""
+    """Return how many soft rules are broken: own access places taken or in a wall, another's taken."""
     (body, body_count, body_z, body_flat), _, (access, access_count, access_z, access_flat) = own
     bodies, _, accesses, polygon = room
     broken = 0
-    if access_count.shape[0]:
-        if touches(access, access_count, access_z, access_flat, bodies[0], bodies[1], bodies[2], bodies[3], SOFT):
-            broken += 1
-        if excess(access[0, : access_count[0]], polygon) > SOFT_WALL:
+    for i in range(access_count.shape[0]):
+        j = i + 1
+        if (
+            touches(access[i:j], access_count[i:j], access_z[i:j], access_flat[i:j], bodies[0], bodies[1], bodies[2], bodies[3], SOFT)
+            or excess(access[i, : access_count[i]], polygon) > SOFT_WALL
+        ):
             broken += 1
     if touches(body, body_count, body_z, body_flat, accesses[0], accesses[1], accesses[2], accesses[3], SOFT):
         broken += 1

@@ -102,7 +102,7 @@ def separate(
 def _rank(item: Item) -> tuple[int, float]:
     """Order of placing: by what leans on what, large before small, what opens before what does not."""
     area = float(item.placement.size[0] * item.placement.size[1])
-    return item.trait.order, -area * (1.5 if len(item.shape.access) else 1.0)
+    return item.trait.order, -area * (1.5 if item.shape.opens else 1.0)
 
 
 def _score(placed: Mapping[int, Item], items: Sequence[Item]) -> tuple[float, float]:

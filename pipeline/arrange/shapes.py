@@ -19,27 +19,34 @@ STRIDE = 3  # steps of a hinge that are covered by one prism
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """All in the object frame, scaled: `body` at rest, `keep` what joints sweep, `access` where one stands to open.
+    """All in the object frame, scaled: `body` at rest, `keep` what joints sweep, `access` where one comes to it.
 
-    `outline` (n, 2) is the convex hull of the body in plan.
+    `opens`: has doors, drawers or lids; `access` is then the place before them. `outline` (n, 2) is the convex hull of the body in plan.
     """
 
     body: Prisms
     keep: Prisms
     access: Prisms
+    opens: bool
     outline: Floats
 
 
-def shape(asset: Asset, scale: Floats, access_depth: float) -> Shape:
-    """Return the shape of an asset at a scale; `access_depth` [m] is the place kept free beyond opened parts."""
+def shape(asset: Asset, scale: Floats, access_depth: float, access: str = "") -> Shape:
+    """Return the shape of an asset at a scale.
+
+    `access_depth` [m] is the place kept free beyond opened parts; what does not open gets half of it where people come
+    to it: before its front ("front") or at both its sides ("sides").
+    """
     made = solid(asset)
     origin = np.zeros(3)
     body = made.rest.placed(origin, 0.0, scale)
     keep = stacked([p for sweep, j in zip(made.sweeps, asset.joints, strict=True) for p in _coarse(sweep, j)]).placed(origin, 0.0, scale)
     opening = [s for s, j in zip(made.sweeps, asset.joints, strict=True) if j.part_class in OPENERS]
-    access = _access(stacked([s.prisms for s in opening]).placed(origin, 0.0, scale), asset, scale, access_depth)
+    places = _access(stacked([s.prisms for s in opening]).placed(origin, 0.0, scale), asset, scale, access_depth)
+    if not len(places) and access:
+        places = _approach(asset.size * scale, access_depth / 2, sides=access == "sides")
     points = body.corners.reshape(-1, 2) if len(body) else np.zeros((1, 2))
-    return Shape(body, keep, access, hull(np.ascontiguousarray(points)))
+    return Shape(body, keep, places, bool(opening), hull(np.ascontiguousarray(points)))
 
 
 def _coarse(sweep: Sweep, joint: Joint) -> list[Prisms]:
@@ -64,10 +71,19 @@ def _access(swept: Prisms, asset: Asset, scale: Floats, depth: float) -> Prisms:
     """Return the box before the front, as wide as the asset, from its face to `depth` beyond what opens."""
     if not len(swept):
         return stacked([])
-    half_w, half_d = float(asset.size[0] * scale[0]) / 2, float(asset.size[1] * scale[1]) / 2
-    front = min(float(swept.corners[..., 1].min()), -half_d)
-    low, high = np.array([-half_w, front - depth]), np.array([half_w, -half_d])
-    corners = np.array([[low[0], low[1], z] for z in (0.02, 1.4)] + [[high[0], low[1], z] for z in (0.02, 1.4)])
-    corners = np.concatenate([corners, np.array([[x, high[1], z] for x in (low[0], high[0]) for z in (0.02, 1.4)])])
-    made = prism(corners)
+    w, d = float(asset.size[0] * scale[0]) / 2, float(asset.size[1] * scale[1]) / 2
+    return _box((-w, min(float(swept.corners[..., 1].min()), -d) - depth), (w, -d))
+
+
+def _approach(size: Floats, depth: float, *, sides: bool) -> Prisms:
+    """Return boxes of `depth` before the front, or at both sides."""
+    w, d = float(size[0]) / 2, float(size[1]) / 2
+    if not sides:
+        return _box((-w, -d - depth), (w, -d))
+    return stacked([_box((-w - depth, -d), (-w, d)), _box((w, -d), (w + depth, d))])
+
+
+def _box(low: tuple[float, float], high: tuple[float, float]) -> Prisms:
+    """Return one prism over a rectangle, as high as a person needs it."""
+    made = prism(np.array([[x, y, z] for z in (0.02, 1.4) for x in (low[0], high[0]) for y in (low[1], high[1])]))
     return stacked([]) if made is None else made

@@ -14,26 +14,28 @@ class Trait:
 
     `partners` are categories that it belongs beside, in the way of `relation`: "flank" (beside the partner's back, as a
     nightstand), "around" (facing the partner's sides, as a chair its table), "front" (before the partner, facing it).
+    `access` is where people come to it: before its front, or at both its sides.
     """
 
     wall: Literal["must", "want", "free"] = "free"
     order: int = 2
     relation: Literal["", "flank", "around", "front"] = ""
     partners: tuple[str, ...] = ()
+    access: Literal["", "front", "sides"] = ""
 
 
 _BEDS = ("double_bed", "single_bed", "kids_bed")
 _SOFAS = ("multi_seat_sofa", "l_shaped_sofa", "loveseat_sofa", "chaise_longue_sofa")
 
-_BACKED = Trait("must", 0)
+_BACKED = Trait("must", 0, access="front")
 _SIDE = Trait("want", 2)
 _TRAITS: dict[str, Trait] = {
     **dict.fromkeys(("wardrobe", "cabinet", "children_cabinet", "sideboard", "bookshelf", "shelf", "tv_stand"), _BACKED),
     **dict.fromkeys(("wine_cabinet", "shoe_cabinet", "dressing_table", "kitchen_cabinet", "sink_cabinet"), _BACKED),
     **dict.fromkeys(("refrigerator", "oven", "dishwasher", "washing_machine", "toilet", "vanity", "bathtub", "shower"), _BACKED),
-    **dict.fromkeys(_BEDS, Trait("must", -1)),
-    **dict.fromkeys(_SOFAS, Trait("want", 0)),
-    "desk": Trait("want", 0),
+    **dict.fromkeys(_BEDS, Trait("must", -1, access="sides")),
+    **dict.fromkeys(_SOFAS, Trait("want", 0, access="front")),
+    "desk": Trait("want", 0, access="front"),
     "nightstand": Trait("must", 1, "flank", _BEDS),
     "dining_table": Trait("free", 1),
     "coffee_table": Trait("free", 1, "front", _SOFAS),
