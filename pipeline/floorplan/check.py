@@ -25,7 +25,7 @@ class ImpossibleError(RefusedError):
 
 def check(program: FloorProgram) -> None:
     """Raise ImpossibleError (a RefusedError) for a program that no plan can meet."""
-    _names(program)
+    names(program)
     _forbidden(program)
     _areas(program)
     _degrees(program)
@@ -38,7 +38,8 @@ def cited(program: FloorProgram, *fields: str) -> list[Evidence]:
     return [e for e in program.evidence if any(e.field == f or e.field.startswith(f + ".") for f in fields)]
 
 
-def _names(program: FloorProgram) -> None:
+def names(program: FloorProgram) -> None:
+    """Raise ImpossibleError when ids repeat or a selector names no room."""
     twice = [name for name, count in Counter(r.id for r in program.rooms).items() if count > 1]
     if twice:
         raise ImpossibleError(f"two rooms are called {twice[0]!r}", "give each room an id of its own")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pipeline.floorplan.areas import with_areas
+from pipeline.floorplan.check import names
 from pipeline.floorplan.connect import connect, resolve
 from pipeline.floorplan.program import Entrance, FloorProgram, RoomReq
 
@@ -16,6 +17,7 @@ def complete(program: FloorProgram) -> FloorProgram:
     program = program.model_copy(update={"rooms": _add_missing(program)})
     program = program.model_copy(update={"rooms": _storeys(program)})
     program = program.model_copy(update={"rooms": _add_circulation(program)})
+    names(program)
     program = program.model_copy(update={"links": connect(program)})
     program = program.model_copy(update={"entrance": _entrance(program)})
     return with_areas(program)
@@ -77,6 +79,10 @@ def _storeys(program: FloorProgram) -> tuple[RoomReq, ...]:
         top = program.storeys - 1
         level = room.level if room.level is not None else (1 if room.type in UPSTAIRS else 0)
         rooms.append(room.model_copy(update={"level": 0 if room.type == "staircase" else min(level, top)}))
+    if not any(r.level == 0 and r.type != "staircase" for r in rooms):  # nobody lives on the stairs alone: all move down
+        rooms = [r.model_copy(update={"level": max((r.level or 0) - 1, 0)}) for r in rooms]
+    if program.storeys == 3 and not any(r.level == 2 for r in rooms):
+        rooms = _spread(rooms)
     if not any(r.type == "staircase" for r in rooms):
         rooms.append(RoomReq(id=_name("stairs", rooms), type="staircase", level=0, stated=False, inferred=True))
     for level in range(1, program.storeys):
@@ -87,6 +93,19 @@ def _storeys(program: FloorProgram) -> tuple[RoomReq, ...]:
             name = _name("landing" if level == 1 else f"landing_{level}", rooms)
             rooms.append(RoomReq(id=name, type="hallway", level=level, stated=False, inferred=True))
     return tuple(rooms)
+
+
+def _spread(rooms: list[RoomReq]) -> list[RoomReq]:
+    """Move every second room of each type from the first upper storey to an empty second one."""
+    seen: dict[str, int] = {}
+    result = []
+    for room in rooms:
+        if room.level == 1 and room.type != "hallway":
+            seen[room.type] = seen.get(room.type, 0) + 1
+            result.append(room.model_copy(update={"level": 2 if seen[room.type] % 2 == 0 else 1}))
+        else:
+            result.append(room)
+    return result
 
 
 def _name(wanted: str, rooms: list[RoomReq]) -> str:

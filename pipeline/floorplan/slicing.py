@@ -137,9 +137,9 @@ def cost(
                     total += 3.0 + 30.0 * (apart[a, b] - far)
     for v in range(n, m):
         sides = 0
-        if rect[v, 0] == 0 or rect[v, 2] == width:
+        if (rect[v, 0] == 0) != (rect[v, 2] == width):
             sides += 1
-        if rect[v, 1] == 0 or rect[v, 3] == height:
+        if (rect[v, 1] == 0) != (rect[v, 3] == height):
             sides += 1
         total += 15.0 * (2 - sides)
         w, h = rect[v, 2] - rect[v, 0], rect[v, 3] - rect[v, 1]

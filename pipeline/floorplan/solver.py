@@ -20,11 +20,12 @@ from pipeline.floorplan.program import FloorProgram
 from pipeline.floorplan.storeys import EDGE, UNIT, Storey, storey
 
 TRIES = 24  # whole attempts before a program is refused
-STARTS = 3  # slicing trees per attempt
+STARTS, MOST_STARTS = 3, 9  # slicing trees per attempt: usual, and while all of them lack something
 SLICES = 700  # slicing proposals per room and start
 PROPOSALS = 160  # annealing proposals per room and run
 HOT, COLD, PENALTY = 1.2, 0.01, 40.0
 SHARES = (1.0, 0.4, 0.0)  # how much of their freedom the walls' lines use; less when openings then find no place
+LEAST_CUT = 4  # cells
 SLICE_HOT, SLICE_COLD = 6.0, 0.05
 
 
@@ -98,9 +99,19 @@ def _storey_grid(
     request: Storey, program: FloorProgram, outline: Outline, rng: np.random.Generator, effort: int
 ) -> Labels | None:
     """Return a grid without violations: the best of several slicing trees, annealed."""
-    starts = [_slice(request, program, outline, rng) for _ in range(STARTS)]
-    best, cost = min(starts, key=lambda s: s[1])
-    if not np.isfinite(cost):
+    best: Labels | None = None
+    least = np.inf
+    for trial in range(MOST_STARTS):
+        cells, cost = _slice(request, program, outline, rng)
+        if np.isfinite(cost):
+            soft, hard, _ = anneal.score(cells, request.spec, request.weights, 0.0)
+            value = soft + PENALTY * min(hard, 10.0 if request.spec.stair_room >= 0 else np.inf)
+            if value < least:
+                best, least = cells, value
+        # annealing mends small things, not a missing neighbour
+        if trial >= STARTS - 1 and least < PENALTY:
+            break
+    if best is None:
         return None
     n = len(request.rooms)
     draws = rng.random((PROPOSALS * n * effort, anneal.DRAWS))
@@ -136,19 +147,22 @@ def _slice(request: Storey, program: FloorProgram, outline: Outline, rng: np.ran
     for i, (x0, y0, x1, y1) in enumerate(rects.tolist()):
         grid[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = min(i, n)
     cut = rects[n:]
-    corners = [((x0 == 0) or (x1 == width)) and ((y0 == 0) or (y1 == height)) for x0, y0, x1, y1 in cut.tolist()]
-    if not all(corners) or (voids == 2 and not _same_side(cut, width, height)):
+    corners = [
+        (x0 == 0) != (x1 == width) and (y0 == 0) != (y1 == height) and min(x1 - x0, y1 - y0) >= LEAST_CUT for x0, y0, x1, y1 in cut.tolist()
+    ]
+    if not all(corners) or (voids == 2 and not _same_side(cut)):
         return grid, np.inf
     if spec.stair_room >= 0:
         _stamp(grid, spec.stair_room, tuple(spec.stair.tolist()), n)
     return grid, float(cost)
 
 
-def _same_side(cut: NDArray[np.int64], width: int, height: int) -> bool:
-    """Whether two cut-outs lie in different corners of one side."""
-    a, b = cut
-    across = {(a[0] == 0, a[1] == 0), (b[0] == 0, b[1] == 0)}
-    return len(across) == 2 and ((a[0] == 0) == (b[0] == 0) or (a[1] == 0) == (b[1] == 0)) and a[2] - a[0] < width and a[3] - a[1] < height
+def _same_side(cut: NDArray[np.int64]) -> bool:
+    """Whether two cut-outs lie in different corners of one side, with building between them."""
+    (ax0, ay0, ax1, ay1), (bx0, by0, bx1, by1) = cut.tolist()
+    across = max(ax0, bx0) - min(ax1, bx1) >= LEAST_CUT and (ay0 == 0) == (by0 == 0)
+    along = max(ay0, by0) - min(ay1, by1) >= LEAST_CUT and (ax0 == 0) == (bx0 == 0)
+    return across or along
 
 
 def _stamp(grid: Labels, room: int, stair: tuple[int, ...], n: int) -> None:

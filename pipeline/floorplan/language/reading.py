@@ -85,8 +85,7 @@ def _mentions(state: Reading, sentence: list[Item]) -> None:
     has = False
     for k, item in enumerate(sentence):
         if item.kind == kinds.LEVEL:
-            state.level = item.level
-            state.understood(item)
+            _storey(state, sentence, k)
         elif item.kind == kinds.WORD and item.words in lexicon.OWNERS:
             state.owner, state.owning = item.words, ""
         elif item.kind == kinds.CUE:
@@ -117,6 +116,23 @@ def _mentions(state: Reading, sentence: list[Item]) -> None:
             _belongings(state, item)
         elif item.kind == kinds.PRONOUN and item.role == "group" and suites and item.words == "each":
             item.ids = list(suites)
+
+
+def _storey(state: Reading, sentence: list[Item], k: int) -> None:
+    """"Upstairs: two bedrooms" speaks of what follows, "two bedrooms upstairs" of what stands before."""
+    item = sentence[k]
+    state.understood(item)
+    following = sentence[k + 1] if k + 1 < len(sentence) else None
+    ends = following is None or following.kind in {kinds.AND, kinds.CUE} or (following.kind == kinds.COMMA and following.words == ",")
+    if k == 0 or not ends:
+        state.level = item.level
+        return
+    for earlier in reversed(sentence[:k]):
+        if earlier.kind == kinds.LEVEL:
+            break
+        if earlier.kind == kinds.ROOM:
+            for room in (state.inventory.get(i) for i in earlier.ids):
+                room.level = item.level
 
 
 def _belongings(state: Reading, item: Item) -> None:
