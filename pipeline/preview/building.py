@@ -20,6 +20,7 @@ WALL_TOP = 2.4  # depth at which cut walls are drawn: above furniture [m]
 WOOD = frozenset(m.name for m in (palette.OAK, palette.LIGHT_OAK, palette.WALNUT))
 PLANK = (1.35, 0.19)  # length, width [m]
 TILE = (0.45, 0.45)
+GRAIN = 0.03  # how much planks and tiles differ
 PALENESS = 0.42  # floors are mixed with white, so that furniture stands out
 
 
@@ -39,7 +40,8 @@ def building(plan: Plan, level: int, shell: Shell) -> Soup:
         if room.level == level:
             material = palette.floor(room.type)
             for piece in convex_pieces(Polygon(room.polygon)):
-                quads.extend((ring, colour, 0.0) for ring, colour in pattern(piece, material))
+                base = pale(material)
+                quads.extend((ring, shaded(base, 1 + GRAIN * shade), 0.0) for ring, shade in pattern(piece, material))
     for cut in shell.cuts:
         if cut.bottom > 0.05 or cut.opening.kind == "window":
             quads.append((cut.quad, WINDOW, WALL_TOP))
@@ -64,13 +66,12 @@ def pale(material: Material) -> tuple[float, float, float]:
     return red, green, blue
 
 
-def pattern(piece: NDArray[np.float64], material: Material) -> list[tuple[NDArray[np.float64], tuple[float, float, float]]]:
-    """Cut an axis-parallel rectangle into planks or tiles of slightly different shades; other shapes stay plain."""
-    base = pale(material)
+def pattern(piece: NDArray[np.float64], material: Material) -> list[tuple[NDArray[np.float64], float]]:
+    """Cut an axis-parallel rectangle into planks or tiles, each with a shade in [-1, 1]; other shapes stay whole."""
     (x0, y0), (x1, y1) = piece.min(axis=0), piece.max(axis=0)
     rectangle = len(piece) == 4 and abs((x1 - x0) * (y1 - y0) - Polygon(piece).area) < 1e-6
     if not rectangle or material.name == palette.CONCRETE.name:
-        return [(piece, base)]
+        return [(piece, 0.0)]
     length, width = PLANK if material.name in WOOD else TILE
     out = []
     for row in range(int(np.floor(y0 / width)), int(np.ceil(y1 / width))):
@@ -80,7 +81,12 @@ def pattern(piece: NDArray[np.float64], material: Material) -> list[tuple[NDArra
             c, d = max(y0, row * width), min(y1, (row + 1) * width)
             if b - a > 1e-6 and d - c > 1e-6:
                 # A fixed scramble of (row, column): planks differ, runs do not.
-                grain = 1 + 0.03 * (((row * 73856093) ^ (column * 19349663)) % 17 / 8 - 1)
-                red, green, blue = (min(1.0, v * grain) for v in base)
-                out.append((np.array([[a, c], [b, c], [b, d], [a, d]]), (red, green, blue)))
+                shade = ((row * 73856093) ^ (column * 19349663)) % 9 / 4 - 1
+                out.append((np.array([[a, c], [b, c], [b, d], [a, d]]), shade))
     return out
+
+
+def shaded(colour: tuple[float, float, float], factor: float) -> tuple[float, float, float]:
+    """Scale a colour, within [0, 1]."""
+    red, green, blue = (min(1.0, v * factor) for v in colour)
+    return red, green, blue

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -14,12 +14,14 @@ from pipeline.entities.asset import Asset, Material
 from pipeline.entities.home import Home
 from pipeline.geometry.tiling import convex_pieces
 from pipeline.geometry.walls import Panel, Shell, outer_panels, reveals, room_panels, shell
+from pipeline.preview.building import pattern, shaded
 from pipeline.rendering import fittings, palette
 from pipeline.rendering.pose import asset_triangles, opened, placement_transform
 from pipeline.taxonomy import load
 
 CUT = 2.15  # walls are cut here; doors stay whole [m]
 LOW_CUT = 0.9  # outer walls between the eye and the rooms are cut here, so that one sees in [m]
+GRAIN = 0.10  # how much planks and tiles differ; light evens it out
 WALL_TOP = Material("wall_cut", (0.05, 0.055, 0.065), 0.9)
 
 Heaps = dict[Material, list[NDArray[np.float64]]]
@@ -73,8 +75,11 @@ def home_batches(
 def _building(home: Home, level: int, built: Shell, heaps: Heaps, cut_height: CutHeight) -> None:
     for room in home.plan.rooms:
         if room.level == level:
-            ground = [_flat(piece, 0.0) for piece in convex_pieces(Polygon(room.polygon))]
-            heaps.setdefault(palette.floor(room.type), []).extend(ground)
+            material = palette.floor(room.type)
+            for piece in convex_pieces(Polygon(room.polygon)):
+                for ring, shade in pattern(piece, material):
+                    plank = replace(material, base_color=shaded(material.base_color, 1 + GRAIN * shade))
+                    heaps.setdefault(plank, []).append(_flat(ring, 0.0))
             _panels(heaps, palette.wall(room.type), room_panels(room, built.cuts), cut_height)
     tops = [_flat(p.polygon, min(p.top, cut_height(p.polygon))) for p in built.prisms if p.bottom < cut_height(p.polygon)]
     heaps.setdefault(WALL_TOP, []).extend(tops)

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 from scipy import ndimage
+
+from pipeline.geometry.compiled import compiled
 
 LIGHT = np.array([-0.35, -0.45, 0.82])  # towards the light, world frame; from the front left, high up
 AMBIENT = 0.45
@@ -152,7 +153,7 @@ def _plain(colour: tuple[float, float, float], width: int, height: int) -> NDArr
     return filled
 
 
-@numba.njit(cache=True)  # type: ignore[misc, unused-ignore]
+@compiled
 def _fill(
     projected: NDArray[np.float32],
     colours: NDArray[np.uint8],

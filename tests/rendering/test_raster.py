@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from pipeline.rendering import raster
 from pipeline.rendering.raster import darken_edges, fill, oblique, render, shrink, top_down
 
 
@@ -85,3 +86,14 @@ def test_shrinking_averages():
     frame = render(VIEW, square(0, 0, 2, 4, 0), WHITE, background=(0, 0, 0))
     small = shrink(frame, 64)
     assert small.colour[0, 0, 0] == pytest.approx(frame.colour[..., 0].mean(), abs=1)
+
+
+def test_compiled_and_plain_draw_the_same(monkeypatch):
+    rng = np.random.Generator(np.random.Philox(8))
+    projected = rng.uniform(-4, 36, (30, 3, 3)).astype(np.float32)
+    colours = rng.uniform(0, 1, (30, 3)).astype(np.float32)
+    fast = fill(projected, colours, None, (32, 32), (0, 0, 0))
+    monkeypatch.setattr(raster, "_fill", raster._fill.py_func)
+    slow = fill(projected, colours, None, (32, 32), (0, 0, 0))
+    assert (fast.item == slow.item).all()
+    assert (fast.colour == slow.colour).all()
