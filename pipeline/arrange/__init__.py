@@ -1,11 +1,13 @@
 """Post-optimisation: walkable area (algorithm 2 of the paper), then what is left of collisions is separated."""
 
+from pipeline.arrange.room import Arranged, post_optimise
 from pipeline.arrange.separate import Reject, Separated, separate
 from pipeline.arrange.settings import PostoptSettings, SeparateSettings, WalkableSettings
 from pipeline.arrange.site import Site
 from pipeline.arrange.walkable import Controlled, control_walkable, free_ratio, paper_ratio
 
 __all__ = [
+    "Arranged",
     "Controlled",
     "PostoptSettings",
     "Reject",
@@ -16,5 +18,6 @@ __all__ = [
     "control_walkable",
     "free_ratio",
     "paper_ratio",
+    "post_optimise",
     "separate",
 ]

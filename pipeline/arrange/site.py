@@ -76,6 +76,12 @@ class Site:
             height,
         )
 
+    @property
+    def area(self) -> float:
+        """Area of the room [m2] (shoelace formula)."""
+        x, y = self.polygon[:, 0], self.polygon[:, 1]
+        return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
     def walk(self, obstacles: Prisms) -> Walk:
         """Find where the robot can stand with these obstacles in the room."""
         return walk(self.floor, obstacles, self.radius, (self.elevation + self.step, self.elevation + self.height))
