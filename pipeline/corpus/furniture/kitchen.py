@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
-from pipeline.corpus.furniture.finishes import CERAMIC, MARBLE, STEEL, STONE, Finish, Scheme
+from pipeline.corpus.furniture.finishes import CERAMIC, MARBLE, PLASTIC, STEEL, STONE, Finish, Scheme
 from pipeline.corpus.furniture.fronts import reach
 from pipeline.corpus.furniture.shape import Piece, Shape, joined, pieces
 from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, rod, shell
@@ -25,7 +25,7 @@ def unit_style(rng: np.random.Generator, scheme: Scheme, panels: str = "slab sha
     """Draw how a kitchen unit is made: white carcass boards, a stone or wooden counter, fronts that cover the edges."""
     style = front_style(rng, scheme, panels, "bar flat edge bar knob")
     counter = (STONE, MARBLE, scheme.body)[int(rng.integers(3))]
-    return Case(scheme.body, style, "plinth", PLINTH, scheme.handle, top=counter, top_thickness=0.038, overhang=0.0)
+    return Case(scheme.body, style, "plinth", PLINTH, PLASTIC, top=counter, top_thickness=0.038, overhang=0.0)
 
 
 def kitchen_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:

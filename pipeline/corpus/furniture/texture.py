@@ -79,7 +79,7 @@ def paint(rng: np.random.Generator, sheet: Atlas) -> bytes:
     return png(image)
 
 
-_CONTRAST: dict[Pattern, float] = {"plain": 0.0, "grain": 0.22, "weave": 0.13, "speckle": 0.10}
+_CONTRAST: dict[Pattern, float] = {"plain": 0.0, "grain": 0.13, "weave": 0.07, "speckle": 0.07}
 
 
 def _pattern(rng: np.random.Generator, pattern: Pattern) -> NDArray[np.float64]:
@@ -91,9 +91,9 @@ def _pattern(rng: np.random.Generator, pattern: Pattern) -> NDArray[np.float64]:
         return noise
     if pattern == "weave":
         y, x = np.indices((TILE, TILE))
-        return np.asarray(0.6 * np.where((x // 2 + y // 2) % 2 == 0, 1.0, -1.0) + 0.4 * noise)
+        return np.asarray(0.6 * np.where((x + y) % 2 == 0, 1.0, -1.0) + 0.4 * noise)
     columns = rng.uniform(-1, 1, TILE)
-    drift = np.round(1.6 * np.sin(np.arange(TILE) * 2 * np.pi / TILE + rng.uniform(0, 6))).astype(int)
+    drift = np.round(0.8 * np.sin(np.arange(TILE) * 2 * np.pi / TILE + rng.uniform(0, 6))).astype(int)
     streaks = np.stack([np.roll(columns, shift) for shift in drift])
     return np.asarray(np.clip(0.8 * streaks + 0.2 * noise, -1, 1))
 
