@@ -18,10 +18,11 @@ from pipeline.entities.files import save_asset
 from pipeline.errors import ContentError
 from pipeline.sources import articulated
 from pipeline.sources.decomposition import decompose
-from pipeline.sources.front_house import HouseRows, read_house, split_of
+from pipeline.sources.front_house import HouseRows, read_house
 from pipeline.sources.front_objects import Model
 from pipeline.sources.future import ModelInfo, read_model, read_model_info
 from pipeline.sources.guarded import Folder
+from pipeline.sources.identity import split_of
 from pipeline.sources.library_rows import asset_row, joint_rows
 from pipeline.sources.partnet import URDFS, read_shape
 from pipeline.sources.reasons import Row, SourceError, reject

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -11,14 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
-from pipeline.entities.plan import Opening
-from pipeline.seeds import key
+from pipeline.entities.plan import Opening, Room
 from pipeline.sources import front_openings
 from pipeline.sources.front_file import HouseFile, RoomRecord, parse_house
 from pipeline.sources.front_floor import Floor, outline
 from pipeline.sources.front_objects import Model, Placed, overlapping, placed
 from pipeline.sources.front_poses import yaw_and_tilt
+from pipeline.sources.front_rows import ReadRoom, object_row, opening_row, room_row, scene_row
+from pipeline.sources.front_walkable import HEIGHT, STEP, walkable
 from pipeline.sources.guarded import Folder, read_json
+from pipeline.sources.identity import slug
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import FrontFilters
 from pipeline.taxonomy import Taxonomy
@@ -37,17 +38,6 @@ class HouseRows:
     openings: list[Row] = field(default_factory=list)
     objects: list[Row] = field(default_factory=list)
     rejects: list[Row] = field(default_factory=list)
-
-
-@dataclass(slots=True)
-class _Room:
-    record: RoomRecord
-    room_id: str
-    type: str
-    floor: Floor
-    polygon: Polygon
-    height: float
-    objects: list[Placed]
 
 
 def read_house(folder: Folder, file: str, models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, licence: str) -> HouseRows:
@@ -72,31 +62,24 @@ def house_rows(house: HouseFile, models: Mapping[str, Model], taxonomy: Taxonomy
         return rows
     scene_id = slug("h", house.uid)
     openings, walls = _openings(house, rooms, limits, rows.rejects)
-    rows.rooms = [_room_row(scene_id, house.uid, room, taxonomy) for room in rooms]
-    rows.openings = [_opening_row(scene_id, o) for o in openings]
+    rows.rooms = [room_row(scene_id, house.uid, room, taxonomy) for room in rooms]
+    for row, share in zip(rows.rooms, _walkable(rooms, openings), strict=True):
+        row["walkable_free"] = share
+    rows.openings = [opening_row(scene_id, o) for o in openings]
     rows.objects = [
-        _object_row(scene_id, room.room_id, k, o, f"{house.uid}/{room.record.instance}/{o.child.instance}")
+        object_row(scene_id, room.room_id, k, o, f"{house.uid}/{room.record.instance}/{o.child.instance}")
         for room in rooms
         for k, o in enumerate(room.objects)
     ]
-    rows.scenes = [_scene_row(scene_id, house, rooms, openings, walls, licence)]
+    rows.scenes = [scene_row(scene_id, house, rooms, openings, walls, licence)]
+    area = rows.scenes[0]["area"]
+    rows.scenes[0]["walkable_free"] = round(sum(r["walkable_free"] * r["area"] for r in rows.rooms) / area, 4)
     return rows
 
 
-def split_of(uid: str) -> str:
-    """Return train (8 of 10), val or test for a house or model, from its id alone."""
-    draw = key(0, "split", uid) % 10
-    return "val" if draw == 8 else "test" if draw == 9 else "train"
-
-
-def slug(prefix: str, name: str) -> str:
-    """Return an id that matches [a-z][a-z0-9_]*."""
-    return f"{prefix}_{re.sub(r'[^a-z0-9]+', '_', name.lower()).strip('_')}"
-
-
-def _rooms(house: HouseFile, taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]) -> list[_Room]:
+def _rooms(house: HouseFile, taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]) -> list[ReadRoom]:
     """Return the rooms with a usable floor, in file order."""
-    made: list[_Room] = []
+    made: list[ReadRoom] = []
     taken: set[str] = set()
     for number, record in enumerate(house.rooms):
         where = f"{house.uid}/{record.instance or number}"
@@ -113,9 +96,10 @@ def _rooms(house: HouseFile, taxonomy: Taxonomy, limits: FrontFilters, rejects: 
             continue
         polygon = Polygon(floor.polygon)
         room_id = slug("r", record.instance or record.type or str(number))
+        room_id = room_id if room_id not in taken else f"{room_id}_{number}"
         double = next((r for r in made if r.polygon.intersection(polygon).area > 0.5 * min(r.polygon.area, polygon.area)), None)
-        if room_id in taken or double:
-            rejects.append(reject("room", where, "duplicate_room", f"as {double.record.instance}" if double else "same id"))
+        if double:
+            rejects.append(reject("room", where, "duplicate_room", f"same floor as {double.record.instance}"))
             continue
         taken.add(room_id)
         if floor.pieces > 1 or floor.lost > 0.05:
@@ -123,7 +107,7 @@ def _rooms(house: HouseFile, taxonomy: Taxonomy, limits: FrontFilters, rejects: 
         kind = record.type.lower().replace(" ", "")
         if kind not in taxonomy.front_rooms:
             rejects.append(reject("room", where, "unknown_room_type", f"type {record.type!r}"))
-        made.append(_Room(record, room_id, kind, floor, polygon, _height(house, record, limits.ceiling), []))
+        made.append(ReadRoom(record, room_id, kind, floor, polygon, _height(house, record, limits.ceiling), []))
     return made
 
 
@@ -154,7 +138,7 @@ def _height(house: HouseFile, record: RoomRecord, default: float) -> float:
 
 
 def _fill(
-    house: HouseFile, rooms: list[_Room], models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]
+    house: HouseFile, rooms: list[ReadRoom], models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]
 ) -> None:
     """Give each room its objects; every child that is left out gets a reason, dangling and built-in ones by the room."""
     seen: set[tuple[Any, ...]] = set()
@@ -196,7 +180,15 @@ def _fill(
             room.objects.append(made)
 
 
-def _openings(house: HouseFile, rooms: list[_Room], limits: FrontFilters, rejects: list[Row]) -> tuple[list[Opening], tuple[float, float]]:
+def _walkable(rooms: list[ReadRoom], openings: list[Opening]) -> list[float]:
+    plain = [Room(r.room_id, r.type, r.floor.polygon) for r in rooms]
+    in_the_way = [o for r in rooms for o in r.objects if o.span[0] < HEIGHT and o.span[1] > STEP]
+    return walkable(plain, openings, [np.asarray(o.footprint().exterior.coords)[:4] for o in in_the_way])
+
+
+def _openings(
+    house: HouseFile, rooms: list[ReadRoom], limits: FrontFilters, rejects: list[Row]
+) -> tuple[list[Opening], tuple[float, float]]:
     """Return the openings, and the thickness of inner and outer walls as the reveals show it."""
     outlines = [front_openings.Outline(room.room_id, room.polygon) for room in rooms]
     holes = front_openings.merge(_holes(house, rejects))
@@ -241,116 +233,3 @@ def _holes(house: HouseFile, rejects: list[Row]) -> list[front_openings.Hole]:
             if hole:
                 holes.append(hole)
     return holes
-
-
-def _room_row(scene_id: str, uid: str, room: _Room, taxonomy: Taxonomy) -> Row:
-    area = room.floor.area
-    covered = sum(float(np.prod(o.pose.size[:2])) for o in room.objects if o.span[0] < 0.3)
-    free = room.polygon
-    for o in room.objects:
-        if o.span[0] < 0.3:
-            free = free.difference(o.footprint())
-    return {
-        "scene_id": scene_id,
-        "room_id": room.room_id,
-        "type": room.type,
-        "layout_type": taxonomy.front_rooms.get(room.type) or "",
-        "role": "",
-        "level": 0,
-        "height": room.height,
-        "area": round(area, 4),
-        "polygon": room.floor.polygon.tolist(),
-        "objects": len(room.objects),
-        "asked_objects": None,
-        "openable": sum(o.openable for o in room.objects),
-        "openable_sampled": None,
-        "walkable_paper": round(1 - covered / area, 4),
-        "walkable_free": round(float(free.area) / area, 4),
-        "walkable_target": None,
-        "source_id": f"{uid}/{room.record.instance}",
-    }
-
-
-def _opening_row(scene_id: str, opening: Opening) -> Row:
-    return {
-        "scene_id": scene_id,
-        "opening_id": opening.opening_id,
-        "kind": opening.kind,
-        "rooms": list(opening.rooms),
-        "segment": opening.segment.tolist(),
-        "width": round(opening.width, 4),
-        "height": opening.height,
-        "sill": opening.sill,
-        "swing_room": "",
-        "swing_hinge": None,
-        "swing_angle": None,
-        "level": 0,
-    }
-
-
-def _object_row(scene_id: str, room_id: str, number: int, made: Placed, source: str) -> Row:
-    return {
-        "scene_id": scene_id,
-        "object_id": f"{made.category}_{room_id}_{number}",
-        "room_id": room_id,
-        "category": made.category,
-        "asset_id": made.asset_id,
-        "position": made.pose.position.tolist(),
-        "yaw": made.pose.yaw,
-        "size": made.pose.size.tolist(),
-        "scale": made.scale.tolist(),
-        "openable": made.openable,
-        "latent": [0.0] * 32,
-        "retrieval_distance": 0.0,
-        "source_id": f"{source}#{made.jid}",
-    }
-
-
-def _scene_row(
-    scene_id: str, house: HouseFile, rooms: list[_Room], openings: list[Opening], walls: tuple[float, float], licence: str
-) -> Row:
-    area = sum(room.floor.area for room in rooms)
-    objects = [o for room in rooms for o in room.objects]
-    covered = sum(float(np.prod(o.pose.size[:2])) for o in objects if o.span[0] < 0.3)
-    return {
-        "scene_id": scene_id,
-        "index": 0,
-        "seed": 0,
-        "split": split_of(house.uid),
-        "prompt": "",
-        "program": "",
-        "storeys": 1,
-        "storey_height": round(max(room.height for room in rooms) + 0.3, 4),
-        "inner_wall": walls[0],
-        "outer_wall": walls[1],
-        "entrance": _entrance(house, rooms, openings),
-        "area": round(area, 4),
-        "rooms": len(rooms),
-        "objects": len(objects),
-        "openable": sum(o.openable for o in objects),
-        "joints": 0,
-        "joints_clear": 0,
-        "collisions": 0,
-        "reach": 0.0,
-        "walkable_paper": round(1 - covered / area, 4),
-        "walkable_free": 0.0,
-        "attempts": 1,
-        "licence": licence,
-        "usd": "",
-        "usd_sha256": "",
-    }
-
-
-def _entrance(house: HouseFile, rooms: list[_Room], openings: list[Opening]) -> str:
-    """Return the room that the file's entry door names, else one with a door to outside, halls and living rooms first."""
-    by_instance = {room.record.instance: room.room_id for room in rooms}
-    for name in house.entry_rooms:
-        if name in by_instance:
-            return by_instance[name]
-    outside = {o.rooms[0] for o in openings if o.kind == "entrance"}
-    wanted = ("hallway", "aisle", "corridor", "livingdiningroom", "livingroom", "diningroom", "lounge")
-    for kind in wanted:
-        for room in rooms:
-            if room.type == kind and room.room_id in outside:
-                return room.room_id
-    return ""

@@ -15,8 +15,8 @@ MIB = 1 << 20
 MAX_JSON = 64 * MIB
 # What a parsed document may cost: a list or object takes up to 250 bytes, any other value about 32. The limits keep
 # the whole below 256 MiB; a house of 2 MB has 0.2 million values.
-MAX_CONTAINERS = 400_000
-MAX_VALUES = 4_000_000
+MAX_CONTAINERS = 300_000
+MAX_VALUES = 3_000_000
 _SCHEME = re.compile(r"^[A-Za-z][A-Za-z0-9+.-]+:")
 DRIVE = re.compile(r"^[A-Za-z]:[\\/]")
 
@@ -117,7 +117,9 @@ def parse_json(data: bytes, where: str) -> Any:
         raise SourceError("not_json", where, f"contains {name}")
 
     try:
-        return json.loads(data.decode("utf-8-sig"), parse_constant=constant)
+        text = data.decode("utf-8-sig")
+        del data  # one copy of a large file is enough
+        return json.loads(text, parse_constant=constant)
     except RecursionError as error:
         raise SourceError("not_json", where, "is nested too deeply") from error
     except ValueError as error:

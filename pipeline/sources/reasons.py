@@ -41,7 +41,7 @@ REASONS: dict[str, Reason] = {
     # rooms
     "no_floor": Reason("room", "dropped", "no floor mesh with an area (the pseudo-room OtherRoom, most often)"),
     "too_small": Reason("room", "dropped", "floor area below `min_room_area`"),
-    "duplicate_room": Reason("room", "dropped", "a room of the same id, or on the same floor, was read before in this house"),
+    "duplicate_room": Reason("room", "dropped", "a room on the same floor was read before in this house"),
     "unknown_room_type": Reason("room", "repaired", "the room type is not in the taxonomy; it gets no layout type"),
     "floor_pieces": Reason("room", "repaired", "the floor has several pieces or holes; the largest outline is used"),
     # objects

@@ -6,9 +6,9 @@ from PIL import Image
 
 from pipeline import taxonomy
 from pipeline.entities.files import encode, load_asset
-from pipeline.sources.front_house import split_of
 from pipeline.sources.future import ModelInfo, read_model, read_model_info
 from pipeline.sources.guarded import Folder
+from pipeline.sources.identity import split_of
 from pipeline.sources.reasons import SourceError
 from pipeline.sources.settings import ModelLimits
 from tests.sources import making
