@@ -78,8 +78,9 @@ def _relate(program: FloorProgram, rooms: Sequence[RoomReq], target: list[float]
         larger = pick(relation.a)
         smaller = [i for i in pick(relation.b) if i not in larger]
         if relation.kind == "area_equal" and larger:
-            mean = sum(target[i] for i in larger) / len(larger)
-            for i in larger:
+            alike = [*larger, *smaller]
+            mean = sum(target[i] for i in alike) / len(alike)
+            for i in alike:
                 target[i] = mean if free[i] or rooms[i].area.target is None else target[i]
         elif relation.kind in {"area_order", "largest"} and smaller:
             ratio = relation.value * 1.08 if relation.kind == "area_order" else 1.08

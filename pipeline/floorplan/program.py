@@ -106,8 +106,8 @@ class Forbid(Model):
 class Relation(Model):
     """A relation between rooms.
 
-    area_order: every room of `a` is at least `value` times as large as every room of `b`. area_equal: the rooms of `a` differ by
-    at most the share `value`. largest: `a` is the largest of `b`. separation: centroids of `a` and `b` are at least `value`
+    area_order: every room of `a` is at least `value` times as large as every room of `b`. area_equal: the rooms of `a` (and
+    `b`) differ by at most the share `value`. largest: `a` is the largest of `b`. separation: centroids of `a` and `b` are at least `value`
     of the outline's diagonal apart. hops: at least `value` openings lie on the way from `a` to `b`. degree: `a` has exactly
     `value` openings. area_share: `a` takes at least `value` of the total area.
     """

@@ -190,7 +190,7 @@ def _relations(
             elif r.kind == "largest":
                 order[a, b] = max(order[a, b], 1 + EDGE)
             elif r.kind == "area_equal":
-                order[a, b] = max(order[a, b], 1 - r.value + EDGE)
+                order[a, b] = order[b, a] = max(order[a, b], 1 / (1 + r.value) + EDGE)
     return ban, apart, order
 
 

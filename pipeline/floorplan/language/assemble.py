@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterable
 from typing import Any
@@ -199,7 +200,8 @@ def _joined(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
                     continue
                 if a in owned and len(fact.a) > 1 and stock.get(b).type in HALLS:
                     continue  # "two baths on the corridor, one en suite"
-                draft.link(a, b, names[fact.what], fact)
+                stairs = "staircase" in {stock.get(a).type, stock.get(b).type}
+                draft.link(a, b, "open" if stairs and fact.what != lexicon.WALL else names[fact.what], fact)
         elif fact.what == lexicon.BETWEEN and len(fact.b) == 2:
             for a in fact.a:
                 for b in fact.b:
@@ -211,6 +213,13 @@ def _joined(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
         elif fact.what == "only":
             for a in fact.a:
                 draft.relate("degree", a, None, 1.0, fact)
+        elif fact.what == "largest":
+            draft.relate("largest", fact.a[0], stock.get(fact.a[0]).type, 1.0, fact)
+        elif fact.what == "area_order" and fact.a and fact.b:
+            draft.relate("area_order", fact.a[0], fact.b[0], fact.value, fact)
+        elif fact.what == "area_equal":
+            for a, b in itertools.combinations(fact.a, 2):
+                draft.relate("area_equal", a, b, fact.value, fact)
         elif fact.what == "window":
             for a in fact.a:
                 stock.get(a).window = "required"

@@ -8,7 +8,8 @@ from dataclasses import replace
 from pipeline.floorplan.language import lexicon
 from pipeline.floorplan.language.tokens import Token
 
-SHORTEST, LONG = 5, 8  # words shorter than SHORTEST are left alone; from LONG letters on two errors are repaired
+SHORTEST, LONG = 5, 7  # words shorter than SHORTEST are left alone; from LONG letters on two errors are repaired
+CUE_WORDS = ("adjacent", "between", "without", "connected", "separated", "downstairs", "upstairs", "adjoining", "largest")
 
 
 @functools.cache
@@ -17,9 +18,10 @@ def vocabulary() -> tuple[frozenset[str], tuple[str, ...]]:
     phrases = [*lexicon.ROOMS, *map(lexicon.plural, lexicon.ROOMS), *lexicon.SUITES, *map(lexicon.plural, lexicon.SUITES)]
     phrases += [*lexicon.CUES, *lexicon.UNITS, *lexicon.STYLES, *lexicon.NUMBERS, *lexicon.HOMES, *lexicon.ADJECTIVES, *lexicon.OWNERS]
     phrases += [*lexicon.BIG, *lexicon.LEAST, *lexicon.MOST, *lexicon.ABOUT, *lexicon.ORDINALS]
-    targets = {w for p in phrases for w in p.split() if w.isalpha()}
-    homes = {h + "s" for h in lexicon.HOMES}
-    return frozenset(targets | lexicon.FILLER | homes), tuple(sorted(w for w in targets if len(w) >= SHORTEST))
+    known = {w for p in phrases for w in p.split()} | lexicon.FILLER | {h + "s" for h in lexicon.HOMES}
+    nouns = [*lexicon.ROOMS, *map(lexicon.plural, lexicon.ROOMS), *lexicon.HOMES, *lexicon.UNITS, *lexicon.NUMBERS, *CUE_WORDS]
+    targets = {w for p in nouns for w in p.split() if w.isalpha() and len(w) >= SHORTEST}
+    return frozenset(known), tuple(sorted(targets))
 
 
 def repair(tokens: list[Token]) -> list[Token]:
@@ -40,6 +42,8 @@ def _nearest(word: str, targets: tuple[str, ...]) -> str:
         if abs(len(target) - len(word)) > allowed:
             continue
         gap = distance(word, target, allowed)
+        if gap > 1 and target[0] != word[0]:  # two errors, and the first letter one of them: too far
+            continue
         if gap < least or (gap == least and gap <= allowed and target[0] == word[0] != best[0]):
             best, least = target, gap
     return best

@@ -1,0 +1,176 @@
+"""A language model that answers well, badly, too long, too late, or with malice; spoken to over HTTP on this machine."""
+
+import json
+import logging
+import threading
+import time
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+
+import pytest
+
+from pipeline.errors import UsageError
+from pipeline.floorplan.ask import request
+from pipeline.floorplan.language.llm import Server, UnansweredError, ask, configured
+
+GOOD = json.dumps(
+    {
+        "rooms": [
+            {"id": "salon", "type": "living_room"},
+            {"id": "cuisine", "type": "kitchen"},
+            {"id": "chambre", "type": "bedroom", "area": {"target": 14, "stated": True}},
+            {"id": "bain", "type": "bathroom"},
+        ],
+        "links": [{"a": "salon", "b": "cuisine", "kind": "open", "stated": True}],
+    }
+)
+PROMPT = "a one-bedroom flat with living room, kitchen and bathroom"
+
+
+class Answers(BaseHTTPRequestHandler):
+    def do_POST(self):
+        asked = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+        self.server.seen.append((self.path, dict(self.headers), asked))
+        answer = self.server.answers[min(len(self.server.seen), len(self.server.answers)) - 1]
+        answer(self)
+
+    def log_message(self, *_):
+        pass
+
+
+def says(content):
+    return raw(json.dumps({"choices": [{"message": {"content": content}}]}).encode())
+
+
+def raw(body, status=200, headers=()):
+    def answer(handler):
+        handler.send_response(status)
+        handler.send_header("Content-Length", str(len(body)))
+        for name, value in headers:
+            handler.send_header(name, value)
+        handler.end_headers()
+        handler.wfile.write(body)
+
+    return answer
+
+
+def truncated(handler):
+    handler.send_response(200)
+    handler.send_header("Content-Length", "5000")
+    handler.end_headers()
+    handler.wfile.write(b'{"choices": [{"mess')
+
+
+def dripping(handler):
+    handler.send_response(200)
+    handler.send_header("Content-Length", "500000")
+    handler.end_headers()
+    for _ in range(40):
+        try:
+            handler.wfile.write(b" ")
+            handler.wfile.flush()
+        except OSError:
+            return
+        time.sleep(0.05)
+
+
+@pytest.fixture
+def serve():
+    servers = []
+
+    def start(*answers, **limits):
+        http = ThreadingHTTPServer(("127.0.0.1", 0), Answers)
+        http.answers, http.seen = answers, []
+        threading.Thread(target=http.serve_forever, args=(0.01,), daemon=True).start()
+        servers.append(http)
+        return http, Server(f"http://127.0.0.1:{http.server_port}/v1", "some-model", "secret", **{"seconds": 5.0, **limits})
+
+    yield start
+    for http in servers:
+        http.shutdown()
+        http.server_close()
+
+
+def test_a_good_answer_is_taken(serve):
+    http, server = serve(says(GOOD))
+    program = request(PROMPT, server)
+    assert [r.id for r in program.rooms] == ["salon", "cuisine", "chambre", "bain"]
+    assert {(k.a, k.b, k.kind) for k in program.links if k.stated} == {("salon", "cuisine", "open")}
+    path, headers, asked = http.seen[0]
+    assert path == "/v1/chat/completions"
+    assert headers["Authorization"] == "Bearer secret"
+    assert asked["model"] == "some-model"
+    assert asked["response_format"]["json_schema"]["schema"]["title"] == "FloorProgram"
+    assert asked["messages"][-1]["content"] == PROMPT
+
+
+def test_fenced_json_is_taken(serve):
+    _, server = serve(says(f"```json\n{GOOD}\n```"))
+    assert len(request(PROMPT, server).rooms) == 4
+
+
+def test_a_bad_answer_is_repaired_with_its_faults_named(serve):
+    http, server = serve(says('{"rooms": [{"id": "x", "type": "dungeon"}]}'), says("no"), says(GOOD))
+    assert len(request(PROMPT, server).rooms) == 4
+    assert len(http.seen) == 3
+    assert "rooms.0.type" in http.seen[1][2]["messages"][-1]["content"]
+
+
+@pytest.mark.parametrize(
+    ("answer", "limits"),
+    [
+        (says("I cannot do that"), {}),
+        (says("[1, 2]"), {}),
+        (says('{"rooms": []}'), {}),
+        (says("[" * 100_000), {}),
+        (raw(b"<html>"), {}),
+        (raw(b"{}"), {}),
+        (raw(b"", 500), {}),
+        (raw(b"", 302, [("Location", "http://127.0.0.1:9/")]), {}),
+        (truncated, {}),
+        (raw(b" " * 300_000), {"most_bytes": 100_000}),
+        (dripping, {"seconds": 0.4}),
+        (lambda _: time.sleep(1.0), {"seconds": 0.3}),
+    ],
+    ids=["prose", "list", "no-rooms", "deep", "html", "no-choices", "500", "redirect", "truncated", "huge", "dripping", "silent"],
+)
+def test_useless_answers_fall_back_to_the_built_in_parser(serve, caplog, answer, limits):
+    http, server = serve(answer, **limits)
+    began = time.monotonic()
+    with caplog.at_level(logging.WARNING):
+        program = request(PROMPT, server)
+    assert time.monotonic() - began < 4.0
+    assert {r.id for r in program.rooms} == {"bed", "living", "kitchen", "bath"}
+    assert "built-in parser" in caplog.text
+    assert "secret" not in caplog.text
+    assert len(http.seen) <= 3
+
+
+def test_answers_are_data(serve):
+    nasty = json.dumps({"rooms": [{"id": "../../etc/passwd", "type": "bedroom"}], "__import__": "os"})
+    _, server = serve(says(nasty))
+    with pytest.raises(UnansweredError, match="repairs"):
+        ask(PROMPT, server)
+
+
+def test_a_contradiction_of_the_models_own_making_is_not_believed(serve, caplog):
+    program = json.loads(GOOD) | {"forbids": [{"what": "adjacent", "a": "salon", "b": "cuisine"}]}
+    _, server = serve(says(json.dumps(program)))
+    assert {r.id for r in request(PROMPT, server).rooms} == {"bed", "living", "kitchen", "bath"}
+    assert "contradicts" in caplog.text
+
+
+def test_configuration_comes_from_the_environment():
+    assert configured({}) is None
+    both = {"SFGEN_LLM_BASE_URL": "http://localhost:1/v1/", "SFGEN_LLM_MODEL": "m"}
+    assert configured(both) == Server("http://localhost:1/v1", "m")
+    with pytest.raises(UsageError, match="SFGEN_LLM_MODEL"):
+        configured({"SFGEN_LLM_BASE_URL": "http://localhost:1"})
+    with pytest.raises(UsageError, match="http"):
+        configured({"SFGEN_LLM_BASE_URL": "file:///etc/passwd", "SFGEN_LLM_MODEL": "m"})
+
+
+def test_no_server_is_asked_about_an_empty_prompt(serve):
+    http, server = serve(says(GOOD))
+    with pytest.raises(UsageError):
+        request("  ", server)
+    assert http.seen == []
