@@ -122,7 +122,7 @@ def _degrees(program: FloorProgram) -> None:
             continue
         for room in program.select(relation.a):
             joined = [k for k in program.links if room.id in {k.a, k.b} and k.kind != "wall"]
-            if len(joined) > relation.value and sum(k.stated for k in joined) > relation.value:
+            if len(joined) > relation.value:
                 fields = [f"links.{x}" for k in joined for x in (f"{k.a}-{k.b}", f"{k.b}-{k.a}")]
                 words = cited(program, f"relations.degree.{room.id}", *fields)
                 raise ImpossibleError(

@@ -1,0 +1,145 @@
+"""Programs: their schema, their completion, their checks, the prior and its words."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from pipeline import taxonomy
+from pipeline.errors import RefusedError
+from pipeline.floorplan import complete, describe, json_schema, parse, prior
+from pipeline.floorplan.check import check, reach
+from pipeline.floorplan.defaults import DEFAULTS
+from pipeline.floorplan.program import FloorProgram, Forbid, Link, Range, Relation, RoomReq, RoomType
+
+
+def room(name, kind, **more):
+    return RoomReq(id=name, type=kind, **more)
+
+
+def program(*rooms, **more):
+    return FloorProgram(rooms=rooms, **more)
+
+
+def test_every_room_type_has_defaults_and_a_place_in_the_taxonomy():
+    assert set(RoomType.__args__) == set(DEFAULTS) == set(taxonomy.load().plan_rooms)
+    assert len(DEFAULTS) == 24
+
+
+def test_schema_describes_and_round_trips():
+    schema = json_schema()
+    assert schema["title"] == "FloorProgram"
+    assert "RoomReq" in schema["$defs"]
+    made = prior(np.random.default_rng(3))
+    assert FloorProgram.model_validate_json(made.model_dump_json()) == made
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"rooms": [{"id": "a", "type": "dungeon"}]},
+        {"rooms": [{"id": "../x", "type": "bedroom"}]},
+        {"rooms": [{"id": "a", "type": "bedroom", "colour": "red"}]},
+        {"style": {"area": 4}},
+        {"storeys": 4},
+        {"total_area": {"min": -1}},
+        {"total_area": {"target": float("inf")}},
+        {"version": 2},
+    ],
+)
+def test_wrong_programs_do_not_validate(wrong):
+    with pytest.raises(ValidationError):
+        FloorProgram.model_validate(wrong)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_the_prior_draws_sound_programs(seed):
+    made = prior(np.random.default_rng(seed))
+    check(made)
+    assert complete(made) == made
+    assert reach(made, made.entrance.into, frozenset()) == {r.id for r in made.rooms}
+    kinds = {r.type for r in made.rooms}
+    assert "bathroom" in kinds
+    assert kinds & {"living_room", "studio_room"}
+    words = describe(made)
+    assert words.endswith(".")
+    assert words[0] == "A"
+
+
+def test_the_prior_is_varied():
+    counts = Counter(tuple(sorted(r.type for r in prior(np.random.default_rng(s)).rooms)) for s in range(200))
+    assert len(counts) > 60
+    beds = Counter(sum(r.type == "bedroom" for r in prior(np.random.default_rng(s)).rooms) for s in range(200))
+    assert set(beds) == {0, 1, 2, 3, 4, 5}
+    assert prior(np.random.default_rng(5)) == prior(np.random.default_rng(5))
+
+
+def test_descriptions_are_understood_again():
+    same = 0
+    for seed in range(40):
+        made = prior(np.random.default_rng(seed))
+        again = parse(describe(made))
+        same += Counter(r.type for r in made.rooms) == Counter(r.type for r in again.rooms)
+    assert same >= 36
+
+
+def test_completion_adds_what_a_dwelling_needs_and_says_so():
+    made = complete(program(room("bed", "bedroom", count=2)))
+    by_type = {r.type: r for r in made.rooms}
+    assert {"living_room", "kitchen", "bathroom", "hallway"} <= set(by_type)
+    assert by_type["hallway"].inferred
+    assert not by_type["kitchen"].stated
+    assert all(not k.stated for k in made.links)
+    assert made.entrance.into == "living"
+
+
+def test_a_closed_list_stays_closed():
+    made = complete(program(room("studio", "studio_room"), room("bath", "bathroom"), only=True))
+    assert [r.id for r in made.rooms] == ["studio", "bath"]
+
+
+def test_no_bathroom_becomes_a_thoroughfare():
+    made = complete(
+        program(
+            room("living", "living_room"), room("hall", "hallway"), room("bed", "bedroom"), room("bath", "bathroom"),
+            links=(Link(a="hall", b="bath", stated=True), Link(a="bed", b="bath", stated=True)),
+        )
+    )  # fmt: skip
+    assert any({k.a, k.b} == {"hall", "bed"} for k in made.links)
+    check(made)
+
+
+def test_selectors_name_types():
+    made = complete(program(room("bed", "bedroom", count=3), room("hall", "hallway"), links=(Link(a="bedroom", b="hallway", stated=True),)))
+    assert sum(k.stated for k in made.links) == 3
+
+
+def test_area_relations_are_met_by_targets():
+    made = complete(
+        program(
+            room("a", "bedroom"), room("b", "bedroom"), room("c", "bedroom"), total_area=Range(target=90.0, stated=True),
+            relations=(Relation(kind="area_order", a="a", b="b", value=1.5), Relation(kind="largest", a="a", b="bedroom")),
+        )
+    )  # fmt: skip
+    area = {r.id: r.area.target for r in made.rooms}
+    assert area["a"] >= 1.5 * area["b"]
+    assert area["a"] > area["c"]
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (program(room("a", "bedroom", area=Range(min=20.0, max=10.0, stated=True))), "at least 20"),
+        (program(room("a", "bedroom"), room("a", "kitchen")), "two rooms"),
+        (program(room("bath", "bathroom"), room("bed", "bedroom"), room("hall", "hallway"), relations=(Relation(kind="degree", a="bath", value=1),),
+                 links=(Link(a="bath", b="bed", stated=True), Link(a="bath", b="hall", stated=True))), "1 door"),
+        (program(room("bed", "bedroom"), room("bath", "bathroom"), room("living", "living_room"), only=True,
+                 links=(Link(a="bed", b="bath", stated=True), Link(a="living", b="bed", stated=True)), forbids=(Forbid(what="through", a="bath", avoid="bed"),)), "only through"),
+        (program(room("kitchen", "kitchen"), room("living", "living_room"), room("bath", "bathroom"), only=True,
+                 links=(Link(a="living", b="bath", stated=True), Link(a="bath", b="kitchen", stated=True)), relations=(Relation(kind="degree", a="kitchen", value=1),)), "1 door"),
+    ],
+)  # fmt: skip
+def test_contradictions_are_refused(made, words):
+    with pytest.raises(RefusedError, match=words):
+        check(complete(made))
