@@ -90,7 +90,7 @@ class Arranger:
             place = shifted(spot, float(self.rng.normal(0, 0.04)), desk.size[1] / 2 + seat.size[1] / 2 + off, turn)
             if turn != math.pi:
                 place = shifted(place, 0.0, -0.1)
-            self.space.try_add(seat, place)
+            self.space.nestle(seat, place)
         return True
 
     def in_corner(self, category: str, front: float | None = None) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.records import Model
-from pipeline.corpus.houses.space import Space, Spot, ahead, back_gap, box_of, on_side, shifted
+from pipeline.corpus.houses.space import Spot, ahead, back_gap, box_of, on_side, shifted
 
 FOOT = 0.6
 SIDE = 0.5
@@ -23,14 +23,14 @@ EXTRAS = {
     "corner_side_table": 0.08,
     "round_end_table": 0.04,
     "sideboard": 0.015,
-    "armchair": 0.03,
-    "lounge_chair": 0.10,
+    "armchair": 0.05,
+    "lounge_chair": 0.12,
     "chaise_longue_sofa": 0.005,
     "lazy_sofa": 0.005,
     "plant": 0.04,
     "floor_lamp": 0.03,
 }
-KIDS_EXTRAS = {"children_cabinet": 0.55, "desk": 0.55, "bookshelf": 0.3, "shelf": 0.2, "cabinet": 0.15, "stool": 0.15, "plant": 0.1}
+KIDS_EXTRAS = {"children_cabinet": 0.55, "bookshelf": 0.3, "shelf": 0.2, "cabinet": 0.15, "stool": 0.15, "plant": 0.1}
 
 
 def furnish_bedroom(arranger: Arranger) -> None:
@@ -44,7 +44,7 @@ def furnish_bedroom(arranger: Arranger) -> None:
     if bed is not None and arranger.chance(0.42):
         tv_opposite(arranger, bed)
     pieces = [
-        w for w, share in (("desk", 0.11), ("dressing_table", 0.15), ("wardrobe", 0.98), ("wardrobe", 0.04)) if arranger.chance(share)
+        w for w, share in (("desk", 0.16), ("dressing_table", 0.19), ("wardrobe", 0.98), ("wardrobe", 0.04)) if arranger.chance(share)
     ]
     if arranger.chance(0.5):
         pieces.reverse()
@@ -72,6 +72,8 @@ def furnish_kids_room(arranger: Arranger) -> None:
     bed = place_bed(arranger, "kids_bed" if arranger.chance(0.6) else "single_bed")
     if bed is not None:
         nightstands(arranger, bed, int(arranger.rng.choice([0, 1, 2], p=[0.35, 0.5, 0.15])))
+    if arranger.chance(0.6):
+        arranger.pair_at_wall("desk", ("dining_chair", "lounge_chair", "dressing_chair"), 0.9)
     if arranger.chance(0.55):
         arranger.at_wall("wardrobe", corner=0.8, tries=5)
     extras(arranger, KIDS_EXTRAS)
@@ -85,9 +87,7 @@ def extras(arranger: Arranger, rates: dict[str, float]) -> None:
     for category, share in rates.items():
         if not arranger.chance(share):
             continue
-        if category == "desk":
-            arranger.pair_at_wall("desk", ("dining_chair", "lounge_chair", "lounge_chair"), 0.75)
-        elif category in {"armchair", "lounge_chair", "lazy_sofa", "chaise_longue_sofa", "plant", "floor_lamp"}:
+        if category in {"armchair", "lounge_chair", "lazy_sofa", "chaise_longue_sofa", "plant", "floor_lamp"}:
             arranger.in_corner(category)
         else:
             arranger.at_wall(category)
@@ -125,6 +125,7 @@ def _bed_spots(arranger: Arranger, model: Model, *, both: bool) -> list[tuple[fl
     space, rng = arranger.space, arranger.rng
     w, d, h = model.size
     gap = back_gap(rng)
+    aside = 0.8 if both else 5.0  # a narrow bed often stands along a wall
     found: list[tuple[float, Spot]] = []
     for i, side in enumerate(space.sides):
         for a, b in space.spans(side, d + gap, FOOT, 0.0, h):
@@ -141,7 +142,7 @@ def _bed_spots(arranger: Arranger, model: Model, *, both: bool) -> list[tuple[fl
             )
             lean = w / 2 + (beside if both else 0.02)
             if room > w + 2 * beside + 0.4:
-                found += [(0.8, on_side(space, i, a + lean, d, gap)), (0.8, on_side(space, i, b - lean, d, gap))]
+                found += [(aside, on_side(space, i, a + lean, d, gap)), (aside, on_side(space, i, b - lean, d, gap))]
     return found
 
 
@@ -157,23 +158,12 @@ def nightstands(arranger: Arranger, bed: tuple[Model, Spot], count: int) -> None
         gap = float(abs(arranger.rng.normal(0.04, 0.03)) + 0.01)
         back = -(model.size[1] - stand.size[1]) / 2
         places = [shifted(spot, sign * (model.size[0] / 2 + stand.size[0] / 2 + gap), back) for sign in signs]
-        fitting = [p for p in places if _beside(arranger.space, stand, p, dry=True)]
+        fitting = [p for p in places if arranger.space.nestle(stand, p, dry=True)]
         if len(fitting) == len(places) or attempt == 4:
             for place in fitting:
-                _beside(arranger.space, stand, place)
+                arranger.space.nestle(stand, place)
             return
         width = max(stand.size[0] * 0.9, arranger.stock.least("nightstand")[0])
-
-
-def _beside(space: Space, model: Model, spot: Spot, *, dry: bool = False) -> bool:
-    """Add a piece that may stand in the bed's own side lane, near the head, but not before a door; `dry`: only try."""
-    lanes = space.keeps
-    doors = len(space.doors)
-    space.keeps = lanes[:doors]
-    w, d, h = model.size
-    added = space.fits(box_of(spot.x, spot.y, spot.yaw, w, d), 0.0, h) if dry else space.try_add(model, spot)
-    space.keeps = lanes
-    return added
 
 
 def tv_opposite(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
@@ -208,7 +198,7 @@ def bed_end_stool(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
     if stool is None:
         return False
     place = shifted(spot, float(arranger.rng.normal(0, 0.04)), model.size[1] / 2 + stool.size[1] / 2 + 0.04)
-    return _beside(arranger.space, stool, place)
+    return arranger.space.nestle(stool, place)
 
 
 def _at(spot: Spot) -> tuple[float, float, float]:

@@ -33,7 +33,7 @@ def furnish_dining_corner(arranger: Arranger, chance: float) -> None:
     if not arranger.chance(chance):
         return
     count = int(rng.choice(list(CHAIRS), p=list(CHAIRS.values())))
-    category = "chinese_chair" if arranger.chance(0.008) else "dining_chair"
+    category = "chinese_chair" if arranger.chance(0.005) else "dining_chair"
     while count >= 2:
         for _ in range(2):
             chair = arranger.pick(category, width=0.66)

@@ -189,7 +189,7 @@ def seats(arranger: Arranger, lounge: Lounge) -> None:
         for c, share in (("armchair", 0.40), ("armchair", 0.27), ("lounge_chair", 0.30), ("lounge_chair", 0.15), ("stool", 0.36))
         if arranger.chance(share)
     ]
-    if arranger.chance(0.025):
+    if arranger.chance(0.012):
         wanted += ["chinese_chair", "chinese_chair"]
     free = [-1, 1] if arranger.chance(0.5) else [1, -1]
     twin: dict[str, Model | None] = {}

@@ -59,11 +59,13 @@ def furnish_study(arranger: Arranger) -> None:
 
 def furnish_balcony(arranger: Arranger) -> None:
     """Furnish a balcony: plants, a chair and a small table, sometimes the washing machine."""
+    arranger.space.blind = True  # all its outer walls are windows
     if arranger.chance(0.3):
         arranger.at_wall("washing_machine", corner=1.0)
     for category, share in (("plant", 0.8), ("lounge_chair", 0.6), ("round_end_table", 0.4), ("plant", 0.5), ("lounge_chair", 0.2)):
         if arranger.chance(share):
             arranger.in_corner(category, front=0.0)
+    arranger.space.blind = False
     arranger.light(0.0, 0.55)
 
 

@@ -187,6 +187,16 @@ class Space:
         self.add(model, spot, z, keep=keep)
         return True
 
+    def nestle(self, model: Model, spot: Spot, *, dry: bool = False) -> bool:
+        """Put down a piece that may stand where others want floor for themselves, but not before a door; `dry`: only try."""
+        wanted, self.keeps = self.keeps, self.keeps[: len(self.doors)]
+        w, d, h = model.size
+        fits = self.fits(box_of(spot.x, spot.y, spot.yaw, w, d), 0.0, h)
+        self.keeps = wanted
+        if fits and not dry:
+            self.add(model, spot)
+        return fits
+
 
 def against(
     rng: np.random.Generator,
