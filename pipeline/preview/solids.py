@@ -81,7 +81,8 @@ def _building(home: Home, level: int, built: Shell, heaps: Heaps, cut_height: Cu
                     plank = replace(material, base_color=shaded(material.base_color, 1 + GRAIN * shade))
                     heaps.setdefault(plank, []).append(_flat(ring, 0.0))
             _panels(heaps, palette.wall(room.type), room_panels(room, built.cuts), cut_height)
-    tops = [_flat(p.polygon, min(p.top, cut_height(p.polygon))) for p in built.prisms if p.bottom < cut_height(p.polygon)]
+    heights = [(p, cut_height(p.polygon)) for p in built.prisms]
+    tops = [_flat(p.polygon, height) for p, height in heights if p.bottom < height <= p.top]  # whole sills show their board instead
     heaps.setdefault(WALL_TOP, []).extend(tops)
     _panels(heaps, palette.FACADE, [p for p in outer_panels(built) if np.ptp(p.corners[:, 2]) > 1e-6], cut_height)
     for cut in built.cuts:
