@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
@@ -20,8 +19,8 @@ from pipeline import seeds
 from pipeline.corpus.furniture import wavefront
 from pipeline.corpus.furniture.assembly import shape_of
 from pipeline.corpus.furniture.catalogue import Model
-from pipeline.corpus.furniture.finishes import Finish
-from pipeline.corpus.furniture.shape import Mover, Piece, Shape
+from pipeline.corpus.furniture.links import Component, Frame, LinkRecord, link_records, without_handles
+from pipeline.corpus.furniture.shape import Mover, Shape
 from pipeline.corpus.furniture.wavefront import mesh_frame
 
 BASE_RPY = "1.570796326794897 0 -1.570796326794897"
@@ -32,49 +31,6 @@ CORNERS = np.array([(-1, 1, 1), (1, 1, 1), (1, -1, 1), (-1, -1, 1), (-1, 1, -1),
 ROTATION_DOOR = "rotation_door"
 FURNITURE = frozenset({"StorageFurniture", "Table"})
 JOINT_WORDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slider"}
-
-
-@dataclass(frozen=True, slots=True)
-class Component:
-    """A mesh file: pieces of one finish on one link, or one handle; `number` counts the object's files."""
-
-    number: int
-    name: str
-    part: str
-    pieces: tuple[Piece, ...]
-
-    @property
-    def file(self) -> str:
-        """Path of its OBJ file in the object's folder."""
-        return f"textured_objs/original-{self.number}.obj"
-
-
-@dataclass(frozen=True, slots=True)
-class LinkRecord:
-    """A link of the URDF. `mover` is None for the body and for handles, which are fixed to `parent`.
-
-    `origin` (3,) of its frame in the mesh frame, normalised; `part` the GAPartNet class or "".
-    """
-
-    name: str
-    parent: str
-    mover: Mover | None
-    origin: NDArray[np.float64]
-    components: tuple[Component, ...]
-    part: str
-    outward: tuple[float, float, float]
-
-
-@dataclass(frozen=True, slots=True)
-class Frame:
-    """The normalisation: mesh = (mesh_frame(point) - centre) * scale."""
-
-    centre: NDArray[np.float64]
-    scale: float
-
-    def point(self, p: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return a point (..., 3) of our object frame in normalised mesh coordinates."""
-        return (mesh_frame(np.asarray(p, float)) - self.centre) * self.scale
 
 
 def write_partnet(models: Sequence[Model], folder: Path) -> None:
@@ -92,7 +48,7 @@ def write_model(model: Model, folder: Path) -> None:
     objects.mkdir(parents=True, exist_ok=True)
     for component in (c for link in links for c in link.components):
         _write_component(component, frame, objects)
-    merged = _without_handles(links)
+    merged = without_handles(links)
     name = f"partnet_{seeds.key(model.seed, 'corpus.furniture.shapenet'):032x}"
     _write_text(folder / "mobility.urdf", urdf(name, merged, frame))
     _write_text(folder / "mobility_annotation_gapartnet.urdf", urdf(name, links, frame))
@@ -112,66 +68,6 @@ def normalisation(model: Model, shape: Shape) -> Frame:
     low, high = mesh_frame(shape.bounds()).min(axis=0), mesh_frame(shape.bounds()).max(axis=0)
     spread = seeds.generator(model.seed, "corpus.furniture.normalise").uniform(0.95, 1.15)
     return Frame((low + high) / 2, 2.0 * float(spread) / float(np.linalg.norm(high - low)))
-
-
-def link_records(shape: Shape, frame: Frame) -> list[LinkRecord]:
-    """Return the links of GAPartNet's cut: movers, then handles, then the body."""
-    count = len(shape.movers)
-    handles: list[tuple[str, str, Mover, tuple[Component, ...]]] = []
-    records: list[LinkRecord] = []
-    names = {"base": ""} | {mover.name: f"link_{k}" for k, mover in enumerate(shape.movers)}
-    number = 0
-    for mover in shape.movers:
-        made = _components(mover.pieces, number)
-        number += len(made)
-        records.append(
-            LinkRecord(
-                names[mover.name],
-                names[mover.parent],
-                mover,
-                frame.point(mover.origin),
-                tuple(c for c in made if not c.part),
-                mover.part_class,
-                mover.outward,
-            )
-        )
-        handles += [(names[mover.name], c.part, mover, (c,)) for c in made if c.part]
-    for k, (parent, part, mover, components) in enumerate(handles):
-        records.append(LinkRecord(f"link_{count + k}", parent, None, frame.point(mover.origin), components, part, mover.outward))
-    body = f"link_{count + len(handles)}"
-    records.append(LinkRecord(body, "base", None, np.zeros(3), _components(shape.base, number), "", (0.0, -1.0, 0.0)))
-    return [
-        record
-        if record.parent
-        else LinkRecord(record.name, body, record.mover, record.origin, record.components, record.part, record.outward)
-        for record in records
-    ]
-
-
-def _components(parts: tuple[Piece, ...], first: int) -> tuple[Component, ...]:
-    """Group pieces into mesh files: each handle by itself, the rest by what it is made of."""
-    groups: dict[tuple[str, Finish | str], list[Piece]] = {}
-    for piece in parts:
-        groups.setdefault((piece.part, piece.name if piece.part else piece.finish), []).append(piece)
-    return tuple(Component(first + k, found[0].name, part, tuple(found)) for k, ((part, _), found) in enumerate(groups.items()))
-
-
-def _without_handles(links: Sequence[LinkRecord]) -> list[LinkRecord]:
-    """Return the links of PartNet-Mobility's own cut: handles belong to their doors and drawers. Numbers close up."""
-    extra: dict[str, tuple[Component, ...]] = {}
-    for link in links:
-        if link.mover is None and link.part:
-            extra[link.parent] = extra.get(link.parent, ()) + link.components
-    kept = [link for link in links if link.mover is not None or not link.part]
-    body = f"link_{len(kept) - 1}"
-    merged = []
-    for link in kept:
-        last = link.mover is None
-        parent = "base" if last else (body if link.parent == links[-1].name else link.parent)
-        name = body if last else link.name
-        components = link.components + extra.get(link.name, ())
-        merged.append(LinkRecord(name, parent, link.mover, link.origin, components, link.part, link.outward))
-    return merged
 
 
 def urdf(name: str, links: Sequence[LinkRecord], frame: Frame) -> str:

@@ -65,17 +65,31 @@ BUILDERS: Mapping[str, Builder] = {
 }
 
 # 3D-FUTURE's word for the main material where it does not follow from the wood or lacquer; "soft": that of the cover.
-MATERIALS: Mapping[str, str] = dict.fromkeys(
-    [
-        "lounge_chair",
-        "dressing_chair",
-        "stool",
-        "multi_seat_sofa",
-        "loveseat_sofa",
-        "armchair",
-        "l_shaped_sofa",
-        "lazy_sofa",
-        "chaise_longue_sofa",
-    ],
-    "soft",
-)
+SOFT = [
+    "lounge_chair",
+    "dressing_chair",
+    "stool",
+    "multi_seat_sofa",
+    "loveseat_sofa",
+    "armchair",
+    "l_shaped_sofa",
+    "lazy_sofa",
+    "chaise_longue_sofa",
+]
+NEITHER = [
+    "pendant_lamp",
+    "ceiling_lamp",
+    "floor_lamp",
+    "wall_lamp",
+    "refrigerator",
+    "oven",
+    "dishwasher",
+    "microwave",
+    "washing_machine",
+    "toilet",
+    "bathtub",
+    "shower",
+    "trash_can",
+    "plant",
+]
+MATERIALS: Mapping[str, str] = {**dict.fromkeys(SOFT, "soft"), **dict.fromkeys(NEITHER, "Others")}
