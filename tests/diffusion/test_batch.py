@@ -1,0 +1,89 @@
+import torch
+
+from pipeline.diffusion.batch import Objects, motions, moved_objects, moved_rooms, stacked
+from pipeline.diffusion.codec import Codec
+from pipeline.diffusion.constraints import articulated_collision
+from pipeline.diffusion.denoiser import polygon_area
+from pipeline.diffusion.relations import boxes_of, pair_features, wall_features
+from tests.diffusion.small_world import make_context
+
+
+def batch(examples, norm):
+    codec = Codec(norm)
+    return (codec, *stacked(examples, codec, 24))
+
+
+def test_motions_are_the_eight_symmetries():
+    m = motions(torch.Generator().manual_seed(0), 400)
+    torch.testing.assert_close(m @ m.transpose(1, 2), torch.eye(2).expand(400, 2, 2))
+    assert len({tuple(v.flatten().tolist()) for v in m.round()}) == 8
+
+
+def test_a_motion_and_its_inverse_give_the_room_back(examples, norm):
+    codec, rooms, objects = batch(examples, norm)
+    m = motions(torch.Generator().manual_seed(1), len(rooms), 0.3)
+    back = m.transpose(1, 2)
+    again = moved_rooms(moved_rooms(rooms, m), back)
+    torch.testing.assert_close(again.ends, rooms.ends, atol=1e-5, rtol=0)
+    torch.testing.assert_close(again.normal, rooms.normal, atol=1e-5, rtol=0)
+    assert torch.equal(again.hinge, rooms.hinge)
+    objects_again = moved_objects(moved_objects(objects, m, codec), back, codec)
+    torch.testing.assert_close(objects_again.continuous, objects.continuous, atol=1e-5, rtol=0)
+    torch.testing.assert_close(objects_again.sweeps, objects.sweeps, equal_nan=True)
+
+
+def test_a_moved_room_is_the_same_room(examples, norm):
+    """Areas, collisions and the geometry of every pair do not change when a room is turned or mirrored."""
+    codec, rooms, objects = batch(examples, norm)
+    m = motions(torch.Generator().manual_seed(2), len(rooms))
+    moved, shifted = moved_rooms(rooms, m), moved_objects(objects, m, codec)
+    torch.testing.assert_close(polygon_area(moved), polygon_area(rooms))
+    assert (polygon_area(rooms) > 0).all()
+    occupied = objects.classes < codec.classes
+    here, there = (boxes_of(codec.metric(o.continuous)) for o in (objects, shifted))
+    before = articulated_collision(here, occupied, objects.sweeps, rooms)
+    after = articulated_collision(there, occupied, shifted.sweeps, moved)
+    torch.testing.assert_close(before, after, atol=1e-4, rtol=1e-4)
+    gaps, distances = slice(10, 18), slice(0, 4)
+    mask = occupied[:, :, None] & occupied[:, None]
+    torch.testing.assert_close(pair_features(here)[..., gaps][mask], pair_features(there)[..., gaps][mask], atol=1e-4, rtol=0)
+    seen = occupied[:, :, None] & rooms.mask[:, None]
+    torch.testing.assert_close(
+        wall_features(here, rooms)[..., distances][seen], wall_features(there, moved)[..., distances][seen], atol=1e-4, rtol=0
+    )
+
+
+def test_normals_point_into_the_room(examples, norm):
+    _, rooms, _ = batch(examples, norm)
+    inside = rooms.ends.mean(2) + 0.05 * rooms.normal
+    outside = rooms.ends.mean(2) - 0.05 * rooms.normal
+    assert (inside.abs() <= outside.abs().amax(1, keepdim=True) + 1e-6)[rooms.mask].all()
+    assert ((inside.norm(dim=-1) < outside.norm(dim=-1)) | ~rooms.mask).all()
+
+
+def test_trimming_keeps_every_token(examples, norm):
+    _, rooms, _ = batch(examples, norm)
+    short = rooms.trimmed()
+    assert short.mask.shape[1] == 6  # four walls, a door, a window
+    assert torch.equal(short.mask.sum(1), rooms.mask.sum(1))
+    torch.testing.assert_close(polygon_area(short), polygon_area(rooms))
+
+
+def test_a_door_is_on_its_wall_and_keeps_its_hinge():
+    from pipeline.diffusion.floor import KINDS, floor_tokens
+
+    context = make_context(0)
+    floor = floor_tokens(context)
+    door = int((floor.kind == KINDS.index("door")).nonzero()[0][0])
+    bottom = context.polygon[:, 1].min() - context.centre[1]
+    assert abs(floor.ends[door][:, 1] - bottom).max() < 1e-6
+    assert floor.normal[door].tolist() == [0, 1]
+    hinge = floor.ends[door][floor.hinge[door]] + context.centre
+    assert abs(hinge[0] - context.gaps[0].segment[0][0]) < 1e-6
+
+
+def test_objects_take_rows(examples, norm):
+    _, _, objects = batch(examples, norm)
+    part = objects.rows(torch.tensor([3, 1]))
+    assert isinstance(part, Objects)
+    assert torch.equal(part.classes[0], objects.classes[3])

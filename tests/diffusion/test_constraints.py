@@ -1,0 +1,202 @@
+import math
+
+import numpy as np
+import pytest
+import torch
+from shapely import Polygon
+from shapely.affinity import rotate, translate
+
+from pipeline import seeds
+from pipeline.diffusion.batch import room_batch
+from pipeline.diffusion.codec import EMPTY_SCALE, Codec
+from pipeline.diffusion.constraints import (
+    Prisms,
+    articulated_collision,
+    doorways,
+    heuristic_sweeps,
+    outside,
+    overlap,
+    quantity,
+    quantity_target,
+)
+from pipeline.diffusion.floor import floor_tokens
+from pipeline.diffusion.guidance import articulation_descent, quantity_descent, size_shift
+from pipeline.diffusion.relations import Boxes, boxes_of
+from pipeline.diffusion.settings import SampleSettings
+from tests.diffusion.small_world import make_context
+
+
+def prism(x, y, w, d, yaw=0.0, low=0.0, high=1.0):
+    t = lambda *v: torch.tensor(v, dtype=torch.float64)  # noqa: E731
+    return Prisms(t(x, y), t(w / 2, d / 2), t(math.cos(yaw), math.sin(yaw)), torch.tensor(low), torch.tensor(high))
+
+
+def drawn(p):
+    w, d = (2 * p.half).tolist()
+    box = Polygon([(-w / 2, -d / 2), (w / 2, -d / 2), (w / 2, d / 2), (-w / 2, d / 2)])
+    return translate(rotate(box, math.atan2(*p.axis.flip(0).tolist()), origin=(0, 0), use_radians=True), *p.centre.tolist())
+
+
+def test_overlap_has_the_zeros_of_the_true_intersection():
+    rng = seeds.generator(0, "boxes")
+    hits = 0
+    for _ in range(300):
+        a, b = (prism(*rng.uniform(-1, 1, 2), *rng.uniform(0.3, 1.5, 2), rng.uniform(-3, 3)) for _ in range(2))
+        area = drawn(a).intersection(drawn(b)).area
+        depth = float(overlap(a, b))
+        assert (depth > 1e-9) == (area > 1e-9)
+        assert depth == pytest.approx(float(overlap(b, a)), abs=1e-9)
+        hits += area > 0
+    assert 50 < hits < 290
+
+
+def test_the_depth_is_the_push_that_parts_them():
+    a, b = prism(0, 0, 1, 1), prism(0.7, 0.1, 1, 1)
+    assert float(overlap(a, b)) == pytest.approx(0.3)
+    assert float(overlap(a, prism(1.0001, 0.1, 1, 1))) == 0
+
+
+def test_things_above_each_other_do_not_overlap():
+    assert float(overlap(prism(0, 0, 1, 1, high=0.8), prism(0, 0, 1, 1, low=0.8, high=2.0))) == 0
+
+
+def room(n_target=None):
+    context = make_context(0, n_target=n_target)
+    return context, room_batch([floor_tokens(context)], [0], [-1], [2.7])
+
+
+def body(rows):
+    """Boxes of one room from rows (x, y, w, d, yaw)."""
+    t = torch.tensor(rows, dtype=torch.float32)[None]
+    return Boxes(
+        t[..., :2],
+        t[..., 2:4] / 2,
+        torch.zeros_like(t[..., 0]),
+        torch.ones_like(t[..., 0]),
+        torch.stack([t[..., 4].cos(), t[..., 4].sin()], -1),
+    )
+
+
+def test_outside_is_zero_inside_and_grows_beyond_the_wall():
+    from pipeline.diffusion.constraints import bodies
+
+    context, rooms = room()
+    half = (context.polygon.max(0) - context.polygon.min(0)) / 2
+    reach = [float(outside(bodies(body([[half[0] - 0.5 + beyond, 0.0, 1.0, 1.0, 0.0]])), rooms)) for beyond in (-0.1, 0.1, 0.3)]
+    assert reach[0] == 0
+    assert 0 < reach[1] < reach[2]
+
+
+def test_outside_knows_the_notch_of_an_l_shaped_room():
+    from pipeline.diffusion.constraints import bodies
+    from pipeline.diffusion.context import RoomContext
+
+    polygon = np.array([[0, 0], [4, 0], [4, 2], [2, 2], [2, 4], [0, 4]], float)
+    rooms = room_batch([floor_tokens(RoomContext("bedroom", polygon))], [0], [-1], [2.7])
+    assert float(outside(bodies(body([[-1, -1, 1.0, 1.0, 0.3]])), rooms)) == 0
+    assert float(outside(bodies(body([[1, 1, 1.0, 1.0, 0.3]])), rooms)) > 0
+
+
+def test_a_leaf_keeps_its_quarter_disc_free():
+    _, rooms = room()
+    prisms, there = doorways(rooms)
+    assert int(there.sum()) == 1
+    box = 2 * prisms.half[there][0]
+    assert box.tolist() == pytest.approx([0.85, 0.85], abs=1e-5)
+
+
+def test_the_heuristic_grows_a_third_of_the_depth_to_the_front():
+    box = heuristic_sweeps(torch.tensor([[[1.2, 0.6, 0.8]] * 2]), torch.tensor([[True, False]]))
+    assert box[0, 0, 0].flatten().tolist() == pytest.approx([-0.6, -0.5, 0, 0.6, 0.3, 0.8])
+    assert torch.isnan(box[0, 1]).all()
+
+
+def test_a_joint_s_sweep_counts_although_the_bodies_are_apart():
+    _, rooms = room()
+    boxes, both = body([[0, 0.4, 1.0, 0.5, 0.0], [0, -0.5, 0.8, 0.5, 0.0]]), torch.ones(1, 2, dtype=torch.bool)
+    sweeps = torch.full((1, 2, 1, 2, 3), torch.nan)
+    assert float(articulated_collision(boxes, both, sweeps, rooms)) == 0
+    sweeps[0, 0, 0] = torch.tensor([[-0.5, -0.7, 0.1], [0.5, -0.25, 0.9]])  # a drawer that comes out at the front, -y
+    blocked = float(articulated_collision(boxes, both, sweeps, rooms))
+    assert blocked == pytest.approx(0.5 * 0.05**2, rel=1e-3)
+    turned = body([[0, 0.4, 1.0, 0.5, math.pi], [0, -0.5, 0.8, 0.5, 0.0]])
+    assert float(articulated_collision(turned, both, sweeps, rooms)) == 0
+    assert float(articulated_collision(boxes, torch.tensor([[True, False]]), sweeps, rooms)) == 0
+
+
+def test_descending_lowers_the_penalty_where_the_printed_sign_climbs(norm):
+    codec, (_, rooms) = Codec(norm), room()
+    settings = SampleSettings()
+    rng = seeds.generator(4, "clutter")
+    fell = 0
+    for _ in range(20):
+        metric = torch.zeros(1, 5, 40)
+        metric[..., :2] = torch.from_numpy(rng.uniform(-1.2, 1.2, (1, 5, 2)))
+        metric[..., 3:6] = torch.from_numpy(rng.uniform(0.4, 1.0, (1, 5, 3)))
+        yaw = torch.from_numpy(rng.uniform(-3, 3, (1, 5)))
+        metric[..., 6], metric[..., 7] = yaw.cos(), yaw.sin()
+        occupied = torch.ones(1, 5, dtype=torch.bool)
+        sweeps = torch.full((1, 5, 1, 2, 3), torch.nan)
+        sweeps[0, 0, 0] = torch.tensor([[-0.3, -0.8, 0.1], [0.3, -0.2, 0.5]])
+
+        def phi(x, occupied=occupied, sweeps=sweeps):
+            return float(articulated_collision(boxes_of(codec.metric(x)), occupied, sweeps, rooms))
+
+        x = codec.normalised(metric)
+        start = phi(x)
+        step = articulation_descent(codec, x, occupied, sweeps, rooms, settings)
+        climbed = x.clone()
+        climbed[..., :8] -= 0.1 * step
+        assert phi(climbed) >= start
+        for _ in range(12):
+            x = x.clone()
+            x[..., :8] += articulation_descent(codec, x, occupied, sweeps, rooms, settings)
+        assert torch.equal(x[..., 2:6], codec.normalised(metric)[..., 2:6])  # heights and sizes stay
+        fell += phi(x) < 0.35 * start + 1e-9
+    assert fell >= 18
+
+
+def test_a_step_is_never_longer_than_its_clip(norm):
+    codec, (_, rooms) = Codec(norm), room()
+    metric = torch.zeros(1, 3, 40)
+    metric[..., :2] = 30.0  # far outside
+    metric[..., 3:7] = 1.0
+    step = articulation_descent(codec, codec.normalised(metric), torch.ones(1, 3, dtype=torch.bool), None, rooms, SampleSettings(clip=0.15))
+    assert float((step[..., :2] * codec.scale[:2]).norm(dim=-1).max()) <= 0.15 + 1e-5
+
+
+def test_the_target_chooses_the_least_empty_slots():
+    logits = torch.tensor([[3.0, -1.0, 0.5, 0.4, 9.0]])
+    assert quantity_target(logits, torch.tensor([3])).tolist() == [[1, 0, 0, 0, 1]]
+    assert quantity_target(torch.zeros(1, 4), torch.tensor([2])).tolist() == [[0, 0, 1, 1]]  # ties: the earlier slot
+
+
+@pytest.mark.parametrize("count", [0, 5, 12, 24])
+def test_descending_the_quantity_gives_the_exact_count(count):
+    empty = 0.75 * torch.randn(6, 24, generator=torch.Generator().manual_seed(count))
+    counts = torch.full((6,), count)
+    penalty = [float(quantity(8 / EMPTY_SCALE * empty, counts).sum())]
+    for _ in range(10):
+        empty = empty + 0.3 * quantity_descent(empty, counts)
+        penalty.append(float(quantity(8 / EMPTY_SCALE * empty, counts).sum()))
+    assert penalty == sorted(penalty, reverse=True)
+    assert ((empty < 0).sum(1) == count).all()
+
+
+def test_no_count_no_guidance():
+    assert quantity_descent(torch.randn(3, 24), torch.tensor([-1, -1, -1])).abs().max() == 0
+
+
+def test_a_new_size_keeps_the_back_where_it_is(norm):
+    codec = Codec(norm)
+    metric = torch.zeros(1, 1, 40)
+    metric[..., 3:6] = torch.tensor([1.0, 0.6, 0.8])
+    yaw = 0.7
+    metric[..., 6], metric[..., 7] = math.cos(yaw), math.sin(yaw)
+    x = codec.normalised(metric)
+    moved = x.clone()
+    moved[..., :6] += size_shift(codec, x, torch.tensor([[[1.2, 0.5, 0.9]]]))
+    after = codec.metric(moved)
+    front = torch.tensor([math.sin(yaw), -math.cos(yaw)])
+    torch.testing.assert_close(after[0, 0, 3:6], torch.tensor([1.2, 0.5, 0.9]), atol=1e-5, rtol=0)
+    torch.testing.assert_close(after[0, 0, :2] - front * 0.25, -front * 0.3, atol=1e-5, rtol=0)

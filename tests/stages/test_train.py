@@ -1,0 +1,141 @@
+import json
+import math
+
+import numpy as np
+import pytest
+
+from pipeline import seeds, tables
+from pipeline.diffusion.context import RoomContext
+from pipeline.diffusion.sampling import Sampler
+from pipeline.diffusion.settings import SampleSettings
+from pipeline.errors import ContentError
+from schemas.assets import ASSET_JOINTS, LATENTS
+from schemas.objects import OBJECTS
+from schemas.openings import OPENINGS
+from schemas.rooms import ROOMS
+from schemas.scenes import SCENES
+from schemas.table import Table
+from stages import train
+
+SETTINGS = "model: {width: 16, layers: 1, heads: 2, relation: 4}, steps: %d, batch: 4, checkpoint_every: 2, validate_every: 4, threads: 1"
+
+
+def blank(table: Table, **values):
+    """A row of a table: what is not given is a plain zero of the column's type."""
+    row = {}
+    for column in table.columns:
+        kind = str(column.type)
+        row[column.name] = None if column.nullable else "" if kind == "string" else False if kind == "bool" else 0
+    return {**row, **values}
+
+
+def make_root(root, steps=4, houses=9):
+    rng = seeds.generator(0, "houses")
+    made = {t.name: [] for t in (SCENES, ROOMS, OPENINGS, OBJECTS)}
+    for n in range(houses):
+        scene, w, d = f"h{n}", *rng.uniform(3, 5, 2)
+        made["scenes"].append(blank(SCENES, scene_id=scene, split=("train", "train", "val")[n % 3], storey_height=3.0))
+        polygon = [[0, 0], [w, 0], [w, d], [0, d]]
+        made["rooms"].append(blank(ROOMS, scene_id=scene, room_id="r", type="bedroom", layout_type="bedroom", height=2.7, polygon=polygon))
+        door = {
+            "opening_id": "d",
+            "kind": "door",
+            "rooms": ["r"],
+            "segment": [[0.3, -0.06], [1.2, -0.06]],
+            "swing_room": "r",
+            "swing_hinge": 0,
+            "swing_angle": 1.5,
+        }
+        made["openings"].append(blank(OPENINGS, scene_id=scene, **door))
+        for k, name in enumerate(("double_bed", "nightstand")):
+            pose = {
+                "position": [w / 2 + k, d - 1, 0.0],
+                "size": [1.0, 1.0, 0.5],
+                "scale": [1.0] * 3,
+                "yaw": -math.pi / 2 * k,
+                "latent": [0.0] * 32,
+            }
+            made["objects"].append(blank(OBJECTS, scene_id=scene, object_id=f"o{k}", room_id="r", category=name, asset_id=name, **pose))
+    for table in (SCENES, ROOMS, OPENINGS, OBJECTS):
+        tables.write(root / f"data/tables/{table.name}.parquet", table, made[table.name])
+    box = {"axis": [0.0, -1, 0], "origin": [0.0] * 3, "sweep_min": [-0.5, -0.9, 0.1], "sweep_max": [0.5, -0.5, 0.4], "handle": [0.0] * 3}
+    tables.write(root / "data/tables/asset_joints.parquet", ASSET_JOINTS, [blank(ASSET_JOINTS, asset_id="nightstand", joint_id="j", **box)])
+    latents = [{"asset_id": a, "latent": rng.normal(0, 1, 32).tolist()} for a in ("double_bed", "nightstand")]
+    tables.write(root / "data/latents/latents.parquet", LATENTS, latents)
+    write_params(root, steps)
+
+
+def write_params(root, steps):
+    (root / "params.yaml").write_text(f"seed: 0\ntrain: {{{SETTINGS % steps}}}\npresets: {{quick: {{}}}}\n")
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("train")
+    make_root(folder)
+    train.main(folder)
+    return folder
+
+
+def test_it_reports_what_it_learnt_from(root):
+    report = json.loads((root / "metrics/train.json").read_text())
+    assert report["rooms"] == {"train": 6, "val": 3, "test": 0}
+    assert report["steps"] == 4
+    assert report["val"]["t50"]["geometry"] > 0
+    rows = (root / "plots/loss.csv").read_text().splitlines()
+    assert rows[0].startswith("step,loss")
+    assert rows[-1].startswith("4,")
+
+
+def test_the_model_furnishes_a_room(root):
+    sampler = Sampler.load(root / "models/denoiser.safetensors", SampleSettings(batch=1), 0)
+    square = np.array([[0, 0], [4, 0], [4, 4], [0, 4]], float)
+    found = sampler.sample_rooms([RoomContext("bedroom", square, n_target=3)], [(0, 0, 0)])[0]
+    assert len(found) == 3
+
+
+def test_a_killed_run_goes_on_and_ends_as_an_undisturbed_one(root, tmp_path, monkeypatch):
+    make_root(tmp_path)
+
+    class KilledError(Exception):
+        pass
+
+    def dies(*args):
+        saved(*args)
+        raise KilledError
+
+    saved = train.save_checkpoint
+    monkeypatch.setattr(train, "save_checkpoint", dies)
+    with pytest.raises(KilledError):
+        train.main(tmp_path)
+    assert not (tmp_path / "models/denoiser.safetensors").exists()
+    done = []
+    monkeypatch.setattr(train, "save_checkpoint", lambda path, key, step, groups: (done.append(step), saved(path, key, step, groups)))
+    train.main(tmp_path)
+    assert done == [4]  # steps 1 and 2 were not taken again
+    for name in ("models/denoiser.safetensors", "metrics/train.json"):
+        assert (tmp_path / name).read_bytes() == (root / name).read_bytes()
+
+
+def test_other_data_start_afresh(tmp_path):
+    make_root(tmp_path)
+    train.main(tmp_path)
+    first = (tmp_path / "models/denoiser.safetensors").read_bytes()
+    make_root(tmp_path, houses=12)
+    train.main(tmp_path)
+    assert (tmp_path / "models/denoiser.safetensors").read_bytes() != first
+    assert json.loads((tmp_path / "metrics/train.json").read_text())["steps"] == 4
+
+
+def test_a_missing_table_is_named(tmp_path):
+    make_root(tmp_path)
+    (tmp_path / "data/tables/rooms.parquet").unlink()
+    with pytest.raises(ContentError, match=r"rooms\.parquet"):
+        train.main(tmp_path)
+
+
+def test_no_room_to_learn_from_is_said(tmp_path):
+    make_root(tmp_path, houses=9)
+    tables.write(tmp_path / "data/tables/objects.parquet", OBJECTS, [])
+    with pytest.raises(ContentError, match="no furnished room"):
+        train.main(tmp_path)
