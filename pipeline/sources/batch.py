@@ -168,7 +168,7 @@ def each(step: Callable[[T, R], Any], common: T, items: Sequence[R], workers: in
     if workers <= 1 or len(items) < 2 * workers:
         yield from (step(common, item) for item in items)
         return
-    context = multiprocessing.get_context("spawn")
+    context = _context()
     with ProcessPoolExecutor(workers, context, _receive, (step, common)) as pool:
         waiting: deque[Future[Any]] = deque()
         try:
@@ -181,6 +181,15 @@ def each(step: Callable[[T, R], Any], common: T, items: Sequence[R], workers: in
         except Exception:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
+
+
+def _context() -> Any:
+    """Return how processes start: from a server that has imported all this once, anew where there is none (Windows)."""
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload([__name__])
+    return context
 
 
 _work: Callable[[Any], Any] | None = None
