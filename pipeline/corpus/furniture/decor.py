@@ -59,7 +59,7 @@ def plant(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
             tip = np.array([reach * math.cos(a), reach * math.sin(a), trunk + (top - trunk) * (1 - 1.3 * share**2)])
             leaves.append(leaf(root, tip, 0.06, 0.10 * share * (top - trunk) + 0.02))
     else:
-        count = 64
+        count = 56
         for k in range(count):
             share = (k + 0.5) / count
             a, polar = k * golden, math.acos(1 - 1.75 * share)

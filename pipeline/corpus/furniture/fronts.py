@@ -72,7 +72,7 @@ def panel(rect: Rect, style: FrontStyle) -> tuple[Piece, ...]:
     made = pieces("front_frame", frame, style.finish)
     inner_x, inner_z = (x0 + rail, x1 - rail), (z0 + rail, z1 - rail)
     if style.panel == "slats":
-        count = max(3, round((inner_z[1] - inner_z[0]) / 0.05))
+        count = min(16, max(3, round((inner_z[1] - inner_z[0]) / 0.05)))
         pitch = (inner_z[1] - inner_z[0]) / count
         slats = [
             box(inner_x, (y + 0.004, y + t - 0.004), (inner_z[0] + (i + 0.1) * pitch, inner_z[0] + (i + 0.9) * pitch)) for i in range(count)

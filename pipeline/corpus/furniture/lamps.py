@@ -174,12 +174,15 @@ def floor_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
 def wall_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a small shade on an arm, or a lit bar; the back is at the wall."""
     w, d, h = size
-    plate = box((-0.18 * w, 0.18 * w), (d / 2 - 0.018, d / 2), (0.3 * h, 0.85 * h), 0.004)
-    base = pieces("plate", plate, scheme.handle)
     if form == "bar":
-        tube = rod((-0.3 * w, -d / 2 + 0.3 * w, 0.0), (-0.3 * w, -d / 2 + 0.3 * w, h), 0.2 * w, n=16).moved((0.3 * w, 0, 0))
-        arm = box((-0.015, 0.015), (-d / 2 + 0.45 * w, d / 2 - 0.018), (0.5 * h, 0.5 * h + 0.02), 0.002)
-        return Shape(base + pieces("tube", tube, GLOW) + pieces("arm", arm, scheme.handle))
+        plate = box((-0.5 * w, 0.5 * w), (d / 2 - 0.018, d / 2), (0.36 * h, 0.64 * h), 0.004)
+        r = min(0.16 * w, 0.3 * d)
+        tube = [rod((0, -d / 2 + r, 0), (0, -d / 2 + r, h), 0.85 * r, n=14)]
+        caps = [rod((0, -d / 2 + r, z), (0, -d / 2 + r, z + 0.03 * h), r, n=14) for z in (0.0, 0.97 * h)]
+        arm = box((-0.012, 0.012), (-d / 2 + r, d / 2 - 0.018), (0.48 * h, 0.52 * h), 0.002)
+        metal = pieces("plate", plate, scheme.handle) + pieces("caps", [*caps, arm], scheme.handle)
+        return Shape(metal + pieces("tube", tube, GLOW))
+    base = pieces("plate", box((-0.18 * w, 0.18 * w), (d / 2 - 0.018, d / 2), (0.3 * h, 0.85 * h), 0.004), scheme.handle)
     r = min(w / 2, 0.42 * d)
     y = -d / 2 + r
     arm = rod((0, d / 2 - 0.018, 0.6 * h), (0, y, 0.52 * h), 0.008, n=8)

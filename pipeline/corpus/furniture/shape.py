@@ -15,7 +15,7 @@ from pipeline.corpus.furniture.solids import Solid, Vector
 Axis3 = tuple[float, float, float]
 FRONT: Axis3 = (0.0, -1.0, 0.0)
 UP: Axis3 = (0.0, 0.0, 1.0)
-CLEARANCE = 1e-4  # [m]
+CLEARANCE = 5e-5  # [m]
 
 
 @dataclass(frozen=True, slots=True)
