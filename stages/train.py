@@ -87,7 +87,23 @@ def load(root: Path, settings: TrainSettings) -> tuple[Sets, Header]:
             "data/tables has no furnished room of split train", "raise corpus.houses in params.yaml, or check the rejects table"
         )
     norm = Normalisation.of(stacked_rows(sets.train), words.names)
-    return sets, Header(norm, words.layout_types, settings.slots, settings.timesteps, settings.model)
+    return sets, Header(
+        norm,
+        words.layout_types,
+        settings.slots,
+        settings.timesteps,
+        settings.model,
+        small_types(sets, words.layout_types, settings.few_slots),
+        settings.few_slots,
+    )
+
+
+def small_types(sets: Sets, layouts: tuple[str, ...], slots: int) -> tuple[str, ...]:
+    """Return the layout types of which 97 % of the rooms leave two of `slots` empty."""
+    held: dict[int, list[int]] = {}
+    for example in sets.train:
+        held.setdefault(example.layout, []).append(len(example.classes))
+    return tuple(name for i, name in enumerate(layouts) if i in held and float(np.quantile(held[i], 0.97)) <= slots - 2)
 
 
 def inputs(root: Path) -> dict[str, str]:

@@ -76,6 +76,10 @@ class Objects:
         """Take some rooms."""
         return Objects(self.classes[index], self.continuous[index], self.sweeps[index])
 
+    def first(self, slots: int) -> Objects:
+        """Take the first slots; objects come first, so none is lost where a room has no more than that."""
+        return Objects(self.classes[:, :slots], self.continuous[:, :slots], self.sweeps[:, :slots])
+
 
 def room_batch(floors: Sequence[Floor], layouts: Sequence[int], counts: Sequence[int], heights: Sequence[float]) -> RoomBatch:
     """Stack rooms."""

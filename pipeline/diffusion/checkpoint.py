@@ -25,13 +25,23 @@ REMEDY = "run `make run`, or `dvc repro train`, which makes it"
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """What travels with the weights: layout types in order, levels, slots, and the model's settings."""
+    """What travels with the weights: layout types in order, slots, levels, the model's settings.
+
+    Rooms of the layout types `few` get `few_slots` instead of `slots` (see `slots_for`).
+    """
 
     norm: Normalisation
     layouts: tuple[str, ...]
     slots: int
     timesteps: int
     model: ModelSettings
+    few: tuple[str, ...] = ()
+    few_slots: int = 12
+
+    def slots_for(self, layout: str, count: int | None) -> int:
+        """Return how many slots a room gets: few where these hold the asked count, or what such rooms hold, with two to spare."""
+        fits = layout in self.few if count is None else count <= self.few_slots - 2
+        return min(self.few_slots, self.slots) if fits else self.slots
 
 
 def build_net(header: Header) -> Denoiser:
@@ -55,6 +65,8 @@ def load_weights(path: Path) -> tuple[Denoiser, Header]:
             value["slots"],
             value["timesteps"],
             build(ModelSettings, value["model"], "train.model"),
+            tuple(value["few"]),
+            value["few_slots"],
         )
         net = build_net(header)
         net.load_state_dict(tensors)

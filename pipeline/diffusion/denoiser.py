@@ -143,6 +143,9 @@ class Denoiser(nn.Module):
         own = local[..., :1] * boxes.axis + local[..., 1:] * boxes.front
         sigma = (1 - alpha**2).clamp_min(1e-5).sqrt()
         logits = logits + self.codec.evidence(x[..., CONTINUOUS:], alpha[:, None, None], sigma[:, None, None])
+        prior = torch.zeros_like(logits)
+        prior[..., -1] = empty_odds(rooms.count, x.shape[1])[:, None]
+        logits = logits + prior
         return torch.cat([out[..., :2] + moves[..., :2] + own, out[..., 2:6], out[..., 6:8] + moves[..., 2:], out[..., 8:]], -1), logits
 
     def _directed(self, tokens: Tensor, pairs: Tensor, walls: Tensor, rooms: RoomBatch, axis: Tensor, front: Tensor) -> Tensor:
@@ -178,6 +181,15 @@ def from_target(target: str, raw: Tensor, x: Tensor, alpha: Tensor, sigma: Tenso
     if target == "eps":
         return (x - sigma * raw) / alpha
     return raw
+
+
+def empty_odds(count: Tensor, slots: int) -> Tensor:
+    """Return the log odds (B,) that a slot is empty, all else unknown, in a room of `count` (B,) objects; untold: of five.
+
+    With them in place the net need not learn what a count or another number of slots does to every slot's chance.
+    """
+    objects = torch.where(count < 0, torch.full_like(count, 5), count).float().clamp(0.1, slots - 0.1)
+    return ((slots - objects) / objects).log()
 
 
 def level_features(alpha: Tensor) -> Tensor:

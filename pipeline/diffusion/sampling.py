@@ -80,21 +80,30 @@ class Sampler:
 
     def sample_rooms(self, rooms: Sequence[RoomContext], keys: Sequence[Key]) -> list[list[Proposal]]:
         """Furnish rooms; `keys` gives (home index, room number, attempt) for each. Proposals come in slot order."""
-        found: list[list[Proposal]] = []
+        found: list[list[Proposal]] = [[] for _ in rooms]
         with one_thread(), torch.no_grad():
-            for start in range(0, len(rooms), self.settings.batch):
-                part, names = rooms[start : start + self.settings.batch], keys[start : start + self.settings.batch]
-                x0 = self._batch(part, names)
-                found.extend(self.net.codec.proposals(x, room) for x, room in zip(x0.cpu(), part, strict=False))
+            for slots, listed in self._parts(rooms):
+                x0 = self._batch([rooms[i] for i in listed], [keys[i] for i in listed], slots).cpu()
+                for i, x in zip(listed, x0, strict=False):  # the padding is left over
+                    found[i] = self.net.codec.proposals(x, rooms[i])
         return found
 
-    def _batch(self, rooms: Sequence[RoomContext], keys: Sequence[Key]) -> Tensor:
-        """Sample one padded batch: x0 (batch, N, D). The padding repeats the first room."""
+    def _parts(self, rooms: Sequence[RoomContext]) -> Iterator[tuple[int, list[int]]]:
+        """Cut rooms into batches of equal slots: yields the number of slots and the indices of the rooms."""
+        asks = self.settings.quantity or self.settings.count_condition
+        needed = [self.header.slots_for(r.layout_type, r.n_target if asks else None) for r in rooms]
+        for slots in sorted(set(needed)):
+            alike = [i for i, n in enumerate(needed) if n == slots]
+            for start in range(0, len(alike), self.settings.batch):
+                yield slots, alike[start : start + self.settings.batch]
+
+    def _batch(self, rooms: Sequence[RoomContext], keys: Sequence[Key], slots: int) -> Tensor:
+        """Sample one padded batch: x0 (batch, slots, D). The padding repeats the first room."""
         lacking = self.settings.batch - len(rooms)
         rooms, keys = [*rooms, *[rooms[0]] * lacking], [*keys, *[keys[0]] * lacking]
         device = self.net.head.weight.device
         told = self._told(rooms).to(device)
-        counts = torch.tensor([-1 if r.n_target is None else min(r.n_target, self.header.slots) for r in rooms], device=device)
+        counts = torch.tensor([-1 if r.n_target is None else min(r.n_target, slots) for r in rooms], device=device)
         code = self.net.floor_code(told)
         guide = Guide(told, counts, self.library, openable_classes(self.header.norm.classes).to(device), self.settings)
         schedule, ones = linear(self.header.timesteps), torch.ones(len(rooms), device=device)
@@ -107,7 +116,7 @@ class Sampler:
             return shift(guide, self.net.codec, x0, level * thousandth)
 
         def noise(draw: int) -> Tensor:
-            shape = (self.header.slots, self.header.norm.channels)
+            shape = (slots, self.header.norm.channels)
             return torch.from_numpy(np.stack([seeds.normal(self.seed, "diffusion", draw, *key, shape=shape) for key in keys])).to(device)
 
         if self.settings.sampler == "ancestral":

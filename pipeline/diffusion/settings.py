@@ -26,6 +26,8 @@ class TrainSettings:
 
     model: ModelSettings = field(default_factory=ModelSettings)
     slots: int = 24
+    few_slots: int = 12  # slots of rooms that hold little; most training steps see these alone
+    few_share: float = 0.7  # share of the steps that do
     timesteps: int = 1000
     steps: int = 1500
     epochs: int = 0  # > 0: so many passes instead of `steps`

@@ -58,11 +58,16 @@ class Trainer:
         """Take one step on rooms drawn by `weights` (n,). All it draws comes from a generator keyed by (seed, step)."""
         s = self.settings
         rng = torch.Generator().manual_seed(seeds.key(self.seed, "train-step", self.done) % 2**63)
-        rows = torch.multinomial(torch.from_numpy(weights), s.batch, replacement=True, generator=rng)
+        chances = torch.from_numpy(weights)
+        small = (rooms.count <= s.few_slots - 2).cpu()
+        # Most rooms hold few objects; a step on these alone, with half the slots, costs less than half.
+        few = bool(torch.rand(1, generator=rng) < s.few_share) and bool(small.any()) and s.few_slots < s.slots
+        rows = torch.multinomial(chances * small if few else chances, s.batch, replacement=True, generator=rng)
+        slots = s.few_slots if few else s.slots
         motion = motions(rng, s.batch, s.tilt).to(self.device)
-        drawn = draw(rng, s.batch, objects.classes.shape[1], self.net.norm.channels, s.timesteps, s.low_noise, s.count_known)
+        drawn = draw(rng, s.batch, slots, self.net.norm.channels, s.timesteps, s.low_noise, s.count_known)
         rows = rows.to(self.device)
-        seen = moved_objects(objects.rows(rows), motion, self.net.codec)
+        seen = moved_objects(objects.rows(rows).first(slots), motion, self.net.codec)
         told = moved_rooms(rooms.rows(rows).trimmed(), motion)
         loss = denoising_loss(self.net.train(), self.levels, told, seen, type(drawn)(*(v.to(self.device) for v in drawn)), s)
         geometry, shape, classes = (term.mean() for term in loss)
