@@ -1,4 +1,4 @@
-"""A home as triangles by material, posed and without its ceilings: what a renderer needs."""
+"""A home as coloured triangles by finish, posed and without its ceilings: what a renderer needs."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from pipeline.geometry.walls import Panel, Shell, outer_panels, reveals, room_pa
 from pipeline.preview.building import pattern, shaded
 from pipeline.rendering import fittings, palette
 from pipeline.rendering.pose import asset_triangles, opened, placement_transform
+from pipeline.rendering.texture import face_colours
 from pipeline.taxonomy import load
 
 CUT = 2.15  # walls are cut here; doors stay whole [m]
@@ -24,16 +25,19 @@ LOW_CUT = 0.9  # outer walls between the eye and the rooms are cut here, so that
 GRAIN = 0.10  # how much planks and tiles differ; light evens it out
 WALL_TOP = Material("wall_cut", (0.05, 0.055, 0.065), 0.9)
 
-Heaps = dict[Material, list[NDArray[np.float64]]]
+Finish = tuple[float, float]  # roughness, metallic
+Heaps = dict[Finish, list[tuple[NDArray[np.float64], NDArray[np.float32]]]]
 CutHeight = Callable[[NDArray[np.float64]], float]
 
 
 @dataclass(frozen=True, slots=True)
 class Batch:
-    """All triangles (T, 3, 3) [m, world] of one material."""
+    """All triangles of one finish: `faces` (T, 3, 3) [m, world], `colours` (T, 3) linear."""
 
-    material: Material
+    roughness: float
+    metallic: float
     faces: NDArray[np.float64]
+    colours: NDArray[np.float32]
 
 
 def home_batches(
@@ -69,7 +73,7 @@ def home_batches(
         if placement.room_id in rooms and placement.asset_id in assets and not hanging:
             T = placement_transform(placement.position - lift, placement.yaw, placement.scale)
             _add(heaps, assets[placement.asset_id], T, open_fraction)
-    return [Batch(material, np.concatenate(parts)) for material, parts in heaps.items()]
+    return [Batch(*finish, *(np.concatenate(column) for column in zip(*parts, strict=True))) for finish, parts in heaps.items()]
 
 
 def _building(home: Home, level: int, built: Shell, heaps: Heaps, cut_height: CutHeight) -> None:
@@ -79,16 +83,17 @@ def _building(home: Home, level: int, built: Shell, heaps: Heaps, cut_height: Cu
             for piece in convex_pieces(Polygon(room.polygon)):
                 for ring, shade in pattern(piece, material):
                     plank = replace(material, base_color=shaded(material.base_color, 1 + GRAIN * shade))
-                    heaps.setdefault(plank, []).append(_flat(ring, 0.0))
+                    _paint(heaps, plank, _flat(ring, 0.0))
             _panels(heaps, palette.wall(room.type), room_panels(room, built.cuts), cut_height)
     heights = [(p, cut_height(p.polygon)) for p in built.prisms]
     tops = [_flat(p.polygon, height) for p, height in heights if p.bottom < height <= p.top]  # whole sills show their board instead
-    heaps.setdefault(WALL_TOP, []).extend(tops)
+    for top in tops:
+        _paint(heaps, WALL_TOP, top)
     _panels(heaps, palette.FACADE, [p for p in outer_panels(built) if np.ptp(p.corners[:, 2]) > 1e-6], cut_height)
     for cut in built.cuts:
         _panels(heaps, palette.JAMB, reveals(cut), cut_height)
         if cut.bottom < 1e-3:
-            heaps.setdefault(palette.threshold(home.plan, cut.opening), []).append(_flat(cut.quad, 0.0))
+            _paint(heaps, palette.threshold(home.plan, cut.opening), _flat(cut.quad, 0.0))
 
 
 def _panels(heaps: Heaps, material: Material, panels: list[Panel], cut_height: CutHeight) -> None:
@@ -98,7 +103,7 @@ def _panels(heaps: Heaps, material: Material, panels: list[Panel], cut_height: C
         if panel.corners[:, 2].min() < height:
             corners = panel.corners.copy()
             corners[:, 2] = np.minimum(corners[:, 2], height)
-            heaps.setdefault(material, []).append(_fan(corners))
+            _paint(heaps, material, _fan(corners))
 
 
 def _flat(ring: NDArray[np.float64], z: float) -> NDArray[np.float64]:
@@ -111,8 +116,14 @@ def _fan(corners: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _add(heaps: Heaps, asset: Asset, T: NDArray[np.float64], open_fraction: float) -> None:
     faces, materials = asset_triangles(asset, opened(asset, open_fraction) if open_fraction else None)
-    world = faces @ T[:3, :3].T + T[:3, 3]
+    world, colours = faces @ T[:3, :3].T + T[:3, 3], face_colours(asset)
     for index in np.unique(materials):
         material = asset.materials[index] if asset.materials else palette.PLASTER
         if material is not palette.GLASS:  # sunlight behind glass is all noise to a path tracer
-            heaps.setdefault(material, []).append(world[materials == index])
+            mine = materials == index
+            heaps.setdefault((material.roughness, material.metallic), []).append((world[mine], colours[mine]))
+
+
+def _paint(heaps: Heaps, material: Material, faces: NDArray[np.float64]) -> None:
+    colours = np.tile(np.array(material.base_color, np.float32), (len(faces), 1))
+    heaps.setdefault((material.roughness, material.metallic), []).append((faces, colours))

@@ -14,8 +14,9 @@ from pipeline.geometry.walls import Shell, levels, shell
 from pipeline.preview.building import Soup, building
 from pipeline.preview.labels import SMALL, draw_label, summed
 from pipeline.preview.symbols import draw_openings, draw_reach
-from pipeline.rendering.pose import asset_triangles, colours, placement_transform
+from pipeline.rendering.pose import asset_triangles, placement_transform
 from pipeline.rendering.raster import Frame, View, darken_edges, render, top_down
+from pipeline.rendering.texture import display, face_colours
 from pipeline.taxonomy import load
 
 MARGIN = 0.45  # around the outer walls [m]
@@ -76,9 +77,9 @@ def _storey(home: Home, assets: Mapping[str, Asset], level: int, built: Shell, v
 
 
 def _triangles(placement: Placement, asset: Asset, item: int, elevation: float) -> Soup:
-    faces, materials = asset_triangles(asset)
+    faces, _ = asset_triangles(asset)
     T = placement_transform(placement.position - np.array([0, 0, elevation]), placement.yaw, placement.scale)
-    return Soup(faces @ T[:3, :3].T + T[:3, 3], colours(asset)[materials], np.full(len(faces), item, np.int32))
+    return Soup(faces @ T[:3, :3].T + T[:3, 3], display(face_colours(asset)), np.full(len(faces), item, np.int32))
 
 
 def _shade(image: Image.Image, frame: Frame) -> Image.Image:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.entities.asset import Asset, Material
+from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
 from pipeline.errors import UsageError
 from pipeline.preview.denoise import Guides, denoise
@@ -138,7 +138,7 @@ def _camera(points: NDArray[np.float64], size: tuple[int, int], azimuth: float) 
 def _guides(camera: Camera, batches: list[Batch], samples: int = 2) -> Guides:
     """Rasterise what each pixel shows: its colour averaged over `samples` x `samples` points, normal and depth at its middle."""
     faces = np.concatenate([b.faces for b in batches])
-    colours = np.concatenate([np.tile(np.array(b.material.base_color, np.float32), (len(b.faces), 1)) for b in batches])
+    colours = np.concatenate([b.colours for b in batches])
     width, height = camera.size
     frame = fill(camera.project(faces, samples), colours, None, (samples * width, samples * height), (1.0, 1.0, 1.0))
     albedo = frame.colour.reshape(height, samples, width, samples, 3).mean(axis=(1, 3), dtype=np.float32) / 255
@@ -167,11 +167,12 @@ def _sun(mi: ModuleType, points: NDArray[np.float64], azimuth: float) -> dict[st
 
 
 def _mesh(mi: ModuleType, name: str, batch: Batch) -> Any:
-    """Make one mesh of all triangles of a material, with a normal per corner."""
+    """Make one mesh of all triangles of a finish, with a normal per corner and a colour per face."""
     count = len(batch.faces)
     properties = mi.Properties()
-    properties["bsdf"] = mi.load_dict(_surface(batch.material))
+    properties["bsdf"] = mi.load_dict(_surface(batch))
     mesh = mi.Mesh(name, vertex_count=3 * count, face_count=count, has_vertex_normals=True, props=properties)
+    mesh.add_attribute("face_color", 3, batch.colours.ravel())
     values = mi.traverse(mesh)
     values["vertex_positions"] = batch.faces.astype(np.float32).ravel()
     values["vertex_normals"] = corner_normals(batch.faces).astype(np.float32).ravel()
@@ -180,14 +181,15 @@ def _mesh(mi: ModuleType, name: str, batch: Batch) -> Any:
     return mesh
 
 
-def _surface(material: Material) -> dict[str, Any]:
-    if material.roughness >= 0.55 and material.metallic < 0.5:
-        return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": list(material.base_color)}}}
+def _surface(batch: Batch) -> dict[str, Any]:
+    colour = {"type": "mesh_attribute", "name": "face_color"}
+    if batch.roughness >= 0.55 and batch.metallic < 0.5:
+        return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": colour}}
     inner = {
         "type": "principled",
-        "base_color": {"type": "rgb", "value": list(material.base_color)},
-        "roughness": max(0.08, material.roughness),
-        "metallic": material.metallic,
+        "base_color": colour,
+        "roughness": max(0.08, batch.roughness),
+        "metallic": batch.metallic,
         "specular": 0.4,
     }
     return {"type": "twosided", "bsdf": inner}

@@ -45,11 +45,3 @@ def asset_triangles(asset: Asset, values: Mapping[str, float] | None = None) -> 
     if not faces:
         return np.zeros((0, 3, 3)), np.zeros(0, np.int32)
     return np.concatenate(faces), np.concatenate(materials)
-
-
-def colours(asset: Asset, *, display: bool = True) -> NDArray[np.float32]:
-    """Return the base colour (M, 3) of each material, sRGB encoded for `display`."""
-    linear = np.array([m.base_color for m in asset.materials] or [(0.8, 0.8, 0.8)], np.float32)
-    if not display:
-        return linear
-    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-6) ** (1 / 2.4) - 0.055).astype(np.float32)

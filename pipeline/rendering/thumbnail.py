@@ -8,18 +8,19 @@ import numpy as np
 from PIL import Image
 
 from pipeline.entities.asset import Asset
-from pipeline.rendering.pose import asset_triangles, colours, opened
+from pipeline.rendering.pose import asset_triangles, opened
 from pipeline.rendering.raster import darken_edges, oblique, render, shrink
+from pipeline.rendering.texture import display, face_colours
 
 BACKGROUND = (0.96, 0.96, 0.95)
 
 
 def thumbnail(asset: Asset, size: int = 256, open_fraction: float = 0.35) -> Image.Image:
     """Draw the asset, `size` x `size` pixels."""
-    faces, materials = asset_triangles(asset, opened(asset, open_fraction))
+    faces, _ = asset_triangles(asset, opened(asset, open_fraction))
     if not len(faces):
         return Image.new("RGB", (size, size), tuple(int(255 * c) for c in BACKGROUND))
     view = oblique(faces.reshape(-1, 3), math.radians(-32), math.radians(24), 2 * size)
-    frame = render(view, faces, colours(asset)[materials], background=BACKGROUND)
+    frame = render(view, faces, display(face_colours(asset)), background=BACKGROUND)
     frame = darken_edges(shrink(frame, 2), max(2, size // 64), 0.35, reach=0.25 * float(np.linalg.norm(asset.size)))
     return Image.fromarray(frame.colour)
