@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline import floorplan, params, seeds, tables, taxonomy
-from pipeline.arrange.settings import PostoptSettings
+from pipeline.arrange import PostoptSettings
 from pipeline.diffusion.sampling import Sampler
 from pipeline.diffusion.settings import SampleSettings
 from pipeline.entities.home import Home

@@ -1,0 +1,49 @@
+"""Figures of the dataset that ships, and counts of what was left out on the way."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pipeline import tables
+from pipeline.homes.rows import Row
+from schemas.rejects import REJECTS
+from schemas.rooms import ROOMS
+from schemas.scenes import SCENES
+
+
+def dataset_figures(folder: Path) -> dict[str, Any]:
+    """Return counts and means over the homes of a dataset."""
+    scenes = [row for path in sorted((folder / "scenes").glob("*.parquet")) for row in tables.read(path, SCENES)]
+    rooms = [row for path in sorted((folder / "rooms").glob("*.parquet")) for row in tables.read(path, ROOMS)]
+    furnished = [r for r in rooms if r["layout_type"]]
+    total = {name: int(sum(s[name] for s in scenes)) for name in ("rooms", "objects", "openable", "joints", "joints_clear", "collisions")}
+    return {
+        "homes": len(scenes),
+        **total,
+        "objects_per_furnished_room": _mean(furnished, "objects"),
+        "openable_per_furnished_room": _mean(furnished, "openable"),
+        "openable_per_furnished_room_drafted": round(float(np.mean([r["openable_sampled"] or 0 for r in furnished])), 4),
+        "reach": _mean(scenes, "reach"),
+        "walkable_paper": _mean(scenes, "walkable_paper"),
+        "walkable_free": _mean(scenes, "walkable_free"),
+        "room_tries_per_home": _mean(scenes, "attempts"),
+        "megabytes": round(sum(p.stat().st_size for p in folder.rglob("*") if p.is_file()) / 1e6, 1),
+    }
+
+
+def reject_counts(root: Path) -> list[tuple[str, str, str, int]]:
+    """Return (stage, what, reason, count) of everything that was left out, repaired or tried again."""
+    places = [("preprocess", root / "data" / "tables" / "rejects.parquet")]
+    places += [("postopt", path) for path in sorted((root / "data" / "shards" / "rejects").glob("*.parquet"))]
+    counts: Counter[tuple[str, str, str]] = Counter()
+    for stage, path in places:
+        counts.update((stage, row["what"], row["reason"]) for row in tables.read(path, REJECTS))
+    return [(*key, count) for key, count in sorted(counts.items())]
+
+
+def _mean(rows: list[Row], name: str) -> float:
+    return round(float(np.mean([row[name] for row in rows])), 4) if rows else 0.0

@@ -1,0 +1,136 @@
+"""Writes the report: plots, top views, path-traced views, and the page that shows them with the figures."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from pipeline import tables
+from pipeline.entities.home import Home
+from pipeline.errors import SfgenError
+from pipeline.execution import map_shards
+from pipeline.experiments.settings import MetricsSettings
+from pipeline.homes.factory import Factory, open_factory
+from pipeline.homes.rows import homes_of
+from pipeline.manifest import write_bytes
+from pipeline.report import sections
+from pipeline.report.page import Picture, Section, render
+from pipeline.report.plots import Curve, lines
+from schemas.objects import OBJECTS
+from schemas.openings import OPENINGS
+from schemas.rooms import ROOMS
+from schemas.scenes import SCENES
+
+LEAD = "Made by sfgen from the embedded corpus. Every figure was measured in the run that wrote this page; intervals are 95 %."
+SHOWN = 24  # top views on the page
+
+
+def write_report(
+    root: Path, figures: Mapping[str, Any], rejects: Sequence[tuple[str, str, str, int]], factory: Factory, settings: MetricsSettings
+) -> None:
+    """Write report/index.html with its pictures, from the figures and the dataset of this checkout."""
+    folder = root / "report"
+    shutil.rmtree(folder, ignore_errors=True)
+    homes = dataset_homes(root)
+    gallery, missing = path_traced(root, folder, homes, factory.seed, settings)
+    views = [Picture(_copied(root, folder, home), f"{home.scene_id}: {home.prompt}") for home in homes[:SHOWN]]
+    rates = {name: _plot(folder, name, curves, **labels) for name, (curves, labels) in _plots(figures).items()}
+    loss = (
+        [_plot(folder, "loss", [_loss(root)], title="training", x="step", y="loss", log=True)]
+        if (root / "plots" / "loss.csv").is_file()
+        else []
+    )
+    chapters = [
+        Section("Views", [missing] if missing else [], pictures=gallery, wide=True),
+        sections.dataset_section(figures["dataset"], _json(root / "metrics" / "timing.json"), views),
+        sections.plan_section(figures["plan"]),
+        sections.quantity_section(figures["quantity"], rates["quantity"]),
+        sections.articulation_section(figures["articulation"], figures["ablation"]),
+        sections.walkable_section(figures["walkable"], rates["walkable"]),
+        sections.category_section(figures["category"]),
+        sections.training_section(_json(root / "metrics" / "encode.json"), _json(root / "metrics" / "train.json"), loss),
+        sections.reject_section(rejects),
+    ]
+    write_bytes(folder / "index.html", render("Homes for robots", LEAD, chapters).encode())
+
+
+def dataset_homes(root: Path) -> list[Home]:
+    """Return the homes of data/shards."""
+    folder = root / "data" / "shards"
+    rows: dict[str, list[dict[str, Any]]] = {}
+    for table in (SCENES, ROOMS, OPENINGS, OBJECTS):
+        rows[table.name] = [row for path in sorted((folder / table.name).glob("*.parquet")) for row in tables.read(path, table)]
+    return homes_of(rows)
+
+
+def path_traced(root: Path, folder: Path, homes: Sequence[Home], seed: int, settings: MetricsSettings) -> tuple[list[Picture], str]:
+    """Path-trace the homes with the most to open, in parallel; without the renderer, return what to install instead."""
+    library = open_factory(root, seed).library
+    ranked = sorted(homes, key=lambda h: (-sum(library[p.asset_id].openable for p in h.placements) / max(1, len(h.plan.rooms)), h.index))
+    chosen = ranked[: settings.gallery]
+    jobs = [(n, home) for n, home in enumerate(chosen)]
+    try:
+        for _ in map_shards(partial(_trace, root, seed, folder, settings), jobs, workers=min(os.cpu_count() or 1, len(jobs))):
+            pass
+    except SfgenError as error:
+        return [], str(error)
+    return [Picture(f"views/{home.scene_id}.png", home.prompt) for home in chosen], ""
+
+
+def _trace(root: Path, seed: int, folder: Path, settings: MetricsSettings, home: Home) -> None:
+    from pipeline.preview import path_trace
+
+    (folder / "views").mkdir(parents=True, exist_ok=True)
+    size = (settings.gallery_width, settings.gallery_width * 3 // 4)
+    library = open_factory(root, seed).library
+    path_trace(home, library, folder / "views" / f"{home.scene_id}.png", size=size, spp=settings.gallery_samples)
+
+
+def _copied(root: Path, folder: Path, home: Home) -> str:
+    source = next((root / "data" / "shards" / "previews").glob(f"*/{home.scene_id}.png"))
+    write_bytes(folder / "previews" / source.name, source.read_bytes())
+    return f"previews/{source.name}"
+
+
+def _plots(figures: Mapping[str, Any]) -> dict[str, tuple[list[Curve], dict[str, Any]]]:
+    counts, taus = figures["quantity"], figures["walkable"]
+    quantity = [
+        _curve(label, {n: row[key] for n, row in counts.items() if row[key]})
+        for key, label in (("plain", "no guidance"), ("first", "guided, first attempts"), ("shipped", "guided, shipped"))
+    ]
+    walkable = [
+        _curve(label, {tau: row["free"][key] for tau, row in taus.items()})
+        for key, label in (("without", "without"), ("with", "with control"))
+    ]
+    return {
+        "quantity": (quantity, {"title": "Exactly N objects", "x": "N", "y": "SR(N)", "y_range": (-0.03, 1.03)}),
+        "walkable": (walkable, {"title": "Free floor of at least tau", "x": "tau", "y": "SR(tau)", "y_range": (-0.03, 1.03)}),
+    }
+
+
+def _curve(label: str, rates: Mapping[str, Mapping[str, float]]) -> Curve:
+    rows = list(rates.values())
+    return Curve(label, [float(x) for x in rates], [r["rate"] for r in rows], [r["low"] for r in rows], [r["high"] for r in rows])
+
+
+def _loss(root: Path) -> Curve:
+    rows = [line.split(",") for line in (root / "plots" / "loss.csv").read_text(encoding="utf-8").splitlines()]
+    step, loss = rows[0].index("step"), rows[0].index("loss")
+    return Curve("loss", [float(r[step]) for r in rows[1:]], [float(r[loss]) for r in rows[1:]])
+
+
+def _plot(folder: Path, name: str, curves: Sequence[Curve], **labels: Any) -> Picture:
+    write_bytes(folder / "plots" / f"{name}.png", lines(curves, **labels))
+    return Picture(f"plots/{name}.png", str(labels["title"]))
+
+
+def _json(path: Path) -> dict[str, Any]:
+    if not path.is_file():
+        return {}
+    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return found

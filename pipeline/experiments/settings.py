@@ -1,0 +1,19 @@
+"""The numbers of the experiments that stand in params.yaml."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class MetricsSettings:
+    """What the stage `metrics` measures (section `metrics`)."""
+
+    rooms: int = 25  # rooms per condition, from the test split
+    counts: tuple[int, ...] = (5, 8, 12, 16)  # N_target of the quantity experiment
+    taus: tuple[float, ...] = (0.6, 0.7, 0.8, 0.9)  # thresholds of the walkable-area experiment
+    split: str = "test"  # rooms of this split; train where it has too few
+    plan_seeds: int = 2  # seeds per benchmark prompt
+    gallery: int = 4  # homes that are path-traced
+    gallery_samples: int = 48  # light paths per pixel
+    gallery_width: int = 800  # px

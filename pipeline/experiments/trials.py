@@ -1,0 +1,100 @@
+"""One condition of an experiment: rooms drafted, judged as they come, finished and judged again; as table rows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from pipeline import taxonomy
+from pipeline.diffusion.settings import Articulation
+from pipeline.entities.home import Placement
+from pipeline.experiments.rooms import room_home
+from pipeline.homes.factory import Factory
+from pipeline.homes.finish import RoomResult, finish
+from pipeline.homes.furnish import Draft
+from pipeline.homes.guilt import guilty_objects
+from pipeline.homes.request import RoomJob
+from pipeline.homes.rows import Row, object_row, room_row
+from pipeline.verify import verify_home
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """What is asked of each room, and which guidance acts. `finished`: whether rooms are taken to the end as well."""
+
+    name: str
+    quantity: bool = True
+    articulation: Articulation = "joints"
+    count: int | None = None
+    walkable: float | None = None
+    finished: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """Rows of rooms, objects and joints: of all first attempts, and of the rooms that ship."""
+
+    first: dict[str, list[Row]]
+    shipped: dict[str, list[Row]]
+
+
+def trial(factory: Factory, jobs: Sequence[RoomJob], condition: Condition) -> Trial:
+    """Run one condition over rooms. Same rooms, same noise in every condition: only what is named differs."""
+    settings = replace(factory.sampler.settings, quantity=condition.quantity, articulation=condition.articulation)
+    if not condition.quantity:
+        settings = replace(settings, count_condition=False)
+    if condition.articulation == "none":
+        settings = replace(settings, snap_below=0)
+    made = replace(factory, sampler=replace(factory.sampler, settings=settings))
+    asked = [replace(job, count=condition.count, walkable=condition.walkable) for job in jobs]
+    drafts = made.draft(asked)
+    first = _rows(factory, [(draft, draft.placements) for draft in drafts])
+    if not condition.finished:
+        return Trial(first, _rows(factory, []))
+    results = _finished(made, drafts)
+    return Trial(first, _rows(factory, [(r.draft, r.placements) for r in results if not r.binding]))
+
+
+def _finished(factory: Factory, drafts: Sequence[Draft]) -> list[RoomResult]:
+    """Take rooms to the end, each with as many tries as a room of a home has; the best try of each stands."""
+    best: dict[int, RoomResult] = {}
+    pending = list(enumerate(drafts))
+    for attempt in range(factory.shard.room_attempts):
+        for i, draft in pending:
+            result = _cleared(
+                factory, finish(draft, factory.library, factory.index, factory.postopt, factory.verify.robot, taxonomy.load())
+            )
+            if i not in best or result.rank() > best[i].rank():
+                best[i] = result
+        pending = [(i, draft) for i, draft in pending if best[i].failure]
+        if not pending or attempt + 1 == factory.shard.room_attempts:
+            break
+        redrawn = factory.draft([replace(draft.job, attempt=attempt + 1) for _, draft in pending])
+        pending = [(i, draft) for (i, _), draft in zip(pending, redrawn, strict=True)]
+    return [best[i] for i in range(len(drafts))]
+
+
+def _cleared(factory: Factory, result: RoomResult) -> RoomResult:
+    """Take out of a finished room what the judge faults, as the factory does with homes."""
+    while True:
+        home = room_home(result.draft.job, result.placements)
+        guilty = guilty_objects(home, verify_home(home, factory.library, factory.verify))
+        if not guilty:
+            return result
+        result = result.without(guilty, taxonomy.load())
+
+
+def _rows(factory: Factory, rooms: Sequence[tuple[Draft, Sequence[Placement]]]) -> dict[str, list[Row]]:
+    rows: dict[str, list[Row]] = {"rooms": [], "objects": [], "joints": []}
+    for draft, placements in rooms:
+        job = draft.job
+        home = room_home(job, placements)
+        certificate = verify_home(home, factory.library, factory.verify)
+        openable = [factory.library[p.asset_id].openable for p in placements]
+        figures = {"objects": len(placements), "openable": sum(openable), "asked_objects": job.count, "walkable_target": job.walkable}
+        sampled = sum(factory.library[p.asset_id].openable for p in draft.placements)
+        row = room_row(home.scene_id, job.room, job.layout_type) | certificate.room_figures()[job.room_id]
+        rows["rooms"].append(row | figures | {"openable_sampled": sampled})
+        rows["objects"] += [object_row(home.scene_id, p, openable=o) for p, o in zip(placements, openable, strict=True)]
+        rows["joints"] += certificate.joint_rows()
+    return rows

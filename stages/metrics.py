@@ -1,0 +1,70 @@
+"""Stage `metrics`: every metric and table of the paper, with intervals and the noise floor; plots; the report."""
+
+from __future__ import annotations
+
+import os
+from functools import partial
+from pathlib import Path
+
+from pipeline import params, seeds, tables, taxonomy
+from pipeline.execution import map_shards, track
+from pipeline.experiments import tables as paper
+from pipeline.experiments.dataset import dataset_figures, reject_counts
+from pipeline.experiments.document import write_report
+from pipeline.experiments.plans import plan_table, read_benchmark
+from pipeline.experiments.rooms import spread, test_rooms
+from pipeline.experiments.settings import MetricsSettings
+from pipeline.experiments.trials import Condition, Trial, trial
+from pipeline.homes.factory import open_factory
+from pipeline.manifest import write_bytes, write_json
+from pipeline.metrics.articulation import sweeps_of
+from schemas.objects import OBJECTS
+from schemas.openings import OPENINGS
+from schemas.rooms import ROOMS
+from schemas.scenes import SCENES
+from stages import runner
+
+LARGEST_FIRST = ("living_dining_room", "living_room", "bedroom", "dining_room", "kitchen", "kids_room", "study")
+
+
+def main(root: Path) -> None:
+    """Measure, and write metrics/metrics.json, plots/ and report/."""
+    tree = params.read(root / "params.yaml")
+    settings, seed = params.section(MetricsSettings, tree, "metrics"), tree["seed"]
+    every = paper.conditions(settings)
+    done = map_shards(partial(run, root, seed, settings), enumerate(every), workers=min(os.cpu_count() or 1, len(every)))
+    trials = {every[n].name: made for n, made in track(done, len(every), "metrics", unit="condition")}
+    factory = open_factory(root, seed)
+    rng = seeds.generator(seed, "bootstrap")
+    source = {t.name: tables.read(root / "data" / "tables" / f"{t.name}.parquet", t) for t in (SCENES, OBJECTS)}
+    split = {s["scene_id"]: s["split"] for s in source["scenes"]}
+    real = [o for o in source["objects"] if split[o["scene_id"]] == "train"]
+    held_out = [o for o in source["objects"] if split[o["scene_id"]] == settings.split]
+    rooms = len(trials["plain"].first["rooms"])
+    figures = {
+        "dataset": dataset_figures(root / "data" / "shards"),
+        "quantity": paper.quantity_table(trials, settings.counts, settings.rooms),
+        "walkable": paper.walkable_table(trials, settings.taus, rooms),
+        "articulation": paper.articulation_table(rng, trials, sweeps_of(factory.library.joints), factory.library),
+        "ablation": paper.ablation_table(rng, trials, settings.taus),
+        "category": paper.category_table(trials, real, held_out, taxonomy.load().names),
+        "plan": plan_table(read_benchmark((root / "manifests/prompts/benchmark.yaml").read_text(encoding="utf-8")), settings.plan_seeds),
+    }
+    write_json(root / "metrics" / "metrics.json", figures)
+    for name, text in paper.curves(figures).items():
+        write_bytes(root / "plots" / f"{name}.csv", text.encode())
+    write_report(root, figures, reject_counts(root), factory, settings)
+
+
+def run(root: Path, seed: int, settings: MetricsSettings, condition: Condition) -> Trial:
+    """Run one condition: the step that workers run."""
+    named = (SCENES, ROOMS, OPENINGS)
+    source = {t.name: tables.read(root / "data" / "tables" / f"{t.name}.parquet", t) for t in named}
+    jobs = test_rooms(source, settings.split, LARGEST_FIRST)
+    if condition.count is not None:  # rooms that can hold so many things: 1.2 m2 of floor for each
+        jobs = [job for job in jobs if job.room.area >= 1.2 * condition.count] or jobs
+    return trial(open_factory(root, seed), spread(jobs, settings.rooms), condition)
+
+
+if __name__ == "__main__":
+    runner.run(main)
