@@ -25,6 +25,9 @@ from pipeline.sources.settings import FrontFilters
 from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
+# Absurd counts: real houses have up to some 30 rooms, 60 openings, 60 objects in a room, 2,000 floor triangles.
+MAX_ROOMS, MAX_CHILDREN, MAX_HOLES = 300, 20_000, 1000
+MAX_OBJECTS, MAX_TRIANGLES = 500, 20_000  # of one room
 WALLS = frozenset({"WallInner", "WallOuter"})
 INNER_WALL, OUTER_WALL = 0.12, 0.24  # [m] 3D-FRONT's usual thicknesses, where no reveal tells
 
@@ -79,6 +82,9 @@ def house_rows(house: HouseFile, models: Mapping[str, Model], taxonomy: Taxonomy
 
 def _rooms(house: HouseFile, taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]) -> list[ReadRoom]:
     """Return the rooms with a usable floor, in file order."""
+    children = sum(len(record.children) for record in house.rooms)
+    if len(house.rooms) > MAX_ROOMS or children > MAX_CHILDREN:
+        raise SourceError("too_large", house.uid, f"{len(house.rooms)} rooms with {children} children")
     made: list[ReadRoom] = []
     taken: set[str] = set()
     for number, record in enumerate(house.rooms):
@@ -115,6 +121,9 @@ def _floor(house: HouseFile, record: RoomRecord) -> Floor | None:
     meshes = [house.meshes[c.ref] for c in record.children if c.ref in house.meshes]
     triangles = [m.triangles() for m in {m.uid: m for m in meshes}.values() if m.type == "Floor"]
     triangles = [t for t in triangles if len(t)]
+    count = sum(map(len, triangles))
+    if count > MAX_TRIANGLES:
+        raise SourceError("too_large", record.instance, f"a floor of {count} triangles")
     return outline(np.concatenate(triangles)) if triangles else None
 
 
@@ -168,6 +177,8 @@ def _fill(
         for reason, count in (("dangling_ref", dangling), ("built_in", built_in)):
             if count:
                 rejects.append(reject("room", where, reason, f"{count} of {len(room.record.children)} children"))
+        if len(candidates) > MAX_OBJECTS:
+            raise SourceError("too_large", where, f"{len(candidates)} objects in {where}")
         dropped = overlapping(candidates, limits)
         for i, made in enumerate(candidates):
             name = f"{where}/{made.child.instance}"
@@ -191,7 +202,10 @@ def _openings(
 ) -> tuple[list[Opening], tuple[float, float]]:
     """Return the openings, and the thickness of inner and outer walls as the reveals show it."""
     outlines = [front_openings.Outline(room.room_id, room.polygon) for room in rooms]
-    holes = front_openings.merge(_holes(house, rejects))
+    holes = _holes(house, rejects)
+    if len(holes) > MAX_HOLES:
+        raise SourceError("too_large", house.uid, f"{len(holes)} doors, windows and holes")
+    holes = front_openings.merge(holes)
     found: list[Opening] = []
     depths: dict[int, list[float]] = {1: [], 2: []}
     for hole in holes:

@@ -18,10 +18,11 @@ from pipeline.sources.reasons import SourceError
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-MAX_OBJ = 96 << 20  # bytes
+MAX_OBJ = 64 << 20  # bytes
 MAX_MTL = 4 << 20
 MAX_CORNERS = 3_000_000  # face corners of one file
-MAX_VERTICES = 1_000_000
+MAX_VERTICES = 500_000
+MAX_FACES = 1_000_000
 MAX_GROUPS = 2048
 MAX_COORDINATE = 1e5  # a mesh that reaches further is nonsense in any unit
 
@@ -63,6 +64,9 @@ def parse_obj(data: bytes, where: str) -> ObjFile:
         raise SourceError("not_obj", where, "is empty")
     if b"\x00" in data[:4096] or data[:2] == b"\x1f\x8b" or data.lstrip()[:1] == b"<":
         raise SourceError("not_obj", where, "is no text of an OBJ file")
+    counts = data.count(b"\nv "), data.count(b"\nf ")
+    if counts[0] > MAX_VERTICES or counts[1] > MAX_FACES:
+        raise SourceError("too_large", where, f"has {counts[0]} vertices and {counts[1]} faces")
     v_lines, vt_lines, blocks, library = _sorted_lines(data, where)
     if len(v_lines) > MAX_VERTICES or len(blocks) > MAX_GROUPS:
         raise SourceError("too_large", where, f"{len(v_lines)} vertices in {len(blocks)} groups")

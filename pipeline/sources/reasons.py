@@ -26,7 +26,7 @@ REASONS: dict[str, Reason] = {
     # files
     "unsafe_path": Reason("house, model", "quarantined", "a path that leaves the folder: absolute, `..`, a scheme, or a link to elsewhere"),
     "missing_file": Reason("house, model", "quarantined", "a file that is needed is not there or is no regular file"),
-    "too_large": Reason("house, model", "quarantined", "the file, or a count in it, is beyond the reader's limits"),
+    "too_large": Reason("house, room, model", "quarantined", "the file, or a count in it, is beyond the reader's limits"),
     "not_json": Reason("house, model", "quarantined", "the content is not JSON: empty, truncated, gzip, HTML, NaN, too deep"),
     "bad_structure": Reason("house, model", "quarantined", "the JSON lacks what the format promises, or has it in another type"),
     "not_obj": Reason("model", "quarantined", "the mesh file cannot be read: empty, truncated, bad numbers or indices, no faces"),

@@ -9,7 +9,7 @@ from PIL import Image, UnidentifiedImageError
 from pipeline.sources.reasons import SourceError
 
 MAX_FILE = 32 << 20  # bytes
-MAX_PIXELS = 8192 * 8192
+MAX_PIXELS = 4096 * 4096
 
 
 def prepared(data: bytes, where: str, limit: int) -> tuple[bytes, str]:

@@ -43,6 +43,22 @@ HOUSES = {  # content of a house file -> reason
     "nul_bytes": (b"\x00" * 4096, "not_json"),
 }
 
+
+def crowded(**more):
+    tree = making.two_rooms()
+    tree |= {k: tree[k] + v for k, v in more.items() if k in tree}
+    tree["scene"]["room"] += more.get("rooms", [])
+    tree["scene"]["room"][0]["children"] += more.get("children", [])
+    return json.dumps(tree).encode()
+
+
+LONG_HOLE = making.slab("", "Window", (0, 1, 0), (1, 2, 0.1))
+HOUSES |= {
+    "many_rooms": (crowded(rooms=[{"type": "Bedroom", "instanceid": f"Bedroom-{k}"} for k in range(5000)]), "too_large"),
+    "many_children": (crowded(children=[{"ref": "x", "instanceid": ""}] * 30_000), "too_large"),
+    "many_holes": (crowded(mesh=[{**LONG_HOLE, "uid": f"h{k}"} for k in range(3000)]), "too_large"),
+}
+
 HEAD = '<robot name="r">'
 BILLION = "".join(f'<!ENTITY l{k} "{f"&l{k - 1};" * 10}">' for k in range(1, 10))
 URDFS = {  # content of a URDF -> reason
@@ -114,7 +130,8 @@ def timed(read_all):
 @pytest.mark.parametrize("name", sorted(HOUSES))
 def test_house(name, tmp_path, secret):
     data, reason = HOUSES[name]
-    (tmp_path / "front" / "3D-FRONT").mkdir(parents=True)
+    making.write_library(tmp_path / "front", (BED,))
+    (tmp_path / "front" / "3D-FRONT").mkdir()
     (tmp_path / "front" / "3D-FRONT" / "house-a.json").write_bytes(data)
     made = timed(lambda: read(tmp_path))
     assert [(r["what"], r["where"], r["reason"]) for r in made.rejects] == [("house", "house-a", reason)]
@@ -172,6 +189,37 @@ def test_a_file_beyond_the_limit_is_not_read(tmp_path, monkeypatch):
     with pytest.raises(SourceError) as caught:
         Folder.at(tmp_path).read("large.json", guarded.MAX_JSON)
     assert caught.value.code == "too_large"
+
+
+def test_a_floor_of_absurdly_many_triangles_costs_its_room_only(tmp_path):
+    making.write_library(tmp_path / "front")
+    spread = making.floor("f9", 10, 0, 14, 4)
+    spread = {**spread, "xyz": spread["xyz"] * 12_000, "faces": list(range(72_000))}
+    tree = making.two_rooms(more_meshes=[spread])
+    tree["scene"]["room"].append({"type": "Bedroom", "instanceid": "Bedroom-9", "children": [making.child("f9", "mesh/9")]})
+    making.write_house(tmp_path / "front", tree)
+    made = timed(lambda: read(tmp_path))
+    assert [(r["what"], r["where"], r["reason"]) for r in made.rejects] == [("room", "house-a/Bedroom-9", "too_large")]
+    assert len(made.rooms) == 2
+
+
+def test_an_image_that_unfolds_is_not_unfolded(tmp_path):
+    import struct
+    import zlib
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    bomb = (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", struct.pack(">IIBBBBB", 60_000, 60_000, 8, 2, 0, 0, 0))
+        + chunk(b"IDAT", zlib.compress(b"\0" * 99))
+    )
+    making.write_library(tmp_path / "front", (BED,))
+    (tmp_path / "front" / "3D-FUTURE-model" / BED / "texture.png").write_bytes(bomb)
+    made = timed(lambda: read(tmp_path))
+    assert made.reasons == {"missing_texture"}
+    assert len(made.assets) == 1
 
 
 def test_of_duplicate_keys_the_last_wins():
