@@ -9,4 +9,16 @@ from pipeline.floorplan.priors import prior
 from pipeline.floorplan.program import FloorProgram, json_schema
 from pipeline.floorplan.solver import solve
 
-__all__ = ["FloorProgram", "complete", "describe", "json_schema", "parse", "plan_from_json", "plan_json", "prior", "refusal_json", "request", "solve"]
+__all__ = [
+    "FloorProgram",
+    "complete",
+    "describe",
+    "json_schema",
+    "parse",
+    "plan_from_json",
+    "plan_json",
+    "prior",
+    "refusal_json",
+    "request",
+    "solve",
+]

@@ -29,7 +29,7 @@ class Annealed(NamedTuple):
 
 
 @compiled
-def propose(grid: Labels, n: int, fixed: Ints, draws: Floats) -> bool:
+def propose(grid: Labels, n: int, fixed: Ints, draws: Floats) -> bool:  # noqa: C901, PLR0912 - compiled: calls would cost more
     """Change `grid` in place by one random move; False when the draw gives none.
 
     A wall cell is drawn; then the whole wall line moves by a cell (LINE), or the stretch between the same two rooms (PAIR),
@@ -47,7 +47,7 @@ def propose(grid: Labels, n: int, fixed: Ints, draws: Floats) -> bool:
         x += dx
     a = grid[y, x]
     b = grid[y + dy, x + dx]
-    if a == n or b == n or fixed[a] > 0 or fixed[b] > 0:
+    if max(a, b) == n or fixed[a] > 0 or fixed[b] > 0:
         return False
     kind = draws[3]
     if kind >= PART:
@@ -66,7 +66,7 @@ def propose(grid: Labels, n: int, fixed: Ints, draws: Floats) -> bool:
         while True:
             near = grid[y + (k + step) * sy, x + (k + step) * sx]
             far = grid[y + dy + (k + step) * sy, x + dx + (k + step) * sx]
-            if near == far or near == n or far == n or fixed[near] > 0 or fixed[far] > 0:
+            if near == far or max(near, far) == n or fixed[near] > 0 or fixed[far] > 0:
                 break
             if kind >= LINE and near != a:
                 break

@@ -45,9 +45,9 @@ def _forbidden_types(program: FloorProgram) -> set[str]:
 
 
 def _add_missing(program: FloorProgram) -> tuple[RoomReq, ...]:
-    """A dwelling needs a place to live, to cook and to wash; a home that is only named gets them."""
+    """Add the places to live, to cook and to wash that a dwelling needs and nobody named."""
     rooms = list(program.rooms)
-    types = {r.type for r in rooms}
+    types: set[str] = {r.type for r in rooms}
     functions = {f for r in rooms for f in r.functions}
     never = _forbidden_types(program)
     work = bool(types & {"office", "meeting_room"}) and not types & {"bedroom", "living_room", "studio_room", "family_room"}

@@ -67,7 +67,7 @@ def connect(program: FloorProgram) -> tuple[Link, ...]:
         main = next(g for g in groups if root in g)
         waiting = sorted((g for g in groups if root not in g), key=lambda g: _order(_front(program, g, links)))
         for group in waiting:
-            made = _attach(program, _front(program, group, links), main, links, by_id)
+            made = _attach(program, _front(program, group, links), main, links)
             if made is not None:
                 links.append(made)
                 break
@@ -140,20 +140,17 @@ def _order(room: RoomReq) -> int:
     return order.index(room.type) if room.type in order else len(order)
 
 
-def _attach(
-    program: FloorProgram, front: RoomReq, main: frozenset[str], links: Sequence[Link], by_id: dict[str, RoomReq]
-) -> Link | None:
+def _attach(program: FloorProgram, front: RoomReq, main: frozenset[str], links: Sequence[Link]) -> Link | None:
     second = front.type == "kitchen" and front.role not in {"", "primary"}  # a kitchen of somebody's own stands by itself
     for wanted in PARENTS["bedroom"][1:] if second else PARENTS.get(front.type, ANY_HUB):
         hosts = [r for r in program.rooms if r.type == wanted and r.id in main and _meet(r, front)]
         hosts = [h for h in hosts if not _is_full(program, h, links) and not _is_forbidden(program, h, front)]
-        hosts = [h for h in hosts if h.type != "hallway" or h.level == front.level or "staircase" in {front.type}] or hosts
+        hosts = [h for h in hosts if h.type != "hallway" or h.level == front.level or front.type == "staircase"] or hosts
         if wanted == "bedroom" and front.type in {"closet", "bathroom"}:
             hosts = [h for h in hosts if not _has(program, h, front.type, links)] or hosts
         if hosts:
             host = min(hosts, key=lambda h: _load(h, links)) if wanted == "hallway" else hosts[0]
-            kind = "open" if "staircase" in {front.type, host.type} else "door"
-            return Link(a=host.id, b=front.id, kind=kind)
+            return Link(a=host.id, b=front.id, kind="open" if "staircase" in {front.type, host.type} else "door")
     return None
 
 

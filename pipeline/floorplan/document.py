@@ -116,7 +116,7 @@ def plan_from_json(document: object) -> Plan:
     names = {r.id for r in read.rooms}
     unknown = ({read.entrance} | {name for o in read.openings for name in o.rooms}) - names
     if unknown:
-        raise ContentError(f"plan document names the unknown room {sorted(unknown)[0]!r}", f"rooms are {', '.join(sorted(names))}")
+        raise ContentError(f"plan document names the unknown room {min(unknown)!r}", f"rooms are {', '.join(sorted(names))}")
     rooms = tuple(Room(r.id, r.type, np.array(r.polygon, dtype=float), r.level, r.height, r.role) for r in read.rooms)
     openings = tuple(
         Opening(
@@ -132,5 +132,3 @@ def plan_from_json(document: object) -> Plan:
         for o in read.openings
     )
     return Plan(rooms, openings, read.entrance, read.inner_wall, read.outer_wall, read.storey_height)
-
-

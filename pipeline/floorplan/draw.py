@@ -91,8 +91,8 @@ def svg(plan: Plan, scale: float = 60.0) -> str:
         return " ".join(f"{x + level * (width + GAP) * scale:.1f},{height * scale - y:.1f}" for x, y in shifted)
 
     lines = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {full * scale:.0f} {height * scale:.0f}" '
-        f'font-family="sans-serif" font-size="{scale * 0.2:.0f}" text-anchor="middle">'
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {full * scale:.0f} {height * scale:.0f}">',
+        f'<g font-family="sans-serif" font-size="{scale * 0.2:.0f}" text-anchor="middle">',
     ]
     for level in levels:
         rooms = _on(plan, level)
@@ -113,7 +113,7 @@ def svg(plan: Plan, scale: float = 60.0) -> str:
             x, y = text(np.array([_label_point(r)]), level).split(",")
             lines.append(f'<text x="{x}" y="{y}">{r.room_id}</text>')
             lines.append(f'<text x="{x}" y="{float(y) + scale * 0.24:.1f}" fill="#555">{r.area:.1f} m²</text>')
-    return "\n".join([*lines, "</svg>"]) + "\n"
+    return "\n".join([*lines, "</g></svg>"]) + "\n"
 
 
 def _label_point(room: Room) -> tuple[float, float]:

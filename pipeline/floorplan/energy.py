@@ -89,7 +89,7 @@ def tree(link: Ints, root: int) -> Ints:
 
 
 @compiled
-def circulation(out: Measures, edges: Ints, root: int) -> float:
+def circulation(out: Measures, edges: Ints) -> float:
     """Term 1: ways from the entrance that double back.
 
     Mean over rooms of (|D|_1 / (max(D_right, D_left) + max(D_up, D_down)) - 1)^2, where D is the travel in the four directions
@@ -189,13 +189,13 @@ def alignment(columns: Ints, rows: Ints) -> float:
 def useful_area(areas: Floats, useful: Ints) -> float:
     """Term 9: (1 - share of the area that is useful)^2."""
     own = (areas * useful).sum()
-    return (1.0 - own / max(areas.sum(), 1e-9)) ** 2 * 4.0
+    return float((1.0 - own / max(areas.sum(), 1e-9)) ** 2 * 4.0)
 
 
 @compiled
 def min_width(missed: Floats, split: Ints) -> float:
     """Term 10: area [m2] that squares of half and of the whole wanted width do not reach, plus a charge per room that splits."""
-    return missed.sum() + SPLIT * split.sum()
+    return float(missed.sum() + SPLIT * split.sum())
 
 
 @compiled
@@ -262,7 +262,7 @@ def terms(grid: Labels, out: Measures, spec: Spec, edges: Ints, values: Floats, 
                 hard += 0.3 + (out.cells[i] - reached) / out.cells[i]
     if bent < spec.nonrect:
         hard += 0.3 * (spec.nonrect - bent)
-    values[0] = circulation(out, edges, spec.root)
+    values[0] = circulation(out, edges)
     values[1] = area(areas, spec.target)
     values[2] = squareness(out.box, spec.square)
     values[3] = convexity(hull, out.cells)
@@ -282,7 +282,7 @@ def terms(grid: Labels, out: Measures, spec: Spec, edges: Ints, values: Floats, 
 
 
 @compiled
-def violations(out: Measures, spec: Spec, areas: Floats) -> float:
+def violations(out: Measures, spec: Spec, areas: Floats) -> float:  # noqa: C901, PLR0912 - a list of independent conditions
     """Hard conditions on walls and areas: 0 when all hold, else roughly the number of violated ones."""
     n = spec.target.size
     width, height = out.columns.size - 1, out.rows.size - 1

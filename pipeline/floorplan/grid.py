@@ -69,7 +69,7 @@ def _wall(out: Measures, a: int, b: int, length: int, x: float, y: float) -> Non
 
 
 @compiled
-def measure(grid: Labels, n: int, out: Measures) -> None:
+def measure(grid: Labels, n: int, out: Measures) -> None:  # noqa: PLR0915 - one pass, compiled
     """Fill `out` from the bordered grid (rows+2, columns+2)."""
     height, width = grid.shape[0] - 2, grid.shape[1] - 2
     out.cells[:] = 0
@@ -103,14 +103,10 @@ def measure(grid: Labels, n: int, out: Measures) -> None:
                     out.cells[c] += count
                     out.centre[c, 0] += count * 0.5 * (first + x)
                     out.centre[c, 1] += count * (y + 0.5)
-                    if y < out.box[c, 1]:
-                        out.box[c, 1] = y
-                    if y + 1 > out.box[c, 3]:
-                        out.box[c, 3] = y + 1
-                    if first < out.box[c, 0]:
-                        out.box[c, 0] = first
-                    if x > out.box[c, 2]:
-                        out.box[c, 2] = x
+                    out.box[c, 0] = min(out.box[c, 0], first)
+                    out.box[c, 1] = min(out.box[c, 1], y)
+                    out.box[c, 2] = max(out.box[c, 2], x)
+                    out.box[c, 3] = max(out.box[c, 3], y + 1)
                 start = x
             else:
                 down_key[x] = -1
@@ -135,9 +131,9 @@ def measure(grid: Labels, n: int, out: Measures) -> None:
 @compiled
 def _corner(out: Measures, a: int, b: int, c: int, d: int, n: int) -> None:
     """Count the corners that meet in a vertex with the four cells a b / c d around it."""
-    if a == d and b != a and c != a:
+    if a == d and min(abs(b - a), abs(c - a)) > 0:
         out.pinched[a] += 1
-    if b == c and a != b and d != b:
+    if b == c and min(abs(a - b), abs(d - b)) > 0:
         out.pinched[b] += 1
     outside = (a == n) + (b == n) + (c == n) + (d == n)
     for k in range(4):
@@ -161,13 +157,13 @@ def inner_area(out: Measures, room: int, n: int, unit: float) -> float:
         inner += out.walls[room, b]
     turn = out.corners[room, 0] - out.corners[room, 1]
     mean = INNER if outer + inner == 0 else (INNER * inner + OUTER * outer) / (inner + outer)
-    return out.cells[room] * unit * unit - unit * (INNER * inner + OUTER * outer) + turn * mean * mean
+    return float(out.cells[room] * unit * unit - unit * (INNER * inner + OUTER * outer) + turn * mean * mean)
 
 
 @compiled
 def simple(out: Measures, room: int) -> bool:
     """Whether the room is one piece without holes that nowhere touches itself (Euler number of a 4-connected region)."""
-    return out.cells[room] > 0 and out.pinched[room] == 0 and out.corners[room, 0] - out.corners[room, 1] == 4
+    return bool(out.cells[room] > 0 and out.pinched[room] == 0 and out.corners[room, 0] - out.corners[room, 1] == 4)
 
 
 @compiled
@@ -213,7 +209,7 @@ def _chain(points: Floats, side: float) -> float:
 
 
 @compiled
-def opening(grid: Labels, room: int, box: Ints, side: int) -> tuple[int, int]:
+def opening(grid: Labels, room: int, box: Ints, side: int) -> tuple[int, int]:  # noqa: C901, PLR0912 - three passes, compiled
     """Cells of the room that a square of `side` cells reaches inside it, and the pieces that the square's places form."""
     x0, y0, x1, y1 = box[0], box[1], box[2], box[3]
     h, w = y1 - y0, x1 - x0
@@ -251,7 +247,7 @@ def opening(grid: Labels, room: int, box: Ints, side: int) -> tuple[int, int]:
 
 @compiled
 def _pieces(mask: Ints) -> int:
-    """Number of 4-connected pieces of a mask with an empty first row and column; the mask is consumed."""
+    """Count the 4-connected pieces of a mask with an empty first row and column; the mask is consumed."""
     h, w = mask.shape
     stack = np.empty((h * w + 1, 2), np.int64)
     pieces = 0

@@ -31,7 +31,7 @@ class Lines(NamedTuple):
 
 
 def find(grid: Labels, unit: float) -> Lines:
-    """Number the lines of a bordered grid."""
+    """Find the lines of a bordered grid."""
     height, width = grid.shape[0] - 2, grid.shape[1] - 2
     body = grid[1:-1, :], grid[:, 1:-1]
     upright, up_at = _number(body[0][:, :-1] != body[0][:, 1:], 0)
@@ -115,9 +115,7 @@ def fit(
     return np.round(at, 3)
 
 
-def _areas(
-    at: Floats, outlines: list[trace.Corners], ids: list[Ints], sides: list[list[bool]], target: Floats
-) -> tuple[Floats, Floats]:
+def _areas(at: Floats, outlines: list[trace.Corners], ids: list[Ints], sides: list[list[bool]], target: Floats) -> tuple[Floats, Floats]:
     """Return inner areas minus targets (n,) and their derivatives by the lines' coordinates (n, k)."""
     error, slope = np.empty(len(outlines)), np.zeros((len(outlines), at.size))
     for r, (corners, own, inner) in enumerate(zip(outlines, ids, sides, strict=True)):

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.plan import Opening, OpeningKind, Room, Swing
 from pipeline.floorplan.defaults import DEFAULTS, DOOR_HEIGHT
-from pipeline.floorplan.grid import INNER, OUTER
+from pipeline.floorplan.grid import OUTER
 from pipeline.floorplan.program import FloorProgram, RoomReq
 
 FRAME = 0.10  # least wall beside an opening, from the inner faces of side walls [m]
@@ -173,9 +173,7 @@ def _entrance(program: FloorProgram, site: Site, runs: Sequence[Run], rng: np.ra
     return True
 
 
-def _door(
-    site: Site, walls: Sequence[Run], kind: OpeningKind, width: float, into: str, height: float, rng: np.random.Generator
-) -> bool:
+def _door(site: Site, walls: Sequence[Run], kind: OpeningKind, width: float, into: str, height: float, rng: np.random.Generator) -> bool:
     """Place a door with a leaf that swings into room `into`; the first free place of the preferred order is taken."""
     room = site.rooms[into]
     floor = shapely.Polygon(room.polygon)

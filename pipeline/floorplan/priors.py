@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from pipeline.floorplan.completion import complete
-from pipeline.floorplan.program import Accessibility, FloorProgram, Footprint, Forbid, Link, Range, RoomReq, Style
+from pipeline.floorplan.program import Accessibility, FloorProgram, Footprint, Forbid, Link, LinkKind, Range, RoomReq, Style
 
 BEDROOMS = (0.12, 0.24, 0.28, 0.20, 0.11, 0.05)  # probability of 0 (studio) to 5 bedrooms
 CLASSIC, OPEN, THROUGH = "classic", "open", "through"  # kitchen apart, open to the living room, behind the dining room
@@ -27,6 +27,10 @@ def _area(rng: np.random.Generator, mean: float, spread: float = 0.18) -> Range:
     return Range(target=round(float(mean * np.exp(rng.normal(0.0, spread))), 2))
 
 
+def _kind(rng: np.random.Generator, *kinds: LinkKind) -> LinkKind:
+    return kinds[int(rng.integers(len(kinds)))]
+
+
 def _style(rng: np.random.Generator) -> Style:
     """Turn at most three knobs by one or two steps."""
     names = [n for n in Style.model_fields if not n.startswith("stair")]
@@ -36,8 +40,8 @@ def _style(rng: np.random.Generator) -> Style:
 
 def _footprint(rng: np.random.Generator, rooms: int) -> Footprint:
     low = float(rng.choice([1.0, 1.0, 1.3]))
-    shape = "L" if rooms >= 6 and rng.random() < 0.15 else "rectangle"
-    return Footprint(shape=shape, min_aspect=low, max_aspect=low + 0.5)
+    corner = rooms >= 6 and rng.random() < 0.15
+    return Footprint(shape="L" if corner else "rectangle", min_aspect=low, max_aspect=low + 0.5)
 
 
 def _studio(rng: np.random.Generator) -> FloorProgram:
@@ -57,9 +61,7 @@ def _studio(rng: np.random.Generator) -> FloorProgram:
     if rng.random() < 0.25:
         rooms.append(_room("balcony", "balcony", area=_area(rng, 4.5)))
         links.append(Link(a="studio", b="balcony"))
-    return FloorProgram(
-        rooms=tuple(rooms), links=tuple(links), only=True, style=_style(rng), footprint=_footprint(rng, len(rooms))
-    )
+    return FloorProgram(rooms=tuple(rooms), links=tuple(links), only=True, style=_style(rng), footprint=_footprint(rng, len(rooms)))
 
 
 def _home(rng: np.random.Generator, beds: int) -> FloorProgram:
@@ -112,8 +114,8 @@ def _kitchen(rng: np.random.Generator, beds: int, rooms: list[RoomReq], links: l
     rooms.append(_room("kitchen", "kitchen", area=_area(rng, 9.5 + 1.2 * beds)))
     if kind == THROUGH:
         rooms.append(_room("dining", "dining_room", area=_area(rng, 12.5)))
-        links.append(Link(a="living", b="dining", kind=str(rng.choice(["door", "open", "portal"]))))
-        links.append(Link(a="dining", b="kitchen", kind=str(rng.choice(["door", "open"]))))
+        links.append(Link(a="living", b="dining", kind=_kind(rng, "door", "open", "portal")))
+        links.append(Link(a="dining", b="kitchen", kind=_kind(rng, "door", "open")))
     elif kind == OPEN:
         links.append(Link(a="living", b="kitchen", kind="open"))
     else:

@@ -6,7 +6,6 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-VERSION = 1
 MAX_ROOMS = 40
 
 RoomType = Literal[
@@ -186,7 +185,7 @@ class FloorProgram(Model):
     rectangles. `irregular` widens what an outline may look like.
     """
 
-    version: Literal[1] = VERSION
+    version: Literal[1] = 1
     storeys: Annotated[int, Field(ge=1, le=3)] = 1
     total_area: Range = Range()
     footprint: Footprint = Footprint()

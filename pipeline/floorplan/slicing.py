@@ -7,6 +7,8 @@ Units: cells of the grid.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -70,30 +72,30 @@ def lay_out(expr: Ints, gross: Floats, width: int, height: int, rect: Ints, work
 def contact(rect: Ints, a: int, b: int) -> int:
     """Return the length of the wall that two rectangles share [cells]."""
     if rect[a, 2] == rect[b, 0] or rect[b, 2] == rect[a, 0]:
-        return max(0, min(rect[a, 3], rect[b, 3]) - max(rect[a, 1], rect[b, 1]))
+        return int(max(0, min(rect[a, 3], rect[b, 3]) - max(rect[a, 1], rect[b, 1])))
     if rect[a, 3] == rect[b, 1] or rect[b, 3] == rect[a, 1]:
-        return max(0, min(rect[a, 2], rect[b, 2]) - max(rect[a, 0], rect[b, 0]))
+        return int(max(0, min(rect[a, 2], rect[b, 2]) - max(rect[a, 0], rect[b, 0])))
     return 0
 
 
+class Wishes(NamedTuple):
+    """What the layout of n rooms is scored by; names as in `energy.Spec`, `square` are weights."""
+
+    need: Ints
+    ban: Ints
+    outside: Ints
+    least: Ints
+    square: Floats
+    apart: Floats
+    stair: Ints
+    stair_room: int
+    stair_weights: Floats  # (2,)
+
+
 @compiled
-def cost(
-    rect: Ints,
-    width: int,
-    height: int,
-    n: int,
-    gross: Floats,
-    need: Ints,
-    ban: Ints,
-    outside: Ints,
-    least: Ints,
-    square: Floats,
-    apart: Floats,
-    stair: Ints,
-    stair_room: int,
-    stair_weights: Floats,
-) -> float:
+def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes) -> float:  # noqa: C901, PLR0912, PLR0915 - compiled
     """Score a layout of rectangles; leaves from `n` on are voids that must lie in a corner. Smaller is better."""
+    need, ban, outside, least, square, apart, stair, stair_room, stair_weights = wishes
     total = 0.0
     diagonal = (width * width + height * height) ** 0.5
     m = rect.shape[0]
@@ -151,9 +153,10 @@ def cost(
         own = float((rect[stair_room, 2] - rect[stair_room, 0]) * (rect[stair_room, 3] - rect[stair_room, 1]))
         whole = float((stair[2] - stair[0]) * (stair[3] - stair[1]))
         gap = max(0, -w) + max(0, -h)
-        total += n * (
-            stair_weights[0] * (both / whole - 1.0) ** 2 + stair_weights[1] * (both / (own + whole - both) - 1.0) ** 2
-        ) + 12.0 * gap / diagonal
+        total += (
+            n * (stair_weights[0] * (both / whole - 1.0) ** 2 + stair_weights[1] * (both / (own + whole - both) - 1.0) ** 2)
+            + 12.0 * gap / diagonal
+        )
     return total
 
 
@@ -220,24 +223,14 @@ def search(
     gross: Floats,
     low: Floats,
     high: Floats,
-    need: Ints,
-    ban: Ints,
-    outside: Ints,
-    least: Ints,
-    square: Floats,
-    apart: Floats,
-    stair: Ints,
-    stair_room: int,
-    stair_weights: Floats,
+    wishes: Wishes,
 ) -> tuple[Ints, float]:
     """Anneal the tree and the areas of flexible rooms (between `low` and `high`); return the best rectangles and their cost."""
     m = gross.size
     if m == 1:
         only = np.zeros((1, 4), np.int64)
         only[0, 2], only[0, 3] = width, height
-        return only, cost(
-            only, width, height, n, gross, need, ban, outside, least, square, apart, stair, stair_room, stair_weights
-        )
+        return only, cost(only, width, height, n, gross, wishes)
     rect = np.zeros((m, 4), np.int64)
     best_rect = np.zeros((m, 4), np.int64)
     work = np.zeros((2 * m - 1, 7), np.int64)
@@ -247,7 +240,7 @@ def search(
     trial = expr.copy()
     areas = gross.copy()
     if lay_out(expr, areas, width, height, rect, work, sums):
-        now = cost(rect, width, height, n, areas, need, ban, outside, least, square, apart, stair, stair_room, stair_weights)
+        now = cost(rect, width, height, n, areas, wishes)
     steps = draws.shape[0]
     for k in range(steps):
         heat = hot * (cold / hot) ** (k / steps)
@@ -262,7 +255,7 @@ def search(
         else:
             good = _mutate(trial, draws[k])
         if good and lay_out(trial, areas, width, height, rect, work, sums):
-            new = cost(rect, width, height, n, areas, need, ban, outside, least, square, apart, stair, stair_room, stair_weights)
+            new = cost(rect, width, height, n, areas, wishes)
             if new <= now or draws[k, 3] < np.exp((now - new) / heat):
                 now = new
                 expr[:] = trial

@@ -84,8 +84,8 @@ def _outline(program: FloorProgram, requests: list[Storey], rng: np.random.Gener
     high = max(program.footprint.max_aspect, low)
     aspect = np.exp(rng.uniform(np.log(low), np.log(high)))
     whole = max(r.gross.sum() for r in requests) * (1.0 + (0.16, 0.2)[cuts - 1] * (cuts > 0))
-    width = max(int(round((whole * aspect) ** 0.5)), 2)
-    return Outline(width, max(int(round(whole / width)), 2), cuts)
+    width = max(round(float(whole * aspect) ** 0.5), 2)
+    return Outline(width, max(round(float(whole / width)), 2), cuts)
 
 
 def _rectangle(grid: Labels, room: int) -> tuple[int, int, int, int] | None:
@@ -95,9 +95,7 @@ def _rectangle(grid: Labels, room: int) -> tuple[int, int, int, int] | None:
     return box if xs.size == (box[2] - box[0]) * (box[3] - box[1]) else None
 
 
-def _storey_grid(
-    request: Storey, program: FloorProgram, outline: Outline, rng: np.random.Generator, effort: int
-) -> Labels | None:
+def _storey_grid(request: Storey, program: FloorProgram, outline: Outline, rng: np.random.Generator, effort: int) -> Labels | None:
     """Return a grid without violations: the best of several slicing trees, annealed."""
     best: Labels | None = None
     least = np.inf
@@ -141,8 +139,10 @@ def _slice(request: Storey, program: FloorProgram, outline: Outline, rng: np.ran
     square = np.where(spec.square > 0, 0.6, 0.08) * 2.0**program.style.squareness
     low = np.concatenate([request.gross_low, empty * 0.7])
     high = np.concatenate([request.gross_high, empty * 1.3])
-    numbers = (spec.need, spec.ban, spec.outside, spec.strict, square, spec.apart, spec.stair, spec.stair_room, request.weights[10:])
-    rects, cost = slicing.search(expr, draws, SLICE_HOT, SLICE_COLD, width, height, n, gross, low, high, *numbers)
+    wishes = slicing.Wishes(
+        spec.need, spec.ban, spec.outside, spec.strict, square, spec.apart, spec.stair, spec.stair_room, request.weights[10:]
+    )
+    rects, cost = slicing.search(expr, draws, SLICE_HOT, SLICE_COLD, width, height, n, gross, low, high, wishes)
     grid = np.full((height + 2, width + 2), n, np.int16)
     for i, (x0, y0, x1, y1) in enumerate(rects.tolist()):
         grid[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = min(i, n)
@@ -162,7 +162,7 @@ def _same_side(cut: NDArray[np.int64]) -> bool:
     (ax0, ay0, ax1, ay1), (bx0, by0, bx1, by1) = cut.tolist()
     across = max(ax0, bx0) - min(ax1, bx1) >= LEAST_CUT and (ay0 == 0) == (by0 == 0)
     along = max(ay0, by0) - min(ay1, by1) >= LEAST_CUT and (ax0 == 0) == (bx0 == 0)
-    return across or along
+    return bool(across or along)
 
 
 def _stamp(grid: Labels, room: int, stair: tuple[int, ...], n: int) -> None:
@@ -205,7 +205,7 @@ def _realise(request: Storey, grid: Labels, share: float, rooms: list[Room], run
     """Append a storey's rooms and the stretches of wall that openings can stand in; lines move by `share` of what they may."""
     spec, n = request.spec, len(request.rooms)
     corners = [trace.outline(grid, i) for i in range(n)]
-    sides = [_inner_sides(grid, corners[i], i, n) for i in range(n)]
+    sides = [_inner_sides(grid, corners[i], n) for i in range(n)]
     found = lines.find(grid, UNIT)
     slack = np.where(spec.corridor > 0, (spec.strict * UNIT - request.clear) / 2, lines.FARTHEST)
     trust = np.where(np.array([r.type in {"hallway", "entry"} and not r.area.stated for r in request.rooms]), 0.2, 1.0)
@@ -237,7 +237,7 @@ def _within(program: FloorProgram, storeys: list[tuple[Storey, Labels]], rooms: 
     return not wish.stated or (wish.min or 0.0) <= inside <= (wish.max or np.inf)
 
 
-def _inner_sides(grid: Labels, corners: trace.Corners, room: int, n: int) -> list[bool]:
+def _inner_sides(grid: Labels, corners: trace.Corners, n: int) -> list[bool]:
     """Whether each side of a room's outline has another room behind any part of it."""
     sides = []
     for (x0, y0), (x1, y1) in zip(corners, [*corners[1:], corners[0]], strict=True):
@@ -311,4 +311,3 @@ def _depths(program: FloorProgram) -> dict[str, int]:
                 depth[other] = depth[room] + 1
                 frontier.append(other)
     return {r.id: depth.get(r.id, 99) for r in program.rooms}
-

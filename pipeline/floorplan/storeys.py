@@ -166,9 +166,7 @@ def _outside(room: RoomReq, program: FloorProgram, level: int) -> int:
     return cells(0.8 + SIDES) if DEFAULTS[room.type].exterior and room.type != "entry" else 0
 
 
-def _relations(
-    program: FloorProgram, index: dict[str, int]
-) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+def _relations(program: FloorProgram, index: dict[str, int]) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
     n = len(index)
     ban, apart, order = np.zeros((n, n), np.int64), np.zeros((n, n)), np.zeros((n, n))
 

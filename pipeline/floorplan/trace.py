@@ -67,7 +67,7 @@ def walls(grid: Labels, n: int) -> list[Wall]:
                     continue
                 one, two = int(low[start]), int(high[start])
                 if one != two:
-                    if one != n and two != n:
+                    if max(one, two) < n:
                         found.append(Wall(one, two, vertical, at, start, k, True))
                     else:
                         found.append(Wall(two if one == n else one, -1, vertical, at, start, k, two == n))

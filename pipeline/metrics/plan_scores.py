@@ -248,7 +248,7 @@ class Scene:
         return target.room_id in found
 
     def hops(self, a: Room, b: Room) -> int:
-        """Number of openings on the shortest way between two rooms."""
+        """Count the openings on the shortest way between two rooms."""
         seen, ring, count = {a.room_id}, {a.room_id}, 0
         while ring:
             if b.room_id in ring:
@@ -405,7 +405,7 @@ def _min_door_width(s: Scene, c: Mapping[str, Any]) -> float:
 
 
 def _min_corridor_width(s: Scene, c: Mapping[str, Any]) -> float:
-    """The narrowest corridor [m]: the widest square brush that paints all of it."""
+    """Compare the widest square brush that paints all of a corridor with the asked width [m]."""
     values = []
     for room in s.select("hallway"):
         half = 0.5 * c["value"] - 0.005
@@ -417,7 +417,7 @@ def _min_corridor_width(s: Scene, c: Mapping[str, Any]) -> float:
 
 def _irregularity(s: Scene, c: Mapping[str, Any]) -> float:
     bent = sum(len(r.polygon) != 4 for r in s.plan.rooms)
-    return min(1.0, bent / c["min_nonrect_rooms"])
+    return float(min(1.0, bent / c["min_nonrect_rooms"]))
 
 
 def _footprint(s: Scene, c: Mapping[str, Any]) -> float:

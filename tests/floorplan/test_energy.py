@@ -6,8 +6,8 @@ import shapely
 
 from pipeline.floorplan import energy, grid, trace
 from pipeline.floorplan.anneal import score
-from pipeline.floorplan.storeys import weights_of
 from pipeline.floorplan.program import FloorProgram, Style
+from pipeline.floorplan.storeys import weights_of
 
 UNIT = 0.25
 
@@ -82,10 +82,10 @@ def test_inner_area_is_that_of_the_faces():
 def test_circulation_counts_detours_only():
     chain = np.array([[0, 1, 0], [1, 0, 1], [0, 1, 0]])
     straight = measured(labels("aabbcc", "aabbcc", n=3), 3)
-    assert energy.circulation(straight, energy.tree(chain, 0), 0) == 0.0
+    assert energy.circulation(straight, energy.tree(chain, 0)) == 0.0
     # c lies above a and is reached through b: right 2, then left 1, and up 1.5
     bent = measured(labels("aabb", "ccbb", n=3), 3)
-    travel = energy.circulation(bent, energy.tree(chain, 0), 0)
+    travel = energy.circulation(bent, energy.tree(chain, 0))
     # a (1, .5) -> wall (2, .5) -> b (3, 1) -> wall (2, 1.5) -> c (1, 1.5): right 2, left 2, up 1
     assert travel == pytest.approx(4.0 * ((5 / 3 - 1) ** 2 + 0.0) / 2)
 

@@ -7,11 +7,12 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
+from pipeline.errors import RefusedError
 from pipeline.floorplan.defaults import DEFAULTS
 from pipeline.floorplan.language import lexicon
+from pipeline.floorplan.language.facts import HALLS, Fact, Reading
 from pipeline.floorplan.language.inventory import Inventory, Named
 from pipeline.floorplan.language.items import Item
-from pipeline.floorplan.language.reading import HALLS, Fact, Reading
 from pipeline.floorplan.language.spelling import vocabulary
 from pipeline.floorplan.language.tokens import MARKS, Token
 from pipeline.floorplan.program import FloorProgram, Style
@@ -19,6 +20,8 @@ from pipeline.floorplan.program import FloorProgram, Style
 ROLES = {"primary", "guest", "child", "elder", "staff", "carer", "shared"}
 MERGE_ORDER = ("living_room", "family_room", "dining_room", "kitchen", "studio_room")
 OPPOSITE, FAR = 0.45, 0.35  # "at the other end" and "away from", as shares of the diagonal
+MOST_STOREYS = 3
+PANORAMA = 8.5  # outside wall of a living room with panoramic glazing [m]
 ABOUT = 0.1  # "about 75 m2" allows this much either way
 
 
@@ -79,13 +82,11 @@ def assemble(prompt: str, tokens: list[Token], parsed: list[list[Item]], state: 
     _everything(draft, stock, state.facts)
     _suites(draft, stock, state.facts)
     _apart(draft, stock, state.facts, text)
-    _sizes(draft, state, text)
+    _sizes(draft, state)
     _comparisons(draft, stock, text)
     _whole(draft, state, text)
     _style(draft, re.sub(r"(square|sq\.?) ?(m|f)\w*", " ", text))
-    spans = sorted(
-        (s, e, t) for s, e, t in _rest(state, draft) if not any(v["start"] <= s < v["end"] for v in draft.evidence)
-    )
+    spans = sorted((s, e, t) for s, e, t in _rest(state, draft) if not any(v["start"] <= s < v["end"] for v in draft.evidence))
     return FloorProgram.model_validate(
         {
             **draft.fields,
@@ -139,7 +140,7 @@ def _rest(state: Reading, draft: Draft) -> Iterable[tuple[int, int, str]]:
 
 
 def _studio(state: Reading) -> None:
-    """A studio without a named main room is one room to live and sleep in."""
+    """Make a studio without a named main room one room to live and sleep in."""
     stock = state.inventory
     if state.studio is not None and not stock.of("studio_room") and not stock.of("bedroom"):
         living = stock.of("living_room")
@@ -183,12 +184,13 @@ def _belongings(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
                     draft.relate("degree", thing, None, 1.0, fact)
     for room in stock.of("kitchen"):
         if any(f.what == "open_kitchen" and room.id in f.a for f in facts) and not draft.linked(room.id):
-            host = [r for kind in ("living_room", "dining_room", "studio_room", "family_room") for r in stock.of(kind)]
+            social = [r for kind in ("living_room", "dining_room", "studio_room", "family_room") for r in stock.of(kind)]
             fact = next(f for f in facts if f.what == "open_kitchen")
-            draft.link(host[0].id if host else "living_room", room.id, "open", fact)
+            draft.link(social[0].id if social else "living_room", room.id, "open", fact)
 
 
-def _joined(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
+def _joined(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:  # noqa: C901, PLR0912 - one branch per kind of fact
+    """Write each fact about rooms into the program."""
     owned = {i for f in facts if f.what in {"own", "ensuite"} for i in f.a}
     names = {lexicon.DOOR: "door", lexicon.LEADS: "door", lexicon.NEAR: "any", lexicon.OPEN: "open", lexicon.WALL: "wall"}
     for fact in facts:
@@ -208,7 +210,7 @@ def _joined(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
                     draft.link(a, b, "any", fact)
         elif fact.what == "merge":
             chain = sorted(fact.a, key=lambda i: MERGE_ORDER.index(stock.get(i).type) if stock.get(i).type in MERGE_ORDER else 9)
-            for a, b in zip(chain, chain[1:], strict=False):
+            for a, b in itertools.pairwise(chain):
                 draft.link(a, b, "open", fact)
         elif fact.what == "only":
             for a in fact.a:
@@ -233,7 +235,7 @@ def _joined(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
 
 
 def _everything(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
-    """ "Everything off a corridor": all rooms that hang on nothing yet."""
+    """Read "everything off a corridor": all rooms that hang on nothing yet."""
     for fact in facts:
         stars = [i for i in fact.a + fact.b if i.startswith("*")]
         if not stars or fact.what in {"away", lexicon.BAN}:
@@ -244,12 +246,12 @@ def _everything(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
             if room.id in fixed or (kind and room.type != kind):
                 continue
             inner = draft.linked(room.id) and (room.type in {"closet", "bathroom", "balcony", "storage", "wc", "utility"})
-            if fixed and not inner and not (room.type in HALLS):
+            if fixed and not inner and room.type not in HALLS:
                 draft.link(fixed[0], room.id, "open" if fact.what == lexicon.OPEN else "door", fact)
 
 
 def _suites(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
-    """A suite has a bathroom of its own, directly or through its closet."""
+    """Give each suite a bathroom of its own, directly or through its closet."""
     for fact in facts:
         if fact.what != "suite":
             continue
@@ -299,7 +301,7 @@ def _apart(draft: Draft, stock: Inventory, facts: list[Fact], text: str) -> None
                 draft.forbid("adjacent", a, b, None, 0, 1)
 
 
-def _sizes(draft: Draft, state: Reading, text: str) -> None:
+def _sizes(draft: Draft, state: Reading) -> None:
     """Attach amounts: areas, widths, numbers of pieces, free shares."""
     stock = state.inventory
     for item, ids in state.amounts:
@@ -383,9 +385,7 @@ def _comparisons(draft: Draft, stock: Inventory, text: str) -> None:
                 at = draft.prompt.lower().find(match.group(2)[:8])
                 end = at + len(match.group(2))
                 if at >= 0:
-                    draft.evidence.append(
-                        {"start": at, "end": end, "text": draft.prompt[at:end], "field": f"relations.area_order.{a.id}"}
-                    )
+                    draft.evidence.append({"start": at, "end": end, "text": draft.prompt[at:end], "field": f"relations.area_order.{a.id}"})
 
 
 def _by_words(stock: Inventory, words: str) -> list[Named]:
@@ -399,12 +399,14 @@ def _by_words(stock: Inventory, words: str) -> list[Named]:
 
 
 def _whole(draft: Draft, state: Reading, text: str) -> None:
-    """What concerns the whole home: storeys, outline, entrance, access, whether the list of rooms is closed."""
+    """Read what concerns the whole home: storeys, outline, whether the list of rooms is closed, access and entrance."""
     stock = state.inventory
     levels = [r.level for r in stock.rooms if r.level is not None]
     storeys = state.storeys[0] if state.storeys else 1
     if state.storeys:
         draft.cite(state.storeys[1].first, state.storeys[1].last, "storeys")
+    if storeys > MOST_STOREYS:
+        raise RefusedError(f"{storeys} storeys are asked for", f"ask for {MOST_STOREYS} at most")
     draft.fields["storeys"] = max(storeys, max(levels, default=0) + 1)
     if draft.fields["storeys"] == 1:
         for room in stock.rooms:
@@ -413,34 +415,41 @@ def _whole(draft: Draft, state: Reading, text: str) -> None:
         draft.fields["only"] = True
     if re.search(r"\bno wasted (corridor|hall)|\bno (corridor|hallway)s?\b(?! (narrower|less|smaller))", text):
         draft.forbid("room_type", "hallway", None, None, 0, 1)
+    if re.search(r"\b(luxury|luxurious|generous airy|palatial|lavish)\b", text):
+        draft.fields["scale"] = 1.3
+    _outline(draft, text)
+    _access(draft, state, text)
+    if re.search(r"eat in kitchen|big enough to eat in|kitchen diner|dining kitchen|kitchen to eat in", text):
+        for room in (r for r in stock.of("kitchen") if not r.role):
+            room.functions.add("dining")
+    if "panoramic" in text:
+        for room in stock.of("living_room")[:1]:
+            room.exterior_length = PANORAMA
+
+
+def _outline(draft: Draft, text: str) -> None:
     shape = "L" if re.search(r"\bl shaped?\b", text) else ("T" if re.search(r"\bt shaped?\b", text) else "rectangle")
-    if re.search(r"\bl shaped? (living|kitchen|bedroom|sofa|room)", text):
+    if re.search(r"\b[lt] shaped? (living|kitchen|bedroom|sofa|room)", text):
         shape = "rectangle"
     if re.search(r"\b(narrow|elongated)\b[^.]{0,40}\b(house|townhouse|home|plot|site|lot|footprint|outline|building)", text):
         draft.fields["footprint"] = {"shape": shape, "min_aspect": 1.5, "max_aspect": 2.1, "stated": True}
     elif shape != "rectangle" or re.search(r"rectangular (outline|footprint|plan)", text):
         draft.fields["footprint"] = {"shape": shape, "stated": True}
+
+
+def _access(draft: Draft, state: Reading, text: str) -> None:
     access = draft.fields.setdefault("accessibility", {})
     if re.search(r"wheelchair|step free|barrier free|rollator|no steps", text):
         access["step_free"] = True
     if re.search(r"wheelchair|rollator", text):
         access["min_door"] = max(access.get("min_door", 0.9), 0.9)
         access["min_corridor"] = max(access.get("min_corridor", 1.2), 1.2)
-    entrance: dict[str, Any] = {}
-    if state.entrance:
-        entrance = {"into": state.entrance, "stated": True}
+    entrance: dict[str, Any] = {"into": state.entrance, "stated": True} if state.entrance else {}
     if re.search(r"own (front )?door to the outside|own entrance|separate entrance|own outside door", text):
+        stock = state.inventory
         owners = [r for kind in ("kitchen", "bedroom") for r in stock.of(kind) if r.role in {"elder", "guest", "staff", "carer"}]
         entrance["separate"] = [owners[0].id] if owners else []
     draft.fields["entrance"] = entrance
-    if re.search(r"\b(luxury|luxurious|generous airy|palatial|lavish)\b", text):
-        draft.fields["scale"] = 1.3
-    for room in stock.of("kitchen"):
-        if re.search(r"eat in kitchen|big enough to eat in|kitchen diner|dining kitchen|kitchen to eat in", text) and not room.role:
-            room.functions.add("dining")
-    if re.search(r"panoramic", text):
-        for room in stock.of("living_room")[:1]:
-            room.exterior_length = 8.5
 
 
 def _style(draft: Draft, text: str) -> None:

@@ -71,9 +71,7 @@ class Inventory:
                 return room
         return None
 
-    def refer(
-        self, kind: str, role: str, surface: str, many: bool, other: bool, ordinal: int, level: int | None
-    ) -> list[Named]:
+    def refer(self, kind: str, role: str, surface: str, many: bool, other: bool, ordinal: int, level: int | None) -> list[Named]:
         """Return the rooms that a definite phrase points at; empty when there are none yet."""
         same = self.of(kind)
         if level is not None:
@@ -92,7 +90,7 @@ class Inventory:
         if many:
             return same
         if len(same) > 1:
-            last = surface.split()[-1]
+            last = surface.rsplit(maxsplit=1)[-1]
             exact = [r for r in same if last in r.surface.split()]
             same = exact or same
         plain = [r for r in same if not r.role]

@@ -117,7 +117,7 @@ def sentences(tokens: list[Token]) -> list[list[Item]]:
 
 def _join(tokens: list[Token], i: int, count: int) -> tuple[str, int] | None:
     """Return the text of `count` words from i, hyphens between them skipped, and where it ends."""
-    words = []
+    words: list[str] = []
     while count and i < len(tokens):
         text = tokens[i].text
         if text in {"-", "–"} and words:
@@ -137,9 +137,7 @@ def _phrase(tokens: list[Token], i: int) -> Item | None:
         joined = _join(tokens, i, count)
         if joined and joined[0] in table:
             sample = table[joined[0]]
-            return Item(
-                sample.kind, i, joined[1], sample.words, sample.type, sample.role, sample.plural, sample.cue, level=sample.level
-            )
+            return Item(sample.kind, i, joined[1], sample.words, sample.type, sample.role, sample.plural, sample.cue, level=sample.level)
     return None
 
 

@@ -1,4 +1,3 @@
-# ruff: noqa: E501
 """The closed vocabulary of the English parser: names of rooms, homes, roles, cues, styles."""
 
 from __future__ import annotations
@@ -51,7 +50,28 @@ ROOMS: dict[str, tuple[str, str]] = {
 SUITES = {"master suite": "primary", "primary suite": "primary", "guest suite": "guest", "owners' suite": "primary", "owner's suite": "primary", "suite": "", "bedroom suite": ""}  # fmt: skip
 IRREGULAR = {"wc": "wcs", "stairs": "stairs", "storage": "storages", "en suite": "en suites", "dining": "dining", "living": "living", "store": "stores", "utility": "utilities"}  # fmt: skip
 HOMES = frozenset(
-    "apartment flat house home loft townhouse penthouse unit villa bungalow maisonette condo condominium duplex residence dwelling place cottage efficiency pad".split()
+    [
+        "apartment",
+        "flat",
+        "house",
+        "home",
+        "loft",
+        "townhouse",
+        "penthouse",
+        "unit",
+        "villa",
+        "bungalow",
+        "maisonette",
+        "condo",
+        "condominium",
+        "duplex",
+        "residence",
+        "dwelling",
+        "place",
+        "cottage",
+        "efficiency",
+        "pad",
+    ]
 )
 ADJECTIVES: dict[str, str] = {
     "master": "primary", "main": "primary", "primary": "primary", "principal": "primary", "guest": "guest", "parents'": "primary", "parents": "primary", "owners'": "primary", "owner's": "primary",
@@ -109,33 +129,21 @@ MOST = frozenset(["at most", "maximum", "max", "maximum of", "under", "less than
 ABOUT = frozenset(["about", "around", "roughly", "approximately", "approx", "circa", "ca", "some", "nearly", "almost", "~", "c", "of", "in total", "total", "totalling", "measuring", "with"])  # fmt: skip
 OR_MORE = frozenset(["or more", "or larger", "or bigger", "minimum", "or above", "at least", "or wider", "+", "plus", "and up", "min"])
 OR_LESS = frozenset(["or less", "or smaller", "maximum", "or under", "at most", "max", "tops"])
-STYLES: dict[str, dict[str, int]] = {
-    **dict.fromkeys(["square", "squarish", "boxy", "regular shapes", "no long thin rooms", "well proportioned"], {"squareness": 2, "simplicity": 1}),
-    **dict.fromkeys(["irregular", "organic", "unconventional", "non rectangular", "unusual shapes", "not a grid", "grid of boxes"], {"squareness": -3, "simplicity": -3, "convexity": -2}),
-    **dict.fromkeys(["bright", "airy", "daylight", "panoramic", "corner windows", "sunny", "light filled", "lots of light"], {"exterior": 3, "corner_light": 3, "squareness": -1}),
-    **dict.fromkeys(["compact", "efficient", "no wasted", "space saving"], {"useful_area": 3, "circulation": 1}),
-    **dict.fromkeys(["direct", "short walks", "short distances"], {"circulation": 2}),
-    **dict.fromkeys(["aligned walls", "simple structure", "cheap to build", "simple rectangular outline", "simple rectangular"], {"alignment": 3, "simplicity": 2}),
-    **dict.fromkeys(["wheelchair", "rollator", "step free", "barrier free", "accessible", "no steps"], {"min_width": 2}),
-}  # fmt: skip
+_STYLES: tuple[tuple[tuple[str, ...], dict[str, int]], ...] = (
+    (("square", "squarish", "boxy", "regular shapes", "no long thin rooms", "well proportioned"), {"squareness": 2, "simplicity": 1}),
+    (("irregular", "organic", "unconventional", "non rectangular", "unusual shapes", "not a grid", "grid of boxes"), {"squareness": -3, "simplicity": -3, "convexity": -2}),
+    (("bright", "airy", "daylight", "panoramic", "corner windows", "sunny", "light filled", "lots of light"), {"exterior": 3, "corner_light": 3, "squareness": -1}),
+    (("compact", "efficient", "no wasted", "space saving"), {"useful_area": 3, "circulation": 1}),
+    (("direct", "short walks", "short distances"), {"circulation": 2}),
+    (("aligned walls", "simple structure", "cheap to build", "simple rectangular outline", "simple rectangular"), {"alignment": 3, "simplicity": 2}),
+    (("wheelchair", "rollator", "step free", "barrier free", "accessible", "no steps"), {"min_width": 2}),
+)  # fmt: skip
+STYLES: dict[str, dict[str, int]] = {word: knobs for words, knobs in _STYLES for word in words}
 IRREGULAR_WORDS = frozenset(["irregular", "organic", "unconventional", "non rectangular", "not a grid", "grid of boxes"])
-LUXURY = frozenset(["luxury", "luxurious", "generous", "huge", "spacious", "grand"])
 BIG = {"huge": 1.5, "very large": 1.5, "enormous": 1.6, "vast": 1.6, "large": 1.35, "big": 1.3, "generous": 1.35, "spacious": 1.35, "roomy": 1.2, "spa like": 1.5, "small": 0.75, "tiny": 0.6, "little": 0.8, "compact": 0.8, "cosy": 0.85, "cozy": 0.85, "short": 0.9, "galley": 0.7}  # fmt: skip
 # Words that carry no request: understood without effect.
 FILLER = frozenset(
-    """i i'd i'm i've need want like would please design make build create draw generate give me us we with and or the a an of for to in at on by is are be been being that this these those there's there it its it's
-    their they them you your our my his her he she who which where when as than then so but too also just only all both each every one ones any some other another same own has have had having do does should must can could
-    will shall may might if from into onto through over under up down out off between per about around roughly approximately approx very quite really rather nice classic basic proper typical standard simple modern nordic normal
-    separate private shared common family formal main second third side end middle center centre central front back left right apart together plus no not without nothing else none more less than least most at well clearly
-    come comes go goes get gets lead leads open opens opening sit sits lie lies share shares put place placed located belong belongs work works works home house flat here there everything anything room rooms area areas space
-    spaces size sized kind type style layout plan floor storey story level levels floors single one two door doors window windows wall walls outside inside outdoor exterior outline front enough big large small little tiny huge
-    generous spacious good great possible possibly ideally preferably maybe perhaps clients client visitors people persons person couple couples family kids children child parents guest guests owner owners grandparents generations user student
-    friends sharing table desk desks desks two eat eat-in in movie nights night parties party made built files meeting small reach reached reachable entered enter entering use used using feel feels shouldn't doesn't don't won't
-    needed wanted required s t life living cook cooking sleeping sleep dining work working let's called it's type's roof under three access direct directly straight short long wide narrow narrower wider larger bigger smaller similar equal
-    equally equals times half twice size much many lot lots bit of cm m mm daylight natural light quiet shut shutting closed close near next beside away far opposite end buffer zone zones side sides way total overall
-    including include includes such however while because since around stick connected connect connects downstairs upstairs ground first upper lower stairs steps step free also galley nook eat one's ones' guest's chef's chef walk walking walks
-    passing going without welcome proportions shapes unusual irregular grid boxes box panoramic glazing glazed wraparound spa-like spa like airy luxury combined unit efficiency very compact rectangular wasted corridor wheelchair carer carer's
-    now hi hello thanks thank dear needs wants wish wishes someone somebody anyone able likes love prefer preferred prefers plenty main-floor owned rent budget new old young retired student's""".split()
+    ["i", "i'd", "i'm", "i've", "need", "want", "like", "would", "please", "design", "make", "build", "create", "draw", "generate", "give", "me", "us", "we", "with", "and", "or", "the", "a", "an", "of", "for", "to", "in", "at", "on", "by", "is", "are", "be", "been", "being", "that", "this", "these", "those", "there's", "there", "it", "its", "it's", "their", "they", "them", "you", "your", "our", "my", "his", "her", "he", "she", "who", "which", "where", "when", "as", "than", "then", "so", "but", "too", "also", "just", "only", "all", "both", "each", "every", "one", "ones", "any", "some", "other", "another", "same", "own", "has", "have", "had", "having", "do", "does", "should", "must", "can", "could", "will", "shall", "may", "might", "if", "from", "into", "onto", "through", "over", "under", "up", "down", "out", "off", "between", "per", "about", "around", "roughly", "approximately", "approx", "very", "quite", "really", "rather", "nice", "classic", "basic", "proper", "typical", "standard", "simple", "modern", "nordic", "normal", "separate", "private", "shared", "common", "family", "formal", "main", "second", "third", "side", "end", "middle", "center", "centre", "central", "front", "back", "left", "right", "apart", "together", "plus", "no", "not", "without", "nothing", "else", "none", "more", "less", "than", "least", "most", "at", "well", "clearly", "come", "comes", "go", "goes", "get", "gets", "lead", "leads", "open", "opens", "opening", "sit", "sits", "lie", "lies", "share", "shares", "put", "place", "placed", "located", "belong", "belongs", "work", "works", "works", "home", "house", "flat", "here", "there", "everything", "anything", "room", "rooms", "area", "areas", "space", "spaces", "size", "sized", "kind", "type", "style", "layout", "plan", "floor", "storey", "story", "level", "levels", "floors", "single", "one", "two", "door", "doors", "window", "windows", "wall", "walls", "outside", "inside", "outdoor", "exterior", "outline", "front", "enough", "big", "large", "small", "little", "tiny", "huge", "generous", "spacious", "good", "great", "possible", "possibly", "ideally", "preferably", "maybe", "perhaps", "clients", "client", "visitors", "people", "persons", "person", "couple", "couples", "family", "kids", "children", "child", "parents", "guest", "guests", "owner", "owners", "grandparents", "generations", "user", "student", "friends", "sharing", "table", "desk", "desks", "desks", "two", "eat", "eat-in", "in", "movie", "nights", "night", "parties", "party", "made", "built", "files", "meeting", "small", "reach", "reached", "reachable", "entered", "enter", "entering", "use", "used", "using", "feel", "feels", "shouldn't", "doesn't", "don't", "won't", "needed", "wanted", "required", "s", "t", "life", "living", "cook", "cooking", "sleeping", "sleep", "dining", "work", "working", "let's", "called", "it's", "type's", "roof", "under", "three", "access", "direct", "directly", "straight", "short", "long", "wide", "narrow", "narrower", "wider", "larger", "bigger", "smaller", "similar", "equal", "equally", "equals", "times", "half", "twice", "size", "much", "many", "lot", "lots", "bit", "of", "cm", "m", "mm", "daylight", "natural", "light", "quiet", "shut", "shutting", "closed", "close", "near", "next", "beside", "away", "far", "opposite", "end", "buffer", "zone", "zones", "side", "sides", "way", "total", "overall", "including", "include", "includes", "such", "however", "while", "because", "since", "around", "stick", "connected", "connect", "connects", "downstairs", "upstairs", "ground", "first", "upper", "lower", "stairs", "steps", "step", "free", "also", "galley", "nook", "eat", "one's", "ones'", "guest's", "chef's", "chef", "walk", "walking", "walks", "passing", "going", "without", "welcome", "proportions", "shapes", "unusual", "irregular", "grid", "boxes", "box", "panoramic", "glazing", "glazed", "wraparound", "spa-like", "spa", "like", "airy", "luxury", "combined", "unit", "efficiency", "very", "compact", "rectangular", "wasted", "corridor", "wheelchair", "carer", "carer's", "now", "hi", "hello", "thanks", "thank", "dear", "needs", "wants", "wish", "wishes", "someone", "somebody", "anyone", "able", "likes", "love", "prefer", "preferred", "prefers", "plenty", "main-floor", "owned", "rent", "budget", "new", "old", "young", "retired", "student's"]
 )  # fmt: skip
 
 

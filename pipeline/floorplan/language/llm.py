@@ -89,7 +89,7 @@ def _validated(reply: str) -> FloorProgram:
         text = text.strip("`").removeprefix("json").strip()
     found = json.loads(text)
     if not isinstance(found, dict):
-        raise ValueError("the answer is not a JSON object")
+        raise TypeError("the answer is not a JSON object")
     for name in OURS:
         found.pop(name, None)
     program = FloorProgram.model_validate(found)

@@ -36,7 +36,9 @@ def understand(prompt: str) -> FloorProgram:
     known = {kinds.ROOM, kinds.HOME, kinds.SUITE}
     if not any(i.kind in known or (i.kind == kinds.AMOUNT and i.unit == "rooms") for s in parsed for i in s):
         shown = re.sub(r"\s+", " ", prompt.strip())[:60]
-        raise RefusedError(f"nothing in the prompt names a room or a home: {shown!r}", "name rooms, e.g. living room, two bedrooms, bathroom")
+        raise RefusedError(
+            f"nothing in the prompt names a room or a home: {shown!r}", "name rooms, e.g. living room, two bedrooms, bathroom"
+        )
     return assemble(prompt, tokens, parsed, read(tokens, parsed))
 
 

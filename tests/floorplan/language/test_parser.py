@@ -1,6 +1,7 @@
 """The built-in parser: the twenty prompts' graphs, free wording, and what is refused."""
 
 from collections import Counter
+from pathlib import Path
 
 import pytest
 import yaml
@@ -9,7 +10,7 @@ from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan import parse
 from pipeline.floorplan.language.parser import LONGEST, understand
 
-CASES = yaml.safe_load(open("manifests/prompts/benchmark.yaml", encoding="utf-8"))  # noqa: SIM115, PTH123
+CASES = yaml.safe_load(Path("manifests/prompts/benchmark.yaml").read_text(encoding="utf-8"))
 
 
 def types(program):
@@ -45,7 +46,7 @@ def test_evidence_points_at_the_words(case):
         assert case["prompt"][e.start : e.end] == e.text
     cited = {e.field for e in program.evidence}
     for room in program.rooms:
-        if room.stated and not room.inferred and room.type not in {"staircase"} and "suite" not in case["prompt"]:
+        if room.stated and not room.inferred and room.type != "staircase" and "suite" not in case["prompt"]:
             assert f"rooms.{room.id}" in cited or any(f.startswith("rooms") for f in cited)
 
 
@@ -132,14 +133,18 @@ def test_furniture_wishes():
 
 
 def test_accessibility_and_relations():
-    program = parse("Wheelchair flat: doors at least 95 cm wide, no corridor narrower than 1.3 m, two bedrooms, the largest bedroom has a bath")
+    program = parse(
+        "Wheelchair flat: doors at least 95 cm wide, no corridor narrower than 1.3 m, two bedrooms, the largest bedroom has a bath"
+    )
     assert program.accessibility.min_door == pytest.approx(0.95)
     assert program.accessibility.min_corridor == pytest.approx(1.3)
     assert any(r.kind == "largest" for r in program.relations)
 
 
 def test_things_kept_apart():
-    program = parse("two bedrooms, bathroom, kitchen, living room. The bedrooms should not be next to the kitchen. The office is far from the bedrooms.")
+    program = parse(
+        "two bedrooms, bathroom, kitchen, living room. The bedrooms should not be next to the kitchen. The office is far from the bedrooms."
+    )
     kinds = {r.id: r.type for r in program.rooms}
     apart = {(kinds[f.a], kinds[f.b]) for f in program.forbids if f.what == "adjacent"}
     assert apart == {("bedroom", "kitchen"), ("office", "bedroom")}

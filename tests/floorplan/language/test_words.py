@@ -37,7 +37,10 @@ def test_amounts(text, low, high, bound, unit):
     assert (item.bound, item.unit) == (bound, unit)
 
 
-@pytest.mark.parametrize(("wrong", "right"), [("bedrom", "bedroom"), ("kichten", "kitchen"), ("batroom", "bathroom"), ("livign", "living"), ("balconny", "balcony")])
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [("bedrom", "bedroom"), ("kichten", "kitchen"), ("batroom", "bathroom"), ("livign", "living"), ("balconny", "balcony")],
+)
 def test_typing_errors_are_repaired(wrong, right):
     assert repair(tokenize(wrong))[0].text == right
 
@@ -55,4 +58,10 @@ def test_distance_is_a_bounded_metric():
 
 
 def test_plurals():
-    assert [plural(w) for w in ("balcony", "bath", "walk in closet", "wc", "library")] == ["balconies", "baths", "walk in closets", "wcs", "libraries"]
+    assert [plural(w) for w in ("balcony", "bath", "walk in closet", "wc", "library")] == [
+        "balconies",
+        "baths",
+        "walk in closets",
+        "wcs",
+        "libraries",
+    ]
