@@ -1,4 +1,4 @@
-"""One colour per triangle: the material's, or where it has a texture the texel under the triangle's middle."""
+"""One colour per triangle: the material's, or where it has a texture the mean of some texels under the triangle."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from pipeline.entities.asset import Asset, Material, Mesh
 
 LARGEST = 256  # larger textures are averaged down first, so that fine patterns give their mean colour [pixels]
 GREY = (0.8, 0.8, 0.8)
+SPOTS = np.array([(i + 1 / 3, j + 1 / 3, 4 - i - j - 2 / 3) for i in range(4) for j in range(4 - i)], np.float32) / 4  # barycentric
 
 
 def face_colours(asset: Asset) -> NDArray[np.float32]:
@@ -36,9 +37,9 @@ def _mesh_colours(asset: Asset, mesh: Mesh) -> NDArray[np.float32]:
     if texels is None:
         return plain
     height, width, _ = texels.shape
-    u, v = (mesh.uv[mesh.faces].mean(axis=1) % 1.0).T
+    u, v = np.moveaxis(np.einsum("sk,tkc->tsc", SPOTS, mesh.uv[mesh.faces]) % 1.0, 2, 0)
     rows, columns = ((1 - v) * height).astype(int), (u * width).astype(int)
-    seen: NDArray[np.float32] = texels[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)]
+    seen: NDArray[np.float32] = texels[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)].mean(axis=1)
     return seen
 
 

@@ -14,6 +14,8 @@ from pipeline.usd.physics import quaternion
 
 HINGE_DAMPING = 0.02  # [N m s / degree]: a door stops within a second or two
 SLIDE_DAMPING = 12.0  # [N s / m]: a drawer on its rails
+HINGE_STOP = (1e3, 10.0)  # stiffness and damping of the limits in Newton, whose own are so soft that a push goes 18 % past them
+SLIDE_STOP = (1e5, 1e3)
 AXES = {"X": (1, 0, 0), "Y": (0, 1, 0), "Z": (0, 0, 1)}
 
 
@@ -26,10 +28,10 @@ def convert_fixed(scope: Sdf.PrimSpec, root: Sdf.Path, base: Sdf.Path) -> Sdf.Pr
     return spec
 
 
-def convert_joint(scope: Sdf.PrimSpec, name: str, joint: Joint, parent: Sdf.Path, child: Sdf.Path) -> Sdf.PrimSpec:
+def convert_joint(scope: Sdf.PrimSpec, prim_name: str, joint: Joint, parent: Sdf.Path, child: Sdf.Path) -> Sdf.PrimSpec:
     """Write a joint between two links whose frames are the asset's frame; it stands at 0 when all is closed."""
     hinge = joint.type != "prismatic"
-    spec = prim(scope, name, "PhysicsRevoluteJoint" if hinge else "PhysicsPrismaticJoint")
+    spec = prim(scope, prim_name, "PhysicsRevoluteJoint" if hinge else "PhysicsPrismaticJoint")
     relationship(spec, "physics:body0", [parent])
     relationship(spec, "physics:body1", [child])
     token, rotation = axis_frame(joint.axis)
@@ -39,6 +41,8 @@ def convert_joint(scope: Sdf.PrimSpec, name: str, joint: Joint, parent: Sdf.Path
     if math.isfinite(joint.lower) and math.isfinite(joint.upper):
         attribute(spec, "physics:lowerLimit", "float", joint.lower * unit)
         attribute(spec, "physics:upperLimit", "float", joint.upper * unit)
+        for name, value in zip(("limitStiffness", "limitDamping"), HINGE_STOP if hinge else SLIDE_STOP, strict=True):
+            attribute(spec, f"newton:{name}", "float", value)  # read by name; other engines do not know it
     drive = "angular" if hinge else "linear"
     apply(spec, [f"PhysicsDriveAPI:{drive}"])
     attribute(spec, f"drive:{drive}:physics:type", "token", "force", uniform=True)
