@@ -30,9 +30,10 @@ BEFORE_WINDOW = 0.2  # cost of hiding a window behind something high [m]
 
 def candidates(item: Item, site: Site, placed: Sequence[Item], settings: SeparateSettings) -> tuple[Floats, Floats]:
     """Return poses (C, 4) x, y, z, yaw, rounded as poses are, and their costs (C,), the cheapest first."""
-    groups = [_partnered(item, placed)]
-    partnered = len(groups[0][0]) > 0
-    alone = ALONE if partnered else 0.0
+    beside, beside_cost = _partnered(item, placed)
+    # Who already stands as one does beside a partner has nothing to gain by moving.
+    alone = min(ALONE, 0.9 * float(beside_cost.min())) if len(beside) else 0.0
+    groups = [(beside, beside_cost)]
     walls, walls_cost = _along_walls(item, site, placed)
     groups.append((walls, walls_cost + alone))
     hanging = item.mount == "wall"

@@ -11,12 +11,14 @@ from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
 from pipeline.geometry.freefloor import Walk
 from pipeline.geometry.prisms import Prisms, stacked
+from pipeline.geometry.standing import stand_pose
 
 Floats = NDArray[np.float64]
 
 SPREAD = 0.12  # when a pose cuts the floor, poses nearer to it than this are not tried [m]; more after every try
 TRIES = 24  # poses whose floor is looked at per object
 UNIT = np.ones(3)
+FINE, ALOOF, CUT = "fine", "aloof", "cut"
 
 
 class Crowd:
@@ -25,19 +27,22 @@ class Crowd:
     def __init__(self, site: Site, settings: SeparateSettings) -> None:
         self.site = site
         self.settings = settings
-        self.items: list[Item] = []
+        self.usable: list[Item] = []
         self.bodies = stacked([])
         self.keeps = site.swung
         self.accesses = stacked([])
-        self.strips: list[NDArray[np.bool_]] = []
         bare = site.walk(self.bodies)
-        self.doors = self._doors(bare)
-        self.enters = self._enters(bare, site.entered(bare))
+        label, self.doors = site.gate(bare)
+        self.enters = self._enters(bare, label)
 
-    def settle(self, item: Item, poses: Floats, costs: Floats) -> Item | None:
-        """Add the item at the cheapest of its poses that is free and leaves the floor in one piece; None if there is none."""
+    def settle(self, item: Item, poses: Floats, costs: Floats) -> tuple[Item | None, str]:
+        """Add the item at the cheapest of its poses that is free and leaves the floor in one piece; (None, CUT) if there is none.
+
+        A pose at which nobody can stand before the item's own handles is taken when there is no better one.
+        """
         start, tries = 0, 0
         failed: list[Floats] = []
+        aloof: Item | None = None
         while start < len(poses) and tries < TRIES:
             totals, start = self._totals(item, poses, costs, start)
             for k in np.argsort(np.round(totals, 9), kind="stable")[: int(np.isfinite(totals).sum())]:
@@ -45,25 +50,28 @@ class Crowd:
                 if any(np.linalg.norm(poses[k, :2] - f[:2]) < apart and turned(f[3], poses[k, 3]) < 0.3 for f in failed):
                     continue
                 moved = item.at(poses[k])
-                if self._open_floor(moved):
+                verdict = self._verdict(moved)
+                if verdict == FINE:
                     self.add(moved)
-                    return moved
+                    self.usable.append(moved)
+                    return moved, FINE
+                if verdict == ALOOF:
+                    aloof = aloof or moved
                 failed.append(poses[k])
                 tries += 1
                 if tries >= TRIES:
                     break
-        return None
+        if aloof is None:
+            return None, CUT
+        self.add(aloof)
+        return aloof, ALOOF
 
     def add(self, item: Item) -> None:
         """Add an item where it stands."""
-        self.items.append(item)
         p = item.placement
         self.bodies = stacked([self.bodies, item.shape.body.placed(p.position, p.yaw, UNIT)])
         self.keeps = stacked([self.keeps, item.shape.keep.placed(p.position, p.yaw, UNIT)])
         self.accesses = stacked([self.accesses, item.shape.access.placed(p.position, p.yaw, UNIT)])
-        strip = self._strip(item)
-        if strip is not None:
-            self.strips.append(strip)
 
     def _totals(self, item: Item, poses: Floats, costs: Floats, start: int) -> tuple[Floats, int]:
         shape = item.shape
@@ -80,43 +88,49 @@ class Crowd:
             self.settings.access_cost,
         )
 
-    def _open_floor(self, item: Item) -> bool:
-        """Whether with the item the doors stay joined, and what opens can still be stood at."""
+    def _verdict(self, item: Item) -> str:
+        """Judge the floor with the item: the doors must stay joined, and what opens must still have a robot's place.
+
+        `ALOOF`: only the item itself cannot be stood at. That is better than no item.
+        """
         p = item.placement
         body = item.shape.body.placed(p.position, p.yaw, UNIT)
         low, high = self.site.elevation + self.site.step, self.site.elevation + self.site.height
         if not len(body) or body.z[:, 0].min() >= high or body.z[:, 1].max() <= low:
-            return True
+            return FINE
         walked = self.site.walk(stacked([self.bodies, body]))
-        if self._doors(walked) < self.doors:
-            return False
-        label = self.site.entered(walked)
-        if self.enters and not self._enters(walked, label):
-            return False
-        own = self._strip(item)
-        strips = self.strips if own is None else [*self.strips, own]
-        return all(bool((walked.labels[strip] == label).any()) for strip in strips)
+        label, doors = self.site.gate(walked)
+        if doors < self.doors or (self.enters and not self._enters(walked, label)):
+            return CUT
+        if not all(self._usable(one, walked, label) for one in self.usable):
+            return CUT
+        return FINE if self._usable(item, walked, label) else ALOOF
 
     def _enters(self, walked: Walk, label: int) -> bool:
         """Whether the robot gets from the doors into the room itself."""
         return bool((walked.labels[self.site.floor.room >= 0] == label).any()) and label > 0
 
-    def _doors(self, walked: Walk) -> int:
-        """Return how many doors open to the part that most doors open to."""
-        label = self.site.entered(walked)
-        return self.site.door_labels(walked).count(label) if label else 0
-
-    def _strip(self, item: Item) -> NDArray[np.bool_] | None:
-        """Return the cells in which one can stand to open the item: the outer part of its access place."""
-        p = item.placement
-        if not item.shape.opens or not len(item.shape.access):
-            return None
-        low, high = item.shape.access.corners[0].min(0), item.shape.access.corners[0].max(0)
-        near = low[1] + self.settings.access_depth - self.site.radius
-        outer = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], near], [low[0], near]])
+    def _usable(self, item: Item, walked: Walk, label: int) -> bool:
+        """Whether a robot can stand at one of the item's handles, if it has any."""
+        p, site = item.placement, self.site
         c, s = np.cos(p.yaw), np.sin(p.yaw)
-        raster = self.site.floor.raster
-        return raster.fill(raster.empty(), [outer @ np.array([[c, s], [-s, c]]) + p.position[:2]])
+        T = np.array([[c, s], [-s, c]])
+        ceiling = site.elevation + site.height
+        return not item.shape.grips or any(
+            stand_pose(
+                grip.point @ T + p.position[:2],
+                grip.heading @ T,
+                grip.swept.placed(p.position, p.yaw, UNIT),
+                ceiling,
+                walked,
+                label,
+                radius=site.radius,
+                reach=site.reach,
+                cone=site.cone,
+            )
+            is not None
+            for grip in item.shape.grips
+        )
 
 
 def _own(prisms: Prisms) -> tuple[Floats, NDArray[np.int64], Floats]:

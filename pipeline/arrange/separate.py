@@ -6,7 +6,7 @@ is free; whoever finds none is tried first in the next round, then as a smaller 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.candidates import candidates
-from pipeline.arrange.crowd import Crowd
+from pipeline.arrange.crowd import ALOOF, Crowd
 from pipeline.arrange.item import Item, make_item
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
@@ -30,6 +30,7 @@ class Found(Protocol):
     scale: NDArray[np.float64]
 
 
+ALOOF_ROUNDS = 2  # rounds that are spent on objects whose only fault is that their handles are out of reach
 Smaller = Callable[[str, float], Found | None]  # (asset_id, area [m2]) -> the closest asset with a smaller footprint
 
 
@@ -74,19 +75,22 @@ def separate(
     order = sorted(range(len(items)), key=lambda i: (*_rank(items[i]), i))
     losses = [0] * len(items)
     best: dict[int, Item] = {}
-    for _ in range(max(1, settings.rounds)):
-        placed = _place(site, items, order, settings)
-        if not best or _score(placed, items) < _score(best, items):
-            best = placed
+    least: tuple[float, float] | None = None
+    for number in range(max(1, settings.rounds)):
+        placed, aloof = _place(site, items, order, settings)
+        score = _score(placed, aloof, items)
+        if least is None or score < least:
+            best, least = placed, score
         lost = [i for i in order if i not in placed]
-        if not lost:
+        if not lost and (not aloof or number >= ALOOF_ROUNDS):
             break
         for i in lost:
             losses[i] += 1
             # To be the first and still find no place is to be too large.
             if losses[i] > 1 and smaller is not None:
                 items[i] = _exchanged(items[i], assets, settings, smaller) or items[i]
-        order = lost + [i for i in order if i in placed]
+        first = [i for i in order if i not in placed or i in aloof]
+        order = first + [i for i in order if i not in first]
     rejects: list[Reject] = []
     for i, item in enumerate(asked):
         what = item.placement
@@ -105,22 +109,25 @@ def _rank(item: Item) -> tuple[int, float]:
     return item.trait.order, -area * (1.5 if item.shape.opens else 1.0)
 
 
-def _score(placed: Mapping[int, Item], items: Sequence[Item]) -> tuple[float, float]:
-    """Return (what is left out, total displacement): less is better. A bed that is lost weighs more than a plant."""
+def _score(placed: Mapping[int, Item], aloof: Collection[int], items: Sequence[Item]) -> tuple[float, float]:
+    """Return (what is left out or out of reach, total displacement): less is better. Beds weigh more than plants."""
     lost = sum(1.0 + float(np.prod(items[i].placement.size[:2])) for i in range(len(items)) if i not in placed)
     moved = sum(float(np.linalg.norm(item.placement.position[:2] - item.wished[:2])) for item in placed.values())
-    return round(lost, 6), round(moved, 6)
+    return round(lost + 0.5 * len(aloof), 6), round(moved, 6)
 
 
-def _place(site: Site, items: Sequence[Item], order: Sequence[int], settings: SeparateSettings) -> dict[int, Item]:
-    """Place the items in the given order; what finds no pose is missing in the result."""
+def _place(site: Site, items: Sequence[Item], order: Sequence[int], settings: SeparateSettings) -> tuple[dict[int, Item], set[int]]:
+    """Place the items in the given order; what finds no pose is missing. Also return those whose handles nobody reaches."""
     crowd = Crowd(site, settings)
     placed: dict[int, Item] = {}
+    aloof: set[int] = set()
     for i in order:
-        found = crowd.settle(items[i], *candidates(items[i], site, list(placed.values()), settings))
+        found, verdict = crowd.settle(items[i], *candidates(items[i], site, list(placed.values()), settings))
         if found is not None:
             placed[i] = found
-    return placed
+        if verdict == ALOOF:
+            aloof.add(i)
+    return placed, aloof
 
 
 def _exchanged(item: Item, assets: Mapping[str, Asset], settings: SeparateSettings, smaller: Smaller) -> Item | None:

@@ -9,26 +9,41 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Joint
 from pipeline.geometry.convex import hull
-from pipeline.geometry.kinematics import OPENERS
+from pipeline.geometry.kinematics import OPENERS, facing, handle_point
 from pipeline.geometry.prisms import Prisms, Sweep, prism, solid, stacked
 
 Floats = NDArray[np.float64]
 
+BEDSIDE = 0.6  # at the sides of a bed, the length at its head that is left to nightstands [m]
 STRIDE = 3  # steps of a hinge that are covered by one prism
+
+
+@dataclass(frozen=True, slots=True)
+class Grip:
+    """A handle in plan: where (2,) [m] and which way (2,) it sets off, object frame; and what the part sweeps."""
+
+    point: Floats
+    heading: Floats
+    swept: Prisms
 
 
 @dataclass(frozen=True, slots=True)
 class Shape:
     """All in the object frame, scaled: `body` at rest, `keep` what joints sweep, `access` where one comes to it.
 
-    `opens`: has doors, drawers or lids; `access` is then the place before them. `outline` (n, 2) is the convex hull of the body in plan.
+    `grips` are the handles of doors, drawers and lids; `access` is then the place before them. `outline` (n, 2) is the convex hull of the body in plan.
     """
 
     body: Prisms
     keep: Prisms
     access: Prisms
-    opens: bool
+    grips: tuple[Grip, ...]
     outline: Floats
+
+    @property
+    def opens(self) -> bool:
+        """Whether it has doors, drawers or lids."""
+        return bool(self.grips)
 
 
 def shape(asset: Asset, scale: Floats, access_depth: float, access: str = "") -> Shape:
@@ -41,12 +56,16 @@ def shape(asset: Asset, scale: Floats, access_depth: float, access: str = "") ->
     origin = np.zeros(3)
     body = made.rest.placed(origin, 0.0, scale)
     keep = stacked([p for sweep, j in zip(made.sweeps, asset.joints, strict=True) for p in _coarse(sweep, j)]).placed(origin, 0.0, scale)
-    opening = [s for s, j in zip(made.sweeps, asset.joints, strict=True) if j.part_class in OPENERS]
-    places = _access(stacked([s.prisms for s in opening]).placed(origin, 0.0, scale), asset, scale, access_depth)
+    grips = tuple(
+        Grip(handle_point(asset, k)[:2] * scale[:2], facing(asset, k), made.sweeps[k].prisms.placed(origin, 0.0, scale))
+        for k, j in enumerate(asset.joints)
+        if j.part_class in OPENERS
+    )
+    places = _access(stacked([g.swept for g in grips]), asset, scale, access_depth)
     if not len(places) and access:
         places = _approach(asset.size * scale, access_depth / 2, sides=access == "sides")
     points = body.corners.reshape(-1, 2) if len(body) else np.zeros((1, 2))
-    return Shape(body, keep, places, bool(opening), hull(np.ascontiguousarray(points)))
+    return Shape(body, keep, places, grips, hull(np.ascontiguousarray(points)))
 
 
 def _coarse(sweep: Sweep, joint: Joint) -> list[Prisms]:
@@ -80,7 +99,8 @@ def _approach(size: Floats, depth: float, *, sides: bool) -> Prisms:
     w, d = float(size[0]) / 2, float(size[1]) / 2
     if not sides:
         return _box((-w, -d - depth), (w, -d))
-    return stacked([_box((-w - depth, -d), (-w, d)), _box((w, -d), (w + depth, d))])
+    back = max(d - BEDSIDE, -d + 0.1)
+    return stacked([_box((-w - depth, -d), (-w, back)), _box((w, -d), (w + depth, back))])
 
 
 def _box(low: tuple[float, float], high: tuple[float, float]) -> Prisms:

@@ -37,7 +37,8 @@ class Site:
 
     `polygon` (n, 2) [m]; floor at `elevation`, ceiling at `ceiling` [m]; `swung` are the prisms that room doors sweep;
     `doors` (D, 2) [m] the middles of the openings that one walks through; `holes` are per edge of the polygon the openings
-    in it, as (start, end) [m along the edge], lower edge [m above the floor], and whether it is a window; `radius`, `step`, `height` [m] the robot's.
+    in it, as (start, end) [m along the edge], lower edge [m above the floor], and whether it is a window; `radius`, `step`, `height`, `reach` [m] and `cone`
+    [deg] are the robot's.
     """
 
     room_id: str
@@ -51,10 +52,27 @@ class Site:
     radius: float
     step: float
     height: float
+    reach: tuple[float, float]
+    cone: float
 
     @classmethod
-    def of(cls, plan: Plan, room_id: str, *, radius: float = 0.28, step: float = 0.02, height: float = 1.4, cell: float = 0.05) -> Site:
-        """Take one room out of a plan; the numbers are the robot's radius, climb and height, and the raster's cell [m]."""
+    def of(
+        cls,
+        plan: Plan,
+        room_id: str,
+        *,
+        radius: float = 0.28,
+        step: float = 0.02,
+        height: float = 1.4,
+        reach: tuple[float, float] = (0.4, 0.9),
+        cone: float = 75.0,
+        cell: float = 0.05,
+    ) -> Site:
+        """Take one room out of a plan.
+
+        The numbers are the robot's radius, climb, height and reach [m], the half angle [deg] of the cone before a handle
+        in which it stands, and the raster's cell [m].
+        """
         room = plan.room(room_id)
         openings = [o for o in plan.openings if room_id in o.rooms and o.level == room.level]
         elevation = plan.elevation(room_id)
@@ -74,6 +92,8 @@ class Site:
             radius,
             step,
             height,
+            reach,
+            cone,
         )
 
     @property
@@ -90,23 +110,24 @@ class Site:
         """Return per opening the label of the free part that it opens to, 0 where the robot cannot stand in it."""
         return [walked.label_near(door, NEAR_DOOR) for door in self.doors]
 
-    def entered(self, walked: Walk) -> int:
-        """Return the label of the free part that most doors open to (the largest of equals); without doors the largest."""
-        near = self.door_labels(walked)
-        sizes = np.bincount(walked.labels.ravel(), minlength=1)
-        votes = sorted({label for label in near if label}, key=lambda label: (-near.count(label), -int(sizes[label]), label))
-        if votes:
-            return votes[0]
-        return 0 if len(self.doors) else walked.largest_label(self.floor.room >= 0)
+    def gate(self, walked: Walk) -> tuple[int, int]:
+        """Return the label of the free part that most doors open to (the largest of equals), and how many do.
 
-    def joined(self, walked: Walk) -> bool:
-        """Tell whether one can walk from every door to every other."""
-        near = set(self.door_labels(walked))
-        return len(near) <= 1 and 0 not in near
+        Without doors it is the largest part; (0, 0) when the robot gets in by no door.
+        """
+        if not len(self.doors):
+            return walked.largest_label(self.floor.room >= 0), 0
+        near = self.door_labels(walked)
+        votes = sorted({label for label in near if label}, key=lambda label: (-near.count(label), label))
+        if not votes:
+            return 0, 0
+        tied = [label for label in votes if near.count(label) == near.count(votes[0])]
+        best = max(tied, key=lambda label: (np.count_nonzero(walked.labels == label), -label)) if len(tied) > 1 else tied[0]
+        return best, near.count(best)
 
     def free_share(self, walked: Walk) -> float:
         """Return the true walkable ratio: what the robot covers, moving about from the doors, over the floor."""
-        return float(walked.shares(walked.covered(self.entered(walked)), 1)[0])
+        return float(walked.shares(walked.covered(self.gate(walked)[0]), 1)[0])
 
 
 def _holes(polygon: Floats, openings: Sequence[Opening]) -> tuple[tuple[Hole, ...], ...]:

@@ -125,6 +125,16 @@ def opening_direction(asset: Asset, joint_index: int) -> NDArray[np.float64]:
     return start / length if length > 1e-9 else np.array([0.0, -1.0, 0.0])
 
 
+def facing(asset: Asset, joint_index: int) -> NDArray[np.float64]:
+    """Return the plan direction (2,) from which a part is opened [object frame]: where its handle sets off to.
+
+    For what opens upwards or down it is the object's front.
+    """
+    flat = opening_direction(asset, joint_index)[:2]
+    length = float(np.linalg.norm(flat))
+    return flat / length if length > 0.5 else np.array([0.0, -1.0])
+
+
 def _middle(points: NDArray[np.float64]) -> NDArray[np.float64]:
     middle: NDArray[np.float64] = (points.min(0) + points.max(0)) / 2
     return middle

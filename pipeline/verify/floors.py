@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline import taxonomy
 from pipeline.entities.home import Home, Placement
@@ -71,13 +70,3 @@ def _floor_standing(placement: Placement, plan: Plan) -> bool:
     if known is not None and known.mount == "ceiling":
         return False
     return bool(placement.position[2] - plan.elevation(placement.room_id) < 0.1)
-
-
-def stand_points(walked: Walk, label: int, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Tell at which points (N, 2) [m] the robot can stand, coming from the entrance."""
-    raster = walked.floor.raster
-    cells = np.floor((points - raster.origin) / raster.cell).astype(np.int64)
-    valid = ((cells >= 0) & (cells < np.array(raster.shape))).all(1)
-    cells = np.clip(cells, 0, np.array(raster.shape) - 1)
-    found: NDArray[np.bool_] = valid & (walked.labels[cells[:, 0], cells[:, 1]] == label) & (label > 0)
-    return found

@@ -9,18 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset
-from pipeline.entities.home import Home, Placement
+from pipeline.entities.home import Home
 from pipeline.geometry.contact import first_hits, wall_excesses
-from pipeline.geometry.convex import distance_to
 from pipeline.geometry.freefloor import Walk
-from pipeline.geometry.kinematics import handle_point, joint_range, opening_direction, rotation
+from pipeline.geometry.kinematics import facing, handle_point, joint_range, rotation
 from pipeline.geometry.leaves import leaf_handles, leaf_sweep
 from pipeline.geometry.polygons import contains
 from pipeline.geometry.prisms import Prisms, Sweep
+from pipeline.geometry.standing import stand_pose
 from pipeline.geometry.walls import Leaf, leaves
 from pipeline.verify.bodies import Bodies
 from pipeline.verify.certificate import JointCheck
-from pipeline.verify.floors import stand_points
 from pipeline.verify.settings import Robot, VerifySettings
 
 Floats = NDArray[np.float64]
@@ -47,7 +46,7 @@ def check_joints(home: Home, assets: Mapping[str, Asset], made: Bodies, walks: W
             hits[(hits < 0) & (wall_excesses(moved.corners, moved.count, room) > settings.wall)] = -2
             clear_upper, clear, blocker = _progress(sweep, moved, hits, home)
             grip = placement.position + turn @ (handle_point(asset, index) * placement.scale)
-            heading = turn @ opening_direction(asset, index)
+            heading = turn[:2, :2] @ facing(asset, index)
             lower, upper = joint_range(joint)
             checks.append(
                 JointCheck(
@@ -62,7 +61,7 @@ def check_joints(home: Home, assets: Mapping[str, Asset], made: Bodies, walks: W
                     clear_upper,
                     clear,
                     blocker,
-                    _stand(grip[:2], _facing(heading, placement), moved, floor, walked, label, settings.robot),
+                    _stand(grip[:2], heading, moved, floor, walked, label, settings.robot),
                 )
             )
     return checks
@@ -146,33 +145,13 @@ def _through_wall(leaf: Leaf, sweep: Sweep, room: Floats, hits: NDArray[np.int64
     return beyond
 
 
-def _facing(heading: Floats, placement: Placement) -> Floats:
-    """Return the plan direction from which a part is opened: where its handle sets off to, or the object's front."""
-    flat = heading[:2]
-    length = float(np.linalg.norm(flat))
-    if length > 0.5:
-        return flat / length
-    return np.array([math.sin(placement.yaw), -math.cos(placement.yaw)])
-
-
 def _stand(
     grip: Floats, heading: Floats, swept: Prisms, floor: float, walked: Walk, label: int, robot: Robot
 ) -> tuple[float, float, float] | None:
-    """Return (x, y, yaw) at which the robot, coming from the entrance, reaches the grip and is clear of the moving part.
-
-    Straight ahead is tried before the sides, middle distances before near and far. At yaw 0 the robot looks along +x.
-    """
-    near, far = robot.reach
-    distances = np.linspace(near, far, 11)
-    distances = distances[np.argsort(np.abs(distances - (near + far) / 2), kind="stable")]
-    turns = np.array([k * side * 15.0 for k in range(int(robot.cone // 15) + 1) for side in ((1, -1) if k else (1,))])
-    angle = math.atan2(float(heading[1]), float(heading[0])) + np.radians(turns)
-    ways = np.stack([np.cos(angle), np.sin(angle)], 1)
-    points = (grip + ways[:, None] * distances[None, :, None]).reshape(-1, 2)
-    flat = [swept.polygon(int(i)) for i in np.flatnonzero(swept.z[:, 0] < floor + robot.height)]
-    for k in np.flatnonzero(stand_points(walked, label, points)):
-        x, y = float(points[k, 0]), float(points[k, 1])
-        if all(distance_to(x, y, polygon) >= robot.radius - 1e-9 for polygon in flat):
-            yaw = math.atan2(float(grip[1]) - y, float(grip[0]) - x)
-            return round(x, 4) + 0.0, round(y, 4) + 0.0, round(yaw, 5) + 0.0
-    return None
+    """Return (x, y, yaw) at which the robot, coming from the entrance, opens a part. At yaw 0 it looks along +x."""
+    found = stand_pose(grip, heading, swept, floor + robot.height, walked, label, radius=robot.radius, reach=robot.reach, cone=robot.cone)
+    if found is None:
+        return None
+    x, y = found
+    yaw = math.atan2(float(grip[1]) - y, float(grip[0]) - x)
+    return round(x, 4) + 0.0, round(y, 4) + 0.0, round(yaw, 5) + 0.0

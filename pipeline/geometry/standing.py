@@ -1,0 +1,93 @@
+"""Where a robot can stand to take hold of a handle, clear of the part that it opens."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.geometry.compiled import compiled
+from pipeline.geometry.convex import distance_to
+from pipeline.geometry.freefloor import Walk
+from pipeline.geometry.prisms import Prisms
+
+Floats = NDArray[np.float64]
+
+DISTANCES = 11  # distances to the handle that are tried
+TURN = 15.0  # between the sides that are tried [deg]
+
+
+def stand_pose(
+    grip: Floats,
+    heading: Floats,
+    swept: Prisms,
+    ceiling: float,
+    walked: Walk,
+    label: int,
+    *,
+    radius: float,
+    reach: tuple[float, float],
+    cone: float,
+) -> tuple[float, float] | None:
+    """Return (x, y) [m] at which the robot, within one connected part of the floor, reaches the grip; None if nowhere.
+
+    `grip` (2,) [m] and `heading` (2,), the way in which the handle sets off, are in plan; `swept` are the moving part's
+    prisms, of which those below `ceiling` [m] must stay `radius` [m] away; `reach` [m] bounds the distance to the grip,
+    `cone` [deg] the angle to the heading. Straight ahead is tried before the sides, middle distances before near and far.
+    """
+    near, far = reach
+    distances = np.linspace(near, far, DISTANCES)
+    distances = distances[np.argsort(np.round(np.abs(distances - (near + far) / 2), 9), kind="stable")]
+    turns = np.radians([k * side * TURN for k in range(int(cone // TURN) + 1) for side in ((1, -1) if k else (1,))])
+    low = np.flatnonzero(swept.z[:, 0] < ceiling)
+    raster = walked.floor.raster
+    x, y, found = _search(
+        float(grip[0]),
+        float(grip[1]),
+        math.atan2(float(heading[1]), float(heading[0])),
+        distances,
+        turns,
+        walked.labels,
+        label,
+        raster.origin,
+        raster.cell,
+        np.ascontiguousarray(swept.corners[low]),
+        swept.count[low],
+        radius,
+    )
+    return (x, y) if found else None
+
+
+@compiled
+def _search(
+    x: float,
+    y: float,
+    heading: float,
+    distances: Floats,
+    turns: Floats,
+    labels: NDArray[np.int32],
+    label: int,
+    origin: Floats,
+    cell: float,
+    corners: Floats,
+    count: NDArray[np.int64],
+    radius: float,
+) -> tuple[float, float, bool]:
+    if label == 0:
+        return 0.0, 0.0, False
+    for turn in turns:
+        c, s = math.cos(heading + turn), math.sin(heading + turn)
+        for distance in distances:
+            px, py = x + c * distance, y + s * distance
+            i, j = math.floor((px - origin[0]) / cell), math.floor((py - origin[1]) / cell)
+            if i < 0 or j < 0 or i >= labels.shape[0] or j >= labels.shape[1] or labels[i, j] != label:
+                continue
+            clear = True
+            for k in range(count.shape[0]):
+                if distance_to(px, py, corners[k, : count[k]]) < radius - 1e-9:
+                    clear = False
+                    break
+            if clear:
+                return px, py, True
+    return 0.0, 0.0, False
