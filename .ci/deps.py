@@ -65,6 +65,7 @@ def main() -> None:
             print(f"{stage}:", *(f"  - {dep}" for dep in deps), sep="\n")  # noqa: T201 - what it is for
         return
     yaml = YAML()
+    yaml.preserve_quotes = True
     yaml.width = 200
     yaml.indent(mapping=2, sequence=4, offset=2)
     data = yaml.load(path)

@@ -137,6 +137,9 @@ def _client(workers: int, scheduler: str | None, memory: str) -> Iterator[Any]:
                 processes=True,
                 memory_limit=memory,
                 dashboard_address=None,
+                # Dask serves HTTP even so: on any free port, of this machine only
+                scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
+                worker_dashboard_address="127.0.0.1:0",
                 silence_logs="ERROR",
             ) as cluster,
             Client(cluster, set_as_default=False) as client,

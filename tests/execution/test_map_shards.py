@@ -25,6 +25,15 @@ def test_serial_and_cluster_agree():
     assert dict(map_shards(work.square, iter(jobs), workers=2, digest="d")) == wanted
 
 
+def test_two_clusters_on_a_machine_are_quiet(recwarn, capfd):
+    first = map_shards(work.square, enumerate(range(2)), workers=2)
+    next(first)
+    assert dict(map_shards(work.square, enumerate(range(2)), workers=2)) == {0: 0, 1: 1}
+    first.close()
+    assert [str(w.message) for w in recwarn] == []
+    assert capfd.readouterr() == ("", "")
+
+
 def test_jobs_are_drawn_as_needed():
     drawn = []
 
