@@ -16,6 +16,8 @@ HINGE_DAMPING = 0.02  # [N m s / degree]: a door stops within a second or two
 SLIDE_DAMPING = 12.0  # [N s / m]: a drawer on its rails
 HINGE_STOP = (1e3, 10.0)  # stiffness and damping of the limits in Newton, whose own are so soft that a push goes 18 % past them
 SLIDE_STOP = (1e5, 1e3)
+# Inertia of the works behind knobs and buttons [kg m2, kg]: nothing beside a door's own, but it keeps feathers from racing.
+HINGE_ARMATURE, SLIDE_ARMATURE = 0.002, 0.05
 AXES = {"X": (1, 0, 0), "Y": (0, 1, 0), "Z": (0, 0, 1)}
 
 
@@ -42,7 +44,8 @@ def convert_joint(scope: Sdf.PrimSpec, prim_name: str, joint: Joint, parent: Sdf
         attribute(spec, "physics:lowerLimit", "float", joint.lower * unit)
         attribute(spec, "physics:upperLimit", "float", joint.upper * unit)
         for name, value in zip(("limitStiffness", "limitDamping"), HINGE_STOP if hinge else SLIDE_STOP, strict=True):
-            attribute(spec, f"newton:{name}", "float", value)  # read by name; other engines do not know it
+            attribute(spec, f"newton:{name}", "float", value)  # Newton reads them by name; PhysX does not know them
+    attribute(spec, "newton:armature", "float", HINGE_ARMATURE if hinge else SLIDE_ARMATURE)
     drive = "angular" if hinge else "linear"
     apply(spec, [f"PhysicsDriveAPI:{drive}"])
     attribute(spec, f"drive:{drive}:physics:type", "token", "force", uniform=True)

@@ -22,18 +22,16 @@ ROOT_API = "PhysicsArticulationRootAPI"
 HINGE = (0.02, 0.1)  # damping [N m s / degree], dry friction [N m]: a push opens a door, a touch does not
 SLIDE = (12.0, 1.5)  # damping [N s / m], dry friction [N]
 HOLD = 1.3  # dry friction, in multiples of what gravity does to a closed flap or lid, so that it stays closed
-ARMATURE = {"hinge": 0.002, "slide": 0.05}  # inertia of the works behind knobs and buttons [kg m2, kg]; nothing beside a door's own
 STOP = ((0.008, 1.0), (0.99, 0.999, 1e-4, 0.5, 2.0))  # solref and solimp of the limits: hard stops even for light knobs and buttons
 
 
 @dataclass(frozen=True, slots=True)
 class Resistance:
-    """What holds a joint back; `damping` per degree for hinges, `friction` [N m or N]; `armature` [kg m2 or kg]."""
+    """What holds a joint back; `damping` per degree for hinges, `friction` [N m or N]."""
 
     name: str
     damping: float
     friction: float
-    armature: float
 
 
 def asset_overlay(asset: Asset) -> Sdf.Layer:
@@ -60,7 +58,7 @@ def write_mujoco_overlay(scene: Path) -> Path:
     if doors is not None:
         scope = over(root, "Doors")
         for spec in doors.nameChildren:
-            _convert_over(over(scope, spec.name), "frame", [Resistance("hinge", *HINGE, ARMATURE["hinge"])])
+            _convert_over(over(scope, spec.name), "frame", [Resistance("hinge", *HINGE)])
     return save(layer, scene.with_name(f"{scene.stem}.mujoco.usda"))
 
 
@@ -77,8 +75,7 @@ def _resistance(name: str, joint: Joint, asset: Asset) -> Resistance:
         damping, friction, load = *SLIDE, float(weight @ joint.axis)
     else:
         damping, friction, load = *HINGE, float(np.cross(link.com - joint.origin, weight) @ joint.axis)
-    armature = ARMATURE["slide" if joint.type == "prismatic" else "hinge"]
-    return Resistance(name, damping, friction + HOLD * max(0.0, load), armature)
+    return Resistance(name, damping, friction + HOLD * max(0.0, load))
 
 
 def _convert_over(root: Sdf.PrimSpec, base: str, joints: Iterable[Resistance]) -> None:
@@ -94,6 +91,5 @@ def _convert_over(root: Sdf.PrimSpec, base: str, joints: Iterable[Resistance]) -
         apply(spec, ["NewtonJointAPI", "MjcJointAPI"])  # MuJoCo reads no DriveAPI, but these
         attribute(spec, "newton:damping", "float", joint.damping)
         attribute(spec, "newton:friction", "float", joint.friction)
-        attribute(spec, "newton:armature", "float", joint.armature)
         for attribute_name, values in zip(("mjc:solreflimit", "mjc:solimplimit"), STOP, strict=True):
             attribute(spec, attribute_name, "double[]", Vt.DoubleArray(values), uniform=True)
