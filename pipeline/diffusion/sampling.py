@@ -73,6 +73,11 @@ class Sampler:
         net, header = load_weights(path)
         return cls(net.to(torch.device(device)), header, settings, seed, library)
 
+    @property
+    def slots(self) -> int:
+        """Most objects that a room can get."""
+        return self.header.slots
+
     def unguided(self) -> Sampler:
         """Return the baseline: same weights, same noise, no guidance and no count told."""
         plain = replace(self.settings, quantity=False, articulation="none", count_condition=False, snap_below=0)

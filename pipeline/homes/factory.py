@@ -20,7 +20,7 @@ from pipeline.diffusion.sampling import Sampler
 from pipeline.diffusion.settings import SampleSettings
 from pipeline.entities.home import Home
 from pipeline.entities.plan import Plan
-from pipeline.errors import ContentError
+from pipeline.errors import ContentError, RefusedError
 from pipeline.floorplan.language import parse
 from pipeline.homes.exports import files_of, write_assets
 from pipeline.homes.finish import RoomResult, finish
@@ -143,6 +143,11 @@ class Factory:
             if kind is None:
                 continue
             count, walkable = wishes.get(room.room_id, (None, None))
+            if count is not None and count > self.sampler.slots:
+                raise RefusedError(
+                    f"{count} objects are asked for in {room.room_id}, and a room takes at most {self.sampler.slots}",
+                    "ask for fewer, or train with more train.slots",
+                )
             found.append(RoomJob(plan, room.room_id, kind, index, number, 100 * attempt, count, walkable))
         return found
 
@@ -190,6 +195,8 @@ class Factory:
 
     def _try(self, work: _Work, job: RoomJob, draft: Draft) -> None:
         """Finish one draft of a room; keep the better of it and what was there; queue another try if it is needed."""
+        if job not in work.pending:  # another room of the same round has led to a new plan
+            return
         work.pending.remove(job)
         work.tries += 1
         with self.timed("postopt"):

@@ -1,0 +1,87 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pipeline.errors import ContentError, RefusedError
+from pipeline.homes.drafts import draft_rows, drafts_of
+from pipeline.homes.request import Request
+from pipeline.verify import verify_home
+
+STUDIO = "a one-bedroom flat of 50 m2 with a living room, a kitchen and a bathroom"
+
+
+@pytest.fixture(scope="module")
+def outcomes(factory):
+    return factory.make([Request(0, STUDIO), Request(1)], files=False)
+
+
+def test_homes_that_ship_satisfy_the_judge(factory, outcomes):
+    for outcome in outcomes:
+        assert not verify_home(outcome.home, factory.library, factory.verify).faults(factory.verify.policy)
+        assert outcome.home.placements
+        scene = outcome.rows["scenes"][0]
+        assert scene["collisions"] == 0
+        assert scene["joints"] == scene["joints_clear"] == len(outcome.rows["joints"])
+        assert scene["objects"] == len(outcome.rows["objects"]) == sum(r["objects"] for r in outcome.rows["rooms"])
+
+
+def test_a_home_does_not_depend_on_who_is_made_beside_it(factory, outcomes):
+    alone = factory.make([Request(1)], files=False)[0]
+    assert alone.rows == outcomes[1].rows
+
+
+def test_drafts_survive_their_tables(factory, outcomes):
+    requests = [Request(0, STUDIO), Request(1)]
+    rows = draft_rows(factory.first_drafts(requests), factory.seed, factory.library)
+    again = factory.make(requests, drafts_of(rows, requests, factory), files=False)
+    assert [o.rows for o in again] == [o.rows for o in outcomes]
+
+
+def test_what_is_left_out_has_a_reason(factory, outcomes):
+    for outcome in outcomes:
+        sampled = sum(r["openable_sampled"] or 0 for r in outcome.rows["rooms"])
+        lost = sampled - sum(r["openable"] for r in outcome.rows["rooms"])
+        assert lost <= len(outcome.rows["rejects"])
+        assert all(r["reason"] and r["where"].startswith(outcome.home.scene_id) for r in outcome.rows["rejects"])
+
+
+def test_seeds_give_different_homes(factory, outcomes):
+    other = replace(factory, seed=4, sampler=replace(factory.sampler, seed=4)).make([Request(1)], files=False)[0]
+    mine, theirs = ([r["polygon"] for r in o.rows["rooms"]] for o in (outcomes[1], other))
+    assert mine != theirs
+
+
+def test_a_stated_number_of_things_is_met_exactly(factory):
+    home = factory.make([Request(0, "a bedroom with four pieces of furniture and a bathroom, 40 m2")], files=False)[0]
+    asked = [(r["asked_objects"], r["objects"]) for r in home.rows["rooms"] if r["asked_objects"] is not None]
+    assert asked == [(4, 4)]
+
+
+def test_what_can_never_fit_ends_the_run_naming_the_home(factory):
+    tight = replace(factory, shard=replace(factory.shard, room_attempts=1, home_attempts=2))
+    with pytest.raises(ContentError, match=r"home 5 .*count_missed"):
+        tight.make([Request(5, "a bedroom of 9 m2 with 24 pieces of furniture and a bathroom")], files=False)
+
+
+def test_more_than_the_model_can_place_is_refused(factory):
+    with pytest.raises(RefusedError, match="at most 24"):
+        factory.make([Request(0, "a bedroom with sixty pieces of furniture and a bathroom, 60 m2")], files=False)
+
+
+def test_contradictions_are_refused(factory):
+    with pytest.raises(RefusedError):
+        factory.make([Request(0, "an apartment with no bathroom and an en suite bathroom")], files=False)
+
+
+def test_poses_are_rounded(outcomes):
+    for outcome in outcomes:
+        for p in outcome.home.placements:
+            assert np.array_equal(p.position, np.round(p.position, 4))
+            assert p.yaw == round(p.yaw, 5)
+            assert -np.pi < p.yaw <= np.pi
+
+
+def test_cpu_seconds_are_counted_by_part(factory, outcomes):
+    assert outcomes
+    assert {"plan", "sample", "postopt", "verify"} <= factory.seconds.keys()
