@@ -15,7 +15,7 @@ from torch import Tensor, nn
 from pipeline.diffusion.batch import RoomBatch
 from pipeline.diffusion.codec import CONTINUOUS, YAW, Codec, Normalisation
 from pipeline.diffusion.floor import KINDS
-from pipeline.diffusion.relations import PAIR_FEATURES, WALL_FEATURES, boxes_of, pair_features, wall_features
+from pipeline.diffusion.relations import PAIR_FEATURES, PAIR_NOISE, WALL_FEATURES, WALL_NOISE, boxes_of, pair_features, wall_features
 from pipeline.diffusion.settings import ModelSettings
 
 FLOOR_FEATURES = 11 + len(KINDS)
@@ -59,8 +59,9 @@ class Block(nn.Module):
 
     def __init__(self, width: int, heads: int, relation: int) -> None:
         super().__init__()
+        pairs, walls = relation + PAIR_NOISE, relation + WALL_NOISE
         self.norms = nn.ModuleList(nn.LayerNorm(width, elementwise_affine=False) for _ in range(3))
-        self.objects, self.floor = Attention(width, heads, relation), Attention(width, heads, relation)
+        self.objects, self.floor = Attention(width, heads, pairs), Attention(width, heads, walls)
         self.think = nn.Sequential(nn.Linear(width, 3 * width), nn.SiLU(), nn.Linear(3 * width, width))
         self.modulation = nn.Linear(width, 9 * width)
         nn.init.zeros_(self.modulation.weight)
@@ -90,13 +91,16 @@ class Denoiser(nn.Module):
         self.layout, self.count = nn.Embedding(layouts, width), nn.Embedding(MOST + 2, width)
         self.room = nn.Sequential(nn.Linear(width + 4, width), nn.SiLU(), nn.Linear(width, width))
         self.level = nn.Sequential(nn.Linear(33, width), nn.SiLU(), nn.Linear(width, width))
-        self.pairs = nn.Sequential(nn.Linear(PAIR_FEATURES, relation), nn.ReLU(), nn.Linear(relation, relation), nn.ReLU())
-        self.walls = nn.Sequential(nn.Linear(WALL_FEATURES + len(KINDS), relation), nn.ReLU(), nn.Linear(relation, relation), nn.ReLU())
+        self.pairs = nn.Sequential(nn.Linear(PAIR_FEATURES + PAIR_NOISE, relation), nn.ReLU(), nn.Linear(relation, relation), nn.ReLU())
+        self.walls = nn.Sequential(
+            nn.Linear(WALL_FEATURES + WALL_NOISE + len(KINDS), relation), nn.ReLU(), nn.Linear(relation, relation), nn.ReLU()
+        )
         self.blocks = nn.ModuleList(Block(width, settings.heads, relation) for _ in range(settings.layers))
         self.last = nn.LayerNorm(width, elementwise_affine=False)
         self.last_modulation = nn.Linear(width, 2 * width)
         self.head = nn.Linear(width, norm.channels + 2)
-        self.wall_vectors, self.pair_vectors = nn.Linear(width, 3 * relation), nn.Linear(width, 3 * relation)
+        self.wall_vectors = nn.Linear(width, 3 * (relation + WALL_NOISE))
+        self.pair_vectors = nn.Linear(width, 3 * (relation + PAIR_NOISE))
         for layer in (self.head, self.last_modulation, self.wall_vectors, self.pair_vectors):
             nn.init.zeros_(layer.weight)
             nn.init.zeros_(layer.bias)
@@ -130,9 +134,13 @@ class Denoiser(nn.Module):
         code = code or self.floor_code(rooms)
         condition = nn.functional.silu(self.level(level_features(alpha)) + code.room)
         boxes = boxes_of(self.codec.metric(alpha[:, None, None] * x[..., : YAW.stop]))
-        pairs = self.pairs(pair_features(boxes))
+        sigma = (1 - alpha**2).clamp_min(1e-5).sqrt()
+        blur = torch.stack([sigma * self.codec.scale[0], sigma], -1)
+        far, near = pair_features(boxes, blur)
+        pairs = torch.cat([self.pairs(torch.cat([far, near], -1)), near], -1)
+        far, near = wall_features(boxes, rooms, blur)
         kind = nn.functional.one_hot(rooms.kind, len(KINDS)).float()[:, None].expand(-1, x.shape[1], -1, -1)
-        walls = self.walls(torch.cat([wall_features(boxes, rooms), kind], -1))
+        walls = torch.cat([self.walls(torch.cat([far, near, kind], -1)), near], -1)
         tokens = self.slot(x)
         for block in self.blocks:
             tokens = block(tokens, code.tokens, rooms.mask, pairs, walls, condition)
@@ -141,7 +149,6 @@ class Denoiser(nn.Module):
         out, local, logits = self.head(tokens).split([CONTINUOUS, 2, self.codec.classes + 1], -1)
         moves = self._directed(tokens, pairs, walls, rooms, boxes.axis, boxes.front)
         own = local[..., :1] * boxes.axis + local[..., 1:] * boxes.front
-        sigma = (1 - alpha**2).clamp_min(1e-5).sqrt()
         logits = logits + self.codec.evidence(x[..., CONTINUOUS:], alpha[:, None, None], sigma[:, None, None])
         prior = torch.zeros_like(logits)
         prior[..., -1] = empty_odds(rooms.count, x.shape[1])[:, None]

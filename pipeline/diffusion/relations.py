@@ -2,7 +2,9 @@
 
 All take the boxes as the noise lets us guess them: position alpha * x_t in metres (the mean of x_0 under a unit normal
 prior), so that at high noise they say "somewhere in the middle" and at low noise where the side of a box is against a
-wall to the centimetre. Distances are squashed at two scales, so that both the room and the last centimetres show.
+wall to the centimetre. Distances are squashed at two scales, so that both the room and the last centimetres show, and
+once more in units of the noise itself: for a side that belongs at a wall, the gap divided by the noise is the noise that
+is to be predicted, at every level alike.
 """
 
 from __future__ import annotations
@@ -16,6 +18,8 @@ from pipeline.diffusion.batch import RoomBatch
 
 WALL_FEATURES = 16
 PAIR_FEATURES = 24
+WALL_NOISE = 5  # features in units of the noise
+PAIR_NOISE = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +46,11 @@ def boxes_of(metric: Tensor) -> Boxes:
     return Boxes(metric[..., :2], metric[..., 3:5].clamp_min(0.02) / 2, metric[..., 2], metric[..., 5].clamp_min(0.02), metric[..., 6:8])
 
 
-def wall_features(boxes: Boxes, rooms: RoomBatch) -> Tensor:
-    """Return features (B, N, M, 16) of each box against each wall or opening."""
+def wall_features(boxes: Boxes, rooms: RoomBatch, blur: Tensor) -> tuple[Tensor, Tensor]:
+    """Return features (B, N, M, 16) of each box against each wall or opening, and (B, N, M, 5) in units of the noise.
+
+    `blur` (B, 2) is the noise of a position [m] and of an axis' end.
+    """
     start, stop = rooms.ends[:, None, :, 0], rooms.ends[:, None, :, 1]
     normal = rooms.normal[:, None]
     along = torch.stack([normal[..., 1], -normal[..., 0]], -1)
@@ -62,11 +69,13 @@ def wall_features(boxes: Boxes, rooms: RoomBatch) -> Tensor:
         facing, side, normal[..., 0].expand_as(distance), normal[..., 1].expand_as(distance),
         boxes.bottom[:, :, None].expand_as(distance) / 2, boxes.height[:, :, None].expand_as(distance) / 2,
     ]  # fmt: skip
-    return torch.stack(columns, -1)
+    metres, ends = 2 * blur[:, None, None, 0], 2 * blur[:, None, None, 1]
+    near = [gap / metres, (before - wide) / metres, (after - wide) / metres, side / ends, facing / ends]
+    return torch.stack(columns, -1), torch.tanh(torch.stack(near, -1))
 
 
-def pair_features(boxes: Boxes) -> Tensor:
-    """Return features (B, N, N, 24) of box j (second) as seen from box i (first)."""
+def pair_features(boxes: Boxes, blur: Tensor) -> tuple[Tensor, Tensor]:
+    """Return features (B, N, N, 24) of box j (second) as seen from box i (first), and (B, N, N, 8) in units of the noise."""
     apart = boxes.centre[:, None] - boxes.centre[:, :, None]
     axis, front, half = boxes.axis, boxes.front, boxes.half
     along_i, front_i = (apart * axis[:, :, None]).sum(-1), (apart * front[:, :, None]).sum(-1)
@@ -89,4 +98,6 @@ def pair_features(boxes: Boxes) -> Tensor:
         same, turned, rise / 2, torch.tanh(above / 0.2),
         torch.linalg.vector_norm(apart + 1e-6, dim=-1) / 3, boxes.height[:, None].expand_as(rise) / 2,
     ]  # fmt: skip
-    return torch.stack(columns, -1)
+    metres, ends = 2 * blur[:, None, None, 0], 2 * blur[:, None, None, 1]
+    near = [*(g / metres for g in gaps), along_i / metres, front_i / metres, same / ends, turned / ends]
+    return torch.stack(columns, -1), torch.tanh(torch.stack(near, -1))
