@@ -5,6 +5,8 @@ Fitting frame: x along the opening, z up from the floor, y to the left of x; a d
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,6 +16,7 @@ from pipeline.rendering.boxes import box, joined, solid_link
 from pipeline.rendering.palette import ENTRANCE_LEAF, GLASS, JAMB, LEAF, METAL, WINDOW_FRAME
 
 LINING = 0.003  # thickness of the door frame's lining, inside the gap around the leaf [m]
+POST = 0.05  # how deep the frame's colliders reach into the wall: PhysX dislikes convex pieces as thin as the lining [m]
 CASING = (0.06, 0.012)  # width and thickness of the trim around a door [m]
 HANDLE_HEIGHT = 1.02  # [m]
 LEAF_DENSITY = 320.0  # hollow-core door [kg/m3]
@@ -22,7 +25,7 @@ LEAF_DENSITY = 320.0  # hollow-core door [kg/m3]
 def door(leaf: Leaf, *, entrance: bool) -> tuple[Asset, NDArray[np.float64], float]:
     """Make the door of an opening: an asset in the fitting frame, its position (2,) [m] and yaw [rad]."""
     side = leaf.turn  # +1: the room it swings into lies towards +y
-    frame = solid_link("frame", (*_lining(leaf), *_casing(leaf)), _lining(leaf), 12.0)
+    frame = solid_link("frame", (*_lining(leaf, LINING), *_casing(leaf)), _lining(leaf, POST), 12.0)
     panel = _span("leaf", (LEAF_GAP, LEAF_GAP + leaf.width), (-side * LEAF_THICKNESS, 0.0), (leaf.bottom, leaf.top), 1)
     handles = _handles(leaf)
     mass = LEAF_DENSITY * leaf.width * LEAF_THICKNESS * (leaf.top - leaf.bottom)
@@ -53,10 +56,11 @@ def window(cut: Cut) -> tuple[Asset, NDArray[np.float64], float]:
         box("frame_top", (bar, -depth, z1 - bar), (width - bar, depth, z1)),
     ]
     panes = max(1, round(width / 0.8))
-    for k in range(1, panes):
-        x = width * k / panes
+    edges = np.linspace(bar / 2, width - bar / 2, panes + 1)
+    for k, x in enumerate(edges[1:-1], 1):
         parts.append(box(f"mullion_{k}", (x - bar / 2, -depth, z0 + bar), (x + bar / 2, depth, z1 - bar)))
-    parts.append(box("glass", (bar, -0.006, z0 + bar), (width - bar, 0.006, z1 - bar), 1))
+    for k, (x0, x1) in enumerate(itertools.pairwise(edges), 1):
+        parts.append(box(f"glass_{k}", (x0 + bar / 2, -0.01, z0 + bar), (x1 - bar / 2, 0.01, z1 - bar), 1))
     asset = Asset(
         asset_id=cut.opening.opening_id,
         category="window",
@@ -77,13 +81,14 @@ def _span(name: str, x: tuple[float, float], y: tuple[float, float], z: tuple[fl
     return box(name, low, high, material, part)
 
 
-def _lining(leaf: Leaf) -> tuple[Mesh, ...]:
+def _lining(leaf: Leaf, thickness: float) -> tuple[Mesh, ...]:
+    """Line the hole: boards whose inner faces leave the leaf its way, `thickness` deep [m]."""
     y = (-leaf.turn * leaf.back, leaf.turn * leaf.front)
     top = leaf.top + LEAF_GAP
     return (
-        _span("lining_hinge", (0, LINING), y, (0, top), 0),
-        _span("lining_lock", (leaf.clear - LINING, leaf.clear), y, (0, top), 0),
-        _span("lining_top", (LINING, leaf.clear - LINING), y, (top - LINING, top), 0),
+        _span("lining_hinge", (LINING - thickness, LINING), y, (0, top), 0),
+        _span("lining_lock", (leaf.clear - LINING, leaf.clear - LINING + thickness), y, (0, top), 0),
+        _span("lining_top", (LINING, leaf.clear - LINING), y, (top - LINING, top - LINING + thickness), 0),
     )
 
 
