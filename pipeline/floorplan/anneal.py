@@ -2,30 +2,18 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.floorplan.compiled import compiled
 from pipeline.floorplan.energy import Spec, terms, tree
-from pipeline.floorplan.grid import Labels, empty, measure
+from pipeline.floorplan.grid import Labels, Measures, empty, measure
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 DRAWS = 8  # uniform numbers that one proposal takes
 LINE, PAIR, SIDE, PART, SWAP = 0.35, 0.60, 0.78, 0.97, 1.0  # cumulative shares of the moves
-
-
-class Annealed(NamedTuple):
-    """The best plan seen: its grid, energy, hard violation (0 when all conditions hold) and terms."""
-
-    grid: Labels
-    energy: float
-    hard: float
-    values: Floats
-    accepted: int
 
 
 @compiled
@@ -95,39 +83,62 @@ def propose(grid: Labels, n: int, fixed: Ints, draws: Floats) -> bool:  # noqa: 
     return True
 
 
-@compiled
 def score(grid: Labels, spec: Spec, weights: Floats, penalty: float) -> tuple[float, float, Floats]:
     """Return (energy with the penalty, hard violation, the twelve terms) of a grid."""
-    n = spec.target.size
-    out = empty_measures(n, grid.shape[0] - 2, grid.shape[1] - 2)
-    measure(grid, n, out)
-    values = np.zeros(12)
-    areas = np.zeros(n)
-    hard = terms(grid, out, spec, tree(spec.link, spec.root), values, areas)
-    return (values * weights).sum() + penalty * hard, hard, values
+    fixed = np.zeros(spec.target.size + 1, np.int64)
+    _, soft, hard, values, _ = run(grid, spec, weights, fixed, np.zeros((0, DRAWS)), 1.0, 1.0, penalty)
+    return soft + (penalty * hard if penalty else 0.0), hard, values
 
 
-empty_measures = compiled(empty)
+def run(
+    start: Labels, spec: Spec, weights: Floats, fixed: Ints, draws: Floats, hot: float, cold: float, penalty: float
+) -> tuple[Labels, float, float, Floats, int]:
+    """Anneal from `start` with one proposal per row of `draws`; see `anneal`. Scratch space is made here."""
+    out = empty(spec.target.size, start.shape[0] - 2, start.shape[1] - 2)
+    return anneal(start, spec, tree(spec.link, spec.root), out, weights, fixed, draws, hot, cold, penalty)
+
+
+@compiled
+def _copy(source: Labels, target: Labels) -> None:
+    """Copy a grid (a loop compiles faster than a slice)."""
+    for y in range(source.shape[0]):
+        for x in range(source.shape[1]):
+            target[y, x] = source[y, x]
+
+
+@compiled
+def _weighted(values: Floats, weights: Floats) -> float:
+    total = 0.0
+    for k in range(values.size):
+        total += values[k] * weights[k]
+    return total
 
 
 @compiled
 def anneal(
-    start: Labels, spec: Spec, weights: Floats, fixed: Ints, draws: Floats, hot: float, cold: float, penalty: float
+    start: Labels,
+    spec: Spec,
+    edges: Ints,
+    out: Measures,
+    weights: Floats,
+    fixed: Ints,
+    draws: Floats,
+    hot: float,
+    cold: float,
+    penalty: float,
 ) -> tuple[Labels, float, float, Floats, int]:
-    """Anneal from `start` with one proposal per row of `draws`; see Annealed for what comes back.
+    """Anneal from `start`; return the best plan: grid, energy, hard violation (0: all conditions hold), terms, moves accepted.
 
     The violation's weight grows from a quarter of `penalty` to all of it; the best state is the one of least (violation, energy).
     """
     n = spec.target.size
     grid = start.copy()
     trial = start.copy()
-    out = empty_measures(n, grid.shape[0] - 2, grid.shape[1] - 2)
-    edges = tree(spec.link, spec.root)
     values = np.zeros(12)
     areas = np.zeros(n)
     measure(grid, n, out)
     hard = terms(grid, out, spec, edges, values, areas)
-    soft = (values * weights).sum()
+    soft = _weighted(values, weights)
     best = grid.copy()
     best_soft, best_hard = soft, hard
     best_values = values.copy()
@@ -141,16 +152,17 @@ def anneal(
             continue
         measure(trial, n, out)
         new_hard = terms(trial, out, spec, edges, values, areas)
-        new_soft = (values * weights).sum()
+        new_soft = _weighted(values, weights)
         change = new_soft - soft + weight * (new_hard - hard)
         if new_hard < np.inf and (hard == np.inf or change <= 0.0 or draws[k, 7] < np.exp(-change / heat)):
-            grid[:] = trial
+            _copy(trial, grid)
             soft, hard = new_soft, new_hard
             accepted += 1
             if hard < best_hard - 1e-12 or (hard <= best_hard and soft < best_soft):
-                best[:] = grid
+                _copy(grid, best)
                 best_soft, best_hard = soft, hard
-                best_values[:] = values
+                for i in range(12):
+                    best_values[i] = values[i]
         else:
-            trial[:] = grid
+            _copy(grid, trial)
     return best, best_soft, best_hard, best_values, accepted

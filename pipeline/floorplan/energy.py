@@ -65,7 +65,6 @@ class Spec(NamedTuple):
     nonrect: int  # at least so many rooms that are not rectangles
 
 
-@compiled
 def tree(link: Ints, root: int) -> Ints:
     """Return rows (room, parent) of the breadth-first tree of links from `root`, the root left out."""
     n = link.shape[0]
@@ -100,7 +99,8 @@ def circulation(out: Measures, edges: Ints) -> float:
     total = 0.0
     for k in range(edges.shape[0]):
         room, parent = edges[k, 0], edges[k, 1]
-        travel[room] = travel[parent]
+        for k4 in range(4):
+            travel[room, k4] = travel[parent, k4]
         if out.run[room, parent] == 0:
             continue
         for leg in range(2):
@@ -114,7 +114,7 @@ def circulation(out: Measures, edges: Ints) -> float:
         d = travel[room]
         straight = max(d[0], d[1]) + max(d[2], d[3])
         if straight > 0.0:
-            total += (d.sum() / straight - 1.0) ** 2
+            total += ((d[0] + d[1] + d[2] + d[3]) / straight - 1.0) ** 2
     return total / max(n - 1, 1) * 4.0
 
 
@@ -182,20 +182,31 @@ def corner_light(outline_corners: Ints, habitable: Ints) -> float:
 @compiled
 def alignment(columns: Ints, rows: Ints) -> float:
     """Term 8: number of distinct lines on which walls lie."""
-    return float(columns.sum() + rows.sum())
+    total = 0
+    for k in range(columns.size):
+        total += columns[k]
+    for k in range(rows.size):
+        total += rows[k]
+    return float(total)
 
 
 @compiled
 def useful_area(areas: Floats, useful: Ints) -> float:
     """Term 9: (1 - share of the area that is useful)^2."""
-    own = (areas * useful).sum()
-    return float((1.0 - own / max(areas.sum(), 1e-9)) ** 2 * 4.0)
+    own, whole = 0.0, 0.0
+    for i in range(areas.size):
+        own += areas[i] * useful[i]
+        whole += areas[i]
+    return (1.0 - own / max(whole, 1e-9)) ** 2 * 4.0
 
 
 @compiled
 def min_width(missed: Floats, split: Ints) -> float:
     """Term 10: area [m2] that squares of half and of the whole wanted width do not reach, plus a charge per room that splits."""
-    return float(missed.sum() + SPLIT * split.sum())
+    total = 0.0
+    for i in range(missed.size):
+        total += missed[i] + SPLIT * split[i]
+    return total
 
 
 @compiled

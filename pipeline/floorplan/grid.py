@@ -125,7 +125,8 @@ def measure(grid: Labels, n: int, out: Measures) -> None:  # noqa: PLR0915 - one
             _corner(out, a, b, c, d, n)
     for i in range(n + 1):
         if out.cells[i] > 0:
-            out.centre[i] /= out.cells[i]
+            out.centre[i, 0] /= out.cells[i]
+            out.centre[i, 1] /= out.cells[i]
 
 
 @compiled
@@ -200,7 +201,7 @@ def _chain(points: Floats, side: float) -> float:
                 size -= 1
             else:
                 break
-        hull[size] = points[k]
+        hull[size, 0], hull[size, 1] = points[k, 0], points[k, 1]
         size += 1
     area = 0.0
     for k in range(size - 1):

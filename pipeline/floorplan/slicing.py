@@ -212,7 +212,7 @@ def _mutate(expr: Ints, draws: Floats) -> bool:
 
 
 @compiled
-def search(
+def search(  # noqa: PLR0912 - compiled: loops instead of slices compile faster
     expr: Ints,
     draws: Floats,
     hot: float,
@@ -244,7 +244,8 @@ def search(
     steps = draws.shape[0]
     for k in range(steps):
         heat = hot * (cold / hot) ** (k / steps)
-        trial[:] = expr
+        for i in range(expr.size):
+            trial[i] = expr[i]
         room = -1
         old = 0.0
         if draws[k, 0] > 0.94:
@@ -258,11 +259,14 @@ def search(
             new = cost(rect, width, height, n, areas, wishes)
             if new <= now or draws[k, 3] < np.exp((now - new) / heat):
                 now = new
-                expr[:] = trial
+                for i in range(expr.size):
+                    expr[i] = trial[i]
                 room = -1
                 if new < best:
                     best = new
-                    best_rect[:] = rect
+                    for i in range(m):
+                        for j in range(4):
+                            best_rect[i, j] = rect[i, j]
         if room >= 0:
             areas[room] = old
     return best_rect, best

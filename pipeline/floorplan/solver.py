@@ -116,7 +116,7 @@ def _storey_grid(request: Storey, program: FloorProgram, outline: Outline, rng: 
     fixed = np.zeros(n + 1, np.int64)
     if request.spec.stair_room >= 0:
         fixed[request.spec.stair_room] = 1
-    grid, _, hard, _, _ = anneal.anneal(best, request.spec, request.weights, fixed, draws, HOT, COLD, PENALTY)
+    grid, _, hard, _, _ = anneal.run(best, request.spec, request.weights, fixed, draws, HOT, COLD, PENALTY)
     return grid if hard <= 1e-9 else None
 
 

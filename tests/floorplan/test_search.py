@@ -66,7 +66,7 @@ def test_annealing_keeps_the_outline_and_whole_rooms_and_is_repeatable():
         n = len(request.rooms)
         draws = rng.random((600, anneal.DRAWS))
         fixed = np.zeros(n + 1, np.int64)
-        found = [anneal.anneal(cells, request.spec, request.weights, fixed, draws, 1.2, 0.01, 40.0) for _ in range(2)]
+        found = [anneal.run(cells, request.spec, request.weights, fixed, draws, 1.2, 0.01, 40.0) for _ in range(2)]
         np.testing.assert_array_equal(found[0][0], found[1][0])
         best = found[0][0]
         assert ((best == n) == (cells == n)).all()
@@ -83,7 +83,7 @@ def test_annealing_never_returns_worse_than_its_start_and_longer_is_better():
         n = len(request.rooms)
         fixed = np.zeros(n + 1, np.int64)
         first, hard0, _ = anneal.score(cells, request.spec, request.weights, 0.0)
-        _, soft, hard, _, _ = anneal.anneal(cells, request.spec, request.weights, fixed, rng.random((1000, anneal.DRAWS)), 1.2, 0.01, 40.0)
+        _, soft, hard, _, _ = anneal.run(cells, request.spec, request.weights, fixed, rng.random((1000, anneal.DRAWS)), 1.2, 0.01, 40.0)
         assert (hard, soft) <= (hard0, first)
         gains.append(first + 40 * hard0 - soft - 40 * hard)
     assert np.mean(gains) > 0
