@@ -16,8 +16,8 @@ from pipeline.arrange.site import Hole, Site
 Floats = NDArray[np.float64]
 
 OFF_WALL = {"must": 1.0, "want": 0.35, "free": 0.0}  # cost of standing free for what belongs to a wall [m]
-ALONE = 0.3  # cost of standing away from a partner that is near [m]
-BESIDE = 0.6  # a metre towards a place beside a partner costs this much [m]
+ALONE = 0.5  # cost of standing away from a partner that is near [m]
+BESIDE = 0.5  # a metre towards a place beside a partner costs this much [m]
 PARTNER_REACH = 1.8  # partners farther than this are none [m]
 RINGS = (0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.0)  # radii of the poses tried near by [m]
 WAYS = 16
@@ -63,12 +63,15 @@ def wall_yaws(polygon: Floats) -> Floats:
 
 
 def _yaw(item: Item, site: Site, settings: SeparateSettings) -> float:
-    """Return the yaw to keep: the wished one, or the walls' direction next to it when it is near or must be."""
+    """Return the yaw to keep: the wished one, or the walls' direction next to it when it is near.
+
+    What others are placed by (beds, cabinets, sofas, tables) always goes with the walls; chairs may stand askew.
+    """
     wished = float(item.wished[3])
     squares = (wall_yaws(site.polygon)[:, None] + np.arange(4) * math.pi / 2).ravel()
     distance = turned(squares, wished)
     best = int(np.argmin(np.round(distance, 6)))
-    if distance[best] <= math.radians(settings.snap_angle) or item.trait.wall == "must":
+    if distance[best] <= math.radians(settings.snap_angle) or item.trait.wall == "must" or item.trait.order <= 1:
         return wrapped(float(squares[best]))
     return wrapped(wished)
 
