@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pxr import Gf, Sdf
 
 from pipeline.entities.asset import Material
-from pipeline.usd.layer import attribute, identifiers, label, prim, relationship
+from pipeline.usd.layer import apply, attribute, identifiers, label, prim, relationship
 
 FRICTION = (0.7, 0.6)  # static, dynamic: dry wood, painted board
 SLIPPERY = (0.35, 0.3)  # metal, glass, glazed tiles
@@ -84,7 +84,5 @@ class Palette:
 
 def bind(spec: Sdf.PrimSpec, material: Sdf.Path) -> None:
     """Bind a material for all purposes, rendering and physics."""
-    from pipeline.usd.layer import apply
-
     apply(spec, ["MaterialBindingAPI"])
     relationship(spec, "material:binding", [material])
