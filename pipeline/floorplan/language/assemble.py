@@ -159,7 +159,9 @@ def _ban_rooms(draft: Draft, state: Reading) -> None:
 
 
 def _pairs(a: tuple[str, ...], b: tuple[str, ...]) -> list[tuple[str, str]]:
-    """Who is meant with whom: all with a single one, else one by one."""
+    """Return who is meant with whom: neighbours of one list, all with a single one, else one by one."""
+    if not a or not b:
+        return list(itertools.pairwise(a or b))
     if len(a) == 1 or len(b) == 1:
         return [(x, y) for x in a for y in b]
     if len(a) == len(b):
@@ -202,8 +204,11 @@ def _joined(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:  # noqa:
                     continue
                 if a in owned and len(fact.a) > 1 and stock.get(b).type in HALLS:
                     continue  # "two baths on the corridor, one en suite"
+                kind = names[fact.what]
+                if fact.what == lexicon.NEAR and stock.get(a).type == stock.get(b).type:
+                    kind = "wall"  # bedrooms next to each other share a wall, no door
                 stairs = "staircase" in {stock.get(a).type, stock.get(b).type}
-                draft.link(a, b, "open" if stairs and fact.what != lexicon.WALL else names[fact.what], fact)
+                draft.link(a, b, "open" if stairs and fact.what != lexicon.WALL else kind, fact)
         elif fact.what == lexicon.BETWEEN and len(fact.b) == 2:
             for a in fact.a:
                 for b in fact.b:
@@ -214,7 +219,8 @@ def _joined(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:  # noqa:
                 draft.link(a, b, "open", fact)
         elif fact.what == "only":
             for a in fact.a:
-                draft.relate("degree", a, None, 1.0, fact)
+                if stock.get(a).type != "bedroom":  # rooms of its own may lie behind it
+                    draft.relate("degree", a, None, 1.0, fact)
         elif fact.what == "largest":
             draft.relate("largest", fact.a[0], stock.get(fact.a[0]).type, 1.0, fact)
         elif fact.what == "area_order" and fact.a and fact.b:

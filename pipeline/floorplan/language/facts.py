@@ -5,12 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from pipeline.floorplan.language import items as kinds
+from pipeline.floorplan.language import lexicon
 from pipeline.floorplan.language.inventory import Inventory
 from pipeline.floorplan.language.items import Item
 from pipeline.floorplan.language.tokens import Token
 
 HALLS = {"hallway", "entry"}
 PERSONAL = {"bathroom", "wc", "closet", "balcony", "office", "storage"}
+
+
+GROUPS = {lexicon.DOOR, lexicon.LEADS, lexicon.OPEN, lexicon.NEAR, lexicon.WALL, lexicon.BAN, lexicon.THROUGH, "away"}
+
+
+def named(group: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the rooms of a group, without placeholders."""
+    return tuple(i for i in group if not i.startswith(("*", "<")))
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +58,9 @@ class Reading:
         self.used.update(range(item.first, item.last))
 
     def say(self, what: str, a: tuple[str, ...], b: tuple[str, ...], item: Item, value: float = 0.0) -> None:
-        """Record a fact."""
+        """Record a fact. Whole groups ("*") and each-other mean something to few kinds of fact only."""
+        if what not in GROUPS:
+            a, b = named(a), named(b)
         if a or b:
             self.facts.append(Fact(what, a, b, value, item.first, item.last))
 

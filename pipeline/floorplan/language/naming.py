@@ -51,7 +51,9 @@ def mentions(state: Reading, sentence: list[Item]) -> None:
                 item.kind = kinds.ROOM
             _adjectives(state, item)
             _belongings(state, item)
-        elif item.kind == kinds.PRONOUN and item.role == "group" and suites and item.words == "each":
+        elif item.kind == kinds.PRONOUN and item.words in {"each", "each of them"}:
+            beds = [i.ids for i in sentence[:k] if i.kind == kinds.ROOM and i.type == "bedroom" and len(i.ids) > 1]
+            suites = suites or (tuple(beds[-1]) if beds else ())
             item.ids = list(suites)
 
 

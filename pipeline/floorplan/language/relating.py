@@ -5,7 +5,7 @@ from __future__ import annotations
 from pipeline.floorplan.language import items as kinds
 from pipeline.floorplan.language import lexicon
 from pipeline.floorplan.language.amounts import attach
-from pipeline.floorplan.language.facts import HALLS, PERSONAL, Reading, heard
+from pipeline.floorplan.language.facts import HALLS, PERSONAL, Reading, heard, named
 from pipeline.floorplan.language.groups import conjuncts, object_group, open_plan, point
 from pipeline.floorplan.language.items import Item
 
@@ -130,8 +130,12 @@ def _cue(  # noqa: C901, PLR0911, PLR0912 - one branch per kind of item: a gramm
         listed = conjuncts(state, sentence, k)
         source = tuple(i for i in listed if state.inventory.get(i).type in ON_HALL and i not in halls) or source
     if group == ("<each other>",):
-        listed = conjuncts(state, sentence, k) or tuple(dict.fromkeys(subject + near))
-        state.say("merge" if cue == lexicon.OPEN else cue, listed, (), item)
+        listed = named(near) if len(near) > 1 and cue != lexicon.OPEN else ()
+        listed = listed or conjuncts(state, sentence, k) or named(tuple(dict.fromkeys(subject + near)))
+        if negative or cue in {lexicon.BAN, lexicon.AWAY}:
+            state.say(lexicon.BAN, listed, listed, item)
+        else:
+            state.say("merge" if cue == lexicon.OPEN else cue, listed, (), item)
         return end, subject, near, ()
     if cue == lexicon.AWAY and source:
         state.say("away", source, group, item, 0.35)
@@ -161,19 +165,21 @@ def _has(
     if before is not None and before.kind == kinds.HOME:
         return k + 1, subject, near, ()
     source = near or source or subject
-    named = [i for i in source if not i.startswith("*")]
-    owner = [i for i in named if state.inventory.get(i).type == "bedroom"]
+    own = named(source)
+    owner = [i for i in own if state.inventory.get(i).type == "bedroom"]
     if not owner:
-        living = [i for i in named if state.inventory.get(i).type in {"living_room", "kitchen", "dining_room", "studio_room", "office"}]
+        living = [i for i in own if state.inventory.get(i).type in {"living_room", "kitchen", "dining_room", "studio_room", "office"}]
         if living and item.words in {"with", "has", "having"}:
             extra = {"balcony", "sunroom", "storage"}
             group, end = object_group(state, sentence, k + 1, wide=False, subject=source, only=extra)
+            group = named(group)
             if group and len(living) == 1:
                 state.understood(item)
                 state.say(lexicon.DOOR, group, tuple(living), item)
                 return end, subject, tuple(living), ()
         return k + 1, subject, near, ()
-    group, end = object_group(state, sentence, k + 1, wide=True, subject=tuple(named), only=PERSONAL)
+    group, end = object_group(state, sentence, k + 1, wide=True, subject=own, only=PERSONAL)
+    group = named(group)
     if not group:
         return k + 1, subject, near, ()
     state.understood(item)
@@ -187,11 +193,11 @@ def _through(
     state: Reading, sentence: list[Item], k: int, subject: tuple[str, ...], objects: tuple[str, ...]
 ) -> tuple[int, tuple[str, ...], tuple[str, ...], tuple[str, ...]]:
     group, end = object_group(state, sentence, k + 1, wide=False)
-    listed = subject
+    group, listed = named(group), named(subject)
     rooms = [i for i in sentence[:k] if i.kind == kinds.ROOM]
     if not objects and rooms:
         listed = conjuncts(state, sentence, k)
-        listed = tuple(i for i in listed if i not in group) or subject
+        listed = tuple(i for i in listed if i not in group) or listed
     if group and listed:
         state.understood(sentence[k])
         state.say(lexicon.THROUGH, listed, group, sentence[k])

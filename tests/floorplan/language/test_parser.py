@@ -3,11 +3,14 @@
 from collections import Counter
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan import parse
+from pipeline.floorplan.language import lexicon
+from pipeline.floorplan.language.items import EVERYTHING, LEVELS, PRONOUNS
 from pipeline.floorplan.language.parser import LONGEST, understand
 
 CASES = yaml.safe_load(Path("manifests/prompts/benchmark.yaml").read_text(encoding="utf-8"))
@@ -205,3 +208,37 @@ def test_only_what_is_said_is_understood():
     program = understand("a two-bedroom flat")
     assert [r.type for r in program.rooms] == ["bedroom", "bedroom"]
     assert program.links == ()
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_any_words_give_a_program_or_a_refusal(seed):
+    """Random sentences of the vocabulary itself: where a grammar would trip."""
+    rng = np.random.default_rng(seed)
+    words = [
+        *lexicon.ROOMS, *map(lexicon.plural, lexicon.ROOMS), *lexicon.SUITES, *lexicon.HOMES, *list(lexicon.CUES) * 2, *PRONOUNS, *EVERYTHING, *LEVELS,
+        *lexicon.NUMBERS, *lexicon.STYLES, *["no", "not", "the", "a", "each", "own", "other", "only", ",", ".", ":", "(", ")", "and", "or"] * 6, "20 m²", "at least 1.2 m", "70 %",
+        "eight pieces", "3 floors", "5 rooms",
+    ]  # fmt: skip
+    outcomes = Counter()
+    for _ in range(60):
+        prompt = " ".join(rng.choice(words, size=int(rng.integers(2, 40))))
+        try:
+            program = parse(prompt)
+        except RefusedError:
+            outcomes["refused"] += 1
+        else:
+            outcomes["read"] += 1
+            assert all(prompt[e.start : e.end] == e.text for e in program.evidence)
+    assert outcomes["read"] > 5
+
+
+def test_what_each_has_is_made_for_each():
+    program = parse("two bedrooms, each with its own bathroom, a living room and a kitchen")
+    assert types(program)["bathroom"] == 2
+    assert links(program)["bathroom", "bedroom"] == 2
+
+
+def test_rooms_next_to_each_other_share_a_wall_and_no_door():
+    program = parse("three bedrooms, two kids' rooms next to each other, parents' bedroom, kitchen, living room, bathroom")
+    assert links(program, "wall")["bedroom", "bedroom"] == 1
+    assert links(program)["bedroom", "bedroom"] == 0
