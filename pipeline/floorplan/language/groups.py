@@ -5,7 +5,7 @@ from __future__ import annotations
 from pipeline.floorplan.language import items as kinds
 from pipeline.floorplan.language import lexicon
 from pipeline.floorplan.language.amounts import attach
-from pipeline.floorplan.language.facts import Reading, heard
+from pipeline.floorplan.language.facts import Reading, heard, named
 from pipeline.floorplan.language.items import Item
 
 OPEN_ROOMS = {"kitchen", "dining_room", "living_room", "family_room"}
@@ -100,7 +100,7 @@ def object_group(  # noqa: C901, PLR0912 - one branch per kind of item: a gramma
 
 
 def _last_two(state: Reading, flat: list[str], subject: tuple[str, ...]) -> list[str]:
-    kinds_seen = {state.inventory.get(i).type for i in subject}
+    kinds_seen = {state.inventory.get(i).type for i in named(subject)}
     rest = [i for i in flat if state.inventory.get(i).type not in kinds_seen]
     return rest[-2:]
 

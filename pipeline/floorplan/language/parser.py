@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from pydantic import ValidationError
+
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan.check import check
 from pipeline.floorplan.completion import complete
@@ -39,7 +41,12 @@ def understand(prompt: str) -> FloorProgram:
         raise RefusedError(
             f"nothing in the prompt names a room or a home: {shown!r}", "name rooms, e.g. living room, two bedrooms, bathroom"
         )
-    return assemble(prompt, tokens, parsed, read(tokens, parsed))
+    try:
+        return assemble(prompt, tokens, parsed, read(tokens, parsed))
+    except ValidationError as error:  # a number beyond what a program may hold
+        fault = error.errors()[0]
+        where = ".".join(map(str, fault["loc"]))
+        raise RefusedError(f"{where} cannot be {fault['input']}: {fault['msg']}", "ask for a home of usual size") from error
 
 
 def bounded(prompt: str) -> None:

@@ -242,3 +242,9 @@ def test_rooms_next_to_each_other_share_a_wall_and_no_door():
     program = parse("three bedrooms, two kids' rooms next to each other, parents' bedroom, kitchen, living room, bathroom")
     assert links(program, "wall")["bedroom", "bedroom"] == 1
     assert links(program)["bedroom", "bedroom"] == 0
+
+
+@pytest.mark.parametrize("prompt", ["a flat of 99999 m2 with a bedroom", "a house on 7 floors with a bedroom", "a bedroom of 9000 m²"])
+def test_numbers_beyond_measure_are_refused(prompt):
+    with pytest.raises(RefusedError):
+        parse(prompt)
