@@ -15,6 +15,9 @@ import yaml
 
 from pipeline.errors import ContentError
 
+# Every section of params.yaml: a misspelt one shall not pass as one more.
+SECTIONS = ("seed", "corpus", "preprocess", "encode", "train", "sample", "retrieval", "postopt", "verify", "dataset", "shard", "metrics")
+
 T = TypeVar("T")
 Tree = dict[str, Any]
 
@@ -35,6 +38,11 @@ def read(path: Path, preset: str | None = None) -> Tree:
     presets = tree.pop("presets", None) or {}
     name = preset or tree.pop("preset", "quick")
     tree.pop("preset", None)
+    for key in tree:
+        if key not in SECTIONS:
+            raise unknown(str(key), str(key), dict.fromkeys(SECTIONS))
+    if "seed" in tree and (type(tree["seed"]) is not int or tree["seed"] < 0):
+        raise wrong("seed", tree["seed"], "a whole number from 0 on")
     if name not in presets:
         msg = f"unknown preset {name!r} in {path}"
         raise ContentError(msg, f"use one of {', '.join(presets)}")

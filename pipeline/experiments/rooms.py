@@ -36,7 +36,8 @@ def test_rooms(tables: Mapping[str, Sequence[Row]], split: str, layout_types: Se
 
 def spread(jobs: Sequence[RoomJob], count: int) -> list[RoomJob]:
     """Return `count` jobs, evenly spread over the list."""
-    return [jobs[i * len(jobs) // count] for i in range(min(count, len(jobs)))]
+    taken = min(count, len(jobs))
+    return [jobs[i * len(jobs) // taken] for i in range(taken)]
 
 
 def room_home(job: RoomJob, placements: Sequence[Placement]) -> Home:

@@ -7,6 +7,7 @@ again where they fail; the whole home is then judged, and what the judge faults 
 from __future__ import annotations
 
 import functools
+import os
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -37,6 +38,7 @@ from pipeline.shards import code_digest, scene_id
 from pipeline.verify import Certificate, VerifySettings, verify_home
 from schemas.assets import LATENTS
 
+PLANS = 8  # plans of one attempt that the judge may find unsound
 Wish = tuple[int | None, float | None]  # exact number of objects, share of free floor
 
 
@@ -128,9 +130,19 @@ class Factory:
                 program = floorplan.prior(seeds.generator(self.seed, "program", request.index))
                 prompt = floorplan.describe(program)
             program = floorplan.complete(program)
-            solved = floorplan.solve(program, self.seed, (request.index, attempt))
+            solved = self._sound_plan(program, (request.index, attempt))
         wishes = {room.id: (room.objects, room.walkable) for room in program.rooms}
         return prompt, program.model_dump_json(exclude_defaults=True), solved, self.jobs(solved, request.index, attempt, wishes)
+
+    def _sound_plan(self, program: floorplan.FloorProgram, keys: tuple[int, int]) -> Plan:
+        """Solve a program until the judge finds nothing wrong with the empty home: doors swing, every room is entered."""
+        solved = floorplan.solve(program, self.seed, keys)
+        for retry in range(1, PLANS):
+            empty = Home("empty", self.seed, keys[0], "", "", solved, ())
+            if verify_home(empty, {}, self.verify).ok(self.verify.policy):
+                break
+            solved = floorplan.solve(program, self.seed, (*keys, retry))
+        return solved
 
     def jobs(self, plan: Plan, index: int, attempt: int, wishes: Mapping[str, Wish]) -> list[RoomJob]:
         """Return one job per room that the layout model furnishes; `wishes` by room id.
@@ -275,8 +287,8 @@ class Factory:
         return Outcome(home, work.certificate, rows, exported)
 
     def write_library(self, folder: Path, asset_ids: Sequence[str] | None = None) -> None:
-        """Write the asset library (or those of it that are named) with its tables and thumbnails."""
-        write_assets(self.library, folder, sorted(asset_ids if asset_ids is not None else self.library))
+        """Write the asset library (or those of it that are named) with its tables and thumbnails, on all cores."""
+        write_assets(self.library, folder, sorted(asset_ids if asset_ids is not None else self.library), os.cpu_count() or 1)
 
 
 def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:

@@ -44,6 +44,10 @@ class Library(Mapping[str, Asset]):
     def __len__(self) -> int:
         return len(self.rows)
 
+    def unread(self) -> Library:
+        """Return the same library with nothing read yet: small enough to be sent to workers."""
+        return Library(self.folder, list(self.rows.values()), self.joints)
+
     def digest(self) -> str:
         """Return the digest of all asset files, from the sums in the table."""
         return digest({row["asset_id"]: row["sha256"] for row in self.rows.values()})

@@ -1,0 +1,80 @@
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "homes"))
+from conftest import factory, library  # noqa: F401 - the factory of rules
+
+from pipeline.errors import ContentError
+from pipeline.experiments import tables as paper
+from pipeline.experiments.rooms import spread
+from pipeline.experiments.rooms import test_rooms as rooms_of
+from pipeline.experiments.settings import MetricsSettings
+from pipeline.experiments.trials import trial
+from pipeline.homes.rows import opening_row, room_row, scene_row
+
+SETTINGS = MetricsSettings(rooms=2, counts=(3,), taus=(0.5, 0.7))
+
+
+@pytest.fixture(scope="module")
+def jobs():
+    import furniture
+
+    home = furniture.home([], furniture.two_rooms())
+    kinds = {"living": "living_room", "bed": "bedroom"}
+    rows = {
+        "scenes": [{**scene_row(home), "split": "test"}],
+        "rooms": [room_row(home.scene_id, room, kinds[room.room_id]) for room in home.plan.rooms],
+        "openings": [opening_row(home.scene_id, opening) for opening in home.plan.openings],
+    }
+    return rooms_of(rows, "test", ("bedroom", "living_room"))
+
+
+@pytest.fixture(scope="module")
+def trials(factory, jobs):  # noqa: F811
+    return {c.name: trial(factory, jobs, c) for c in paper.conditions(SETTINGS)}
+
+
+def test_rooms_come_alone_with_their_own_openings(jobs):
+    assert [job.layout_type for job in jobs] == ["living_room", "bedroom"]
+    assert [len(job.plan.openings) for job in jobs] == [2, 1]
+    with pytest.raises(ContentError, match="no furnished room"):
+        rooms_of({"scenes": [], "rooms": [], "openings": []}, "test", ("bedroom",))
+
+
+def test_spread_takes_the_ends_and_never_more_than_there_are():
+    assert spread(list(range(10)), 5) == [0, 2, 4, 6, 8]
+    assert spread([1, 2], 5) == [1, 2]
+
+
+def test_what_ships_is_clean_and_counts_are_kept(trials):
+    for made in trials.values():
+        assert all(j["clear"] for j in made.shipped["joints"])
+        for room in made.shipped["rooms"]:
+            assert room["asked_objects"] in {None, room["objects"]}
+
+
+def test_tables_have_every_row_and_rates_lie_in_their_intervals(factory, trials):  # noqa: F811
+    quantity = paper.quantity_table(trials, SETTINGS.counts, 2)
+    assert quantity["3"]["first"]["rate"] == 1.0
+    walkable = paper.walkable_table(trials, SETTINGS.taus, 2)
+    assert set(walkable) == {"0.50", "0.70"}
+    rng = np.random.default_rng(1)
+    made = paper.articulation_table(rng, trials, {}, factory.library)
+    assert set(made) == {f"{n}_{s}" for n in ("plain", "heuristic", "guided") for s in ("first", "shipped")}
+    assert made["guided_shipped"]["collision"]["prism"]["col_obj"]["rate"] == 0.0
+    ablation = paper.ablation_table(rng, trials, SETTINGS.taus)
+    assert set(ablation) == {"neither", "articulation", "walkable", "both"}
+    for row in ablation.values():
+        for rate in (row["col_obj"], row["r_reach"], row["r_walkable"]["free"]):
+            assert rate["low"] <= rate.get("rate", rate.get("mean")) <= rate["high"]
+    curves = paper.curves({"quantity": quantity, "walkable": walkable})
+    assert curves["quantity"].splitlines()[0] == "n,guidance,rate,low,high"
+    assert len(curves["walkable"].splitlines()) == 1 + 2 * 2
+
+
+def test_shipped_rooms_reach_their_share_of_free_floor(trials):
+    for tau in SETTINGS.taus:
+        assert all(r["walkable_free"] >= tau - 0.03 for r in trials[f"walkable_{tau:.2f}"].shipped["rooms"])
