@@ -25,9 +25,17 @@ from pipeline.entities.home import Placement
 class Found(Protocol):
     """What a search of the library returns."""
 
-    asset_id: str
-    distance: float
-    scale: NDArray[np.float64]
+    @property
+    def asset_id(self) -> str:
+        """The asset."""
+
+    @property
+    def distance(self) -> float:
+        """How far it is from what is replaced."""
+
+    @property
+    def scale(self) -> NDArray[np.float64]:
+        """Factor (3,) on the asset's own size."""
 
 
 ALOOF_ROUNDS = 2  # rounds that are spent on objects whose only fault is that their handles are out of reach
