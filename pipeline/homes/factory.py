@@ -124,7 +124,9 @@ class Factory:
     def plan(self, request: Request, attempt: int) -> tuple[str, str, Plan, list[RoomJob]]:
         """Return (prompt, program as JSON, plan, one job per room that is furnished) of one attempt at a home."""
         with self.timed("plan"):
-            if request.prompt:
+            if request.program:
+                program, prompt = floorplan.FloorProgram.model_validate_json(request.program), request.prompt
+            elif request.prompt:
                 program, prompt = parse(request.prompt), request.prompt
             else:
                 program = floorplan.prior(seeds.generator(self.seed, "program", request.index))

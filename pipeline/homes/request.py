@@ -10,10 +10,14 @@ from pipeline.taxonomy import Taxonomy
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """One home: its index in the dataset, and the words that ask for it ("" draws a program from the prior)."""
+    """One home: its index in the dataset, and the words that ask for it ("" draws a program from the prior).
+
+    `program` is the typed request as JSON where something else than the built-in parser has read the words.
+    """
 
     index: int
     prompt: str = ""
+    program: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
