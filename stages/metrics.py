@@ -24,7 +24,7 @@ from schemas.rooms import ROOMS
 from schemas.scenes import SCENES
 from stages import runner
 
-LARGEST_FIRST = ("living_dining_room", "living_room", "bedroom", "dining_room", "kitchen", "kids_room", "study")
+LIVED_IN = ("living_dining_room", "living_room", "bedroom", "dining_room", "kitchen", "kids_room", "study")
 
 
 def main(root: Path) -> None:
@@ -40,7 +40,7 @@ def main(root: Path) -> None:
     split = {s["scene_id"]: s["split"] for s in source["scenes"]}
     real = [o for o in source["objects"] if split[o["scene_id"]] == "train"]
     held_out = [o for o in source["objects"] if split[o["scene_id"]] == settings.split]
-    rooms = len(trials["plain"].first["rooms"])
+    rooms = len(trials["plain"].drafted["rooms"])
     figures = {
         "dataset": dataset_figures(root / "data" / "shards"),
         "quantity": paper.quantity_table(trials, settings.counts, settings.rooms),
@@ -60,7 +60,11 @@ def run(root: Path, seed: int, settings: MetricsSettings, condition: Condition) 
     """Run one condition: the step that workers run."""
     named = (SCENES, ROOMS, OPENINGS)
     source = {t.name: tables.read(root / "data" / "tables" / f"{t.name}.parquet", t) for t in named}
-    jobs = test_rooms(source, settings.split, LARGEST_FIRST)
+    if condition.name in {paper.ALL_PLAIN, paper.ALL_GUIDED}:
+        return trial(
+            open_factory(root, seed), test_rooms(source, settings.split, taxonomy.load().layout_types)[: settings.all_rooms], condition
+        )
+    jobs = test_rooms(source, settings.split, LIVED_IN)
     if condition.count is not None:  # rooms that can hold so many things: 1.2 m2 of floor for each
         jobs = [job for job in jobs if job.room.area >= 1.2 * condition.count] or jobs
     return trial(open_factory(root, seed), spread(jobs, settings.rooms), condition)

@@ -101,11 +101,11 @@ def _plots(figures: Mapping[str, Any]) -> dict[str, tuple[list[Curve], dict[str,
     counts, taus = figures["quantity"], figures["walkable"]
     quantity = [
         _curve(label, {n: row[key] for n, row in counts.items() if row[key]})
-        for key, label in (("plain", "no guidance"), ("first", "guided, first attempts"), ("shipped", "guided, shipped"))
+        for key, label in (("plain", "no guidance"), ("drafted", "guided, first attempts"), ("shipped", "guided, shipped"))
     ]
     walkable = [
         _curve(label, {tau: row["free"][key] for tau, row in taus.items()})
-        for key, label in (("without", "without"), ("with", "with control"))
+        for key, label in (("without", "without"), ("first", "first attempts"), ("with", "with control, shipped"))
     ]
     return {
         "quantity": (quantity, {"title": "Exactly N objects", "x": "N", "y": "SR(N)", "y_range": (-0.03, 1.03)}),

@@ -10,6 +10,7 @@ class MetricsSettings:
     """What the stage `metrics` measures (section `metrics`)."""
 
     rooms: int = 25  # rooms per condition, from the test split
+    all_rooms: int = 400  # most rooms of the split that are furnished for CKL
     counts: tuple[int, ...] = (5, 8, 12, 16)  # N_target of the quantity experiment
     taus: tuple[float, ...] = (0.6, 0.7, 0.8, 0.9)  # thresholds of the walkable-area experiment
     split: str = "test"  # rooms of this split; train where it has too few

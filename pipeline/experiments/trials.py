@@ -32,8 +32,13 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """Rows of rooms, objects and joints: of all first attempts, and of the rooms that ship."""
+    """Rows of rooms, objects and joints.
 
+    `drafted`: all first attempts as they come from the layout model. `first`: the same after post-optimisation, whether
+    they are good enough or not. `shipped`: the rooms that a home could ship with, after as many tries as a room has.
+    """
+
+    drafted: dict[str, list[Row]]
     first: dict[str, list[Row]]
     shipped: dict[str, list[Row]]
 
@@ -48,15 +53,17 @@ def trial(factory: Factory, jobs: Sequence[RoomJob], condition: Condition) -> Tr
     made = replace(factory, sampler=replace(factory.sampler, settings=settings))
     asked = [replace(job, count=condition.count, walkable=condition.walkable) for job in jobs]
     drafts = made.draft(asked)
-    first = _rows(factory, [(draft, draft.placements) for draft in drafts])
+    drafted = _rows(factory, [(draft, draft.placements) for draft in drafts])
     if not condition.finished:
-        return Trial(first, _rows(factory, []))
-    results = _finished(made, drafts)
-    return Trial(first, _rows(factory, [(r.draft, r.placements) for r in results if not r.binding]))
+        return Trial(drafted, _rows(factory, []), _rows(factory, []))
+    first, best = _finished(made, drafts)
+    shipped = [(r.draft, r.placements) for r in best if not r.binding]
+    return Trial(drafted, _rows(factory, [(r.draft, r.placements) for r in first]), _rows(factory, shipped))
 
 
-def _finished(factory: Factory, drafts: Sequence[Draft]) -> list[RoomResult]:
-    """Take rooms to the end, each with as many tries as a room of a home has; the best try of each stands."""
+def _finished(factory: Factory, drafts: Sequence[Draft]) -> tuple[list[RoomResult], list[RoomResult]]:
+    """Take rooms to the end: return the first try of each, and the best of as many tries as a room of a home has."""
+    first: dict[int, RoomResult] = {}
     best: dict[int, RoomResult] = {}
     pending = list(enumerate(drafts))
     for attempt in range(factory.shard.room_attempts):
@@ -64,6 +71,7 @@ def _finished(factory: Factory, drafts: Sequence[Draft]) -> list[RoomResult]:
             result = _cleared(
                 factory, finish(draft, factory.library, factory.index, factory.postopt, factory.verify.robot, taxonomy.load())
             )
+            first.setdefault(i, result)
             if i not in best or result.rank() > best[i].rank():
                 best[i] = result
         pending = [(i, draft) for i, draft in pending if best[i].failure]
@@ -71,7 +79,7 @@ def _finished(factory: Factory, drafts: Sequence[Draft]) -> list[RoomResult]:
             break
         redrawn = factory.draft([replace(draft.job, attempt=attempt + 1) for _, draft in pending])
         pending = [(i, draft) for (i, _), draft in zip(pending, redrawn, strict=True)]
-    return [best[i] for i in range(len(drafts))]
+    return [first[i] for i in range(len(drafts))], [best[i] for i in range(len(drafts))]
 
 
 def _cleared(factory: Factory, result: RoomResult) -> RoomResult:

@@ -58,12 +58,12 @@ def test_what_ships_is_clean_and_counts_are_kept(trials):
 
 def test_tables_have_every_row_and_rates_lie_in_their_intervals(factory, trials):  # noqa: F811
     quantity = paper.quantity_table(trials, SETTINGS.counts, 2)
-    assert quantity["3"]["first"]["rate"] == 1.0
+    assert quantity["3"]["drafted"]["rate"] == 1.0
     walkable = paper.walkable_table(trials, SETTINGS.taus, 2)
     assert set(walkable) == {"0.50", "0.70"}
     rng = np.random.default_rng(1)
     made = paper.articulation_table(rng, trials, {}, factory.library)
-    assert set(made) == {f"{n}_{s}" for n in ("plain", "heuristic", "guided") for s in ("first", "shipped")}
+    assert set(made) == {f"{n}_{s}" for n in ("plain", "heuristic", "guided") for s in ("drafted", "shipped")}
     assert made["guided_shipped"]["collision"]["prism"]["col_obj"]["rate"] == 0.0
     ablation = paper.ablation_table(rng, trials, SETTINGS.taus)
     assert set(ablation) == {"neither", "articulation", "walkable", "both"}
@@ -72,7 +72,7 @@ def test_tables_have_every_row_and_rates_lie_in_their_intervals(factory, trials)
             assert rate["low"] <= rate.get("rate", rate.get("mean")) <= rate["high"]
     curves = paper.curves({"quantity": quantity, "walkable": walkable})
     assert curves["quantity"].splitlines()[0] == "n,guidance,rate,low,high"
-    assert len(curves["walkable"].splitlines()) == 1 + 2 * 2
+    assert len(curves["walkable"].splitlines()) == 1 + 3 * 2
 
 
 def test_shipped_rooms_reach_their_share_of_free_floor(trials):
