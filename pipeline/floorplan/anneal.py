@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.compiled import compiled
 from pipeline.floorplan.energy import Spec, terms, tree
 from pipeline.floorplan.grid import Labels, Measures, empty, measure
+from pipeline.geometry.compiled import compiled
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

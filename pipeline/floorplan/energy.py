@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.compiled import compiled
 from pipeline.floorplan.grid import Labels, Measures, hull_area, inner_area, opening, simple
+from pipeline.geometry.compiled import compiled
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.compiled import compiled
+from pipeline.geometry.compiled import compiled
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.compiled import compiled
+from pipeline.geometry.compiled import compiled
 
 V, H = -2, -3
 DRAWS = 4  # uniform numbers that one proposal takes
