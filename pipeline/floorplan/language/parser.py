@@ -10,7 +10,7 @@ from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan.check import check
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.language import items as kinds
-from pipeline.floorplan.language.assemble import assemble
+from pipeline.floorplan.language.assembly import assemble
 from pipeline.floorplan.language.items import sentences
 from pipeline.floorplan.language.reading import read
 from pipeline.floorplan.language.spelling import repair
