@@ -7,9 +7,11 @@ from collections.abc import Iterable
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan.defaults import DEFAULTS, OUTSIDE
+from pipeline.floorplan.distance import distances, nearness
 from pipeline.floorplan.program import MAX_ROOMS, Evidence, FloorProgram, RoomReq
 
 LEAST_SHARE = 0.4  # a room of less than this share of its type's usual area is no such room
+CORNERS = {"rectangle": 4, "L": 5, "T": 6, "any": 6}  # of an outline that stick out
 WALLS = 1.02  # total area may be exceeded by this much before stated areas clash with it
 PRIVATE = {"bathroom", "wc", "closet", "balcony", "storage", "office", "sunroom", "utility"}  # may lie behind a bedroom
 
@@ -30,6 +32,8 @@ def check(program: FloorProgram) -> None:
     _areas(program)
     _degrees(program)
     _ways(program)
+    _distances(program)
+    _corners(program)
     _planar(program)
 
 
@@ -167,6 +171,31 @@ def reach(program: FloorProgram, root: str, avoid: frozenset[str]) -> set[str]:
             found.add(other)
             frontier.append(other)
     return found
+
+
+def _distances(program: FloorProgram) -> None:
+    for asked, made in nearness(distances(program), program.links):
+        fields = [f"links.{x}" for k in program.links if {asked.a, asked.b} == {k.a, k.b} for x in (f"{k.a}-{k.b}", f"{k.b}-{k.a}")]
+        words = cited(program, f"relations.hops.{asked.selector}", *fields)
+        raise ImpossibleError(
+            f"hops: {asked.a} and {asked.b} are to be at least {asked.least:g} openings apart and lie {made} apart",
+            "drop a link between them, or let the home have a hallway more",
+            words,
+        )
+
+
+def _corners(program: FloorProgram) -> None:
+    """Refuse more corner rooms than an outline has corners: each belongs to one room."""
+    most = max(CORNERS.values()) if program.storeys > 1 else CORNERS[program.footprint.shape]  # a smaller storey leaves one open
+    for level in range(program.storeys):
+        rooms = [r for r in program.rooms if r.exterior == "corner" and r.level == level]
+        if len(rooms) > most:
+            words = cited(program, *(f"rooms.{r.id}" for r in rooms))
+            raise ImpossibleError(
+                f"{len(rooms)} rooms of one storey are to have a corner of the outline ('exterior: corner'), which has {most}",
+                "ask for fewer corner rooms",
+                words,
+            )
 
 
 def _planar(program: FloorProgram) -> None:

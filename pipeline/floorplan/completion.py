@@ -5,6 +5,7 @@ from __future__ import annotations
 from pipeline.floorplan.areas import with_areas
 from pipeline.floorplan.check import names
 from pipeline.floorplan.connect import connect, resolve
+from pipeline.floorplan.distance import distances, nearness
 from pipeline.floorplan.program import Entrance, FloorProgram, RoomReq
 
 UPSTAIRS = {"bedroom", "bathroom", "playroom"}
@@ -18,7 +19,7 @@ def complete(program: FloorProgram) -> FloorProgram:
     program = program.model_copy(update={"rooms": _storeys(program)})
     program = program.model_copy(update={"rooms": _add_circulation(program)})
     names(program)
-    program = program.model_copy(update={"links": connect(program)})
+    program = _join(program)
     program = program.model_copy(update={"entrance": _entrance(program)})
     return with_areas(program)
 
@@ -137,6 +138,19 @@ def _add_circulation(program: FloorProgram) -> tuple[RoomReq, ...]:
     elif wanted and not program.only:
         rooms.append(RoomReq(id=_name("hall", rooms), type="hallway", level=0, stated=False, inferred=True))
     return tuple(rooms)
+
+
+def _join(program: FloorProgram) -> FloorProgram:
+    """Fill in the links. Where rooms then lie nearer than a `hops` relation allows, a hallway more may put them apart."""
+    joined = program.model_copy(update={"links": connect(program)})
+    broken = nearness(distances(program), joined.links)
+    if not broken or program.only or "hallway" in _forbidden_types(program):
+        return joined
+    level = next(r.level for r in program.rooms if r.id == broken[0].asked.a)
+    hall = RoomReq(id=_name("hall", list(program.rooms)), type="hallway", level=level, stated=False, inferred=True)
+    wider = program.model_copy(update={"rooms": (*program.rooms, hall)})
+    wider = wider.model_copy(update={"links": connect(wider)})
+    return joined if nearness(distances(wider), wider.links) else wider
 
 
 def _entrance(program: FloorProgram) -> Entrance:

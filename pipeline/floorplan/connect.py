@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from pipeline.floorplan.defaults import DEFAULTS, HUBS
+from pipeline.floorplan.distance import Distance, distances, nearness
 from pipeline.floorplan.program import FloorProgram, Link, RoomReq
 
 PARENTS: dict[str, tuple[str, ...]] = {
@@ -30,7 +31,7 @@ ANY_HUB = ("hallway", "entry", "living_room", "family_room", "studio_room", "din
 # Who stands for a group of joined rooms when the group is attached to the rest.
 FRONT = (*HUBS, "library", "media_room", "playroom", "gym", "meeting_room", "sunroom", "utility", "bedroom", "storage", "closet")
 OPENABLE = {"door", "open", "portal", "any"}
-MAX_DOORS_INTO = {"bathroom": 2, "wc": 1, "storage": 2, "closet": 2, "balcony": 3}
+BUDGET = 600  # sets of links that are tried before `hops` relations are given up
 
 
 def resolve(program: FloorProgram) -> tuple[Link, ...]:
@@ -56,26 +57,47 @@ def _meet(a: RoomReq, b: RoomReq) -> bool:
 
 
 def connect(program: FloorProgram) -> tuple[Link, ...]:
-    """Add links until the rooms form one piece. Groups are attached by the usual parent of the room that stands for them."""
-    links = list(resolve(program))
+    """Add links until the rooms form one piece. Groups are attached by the usual parent of the room that stands for them.
+
+    Where `hops` relations are broken that way, other parents and other rooms are tried; if none keeps them, the usual links are returned.
+    """
+    stated = resolve(program)
+    root = _root(program, stated)
+    distant = distances(program)
+    found = _complete(program, stated, root, distant, set())
+    return found if found is not None else _complete(program, stated, root, (), set()) or stated
+
+
+def _complete(
+    program: FloorProgram, links: tuple[Link, ...], root: str, distant: Sequence[Distance], seen: set[frozenset[tuple[str, str]]]
+) -> tuple[Link, ...] | None:
+    """Return the first completion that keeps rooms far enough apart. Links only bring rooms nearer: a set that fails is left at once."""
+    key = frozenset((k.a, k.b) for k in links)
+    if key in seen or len(seen) >= BUDGET or nearness(distant, links):
+        return None
+    seen.add(key)
     groups = _groups(program, links)
     if len(groups) <= 1:
-        return tuple(links)
-    by_id = {r.id: r for r in program.rooms}
-    root = _root(program, links)
-    while len(groups) > 1:
-        main = next(g for g in groups if root in g)
-        waiting = sorted((g for g in groups if root not in g), key=lambda g: _order(_front(program, g, links)))
-        for group in waiting:
-            made = _attach(program, _front(program, group, links), main, links)
-            if made is not None:
-                links.append(made)
-                break
-        else:
-            front = _front(program, waiting[0], links)
-            links.append(Link(a=root, b=front.id, kind="open" if "staircase" in {front.type, by_id[root].type} else "door"))
-        groups = _groups(program, links)
-    return tuple(links)
+        return links
+    for made in _options(program, groups, root, links, wide=bool(distant)):
+        found = _complete(program, (*links, made), root, distant, seen)
+        if found is not None:
+            return found
+    return None
+
+
+def _options(program: FloorProgram, groups: Sequence[frozenset[str]], root: str, links: Sequence[Link], *, wide: bool) -> Iterator[Link]:
+    """Yield links that attach one more group to the root's, the usual one first; `wide`: by any of the group's rooms."""
+    main = next(g for g in groups if root in g)
+    fronts = {g: _fronts(program, g, links) for g in groups if root not in g}
+    waiting = sorted(fronts, key=lambda g: _order(fronts[g][0]))
+    usual = [made for g in waiting for made in _hosted(program, fronts[g][0], main, links)]
+    yield from usual
+    if not usual:
+        front, at_root = fronts[waiting[0]][0], next(r for r in program.rooms if r.id == root)
+        yield Link(a=root, b=front.id, kind="open" if "staircase" in {front.type, at_root.type} else "door")
+    if wide:
+        yield from (made for g in waiting for front in fronts[g][1:] for made in _hosted(program, front, main, links))
 
 
 def _groups(program: FloorProgram, links: Sequence[Link]) -> list[frozenset[str]]:
@@ -127,11 +149,12 @@ def _root(program: FloorProgram, links: Sequence[Link]) -> str:
     return ground[0].id
 
 
-def _front(program: FloorProgram, group: frozenset[str], links: Sequence[Link]) -> RoomReq:
+def _fronts(program: FloorProgram, group: frozenset[str], links: Sequence[Link]) -> list[RoomReq]:
+    """Return the rooms of a group that may stand for it, the most public first; a full one only where all are."""
     members = [r for r in program.rooms if r.id in group]
-    full = {m.id for m in members if _is_full(program, m, links)}
     rank = {t: i for i, t in enumerate(FRONT)}
-    return min(members, key=lambda r: (r.id in full, rank.get(r.type, len(rank))))
+    free = [m for m in members if not _is_full(program, m, links)] or members
+    return sorted(free, key=lambda r: rank.get(r.type, len(rank)))
 
 
 def _order(room: RoomReq) -> int:
@@ -140,7 +163,8 @@ def _order(room: RoomReq) -> int:
     return order.index(room.type) if room.type in order else len(order)
 
 
-def _attach(program: FloorProgram, front: RoomReq, main: frozenset[str], links: Sequence[Link]) -> Link | None:
+def _hosted(program: FloorProgram, front: RoomReq, main: frozenset[str], links: Sequence[Link]) -> Iterator[Link]:
+    """Yield the links by which a room may hang on one of `main`, the usual one first."""
     second = front.type == "kitchen" and front.role not in {"", "primary"}  # a kitchen of somebody's own stands by itself
     for wanted in PARENTS["bedroom"][1:] if second else PARENTS.get(front.type, ANY_HUB):
         hosts = [r for r in program.rooms if r.type == wanted and r.id in main and _meet(r, front)]
@@ -148,10 +172,10 @@ def _attach(program: FloorProgram, front: RoomReq, main: frozenset[str], links: 
         hosts = [h for h in hosts if h.type != "hallway" or h.level == front.level or front.type == "staircase"] or hosts
         if wanted == "bedroom" and front.type in {"closet", "bathroom"}:
             hosts = [h for h in hosts if not _has(program, h, front.type, links)] or hosts
-        if hosts:
-            host = min(hosts, key=lambda h: _load(h, links)) if wanted == "hallway" else hosts[0]
-            return Link(a=host.id, b=front.id, kind="open" if "staircase" in {front.type, host.type} else "door")
-    return None
+        if wanted == "hallway":
+            hosts = sorted(hosts, key=lambda h: _load(h, links))
+        for host in hosts:
+            yield Link(a=host.id, b=front.id, kind="open" if "staircase" in {front.type, host.type} else "door")
 
 
 def _load(room: RoomReq, links: Sequence[Link]) -> int:

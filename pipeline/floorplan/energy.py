@@ -58,6 +58,7 @@ class Spec(NamedTuple):
     ban: Ints  # (n, n) 1: must not share a wall
     outside: Ints  # (n,) straight outside wall that is required [cells]
     outside_sum: Ints  # (n,) outside wall in all that is required [cells]
+    corner: Ints  # (n,) 1: must own a corner of the outline
     apart: Floats  # (n, n) least distance of centroids / diagonal
     order: Floats  # (n, n) area[a] >= order * area[b]
     stair_room: int  # index of the staircase, or -1
@@ -310,6 +311,8 @@ def violations(out: Measures, spec: Spec, areas: Floats) -> float:  # noqa: C901
             hard += 0.5 + (spec.outside[a] - out.run[a, n]) / spec.outside[a]
         if out.walls[a, n] < spec.outside_sum[a]:
             hard += 0.2 + (spec.outside_sum[a] - out.walls[a, n]) / spec.outside_sum[a]
+        if spec.corner[a] > 0 and out.outline_corners[a] == 0:
+            hard += 1.0
         for b in range(n):
             if spec.order[a, b] > 0.0 and areas[a] < spec.order[a, b] * areas[b]:
                 hard += 0.1 + 1.0 - areas[a] / (spec.order[a, b] * areas[b])

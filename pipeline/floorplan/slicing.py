@@ -78,12 +78,29 @@ def contact(rect: Ints, a: int, b: int) -> int:
     return 0
 
 
+@compiled
+def _corners(rect: Ints, room: int, width: int, height: int, n: int) -> int:
+    """Count the corners of the outline that a rectangle owns: its own corners with the outside, or a void, behind both sides."""
+    found = 0
+    for k in range(4):
+        x, y = rect[room, 2 * (k % 2)], rect[room, 1 + 2 * (k // 2)]
+        beside, above = x == (width if k % 2 else 0), y == (height if k // 2 else 0)
+        for v in range(n, rect.shape[0]):
+            if x == rect[v, 2 - 2 * (k % 2)] and rect[v, 1] < y + (k // 2 == 0) <= rect[v, 3]:
+                beside = True
+            if y == rect[v, 3 - 2 * (k // 2)] and rect[v, 0] < x + (k % 2 == 0) <= rect[v, 2]:
+                above = True
+        found += beside and above
+    return found
+
+
 class Wishes(NamedTuple):
     """What the layout of n rooms is scored by; names as in `energy.Spec`, `square` are weights."""
 
     need: Ints
     ban: Ints
     outside: Ints
+    corner: Ints
     least: Ints
     square: Floats
     apart: Floats
@@ -95,7 +112,7 @@ class Wishes(NamedTuple):
 @compiled
 def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes) -> float:  # noqa: C901, PLR0912, PLR0915 - compiled
     """Score a layout of rectangles; leaves from `n` on are voids that must lie in a corner. Smaller is better."""
-    need, ban, outside, least, square, apart, stair, stair_room, stair_weights = wishes
+    need, ban, outside, corner, least, square, apart, stair, stair_room, stair_weights = wishes
     total = 0.0
     diagonal = (width * width + height * height) ** 0.5
     m = rect.shape[0]
@@ -120,6 +137,8 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
                 best = max(best, contact(rect, a, v))
             if best < outside[a]:
                 total += 6.0 + 6.0 * (outside[a] - best) / outside[a]
+        if corner[a] > 0 and _corners(rect, a, width, height, n) == 0:
+            total += 9.0
         for b in range(a + 1, n):
             if need[a, b] > 0:
                 run = contact(rect, a, b)

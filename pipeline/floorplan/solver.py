@@ -140,7 +140,7 @@ def _slice(request: Storey, program: FloorProgram, outline: Outline, rng: np.ran
     low = np.concatenate([request.gross_low, empty * 0.7])
     high = np.concatenate([request.gross_high, empty * 1.3])
     wishes = slicing.Wishes(
-        spec.need, spec.ban, spec.outside, spec.strict, square, spec.apart, spec.stair, spec.stair_room, request.weights[10:]
+        spec.need, spec.ban, spec.outside, spec.corner, spec.strict, square, spec.apart, spec.stair, spec.stair_room, request.weights[10:]
     )
     rects, cost = slicing.search(expr, draws, SLICE_HOT, SLICE_COLD, width, height, n, gross, low, high, wishes)
     grid = np.full((height + 2, width + 2), n, np.int16)

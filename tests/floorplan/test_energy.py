@@ -146,7 +146,7 @@ def spec(n, **changes):
     zeros, ones = np.zeros(n, np.int64), np.ones(n, np.int64)
     base = energy.Spec(
         UNIT, 0, np.full(n, 1.0), np.zeros(n), np.full(n, 99.0), np.array([0.0, 99.0]), ones, ones, ones, ones, ones, ones, zeros,
-        np.zeros((n, n), np.int64), np.zeros((n, n), np.int64), np.zeros((n, n), np.int64), zeros, zeros, np.zeros((n, n)), np.zeros((n, n)),
+        np.zeros((n, n), np.int64), np.zeros((n, n), np.int64), np.zeros((n, n), np.int64), zeros, zeros, zeros, np.zeros((n, n)), np.zeros((n, n)),
         -1, np.zeros(4, np.int64), 0,
     )  # fmt: skip
     return base._replace(**changes)
@@ -186,6 +186,7 @@ def test_terms_do_not_depend_on_the_order_of_rooms():
         ({"need": np.array([[0, 4], [4, 0]])}, True),
         ({"ban": np.array([[0, 1], [1, 0]])}, True),
         ({"outside": np.array([0, 4])}, True),
+        ({"corner": np.array([1, 1])}, False),
         ({"low": np.array([0.5, 0.0])}, True),
         ({"high": np.array([0.1, 9.0])}, True),
         ({"order": np.array([[0.0, 1.2], [0.0, 0.0]])}, False),
@@ -200,6 +201,12 @@ def test_terms_do_not_depend_on_the_order_of_rooms():
 def test_each_hard_condition_is_noticed(changes, broken):
     hard = score(TWO, spec(2, **changes), np.ones(12), 0.0)[1]
     assert (hard > 0) == broken
+
+
+def test_a_room_between_two_others_has_no_corner():
+    row = labels("abc", "abc", "abc", n=3)
+    hard = [score(row, spec(3, corner=np.eye(3, dtype=np.int64)[i]), np.ones(12), 0.0)[1] for i in range(3)]
+    assert hard == [0.0, 1.0, 0.0]
 
 
 def test_a_room_in_two_pieces_or_with_a_hole_is_no_room():
