@@ -1,5 +1,9 @@
 """The denoiser: a transformer over the set of slots that looks at walls and openings.
 
+It turns with the room. Inputs are lengths and angles between directions of the room, never world coordinates; positions
+and yaws are answered as sums of directions that the room and its slots offer. So a rule that is learnt at one wall holds
+at all four, and the world's axes mean nothing (mirror images are left to the augmentation).
+
 Called with x (B, N, D) at level t (B,) and a `RoomBatch`; answers the clean slots it expects. No slot embedding, so a
 permutation of the slots permutes the answer.
 """
@@ -15,10 +19,23 @@ from torch import Tensor, nn
 from pipeline.diffusion.batch import RoomBatch
 from pipeline.diffusion.codec import CONTINUOUS, YAW, Codec, Normalisation
 from pipeline.diffusion.floor import KINDS
-from pipeline.diffusion.relations import PAIR_FEATURES, PAIR_NOISE, WALL_FEATURES, WALL_NOISE, boxes_of, pair_features, wall_features
+from pipeline.diffusion.relations import (
+    PAIR_FEATURES,
+    PAIR_MOVES,
+    PAIR_NOISE,
+    PAIR_TURNS,
+    WALL_FEATURES,
+    WALL_MOVES,
+    WALL_NOISE,
+    WALL_TURNS,
+    aligned,
+    boxes_of,
+    pair_relations,
+    wall_relations,
+)
 from pipeline.diffusion.settings import ModelSettings
 
-FLOOR_FEATURES = 11 + len(KINDS)
+FLOOR_FEATURES = 5 + len(KINDS)
 MOST = 24  # counts above are told as this
 
 
@@ -54,6 +71,29 @@ class Attention(nn.Module):
         return out
 
 
+class Pointer(nn.Module):
+    """Chooses pairs by attention and sums the directions that they offer, each with a weight of its own."""
+
+    def __init__(self, width: int, heads: int, relation: int, moves: int, turns: int) -> None:
+        super().__init__()
+        self.heads, self.moves = heads, moves
+        self.query, self.key, self.bias = nn.Linear(width, width), nn.Linear(width, width), nn.Linear(relation, heads)
+        self.amount = nn.Linear(width, heads * (moves + turns))
+        nn.init.zeros_(self.amount.weight)
+        nn.init.zeros_(self.amount.bias)
+
+    def forward(self, x: Tensor, source: Tensor, relation: Tensor, directions: Tensor, mask: Tensor | None) -> Tensor:
+        """Return the sums (B, N, 2, 2) for moves and for turns; `directions` (B, N, M, moves + turns, 2)."""
+        query, key = (v.unflatten(-1, (self.heads, -1)).transpose(1, 2) for v in (self.query(x), self.key(source)))
+        score = query @ key.transpose(2, 3) / math.sqrt(query.shape[-1]) + self.bias(relation).permute(0, 3, 1, 2)
+        if mask is not None:
+            score = score.masked_fill(~mask[:, None, None], -1e9)
+        weight = score.softmax(-1).transpose(1, 2)  # (B, N, H, M)
+        offered = (weight @ directions.flatten(3)).unflatten(-1, (-1, 2))  # (B, N, H, moves + turns, 2)
+        taken = offered * self.amount(x).unflatten(-1, (self.heads, -1))[..., None]
+        return torch.stack([taken[..., : self.moves, :].sum((2, 3)), taken[..., self.moves :, :].sum((2, 3))], 2)
+
+
 class Block(nn.Module):
     """Look at the other objects, at the floor, then think; conditioned by adaptive layer norm."""
 
@@ -86,10 +126,10 @@ class Denoiser(nn.Module):
         super().__init__()
         width, relation = settings.width, settings.relation
         self.norm, self.settings, self.codec = norm, settings, Codec(norm)
-        self.slot = nn.Linear(norm.channels, width)
+        self.slot = nn.Linear(norm.channels, width)  # two vectors of two channels go in as four lengths and products
         self.floor_in = nn.Sequential(nn.Linear(FLOOR_FEATURES, width), nn.SiLU(), nn.Linear(width, width))
         self.layout, self.count = nn.Embedding(layouts, width), nn.Embedding(MOST + 2, width)
-        self.room = nn.Sequential(nn.Linear(width + 4, width), nn.SiLU(), nn.Linear(width, width))
+        self.room = nn.Sequential(nn.Linear(width + 3, width), nn.SiLU(), nn.Linear(width, width))
         self.level = nn.Sequential(nn.Linear(33, width), nn.SiLU(), nn.Linear(width, width))
         self.pairs = nn.Sequential(nn.Linear(PAIR_FEATURES + PAIR_NOISE, relation), nn.ReLU(), nn.Linear(relation, relation), nn.ReLU())
         self.walls = nn.Sequential(
@@ -98,10 +138,10 @@ class Denoiser(nn.Module):
         self.blocks = nn.ModuleList(Block(width, settings.heads, relation) for _ in range(settings.layers))
         self.last = nn.LayerNorm(width, elementwise_affine=False)
         self.last_modulation = nn.Linear(width, 2 * width)
-        self.head = nn.Linear(width, norm.channels + 2)
-        self.wall_vectors = nn.Linear(width, 3 * (relation + WALL_NOISE))
-        self.pair_vectors = nn.Linear(width, 3 * (relation + PAIR_NOISE))
-        for layer in (self.head, self.last_modulation, self.wall_vectors, self.pair_vectors):
+        self.head = nn.Linear(width, norm.channels - 4 + 8)
+        self.by_wall = Pointer(width, settings.heads, relation + WALL_NOISE, WALL_MOVES, WALL_TURNS)
+        self.by_pair = Pointer(width, settings.heads, relation + PAIR_NOISE, PAIR_MOVES, PAIR_TURNS)
+        for layer in (self.head, self.last_modulation):
             nn.init.zeros_(layer.weight)
             nn.init.zeros_(layer.bias)
 
@@ -116,13 +156,15 @@ class Denoiser(nn.Module):
         length = torch.linalg.vector_norm(ends[:, :, 1] - ends[:, :, 0] + 1e-9, dim=-1)
         kind = nn.functional.one_hot(rooms.kind, len(KINDS)).float()
         swings = torch.stack([(rooms.hinge == 0).float(), (rooms.hinge == 1).float()], -1)
-        features = torch.cat([ends.flatten(2) / 3, middle / 3, rooms.normal, length[..., None] / 3, swings, kind], -1)
+        along = torch.stack([rooms.normal[..., 1], -rooms.normal[..., 0]], -1)
+        place = torch.stack([(middle * rooms.normal).sum(-1), (middle * along).sum(-1), length], -1) / 3
+        features = torch.cat([place, swings, kind], -1)
         tokens = self.floor_in(features) * rooms.mask[..., None]
-        extent = torch.where(rooms.mask[..., None], middle, 0).abs().amax(1)
+        reach = torch.linalg.vector_norm(torch.where(rooms.mask[..., None], middle, 0) + 1e-9, dim=-1).amax(1, keepdim=True)
         area = polygon_area(rooms)
         told = torch.where(rooms.count < 0, MOST + 1, rooms.count.clamp(0, MOST))
         pooled = tokens.sum(1) / rooms.mask.sum(1, keepdim=True).clamp_min(1)
-        size = torch.cat([extent / 3, area.clamp_min(0.5).log()[:, None] - 2, rooms.height[:, None] - 2.7], -1)
+        size = torch.cat([reach / 3, area.clamp_min(0.5).log()[:, None] - 2, rooms.height[:, None] - 2.7], -1)
         room = self.room(torch.cat([pooled, size], -1)) + self.layout(rooms.layout) + self.count(told)
         return FloorCode(tokens, room)
 
@@ -136,35 +178,27 @@ class Denoiser(nn.Module):
         boxes = boxes_of(self.codec.metric(alpha[:, None, None] * x[..., : YAW.stop]))
         sigma = (1 - alpha**2).clamp_min(1e-5).sqrt()
         blur = torch.stack([sigma * self.codec.scale[0], sigma], -1)
-        far, near = pair_features(boxes, blur)
-        pairs = torch.cat([self.pairs(torch.cat([far, near], -1)), near], -1)
-        far, near = wall_features(boxes, rooms, blur)
+        pair, wall = pair_relations(boxes, blur), wall_relations(boxes, rooms, blur)
+        pairs = torch.cat([self.pairs(torch.cat([pair.far, pair.near], -1)), pair.near], -1)
         kind = nn.functional.one_hot(rooms.kind, len(KINDS)).float()[:, None].expand(-1, x.shape[1], -1, -1)
-        walls = torch.cat([self.walls(torch.cat([far, near, kind], -1)), near], -1)
-        tokens = self.slot(x)
+        walls = torch.cat([self.walls(torch.cat([wall.far, wall.near, kind], -1)), wall.near], -1)
+        tokens = self.slot(torch.cat([invariants(x), x[..., 2:6], x[..., YAW.stop :]], -1))
         for block in self.blocks:
             tokens = block(tokens, code.tokens, rooms.mask, pairs, walls, condition)
         shift, scale = self.last_modulation(condition)[:, None].chunk(2, -1)
         tokens = self.last(tokens) * (1 + scale) + shift
-        out, local, logits = self.head(tokens).split([CONTINUOUS, 2, self.codec.classes + 1], -1)
-        moves = self._directed(tokens, pairs, walls, rooms, boxes.axis, boxes.front)
-        own = local[..., :1] * boxes.axis + local[..., 1:] * boxes.front
+        plain, own, logits = self.head(tokens).split([CONTINUOUS - 4, 8, self.codec.classes + 1], -1)
+        axis = x[..., YAW]
+        front = torch.stack([axis[..., 1], -axis[..., 0]], -1)
+        mine = torch.stack([x[..., :2], axis, front, aligned(boxes, rooms, blur)], -2)  # (B, N, 4, 2)
+        goes = own.unflatten(-1, (2, 4)) @ mine  # (B, N, 2, 2): move, turn
+        goes = goes + self.by_wall(tokens, code.tokens, walls, torch.cat([wall.moves, wall.turns], -2), rooms.mask)
+        goes = goes + self.by_pair(tokens, tokens, pairs, torch.cat([pair.moves, pair.turns], -2), None)
         logits = logits + self.codec.evidence(x[..., CONTINUOUS:], alpha[:, None, None], sigma[:, None, None])
         prior = torch.zeros_like(logits)
         prior[..., -1] = empty_odds(rooms.count, x.shape[1])[:, None]
         logits = logits + prior
-        return torch.cat([out[..., :2] + moves[..., :2] + own, out[..., 2:6], out[..., 6:8] + moves[..., 2:], out[..., 8:]], -1), logits
-
-    def _directed(self, tokens: Tensor, pairs: Tensor, walls: Tensor, rooms: RoomBatch, axis: Tensor, front: Tensor) -> Tensor:
-        """Sum directions that the room offers, weighted per pair: moves (B, N, 2) and turns (B, N, 2) that rotate with the room."""
-        by_wall = self.wall_vectors(tokens).unflatten(-1, (3, -1)) @ walls.transpose(2, 3)  # (B, N, 3, M)
-        by_wall = by_wall * rooms.mask[:, None, None] / 8
-        by_pair = self.pair_vectors(tokens).unflatten(-1, (3, -1)) @ pairs.transpose(2, 3) / 8
-        along = torch.stack([rooms.normal[..., 1], -rooms.normal[..., 0]], -1)
-        # A front that faces the room along n means (cos, sin) = (-n_y, n_x) = -along.
-        move = by_wall[:, :, 0] @ rooms.normal + by_wall[:, :, 1] @ along + by_pair[:, :, 0] @ axis + by_pair[:, :, 1] @ front
-        turn = by_pair[:, :, 2] @ axis - by_wall[:, :, 2] @ along
-        return torch.cat([move, turn], -1)
+        return torch.cat([goes[:, :, 0], plain[..., :4], goes[:, :, 1], plain[..., 4:]], -1), logits
 
     def expected(self, x: Tensor, alpha: Tensor, sigma: Tensor, rooms: RoomBatch, code: FloorCode | None = None) -> tuple[Tensor, Tensor]:
         """Return the expected clean slots x0 (B, N, D), and the class logits.
@@ -179,6 +213,14 @@ class Denoiser(nn.Module):
         held = from_target(self.settings.target, raw, seen, a, s)
         continuous = a * seen + (1 - chance[..., -1:]) * (held - a * seen)
         return torch.cat([continuous, self.codec.class_block(chance)], -1), logits
+
+
+def invariants(x: Tensor) -> Tensor:
+    """Return what position and axis of each slot (B, N, 4) say whichever way the room is turned."""
+    place, axis = x[..., :2], x[..., YAW]
+    front = torch.stack([axis[..., 1], -axis[..., 0]], -1)
+    length = [torch.linalg.vector_norm(v + 1e-9, dim=-1) for v in (place, axis)]
+    return torch.stack([*length, (place * axis).sum(-1), (place * front).sum(-1)], -1)
 
 
 def from_target(target: str, raw: Tensor, x: Tensor, alpha: Tensor, sigma: Tensor) -> Tensor:

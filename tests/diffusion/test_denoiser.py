@@ -1,7 +1,7 @@
 import pytest
 import torch
 
-from pipeline.diffusion.batch import stacked
+from pipeline.diffusion.batch import moved_rooms, stacked
 from pipeline.diffusion.codec import CONTINUOUS, Codec
 from pipeline.diffusion.denoiser import Denoiser, from_target
 from pipeline.diffusion.settings import ModelSettings
@@ -35,6 +35,22 @@ def test_a_permutation_of_slots_permutes_the_answer(net, noisy):
     mixed, logits_mixed = net.expected(x[:, order], alpha, sigma, rooms)
     torch.testing.assert_close(mixed, whole[:, order], atol=2e-4, rtol=1e-4)
     torch.testing.assert_close(logits_mixed, logits[:, order], atol=2e-2, rtol=1e-4)
+
+
+@torch.no_grad()
+def test_a_turned_room_turns_the_answer(net, noisy):
+    rooms, x, alpha, sigma = noisy
+    angle = torch.tensor([0.3, 1.0, 1.5708, 2.0, -2.0, 3.1])
+    turn = torch.stack([torch.stack([angle.cos(), -angle.sin()], -1), torch.stack([angle.sin(), angle.cos()], -1)], -2)
+
+    def turned(v):
+        v = v.clone()
+        v[..., :2], v[..., 6:8] = v[..., :2] @ turn.transpose(1, 2), v[..., 6:8] @ turn.transpose(1, 2)
+        return v
+
+    whole = net.expected(x, alpha, sigma, rooms)[0]
+    assert float(whole[..., :2].abs().mean()) > 0.05
+    torch.testing.assert_close(net.expected(turned(x), alpha, sigma, moved_rooms(rooms, turn))[0], turned(whole), atol=2e-3, rtol=1e-3)
 
 
 @torch.no_grad()
