@@ -20,7 +20,7 @@ from pipeline.diffusion.batch import stacked
 from pipeline.diffusion.checkpoint import Header, load_checkpoint, save_checkpoint, save_weights
 from pipeline.diffusion.codec import Codec, Normalisation
 from pipeline.diffusion.livelog import LiveLog
-from pipeline.diffusion.rooms import Sets, layout_weights, sets_of, stacked_rows, sweeps_by_asset
+from pipeline.diffusion.rooms import Sets, layout_weights, sets_of, small_types, stacked_rows, sweeps_by_asset
 from pipeline.diffusion.settings import TrainSettings
 from pipeline.diffusion.training import Trainer, train, validation
 from pipeline.errors import ContentError
@@ -96,14 +96,6 @@ def load(root: Path, settings: TrainSettings) -> tuple[Sets, Header]:
         small_types(sets, words.layout_types, settings.few_slots),
         settings.few_slots,
     )
-
-
-def small_types(sets: Sets, layouts: tuple[str, ...], slots: int) -> tuple[str, ...]:
-    """Return the layout types of which 97 % of the rooms leave two of `slots` empty."""
-    held: dict[int, list[int]] = {}
-    for example in sets.train:
-        held.setdefault(example.layout, []).append(len(example.classes))
-    return tuple(name for i, name in enumerate(layouts) if i in held and float(np.quantile(held[i], 0.97)) <= slots - 2)
 
 
 def inputs(root: Path) -> dict[str, str]:

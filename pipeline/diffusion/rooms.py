@@ -164,3 +164,11 @@ def layout_weights(examples: Sequence[Example], power: float = 0.5) -> NDArray[n
 def stacked_rows(examples: Sequence[Example]) -> NDArray[np.float64]:
     """Return all objects' continuous rows (n, 40)."""
     return np.concatenate([e.continuous for e in examples] or [np.zeros((0, CONTINUOUS))])
+
+
+def small_types(sets: Sets, layouts: tuple[str, ...], slots: int) -> tuple[str, ...]:
+    """Return the layout types of which 97 % of the rooms leave two of `slots` empty."""
+    held: dict[int, list[int]] = {}
+    for example in sets.train:
+        held.setdefault(example.layout, []).append(len(example.classes))
+    return tuple(name for i, name in enumerate(layouts) if i in held and float(np.quantile(held[i], 0.97)) <= slots - 2)
