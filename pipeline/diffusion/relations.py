@@ -134,4 +134,6 @@ def aligned(boxes: Boxes, rooms: RoomBatch, blur: Tensor) -> Tensor:
     fits = fits.masked_fill(~rooms.walls[:, None], -9.0)
     nearest = torch.take_along_dim(rooms.normal, fits.argmax(-1)[..., None], 1)
     off = (boxes.axis - nearest) / blur[:, None, 1:]
-    return off * (3 / torch.linalg.vector_norm(off + 1e-9, dim=-1, keepdim=True)).clamp_max(1.0)
+    length: Tensor = torch.linalg.vector_norm(off + 1e-9, dim=-1, keepdim=True)
+    shortened: Tensor = off * (3 / length).clamp_max(1.0)
+    return shortened
