@@ -60,7 +60,7 @@ class SampleSettings:
     steps_coarse: int = 20  # DDIM evaluations at t >= 100
     steps_middle: int = 12  # evaluations at 10 <= t < 100
     steps_fine: int = 12  # evaluations at t < 10
-    batch: int = 32  # rooms per padded batch
+    batch: int = 8  # rooms per padded batch
     count_condition: bool = True  # tell the denoiser the number of objects, beside the quantity guidance
     quantity: bool = True  # guide the number of objects
     quantity_scale: float = 1.0  # step along the descent of phi_quantity, in channel units

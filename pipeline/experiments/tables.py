@@ -20,7 +20,11 @@ Json = dict[str, Any]
 
 def conditions(settings: MetricsSettings) -> list[Condition]:
     """Return every condition that the tables need, by name."""
-    made = [Condition("plain", quantity=False, articulation="none"), Condition("guided"), Condition("heuristic", articulation="heuristic")]
+    made = [
+        Condition("plain", quantity=False, articulation="none"),
+        Condition("guided"),
+        Condition("heuristic", articulation="heuristic", finished=False),
+    ]
     for n in settings.counts:
         made += [
             Condition(f"count_{n}", count=n),
@@ -72,8 +76,9 @@ def articulation_table(rng: np.random.Generator, trials: Trials, sweeps: articul
     """Return R_acoll, R_reach, Col_obj and openable objects: without guidance, with the paper's heuristic, with the joints' sweeps."""
     made: Json = {}
     for name in ("plain", "heuristic", "guided"):
-        for stage, rows in (("drafted", trials[name].drafted), ("shipped", trials[name].shipped)):
-            made[f"{name}_{stage}"] = figures(rng, rows, sweeps, assets)
+        made[f"{name}_drafted"] = figures(rng, trials[name].drafted, sweeps, assets)
+    for name in ("plain", "guided"):
+        made[f"{name}_shipped"] = figures(rng, trials[name].shipped, sweeps, assets)
     return made
 
 
