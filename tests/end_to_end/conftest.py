@@ -28,6 +28,6 @@ def root(tmp_path_factory):
 
 @pytest.fixture
 def broken(root, tmp_path):
-    """A copy of the checkout that a test may damage: what stages make is there, the library of the dataset is not."""
-    shutil.copytree(root, tmp_path / "checkout", ignore=shutil.ignore_patterns("report", "dvclive"))
+    """A copy of the checkout that a test may damage: all but the raw data, the dataset and the report."""
+    shutil.copytree(root, tmp_path / "checkout", ignore=shutil.ignore_patterns("raw", "shards", "report", "dvclive"))
     return tmp_path / "checkout"
