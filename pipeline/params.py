@@ -56,6 +56,8 @@ def merge(base: Tree, over: Mapping[str, Any], where: str) -> Tree:
         if name not in base:
             raise unknown(f"{where}.{name}", name, base)
         old = base[name]
+        if isinstance(value, Mapping) and not isinstance(old, dict):
+            raise ContentError(f"params.yaml: section {name!r} is empty or no mapping", "restore it with `git checkout params.yaml`")
         merged[name] = merge(old, value, f"{where}.{name}") if isinstance(old, dict) and isinstance(value, Mapping) else value
     return merged
 

@@ -24,10 +24,10 @@ def main(root: Path, *, prompt: str, out: Path, seed: int = 0) -> None:
     wish = Request(0, asked, program.model_dump_json(exclude_defaults=True))
     factory = open_factory(root, seed)
     header = Header(seed, 1, factory.shard_size, factory.licence, {**factory.digests, "prompts": digest([asked, wish.program])})
+    (outcome,) = factory.make([wish])  # before the folder is touched: a request may yet be refused
+    used = sorted({p.asset_id for p in outcome.home.placements})
     with open_or_create(out, header) as dataset:
         if dataset.missing():
-            (outcome,) = factory.make([wish])
-            used = sorted({p.asset_id for p in outcome.home.placements})
             commit_library(dataset, lambda folder: factory.write_library(folder, used))
             commit_shard(dataset, 0, gather(0, [(outcome.rows, {**outcome.files, **drawings(outcome.home, program)})]))
     for file in sorted(p for p in out.glob("*/shard-00000/*") if p.is_file()):

@@ -44,7 +44,9 @@ def main(root: Path) -> None:
         for number in dataset.missing():
             homes = [made[i] for i in header.indices(number)]
             commit_shard(dataset, number, gather(number, [(home.rows, home.files) for home in homes]))
-    write_json(root / "metrics" / "timing.json", {f"cpu_seconds_per_home_{k}": round(v / max(1, len(todo)), 4) for k, v in seconds.items()})
+    if todo:  # a resumed run that finds all done leaves the costs of the run that did the work
+        costs = {f"cpu_seconds_per_home_{part}": round(spent / len(todo), 4) for part, spent in seconds.items()}
+        write_json(root / "metrics" / "timing.json", costs)
 
 
 def finish(root: Path, seed: int, requests: tuple[Request, ...]) -> tuple[list[Outcome], dict[str, float]]:
