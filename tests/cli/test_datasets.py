@@ -4,13 +4,16 @@ import sys
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "shards"))
 import made
 
 import sfgen
+from pipeline.entities.plan import Plan, Room
 from pipeline.errors import ContentError
+from pipeline.shards import scene_id
 from sfgen import cli
 
 
@@ -32,8 +35,15 @@ class Paper:
         assert len(requests) <= self.chunk
         self.asked += [(r.index, r.prompt) for r in requests]
         homes = [made.home(r.index, self.seed) for r in requests]
+        room = Room("studio", "studio_room", np.array([[0.0, 0.0], [6.0, 0.0], [6.0, 4.0], [0.0, 4.0]]))
+        plan = Plan((room,), (), "studio")
         placed = [SimpleNamespace(asset_id="asset_1"), SimpleNamespace(asset_id="asset_0"), SimpleNamespace(asset_id="asset_1")]
-        return [SimpleNamespace(rows=rows, files=files, home=SimpleNamespace(placements=placed)) for rows, files in homes]
+        return [
+            SimpleNamespace(
+                rows=rows, files=files, home=SimpleNamespace(scene_id=scene_id(self.seed, r.index), plan=plan, placements=placed)
+            )
+            for r, (rows, files) in zip(requests, homes, strict=True)
+        ]
 
 
 @pytest.fixture

@@ -155,6 +155,7 @@ def test_truncated_sources_are_quarantined_and_the_run_goes_on(root, broken, sta
         (("preset",), "fast", ("fast", "smoke")),
         (("train", "steps"), "many", ("train.steps", "int")),
         (("seed",), -1, ("seed",)),
+        (("train",), None, ("train",)),
     ],
 )
 def test_params_are_read_strictly(broken, stage, place, value, words):
