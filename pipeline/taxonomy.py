@@ -15,7 +15,10 @@ PATH = Path(__file__).resolve().parent.parent / "manifests" / "taxonomy.yaml"
 
 @dataclass(frozen=True, slots=True)
 class Category:
-    """One object category. `future` are 3D-FUTURE's names (normalised), `partnet` the model_cat it can come from."""
+    """One object category. `future` are 3D-FUTURE's names (normalised), `partnet` the model_cat it can come from.
+
+    The layout model learns the categories with `layout`; the others are small things that lie on or in furniture.
+    """
 
     name: str
     super: str
@@ -23,11 +26,12 @@ class Category:
     partnet: tuple[str, ...]
     mount: Literal["floor", "wall", "ceiling"]
     size: tuple[float, float, float] | None
+    layout: bool = True
 
 
 @dataclass(frozen=True, slots=True)
 class Taxonomy:
-    """Categories by name, in the order of the layout model's classes, and the maps of room types.
+    """Categories by name and the maps of room types.
 
     `essentials` lists per layout type groups of categories; a room needs one of each group to serve as that room.
     """
@@ -40,8 +44,8 @@ class Taxonomy:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Category names in class order."""
-        return tuple(self.categories)
+        """Names of the layout model's categories, in class order."""
+        return tuple(c.name for c in self.categories.values() if c.layout)
 
     def from_future(self, name: str) -> str | None:
         """Return the category for a 3D-FUTURE name of any spelling, or None."""
@@ -70,6 +74,7 @@ def load() -> Taxonomy:
             tuple(entry.get("partnet", ())),
             entry.get("mount", "floor"),
             tuple(entry["size"]) if "size" in entry else None,
+            entry.get("layout", True),
         )
         for name, entry in raw["categories"].items()
     }

@@ -13,7 +13,7 @@ from pipeline.seeds import generator
 
 def test_every_category_of_the_taxonomy_has_static_models():
     made = catalogue(0)
-    assert set(made.future_by_category()) == set(taxonomy.load().names) == set(LINES) == set(sizes.load())
+    assert set(made.future_by_category()) == set(taxonomy.load().categories) == set(LINES) == set(sizes.load())
 
 
 def test_numbers_at_size_one():
