@@ -86,7 +86,7 @@ def _models(seed: int, category: str, line: Line, count: int, *, articulated: bo
     entry = taxonomy.load().categories[category]
     forms = _turns(rng, [f for f in line.forms if not (articulated and f.still)], count)
     styles = rng.choice(list(STYLES), size=count, p=np.array(list(STYLES.values())) / sum(STYLES.values()))
-    boxes = sizes.draw(rng, sizes.load()[category], count)
+    boxes = sizes.draw(rng, sizes.load()[category], count, [form.round for form in forms])
     models = []
     for form, style, box in zip(forms, styles, boxes, strict=True):
         w, d, h = (round(float(x), 3) for x in box)

@@ -47,20 +47,39 @@ def test_names_are_those_that_the_taxonomy_reads():
         assert model.category in known.from_partnet(model.partnet_category)
 
 
-def test_sizes_lie_between_the_percentiles():
+def test_sizes_lie_between_the_bounds():
     known = sizes.load()
     for model in (*catalogue(0).future, *catalogue(1).partnet):
         statistics = known[model.category]
         form = next(f for f in LINES[model.category].forms if f.name == model.form)
         for axis in (0, 2) if form.round else (0, 1, 2):
-            assert statistics.p05[axis] - 1e-3 <= model.size[axis] <= statistics.p95[axis] + 1e-3
+            assert sizes.LEAST * statistics.p05[axis] - 1e-3 <= model.size[axis] <= sizes.MOST * statistics.p95[axis] + 1e-3
 
 
-def test_strata_keep_the_mean():
-    statistics = sizes.load()["dining_table"]
-    drawn = sizes.draw(generator(1, "test"), statistics, 40)
-    assert np.allclose(drawn.mean(axis=0), statistics.mean, atol=0.25 * statistics.std)
-    assert (drawn.std(axis=0) > 0.6 * statistics.std).all()
+@pytest.mark.parametrize("category", sorted(LINES))
+@pytest.mark.parametrize("count", [8, 40])
+def test_draws_keep_mean_and_spread_whatever_their_number(category, count):
+    statistics = sizes.load()[category]
+    drawn = sizes.draw(generator(1, "test", category), statistics, count)
+    assert np.allclose(drawn.mean(axis=0), statistics.mean, rtol=0.03)
+    assert np.allclose(drawn.std(axis=0), statistics.std, rtol=0.1)
+
+
+@pytest.mark.parametrize("category", ["dining_table", "coffee_table", "corner_side_table", "pendant_lamp", "ceiling_lamp"])
+def test_round_ones_are_as_deep_as_wide_and_the_others_make_up_for_it(category):
+    statistics = sizes.load()[category]
+    mask = [k % 3 == 0 for k in range(24)]
+    drawn = sizes.draw(generator(2, "test", category), statistics, 24, mask)
+    assert (drawn[mask, 0] == drawn[mask, 1]).all()
+    assert np.allclose(drawn.mean(axis=0), statistics.mean, rtol=0.05)
+    assert np.allclose(drawn.std(axis=0), statistics.std, rtol=0.1)
+
+
+def test_skewed_sizes_lean_as_their_percentiles_do():
+    statistics = sizes.load()["ceiling_lamp"]  # heights: 0.08, 0.39, 1.12 m
+    heights = sizes.draw(generator(3, "test"), statistics, 200)[:, 2]
+    assert np.median(heights) < statistics.mean[2]
+    assert heights.min() > 0
 
 
 def test_same_seed_same_models_other_seed_other_models():
