@@ -49,7 +49,8 @@ class TrainSettings:
     tilt: float = 0.0  # augmentation: largest extra rotation [rad]
     checkpoint_every: int = 250
     validate_every: int = 500
-    threads: int = 0  # torch threads, part of the checkpoint's digest; 0: one per core
+    threads: int = 1  # torch threads of each process, part of the checkpoint's digest; 0: one per core
+    workers: int = 0  # processes that share each batch, on machines without a GPU; 0: one per core
 
 
 @dataclass(frozen=True, slots=True)

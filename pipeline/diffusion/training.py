@@ -20,6 +20,7 @@ from pipeline.diffusion.denoiser import Denoiser
 from pipeline.diffusion.loss import Levels, denoising_loss, draw
 from pipeline.diffusion.schedule import linear
 from pipeline.diffusion.settings import TrainSettings
+from pipeline.diffusion.team import ALONE, Team
 
 
 class Step(NamedTuple):
@@ -35,12 +36,15 @@ class Step(NamedTuple):
 class Trainer:
     """Owns the state of a training run: weights, their moving average, the optimiser's moments, the step."""
 
-    def __init__(self, seed: int, header: Header, settings: TrainSettings, total: int, per_epoch: int, device: torch.device) -> None:
+    def __init__(
+        self, seed: int, header: Header, settings: TrainSettings, total: int, per_epoch: int, device: torch.device, team: Team = ALONE
+    ) -> None:
         with torch.random.fork_rng(devices=[]):
             torch.manual_seed(seeds.key(seed, "denoiser-init") % 2**63)
             self.net = build_net(header).to(device)
         self.average = copy.deepcopy(self.net).eval().requires_grad_(False)
         self.seed, self.settings, self.total, self.per_epoch, self.device, self.done = seed, settings, total, per_epoch, device, 0
+        self.team = team
         self.levels = Levels.of(linear(settings.timesteps), device)
         self.optimiser = torch.optim.AdamW(
             self.net.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay, betas=(0.9, 0.98)
@@ -55,7 +59,11 @@ class Trainer:
         return s.learning_rate * warm * 0.5 ** (step // self.per_epoch // s.decay_every)
 
     def step(self, rooms: RoomBatch, objects: Objects, weights: NDArray[np.float64]) -> Step:
-        """Take one step on rooms drawn by `weights` (n,). All it draws comes from a generator keyed by (seed, step)."""
+        """Take one step on rooms drawn by `weights` (n,). All it draws comes from a generator keyed by (seed, step).
+
+        Every member of a team draws the whole batch and computes its share of it, so that the number of members
+        changes nothing but the order of sums.
+        """
         s = self.settings
         rng = torch.Generator().manual_seed(seeds.key(self.seed, "train-step", self.done) % 2**63)
         chances = torch.from_numpy(weights)
@@ -66,21 +74,24 @@ class Trainer:
         slots = s.few_slots if few else s.slots
         motion = motions(rng, s.batch, s.tilt).to(self.device)
         drawn = draw(rng, s.batch, slots, self.net.norm.channels, s.timesteps, s.low_noise, s.count_known)
-        rows = rows.to(self.device)
+        own = self.team.share(s.batch)
+        rows, motion = rows[own].to(self.device), motion[own]
         seen = moved_objects(objects.rows(rows).first(slots), motion, self.net.codec)
         told = moved_rooms(rooms.rows(rows).trimmed(), motion)
-        loss = denoising_loss(self.net.train(), self.levels, told, seen, type(drawn)(*(v.to(self.device) for v in drawn)), s)
+        loss = denoising_loss(self.net.train(), self.levels, told, seen, type(drawn)(*(v[own].to(self.device) for v in drawn)), s)
         geometry, shape, classes = (term.mean() for term in loss)
         rate = self.rate(self.done)
         for group in self.optimiser.param_groups:
             group["lr"] = rate
         self.optimiser.zero_grad(set_to_none=True)
         (geometry + s.latent_weight * shape + s.class_weight * classes).backward()
+        terms = self.team.averaged(list(self.net.parameters()), torch.stack([geometry, shape, classes]).detach())
         torch.nn.utils.clip_grad_norm_(self.net.parameters(), s.clip)
         self.optimiser.step()
         self._follow()
         self.done += 1
-        return Step(self.done, float(geometry.detach()), float(shape.detach()), float(classes.detach()), rate)
+        mean_geometry, mean_shape, mean_classes = terms.tolist()
+        return Step(self.done, mean_geometry, mean_shape, mean_classes, rate)
 
     def groups(self) -> dict[str, dict[str, Tensor]]:
         """Return everything that a checkpoint holds."""

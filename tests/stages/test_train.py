@@ -3,6 +3,8 @@ import math
 
 import numpy as np
 import pytest
+import torch
+from safetensors.torch import load_file
 
 from pipeline import seeds, tables
 from pipeline.diffusion.context import RoomContext
@@ -17,7 +19,7 @@ from schemas.scenes import SCENES
 from schemas.table import Table
 from stages import train
 
-SETTINGS = "model: {width: 16, layers: 1, heads: 2, relation: 4}, steps: %d, batch: 4, checkpoint_every: 2, validate_every: 4, threads: 1"
+SETTINGS = "model: {width: 16, layers: 1, heads: 2, relation: 4}, steps: %d, batch: 4, checkpoint_every: 2, validate_every: 4, threads: 1, workers: %d"
 
 
 def blank(table: Table, **values):
@@ -29,7 +31,7 @@ def blank(table: Table, **values):
     return {**row, **values}
 
 
-def make_root(root, steps=4, houses=9):
+def make_root(root, steps=4, houses=9, workers=1):
     rng = seeds.generator(0, "houses")
     made = {t.name: [] for t in (SCENES, ROOMS, OPENINGS, OBJECTS)}
     for n in range(houses):
@@ -62,11 +64,11 @@ def make_root(root, steps=4, houses=9):
     tables.write(root / "data/tables/asset_joints.parquet", ASSET_JOINTS, [blank(ASSET_JOINTS, asset_id="nightstand", joint_id="j", **box)])
     latents = [{"asset_id": a, "latent": rng.normal(0, 1, 32).tolist()} for a in ("double_bed", "nightstand")]
     tables.write(root / "data/latents/latents.parquet", LATENTS, latents)
-    write_params(root, steps)
+    write_params(root, steps, workers)
 
 
-def write_params(root, steps):
-    (root / "params.yaml").write_text(f"seed: 0\ntrain: {{{SETTINGS % steps}}}\npresets: {{quick: {{}}}}\n")
+def write_params(root, steps, workers):
+    (root / "params.yaml").write_text(f"seed: 0\ntrain: {{{SETTINGS % (steps, workers)}}}\npresets: {{quick: {{}}}}\n")
 
 
 @pytest.fixture(scope="module")
@@ -115,6 +117,15 @@ def test_a_killed_run_goes_on_and_ends_as_an_undisturbed_one(root, tmp_path, mon
     assert done == [4]  # steps 1 and 2 were not taken again
     for name in ("models/denoiser.safetensors", "metrics/train.json"):
         assert (tmp_path / name).read_bytes() == (root / name).read_bytes()
+
+
+def test_processes_that_share_the_batch_learn_the_same(root, tmp_path):
+    make_root(tmp_path, workers=2)
+    train.main(tmp_path)
+    names = "models/denoiser.safetensors", "metrics/train.json"
+    alone, shared = (load_file(folder / names[0]) for folder in (root, tmp_path))
+    assert all(torch.allclose(alone[name], shared[name], atol=1e-4) for name in alone)
+    assert json.loads((tmp_path / names[1]).read_text())["steps"] == 4
 
 
 def test_other_data_start_afresh(tmp_path):

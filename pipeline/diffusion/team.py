@@ -1,0 +1,96 @@
+"""Data-parallel training on the cores of one machine: processes that share each batch and average their gradients.
+
+On small networks a second torch thread gains next to nothing, a second process nearly doubles the speed.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import torch
+from torch import Tensor, distributed
+
+from pipeline.errors import SfgenError
+
+LEAST = 8  # rows that make a process of its own worth while
+LEAVE = 30.0  # seconds that the others get to end when the first has
+
+
+@dataclass(frozen=True, slots=True)
+class Team:
+    """Member `rank` of `size` processes."""
+
+    rank: int = 0
+    size: int = 1
+
+    def share(self, batch: int) -> slice:
+        """Return the rows of a batch that this member computes: equal shares, so that the mean of means is the mean."""
+        if batch % self.size:
+            raise SfgenError(
+                f"a batch of {batch} cannot be shared by {self.size} processes", "give train.batch a multiple of train.workers"
+            )
+        part = batch // self.size
+        return slice(self.rank * part, (self.rank + 1) * part)
+
+    def averaged(self, parameters: Sequence[Tensor], terms: Tensor) -> Tensor:
+        """Replace the gradients by their mean over the team; return the mean of `terms` (n,)."""
+        if self.size == 1:
+            return terms
+        held = [p.grad for p in parameters if p.grad is not None]
+        flat = torch.cat([*(g.flatten() for g in held), terms])
+        distributed.all_reduce(flat)
+        flat /= self.size
+        *means, terms = flat.split([*(g.numel() for g in held), len(terms)])
+        for gradient, mean in zip(held, means, strict=True):
+            gradient.copy_(mean.view_as(gradient))
+        return terms
+
+
+ALONE = Team()
+
+
+def team_size(batch: int, cores: int) -> int:
+    """Return how many processes share batches: as many as there are cores, while each gets the same and at least 8 rows."""
+    return next(size for size in range(max(1, min(cores, batch // LEAST)), 0, -1) if batch % size == 0)
+
+
+@contextmanager
+def gathered(size: int, work: Callable[[Team], None]) -> Iterator[None]:
+    """Make this process the first of a team whose others run `work`, each in a process of its own; `work` is importable by name.
+
+    Raises SfgenError when one of them failed.
+    """
+    if size == 1:
+        yield
+        return
+    context = multiprocessing.get_context("spawn")
+    with TemporaryDirectory() as folder:
+        meeting = f"file://{Path(folder) / 'meeting'}"
+        others = [context.Process(target=_joined, args=(meeting, Team(rank, size), work), daemon=True) for rank in range(1, size)]
+        for process in others:
+            process.start()
+        try:
+            distributed.init_process_group("gloo", init_method=meeting, rank=0, world_size=size)
+            yield
+            for process in others:
+                process.join(LEAVE)
+            if failed := [p.exitcode for p in others if p.exitcode]:
+                raise SfgenError(f"{len(failed)} of {size} training processes failed", "see the log above, or set train.workers to 1")
+        finally:
+            for process in others:
+                process.terminate()
+            if distributed.is_initialized():
+                distributed.destroy_process_group()
+
+
+def _joined(meeting: str, team: Team, work: Callable[[Team], None]) -> None:
+    distributed.init_process_group("gloo", init_method=meeting, rank=team.rank, world_size=team.size)
+    try:
+        work(team)
+    finally:
+        distributed.destroy_process_group()
