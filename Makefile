@@ -19,6 +19,7 @@ PYTHON ?= $(shell for p in python3.11 python3.12 python3.13 python3 python; do \
 
 BIN := $(CURDIR)/.venv/bin
 READY := .venv/.ready
+DEV := .venv/.dev
 SCRATCH := build/$(PRESET)
 export PATH := $(BIN):$(PATH)
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
@@ -33,16 +34,16 @@ else
 	cd $(SCRATCH) && dvc repro && python -m stages.doctor --places
 endif
 
-test: $(READY) ## all tests
+test: $(DEV) ## all tests
 	OMP_NUM_THREADS=1 python -m pytest -n $(JOBS)
 
-check: $(READY) ## format, lint, types, imports
+check: $(DEV) ## format, lint, types, imports
 	ruff format --check
 	ruff check
 	mypy
 	lint-imports --no-logo
 
-deps: $(READY) ## write the code that each stage runs into dvc.yaml
+deps: $(DEV) ## write the code that each stage runs into dvc.yaml
 	python .ci/deps.py --write
 
 bench: $(READY) ## every benchmark in benchmarks/
@@ -59,6 +60,11 @@ $(READY): pyproject.toml constraints.txt
 	@test -n "$(PYTHON)" || { echo "sfgen: no CPython 3.11 or newer is found; install one, or give PYTHON=/path/to/python" >&2; exit 1; }
 	@# from inside an activated .venv, venv must be made by the Python that it was made from
 	test -x .venv/bin/python || "$$($(PYTHON) -c 'import sys; print(sys._base_executable)')" -m venv .venv
-	$(if $(TORCH_INDEX),python -m pip install --quiet -c constraints.txt --index-url $(TORCH_INDEX) torch)
-	python -m pip install --quiet -c constraints.txt -e '.[factory,render,dev]'
+	$(if $(TORCH_INDEX),python -m pip install --quiet --no-compile -c constraints.txt --index-url $(TORCH_INDEX) torch)
+	@# without byte code: of most modules nobody asks, and compiling all takes longer than unpacking them
+	python -m pip install --quiet --no-compile -c constraints.txt -e '.[factory,render]'
+	touch $@
+
+$(DEV): $(READY)
+	python -m pip install --quiet --no-compile -c constraints.txt -e '.[factory,render,dev]'
 	touch $@

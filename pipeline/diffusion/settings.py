@@ -58,9 +58,9 @@ class SampleSettings:
     """How rooms are sampled (section `sample` of params.yaml). Window limits are levels of T = 1000."""
 
     sampler: Literal["ddim", "ancestral"] = "ddim"
-    steps_coarse: int = 20  # DDIM evaluations at t >= 100
-    steps_middle: int = 12  # evaluations at 10 <= t < 100
-    steps_fine: int = 12  # evaluations at t < 10
+    steps_coarse: int = 14  # DDIM evaluations at t >= 100
+    steps_middle: int = 11  # evaluations at 10 <= t < 100
+    steps_fine: int = 11  # evaluations at t < 10
     batch: int = 8  # rooms per padded batch
     count_condition: bool = True  # tell the denoiser the number of objects, beside the quantity guidance
     quantity: bool = True  # guide the number of objects

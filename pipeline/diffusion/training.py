@@ -47,7 +47,7 @@ class Trainer:
         self.team = team
         self.levels = Levels.of(linear(settings.timesteps), device)
         self.optimiser = torch.optim.AdamW(
-            self.net.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay, betas=(0.9, 0.98)
+            self.net.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay, betas=(0.9, 0.98), fused=True
         )
 
     def rate(self, step: int) -> float:
