@@ -42,7 +42,7 @@ def assets(
     for number, fit in enumerate(fits):
         kind = taxonomy.categories[fit.category].super
         links = [
-            link(body.name, _metric(body, middle, fit.scale), solid.scaled(middle, fit.scale), density(kind, ""))
+            link(body.name, _metric(body, middle, fit.scale), solid.scaled(middle, fit.scale), density(kind, ""), kind)
             for body, solid in zip(bodies, matter, strict=True)
         ]
         asset = Asset(

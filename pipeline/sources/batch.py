@@ -62,9 +62,10 @@ class LibraryTask:
     licence: str
     cache: Path
 
-    def pieces(self) -> Callable[..., Any] | None:
-        """Return the decomposition that the limits ask for."""
-        return functools.partial(decompose, cache=self.cache) if self.limits.coacd else None
+    def pieces(self, *, articulated: bool) -> Callable[..., Any] | None:
+        """Return the decomposition that the limits ask for, None for none."""
+        wanted = self.limits.coacd == "all" or (articulated and self.limits.coacd == "articulated")
+        return functools.partial(decompose, cache=self.cache) if wanted else None
 
 
 def future_models(source: Path) -> tuple[list[ModelInfo], list[Row]]:
@@ -97,7 +98,7 @@ def read_future(task: LibraryTask, info: ModelInfo) -> LibraryRows:
 
     def work() -> None:
         models = Folder.at(task.source).sub(MODELS)
-        model = read_model(models, info, taxonomy.load(), task.limits, task.licence, task.pieces())
+        model = read_model(models, info, taxonomy.load(), task.limits, task.licence, task.pieces(articulated=False))
         asset = model.asset
         _keep(made, task, asset, material=info.material, unit_scale=model.box.unit)
         made.rejects += model.rejects
@@ -114,7 +115,7 @@ def read_partnet(task: LibraryTask, name: str) -> LibraryRows:
 
     def work() -> None:
         shape = read_shape(Folder.at(task.source).sub(name), source_id, task.limits.max_texture)
-        for asset, scale, rejects in articulated.assets(shape, taxonomy.load(), task.limits, task.licence, task.pieces()):
+        for asset, scale, rejects in articulated.assets(shape, taxonomy.load(), task.limits, task.licence, task.pieces(articulated=True)):
             _keep(made, task, asset, material="", unit_scale=scale)
             made.rejects += rejects
 

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import Link, Mesh
-from pipeline.sources.densities import MINIMUM
+from pipeline.sources.densities import BOARD, BOXES, HOLLOW, MINIMUM
+from pipeline.sources.merging import merged
 from pipeline.sources.settings import ModelLimits
-from pipeline.sources.solids import Part, mass_properties, parts
+from pipeline.sources.solids import Part, dissected, mass_properties, parts
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Decompose = Callable[[Floats, Ints], list[tuple[Floats, Ints]]]
+Decompose = Callable[[Floats, Ints], list[tuple[Floats, Ints]] | None]
+WORTH = 1e-3  # share of the largest hull below which cutting a part into pieces changes nothing that a robot feels
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,38 +36,49 @@ class Solids:
 def solids(name: str, meshes: Iterable[tuple[Floats, Ints]], limits: ModelLimits, decompose: Decompose | None) -> Solids:
     """Take meshes (vertices (V, 3), faces (F, 3)) apart.
 
-    A connected part that fills `convex_fill` of its hull is a convex piece. A mesh with any other is cut by
-    `decompose`, or, where that is None, each part stands as its hull. Beyond `max_pieces` the smallest are left out.
+    A connected part that fills `convex_fill` of its hull is a convex piece. Any other is cut by `decompose`, or, where
+    that is None or fails, stands as its hull. Neighbouring pieces are merged where that fills next to nothing. Beyond
+    `max_pieces` the smallest are left out.
     """
     notes: list[tuple[str, str]] = []
-    every: list[Part] = []
+    found = [entry for vertices, faces in meshes for entry in dissected(vertices, faces)]
+    largest = max((part.hull_volume for part, _, _ in found), default=0.0)
     pieces: list[Part] = []
     hollow = 0
-    for vertices, faces in meshes:
-        found = parts(vertices, faces)
-        every += found
-        odd = sum(p.fill < limits.convex_fill for p in found)
-        if odd and decompose is not None:
-            pieces += [p for cut in decompose(vertices, faces) for p in parts(*cut)]
+    for part, points, triangles in found:
+        if part.fill >= limits.convex_fill:
+            pieces.append(part)
             continue
-        hollow += odd
-        pieces += found
+        cut = decompose(points, triangles) if decompose is not None and part.hull_volume >= WORTH * largest else None
+        if cut is None:
+            hollow += 1
+            pieces.append(part)
+        else:
+            pieces += [p for piece in cut for p in parts(*piece)]
     if hollow:
-        notes.append(("hull_collider", f"{name}: {hollow} of {len(every)} parts"))
+        notes.append(("hull_collider", f"{name}: {hollow} of {len(found)} parts"))
+    pieces = list(merged(pieces))
     if len(pieces) > limits.max_pieces:
         notes.append(("colliders_capped", f"{name}: {len(pieces)} pieces, the largest {limits.max_pieces} kept"))
         pieces = sorted(pieces, key=lambda p: -p.hull_volume)[: limits.max_pieces]
-    return Solids(tuple(every), tuple(pieces), tuple(notes))
+    return Solids(tuple(part for part, _, _ in found), tuple(pieces), tuple(notes))
 
 
-def link(name: str, visuals: Iterable[Mesh], matter: Solids, density: float) -> Link:
-    """Return the link [m, kg] of visual meshes and solids of one `density` [kg/m3]."""
-    mass, com, inertia = mass_properties([(p, density) for p in matter.parts])
+def link(name: str, visuals: Iterable[Mesh], matter: Solids, density: float, kind: str = "") -> Link:
+    """Return the link [m, kg] of visual meshes and solids of one `density` [kg/m3]; `kind` is the super-category."""
+    mass, com, inertia = mass_properties([(_hollowed(p, kind), density) for p in matter.parts])
     if 0 < mass < MINIMUM:
         inertia = inertia * (MINIMUM / mass)
     least = 1e-6 * np.eye(3)  # engines refuse inertias of thin parts that round to zero
     colliders = tuple(_piece(k, p) for k, p in enumerate(matter.pieces))
     return Link(name, tuple(visuals), colliders, round(max(mass, MINIMUM), 5), np.round(com, 6), np.round(inertia, 9) + least)
+
+
+def _hollowed(part: Part, kind: str) -> Part:
+    """Return the part as it weighs: of case furniture a block too thick for a board is a box of boards."""
+    if kind not in BOXES or np.ptp(part.hull, axis=0).min() <= HOLLOW:
+        return part
+    return replace(part, volume=min(part.volume, part.area * BOARD))
 
 
 def _piece(number: int, part: Part) -> Mesh:

@@ -38,6 +38,9 @@ KINDS: dict[str, float] = {
 DEFAULT = 500.0
 SOFT = frozenset({"bed", "sofa"})  # mostly filling, whatever the frame's material
 MINIMUM = 0.05  # [kg] of a link
+BOXES = frozenset({"cabinet", "kitchen", "table"})  # kinds whose blocks are hollow: modelled as one solid, built of boards
+HOLLOW = 0.12  # [m] thickness above which a block of those is no board
+BOARD = 0.018  # [m] thickness of the boards of such a block
 
 
 def density(super_category: str, material: str) -> float:

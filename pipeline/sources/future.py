@@ -102,7 +102,7 @@ def read_model(
             collisions.append((points, group.faces))
     kind = taxonomy.categories[category].super
     matter = solids("base", collisions, limits, decompose)
-    base = link("base", visuals, matter, density(kind, info.material))
+    base = link("base", visuals, matter, density(kind, info.material), kind)
     notes = list(matter.notes)
     if not base.visuals or not base.colliders:
         raise SourceError("not_obj", info.model_id, "has no face with an area")

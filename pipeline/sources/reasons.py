@@ -70,7 +70,9 @@ REASONS: dict[str, Reason] = {
     # models
     "missing_texture": Reason("model", "repaired", "a texture or material file is missing or unreadable; plain colour instead"),
     "colliders_capped": Reason("model", "repaired", "more pieces than `max_pieces`; the smallest have no collider"),
-    "hull_collider": Reason("model", "repaired", "pieces that are not convex collide as their convex hulls (see `coacd`)"),
+    "hull_collider": Reason(
+        "model", "repaired", "parts that are not convex and that CoACD did not cut (see `coacd`) collide as their convex hulls"
+    ),
     "missing_mesh": Reason("model", "repaired", "a mesh file that the URDF names is missing; the rest is used"),
     "no_metric_fit": Reason("model", "dropped", "no scale makes it fit the sizes of a category that it may serve as"),
     "no_base": Reason("model", "dropped", "the root body has no geometry"),

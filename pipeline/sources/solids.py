@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, QhullError
 
 Floats = NDArray[np.float64]
@@ -15,13 +18,15 @@ WELD = 1e-5  # share of the mesh's diagonal within which vertices are one
 MAX_HULL = 64  # vertices; PhysX takes no more in one convex piece
 SHEET = 0.001  # [m] half thickness given to a flat part
 SHELL = 0.008  # [m] thickness of an open surface, when its mass is estimated
+COVER = 0.98  # share of a hull's surface that faces which do not close must cover to pass for it
+MAX_COVER = 20_000  # faces for which that is looked at
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
     """One connected part: its hull (vertices (V, 3), faces (F, 3) outwards), `fill` of that hull, `volume` [m3] of matter.
 
-    `centre` (3,) and `inertia` (3, 3) about it are those of the hull at unit density.
+    `area` [m2] is that of its surface; `centre` (3,) and `inertia` (3, 3) about it are those of the hull at unit density.
     """
 
     hull: Floats
@@ -29,6 +34,7 @@ class Part:
     hull_volume: float
     fill: float
     volume: float
+    area: float
     centre: Floats
     inertia: Floats
 
@@ -41,6 +47,7 @@ class Part:
             self.hull_volume * cubed,
             self.fill,
             self.volume * cubed,
+            self.area * factor**2,
             (self.centre - shift) * factor,
             self.inertia * cubed * factor**2,
         )
@@ -48,44 +55,122 @@ class Part:
 
 def parts(vertices: Floats, faces: Ints) -> list[Part]:
     """Split a mesh [m] into connected parts, largest hull first; parts without extent are left out."""
-    made = []
-    for points, triangles in components(vertices, faces):
-        part = _part(points, triangles)
-        if part:
-            made.append(part)
-    return sorted(made, key=lambda p: (-round(p.hull_volume, 12), *p.hull.min(axis=0).round(6), *p.hull.max(axis=0).round(6)))
+    return [part for part, _, _ in dissected(vertices, faces)]
+
+
+def dissected(vertices: Floats, faces: Ints) -> list[tuple[Part, Floats, Ints]]:
+    """Return the parts as `parts` does, each with its own mesh (vertices (V, 3), faces (F, 3))."""
+    made = [(part, points, triangles) for points, triangles in components(vertices, faces) if (part := _part(points, triangles))]
+    return sorted(made, key=lambda m: (-round(m[0].hull_volume, 12), *m[0].hull.min(axis=0).round(6), *m[0].hull.max(axis=0).round(6)))
+
+
+def combined(pieces: Sequence[Part]) -> Part:
+    """Return the hull of several parts as one; it holds their matter. Raises ValueError where they span no volume."""
+    made = hull(np.concatenate([p.hull for p in pieces]))
+    if made is None:
+        msg = "the parts span no volume"
+        raise ValueError(msg)
+    corners, faces, volume = made
+    _, centre, inertia = _hull_moments(corners, faces)
+    matter = min(sum(p.volume for p in pieces), volume)
+    return Part(corners, faces, volume, matter / volume, matter, sum(p.area for p in pieces), centre, inertia)
 
 
 def components(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]:
-    """Return the connected parts as (vertices, faces), vertices at the same place welded, degenerate faces left out."""
+    """Return the connected parts as (vertices, faces), degenerate faces left out, vertices at the same place welded.
+
+    What is closed by its own indices is a part, and so is what is closed by edges that just two faces share: boards that
+    meet in a corner stay two. Only what is left hangs together by vertices.
+    """
     if not len(faces):
         return []
     used, index = np.unique(faces, return_inverse=True)
-    points = vertices[used]
+    points, faces = vertices[used], index.reshape(faces.shape)
+    made = []
+    label = _owners(faces, len(points))[faces[:, 0]]
+    whole = _whole(faces, label)
+    if whole.any():
+        made += [(points, block) for block in _split(faces[whole], label[whole])]
+        faces = faces[~whole]
+    if len(faces):
+        points, faces = _welded(points, faces)
+        label = _over_edges(faces)
+        whole = _whole(faces, label)
+        made += [(points, block) for block in _split(faces[whole], label[whole])]
+        loose = _once(faces[~whole])
+        made += [(points, block) for block in _split(loose, _owners(loose, len(points))[loose[:, 0]])]
+    return [_compact(*part) for part in made]
+
+
+def _welded(points: Floats, faces: Ints) -> tuple[Floats, Ints]:
+    """Return the mesh with vertices at the same place made one, without the faces that this makes degenerate."""
     span = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
     grid = np.round((points - points.min(axis=0)) / (span * WELD)).astype(np.int64)
     _, first, label = np.unique(_hash(grid), return_index=True, return_inverse=True)
-    points, faces = points[first], label[index.reshape(faces.shape)]
+    faces = label[faces]
     proper = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
-    faces = faces[proper]
+    return points[first], faces[proper]
+
+
+def _split(faces: Ints, label: Ints) -> list[Ints]:
+    """Return the faces of each label (F,), labels in order."""
     if not len(faces):
         return []
-    owner = _owners(faces, len(points))
-    if (owner[faces[:, 0]] == owner[faces[0, 0]]).all():
-        inside, compact = np.unique(faces, return_inverse=True)
-        return [(points[inside], compact.reshape(faces.shape))]
-    order = np.argsort(owner[faces[:, 0]], kind="stable")
-    sorted_faces = faces[order]
-    cuts = np.flatnonzero(np.diff(owner[sorted_faces[:, 0]])) + 1
-    made = []
-    for block in np.split(sorted_faces, cuts):
-        inside, compact = np.unique(block, return_inverse=True)
-        made.append((points[inside], compact.reshape(block.shape)))
-    return made
+    order = np.argsort(label, kind="stable")
+    return np.split(faces[order], np.flatnonzero(np.diff(label[order])) + 1)
+
+
+def _compact(points: Floats, faces: Ints) -> tuple[Floats, Ints]:
+    """Return the mesh without vertices that no face uses."""
+    inside, index = np.unique(faces, return_inverse=True)
+    return points[inside], index.reshape(faces.shape)
+
+
+def _whole(faces: Ints, label: Ints) -> NDArray[np.bool_]:
+    """Return (F,) whether the face's label is a closed surface: every edge of its faces used once in each direction."""
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    size = int(faces.max(initial=0)) + 1
+    _, kind = np.unique(label, return_inverse=True)
+    owner = np.concatenate([kind] * 3)
+    there, back = edges[:, 0] * size + edges[:, 1], edges[:, 1] * size + edges[:, 0]
+    order, turned = np.lexsort((there, owner)), np.lexsort((back, owner))
+    there, back, owner = there[order], back[turned], owner[order]  # sorted within each label: a closed one matches row by row
+    repeated = (there[1:] == there[:-1]) & (owner[1:] == owner[:-1])  # an edge that two faces use in the same direction
+    open_labels = np.zeros(int(kind.max(initial=-1)) + 1, bool)
+    open_labels[owner[there != back]] = True
+    open_labels[owner[1:][repeated]] = True
+    return ~open_labels[kind]
+
+
+def _over_edges(faces: Ints) -> Ints:
+    """Return a label per face (F,), the same for faces that share an edge with nobody else."""
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    owner = np.tile(np.arange(len(faces)), 3)
+    code = edges[:, 0] * (int(faces.max(initial=0)) + 1) + edges[:, 1]
+    order = np.argsort(code, kind="stable")
+    _, first, count = np.unique(code[order], return_index=True, return_counts=True)
+    pairs = first[count == 2]
+    a, b = owner[order[pairs]], owner[order[pairs + 1]]
+    graph = coo_array((np.ones(len(a), bool), (a, b)), shape=(len(faces), len(faces)))
+    return np.asarray(connected_components(graph, directed=False)[1])
+
+
+def _once(faces: Ints) -> Ints:
+    """Return the faces without repetition: what is drawn from both sides would enclose nothing."""
+    if len(faces) < 2:
+        return faces
+    a, b, c = np.sort(faces, axis=1).T
+    count = int(c.max()) + 1
+    if count >= 1 << 21:
+        return faces
+    _, first = np.unique((a * count + b) * count + c, return_index=True)
+    return faces if len(first) == len(faces) else faces[np.sort(first)]
 
 
 def _owners(faces: Ints, count: int) -> Ints:
     """Return a label per vertex (count,), the same for vertices that faces connect: the least index of its part."""
+    if not len(faces):
+        return np.zeros(count, np.int64)
     owner = np.arange(count)
     while True:
         least = owner[faces].min(axis=1)
@@ -112,15 +197,34 @@ def _part(points: Floats, faces: Ints) -> Part | None:
     if made is None:
         return None
     corners, hull_faces, hull_volume = made
+    area = surface(points, faces)
+    if not (closed and inside > 1e-12) and _covers(points, faces, corners, hull_faces, area):
+        inside = hull_volume
     fill = inside / hull_volume if hull_volume > 0 else 0.0
-    if closed and inside > 1e-12:
-        matter = min(inside, hull_volume)
-    else:  # an open sheet: what its surface weighs as a shell, but no more than its hull holds
-        a, b, c = points[faces[:, 0]], points[faces[:, 1]], points[faces[:, 2]]
-        area = 0.5 * float(np.linalg.norm(cross(b - a, c - a), axis=1).sum())
-        matter = min(hull_volume, area * SHELL)
+    # An open sheet weighs what its surface does as a shell; nothing weighs more than its hull holds.
+    matter = min(inside if inside > 1e-12 else area * SHELL, hull_volume)
     _, centre, inertia = _hull_moments(corners, hull_faces)
-    return Part(corners, hull_faces, hull_volume, fill, matter, centre, inertia)
+    return Part(corners, hull_faces, hull_volume, fill, matter, area, centre, inertia)
+
+
+def _covers(points: Floats, faces: Ints, corners: Floats, hull_faces: Ints, area: float) -> bool:
+    """Whether the faces are the hull's surface, whichever way round they are: a solid but for cracks, or one flat sheet."""
+    if len(faces) > MAX_COVER or area < COVER * surface(corners, hull_faces):
+        return _flat(points)
+    a = points[faces[:, 0]]
+    normals = cross(points[faces[:, 1]] - a, points[faces[:, 2]] - a)
+    lengths = np.maximum(np.sqrt((normals**2).sum(axis=1)), 1e-15)
+    height = (normals @ corners.T - (normals * a).sum(axis=1)[:, None]) / lengths[:, None]
+    span = float(np.ptp(points, axis=0).max())
+    outside = np.minimum(height.max(axis=1), -height.min(axis=1))  # of each face: how far the hull reaches past it
+    return float(outside.max()) < 1e-3 * span
+
+
+def _flat(points: Floats) -> bool:
+    """Whether all points lie in one plane."""
+    away = points - points.mean(axis=0)
+    spread = np.sqrt(np.maximum(np.linalg.eigvalsh(away.T @ away / len(away)), 0.0))
+    return bool(spread[0] < 1e-4 * spread[2])
 
 
 def _itself(points: Floats, faces: Ints, volume: float) -> tuple[Floats, Ints, float] | None:
@@ -198,6 +302,12 @@ def _closed(faces: Ints) -> bool:
     size = int(faces.max()) + 1
     there, back = np.sort(edges[:, 0] * size + edges[:, 1]), np.sort(edges[:, 1] * size + edges[:, 0])
     return bool((there == back).all())
+
+
+def surface(points: Floats, faces: Ints) -> float:
+    """Return the area [m2] of a mesh."""
+    a = points[faces[:, 0]]
+    return 0.5 * float(np.sqrt((cross(points[faces[:, 1]] - a, points[faces[:, 2]] - a) ** 2).sum(axis=1)).sum())
 
 
 def signed_volume(points: Floats, faces: Ints) -> float:
