@@ -20,7 +20,7 @@ from pipeline.corpus.furniture import wavefront
 from pipeline.corpus.furniture.assembly import shape_of
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.furniture.links import Component, Frame, LinkRecord, link_records, without_handles
-from pipeline.corpus.furniture.shape import Mover, Shape
+from pipeline.corpus.furniture.shape import Mover, Shape, colliders
 from pipeline.corpus.furniture.wavefront import mesh_frame
 
 BASE_RPY = "1.570796326794897 0 -1.570796326794897"
@@ -82,7 +82,8 @@ def urdf(name: str, links: Sequence[LinkRecord], frame: Frame) -> str:
                 attributes = {"name": f"{component.name}-{component.number}"} if kind == "visual" else {}
                 shape = ET.SubElement(element, kind, attributes)
                 ET.SubElement(shape, "origin", xyz=_xyz(-link.origin))
-                ET.SubElement(ET.SubElement(shape, "geometry"), "mesh", filename=component.file)
+                file = component.file if kind == "visual" else component.collision_file
+                ET.SubElement(ET.SubElement(shape, "geometry"), "mesh", filename=file)
         mover = link.mover
         joint = ET.SubElement(robot, "joint", name=f"joint_{number}", type=mover.type if mover else "fixed")
         if link.parent == "base":
@@ -203,6 +204,9 @@ def _write_component(component: Component, frame: Frame, folder: Path) -> None:
     text = wavefront.text(groups, f"{stem}.mtl")
     (folder / f"{stem}.obj").write_bytes(text.obj(frame.scale, -frame.centre))
     (folder / f"{stem}.mtl").write_bytes(wavefront.mtl([(names[f], f) for f in finishes]))
+    if not component.collides_as_seen:
+        convex = wavefront.bare(f"convex-{component.number}", colliders(component.pieces))
+        (folder / f"convex-{component.number}.obj").write_bytes(convex.obj(frame.scale, -frame.centre))
 
 
 def _xyz(vector: NDArray[np.float64]) -> str:

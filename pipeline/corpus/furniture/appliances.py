@@ -12,7 +12,7 @@ import numpy as np
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.finishes import DARK_GLASS, ENAMEL, GLASS, GRAPHITE, PLASTIC, PLASTIC_WHITE, STEEL, Finish, Scheme
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, knob, reach
-from pipeline.corpus.furniture.shape import Mover, Piece, Shape, pieces
+from pipeline.corpus.furniture.shape import Mover, Piece, Shape, pieces, staves
 from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, shell
 from pipeline.corpus.furniture.storage import Size, pick
 
@@ -144,13 +144,13 @@ def washing_machine(rng: np.random.Generator, form: str, size: Size, scheme: Sch
     hole = circle(r - 0.03, 24, (0.0, zc))
     rims = [[np.column_stack([o[:, 0], o[:, 1], np.full(24, k * t)]) for k in (0, 1)] for o in (square, hole)]
     front = [s.turned("x", math.pi / 2).moved((0, face + t, 0)) for s in shell(rims[0], rims[1])]
-    base += pieces("front", front, outside) + pieces("kick", box(x, (face + 0.01, face + 0.03), (0.012, 0.1)), outside)
+    base += staves("front", front, outside) + pieces("kick", box(x, (face + 0.01, face + 0.03), (0.012, 0.1)), outside)
     drum = [
         s.turned("x", math.pi / 2).moved((0, 0, zc))
         for s in ring((r - 0.025, r - 0.025), (r - 0.035, r - 0.035), (-d / 2 + 0.1, -face - t - 0.002), 24)
     ]
     end = revolve([(r - 0.03, -d / 2 + 0.085), (r - 0.03, -d / 2 + 0.1)], 24)[0].turned("x", math.pi / 2).moved((0, 0, zc))
-    base += pieces("drum", [*drum, end], STEEL)
+    base += staves("drum", drum, STEEL) + pieces("drum_end", end, STEEL)
     drawer_x = (-w / 2 + 0.03, -w / 2 + 0.2)
     strip = (drawer_x[1] + 0.003, w / 2 - t)
     base += pieces("panel", box(strip, (face, face + t), (panel, h - 0.03), 0.002), outside)
@@ -200,8 +200,8 @@ def _porthole(r: float, zc: float, face: float, finish: Finish) -> Mover:
     ]
     grip = box((r - 0.045, r - 0.012), (face - 0.043, face - 0.03), (zc - 0.05, zc + 0.05), 0.003)
     rim_finish = Finish("door_rim", (0.3, 0.3, 0.31), 0.3, 0.5, density=1500)
-    made: tuple[Piece, ...] = pieces("door_rim", rim, rim_finish) + pieces(
-        "door_glass", glass, replace(DARK_GLASS, opacity=0.45, name="door_glass")
+    made: tuple[Piece, ...] = pieces("door_rim", rim, rim_finish, group="door") + pieces(
+        "door_glass", glass, replace(DARK_GLASS, opacity=0.45, name="door_glass"), group="door"
     )
     made += pieces("handle", grip, finish if finish is not ENAMEL else PLASTIC_WHITE, "line_fixed_handle")
     return Mover("door", made, "revolute", (0, 0, -1), (-r, face - 0.035, zc), math.radians(100), "hinge_door", "door")
@@ -210,7 +210,7 @@ def _porthole(r: float, zc: float, face: float, finish: Finish) -> Mover:
 def _detergent(x: tuple[float, float], z: tuple[float, float], face: float, t: float, finish: Finish) -> Mover:
     """Return the detergent drawer: a small box behind its front, with a grip."""
     rect = Rect(x, z, face)
-    wall = 0.004
+    wall = 0.008
     x0, x1, y0, y1 = x[0] + 0.006, x[1] - 0.006, face + t, face + 0.2
     z0, z1 = z[0] + 0.012, z[1] - 0.012
     solids: list[Solid] = [
@@ -218,7 +218,6 @@ def _detergent(x: tuple[float, float], z: tuple[float, float], face: float, t: f
         box((x0, x0 + wall), (y0, y1), (z0 + wall, z1)),
         box((x1 - wall, x1), (y0, y1), (z0 + wall, z1)),
         box((x0 + wall, x1 - wall), (y1 - wall, y1), (z0 + wall, z1)),
-        box((x0 + wall, x1 - wall), (y0, y0 + wall), (z0 + wall, z1)),
     ]
     made = pieces("front", box(x, (face, face + t), z, 0.003), finish) + pieces("drawer_box", solids, PLASTIC_WHITE)
     middle = (x[0] + x[1]) / 2

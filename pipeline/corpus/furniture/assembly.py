@@ -12,7 +12,8 @@ from pipeline.corpus.furniture import finishes
 from pipeline.corpus.furniture.builders import BUILDERS
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.furniture.finishes import Finish, Scheme
-from pipeline.corpus.furniture.shape import Mover, Piece, Shape, fitted, frozen
+from pipeline.corpus.furniture.shape import Mover, Piece, Shape, colliders, fitted, frozen
+from pipeline.corpus.furniture.solids import Solid
 from pipeline.entities.asset import Asset, Joint, Link, Material, Mesh
 
 LICENCE = "CC0-1.0"
@@ -80,7 +81,12 @@ def _joint(mover: Mover, index: dict[str, int]) -> Joint:
 def _link(name: str, parts: tuple[Piece, ...], palette: list[Finish]) -> Link:
     meshes = tuple(_mesh(piece, palette) for piece in parts)
     mass, com, inertia = mass_properties(parts)
-    return Link(name, meshes, meshes, mass, com, inertia)
+    hulls = tuple(_collider(k, solid) for k, solid in enumerate(colliders(p for p in parts if p.group)))
+    return Link(name, meshes, tuple(m for m, p in zip(meshes, parts, strict=True) if not p.group) + hulls, mass, com, inertia)
+
+
+def _collider(number: int, solid: Solid) -> Mesh:
+    return Mesh(f"collider_{number}", solid.vertices.astype(np.float32), solid.triangles())
 
 
 def _mesh(piece: Piece, palette: list[Finish]) -> Mesh:

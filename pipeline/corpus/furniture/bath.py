@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.finishes import CERAMIC, GLASS, PLASTIC_WHITE, STEEL, Scheme
 from pipeline.corpus.furniture.fronts import lid
-from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, pieces
+from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, pieces, staves
 from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, ring, rod, shell, slab, stack
 from pipeline.corpus.furniture.storage import Size
 
@@ -40,9 +40,11 @@ def toilet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     inner = [_oval(k * rx, span(k), z) for k, z in ((0.42, 0.62 * rim), (0.76, rim))]
     wall = shell(outer, inner)
     bridge = box((-0.36 * w, 0.36 * w), (bowl_y[1] - 0.06, d / 2 - 0.02), (0.45 * rim, rim), 0.012)
-    tank = cushion((-0.5 * w, 0.5 * w), tank_y, (rim, h - 0.03), 0.025)
-    base = pieces("bowl", [foot, neck, *wall], CERAMIC) + pieces("bridge", bridge, CERAMIC) + pieces("tank", tank, CERAMIC)
-    base += pieces("tank_lid", cushion((-0.5 * w, 0.5 * w), (tank_y[0] - 0.006, tank_y[1]), (h - 0.029, h - 0.006), 0.01), CERAMIC)
+    half = (0.44 if form == "lever" else 0.5) * w  # a lever stands out of the tank's side
+    tank = cushion((-half, half), tank_y, (rim, h - 0.03), 0.025)
+    base = pieces("bowl", [foot, neck], CERAMIC) + staves("bowl", wall, CERAMIC)
+    base += pieces("bridge", bridge, CERAMIC) + pieces("tank", tank, CERAMIC)
+    base += pieces("tank_lid", cushion((-half, half), (tank_y[0] - 0.006, tank_y[1]), (h - 0.029, h - 0.006), 0.01), CERAMIC)
     hinge_y = bowl_y[1] - 0.012
     seat_z, lid_z = (rim + 0.004, rim + 0.019), (rim + 0.022, rim + 0.036)
     sx = 0.98 * rx
@@ -50,29 +52,30 @@ def toilet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
         [_oval(sx, (bowl_y[0] - 0.002, hinge_y), z) for z in seat_z],
         [_oval(0.66 * sx, (cy - 0.74 * ry, hinge_y - 0.09), z) for z in seat_z],
     ]
-    seat = pieces("seat", shell(rims[0], rims[1]), PLASTIC_WHITE)
+    seat = staves("seat", shell(rims[0], rims[1]), PLASTIC_WHITE)
     cover = pieces("lid", slab(_oval(sx, (bowl_y[0] - 0.002, hinge_y), 0.0)[:, :2], lid_z, 0.004), PLASTIC_WHITE)
     opening = math.radians(92)
     movers: list[Mover] = [
         lid("seat", seat, (0.0, hinge_y, seat_z[1]), opening),
-        lid("lid", cover, (0.0, hinge_y, lid_z[1]), opening),
+        lid("lid", cover, (0.0, hinge_y, lid_z[1]), opening, parent="seat"),  # a seat that is lifted lifts its lid
     ]
     if form == "lever":
-        movers.append(_lever(w, tank_y[0], h))
+        movers.append(_lever(half, (tank_y[0] + tank_y[1]) / 2, h))
     else:
         cap = pieces("button", revolve([(0.022, h - 0.0045), (0.022, h - 0.001), (0.018, h)], 16, (0.0, sum(tank_y) / 2)), STEEL)
         movers.append(Mover("button", cap, "prismatic", (0, 0, -1), (0.0, sum(tank_y) / 2, h), 0.0015, "slider_button", "button", UP))
     return Shape(base, tuple(movers))
 
 
-def _lever(w: float, y: float, h: float) -> Mover:
-    """Return the flushing lever at the front of the tank: turns down by half a radian."""
-    at = (-0.34 * w, y - 0.004, h - 0.1)
+def _lever(half: float, y: float, h: float) -> Mover:
+    """Return the flushing lever at the left side of the tank: its front end turns down by half a radian."""
+    at = (-half, y + 0.03, h - 0.1)
     solids = [
-        rod((at[0], at[1], at[2]), (at[0], at[1] - 0.014, at[2]), 0.010, n=10),
-        box((at[0] - 0.004, at[0] + 0.075), (at[1] - 0.022, at[1] - 0.014), (at[2] - 0.007, at[2] + 0.007), 0.002),
+        rod((at[0], at[1], at[2]), (at[0] - 0.012, at[1], at[2]), 0.010, n=10),
+        box((at[0] - 0.020, at[0] - 0.012), (at[1] - 0.085, at[1] + 0.008), (at[2] - 0.008, at[2] + 0.008), 0.002),
     ]
-    return Mover("lever", pieces("lever", solids, STEEL), "revolute", (0, 1, 0), at, 0.5, "hinge_handle", "lever")
+    made = pieces("lever", solids, STEEL, group="lever")
+    return Mover("lever", made, "revolute", (1, 0, 0), at, 0.5, "hinge_handle", "lever", (-1.0, 0.0, 0.0))
 
 
 def _rays(w: float, d: float) -> NDArray[np.float64]:

@@ -2,30 +2,38 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from pipeline.corpus.furniture.finishes import Finish
-from pipeline.corpus.furniture.fronts import GAP, FrontStyle, Rect, Side, door, drawer, reach
+from pipeline.corpus.furniture.fronts import GAP, FrontStyle, Rect, Side, door, drawer, reach, sliding_door
 from pipeline.corpus.furniture.shape import Mover, Piece, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, beam, box, rod
 
 Feet = Literal["plinth", "tapered", "square", "sled", "none", "hairpin"]
-CellKind = Literal["drawer", "left", "right", "pair", "open", "flap", "blank"]
+CellKind = Literal["drawer", "left", "right", "pair", "open", "flap", "lift", "blank", "slide"]
+BACK = 0.008  # thickness of a back [m]
+TRACK = 0.006  # between the two leaves of a pair of sliding doors [m]
+INNER = 0.17  # height of a drawer behind doors [m]
 
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A compartment of a column: `share` of its height (or fixed metres if `fixed`), `shelves` inside, what closes it."""
+    """A compartment of a column: `share` of its height, `shelves` inside, `inner` drawers behind its doors, what closes it.
+
+    A flap turns about its lower edge, a lift about its upper one; sliding doors run on two tracks; a blank is fixed.
+    """
 
     kind: CellKind
     share: float = 1.0
     shelves: int = 0
     panel: FrontStyle | None = None
+    inner: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +80,7 @@ def case(size: Sequence[float], columns: Sequence[Column], how: Case, *, reserve
     base += pieces("side_right", box((x[1] - b, x[1]), y, z, 0.0015), how.body)
     inner = (x[0] + b, x[1] - b)
     base += pieces("bottom", box(inner, y, (z[0], z[0] + b)), how.body)
-    base += pieces("back", box(inner, (y[1] - 0.008, y[1]), (z[0] + b, z[1])), how.body)
+    base += pieces("back", box(inner, (y[1] - BACK, y[1]), (z[0] + b, z[1])), how.body)
     movers: list[Mover] = []
     shares = np.cumsum([0.0, *(c.share for c in columns)]) / sum(c.share for c in columns)
     cuts = inner[0] + shares * (inner[1] - inner[0])
@@ -80,7 +88,7 @@ def case(size: Sequence[float], columns: Sequence[Column], how: Case, *, reserve
         left = float(cuts[i]) + (b / 2 if i else 0)
         right = float(cuts[i + 1]) - (b / 2 if i < len(columns) - 1 else 0)
         if i:
-            base += pieces(f"divider_{i}", box((left - b, left), (y[0], y[1] - 0.008), (z[0] + b, z[1])), how.body)
+            base += pieces(f"divider_{i}", box((left - b, left), (y[0], y[1] - BACK), (z[0] + b, z[1])), how.body)
         outer = (left, right) if how.inset else (_half(left, b, first=i == 0), _half(right, -b, first=i == len(columns) - 1))
         ends = (i == 0, i == len(columns) - 1)
         fixed, moving = _column(f"c{i}", column, (left, right), outer, y, (z[0] + b, z[1]), face, how, ends)
@@ -116,14 +124,15 @@ def _column(
     for k, cell in enumerate(column.cells):
         height = free * cell.share / total
         low, high = upper_edge - height, upper_edge
-        if k < len(column.cells) - 1:
-            base += pieces(f"{name}_shelf_{k}", box(x, (y[0], y[1] - 0.008), (low - b, low)), how.body)
+        below = column.cells[k + 1].kind if k < len(column.cells) - 1 else ""
+        if below and (how.inset or (cell.kind, below) != ("drawer", "drawer")):  # overlaid drawers need no rail between them
+            base += pieces(f"{name}_shelf_{k}", box(x, (y[0], y[1] - BACK), (low - b, low)), how.body)
         if how.inset:
             rect = Rect(x, (low, high), face).shrunk(GAP)
         else:
             bottom = low - (b if k == len(column.cells) - 1 else b / 2)
             rect = Rect(outer, (bottom, high + (b / 2 if k else 0)), face).shrunk(GAP / 2)
-        depth = (y[0] + (how.style.thickness + 0.002 if how.inset else 0.0), y[1] - 0.008)
+        depth = (y[0] + (how.style.thickness + 0.002 if how.inset else 0.0), y[1] - BACK)
         fixed, moving = _cell(f"{name}_{k}", cell, x, depth, (low, high), rect, how, ends)
         base += fixed
         movers += moving
@@ -145,12 +154,15 @@ def _cell(
     style = cell.panel or how.style
     base: list[Piece] = []
     movers: list[Mover] = []
+    if cell.kind == "slide":
+        return _sliding(name, cell, x, y, z, rect, how)
     setback = 0.004 if cell.kind == "open" else 0.02
+    floor = z[0] + cell.inner * (INNER + GAP) + (0.016 if cell.inner else 0.0)
     for j in range(cell.shelves):
-        level = z[0] + (z[1] - z[0]) * (j + 1) / (cell.shelves + 1)
+        level = floor + (z[1] - floor) * (j + 1) / (cell.shelves + 1)
         base += pieces(f"{name}_board_{j}", box(x, (y[0] + setback, y[1]), (level - 0.008, level + 0.008)), how.body)
     wide, square = math.radians(105), math.radians(90)
-    sides: dict[str, tuple[Side, ...]] = {"left": ("left",), "right": ("right",), "pair": ("left", "right"), "flap": ("bottom",)}
+    sides: dict[str, tuple[Side, ...]] = {"left": ("left",), "right": ("right",), "flap": ("bottom",), "lift": ("top",)}
     if cell.kind == "drawer":
         movers.append(drawer(f"{name}_drawer", rect, style, (x, z, y[1]), how.body))
     elif cell.kind == "pair":
@@ -160,10 +172,63 @@ def _cell(
             movers.append(door(f"{name}_door_{side}", half, style, side, wide if end else square))  # type: ignore[arg-type]
     elif cell.kind in sides:
         side = sides[cell.kind][0]
-        free = cell.kind == "flap" or ends[0 if side == "left" else 1]
-        movers.append(door(f"{name}_door", rect, style, side, wide if free and cell.kind != "flap" else square))
+        free = side in ("left", "right") and ends[0 if side == "left" else 1]
+        movers.append(door(f"{name}_door", rect, style, side, wide if free else square))
     elif cell.kind == "blank":
         base += pieces(f"{name}_blank", box(rect.x, (rect.y, rect.y + style.thickness), rect.z, 0.002), style.finish)
+    if cell.inner:
+        fixed, moving = _inner(name, cell.inner, x, y, z[0], how, tuple(m.name for m in movers))
+        return base + fixed, movers + moving
+    return base, movers
+
+
+def _inner(
+    name: str, count: int, x: tuple[float, float], y: tuple[float, float], bottom: float, how: Case, doors: tuple[str, ...]
+) -> tuple[list[Piece], list[Mover]]:
+    """Return drawers behind doors, under a board of their own: narrower than the cell, so that they pass the open doors."""
+    inside = (x[0] + 0.022, x[1] - 0.022)
+    face = y[0] + 0.03
+    style = replace(how.style, panel="slab", handle="none", finish=how.body, thickness=0.016)
+    made = []
+    for j in range(count):
+        low = bottom + j * (INNER + GAP)
+        rect = Rect(inside, (low + GAP, low + INNER - 0.03), face)
+        made.append(drawer(f"{name}_inner_{j}", rect, style, (inside, (low, low + INNER), y[1]), how.body, after=doors))
+    top = bottom + count * (INNER + GAP)
+    return list(pieces(f"{name}_inner_top", box(x, (face, y[1]), (top, top + 0.016)), how.body)), made
+
+
+def _sliding(
+    name: str, cell: Cell, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], rect: Rect, how: Case
+) -> tuple[list[Piece], list[Mover]]:
+    """Return one or two pairs of leaves on two tracks before an interior of uprights, shelves and hat shelves."""
+    style = cell.panel or how.style
+    rear = rect.y + style.thickness + TRACK
+    inside = (rear + style.thickness + 0.012, y[1])
+    pairs = 2 if rect.width > 2.3 else 1
+    half, lap = rect.width / pairs, 0.035
+    wide = (half + lap) / 2
+    base: list[Piece] = []
+    movers: list[Mover] = []
+    cuts = [x[0]]
+    for p in range(pairs):
+        start = rect.x[0] + p * half + (GAP / 2 if p else 0.0)
+        for i in (0, 1):
+            low = start + i * (wide - lap)
+            ahead = i == p  # the outer leaves run in front
+            leaf = Rect((low, low + wide - (GAP / 2 if pairs > 1 else 0.0)), rect.z, rect.y if ahead else rear)
+            movers.append(sliding_door(f"{name}_leaf_{2 * p + i}", leaf, style, 1.0 if i == 0 else -1.0, wide - lap))
+        cuts += [start + wide - lap / 2, start + half]
+    cuts[-1] = x[1]
+    for i, (low, high) in enumerate(itertools.pairwise(cuts)):
+        ends = (low + (0.009 if i else 0.0), high - (0.009 if i < len(cuts) - 2 else 0.0))
+        if i:
+            base += pieces(f"{name}_upright_{i}", box((low - 0.009, low + 0.009), inside, z), how.body)
+        shelf = z[1] - 0.3
+        base += pieces(f"{name}_{i}_board_0", box(ends, inside, (shelf, shelf + 0.018)), how.body)
+        for j in range(cell.shelves if i % 2 else 0):
+            level = z[0] + (shelf - z[0]) * (j + 1) / (cell.shelves + 1)
+            base += pieces(f"{name}_plank_{i}_{j}", box(ends, inside, (level, level + 0.016)), how.body)
     return base, movers
 
 
@@ -185,8 +250,11 @@ def feet(kind: Feet, x: tuple[float, float], y: tuple[float, float], height: flo
         side = 0.018 if height > 0.08 else 0.025
         solids = [beam((cx, cy, 0), (cx, cy, height), 2 * side, 2 * side, 0.75) for cx, cy in corners]
     elif kind == "hairpin":
-        for cx, cy in corners:
-            solids += [rod((cx + s * 0.003, cy, 0), (cx + s * 0.03, cy, height), 0.006, 0.006, 6) for s in (-1, 1)]
+        made: tuple[Piece, ...] = ()
+        for k, (cx, cy) in enumerate(corners):
+            pair = [rod((cx + s * 0.003, cy, 0), (cx + s * 0.03, cy, height), 0.006, 0.006, 6) for s in (-1, 1)]
+            made += pieces("feet", pair, finish, group=f"foot_{k}")
+        return made
     else:  # sled: two closed frames of square tube
         t = 0.012
         for cx in (x[0] + inset, x[1] - inset):

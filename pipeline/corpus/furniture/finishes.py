@@ -29,7 +29,7 @@ class Finish:
 class Scheme:
     """The finishes of one model: `body` carcass and frames, `front` doors and drawers, `accent` legs and handles, `soft` covers.
 
-    `second` is a darker or lighter cover for throw pillows and seats, `handle` metal parts; `material` is 3D-FUTURE's word.
+    `second` is a darker or lighter cover for throw pillows and seats, `handle` metal parts; `material` is 3D-FUTURE's word, `style` its style.
     """
 
     body: Finish
@@ -39,6 +39,7 @@ class Scheme:
     soft: Finish
     second: Finish
     material: str
+    style: str = "Modern"
 
 
 WOODS: Mapping[str, Color] = {
@@ -163,4 +164,4 @@ def scheme(rng: np.random.Generator, style: str) -> Scheme:
     if second.name == soft.name:
         second = replace(second, name=f"{second.name}_2", color=shade(rng, second.color, 0.5))
     accent = tube if rng.random() < 0.45 else timber
-    return Scheme(body, front, accent, tube, soft, second, material)
+    return Scheme(body, front, accent, tube, soft, second, material, style)

@@ -27,6 +27,16 @@ class Component:
         """Path of its OBJ file in the object's folder."""
         return f"textured_objs/original-{self.number}.obj"
 
+    @property
+    def collides_as_seen(self) -> bool:
+        """Whether its own mesh serves collisions: no piece of it belongs to a group."""
+        return not any(piece.group for piece in self.pieces)
+
+    @property
+    def collision_file(self) -> str:
+        """Path of the OBJ file that it collides by."""
+        return self.file if self.collides_as_seen else f"textured_objs/convex-{self.number}.obj"
+
 
 @dataclass(frozen=True, slots=True)
 class LinkRecord:
@@ -77,9 +87,13 @@ def link_records(shape: Shape, frame: Frame) -> list[LinkRecord]:
 
 def _components(parts: tuple[Piece, ...], first: int) -> tuple[Component, ...]:
     """Group pieces into mesh files: each handle by itself, the rest by what it is made of."""
+    finishes: dict[str, Finish] = {}
+    for piece in parts:  # what collides as one lies in one file, named by the finish that it shows most of
+        finishes.setdefault(piece.group, piece.finish)
     groups: dict[tuple[str, Finish | str], list[Piece]] = {}
     for piece in parts:
-        groups.setdefault((piece.part, piece.name if piece.part else piece.finish), []).append(piece)
+        key = piece.name if piece.part else finishes[piece.group] if piece.group else piece.finish
+        groups.setdefault((piece.part, key), []).append(piece)
     return tuple(Component(first + k, found[0].name, part, tuple(found)) for k, ((part, _), found) in enumerate(groups.items()))
 
 

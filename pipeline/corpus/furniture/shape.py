@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -10,25 +10,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.finishes import Finish
-from pipeline.corpus.furniture.solids import Solid, Vector
+from pipeline.corpus.furniture.solids import Solid, Vector, box, hull
 
 Axis3 = tuple[float, float, float]
 FRONT: Axis3 = (0.0, -1.0, 0.0)
 UP: Axis3 = (0.0, 0.0, 1.0)
 CLEARANCE = 5e-5  # [m]
+BOXY = 0.97  # share of its box that a hull fills before the box stands for it
 
 
 @dataclass(frozen=True, slots=True)
 class Piece:
     """One convex solid of a component: pieces of one `name` on one body belong together (a panel, a handle).
 
-    `part` is a GAPartNet class where the component is a fixed handle, else "".
+    `part` is a GAPartNet class where the component is a fixed handle, else "". Pieces of one body with the same `group`
+    collide as one convex solid, their hull: a panelled door as a board, a handle as a bar; "" collides by itself.
     """
 
     name: str
     solid: Solid
     finish: Finish
     part: str = ""
+    group: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +40,7 @@ class Mover:
 
     `axis` (unit) and `origin` [m] in the object frame at rest; motion goes from `lower` <= 0 to `upper` >= 0 [rad or m] and
     positive opens. `outward` is the direction its face looks at rest (GAPartNet's z axis).
+    `after` names the movers that must be open before this one can move: a rack waits for the door before it.
     """
 
     name: str
@@ -50,6 +54,7 @@ class Mover:
     outward: Axis3 = FRONT
     parent: str = "base"
     lower: float = 0.0
+    after: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +76,43 @@ class Shape:
         return np.stack([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])
 
 
-def pieces(name: str, solids: Solid | Iterable[Solid], finish: Finish, part: str = "") -> tuple[Piece, ...]:
+def pieces(name: str, solids: Solid | Iterable[Solid], finish: Finish, part: str = "", group: str = "") -> tuple[Piece, ...]:
     """Return the pieces of one component."""
     if isinstance(solids, Solid):
-        return (Piece(name, solids, finish, part),)
-    return tuple(Piece(name, solid, finish, part) for solid in solids)
+        return (Piece(name, solids, finish, part, group),)
+    return tuple(Piece(name, solid, finish, part, group) for solid in solids)
+
+
+def grouped(parts: Iterable[Piece], group: str) -> tuple[Piece, ...]:
+    """Return the pieces, all colliding as one convex solid."""
+    return tuple(replace(piece, group=group) for piece in parts)
+
+
+def staves(name: str, solids: Sequence[Solid], finish: Finish, part: str = "", each: int = 3) -> tuple[Piece, ...]:
+    """Return the staves of a round wall, `each` neighbours of which collide as one: finer to see than to touch."""
+    return tuple(Piece(name, solid, finish, part, f"{name}_{k // each}") for k, solid in enumerate(solids))
+
+
+def colliders(parts: Iterable[Piece]) -> list[Solid]:
+    """Return the convex solids that the pieces of one body collide by: each piece, or the hull of each group.
+
+    A hull that nearly fills its box is that box: bevels need no corners of their own.
+    """
+    alone: list[Solid] = []
+    groups: dict[str, list[Solid]] = {}
+    for piece in parts:
+        (groups.setdefault(piece.group, []) if piece.group else alone).append(piece.solid)
+    return alone + [_hull_or_box(members) for members in groups.values()]
+
+
+def _hull_or_box(members: list[Solid]) -> Solid:
+    if len(members) == 1:
+        return members[0]
+    made = hull(np.concatenate([s.vertices for s in members]))
+    low, high = made.bounds()
+    if made.volume() > BOXY * float(np.prod(high - low)):
+        return box(*((float(a), float(b)) for a, b in zip(low, high, strict=True)))  # type: ignore[arg-type]
+    return made
 
 
 def fitted(shape: Shape, size: Vector) -> Shape:
@@ -132,6 +169,7 @@ def moved(shape: Shape, offset: Vector, prefix: str = "") -> Shape:
             pieces=place(m.pieces),
             origin=(m.origin[0] + dx, m.origin[1] + dy, m.origin[2] + dz),
             parent=m.parent if m.parent == "base" else prefix + m.parent,
+            after=tuple(prefix + name for name in m.after),
         )
         for m in shape.movers
     )

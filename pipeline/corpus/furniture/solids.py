@@ -25,6 +25,11 @@ class Solid:
         """Return the faces cut into fans of triangles (F, 3)."""
         return np.array([(f[0], f[i], f[i + 1]) for f in self.faces for i in range(1, len(f) - 1)], np.int32)
 
+    def volume(self) -> float:
+        """Return the volume [m3], by signed tetrahedra."""
+        a, b, c = (self.vertices[self.triangles()[:, k]] for k in range(3))
+        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+
     def bounds(self) -> NDArray[np.float64]:
         """Return the lower and upper corner (2, 3)."""
         return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,12 +22,27 @@ def pick(rng: np.random.Generator, words: str) -> str:
     return str(rng.choice(words.split()))
 
 
-def front_style(
-    rng: np.random.Generator, scheme: Scheme, panels: str = "slab slab shaker", handles: str = "bar flat knob edge"
-) -> FrontStyle:
-    """Draw how the fronts of a model look."""
-    panel: PanelStyle = pick(rng, panels)  # type: ignore[assignment]
-    handle: HandleStyle = pick(rng, handles)  # type: ignore[assignment]
+# What fronts and handles each style reaches for.
+FRONT_TASTES: Mapping[str, tuple[str, str]] = {
+    "Modern": ("slab slab slab reeded", "bar long groove flat edge"),
+    "Nordic": ("slab slab cane slats", "knob flat edge groove"),
+    "Minimalist": ("slab", "groove none edge groove"),
+    "Light Luxury": ("slab reeded slab raised", "long bar flat knob"),
+    "Industrial": ("slab shaker slab", "cup bar flat cup"),
+    "Japanese": ("slats reeded slab slab", "edge groove knob"),
+    "American Country": ("shaker raised shaker", "cup knob cup knob"),
+    "New Chinese": ("shaker slab raised slats", "ring ring bar"),
+    "Vintage/Retro": ("cane slab reeded slab", "knob ring cup edge"),
+    "Mediterranean": ("slats raised shaker", "knob ring cup"),
+}
+ANY_TASTE = ("slab slab shaker", "bar flat knob edge")
+
+
+def front_style(rng: np.random.Generator, scheme: Scheme, panels: str = "", handles: str = "") -> FrontStyle:
+    """Draw how the fronts of a model look: as its style has it, unless `panels` or `handles` are named."""
+    by_style = FRONT_TASTES.get(scheme.style, ANY_TASTE)
+    panel: PanelStyle = pick(rng, panels or by_style[0])  # type: ignore[assignment]
+    handle: HandleStyle = pick(rng, handles or by_style[1])  # type: ignore[assignment]
     return FrontStyle(panel, handle, scheme.front, scheme.handle)
 
 
@@ -64,15 +79,22 @@ def nightstand(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
 
 
 def wardrobe(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Columns of paired doors with a rail and a hat shelf behind, over drawers or beside open shelves."""
-    style = front_style(rng, scheme, "slab slab shaker slats dark_glass", "bar flat edge bar knob")
+    """Build columns of doors with a rail behind, over drawers or beside shelves, or sliding doors on two tracks."""
+    style = front_style(rng, scheme)
     how = replace(case_style(rng, scheme, style, "plinth plinth square none", (0.08, 0.12)), board=0.02)
+    if form in ("sliding", "sliding_mirror"):
+        return _sliding_wardrobe(rng, form, size, scheme, how)
     count = max(1, round(size[0] / 0.95))
-    doors: tuple[Cell, ...] = (Cell("pair", 3.6, 1),)
+    inner = int(rng.integers(2, 4)) if form == "inner_drawers" else 0
+    doors: tuple[Cell, ...] = (Cell("pair", 3.6, 1, inner=inner),)
+    if form == "top_boxes" and size[2] > 2.0:
+        doors = (Cell("pair", 0.7), Cell("pair", 3.0, 1))
     if form == "doors_drawers":
-        row = tuple(Cell("drawer", 0.42) for _ in range(int(rng.integers(1, 3))))
-        doors = (*doors, *row)
+        doors = (*doors, *(Cell("drawer", 0.42) for _ in range(int(rng.integers(1, 3)))))
     columns = [Column(1.0, doors) for _ in range(count)]
+    if form == "mirror":
+        mirror = replace(style, panel="mirror", handle="knob" if style.handle == "knob" else "edge")
+        columns[count // 2] = Column(1.0, (replace(doors[0], panel=mirror), *doors[1:]))
     if form == "doors_open" and size[0] > 1.2:
         shelves = Column(0.45, (Cell("open", 1.0, 3), Cell("drawer", 0.3), Cell("drawer", 0.3)))
         columns.insert(int(rng.integers(0, 2)) * len(columns), shelves)
@@ -82,26 +104,43 @@ def wardrobe(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     return Shape(shape.base + _rails(shape, scheme), shape.movers)
 
 
+def _sliding_wardrobe(rng: np.random.Generator, form: str, size: Size, scheme: Scheme, how: Case) -> Shape:
+    """Build leaves that pass each other between the sides, plain or with mirrors."""
+    looks = replace(how.style, panel="mirror" if form == "sliding_mirror" else how.style.panel, handle="none", thickness=0.022)
+    if looks.panel in ("raised", "slats"):
+        looks = replace(looks, panel="slab")
+    how = replace(how, style=looks, inset=True, overhang=0.0, feet="plinth", feet_height=0.05, feet_finish=scheme.body)
+    shape = case(size, [Column(1.0, (Cell("slide", 1.0, int(rng.integers(2, 5))),))], how)
+    return Shape(shape.base + _rails(shape, scheme), shape.movers)
+
+
 def _rails(shape: Shape, scheme: Scheme) -> tuple[Piece, ...]:
     """Return a hanging rail under every hat shelf."""
     made: list[Piece] = []
     for piece in shape.base:
         if piece.name.endswith("_board_0"):
             low, high = piece.solid.bounds()
-            if high[0] - low[0] > 0.5:
-                y, z = (low[1] + high[1]) / 2, low[2] + (0.55 if high[2] < 1.4 else -0.06)
+            if high[0] - low[0] > 0.35 and high[2] > 1.4:
+                y, z = (low[1] + high[1]) / 2, low[2] - 0.06
                 made += pieces(f"{piece.name}_rail", rod((low[0] + 1e-3, y, z), (high[0] - 1e-3, y, z), 0.012), scheme.handle)
     return tuple(made)
 
 
 def cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a chest: a grid of drawers, drawers over doors, or doors."""
+    """Build a chest: a grid of drawers, wide or small, a tallboy, drawers over doors, or doors."""
     style = front_style(rng, scheme)
     how = case_style(rng, scheme, style, "tapered square sled plinth", (0.08, 0.18))
     inner = size[2] - how.feet_height
     count = max(1, min(3, round(size[0] / 0.55)))
     rows = max(2, min(6, round(inner / 0.22)))
-    if form == "drawers":
+    if form == "tallboy":
+        count = 1
+        columns = [Column(1, tuple(Cell("drawer", 0.75 if k == 0 else 1.0) for k in range(rows)))]
+    elif form == "apothecary":
+        count = max(2, min(4, round(size[0] / 0.3)))
+        rows = max(2, min(4, round(inner / 0.24)))
+        columns = [Column(1, tuple(Cell("drawer") for _ in range(rows)))] * count
+    elif form == "drawers":
         columns = [Column(1, tuple(Cell("drawer") for _ in range(rows))) for _ in range(count)]
         if rows >= 4 and count >= 2:  # a row of small drawers on top of wide ones
             columns = [Column(1, tuple(Cell("drawer", 0.7 if k == 0 else 1.0) for k in range(rows)))] * count
@@ -144,8 +183,8 @@ def children_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Sc
 
 
 def sideboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a low row of doors, doors around drawers, or a console on tall legs; tall ones carry a glazed hutch."""
-    style = front_style(rng, scheme, "slab shaker slats slab")
+    """Build a low row of doors, hinged or sliding, doors around drawers, or a console; tall ones carry a glazed hutch."""
+    style = front_style(rng, scheme)
     w, _, h = size
     count = max(2, min(4, round(w / 0.5)))
     if form == "console" and h < 1.15:
@@ -157,6 +196,11 @@ def sideboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
         upper, lower = Cell("pair", 1.3, 2, glass), Cell("pair", 0.8, 1)
         return case(size, [Column(1, (upper, Cell("drawer", 0.25), lower)) for _ in range(max(1, round(w / 0.8)))], how)
     columns = [Column(1, (Cell("left" if i < count / 2 else "right", 1, 1),)) for i in range(count)]
+    if form == "sliding" and not how.inset:
+        how = replace(how, inset=True, overhang=0.0)
+    if form == "sliding":
+        looks = replace(style, handle="none", panel="slab" if style.panel in ("raised", "slats") else style.panel)
+        return case(size, [Column(1, (Cell("slide", 1, 1),))], replace(how, style=looks))
     if form == "mixed":
         rows = max(2, round((h - how.feet_height) / 0.2))
         columns[count // 2] = Column(1.1, tuple(Cell("drawer") for _ in range(rows)))
@@ -164,8 +208,8 @@ def sideboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
 
 
 def tv_stand(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a long low case of drawers, doors or both around an open middle."""
-    style = front_style(rng, scheme, "slab slab shaker slats")
+    """Build a long low case of drawers, doors, flaps under open shelves, or drawers and doors around an open middle."""
+    style = front_style(rng, scheme)
     w, _, h = size
     how = case_style(rng, scheme, style, "tapered sled square plinth", (0.06, min(0.18, 0.35 * h)))
     count = max(2, min(4, round(w / 0.58)))
@@ -175,6 +219,8 @@ def tv_stand(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
         columns = [Column(1, drawers)] * count
     elif form == "doors":
         columns = [Column(1, (Cell("left" if i < count / 2 else "right", 1, rows - 1),)) for i in range(count)]
+    elif form == "flaps":
+        columns = [Column(1, (Cell("open", 0.45), Cell("flap", 1.0)))] * count
     else:
         columns = [Column(1, drawers), Column(1.3, (Cell("open", 1, 1),)), Column(1, (Cell("right", 1, 0),))]
         if count == 4:
@@ -203,8 +249,9 @@ def wine_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         for k in range(min(6, int((high[0] - low[0]) / 0.105))):
             x, z = low[0] + 0.06 + 0.105 * k, high[2] + 0.041
             start = low[1] + 0.03
-            made += pieces("bottles", [rod((x, start, z), (x, start + 0.08, z), 0.014, n=8)], bottle)
-            made += pieces("bottles", [rod((x, start + 0.08, z), (x, min(start + 0.28, high[1] - 0.005), z), 0.038, n=10)], bottle)
+            name = f"bottle_{board.name}_{k}"
+            made += pieces(name, rod((x, start, z), (x, start + 0.08, z), 0.014, n=8), bottle, group=name)
+            made += pieces(name, rod((x, start + 0.08, z), (x, min(start + 0.28, high[1] - 0.005), z), 0.038, n=10), bottle, group=name)
     return Shape(shape.base + tuple(made), shape.movers)
 
 

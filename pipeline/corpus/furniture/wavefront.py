@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.shape import Piece
+from pipeline.corpus.furniture.solids import Solid
 from pipeline.corpus.furniture.texture import Atlas, normals, srgb
 
 
@@ -85,6 +86,15 @@ def text(groups: Sequence[Group], library: str, sheet: Atlas | None = None) -> T
             uv_base += len(uv_of)
     header = f"mtllib {library}\n"
     return Text(header, np.concatenate(positions), "".join(uv_lines) + "".join(normal_lines) + "".join(face_lines))
+
+
+def bare(name: str, solids: Sequence[Solid]) -> Text:
+    """Return convex solids as OBJ text without normals or materials: what a link collides by."""
+    lines, base = [f"g {name}\n"], 1
+    for solid in solids:
+        lines += [f"f {a + base} {b + base} {c + base}\n" for a, b, c in solid.triangles().tolist()]
+        base += len(solid.vertices)
+    return Text("", np.concatenate([mesh_frame(s.vertices) for s in solids]), "".join(lines))
 
 
 def material_name(finish: Finish, number: int) -> str:
