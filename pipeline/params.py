@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import json
 import math
+import re
 import types
 import typing
 from collections.abc import Mapping
@@ -47,6 +49,24 @@ def read(path: Path, preset: str | None = None) -> Tree:
         msg = f"unknown preset {name!r} in {path}"
         raise ContentError(msg, f"use one of {', '.join(presets)}")
     return merge(tree, presets[name] or {}, f"presets.{name}")
+
+
+def rewritten(text: str, changes: Mapping[tuple[str, str], str | None]) -> str:
+    """Return params.yaml's text with other values for keys (section, key) of its sections; comments and order stay.
+
+    Raises ContentError for a key that does not stand in a line of its own there.
+    """
+    lines = text.splitlines(keepends=True)
+    for (name, key), value in changes.items():
+        start = next((i for i, line in enumerate(lines) if re.match(rf"{name}:(\s|$)", line)), len(lines))
+        end = next((i for i in range(start + 1, len(lines)) if re.match(r"[^\s#]", lines[i])), len(lines))
+        spot = next((i for i in range(start + 1, end) if re.match(rf"  {key}:(\s|$)", lines[i])), None)
+        if spot is None:
+            raise ContentError(f"params.yaml: key {name}.{key} has no line", "restore it with `git checkout params.yaml`")
+        comment = re.search(r"\s#\s.*$", lines[spot].rstrip("\n"))
+        said = "null" if value is None else value if re.fullmatch(r"[\w./][\w./-]*", value) else json.dumps(value, ensure_ascii=False)
+        lines[spot] = f"  {key}: {said}{comment.group() if comment else ''}\n"
+    return "".join(lines)
 
 
 def merge(base: Tree, over: Mapping[str, Any], where: str) -> Tree:

@@ -102,15 +102,25 @@ def verify(
 
 
 @app.command()
-def doctor() -> None:
-    """Say what is installed, what is made, what is missing, and the command that makes it.
+def doctor(
+    use: Annotated[
+        list[Path] | None,
+        typer.Option(help="Folder of 3D-FRONT + 3D-FUTURE, or of PartNet objects, to train on from now on; may be given twice."),
+    ] = None,
+) -> None:
+    """Say what is installed, what is made, what is missing, and the command that makes it; or take real copies of the data into use.
 
     \b
     Example:
       sfgen doctor
+      sfgen doctor --use /data/3d-front --use /data/partnet-mobility
+      sfgen doctor --use embedded
     """
     root = factory_root()
-    stage("doctor").main(root)
+    if use:
+        stage("adopt").main(root, use)
+    else:
+        stage("doctor").main(root)
 
 
 @app.callback(invoke_without_command=True)

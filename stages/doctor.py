@@ -10,24 +10,13 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from pipeline import params
+from pipeline.sources.recognition import front_at, partnet_at
+from pipeline.sources.settings import PreprocessSettings
 from stages.runner import run
 
 # (package, what it is for): what the factory cannot do without, then what some commands want
-NEEDED = (
-    "numpy",
-    "pyarrow",
-    "torch",
-    "scipy",
-    "trimesh",
-    "shapely",
-    "usd-core",
-    "numba",
-    "pydantic",
-    "safetensors",
-    "dask",
-    "distributed",
-    "dvc",
-)
+NEEDED = ("numpy", "pyarrow", "torch", "scipy", "trimesh", "shapely", "usd-core", "numba", "pydantic", "safetensors", "dask", "distributed", "dvc")  # fmt: skip
 WANTED = (("mitsuba", "path-traced views"), ("mujoco", "tests in a physics engine"))
 
 # (path, what it is, the command that makes it), in the order in which the stages make them
@@ -45,7 +34,7 @@ MADE = (
 
 def main(root: Path) -> None:
     """Print one line per thing; `-` marks what is missing."""
-    for line in [*machine(), *packages(), *made(root)]:
+    for line in [*machine(), *packages(), *sources(root), *made(root)]:
         sys.stdout.write(f"{line}\n")
 
 
@@ -84,6 +73,21 @@ def packages() -> Iterator[str]:
     for name, use in WANTED:
         version = installed(name)
         yield f"+ {name} {version}" if version else f"- {name} is not installed ({use}); pip install -c constraints.txt -e '.[render,dev]'"
+
+
+def sources(root: Path) -> Iterator[str]:
+    """Yield what lies in the folders that stage `preprocess` reads."""
+    settings = params.section(PreprocessSettings, params.read(root / "params.yaml"), "preprocess")
+    for key, path in (("front", settings.front), ("partnet", settings.partnet)):
+        if path is None:
+            yield f"+ {key}: none, by params.yaml"
+        elif not (root / path).is_dir():
+            yield f"- {key}: {path} is missing; `dvc repro corpus` makes the embedded data, `sfgen doctor --use PATH` names yours"
+        else:
+            try:
+                yield f"+ {key}: {front_at(root / path) if key == 'front' else partnet_at(root / path)}"
+            except OSError as error:
+                yield f"- {key}: {path} cannot be read ({error})"
 
 
 def made(root: Path) -> Iterator[str]:

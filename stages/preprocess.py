@@ -16,10 +16,11 @@ from tqdm import tqdm
 
 from pipeline import params, tables
 from pipeline.errors import ContentError
-from pipeline.sources import batch
+from pipeline.sources import batch, inventory
 from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
 from pipeline.sources.front_house import HouseRows
 from pipeline.sources.reasons import Row
+from pipeline.sources.recognition import front_at, partnet_at
 from pipeline.sources.settings import PreprocessSettings
 from schemas.assets import ASSET_JOINTS, ASSETS
 from schemas.objects import OBJECTS
@@ -74,8 +75,10 @@ def folder(root: Path, key: str, path: str, parts: Iterable[str]) -> Path:
     found = root / path
     for part in (found, *(found / p for p in parts)):
         if not part.is_dir():
-            remedy = f"set preprocess.{key} in params.yaml to the folder of the data, or run `dvc repro corpus`"
-            raise ContentError(f"{part} is {'no folder' if part.exists() else 'missing'}", remedy)
+            remedy = "name the folder of the data with `sfgen doctor --use PATH`, or make the embedded corpus with `dvc repro corpus`"
+            raise ContentError(f"preprocess.{key}: {part} is {'no folder' if part.exists() else 'missing'}", remedy)
+    if not found.resolve().is_relative_to((root / "data" / "raw").resolve()):  # what stage corpus made is DVC's to watch
+        inventory.require_match(root / inventory.FOLDER / f"{key}.csv", front_at(found) if key == "front" else partnet_at(found))
     return found
 
 

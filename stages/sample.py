@@ -12,6 +12,7 @@ from pipeline.homes.drafts import draft_rows
 from pipeline.homes.factory import HomeDraft, open_factory
 from pipeline.homes.request import Request
 from pipeline.homes.settings import DatasetSettings, requests_of
+from pipeline.manifest import write_json
 from schemas.objects import OBJECTS
 from schemas.openings import OPENINGS
 from schemas.rejects import REJECTS
@@ -29,14 +30,19 @@ def main(root: Path) -> None:
     jobs = [(number, asked[start : start + chunk]) for number, start in enumerate(range(0, len(asked), chunk))]
     done = map_shards(partial(draft, root, tree["seed"]), jobs, workers=min(os.cpu_count() or 1, len(jobs)))
     parts = dict(track(done, len(jobs), "sample", unit="chunk"))
-    rows = draft_rows([home for number, _ in jobs for home in parts[number]], tree["seed"], open_factory(root, tree["seed"]).library)
+    rows = draft_rows([home for number, _ in jobs for home in parts[number][0]], tree["seed"], open_factory(root, tree["seed"]).library)
     for table in (SCENES, ROOMS, OPENINGS, OBJECTS, REJECTS):
         tables.write(root / "data" / "samples" / f"{table.name}.parquet", table, rows[table.name])
+    spent = {part: sum(seconds[part] for _, seconds in parts.values()) for part in ("plan", "sample")}
+    costs = {f"cpu_seconds_per_home_first_{part}": round(value / len(asked), 4) for part, value in spent.items()}
+    write_json(root / "metrics" / "sampling.json", costs)
 
 
-def draft(root: Path, seed: int, requests: tuple[Request, ...]) -> list[HomeDraft]:
-    """Draft one chunk of homes: the step that workers run."""
-    return open_factory(root, seed).first_drafts(requests)
+def draft(root: Path, seed: int, requests: tuple[Request, ...]) -> tuple[list[HomeDraft], dict[str, float]]:
+    """Draft one chunk of homes: the step that workers run. Returns them with the CPU seconds of each part."""
+    factory = open_factory(root, seed)
+    factory.seconds.clear()
+    return factory.first_drafts(requests), dict(factory.seconds)
 
 
 if __name__ == "__main__":

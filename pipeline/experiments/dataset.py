@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pipeline import tables
+from pipeline.entities.reason import Reason
+from pipeline.homes import reasons as homes
 from pipeline.homes.rows import Row
+from pipeline.sources import reasons as sources
 from schemas.rejects import REJECTS
 from schemas.rooms import ROOMS
 from schemas.scenes import SCENES
@@ -35,14 +38,31 @@ def dataset_figures(folder: Path) -> dict[str, Any]:
     }
 
 
-def reject_counts(root: Path) -> list[tuple[str, str, str, int]]:
-    """Return (stage, what, reason, count) of everything that was left out, repaired or tried again."""
-    places = [("preprocess", root / "data" / "tables" / "rejects.parquet")]
-    places += [("postopt", path) for path in sorted((root / "data" / "shards" / "rejects").glob("*.parquet"))]
-    counts: Counter[tuple[str, str, str]] = Counter()
-    for stage, path in places:
-        counts.update((stage, row["what"], row["reason"]) for row in tables.read(path, REJECTS))
-    return [(*key, count) for key, count in sorted(counts.items())]
+@dataclass(frozen=True, slots=True)
+class RejectCount:
+    """How often a stage gave a reason to a kind of thing, what that means, and the first case."""
+
+    stage: str
+    what: str
+    code: str
+    reason: Reason
+    count: int
+    example: str
+
+
+def reject_counts(root: Path) -> list[RejectCount]:
+    """Count everything that was left out, repaired or tried again, by stage, kind of thing and reason."""
+    places = [("preprocess", sources.REASONS, [root / "data" / "tables" / "rejects.parquet"])]
+    places += [("postopt", homes.REASONS, sorted((root / "data" / "shards" / "rejects").glob("*.parquet")))]
+    found = []
+    for stage, known, paths in places:
+        cases: dict[tuple[str, str], list[Row]] = {}
+        for row in (row for path in paths for row in tables.read(path, REJECTS)):
+            cases.setdefault((row["what"], row["reason"]), []).append(row)
+        for (what, code), rows in sorted(cases.items()):
+            example = ": ".join(filter(None, (rows[0]["where"], rows[0]["detail"])))
+            found.append(RejectCount(stage, what, code, known[code], len(rows), example))
+    return found
 
 
 def _mean(rows: list[Row], name: str) -> float:

@@ -14,6 +14,7 @@ from pipeline import tables
 from pipeline.entities.home import Home
 from pipeline.errors import SfgenError
 from pipeline.execution import map_shards
+from pipeline.experiments.dataset import RejectCount
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.rows import homes_of
@@ -31,7 +32,7 @@ SHOWN = 24  # top views on the page
 
 
 def write_report(
-    root: Path, figures: Mapping[str, Any], rejects: Sequence[tuple[str, str, str, int]], factory: Factory, settings: MetricsSettings
+    root: Path, figures: Mapping[str, Any], rejects: Sequence[RejectCount], factory: Factory, settings: MetricsSettings
 ) -> None:
     """Write report/index.html with its pictures, from the figures and the dataset of this checkout."""
     folder = root / "report"
@@ -47,16 +48,23 @@ def write_report(
     )
     chapters = [
         Section("Views", [missing] if missing else [], pictures=gallery, wide=True),
-        sections.dataset_section(figures["dataset"], _json(root / "metrics" / "timing.json"), views),
+        sections.dataset_section(
+            figures["dataset"], _json(root / "metrics" / "sampling.json") | _json(root / "metrics" / "timing.json"), views
+        ),
         sections.plan_section(figures["plan"]),
         sections.quantity_section(figures["quantity"], rates["quantity"]),
         sections.articulation_section(figures["articulation"], figures["ablation"]),
         sections.walkable_section(figures["walkable"], rates["walkable"]),
         sections.category_section(figures["category"]),
         sections.training_section(_json(root / "metrics" / "encode.json"), _json(root / "metrics" / "train.json"), loss),
-        sections.reject_section(rejects),
+        sections.reject_section([_told(r) for r in rejects]),
     ]
     write_bytes(folder / "index.html", render("Homes for robots", LEAD, chapters).encode())
+
+
+def _told(reject: RejectCount) -> list[str]:
+    reason = reject.reason
+    return [reject.stage, reject.what, reject.code, reason.effect, str(reject.count), reason.doc, reject.example[:90]]
 
 
 def dataset_homes(root: Path) -> list[Home]:

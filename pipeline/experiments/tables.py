@@ -21,22 +21,22 @@ Json = dict[str, Any]
 def conditions(settings: MetricsSettings) -> list[Condition]:
     """Return every condition that the tables need, by name."""
     made = [
-        Condition("plain", quantity=False, articulation="none"),
+        Condition("plain", articulation="none"),
         Condition("guided"),
         Condition("heuristic", articulation="heuristic", finished=False),
     ]
     for n in settings.counts:
         made += [
             Condition(f"count_{n}", count=n),
-            Condition(f"count_{n}_plain", count=n, quantity=False, articulation="none", finished=False),
+            Condition(f"count_{n}_plain", count=n, articulation="none", finished=False),
         ]
     made += [Condition(f"walkable_{tau:.2f}", walkable=tau) for tau in settings.taus]
     made += [
-        Condition(ALL_PLAIN, quantity=False, articulation="none", finished=False),
+        Condition(ALL_PLAIN, articulation="none", finished=False),
         Condition(ALL_GUIDED, finished=False),
     ]
     middle = settings.taus[len(settings.taus) // 2]
-    made.append(Condition("plain_walkable", quantity=False, articulation="none", walkable=middle))
+    made.append(Condition("plain_walkable", articulation="none", walkable=middle))
     return made
 
 

@@ -20,10 +20,9 @@ from pipeline.verify import verify_home
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What is asked of each room, and which guidance acts. `finished`: whether rooms are taken to the end as well."""
+    """What is asked of each room, and what guides: nothing at all with articulation "none". `finished`: whether rooms are taken to the end."""
 
     name: str
-    quantity: bool = True
     articulation: Articulation = "joints"
     count: int | None = None
     walkable: float | None = None
@@ -45,12 +44,10 @@ class Trial:
 
 def trial(factory: Factory, jobs: Sequence[RoomJob], condition: Condition) -> Trial:
     """Run one condition over rooms. Same rooms, same noise in every condition: only what is named differs."""
-    settings = replace(factory.sampler.settings, quantity=condition.quantity, articulation=condition.articulation)
-    if not condition.quantity:
-        settings = replace(settings, count_condition=False)
-    if condition.articulation == "none":
-        settings = replace(settings, snap_below=0)
-    made = replace(factory, sampler=replace(factory.sampler, settings=settings))
+    sampler = factory.sampler.unguided()
+    if condition.articulation != "none":
+        sampler = replace(factory.sampler, settings=replace(factory.sampler.settings, articulation=condition.articulation))
+    made = replace(factory, sampler=sampler)
     asked = [replace(job, count=condition.count, walkable=condition.walkable) for job in jobs]
     drafts = made.draft(asked)
     drafted = _rows(factory, [(draft, draft.placements) for draft in drafts])

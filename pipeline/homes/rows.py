@@ -11,6 +11,7 @@ from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Opening, Plan, Room, Swing
 from pipeline.homes.finish import RoomResult
+from pipeline.homes.reasons import REASONS
 from pipeline.homes.request import layout_type
 from pipeline.manifest import sha256
 from pipeline.taxonomy import Taxonomy
@@ -147,8 +148,9 @@ def _by_scene(rows: Iterable[Row]) -> dict[str, list[Row]]:
 
 
 def reject_row(scene_id: str, room_id: str, attempt: int, reject: tuple[str, str, str]) -> Row:
-    """Return a rejects row of one try: `reject` is (what, reason code, detail)."""
+    """Return a rejects row of one try: `reject` is (what, reason code, detail). Raises KeyError for a code that REASONS lacks."""
     what, reason, detail = reject
+    REASONS[reason]  # a typo must not reach the table
     where = f"{scene_id}/{room_id}" if room_id else scene_id
     return {"what": what, "where": f"{where}#{attempt}", "reason": reason, "detail": detail}
 

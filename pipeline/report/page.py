@@ -11,7 +11,7 @@ body{font:16px/1.5 system-ui,sans-serif;max-width:1080px;margin:2rem auto;paddin
 h1{font-size:1.9rem;margin:0 0 .3rem}h2{margin:2.4rem 0 .6rem;border-bottom:1px solid #d9dee5;padding-bottom:.2rem}
 table{border-collapse:collapse;margin:.8rem 0}caption{text-align:left;color:#5a6675;padding:.2rem 0;font-size:.92rem}
 th,td{padding:.28rem .8rem;border-bottom:1px solid #e6eaef;text-align:right;font-variant-numeric:tabular-nums}
-th:first-child,td:first-child{text-align:left}th{background:#f4f6f9}
+th:first-child,td:first-child,td.words,th.words{text-align:left}th{background:#f4f6f9}
 .pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(320px,1fr));gap:14px}
 .pictures.wide{grid-template-columns:repeat(auto-fill,minmax(480px,1fr))}
 figure{margin:0}img{width:100%;border:1px solid #e0e4ea;border-radius:6px}
@@ -70,6 +70,11 @@ def _section(section: Section) -> str:
 
 
 def _table(table: TableView) -> str:
-    head = "".join(f"<th>{escape(cell)}</th>" for cell in table.header)
-    rows = "".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in table.rows)
+    # columns of words read from the left, columns of figures stand under each other
+    words = [bool(table.rows) and all(row[k][:1].isalpha() for row in table.rows if row[k]) for k in range(len(table.header))]
+    kinds = [' class="words"' if w else "" for w in words]
+    head = "".join(f"<th{kind}>{escape(cell)}</th>" for kind, cell in zip(kinds, table.header, strict=True))
+    rows = "".join(
+        "<tr>" + "".join(f"<td{kind}>{escape(cell)}</td>" for kind, cell in zip(kinds, row, strict=True)) + "</tr>" for row in table.rows
+    )
     return f"<table><caption>{escape(table.caption)}</caption><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"

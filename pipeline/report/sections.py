@@ -21,7 +21,7 @@ def share(value: Mapping[str, Any] | None) -> str:
 def dataset_section(dataset: Json, timing: Json, pictures: Sequence[Picture]) -> Section:
     """Return what was made, and what it cost."""
     rows = [[name.replace("_", " "), f"{value:.4g}" if isinstance(value, float) else str(value)] for name, value in dataset.items()]
-    cost = [[name.removeprefix("cpu_seconds_per_home_"), f"{value:.3f}"] for name, value in timing.items()]
+    cost = [[name.removeprefix("cpu_seconds_per_home_").replace("_", " "), f"{value:.3f}"] for name, value in timing.items()]
     return Section(
         "The dataset",
         ["Every home below was judged: no collisions, every joint moves through its whole range, every room can be entered."],
@@ -133,7 +133,8 @@ def training_section(encode: Json, train: Json, pictures: Sequence[Picture]) -> 
     return Section("Models", [], [TableView("Shape encoder and layout denoiser", ("figure", "value"), rows)], pictures)
 
 
-def reject_section(rows: Sequence[tuple[str, str, str, int]]) -> Section:
-    """Return how often each reason code was given: nothing is dropped silently."""
-    shown = [[where, what, reason, str(count)] for where, what, reason, count in rows]
-    return Section("Rejects", ["docs/reasons.md explains every code."], [TableView("Counts", ("where", "what", "reason", "count"), shown)])
+def reject_section(rows: Sequence[Sequence[str]]) -> Section:
+    """Return what was left out, repaired or tried again: stage, kind of thing, reason, effect, count, meaning, first case."""
+    header = ("stage", "what", "reason", "effect", "count", "meaning", "for instance")
+    text = ["Nothing is dropped or changed silently; docs/reasons.md lists all codes. One home may be tried several times."]
+    return Section("Rejects", text, [TableView("Counts", header, rows)])

@@ -2,23 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
+from pipeline.entities.reason import Reason
 from pipeline.errors import ContentError
 
 Row = dict[str, Any]
-Effect = Literal["quarantined", "dropped", "repaired"]
-
-
-@dataclass(frozen=True, slots=True)
-class Reason:
-    """One code: which kinds of thing it strikes, what becomes of them, and what it means."""
-
-    what: str
-    effect: Effect
-    doc: str
-
 
 # A quarantined file or folder is not used at all; a dropped thing is missing from the tables, the rest of its file is
 # used; a repaired thing is in the tables, and the row says what was changed.

@@ -1,7 +1,7 @@
 """A factory whose layout model is a few rules: it shows everything around the net without training one."""
 
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +49,9 @@ class Rules:
     seed: int = 0
     settings: SampleSettings = field(default_factory=SampleSettings)
     slots: int = 24
+
+    def unguided(self):
+        return replace(self, settings=replace(self.settings, quantity=False, articulation="none"))
 
     def sample_rooms(self, rooms, keys):
         return [self._room(room, key) for room, key in zip(rooms, keys, strict=True)]

@@ -1,0 +1,26 @@
+"""Why something was left out, exchanged or tried again while homes were made: the reason codes of `rejects`."""
+
+from __future__ import annotations
+
+from pipeline.entities.reason import Reason
+
+REASONS: dict[str, Reason] = {
+    "no_asset": Reason("object", "dropped", "retrieval has nothing of that category"),
+    "exchanged_for_floor": Reason("object", "repaired", "a smaller asset takes its place, so that more floor is free (paper, algorithm 2)"),
+    "shrunk_to_fit": Reason(
+        "object", "repaired", "a smaller asset takes its place, for there was no free place for the one that was asked for"
+    ),
+    "unplaceable": Reason("object", "dropped", "no free place in the room"),
+    "outside_room": Reason("object", "dropped", "reaches beyond the walls"),
+    "collision": Reason("object, home", "dropped", "in another object; the smaller of the two goes (of a home: the home is tried again)"),
+    "unsupported": Reason("object, home", "dropped", "floats, or sticks through the ceiling"),
+    "blocks_joint": Reason("object", "dropped", "a door, drawer or lid stops at it"),
+    "blocks_way": Reason("object", "dropped", "nobody could enter the room for it"),
+    "count_missed": Reason("room", "tried again", "not the number of objects that was asked for"),
+    "walkable_missed": Reason("room", "tried again", "less free floor than was asked for"),
+    "lacks_essential": Reason("room", "tried again", "without what makes the room: a bedroom without a bed"),
+    "too_few_left": Reason("room", "tried again", "too many of its objects had to go"),
+    "joint_blocked": Reason("home", "tried again", "a joint does not move through its range"),
+    "out_of_reach": Reason("home", "tried again", "fewer openable objects can be opened than the policy asks for"),
+    "room_cut_off": Reason("home", "tried again", "a room cannot be reached from the entrance"),
+}

@@ -1,0 +1,121 @@
+"""Which of the known sources lie in a folder, however the archives were unpacked."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from pipeline.errors import ContentError, UsageError
+from pipeline.sources.batch import HOUSES, MODELS, partnet_objects
+from pipeline.sources.partnet import URDFS
+
+TEXTURES = "3D-FRONT-texture"
+LEVELS = 2  # folders below the named one in which 3D-FRONT is looked for
+HOUSE_NAME = re.compile(r"^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}\.json$")  # houses of 3D-FRONT are named by a uuid4
+LICENCES = {"front": "LicenseRef-3D-FRONT-3D-FUTURE", "partnet": "LicenseRef-PartNet-Mobility"}
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """One source as params.yaml names it: `root` the folder, `parts` what of it is read, `counts` what lies there, `lacks` what does not."""
+
+    key: Literal["front", "partnet"]
+    root: Path
+    parts: tuple[str, ...]
+    counts: tuple[tuple[str, int], ...]
+    lacks: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        """Say what was found."""
+        found = ", ".join(f"{count} {what}" for what, count in self.counts)
+        return f"{self.root}: {found}" + (f"; without {', '.join(self.lacks)}" if self.lacks else "")
+
+
+def recognised(path: Path) -> list[Source]:
+    """Return the sources that lie in `path`, or around it when it is a part of one.
+
+    Raises UsageError for a path that is missing or no folder, ContentError when nothing that is known lies there, or
+    only half of it.
+    """
+    if not path.is_dir():
+        raise UsageError(f"{path} is {'no folder' if path.exists() else 'missing'}", "give the folder that the data was unpacked to")
+    root = path.resolve()
+    try:
+        found = [source for source in (_front(root), _partnet(root)) if source]
+    except PermissionError as error:
+        raise ContentError(f"{error.filename} cannot be read", "give yourself the right to read it") from error
+    if not found:
+        expected = f"{HOUSES}/*.json beside {MODELS}/model_info.json, or folders of PartNet-Mobility or GAPartNet objects"
+        raise ContentError(f"{path} holds no data set that is known here", f"it should hold {expected}")
+    return found
+
+
+def front_at(root: Path) -> Source:
+    """Describe a folder that holds 3D-FRONT and 3D-FUTURE-model side by side."""
+    houses = sum(1 for p in (root / HOUSES).glob("*.json"))
+    models = sum(1 for p in (root / MODELS).iterdir() if p.is_dir())
+    textures = sum(1 for p in (root / TEXTURES).iterdir() if p.is_dir()) if (root / TEXTURES).is_dir() else 0
+    counts = (("houses", houses), ("models", models), *((("textures", textures),) if textures else ()))
+    lacks = () if textures else (f"{TEXTURES} (optional: walls and floors)",)
+    return Source("front", root, (HOUSES, MODELS), counts, lacks)
+
+
+def partnet_at(root: Path) -> Source:
+    """Describe a folder below which objects with a URDF lie."""
+    names = partnet_objects(root)
+    recut = sum((root / name / URDFS[0][0]).is_file() for name in names)
+    return Source("partnet", root, tuple(names), (("objects", len(names)), ("of them with GAPartNet's parts", recut)))
+
+
+def _front(root: Path) -> Source | None:
+    halves: dict[str, Path] = {}
+    around = (root.parent,) if root.name in {HOUSES, MODELS, TEXTURES} else ()
+    for folder in (root, *_below(root, LEVELS), *around):
+        has_houses, has_models = _has_houses(folder / HOUSES), (folder / MODELS / "model_info.json").is_file()
+        if has_houses and has_models:
+            return front_at(folder)
+        if folder not in around:
+            halves |= ({HOUSES: folder} if has_houses else {}) | ({MODELS: folder} if has_models else {})
+    if (root / "model_info.json").is_file():
+        halves[MODELS] = root.parent
+    elif any(HOUSE_NAME.match(p.name) for p in root.glob("*.json")):
+        halves[HOUSES] = root.parent
+    if halves:
+        (name, folder), lacking = next(iter(halves.items())), (MODELS if HOUSES in halves else HOUSES)
+        if len(halves) == 2:
+            raise ContentError(
+                f"{HOUSES} lies in {halves[HOUSES]}, {MODELS} in {halves[MODELS]}", "put both into one folder, by a link if need be"
+            )
+        raise ContentError(f"{folder} holds {name} but no {lacking}", f"put {lacking} beside it: objects cannot be read without both")
+    return None
+
+
+def _has_houses(folder: Path) -> bool:
+    return folder.is_dir() and any(folder.glob("*.json"))
+
+
+def _is_object(folder: Path) -> bool:
+    return (folder / "meta.json").is_file() or any((folder / name).is_file() for name, _ in URDFS)
+
+
+def _partnet(root: Path) -> Source | None:
+    if _is_object(root):  # one object of a set: the set is meant
+        root = root.parent
+    names = partnet_objects(root)
+    if not names:
+        return None
+    base = root
+    while all("/" in name for name in names) and len({name.split("/", 1)[0] for name in names}) == 1:
+        base, names = base / names[0].split("/", 1)[0], [name.split("/", 1)[1] for name in names]
+    return partnet_at(base)
+
+
+def _below(root: Path, levels: int) -> Iterator[Path]:
+    """Yield the folders below, the nearest first; not those of single models or objects."""
+    layer = [root]
+    for _ in range(levels):
+        layer = [p for folder in layer if folder.name not in {HOUSES, MODELS, TEXTURES} for p in sorted(folder.iterdir()) if p.is_dir()]
+        yield from layer

@@ -1,0 +1,77 @@
+import json
+
+import pytest
+
+from pipeline.errors import ContentError, UsageError
+from pipeline.sources.recognition import recognised
+
+HOUSE = "3D-FRONT/0a1b2c3d-0000-4000-8000-0123456789ab.json"
+INFO = "3D-FUTURE-model/model_info.json"
+
+
+def make(root, *files):
+    for name in files:
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(json.dumps({}))
+    return root
+
+
+def front(root):
+    return make(root, HOUSE, INFO, "3D-FUTURE-model/m1/raw_model.obj")
+
+
+def partnet(root):
+    return make(root, "100/mobility.urdf", "100/meta.json", "200/mobility.urdf", "200/mobility_annotation_gapartnet.urdf")
+
+
+def test_front_is_found_where_archives_leave_it(tmp_path):
+    root = front(tmp_path / "downloads" / "unpacked")
+    (tmp_path / "downloads" / "other").mkdir()
+    for path in (root, root / "3D-FRONT", root / "3D-FUTURE-model", tmp_path / "downloads"):
+        (found,) = recognised(path)
+        assert (found.key, found.root) == ("front", root)
+        assert dict(found.counts) == {"houses": 1, "models": 1}
+        assert "3D-FRONT-texture" in found.lacks[0]
+
+
+def test_objects_are_found_and_counted(tmp_path):
+    root = partnet(tmp_path / "a" / "dataset")
+    for path in (root, tmp_path / "a", root / "100"):
+        (found,) = recognised(path)
+        assert (found.key, found.root, found.parts) == ("partnet", root, ("100", "200"))
+        assert dict(found.counts) == {"objects": 2, "of them with GAPartNet's parts": 1}
+
+
+def test_both_may_lie_in_one_folder(tmp_path):
+    front(tmp_path)
+    partnet(tmp_path / "gapartnet")
+    assert {s.key: s.root for s in recognised(tmp_path)} == {"front": tmp_path, "partnet": tmp_path / "gapartnet"}
+
+
+@pytest.mark.parametrize(("files", "path", "said"), [
+    ((HOUSE,), ".", "no 3D-FUTURE-model"),
+    ((HOUSE,), "3D-FRONT", "no 3D-FUTURE-model"),
+    ((INFO,), "3D-FUTURE-model", "no 3D-FRONT"),
+    (("x/" + HOUSE, "y/" + INFO), ".", "one folder"),
+    (("notes/readme.json",), ".", "known here"),
+    (("notes/readme.json",), "notes", "known here"),
+])  # fmt: skip
+def test_half_a_source_or_none_is_said(tmp_path, files, path, said):
+    make(tmp_path, *files)
+    with pytest.raises(ContentError) as error:
+        recognised(tmp_path / path)
+    assert said in str(error.value)
+
+
+def test_a_neighbour_is_not_taken_for_the_folder_that_was_named(tmp_path):
+    front(tmp_path)
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(ContentError, match="known here"):
+        recognised(tmp_path / "empty")
+
+
+def test_a_path_that_is_no_folder_is_a_usage_error(tmp_path):
+    make(tmp_path, "file.zip")
+    for path in (tmp_path / "file.zip", tmp_path / "nowhere"):
+        with pytest.raises(UsageError):
+            recognised(path)
