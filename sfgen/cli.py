@@ -70,20 +70,40 @@ def shard(
 
 @app.command()
 def plan(
-    prompt: Prompt,
+    prompt: Annotated[str, typer.Argument(help=PROMPT_HELP, show_default=False)] = "",
     seed: Seed = 0,
-    json: Annotated[Path | None, typer.Option(help="Write the plan here as JSON.")] = None,
+    json: Annotated[Path | None, typer.Option(help="Write the plan here as JSON; - is the terminal.")] = None,
     svg: Annotated[Path | None, typer.Option(help="Draw the plan here as SVG.")] = None,
     png: Annotated[Path | None, typer.Option(help="Draw the plan here as PNG.")] = None,
+    source: Annotated[Path | None, typer.Option("--from", help="A plan of your own instead of words: JSON, 3D-FRONT or ProcTHOR.")] = None,
+    house: Annotated[str | None, typer.Option(help="With --from FILE.jsonl: which house, a line from 0 or an id.")] = None,
+    prompts: Annotated[Path | None, typer.Option(help="With --score: a prompt a line, or YAML with ground truth.")] = None,
+    seeds: Annotated[int, typer.Option(min=1, max=1000, help="With --score: plans of each prompt.")] = 5,
+    score: Annotated[bool, typer.Option("--score", help="Plan every prompt of --prompts and print scores and seconds.")] = False,
+    schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of plan and program.")] = False,
 ) -> None:
-    """Turn words into a floor plan and show it.
+    """Turn words into a floor plan and show it; or check and show a plan of your own.
 
     \b
     Example:
       sfgen plan "three bedrooms, two bathrooms, a kitchen that is open to the living room" --svg plan.svg
+      sfgen plan --from my_plan.json --png plan.png
+      sfgen plan --prompts manifests/prompts/benchmark.yaml --seeds 5 --score
     """
+    given = [name for name, there in (("PROMPT", prompt), ("--from", source), ("--prompts", prompts), ("--schema", schema)) if there]
+    if len(given) != 1:
+        said = f"{' and '.join(given)} are given" if given else "no prompt is given"
+        raise Complaint(f"{said}; give one of PROMPT, --from FILE, --prompts FILE --score, --schema", 2)
+    if bool(prompts) != score:
+        raise Complaint("--prompts and --score go together; give both or neither", 2)
     root = factory_root()
-    stage("plan").main(root, prompt=prompt, seed=seed, json_path=json, svg_path=svg, png_path=png)
+    made = stage("plan")
+    if schema:
+        made.schema(root)
+    elif prompts:
+        made.score(root, prompts=prompts, seeds=seeds, json_path=json)
+    else:
+        made.main(root, prompt=prompt, seed=seed, source=source, house=house, json_path=json, svg_path=svg, png_path=png)
 
 
 @app.command()

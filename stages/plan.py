@@ -1,4 +1,4 @@
-"""`sfgen plan`: words → floor plan; drawn in the terminal, or written as JSON, SVG or PNG."""
+"""`sfgen plan`: words, or a plan of the user's own → floor plan; drawn in the terminal, or written as JSON, SVG or PNG."""
 
 from __future__ import annotations
 
@@ -8,38 +8,66 @@ from pathlib import Path
 
 from pipeline.entities.plan import Plan
 from pipeline.errors import RefusedError, UsageError
+from pipeline.experiments.prompts import measured, read_prompts, report
 from pipeline.floorplan import FloorProgram, plan_json, refusal_json, request, solve
+from pipeline.floorplan.document import document_schema
 from pipeline.floorplan.draw import png, svg, terminal
+from pipeline.floorplan.own import Repair, program_of, read_own
+from pipeline.homes.soundness import require_sound
 from pipeline.manifest import write_bytes, write_json
 
 STDOUT = "-"
 
 
 def main(
-    _root: Path,
+    root: Path,
     *,
-    prompt: str,
+    prompt: str = "",
     seed: int = 0,
+    source: Path | None = None,
+    house: str | None = None,
     json_path: Path | None = None,
     svg_path: Path | None = None,
     png_path: Path | None = None,
 ) -> None:
-    """Plan the prompt and show it. A refusal is written to the JSON file too, then raised."""
+    """Plan the prompt, or read the plan in `source`, and show it. A refusal is written to the JSON file too, then raised."""
     for path in (svg_path, png_path, json_path):
         _check_target(path)
+    repairs: tuple[Repair, ...] = ()
     try:
-        program = request(prompt)
-        plan = solve(program, seed)
+        if source is None:
+            program = request(prompt)
+            plan = solve(program, seed)
+        else:
+            own = read_own(source, house)
+            require_sound(root, own.plan)
+            program, plan, repairs = program_of(own.plan), own.plan, own.repairs
     except RefusedError as error:
         _write_json(json_path, refusal_json(error))
         raise
-    _write_json(json_path, plan_json(plan, program))
+    _write_json(json_path, plan_json(plan, program, [{"code": r.code, "where": r.where, "text": r.text} for r in repairs]))
     if svg_path is not None:
         write_bytes(svg_path, svg(plan).encode())
     if png_path is not None:
         write_bytes(png_path, png(plan))
     if json_path is None and svg_path is None and png_path is None:
         sys.stdout.write(show(plan, program))
+    if str(json_path) != STDOUT:
+        sys.stdout.write("".join(f"repaired: {r.where}: {r.text}\n" for r in repairs))
+
+
+def schema(_root: Path) -> None:
+    """Write the JSON Schema of the plan document, which holds that of the program."""
+    sys.stdout.write(json.dumps(document_schema(), indent=2) + "\n")
+
+
+def score(_root: Path, *, prompts: Path, seeds: int = 5, json_path: Path | None = None) -> None:
+    """Plan every prompt of a file with several seeds; print scores where there is ground truth, failures and seconds everywhere."""
+    _check_target(json_path)
+    found = measured(read_prompts(prompts), seeds)
+    _write_json(json_path, found)
+    if str(json_path) != STDOUT:
+        sys.stdout.write(report(found))
 
 
 def show(plan: Plan, program: FloorProgram) -> str:

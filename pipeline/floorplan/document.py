@@ -1,8 +1,12 @@
-"""The plan as a JSON document, and back. Metres to 0.1 mm, radians, m2; version 1."""
+"""The plan as a JSON document, and back. Lengths in metres to 1 mm, angles in radians, areas in m2; version 1.
+
+`document_schema` exports the format as JSON Schema; docs/floorplan.md describes it.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -12,9 +16,98 @@ from pipeline.errors import ContentError, RefusedError
 from pipeline.floorplan.program import FloorProgram
 
 VERSION = 1
+MM = 3  # decimals
+
+Point = tuple[float, float]
 
 
-def plan_json(plan: Plan, program: FloorProgram | None = None) -> dict[str, Any]:
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class RoomDocument(_Strict):
+    """A room between its inner wall faces. A staircase is one room with its lowest `level` and all `levels`."""
+
+    id: str
+    type: str
+    role: str = ""
+    level: Annotated[int, Field(ge=0, description="storey, from 0")] = 0
+    levels: list[int] = []
+    height: Annotated[float, Field(gt=0.0, description="floor to ceiling [m]")] = 2.7
+    area: Annotated[float, Field(gt=0.0, description="area of the polygon [m2]")]
+    polygon: Annotated[
+        list[Point],
+        Field(min_length=3, max_length=400, description="inner wall faces [m], counter-clockwise, not closed, no collinear vertex"),
+    ]
+
+
+class SwingDocument(_Strict):
+    """How a leaf turns: into `room`, about end `hinge` of the segment, by up to `angle` [rad]."""
+
+    room: str
+    hinge: Literal[0, 1]
+    angle: Annotated[float, Field(gt=0.0, le=3.15)]
+
+
+class OpeningDocument(_Strict):
+    """A hole in a wall; `rooms` are two, or one where the other side is outside."""
+
+    id: str
+    kind: OpeningKind
+    rooms: Annotated[list[str], Field(min_length=1, max_length=2)]
+    segment: Annotated[tuple[Point, Point], Field(description="the clear width on the wall's centre line [m]")]
+    width: Annotated[float, Field(gt=0.0, description="clear width [m]")]
+    height: Annotated[float, Field(gt=0.0, description="clear height [m]")]
+    sill: Annotated[float, Field(ge=0.0, description="its bottom above the floor [m]")] = 0.0
+    swing: SwingDocument | None = None
+    level: Annotated[int, Field(ge=0)] = 0
+
+
+class RepairDocument(_Strict):
+    """Something that was changed in a plan of the user's own."""
+
+    code: str
+    where: str
+    text: str
+
+
+class ClashDocument(_Strict):
+    """Words of the prompt, [start, end) in characters."""
+
+    text: str
+    start: int
+    end: int
+
+
+class RefusedDocument(_Strict):
+    """Why there is no plan."""
+
+    code: str
+    message: str
+    clashes: list[ClashDocument] = []
+
+
+class PlanDocument(_Strict):
+    """A floor plan, or why there is none: then `refused` is set and the lists are empty."""
+
+    version: Literal[1] = 1
+    rooms: list[RoomDocument]
+    openings: list[OpeningDocument]
+    entrance: Annotated[str | None, Field(description="the id of the room that one enters")]
+    inner_wall: Annotated[float | None, Field(description="thickness [m]")] = None
+    outer_wall: Annotated[float | None, Field(description="thickness [m]")] = None
+    storey_height: Annotated[float | None, Field(description="floor to floor [m]")] = None
+    program: FloorProgram | None = None
+    repairs: list[RepairDocument] = []
+    refused: RefusedDocument | None = None
+
+
+def document_schema() -> dict[str, Any]:
+    """Return the JSON Schema of the document, that of the program included."""
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **PlanDocument.model_json_schema()}
+
+
+def plan_json(plan: Plan, program: FloorProgram | None = None, repairs: Sequence[Mapping[str, str]] = ()) -> dict[str, Any]:
     """Return the plan as the documented, versioned JSON object."""
     stairs = {r.room_id for r in plan.rooms if r.type == "staircase"}
     top = max((r.level for r in plan.rooms), default=0)
@@ -26,10 +119,10 @@ def plan_json(plan: Plan, program: FloorProgram | None = None) -> dict[str, Any]
                 "type": r.type,
                 "role": r.role,
                 "level": r.level,
-                "levels": list(range(top + 1)) if r.room_id in stairs else [r.level],
-                "height": r.height,
+                "levels": list(range(r.level, top + 1)) if r.room_id in stairs else [r.level],
+                "height": round(r.height, MM),
                 "area": round(r.area, 4),
-                "polygon": np.round(r.polygon, 4).tolist(),
+                "polygon": _rounded(r.polygon),
             }
             for r in plan.rooms
         ],
@@ -38,81 +131,50 @@ def plan_json(plan: Plan, program: FloorProgram | None = None) -> dict[str, Any]
                 "id": o.opening_id,
                 "kind": o.kind,
                 "rooms": list(o.rooms),
-                "segment": np.round(o.segment, 4).tolist(),
-                "width": round(o.width, 4),
-                "height": o.height,
-                "sill": o.sill,
+                "segment": _rounded(o.segment),
+                "width": round(o.width, MM),
+                "height": round(o.height, MM),
+                "sill": round(o.sill, MM),
                 "swing": None if o.swing is None else {"room": o.swing.room_id, "hinge": o.swing.hinge, "angle": o.swing.angle},
                 "level": o.level,
             }
             for o in plan.openings
         ],
         "entrance": plan.entrance,
-        "inner_wall": plan.inner_wall,
-        "outer_wall": plan.outer_wall,
-        "storey_height": plan.storey_height,
+        "inner_wall": round(plan.inner_wall, MM),
+        "outer_wall": round(plan.outer_wall, MM),
+        "storey_height": round(plan.storey_height, MM),
         "program": None if program is None else program.model_dump(mode="json"),
+        "repairs": [dict(r) for r in repairs],
         "refused": None,
     }
+
+
+def _rounded(points: np.ndarray[Any, np.dtype[np.float64]]) -> list[list[float]]:
+    return (np.round(points, MM) + 0.0).tolist()  # type: ignore[no-any-return]
 
 
 def refusal_json(error: RefusedError) -> dict[str, Any]:
     """Return the document that stands for a plan that was refused."""
     clashes = [{"text": c.text, "start": c.start, "end": c.end} for c in getattr(error, "clashes", ())]
-    refused = {"code": "refused", "message": str(error), "clashes": clashes}
-    return {"version": VERSION, "rooms": [], "openings": [], "entrance": None, "program": None, "refused": refused}
-
-
-class _Loose(BaseModel):
-    model_config = ConfigDict(extra="ignore", frozen=True, allow_inf_nan=False)
-
-
-class _Room(_Loose):
-    id: str
-    type: str
-    polygon: list[tuple[float, float]] = Field(min_length=3, max_length=400)
-    role: str = ""
-    level: int = 0
-    height: float = 2.7
-
-
-class _Swing(_Loose):
-    room: str
-    hinge: int = Field(ge=0, le=1)
-    angle: float = Field(gt=0.0, le=3.15)
-
-
-class _Opening(_Loose):
-    id: str
-    kind: OpeningKind
-    rooms: list[str] = Field(min_length=1, max_length=2)
-    segment: tuple[tuple[float, float], tuple[float, float]]
-    height: float
-    sill: float = 0.0
-    swing: _Swing | None = None
-    level: int = 0
-
-
-class _Document(_Loose):
-    version: int
-    rooms: list[_Room] = Field(min_length=1)
-    openings: list[_Opening]
-    entrance: str
-    inner_wall: float = 0.12
-    outer_wall: float = 0.24
-    storey_height: float = 3.0
+    refused = {"code": getattr(error, "code", "refused"), "message": str(error), "clashes": clashes}
+    empty = dict.fromkeys(("entrance", "inner_wall", "outer_wall", "storey_height", "program"))
+    return {"version": VERSION, "rooms": [], "openings": [], **empty, "repairs": [], "refused": refused}
 
 
 def plan_from_json(document: object) -> Plan:
-    """Return the plan of a document that `plan_json` made. Raises ContentError naming the field that is wrong."""
+    """Return the plan of a document that `plan_json` made. Raises ContentError naming the field that is wrong.
+
+    What others wrote goes through `pipeline.floorplan.own`, which checks that it can be built.
+    """
     try:
-        read = _Document.model_validate(document)
+        read = PlanDocument.model_validate(document)
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
         raise ContentError(f"plan document: {where}: {first['msg']}", "see docs/floorplan.md for the format") from error
-    if read.version != VERSION:
-        raise ContentError(f"plan document of version {read.version}", f"this sfgen reads version {VERSION}")
+    if not read.rooms or read.entrance is None:
+        raise ContentError("plan document without rooms or entrance", "see docs/floorplan.md for the format")
     names = {r.id for r in read.rooms}
     unknown = ({read.entrance} | {name for o in read.openings for name in o.rooms}) - names
     if unknown:
@@ -131,4 +193,4 @@ def plan_from_json(document: object) -> Plan:
         )
         for o in read.openings
     )
-    return Plan(rooms, openings, read.entrance, read.inner_wall, read.outer_wall, read.storey_height)
+    return Plan(rooms, openings, read.entrance, read.inner_wall or 0.12, read.outer_wall or 0.24, read.storey_height or 3.0)

@@ -55,7 +55,7 @@ def read_house(folder: Folder, file: str, models: Mapping[str, Model], taxonomy:
 def house_rows(house: HouseFile, models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, licence: str) -> HouseRows:
     """Turn a house's records into rows."""
     rows = HouseRows(rejects=list(house.rejects))
-    rooms = _rooms(house, taxonomy, limits, rows.rejects)
+    rooms = rooms_of(house, taxonomy, limits, rows.rejects)
     if not rooms:
         rows.rejects.append(reject("house", house.uid, "no_rooms"))
         return rows
@@ -64,7 +64,7 @@ def house_rows(house: HouseFile, models: Mapping[str, Model], taxonomy: Taxonomy
         rows.rejects.append(reject("house", house.uid, "no_objects"))
         return rows
     scene_id = slug("h", house.uid)
-    openings, walls = _openings(house, rooms, limits, rows.rejects)
+    openings, walls = openings_of(house, rooms, limits, rows.rejects)
     rows.rooms = [room_row(scene_id, house.uid, room, taxonomy) for room in rooms]
     for row, share in zip(rows.rooms, _walkable(rooms, openings), strict=True):
         row["walkable_free"] = share
@@ -80,7 +80,7 @@ def house_rows(house: HouseFile, models: Mapping[str, Model], taxonomy: Taxonomy
     return rows
 
 
-def _rooms(house: HouseFile, taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]) -> list[ReadRoom]:
+def rooms_of(house: HouseFile, taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]) -> list[ReadRoom]:
     """Return the rooms with a usable floor, in file order."""
     children = sum(len(record.children) for record in house.rooms)
     if len(house.rooms) > MAX_ROOMS or children > MAX_CHILDREN:
@@ -197,7 +197,7 @@ def _walkable(rooms: list[ReadRoom], openings: list[Opening]) -> list[float]:
     return walkable(plain, openings, [np.asarray(o.footprint().exterior.coords)[:4] for o in in_the_way])
 
 
-def _openings(
+def openings_of(
     house: HouseFile, rooms: list[ReadRoom], limits: FrontFilters, rejects: list[Row]
 ) -> tuple[list[Opening], tuple[float, float]]:
     """Return the openings, and the thickness of inner and outer walls as the reveals show it."""

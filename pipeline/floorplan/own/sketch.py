@@ -1,0 +1,101 @@
+"""A plan as its file has it: rings and openings that nobody has checked yet, and the repairs that are made on the way."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.plan import OpeningKind, Swing
+from pipeline.errors import RefusedError
+
+Floats = NDArray[np.float64]
+Faces = Literal["inner", "centre", ""]  # what polygons are: inner wall faces, walls' centre lines, or to be found out
+Where = Literal["all", "some", "none"]  # which doors the file states: all, as many as it knows, or it has no word of doors
+
+MAX_ROOMS, MAX_OPENINGS, MAX_CORNERS = 100, 1000, 400
+REMEDY = "see docs/floorplan.md for what a plan of your own must be"
+
+
+@dataclass(frozen=True, slots=True)
+class Repair:
+    """Something of the file that was changed: a short `code`, the room or opening, and what was done, in words."""
+
+    code: str
+    where: str
+    text: str
+
+
+@dataclass(slots=True)
+class SketchRoom:
+    """A room: `ring` (n, 2) in the file's unit, then in metres; `type` as the file spells it, then one of ours."""
+
+    room_id: str
+    type: str
+    ring: Floats
+    level: int = 0
+    height: float = 2.7
+    role: str = ""
+
+
+@dataclass(slots=True)
+class SketchOpening:
+    """An opening. `rooms` may be empty (whatever lies on both sides); `segment` (2, 2) or `at` (2,) or neither says where."""
+
+    opening_id: str
+    kind: OpeningKind
+    rooms: tuple[str, ...] = ()
+    segment: Floats | None = None
+    at: Floats | None = None
+    width: float | None = None
+    height: float | None = None
+    sill: float | None = None
+    swing: Swing | None = None
+    level: int = 0
+
+
+@dataclass(slots=True)
+class Sketch:
+    """A plan before it is checked. `inner_wall` and `outer_wall` [m] are None where the file does not say."""
+
+    rooms: list[SketchRoom]
+    openings: list[SketchOpening]
+    faces: Faces = ""
+    doors: Where = "all"
+    entrance: str = ""
+    inner_wall: float | None = None
+    outer_wall: float | None = None
+    storey_height: float | None = None
+    units: str = ""
+    repairs: list[Repair] = field(default_factory=list)
+
+    def repair(self, code: str, where: str, text: str) -> None:
+        """State a repair."""
+        self.repairs.append(Repair(code, where, text))
+
+
+def identifiers(names: list[str], fallback: str) -> list[str]:
+    """Return ids that may be a path or a prim's name, one per name and all different."""
+    made: list[str] = []
+    for number, name in enumerate(names):
+        plain = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")[:32] or f"{fallback}_{number}"
+        plain = plain if plain[0].isalpha() else f"{fallback}_{plain}"[:32]
+        wanted, k = plain, 2
+        while wanted in made:
+            wanted, k = f"{plain}_{k}", k + 1
+        made.append(wanted)
+    return made
+
+
+class OwnPlanError(RefusedError):
+    """A plan of the user's own that cannot be built."""
+
+    code = "own_plan"
+
+
+def refuse(message: str, remedy: str = REMEDY) -> OwnPlanError:
+    """Return the refusal of a plan that is well-formed and cannot be."""
+    return OwnPlanError(f"the plan cannot be built: {message}", remedy)
