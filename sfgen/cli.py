@@ -28,24 +28,28 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-Prompt = Annotated[str, typer.Argument(help=PROMPT_HELP, show_default=False)]
 Seed = Annotated[int, typer.Option(min=0, max=2**31 - 1, help=SEED_HELP)]
 
 
 @app.command()
 def generate(
-    prompt: Prompt,
+    prompt: Annotated[str, typer.Argument(help=PROMPT_HELP, show_default=False)] = "",
     out: Annotated[Path, typer.Option(help="New or empty folder for the home.")] = Path("home"),
     seed: Seed = 0,
+    plan: Annotated[Path | None, typer.Option(help="Furnish this plan of your own: JSON, 3D-FRONT or ProcTHOR.")] = None,
+    house: Annotated[str | None, typer.Option(help="With --plan FILE.jsonl: which house, a line from 0 or an id.")] = None,
 ) -> None:
-    """Make one home from words: USD, tables, plan and preview.
+    """Make one home from words, or in a plan of your own: USD, tables, plan and preview.
 
     \b
     Example:
       sfgen generate "a two-bedroom apartment with an open kitchen" --out home/
+      sfgen generate --plan my_plan.json --out home/
     """
+    if bool(prompt) == bool(plan):
+        raise Complaint(f"{'a prompt and --plan are' if prompt else 'no prompt is'} given; give PROMPT or --plan FILE", 2)
     root = factory_root()
-    stage("generate").main(root, prompt=prompt, out=out, seed=seed)
+    stage("generate").main(root, prompt=prompt, out=out, seed=seed, source=plan, house=house)
 
 
 @app.command()

@@ -1,4 +1,4 @@
-"""`sfgen generate`: one home from words, as a dataset of one with the assets that it uses."""
+"""`sfgen generate`: one home from words, or in a plan of the user's own, as a dataset of one with the assets that it uses."""
 
 from __future__ import annotations
 
@@ -8,35 +8,57 @@ from pathlib import Path
 
 from pipeline.entities.home import Home
 from pipeline.execution import single_thread
-from pipeline.floorplan import FloorProgram, plan_json, request
+from pipeline.floorplan import FloorProgram, describe, plan_json, request
 from pipeline.floorplan.draw import svg
+from pipeline.floorplan.own import program_of, read_own
 from pipeline.homes.factory import open_factory
 from pipeline.homes.request import Request
+from pipeline.homes.soundness import require_sound
 from pipeline.manifest import digest
 from pipeline.shards import Header, commit_library, commit_shard, gather, open_or_create, require_prompt
 
 
-def main(root: Path, *, prompt: str, out: Path, seed: int = 0) -> None:
-    """Make the home that `prompt` asks for in the folder `out`; a language model reads it where one is configured."""
-    asked = require_prompt(prompt)
-    program = request(asked)
+def main(root: Path, *, out: Path, prompt: str = "", seed: int = 0, source: Path | None = None, house: str | None = None) -> None:
+    """Make the home that `prompt` asks for, or the one of the plan in `source`, in the folder `out`.
+
+    A language model reads the prompt where one is configured.
+    """
+    program, wish, repairs = asked_in_words(prompt) if source is None else asked_by_plan(root, source, house)
     single_thread()
-    wish = Request(0, asked, program.model_dump_json(exclude_defaults=True))
     factory = open_factory(root, seed)
-    header = Header(seed, 1, factory.shard_size, factory.licence, {**factory.digests, "prompts": digest([asked, wish.program])})
+    told = digest([wish.prompt, wish.program, wish.plan])
+    header = Header(seed, 1, factory.shard_size, factory.licence, {**factory.digests, "prompts": told})
     (outcome,) = factory.make([wish])  # before the folder is touched: a request may yet be refused
     used = sorted({p.asset_id for p in outcome.home.placements})
     with open_or_create(out, header) as dataset:
         if dataset.missing():
             commit_library(dataset, lambda folder: factory.write_library(folder, used))
-            commit_shard(dataset, 0, gather(0, [(outcome.rows, {**outcome.files, **drawings(outcome.home, program)})]))
+            commit_shard(dataset, 0, gather(0, [(outcome.rows, {**outcome.files, **drawings(outcome.home, program, repairs)})]))
+    for repair in repairs:
+        sys.stdout.write(f"repaired: {repair['where']}: {repair['text']}\n")
     for file in sorted(p for p in out.glob("*/shard-00000/*") if p.is_file()):
         sys.stdout.write(f"{file}\n")
 
 
-def drawings(home: Home, program: FloorProgram) -> dict[str, bytes]:
+def asked_in_words(prompt: str) -> tuple[FloorProgram, Request, list[dict[str, str]]]:
+    """Return the program and the request of a prompt."""
+    asked = require_prompt(prompt)
+    program = request(asked)
+    return program, Request(0, asked, program.model_dump_json(exclude_defaults=True)), []
+
+
+def asked_by_plan(root: Path, source: Path, house: str | None) -> tuple[FloorProgram, Request, list[dict[str, str]]]:
+    """Return the program and the request of a plan of the user's own, and what was repaired in it."""
+    own = read_own(source, house)
+    require_sound(root, own.plan)
+    program = program_of(own.plan)
+    document = json.dumps(plan_json(own.plan))
+    return program, Request(0, describe(program), program.model_dump_json(exclude_defaults=True), document), own.repairs_json()
+
+
+def drawings(home: Home, program: FloorProgram, repairs: list[dict[str, str]]) -> dict[str, bytes]:
     """Return the home's floor plan as JSON and as a drawing."""
     return {
-        f"plans/{home.scene_id}.json": (json.dumps(plan_json(home.plan, program), indent=1) + "\n").encode(),
+        f"plans/{home.scene_id}.json": (json.dumps(plan_json(home.plan, program, repairs), indent=1) + "\n").encode(),
         f"plans/{home.scene_id}.svg": svg(home.plan).encode(),
     }

@@ -12,7 +12,7 @@ from pipeline.experiments.prompts import measured, read_prompts, report
 from pipeline.floorplan import FloorProgram, plan_json, refusal_json, request, solve
 from pipeline.floorplan.document import document_schema
 from pipeline.floorplan.draw import png, svg, terminal
-from pipeline.floorplan.own import Repair, program_of, read_own
+from pipeline.floorplan.own import program_of, read_own
 from pipeline.homes.soundness import require_sound
 from pipeline.manifest import write_bytes, write_json
 
@@ -33,7 +33,7 @@ def main(
     """Plan the prompt, or read the plan in `source`, and show it. A refusal is written to the JSON file too, then raised."""
     for path in (svg_path, png_path, json_path):
         _check_target(path)
-    repairs: tuple[Repair, ...] = ()
+    repairs: list[dict[str, str]] = []
     try:
         if source is None:
             program = request(prompt)
@@ -41,11 +41,11 @@ def main(
         else:
             own = read_own(source, house)
             require_sound(root, own.plan)
-            program, plan, repairs = program_of(own.plan), own.plan, own.repairs
+            program, plan, repairs = program_of(own.plan), own.plan, own.repairs_json()
     except RefusedError as error:
         _write_json(json_path, refusal_json(error))
         raise
-    _write_json(json_path, plan_json(plan, program, [{"code": r.code, "where": r.where, "text": r.text} for r in repairs]))
+    _write_json(json_path, plan_json(plan, program, repairs))
     if svg_path is not None:
         write_bytes(svg_path, svg(plan).encode())
     if png_path is not None:
@@ -53,7 +53,7 @@ def main(
     if json_path is None and svg_path is None and png_path is None:
         sys.stdout.write(show(plan, program))
     if str(json_path) != STDOUT:
-        sys.stdout.write("".join(f"repaired: {r.where}: {r.text}\n" for r in repairs))
+        sys.stdout.write("".join(f"repaired: {r['where']}: {r['text']}\n" for r in repairs))
 
 
 def schema(_root: Path) -> None:

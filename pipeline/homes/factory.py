@@ -7,6 +7,7 @@ again where they fail; the whole home is then judged, and what the judge faults 
 from __future__ import annotations
 
 import functools
+import json
 import os
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -131,8 +132,11 @@ class Factory:
             else:
                 program = floorplan.prior(seeds.generator(self.seed, "program", request.index))
                 prompt = floorplan.describe(program)
-            program = floorplan.complete(program)
-            solved = self._sound_plan(program, (request.index, attempt))
+            if request.plan:  # the user's own, which `check_sound` has seen
+                solved = floorplan.plan_from_json(json.loads(request.plan))
+            else:
+                program = floorplan.complete(program)
+                solved = self._sound_plan(program, (request.index, attempt))
         wishes = {room.id: (room.objects, room.walkable) for room in program.rooms}
         return prompt, program.model_dump_json(exclude_defaults=True), solved, self.jobs(solved, request.index, attempt, wishes)
 

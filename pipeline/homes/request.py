@@ -12,12 +12,14 @@ from pipeline.taxonomy import Taxonomy
 class Request:
     """One home: its index in the dataset, and the words that ask for it ("" draws a program from the prior).
 
-    `program` is the typed request as JSON where something else than the built-in parser has read the words.
+    `program` is the typed request as JSON where something else than the built-in parser has read the words; `plan` the floor
+    plan as its JSON document where the user has brought one, `program` then says what it is.
     """
 
     index: int
     prompt: str = ""
     program: str = ""
+    plan: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

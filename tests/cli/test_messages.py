@@ -1,5 +1,6 @@
 """The command line: fast, and whatever goes wrong is one line that names the thing and the remedy, with its exit code."""
 
+import json
 import os
 import re
 import resource
@@ -185,3 +186,60 @@ def test_a_reader_that_leaves_is_no_error(dataset_folder):
     command = f"{sys.executable} -m sfgen.cli doctor | true"
     answer = subprocess.run(["bash", "-c", f"{command}; exit ${{PIPESTATUS[0]}}"], cwd=ROOT, capture_output=True, text=True, check=False)
     assert answer.stderr == ""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["plan", "a flat", "--from", "x.json"], "PROMPT and --from are given"),
+        (["plan", "--prompts", "x.txt"], "--score"),
+        (["plan", "--score"], "no prompt"),
+        (["plan", "--from", "nowhere.json"], "nowhere.json is missing"),
+        (["plan", "--prompts", "nowhere.txt", "--score"], "nowhere.txt is missing"),
+        (["plan", "--from", __file__, "--house", "3"], "--house"),
+    ],
+)
+def test_ways_to_plan_exclude_each_other(sfgen, arguments, word):
+    code, out, err = sfgen(*arguments)
+    assert (code, out) == (2, "")
+    assert one_line(err), err
+    assert word in err
+
+
+def test_a_plan_of_ones_own(sfgen, tmp_path):
+    room = {"type": "studio_room", "polygon": [[0, 0], [5, 0], [5, 6], [0, 6]]}
+    (tmp_path / "plan.json").write_text(json.dumps({"rooms": [room]}))
+    code, out, err = sfgen("plan", "--from", "plan.json", "--json", "-")
+    assert (code, err) == (0, "")
+    assert [r["code"] for r in json.loads(out)["repairs"]] == ["entrance"]
+    code, out, err = sfgen("plan", "--from", "plan.json")
+    assert "repaired: studio_room: no door leads outside" in out
+    room["polygon"] = [[0, 0], [5, 6], [5, 0], [0, 6]]
+    (tmp_path / "plan.json").write_text(json.dumps({"rooms": [room]}))
+    code, out, err = sfgen("plan", "--from", "plan.json", "--json", "-")
+    assert code == 3
+    assert one_line(err)
+    assert json.loads(out)["refused"]["code"] == "own_plan"
+    (tmp_path / "plan.json").write_text('{"rooms": [')
+    code, _, err = sfgen("plan", "--from", "plan.json")
+    assert code == 1
+    assert one_line(err)
+
+
+def test_prompts_are_scored(sfgen, tmp_path):
+    (tmp_path / "p.txt").write_text("# two\na studio with a bathroom\n12 rooms in 20 m2\n")
+    code, out, err = sfgen("plan", "--prompts", "p.txt", "--score", "--seeds", "2", "--json", "-")
+    assert (code, err) == (0, "")
+    found = json.loads(out)
+    assert (found["plans"], found["failures"]) == (4, 2)
+    assert "node" not in found["mean"]
+    assert found["prompts"][0]["mean"]["seconds"] > 0
+    code, out, _ = sfgen("plan", "--prompts", "p.txt", "--score", "--seeds", "1")
+    assert code == 0
+    assert "seconds" in out
+
+
+def test_the_schema_is_printed(sfgen):
+    code, out, _ = sfgen("plan", "--schema")
+    assert code == 0
+    assert "FloorProgram" in json.loads(out)["$defs"]

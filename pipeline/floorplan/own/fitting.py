@@ -73,8 +73,9 @@ def _fit(sketch: Sketch, wish: SketchOpening, rooms: dict[str, Room], walls: Seq
         )
     if wish.segment is None and wish.at is None:
         stretch, low = _anywhere(wish, width, mine, placed)
+        width = stretch.length - 2 * EDGE if wish.kind == "open" and wish.width is None else width
     else:
-        stretch, low = _there(sketch, wish, width, mine)
+        stretch, low, width = _there(sketch, wish, width, mine)
     if wish.kind in {"door", "entrance", "window"} and len(stretch.rooms) == 2 and stretch.gap < TOUCH:
         raise refuse(
             f"{name} has no wall to stand in: {' and '.join(stretch.rooms)} touch",
@@ -121,8 +122,8 @@ def _anywhere(wish: SketchOpening, width: float, walls: Sequence[Stretch], place
     raise refuse(f"{wish.opening_id} is {width:.2f} m wide and its wall {longest.length:.2f} m, other openings included")
 
 
-def _there(sketch: Sketch, wish: SketchOpening, width: float, walls: Sequence[Stretch]) -> tuple[Stretch, float]:
-    """Return the nearest stretch to where the opening is stated, and its place on it."""
+def _there(sketch: Sketch, wish: SketchOpening, width: float, walls: Sequence[Stretch]) -> tuple[Stretch, float, float]:
+    """Return the nearest stretch to where the opening is stated, its place on it, and its width, which an open front may lose."""
     middle = wish.segment.mean(axis=0) if wish.segment is not None else wish.at
     assert middle is not None
     best: tuple[float, Stretch, float] | None = None
@@ -141,6 +142,10 @@ def _there(sketch: Sketch, wish: SketchOpening, width: float, walls: Sequence[St
         where = f" between {' and '.join(wish.rooms)}" if len(wish.rooms) == 2 else f" of {wish.rooms[0]}" if wish.rooms else ""
         raise refuse(f"{wish.opening_id} at {at} lies on no wall{where}")
     _, stretch, low = best
+    clear = stretch.length - 2 * EDGE
+    if wish.kind == "open" and clear < width <= clear + 2 * SLIDE:
+        sketch.repair("narrowed", wish.opening_id, f"{width:.2f} m wide between walls {clear:.2f} m apart: it takes all of these")
+        low, width = EDGE, clear
     if width > stretch.length - 2 * EDGE + 1e-6:
         raise refuse(f"{wish.opening_id} is {width:.2f} m wide and its wall {stretch.length:.2f} m")
     moved = float(np.clip(low, EDGE, stretch.length - width - EDGE))
@@ -150,7 +155,7 @@ def _there(sketch: Sketch, wish: SketchOpening, width: float, walls: Sequence[St
     shift = float(np.hypot(slide, abs(float((middle - stretch.start) @ stretch.left))))
     if shift > max(STATED, stretch.gap / 2 + 1e-3):  # on the wall's face is where many files have them
         sketch.repair("moved", wish.opening_id, f"moved {shift:.2f} m onto the wall of {' and '.join(stretch.rooms)}")
-    return stretch, moved
+    return stretch, moved, width
 
 
 def _free_place(stretch: Stretch, width: float, placed: Sequence[Fitted]) -> float | None:

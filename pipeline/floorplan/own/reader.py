@@ -217,15 +217,20 @@ def _join(sketch: Sketch, rooms: list[Room], walls: list[Stretch], fitted: list[
             pairs.sort(key=lambda s: (_rank(kinds[next(iter(set(s.rooms) & reached))]), -round(s.length, 3)))
             made = next((f for s in pairs if (f := put_door(_fresh("door", fitted), s.rooms, [s], fitted))), None)
         if made is None:
-            touching = {r for s in walls if len(s.rooms) == 2 for r in s.rooms}
-            alone = [r for r in lost if r not in touching]
-            if alone:
-                raise refuse(f"{', '.join(alone)} touches no other room", "rooms share walls at most 0.65 m thick")
-            if len({r.level for r in rooms}) > 1 and not any(r.type == "staircase" for r in rooms):
-                raise refuse("it has two storeys and no staircase", "add a room of type staircase on level 0 that goes through both")
+            _explain(rooms, walls, lost)
             raise refuse(f"there is no way from {entrance} to {', '.join(lost)}", "add doors between them")
         fitted.append(made)
         sketch.repair("door", made.opening.opening_id, f"no door leads to {' or '.join(set(made.opening.rooms) - reached)}: one is put")
+
+
+def _explain(rooms: list[Room], walls: list[Stretch], lost: list[str]) -> None:
+    """Refuse what is out of reach for a plainer reason than a missing door."""
+    if len({r.level for r in rooms}) > 1 and not any(r.type == "staircase" for r in rooms):
+        raise refuse("it has two storeys and no staircase", "add a room of type staircase on level 0 that goes through both")
+    beside = {r for s in walls if len(s.rooms) == 2 for r in s.rooms}
+    alone = [r for r in lost if r not in beside]
+    if alone:
+        raise refuse(f"{', '.join(alone)} touches no other room", "rooms share walls at most 0.65 m thick")
 
 
 def _rank(kind: str) -> int:
