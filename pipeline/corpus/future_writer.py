@@ -47,7 +47,7 @@ def write_model(model: Model, folder: Path) -> None:
     shape = shape_of(model)
     finishes = list(dict.fromkeys(piece.finish for piece in shape.pieces()))
     names = {finish: wavefront.material_name(finish, k) for k, finish in enumerate(finishes)}
-    sheet = texture.atlas(finishes)
+    sheet = texture.atlas(shape.pieces())
     groups = [
         wavefront.Group(f"solid_{k + 1:03d}", names[finish], tuple(p for p in shape.pieces() if p.finish == finish))
         for k, finish in enumerate(finishes)

@@ -33,6 +33,7 @@ KINDS: dict[str, float] = {
     "appliance": 450.0,
     "bath": 900.0,
     "lighting": 500.0,
+    "textile": 120.0,
     "other": 300.0,
 }
 DEFAULT = 500.0

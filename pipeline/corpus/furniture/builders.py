@@ -6,7 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from pipeline.corpus.furniture import appliances, bath, beds, decor, desks, kitchen, lamps, seating, shelves, sofas, storage, tables
+from pipeline.corpus.furniture import (
+    appliances, bath, beds, decor, desks, kitchen, lamps, seating, shelves, sofas, storage, tables, tableware, textiles, wall_decor,
+)  # fmt: skip
 from pipeline.corpus.furniture.finishes import Scheme
 from pipeline.corpus.furniture.shape import Shape
 
@@ -62,6 +64,20 @@ BUILDERS: Mapping[str, Builder] = {
     "l_shaped_sofa": sofas.l_shaped_sofa,
     "lazy_sofa": sofas.lazy_sofa,
     "chaise_longue_sofa": sofas.chaise_longue,
+    "rug": textiles.rug,
+    "curtain": textiles.curtain,
+    "pillow": textiles.cushion_pillow,
+    "table_lamp": lamps.table_lamp,
+    "cup": tableware.cup,
+    "plate": tableware.plate,
+    "bowl": tableware.bowl,
+    "vase": tableware.vase,
+    "book": tableware.book,
+    "book_stack": tableware.book_stack,
+    "basket": tableware.basket,
+    "picture": wall_decor.picture,
+    "mirror": wall_decor.mirror,
+    "clock": wall_decor.clock,
 }
 
 # 3D-FUTURE's word for the main material where it does not follow from the wood or lacquer; "soft": that of the cover.
@@ -75,6 +91,9 @@ SOFT = [
     "l_shaped_sofa",
     "lazy_sofa",
     "chaise_longue_sofa",
+    "rug",
+    "curtain",
+    "pillow",
 ]
 NEITHER = [
     "pendant_lamp",
@@ -91,5 +110,16 @@ NEITHER = [
     "shower",
     "trash_can",
     "plant",
+    "table_lamp",
+    "cup",
+    "plate",
+    "bowl",
+    "vase",
+    "book",
+    "book_stack",
+    "basket",
+    "picture",
+    "mirror",
+    "clock",
 ]
 MATERIALS: Mapping[str, str] = {**dict.fromkeys(SOFT, "soft"), **dict.fromkeys(NEITHER, "Others")}

@@ -11,7 +11,8 @@ import numpy as np
 
 from pipeline import seeds, taxonomy
 from pipeline.corpus.furniture import sizes
-from pipeline.corpus.furniture.lines import LINES, OTHER_SUPER_CATEGORY, STYLES, SUPER_CATEGORIES, Form, Line
+from pipeline.corpus.furniture.lines import LINES, OTHER_SUPER_CATEGORY, SUPER_CATEGORIES, Form, Line
+from pipeline.corpus.furniture.styles import MANNERS, SUITED
 from pipeline.entities.asset import Asset
 
 
@@ -69,7 +70,7 @@ class Catalogue:
 
 @functools.lru_cache(maxsize=8)
 def catalogue(seed: int, size: float = 1.0) -> Catalogue:
-    """Return the models of a seed. `size` scales their number: 1 gives about 170 static and 120 articulated ones."""
+    """Return the models of a seed. `size` scales their number: 1 gives more than 650 static and 350 articulated ones."""
     future: list[Model] = []
     partnet: list[Model] = []
     for category, line in LINES.items():
@@ -85,7 +86,7 @@ def _models(seed: int, category: str, line: Line, count: int, *, articulated: bo
     rng = seeds.generator(seed, "corpus.furniture", library, category)
     entry = taxonomy.load().categories[category]
     forms = _turns(rng, [f for f in line.forms if not (articulated and f.still)], count)
-    styles = rng.choice(list(STYLES), size=count, p=np.array(list(STYLES.values())) / sum(STYLES.values()))
+    styles = [_style(rng, f"{category}.{form.name}") for form in forms]
     boxes = sizes.draw(rng, sizes.load()[category], count, [form.round for form in forms])
     models = []
     for form, style, box in zip(forms, styles, boxes, strict=True):
@@ -93,6 +94,8 @@ def _models(seed: int, category: str, line: Line, count: int, *, articulated: bo
         kind = form if h >= form.least_height else line.forms[0]
         if kind.round:
             d = w
+        if kind.upright:
+            h = w
         models.append(
             Model(
                 model_id=str(uuid.UUID(bytes=rng.bytes(16), version=4)),
@@ -107,6 +110,13 @@ def _models(seed: int, category: str, line: Line, count: int, *, articulated: bo
             )
         )
     return models
+
+
+def _style(rng: np.random.Generator, form: str) -> str:
+    """Draw a style by its share, among those that suit the form."""
+    names = SUITED.get(form, tuple(MANNERS))
+    shares = np.array([MANNERS[name].share for name in names])
+    return str(rng.choice(names, p=shares / shares.sum()))
 
 
 def _turns(rng: np.random.Generator, forms: Sequence[Form], count: int) -> list[Form]:

@@ -8,13 +8,21 @@ from typing import Literal
 
 import numpy as np
 
-Pattern = Literal["grain", "weave", "plain", "speckle"]
+from pipeline.corpus.furniture.styles import MANNERS, Manner
+
+Pattern = Literal[
+    "plain", "grain", "weave", "speckle", "leather", "boucle", "velvet", "brushed", "concrete", "marble", "terrazzo", "stripe", "check", "floral",
+    "cane", "knit", "leaf", "rug_border", "rug_diamonds", "rug_stripes", "art_blocks", "art_hills", "art_circles", "art_lines", "dial",
+]  # fmt: skip
 Color = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
 class Finish:
-    """A surface: a preview material, its texture pattern, and the density [kg/m3] of what it covers (hollow parts: mean)."""
+    """A surface: a preview material, its texture pattern, and the density [kg/m3] of what it covers (hollow parts: mean).
+
+    A pattern goes from `color` to `second` where there is one, else it is lighter and darker than `color`.
+    """
 
     name: str
     color: Color
@@ -23,13 +31,15 @@ class Finish:
     opacity: float = 1.0
     pattern: Pattern = "plain"
     density: float = 650.0
+    second: Color | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Scheme:
     """The finishes of one model: `body` carcass and frames, `front` doors and drawers, `accent` legs and handles, `soft` covers.
 
-    `second` is a darker or lighter cover for throw pillows and seats, `handle` metal parts; `material` is 3D-FUTURE's word, `style` its style.
+    `second` is a darker or lighter cover for throw pillows and seats, `handle` metal parts, `timber` bare wood, `stone` what a
+    table's top is made of where it is not wood; `material` is 3D-FUTURE's word, `style` too; `manner` is the style's.
     """
 
     body: Finish
@@ -39,7 +49,10 @@ class Scheme:
     soft: Finish
     second: Finish
     material: str
-    style: str = "Modern"
+    style: str
+    manner: Manner
+    timber: Finish
+    stone: Finish
 
 
 WOODS: Mapping[str, Color] = {
@@ -53,6 +66,15 @@ WOODS: Mapping[str, Color] = {
     "birch": (0.68, 0.52, 0.35),
     "grey_oak": (0.33, 0.28, 0.23),
     "rosewood": (0.20, 0.06, 0.035),
+    "smoked_oak": (0.12, 0.075, 0.045),
+    "reclaimed": (0.30, 0.19, 0.11),
+    "mahogany": (0.22, 0.055, 0.03),
+    "huanghuali": (0.36, 0.15, 0.05),
+    "ebony": (0.035, 0.022, 0.018),
+    "hinoki": (0.66, 0.47, 0.28),
+    "whitewashed": (0.66, 0.61, 0.53),
+    "bamboo": (0.58, 0.41, 0.18),
+    "rattan": (0.48, 0.29, 0.12),
 }
 LACQUERS: Mapping[str, Color] = {
     "white": (0.80, 0.80, 0.78),
@@ -67,6 +89,17 @@ LACQUERS: Mapping[str, Color] = {
     "blush": (0.62, 0.36, 0.32),
     "black": (0.02, 0.02, 0.022),
     "mint": (0.38, 0.57, 0.46),
+    "greige": (0.50, 0.45, 0.38),
+    "emerald": (0.015, 0.12, 0.075),
+    "rust": (0.30, 0.10, 0.04),
+    "barn_red": (0.30, 0.045, 0.035),
+    "aqua": (0.20, 0.50, 0.52),
+    "gold_leaf": (0.60, 0.43, 0.16),
+    "lacquer_red": (0.36, 0.02, 0.015),
+    "jade": (0.06, 0.25, 0.16),
+    "sky": (0.30, 0.55, 0.75),
+    "lemon": (0.75, 0.60, 0.14),
+    "coral": (0.70, 0.24, 0.16),
 }
 FABRICS: Mapping[str, Color] = {
     "linen": (0.56, 0.49, 0.39),
@@ -80,6 +113,15 @@ FABRICS: Mapping[str, Color] = {
     "ochre_cloth": (0.50, 0.30, 0.06),
     "teal_cloth": (0.04, 0.22, 0.24),
     "taupe_cloth": (0.33, 0.26, 0.20),
+    "snow_cloth": (0.76, 0.74, 0.70),
+    "indigo_cloth": (0.035, 0.055, 0.14),
+    "grey_velvet": (0.22, 0.23, 0.25),
+    "wine_velvet": (0.20, 0.02, 0.03),
+    "plum_cloth": (0.17, 0.05, 0.10),
+    "jade_cloth": (0.10, 0.28, 0.19),
+    "lilac_cloth": (0.48, 0.38, 0.55),
+    "mint_cloth": (0.36, 0.58, 0.46),
+    "coral_cloth": (0.66, 0.22, 0.15),
 }
 LEATHERS: Mapping[str, Color] = {"cognac": (0.30, 0.11, 0.035), "black_leather": (0.02, 0.019, 0.018), "cream_leather": (0.62, 0.54, 0.42)}
 METALS: Mapping[str, Color] = {
@@ -88,21 +130,12 @@ METALS: Mapping[str, Color] = {
     "brass": (0.62, 0.42, 0.15),
     "bronze": (0.16, 0.10, 0.06),
     "white_metal": (0.76, 0.76, 0.75),
+    "gunmetal": (0.09, 0.09, 0.10),
+    "copper": (0.56, 0.26, 0.14),
+    "gold": (0.70, 0.50, 0.18),
 }
 
-# What each style reaches for first: woods, lacquers (often "" for none), fabrics, metals.
-TASTES: Mapping[str, tuple[str, str, str, str]] = {
-    "Modern": ("oak walnut grey_oak", "white light_grey anthracite", "grey_cloth charcoal linen cognac black_leather", "black_metal steel"),
-    "Nordic": ("ash birch oak beech", "white sage dusty_blue", "linen grey_cloth ochre_cloth teal_cloth", "black_metal white_metal"),
-    "Minimalist": ("ash grey_oak birch", "white ivory black", "cream_cloth grey_cloth charcoal", "black_metal white_metal"),
-    "Light Luxury": ("walnut wenge", "ivory white navy", "green_velvet blue_cloth pink_cloth cream_leather", "brass"),
-    "Industrial": ("oak teak grey_oak", "anthracite black", "cognac charcoal black_leather", "black_metal bronze"),
-    "Japanese": ("beech ash cherry", "", "linen taupe_cloth cream_cloth", "black_metal bronze"),
-    "American Country": ("cherry oak teak", "ivory sage navy", "linen rust_cloth taupe_cloth cognac", "bronze brass"),
-    "New Chinese": ("rosewood walnut wenge", "", "linen taupe_cloth teal_cloth", "brass bronze"),
-    "Vintage/Retro": ("teak walnut cherry", "mustard terracotta", "ochre_cloth rust_cloth green_velvet", "brass black_metal"),
-    "Mediterranean": ("oak beech teak", "white dusty_blue navy", "blue_cloth cream_cloth linen", "bronze steel"),
-}
+CLOTH_GROUNDS: Color = (0.72, 0.68, 0.60)  # the light thread of striped, checked and flowered cloth
 
 CERAMIC = Finish("ceramic", (0.86, 0.86, 0.85), 0.12, density=2300)
 GLASS = Finish("glass", (0.75, 0.83, 0.84), 0.05, 0.0, 0.28, density=2500)
@@ -115,11 +148,23 @@ PLASTIC = Finish("plastic_dark", (0.04, 0.04, 0.042), 0.45, density=1000)
 PLASTIC_WHITE = Finish("plastic_white", (0.72, 0.72, 0.70), 0.4, density=1000)
 GLOW = Finish("lamp_glass", (0.92, 0.88, 0.78), 0.5, density=400)
 BEDDING = Finish("bedding", (0.80, 0.78, 0.74), 0.9, pattern="weave", density=45)
-MATTRESS = Finish("mattress", (0.74, 0.72, 0.67), 0.9, pattern="weave", density=55)
-LEAF = Finish("leaf", (0.05, 0.17, 0.035), 0.6, density=300)
+MATTRESS = Finish("mattress", (0.74, 0.72, 0.67), 0.9, pattern="knit", density=55)
+LEAF = Finish("leaf", (0.05, 0.17, 0.035), 0.6, pattern="leaf", density=300)
 SOIL = Finish("soil", (0.045, 0.03, 0.02), 0.95, pattern="speckle", density=1100)
-MARBLE = Finish("marble", (0.72, 0.71, 0.69), 0.15, pattern="speckle", density=2600)
+MARBLE = Finish("marble", (0.80, 0.79, 0.77), 0.15, pattern="marble", density=2600, second=(0.30, 0.30, 0.31))
 STONE = Finish("stone", (0.10, 0.10, 0.105), 0.3, pattern="speckle", density=2500)
+PAPER = Finish("paper", (0.86, 0.83, 0.76), 0.9, density=300)
+STONES: Mapping[str, Finish] = {
+    "marble": MARBLE,
+    "dark_marble": Finish("dark_marble", (0.03, 0.03, 0.033), 0.15, pattern="marble", density=2600, second=(0.55, 0.52, 0.46)),
+    "green_marble": Finish("green_marble", (0.03, 0.11, 0.075), 0.15, pattern="marble", density=2600, second=(0.55, 0.62, 0.55)),
+    "travertine": Finish("travertine", (0.62, 0.53, 0.42), 0.45, pattern="concrete", density=2300),
+    "terrazzo": Finish("terrazzo", (0.74, 0.72, 0.68), 0.3, pattern="terrazzo", density=2300, second=(0.30, 0.14, 0.09)),
+    "concrete": Finish("concrete", (0.36, 0.36, 0.35), 0.75, pattern="concrete", density=2200),
+    "sintered": Finish("sintered_stone", (0.30, 0.29, 0.28), 0.4, pattern="concrete", density=2400),
+    "glass": GLASS,
+    "smoked_glass": Finish("smoked_glass", (0.06, 0.06, 0.065), 0.05, 0.0, 0.45, density=2500),
+}
 
 
 def wood(rng: np.random.Generator, name: str) -> Finish:
@@ -127,16 +172,31 @@ def wood(rng: np.random.Generator, name: str) -> Finish:
     return Finish(name, shade(rng, WOODS[name]), 0.5, pattern="grain", density=620)
 
 
-def cover(rng: np.random.Generator, name: str) -> Finish:
+def lacquer(rng: np.random.Generator, name: str) -> Finish:
+    """Return a lacquer of that name in a shade of its own."""
+    return Finish(f"lacquer_{name}", shade(rng, LACQUERS[name], 0.05), 0.35, density=680)
+
+
+def cover(rng: np.random.Generator, name: str, pattern: Pattern = "weave") -> Finish:
     """Return a cloth or leather over foam; the density is that of the upholstery."""
     if name in LEATHERS:
-        return Finish(name, shade(rng, LEATHERS[name]), 0.4, pattern="speckle", density=75)
-    return Finish(name, shade(rng, FABRICS[name]), 0.92, pattern="weave", density=60)
+        return Finish(name, shade(rng, LEATHERS[name]), 0.4, pattern="leather", density=75)
+    if pattern == "leather":
+        pattern = "weave"
+    second = CLOTH_GROUNDS if pattern in ("stripe", "check", "floral") else None
+    if second is not None and max(FABRICS[name]) > 0.5:  # a light cloth's pattern is darker than its ground
+        second = (0.16, 0.18, 0.22)
+    return Finish(name, shade(rng, FABRICS[name]), 0.75 if pattern == "velvet" else 0.92, pattern=pattern, density=60, second=second)
 
 
 def metal(name: str) -> Finish:
     """Return a metal; the density is that of tubes and sheet."""
-    return Finish(name, METALS[name], 0.35, 0.85, density=2600)
+    return Finish(name, METALS[name], 0.35, 0.85, pattern="plain", density=2600)
+
+
+def cane(rng: np.random.Generator) -> Finish:
+    """Return a woven panel of rattan."""
+    return Finish("cane", shade(rng, (0.56, 0.38, 0.19), 0.08), 0.8, pattern="cane", density=250, second=(0.20, 0.12, 0.055))
 
 
 def shade(rng: np.random.Generator, color: Color, spread: float = 0.12) -> Color:
@@ -148,20 +208,25 @@ def shade(rng: np.random.Generator, color: Color, spread: float = 0.12) -> Color
 
 def scheme(rng: np.random.Generator, style: str) -> Scheme:
     """Choose the finishes of a model by its style."""
-    woods, lacquers, fabrics, metals = (words.split() for words in TASTES[style])
-    timber = wood(rng, str(rng.choice(woods)))
-    tube = metal(str(rng.choice(metals)))
+    manner = MANNERS[style]
+    draw = lambda words: str(rng.choice(words.split()))  # noqa: E731
+    timber = wood(rng, draw(manner.woods))
+    tube = metal(draw(manner.metals))
     body = front = timber
     material = "Solid Wood"
-    if lacquers and rng.random() < 0.55:
-        name = str(rng.choice(lacquers))
-        painted = Finish(f"lacquer_{name}", shade(rng, LACQUERS[name], 0.05), 0.35, density=680)
+    if timber.name in ("bamboo", "rattan"):
+        material = "Bamboo Rattan"
+    if manner.lacquers and rng.random() < manner.paint:
+        painted = lacquer(rng, draw(manner.lacquers))
         material = "Composite Board"
         front = painted
         body = painted if rng.random() < 0.5 else timber
-    soft = cover(rng, str(rng.choice(fabrics)))
-    second = cover(rng, str(rng.choice(fabrics)))
+    patterns: list[Pattern] = manner.cloths.split()  # type: ignore[assignment]
+    name = draw(manner.fabrics)
+    soft = cover(rng, name, patterns[int(rng.integers(len(patterns)))])
+    second = cover(rng, draw(manner.fabrics), patterns[int(rng.integers(len(patterns)))])
     if second.name == soft.name:
         second = replace(second, name=f"{second.name}_2", color=shade(rng, second.color, 0.5))
-    accent = tube if rng.random() < 0.45 else timber
-    return Scheme(body, front, accent, tube, soft, second, material, style)
+    accent = tube if rng.random() < manner.tube else timber
+    stone = STONES[draw(manner.stones)]
+    return Scheme(body, front, accent, tube, soft, second, material, style, manner, timber, stone)

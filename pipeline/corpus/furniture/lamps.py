@@ -190,3 +190,39 @@ def wall_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
         "spider", rod((-0.85 * r, y, 0.52 * h), (0.85 * r, y, 0.52 * h), 0.005, n=6), scheme.handle
     )
     return Shape(base + shade(scheme, pick(rng, "drum globe") if h > 0.25 else "drum", r, (0.0 if h < 0.3 else 0.2 * h, h), (0.0, y), 16))
+
+
+def table_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a shade or a globe on a turned foot, or a desk lamp with a jointed arm."""
+    w, d, h = size
+    metal = scheme.handle
+    if form == "desk":
+        foot = revolve([(0.4 * d, 0.0), (0.4 * d, 0.015), (0.1 * d, 0.022)], 20, (-w / 2 + 0.4 * d, 0.0))
+        x0 = -w / 2 + 0.4 * d
+        elbow, tip = (x0 - 0.1 * d, 0.0, 0.62 * h), (w / 2 - 0.3 * d, 0.0, h - 0.03)
+        arm = [
+            rod((x0, 0, 0.022), elbow, 0.007, n=8),
+            rod(elbow, tip, 0.007, n=8),
+            revolve([(0.012, -0.012), (0.012, 0.012)], 10)[0].moved(elbow),
+        ]
+        r = 0.3 * d
+        head = shade(scheme, "cone", r, (h - 0.03 - 0.3 * h, h - 0.03), (w / 2 - r, 0.0), 16)
+        return Shape(pieces("foot", foot, metal) + pieces("arm", arm, metal) + head)
+    r = w / 2
+    tall = 0.42 * h
+    stem = h - tall
+    if form == "globe":
+        base = pieces("foot", revolve([(0.6 * r, 0.0), (0.6 * r, 0.02), (0.02, 0.03), (0.02, stem)], 20), metal)
+        return Shape(base + shade(scheme, "globe", r, (stem, h)))
+    body = [
+        (0.45 * r, 0.0),
+        (0.5 * r, 0.03 * h),
+        (0.62 * r, 0.2 * h),
+        (0.5 * r, 0.4 * h),
+        (0.16 * r, 0.52 * h),
+        (0.016, stem),
+        (0.008, h - 0.02),
+    ]
+    base = pieces("foot", revolve(body, 20), scheme.timber if rng.random() < 0.4 else scheme.front)
+    base += pieces("spider", rod((-0.85 * r, 0, h - 0.02), (0.85 * r, 0, h - 0.02), 0.003, n=6), metal)
+    return Shape(base + shade(scheme, "drum", r, (stem, h)))

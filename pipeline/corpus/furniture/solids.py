@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,6 +16,32 @@ Vector = Sequence[float] | NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
+class Topology:
+    """Index arrays of a list of faces: all `corners` (C,) in a row, each face's `lengths` and `starts` (F,), and `triangles` (T, 3).
+
+    `following` (C,) is the place in `corners` of each corner's successor around its face.
+    """
+
+    corners: NDArray[np.int64]
+    lengths: NDArray[np.int64]
+    starts: NDArray[np.int64]
+    following: NDArray[np.int64]
+    triangles: NDArray[np.int32]
+
+
+@functools.lru_cache(maxsize=8192)
+def topology(faces: tuple[Face, ...]) -> Topology:
+    """Return the index arrays of faces; most solids share theirs with others, so they are made once."""
+    corners = np.array([v for face in faces for v in face], np.int64)
+    lengths = np.array([len(face) for face in faces], np.int64)
+    starts = np.concatenate([[0], np.cumsum(lengths)[:-1]])
+    following = np.arange(1, len(corners) + 1)
+    following[starts + lengths - 1] = starts
+    triangles = np.array([(f[0], f[i], f[i + 1]) for f in faces for i in range(1, len(f) - 1)], np.int32)
+    return Topology(corners, lengths, starts, following, triangles)
+
+
+@dataclass(frozen=True, slots=True)
 class Solid:
     """A convex polyhedron. `vertices` (V, 3) [m]; `faces` are polygons, counter-clockwise seen from outside."""
 
@@ -23,7 +50,7 @@ class Solid:
 
     def triangles(self) -> NDArray[np.int32]:
         """Return the faces cut into fans of triangles (F, 3)."""
-        return np.array([(f[0], f[i], f[i + 1]) for f in self.faces for i in range(1, len(f) - 1)], np.int32)
+        return topology(self.faces).triangles
 
     def volume(self) -> float:
         """Return the volume [m3], by signed tetrahedra."""
@@ -51,6 +78,10 @@ class Solid:
         pivot = np.asarray(about, float)
         return Solid((self.vertices - pivot) @ R.T + pivot, self.faces)
 
+    def mapped(self, matrix: NDArray[np.float64]) -> Solid:
+        """Return the solid under a linear map (3, 3) of positive determinant: sheared, stretched or turned."""
+        return Solid(self.vertices @ matrix.T, self.faces)
+
     def mirrored(self) -> Solid:
         """Return the mirror image in x, faces turned so that they still look outwards."""
         return Solid(self.vertices * np.array([-1.0, 1.0, 1.0]), tuple(f[::-1] for f in self.faces))
@@ -61,12 +92,17 @@ def stack(rings: Sequence[NDArray[np.float64]]) -> Solid:
 
     It is convex where corresponding edges are parallel and the profile over the rings is concave.
     """
-    n = len(rings[0])
-    faces: list[Face] = [tuple(range(n - 1, -1, -1)), tuple(range((len(rings) - 1) * n, len(rings) * n))]
-    for k in range(len(rings) - 1):
+    return Solid(np.concatenate(rings), _stacked(len(rings[0]), len(rings)))
+
+
+@functools.cache
+def _stacked(n: int, rings: int) -> tuple[Face, ...]:
+    """Return the faces of a stack: the two ends, then quads between neighbouring rings of `n` corners."""
+    faces: list[Face] = [tuple(range(n - 1, -1, -1)), tuple(range((rings - 1) * n, rings * n))]
+    for k in range(rings - 1):
         a, b = k * n, (k + 1) * n
         faces += [(a + i, a + (i + 1) % n, b + (i + 1) % n, b + i) for i in range(n)]
-    return Solid(np.concatenate(rings), tuple(faces))
+    return tuple(faces)
 
 
 def box(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], bevel: float = 0.0) -> Solid:
@@ -89,18 +125,49 @@ def _octagon(x: tuple[float, float], y: tuple[float, float], bevel: float, inset
     return np.array(corners)
 
 
-def cushion(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], radius: float, steps: int = 2) -> Solid:
-    """Return a box whose edges and corners are rounded with `radius` [m], `steps` facets to the quarter turn."""
-    radius = min(radius, 0.49 * min(x[1] - x[0], y[1] - y[0], z[1] - z[0]))
-    angles = np.concatenate([q * np.pi / 2 + np.linspace(0, np.pi / 2, steps + 1) for q in range(4)])
-    corner_x = np.repeat([x[1] - radius, x[0] + radius, x[0] + radius, x[1] - radius], steps + 1)
-    corner_y = np.repeat([y[1] - radius, y[1] - radius, y[0] + radius, y[0] + radius], steps + 1)
+def cushion(
+    x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], radius: float, steps: int = 2, crown: float = 0.0
+) -> Solid:
+    """Return a box whose edges and corners are rounded with `radius` [m], `steps` facets to the quarter turn.
+
+    With a `crown` [m] the top swells towards its middle by that much; the box stays within `z`.
+    """
+    radius = min(radius, 0.49 * min(x[1] - x[0], y[1] - y[0], z[1] - z[0] - crown))
+    turn, rise, top = _quarter(steps)
+    middle_x, middle_y = (x[0] + x[1]) / 2, (y[0] + y[1]) / 2
+    corner_x = np.repeat([x[1] - radius, x[0] + radius, x[0] + radius, x[1] - radius], steps + 1) - middle_x
+    corner_y = np.repeat([y[1] - radius, y[1] - radius, y[0] + radius, y[0] + radius], steps + 1) - middle_y
+    high = z[1] - crown
+    levels = [(-p, z[0] + radius) for p in rise[::-1]] + [(p, high - radius) for p in rise]
     rings = []
-    top = math.pi / 2 * (1 - 0.5 / (steps + 1))  # the poles are cut flat, so that no facet degenerates
-    rise = np.linspace(0, top, steps + 1)
-    for phi, base in [(-p, z[0] + radius) for p in rise[::-1]] + [(p, z[1] - radius) for p in rise]:
-        r, height = radius * math.cos(phi), base + radius * math.sin(phi) / math.sin(top)
-        rings.append(np.stack([corner_x + r * np.cos(angles), corner_y + r * np.sin(angles), np.full(len(angles), height)], axis=1))
+    for phi, base in levels:
+        r, height = radius * math.cos(phi), base + radius * math.sin(phi) / top
+        rings.append(np.stack([corner_x + r * turn[0], corner_y + r * turn[1], np.full(turn.shape[1], height)], axis=1))
+    for share, scale in ((0.6, 0.66), (1.0, 0.25)) if crown > 0 else ():
+        ring = rings[len(levels) - 1] * np.array([scale, scale, 1.0])
+        ring[:, 2] = high + share * crown
+        rings.append(ring)
+    return stack([ring + np.array([middle_x, middle_y, 0.0]) for ring in rings])
+
+
+@functools.cache
+def _quarter(steps: int) -> tuple[NDArray[np.float64], list[float], float]:
+    """Return directions around a rounded rectangle (2, 4 steps + 4), the angles of its rounding, and the sine of the last.
+
+    The poles are cut flat, so that no facet degenerates.
+    """
+    angles = np.concatenate([q * np.pi / 2 + np.linspace(0, np.pi / 2, steps + 1) for q in range(4)])
+    last = math.pi / 2 * (1 - 0.5 / (steps + 1))
+    return np.stack([np.cos(angles), np.sin(angles)]), np.linspace(0, last, steps + 1).tolist(), math.sin(last)
+
+
+def pillow(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], steps: int = 2) -> Solid:
+    """Return a throw pillow: two domes that meet in a sharp seam around a rectangle with soft corners."""
+    outline = rounded((x[0], x[1]), (y[0], y[1]), 0.22 * min(x[1] - x[0], y[1] - y[0]), steps)
+    centre, middle, half = np.array([(x[0] + x[1]) / 2, (y[0] + y[1]) / 2]), (z[0] + z[1]) / 2, (z[1] - z[0]) / 2
+    rings = []
+    for height, scale in ((-1, 0.34), (-0.82, 0.66), (-0.45, 0.88), (0, 1), (0.45, 0.88), (0.82, 0.66), (1, 0.34)):
+        rings.append(_at(centre + (outline - centre) * scale, middle + half * height))
     return stack(rings)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.shape import Piece
-from pipeline.corpus.furniture.solids import Solid
+from pipeline.corpus.furniture.solids import Face, Solid, topology
 from pipeline.corpus.furniture.texture import Atlas, normals, srgb
 
 
@@ -46,46 +47,70 @@ class Text:
 def text(groups: Sequence[Group], library: str, sheet: Atlas | None = None) -> Text:
     """Return groups of solids as OBJ text: triangles and quads as they are, larger faces in fans, flat normals."""
     positions: list[NDArray[np.float64]] = []
-    uv_lines: list[str] = []
-    normal_lines: list[str] = []
-    known: dict[tuple[float, ...], int] = {}
-    face_lines: list[str] = []
-    base = uv_base = 1
+    directions: list[NDArray[np.float64]] = []
+    uvs: list[NDArray[np.float64]] = []
+    parts: list[tuple[str, Group, list[NDArray[np.int64]], list[NDArray[np.int64]]]] = []
+    vertices = faces = coordinates = 0
     for group in groups:
-        face_lines += [f"g {group.name}\n", f"usemtl {group.material}\n"]
-        for piece in group.pieces:
+        tris: list[NDArray[np.int64]] = []
+        quads: list[NDArray[np.int64]] = []
+        for number, piece in enumerate(group.pieces):
             solid = piece.solid
-            positions.append(mesh_frame(solid.vertices))
-            flat = np.round(mesh_frame(normals(solid)), 3) + 0.0
-            uv_of: dict[int, int] = {}
-            uv = projection = None
+            shared = topology(solid.faces)
+            normal = normals(solid)
+            positions.append(solid.vertices)
+            directions.append(normal)
+            face = np.repeat(np.arange(len(shared.lengths)), shared.lengths)
+            columns = [shared.corners + vertices, face + faces]
             if sheet is not None:
-                uv, projection = sheet.uv(solid, piece.finish)
-            for k, face in enumerate(solid.faces):
-                direction = tuple(flat[k].tolist())
-                if direction not in known:
-                    known[direction] = len(known) + 1
-                    normal_lines.append("vn {:g} {:g} {:g}\n".format(*direction))
-                n = known[direction]
-                if uv is None or projection is None:
-                    corners = [f"{base + v}//{n}" for v in face]
-                else:
-                    offset = int(projection[k]) * len(solid.vertices)
-                    corners = []
-                    for v in face:
-                        row = offset + v
-                        if row not in uv_of:
-                            uv_of[row] = uv_base + len(uv_of)
-                            uv_lines.append(f"vt {uv[row, 0]:.4f} {uv[row, 1]:.4f}\n")
-                        corners.append(f"{base + v}/{uv_of[row]}/{n}")
-                if len(corners) <= 4:
-                    face_lines.append("f " + " ".join(corners) + "\n")
-                else:
-                    face_lines += [f"f {corners[0]} {corners[i]} {corners[i + 1]}\n" for i in range(1, len(corners) - 1)]
-            base += len(solid.vertices)
-            uv_base += len(uv_of)
-    header = f"mtllib {library}\n"
-    return Text(header, np.concatenate(positions), "".join(uv_lines) + "".join(normal_lines) + "".join(face_lines))
+                uv, projection = sheet.uv(solid, piece.finish, number)
+                rows = projection[face] * len(solid.vertices) + shared.corners
+                used, inverse = np.unique(rows, return_inverse=True)
+                uvs.append(uv[used])
+                columns.insert(1, inverse + coordinates)
+                coordinates += len(used)
+            corners = np.stack(columns, axis=1)
+            tri, quad = faces_of(solid.faces)
+            tris.append(corners[tri].reshape(-1, 3 * len(columns)))
+            quads.append(corners[quad].reshape(-1, 4 * len(columns)))
+            vertices += len(solid.vertices)
+            faces += len(normal)
+        parts.append((group.name, group, tris, quads))
+    known, index = _distinct(np.round(mesh_frame(np.concatenate(directions)), 3) + 0.0)
+    width = 2 if sheet is None else 3
+    corner = "%d//%d" if sheet is None else "%d/%d/%d"
+    body = []
+    for name, group, tris, quads in parts:
+        body.append(f"g {name}\nusemtl {group.material}\n")
+        for count, found in ((3, np.concatenate(tris)), (4, np.concatenate(quads))):
+            table = found.reshape(-1, width)
+            table[:, -1] = index[table[:, -1]]
+            body.append(("f" + count * f" {corner}" + "\n") * len(found) % tuple((found + 1).ravel().tolist()))
+    lines = ["vn %g %g %g\n" * len(known) % tuple(known.ravel().tolist())]
+    if uvs:
+        uv = np.concatenate(uvs)
+        lines.insert(0, "vt %.4f %.4f\n" * len(uv) % tuple(uv.ravel().tolist()))
+    return Text(f"mtllib {library}\n", mesh_frame(np.concatenate(positions)), "".join(lines + body))
+
+
+@functools.lru_cache(maxsize=8192)
+def faces_of(faces: tuple[Face, ...]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return rows of a solid's list of corners: its triangles (T, 3), larger faces cut into fans, and its quads (Q, 4)."""
+    tris, quads, start = [], [], 0
+    for face in faces:
+        if len(face) == 4:
+            quads.append(range(start, start + 4))
+        else:
+            tris += [(start, start + i, start + i + 1) for i in range(1, len(face) - 1)]
+        start += len(face)
+    return np.array(tris, np.int64).reshape(-1, 3), np.array(quads, np.int64).reshape(-1, 4)
+
+
+def _distinct(directions: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return the distinct directions (N, 3), of three decimals each, and which of them each is."""
+    code = np.round((directions + 1) * 1000).astype(np.int64) @ np.array([4_000_000, 2001, 1])
+    _, first, inverse = np.unique(code, return_index=True, return_inverse=True)
+    return directions[first], np.asarray(inverse, np.int64)
 
 
 def bare(name: str, solids: Sequence[Solid]) -> Text:

@@ -1,0 +1,180 @@
+"""Bent things out of convex pieces: tubes along a path, bands in plan, curved boards, leaves. Lengths in metres.
+
+Each bend is a chain of straight pieces whose ends are mitred, so that neighbours touch in a plane and none enters another.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.corpus.furniture.solids import Face, Solid, Vector, stack
+
+Points = NDArray[np.float64]
+
+
+def arc(centre: tuple[float, float], radius: float, start: float, end: float, steps: int, squash: float = 1.0) -> Points:
+    """Return points (steps + 1, 2) on a circle from angle `start` to `end` [rad]; `squash` scales the second axis."""
+    angles = np.linspace(start, end, steps + 1)
+    return np.stack([centre[0] + radius * np.cos(angles), centre[1] + radius * squash * np.sin(angles)], axis=1)
+
+
+def curve(points: Sequence[Vector], steps: int = 4) -> Points:
+    """Return a smooth path (m, d) through `points` (Catmull-Rom, `steps` pieces between neighbours)."""
+    p = np.asarray(points, float)
+    p = np.concatenate([2 * p[:1] - p[1:2], p, 2 * p[-1:] - p[-2:-1]])
+    t = (np.arange(steps) / steps)[:, None]
+    made = []
+    for a, b, c, d in zip(p[:-3], p[1:-2], p[2:-1], p[3:], strict=True):
+        made.append(0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t**2 + (3 * b - a - 3 * c + d) * t**3))
+    return np.concatenate([*made, p[-2:-1]])
+
+
+def _mitres(path: Points, closed: bool) -> tuple[Points, Points]:
+    """Return the directions (m, d) of a path's segments and, per point, the normal of the plane in which they meet."""
+    if closed:
+        along = np.roll(path, -1, axis=0) - path
+        along /= np.linalg.norm(along, axis=1, keepdims=True)
+        normals = along + np.roll(along, 1, axis=0)
+    else:
+        along = np.diff(path, axis=0)
+        along /= np.linalg.norm(along, axis=1, keepdims=True)
+        normals = np.concatenate([along[:1], along[:-1] + along[1:], along[-1:]])
+    return along, normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def tube(path: Sequence[Vector] | Points, radius: float | Sequence[float], n: int = 8, *, closed: bool = False) -> list[Solid]:
+    """Return a round bar of `n` facets along a path (m, 3) [m], one piece per segment; `radius` may differ from point to point."""
+    p = np.asarray(path, float)
+    radii = np.broadcast_to(np.asarray(radius, float), (len(p),))
+    along, normals = _mitres(p, closed)
+    angles = (np.arange(n) + 0.5) * (2 * np.pi / n)
+    made = []
+    u = _across(along[0])
+    for k, direction in enumerate(along):
+        u = u - direction * float(u @ direction)  # carried along the path, so that the facets do not twist
+        u /= np.linalg.norm(u)
+        v = np.cross(direction, u)
+        spokes = np.cos(angles)[:, None] * u + np.sin(angles)[:, None] * v
+        ends = []
+        for j in (k, (k + 1) % len(p)):
+            ring = radii[j] * spokes
+            slide = -(ring @ normals[j]) / float(direction @ normals[j])
+            ends.append(p[j] + ring + slide[:, None] * direction)
+        made.append(settled(stack(ends)))
+    return made
+
+
+def _across(direction: Points) -> Points:
+    helper = np.array([1.0, 0, 0]) if abs(direction[0]) < 0.9 else np.array([0, 1.0, 0])
+    u = np.cross(direction, helper)
+    return np.asarray(u / np.linalg.norm(u))
+
+
+def band(path: Points, thick: float, z: tuple[float, float], *, closed: bool = False) -> list[Solid]:
+    """Return an upright wall over a path in plan (m, 2), `thick` wide, half to each side: one stave per segment."""
+    left, right = _sides(path, thick, closed)
+    made = []
+    for i in range(len(path) if closed else len(path) - 1):
+        j = (i + 1) % len(path)
+        ring = np.array([right[i], right[j], left[j], left[i]])
+        made.append(stack([np.column_stack([ring, np.full(4, z[0])]), np.column_stack([ring, np.full(4, z[1])])]))
+    return made
+
+
+def _sides(path: Points, thick: float, closed: bool) -> tuple[Points, Points]:
+    """Return the two edges of a strip `thick` wide over a path (m, 2), mitred."""
+    along, normals = _mitres(path, closed)
+    before = along if closed else np.concatenate([along, along[-1:]])
+    side = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
+    stretch = 1 / np.maximum(np.einsum("ij,ij->i", before, normals), 0.3)
+    offset = side * (stretch * thick / 2)[:, None]
+    return path + offset, path - offset
+
+
+def sheet(profile: Points, thick: float, width: float | Sequence[float]) -> list[Solid]:
+    """Return a bent board: a profile in (y, z) (m, 2), `thick`, across x; `width` may differ from point to point."""
+    half = np.broadcast_to(np.asarray(width, float), (len(profile),)) / 2
+    left, right = _sides(profile, thick, closed=False)
+    made = []
+    for i in range(len(profile) - 1):
+        corners = []
+        for k in (i, i + 1):
+            (y0, z0), (y1, z1) = right[k], left[k]
+            corners.append(np.array([(-half[k], y1, z1), (half[k], y1, z1), (half[k], y0, z0), (-half[k], y0, z0)]))
+        made.append(settled(stack(corners)))
+    return made
+
+
+def prism(outline: Points, axis: str, span: tuple[float, float]) -> Solid:
+    """Return the solid over a convex outline (n, 2), counter-clockwise, along an axis: x over (y, z), y over (x, z), z over (x, y)."""
+    rings = []
+    for at in span:
+        column = np.full(len(outline), at)
+        a, b = outline[:, 0], outline[:, 1]
+        rings.append(np.stack({"x": (column, a, b), "y": (a, column, b), "z": (a, b, column)}[axis], axis=1))
+    return stack(rings if axis != "y" else rings[::-1])
+
+
+def settled(solid: Solid) -> Solid:
+    """Return the solid with quads that are not plane cut along the diagonal that keeps it convex."""
+    v = solid.vertices
+    faces: list[Face] = []
+    for face in solid.faces:
+        if len(face) == 4:
+            a, b, c, d = v[list(face)]
+            off = float(np.dot(np.cross(b - a, c - a), d - a))
+            if abs(off) > 1e-12:
+                i, j, k, m = face
+                faces += [(i, j, k), (i, k, m)] if off < 0 else [(j, k, m), (j, m, i)]
+                continue
+        faces.append(face)
+    return Solid(v, tuple(faces))
+
+
+def lean(solids: Sequence[Solid], at: float, slope: float) -> list[Solid]:
+    """Return the solids leaned back (to +y) by `slope` per height above `at` [m]; what is upright at that height stays where it is."""
+    matrix = np.eye(3)
+    matrix[1, 2] = slope
+    return [s.moved((0, 0, -at)).mapped(matrix).moved((0, 0, at)) for s in solids]
+
+
+_BLADE = 8  # corners of a leaf's outline
+_BLADE_FACES: tuple[Face, ...] = tuple(
+    [(i, (i + 1) % _BLADE, _BLADE) for i in range(_BLADE)] + [((i + 1) % _BLADE, i, _BLADE + 1) for i in range(_BLADE)]
+)
+
+
+def blades(roots: Points, tips: Points, width: Points | float, *, belly: float = 0.5, thick: float = 0.004, n: int = _BLADE) -> list[Solid]:
+    """Return leaves from `roots` (m, 3) to `tips` (m, 3): plane outlines, widest at the share `belly` of their length, faces upwards.
+
+    `width` [m], (m,) or one for all. Each is a low double pyramid over its outline, so it is solid and convex. With `n` = 4 the
+    outline is a kite.
+    """
+    axis = tips - roots
+    length = np.linalg.norm(axis, axis=1, keepdims=True)
+    forward = axis / length
+    side = np.cross(forward, (0.0, 0.0, 1.0))
+    flat = np.linalg.norm(side, axis=1, keepdims=True)
+    side = np.where(flat > 1e-6, side / np.maximum(flat, 1e-9), np.array([1.0, 0.0, 0.0]))
+    up = np.cross(side, forward)
+    half = (np.broadcast_to(np.asarray(width, float), (len(roots),)) / 2)[:, None]
+    if n == 4:
+        stations = [(0.0, 0.0), (belly, 1.0), (1.0, 0.0), (belly, -1.0)]
+        faces: tuple[Face, ...] = tuple([(i, (i + 1) % 4, 4) for i in range(4)] + [((i + 1) % 4, i, 5) for i in range(4)])
+    else:
+        a, b = 0.45 * belly, belly + 0.62 * (1 - belly)
+        stations = [(0.0, 0.0), (a, 0.74), (belly, 1.0), (b, 0.62), (1.0, 0.0), (b, -0.62), (belly, -1.0), (a, -0.74)]
+        faces = _BLADE_FACES
+    ring = [roots + axis * s + side * half * t for s, t in stations]
+    middle = roots + axis * belly
+    points = np.stack([*ring, middle + up * thick / 2, middle - up * thick / 2], axis=1)
+    return [Solid(p, faces) for p in points]
+
+
+def turns(count: int, start: float = 0.0) -> list[float]:
+    """Return `count` angles around a circle [rad]."""
+    return [start + 2 * math.pi * k / count for k in range(count)]

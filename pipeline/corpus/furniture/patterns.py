@@ -1,0 +1,163 @@
+"""Procedural patterns: tones from 0 to 1 over a surface at real-world scale. Wood's grain runs along the image's rows (v)."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from pipeline import seeds
+from pipeline.corpus.furniture.finishes import Pattern
+
+Tones = NDArray[np.float64]
+SIDE = 512  # pixels of a pattern's master, which repeats
+SCALE = 256.0  # [pixels per metre] of the masters: they span two metres
+# Patterns that are drawn once over their whole piece: never turned, never shifted.
+WHOLE = frozenset({"rug_border", "rug_diamonds", "rug_stripes", "art_blocks", "art_hills", "art_circles", "art_lines", "dial"})
+# How far from its colour a finish goes, as a share of it, where it has no second colour.
+CONTRAST: Mapping[str, float] = {
+    "plain": 0.0, "grain": 0.20, "weave": 0.09, "speckle": 0.08, "leather": 0.10, "boucle": 0.16, "velvet": 0.10, "brushed": 0.10, "concrete": 0.14,
+    "marble": 0.2, "terrazzo": 0.3, "stripe": 0.2, "check": 0.2, "floral": 0.2, "cane": 0.3, "knit": 0.15, "leaf": 0.2,
+}  # fmt: skip
+
+
+def tones(rng: np.random.Generator, pattern: Pattern, shape: tuple[int, int], scale: float) -> Tones:
+    """Return a pattern's tones of `shape` (rows, columns) at `scale` [pixels per metre], from a place of its own."""
+    if pattern in WHOLE:
+        y, x = np.meshgrid(np.linspace(1, 0, shape[0]), np.linspace(0, 1, shape[1]), indexing="ij")
+        return _whole(rng, pattern, x, y, shape[1] / shape[0])
+    start = rng.integers(SIDE, size=2)
+    rows, columns = ((start[k] + np.arange(shape[k]) * (SCALE / scale)).astype(np.int64) % SIDE for k in (0, 1))
+    return _master(pattern)[rows[:, None], columns[None, :]]
+
+
+def _spread(values: Tones) -> Tones:
+    """Stretch to [0, 1] between the 2nd and the 98th percentile."""
+    low, high = np.percentile(values, (2, 98))
+    return np.asarray(np.clip((values - low) / max(high - low, 1e-9), 0, 1))
+
+
+def _noise(rng: np.random.Generator, rows: float, columns: float) -> Tones:
+    """Return smooth noise whose features are `rows` x `columns` pixels; it repeats."""
+    return np.asarray(ndimage.gaussian_filter(rng.standard_normal((SIDE, SIDE)), (rows, columns), mode="wrap"))
+
+
+@functools.cache
+def _master(pattern: Pattern) -> Tones:
+    """Return the repeating master (SIDE, SIDE) of a pattern, tones in [0, 1]."""
+    rng = seeds.generator(0, "corpus.furniture.pattern", pattern)
+    y, x = np.indices((SIDE, SIDE))
+    fine = rng.uniform(-1, 1, (SIDE, SIDE))
+    if pattern == "grain":
+        bend = _noise(rng, 60, 40)
+        bend = 14 * bend / np.abs(bend).max()
+        rings = np.sin(2 * math.pi * (x / SIDE * 22 + bend / 4))
+        pores = _spread(_noise(rng, 14, 0.6))
+        return _spread(0.35 * rings + 1.1 * pores + 0.6 * _spread(_noise(rng, 90, 5)))
+    if pattern == "weave":
+        plain = np.where((x // 2 + y // 2) % 2 == 0, 1.0, -1.0)
+        slubs = _spread(_noise(rng, 0.5, 7)) + _spread(_noise(rng, 7, 0.5))
+        return _spread(0.5 * plain + 0.8 * slubs + 0.3 * fine)
+    if pattern == "knit":
+        return _spread(np.sin(2 * math.pi * x / 8) + 0.5 * np.sin(2 * math.pi * (y / 4 + np.abs((x % 8) - 4) / 4)) + 0.3 * fine)
+    if pattern == "boucle":
+        return _spread(_noise(rng, 1.6, 1.6))
+    if pattern == "velvet":
+        return _spread(_spread(_noise(rng, 22, 22)) + 0.25 * fine)
+    if pattern == "leather":
+        return _spread(np.abs(_noise(rng, 2.2, 2.2)) ** 0.5 + 0.02 * _spread(_noise(rng, 30, 30)))
+    if pattern == "brushed":
+        return _spread(_noise(rng, 60, 0.5))
+    if pattern == "concrete":
+        cloud = _spread(_noise(rng, 28, 28)) + 0.5 * _spread(_noise(rng, 5, 5))
+        return np.asarray(np.where(rng.random((SIDE, SIDE)) < 0.004, 0.0, _spread(cloud + 0.15 * fine)))
+    if pattern == "marble":
+        flow = _noise(rng, 34, 34)
+        vein = np.abs(flow / flow.std() + 0.35 * (lambda n: n / n.std())(_noise(rng, 6, 6)))
+        mist = _spread(_noise(rng, 40, 40))
+        return np.asarray(np.clip(0.85 * np.exp(-((vein / 0.09) ** 2)) + 0.25 * mist**2 + 0.35 * np.exp(-((vein / 0.5) ** 2)) * mist, 0, 1))
+    if pattern == "terrazzo":
+        chips = _noise(rng, 2.4, 2.4)
+        return np.asarray(np.where(chips > 1.1 * chips.std(), 0.55 + 0.45 * _spread(_noise(rng, 6, 6)), 0.06 * (1 + fine) / 2))
+    if pattern == "stripe":
+        return np.asarray(np.clip(np.where((x % 26) < 9, 0.95, 0.05) + 0.05 * fine, 0, 1))
+    if pattern == "check":
+        across, down = (x % 32) < 14, (y % 32) < 14
+        return np.asarray(np.clip(0.45 * across + 0.45 * down + 0.05 + 0.05 * fine, 0, 1))
+    if pattern == "floral":
+        return np.asarray(np.clip(_petals(rng) + 0.04 * fine, 0, 1))
+    if pattern == "cane":
+        a, b = (x + y) % 8, (x - y) % 8
+        return np.asarray(np.clip(np.where((a < 2) | (b < 2) | (x % 8 < 2) | (y % 8 < 2), 0.85, 0.0) + 0.08 * fine, 0, 1))
+    if pattern == "leaf":
+        return _spread(_spread(_noise(rng, 8, 8)) + 0.3 * fine)
+    return np.asarray((fine + 1) / 2)
+
+
+def _petals(rng: np.random.Generator) -> Tones:
+    """Return flowers of five petals scattered over the master."""
+    image = np.zeros((SIDE, SIDE))
+    y, x = np.indices((33, 33)) - 16
+    for cy, cx in rng.integers(SIDE, size=(90, 2)):
+        turn, size = rng.uniform(0, 6.28), rng.uniform(0.6, 1.0)
+        r, a = np.hypot(x, y) / (15 * size), np.arctan2(y, x) + turn
+        flower = np.where(r < 0.25, 0.35, np.where(r < 0.62 + 0.35 * np.cos(5 * a), 0.95, 0.0))
+        at = np.ix_((cy + np.arange(33)) % SIDE, (cx + np.arange(33)) % SIDE)
+        image[at] = np.maximum(image[at], flower)
+    return image
+
+
+def _whole(rng: np.random.Generator, pattern: Pattern, x: Tones, y: Tones, aspect: float) -> Tones:
+    """Draw a rug or a picture over x, y in [0, 1]; `aspect` is width over height."""
+    noise = 0.04 * rng.uniform(-1, 1, x.shape)
+    edge = np.minimum(np.minimum(x, 1 - x) * aspect, np.minimum(y, 1 - y)) / min(aspect, 1.0)
+    if pattern == "rug_border":
+        wide = rng.uniform(0.05, 0.1)
+        lines = np.where((edge > wide) & (edge < wide + 0.025), 1.0, np.where((edge > wide + 0.05) & (edge < wide + 0.06), 0.7, 0.0))
+        r = np.hypot((x - 0.5) * aspect, y - 0.5) / min(aspect, 1.0)
+        rosette = np.where(r < 0.3 + 0.05 * np.cos(12 * np.arctan2(y - 0.5, (x - 0.5) * aspect)), 0.5 + 0.5 * np.cos(40 * r), 0.0)
+        return np.asarray(np.clip(0.06 + lines + rosette * (edge > wide + 0.07) + noise, 0, 1))
+    if pattern == "rug_diamonds":
+        cells = rng.integers(3, 6)
+        u = np.abs((x * aspect * cells) % 1 - 0.5) + np.abs((y * cells) % 1 - 0.5)
+        return np.asarray(np.clip(np.where(np.abs(u - 0.5) < 0.06, 1.0, np.where(u < 0.16, 0.8, 0.05)) + noise, 0, 1))
+    if pattern == "rug_stripes":
+        cuts = np.sort(rng.random(9))
+        tone = rng.uniform(0, 1, 10)
+        return np.asarray(np.clip(tone[np.searchsorted(cuts, y)] + noise, 0, 1))
+    if pattern == "art_hills":
+        image = 0.9 - 0.25 * (1 - y)
+        for k in range(4):
+            phase, pitch = rng.uniform(0, 6.28, 2)
+            ridge = 0.62 - 0.15 * k + 0.09 * np.sin(3.2 * x * aspect + phase) + 0.03 * np.sin(9 * x * aspect + pitch)
+            image = np.where(y < ridge, 0.62 - 0.19 * k, image)
+        sun = np.hypot((x - rng.uniform(0.25, 0.75)) * aspect, y - 0.8) < 0.09
+        return np.asarray(np.clip(np.where(sun & (image > 0.64), 1.0, image) + noise, 0, 1))
+    if pattern == "art_circles":
+        image = np.full(x.shape, 0.06)
+        for _ in range(6):
+            cx, cy, r = rng.uniform(0.15, 0.85), rng.uniform(0.15, 0.85), rng.uniform(0.08, 0.3)
+            image = np.where(np.hypot((x - cx) * aspect, y - cy) < r, rng.uniform(0.25, 1.0), image)
+        return np.asarray(np.clip(image + noise, 0, 1))
+    if pattern == "art_lines":
+        image = np.full(x.shape, 0.05)
+        for _ in range(14):
+            a, b, c = rng.uniform(0, 1), rng.uniform(-0.3, 0.3), rng.uniform(1, 8)
+            image = np.where(np.abs(y - a - b * x - 0.05 * np.sin(c * x * aspect)) < rng.uniform(0.003, 0.012), rng.uniform(0.5, 1), image)
+        return np.asarray(np.clip(image + noise, 0, 1))
+    if pattern == "dial":
+        r, a = np.hypot(x - 0.5, y - 0.5) * 2, np.arctan2(x - 0.5, y - 0.5)
+        marks = (r > 0.74) & (r < 0.88) & (np.abs((a * 6 / math.pi + 0.5) % 1 - 0.5) < 0.1)
+        hands = ((r < 0.5) & (np.abs(a - 1.05) < 0.09 / np.maximum(r, 0.1) * 0.5)) | (
+            (r < 0.72) & (np.abs(a + 1.05) < 0.05 / np.maximum(r, 0.1) * 0.5)
+        )
+        return np.where(marks | hands, 1.0, 0.0)
+    image = np.full(x.shape, 0.1)
+    for _ in range(9):
+        x0, y0, w, h = rng.uniform(-0.1, 0.9), rng.uniform(-0.1, 0.9), rng.uniform(0.1, 0.5), rng.uniform(0.1, 0.5)
+        image = np.where((x > x0) & (x < x0 + w) & (y > y0) & (y < y0 + h), rng.uniform(0, 1), image)
+    return np.asarray(np.clip(image + noise, 0, 1))

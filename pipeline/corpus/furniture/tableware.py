@@ -1,0 +1,213 @@
+"""Small things that stand on furniture: cups, plates, bowls, vases, books, baskets."""
+
+# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pipeline.corpus.furniture.bent import blades, curve, tube
+from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, shade
+from pipeline.corpus.furniture.shape import Piece, Shape, pieces
+from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, slab
+from pipeline.corpus.furniture.storage import Size
+
+GLAZES = ("white", "ivory", "sage", "dusty_blue", "terracotta", "anthracite", "mustard", "blush", "navy", "greige")
+BINDINGS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dusty_blue", "barn_red", "emerald", "greige", "blush", "black")
+
+
+def glaze(rng: np.random.Generator) -> Finish:
+    """Draw a glazed pottery."""
+    name = GLAZES[int(rng.integers(len(GLAZES)))]
+    return Finish(f"glaze_{name}", shade(rng, LACQUERS[name], 0.06), 0.2, density=2200)
+
+
+def vessel(profile: list[tuple[float, float]], wall: float, floor: float, n: int) -> list[Solid]:
+    """Return an open vessel: a wall `wall` [m] thick along a profile of (radius, height), a floor `floor` [m] thick."""
+    made = [slab(circle(profile[0][0], n), (profile[0][1], profile[0][1] + floor))]
+    start = [(profile[0][0], profile[0][1] + floor), *profile[1:]]
+    for (r0, z0), (r1, z1) in zip(start[:-1], start[1:], strict=True):
+        made += ring((r0, r1), (r0 - wall, r1 - wall), (z0, z1), n)
+    return made
+
+
+def cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a mug with a handle, a tumbler of glass, or a bowl-shaped tea cup."""
+    w, d, h = size
+    finish = glaze(rng)
+    if form == "tumbler":
+        clear = Finish("clear_glass", (0.80, 0.86, 0.86), 0.05, 0.0, 0.35, density=2500)
+        return Shape(pieces("cup", vessel([(0.40 * w, 0.0), (0.5 * w, h)], 0.003, 0.006, 16), clear))
+    r = 0.5 * d
+    x = r - w / 2  # the body stands left of the middle, the handle is right of it
+    profile = [(0.92 * r, 0.0), (r, 0.12 * h), (r, h)] if form == "mug" else [(0.5 * r, 0.0), (0.86 * r, 0.4 * h), (r, h)]
+    body = [s.moved((x, 0, 0)) for s in vessel(profile, 0.005, 0.006, 16)]
+    edge = x + r - 0.004
+    loop = curve(
+        [
+            (edge - 0.1 * r, 0, 0.82 * h),
+            (w / 2 - 0.004, 0, 0.72 * h),
+            (w / 2 - 0.006, 0, 0.4 * h),
+            (edge - 0.1 * r * (form != "mug"), 0, 0.24 * h),
+        ],
+        2,
+    )
+    return Shape(pieces("cup", body, finish) + pieces("handle", tube(loop, 0.0045, 6), finish))
+
+
+def plate(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a flat plate, or a deep one, with a rim."""
+    w, _, h = size
+    r = w / 2
+    finish = glaze(rng) if rng.random() < 0.6 else CERAMIC
+    well = 0.64 if form == "flat" else 0.52
+    low = pieces("well", slab(circle(well * r, 24), (0.0, 0.3 * h)), finish)
+    return Shape(low + pieces("rim", ring((well * r, r), (well * r - 0.003, r - 0.01), (0.3 * h, h), 24), finish))
+
+
+def bowl(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a bowl of pottery or wood."""
+    w, _, h = size
+    r = w / 2
+    finish = Finish("turned_wood", shade(rng, WOODS["beech"]), 0.5, pattern="grain", density=650) if form == "wood" else glaze(rng)
+    profile = [(0.42 * r, 0.0), (0.78 * r, 0.32 * h), (0.95 * r, 0.7 * h), (r, h)]
+    return Shape(pieces("bowl", vessel(profile, 0.006, 0.08 * h, 20), finish))
+
+
+def vase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a bottle, a bellied or an upright vase, some with twigs in it."""
+    w, d, h = size
+    finish = glaze(rng)
+    tall = 0.55 * h if form == "twigs" else h
+    r = min(w, d) / 2 * (0.42 if form == "twigs" else 1.0)
+    shapes = {
+        "bottle": [(0.6, 0.0), (0.95, 0.12), (1.0, 0.3), (0.8, 0.5), (0.3, 0.66), (0.24, 0.9), (0.34, 1.0)],
+        "belly": [(0.5, 0.0), (0.86, 0.18), (1.0, 0.45), (0.9, 0.7), (0.55, 0.9), (0.6, 1.0)],
+    }
+    outline = shapes.get(form, [(0.62, 0.0), (0.8, 0.3), (1.0, 0.75), (0.7, 0.95), (0.74, 1.0)])
+    profile = [(a * r, b * tall) for a, b in outline]
+    lower, upper = profile[: len(profile) - 2], profile[len(profile) - 3 :]
+    base = pieces("vase", revolve(lower, 20), finish)
+    for (r0, z0), (r1, z1) in zip(upper[:-1], upper[1:], strict=True):
+        base += pieces("neck", ring((r0, r1), (0.78 * r0, 0.78 * r1), (z0, z1), 20), finish)
+    if form != "twigs":
+        return Shape(base)
+    stems: list[Solid] = []
+    roots, tips = [], []
+    count = int(rng.integers(4, 7))
+    for k in range(count):
+        a = 2 * math.pi * k / count + float(rng.uniform(-0.4, 0.4))
+        out, top = float(rng.uniform(0.5, 1.0)), h * float(rng.uniform(0.86, 1.0))
+        c, s = 0.5 * w * out * math.cos(a), 0.5 * d * out * math.sin(a)
+        path = curve([(0.1 * c, 0.1 * s, 0.8 * tall), (0.3 * c, 0.3 * s, 0.5 * (tall + top)), (c, s, top)], 2)
+        stems += tube(path, np.linspace(0.003, 0.0018, len(path)), 5)
+        for j in range(2, len(path)):
+            for side in (-1, 1):
+                turn = a + side * 0.9
+                roots.append(path[j] - np.array([0, 0, 0.01]))
+                tips.append(path[j] + np.array([0.05 * math.cos(turn), 0.05 * math.sin(turn), 0.02]))
+    green = Finish("dry_leaf", shade(rng, LEAF.color if rng.random() < 0.6 else (0.40, 0.26, 0.10), 0.25), 0.7, pattern="leaf", density=300)
+    twig = Finish("twig", (0.16, 0.09, 0.045), 0.9, density=500)
+    return Shape(base + pieces("stems", stems, twig) + pieces("leaves", blades(np.array(roots), np.array(tips), 0.022), green))
+
+
+def binding(rng: np.random.Generator) -> Finish:
+    """Draw a book's cover."""
+    name = BINDINGS[int(rng.integers(len(BINDINGS)))]
+    return Finish(f"binding_{name}", shade(rng, LACQUERS[name], 0.12), 0.6, density=700)
+
+
+def bound(rng: np.random.Generator, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> tuple[Piece, ...]:
+    """Return a book that lies flat: two boards, a spine at the left, the block of paper set back between them."""
+    t = min(0.003, 0.2 * (z[1] - z[0]))
+    boards = [box(x, y, (z[0], z[0] + t)), box(x, y, (z[1] - t, z[1])), box((x[0], x[0] + t), y, (z[0] + t, z[1] - t))]
+    made = pieces("cover", boards, binding(rng))
+    return made + pieces("pages", box((x[0] + t, x[1] - 0.004), (y[0] + 0.004, y[1] - 0.004), (z[0] + t, z[1] - t)), PAPER)
+
+
+def book(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a book that lies, stands upright, or lies open."""
+    w, d, h = size
+    if form == "open":
+        made: tuple[Piece, ...] = ()
+        t = min(0.0035, 0.2 * h)
+        made += pieces("cover", box((-w / 2, w / 2), (-d / 2, d / 2), (0.0, t)), binding(rng))
+        for s in (-1, 1):
+            outer, inner = s * (w / 2 - 0.005), s * 0.001
+            low = [(min(outer, inner), t), (max(outer, inner), t)]
+            block = np.array([*low, (max(outer, inner), 0.6 * h if s > 0 else h), (min(outer, inner), h if s > 0 else 0.6 * h)])
+            from pipeline.corpus.furniture.bent import prism
+
+            made += pieces("pages", prism(block, "y", (-d / 2 + 0.005, d / 2 - 0.005)), PAPER)
+        return Shape(made)
+    return Shape(bound(rng, (-w / 2, w / 2), (-d / 2, d / 2), (0.0, h)))
+
+
+def book_stack(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a pile of books, or a row of upright ones."""
+    w, d, h = size
+    made: tuple[Piece, ...] = ()
+    if form == "row":
+        x = -w / 2
+        while x < w / 2 - 0.012:
+            t = min(float(rng.uniform(0.018, 0.05)), w / 2 - x)
+            tall, deep = h * float(rng.uniform(0.78, 1.0)), d * float(rng.uniform(0.8, 1.0))
+            cover = binding(rng)
+            skin = 0.0025
+            y = (-d / 2, -d / 2 + deep)
+            boards = [
+                box((x, x + skin), y, (0, tall)),
+                box((x + t - skin, x + t), y, (0, tall)),
+                box((x + skin, x + t - skin), (y[0], y[0] + skin), (0, tall)),
+            ]
+            made += pieces("cover", boards, cover)
+            made += pieces("pages", box((x + skin, x + t - skin), (y[0] + skin, y[1] - 0.004), (0.003, tall - 0.004)), PAPER)
+            x += t + 0.0008
+        return Shape(made)
+    count = max(2, round(h / 0.035))
+    edges = np.cumsum(rng.uniform(0.6, 1.4, count))
+    edges = np.concatenate([[0.0], edges / edges[-1] * h])
+    for k in range(count):
+        share = 1.0 if k == 0 else float(rng.uniform(0.75, 0.98))
+        dx, dy = (float(v) for v in rng.uniform(-0.5, 0.5, 2) * (1 - share))
+        x, y = (w * (dx - share / 2), w * (dx + share / 2)), (d * (dy - share / 2), d * (dy + share / 2))
+        made += bound(rng, x, y, (float(edges[k]), float(edges[k + 1])))
+    return Shape(made)
+
+
+def basket(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a woven basket, round or square, with two handles."""
+    w, d, h = size
+    straw = Finish("straw", shade(rng, (0.52, 0.36, 0.18)), 0.9, pattern="cane", density=300, second=(0.22, 0.14, 0.07))
+    body = h - 0.03
+    if form == "round":
+        made = vessel([(0.40 * w, 0.0), (0.48 * w, 0.4 * body), (0.46 * w, body)], 0.012, 0.012, 18)
+        made = [s.scaled(np.array([1, d / w, 1])) for s in made]
+        rim = [s.scaled(np.array([1, d / w, 1])) for s in ring((0.5 * w, 0.5 * w), (0.46 * w, 0.46 * w), (body, body + 0.015), 18)]
+    else:
+        t = 0.012
+        x, y = (-w / 2 + 0.006, w / 2 - 0.006), (-d / 2 + 0.006, d / 2 - 0.006)
+        made = [
+            box(x, y, (0, t)), box((x[0], x[0] + t), y, (t, body)), box((x[1] - t, x[1]), y, (t, body)),
+            box((x[0] + t, x[1] - t), (y[0], y[0] + t), (t, body)), box((x[0] + t, x[1] - t), (y[1] - t, y[1]), (t, body)),
+        ]  # fmt: skip
+        rim = [
+            box((s * w / 2 - 0.012 - 0.012 * s, s * w / 2 + 0.012 - 0.012 * s), (-d / 2, d / 2), (body, body + 0.015), 0.004)
+            for s in (-1, 1)
+        ] + [
+            box(
+                (-w / 2 + 0.024, w / 2 - 0.024), (s * d / 2 - 0.012 - 0.012 * s, s * d / 2 + 0.012 - 0.012 * s), (body, body + 0.015), 0.004
+            )
+            for s in (-1, 1)
+        ]
+    top = body + 0.015
+    rope = Finish("rope", FABRICS["taupe_cloth"], 0.95, density=400)
+    grips: list[Solid] = []
+    for s in (-1, 1):
+        x0 = s * (0.478 * w if form == "round" else w / 2 - 0.012)
+        grips += tube(
+            curve([(x0, -0.05, top - 0.002), (x0, -0.03, h - 0.006), (x0, 0.03, h - 0.006), (x0, 0.05, top - 0.002)], 2), 0.005, 6
+        )
+    return Shape(pieces("basket", made, straw) + pieces("rim", rim, straw) + pieces("grips", grips, rope))

@@ -1,0 +1,113 @@
+"""What hangs on walls: pictures, mirrors, clocks. The back is at the wall (+y)."""
+
+# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pipeline.corpus.furniture.bent import turns
+from pipeline.corpus.furniture.finishes import FABRICS, MIRROR, PAPER, Color, Finish, Pattern, Scheme, shade
+from pipeline.corpus.furniture.shape import Piece, Shape, pieces
+from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab
+from pipeline.corpus.furniture.storage import Size, pick
+
+INKS: tuple[tuple[Color, Color], ...] = (
+    ((0.75, 0.70, 0.60), (0.05, 0.08, 0.14)),
+    ((0.72, 0.66, 0.55), (0.45, 0.12, 0.05)),
+    ((0.10, 0.16, 0.22), (0.78, 0.62, 0.38)),
+    ((0.78, 0.75, 0.70), (0.04, 0.18, 0.14)),
+    ((0.68, 0.42, 0.30), (0.82, 0.78, 0.68)),
+    ((0.80, 0.79, 0.76), (0.03, 0.03, 0.035)),
+)
+
+
+def standing(solids: list[Solid], y: float, z: float) -> list[Solid]:
+    """Return solids made lying about the origin, turned upright to face the front (-y), their base at `y`, their middle at `z`."""
+    return [s.turned("x", math.pi / 2).moved((0, y, z)) for s in solids]
+
+
+def bordered(w: float, h: float, wide: float, y: tuple[float, float], bevel: float = 0.002) -> list[Solid]:
+    """Return four boards around a rectangle `w` x `h` whose lower edge is at z = 0."""
+    x = w / 2
+    return [
+        box((-x, -x + wide), y, (0.0, h), bevel),
+        box((x - wide, x), y, (0.0, h), bevel),
+        box((-x + wide, x - wide), y, (0.0, wide), bevel),
+        box((-x + wide, x - wide), y, (h - wide, h), bevel),
+    ]
+
+
+def picture(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a framed print with a mount, a bare canvas, or a pair of prints."""
+    w, d, h = size
+    back = d / 2
+    pattern: Pattern = pick(rng, "art_blocks art_hills art_circles art_lines")  # type: ignore[assignment]
+    ground, ink = INKS[int(rng.integers(len(INKS)))]
+    art = Finish("print", ground, 0.7, pattern=pattern, density=400, second=ink)
+    if form == "canvas":
+        return Shape(pieces("canvas", box((-w / 2, w / 2), (-back, back), (0.0, h), 0.003), art))
+    frame = scheme.timber if rng.random() < 0.5 else scheme.handle
+    spans = [(-w / 2, w / 2)] if form == "framed" else [(-w / 2, -0.02 * w), (0.02 * w, w / 2)]
+    made: tuple[Piece, ...] = ()
+    for k, (x0, x1) in enumerate(spans):
+        wide = x1 - x0
+        rim = 0.018 + 0.02 * scheme.manner.ornament
+        at = np.array([(x0 + x1) / 2, 0.0, 0.0])
+        mount = 0.12 * min(wide, h)
+        sheet = box((-wide / 2 + rim, wide / 2 - rim), (back - 0.008, back), (rim, h - rim))
+        inner = box((-wide / 2 + rim + mount, wide / 2 - rim - mount), (back - 0.011, back - 0.008), (rim + mount, h - rim - mount))
+        made += pieces(f"frame_{k}", [s.moved(at) for s in bordered(wide, h, rim, (-back, back))], frame)
+        made += pieces(f"mount_{k}", sheet.moved(at), PAPER) + pieces(f"print_{k}", inner.moved(at), art)
+    return Shape(made)
+
+
+def mirror(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a mirror in a rectangular or a round frame, or in a sunburst."""
+    w, d, h = size
+    back = d / 2
+    frame = scheme.handle if rng.random() < 0.55 else scheme.timber
+    if form == "rectangle":
+        rim = 0.02 + 0.035 * scheme.manner.ornament
+        glass = box((-w / 2 + rim, w / 2 - rim), (back - 0.012, back - 0.004), (rim, h - rim))
+        return Shape(pieces("frame", bordered(w, h, rim, (-back, back), 0.004), frame) + pieces("mirror", glass, MIRROR))
+    r = min(w, h) / 2
+    rim = 0.6 * r if form == "sunburst" else 0.93 * r
+    made = pieces("mirror", standing([slab(circle(rim, 36), (0.0, 0.006))], back - 0.004, h / 2), MIRROR)
+    if form == "sunburst":
+        hoop = ring((1.06 * rim, 1.06 * rim), (rim, rim), (0.0, 0.8 * d), 36)
+        rays = [rod((1.06 * rim * math.cos(a), back - 0.012, h / 2 + 1.06 * rim * math.sin(a)), (q * math.cos(a), back - 0.012, h / 2 + q * math.sin(a)), 0.007, 0.002, 6)
+                for k, a in enumerate(turns(24)) for q in (r if k % 2 == 0 else 0.84 * r,)]  # fmt: skip
+        return Shape(made + pieces("frame", standing(hoop, back, h / 2), frame) + pieces("rays", rays, frame))
+    return Shape(made + pieces("frame", standing(ring((r, r), (rim, rim), (0.0, d), 36), back, h / 2), frame))
+
+
+def clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a round wall clock with a dial, or one with bare marks on a ring."""
+    w, d, h = size
+    back, r = d / 2, w / 2
+    rim = scheme.handle if rng.random() < 0.6 else scheme.timber
+    if form == "dial":
+        face = Finish("dial", (0.82, 0.81, 0.78) if rng.random() < 0.7 else (0.04, 0.04, 0.045), 0.5, pattern="dial", density=900)
+        ink: Color = (0.03, 0.03, 0.03) if face.color[0] > 0.5 else (0.85, 0.83, 0.78)
+        face = Finish("dial", face.color, 0.5, pattern="dial", density=900, second=ink)
+        disc = standing([slab(circle(0.9 * r, 32), (0.0, 0.5 * d))], back, h / 2)
+        return Shape(
+            pieces("dial", disc, face) + pieces("rim", standing(ring((r, 0.97 * r), (0.9 * r, 0.9 * r), (0.0, d), 32), back, h / 2), rim)
+        )
+    hub = standing(revolve([(0.2 * r, 0.0), (0.2 * r, 0.7 * d), (0.12 * r, d)], 20), back, h / 2)
+    made = pieces("ring", standing(ring((0.86 * r, 0.86 * r), (0.8 * r, 0.8 * r), (0.0, 0.4 * d), 32), back, h / 2), rim) + pieces(
+        "hub", hub, rim
+    )
+    y = (back - 0.8 * d, back - 0.4 * d)
+    marks = [box((-0.02 * r, 0.02 * r), y, (0.74 * r, r)).turned("y", a).moved((0, 0, h / 2)) for a in turns(12)]
+    hands = [
+        box((-0.015 * r, 0.015 * r), (back - 0.6 * d, back - 0.45 * d), (0.2 * r, q * r)).turned("y", a).moved((0, 0, h / 2))
+        for q, a in ((0.5, 1.05), (0.72, -1.05))
+    ]
+    bars = [rod((0.2 * r * math.cos(a), back - 0.15 * d, h / 2 + 0.2 * r * math.sin(a)), (0.8 * r * math.cos(a), back - 0.15 * d, h / 2 + 0.8 * r * math.sin(a)), 0.1 * d, n=6)
+            for a in turns(4)]  # fmt: skip
+    dark = Finish("marks", shade(rng, FABRICS["charcoal"], 0.1), 0.5, density=900)
+    return Shape(made + pieces("spokes", bars, rim) + pieces("marks", marks, rim) + pieces("hands", hands, dark))
