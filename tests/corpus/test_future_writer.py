@@ -1,9 +1,9 @@
 import json
-import struct
-import zlib
+from io import BytesIO
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.corpus.future_writer import info, write_future
@@ -157,12 +157,10 @@ def test_texture_is_a_small_png_with_the_materials_colours(chosen, folder):
     for model in chosen:
         data = (folder / model.model_id / "texture.png").read_bytes()
         assert data[:8] == b"\x89PNG\r\n\x1a\n"
-        assert len(data) < 16_000
-        width, height = struct.unpack(">II", data[16:24])
-        rows = np.frombuffer(zlib.decompress(data[41 : 41 + struct.unpack(">I", data[33:37])[0]]), np.uint8).reshape(height, 1 + 3 * width)
-        image = rows[:, 1:].reshape(height, width, 3)
+        assert len(data) < 40_000
+        image = np.asarray(Image.open(BytesIO(data)).convert("RGB"))
         first = next(line for line in (folder / model.model_id / "model.mtl").read_text().splitlines() if line.startswith("Kd"))
-        tile = image[-20:-12, 12:20].reshape(-1, 3).mean(axis=0) / 255  # inside the lower left tile
+        tile = image[-5:-2, 2:5].reshape(-1, 3).mean(axis=0) / 255  # inside the lower left field
         assert np.allclose(tile, [float(x) for x in first.split()[1:]], atol=0.12)
 
 

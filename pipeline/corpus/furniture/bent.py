@@ -46,7 +46,7 @@ def _mitres(path: Points, closed: bool) -> tuple[Points, Points]:
     return along, normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
 
-def tube(path: Sequence[Vector] | Points, radius: float | Sequence[float], n: int = 8, *, closed: bool = False) -> list[Solid]:
+def tube(path: Sequence[Vector] | Points, radius: float | Sequence[float] | Points, n: int = 8, *, closed: bool = False) -> list[Solid]:
     """Return a round bar of `n` facets along a path (m, 3) [m], one piece per segment; `radius` may differ from point to point."""
     p = np.asarray(path, float)
     radii = np.broadcast_to(np.asarray(radius, float), (len(p),))
@@ -95,7 +95,7 @@ def _sides(path: Points, thick: float, closed: bool) -> tuple[Points, Points]:
     return path + offset, path - offset
 
 
-def sheet(profile: Points, thick: float, width: float | Sequence[float]) -> list[Solid]:
+def sheet(profile: Points, thick: float, width: float | Sequence[float] | Points) -> list[Solid]:
     """Return a bent board: a profile in (y, z) (m, 2), `thick`, across x; `width` may differ from point to point."""
     half = np.broadcast_to(np.asarray(width, float), (len(profile),)) / 2
     left, right = _sides(profile, thick, closed=False)

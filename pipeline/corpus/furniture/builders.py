@@ -7,7 +7,21 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from pipeline.corpus.furniture import (
-    appliances, bath, beds, decor, desks, kitchen, lamps, seating, shelves, sofas, storage, tables, tableware, textiles, wall_decor,
+    appliances,
+    bath,
+    beds,
+    decor,
+    desks,
+    kitchen,
+    lamps,
+    seating,
+    shelves,
+    sofas,
+    storage,
+    tables,
+    tableware,
+    textiles,
+    wall_decor,
 )  # fmt: skip
 from pipeline.corpus.furniture.finishes import Scheme
 from pipeline.corpus.furniture.shape import Shape

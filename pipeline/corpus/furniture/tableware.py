@@ -4,11 +4,12 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
 
-from pipeline.corpus.furniture.bent import blades, curve, tube
+from pipeline.corpus.furniture.bent import blades, curve, prism, tube
 from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, shade
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, slab
@@ -28,7 +29,7 @@ def vessel(profile: list[tuple[float, float]], wall: float, floor: float, n: int
     """Return an open vessel: a wall `wall` [m] thick along a profile of (radius, height), a floor `floor` [m] thick."""
     made = [slab(circle(profile[0][0], n), (profile[0][1], profile[0][1] + floor))]
     start = [(profile[0][0], profile[0][1] + floor), *profile[1:]]
-    for (r0, z0), (r1, z1) in zip(start[:-1], start[1:], strict=True):
+    for (r0, z0), (r1, z1) in itertools.pairwise(start):
         made += ring((r0, r1), (r0 - wall, r1 - wall), (z0, z1), n)
     return made
 
@@ -90,7 +91,7 @@ def vase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     profile = [(a * r, b * tall) for a, b in outline]
     lower, upper = profile[: len(profile) - 2], profile[len(profile) - 3 :]
     base = pieces("vase", revolve(lower, 20), finish)
-    for (r0, z0), (r1, z1) in zip(upper[:-1], upper[1:], strict=True):
+    for (r0, z0), (r1, z1) in itertools.pairwise(upper):
         base += pieces("neck", ring((r0, r1), (0.78 * r0, 0.78 * r1), (z0, z1), 20), finish)
     if form != "twigs":
         return Shape(base)
@@ -138,8 +139,6 @@ def book(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
             outer, inner = s * (w / 2 - 0.005), s * 0.001
             low = [(min(outer, inner), t), (max(outer, inner), t)]
             block = np.array([*low, (max(outer, inner), 0.6 * h if s > 0 else h), (min(outer, inner), h if s > 0 else 0.6 * h)])
-            from pipeline.corpus.furniture.bent import prism
-
             made += pieces("pages", prism(block, "y", (-d / 2 + 0.005, d / 2 - 0.005)), PAPER)
         return Shape(made)
     return Shape(bound(rng, (-w / 2, w / 2), (-d / 2, d / 2), (0.0, h)))
@@ -172,8 +171,8 @@ def book_stack(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     for k in range(count):
         share = 1.0 if k == 0 else float(rng.uniform(0.75, 0.98))
         dx, dy = (float(v) for v in rng.uniform(-0.5, 0.5, 2) * (1 - share))
-        x, y = (w * (dx - share / 2), w * (dx + share / 2)), (d * (dy - share / 2), d * (dy + share / 2))
-        made += bound(rng, x, y, (float(edges[k]), float(edges[k + 1])))
+        span_x, span_y = (w * (dx - share / 2), w * (dx + share / 2)), (d * (dy - share / 2), d * (dy + share / 2))
+        made += bound(rng, span_x, span_y, (float(edges[k]), float(edges[k + 1])))
     return Shape(made)
 
 

@@ -1,7 +1,5 @@
 """Rugs, curtains and loose pillows."""
 
-# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
-
 from __future__ import annotations
 
 import math

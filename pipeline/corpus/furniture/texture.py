@@ -18,10 +18,10 @@ from pipeline.corpus.furniture.shape import Piece
 from pipeline.corpus.furniture.solids import Solid, topology
 
 FINEST = 256.0  # [pixels per metre]
-LARGEST = 448  # pixels a side; a model too large for that at FINEST gets fewer per metre
+LARGEST = 320  # pixels a side; a model too large for that at FINEST gets fewer per metre
 MARGIN = 2  # pixels around each field, so that filtering does not mix neighbours
 PLAIN = 6  # pixels a side of the field of a finish without a pattern
-SHADES = 16  # of one finish
+SHADES = 8  # of one finish
 GOLDEN = 0.6180339887498949
 
 
@@ -86,10 +86,8 @@ def atlas(pieces: Iterable[Piece]) -> Atlas:
     for piece in pieces:
         low, high = piece.solid.bounds()
         extent = high - low
-        if piece.finish.pattern in patterns.WHOLE:
-            across = np.array([extent[0], extent[np.argmax(extent[1:]) + 1]])
-        else:
-            across = np.sort(extent)[1:]
+        whole = piece.finish.pattern in patterns.WHOLE
+        across = np.array([extent[0], extent[1:].max()]) if whole else np.sort(extent)[1:]
         reach[piece.finish] = np.maximum(reach.get(piece.finish, np.zeros(2)), across)
     patterned = [size for finish, size in reach.items() if finish.pattern != "plain"]
     scale = FINEST

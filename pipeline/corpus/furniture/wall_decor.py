@@ -1,7 +1,5 @@
 """What hangs on walls: pictures, mirrors, clocks. The back is at the wall (+y)."""
 
-# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
-
 from __future__ import annotations
 
 import math
