@@ -1,72 +1,44 @@
-"""CPU time and scores of floor plans: `python -m benchmarks.plan`. Prints a table; takes about a minute."""
+"""Floor plans, measured: `python -m benchmarks.plan` (scores, times, diversity, a sample of failures), or one of them by name.
+
+python -m benchmarks.plan scores --count 5          the 20 prompts on 5 seeds, against the bars
+python -m benchmarks.plan times --count 200         CPU ms for 5, 8 and 12 rooms
+python -m benchmarks.plan failures --count 1000     programs of the prior, and of an independent generator
+python -m benchmarks.plan diversity --count 100     one program, many seeds
+python -m benchmarks.plan knobs --count 40          every knob against its own term
+"""
 
 from __future__ import annotations
 
-import time
-from pathlib import Path
+import argparse
+import sys
 
-import numpy as np
-import yaml
-
-from pipeline.entities.plan import Plan
-from pipeline.floorplan import FloorProgram, complete, parse, prior, solve
-from pipeline.floorplan.program import RoomReq
-from pipeline.metrics.plan_scores import score
-
-SEEDS, PRIOR = 2, 100
-HOMES = {
-    5: ("living_room", "kitchen", "bedroom", "bathroom", "entry"),
-    8: ("living_room", "kitchen", "bedroom", "bedroom", "bathroom", "hallway", "wc", "balcony"),
-    12: (
-        "living_room",
-        "kitchen",
-        "dining_room",
-        "hallway",
-        "bedroom",
-        "bedroom",
-        "bedroom",
-        "bathroom",
-        "bathroom",
-        "wc",
-        "utility",
-        "office",
-    ),
-}
-CASES = Path(__file__).resolve().parents[1] / "manifests" / "prompts" / "benchmark.yaml"
+COUNTS = {"scores": 5, "times": 200, "failures": 200, "diversity": 100, "knobs": 12}
 
 
-def timed(program: FloorProgram, seed: int) -> tuple[Plan, float]:
-    start = time.process_time()
-    plan = solve(program, seed)
-    return plan, time.process_time() - start
+def main(arguments: list[str]) -> int:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.plan", description="Floor plans, measured.")
+    parser.add_argument("what", nargs="*", choices=[*COUNTS, []], help="default: all")
+    parser.add_argument("--count", type=int, help="seeds or programs")
+    parser.add_argument("--first", type=int, default=0, help="failures: the first program")
+    parser.add_argument("--source", choices=("prior", "trees"), action="append", help="failures: programs of these only")
+    chosen = parser.parse_args(arguments)
+    failed = 0
+    for what in chosen.what or COUNTS:
+        count = chosen.count or COUNTS[what]
+        print(f"-- {what}", flush=True)
+        failed += run(what, count, chosen.first, chosen.source)
+    return min(1, failed)
 
 
-def main() -> None:
-    solve(complete(FloorProgram(rooms=(RoomReq(id="studio", type="studio_room"),))), 0)  # compile
-    print("rooms    mean ms     p95 ms     max ms   (CPU, program to plan, warm)")
-    for count, kinds in HOMES.items():
-        program = complete(FloorProgram(rooms=tuple(RoomReq(id=f"r{i}", type=k) for i, k in enumerate(kinds)), only=True))
-        times = [1000 * timed(program, seed)[1] for seed in range(30)]
-        print(f"{count:5d} {np.mean(times):10.0f} {np.percentile(times, 95):10.0f} {max(times):10.0f}")
-    times = [1000 * timed(prior(np.random.default_rng(seed)), seed)[1] for seed in range(PRIOR)]  # raises when one is refused
-    print(f"prior {np.mean(times):10.0f} {np.percentile(times, 95):10.0f} {max(times):10.0f}   ({PRIOR} programs, none refused)")
-    rows = []
-    for case in yaml.safe_load(CASES.read_text(encoding="utf-8")):
-        program = parse(case["prompt"])
-        for seed in range(SEEDS):
-            plan, seconds = timed(program, seed)
-            found = score(plan, case)
-            rows.append(
-                (found.node, found.constraint, found.edge, found.presence, found.adjacency, found.constraints, found.success, seconds)
-            )
-            if not found.success:
-                print(f"{case['id']} seed {seed}: P {found.presence:.2f} A {found.adjacency:.2f} C {found.constraints:.2f}")
-    means = np.mean(np.array(rows, dtype=float), axis=0)
-    names = ("S_node", "S_constraint", "S_edge", "presence", "adjacency", "constraints", "strict success", "CPU s")
-    print(f"\n{len(rows)} plans of the {len(rows) // SEEDS} benchmark prompts, from the prompt alone:")
-    for name, value in zip(names, means, strict=True):
-        print(f"  {name:15s} {value:.4f}")
+def run(what: str, count: int, first: int, sources: list[str] | None) -> int:
+    """Run one measurement; return the number of failures."""
+    from benchmarks.planning import diversity, failures, knobs, scores, times
+
+    if what == "failures":
+        return failures.main(count, first, tuple(sources or failures.SOURCES))
+    {"scores": scores, "times": times, "diversity": diversity, "knobs": knobs}[what].main(count)
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main(sys.argv[1:]))

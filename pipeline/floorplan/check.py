@@ -155,18 +155,22 @@ def _ways(program: FloorProgram) -> None:
 
 
 def reach(program: FloorProgram, root: str, avoid: frozenset[str]) -> set[str]:
-    """Return the rooms that one can walk to from `root` without entering `avoid` and without walking through private rooms."""
+    """Return the rooms that one can walk to from `root` without entering `avoid`.
+
+    No way leads through a bathroom, nor through a balcony or from a bedroom to a room that is not its own unless such a link was stated.
+    """
     kinds = {r.id: r.type for r in program.rooms}
     found, frontier = {root} - avoid, [root]
     while frontier:
         here = frontier.pop()
-        if here in avoid or (here != root and kinds[here] in {"bathroom", "wc", "balcony"}):
+        if here in avoid or (here != root and kinds[here] in {"bathroom", "wc"}):
             continue
         for k in program.links:
             other = k.b if k.a == here else (k.a if k.b == here else None)
             if other is None or other in found or other in avoid or k.kind == "wall":
                 continue
-            if kinds[here] == "bedroom" and here != root and kinds[other] not in PRIVATE:
+            private = kinds[here] == "balcony" or (kinds[here] == "bedroom" and kinds[other] not in PRIVATE)
+            if private and here != root and not k.stated:
                 continue
             found.add(other)
             frontier.append(other)

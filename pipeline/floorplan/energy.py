@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.grid import Labels, Measures, hull_area, inner_area, opening, simple
+from pipeline.floorplan.grid import Labels, Measures, ell_opening, hull_area, inner_area, notch_width, opening, simple
 from pipeline.geometry.compiled import compiled
 
 Ints = NDArray[np.int64]
@@ -100,22 +100,21 @@ def circulation(out: Measures, edges: Ints) -> float:
     total = 0.0
     for k in range(edges.shape[0]):
         room, parent = edges[k, 0], edges[k, 1]
-        for k4 in range(4):
-            travel[room, k4] = travel[parent, k4]
+        for way in range(4):
+            travel[room, way] = travel[parent, way]
         if out.run[room, parent] == 0:
             continue
-        for leg in range(2):
-            one = out.centre[parent] if leg == 0 else out.middle[parent, room]
-            two = out.middle[parent, room] if leg == 0 else out.centre[room]
-            dx, dy = two[0] - one[0], two[1] - one[1]
-            travel[room, 0] += max(dx, 0.0)
-            travel[room, 1] += max(-dx, 0.0)
-            travel[room, 2] += max(dy, 0.0)
-            travel[room, 3] += max(-dy, 0.0)
-        d = travel[room]
-        straight = max(d[0], d[1]) + max(d[2], d[3])
+        straight, whole = 0.0, 0.0
+        for axis in range(2):
+            through = out.middle[parent, room, axis]
+            for leg in range(2):
+                step = through - out.centre[parent, axis] if leg == 0 else out.centre[room, axis] - through
+                travel[room, 2 * axis + (step < 0.0)] += abs(step)
+            ahead, back = travel[room, 2 * axis], travel[room, 2 * axis + 1]
+            straight += max(ahead, back)
+            whole += ahead + back
         if straight > 0.0:
-            total += ((d[0] + d[1] + d[2] + d[3]) / straight - 1.0) ** 2
+            total += (whole / straight - 1.0) ** 2
     return total / max(n - 1, 1) * 4.0
 
 
@@ -142,12 +141,13 @@ def squareness(box: Ints, square: Ints) -> float:
 
 
 @compiled
-def convexity(hull: Floats, cells: Ints) -> float:
-    """Term 4: mean over rooms of (hull area / area - 1)^2."""
+def convexity(shape: Floats, cells: Ints) -> float:
+    """Term 4: mean over rooms of (hull area / area - 1)^2; hull areas in column 0."""
+    n = shape.shape[0]
     total = 0.0
-    for i in range(hull.size):
-        total += (hull[i] / max(cells[i], 1) - 1.0) ** 2
-    return total / hull.size * 4.0
+    for i in range(n):
+        total += (shape[i, 0] / max(cells[i], 1) - 1.0) ** 2
+    return float(total / n * 4.0)
 
 
 @compiled
@@ -202,11 +202,11 @@ def useful_area(areas: Floats, useful: Ints) -> float:
 
 
 @compiled
-def min_width(missed: Floats, split: Ints) -> float:
-    """Term 10: area [m2] that squares of half and of the whole wanted width do not reach, plus a charge per room that splits."""
+def min_width(shape: Floats) -> float:
+    """Term 10: area [m2] that squares of half and of the whole wanted width miss (column 1), and a charge per room that splits (2)."""
     total = 0.0
-    for i in range(missed.size):
-        total += missed[i] + SPLIT * split[i]
+    for i in range(shape.shape[0]):
+        total += shape[i, 1] + SPLIT * shape[i, 2]
     return total
 
 
@@ -233,57 +233,82 @@ def stair_snug(both: float, stair: float, own: float) -> float:
 
 
 @compiled
-def terms(grid: Labels, out: Measures, spec: Spec, edges: Ints, values: Floats, areas: Floats) -> float:
+def room_shape(grid: Labels, out: Measures, spec: Spec, i: int, shape: Floats) -> None:
+    """Write what depends on the cells of room i alone to `shape[i]`: hull [cells], area missed [m2], 1 if it splits, violation."""
+    w, h = out.box[i, 2] - out.box[i, 0], out.box[i, 3] - out.box[i, 1]
+    cells = out.cells[i]
+    square_metre = spec.unit * spec.unit
+    half = (spec.least[i] + 1) // 2
+    shape[i, 2] = 0.0
+    shape[i, 3] = 0.0
+    if cells == w * h:
+        shape[i, 0] = float(cells)
+        short = min(w, h)
+        shape[i, 1] = square_metre * cells * ((short < spec.least[i]) + (short < half))
+        if short < spec.strict[i]:
+            shape[i, 3] = 0.5 + (spec.strict[i] - short) / spec.strict[i]
+        return
+    notch = 0
+    if out.corners[i, 1] == 1:
+        notch = notch_width(grid, i, out.box)
+        shape[i, 0] = cells + 0.5 * (w * h - cells)
+    else:
+        shape[i, 0] = hull_area(grid, i, out.box)
+    shape[i, 1] = 0.0
+    for part in range(3):
+        side = spec.least[i] if part == 0 else (half if part == 1 else spec.strict[i])
+        if notch > 0:
+            reached, pieces = ell_opening(w, h, notch, (w * h - cells) // notch, side)
+        else:
+            reached, pieces = opening(grid, i, out.box, side)
+        if part < 2:
+            shape[i, 1] += square_metre * (cells - reached)
+            if pieces > 1:
+                shape[i, 2] = 1.0
+        elif side > 1:
+            if reached == 0:
+                shape[i, 3] = 1.0
+            elif spec.corridor[i] > 0 and (pieces > 1 or reached < cells):
+                shape[i, 3] = 0.3 + (cells - reached) / cells
+
+
+@compiled
+def terms(
+    grid: Labels, out: Measures, spec: Spec, edges: Ints, values: Floats, areas: Floats, shape: Floats, stale: Ints, exact: bool
+) -> float:
     """Write the twelve terms to `values` (12,) and inner areas to `areas` (n,); return the hard violation (0: none).
 
-    Infinity when a room is not one simple piece.
+    `shape` (n, 4) keeps what `room_shape` found; only rooms that `stale` (n+1,) marks are looked at again, and
+    those of more than four corners only if `exact`: else terms and violation are lower bounds. Infinity when a room is not one simple piece.
     """
     n = spec.target.size
     for i in range(n):
         if not simple(out, i):
             return np.inf
-        areas[i] = inner_area(out, i, n, spec.unit)
-    hull = np.empty(n)
-    missed = np.zeros(n)
-    split = np.zeros(n, np.int64)
     hard = 0.0
     bent = 0
-    square_metre = spec.unit * spec.unit
     for i in range(n):
-        box = out.box[i]
-        w, h = box[2] - box[0], box[3] - box[1]
-        if out.cells[i] == w * h:
-            hull[i] = w * h
-            short = min(w, h)
-            missed[i] += square_metre * out.cells[i] * ((short < spec.least[i]) + (short < (spec.least[i] + 1) // 2))
-            if short < spec.strict[i]:
-                hard += 0.5 + (spec.strict[i] - short) / spec.strict[i]
-            continue
-        bent += 1
-        hull[i] = hull_area(grid, i, box)
-        for part in range(2):
-            side = spec.least[i] if part == 0 else (spec.least[i] + 1) // 2
-            reached, pieces = opening(grid, i, box, side)
-            missed[i] += square_metre * (out.cells[i] - reached)
-            split[i] += pieces > 1
-        if spec.strict[i] > 1:
-            reached, pieces = opening(grid, i, box, spec.strict[i])
-            if reached == 0:
-                hard += 1.0
-            elif spec.corridor[i] > 0 and (pieces > 1 or reached < out.cells[i]):
-                hard += 0.3 + (out.cells[i] - reached) / out.cells[i]
+        areas[i] = inner_area(out, i, n, spec.unit)
+        if stale[i] > 0:
+            if exact or out.corners[i, 1] == 0:
+                room_shape(grid, out, spec, i, shape)
+            else:
+                shape[i, 0] = float(out.cells[i])
+                shape[i, 1], shape[i, 2], shape[i, 3] = 0.0, 0.0, 0.0
+        hard += shape[i, 3]
+        bent += out.corners[i, 1] > 0
     if bent < spec.nonrect:
         hard += 0.3 * (spec.nonrect - bent)
     values[0] = circulation(out, edges)
     values[1] = area(areas, spec.target)
     values[2] = squareness(out.box, spec.square)
-    values[3] = convexity(hull, out.cells)
+    values[3] = convexity(shape, out.cells)
     values[4] = simplicity(out.corners, n)
     values[5] = exterior(out.walls, spec.habitable)
     values[6] = corner_light(out.outline_corners, spec.habitable)
     values[7] = alignment(out.columns, out.rows)
     values[8] = useful_area(areas, spec.useful)
-    values[9] = min_width(missed, split)
+    values[9] = min_width(shape)
     values[10], values[11] = 0.0, 0.0
     if spec.stair_room >= 0:
         rectangle = float((spec.stair[2] - spec.stair[0]) * (spec.stair[3] - spec.stair[1]))

@@ -55,10 +55,10 @@ def empty(n: int, height: int, width: int) -> Measures:
 
 
 @compiled
-def _wall(out: Measures, a: int, b: int, length: int, x: float, y: float) -> None:
-    """Record a straight common wall of rooms a and b, seen so far up to `length` with middle (x, y)."""
-    out.walls[a, b] += 1
-    out.walls[b, a] += 1
+def _wall(out: Measures, a: int, b: int, more: int, length: int, x: float, y: float) -> None:
+    """Record `more` cells of common wall of rooms a and b; the straight stretch is `length` by now, with middle (x, y)."""
+    out.walls[a, b] += more
+    out.walls[b, a] += more
     if length > out.run[a, b]:
         out.run[a, b] = length
         out.run[b, a] = length
@@ -69,60 +69,79 @@ def _wall(out: Measures, a: int, b: int, length: int, x: float, y: float) -> Non
 
 
 @compiled
-def measure(grid: Labels, n: int, out: Measures) -> None:  # noqa: PLR0915 - one pass, compiled
-    """Fill `out` from the bordered grid (rows+2, columns+2)."""
-    height, width = grid.shape[0] - 2, grid.shape[1] - 2
-    out.cells[:] = 0
-    out.corners[:] = 0
-    out.pinched[:] = 0
-    out.walls[:] = 0
-    out.run[:] = 0
-    out.centre[:] = 0.0
-    out.columns[:] = 0
-    out.rows[:] = 0
-    out.outline_corners[:] = 0
+def _clear(out: Measures, n: int, height: int, width: int) -> None:
+    """Set all counts to zero (loops compile faster than slices)."""
     for i in range(n + 1):
+        out.cells[i] = 0
+        out.pinched[i] = 0
+        out.outline_corners[i] = 0
+        out.corners[i, 0] = 0
+        out.corners[i, 1] = 0
+        out.centre[i, 0] = 0.0
+        out.centre[i, 1] = 0.0
         out.box[i, 0], out.box[i, 1], out.box[i, 2], out.box[i, 3] = width, height, 0, 0
+        for j in range(n + 1):
+            out.walls[i, j] = 0
+            out.run[i, j] = 0
+    for x in range(width + 1):
+        out.columns[x] = 0
+    for y in range(height + 1):
+        out.rows[y] = 0
+
+
+@compiled
+def _same_rows(grid: Labels, y: int) -> bool:
+    """Whether rows y and y + 1 of the bordered grid are equal."""
+    for x in range(1, grid.shape[1] - 1):  # noqa: SIM110 - compiled
+        if grid[y, x] != grid[y + 1, x]:
+            return False
+    return True
+
+
+@compiled
+def measure(grid: Labels, n: int, out: Measures) -> None:
+    """Fill `out` from the bordered grid (rows+2, columns+2). Equal rows are taken in one step."""
+    height, width = grid.shape[0] - 2, grid.shape[1] - 2
+    _clear(out, n, height, width)
     down_key = np.full(width + 1, -1, np.int64)
     down_len = np.zeros(width + 1, np.int64)
-    for y in range(height + 1):
-        row_key = -1
+    y = 0
+    while y <= height:
+        band = 1
+        while y + band <= height and _same_rows(grid, y + band):
+            band += 1
         row_len = 0
         start = 0
+        b, d = grid[y, 0], grid[y + 1, 0]
         for x in range(width + 1):
-            a, b = grid[y, x], grid[y, x + 1]
-            c, d = grid[y + 1, x], grid[y + 1, x + 1]
-            if d != c:  # a vertical wall on column line x, beside row y
+            a, c = b, d  # the cells around the vertex: a b below, c d above
+            b, d = grid[y, x + 1], grid[y + 1, x + 1]
+            if d != c:  # a vertical wall on column line x, beside these rows
                 key = min(c, d) * 64 + max(c, d)
-                down_len[x] = down_len[x] + 1 if down_key[x] == key else 1
+                down_len[x] = down_len[x] + band if down_key[x] == key else band
                 down_key[x] = key
                 out.columns[x] = 1
-                _wall(out, c, d, down_len[x], float(x), y + 1 - 0.5 * down_len[x])
-                if c != n:  # the span of room c in row y ends here
-                    first, count = start, x - start
+                _wall(out, c, d, band, down_len[x], float(x), y + band - 0.5 * down_len[x])
+                if c != n:  # the span of room c in these rows ends here
+                    first, count = start, (x - start) * band
                     out.cells[c] += count
                     out.centre[c, 0] += count * 0.5 * (first + x)
-                    out.centre[c, 1] += count * (y + 0.5)
+                    out.centre[c, 1] += count * (y + 0.5 * band)
                     out.box[c, 0] = min(out.box[c, 0], first)
                     out.box[c, 1] = min(out.box[c, 1], y)
                     out.box[c, 2] = max(out.box[c, 2], x)
-                    out.box[c, 3] = max(out.box[c, 3], y + 1)
+                    out.box[c, 3] = max(out.box[c, 3], y + band)
                 start = x
             else:
                 down_key[x] = -1
-            if d != b:  # a horizontal wall on row line y, above column x
-                key = min(b, d) * 64 + max(b, d)
-                row_len = row_len + 1 if row_key == key else 1
-                row_key = key
+            if a != c and (a != b or c != d):  # a horizontal wall on row line y ends here
                 out.rows[y] = 1
-                _wall(out, b, d, row_len, x + 1 - 0.5 * row_len, float(y))
-            else:
-                row_key = -1
-            if a == b and c == d and a == c:
-                continue
-            if (a == b and c == d) or (a == c and b == d):
-                continue
-            _corner(out, a, b, c, d, n)
+                _wall(out, a, c, row_len, row_len, x - 0.5 * row_len, float(y))
+                row_len = 0
+            row_len = row_len + 1 if b != d else 0
+            if (a != b or c != d) and (a != c or b != d):
+                _corner(out, a, b, c, d, n)
+        y += band
     for i in range(n + 1):
         if out.cells[i] > 0:
             out.centre[i, 0] /= out.cells[i]
@@ -168,17 +187,17 @@ def simple(out: Measures, room: int) -> bool:
 
 
 @compiled
-def hull_area(grid: Labels, room: int, box: Ints) -> float:
+def hull_area(grid: Labels, room: int, boxes: Ints) -> float:
     """Area of the room's convex hull [cells], from the extremes of its rows (monotone chain)."""
-    rows = box[3] - box[1]
+    rows = boxes[room, 3] - boxes[room, 1]
     left = np.empty((2 * rows, 2), np.float64)
     right = np.empty((2 * rows, 2), np.float64)
     for k in range(rows):
-        y = box[1] + k
-        x0 = box[0]
+        y = boxes[room, 1] + k
+        x0 = boxes[room, 0]
         while grid[y + 1, x0 + 1] != room:
             x0 += 1
-        x1 = box[2]
+        x1 = boxes[room, 2]
         while grid[y + 1, x1] != room:
             x1 -= 1
         left[2 * k, 0], left[2 * k, 1] = x0, y
@@ -191,7 +210,7 @@ def hull_area(grid: Labels, room: int, box: Ints) -> float:
 @compiled
 def _chain(points: Floats, side: float) -> float:
     """Integral of x dy under the outer chain of points that are sorted by y; `side` 1: the right one, -1: the left one."""
-    hull = np.empty_like(points)
+    hull = np.empty((points.shape[0], 2))
     size = 0
     for k in range(points.shape[0]):
         while size >= 2:
@@ -210,9 +229,34 @@ def _chain(points: Floats, side: float) -> float:
 
 
 @compiled
-def opening(grid: Labels, room: int, box: Ints, side: int) -> tuple[int, int]:  # noqa: C901, PLR0912 - three passes, compiled
+def notch_width(grid: Labels, room: int, boxes: Ints) -> int:
+    """Return the width of what an L-shaped room leaves of its box [cells]."""
+    x0, y0, x1, y1 = boxes[room, 0], boxes[room, 1], boxes[room, 2], boxes[room, 3]
+    y = y0 if grid[y0 + 1, x0 + 1] != room or grid[y0 + 1, x1] != room else y1 - 1
+    left, right = x0, x1 - 1
+    while grid[y + 1, left + 1] != room:
+        left += 1
+    while grid[y + 1, right + 1] != room:
+        right -= 1
+    return int((x1 - x0) - (right - left + 1))
+
+
+@compiled
+def ell_opening(w: int, h: int, a: int, b: int, side: int) -> tuple[int, int]:
+    """Return what `opening` does for an L: a box of w x h cells without a corner of a x b.
+
+    A square that avoids the corner lies wholly in one of the two arms that span the box, and both share the corner across.
+    """
+    upright = side <= w - a and side <= h
+    level = side <= w and side <= h - b
+    reached = (w - a) * h * upright + w * (h - b) * level - (w - a) * (h - b) * (upright and level)
+    return int(reached), int(upright or level)
+
+
+@compiled
+def opening(grid: Labels, room: int, boxes: Ints, side: int) -> tuple[int, int]:  # noqa: C901, PLR0912 - three passes, compiled
     """Cells of the room that a square of `side` cells reaches inside it, and the pieces that the square's places form."""
-    x0, y0, x1, y1 = box[0], box[1], box[2], box[3]
+    x0, y0, x1, y1 = boxes[room, 0], boxes[room, 1], boxes[room, 2], boxes[room, 3]
     h, w = y1 - y0, x1 - x0
     if side > h or side > w:
         return 0, 0

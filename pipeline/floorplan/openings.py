@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.plan import Opening, OpeningKind, Room, Swing
 from pipeline.floorplan.defaults import DEFAULTS, DOOR_HEIGHT
-from pipeline.floorplan.grid import OUTER
+from pipeline.floorplan.grid import INNER, OUTER
 from pipeline.floorplan.program import FloorProgram, RoomReq
 
 FRAME = 0.10  # least wall beside an opening, from the inner faces of side walls [m]
@@ -191,7 +191,7 @@ def _door(site: Site, walls: Sequence[Run], kind: OpeningKind, width: float, int
             segment = run.segment(offset, width)
             hinge = _near_corner(floor, segment, run.along)
             for end in (hinge, 1 - hinge):
-                if _leaf_fits(site, floor, into, segment, end, inward, width):
+                if _leaf_fits(site, floor, into, segment, end, inward, width, INNER if len(run.rooms) == 2 else OUTER):
                     swing = Swing(into, end, ANGLE)
                     site.put(run, Opening(_next_id(site, kind), kind, run.rooms, segment, height, 0.0, swing, run.level), offset)
                     site.swept.append((into, leaf_sweep(segment, end, inward, width)))
@@ -207,15 +207,11 @@ def _near_corner(floor: shapely.Polygon, segment: Point, along: Point) -> int:
     return int(np.argmin([min(e - low, high - e) for e in ends]))
 
 
-def _leaf_fits(site: Site, floor: shapely.Polygon, into: str, segment: Point, hinge: int, inward: Point, width: float) -> bool:
+def _leaf_fits(site: Site, floor: shapely.Polygon, into: str, segment: Point, hinge: int, inward: Point, width: float, wall: float) -> bool:
     sweep = leaf_sweep(segment, hinge, inward, width)
-    # the strip inside the wall's thickness belongs to no room
-    beyond = sweep.difference(floor).area
-    thickness = abs(float(np.dot(segment[0] - np.array(floor.exterior.coords[0]), inward)))
-    del thickness
-    if beyond > (OUTER + 0.01) * width:
-        return False
-    if not floor.buffer(OUTER + 0.01, join_style="mitre").contains(sweep):
+    # the hinge stands on the wall's centre line: from there to the room's face the leaf turns inside its own reveal
+    reveal = shapely.Polygon(np.vstack([segment, (segment + (wall + 1e-3) * inward)[::-1]]))
+    if sweep.difference(floor).difference(reveal).area > 1e-3:
         return False
     if any(room == into and other.distance(sweep) < LEAF_GAP for room, other in site.swept):
         return False

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -14,19 +15,40 @@ from pipeline.floorplan import anneal, lines, slicing, trace
 from pipeline.floorplan.check import check
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.defaults import OUTSIDE
+from pipeline.floorplan.energy import TERMS
 from pipeline.floorplan.grid import INNER, OUTER, Labels
 from pipeline.floorplan.openings import Run, place
 from pipeline.floorplan.program import FloorProgram
 from pipeline.floorplan.storeys import EDGE, UNIT, Storey, storey
 
 TRIES = 24  # whole attempts before a program is refused
-STARTS, MOST_STARTS = 3, 9  # slicing trees per attempt: usual, and while all of them lack something
+STARTS, MOST_STARTS = 4, 9  # slicing trees per attempt: usual, and while all of them lack something
+RUNS = 2  # annealing runs per storey and attempt, from the best of these
 SLICES = 700  # slicing proposals per room and start
-PROPOSALS = 160  # annealing proposals per room and run
+PROPOSALS = 180  # annealing proposals per room and run
 HOT, COLD, PENALTY = 1.2, 0.01, 40.0
 SHARES = (1.0, 0.4, 0.0)  # how much of their freedom the walls' lines use; less when openings then find no place
 LEAST_CUT = 4  # cells
 SLICE_HOT, SLICE_COLD = 6.0, 0.05
+
+
+@dataclass
+class Effort:
+    """What a search took: whole attempts, slicing searches and their proposals, annealing runs and their evaluated proposals."""
+
+    attempts: int = 0
+    slicings: int = 0
+    sliced: int = 0
+    runs: int = 0
+    proposals: int = 0
+
+
+class Solution(NamedTuple):
+    """A plan, what finding it took, and its twelve energy terms (12,), summed over storeys."""
+
+    plan: Plan
+    effort: Effort
+    terms: NDArray[np.float64]
 
 
 def solve(program: FloorProgram, seed: int, keys: tuple[int, ...] = ()) -> Plan:
@@ -34,13 +56,20 @@ def solve(program: FloorProgram, seed: int, keys: tuple[int, ...] = ()) -> Plan:
 
     Raises RefusedError when the program contradicts itself or no attempt meets it.
     """
+    return search(program, seed, keys).plan
+
+
+def search(program: FloorProgram, seed: int, keys: tuple[int, ...] = ()) -> Solution:
+    """Return what `solve` returns, and the effort."""
     program = complete(program)
     check(program)
+    effort = Effort()
     for attempt in range(TRIES):
+        effort.attempts += 1
         rng = seeds.generator(seed, "plan", *keys, attempt)
-        plan = _attempt(program, rng, attempt)
-        if plan is not None:
-            return plan
+        made = _attempt(program, rng, attempt, effort)
+        if made is not None:
+            return Solution(made[0], effort, made[1])
     raise RefusedError(
         f"no floor plan found in {TRIES} attempts for {len(program.rooms)} rooms in {program.total_area.target:.0f} m2",
         "ask for fewer links to one room, a larger total area, or drop a separation",
@@ -55,23 +84,27 @@ class Outline(NamedTuple):
     cuts: int
 
 
-def _attempt(program: FloorProgram, rng: np.random.Generator, attempt: int) -> Plan | None:
+def _attempt(program: FloorProgram, rng: np.random.Generator, attempt: int, effort: Effort) -> tuple[Plan, NDArray[np.float64]] | None:
     requests = [storey(program, level) for level in range(program.storeys)]
     outline = _outline(program, requests, rng)
-    effort = 1 + attempt // 6
+    length = 1 + attempt // 6
     solved: list[tuple[Storey, Labels]] = []
+    terms = np.zeros(len(TERMS))
     stair: tuple[int, int, int, int] | None = None
     for level in range(program.storeys):
         request = requests[level] if stair is None else storey(program, level, stair)
-        grid = _storey_grid(request, program, outline, rng, effort)
-        if grid is None:
+        made = _storey_grid(request, program, outline, rng, length, effort)
+        if made is None:
             return None
+        grid = made[0]
+        terms += made[1]
         if program.storeys > 1 and stair is None:
             stair = _rectangle(grid, next(i for i, r in enumerate(request.rooms) if r.type == "staircase"))
             if stair is None:
                 return None
         solved.append((request, grid))
-    return _build(program, solved, rng)
+    plan = _build(program, solved, rng)
+    return None if plan is None else (plan, terms)
 
 
 def _outline(program: FloorProgram, requests: list[Storey], rng: np.random.Generator) -> Outline:
@@ -95,32 +128,36 @@ def _rectangle(grid: Labels, room: int) -> tuple[int, int, int, int] | None:
     return box if xs.size == (box[2] - box[0]) * (box[3] - box[1]) else None
 
 
-def _storey_grid(request: Storey, program: FloorProgram, outline: Outline, rng: np.random.Generator, effort: int) -> Labels | None:
-    """Return a grid without violations: the best of several slicing trees, annealed."""
-    best: Labels | None = None
-    least = np.inf
+def _storey_grid(
+    request: Storey, program: FloorProgram, outline: Outline, rng: np.random.Generator, length: int, effort: Effort
+) -> tuple[Labels, NDArray[np.float64]] | None:
+    """Return a grid without violations: the best of several annealing runs, each from one of the best slicing trees; and its terms."""
+    starts: list[tuple[float, Labels]] = []
     for trial in range(MOST_STARTS):
-        cells, cost = _slice(request, program, outline, rng)
+        cells, cost = _slice(request, program, outline, rng, effort)
         if np.isfinite(cost):
             soft, hard, _ = anneal.score(cells, request.spec, request.weights, 0.0)
-            value = soft + PENALTY * min(hard, 10.0 if request.spec.stair_room >= 0 else np.inf)
-            if value < least:
-                best, least = cells, value
+            starts.append((soft + PENALTY * min(hard, 10.0 if request.spec.stair_room >= 0 else np.inf), cells))
         # annealing mends small things, not a missing neighbour
-        if trial >= STARTS - 1 and least < PENALTY:
+        if trial >= STARTS - 1 and starts and min(s[0] for s in starts) < PENALTY:
             break
-    if best is None:
-        return None
     n = len(request.rooms)
-    draws = rng.random((PROPOSALS * n * effort, anneal.DRAWS))
     fixed = np.zeros(n + 1, np.int64)
     if request.spec.stair_room >= 0:
         fixed[request.spec.stair_room] = 1
-    grid, _, hard, _, _ = anneal.run(best, request.spec, request.weights, fixed, draws, HOT, COLD, PENALTY)
-    return grid if hard <= 1e-9 else None
+    best: tuple[Labels, NDArray[np.float64]] | None = None
+    least = np.inf
+    for _, cells in sorted(starts, key=lambda s: s[0])[:RUNS]:
+        draws = rng.random((PROPOSALS * n * length, anneal.DRAWS))
+        grid, soft, hard, terms, _, evaluated = anneal.run(cells, request.spec, request.weights, fixed, draws, HOT, COLD, PENALTY)
+        effort.runs += 1
+        effort.proposals += evaluated
+        if hard <= 1e-9 and soft < least:
+            best, least = (grid, terms), soft
+    return best
 
 
-def _slice(request: Storey, program: FloorProgram, outline: Outline, rng: np.random.Generator) -> tuple[Labels, float]:
+def _slice(request: Storey, program: FloorProgram, outline: Outline, rng: np.random.Generator, effort: Effort) -> tuple[Labels, float]:
     """Anneal one slicing tree in the outline; return its bordered grid and cost (infinite when a cut-out is misplaced)."""
     n, spec, width, height = len(request.rooms), request.spec, outline.width, outline.height
     spare = width * height - request.gross.sum()
@@ -142,6 +179,8 @@ def _slice(request: Storey, program: FloorProgram, outline: Outline, rng: np.ran
     wishes = slicing.Wishes(
         spec.need, spec.ban, spec.outside, spec.corner, spec.strict, square, spec.apart, spec.stair, spec.stair_room, request.weights[10:]
     )
+    effort.slicings += 1
+    effort.sliced += draws.shape[0]
     rects, cost = slicing.search(expr, draws, SLICE_HOT, SLICE_COLD, width, height, n, gross, low, high, wishes)
     grid = np.full((height + 2, width + 2), n, np.int16)
     for i, (x0, y0, x1, y1) in enumerate(rects.tolist()):

@@ -45,7 +45,7 @@ def test_measures_of_an_l():
     assert out.corners[0].tolist() == [5, 1]
     assert out.run[0, 1] == 2
     assert out.walls[0, 1] == 4
-    assert grid.hull_area(ELL, 0, out.box[0]) == 10.0  # 12 less the triangle of 2 x 2 / 2
+    assert grid.hull_area(ELL, 0, out.box) == 10.0  # 12 less the triangle of 2 x 2 / 2
 
 
 def test_measures_agree_with_the_plain_form_and_with_shapely():
@@ -63,7 +63,7 @@ def test_measures_agree_with_the_plain_form_and_with_shapely():
             if grid.simple(out, room):
                 assert one
                 assert out.walls[room].sum() == shape.length
-                hull = grid.hull_area(cells, room, out.box[room])
+                hull = grid.hull_area(cells, room, out.box)
                 assert hull == pytest.approx(shape.convex_hull.area)
                 assert len(trace.outline(cells, room)) == out.corners[room].sum()
 
@@ -104,7 +104,7 @@ def test_squareness():
 
 def test_convexity_and_simplicity_of_an_l():
     out = measured(ELL, 2)
-    hull = np.array([grid.hull_area(ELL, i, out.box[i]) for i in range(2)])
+    hull = np.array([[grid.hull_area(ELL, i, out.box)] for i in range(2)])
     assert energy.convexity(hull, out.cells) == pytest.approx(4.0 * (10 / 8 - 1) ** 2 / 2)
     assert energy.simplicity(out.corners, 2) == pytest.approx(4.0 * 0.25 / 2)
 
@@ -129,10 +129,10 @@ def test_useful_area():
 def test_min_width_by_opening():
     neck = labels("aaaaaaa", "aaa.aaa".replace(".", "b"), "aaa.aaa".replace(".", "b"), n=2)
     out = measured(neck, 2)
-    reached, pieces = grid.opening(neck, 0, out.box[0], 2)
+    reached, pieces = grid.opening(neck, 0, out.box, 2)
     assert (reached, pieces) == (18, 2)  # the bridge of one cell is not reached
-    assert grid.opening(neck, 0, out.box[0], 1) == (19, 1)
-    assert energy.min_width(np.array([0.5, 0.0]), np.array([1, 0])) == pytest.approx(0.5 + energy.SPLIT)
+    assert grid.opening(neck, 0, out.box, 1) == (19, 1)
+    assert energy.min_width(np.array([[19.0, 0.5, 1.0, 0.0], [2.0, 0.0, 0.0, 0.0]])) == pytest.approx(0.5 + energy.SPLIT)
 
 
 def test_stair_terms():
@@ -222,3 +222,19 @@ def test_knobs_double_and_halve_weights():
     assert ratio["alignment"] == 0.5
     assert ratio["exterior"] == 1.0
     assert list(Style.model_fields) == list(energy.TERMS)
+
+
+def test_an_ell_is_opened_without_its_cells():
+    rng = np.random.default_rng(2)
+    for _ in range(60):
+        w, h = rng.integers(2, 12, 2)
+        a, b = int(rng.integers(1, w)), int(rng.integers(1, h))
+        body = np.zeros((h, w), np.int16)
+        body[h - b :, w - a :] = 1
+        body = [body, body[::-1], body[:, ::-1], body[::-1, ::-1]][int(rng.integers(4))]
+        cells = np.pad(body, 1, constant_values=2)
+        out = measured(np.ascontiguousarray(cells), 2)
+        assert grid.notch_width(cells, 0, out.box) == a
+        for side in range(1, 9):
+            assert grid.ell_opening(w, h, a, b, side) == grid.opening(cells, 0, out.box, side)
+        assert out.cells[0] + 0.5 * a * b == grid.hull_area(cells, 0, out.box)

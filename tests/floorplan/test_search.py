@@ -1,11 +1,12 @@
 """The two searches: slicing trees tile the outline, annealing keeps rooms whole and gets no worse."""
 
 import numpy as np
+import pytest
 
 from pipeline.floorplan import anneal, grid, slicing
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.program import FloorProgram, RoomReq
-from pipeline.floorplan.solver import Outline, _slice
+from pipeline.floorplan.solver import Effort, Outline, _slice
 from pipeline.floorplan.storeys import storey
 
 
@@ -57,7 +58,7 @@ def start(seed):
     request = storey(program(), 0)
     rng = np.random.default_rng(seed)
     side = int(np.ceil(np.sqrt(request.gross.sum())))
-    return request, _slice(request, program(), Outline(side, side, 0), rng)[0], rng
+    return request, _slice(request, program(), Outline(side, side, 0), rng, Effort())[0], rng
 
 
 def test_annealing_keeps_the_outline_and_whole_rooms_and_is_repeatable():
@@ -83,7 +84,7 @@ def test_annealing_never_returns_worse_than_its_start_and_longer_is_better():
         n = len(request.rooms)
         fixed = np.zeros(n + 1, np.int64)
         first, hard0, _ = anneal.score(cells, request.spec, request.weights, 0.0)
-        _, soft, hard, _, _ = anneal.run(cells, request.spec, request.weights, fixed, rng.random((1000, anneal.DRAWS)), 1.2, 0.01, 40.0)
+        _, soft, hard, _, _, _ = anneal.run(cells, request.spec, request.weights, fixed, rng.random((1000, anneal.DRAWS)), 1.2, 0.01, 40.0)
         assert (hard, soft) <= (hard0, first)
         gains.append(first + 40 * hard0 - soft - 40 * hard)
     assert np.mean(gains) > 0
@@ -94,8 +95,25 @@ def test_the_proposal_agrees_with_its_plain_form():
     n = len(request.rooms)
     fixed = np.zeros(n + 1, np.int64)
     fixed[2] = 1
-    for draw in rng.random((300, anneal.DRAWS)):
+    draws = rng.random((300, anneal.DRAWS))
+    for k in range(len(draws)):
         a, b = cells.copy(), cells.copy()
-        assert anneal.propose(a, n, fixed, draw) == anneal.propose.py_func(b, n, fixed, draw)
+        touched, marked = np.zeros(n + 1, np.int64), np.zeros(n + 1, np.int64)
+        assert anneal.propose(a, n, fixed, draws, k, touched) == anneal.propose.py_func(b, n, fixed, draws, k, marked)
         np.testing.assert_array_equal(a, b)
+        np.testing.assert_array_equal(touched, marked)
         assert ((a == 2) == (cells == 2)).all()
+        assert set(np.unique(cells[a != cells])) | set(np.unique(a[a != cells])) <= set(np.flatnonzero(touched))
+
+
+def test_the_kept_state_is_what_its_grid_says():
+    for seed in range(4):
+        request, cells, rng = start(seed)
+        draws = rng.random((800, anneal.DRAWS))
+        best, soft, hard, values, _, evaluated = anneal.run(
+            cells, request.spec, request.weights, np.zeros(len(request.rooms) + 1, np.int64), draws, 1.2, 0.01, 40.0
+        )
+        again, violation, terms = anneal.score(best, request.spec, request.weights, 0.0)
+        np.testing.assert_allclose(values, terms, atol=1e-9)
+        assert (soft, hard) == pytest.approx((again, violation))
+        assert 300 < evaluated <= 800
