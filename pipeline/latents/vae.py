@@ -67,7 +67,7 @@ def chamfer(a: Tensor, b: Tensor) -> Tensor:
     """
     with torch.no_grad():
         squared = torch.baddbmm((b**2).sum(-1)[:, None], a, b.transpose(1, 2), alpha=-2) + (a**2).sum(-1)[:, :, None]
-        there, back = squared.argmin(2), squared.argmin(1)
+        there, back = squared.min(2).indices, squared.min(1).indices  # argmin takes half as long again
     return _mean_distance(a, b, there) + _mean_distance(b, a, back)
 
 
