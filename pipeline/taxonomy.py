@@ -34,6 +34,8 @@ class Taxonomy:
     """Categories by name and the maps of room types.
 
     `essentials` lists per layout type groups of categories; a room needs one of each group to serve as that room.
+    `titles` maps kinds of 3D-FRONT's record titles to categories; `kinds` maps 3D-FUTURE's super-categories and the
+    groups of those titles to the categories that they may be; `styles` and `materials` map lower case to the spelling.
     """
 
     categories: Mapping[str, Category]
@@ -41,6 +43,10 @@ class Taxonomy:
     essentials: Mapping[str, tuple[tuple[str, ...], ...]]
     front_rooms: Mapping[str, str | None]
     plan_rooms: Mapping[str, str | None]
+    titles: Mapping[str, str]
+    kinds: Mapping[str, tuple[str, ...]]
+    styles: Mapping[str, str]
+    materials: Mapping[str, str]
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -51,6 +57,15 @@ class Taxonomy:
         """Return the category for a 3D-FUTURE name of any spelling, or None."""
         wanted = normalise(name)
         return next((c.name for c in self.categories.values() if wanted in c.future), None)
+
+    def from_title(self, title: str) -> str | None:
+        """Return the category for a title "group/kind" of a 3D-FRONT record, such as "sofa/ multi seat sofa", or None."""
+        kind = normalise(title).rsplit("/", 1)[-1]
+        return self.titles.get(kind) or self.from_future(kind) or self.from_future(title)
+
+    def of_kind(self, *names: str) -> tuple[str, ...]:
+        """Return the categories that the first known of these super-categories or title groups may be, () for none."""
+        return next((self.kinds[n] for n in map(normalise, names) if n in self.kinds), ())
 
     def from_partnet(self, model_cat: str) -> tuple[str, ...]:
         """Return the categories that a PartNet-Mobility object of that model_cat may serve as."""
@@ -79,4 +94,8 @@ def load() -> Taxonomy:
         for name, entry in raw["categories"].items()
     }
     essentials = {kind: tuple(tuple(group) for group in groups) for kind, groups in raw["essentials"].items()}
-    return Taxonomy(categories, tuple(raw["layout_types"]), essentials, raw["front_rooms"], raw["plan_rooms"])
+    kinds = {name: tuple(members) for name, members in raw["kinds"].items()}
+    styles, materials = ({n.lower(): n for n in raw[key]} for key in ("styles", "materials"))
+    return Taxonomy(
+        categories, tuple(raw["layout_types"]), essentials, raw["front_rooms"], raw["plan_rooms"], raw["titles"], kinds, styles, materials
+    )

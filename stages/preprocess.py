@@ -14,11 +14,13 @@ from typing import Any
 
 from tqdm import tqdm
 
-from pipeline import params, tables
+from pipeline import params, tables, taxonomy
 from pipeline.errors import ContentError
 from pipeline.sources import batch, inventory
 from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
+from pipeline.sources.front_hints import hints
 from pipeline.sources.front_house import HouseRows
+from pipeline.sources.mirrored import add_mirrored
 from pipeline.sources.reasons import Row
 from pipeline.sources.recognition import front_at, partnet_at
 from pipeline.sources.settings import PreprocessSettings
@@ -44,6 +46,7 @@ def main(root: Path) -> None:
     if not rows.scenes:
         reasons = ", ".join(f"{reason} {n}" for reason, n in Counter(r["reason"] for r in rows.rejects).most_common(3))
         raise ContentError(f"{front} gives no usable house ({reasons or 'no files'})", "docs/reasons.md explains the codes")
+    library.assets += add_mirrored(root / "data" / "assets", library.assets, (row["asset_id"] for row in rows.objects))
     write(root / "data" / "tables", library, rows)
     report(library, rows)
 
@@ -52,8 +55,10 @@ def read_library(root: Path, front: Path, partnet: Path | None, settings: Prepro
     """Read all models, write their assets, and remove assets of earlier runs."""
     out, cache = root / "data" / "assets", root / ".cache" / "coacd"
     library = LibraryRows()
-    infos, library.rejects = batch.future_models(front)
-    task = LibraryTask(front, out, settings.models, settings.front_licence, cache)
+    houses = batch.house_files(front)
+    said = hints(progress(batch.each(batch.house_records, front, houses, workers), "records", len(houses)), taxonomy.load())
+    infos, library.rejects = batch.future_models(front, said)
+    task = LibraryTask(front, out, settings.models, settings.front_licence, cache, said)
     for made in progress(batch.each(batch.read_future, task, infos, workers), "models", len(infos)):
         library.add(made)
     if partnet:

@@ -18,6 +18,8 @@ from pipeline.entities.files import save_asset
 from pipeline.errors import ContentError
 from pipeline.sources import articulated
 from pipeline.sources.decomposition import decompose
+from pipeline.sources.front_file import Furniture
+from pipeline.sources.front_hints import Hint, records
 from pipeline.sources.front_house import HouseRows, read_house
 from pipeline.sources.front_objects import Model
 from pipeline.sources.future import ModelInfo, read_model, read_model_info
@@ -54,13 +56,14 @@ class LibraryRows:
 
 @dataclass(frozen=True, slots=True)
 class LibraryTask:
-    """What every model task needs: where assets go, limits, licence, and the cache of convex pieces."""
+    """What every model task needs: where assets go, limits, licence, the cache of convex pieces, what houses say of models."""
 
     source: Path
     out: Path
     limits: ModelLimits
     licence: str
     cache: Path
+    hints: Mapping[str, Hint] = field(default_factory=dict)
 
     def pieces(self, *, articulated: bool) -> Callable[..., Any] | None:
         """Return the decomposition that the limits ask for, None for none."""
@@ -68,13 +71,25 @@ class LibraryTask:
         return functools.partial(decompose, cache=self.cache) if wanted else None
 
 
-def future_models(source: Path) -> tuple[list[ModelInfo], list[Row]]:
-    """Return the models that have an entry in model_info.json, by id, and rejects of entries and of folders without one."""
+def future_models(source: Path, hints: Mapping[str, Hint]) -> tuple[list[ModelInfo], list[Row]]:
+    """Return the models of a source by id, and the rejects of entries of model_info.json and of folders without one.
+
+    A folder without an entry is a model all the same when houses name its category.
+    """
     folder = Folder.at(source)
     infos, rejects = read_model_info(folder, f"{MODELS}/model_info.json")
     there = {p.name for p in (folder.root / MODELS).iterdir() if p.is_dir()}
-    rejects += [reject("model", name, "no_model_info") for name in sorted(there - infos.keys())]
+    for name in sorted(there - infos.keys()):
+        if name in hints and (hints[name].categories or hints[name].kinds):
+            infos[name] = ModelInfo(name, "", "", "", "", "")
+        else:
+            rejects.append(reject("model", name, "no_model_info"))
     return [infos[k] for k in sorted(infos)], rejects
+
+
+def house_records(source: Path, file: str) -> list[Furniture]:
+    """Return what one house file says of the models in it; see `hints`."""
+    return records(Folder.at(source), file)
 
 
 def partnet_objects(source: Path) -> list[str]:
@@ -98,9 +113,10 @@ def read_future(task: LibraryTask, info: ModelInfo) -> LibraryRows:
 
     def work() -> None:
         models = Folder.at(task.source).sub(MODELS)
-        model = read_model(models, info, taxonomy.load(), task.limits, task.licence, task.pieces(articulated=False))
+        words, hint = taxonomy.load(), task.hints.get(info.model_id)
+        model = read_model(models, info, words, task.limits, task.licence, hint, task.pieces(articulated=False))
         asset = model.asset
-        _keep(made, task, asset, material=info.material, unit_scale=model.box.unit)
+        _keep(made, task, asset, material=words.materials.get(info.material.lower(), ""), unit_scale=model.box.unit)
         made.rejects += model.rejects
         w, d, h = asset.size.tolist()
         made.models[info.model_id] = Model(model.box, asset.category, asset.asset_id, (w, d, h), asset.openable)

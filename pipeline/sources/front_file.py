@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from pipeline.sources.reasons import Row, SourceError, reject
 
 Floats = NDArray[np.float64]
+MAX_AREA = 1e5  # [m2] no room is larger: such a figure says nothing
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,22 +61,27 @@ class MeshRecord:
 
 @dataclass(frozen=True, slots=True)
 class Child:
-    """A reference of a room: `position` [m], `rotation` quaternion (x, y, z, w), `scale`."""
+    """A reference of a room: `position` [m], `rotation` quaternion (x, y, z, w), `scale`.
+
+    `replaced_by` is the model that stands there instead of the record's own, "" where it was not replaced.
+    """
 
     ref: str
     instance: str
     position: Floats
     rotation: Floats
     scale: Floats
+    replaced_by: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class RoomRecord:
-    """A room: `instance` is unique in its house at best."""
+    """A room: `instance` is unique in its house at best. `size` [m2] is what the file says, None where it says nothing."""
 
     instance: str
     type: str
     children: tuple[Child, ...]
+    size: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +116,7 @@ def parse_house(tree: Any, name: str) -> HouseFile:
     uid = _text(tree.get("uid"))
     if uid != name:
         rejects.append(reject("house", name, "uid_mismatch", f"the file says {uid!r}"))
-    furniture = _first_by_uid((_furniture(r) for r in _records(tree, "furniture")), name, "furniture", rejects)
+    furniture = _first_by_uid((furniture_record(r) for r in _records(tree, "furniture")), name, "furniture", rejects)
     meshes = _first_by_uid((_mesh(r) for r in _records(tree, "mesh")), name, "mesh", rejects)
     rooms = tuple(_room(r, name, rejects) for r in scene["room"] if isinstance(r, dict))
     return HouseFile(name, furniture, meshes, rooms, _entry_rooms(tree), tuple(rejects))
@@ -152,16 +158,18 @@ def _first_by_uid(records: Iterable[Any], house: str, kind: str, rejects: list[R
     kept: dict[str, Any] = {}
     surplus = 0
     for record in records:
-        if record.uid in kept:
+        first = kept.setdefault(record.uid, record)
+        if first is not record:
             surplus += 1
-        else:
-            kept[record.uid] = record
+            if getattr(record, "valid", None) and not first.valid:
+                kept[record.uid] = record
     if surplus:
         rejects.append(reject("house", house, "duplicate_record", f"{surplus} surplus {kind} records"))
     return kept
 
 
-def _furniture(record: Mapping[str, Any]) -> Furniture:
+def furniture_record(record: Mapping[str, Any]) -> Furniture:
+    """Return a furniture record of any variant; what is missing or of another type is empty."""
     valid = record.get("valid")
     title = _text(record.get("title")) or _text(record.get("type"))
     return Furniture(
@@ -186,7 +194,9 @@ def _room(record: Mapping[str, Any], house: str, rejects: list[Row]) -> RoomReco
             children.append(_child(entry))
         except SourceError as error:
             rejects.append(reject("object", f"{house}/{instance}/{_text(entry.get('ref'))}", "bad_number", error.detail))
-    return RoomRecord(instance, _text(record.get("type")), tuple(children))
+    size = record.get("size")
+    stated = float(size) if isinstance(size, (int, float)) and not isinstance(size, bool) and 0 < size < MAX_AREA else None
+    return RoomRecord(instance, _text(record.get("type")), tuple(children), stated)
 
 
 def _child(record: Mapping[str, Any]) -> Child:
@@ -198,7 +208,8 @@ def _child(record: Mapping[str, Any]) -> Child:
             raise SourceError("bad_number", ref, f"{key} has {len(values)} numbers, not {len(default)}")
         return values
 
-    return Child(ref, _text(record.get("instanceid")), vector("pos", (0, 0, 0)), vector("rot", (0, 0, 0, 1)), vector("scale", (1, 1, 1)))
+    pose = vector("pos", (0, 0, 0)), vector("rot", (0, 0, 0, 1)), vector("scale", (1, 1, 1))
+    return Child(ref, _text(record.get("instanceid")), *pose, _text(record.get("replace_jid")))
 
 
 def _entry_rooms(tree: Mapping[str, Any]) -> tuple[str, ...]:

@@ -29,6 +29,7 @@ Floats = NDArray[np.float64]
 MAX_ROOMS, MAX_CHILDREN, MAX_HOLES = 300, 20_000, 1000
 MAX_OBJECTS, MAX_TRIANGLES = 500, 20_000  # of one room
 WALLS = frozenset({"WallInner", "WallOuter"})
+AREA_TOLERANCE = 0.15  # of the room's size in the file, up to which floors of it differ by their strips under doors
 INNER_WALL, OUTER_WALL = 0.12, 0.24  # [m] 3D-FRONT's usual thicknesses, where no reveal tells
 
 
@@ -110,6 +111,8 @@ def rooms_of(house: HouseFile, taxonomy: Taxonomy, limits: FrontFilters, rejects
         taken.add(room_id)
         if floor.pieces > 1 or floor.lost > 0.05:
             rejects.append(reject("room", where, "floor_pieces", f"{floor.pieces} pieces, {floor.lost:.2f} m2 left out or filled"))
+        if record.size and abs(floor.area - record.size) > AREA_TOLERANCE * record.size:
+            rejects.append(reject("room", where, "area_mismatch", f"{floor.area:.2f} m2, the file says {record.size:.2f}"))
         kind = record.type.lower().replace(" ", "")
         if kind not in taxonomy.front_rooms:
             rejects.append(reject("room", where, "unknown_room_type", f"type {record.type!r}"))
@@ -164,7 +167,7 @@ def _fill(
                 built_in += not record.title.startswith(("door/", "window/"))
                 continue
             name = f"{where}/{child.instance}"
-            pose = (record.jid, *np.round(child.position, 3).tolist(), *np.round(child.rotation, 3).tolist())
+            pose = (child.replaced_by or record.jid, *np.round(child.position, 3).tolist(), *np.round(child.rotation, 3).tolist())
             if record.valid and pose in seen:
                 rejects.append(reject("object", name, "duplicate", f"model {record.jid}"))
                 continue

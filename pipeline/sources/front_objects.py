@@ -12,30 +12,16 @@ from shapely.geometry import Polygon
 
 from pipeline.entities.home import Placement
 from pipeline.sources.front_file import Child, Furniture
-from pipeline.sources.front_poses import Box, Pose, place, unit_of, yaw_and_tilt
+from pipeline.sources.front_hints import kinds_of
+from pipeline.sources.front_poses import Box, Pose, place, yaw_and_tilt
+from pipeline.sources.future_scale import LONGEST, likeliest
 from pipeline.sources.settings import FrontFilters
 from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
 
-# Kinds in scene titles ("group/kind") that are no 3D-FUTURE name; used when neither model nor record has a category.
-TITLES: dict[str, str] = {
-    "night table": "nightstand",
-    "armoire": "wardrobe",
-    "bookcase": "bookshelf",
-    "multi seat sofa": "multi_seat_sofa",
-    "two seat sofa": "loveseat_sofa",
-    "double bed": "double_bed",
-    "tea table": "coffee_table",
-    "tv cabinet": "tv_stand",
-    "side cabinet": "sideboard",
-    "chandelier": "pendant_lamp",
-    "dressing table": "dressing_table",
-    "shoe cabinet": "shoe_cabinet",
-}
 SEATS = frozenset({"dining_chair", "lounge_chair", "dressing_chair", "chinese_chair", "barstool", "stool", "armchair"})
 TABLES = frozenset({"dining_table", "desk", "dressing_table", "coffee_table", "corner_side_table"})
-MAX_SIZE = 8.0  # [m] no movable furniture is longer
 MIN_SIZE = 0.01  # [m]
 BELOW = 0.05  # [m] under the floor: rounding of the source
 
@@ -74,13 +60,21 @@ class Placed:
         return float(self.pose.position[2]), float(self.pose.position[2] + self.pose.size[2])
 
 
+def mirrored_id(asset_id: str) -> str:
+    """Return the id of the asset that is the mirror image, across its width, of another."""
+    return f"{asset_id}_mirrored"
+
+
 def category_of(record: Furniture, taxonomy: Taxonomy) -> str | None:
-    """Return the category that the scene's own record gives: its category, else the kind in its title."""
-    named = taxonomy.from_future(record.category)
-    if named:
+    """Return the category that the scene's own record gives.
+
+    Its category, else the kind in its title; where no more is said than a super-category or the title's group, the
+    member whose sizes fit the declared box best.
+    """
+    named = taxonomy.from_future(record.category) or taxonomy.from_title(record.title)
+    if named or record.box is None:
         return named
-    kind = record.title.rsplit("/", 1)[-1].strip()
-    return TITLES.get(kind) or taxonomy.from_future(kind) or taxonomy.from_future(record.title)
+    return likeliest(np.array(record.box), taxonomy.of_kind(*kinds_of(record)))
 
 
 def placed(  # noqa: PLR0911 - one return per reason
@@ -94,12 +88,13 @@ def placed(  # noqa: PLR0911 - one return per reason
     """Return the object, or (reason, detail) for leaving it out. `floor` is the room's polygon in our plan frame."""
     if record.valid is not True:
         return "invalid_flag", f"valid is {record.valid}, category {record.category!r}"
-    model = models.get(record.jid)
+    jid = child.replaced_by or record.jid
+    model = models.get(jid)
     category = model.category if model else category_of(record, taxonomy)
     if category is None:
         return "unknown_category", f"category {record.category!r}, title {record.title!r}"
     if model is None and not (limits.keep_without_model and record.box):
-        return "missing_model", f"no asset of model {record.jid}"
+        return "missing_model", f"no asset of model {jid}"
     magnitude = np.abs(child.scale)
     if magnitude.min() < 1e-5 or magnitude.max() > limits.max_scale:
         return "bad_scale", f"scale {child.scale.tolist()}"
@@ -107,9 +102,10 @@ def placed(  # noqa: PLR0911 - one return per reason
     if tilt > limits.max_tilt or child.scale[1] < 0:
         return "tilted", f"by {tilt:.3f} rad, scale {child.scale.tolist()}"
     pose, scale, notes = _pose(child, record, model, yaw)
-    if pose.size.max() > MAX_SIZE or pose.size.min() < MIN_SIZE:
+    if pose.size.max() > LONGEST or pose.size.min() < MIN_SIZE:
         return "bad_size", f"size {np.round(pose.size, 3).tolist()}"
-    made = Placed(child, record.jid, category, model.asset_id if model else "", pose, scale, bool(model and model.openable), notes)
+    asset_id = "" if model is None else mirrored_id(model.asset_id) if pose.mirrored else model.asset_id
+    made = Placed(child, jid, category, asset_id, pose, scale, bool(model and model.openable), notes)
     low, top = made.span
     if low < -BELOW or top > limits.max_top:
         return "bad_height", f"from {low:.2f} to {top:.2f} m"
@@ -128,10 +124,7 @@ def _pose(child: Child, record: Furniture, model: Model | None, yaw: float) -> t
         box, unit = Box((-w / 2, 0.0, -d / 2), (w / 2, h, d / 2)), 1.0
         notes.append(("size_from_bbox", f"model {record.jid}"))
     else:
-        box = model.box
-        unit = unit_of(box.extent, record.box, box.unit)
-        if unit == 0.01:
-            notes.append(("centimetres", f"model {record.jid}, declared {record.box}"))
+        box, unit = model.box, model.box.unit
     raw = place(box, unit, child.position, yaw, child.scale)
     pose = Pose(np.round(raw.position, 4) + 0.0, raw.yaw, np.round(raw.size, 4), raw.mirrored)
     if pose.mirrored:

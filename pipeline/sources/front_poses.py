@@ -72,19 +72,6 @@ def place(box: Box, unit: float, position: Floats, yaw: float, scale: Floats) ->
     return Pose(to_ours(turned + position), wrap(facing), size[[0, 2, 1]], bool(scale[0] * scale[2] < 0))
 
 
-def unit_of(extent: Floats, declared: tuple[float, float, float] | None, assumed: float) -> float:
-    """Return the factor to metres: 0.01 where the model is about a hundred times its declared box.
-
-    `extent` and `declared` are (w, d, h). Without a declared box the factor `assumed` from the model alone stands.
-    """
-    if declared is None:
-        return assumed
-    ratio = float(np.median(extent / np.array(declared)))
-    if 30 < ratio < 300:
-        return 0.01
-    return 1.0 if 0.3 < ratio < 3 else assumed
-
-
 def wrap(angle: float) -> float:
     """Return the angle in (-pi, pi], rounded to 1e-5 rad like the quaternions it comes from."""
     wrapped = round(math.remainder(angle, 2 * math.pi), 5)

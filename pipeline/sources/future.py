@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Mesh
-from pipeline.sources.calibration import sizes
 from pipeline.sources.colliders import Decompose, Ints, link, solids
 from pipeline.sources.densities import density
-from pipeline.sources.front_objects import MAX_SIZE, MIN_SIZE
+from pipeline.sources.front_hints import Hint
+from pipeline.sources.front_objects import MIN_SIZE
 from pipeline.sources.front_poses import Box, to_ours
+from pipeline.sources.future_scale import LONGEST, likeliest, unit_factor
 from pipeline.sources.guarded import Folder, read_json
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
@@ -20,8 +21,7 @@ from pipeline.sources.surfaces import Palette, read_obj, visual
 from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
-CENTIMETRES = 25.0  # a model this many times as large as its category's mean is in centimetres
-CENTIMETRES_EXTENT = 15.0  # [m] the same, where the category has no statistics
+Notes = list[tuple[str, str]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,8 @@ def read_model_info(folder: Folder, file: str) -> tuple[dict[str, ModelInfo], li
     """Read model_info.json: entries by model id, the first of each; and a reject row per surplus or broken entry."""
     tree = read_json(folder, file)
     if not isinstance(tree, list):
-        raise SourceError("bad_structure", file, "is no list of models")
+        other = "; the ToolBox's file of that name is another: take the one beside the models" if isinstance(tree, dict) else ""
+        raise SourceError("bad_structure", file, f"is no list of models{other}")
     found: dict[str, ModelInfo] = {}
     rejects: list[Row] = []
     for number, entry in enumerate(tree):
@@ -70,24 +71,27 @@ class FutureModel:
 
 
 def read_model(
-    models: Folder, info: ModelInfo, taxonomy: Taxonomy, limits: ModelLimits, licence: str, decompose: Decompose | None = None
+    models: Folder,
+    info: ModelInfo,
+    taxonomy: Taxonomy,
+    limits: ModelLimits,
+    licence: str,
+    hint: Hint | None = None,
+    decompose: Decompose | None = None,
 ) -> FutureModel:
-    """Read the model of `info` from its folder in `models`.
+    """Read the model of `info` from its folder in `models`; `hint` is what scene records say of it.
 
     The mesh is turned into our frame, (x, y, z) -> (x, -z, y), scaled to metres, and its box set bottom-centred at the
     origin. Raises SourceError for what cannot be an asset.
     """
-    category = taxonomy.from_future(info.category)
-    if category is None:
-        raise SourceError("unknown_category", info.model_id, f"category {info.category!r}")
     folder = models.sub(info.model_id)
     file = read_obj(folder, "raw_model.obj")
     used = np.unique(np.concatenate([g.faces.ravel() for g in file.groups]))
     low, high = file.vertices[used].min(axis=0), file.vertices[used].max(axis=0)
     extent = (high - low)[[0, 2, 1]]
-    unit = unit_factor(extent, category)
+    category, unit, notes = identified(info, hint or Hint(), extent, taxonomy)
     size = np.round(extent * unit, 4)
-    if size.max() > MAX_SIZE or size.min() < MIN_SIZE:
+    if size.max() > LONGEST or size.min() < MIN_SIZE:
         raise SourceError("bad_size", info.model_id, f"size {size.tolist()}")
     box = Box(tuple(low.tolist()), tuple(high.tolist()), unit)
     middle = np.array([(low[0] + high[0]) / 2, low[1], (low[2] + high[2]) / 2])
@@ -103,23 +107,39 @@ def read_model(
     kind = taxonomy.categories[category].super
     matter = solids("base", collisions, limits, decompose)
     base = link("base", visuals, matter, density(kind, info.material), kind)
-    notes = list(matter.notes)
     if not base.visuals or not base.colliders:
         raise SourceError("not_obj", info.model_id, "has no face with an area")
     asset = Asset(
         asset_id(info.model_id), category, size, (base,), (), tuple(palette.materials), "3d-future", info.model_id, licence,
-        info.style, kind, dict(palette.textures),
+        taxonomy.styles.get(info.style.lower(), ""), kind, dict(palette.textures),
     )  # fmt: skip
-    if unit != 1.0:
-        notes.append(("centimetres", f"extent {np.round(extent, 2).tolist()}"))
-    notes += palette.notes
+    notes += [*matter.notes, *palette.notes]
     return FutureModel(asset, box, tuple(reject("model", info.model_id, reason, detail) for reason, detail in notes))
 
 
-def unit_factor(extent: Floats, category: str) -> float:
-    """Return the factor to metres of a model of extent (w, d, h): 0.01 where it is far too large for its category."""
-    known = sizes().get(category)
-    if known is None:
-        return 0.01 if extent.max() > CENTIMETRES_EXTENT else 1.0
-    ratio = float(np.exp(np.log(np.maximum(extent, 1e-9) / known.mean).mean()))
-    return 0.01 if ratio > CENTIMETRES else 1.0
+def identified(info: ModelInfo, hint: Hint, extent: Floats, taxonomy: Taxonomy) -> tuple[str, float, Notes]:
+    """Return the category of a model of `extent` (w, d, h) [its own units], the factor to metres, and what had to be inferred.
+
+    The category is that of model_info.json, else of the scenes' records; where both name a super-category at most, the
+    member of it whose sizes fit best. Raises SourceError `unknown_category` where nothing is known.
+    """
+    notes: Notes = []
+    category = taxonomy.from_future(info.category)
+    declared = hint.box()
+    if category is None:
+        category = hint.category()
+        if category is None:
+            size = extent * unit_factor(extent, declared, None)
+            category = likeliest(size, taxonomy.of_kind(info.category, info.super_category, hint.kind()))
+        if category is None:
+            named = f"category {info.category!r}, super-category {info.super_category!r}"
+            raise SourceError("unknown_category", info.model_id, named)
+        notes.append(("category_inferred", f"{category}, for category {info.category!r}, super-category {info.super_category!r}"))
+    unit = unit_factor(extent, declared, category)
+    if unit != 1.0:
+        against = f"declared {np.round(declared, 3).tolist()}" if declared is not None else f"as {category}"
+        notes.append(("centimetres", f"extent {np.round(extent, 4).tolist()}, {against}: times {unit:g}"))
+    for kind, name, known in (("style", info.style, taxonomy.styles), ("material", info.material, taxonomy.materials)):
+        if name and name.lower() not in known:
+            notes.append(("unknown_name", f"{kind} {name!r}"))
+    return category, unit, notes

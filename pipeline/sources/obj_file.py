@@ -1,7 +1,7 @@
 """Wavefront OBJ and MTL files, as 3D-FUTURE and PartNet-Mobility use them, read strictly and fast.
 
 Handled: triangles, quads and larger polygons (fanned), indices of every form (v, v/t, v//n, v/t/n), negative ones,
-doubled blanks, colours behind vertices, groups and materials. Left out: normals, curves, lines and points.
+doubled blanks, indents, comments, colours behind vertices, groups and materials. Left out: normals, curves, lines and points.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from pipeline.sources.reasons import SourceError
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+BOM = b"\xef\xbb\xbf"
 MAX_OBJ = 64 << 20  # bytes
 MAX_MTL = 4 << 20
 MAX_CORNERS = 3_000_000  # face corners of one file
@@ -60,6 +61,7 @@ class MtlMaterial:
 
 def parse_obj(data: bytes, where: str) -> ObjFile:
     """Parse an OBJ file. Raises SourceError `not_obj` or `too_large`, naming `where`."""
+    data = data.removeprefix(BOM)
     if not data.strip():
         raise SourceError("not_obj", where, "is empty")
     if b"\x00" in data[:4096] or data[:2] == b"\x1f\x8b" or data.lstrip()[:1] == b"<":
@@ -82,14 +84,13 @@ def parse_obj(data: bytes, where: str) -> ObjFile:
 
 def _sorted_lines(data: bytes, where: str) -> tuple[list[bytes], list[bytes], dict[tuple[str, str], list[bytes]], str]:
     """Return the lines of vertices, of uvs, of faces by (group, material), and the mtllib's name."""
-    if b"\\\n" in data:
-        data = data.replace(b"\\\n", b" ")
+    data = _plain(data)
     v_lines: list[bytes] = []
     vt_lines: list[bytes] = []
     blocks: dict[tuple[str, str], list[bytes]] = {}
     group, material, library = "", "", ""
     current: list[bytes] | None = None
-    for line in data.replace(b"\r", b"\n").replace(b"\t", b" ").split(b"\n"):
+    for line in data.split(b"\n"):
         head = line[:2]
         if head == b"v ":
             v_lines.append(line)
@@ -108,6 +109,14 @@ def _sorted_lines(data: bytes, where: str) -> tuple[list[bytes], list[bytes], di
     return v_lines, vt_lines, blocks, library
 
 
+def _plain(data: bytes) -> bytes:
+    """Return the text with joined lines, plain line ends, no tabs, no indents, no comments behind vertices and faces."""
+    data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").replace(b"\t", b" ").replace(b"\\\n", b" ")
+    if b"\n " in data or data[:1] == b" ":
+        data = re.sub(rb"(?m)^ +", b"", data)
+    return re.sub(rb"(?m)^((?:v|vt|f) [^#\n]*)#.*", rb"\1", data) if b" #" in data else data
+
+
 def parse_mtl(data: bytes) -> dict[str, MtlMaterial]:
     """Parse an MTL file; a line that makes no sense is passed over, for a wrong colour is no reason to lose a model.
 
@@ -115,7 +124,7 @@ def parse_mtl(data: bytes) -> dict[str, MtlMaterial]:
     """
     found: dict[str, MtlMaterial] = {}
     name: str | None = None
-    for raw in data.replace(b"\r", b"\n").split(b"\n"):
+    for raw in data.removeprefix(BOM).replace(b"\r", b"\n").split(b"\n"):
         words = raw.decode("utf-8", "replace").strip().split(None, 1)
         if len(words) < 2:
             continue

@@ -33,6 +33,7 @@ REASONS: dict[str, Reason] = {
     "duplicate_room": Reason("room", "dropped", "a room on the same floor was read before in this house"),
     "unknown_room_type": Reason("room", "repaired", "the room type is not in the taxonomy; it gets no layout type"),
     "floor_pieces": Reason("room", "repaired", "the floor has several pieces or holes; the largest outline is used"),
+    "area_mismatch": Reason("room", "repaired", "the floor's area is not the room's `size` in the file; the floor is used"),
     # objects
     "dangling_ref": Reason(
         "room", "dropped", "children that refer to nothing (decor that was never released); one row per room, with the count"
@@ -42,7 +43,11 @@ REASONS: dict[str, Reason] = {
     ),
     "invalid_flag": Reason("object", "dropped", "the furniture record says `valid: false`"),
     "unknown_category": Reason("object, model", "dropped", "no category of the taxonomy for it"),
-    "no_model_info": Reason("model", "dropped", "the model's folder has no entry in model_info.json"),
+    "no_model_info": Reason("model", "dropped", "the model's folder has no entry in model_info.json, and no house says what it is"),
+    "category_inferred": Reason(
+        "model", "repaired", "model_info.json names no category; the houses' records do, or the size within its super-category decides"
+    ),
+    "unknown_name": Reason("model", "repaired", "a style or material that the taxonomy does not list; left empty"),
     "missing_model": Reason("object", "dropped", "its model is not among the assets (missing, or rejected itself)"),
     "size_from_bbox": Reason("object", "repaired", "its model is missing; size from the record's box (`keep_without_model`)"),
     "bad_scale": Reason("object", "dropped", "a component of scale is about 0 or above `max_scale`"),
@@ -52,8 +57,10 @@ REASONS: dict[str, Reason] = {
     "outside_room": Reason("object", "dropped", "less than `min_inside` of its footprint lies in the room"),
     "duplicate": Reason("object, model", "dropped", "the same model at the same pose was read before"),
     "overlap": Reason("object", "dropped", "shares more than `max_overlap` of its volume with a larger object"),
-    "mirrored": Reason("object", "repaired", "mirrored scale: placed unmirrored, with the scale's magnitude"),
-    "centimetres": Reason("object, model", "repaired", "the model is in centimetres; scaled by 0.01"),
+    "mirrored": Reason(
+        "object", "repaired", "mirrored scale: the model's mirror image stands there, an asset of its own whose id ends in `_mirrored`"
+    ),
+    "centimetres": Reason("model", "repaired", "the model is not in metres; scaled once, by 0.01 or 100, for all its placements"),
     # openings
     "opening_unresolved": Reason("opening", "dropped", "door, window or hole that lies at no room"),
     # models

@@ -105,7 +105,7 @@ def chair_record(uid, jid, variant="plain", *, valid=True):
         record |= {
             "size": [w, d, h],
             "sourceCategoryId": "1",
-            "title": "table/unknown",
+            "title": "decor/unknown",
             "type": "standard",
             "bbox": [w, d, h],
             "valid": valid,

@@ -4,8 +4,11 @@ import dataclasses
 from pathlib import Path
 from types import SimpleNamespace
 
+from pipeline import taxonomy
 from pipeline.sources import batch
 from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
+from pipeline.sources.front_hints import hints
+from pipeline.sources.mirrored import add_mirrored
 from pipeline.sources.settings import FrontFilters, ModelLimits
 
 
@@ -16,8 +19,9 @@ def read(root, *, front="front", partnet="partnet", filters=None, limits=None):
     made_limits = dataclasses.replace(ModelLimits(), **(limits or {}))
     made_filters = dataclasses.replace(FrontFilters(), **(filters or {}))
     if (root / front / batch.MODELS).is_dir():
-        infos, library.rejects = batch.future_models(root / front)
-        task = LibraryTask(root / front, root / "assets", made_limits, "CC0-1.0", root / "cache")
+        said = hints((batch.house_records(root / front, file) for file in batch.house_files(root / front)), taxonomy.load())
+        infos, library.rejects = batch.future_models(root / front, said)
+        task = LibraryTask(root / front, root / "assets", made_limits, "CC0-1.0", root / "cache", said)
         for entry in infos:
             library.add(batch.read_future(task, entry))
     if (root / partnet).is_dir():
@@ -27,6 +31,7 @@ def read(root, *, front="front", partnet="partnet", filters=None, limits=None):
     if (root / front / batch.HOUSES).is_dir():
         task = HouseTask(root / front, library.models, made_filters, "CC0-1.0")
         houses = batch.flat(batch.read_front(task, file) for file in batch.house_files(root / front))
+    library.assets += add_mirrored(root / "assets", library.assets, (o["asset_id"] for o in houses.objects))
     rejects = library.rejects + houses.rejects
     return SimpleNamespace(
         scenes=houses.scenes,

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pipeline.entities.home import Placement
-from pipeline.sources.front_poses import Box, place, to_ours, unit_of, wrap, yaw_and_tilt
+from pipeline.sources.front_poses import Box, place, to_ours, wrap, yaw_and_tilt
 
 angles = st.floats(-math.pi + 1e-3, math.pi)
 
@@ -75,10 +75,3 @@ def test_front_follows_mirroring(yaw, signs):
     c, s = math.cos(yaw), math.sin(yaw)
     ahead = to_ours(np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ (np.array([0, 0, 1]) * signs))
     assert np.allclose([math.sin(pose.yaw), -math.cos(pose.yaw)], ahead[:2], atol=2e-5)
-
-
-def test_unit_from_the_declared_box():
-    extent = np.array([80.0, 58.0, 4.0])
-    assert unit_of(extent, (0.8, 0.58, 0.04), 1.0) == 0.01
-    assert unit_of(extent / 100, (0.8, 0.58, 0.04), 0.01) == 1.0
-    assert unit_of(extent, None, 0.01) == 0.01

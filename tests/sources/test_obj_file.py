@@ -110,3 +110,21 @@ def test_mtl():
     assert found["a"].map == "my tex.png"
     assert (found["a"].opacity, found["b"].opacity) == (0.5, 0.75)
     assert found["b"].map == ""
+
+
+@pytest.mark.parametrize(
+    "text", ["  " + SQUARE.replace("\n", "\n  ") + "f 1 2 3 4\n", SQUARE + "f 1 2 3 4 # a quad\n", SQUARE + "F 1 2 3 4\n"]
+)
+def test_indented_and_commented_lines(text):
+    """Written by hand or by careless exporters; an upper-case F is no face of the format."""
+    if "\nF " in text:
+        with pytest.raises(SourceError):
+            parse_obj(text.encode(), "x")
+    else:
+        assert area(parse_obj(text.encode(), "x")) == pytest.approx(1)
+
+
+def test_negative_indices_count_from_where_they_stand():
+    text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 0 0 5\nv 1 0 5\nv 1 1 5\nf -3 -2 -1\n"
+    file = parse_obj(text.encode(), "x")
+    assert sorted(file.vertices[file.groups[0].faces][:, :, 2].ravel().tolist()) == [0, 0, 0, 5, 5, 5]

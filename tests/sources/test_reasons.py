@@ -116,6 +116,13 @@ def duplicate_record(tmp):
     return read(tmp)
 
 
+def area_mismatch(tmp):
+    tree = making.two_rooms()
+    tree["scene"]["room"][0]["size"] = 9.0
+    front(tmp, tree)
+    return read(tmp)
+
+
 def no_model_info(tmp):
     front(tmp)
     making.write_model(tmp / "front", CHAIR)
@@ -198,8 +205,16 @@ CASES = {
         t, child("x/model", "furniture/9"), {"uid": "x/model", "jid": "c", "aid": [], "title": "curtain/curtain"}
     ),
     "invalid_flag": lambda t: with_child(t, child("x/model", "furniture/9"), {**chair_record("x/model", STAND, valid=False)}),
-    "unknown_category": lambda t: with_child(t, child("x/model", "furniture/9"), {**chair_record("x/model", "none"), "category": "Others"}),
+    "unknown_category": lambda t: with_child(
+        t, child("x/model", "furniture/9"), {**chair_record("x/model", "none"), "category": "Others", "title": "decor/x"}
+    ),
     "no_model_info": no_model_info,
+    "category_inferred": lambda t: (
+        front(t, entries=[making.info(BED, "", **{"super-category": "Bed"}), *map(making.info, (STAND, LAMP))]),
+        read(t),
+    )[1],
+    "unknown_name": lambda t: (front(t, entries=[making.info(j, style="Martian") for j in (BED, STAND, LAMP)]), read(t))[1],
+    "area_mismatch": area_mismatch,
     "missing_model": lambda t: with_child(t, child("x/model", "furniture/9", (1, 0, 3)), chair_record("x/model", CHAIR, "nested")),
     "size_from_bbox": lambda t: with_child(
         t, child("x/model", "furniture/9", (1, 0, 3.2)), chair_record("x/model", CHAIR, "nested"), filters={"keep_without_model": True}
