@@ -1,4 +1,4 @@
-"""What a home costs, part by part, with the trained model of this checkout; and how fast the readers are.
+"""What a home costs, part by part, with the trained model of this checkout.
 
     python benchmarks/homes.py [homes]
 
@@ -9,18 +9,11 @@ from __future__ import annotations
 
 import os
 import sys
-import tempfile
 import time
-from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
-from typing import TypeVar
 
 ROOT = Path(__file__).resolve().parents[1]
 PARTS = ("plan", "sample", "postopt", "verify", "export")
-T = TypeVar("T")
-R = TypeVar("R")
-SAMPLE = 40  # houses and PartNet objects that the readers are timed with
 
 
 def homes(count: int) -> None:
@@ -48,41 +41,8 @@ def homes(count: int) -> None:
     print(f"{rooms / total:.2f} rooms per CPU second, {tries / count:.1f} tries of rooms per home, {size / count:.2f} MB of files per home")
 
 
-def readers() -> None:
-    """Read houses and models of the corpus and print how many per CPU second."""
-    from pipeline import params
-    from pipeline.sources import batch
-    from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
-    from pipeline.sources.settings import PreprocessSettings
-
-    settings = params.section(PreprocessSettings, params.read(ROOT / "params.yaml"), "preprocess")
-    front = ROOT / settings.front
-    with tempfile.TemporaryDirectory() as place:
-        cache = Path(place) / "cache"
-        infos, _ = batch.future_models(front)
-        task = LibraryTask(front, Path(place), settings.models, settings.front_licence, cache)
-        library = LibraryRows()
-        for made in measured("3D-FUTURE models", partial(batch.read_future, task), infos):
-            library.add(made)
-        if settings.partnet:
-            partnet = ROOT / settings.partnet
-            task = LibraryTask(partnet, Path(place), settings.models, settings.partnet_licence, cache)
-            measured("PartNet objects", partial(batch.read_partnet, task), batch.partnet_objects(partnet)[:SAMPLE])
-    house = HouseTask(front, library.models, settings.filters, settings.front_licence)
-    measured("houses", partial(batch.read_front, house), batch.house_files(front)[:SAMPLE])
-
-
-def measured(what: str, step: Callable[[T], R], items: Sequence[T]) -> list[R]:
-    """Do the step for every item and print how many a CPU second takes."""
-    start = time.process_time()
-    made = [step(item) for item in items]
-    print(f"reader: {len(items) / (time.process_time() - start):.1f} {what} per CPU second")
-    return made
-
-
 if __name__ == "__main__":
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     if not (ROOT / "models" / "denoiser.safetensors").is_file():
         sys.exit("sfgen: there are no trained weights; type `make run` first")
     homes(int(sys.argv[1]) if len(sys.argv) > 1 else 8)
-    readers()

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from pipeline.sources.reasons import Row, SourceError, reject
 
 Floats = NDArray[np.float64]
+ORIGIN, NO_TURN, ONE = np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.ones(3)
 MAX_AREA = 1e5  # [m2] no room is larger: such a figure says nothing
 
 
@@ -118,7 +119,7 @@ def parse_house(tree: Any, name: str) -> HouseFile:
         rejects.append(reject("house", name, "uid_mismatch", f"the file says {uid!r}"))
     furniture = _first_by_uid((furniture_record(r) for r in _records(tree, "furniture")), name, "furniture", rejects)
     meshes = _first_by_uid((_mesh(r) for r in _records(tree, "mesh")), name, "mesh", rejects)
-    rooms = tuple(_room(r, name, rejects) for r in scene["room"] if isinstance(r, dict))
+    rooms = tuple(_room(r, name, furniture, rejects) for r in scene["room"] if isinstance(r, dict))
     return HouseFile(name, furniture, meshes, rooms, _entry_rooms(tree), tuple(rejects))
 
 
@@ -186,14 +187,18 @@ def _mesh(record: Mapping[str, Any]) -> MeshRecord:
     return MeshRecord(_text(record.get("uid")), _text(record.get("type")), record.get("xyz") or [], record.get("faces") or [])
 
 
-def _room(record: Mapping[str, Any], house: str, rejects: list[Row]) -> RoomRecord:
+def _room(record: Mapping[str, Any], house: str, furniture: Mapping[str, Furniture], rejects: list[Row]) -> RoomRecord:
     instance = _text(record.get("instanceid")) or _text(record.get("type"))
     children = []
     for entry in _records(record, "children"):
+        ref = _text(entry.get("ref"))
+        if ref not in furniture:  # meshes are in world coordinates: their poses mean nothing
+            children.append(Child(ref, _text(entry.get("instanceid")), ORIGIN, NO_TURN, ONE))
+            continue
         try:
             children.append(_child(entry))
         except SourceError as error:
-            rejects.append(reject("object", f"{house}/{instance}/{_text(entry.get('ref'))}", "bad_number", error.detail))
+            rejects.append(reject("object", f"{house}/{instance}/{ref}", "bad_number", error.detail))
     size = record.get("size")
     stated = float(size) if isinstance(size, (int, float)) and not isinstance(size, bool) and 0 < size < MAX_AREA else None
     return RoomRecord(instance, _text(record.get("type")), tuple(children), stated)
@@ -219,4 +224,6 @@ def _entry_rooms(tree: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _text(value: Any) -> str:
-    return value if isinstance(value, str) else "" if value is None else str(value)[:80]
+    if type(value) is str:
+        return value
+    return "" if value is None else str(value)[:80]

@@ -1,0 +1,106 @@
+"""How fast the readers are, and whether their memory stays flat: houses of 2 MB, 3D-FUTURE models, PartNet objects.
+
+    python benchmarks/readers.py [houses]
+
+Needs what `make run` leaves in data/raw/. Houses are those of the corpus, each padded to 2 MB with copies of its own
+wall meshes at another place, as real files are mostly meshes.
+"""
+
+from __future__ import annotations
+
+import copy
+import json
+import resource
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pipeline import params, taxonomy
+from pipeline.sources import batch
+from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
+from pipeline.sources.front_hints import hints
+from pipeline.sources.settings import PreprocessSettings
+
+ROOT = Path(__file__).resolve().parents[1]
+SIZE = 2_000_000  # bytes of a house file
+HOUSES = 300
+WARM = 30  # houses after which memory is taken as the level to stay at
+T = TypeVar("T")
+R = TypeVar("R")
+
+
+def padded(tree: dict[str, Any], size: int) -> str:
+    """Return a house as JSON text of about `size` bytes: copies of its wall meshes are added, each referenced by a room."""
+    walls = [m for m in tree["mesh"] if m["type"] in {"WallInner", "WallOuter", "Baseboard", "Ceiling"}]
+    short = size - len(json.dumps(tree))
+    number = 0
+    while short > 0 and walls:
+        extra = copy.deepcopy(walls[number % len(walls)])
+        extra["uid"] = f"pad/{number}"
+        extra["type"] = "CustomizedFeatureWall"
+        extra["xyz"] = [round(v + 1e-3 * (number % 97), 5) for v in extra["xyz"]]
+        extra["normal"] = [round(v + 1e-5, 5) for v in extra["normal"]]
+        tree["mesh"].append(extra)
+        child = {"ref": extra["uid"], "instanceid": f"mesh/p{number}", "pos": [0, 0, 0], "rot": [0, 0, 0, 1], "scale": [1, 1, 1]}
+        tree["scene"]["room"][number % len(tree["scene"]["room"])]["children"].append(child)
+        short -= len(json.dumps(extra)) + len(json.dumps(child)) + 4
+        number += 1
+    return json.dumps(tree)
+
+
+def measured(what: str, step: Callable[[T], R], items: Sequence[T], keep: Callable[[R], None] | None = None) -> None:
+    """Do the step for every item and print how many a CPU second takes."""
+    start = time.process_time()
+    for item in items:
+        made = step(item)
+        if keep:
+            keep(made)
+    spent = time.process_time() - start
+    print(f"{len(items)} {what}: {len(items) / spent:.1f} per CPU second")
+
+
+def peak() -> float:
+    """Return the largest memory of this process so far [MiB]."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def main(count: int) -> None:
+    """Read everything once and print figures."""
+    settings = params.section(PreprocessSettings, params.read(ROOT / "params.yaml"), "preprocess")
+    front = ROOT / settings.front
+    sources = batch.house_files(front)
+    with tempfile.TemporaryDirectory() as place:
+        houses = Path(place) / batch.HOUSES
+        houses.mkdir()
+        for k in range(count):
+            tree = json.loads((front / sources[k % len(sources)]).read_text(encoding="utf-8"))
+            (houses / f"{tree['uid']}-{k}.json").write_text(padded(tree, SIZE), encoding="utf-8")
+        files = batch.house_files(Path(place))
+        mean = sum((Path(place) / f).stat().st_size for f in files) / len(files)
+        print(f"{count} houses of {mean / 1e6:.2f} MB")
+        said = hints((batch.house_records(front, f) for f in sources), taxonomy.load())
+        infos, _ = batch.future_models(front, said)
+        cache = Path(place) / "cache"
+        library = LibraryRows()
+        task = LibraryTask(front, Path(place) / "assets", settings.models, settings.front_licence, cache, said)
+        measured("3D-FUTURE models", partial(batch.read_future, task), infos, library.add)
+        if settings.partnet:
+            partnet = ROOT / settings.partnet
+            task = LibraryTask(partnet, Path(place) / "assets", settings.models, settings.partnet_licence, cache)
+            measured("PartNet objects", partial(batch.read_partnet, task), batch.partnet_objects(partnet)[:40])
+        measured("records of houses", partial(batch.house_records, Path(place)), files)
+        house = HouseTask(Path(place), library.models, settings.filters, settings.front_licence)
+        measured("houses, the first", partial(batch.read_front, house), files[:WARM])
+        before = peak()
+        measured("houses, the rest", partial(batch.read_front, house), files[WARM:])
+        print(f"peak memory {before:.0f} MiB after {WARM} houses, {peak():.0f} MiB after {count}")
+
+
+if __name__ == "__main__":
+    if not (ROOT / "data" / "raw").is_dir():
+        sys.exit("sfgen: there is no data/raw; type `make run` first")
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else HOUSES)
