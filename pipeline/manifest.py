@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -43,10 +44,17 @@ def write_json(path: Path, value: Any) -> None:
 
 def write_with(path: Path, writer: Callable[[Path], object]) -> None:
     """Let `writer` fill a temporary file with the suffix of `path`, then fsync and rename it to `path`."""
+    with replacing(path) as temporary:
+        writer(temporary)
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Give a temporary file with the suffix of `path` to fill; it becomes `path` when the block ends without an error."""
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".tmp-{os.getpid()}-{path.name}")
     try:
-        writer(temporary)
+        yield temporary
         with temporary.open("rb") as handle:
             os.fsync(handle.fileno())
         temporary.replace(path)

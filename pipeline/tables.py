@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +11,10 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from pipeline.errors import ContentError
-from pipeline.manifest import write_with
+from pipeline.manifest import replacing, write_with
 from schemas.table import Table
+
+GROUP = 8192  # rows that a stream holds before it writes them
 
 
 def write(path: Path, table: Table, rows: Iterable[Mapping[str, Any]]) -> pa.Table:
@@ -19,6 +22,41 @@ def write(path: Path, table: Table, rows: Iterable[Mapping[str, Any]]) -> pa.Tab
     data = table.from_rows(rows)
     write_with(path, lambda temporary: pq.write_table(data, temporary, compression="zstd", store_schema=True))
     return data
+
+
+class Stream:
+    """A table that is written while its rows are made, in groups of GROUP rows; `rows` counts them."""
+
+    def __init__(self, writer: pq.ParquetWriter, table: Table) -> None:
+        self._writer, self._table = writer, table
+        self._waiting: list[Mapping[str, Any]] = []
+        self.rows = 0
+
+    def add(self, rows: Iterable[Mapping[str, Any]]) -> None:
+        """Append rows."""
+        self._waiting += rows
+        while len(self._waiting) >= GROUP:
+            self._put(self._waiting[:GROUP])
+            del self._waiting[:GROUP]
+
+    def finish(self) -> None:
+        """Write what waits; a table without rows is a table as well."""
+        if self._waiting or not self.rows:
+            self._put(self._waiting)
+        self._waiting = []
+
+    def _put(self, rows: list[Mapping[str, Any]]) -> None:
+        self._writer.write_table(self._table.from_rows(rows))
+        self.rows += len(rows)
+
+
+@contextmanager
+def stream(path: Path, table: Table) -> Iterator[Stream]:
+    """Open a zstd Parquet file to append rows to; it is there, whole, when the block ends without an error."""
+    with replacing(path) as temporary, pq.ParquetWriter(temporary, table.schema(), compression="zstd", store_schema=True) as writer:
+        made = Stream(writer, table)
+        yield made
+        made.finish()
 
 
 def read(path: Path, table: Table) -> list[dict[str, Any]]:

@@ -7,29 +7,21 @@ from __future__ import annotations
 
 import os
 import sys
-from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from tqdm import tqdm
 
-from pipeline import params, tables, taxonomy
+from pipeline import params, taxonomy
 from pipeline.errors import ContentError
 from pipeline.sources import batch, inventory
 from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
 from pipeline.sources.front_hints import hints
-from pipeline.sources.front_house import HouseRows
 from pipeline.sources.mirrored import add_mirrored
-from pipeline.sources.reasons import Row
 from pipeline.sources.recognition import front_at, partnet_at
 from pipeline.sources.settings import PreprocessSettings
-from schemas.assets import ASSET_JOINTS, ASSETS
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rejects import REJECTS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from pipeline.sources.sink import write_houses, write_library
 from stages.runner import run
 
 
@@ -42,13 +34,12 @@ def main(root: Path) -> None:
     library = read_library(root, front, partnet, settings, workers)
     houses = batch.house_files(front)
     task = HouseTask(front, library.models, settings.filters, settings.front_licence)
-    rows = batch.flat(progress(batch.each(batch.read_front, task, houses, workers), "houses", len(houses)))
-    if not rows.scenes:
-        reasons = ", ".join(f"{reason} {n}" for reason, n in Counter(r["reason"] for r in rows.rejects).most_common(3))
-        raise ContentError(f"{front} gives no usable house ({reasons or 'no files'})", "docs/reasons.md explains the codes")
-    library.assets += add_mirrored(root / "data" / "assets", library.assets, (row["asset_id"] for row in rows.objects))
-    write(root / "data" / "tables", library, rows)
-    report(library, rows)
+    out = root / "data" / "tables"
+    read = progress(batch.each(batch.read_front, task, houses, workers), "houses", len(houses))
+    summary = write_houses(out, read, library, front)
+    library.assets += add_mirrored(root / "data" / "assets", library.assets, summary.assets)
+    write_library(out, library, summary)
+    sys.stdout.writelines(f"{line}\n" for line in summary.lines())
 
 
 def read_library(root: Path, front: Path, partnet: Path | None, settings: PreprocessSettings, workers: int) -> LibraryRows:
@@ -96,29 +87,6 @@ def progress(results: Iterable[Any], name: str, total: int) -> Iterable[Any]:
 def cores() -> int:
     """Return the cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def write(out: Path, library: LibraryRows, rows: HouseRows) -> None:
-    """Write all tables."""
-    for table, content in (
-        (SCENES, rows.scenes),
-        (ROOMS, rows.rooms),
-        (OPENINGS, rows.openings),
-        (OBJECTS, rows.objects),
-        (ASSETS, library.assets),
-        (ASSET_JOINTS, library.joints),
-        (REJECTS, library.rejects + rows.rejects),
-    ):
-        tables.write(out / f"{table.name}.parquet", table, content)
-
-
-def report(library: LibraryRows, rows: HouseRows) -> None:
-    """Print what was read and what was left out."""
-    rejects: list[Row] = library.rejects + rows.rejects
-    counts = (("houses", rows.scenes), ("rooms", rows.rooms), ("openings", rows.openings), ("objects", rows.objects))
-    sys.stdout.write(", ".join(f"{len(v)} {k}" for k, v in (*counts, ("assets", library.assets), ("joints", library.joints))) + "\n")
-    for (what, reason), count in sorted(Counter((r["what"], r["reason"]) for r in rejects).items()):
-        sys.stdout.write(f"  {what} {reason}: {count}\n")
 
 
 if __name__ == "__main__":

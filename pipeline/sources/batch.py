@@ -223,15 +223,11 @@ def _do(item: Any) -> Any:
     return _work(item)
 
 
-def flat(rows: Iterable[HouseRows]) -> HouseRows:
-    """Join the rows of all houses, scenes numbered in order."""
-    whole = HouseRows()
-    for part in rows:
+def numbered(parts: Iterable[HouseRows]) -> Iterator[HouseRows]:
+    """Yield the rows of all houses, their scenes numbered in order."""
+    count = 0
+    for part in parts:
         for scene in part.scenes:
-            scene["index"] = len(whole.scenes)
-            whole.scenes.append(scene)
-        whole.rooms += part.rooms
-        whole.openings += part.openings
-        whole.objects += part.objects
-        whole.rejects += part.rejects
-    return whole
+            scene["index"] = count
+            count += 1
+        yield part

@@ -8,6 +8,7 @@ from pipeline import taxonomy
 from pipeline.sources import batch
 from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
 from pipeline.sources.front_hints import hints
+from pipeline.sources.front_house import HouseRows
 from pipeline.sources.mirrored import add_mirrored
 from pipeline.sources.settings import FrontFilters, ModelLimits
 
@@ -15,7 +16,7 @@ from pipeline.sources.settings import FrontFilters, ModelLimits
 def read(root, *, front="front", partnet="partnet", filters=None, limits=None):
     """`filters` and `limits` are changes of the default settings."""
     root = Path(root)
-    library, houses = LibraryRows(), batch.flat([])
+    library, houses = LibraryRows(), HouseRows()
     made_limits = dataclasses.replace(ModelLimits(), **(limits or {}))
     made_filters = dataclasses.replace(FrontFilters(), **(filters or {}))
     if (root / front / batch.MODELS).is_dir():
@@ -30,7 +31,9 @@ def read(root, *, front="front", partnet="partnet", filters=None, limits=None):
             library.add(batch.read_partnet(task, name))
     if (root / front / batch.HOUSES).is_dir():
         task = HouseTask(root / front, library.models, made_filters, "CC0-1.0")
-        houses = batch.flat(batch.read_front(task, file) for file in batch.house_files(root / front))
+        for part in batch.numbered(batch.read_front(task, file) for file in batch.house_files(root / front)):
+            for name in ("scenes", "rooms", "openings", "objects", "rejects"):
+                getattr(houses, name).extend(getattr(part, name))
     library.assets += add_mirrored(root / "assets", library.assets, (o["asset_id"] for o in houses.objects))
     rejects = library.rejects + houses.rejects
     return SimpleNamespace(

@@ -1,0 +1,84 @@
+"""The training tables as houses fill them: rows go to disk, counts stay, so that memory is flat over thousands of houses."""
+
+from __future__ import annotations
+
+import contextlib
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from pipeline import tables
+from pipeline.errors import ContentError
+from pipeline.sources.batch import LibraryRows, numbered
+from pipeline.sources.front_house import HouseRows
+from schemas.assets import ASSET_JOINTS, ASSETS
+from schemas.objects import OBJECTS
+from schemas.openings import OPENINGS
+from schemas.rejects import REJECTS
+from schemas.rooms import ROOMS
+from schemas.scenes import SCENES
+
+
+class Summary:
+    """Counts of what was read: rows by table, rejects by (what, reason), ids of the assets that objects use, openings."""
+
+    def __init__(self) -> None:
+        self.rows: Counter[str] = Counter()
+        self.rejects: Counter[tuple[str, str]] = Counter()
+        self.assets: set[str] = set()
+        self.joining: Counter[int] = Counter()  # openings by how many rooms they join
+        self.linked = 0  # rooms that an opening joins to another room
+
+    def add(self, house: HouseRows) -> None:
+        """Count a house."""
+        for name, rows in (("houses", house.scenes), ("rooms", house.rooms), ("openings", house.openings), ("objects", house.objects)):
+            self.rows[name] += len(rows)
+        self.assets.update(row["asset_id"] for row in house.objects)
+        self.rejects.update((row["what"], row["reason"]) for row in house.rejects)
+        self.joining.update(len(row["rooms"]) for row in house.openings)
+        self.linked += len({(row["scene_id"], room) for row in house.openings if len(row["rooms"]) > 1 for room in row["rooms"]})
+
+    def add_library(self, library: LibraryRows) -> None:
+        """Count the models."""
+        self.rows["assets"] += len(library.assets)
+        self.rows["joints"] += len(library.joints)
+        self.rejects.update((row["what"], row["reason"]) for row in library.rejects)
+
+    def lines(self) -> Iterator[str]:
+        """Yield lines for a person: what was read, how many openings could be resolved, what was left out and why."""
+        yield ", ".join(f"{count} {name}" for name, count in self.rows.items())
+        none = self.rejects[("opening", "opening_unresolved")]
+        total = max(1, sum(self.joining.values()) + none)
+        parts = ((self.joining[2], "join two rooms"), (self.joining[1], "lead from one room outside"), (none, "lie at no room"))
+        yield "  openings: " + ", ".join(f"{n} ({n / total:.0%}) {what}" for n, what in parts)
+        yield f"  rooms that an opening joins to another: {self.linked} of {self.rows['rooms']}"
+        for (what, reason), count in sorted(self.rejects.items()):
+            yield f"  {what} {reason}: {count}"
+
+
+def write_houses(folder: Path, houses: Iterable[HouseRows], library: LibraryRows, source: Path) -> Summary:
+    """Write scenes, rooms, openings, objects and rejects, those of `library` first, and return the counts of the houses.
+
+    Raises ContentError, naming `source`, and writes nothing where no house is usable.
+    """
+    summary = Summary()
+    with contextlib.ExitStack() as stack:
+        opened = {
+            t.name: stack.enter_context(tables.stream(folder / f"{t.name}.parquet", t)) for t in (SCENES, ROOMS, OPENINGS, OBJECTS, REJECTS)
+        }
+        opened["rejects"].add(library.rejects)
+        for house in numbered(houses):
+            summary.add(house)
+            for name, stream in opened.items():
+                stream.add(getattr(house, name))
+        if not summary.rows["houses"]:
+            reasons = ", ".join(f"{reason} {n}" for (_, reason), n in summary.rejects.most_common(3))
+            raise ContentError(f"{source} gives no usable house ({reasons or 'no files'})", "docs/reasons.md explains the codes")
+    return summary
+
+
+def write_library(folder: Path, library: LibraryRows, summary: Summary) -> None:
+    """Write assets and asset_joints, and count them."""
+    tables.write(folder / f"{ASSETS.name}.parquet", ASSETS, library.assets)
+    tables.write(folder / f"{ASSET_JOINTS.name}.parquet", ASSET_JOINTS, library.joints)
+    summary.add_library(library)
