@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.finishes import CERAMIC, GLASS, PLASTIC_WHITE, STEEL, Scheme
-from pipeline.corpus.furniture.fronts import lid
+from pipeline.corpus.furniture.fronts import lid, top_button
 from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, pieces, staves
 from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, ring, rod, shell, slab, stack
 from pipeline.corpus.furniture.storage import Size
@@ -61,6 +61,10 @@ def toilet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     ]
     if form == "lever":
         movers.append(_lever(half, (tank_y[0] + tank_y[1]) / 2, h))
+    elif form == "dual":  # the large flush and the small one
+        y = sum(tank_y) / 2
+        for name, x in (("small", (-0.035, -0.002)), ("large", (0.002, 0.045))):
+            movers.append(top_button(name, x, (y - 0.018, y + 0.018), (h - 0.0045, h), STEEL, 0.0015))
     else:
         cap = pieces("button", revolve([(0.022, h - 0.0045), (0.022, h - 0.001), (0.018, h)], 16, (0.0, sum(tank_y) / 2)), STEEL)
         movers.append(Mover("button", cap, "prismatic", (0, 0, -1), (0.0, sum(tank_y) / 2, h), 0.0015, "slider_button", "button", UP))

@@ -49,7 +49,7 @@ class Case:
     """How a carcass is made. Lengths in metres.
 
     `inset` fronts lie between the panels, others cover them. `overhang` is how far the top reaches out in front and at
-    the sides; `top` its thickness; `back_open` leaves the open cells without a back.
+    the sides; `top` its thickness; `gap` is left between fronts: thick doors need more, their inner edge swings wide.
     """
 
     body: Finish
@@ -62,6 +62,7 @@ class Case:
     overhang: float = 0.0
     board: float = 0.018
     inset: bool = False
+    gap: float = GAP
 
 
 def case(size: Sequence[float], columns: Sequence[Column], how: Case, *, reserve: float | None = None) -> Shape:
@@ -128,10 +129,10 @@ def _column(
         if below and (how.inset or (cell.kind, below) != ("drawer", "drawer")):  # overlaid drawers need no rail between them
             base += pieces(f"{name}_shelf_{k}", box(x, (y[0], y[1] - BACK), (low - b, low)), how.body)
         if how.inset:
-            rect = Rect(x, (low, high), face).shrunk(GAP)
+            rect = Rect(x, (low, high), face).shrunk(how.gap)
         else:
             bottom = low - (b if k == len(column.cells) - 1 else b / 2)
-            rect = Rect(outer, (bottom, high + (b / 2 if k else 0)), face).shrunk(GAP / 2)
+            rect = Rect(outer, (bottom, high + (b / 2 if k else 0)), face).shrunk(how.gap / 2)
         depth = (y[0] + (how.style.thickness + 0.002 if how.inset else 0.0), y[1] - BACK)
         fixed, moving = _cell(f"{name}_{k}", cell, x, depth, (low, high), rect, how, ends)
         base += fixed
@@ -167,7 +168,7 @@ def _cell(
         movers.append(drawer(f"{name}_drawer", rect, style, (x, z, y[1]), how.body))
     elif cell.kind == "pair":
         middle = (rect.x[0] + rect.x[1]) / 2
-        halves = (Rect((rect.x[0], middle - GAP / 2), rect.z, rect.y), Rect((middle + GAP / 2, rect.x[1]), rect.z, rect.y))
+        halves = (Rect((rect.x[0], middle - how.gap / 2), rect.z, rect.y), Rect((middle + how.gap / 2, rect.x[1]), rect.z, rect.y))
         for half, side, end in zip(halves, ("left", "right"), ends, strict=True):
             movers.append(door(f"{name}_door_{side}", half, style, side, wide if end else square))  # type: ignore[arg-type]
     elif cell.kind in sides:

@@ -1,7 +1,5 @@
 """Plants and waste bins."""
 
-# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
-
 from __future__ import annotations
 
 import math
@@ -9,12 +7,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.corpus.furniture.finishes import CERAMIC, LEAF, PLASTIC, SOIL, STEEL, Finish, Scheme, shade
-from pipeline.corpus.furniture.fronts import lid
-from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, hull, revolve, ring, rod, slab, stack
+from pipeline.corpus.furniture.finishes import CERAMIC, LEAF, SOIL, Finish, Scheme, shade
+from pipeline.corpus.furniture.shape import Piece, Shape, pieces
+from pipeline.corpus.furniture.solids import Solid, hull, revolve, ring, rod, slab
 from pipeline.corpus.furniture.solids import circle as circle_outline
-from pipeline.corpus.furniture.storage import Size, pick
+from pipeline.corpus.furniture.storage import Size
 
 
 def leaf(root: NDArray[np.float64], tip: NDArray[np.float64], width: float, sag: float) -> Solid:
@@ -73,34 +70,3 @@ def plant(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
                 stems.append(rod((0, 0, crown - 0.01), tuple(0.8 * root + 0.2 * tip), 0.006, 0.004, 5))
     bark = Finish("bark", (0.12, 0.07, 0.035), 0.9, density=500)
     return Shape(base + pieces("stems", stems, bark) + pieces("leaves", leaves, green))
-
-
-def trash_can(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a bin with a lid: round with a hinge at the back, square, or with a lid that slides."""
-    w, d, h = size
-    finish = (STEEL, PLASTIC, Finish("enamel_bin", shade(rng, (0.6, 0.58, 0.52), 0.3), 0.35, density=900))[int(rng.integers(3))]
-    top = h - 0.035
-    if form == "round":
-        r = w / 2 - 0.006
-        body = ring((0.9 * r, r), (0.9 * r - 0.008, r - 0.008), (0.015, top), 24)
-        base = pieces("body", [*body, slab(circle_outline(0.9 * r, 24), (0.0, 0.015))], finish)
-        hinge = (0.0, r + 0.002, top + 0.004)
-        cover = pieces("lid", revolve([(w / 2 - 0.004, top + 0.003), (w / 2 - 0.004, top + 0.015), (0.7 * r, h)], 24), finish)
-        return Shape(base, (lid("lid", cover, hinge, math.radians(85)),))
-    x, y, t = (-w / 2 + 0.004, w / 2 - 0.004), (-d / 2 + 0.004, d / 2 - 0.004), 0.008
-    walls = [
-        box(x, y, (0.0, t)),
-        box((x[0], x[0] + t), y, (t, top)),
-        box((x[1] - t, x[1]), y, (t, top)),
-        box((x[0] + t, x[1] - t), (y[0], y[0] + t), (t, top)),
-        box((x[0] + t, x[1] - t), (y[1] - t, y[1]), (t, top)),
-    ]
-    base = pieces("body", walls, finish)
-    low = np.column_stack([np.array([(-w / 2, -d / 2), (w / 2, -d / 2), (w / 2, d / 2), (-w / 2, d / 2)]), np.full(4, top + 0.003)])
-    shrink = 0.9 if form == "box" else 0.97
-    cover_solid = stack([low, low + np.array([0, 0, 0.012]), low * np.array([shrink, shrink, 1]) + np.array([0, 0, h - top - 0.003])])
-    cover = pieces("lid", cover_solid, finish if pick(rng, "same dark") == "same" else PLASTIC)
-    if form == "box":
-        return Shape(base, (lid("lid", cover, (0.0, d / 2, top + 0.003), math.radians(88)),))
-    axis = (1.0, 0.0, 0.0) if rng.random() < 0.5 else (-1.0, 0.0, 0.0)
-    return Shape(base, (Mover("lid", cover, "prismatic", axis, (0.0, 0.0, h), 0.8 * w, "slider_lid", "lid", UP),))

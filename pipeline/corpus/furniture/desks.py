@@ -90,7 +90,8 @@ def dressing_table(rng: np.random.Generator, form: str, size: Size, scheme: Sche
         glass = [s.turned("x", math.pi / 2).moved((0, y, z)) for s in revolve([(0.93 * r, 0.0), (0.93 * r, 0.006)], 28)]
         frame = [s.turned("x", math.pi / 2).moved((0, y, z)) for s in ring((r, r), (0.93 * r, 0.93 * r), (-0.008, 0.012), 28)]
         stem = box((-0.02, 0.02), (y + 0.012, y + 0.03), (work, z), 0.003)
-        base = pieces("mirror", glass, MIRROR) + pieces("mirror_frame", frame, scheme.accent) + pieces("mirror_stem", stem, scheme.accent)
+        base = pieces("mirror", glass, MIRROR, group="mirror") + pieces("mirror_frame", frame, scheme.accent, group="mirror")
+        base += pieces("mirror_stem", stem, scheme.accent)
     else:
         half = min(0.4 * w, 0.45)
         span, rise, f = (-half, half), (work + 0.03, h), 0.035
@@ -102,5 +103,6 @@ def dressing_table(rng: np.random.Generator, form: str, size: Size, scheme: Sche
         ]
         feet = [box((s * 0.7 * half - 0.02, s * 0.7 * half + 0.02), (y + 0.004, y + 0.02), (work, work + 0.03)) for s in (-1, 1)]
         glass = [box((span[0] + f, span[1] - f), (y + 0.006, y + 0.014), (rise[0] + f, rise[1] - f))]
-        base = pieces("mirror", glass, MIRROR) + pieces("mirror_frame", frame + feet, scheme.body)
+        base = pieces("mirror", glass, MIRROR, group="mirror") + pieces("mirror_frame", frame, scheme.body, group="mirror")
+        base += pieces("mirror_feet", feet, scheme.body)
     return joined(table, Shape(base))

@@ -137,10 +137,11 @@ def cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
         count = 1
         columns = [Column(1, tuple(Cell("drawer", 0.75 if k == 0 else 1.0) for k in range(rows)))]
     elif form == "apothecary":
-        count = max(2, min(4, round(size[0] / 0.3)))
-        rows = max(2, min(4, round(inner / 0.24)))
+        count = max(2, min(4, round(size[0] / 0.36)))
+        rows = max(2, min(3, round(inner / 0.28)))
         columns = [Column(1, tuple(Cell("drawer") for _ in range(rows)))] * count
     elif form == "drawers":
+        rows = min(rows, 12 // count)
         columns = [Column(1, tuple(Cell("drawer") for _ in range(rows))) for _ in range(count)]
         if rows >= 4 and count >= 2:  # a row of small drawers on top of wide ones
             columns = [Column(1, tuple(Cell("drawer", 0.7 if k == 0 else 1.0) for k in range(rows)))] * count

@@ -19,6 +19,12 @@ from pipeline.entities.asset import PART_CLASSES
 
 TOUCH = 5e-4  # how much two pieces may overlap [m]
 STEPS = 13
+# GAPartNet's categories, of PartNet-Mobility and of AKB-48.
+GAPARTNET = {
+    *("StorageFurniture", "Table", "Toilet", "TrashCan", "Remote", "Laptop", "CoffeeMachine", "Dishwasher", "Refrigerator"),
+    *("Camera", "Bucket", "Keyboard", "Safe", "Printer", "Box", "Oven", "KitchenPot", "Toaster", "WashingMachine"),
+    *("Microwave", "Phone", "Door", "Suitcase", "Drawer"),
+}
 WOOD = Finish("wood", (0.5, 0.4, 0.3))
 
 
@@ -190,7 +196,10 @@ def test_every_form_is_sampled():
 
 
 def test_gravity_keeps_level_hinges_shut():
-    """A door on its lower edge leans against its carcass, a lid lies: no drive, friction or latch is needed at rest."""
+    """A door on its lower edge leans against its carcass, a lid lies: they need no drive or friction at rest.
+
+    What hangs from its upper edge would come to rest a degree open; the joint's drive holds that.
+    """
     for model, shape in samples():
         for mover in shape.movers:
             if mover.part_class in {"hinge_door", "hinge_lid"} and abs(mover.axis[2]) < 0.5:
@@ -200,12 +209,19 @@ def test_gravity_keeps_level_hinges_shut():
                     mass, moment = mass + weight, moment + weight * piece.solid.vertices.mean(axis=0)
                 arm = moment / mass - np.array(mover.origin)
                 torque = np.cross(arm, [0, 0, -9.81 * mass]) @ np.array(mover.axis)
-                assert torque < 0, (model, mover.name, torque)
+                hangs = arm[2] < -0.4 * np.ptp(np.concatenate([p.solid.vertices[:, 2] for p in mover.pieces]))
+                assert torque < 0 or hangs, (model, mover.name, torque)
+
+
+def test_the_library_is_large_enough():
+    made = catalogue(0)
+    assert len(made.partnet) >= 350
+    assert {m.partnet_category for m in made.partnet} >= GAPARTNET
 
 
 def test_few_colliders():
     counts = [len(colliders(s.base)) + sum(len(colliders(m.pieces)) for m in s.movers) for _, s in samples()]
-    assert np.median(counts) <= 24
+    assert np.median(counts) <= 20
     assert max(counts) <= 96
 
 
