@@ -176,7 +176,7 @@ def part_box(link: LinkRecord, frame: Frame) -> NDArray[np.float64]:
         across = extent * (np.abs(z) < 0.5)
         x = np.eye(3)[int(np.argmax(across))]
     else:
-        x = np.array([1.0, 0.0, 0.0])
+        x = np.array([1.0, 0.0, 0.0]) if abs(z[0]) < 0.5 else np.array([0.0, 0.0, 1.0])
     axes = np.stack([x, np.cross(z, x), z])
     lengths = np.abs(axes) @ extent
     corners = (CORNERS * lengths) @ axes + (low + high) / 2

@@ -26,7 +26,7 @@ from pipeline.corpus.furniture import (
     tableware,
     textiles,
     wall_decor,
-)  # fmt: skip
+)
 from pipeline.corpus.furniture.finishes import Scheme
 from pipeline.corpus.furniture.shape import Shape
 

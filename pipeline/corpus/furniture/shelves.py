@@ -20,7 +20,7 @@ def bookshelf(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     how = replace(case_style(rng, scheme, style, "plinth plinth none square", (0.07, 0.1)), overhang=0.0)
     if form == "ladder":
         return ladder_shelf(size, scheme, max(4, round(h / 0.38)))
-    count = max(1, min(5, round(w / 0.8)))
+    count = max(1, min(4, round(w / 0.8)))
     rows = max(3, round(h / 0.36))
     if form == "open":
         columns = [Column(1, (Cell("open", 1, rows - 1),)) for _ in range(count)]
