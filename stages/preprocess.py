@@ -18,6 +18,8 @@ from pipeline.errors import ContentError
 from pipeline.sources import batch, inventory
 from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
 from pipeline.sources.front_hints import hints
+from pipeline.sources.guarded import Folder
+from pipeline.sources.household import named_categories
 from pipeline.sources.mirrored import add_mirrored
 from pipeline.sources.recognition import front_at, partnet_at
 from pipeline.sources.settings import PreprocessSettings
@@ -54,7 +56,8 @@ def read_library(root: Path, front: Path, partnet: Path | None, settings: Prepro
         library.add(made)
     if partnet:
         names = batch.partnet_objects(partnet)
-        task = LibraryTask(partnet, out, settings.models, settings.partnet_licence, cache)
+        categories = named_categories(Folder.at(partnet))
+        task = LibraryTask(partnet, out, settings.models, settings.partnet_licence, cache, categories=categories)
         for made in progress(batch.each(batch.read_partnet, task, names, workers), "articulated", len(names)):
             library.add(made)
     if not library.assets:

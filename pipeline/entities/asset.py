@@ -91,6 +91,23 @@ class Joint:
 
 
 @dataclass(frozen=True, slots=True)
+class PartBox:
+    """The oriented box of a part of `part_class` on link `link` (index), object frame at rest.
+
+    `centre` (3,) [m]; `axes` (3, 3) unit rows x, y, z, right-handed; `size` (3,) [m] along them. z looks outwards; x is
+    a hinge's axis in the opening sense, or the long side of a handle. `annotated`: the class is the source's own, not
+    inferred from names and shape.
+    """
+
+    link: int
+    part_class: str
+    centre: NDArray[np.float64]
+    axes: NDArray[np.float64]
+    size: NDArray[np.float64]
+    annotated: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Asset:
     """A piece of furniture or an appliance. Link 0 is the base; `joints` are ordered parents first.
 
@@ -110,6 +127,7 @@ class Asset:
     style: str = ""
     super_category: str = ""
     textures: dict[str, bytes] = field(default_factory=dict)
+    parts: tuple[PartBox, ...] = ()
 
     @property
     def articulated(self) -> bool:

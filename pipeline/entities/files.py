@@ -12,7 +12,7 @@ import numpy as np
 from safetensors import SafetensorError, safe_open
 from safetensors.numpy import save
 
-from pipeline.entities.asset import Asset, Joint, Link, Material, Mesh
+from pipeline.entities.asset import Asset, Joint, Link, Material, Mesh, PartBox
 from pipeline.errors import ContentError
 from pipeline.manifest import canonical, sha256, write_bytes
 
@@ -54,6 +54,7 @@ def encode(asset: Asset) -> bytes:
             for j in asset.joints
         ],
         "materials": [asdict(m) for m in asset.materials],
+        "parts": [{**asdict(p), "centre": p.centre.tolist(), "axes": p.axes.tolist(), "size": p.size.tolist()} for p in asset.parts],
     }
     # One metadata key only: safetensors keeps them in a hash map whose order changes from run to run.
     return save(tensors, {"asset": canonical(header).decode()})
@@ -107,9 +108,13 @@ def _decode(header: dict[str, Any], tensors: dict[str, np.ndarray[Any, Any]]) ->
         for j in header["joints"]
     )
     materials = tuple(Material(**{**m, "base_color": tuple(m["base_color"])}) for m in header["materials"])
+    parts = tuple(
+        PartBox(**{**p, "centre": np.array(p["centre"]), "axes": np.array(p["axes"]), "size": np.array(p["size"])})
+        for p in header.get("parts", ())
+    )
     textures = {k.removeprefix("texture."): v.tobytes() for k, v in tensors.items() if k.startswith("texture.")}
     plain = {k: header[k] for k in ("asset_id", "category", "source", "source_id", "licence", "style", "super_category")}
-    return Asset(size=np.array(header["size"]), links=links, joints=joints, materials=materials, textures=textures, **plain)
+    return Asset(size=np.array(header["size"]), links=links, joints=joints, materials=materials, textures=textures, parts=parts, **plain)
 
 
 def _bound(value: float) -> float | None:

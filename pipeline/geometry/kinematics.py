@@ -92,11 +92,14 @@ def sweep_box(asset: Asset, joint_index: int, steps: int = 9) -> NDArray[np.floa
 def handle_point(asset: Asset, joint_index: int) -> NDArray[np.float64]:
     """Return where a hand takes hold (3,) [m, object frame at rest].
 
-    The middle of the handle that moves with the joint; without one, for a slider the middle of its face ahead, for a
-    hinge the middle of the moving part's edge farthest from the axis.
+    The middle of the handle that moves with the joint, by the box of that part or its mesh; without one, for a slider
+    the middle of its face ahead, for a hinge the middle of the moving part's edge farthest from the axis.
     """
     joint = asset.joints[joint_index]
     for i in moved_links(asset, joint_index):
+        boxes = [p.centre for p in asset.parts if p.link == i and p.part_class in HANDLES]
+        if boxes:
+            return np.array(boxes[0], np.float64)
         grips = [m.vertices for m in asset.links[i].visuals if m.part in HANDLES]
         if grips:
             return _middle(np.asarray(grips[0], np.float64))

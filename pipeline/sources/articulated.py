@@ -2,43 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.entities.asset import Asset, Joint, Mesh
+from pipeline.entities.asset import Asset, Joint, Mesh, PartBox
 from pipeline.sources import metric_scale
+from pipeline.sources.category_signs import Signs, signs
 from pipeline.sources.colliders import Decompose, Solids, link, solids
 from pipeline.sources.densities import density
-from pipeline.sources.partnet import ArticulatedShape, ShapeBody, ShapeJoint
+from pipeline.sources.metric_scale import UNITS, Fit
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
+from pipeline.sources.shape import ArticulatedShape, ShapeBody, ShapeJoint, ShapePart
+from pipeline.sources.shape_reader import unused
 from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
-SHORT = {"gapartnet": "ga", "partnet-mobility": "pm"}
+SHORT = {"gapartnet": "ga", "partnet-mobility": "pm", "urdf": "ur"}
 
 
 def assets(
-    shape: ArticulatedShape, taxonomy: Taxonomy, limits: ModelLimits, licence: str, decompose: Decompose | None = None
-) -> Iterator[tuple[Asset, float, list[Row]]]:
-    """Yield (asset, metres per unit, reject rows) for each category that the shape fits, best first.
+    shape: ArticulatedShape, stem: str, categories: Sequence[str], taxonomy: Taxonomy, limits: ModelLimits, licence: str,
+    decompose: Decompose | None = None,
+) -> Iterator[tuple[Asset, Fit, list[Row]]]:  # fmt: skip
+    """Yield (asset, how it was scaled, reject rows) for each of the `categories` that the shape fits, best first.
 
-    Raises SourceError `unknown_category` or `no_metric_fit` where there is none.
+    The assets' ids are made of `stem`. Raises SourceError `unknown_category` or `no_metric_fit` where there is none.
     """
-    categories = taxonomy.from_partnet(shape.model_cat)
     if not categories:
         raise SourceError("unknown_category", shape.source_id, f"model_cat {shape.model_cat!r}")
     low, high = shape.bounds()
     extent = high - low
-    fits = metric_scale.best(extent, categories, rms=limits.fit_rms, keep=limits.fit_keep, margin=limits.fit_margin)
-    if not fits:
-        raise SourceError("no_metric_fit", shape.source_id, f"{shape.model_cat} of proportions {np.round(extent, 3).tolist()}")
-    middle = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
     bodies = _unique(shape.bodies)
     matter = [solids(body.name, body.collisions, limits, decompose) for body in bodies]
+    fits = _fits(shape, extent, signs(shape, matter[0].pieces), categories, limits)
+    if not fits:
+        what = shape.model_cat or "none of the categories"
+        raise SourceError("no_metric_fit", shape.source_id, f"{what} of proportions {np.round(extent, 3).tolist()}")
+    middle = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
     for number, fit in enumerate(fits):
         kind = taxonomy.categories[fit.category].super
         links = [
@@ -46,11 +50,24 @@ def assets(
             for body, solid in zip(bodies, matter, strict=True)
         ]
         asset = Asset(
-            f"{SHORT[shape.source]}_{_plain(shape.source_id)}_{fit.category}", fit.category, np.round(extent * fit.scale, 4),
+            f"{SHORT[shape.source]}_{stem}_{fit.category}", fit.category, np.round(extent * fit.scale, 4),
             tuple(links), tuple(_joint(j, middle, fit.scale) for j in shape.joints), tuple(shape.palette.materials),
             shape.source, shape.source_id, licence, "", kind, dict(shape.palette.textures),
+            tuple(_part(p, middle, fit.scale) for p in shape.parts),
         )  # fmt: skip
-        yield asset, fit.scale, _rejects(shape, matter) if number == 0 else []  # what befell the folder is told once
+        yield asset, fit, _rejects(shape, matter) if number == 0 else []  # what befell the folder is told once
+
+
+def _fits(shape: ArticulatedShape, extent: Floats, found: Signs, categories: Sequence[str], limits: ModelLimits) -> tuple[Fit, ...]:
+    """Return the fits of the categories; a file by itself is taken to be to scale where that makes it furniture."""
+    keep, margin = limits.fit_keep, limits.fit_margin
+    if shape.source == "urdf":
+        for unit in UNITS:
+            fits = (metric_scale.metric(extent, c, found, unit) for c in categories)
+            kept = metric_scale.best(fits, rms=metric_scale.METRIC, keep=keep, margin=margin)
+            if kept:
+                return kept
+    return metric_scale.best((metric_scale.fit(extent, c, found) for c in categories), rms=limits.fit_rms, keep=keep, margin=margin)
 
 
 def _rejects(shape: ArticulatedShape, matter: list[Solids]) -> list[Row]:
@@ -70,16 +87,17 @@ def _joint(joint: ShapeJoint, middle: Floats, scale: float) -> Joint:
     return Joint(joint.name, joint.type, joint.parent, joint.child, axis, origin, lower, upper, joint.part_class)
 
 
+def _part(part: ShapePart, middle: Floats, scale: float) -> PartBox:
+    centre, size = np.round((part.centre - middle) * scale, 6) + 0.0, np.round(part.size * scale, 6) + 0.0
+    return PartBox(part.body, part.part_class, centre, np.round(part.axes, 9) + 0.0, size, part.annotated)
+
+
 def _unique(bodies: tuple[ShapeBody, ...]) -> list[ShapeBody]:
     """Return the bodies under names that differ."""
     taken: set[str] = {"base"}
     named = [replace(bodies[0], name="base")]
-    for k, body in enumerate(bodies[1:], 1):
-        name = body.name if body.name not in taken else f"{body.name}_n{k}"
+    for body in bodies[1:]:
+        name = unused(body.name, taken)
         taken.add(name)
         named.append(replace(body, name=name))
     return named
-
-
-def _plain(text: str) -> str:
-    return "".join(c if c.isalnum() and c.isascii() else "_" for c in text.lower())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import multiprocessing
 import os
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from dataclasses import dataclass, field
@@ -16,6 +16,7 @@ from pipeline import taxonomy
 from pipeline.entities.asset import Asset
 from pipeline.entities.files import save_asset
 from pipeline.errors import ContentError
+from pipeline.manifest import sha256
 from pipeline.sources import articulated
 from pipeline.sources.decomposition import decompose
 from pipeline.sources.front_file import Furniture
@@ -24,6 +25,7 @@ from pipeline.sources.front_house import HouseRows, read_house
 from pipeline.sources.front_objects import Model
 from pipeline.sources.future import ModelInfo, read_model, read_model_info
 from pipeline.sources.guarded import Folder
+from pipeline.sources.household import candidates, oriented, read_household
 from pipeline.sources.identity import split_of
 from pipeline.sources.library_rows import asset_row, joint_rows
 from pipeline.sources.partnet import URDFS, read_shape
@@ -56,7 +58,10 @@ class LibraryRows:
 
 @dataclass(frozen=True, slots=True)
 class LibraryTask:
-    """What every model task needs: where assets go, limits, licence, the cache of convex pieces, what houses say of models."""
+    """What every model task needs: where assets go, limits, licence, the cache of convex pieces.
+
+    `hints`: what houses say of models; `categories`: by id, those that the user named.
+    """
 
     source: Path
     out: Path
@@ -64,6 +69,7 @@ class LibraryTask:
     licence: str
     cache: Path
     hints: Mapping[str, Hint] = field(default_factory=dict)
+    categories: Mapping[str, str] = field(default_factory=dict)
 
     def pieces(self, *, articulated: bool) -> Callable[..., Any] | None:
         """Return the decomposition that the limits ask for, None for none."""
@@ -92,19 +98,49 @@ def house_records(source: Path, file: str) -> list[Furniture]:
     return records(Folder.at(source), file)
 
 
-def partnet_objects(source: Path) -> list[str]:
-    """Return the folders below `source` that hold a URDF of PartNet-Mobility or GAPartNet, sorted, relative."""
-    names = {name for name, _ in URDFS}
+@dataclass(frozen=True, slots=True)
+class Found:
+    """An object of an articulated source: its folder or URDF relative to the source, and the stem of its assets' ids."""
+
+    path: str
+    stem: str
+
+    @property
+    def source_id(self) -> str:
+        """Return the id in the source: the folder's name, or the URDF's without its suffix."""
+        return self.path.rsplit("/", 1)[-1].removesuffix(".urdf")
+
+
+def partnet_objects(source: Path) -> list[Found]:
+    """Return the objects below `source`, sorted: folders of PartNet-Mobility or GAPartNet, and URDFs by themselves.
+
+    A link to a folder elsewhere is among them, to be refused; one to a folder within would only name it twice.
+    """
+    root, names = source.resolve(), {name for name, _ in URDFS}
     found = []
-    for base, folders, files in os.walk(source):
+    for base, folders, files in os.walk(root):
         folders.sort()
-        here = Path(base).relative_to(source)
+        here = Path(base).relative_to(root)
+        links = [f for f in folders if (Path(base) / f).is_symlink() and not (Path(base) / f).resolve().is_relative_to(root)]
+        found += [(here / link).as_posix() for link in links]
         if names & set(files) or "meta.json" in files:
             found.append(here.as_posix())
             folders.clear()
-        elif len(here.parts) >= DEPTH:
+            continue
+        found += [(here / file).as_posix() for file in sorted(files) if file.lower().endswith(".urdf")]
+        if len(here.parts) >= DEPTH:
             folders.clear()
-    return found
+    return _stems(found)
+
+
+def _stems(paths: list[str]) -> list[Found]:
+    """Give each object a stem for ids; those that share one once written in [a-z0-9_] get a digest of their path behind it."""
+    plain = ["".join(c if c.isalnum() and c.isascii() else "_" for c in Found(path, "").source_id.lower())[:60] for path in paths]
+    count = Counter(plain)
+    return [
+        Found(path, stem if count[stem] == 1 and stem.strip("_") else f"{stem.strip('_')}_{sha256(path.encode())[:8]}".strip("_"))
+        for path, stem in zip(paths, plain, strict=True)
+    ]
 
 
 def read_future(task: LibraryTask, info: ModelInfo) -> LibraryRows:
@@ -124,18 +160,27 @@ def read_future(task: LibraryTask, info: ModelInfo) -> LibraryRows:
     return _guarded(made, "model", info.model_id, work)
 
 
-def read_partnet(task: LibraryTask, name: str) -> LibraryRows:
-    """Read one PartNet object and write an asset file for each category that it serves."""
+def read_partnet(task: LibraryTask, found: Found) -> LibraryRows:
+    """Read one articulated object and write an asset file for each category that it serves."""
     made = LibraryRows()
-    source_id = name.rsplit("/", 1)[-1]
 
     def work() -> None:
-        shape = read_shape(Folder.at(task.source).sub(name), source_id, task.limits.max_texture)
-        for asset, scale, rejects in articulated.assets(shape, taxonomy.load(), task.limits, task.licence, task.pieces(articulated=True)):
-            _keep(made, task, asset, material="", unit_scale=scale)
+        kinds, root = taxonomy.load(), Folder.at(task.source)
+        named = task.categories.get(found.source_id) or task.categories.get(found.path) or ""
+        if found.path.lower().endswith(".urdf"):
+            categories = candidates(found.path, named, kinds)
+            shape = oriented(read_household(root, found.path, found.source_id, task.limits.max_texture), categories)
+        else:
+            models = sorted({name for kind in kinds.categories.values() for name in kind.partnet})
+            shape = read_shape(root.sub(found.path), found.source_id, task.limits.max_texture, models, named)
+            categories = kinds.from_partnet(shape.model_cat) or ((shape.model_cat,) if shape.model_cat in kinds.categories else ())
+        for asset, fit, rejects in articulated.assets(
+            shape, found.stem, categories, kinds, task.limits, task.licence, task.pieces(articulated=True)
+        ):
+            _keep(made, task, asset, material="", unit_scale=fit.scale)
             made.rejects += rejects
 
-    return _guarded(made, "model", source_id, work)
+    return _guarded(made, "model", found.source_id, work)
 
 
 def _keep(made: LibraryRows, task: LibraryTask, asset: Asset, *, material: str, unit_scale: float) -> None:

@@ -20,10 +20,11 @@ LEAST_SPREAD = 0.08  # relative; a narrower one would refuse what is merely unus
 
 @dataclass(frozen=True, slots=True)
 class SizeStatistics:
-    """`mean` and `std` (3,) of (w, d, h) [m]."""
+    """`mean` and `std` (3,) of (w, d, h) [m] over `count` models, 0 where they are an estimate."""
 
     mean: NDArray[np.float64]
     std: NDArray[np.float64]
+    count: int = 0
 
     def logarithmic(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return location and scale (3,) of the log-normal distribution of that mean and deviation."""
@@ -41,7 +42,7 @@ def sizes() -> Mapping[str, SizeStatistics]:
     for category in taxonomy.load().categories.values():
         if category.name in table:
             entry = table[category.name]
-            found[category.name] = SizeStatistics(np.array(entry["mean"]), np.array(entry["std"]))
+            found[category.name] = SizeStatistics(np.array(entry["mean"]), np.array(entry["std"]), int(entry.get("n", 0)))
         elif category.size:
             mean = np.array(category.size)
             found[category.name] = SizeStatistics(mean, SPREAD * mean)

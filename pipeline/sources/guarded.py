@@ -66,10 +66,12 @@ class Folder:
         return data
 
     def has(self, relative: str, base: str = "") -> bool:
-        """Return whether a regular file lies there, inside the folder."""
+        """Return whether a regular file lies there. Raises SourceError `unsafe_path` where a link leads out of the folder."""
         try:
             self.path(relative, base)
-        except SourceError:
+        except SourceError as error:
+            if error.code != "missing_file":
+                raise
             return False
         return True
 

@@ -1,7 +1,10 @@
 """The metric scale of shapes that have none: PartNet-Mobility's are normalised to the unit sphere.
 
 For each category that an object may serve as, one uniform scale is fitted to the log-normal distribution of that
-category's sizes by maximum likelihood.
+category's sizes by maximum likelihood. Proportions alone rarely tell which category it is: at any scale of its own a
+nightstand has those of a kitchen unit. So categories compare by what the object would be at their scale: how likely its
+size is, how large its doors, drawers, handles and boards would be, which of them such furniture has
+(`category_signs`), and how common the category is.
 """
 
 from __future__ import annotations
@@ -14,13 +17,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.sources.calibration import sizes
+from pipeline.sources.category_signs import Signs, log_likelihood
 
 Floats = NDArray[np.float64]
+COMMON = 30  # models that every category counts beside its own, so that none is ruled out for being rare
+UNITS = (1.0, 0.01, 0.001)  # metres per unit of files that are to scale: metres, centimetres, millimetres
+METRIC = 3.0  # rms of standard deviations within which a shape passes for one that is in metres already
 
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """`scale` [m per unit] as `category`; `rms` in standard deviations; log-likelihood of the scaled size."""
+    """`scale` [m per unit] as `category`; `rms` in standard deviations; log-likelihood of the object at that scale."""
 
     category: str
     scale: float
@@ -28,7 +35,7 @@ class Fit:
     likelihood: float
 
 
-def fit(extent: Floats, category: str) -> Fit | None:
+def fit(extent: Floats, category: str, found: Signs | None = None) -> Fit | None:
     """Fit a category's sizes to an object of `extent` (w, d, h) [units], or None without statistics.
 
     With e = log extent and N(m, s^2) the logarithm of the sizes, log scale = sum((m - e) / s^2) / sum(1 / s^2).
@@ -39,13 +46,29 @@ def fit(extent: Floats, category: str) -> Fit | None:
     location, spread = known.logarithmic()
     weight = 1 / spread**2
     log_scale = float(((location - np.log(extent)) * weight).sum() / weight.sum())
-    z = (np.log(extent) + log_scale - location) / spread
-    likelihood = float(-0.5 * (z**2).sum() - np.log(spread).sum() - 1.5 * math.log(2 * math.pi))
-    return Fit(category, round(math.exp(log_scale), 6), float(np.sqrt((z**2).mean())), likelihood)
+    return _at(extent, category, math.exp(log_scale), found)
 
 
-def best(extent: Floats, categories: Iterable[str], *, rms: float, keep: int, margin: float) -> tuple[Fit, ...]:
+def metric(extent: Floats, category: str, found: Signs | None = None, unit: float = 1.0) -> Fit | None:
+    """Return the fit of an object that is to scale already, of `unit` metres per unit, or None where it is no such thing."""
+    if sizes().get(category) is None or extent.min() <= 0:
+        return None
+    made = _at(extent, category, unit, found)
+    return made if made.rms <= METRIC else None
+
+
+def _at(extent: Floats, category: str, scale: float, found: Signs | None) -> Fit:
+    known = sizes()[category]
+    location, spread = known.logarithmic()
+    z = (np.log(extent) + math.log(scale) - location) / spread
+    likelihood = float(-0.5 * (z**2).sum() - np.log(spread).sum() - 1.5 * math.log(2 * math.pi)) + math.log(known.count + COMMON)
+    if found is not None:
+        likelihood += log_likelihood(found, category, scale)
+    return Fit(category, round(scale, 6), float(np.sqrt((z**2).mean())), likelihood)
+
+
+def best(fits: Iterable[Fit | None], *, rms: float, keep: int, margin: float) -> tuple[Fit, ...]:
     """Return the fits within `rms`, most likely first: at most `keep`, none worse than the best by more than `margin`."""
-    found = [f for c in categories if (f := fit(extent, c)) is not None and f.rms <= rms]
+    found = [f for f in fits if f is not None and f.rms <= rms]
     found.sort(key=lambda f: (-f.likelihood, f.category))
     return tuple(f for f in found[:keep] if f.likelihood >= found[0].likelihood - margin)

@@ -69,16 +69,22 @@ REASONS: dict[str, Reason] = {
     "hull_collider": Reason(
         "model", "repaired", "parts that are not convex and that CoACD did not cut (see `coacd`) collide as their convex hulls"
     ),
+    "looks_differ": Reason("model", "repaired", "the URDF for looks does not have the annotated one's bodies in its places; not used"),
+    "looks_from_colliders": Reason("model", "repaired", "a body without visual meshes that can be read shows its collision meshes"),
+    "base_made": Reason("model", "repaired", "a door without a frame: a post along its hinge is made to be its base"),
+    "part_box_refused": Reason("model", "repaired", "the annotated box of a part is no box; that of its geometry is used"),
+    "angle_snapped": Reason("model", "repaired", "angles that are nearly right ones, such as 1.565, are taken as right"),
     "missing_mesh": Reason("model", "repaired", "a mesh file that the URDF names is missing; the rest is used"),
     "no_metric_fit": Reason("model", "dropped", "no scale makes it fit the sizes of a category that it may serve as"),
     "no_base": Reason("model", "dropped", "the root body has no geometry"),
     # joints
     "joint_unsupported": Reason("joint", "repaired", "planar, floating or unknown joint: taken as fixed"),
     "joint_no_range": Reason("joint", "repaired", "limits are missing or leave no range: taken as fixed"),
+    "joint_limits_found": Reason("joint", "repaired", "limits are missing or leave no range: those of mobility_v2.json are used"),
     "joint_flipped_limits": Reason("joint", "repaired", "lower above upper: exchanged"),
-    "joint_rest_shifted": Reason("joint", "repaired", "0 is not within the limits: the nearest limit becomes the rest"),
+    "joint_rest_shifted": Reason("joint", "repaired", "0 is not within the limits, or a door is drawn open: another limit is the rest"),
     "joint_moves_nothing": Reason("joint", "repaired", "a joint to a body without geometry: left out"),
-    "screw_collapsed": Reason("joint", "repaired", "two joints through an empty helper link: the sliding one is kept"),
+    "screw_collapsed": Reason("joint", "repaired", "two joints through an empty helper link: the one by which the part is used is kept"),
 }
 
 
@@ -97,4 +103,4 @@ class SourceError(ContentError):
 def reject(what: str, where: str, reason: str, detail: str = "") -> Row:
     """Return a row of the rejects table. Raises KeyError for a code that REASONS lacks."""
     REASONS[reason]  # a typo must not reach the table
-    return {"what": what, "where": where, "reason": reason, "detail": detail[:240]}
+    return {"what": what, "where": where, "reason": reason, "detail": "".join(c if c.isprintable() else " " for c in detail[:240])}

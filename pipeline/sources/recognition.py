@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Literal
 
 from pipeline.errors import ContentError, UsageError
@@ -64,10 +64,12 @@ def front_at(root: Path) -> Source:
 
 
 def partnet_at(root: Path) -> Source:
-    """Describe a folder below which objects with a URDF lie."""
-    names = partnet_objects(root)
+    """Describe a folder below which objects with a URDF lie; of a URDF by itself all of its folder counts as read."""
+    paths = [PurePosixPath(found.path) for found in partnet_objects(root)]
+    folders = {path.parent if path.suffix == ".urdf" else path for path in paths if not (root / path).is_symlink()}
+    names = sorted(folder.as_posix() for folder in folders if folders.isdisjoint(folder.parents))
     recut = sum((root / name / URDFS[0][0]).is_file() for name in names)
-    return Source("partnet", root, tuple(names), (("objects", len(names)), ("of them with GAPartNet's parts", recut)))
+    return Source("partnet", root, tuple(names), (("objects", len(paths)), ("of them with GAPartNet's parts", recut)))
 
 
 def _front(root: Path) -> Source | None:
@@ -104,7 +106,7 @@ def _is_object(folder: Path) -> bool:
 def _partnet(root: Path) -> Source | None:
     if _is_object(root):  # one object of a set: the set is meant
         root = root.parent
-    names = partnet_objects(root)
+    names = [found.path for found in partnet_objects(root)]
     if not names:
         return None
     base = root

@@ -9,6 +9,8 @@ from pipeline.sources import batch
 from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
 from pipeline.sources.front_hints import hints
 from pipeline.sources.front_house import HouseRows
+from pipeline.sources.guarded import Folder
+from pipeline.sources.household import named_categories
 from pipeline.sources.mirrored import add_mirrored
 from pipeline.sources.settings import FrontFilters, ModelLimits
 
@@ -26,7 +28,8 @@ def read(root, *, front="front", partnet="partnet", filters=None, limits=None):
         for entry in infos:
             library.add(batch.read_future(task, entry))
     if (root / partnet).is_dir():
-        task = LibraryTask(root / partnet, root / "assets", made_limits, "CC0-1.0", root / "cache")
+        categories = named_categories(Folder.at(root / partnet))
+        task = LibraryTask(root / partnet, root / "assets", made_limits, "CC0-1.0", root / "cache", categories=categories)
         for name in batch.partnet_objects(root / partnet):
             library.add(batch.read_partnet(task, name))
     if (root / front / batch.HOUSES).is_dir():

@@ -129,6 +129,36 @@ def no_model_info(tmp):
     return read(tmp)
 
 
+def partnet_limits(tmp):
+    folder = making.write_partnet(tmp / "partnet", joints=door("revolute", ""), gapartnet=False)
+    data = {"axis": {"direction": [0, 1, 0]}, "limit": {"a": 0, "b": -90, "noLimit": False}}
+    (folder / "mobility_v2.json").write_text(json.dumps([{"id": 0, "joint": "hinge", "name": "door", "jointData": data}]))
+    return read(tmp)
+
+
+def part_box_refused(tmp):
+    folder = making.write_partnet(tmp / "partnet")
+    entry = {"link_name": "link_0", "is_gapart": True, "category": "hinge_door", "bbox": [[0, 0, 0]] * 8}
+    (folder / "link_annotation_gapartnet.json").write_text(json.dumps([entry]))
+    return read(tmp)
+
+
+def looks_differ(tmp):
+    folder = making.write_partnet(tmp / "partnet")
+    text = (folder / "mobility_annotation_gapartnet.urdf").read_text()
+    (folder / "mobility_texture_gapartnet.urdf").write_text(text.replace('xyz="-0', 'xyz="-1'))
+    return read(tmp)
+
+
+def household(tmp, text):
+    (tmp / "partnet").mkdir()
+    (tmp / "partnet" / "cabinet.urdf").write_text(f'<robot name="r">{text}</robot>')
+    return read(tmp)
+
+
+CASE = '<geometry><box size="0.4 0.9 0.9"/></geometry>'
+
+
 def missing_texture(tmp):
     making.write_library(tmp / "front", (BED,))
     (tmp / "front" / "3D-FUTURE-model" / BED / "texture.png").unlink()
@@ -235,6 +265,16 @@ CASES = {
     "colliders_capped": lambda t: (making.write_partnet(t / "partnet"), read(t, limits={"max_pieces": 1}))[1],
     "hull_collider": open_box,
     "missing_mesh": missing_mesh,
+    "looks_differ": looks_differ,
+    "looks_from_colliders": lambda t: household(t, f'<link name="a"><collision>{CASE}</collision></link>'),
+    "base_made": lambda t: household(
+        t,
+        f'<link name="a"/><link name="b"><visual>{CASE}</visual></link><joint name="j" type="revolute"><parent link="a"/><child link="b"/>'
+        '<axis xyz="0 0 1"/><limit lower="0" upper="1"/></joint>',
+    ),
+    "angle_snapped": lambda t: household(t, f'<link name="a"><visual><origin rpy="0 0 1.565"/>{CASE}</visual></link>'),
+    "part_box_refused": part_box_refused,
+    "joint_limits_found": partnet_limits,
     "no_metric_fit": no_metric_fit,
     "no_base": no_base,
     "joint_unsupported": lambda t: with_joint(t, door("floating", "")),

@@ -3,7 +3,7 @@ import json
 import pytest
 
 from pipeline.errors import ContentError, UsageError
-from pipeline.sources.recognition import recognised
+from pipeline.sources.recognition import partnet_at, recognised
 
 HOUSE = "3D-FRONT/0a1b2c3d-0000-4000-8000-0123456789ab.json"
 INFO = "3D-FUTURE-model/model_info.json"
@@ -75,3 +75,14 @@ def test_a_path_that_is_no_folder_is_a_usage_error(tmp_path):
     for path in (tmp_path / "file.zip", tmp_path / "nowhere"):
         with pytest.raises(UsageError):
             recognised(path)
+
+
+def test_urdfs_by_themselves_count_with_their_folders(tmp_path):
+    for file in ("a/fridge.urdf", "a/b/desk.urdf", "c/x.urdf"):
+        (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / file).write_text("<robot/>")
+    (tmp_path / "away").mkdir()
+    (tmp_path / "c" / "linked").symlink_to(tmp_path.parent)
+    found = partnet_at(tmp_path)
+    assert found.parts == ("a", "c")
+    assert found.counts[0] == ("objects", 4)  # the link is one, to be refused
