@@ -1,4 +1,7 @@
-"""The embedded corpus: 3D-FRONT houses, 3D-FUTURE models, PartNet-Mobility/GAPartNet objects, in the formats of the real sets."""
+"""The embedded corpus: 3D-FRONT houses, 3D-FUTURE models, PartNet-Mobility/GAPartNet objects, in the formats of the real sets.
+
+Writes data/raw/, metrics/calibration.json (the corpus beside what is known of 3D-FRONT) and plots/classes.csv.
+"""
 
 from __future__ import annotations
 
@@ -6,14 +9,20 @@ import json
 import multiprocessing
 import os
 import shutil
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from pipeline import params
+from pipeline.corpus import reference
+from pipeline.corpus.calibration import figures
+from pipeline.corpus.calibration.tally import HouseTally, tally
 from pipeline.corpus.front_writer import DIALECTS, scene_json
 from pipeline.corpus.furniture.catalogue import Model, catalogue
+from pipeline.corpus.furniture.surfaces import surfaces_of
 from pipeline.corpus.future_writer import info, write_model
 from pipeline.corpus.houses import mess
 from pipeline.corpus.houses.house import make_house
@@ -21,23 +30,31 @@ from pipeline.corpus.houses.stock import Stock
 from pipeline.corpus.partnet_writer import write_partnet
 from pipeline.corpus.settings import CorpusSettings
 from pipeline.execution import track
+from pipeline.manifest import write_bytes, write_json
 from pipeline.seeds import generator
 from stages import runner
 
 RAW = Path("data/raw")
 BATCH = 10
-Task = Callable[[], int]
+Done = tuple[int, list[HouseTally]]
+"""How many things a task wrote, and what its houses count."""
+Task = Callable[[], Done]
 
 
 def main(root: Path) -> None:
     """Make the corpus of params.yaml under data/raw: in a temporary folder, which takes its place when it is whole."""
     tree = params.read(root / "params.yaml")
     settings = params.section(CorpusSettings, tree, "corpus")
-    make(root / RAW, params.convert(int, tree.get("seed"), "seed"), settings, workers=os.cpu_count() or 1)
+    found = make(root / RAW, params.convert(int, tree.get("seed"), "seed"), settings, workers=os.cpu_count() or 1)
+    write_json(root / "metrics" / "calibration.json", found)
+    rows = [f"{kind}: {c},{v['ours']},{v['reference']}" for kind, shares in found["frequencies"].items() for c, v in shares.items()]
+    write_bytes(root / "plots" / "classes.csv", "\n".join(["class,ours,reference", *rows, ""]).encode())
+    held = [line["ok"] for _, _, line in figures.table(found)]
+    sys.stdout.write(f"calibration: {sum(held)} of {len(held)} figures as in 3D-FRONT (metrics/calibration.json)\n")
 
 
-def make(target: Path, seed: int, settings: CorpusSettings, workers: int) -> None:
-    """Write the corpus to `target`, whole or not at all."""
+def make(target: Path, seed: int, settings: CorpusSettings, workers: int) -> dict[str, Any]:
+    """Write the corpus to `target`, whole or not at all; return the calibration."""
     making, old = target.with_name(f".{target.name}.making"), target.with_name(f".{target.name}.old")
     if old.exists() and not target.exists():  # a run was killed while it swapped the two
         old.replace(target)
@@ -46,12 +63,20 @@ def make(target: Path, seed: int, settings: CorpusSettings, workers: int) -> Non
     making.mkdir(parents=True)
     jobs = list(tasks(making, seed, settings))
     total = sum(n for n, _ in jobs)
-    for _ in track(completed([job for _, job in jobs], workers), total, "corpus", unit="file", size=int):
-        pass
+    tallies: list[HouseTally] = []
+    for _, houses in track(completed([job for _, job in jobs], workers), total, "corpus", unit="file", size=lambda done: done[0]):
+        tallies += houses
     if target.exists():
         target.replace(old)
     making.replace(target)
     shutil.rmtree(old, ignore_errors=True)
+    models = catalogue(seed, settings.models).future
+    return figures.calibration(tallies, models, len(models), len(wrong_unit(seed, settings)))
+
+
+def wrong_unit(seed: int, settings: CorpusSettings) -> frozenset[str]:
+    """Return the ids of the models whose files are in centimetres."""
+    return mess.in_centimetres(seed, catalogue(seed, settings.models).future) if settings.mess else frozenset()
 
 
 def tasks(folder: Path, seed: int, settings: CorpusSettings) -> Iterator[tuple[int, Task]]:
@@ -63,7 +88,7 @@ def tasks(folder: Path, seed: int, settings: CorpusSettings) -> Iterator[tuple[i
     (folder / "partnet").mkdir()
     for start in range(0, len(models.future), BATCH):
         part = models.future[start : start + BATCH]
-        yield len(part), partial(_future, part, front / "3D-FUTURE-model")
+        yield len(part), partial(_future, part, front / "3D-FUTURE-model", wrong_unit(seed, settings))
     records = [info(model) for model in models.future]
     (front / "3D-FUTURE-model" / "model_info.json").write_text(json.dumps(records, indent=1) + "\n", encoding="utf-8")
     for start in range(0, len(models.partnet), BATCH):
@@ -74,8 +99,8 @@ def tasks(folder: Path, seed: int, settings: CorpusSettings) -> Iterator[tuple[i
         yield len(indices), partial(write_houses, front / "3D-FRONT", seed, settings, indices)
 
 
-def completed(jobs: Sequence[Task], workers: int) -> Iterator[int]:
-    """Run the tasks on that many processes and yield how many things each wrote."""
+def completed(jobs: Sequence[Task], workers: int) -> Iterator[Done]:
+    """Run the tasks on that many processes and yield what each did."""
     if workers == 1:
         for job in jobs:
             yield job()
@@ -89,9 +114,10 @@ def completed(jobs: Sequence[Task], workers: int) -> Iterator[int]:
             pool.shutdown(cancel_futures=True)
 
 
-def write_houses(folder: Path, seed: int, settings: CorpusSettings, indices: range) -> int:
+def write_houses(folder: Path, seed: int, settings: CorpusSettings, indices: range) -> Done:
     """Write the houses of these indices, one scene file each, the two dialects in their observed shares."""
-    stock = Stock(catalogue(seed, settings.models).future)
+    stock = Stock(catalogue(seed, settings.models).future, surfaces_of)
+    tallies = []
     for index in indices:
         house = make_house(seed, index, stock)
         rng = generator(seed, "front", index)
@@ -99,21 +125,22 @@ def write_houses(folder: Path, seed: int, settings: CorpusSettings, indices: ran
         litter = mess.Litter()
         if settings.mess:
             house = mess.disturb(rng, house, stock)
-            litter = mess.litter(rng, len(house.items))
-        text = json.dumps(scene_json(house, dialect, rng, litter), separators=(",", ":"))
-        (folder / f"{house.uid}.json").write_text(text, encoding="utf-8")
-    return len(indices)
+            litter = mess.litter(rng, house)
+        scene = scene_json(house, dialect, rng, litter)
+        (folder / f"{house.uid}.json").write_text(json.dumps(scene, separators=(",", ":")), encoding="utf-8")
+        tallies.append(tally(house, scene, reference.load()))
+    return len(indices), tallies
 
 
-def _future(models: Sequence[Model], folder: Path) -> int:
+def _future(models: Sequence[Model], folder: Path, centimetres: frozenset[str]) -> Done:
     for model in models:
-        write_model(model, folder / model.model_id)
-    return len(models)
+        write_model(model, folder / model.model_id, 100.0 if model.model_id in centimetres else 1.0)
+    return len(models), []
 
 
-def _partnet(models: Sequence[Model], folder: Path) -> int:
+def _partnet(models: Sequence[Model], folder: Path) -> Done:
     write_partnet(models, folder)
-    return len(models)
+    return len(models), []
 
 
 if __name__ == "__main__":

@@ -41,8 +41,11 @@ def info(model: Model) -> dict[str, str | None]:
     }
 
 
-def write_model(model: Model, folder: Path) -> None:
-    """Write one model's folder: raw_model.obj, normalized_model.obj (centred, longest side 1), model.mtl, texture.png."""
+def write_model(model: Model, folder: Path, unit: float = 1.0) -> None:
+    """Write one model's folder: raw_model.obj, normalized_model.obj (centred, longest side 1), model.mtl, texture.png.
+
+    `unit`: 1 writes metres; 100 makes one of those models that are in centimetres.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     shape = shape_of(model)
     finishes = list(dict.fromkeys(piece.finish for piece in shape.pieces()))
@@ -54,7 +57,7 @@ def write_model(model: Model, folder: Path) -> None:
     ]
     text = wavefront.text(groups, "model.mtl", sheet)
     w, d, h = model.size
-    (folder / "raw_model.obj").write_bytes(text.obj())
+    (folder / "raw_model.obj").write_bytes(text.obj(unit))
     (folder / "normalized_model.obj").write_bytes(text.obj(1 / max(w, d, h), np.array([0.0, -h / 2, 0.0])))
     (folder / "model.mtl").write_bytes(wavefront.mtl([(names[f], f) for f in finishes], "./texture.png"))
     (folder / "texture.png").write_bytes(texture.paint(seeds.generator(model.seed, "corpus.furniture.texture"), sheet))

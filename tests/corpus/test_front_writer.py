@@ -159,10 +159,10 @@ def test_litter_is_all_there_and_changes_nothing_real():
 def test_disturbed_houses_have_replaced_mirrored_and_misplaced_pieces_at_their_rates():
     rng = generator(1, "test-mess")
     pairs = [(a, b) for home in houses(24) for a, b in zip(home.items, mess.disturb(rng, home, stock()).items, strict=True)]
-    replaced = np.mean([a.model is not b.model for a, b in pairs])
-    moved = np.mean([a.position != b.position for a, b in pairs])
+    replaced = np.mean([a.model is not b.model for a, b in pairs if a.support < 0])
+    moved = np.mean([a.position != b.position for a, b in pairs if a.support < 0])
     assert 0.02 < replaced < 0.15
-    assert 0.01 < moved < 0.1
+    assert 0.05 < moved < 0.35
     assert any(b.scale[0] < 0 for _, b in pairs)
     for a, b in pairs:
         assert b.size == pytest.approx(a.size, abs=1e-6)
@@ -184,7 +184,7 @@ def test_replaced_models_are_told_as_such():
 
 @pytest.mark.parametrize("index", range(4))
 def test_files_are_deterministic_finite_and_small(index):
-    litter = mess.litter(generator(5, "litter", index), len(house(index).items))
+    litter = mess.litter(generator(5, "litter", index), house(index))
     texts = [json.dumps(scene(index, "0.11", litter), allow_nan=False) for _ in range(2)]
     assert texts[0] == texts[1]
     assert len(texts[0]) < 400_000

@@ -21,7 +21,7 @@ def contents(folder):
 def light(monkeypatch):
     """Models are a line each: what furniture looks like is tested elsewhere."""
 
-    def write_model(model, folder):
+    def write_model(model, folder, unit=1.0):
         folder.mkdir(parents=True)
         (folder / "raw_model.obj").write_text(model.model_id)
 

@@ -24,19 +24,24 @@ ROUNDS = 6
 
 @dataclass(frozen=True, slots=True)
 class SizeStatistics:
-    """Full extents (w, d, h) [m] of a category's models: mean, standard deviation, 5th and 95th percentile."""
+    """Full extents (w, d, h) [m] of a category's models: mean, standard deviation, 5th and 95th percentile.
+
+    `models` is how many models these were counted on; 0: our own estimate.
+    """
 
     mean: NDArray[np.float64]
     std: NDArray[np.float64]
     p05: NDArray[np.float64]
     p95: NDArray[np.float64]
+    models: int = 0
 
 
 @functools.cache
 def load() -> Mapping[str, SizeStatistics]:
     """Read manifests/calibration/sizes.yaml: statistics by category."""
     raw = yaml.safe_load(PATH.read_text(encoding="utf-8"))["categories"]
-    return {name: SizeStatistics(*(np.array(entry[k], float) for k in ("mean", "std", "p05", "p95"))) for name, entry in raw.items()}
+    axes = {name: {k: np.array(entry[k], float) for k in ("mean", "std", "p05", "p95")} for name, entry in raw.items()}
+    return {name: SizeStatistics(**axes[name], models=int(entry["n"])) for name, entry in raw.items()}
 
 
 def draw(rng: np.random.Generator, statistics: SizeStatistics, count: int, rounds: Sequence[bool] = ()) -> NDArray[np.float64]:

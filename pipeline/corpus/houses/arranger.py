@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from pipeline.corpus.houses.deal import Deal
+from pipeline.corpus.houses.rates import Rates
 from pipeline.corpus.houses.records import Model
 from pipeline.corpus.houses.space import Space, Spot, against, ahead, box_of, shifted
 from pipeline.corpus.houses.stock import Stock
@@ -37,13 +39,35 @@ LAMP_DROP = 0.02
 
 
 class Arranger:
-    """Furnishes one room: the generator, the room, the stock and the house's style in one hand."""
+    """Furnishes one room: the generator, the room, the stock, the house's style and the room's decisions in one hand.
 
-    def __init__(self, rng: np.random.Generator, space: Space, stock: Stock, style: str) -> None:
+    What is placed where is drawn from the generator; what is tried at all, from `rates`, is dealt in strata.
+    """
+
+    def __init__(self, rng: np.random.Generator, space: Space, stock: Stock, style: str, rates: Rates, deal: Deal) -> None:
         self.rng = rng
         self.space = space
         self.stock = stock
         self.style = style
+        self.rates = rates
+        self.deal = deal
+
+    def wants(self, decision: str) -> bool:
+        """Return the room's decision on a chance of its rates."""
+        return self.deal.mark(decision) < float(self.rates[decision])
+
+    def choose(self, decision: str) -> str:
+        """Return the room's choice among alternatives of its rates."""
+        return self.deal.choose(decision, self.rates[decision])
+
+    def wanted(self, group: str) -> list[str]:
+        """Return the categories of a group that the room wants; `second_chair` is one more chair.
+
+        Some rooms are crowded and some bare: a room's wealth, 1 in the mean, multiplies its chances for extras.
+        """
+        rates: Mapping[str, float] = self.rates[group]
+        wealth = 3.0 * self.deal.mark("wealth") ** 2 if group == "extras" else 1.0
+        return [name.removeprefix("second_") for name, share in rates.items() if self.deal.mark(f"{group}.{name}") < share * wealth]
 
     def chance(self, share: float) -> bool:
         """Return True in that share of cases."""
@@ -67,9 +91,9 @@ class Arranger:
             width = model.size[0] * 0.95
         return False
 
-    def pair_at_wall(self, table: str, chairs: Sequence[str], share: float) -> bool:
-        """Put a desk or dressing table to a wall and, in that share of cases, a chair before it that faces it."""
-        seat = self.pick(str(self.rng.choice(list(chairs)))) if self.chance(share) else None
+    def pair_at_wall(self, table: str, chair: str) -> bool:
+        """Put a desk or dressing table to a wall and a chair ("none": none) before it that faces it."""
+        seat = self.pick(chair)
         front = max(FRONTS[table], seat.size[1] + 0.15 if seat else 0.0)
         width = math.inf
         for _ in range(4):
@@ -86,7 +110,7 @@ class Arranger:
         assert spot is not None
         if seat is not None:
             off = float(self.rng.uniform(0.02, 0.1))
-            turn = math.pi + (float(self.rng.normal(0, 0.4)) if self.chance(0.55) else 0.0)
+            turn = math.pi + (float(self.rng.normal(0, 0.4)) if self.chance(0.85) else 0.0)
             place = shifted(spot, float(self.rng.normal(0, 0.04)), desk.size[1] / 2 + seat.size[1] / 2 + off, turn)
             if turn != math.pi:
                 place = shifted(place, 0.0, -0.1)
@@ -130,14 +154,13 @@ class Arranger:
         self.space.add(model, Spot(x, y, yaw), z)
         return True
 
-    def light(self, pendant: float, ceiling: float) -> None:
-        """Hang at most one lamp in the middle of the room: a pendant or a ceiling lamp with these chances."""
-        mark = self.rng.random()
-        category = "pendant_lamp" if mark < pendant else "ceiling_lamp" if mark < pendant + ceiling else None
-        if category is None:
+    def light(self, places: Sequence[tuple[float, float]] = ()) -> None:
+        """Hang the lamp that the room wants at the first of the places, or near the middle of the room, where there is room for it."""
+        category = self.choose("lamp")
+        if category == "none":
             return
-        for x, y in self.middles():
-            if self.lamp(category, x + float(self.rng.normal(0, 0.04)), y + float(self.rng.normal(0, 0.04))):
+        for x, y in (*places, *self.middles()):
+            if self.lamp(category, x + float(self.rng.normal(0, 0.03)), y + float(self.rng.normal(0, 0.03))):
                 return
 
     def middles(self) -> list[tuple[float, float]]:

@@ -1,9 +1,8 @@
-"""Bedrooms and children's rooms: a bed with its head to a wall, and everything around it.
-
-Rates per room follow the class counts of 3,900 filtered bedrooms of 3D-FRONT (about 5.0 objects a room).
-"""
+"""Bedrooms and children's rooms: a bed with its head to a wall, and everything around it."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
@@ -14,80 +13,61 @@ from pipeline.corpus.houses.space import Spot, ahead, back_gap, box_of, on_side,
 FOOT = 0.6
 SIDE = 0.5
 """Free floor at the foot and beside a bed [m]."""
-# Single pieces tried in a bedroom after bed, nightstands, wardrobe and TV stand: category -> chance.
-EXTRAS = {
-    "cabinet": 0.11,
-    "bookshelf": 0.045,
-    "shelf": 0.05,
-    "children_cabinet": 0.06,
-    "corner_side_table": 0.08,
-    "round_end_table": 0.04,
-    "sideboard": 0.015,
-    "armchair": 0.05,
-    "lounge_chair": 0.12,
-    "chaise_longue_sofa": 0.005,
-    "lazy_sofa": 0.005,
-    "plant": 0.04,
-    "floor_lamp": 0.03,
-}
-KIDS_EXTRAS = {"children_cabinet": 0.55, "bookshelf": 0.3, "shelf": 0.2, "cabinet": 0.15, "stool": 0.15, "plant": 0.1}
+BESIDE = (0.6, 0.55, 0.45, 0.4)
+"""What is left beside a double bed, for nightstands and to get in: less, before the bed becomes a smaller one [m]."""
+SEATS = frozenset({"armchair", "lounge_chair", "lazy_sofa", "chaise_longue_sofa", "stool", "plant", "floor_lamp"})
+NIGHTSTANDS = {"none": 0, "one": 1, "two": 2}
 
 
 def furnish_bedroom(arranger: Arranger) -> None:
     """Furnish a bedroom of grown-ups."""
-    category = str(arranger.rng.choice(["double_bed", "single_bed", "kids_bed"], p=[0.855, 0.105, 0.04]))
+    category = arranger.choose("bed")
     bed = place_bed(arranger, category)
     if bed is None and category == "double_bed":
         bed = place_bed(arranger, "single_bed")
     if bed is not None:
-        nightstands(arranger, bed, int(arranger.rng.choice([0, 1, 2], p=[0.06, 0.20, 0.74])))
-    if bed is not None and arranger.chance(0.42):
+        nightstands(arranger, bed, NIGHTSTANDS[arranger.choose("nightstands")])
+    pieces = arranger.wanted("pieces")
+    if bed is not None and "tv_stand" in pieces:
         tv_opposite(arranger, bed)
-    pieces = [
-        w for w, share in (("desk", 0.16), ("dressing_table", 0.19), ("wardrobe", 0.98), ("wardrobe", 0.04)) if arranger.chance(share)
-    ]
-    if arranger.chance(0.5):
-        pieces.reverse()
-    for piece in pieces:
-        if piece == "wardrobe":
-            arranger.at_wall("wardrobe", corner=0.8, tries=6)
-        else:
-            chairs = ("dining_chair", "lounge_chair", "lounge_chair") if piece == "desk" else ("dressing_chair", "dressing_chair", "stool")
-            arranger.pair_at_wall(piece, chairs, 0.95)
-    if bed is not None and arranger.chance(0.07):
+    at_walls(arranger, [p for p in pieces if p != "tv_stand"])
+    if bed is not None and arranger.wants("bench"):
         bed_end_stool(arranger, bed)
-    extras(arranger, EXTRAS)
-    if arranger.chance(0.04):
+    extras(arranger)
+    if arranger.wants("wall_lamp"):
         arranger.on_wall("wall_lamp", 1.5)
-    x, y = (bed[1].x, bed[1].y) if bed is not None and arranger.chance(0.35) else arranger.middles()[0]
-    mark = arranger.rng.random()
-    if mark < 0.95:
-        category = "pendant_lamp" if mark < 0.65 else "ceiling_lamp"
-        if not arranger.lamp(category, x, y):
-            arranger.light(*((1.0, 0.0) if category == "pendant_lamp" else (0.0, 1.0)))
+    arranger.light([(bed[1].x, bed[1].y)] if bed is not None and arranger.wants("lamp_over_bed") else [])
 
 
 def furnish_kids_room(arranger: Arranger) -> None:
     """Furnish a child's room."""
-    bed = place_bed(arranger, "kids_bed" if arranger.chance(0.6) else "single_bed")
+    bed = place_bed(arranger, arranger.choose("bed"))
     if bed is not None:
-        nightstands(arranger, bed, int(arranger.rng.choice([0, 1, 2], p=[0.35, 0.5, 0.15])))
-    if arranger.chance(0.6):
-        arranger.pair_at_wall("desk", ("dining_chair", "lounge_chair", "dressing_chair"), 0.9)
-    if arranger.chance(0.55):
-        arranger.at_wall("wardrobe", corner=0.8, tries=5)
-    extras(arranger, KIDS_EXTRAS)
-    if arranger.chance(0.12):
+        nightstands(arranger, bed, NIGHTSTANDS[arranger.choose("nightstands")])
+    at_walls(arranger, arranger.wanted("pieces"))
+    extras(arranger)
+    if arranger.wants("wall_lamp"):
         arranger.on_wall("wall_lamp", 1.5)
-    arranger.light(0.5, 0.45)
+    arranger.light()
 
 
-def extras(arranger: Arranger, rates: dict[str, float]) -> None:
-    """Try each category with its chance, in a fixed order."""
-    for category, share in rates.items():
-        if not arranger.chance(share):
-            continue
-        if category in {"armchair", "lounge_chair", "lazy_sofa", "chaise_longue_sofa", "plant", "floor_lamp"}:
+def at_walls(arranger: Arranger, pieces: list[str]) -> None:
+    """Put desks with their chairs and other large pieces to the walls, in either order."""
+    if arranger.chance(0.5):
+        pieces.reverse()
+    for piece in pieces:
+        if piece == "desk":
+            arranger.pair_at_wall(piece, arranger.choose("desk_seat"))
+        elif piece == "dressing_table":
+            arranger.pair_at_wall(piece, arranger.choose("dressing_seat"))
+        else:
+            arranger.at_wall(piece, corner=0.8, tries=6)
+
+
+def extras(arranger: Arranger) -> None:
+    """Put the smaller pieces that the room wants: seats into corners, the others to walls."""
+    for category in arranger.wanted("extras"):
+        if category in SEATS:
             arranger.in_corner(category)
         else:
             arranger.at_wall(category)
@@ -98,12 +78,16 @@ def place_bed(arranger: Arranger, category: str) -> tuple[Model, Spot] | None:
     space, rng = arranger.space, arranger.rng
     short = min(space.bounds[2] - space.bounds[0], space.bounds[3] - space.bounds[1])
     width = max(short - (1.0 if category == "double_bed" else 0.6), 1.5)
-    for attempt in range(6):
-        model = arranger.pick(category, width=width, depth=max(short - 0.5, 2.05))
+    for attempt in range(8):
+        model = arranger.pick(category, width=width, depth=max(short - 0.4, 2.05))
         if model is None:
             return None
-        space.blind = attempt >= 2 or arranger.chance(0.15)  # a headboard before a window: now and then
-        found = _bed_spots(arranger, model, both=attempt < 4 and category == "double_bed")
+        if attempt < 2:  # beds are as large as the room lets them: of two, the larger
+            other = arranger.pick(category, width=width, depth=max(short - 0.4, 2.05))
+            model = max(model, other or model, key=lambda m: m.size[0] + 0.5 * m.size[1])
+        space.blind = attempt >= 1 or arranger.chance(0.15)  # a headboard before a window: now and then
+        beside = BESIDE[min(attempt, len(BESIDE) - 1)] if attempt < 6 and category == "double_bed" else 0.0
+        found = _bed_spots(arranger, model, beside)
         space.blind = False
         if found:
             weights = np.array([w for w, _ in found])
@@ -116,21 +100,24 @@ def place_bed(arranger: Arranger, category: str) -> tuple[Model, Spot] | None:
                     keep.append(lane)
             space.add(model, spot, keep=keep)
             return model, spot
-        width = max(model.size[0] * 0.9, arranger.stock.least(category)[0])
+        if attempt >= 1:
+            width = max(model.size[0] * 0.96, arranger.stock.least(category)[0])
     return None
 
 
-def _bed_spots(arranger: Arranger, model: Model, *, both: bool) -> list[tuple[float, Spot]]:
-    """Return weighted places for a bed. The middle of a wall, and walls that see the door from aside, weigh more."""
+def _bed_spots(arranger: Arranger, model: Model, beside: float) -> list[tuple[float, Spot]]:
+    """Return weighted places for a bed with `beside` metres free on both sides (0: one side may touch a wall).
+
+    The middle of a wall, and walls that see the door from aside, weigh more.
+    """
     space, rng = arranger.space, arranger.rng
     w, d, h = model.size
     gap = back_gap(rng)
-    aside = 0.8 if both else 5.0  # a narrow bed often stands along a wall
+    aside = 0.8 if beside else 5.0  # a narrow bed often stands along a wall
     found: list[tuple[float, Spot]] = []
     for i, side in enumerate(space.sides):
         for a, b in space.spans(side, d + gap, FOOT, 0.0, h):
             room = b - a
-            beside = SIDE + 0.08 if both else 0.0
             if room < w + 2 * beside:
                 continue
             middle = (a + b) / 2 + float(rng.normal(0, 0.08)) if room > w + 2 * beside + 0.2 else (a + b) / 2
@@ -140,7 +127,7 @@ def _bed_spots(arranger: Arranger, model: Model, *, both: bool) -> list[tuple[fl
                     on_side(space, i, float(np.clip(middle, a + w / 2 + beside, b - w / 2 - beside)), d, gap),
                 )
             )
-            lean = w / 2 + (beside if both else 0.02)
+            lean = w / 2 + max(beside, 0.02)
             if room > w + 2 * beside + 0.4:
                 found += [(aside, on_side(space, i, a + lean, d, gap)), (aside, on_side(space, i, b - lean, d, gap))]
     return found
@@ -152,10 +139,10 @@ def nightstands(arranger: Arranger, bed: tuple[Model, Spot], count: int) -> None
     signs = [-1, 1] if count == 2 else [int(arranger.rng.choice([-1, 1]))] * count
     width = 0.75
     for attempt in range(5):
-        stand = arranger.pick("nightstand", width=width)
+        stand = arranger.pick("nightstand", width=width, depth=0.5 if attempt < 3 else math.inf)
         if stand is None:
             return
-        gap = float(abs(arranger.rng.normal(0.04, 0.03)) + 0.01)
+        gap = float(abs(arranger.rng.normal(0.05, 0.04)) + 0.01)
         back = -(model.size[1] - stand.size[1]) / 2
         places = [shifted(spot, sign * (model.size[0] / 2 + stand.size[0] / 2 + gap), back) for sign in signs]
         fitting = [p for p in places if arranger.space.nestle(stand, p, dry=True)]
@@ -183,7 +170,7 @@ def tv_opposite(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
                 continue
             place = on_side(space, i, s + float(arranger.rng.normal(0, 0.04)), stand.size[1], back_gap(arranger.rng))
             away = abs((place.x - spot.x) * np.sin(spot.yaw) - (place.y - spot.y) * np.cos(spot.yaw))
-            if away - model.size[1] / 2 - stand.size[1] / 2 > 0.6 and space.try_add(
+            if 0.6 < away - model.size[1] / 2 - stand.size[1] / 2 < 1.5 and space.try_add(
                 stand, place, keep=[ahead(place, stand.size[1], 0.4, stand.size[0])]
             ):
                 return True

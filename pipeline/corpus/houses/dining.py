@@ -7,33 +7,37 @@ import math
 import numpy as np
 
 from pipeline.corpus.houses.arranger import Arranger
+from pipeline.corpus.houses.rates import load
 from pipeline.corpus.houses.records import Model
 from pipeline.corpus.houses.space import Spot, box_of, shifted
 
-# Chairs at a table: number -> share. Counts of living rooms give 3.7 chairs a table.
-CHAIRS = {2: 0.10, 4: 0.55, 6: 0.31, 8: 0.04}
+CHAIRS = {"two": 2, "four": 4, "six": 6, "eight": 8}
+ACROSS = 0.6
+"""Usual distance of a chair's middle from the table's long axis [m]: it reaches under a deep table."""
+UNDER = 0.35
+"""Most of a chair's depth that is under the table."""
+OFF_LAMP = 0.1
+"""Deviation of the lamp from the table's middle [m]."""
+DEEPEST = {2: 0.95, 4: 1.0, 6: 1.2, 8: 1.5}
+"""Depth of a table for so many, where there is one [m]."""
 BEHIND = 0.3
 """Free floor behind a chair [m]."""
 
 
 def furnish_dining(arranger: Arranger) -> None:
     """Furnish a dining room: the table group, then cabinets along the walls."""
-    furnish_dining_corner(arranger, chance=1.0)
-    for category, share in (("sideboard", 0.6), ("wine_cabinet", 0.35), ("cabinet", 0.2), ("shelf", 0.1), ("bookshelf", 0.12)):
-        if arranger.chance(share):
-            arranger.at_wall(category)
-    for category, share in (("plant", 0.15), ("lounge_chair", 0.08), ("stool", 0.08), ("barstool", 0.1)):
-        if arranger.chance(share):
-            arranger.in_corner(category)
+    furnish_dining_corner(arranger)
+    for category in arranger.wanted("pieces"):
+        arranger.at_wall(category)
+    for category in arranger.wanted("extras"):
+        arranger.in_corner(category)
 
 
-def furnish_dining_corner(arranger: Arranger, chance: float) -> None:
+def furnish_dining_corner(arranger: Arranger) -> None:
     """Put a table with chairs where there is room for them; fewer chairs and a smaller table if there is not."""
-    rng = arranger.rng
-    if not arranger.chance(chance):
-        return
-    count = int(rng.choice(list(CHAIRS), p=list(CHAIRS.values())))
-    category = "chinese_chair" if arranger.chance(0.005) else "dining_chair"
+    rates = load()["dining"]
+    count = CHAIRS[arranger.deal.choose("chairs", rates["chairs"])]
+    category = "chinese_chair" if arranger.deal.mark("chinese") < rates["chinese"] else "dining_chair"
     while count >= 2:
         for _ in range(2):
             chair = arranger.pick(category, width=0.66)
@@ -50,8 +54,8 @@ def _table(arranger: Arranger, count: int, chair: Model) -> Model | None:
     along = {2: 1, 4: 2, 6: 2 if arranger.chance(0.4) else 3, 8: 3}[count]
     need = along * (chair.size[0] + 0.04)
     most = {2: 1.5, 4: 1.9, 6: 2.5, 8: 3.2}[count]
-    for category in ("dining_table",):
-        model = arranger.stock.pick(arranger.rng, category, arranger.style, width=max(most, need + 0.3), narrowest=need)
+    for depth in (DEEPEST[count], math.inf):
+        model = arranger.stock.pick(arranger.rng, "dining_table", arranger.style, width=max(most, need + 0.3), depth=depth, narrowest=need)
         if model is not None:
             return model
     return None
@@ -67,20 +71,21 @@ def seats_at(table: Model, chair: Model, count: int, gap: float) -> list[tuple[f
     if along == 2:
         half = max(w / 4, chair.size[0] / 2 + 0.02)
         xs = [-half, half]
-    off = d / 2 + chair.size[1] / 2 + gap
+    deepest = chair.size[1] * (0.5 - UNDER)
+    off = max(min(ACROSS, d / 2 + chair.size[1] / 2) + gap, d / 2 + deepest)
     placed = [(x, sign * off, math.pi if sign > 0 else 0.0) for x in xs for sign in (1, -1)]
-    side = w / 2 + chair.size[1] / 2 + gap
+    side = w / 2 + chair.size[1] / 2 + min(gap, 0.05)
     return placed + [(sign * side, 0.0, sign * -math.pi / 2) for sign in (1, -1)][: max(0, ends)]
 
 
 def _place(arranger: Arranger, table: Model, chair: Model, count: int) -> bool:
     """Try places all over the room, square to the walls, and take the one with the most air; then hang the lamp."""
     space, rng = arranger.space, arranger.rng
-    gap = float(rng.uniform(0.01, 0.09))
+    gap = float(rng.uniform(-0.08, 0.08))
     chairs = seats_at(table, chair, count, gap)
     ends = any(abs(c[1]) < 1e-9 for c in chairs)
-    width = table.size[0] + 2 * (chair.size[1] + gap if ends else 0.03)
-    depth = table.size[1] + 2 * (chair.size[1] + gap)
+    width = 2 * max(abs(c[0]) for c in chairs) + (chair.size[1] if ends else chair.size[0])
+    width, depth = max(width, table.size[0] + 0.06), 2 * max(abs(c[1]) for c in chairs) + chair.size[1]
     x0, y0, x1, y1 = space.bounds
     best: tuple[float, Spot] | None = None
     for _ in range(45):
@@ -100,14 +105,23 @@ def _place(arranger: Arranger, table: Model, chair: Model, count: int) -> bool:
         return False
     spot = best[1]
     space.add(table, spot)
+    under = space.solids[-1][0]
+    rates = load()["dining"]
     for across, forward, turn in chairs:
         # Turned away from the table's front by `turn`: the chair looks back at the table.
         sway = float(np.clip(rng.normal(0, 0.012), -0.02, 0.02))
         seat = shifted(spot, across + (sway if abs(forward) > 1e-9 else 0.0), forward, turn)
-        left_open = arranger.chance(0.09)  # pulled out and turned, as somebody left it
-        if left_open and space.try_add(chair, shifted(seat, 0.0, -0.22, float(rng.normal(0, 0.5)))):
+        left_open = arranger.chance(rates["turned_chair"])  # pulled out and turned, as somebody left it
+        if left_open and space.try_add(chair, shifted(seat, 0.0, -0.25, float(rng.normal(0, 0.5))), under=under):
             continue
-        space.try_add(chair, seat)
-    if arranger.chance(0.86):
-        arranger.lamp("pendant_lamp", spot.x + float(rng.normal(0, 0.03)), spot.y + float(rng.normal(0, 0.03)), spot.yaw)
+        if arranger.chance(rates["askew_chair"]):
+            seat = shifted(seat, 0.0, -0.04, float(rng.choice([-1, 1]) * rng.uniform(0.05, 0.25)))
+        space.try_add(chair, seat, under=under)
+    if arranger.deal.mark("dining_lamp") < rates["lamp"]:
+        arranger.lamp(
+            "pendant_lamp",
+            spot.x + float(np.clip(rng.normal(0, OFF_LAMP), -0.16, 0.16)),
+            spot.y + float(rng.normal(0, OFF_LAMP / 3)),
+            spot.yaw,
+        )
     return True

@@ -15,6 +15,8 @@ LINE = 0.12
 """Half a wall on each side of a room: wall lines lie this much further apart than the faces [m]."""
 LONGEST_NOOK = 5.5
 """A corridor longer than this is a room of its own, not a part of the living room [m]."""
+LARGEST_AISLE = 3.4
+"""What is larger is called a corridor [m2]."""
 SHORTEST = {"Kitchen": 1.8, "Bathroom": 1.6, "SecondBathroom": 1.55, "Library": 2.35}
 """Least distance between the wall lines of a room in a strip [m]; 2.75 for all others."""
 
@@ -85,7 +87,7 @@ def spine(rng: np.random.Generator, program: Program) -> Draft:
     if merged:
         easel.add(public[0] if easel.types[public[0]] == "LivingDiningRoom" else public[-1], 0.0, below, reach, depth - above)
     else:
-        name = str(rng.choice(["Aisle", "Corridor", "Hallway"], p=[0.5, 0.2, 0.3]))
+        name = "Aisle" if (reach - LINE) * (corridor - LINE) < LARGEST_AISLE else "Corridor"
         easel.room(name, 0.0, below, reach, depth - above)
     if program.suite is not None and program.bedrooms[0] in top:
         k = top.index(program.bedrooms[0])
@@ -240,7 +242,7 @@ def _corners(rng: np.random.Generator, easel: Easel, program: Program, box: tupl
     x0, y0, x1, _ = box
     taken = 0.0
     if program.hall:
-        width, height = rng.uniform(1.5, 2.1), rng.uniform(1.6, 2.3)
+        width, height = rng.uniform(1.65, 2.15), rng.uniform(1.8, 2.4)
         if x1 - x0 - width >= 1.7:
             taken = width
             easel.room("Hallway", *_at_side(x0, x1, width, y0, y0 + height, left=hall_left))

@@ -16,12 +16,12 @@ HUNG_AT = 1.45
 def furnish_kitchen(arranger: Arranger) -> None:
     """Furnish a kitchen with one run, or two that meet in a corner or face each other."""
     wanted = ["sink_cabinet", "kitchen_cabinet", "oven"]
-    wanted += ["dishwasher"] if arranger.chance(0.6) else []
-    wanted += ["kitchen_cabinet"] if arranger.chance(0.8) else []
+    wanted += ["dishwasher"] if arranger.wants("dishwasher") else []
+    wanted += ["kitchen_cabinet"] if arranger.wants("second_cabinet") else []
     middle = wanted[1:]
     arranger.rng.shuffle(middle)
     wanted = [*middle[:1], "sink_cabinet", *middle[1:], "kitchen_cabinet", "kitchen_cabinet", "kitchen_cabinet"]
-    if arranger.chance(0.65):
+    if arranger.wants("fridge_in_run"):
         wanted = ["refrigerator", *wanted]
     left = run(arranger, wanted)
     if any(c != "kitchen_cabinet" for c in left):
@@ -31,11 +31,11 @@ def furnish_kitchen(arranger: Arranger) -> None:
         )
     if not any(i.model.category == "refrigerator" for i in arranger.space.items):
         arranger.at_wall("refrigerator", corner=0.95)
-    if arranger.chance(0.35):
+    if arranger.wants("trash_can"):
         arranger.in_corner("trash_can")
-    if arranger.space.area > 7.0 and arranger.chance(0.2):
+    if arranger.space.area > 7.0 and arranger.wants("barstool"):
         arranger.in_corner("barstool")
-    arranger.light(0.15, 0.65)
+    arranger.light()
 
 
 def run(arranger: Arranger, wanted: list[str]) -> list[str]:
@@ -75,7 +75,7 @@ def above(arranger: Arranger, side: int, placed: list[tuple[Model, float]]) -> N
         return
     hang(arranger, side, min(s - m.size[0] / 2 for m, s in base), max(s + m.size[0] / 2 for m, s in base))
     space = arranger.space
-    if arranger.chance(0.5) or any(i.model.category == "microwave" for i in space.items):
+    if not arranger.wants("microwave") or any(i.model.category == "microwave" for i in space.items):
         return
     for model, s in base:
         if model.category == "kitchen_cabinet":

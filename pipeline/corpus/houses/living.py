@@ -12,18 +12,8 @@ from pipeline.corpus.houses.dining import furnish_dining_corner
 from pipeline.corpus.houses.records import Model
 from pipeline.corpus.houses.space import Side, Space, Spot, ahead, back_gap, box_of, on_side, shifted
 
-# Wall pieces tried in a living room: category -> chance. From the counts of some 650 filtered living rooms (11.2 objects a room).
-WALL_PIECES = {
-    "sideboard": 0.52,
-    "cabinet": 0.33,
-    "bookshelf": 0.27,
-    "wine_cabinet": 0.16,
-    "shelf": 0.08,
-    "wardrobe": 0.06,
-    "desk": 0.02,
-    "children_cabinet": 0.015,
-}
-SOFAS = {"multi_seat_sofa": 0.52, "loveseat_sofa": 0.22, "l_shaped_sofa": 0.26, "chaise_longue_sofa": 0.015, "lazy_sofa": 0.01}
+SIDE_TABLES = {"none": 0, "one": 1, "two": 2}
+CORNERS = frozenset({"plant", "floor_lamp", "round_end_table"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,33 +30,20 @@ def furnish_living(arranger: Arranger, *, dining: bool) -> None:
     lounge = place_lounge(arranger, aside=dining)
     if lounge is not None:
         seats(arranger, lounge)
-    if dining:
-        furnish_dining_corner(arranger, chance=0.99)
-    for category, share in WALL_PIECES.items():
-        if arranger.chance(share):
-            arranger.at_wall(category)
-    for category, share in (("plant", 0.13), ("floor_lamp", 0.06), ("round_end_table", 0.06)):
-        if arranger.chance(share):
-            arranger.in_corner(category)
-    lamps(arranger, lounge)
-
-
-def lamps(arranger: Arranger, lounge: Lounge | None) -> None:
-    """Hang a pendant or a ceiling lamp over the coffee table or the middle of the room."""
-    mark = arranger.rng.random()
-    if mark > 0.96:
-        return
-    category = "pendant_lamp" if mark < 0.72 else "ceiling_lamp"
-    spot = lounge.table[1] if lounge is not None and lounge.table is not None else None
-    if spot is None or not arranger.lamp(category, spot.x, spot.y, spot.yaw):
-        arranger.light(*((1.0, 0.0) if category == "pendant_lamp" else (0.0, 1.0)))
+    if dining and arranger.wants("dining"):
+        furnish_dining_corner(arranger)
+    for category in arranger.wanted("pieces"):
+        arranger.at_wall(category)
+    for category in arranger.wanted("extras"):
+        arranger.in_corner(category)
+    over = lounge.table[1] if lounge is not None and lounge.table is not None else None
+    arranger.light([] if over is None else [(over.x, over.y)])
 
 
 def place_lounge(arranger: Arranger, *, aside: bool) -> Lounge | None:
     """Choose sofa, TV wall and coffee table together: the best of many tries. `aside`: leave one end of the room to dining."""
-    _space, rng = arranger.space, arranger.rng
-    with_tv = arranger.chance(0.93)
-    category = str(rng.choice(list(SOFAS), p=np.array(list(SOFAS.values())) / sum(SOFAS.values())))
+    with_tv = arranger.wants("tv_stand")
+    category = arranger.choose("sofa")
     width, widest = 3.4, 2.7
     best: tuple[float, Model, Spot, Model | None, Spot | None] | None = None
     for _ in range(6):
@@ -156,7 +133,7 @@ def _set_lounge(arranger: Arranger, sofa: Model, spot: Spot, stand: Model | None
         reach = abs((tv.x - spot.x) * math.sin(spot.yaw) - (tv.y - spot.y) * math.cos(spot.yaw)) - d / 2 - stand.size[1] / 2
     placed = None
     deepest = reach - 0.85
-    for _ in range(4):
+    for _ in range(4 if arranger.wants("coffee_table") else 0):
         table = arranger.pick("coffee_table", width=max(0.9, sofa.size[0] * 0.75), depth=deepest)
         if table is None or placed is not None:
             break
@@ -176,7 +153,7 @@ def _set_lounge(arranger: Arranger, sofa: Model, spot: Spot, stand: Model | None
 def seats(arranger: Arranger, lounge: Lounge) -> None:
     """Put side tables beside the sofa; armchairs, lounge chairs and stools around the coffee table, facing it."""
     rng, space = arranger.rng, arranger.space
-    count = int(rng.choice([0, 1, 2], p=[0.08, 0.32, 0.60]))
+    count = SIDE_TABLES[arranger.choose("side_tables")]
     signs = [-1, 1] if count == 2 else [int(rng.choice([-1, 1]))] * count
     side_table = arranger.pick("corner_side_table")
     for sign in signs:
@@ -184,13 +161,9 @@ def seats(arranger: Arranger, lounge: Lounge) -> None:
             back = -(lounge.sofa.size[1] - side_table.size[1]) / 2 + float(abs(rng.normal(0, 0.05)))
             across = sign * (lounge.sofa.size[0] / 2 + side_table.size[0] / 2 + float(rng.uniform(0.02, 0.1)))
             space.try_add(side_table, shifted(lounge.spot, across, back))
-    wanted = [
-        c
-        for c, share in (("armchair", 0.40), ("armchair", 0.27), ("lounge_chair", 0.30), ("lounge_chair", 0.15), ("stool", 0.36))
-        if arranger.chance(share)
-    ]
-    if arranger.chance(0.012):
-        wanted += ["chinese_chair", "chinese_chair"]
+    wanted = arranger.wanted("seats")
+    if "chinese_chairs" in wanted:
+        wanted[wanted.index("chinese_chairs") :] = ["chinese_chair", "chinese_chair"]
     free = [-1, 1] if arranger.chance(0.5) else [1, -1]
     twin: dict[str, Model | None] = {}
     for category in wanted:
@@ -206,7 +179,7 @@ def _around(arranger: Arranger, lounge: Lounge, model: Model, free: list[int]) -
     reach = table[0].size[0] / 2 if table else 0.4
     ahead_by = (lounge.sofa.size[1] / 2 + 0.4 + (table[0].size[1] / 2 if table else 0.4)) + 0.1
     for sign in list(free):
-        oblique = float(rng.uniform(0.25, 0.7)) * (-sign) if arranger.chance(0.65) else 0.0
+        oblique = float(rng.uniform(0.25, 0.7)) * (-sign) if arranger.chance(arranger.rates["oblique_seat"]) else 0.0
         half = max(model.size[0], model.size[1]) / 2 if oblique else model.size[1] / 2
         across = sign * (reach + half + float(rng.uniform(0.35, 0.6)))
         place = shifted(lounge.spot, across, ahead_by + (0.1 if oblique else 0.0), -sign * math.pi / 2 + oblique)

@@ -1,36 +1,42 @@
-"""The defects of real scene files, at the rates counted on 12 of them ("3D-FRONT format", known defects).
+"""The defects of real scene files, at the rates counted on 12 of them (manifests/calibration/front.yaml, defects).
 
-What changes the furniture itself (`disturb`) is kept to some rooms, so that most stay clean; what only litters the file
-(`litter`) comes at the full rates.
+`disturb` changes the furniture itself, `litter` says what else a file holds, `in_centimetres` which models have the wrong unit.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from shapely.geometry import Point, Polygon
 
-from pipeline.corpus.houses.records import House, Item
+from pipeline import taxonomy
+from pipeline.corpus import reference
+from pipeline.corpus.houses.records import House, Item, Model
 from pipeline.corpus.houses.stock import Stock
+from pipeline.seeds import generator
 
-UNTIDY_ROOMS = 0.18
-"""Share of furnished rooms in which one to three pieces stand half outside or in each other."""
 REPLACED = 0.09
 """Share of furniture whose model was replaced by another, scaled to the old size (40 of 497 records)."""
-MIRRORED_L_SOFAS = 0.35
-MIRRORED = 0.003
-DANGLING = 0.93
-"""Dangling children per furniture child that resolves (448 of 930)."""
-INVALID = 0.05
-"""Records that are not valid, per valid one (16 to 288)."""
-DUPLICATES = 0.05
-"""Surplus furniture records per record (16 of 497)."""
+OUTWARDS = 0.23
+"""Share of what stands on the floor, beds apart, that is pushed through a wall, where one is near."""
+INTO = 0.25
+"""Share that is pushed into a neighbour, where one is near; chairs under tables overlap besides."""
+FAR = 0.25
+"""Share of the pushed pieces that end half outside, or half in their neighbour; the others by a few centimetres."""
 DOUBLE_CHILD = 0.002
-OTHER_ROOM = 0.7
-"""Houses with a pseudo-room without a floor (9 of 12)."""
 SHAFT_ROOM = 0.15
+MIRRORED, MIRRORED_L_SOFAS = 0.004, 0.2
+"""Share of valid furniture with a mirrored scale (2 of 288, both L-shaped sofas); the other mirrored children dangle."""
+NEAR = 0.8
+"""Nothing is pushed farther than this [m]."""
+IN_ORDER = frozenset({"double_bed", "nightstand"})
+"""What is never pushed: nightstands stand beside their beds within centimetres in the 12 scenes."""
+LOW = 1.0
+"""What starts higher hangs [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,22 +51,49 @@ class Litter:
     shaft_room: bool = False
 
 
-def litter(rng: np.random.Generator, items: int) -> Litter:
-    """Draw the litter of a file with that many pieces of furniture."""
-    dangling, invalid, duplicates, double = (int(rng.poisson(rate * items)) for rate in (DANGLING, INVALID, DUPLICATES, DOUBLE_CHILD))
-    return Litter(dangling, invalid, duplicates, double, bool(rng.random() < OTHER_ROOM), bool(rng.random() < SHAFT_ROOM))
+def litter(rng: np.random.Generator, house: House) -> Litter:
+    """Draw the litter of a house's file."""
+    known = reference.load().defects
+    children = len(house.items) + sum(o.kind not in {"open", "portal"} for o in house.plan.openings)
+    rates = {name: count / (of - count) for name, (count, of) in known.items()}
+    dangling, invalid, surplus = (int(rng.poisson(rates[name] * children)) for name in ("dangling", "invalid", "surplus"))
+    other = bool(rng.random() < rates["floorless"] * len(house.plan.rooms))
+    return Litter(dangling, invalid, surplus, int(rng.poisson(DOUBLE_CHILD * children)), other, bool(rng.random() < SHAFT_ROOM))
+
+
+def in_centimetres(seed: int, models: Sequence[Model]) -> frozenset[str]:
+    """Return the ids of the models whose files are in centimetres: at the release's rate, one at least."""
+    count, of = reference.load().defects["centimetres"]
+    number = max(1, round(count / of * len(models)))
+    chosen = generator(seed, "mess", "centimetres").choice(len(models), size=min(number, len(models)), replace=False)
+    return frozenset(models[int(k)].model_id for k in chosen)
 
 
 def disturb(rng: np.random.Generator, house: House, stock: Stock) -> House:
-    """Replace, mirror, push around some of the furniture."""
-    items = [_mirrored(rng, _replaced(rng, item, stock)) for item in house.items]
-    for number in range(len(house.plan.rooms)):
-        members = [k for k, i in enumerate(items) if i.room == number and i.position[2] < 1.0]
-        if len(members) < 2 or rng.random() >= UNTIDY_ROOMS:
+    """Replace, mirror, push around some of the furniture. What carries something keeps its model and moves with what it carries."""
+    carried: dict[int, list[int]] = {}
+    for k, item in enumerate(house.items):
+        carried.setdefault(item.support, []).append(k)
+    items = list(house.items)
+    floors = [Polygon(room.polygon) for room in house.plan.rooms]
+    pieces = [k for k, i in enumerate(items) if i.support < 0 and taxonomy.load().categories[i.model.category].layout]
+    for k in pieces:
+        if k not in carried:
+            items[k] = _mirrored(rng, _replaced(rng, items[k], stock))
+    standing = [k for k in pieces if items[k].position[2] < LOW]
+    for k in standing:
+        if items[k].model.category in IN_ORDER:
             continue
-        for k in rng.choice(members, size=min(len(members), int(rng.integers(1, 4))), replace=False):
-            push: Callable[[np.random.Generator, Item, list[Item]], Item] = _outwards if rng.random() < 0.5 else _into
-            items[int(k)] = push(rng, items[int(k)], [items[m] for m in members if m != k])
+        others = [items[m] for m in standing if m != k and items[m].room == items[k].room]
+        mark, old = rng.random(), items[k]
+        if mark < OUTWARDS:
+            items[k] = _outwards(rng, old, floors[old.room])
+        elif mark < OUTWARDS + INTO and others:
+            items[k] = _into(rng, old, others)
+        dx, dy = (items[k].position[axis] - old.position[axis] for axis in (0, 1))
+        for m in carried.get(k, ()):
+            x, y, z = items[m].position
+            items[m] = dataclasses.replace(items[m], position=(x + dx, y + dy, z))
     return dataclasses.replace(house, items=tuple(items))
 
 
@@ -77,7 +110,7 @@ def _replaced(rng: np.random.Generator, item: Item, stock: Stock) -> Item:
     if not similar:
         return item
     model = similar[int(rng.integers(len(similar)))]
-    # A piece that hangs or carries something keeps its height.
+    # A piece that hangs keeps its height.
     up = h / model.size[2]
     return dataclasses.replace(item, model=model, scale=(w / model.size[0], d / model.size[1], up))
 
@@ -89,17 +122,33 @@ def _mirrored(rng: np.random.Generator, item: Item) -> Item:
     return dataclasses.replace(item, scale=(-item.scale[0], item.scale[1], item.scale[2]))
 
 
-def _outwards(rng: np.random.Generator, item: Item, _: list[Item]) -> Item:
-    """Push a piece backwards, into or through the wall."""
-    by = float(rng.uniform(0.1, 0.6)) * item.size[1]
+def _outwards(rng: np.random.Generator, item: Item, floor: Polygon) -> Item:
+    """Push a piece through the wall that it is nearest to; one in the middle of the room stays."""
+    x0, y0, x1, y1 = item.rect()
     x, y, z = item.position
-    back = (-np.sin(item.yaw), np.cos(item.yaw))
-    return dataclasses.replace(item, position=(x + by * float(back[0]), y + by * float(back[1]), z))
+    middle = Point(x, y)
+    edge = floor.exterior.interpolate(floor.exterior.project(middle))
+    dx, dy = edge.x - x, edge.y - y
+    away = math.hypot(dx, dy)
+    half = (x1 - x0) / 2 if abs(dx) > abs(dy) else (y1 - y0) / 2
+    if away - half > NEAR or away < 1e-6:
+        return item
+    inside = float(rng.uniform(0.45, 0.8) if rng.random() < FAR else rng.uniform(0.82, 0.94))
+    by = (away - half + 2 * half * (1 - inside)) / away
+    return dataclasses.replace(item, position=(x + dx * by, y + dy * by, z))
 
 
 def _into(rng: np.random.Generator, item: Item, others: list[Item]) -> Item:
-    """Push a piece towards its nearest neighbour, until they overlap."""
+    """Push a piece towards its nearest neighbour, until they overlap; one without a near neighbour stays."""
     x, y, z = item.position
     near = min(others, key=lambda o: (o.position[0] - x) ** 2 + (o.position[1] - y) ** 2)
-    share = float(rng.uniform(0.3, 0.7))
-    return dataclasses.replace(item, position=(x + share * (near.position[0] - x), y + share * (near.position[1] - y), z))
+    a, b = item.rect(), near.rect()
+    share = float(rng.uniform(0.3, 0.6) if rng.random() < FAR else rng.uniform(0.04, 0.2))
+    moves = []
+    for low, high in ((0, 2), (1, 3)):
+        after, before = b[low] - a[high], a[low] - b[high]  # gaps towards larger and smaller coordinates
+        sign, gap = (1.0, after) if after > before else (-1.0, before)
+        moves.append(sign * max(0.0, gap + share * min(a[high] - a[low], b[high] - b[low])) if gap > -0.02 else 0.0)
+    if max(abs(m) for m in moves) > NEAR:
+        return item
+    return dataclasses.replace(item, position=(x + moves[0], y + moves[1], z))

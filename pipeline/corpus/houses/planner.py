@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,7 +11,7 @@ from pipeline.corpus.houses import draft, openings, outline, program
 from pipeline.entities.plan import Plan, Room
 from pipeline.errors import ContentError
 
-PROGRAMS = 20
+PROGRAMS, STRICT = 24, 16
 DRAFTS = 30
 SHAFT_SHARE = 0.33
 # Narrowest clear side by room type [m].
@@ -18,15 +19,24 @@ NARROWEST = {"Kitchen": 1.55, "Balcony": 0.9, "Bathroom": 1.38, "SecondBathroom"
 NARROWEST |= {"StorageRoom": 1.05, "CloakRoom": 1.4, "Hallway": 1.0, "Aisle": 1.0, "Corridor": 1.0, "Library": 2.1, "KidsRoom": 2.4}
 
 
-def make_plan(rng: np.random.Generator) -> Plan:
-    """Draw a plan: rooms `room_<i>` with 3D-FRONT types, polygons of inner faces, doors, windows and an entrance."""
-    for _ in range(PROGRAMS):
-        wanted = program.sample(rng)
+def make_plan(rng: np.random.Generator, furnished: Sequence[str]) -> Plan:
+    """Draw a plan: rooms `room_<i>` with 3D-FRONT types, polygons of inner faces, doors, windows and an entrance.
+
+    It has a room of every type in `furnished`; only where many programs fail at that, one may be missing.
+    """
+    for attempt in range(PROGRAMS):
+        wanted = program.sample(rng, furnished)
         for _ in range(DRAFTS):  # redrawn for one program, so that hard programs are not crowded out by easy ones
             plan = _attempt(rng, wanted)
-            if plan is not None:
+            if plan is not None and (attempt >= STRICT or not lacking(plan, furnished)):
                 return plan
     raise ContentError(f"no house plan after {PROGRAMS} programs", "choose another seed in params.yaml")
+
+
+def lacking(plan: Plan, furnished: Sequence[str]) -> Counter[str]:
+    """Return the types of which the plan has too few rooms; any corridor serves as a hall."""
+    wanted = Counter("Hallway" if t in openings.CORRIDORS else t for t in furnished)
+    return wanted - Counter("Hallway" if r.type in openings.CORRIDORS else r.type for r in plan.rooms)
 
 
 def _attempt(rng: np.random.Generator, wanted: program.Program) -> Plan | None:
@@ -57,15 +67,16 @@ def _attempt(rng: np.random.Generator, wanted: program.Program) -> Plan | None:
 
 def _usable(loop: Sequence[tuple[int, int]], room_type: str) -> bool:
     """Whether no edge is a sliver and the room is neither too narrow nor far from its type's usual area."""
-    points = np.array(loop, float)
-    steps = np.abs(points - np.roll(points, 1, axis=0)).sum(axis=1)
-    if steps.min() < 25:
+    xs, ys = [x for x, _ in loop], [y for _, y in loop]
+    steps = [abs(x - px) + abs(y - py) for (x, y), (px, py) in zip(loop, [loop[-1], *loop[:-1]], strict=True)]
+    if min(steps) < 25:
         return False
-    clear = (points.max(axis=0) - points.min(axis=0)).min() / 100 - 0.12
+    clear = min(max(xs) - min(xs), max(ys) - min(ys)) / 100 - 0.12
     if clear < NARROWEST.get(room_type, 2.6):
         return False
-    x, y = outline.inset(loop).T
-    size = 0.5 * abs(float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))
+    # Between the faces: the loop's area less a strip of INSET along its edges, its corners counted once (4 more outer than inner ones).
+    twice = sum(px * y - x * py for (x, y), (px, py) in zip(loop, [loop[-1], *loop[:-1]], strict=True))
+    size = (abs(twice) / 2 - outline.INSET * sum(steps) + 4 * outline.INSET**2) / 1e4
     if room_type in program.AREAS:
         _, _, least, most = program.AREAS[room_type]
         return 0.82 * least <= size <= 1.15 * most

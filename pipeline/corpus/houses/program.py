@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,9 +15,9 @@ AREAS: dict[str, tuple[float, float, float, float]] = {
     "ElderlyRoom": (12.0, 1.5, 10.0, 15.0),
     "KidsRoom": (10.6, 1.6, 8.5, 14.0),
     "Library": (9.4, 1.3, 7.6, 12.5),
-    "LivingDiningRoom": (31.0, 6.5, 19.0, 52.0),
-    "LivingRoom": (18.0, 3.2, 14.0, 25.0),
-    "DiningRoom": (14.5, 2.6, 10.5, 22.0),
+    "LivingDiningRoom": (33.5, 7.0, 19.0, 56.0),
+    "LivingRoom": (17.0, 2.6, 13.5, 24.0),
+    "DiningRoom": (17.5, 2.6, 12.0, 23.0),
     "Kitchen": (6.6, 1.3, 4.6, 9.5),
     "Bathroom": (4.9, 0.9, 3.6, 7.5),
     "SecondBathroom": (4.3, 0.7, 3.4, 6.0),
@@ -25,6 +26,10 @@ AREAS: dict[str, tuple[float, float, float, float]] = {
     "StorageRoom": (2.9, 0.5, 2.2, 4.0),
     "LaundryRoom": (3.6, 0.6, 2.6, 5.0),
 }
+
+
+BEDROOMS = ("MasterBedroom", "SecondBedroom", "Bedroom", "ElderlyRoom", "KidsRoom")
+PRIVATE = (*BEDROOMS, "Library")
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,32 +57,37 @@ def area(rng: np.random.Generator, room_type: str) -> float:
     return float(np.clip(rng.normal(mean, spread), least, most))
 
 
-def sample(rng: np.random.Generator) -> Program:
-    """Draw a program. Shares of room types follow the furnished rooms of the 2022 release."""
-    count = int(rng.choice([1, 2, 3, 4], p=[0.12, 0.30, 0.38, 0.20]))
-    first = "MasterBedroom" if count > 1 and rng.random() < 0.92 else "Bedroom"
-    others = [
-        str(rng.choice(["SecondBedroom", "Bedroom", "KidsRoom", "ElderlyRoom"], p=[0.46, 0.26, 0.22, 0.06])) for _ in range(count - 1)
-    ]
-    if rng.random() < 0.36:
-        others.append("Library")
-    together = rng.random() < 0.70
+def sample(rng: np.random.Generator, furnished: Sequence[str]) -> Program:
+    """Draw a program that has the rooms of these types, and what else an apartment cannot do without, or may have."""
+    others = [t for t in furnished if t in PRIVATE]
+    if not any(t in BEDROOMS for t in others):
+        others.insert(0, "MasterBedroom" if rng.random() < 0.6 else "Bedroom")
+    if len(others) < 3 and rng.random() < 0.35:
+        others.append(str(rng.choice(["SecondBedroom", "Bedroom", "Library"], p=[0.5, 0.3, 0.2])))
+    others.sort(key=lambda t: t != "MasterBedroom")
+    if "LivingDiningRoom" in furnished:
+        together = True
+    else:
+        together = "DiningRoom" not in furnished and "LivingRoom" not in furnished and rng.random() < 0.7
     wet = ["Kitchen", "Bathroom"]
-    if count >= 3 and rng.random() < 0.35:
+    if len(others) >= 3 and rng.random() < 0.35:
         wet.append("SecondBathroom")
     suite = None
-    if first == "MasterBedroom" and rng.random() < 0.50:
-        suite = "MasterBathroom" if rng.random() < 0.75 else "CloakRoom"
+    if others[0] == "MasterBedroom":
+        suite = "CloakRoom" if "CloakRoom" in furnished else "MasterBathroom" if rng.random() < 0.38 else None
+        suite = "CloakRoom" if suite is None and rng.random() < 0.1 else suite
+    dining = "DiningRoom" in furnished or (not together and rng.random() < 0.25)
+    hall = bool({"Hallway", "Aisle", "Corridor"} & set(furnished))
     return Program(
         living=_wish(rng, "LivingDiningRoom" if together else "LivingRoom"),
-        dining=None if together else _wish(rng, "DiningRoom"),
-        bedrooms=tuple(_wish(rng, t) for t in [first, *others]),
+        dining=_wish(rng, "DiningRoom") if dining else None,
+        bedrooms=tuple(_wish(rng, t) for t in others),
         wet=tuple(_wish(rng, t) for t in wet),
         suite=None if suite is None else _wish(rng, suite),
-        storage=_wish(rng, "StorageRoom") if rng.random() < 0.24 else None,
+        storage=_wish(rng, "StorageRoom") if "StorageRoom" in furnished or rng.random() < 0.24 else None,
         laundry=_wish(rng, "LaundryRoom") if rng.random() < 0.20 else None,
         merged_corridor=together and bool(rng.random() < 0.55),
-        hall=bool(rng.random() < 0.40),
+        hall=hall or bool(rng.random() < 0.40),
         balconies=int(rng.choice([0, 1, 2], p=[0.28, 0.55, 0.17])),
     )
 

@@ -44,7 +44,8 @@ class Model(Protocol):
 class Item:
     """A placed model. `room` indexes the plan's rooms (-1: none); `position` is its bottom centre [m, world]; yaw in (-pi, pi].
 
-    `scale` multiplies the model's own (w, d, h); a negative first factor mirrors it.
+    `scale` multiplies the model's own (w, d, h); a negative first factor mirrors it. `support` is the index, among the house's
+    items, of what it stands on or in; -1: floor, wall or ceiling.
     """
 
     model: Model
@@ -52,6 +53,7 @@ class Item:
     position: tuple[float, float, float]
     yaw: float
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    support: int = -1
 
     @property
     def size(self) -> tuple[float, float, float]:

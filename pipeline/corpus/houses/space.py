@@ -113,6 +113,7 @@ class Space:
         self.solids: list[tuple[Rect, float, float]] = [(r, -FAR, FAR) for r in outside_rects(self.polygon)]
         self.keeps: list[Rect] = []
         self.sweeps: list[Rect] = []
+        self.gaps: list[tuple[Rect, float]] = []
         self.panes: list[tuple[Rect, float]] = []
         self.doors: list[tuple[float, float]] = []
         self.items: list[Item] = []
@@ -129,6 +130,7 @@ class Space:
         if opening.kind == "window":
             self.panes.append((side.strip(low, high, 0.0, 0.65), max(opening.sill, LOW_PIECE)))
             return
+        self.gaps.append((side.strip(low - 0.08, high + 0.08, 0.0, 0.15), opening.height))
         swings_here = opening.swing is not None and opening.swing.room_id == room_id
         narrow = min(self.bounds[2] - self.bounds[0], self.bounds[3] - self.bounds[1]) < NARROW
         step = 0.35 if narrow and opening.width > 1.0 else STEP
@@ -137,13 +139,18 @@ class Space:
             self.sweeps.append(self.keeps[-1])
         self.doors.append(side.point((low + high) / 2, 0.36))
 
-    def fits(self, box: Rect, low: float, high: float) -> bool:
-        """Whether a box is inside the room and clear of everything that stands or must stay free."""
-        if any(meets(box, r) and low < z1 - EPSILON and z0 < high - EPSILON for r, z0, z1 in self.solids):
+    def fits(self, box: Rect, low: float, high: float, under: Rect | None = None) -> bool:
+        """Whether a box is inside the room and clear of everything that stands or must stay free.
+
+        `under` is the rectangle of a table that the box may reach below.
+        """
+        if any(meets(box, r) and low < z1 - EPSILON and z0 < high - EPSILON and r is not under for r, z0, z1 in self.solids):
             return False
         if low < LOW and any(meets(box, r) for r in self.keeps):
             return False
         if low < LEAF_TOP and any(meets(box, r) for r in self.sweeps):
+            return False
+        if any(low < top and meets(box, r) for r, top in self.gaps):  # nothing hangs in a doorway
             return False
         return self.blind or not any(high > sill + 0.05 and meets(box, r) for r, sill in self.panes)
 
@@ -160,6 +167,7 @@ class Space:
         if low < LOW:
             blocked += [side.along(r) for r, z0, _ in self.solids if z0 < LOW and meets(whole, r)]
             blocked += [side.along(r) for r in self.keeps if meets(body, r)]
+        blocked += [side.along(r) for r, top in self.gaps if low < top and meets(body, r)]
         if not self.blind:
             blocked += [side.along(r) for r, sill in self.panes if high > sill + 0.05 and meets(body, r)]
         found, at = [], 0.0
@@ -179,10 +187,10 @@ class Space:
         self.keeps.extend(keep)
         return item
 
-    def try_add(self, model: Model, spot: Spot, z: float = 0.0, *, keep: Sequence[Rect] = ()) -> bool:
-        """Put a piece down if it fits there and its free rectangles are free."""
+    def try_add(self, model: Model, spot: Spot, z: float = 0.0, *, keep: Sequence[Rect] = (), under: Rect | None = None) -> bool:
+        """Put a piece down if it fits there and its free rectangles are free; a chair may reach under its table."""
         w, d, h = model.size
-        if not self.fits(box_of(spot.x, spot.y, spot.yaw, w, d), z, z + h) or not all(self.clear(r) for r in keep):
+        if not self.fits(box_of(spot.x, spot.y, spot.yaw, w, d), z, z + h, under) or not all(self.clear(r) for r in keep):
             return False
         self.add(model, spot, z, keep=keep)
         return True

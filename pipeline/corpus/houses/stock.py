@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeline.corpus.houses.records import Model
 
@@ -14,10 +16,26 @@ STYLE_WEIGHT = 3.0
 """How much likelier a model in the house's own style is taken than another."""
 
 
-class Stock:
-    """Models by category, in the catalogue's order."""
+class Surfaces(Protocol):
+    """A model's geometry as far as things lie on it, object frame [m].
 
-    def __init__(self, models: Sequence[Model]) -> None:
+    `boxes` (n, 2, 3) are the bounds of its solids, `tops` (m, 5) level rectangles (x0, y0, x1, y1, z).
+    """
+
+    @property
+    def boxes(self) -> NDArray[np.float64]:
+        """Bounds of the solids (n, 2, 3)."""
+
+    @property
+    def tops(self) -> NDArray[np.float64]:
+        """Level rectangles (m, 5)."""
+
+
+class Stock:
+    """Models by category, in the catalogue's order; `surfaces` tells where things can lie on a model (by default nowhere)."""
+
+    def __init__(self, models: Sequence[Model], surfaces: Callable[..., Surfaces | None] = lambda _: None) -> None:
+        self.surfaces = surfaces
         self.by_category: dict[str, list[Model]] = defaultdict(list)
         for model in models:
             self.by_category[model.category].append(model)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeline import taxonomy
+from pipeline.corpus.furniture import sizes
 from pipeline.corpus.houses.house import make_house
 from pipeline.corpus.houses.records import House
 from pipeline.corpus.houses.stock import Stock
@@ -35,6 +36,22 @@ class Box:
     future_name: str
 
 
+@dataclass(frozen=True)
+class Faces:
+    boxes: np.ndarray
+    tops: np.ndarray
+
+
+def faces(model: Box) -> Faces:
+    """A board on top, and in shelves one in the middle between two sides."""
+    w, d, h = model.size
+    boards = [(h - 0.02, h)] + ([(h / 2 - 0.02, h / 2)] if model.category in {"bookshelf", "shelf"} else [])
+    boxes = [[[-w / 2, -d / 2, low], [w / 2, d / 2, high]] for low, high in boards]
+    boxes += [[[s * w / 2 - 0.02 * (s > 0), -d / 2, 0.0], [s * w / 2 + 0.02 * (s < 0), d / 2, h]] for s in (-1, 1)]
+    tops = [[-w / 2 + 0.02, -d / 2, w / 2 - 0.02, d / 2, high] for _, high in boards]
+    return Faces(np.array(boxes), np.array(tops))
+
+
 @functools.cache
 def stock() -> Stock:
     rng = np.random.default_rng(3)
@@ -42,12 +59,12 @@ def stock() -> Stock:
     for category in taxonomy.load().categories.values():
         for k in range(4):
             stretch = rng.uniform(0.9, 1.1, 2)
-            w, d, h = category.size or SIZES[category.name]
+            w, d, h = SIZES.get(category.name) or sizes.load()[category.name].mean.tolist()
             if category.super == "kitchen":  # units come in widths
                 w = (0.4, 0.6, 0.8, 0.9)[k]
             size = (round(w * float(stretch[0]), 3), round(d * float(stretch[1]), 3), h)
             models.append(Box(f"{category.name}-{k}", category.name, size, ("Modern", "Nordic")[k % 2], category.super, category.future[0]))
-    return Stock(models)
+    return Stock(models, faces)
 
 
 @functools.cache

@@ -8,12 +8,17 @@ import pytest
 from sample_houses import house, houses, stock
 from shapely.geometry import LineString, Point, Polygon
 
+from pipeline import taxonomy
 from pipeline.corpus.houses import walkable
 from pipeline.corpus.houses.house import make_house
 from pipeline.corpus.houses.space import Space
 
 HOUSES = houses(24)
 CHAIRS = {"dining_chair", "chinese_chair"}
+
+
+def small(item):
+    return not taxonomy.load().categories[item.model.category].layout
 
 
 def solid(item):
@@ -48,8 +53,15 @@ def test_nothing_overlaps_and_everything_is_inside_its_room(home):
             for other in items[n + 1 :]:
                 low = max(item.position[2], other.position[2])
                 high = min(item.position[2] + item.size[2], other.position[2] + other.size[2])
-                if high - low > 1e-3:
-                    assert solid(item).intersection(solid(other)).area < 2e-3, (item.model.category, other.model.category)
+                if high - low <= 1e-3 or small(item) or small(other):
+                    continue
+                shared = solid(item).intersection(solid(other)).area
+                tucked = {item.model.category, other.model.category} & CHAIRS and "dining_table" in {
+                    item.model.category,
+                    other.model.category,
+                }
+                most = 0.4 * min(solid(item).area, solid(other).area) if tucked else 2e-3  # a chair reaches under its table
+                assert shared < most, (item.model.category, other.model.category)
 
 
 @pytest.mark.parametrize("home", HOUSES)
@@ -114,6 +126,8 @@ def test_coffee_tables_stand_in_front_of_sofas():
     seen = 0
     for _, items in in_rooms("coffee_table"):
         sofas = [i for i in items if i.model.category.endswith("_sofa")]
+        if not sofas:
+            continue  # a bedroom's
         table = next(i for i in items if i.model.category == "coffee_table")
         gaps = [(local(s, table)[1] - s.size[1] / 2 - table.size[1] / 2, abs(local(s, table)[0])) for s in sofas]
         assert any(0.2 < gap < 0.6 and aside < 0.3 for gap, aside in gaps)

@@ -6,10 +6,11 @@ from sample_houses import houses
 from shapely.geometry import LineString, Point, Polygon
 
 from pipeline.corpus.houses import program
+from pipeline.corpus.houses.agenda import agenda
 from pipeline.corpus.houses.planner import make_plan
 from pipeline.seeds import generator
 
-PLANS = [make_plan(generator(1, "test-plan", k)) for k in range(40)]
+PLANS = [make_plan(generator(1, "test-plan", k), agenda(1, k).rooms) for k in range(40)]
 
 
 @pytest.mark.parametrize("plan", PLANS)
