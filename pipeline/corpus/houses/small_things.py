@@ -12,10 +12,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from pipeline.corpus.houses import walkable
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.rates import load as load_rates
 from pipeline.corpus.houses.records import Item, Model, Rect, wrap
-from pipeline.corpus.houses.space import Side, Spot, against, box_of, meets
+from pipeline.corpus.houses.space import Side, against, box_of, meets
 from pipeline.corpus.houses.stock import Surfaces
 from pipeline.entities.plan import Opening
 
@@ -35,14 +36,14 @@ def add_small_things(arranger: Arranger, openings: Sequence[Opening], kind: str)
     items, rates = arranger.space.items, load_rates()["things"]
     if not items:
         return
+    for category, expected in rates["floor"].get(kind, {}).items():
+        for _ in range(drawn(arranger.rng, expected)):
+            _on_floor(arranger, category)
     lay_rug(arranger, rates["rug"].get(kind, 0.0))
     hang_curtains(arranger, rates["curtain"].get(kind, 0.0), openings)
     for category, share in rates["wall"].get(kind, {}).items():
         if arranger.chance(share):
             arranger.on_wall(category, HUNG_AT)
-    for category, expected in rates["floor"].get(kind, {}).items():
-        for _ in range(drawn(arranger.rng, expected)):
-            _on_floor(arranger, category)
     for index in range(len(items)):
         wanted = rates["furniture"].get(items[index].model.category)
         if wanted:
@@ -191,6 +192,9 @@ def _on_floor(arranger: Arranger, category: str) -> None:
     model = arranger.pick(category)
     if model is None:
         return
-    spot: Spot | None = against(arranger.rng, arranger.space, model, front=0.0, corner=0.8)
-    if spot is not None:
-        arranger.space.try_add(model, spot)
+    space = arranger.space
+    spot = against(arranger.rng, space, model, front=0.0, corner=0.8)
+    cut_off = walkable.problems(space)[0]
+    if spot is not None and space.try_add(model, spot) and walkable.problems(space)[0] > cut_off:
+        space.items.pop()
+        space.solids.pop()
