@@ -9,7 +9,6 @@ import json
 import multiprocessing
 import os
 import shutil
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import partial
@@ -17,21 +16,15 @@ from pathlib import Path
 from typing import Any
 
 from pipeline import params
-from pipeline.corpus import reference
-from pipeline.corpus.calibration import figures
-from pipeline.corpus.calibration.tally import HouseTally, tally
-from pipeline.corpus.front_writer import DIALECTS, scene_json
+from pipeline.corpus.calibration import figures, output
+from pipeline.corpus.calibration.tally import HouseTally
 from pipeline.corpus.furniture.catalogue import Model, catalogue
-from pipeline.corpus.furniture.surfaces import surfaces_of
 from pipeline.corpus.future_writer import info, write_model
+from pipeline.corpus.house_files import write_houses
 from pipeline.corpus.houses import mess
-from pipeline.corpus.houses.house import make_house
-from pipeline.corpus.houses.stock import Stock
 from pipeline.corpus.partnet_writer import write_partnet
 from pipeline.corpus.settings import CorpusSettings
 from pipeline.execution import track
-from pipeline.manifest import write_bytes, write_json
-from pipeline.seeds import generator
 from stages import runner
 
 RAW = Path("data/raw")
@@ -46,11 +39,7 @@ def main(root: Path) -> None:
     tree = params.read(root / "params.yaml")
     settings = params.section(CorpusSettings, tree, "corpus")
     found = make(root / RAW, params.convert(int, tree.get("seed"), "seed"), settings, workers=os.cpu_count() or 1)
-    write_json(root / "metrics" / "calibration.json", found)
-    rows = [f"{kind}: {c},{v['ours']},{v['reference']}" for kind, shares in found["frequencies"].items() for c, v in shares.items()]
-    write_bytes(root / "plots" / "classes.csv", "\n".join(["class,ours,reference", *rows, ""]).encode())
-    held = [line["ok"] for _, _, line in figures.table(found)]
-    sys.stdout.write(f"calibration: {sum(held)} of {len(held)} figures as in 3D-FRONT (metrics/calibration.json)\n")
+    output.write(root, found)
 
 
 def make(target: Path, seed: int, settings: CorpusSettings, workers: int) -> dict[str, Any]:
@@ -96,7 +85,7 @@ def tasks(folder: Path, seed: int, settings: CorpusSettings) -> Iterator[tuple[i
         yield len(part), partial(_partnet, part, folder / "partnet")
     for start in range(0, settings.houses, BATCH):
         indices = range(start, min(start + BATCH, settings.houses))
-        yield len(indices), partial(write_houses, front / "3D-FRONT", seed, settings, indices)
+        yield len(indices), partial(_houses, front / "3D-FRONT", seed, settings, indices)
 
 
 def completed(jobs: Sequence[Task], workers: int) -> Iterator[Done]:
@@ -114,22 +103,8 @@ def completed(jobs: Sequence[Task], workers: int) -> Iterator[Done]:
             pool.shutdown(cancel_futures=True)
 
 
-def write_houses(folder: Path, seed: int, settings: CorpusSettings, indices: range) -> Done:
-    """Write the houses of these indices, one scene file each, the two dialects in their observed shares."""
-    stock = Stock(catalogue(seed, settings.models).future, surfaces_of)
-    tallies = []
-    for index in indices:
-        house = make_house(seed, index, stock)
-        rng = generator(seed, "front", index)
-        dialect = DIALECTS[int(rng.random() >= 5 / 12)]
-        litter = mess.Litter()
-        if settings.mess:
-            house = mess.disturb(rng, house, stock)
-            litter = mess.litter(rng, house)
-        scene = scene_json(house, dialect, rng, litter)
-        (folder / f"{house.uid}.json").write_text(json.dumps(scene, separators=(",", ":")), encoding="utf-8")
-        tallies.append(tally(house, scene, reference.load()))
-    return len(indices), tallies
+def _houses(folder: Path, seed: int, settings: CorpusSettings, indices: range) -> Done:
+    return len(indices), write_houses(folder, seed, settings, indices)
 
 
 def _future(models: Sequence[Model], folder: Path, centimetres: frozenset[str]) -> Done:
