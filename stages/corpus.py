@@ -60,24 +60,20 @@ def make(target: Path, seed: int, settings: CorpusSettings, workers: int) -> dic
     making.replace(target)
     shutil.rmtree(old, ignore_errors=True)
     models = catalogue(seed, settings.models).future
-    return figures.calibration(tallies, models, len(models), len(wrong_unit(seed, settings)))
-
-
-def wrong_unit(seed: int, settings: CorpusSettings) -> frozenset[str]:
-    """Return the ids of the models whose files are in centimetres."""
-    return mess.in_centimetres(seed, catalogue(seed, settings.models).future) if settings.mess else frozenset()
+    return figures.calibration(tallies, models, len(mess.in_centimetres(seed, models) if settings.mess else ()))
 
 
 def tasks(folder: Path, seed: int, settings: CorpusSettings) -> Iterator[tuple[int, Task]]:
     """Cut the work into batches that depend on nothing but their arguments; yields (number of things, task)."""
     models = catalogue(seed, settings.models)
+    centimetres = mess.in_centimetres(seed, models.future) if settings.mess else frozenset()
     front = folder / "3d-front"
     for name in ("3D-FRONT", "3D-FUTURE-model"):
         (front / name).mkdir(parents=True)
     (folder / "partnet").mkdir()
     for start in range(0, len(models.future), BATCH):
         part = models.future[start : start + BATCH]
-        yield len(part), partial(_future, part, front / "3D-FUTURE-model", wrong_unit(seed, settings))
+        yield len(part), partial(_future, part, front / "3D-FUTURE-model", centimetres)
     records = [info(model) for model in models.future]
     (front / "3D-FUTURE-model" / "model_info.json").write_text(json.dumps(records, indent=1) + "\n", encoding="utf-8")
     for start in range(0, len(models.partnet), BATCH):

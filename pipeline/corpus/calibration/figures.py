@@ -28,8 +28,8 @@ def line(ours: float, reference: float, low: float, high: float, n: int, basis: 
     return {k: round(float(v), 4) for k, v in figures.items()} | {"n": n, "basis": basis, "ok": bool(low <= ours <= high)}
 
 
-def calibration(houses: Sequence[HouseTally], models: Iterable[Model], metres: int, centimetres: int) -> dict[str, Any]:
-    """Return the whole table by group and name. `metres` and `centimetres`: how many models are written in either unit."""
+def calibration(houses: Sequence[HouseTally], models: Sequence[Model], centimetres: int) -> dict[str, Any]:
+    """Return the whole table by group and name; of the models, so many are written in `centimetres`."""
     reference = known.load()
     rooms = [room for house in houses for room in house.rooms]
     groups: dict[str, Any] = {"houses": len(houses), "rooms": len(rooms), "frequencies": {}, "histograms": {}}
@@ -46,7 +46,7 @@ def calibration(houses: Sequence[HouseTally], models: Iterable[Model], metres: i
     groups["shares"] = _shares(houses, rooms, reference)
     groups["relations"] = _relations(houses, reference)
     groups["sizes"] = _sizes(models)
-    groups["defects"] = _defects(houses, reference, metres, centimetres)
+    groups["defects"] = _defects(houses, reference, len(models), centimetres)
     return groups
 
 
@@ -176,10 +176,10 @@ def _sizes(models: Iterable[Model]) -> dict[str, Line]:
     return made
 
 
-def _defects(houses: Sequence[HouseTally], reference: Reference, metres: int, centimetres: int) -> dict[str, Line]:
+def _defects(houses: Sequence[HouseTally], reference: Reference, models: int, centimetres: int) -> dict[str, Line]:
     made = {name: _share(houses, name, *counts) for name, counts in reference.defects.items() if name != "centimetres"}
     count, of = reference.defects["centimetres"]
-    total = max(1, metres + centimetres)
+    total = max(1, models)
     # One model is the least that can be in centimetres: of few models it is more than the observed share.
     high = max(known.bootstrap_share(count, of)[1], 1.5 / total)
     made["centimetres"] = line(centimetres / total, count / of, 0.0, high, total, "release, bootstrap; at least one model")
