@@ -111,6 +111,21 @@ def plan(
 
 
 @app.command()
+def peers(
+    out: Annotated[Path, typer.Option(help="New or empty folder for the rooms.", show_default=False)],
+    filtered: Annotated[bool, typer.Option("--filtered", help="Only rooms that pass the peers' own filters.")] = False,
+) -> None:
+    """Write the training tables as ATISS and DiffuScene cache them: boxes.npz, dataset_stats.txt, splits.
+
+    \b
+    Example:
+      sfgen peers --out peers/ --filtered
+    """
+    root = factory_root()
+    stage("peers").main(root, out=out, filtered=filtered)
+
+
+@app.command()
 def verify(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a dataset.", show_default=False)],
     quick: Annotated[bool, typer.Option("--quick", help="Leave out opening every stage with USD.")] = False,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +18,11 @@ from pipeline.errors import ContentError
 from pipeline.sources import batch, inventory
 from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
 from pipeline.sources.front_hints import hints
+from pipeline.sources.front_house import HouseRows
 from pipeline.sources.guarded import Folder
 from pipeline.sources.household import named_categories
 from pipeline.sources.mirrored import add_mirrored
+from pipeline.sources.peers_reader import PeersTask, kinds_of, peers_houses, read_peers
 from pipeline.sources.recognition import front_at, partnet_at
 from pipeline.sources.settings import PreprocessSettings
 from pipeline.sources.sink import write_houses, write_library
@@ -31,36 +33,47 @@ def main(root: Path) -> None:
     """Read the sources that section `preprocess` of params.yaml names."""
     settings = params.section(PreprocessSettings, params.read(root / "params.yaml"), "preprocess")
     workers = settings.workers or cores()
-    front = folder(root, "front", settings.front, (batch.HOUSES, batch.MODELS))
+    front = folder(root, "front", settings.front, () if settings.peers else (batch.HOUSES, batch.MODELS))
     partnet = folder(root, "partnet", settings.partnet, ()) if settings.partnet else None
     library = read_library(root, front, partnet, settings, workers)
-    houses = batch.house_files(front)
-    task = HouseTask(front, library.models, settings.filters, settings.front_licence)
+    step, task, houses = homes(root, front, library, settings)
     out = root / "data" / "tables"
-    read = progress(batch.each(batch.read_front, task, houses, workers), "houses", len(houses))
-    summary = write_houses(out, read, library, front)
+    read = progress(batch.each(step, task, houses, workers), "houses", len(houses))
+    summary = write_houses(out, read, library, root / settings.peers if settings.peers else front)
     library.assets += add_mirrored(root / "data" / "assets", library.assets, summary.assets)
     write_library(out, library, summary)
     sys.stdout.writelines(f"{line}\n" for line in summary.lines())
+
+
+def homes(
+    root: Path, front: Path, library: LibraryRows, settings: PreprocessSettings
+) -> tuple[Callable[[Any, Any], HouseRows], Any, Sequence[Any]]:
+    """Return how a house is read, what each of them needs, and the houses: 3D-FRONT files, or the peers' cached rooms."""
+    if settings.peers:
+        source = folder(root, "peers", settings.peers, ())
+        kinds = kinds_of(source)
+        return read_peers, PeersTask(source, kinds, library.models, settings.filters, settings.front_licence), peers_houses(source, kinds)
+    return batch.read_front, HouseTask(front, library.models, settings.filters, settings.front_licence), batch.house_files(front)
 
 
 def read_library(root: Path, front: Path, partnet: Path | None, settings: PreprocessSettings, workers: int) -> LibraryRows:
     """Read all models, write their assets, and remove assets of earlier runs."""
     out, cache = root / "data" / "assets", root / ".cache" / "coacd"
     library = LibraryRows()
-    houses = batch.house_files(front)
+    houses = [] if settings.peers else batch.house_files(front)
     said = hints(progress(batch.each(batch.house_records, front, houses, workers), "records", len(houses)), taxonomy.load())
-    infos, library.rejects = batch.future_models(front, said)
-    task = LibraryTask(front, out, settings.models, settings.front_licence, cache, said)
-    for made in progress(batch.each(batch.read_future, task, infos, workers), "models", len(infos)):
-        library.add(made)
+    if (front / batch.MODELS).is_dir():  # `folder` has seen to it, but for the peers' rooms, which can do without
+        infos, library.rejects = batch.future_models(front, said)
+        task = LibraryTask(front, out, settings.models, settings.front_licence, cache, said)
+        for made in progress(batch.each(batch.read_future, task, infos, workers), "models", len(infos)):
+            library.add(made)
     if partnet:
         names = batch.partnet_objects(partnet)
         categories = named_categories(Folder.at(partnet))
         task = LibraryTask(partnet, out, settings.models, settings.partnet_licence, cache, categories=categories)
         for made in progress(batch.each(batch.read_partnet, task, names, workers), "articulated", len(names)):
             library.add(made)
-    if not library.assets:
+    if not library.assets and not settings.peers:
         raise ContentError(f"{front} gives no usable model", "check the folders in section preprocess of params.yaml")
     kept = {row["file"] for row in library.assets}
     for path in out.glob("*.safetensors"):
@@ -76,7 +89,7 @@ def folder(root: Path, key: str, path: str, parts: Iterable[str]) -> Path:
         if not part.is_dir():
             remedy = "name the folder of the data with `sfgen doctor --use PATH`, or make the embedded corpus with `dvc repro corpus`"
             raise ContentError(f"preprocess.{key}: {part} is {'no folder' if part.exists() else 'missing'}", remedy)
-    if not found.resolve().is_relative_to((root / "data" / "raw").resolve()):  # what stage corpus made is DVC's to watch
+    if key != "peers" and not found.resolve().is_relative_to((root / "data" / "raw").resolve()):  # what stage corpus made is DVC's to watch
         inventory.require_match(root / inventory.FOLDER / f"{key}.csv", front_at(found) if key == "front" else partnet_at(found))
     return found
 

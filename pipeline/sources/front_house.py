@@ -64,6 +64,11 @@ def house_rows(house: HouseFile, models: Mapping[str, Model], taxonomy: Taxonomy
     if not any(room.objects for room in rooms):
         rows.rejects.append(reject("house", house.uid, "no_objects"))
         return rows
+    return rows_of(house, rooms, rows, taxonomy, limits, licence)
+
+
+def rows_of(house: HouseFile, rooms: list[ReadRoom], rows: HouseRows, taxonomy: Taxonomy, limits: FrontFilters, licence: str) -> HouseRows:
+    """Complete the rows of a house whose rooms and objects are known; its meshes and built-in furniture give the openings."""
     scene_id = slug("h", house.uid)
     openings, walls = openings_of(house, rooms, limits, rows.rejects)
     rows.rooms = [room_row(scene_id, house.uid, room, taxonomy) for room in rooms]

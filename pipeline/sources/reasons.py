@@ -49,7 +49,9 @@ REASONS: dict[str, Reason] = {
     ),
     "unknown_name": Reason("model", "repaired", "a style or material that the taxonomy does not list; left empty"),
     "missing_model": Reason("object", "dropped", "its model is not among the assets (missing, or rejected itself)"),
-    "size_from_bbox": Reason("object", "repaired", "its model is missing; size from the record's box (`keep_without_model`)"),
+    "size_from_bbox": Reason(
+        "object, room", "repaired", "no model; size from the declared box (`keep_without_model`, or the peers' rooms)"
+    ),
     "bad_scale": Reason("object", "dropped", "a component of scale is about 0 or above `max_scale`"),
     "bad_size": Reason("object, model", "dropped", "the box is flat, or larger than any furniture"),
     "tilted": Reason("object", "dropped", "turned about another axis than the vertical, or upside down"),
@@ -77,6 +79,12 @@ REASONS: dict[str, Reason] = {
     "missing_mesh": Reason("model", "repaired", "a mesh file that the URDF names is missing; the rest is used"),
     "no_metric_fit": Reason("model", "dropped", "no scale makes it fit the sizes of a category that it may serve as"),
     "no_base": Reason("model", "dropped", "the root body has no geometry"),
+    # the peers' cached format
+    "bad_boxes": Reason("room", "quarantined", "boxes.npz is unreadable, lacks an array, or needs pickle, which is never loaded"),
+    "peers_filter": Reason(
+        "room", "dropped", "`sfgen peers` left the room out: one of the peers' filters, or nothing of their classes in it"
+    ),
+    "peers_class": Reason("room", "dropped", "objects that the peers have no class for; the room is written without them"),
     # joints
     "joint_unsupported": Reason("joint", "repaired", "planar, floating or unknown joint: taken as fixed"),
     "joint_no_range": Reason("joint", "repaired", "limits are missing or leave no range: taken as fixed"),

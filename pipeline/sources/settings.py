@@ -41,6 +41,7 @@ class PreprocessSettings:
 
     front: str = "data/raw/3d-front"
     partnet: str | None = "data/raw/partnet"
+    peers: str | None = None
     front_licence: str = "CC0-1.0"
     partnet_licence: str = "CC0-1.0"
     workers: int = 0  # processes; 0: one per core

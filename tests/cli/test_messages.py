@@ -15,7 +15,7 @@ from pipeline.errors import ContentError, RefusedError, UsageError
 from sfgen import cli
 
 ROOT = Path(__file__).parents[2]
-COMMANDS = ("generate", "shard", "plan", "verify", "doctor")
+COMMANDS = ("generate", "shard", "plan", "peers", "verify", "doctor")
 
 
 @pytest.fixture

@@ -2,12 +2,17 @@
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from pipeline.sources import batch
+from pipeline.sources.peers_labels import KINDS
+from pipeline.sources.peers_reader import PeersTask, read_peers
+from pipeline.sources.peers_writer import grouped, write_kind
 from pipeline.sources.reasons import REASONS, SourceError, reject
+from pipeline.sources.settings import FrontFilters
 from tests.sources import making
 from tests.sources.making import BED, CHAIR, LAMP, STAND, TABLE, chair_record, child, floor, slab
 from tests.sources.reading import read
@@ -208,6 +213,23 @@ def open_box(tmp):
     return with_model(tmp, "\n".join(text.splitlines()[:-1]) + "\n")
 
 
+def peers(tmp, *, filtered):
+    """The codes of `sfgen peers`, from a bedroom whose stand is a thing that the peers do not know."""
+    front(tmp, entries=[making.info(BED), making.info(STAND, "Shoe Cabinet"), making.info(LAMP)])
+    made = read(tmp)
+    rooms = grouped(made.rooms, made.objects, {s["scene_id"]: s["split"] for s in made.scenes})
+    rejects = write_kind(tmp / "out", rooms, KINDS["bedroom"], filtered=filtered).rejects
+    return SimpleNamespace(rejects=rejects, reasons={r["reason"] for r in rejects})
+
+
+def bad_boxes(tmp):
+    (tmp / "h_Bedroom-1").mkdir()
+    (tmp / "h_Bedroom-1" / "boxes.npz").write_bytes(b"PK")
+    task = PeersTask(tmp, {".": KINDS["bedroom"]}, {}, FrontFilters(), "CC0-1.0")
+    rejects = read_peers(task, ("h", ((".", "h_Bedroom-1"),))).rejects
+    return SimpleNamespace(rejects=rejects, reasons={r["reason"] for r in rejects})
+
+
 CASES = {
     "unsafe_path": unsafe_path,
     "missing_file": missing_file,
@@ -277,6 +299,9 @@ CASES = {
     "joint_limits_found": partnet_limits,
     "no_metric_fit": no_metric_fit,
     "no_base": no_base,
+    "bad_boxes": bad_boxes,
+    "peers_filter": lambda t: peers(t, filtered=True),
+    "peers_class": lambda t: peers(t, filtered=False),
     "joint_unsupported": lambda t: with_joint(t, door("floating", "")),
     "joint_no_range": lambda t: with_joint(t, door("revolute", '<limit lower="0" upper="0"/>')),
     "joint_flipped_limits": lambda t: with_joint(t, door("revolute", '<limit lower="1.2" upper="-0.0"/>')),

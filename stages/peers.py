@@ -1,0 +1,42 @@
+"""`sfgen peers`: the training tables as the cached rooms of ATISS and DiffuScene, on exactly our split."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from pipeline import tables
+from pipeline.errors import UsageError
+from pipeline.sources.peers_labels import KINDS
+from pipeline.sources.peers_writer import grouped, write_kind
+from pipeline.sources.reasons import Row
+from schemas.objects import OBJECTS
+from schemas.rejects import REJECTS
+from schemas.rooms import ROOMS
+from schemas.scenes import SCENES
+from schemas.table import Table
+
+
+def main(root: Path, *, out: Path, filtered: bool) -> None:
+    """Write bedrooms, living rooms, dining rooms and libraries into the new or empty folder `out`."""
+    if out.exists() and (not out.is_dir() or any(out.iterdir())):
+        raise UsageError(f"--out {out} is not an empty folder", "name a new one")
+    here = root / "data" / "tables"
+    splits = {row["scene_id"]: row["split"] for row in columns(here, SCENES, "scene_id", "split")}
+    rooms = columns(here, ROOMS, "scene_id", "room_id", "type", "polygon", "source_id")
+    objects = columns(here, OBJECTS, "scene_id", "room_id", "category", "position", "yaw", "size", "source_id")
+    found = grouped(rooms, objects, splits)
+    rejects: list[Row] = []
+    for kind in KINDS.values():
+        made = write_kind(out, found, kind, filtered=filtered)
+        rejects += made.rejects
+        counts = ", ".join(f"{n} {split}" for split, n in made.rooms.items())
+        dropped = sum(row["reason"] == "peers_filter" for row in made.rejects)
+        sys.stdout.write(f"{out / kind.name}: {sum(made.rooms.values())} rooms ({counts}), {dropped} left out\n")
+    tables.write(out / "rejects.parquet", REJECTS, rejects)
+
+
+def columns(folder: Path, table: Table, *names: str) -> list[Row]:
+    """Return some columns of a training table as rows."""
+    rows: list[Row] = tables.read_arrow(folder / f"{table.name}.parquet", table).select(list(names)).to_pylist()
+    return rows
