@@ -37,7 +37,9 @@ RoomType = Literal[
 Role = Literal["", "primary", "guest", "child", "elder", "staff", "carer", "shared"]
 LinkKind = Literal["door", "open", "portal", "any", "wall"]
 Slug = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")]
-Selector = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$", description="a room's id, or a room type: every room of it")]
+Selector = Annotated[
+    str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$", description="a room's id, a room type (every room of it) or a zone's name")
+]
 Metres2 = Annotated[float, Field(gt=0.0, le=5000.0)]
 Metres = Annotated[float, Field(gt=0.0, le=100.0)]
 Knob = Annotated[int, Field(ge=-3, le=3)]
@@ -108,14 +110,24 @@ class Relation(Model):
     area_order: every room of `a` is at least `value` times as large as every room of `b`. area_equal: the rooms of `a` (and
     `b`) differ by at most the share `value`. largest: `a` is the largest of `b`. separation: centroids of `a` and `b` are at least `value`
     of the outline's diagonal apart. hops: at least `value` openings lie on the way from `a` to `b`. degree: `a` has exactly
-    `value` openings. area_share: `a` takes at least `value` of the total area.
+    `value` openings. area_share: `a` takes at least `value` of the total area. between: `a` lies between `b` and `c` and is joined
+    to both. ensuite: the bathroom `a` belongs to the bedroom `b` alone. hub: the rooms hang on `a`. Links, degrees and
+    prohibitions that follow from the last three stand in the program as well.
     """
 
-    kind: Literal["area_order", "area_equal", "largest", "separation", "hops", "degree", "area_share"]
+    kind: Literal["area_order", "area_equal", "largest", "separation", "hops", "degree", "area_share", "between", "ensuite", "hub"]
     a: Selector
     b: Selector | None = None
+    c: Selector | None = None
     value: Annotated[float, Field(ge=0.0, le=100.0)] = 1.0
     stated: bool = True
+
+
+class Zone(Model):
+    """Rooms that belong together, as the parents' wing. Its name serves as a selector."""
+
+    name: Slug
+    members: tuple[Selector, ...]
 
 
 class Footprint(Model):
@@ -193,6 +205,7 @@ class FloorProgram(Model):
     links: tuple[Link, ...] = ()
     forbids: tuple[Forbid, ...] = ()
     relations: tuple[Relation, ...] = ()
+    zones: tuple[Zone, ...] = ()
     entrance: Entrance = Entrance()
     accessibility: Accessibility = Accessibility()
     style: Style = Style()
@@ -204,9 +217,11 @@ class FloorProgram(Model):
     unparsed: tuple[Span, ...] = ()
 
     def select(self, selector: str) -> tuple[RoomReq, ...]:
-        """Return the rooms that a selector names: the room of that id, else every room of that type."""
+        """Return the rooms that a selector names: the room of that id, else every room of that type, else the members of that zone."""
         exact = tuple(r for r in self.rooms if r.id == selector)
-        return exact or tuple(r for r in self.rooms if r.type == selector)
+        same = exact or tuple(r for r in self.rooms if r.type == selector)
+        members = () if same else next((z.members for z in self.zones if z.name == selector), ())
+        return same or tuple(r for r in self.rooms if r.id in members or r.type in members)
 
 
 def json_schema() -> dict[str, Any]:

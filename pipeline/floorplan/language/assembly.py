@@ -2,40 +2,35 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from typing import Any
 
+from pipeline.floorplan.check import ImpossibleError
 from pipeline.floorplan.defaults import DEFAULTS
 from pipeline.floorplan.language import dwelling, joints, sizes
 from pipeline.floorplan.language.draft import Draft
 from pipeline.floorplan.language.facts import Reading
 from pipeline.floorplan.language.inventory import Named
-from pipeline.floorplan.language.items import Item
-from pipeline.floorplan.language.spelling import vocabulary
-from pipeline.floorplan.language.tokens import MARKS, Token
-from pipeline.floorplan.program import FloorProgram
+from pipeline.floorplan.language.marks import Mark
+from pipeline.floorplan.language.phrases import Element
+from pipeline.floorplan.program import Evidence, FloorProgram
 
 ROLES = {"primary", "guest", "child", "elder", "staff", "carer", "shared"}
 
 
-def assemble(prompt: str, tokens: list[Token], parsed: list[list[Item]], state: Reading) -> FloorProgram:
+def assemble(state: Reading, parsed: list[list[Element]], marks: list[Mark]) -> FloorProgram:
     """Return the program of what was read; nothing is filled in."""
-    draft = Draft(prompt, tokens)
+    draft = Draft(state.heard)
     stock = state.inventory
-    text = re.sub(r"[-–\s]+", " ", prompt.lower().replace("’", "'"))
+    sizes.fill(draft, state)
     _studio(state)
-    _ban_rooms(draft, state)
-    joints.give_belongings(draft, stock, state.facts)
-    joints.join_named(draft, stock, state.facts)
-    joints.join_everything(draft, stock, state.facts)
-    joints.complete_suites(draft, stock, state.facts)
-    joints.keep_apart(draft, stock, state.facts, text)
+    for kind, e in state.banned:
+        draft.forbid("room_type", kind, None, None, e.first, e.last)
+    _beyond(draft, state)
+    joints.join(draft, state)
     sizes.attach(draft, state)
-    sizes.compare(draft, stock, text)
-    dwelling.read_whole(draft, state, text)
-    dwelling.read_style(draft, re.sub(r"(square|sq\.?) ?(m|f)\w*", " ", text))
-    spans = sorted((s, e, t) for s, e, t in _rest(state, draft) if not any(v["start"] <= s < v["end"] for v in draft.evidence))
+    dwelling.read_whole(draft, state)
+    dwelling.read_style(draft, state)
     return FloorProgram.model_validate(
         {
             **draft.fields,
@@ -43,9 +38,10 @@ def assemble(prompt: str, tokens: list[Token], parsed: list[list[Item]], state: 
             "links": list(draft.links.values()),
             "forbids": draft.forbids,
             "relations": draft.relations,
-            "language": "en",
-            "evidence": [*_named(parsed, draft), *draft.evidence],
-            "unparsed": [{"start": s, "end": e, "text": t} for s, e, t in spans],
+            "zones": draft.zones,
+            "language": state.heard.lexicon.language,
+            "evidence": [*_named(parsed, draft, state), *draft.evidence],
+            "unparsed": [{"start": s, "end": e, "text": t} for s, e, t in _rest(state, draft, marks)],
         }
     )
 
@@ -57,6 +53,7 @@ def _room(room: Named) -> dict[str, Any]:
         area["target"] = round(DEFAULTS[room.type].area * room.size, 2)
     return {
         "id": room.id,
+        "stated": room.stated,
         "type": room.type,
         "role": room.role if room.role in ROLES else "",
         "functions": tuple(sorted(room.functions)),
@@ -71,21 +68,40 @@ def _room(room: Named) -> dict[str, Any]:
     }
 
 
-def _named(parsed: list[list[Item]], draft: Draft) -> list[dict[str, Any]]:
+def _named(parsed: list[list[Element]], draft: Draft, state: Reading) -> list[dict[str, Any]]:
     """Evidence for the rooms themselves."""
     found = []
-    for item in (i for s in parsed for i in s if i.ids and i.kind == "room"):
-        start, end = draft.tokens[item.first].start, draft.tokens[item.last - 1].end
-        found += [{"start": start, "end": end, "text": draft.prompt[start:end], "field": f"rooms.{i}"} for i in item.ids]
+    known = {r.id for r in state.inventory.rooms}
+    for e in (e for s in parsed for e in s if e.ids and e.kind == "np" and e.last > e.first):
+        start, end = draft.tokens[e.first].start, max(draft.tokens[e.last - 1].end, draft.tokens[e.first].end)
+        found += [{"start": start, "end": end, "text": draft.prompt[start:end], "field": f"rooms.{i}"} for i in e.ids if i in known]
     return found
 
 
-def _rest(state: Reading, draft: Draft) -> Iterable[tuple[int, int, str]]:
-    """Words that nothing was read from and that are not mere function words."""
-    for k, token in enumerate(draft.tokens):
-        plain = token.text in MARKS or token.text in vocabulary()[0] or token.text.endswith("'s")
-        if k not in state.used and not plain and token.number is None:
-            yield token.start, token.end, draft.prompt[token.start : token.end]
+def _rest(state: Reading, draft: Draft, marks: list[Mark]) -> Iterable[tuple[int, int, str]]:
+    """Words that are in no vocabulary, and rooms that nothing was made of."""
+    for mark in marks:
+        if mark.kind == "word" and not state.used & set(range(mark.first, mark.last)):
+            start, end = draft.tokens[mark.first].start, draft.tokens[mark.last - 1].end
+            yield start, end, draft.prompt[start:end]
+
+
+def _beyond(draft: Draft, state: Reading) -> None:
+    """Refuse counts that contradict each other: "a two-bedroom flat ... the third bedroom"."""
+    for fact in state.facts:
+        if fact.what == "beyond":
+            rooms = [state.inventory.get(i) for i in fact.a]
+            draft.cite(fact.first, fact.last, "rooms")
+            words = [Evidence.model_validate(e) for e in draft.evidence if e["field"] == "rooms"]
+            words += [Evidence(start=s, end=e, text=draft.prompt[s:e], field="rooms") for s, e in {_place(draft, r) for r in rooms} if e]
+            name = rooms[0].type.replace("_", " ")
+            raise ImpossibleError(f"{len(rooms)} {name}s are asked for, and then {fact.value:g}", "keep one of the two counts", words)
+
+
+def _place(draft: Draft, room: Named) -> tuple[int, int]:
+    if room.span is None:
+        return 0, 0
+    return draft.tokens[room.span[0]].start, draft.tokens[room.span[1] - 1].end
 
 
 def _studio(state: Reading) -> None:
@@ -96,12 +112,8 @@ def _studio(state: Reading) -> None:
         room = living[0] if living else stock.add("studio_room", "", "studio", 0)
         room.type = "studio_room"
         room.functions |= {"living", "sleeping"}
+        room.span = room.span or (state.studio.first, state.studio.last)
         if not stock.of("kitchen"):
             room.functions.add("cooking")
     for room in stock.of("studio_room"):
         room.functions |= {"living", "sleeping"}
-
-
-def _ban_rooms(draft: Draft, state: Reading) -> None:
-    for kind, item in state.banned:
-        draft.forbid("room_type", kind, None, None, item.first, item.last)

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language import lexicon
 from pipeline.floorplan.language.draft import Draft
 from pipeline.floorplan.language.facts import Reading
+from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.program import Style
 
 MOST_STOREYS = 3
 PANORAMA = 8.5  # outside wall of a living room with panoramic glazing [m]
+LUXURY = 1.3
+NARROW = {"min_aspect": 1.5, "max_aspect": 2.1}
 
 
-def read_whole(draft: Draft, state: Reading, text: str) -> None:
-    """Read what concerns the whole home: storeys, outline, whether the list of rooms is closed, access and entrance."""
-    stock = state.inventory
+def read_whole(draft: Draft, state: Reading) -> None:
+    """Read what concerns the whole home."""
+    stock, flags = state.inventory, state.flags
     levels = [r.level for r in stock.rooms if r.level is not None]
     storeys = state.storeys[0] if state.storeys else 1
     if state.storeys:
@@ -28,61 +29,80 @@ def read_whole(draft: Draft, state: Reading, text: str) -> None:
     if draft.fields["storeys"] == 1:
         for room in stock.rooms:
             room.level = 0
-    if re.search(r"\b(that's it|nothing else|nothing more|only these|no other rooms)\b", text):
-        draft.fields["only"] = True
-    if re.search(r"\bno wasted (corridor|hall)|\bno (corridor|hallway)s?\b(?! (narrower|less|smaller))", text):
-        draft.forbid("room_type", "hallway", None, None, 0, 1)
-    if re.search(r"\b(luxury|luxurious|generous airy|palatial|lavish)\b", text):
-        draft.fields["scale"] = 1.3
-    _outline(draft, text)
-    _access(draft, state, text)
-    if re.search(r"eat in kitchen|big enough to eat in|kitchen diner|dining kitchen|kitchen to eat in", text):
-        for room in (r for r in stock.of("kitchen") if not r.role):
-            room.functions.add("dining")
-    if "panoramic" in text:
+    _closed(draft, flags, bool(stock.rooms))
+    _outline(draft, state)
+    _access(draft, state)
+    _entrance(draft, state)
+    if "panorama" in flags:
         for room in stock.of("living_room")[:1]:
             room.exterior_length = PANORAMA
+            draft.cite(flags["panorama"].first, flags["panorama"].last, f"rooms.{room.id}.exterior_length")
 
 
-def _outline(draft: Draft, text: str) -> None:
-    shape = "L" if re.search(r"\bl shaped?\b", text) else ("T" if re.search(r"\bt shaped?\b", text) else "rectangle")
-    if re.search(r"\b[lt] shaped? (living|kitchen|bedroom|sofa|room)", text):
-        shape = "rectangle"
-    if re.search(r"\b(narrow|elongated)\b[^.]{0,40}\b(house|townhouse|home|plot|site|lot|footprint|outline|building)", text):
-        draft.fields["footprint"] = {"shape": shape, "min_aspect": 1.5, "max_aspect": 2.1, "stated": True}
-    elif shape != "rectangle" or re.search(r"rectangular (outline|footprint|plan)", text):
-        draft.fields["footprint"] = {"shape": shape, "stated": True}
+def _closed(draft: Draft, flags: dict[str, Element], named: bool) -> None:
+    if "closed" in flags and named:
+        draft.fields["only"] = True
+        draft.cite(flags["closed"].first, flags["closed"].last, "only")
+    if "no_hall" in flags:
+        draft.forbid("room_type", "hallway", None, None, flags["no_hall"].first, flags["no_hall"].last)
+    if "luxury" in flags:
+        draft.fields["scale"] = LUXURY
+        draft.cite(flags["luxury"].first, flags["luxury"].last, "scale")
 
 
-def _access(draft: Draft, state: Reading, text: str) -> None:
+def _outline(draft: Draft, state: Reading) -> None:
+    for flag, made in (
+        ("shape_l", {"shape": "L"}),
+        ("shape_t", {"shape": "T"}),
+        ("rectangle", {"shape": "rectangle"}),
+        ("narrow", NARROW),
+    ):
+        if flag in state.flags:
+            draft.fields["footprint"] = {**draft.fields.get("footprint", {}), **made, "stated": True}
+            draft.cite(state.flags[flag].first, state.flags[flag].last, "footprint")
+
+
+def _access(draft: Draft, state: Reading) -> None:
     access = draft.fields.setdefault("accessibility", {})
-    if re.search(r"wheelchair|step free|barrier free|rollator|no steps", text):
-        access["step_free"] = True
-    if re.search(r"wheelchair|rollator", text):
+    for flag in ("wheelchair", "step_free"):
+        if flag in state.flags:
+            access["step_free"] = True
+            draft.cite(state.flags[flag].first, state.flags[flag].last, "accessibility.step_free")
+    if "wheelchair" in state.flags:
         access["min_door"] = max(access.get("min_door", 0.9), 0.9)
         access["min_corridor"] = max(access.get("min_corridor", 1.2), 1.2)
-    entrance: dict[str, Any] = {"into": state.entrance, "stated": True} if state.entrance else {}
-    if re.search(r"own (front )?door to the outside|own entrance|separate entrance|own outside door", text):
+
+
+def _entrance(draft: Draft, state: Reading) -> None:
+    entrance: dict[str, Any] = {}
+    if state.entrance:
+        into, e = state.entrance
+        entrance = {"into": into, "stated": True}
+        draft.cite(e.first, e.last, "entrance.into")
+    if state.outside:
+        owner, e = state.outside
         stock = state.inventory
         owners = [r for kind in ("kitchen", "bedroom") for r in stock.of(kind) if r.role in {"elder", "guest", "staff", "carer"}]
-        entrance["separate"] = [owners[0].id] if owners else []
+        separate = owners[0].id if owners else owner
+        if separate:
+            entrance["separate"] = [separate]
+            draft.cite(e.first, e.last, "entrance.separate")
     draft.fields["entrance"] = entrance
 
 
-def read_style(draft: Draft, text: str) -> None:
+def read_style(draft: Draft, state: Reading) -> None:
     """Set the style's knobs from words of mood and light."""
     knobs: dict[str, int] = {}
-    for phrase, changes in lexicon.STYLES.items():
-        found = re.search(rf"\b{re.escape(phrase)}\b", text)
-        if not found:
-            continue
-        for knob, value in changes.items():
+    looks = state.heard.lexicon.looks
+    for e in state.looks:
+        look = looks[int(e.value)]
+        for knob, value in look.knobs.items():
             if abs(value) > abs(knobs.get(knob, 0)):
                 knobs[knob] = value
-        if phrase in lexicon.IRREGULAR_WORDS:
-            draft.fields["nonrect"] = 1
-        at = re.search(phrase.replace(" ", r"[-–\s]+"), draft.prompt, re.IGNORECASE)
-        if at:
-            draft.evidence.append({"start": at.start(), "end": at.end(), "text": at.group(), "field": "style"})
+        if look.nonrect:
+            draft.fields["nonrect"] = look.nonrect
+        draft.cite(e.first, e.last, "style")
+    if {"wheelchair", "step_free"} & set(state.flags):
+        knobs.setdefault("min_width", 2)
     if knobs:
         draft.fields["style"] = Style.model_validate(knobs).model_dump()

@@ -4,31 +4,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from pipeline.floorplan.language import items as kinds
-from pipeline.floorplan.language import lexicon
 from pipeline.floorplan.language.inventory import Inventory
-from pipeline.floorplan.language.items import Item
-from pipeline.floorplan.language.tokens import Token
+from pipeline.floorplan.language.marks import Mark, Words
+from pipeline.floorplan.language.phrases import Element
 
 HALLS = {"hallway", "entry"}
-PERSONAL = {"bathroom", "wc", "closet", "balcony", "office", "storage"}
-
-
-GROUPS = {lexicon.DOOR, lexicon.LEADS, lexicon.OPEN, lexicon.NEAR, lexicon.WALL, lexicon.BAN, lexicon.THROUGH, "away"}
-
-
-def named(group: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the rooms of a group, without placeholders."""
-    return tuple(i for i in group if not i.startswith(("*", "<")))
+GROUPS = {"door", "leads", "open", "near", "wall", "ban", "avoid", "away"}
+PERSONAL = {"bathroom", "wc", "closet", "balcony", "office", "storage", "sunroom"}
+Group = tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """Something said: `what` about rooms `a` (and `b`), read from tokens[first:last]. `every` names groups filled in later."""
+    """Something said: `what` about rooms `a` (and `b`), read from tokens[first:last]."""
 
     what: str
-    a: tuple[str, ...]
-    b: tuple[str, ...] = ()
+    a: Group
+    b: Group = ()
     value: float = 0.0
     first: int = 0
     last: int = 0
@@ -36,35 +28,33 @@ class Fact:
 
 @dataclass
 class Reading:
-    """State while reading: rooms, facts, and what pronouns point at."""
+    """State while reading."""
 
-    tokens: list[Token]
+    heard: Words
     inventory: Inventory = field(default_factory=Inventory)
     facts: list[Fact] = field(default_factory=list)
-    banned: list[tuple[str, Item]] = field(default_factory=list)
-    amounts: list[tuple[Item, tuple[str, ...] | None]] = field(default_factory=list)  # None: the whole home
-    entrance: str | None = None
-    home: Item | None = None
-    studio: Item | None = None
-    storeys: tuple[int, Item] | None = None
-    level: int | None = None
-    past: list[tuple[str, ...]] = field(default_factory=list)  # groups named in earlier sentences, the latest last
-    owner: str = ""
-    owning: str = ""  # the bedroom of the owner whose rooms are being listed
+    banned: list[tuple[str, Element]] = field(default_factory=list)
+    amounts: list[tuple[Mark, Group | None]] = field(default_factory=list)  # None: the whole home
+    flags: dict[str, Element] = field(default_factory=dict)
+    looks: list[Element] = field(default_factory=list)
+    zones: dict[str, tuple[Group, Element]] = field(default_factory=dict)
+    entrance: tuple[str, Element] | None = None
+    outside: tuple[str, Element] | None = None  # the owner of a door of its own
+    homes: list[Element] = field(default_factory=list)
+    studio: Element | None = None
+    storeys: tuple[int, Mark] | None = None
+    rooms: tuple[int, Mark] | None = None  # "a three-room flat"
+    past: list[Group] = field(default_factory=list)  # groups named in earlier sentences, the latest last
     used: set[int] = field(default_factory=set)
 
-    def understood(self, item: Item) -> None:
-        """Mark an item's words as understood."""
-        self.used.update(range(item.first, item.last))
+    def understood(self, first: int, last: int) -> None:
+        """Mark words as understood."""
+        self.used.update(range(first, last))
 
-    def say(self, what: str, a: tuple[str, ...], b: tuple[str, ...], item: Item, value: float = 0.0) -> None:
-        """Record a fact. Whole groups ("*") and each-other mean something to few kinds of fact only."""
+    def say(self, what: str, a: Group, b: Group, element: Element, value: float = 0.0) -> None:
+        """Record a fact. Whole groups ("*...") mean something to few kinds of fact only."""
         if what not in GROUPS:
-            a, b = named(a), named(b)
+            a, b = (tuple(i for i in g if not i.startswith("*")) for g in (a, b))
+        self.understood(element.first, element.last)
         if a or b:
-            self.facts.append(Fact(what, a, b, value, item.first, item.last))
-
-
-def heard(state: Reading, sentence: list[Item], k: int) -> list[tuple[str, ...]]:
-    """Return the groups of rooms named before item k, the latest last."""
-    return [*state.past, *(tuple(i.ids) for i in sentence[:k] if i.kind == kinds.ROOM and i.ids)]
+            self.facts.append(Fact(what, tuple(dict.fromkeys(a)), tuple(dict.fromkeys(b)), value, element.first, element.last))

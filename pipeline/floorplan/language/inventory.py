@@ -20,6 +20,10 @@ class Named:
     role: str = ""
     surface: str = ""
     open_slot: bool = False
+    whole: bool = False  # one of a count of all such rooms: "a two-bedroom flat"
+    index: int = 0
+    stated: bool = True
+    span: tuple[int, int] | None = None  # the words that named it first, as tokens
     level: int | None = None
     low: float | None = None
     high: float | None = None
@@ -32,7 +36,6 @@ class Named:
     objects: int | None = None
     walkable: float | None = None
     min_width: float | None = None
-    spans: list[tuple[int, int, str]] = field(default_factory=list)
 
 
 class Inventory:
@@ -40,6 +43,7 @@ class Inventory:
 
     def __init__(self) -> None:
         self.rooms: list[Named] = []
+        self.belongings: set[str] = set()
 
     def of(self, kind: str) -> list[Named]:
         """Return the rooms of a type."""
@@ -57,41 +61,10 @@ class Inventory:
         while any(r.id == name for r in self.rooms):
             count += 1
             name = f"{base}_{count}"
-        room = Named(name, kind, role, surface, open_slot, level)
+        room = Named(name, kind, role, surface, open_slot, level=level)
         self.rooms.append(room)
         return room
 
-    def specialise(self, kind: str, role: str, surface: str) -> Named | None:
-        """Take one of the rooms that were only counted, and tell it apart."""
-        for room in self.rooms:
-            if room.type == kind and room.open_slot and not (role and room.role and room.role != role):
-                room.open_slot = False
-                room.role = role or room.role
-                room.surface = surface
-                return room
-        return None
-
-    def refer(self, kind: str, role: str, surface: str, many: bool, other: bool, ordinal: int, level: int | None) -> list[Named]:
-        """Return the rooms that a definite phrase points at; empty when there are none yet."""
-        same = self.of(kind)
-        if level is not None:
-            same = [r for r in same if r.level in {None, level}] or same
-        if role:
-            return [r for r in same if r.role == role]
-        if not same:
-            return []
-        if other:
-            loose = [r for r in same if r.open_slot]
-            return loose or same[-1:]
-        if ordinal > 1:
-            rest = [r for r in same if r.role != "primary"]
-            loose = [r for r in rest if r.open_slot] or rest
-            return loose[:1] if len(same) >= ordinal else []
-        if many:
-            return same
-        if len(same) > 1:
-            last = surface.rsplit(maxsplit=1)[-1]
-            exact = [r for r in same if last in r.surface.split()]
-            same = exact or same
-        plain = [r for r in same if not r.role]
-        return (plain or same)[:1]
+    def owned(self, room_id: str) -> bool:
+        """Whether a room belongs to another one."""
+        return room_id in self.belongings

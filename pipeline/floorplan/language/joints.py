@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import itertools
-import re
 
-from pipeline.floorplan.language import lexicon
 from pipeline.floorplan.language.draft import Draft
-from pipeline.floorplan.language.facts import HALLS, Fact
+from pipeline.floorplan.language.facts import HALLS, Fact, Group, Reading
 from pipeline.floorplan.language.inventory import Inventory
 
 MERGE_ORDER = ("living_room", "family_room", "dining_room", "kitchen", "studio_room")
 OPPOSITE, FAR = 0.45, 0.35  # "at the other end" and "away from", as shares of the diagonal
+KINDS = {"door": "door", "leads": "door", "near": "any", "open": "open", "wall": "wall"}
+INNER = {"closet", "bathroom", "balcony", "storage", "wc", "utility", "garage"}
 
 
-def _pairs(a: tuple[str, ...], b: tuple[str, ...]) -> list[tuple[str, str]]:
+def pairs(a: Group, b: Group) -> list[tuple[str, str]]:
     """Return who is meant with whom: neighbours of one list, all with a single one, else one by one."""
     if not a or not b:
         return list(itertools.pairwise(a or b))
@@ -25,141 +25,225 @@ def _pairs(a: tuple[str, ...], b: tuple[str, ...]) -> list[tuple[str, str]]:
     return [(x, b[0]) for x in a]
 
 
-def give_belongings(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
+def join(draft: Draft, state: Reading) -> None:
+    """Write all facts into the program."""
+    stock, facts = state.inventory, state.facts
+    _belongings(draft, stock, facts)
+    _merged(draft, stock, facts)
+    for fact in facts:
+        if any(i.startswith(("*", "<")) for i in fact.a + fact.b):
+            continue
+        if fact.what in KINDS:
+            _linked(draft, stock, fact)
+        else:
+            _related(draft, stock, fact, facts)
+    _everything(draft, stock, facts)
+    _suites(draft, stock, facts)
+    _apart(draft, state)
+
+
+def _belongings(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
     """Join each room to the one it belongs to: own bathrooms, en suites, kitchens open to a social room."""
     for fact in facts:
         if fact.what == "own":
             owners = fact.b if len(fact.b) == len(fact.a) else fact.b[:1] * len(fact.a)
+            if not owners:
+                continue
             for thing, owner in zip(fact.a, owners, strict=True):
-                draft.link(owner, thing, "door", fact)
-                if stock.get(thing).type in {"bathroom", "wc"}:
-                    draft.relate("degree", thing, None, 1.0, fact)
+                _give(draft, stock, thing, owner, fact)
         elif fact.what == "ensuite":
-            beds = stock.of("bedroom")
-            host = [r.id for r in beds if r.id in fact.b] or [r.id for r in beds if r.role == "primary"] or [r.id for r in beds]
-            for thing in fact.a:
-                if host and stock.get(thing).type == "bathroom":
-                    draft.link(host[0], thing, "door", fact)
-                    draft.relate("degree", thing, None, 1.0, fact)
-    for room in stock.of("kitchen"):
-        if any(f.what == "open_kitchen" and room.id in f.a for f in facts) and not draft.linked(room.id):
-            social = [r for kind in ("living_room", "dining_room", "studio_room", "family_room") for r in stock.of(kind)]
-            fact = next(f for f in facts if f.what == "open_kitchen")
-            draft.link(social[0].id if social else "living_room", room.id, "open", fact)
+            rooms = [stock.get(i) for i in fact.b if not i.startswith("*")]
+            baths = [r for r in rooms if r.type == "bathroom"]
+            beds = [r for r in rooms if r.type == "bedroom"]
+            hosts = [r for r in stock.of("bedroom") if r.role == "primary"] or stock.of("bedroom")
+            for k, room in enumerate(baths or beds):
+                if room.type == "bathroom" and hosts:
+                    near = [r for r in hosts if not _has_bath(draft, stock, r.id)] or hosts
+                    _give(draft, stock, room.id, near[0].id, fact)
+                elif room.type == "bedroom":
+                    slots = [r for r in stock.of("bathroom") if r.open_slot and not draft.linked(r.id)]
+                    loose = [r for r in stock.of("bathroom") if r.role == "ensuite" and not draft.linked(r.id)]
+                    bath = (loose or slots or [stock.add("bathroom", "", "en suite", room.level)])[0]
+                    bath.open_slot = False
+                    _give(draft, stock, bath.id, room.id, fact)
+                    draft.cite(fact.first, fact.last, f"rooms.{bath.id}")
+                del k
 
 
-def join_named(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:  # noqa: C901, PLR0912 - one branch per kind of fact
-    """Write each fact about rooms into the program."""
-    owned = {i for f in facts if f.what in {"own", "ensuite"} for i in f.a}
-    names = {lexicon.DOOR: "door", lexicon.LEADS: "door", lexicon.NEAR: "any", lexicon.OPEN: "open", lexicon.WALL: "wall"}
+def _has_bath(draft: Draft, stock: Inventory, bed: str) -> bool:
+    return any(stock.get(i).type == "bathroom" for i in draft.linked(bed))
+
+
+def _give(draft: Draft, stock: Inventory, thing: str, owner: str, fact: Fact) -> None:
+    draft.link(owner, thing, "door", fact)
+    stock.belongings.add(thing)
+    if stock.get(thing).type in {"bathroom", "wc"} and stock.get(owner).type != "hallway":
+        draft.relate("degree", thing, None, 1.0, fact)
+        if stock.get(owner).type == "bedroom":
+            draft.relate("ensuite", thing, owner, 1.0, fact)
+
+
+def _merged(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
     for fact in facts:
-        if any(i.startswith("*") for i in fact.a + fact.b):
-            continue
-        if fact.what in names:
-            for a, b in _pairs(fact.a, fact.b):
-                if fact.what == lexicon.DOOR and len(fact.b) > 1 and draft.linked(a) & set(fact.b):
-                    continue
-                if a in owned and len(fact.a) > 1 and stock.get(b).type in HALLS:
-                    continue  # "two baths on the corridor, one en suite"
-                kind = names[fact.what]
-                if fact.what == lexicon.NEAR and stock.get(a).type == stock.get(b).type:
-                    kind = "wall"  # bedrooms next to each other share a wall, no door
-                stairs = "staircase" in {stock.get(a).type, stock.get(b).type}
-                draft.link(a, b, "open" if stairs and fact.what != lexicon.WALL else kind, fact)
-        elif fact.what == lexicon.BETWEEN and len(fact.b) == 2:
-            for a in fact.a:
-                for b in fact.b:
-                    draft.link(a, b, "any", fact)
-        elif fact.what == "merge":
+        if fact.what == "merge":
             chain = sorted(fact.a, key=lambda i: MERGE_ORDER.index(stock.get(i).type) if stock.get(i).type in MERGE_ORDER else 9)
             for a, b in itertools.pairwise(chain):
                 draft.link(a, b, "open", fact)
-        elif fact.what == "only":
-            for a in fact.a:
-                if stock.get(a).type != "bedroom":  # rooms of its own may lie behind it
-                    draft.relate("degree", a, None, 1.0, fact)
-        elif fact.what == "largest":
-            draft.relate("largest", fact.a[0], stock.get(fact.a[0]).type, 1.0, fact)
-        elif fact.what == "area_order" and fact.a and fact.b:
-            draft.relate("area_order", fact.a[0], fact.b[0], fact.value, fact)
-        elif fact.what == "area_equal":
-            for a, b in itertools.combinations(fact.a, 2):
-                draft.relate("area_equal", a, b, fact.value, fact)
-        elif fact.what == "window":
-            for a in fact.a:
-                stock.get(a).window = "required"
-                draft.cite(fact.first, fact.last, f"rooms.{a}.window")
-        elif fact.what == "no_window":
-            for a in fact.a:
-                stock.get(a).window = "forbidden"
-        elif fact.what in {"not_open", "not_connected"}:
-            for a, b in _pairs(fact.a, fact.b):
-                draft.forbid("open" if fact.what == "not_open" else "connected", a, b, None, fact.first, fact.last)
+    for room in stock.of("kitchen"):
+        asked = [f for f in facts if f.what == "open_kitchen" and room.id in f.a]
+        stated = any(f.what in {"open", "merge"} and room.id in f.a + f.b for f in facts)
+        if asked and not stated:
+            social = [r for kind in ("living_room", "studio_room", "family_room", "dining_room") for r in stock.of(kind)]
+            if social:
+                draft.link(social[0].id, room.id, "open", asked[0])
+            else:
+                made = stock.add("living_room", "", "", room.level)
+                made.stated = False
+                draft.link(made.id, room.id, "open", asked[0])
+                draft.links[min(made.id, room.id), max(made.id, room.id)]["stated"] = False
 
 
-def join_everything(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
+def _linked(draft: Draft, stock: Inventory, fact: Fact) -> None:
+    owned = stock.belongings
+    for a, b in pairs(fact.a, fact.b):
+        if fact.what == "door" and len(fact.b) > 1 and draft.linked(a) & set(fact.b) and len(fact.a) > 1:
+            continue
+        halls = HALLS & {stock.get(a).type, stock.get(b).type}
+        inner = next((i for i in (a, b) if i in owned), None)
+        if inner and halls and len(fact.a) + len(fact.b) > 2:
+            continue  # "two baths on the corridor, one en suite"
+        kind = KINDS[fact.what]
+        if fact.what == "near" and (
+            stock.get(a).type == stock.get(b).type or {stock.get(a).type, stock.get(b).type} <= {"bedroom", "office"}
+        ):
+            kind = "wall"  # bedrooms next to each other share a wall, no door
+        if (
+            fact.what == "leads"
+            and {stock.get(a).type, stock.get(b).type} <= {"kitchen", "dining_room", "living_room"}
+            and len(fact.b) == 1
+        ):
+            kind = "door"
+        stairs = "staircase" in {stock.get(a).type, stock.get(b).type}
+        draft.link(a, b, "open" if stairs and fact.what != "wall" else kind, fact)
+
+
+def _related(draft: Draft, stock: Inventory, fact: Fact, facts: list[Fact]) -> None:  # noqa: C901, PLR0912 - one branch per kind of fact
+    what = fact.what
+    if what == "between" and len(fact.b) >= 2:
+        for a in fact.a:
+            for b in fact.b:
+                draft.link(a, b, "any", fact)
+            draft.relate("between", a, fact.b[0], 1.0, fact, fact.b[1])
+    elif what == "only":
+        for a in fact.a:
+            if stock.get(a).type != "bedroom":  # rooms of its own may lie behind it
+                behind = {
+                    i
+                    for f in facts
+                    for i in (f.a if f.what in {"door", "own", "near"} and a in f.b else f.b if f.what == "leads" and a in f.a else ())
+                }
+                draft.relate("degree", a, None, 1.0 + len(behind - set(fact.a)), fact)
+    elif what == "largest" and fact.a:
+        draft.relate("largest", fact.a[0], stock.get(fact.a[0]).type, 1.0, fact)
+    elif what == "smallest" and fact.a:
+        for b in fact.b:
+            if b != fact.a[0]:
+                draft.relate("area_order", b, fact.a[0], 1.0, fact)
+    elif what == "area_order":
+        for a, b in itertools.product(fact.a, fact.b):
+            draft.relate("area_order", a, b, fact.value, fact)
+    elif what == "area_equal":
+        for a, b in itertools.combinations(fact.a, 2):
+            draft.relate("area_equal", a, b, fact.value, fact)
+    elif what in {"window", "no_window"}:
+        for a in fact.a:
+            stock.get(a).window = "required" if what == "window" else "forbidden"
+            draft.cite(fact.first, fact.last, f"rooms.{a}.window")
+    elif what in {"not_open", "not_connected"}:
+        for a, b in itertools.product(fact.a, fact.b):
+            draft.forbid("open" if what == "not_open" else "connected", a, b, None, fact.first, fact.last)
+
+
+def _everything(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
     """Read "everything off a corridor": all rooms that hang on nothing yet."""
+    left_out = {i for f in facts if f.what == "except" for i in f.a}
     for fact in facts:
-        stars = [i for i in fact.a + fact.b if i.startswith("*")]
-        if not stars or fact.what in {"away", lexicon.BAN}:
+        stars = [i for i in fact.a + fact.b if i == "*"]
+        if not stars or fact.what not in {"door", "leads", "open", "near"}:
             continue
         fixed = [i for i in fact.a + fact.b if not i.startswith("*")]
-        kind = stars[0][1:]
-        for room in stock.rooms:
-            if room.id in fixed or (kind and room.type != kind):
+        for room in list(stock.rooms):
+            if not fixed or room.id in fixed or room.id in left_out:
                 continue
-            inner = draft.linked(room.id) and (room.type in {"closet", "bathroom", "balcony", "storage", "wc", "utility"})
-            if fixed and not inner and room.type not in HALLS:
-                draft.link(fixed[0], room.id, "open" if fact.what == lexicon.OPEN else "door", fact)
+            inner = draft.linked(room.id) and room.type in INNER
+            if not inner and room.type not in HALLS | {"balcony", "staircase", "garage"}:
+                draft.link(fixed[0], room.id, "open" if fact.what == "open" else "door", fact)
+        if fixed and stock.get(fixed[0]).type in HALLS | {"living_room"}:
+            draft.relate("hub", fixed[0], None, 1.0, fact)
 
 
-def complete_suites(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
-    """Give each suite a bathroom of its own, directly or through its closet."""
+def _suites(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
+    """Give each suite a bathroom of its own, directly or through its closet; place en suites that nobody placed."""
     for fact in facts:
-        if fact.what != "suite":
-            continue
-        for bed in fact.a:
+        for bed in fact.a if fact.what == "suite" else ():
             near = draft.linked(bed)
             reach = near | {j for i in near if stock.get(i).type == "closet" for j in draft.linked(i)}
             if any(stock.get(i).type == "bathroom" for i in reach):
                 continue
-            loose = [r for r in stock.of("bathroom") if not draft.linked(r.id) and "suite" in r.surface]
-            bath = loose[0] if loose else stock.add("bathroom", "", "en suite", None)
-            draft.link(bed, bath.id, "door", fact)
-            draft.relate("degree", bath.id, None, 1.0, fact)
-    # an en suite that nobody placed belongs to the main bedroom
+            loose = [r for r in stock.of("bathroom") if not draft.linked(r.id) and r.role in {"ensuite", "primary"}]
+            slots = [r for r in stock.of("bathroom") if r.open_slot and not draft.linked(r.id)]
+            bath = (loose or slots or [stock.add("bathroom", "", "en suite", stock.get(bed).level)])[0]
+            bath.open_slot = False
+            _give(draft, stock, bath.id, bed, fact)
+            draft.cite(fact.first, fact.last, f"rooms.{bath.id}")
     for bath in stock.of("bathroom"):
-        if "suite" in bath.surface and not draft.linked(bath.id):
+        if bath.role in {"ensuite", "primary"} and not draft.linked(bath.id):
             beds = [r for r in stock.of("bedroom") if r.role == "primary"] or stock.of("bedroom")
-            if beds:
-                span = next(((f.first, f.last) for f in facts if bath.id in f.a + f.b), (0, 1))
-                draft.link(beds[0].id, bath.id, "door", Fact("own", (bath.id,), (beds[0].id,), 0.0, *span))
-                draft.relate("degree", bath.id, None, 1.0, Fact("own", (bath.id,), (), 0.0, *span))
+            free = [r for r in beds if not _has_bath(draft, stock, r.id)] or beds
+            if free and (bath.role == "ensuite" or free[0].role == "primary"):
+                _give(draft, stock, bath.id, free[0].id, Fact("own", (bath.id,), (free[0].id,), 0.0, *(bath.span or (0, 1))))
 
 
-def keep_apart(draft: Draft, stock: Inventory, facts: list[Fact], text: str) -> None:
+def _apart(draft: Draft, state: Reading) -> None:  # noqa: C901 - one branch per case: a grammar
     """Forbid common walls and ways, and ask for distance, where rooms are to be away from each other."""
-    share = OPPOSITE if re.search(r"other end|opposite (side|end)|far end", text) else FAR
+    stock = state.inventory
+    share = OPPOSITE if "ends" in state.flags else FAR
 
-    def expand(ids: tuple[str, ...]) -> list[str]:
-        return [j for i in ids for j in ([r.id for r in stock.of(i[1:])] if i.startswith("*") else [i])]
+    def expand(ids: Group) -> list[str]:
+        made: list[str] = []
+        for i in ids:
+            if i.startswith("*zone_"):
+                members = state.zones[i[6:]][0]
+                made += members or _late_zone(stock, i[6:])
+            elif i.startswith("*"):
+                made += [r.id for r in stock.rooms if not i[1:] or r.type == i[1:]]
+            else:
+                made.append(i)
+        return made
 
-    for fact in facts:
-        if fact.what not in {"away", lexicon.BAN, lexicon.THROUGH}:
+    for name, (members, e) in state.zones.items():
+        ids = list(members) or _late_zone(stock, name)
+        if ids:
+            draft.zones.append({"name": name, "members": ids})
+            draft.cite(e.first, e.last, f"zones.{name}")
+    for fact in state.facts:
+        if fact.what == "no_ensuite":
+            for bed in stock.of("bedroom"):
+                for bath in stock.of("bathroom"):
+                    draft.forbid("connected", bath.id, bed.id, None, fact.first, fact.last)
+        if fact.what not in {"away", "ban", "avoid"}:
             continue
-        for a in expand(fact.a):
-            for b in expand(fact.b):
-                if a == b:
-                    continue
-                if fact.what == lexicon.THROUGH:
-                    draft.forbid("through", a, None, b, fact.first, fact.last)
-                    continue
-                draft.forbid("adjacent", a, b, None, fact.first, fact.last)
-                if fact.what == "away":
-                    draft.relate("separation", a, b, share, fact)
-    for match in re.finditer(r"(?:two |both )?bedrooms (?:must |should |may |do )?not (?:share a wall|be next to each other|touch)", text):
-        beds = [r.id for r in stock.of("bedroom")]
-        del match
-        for k, a in enumerate(beds):
-            for b in beds[k + 1 :]:
-                draft.forbid("adjacent", a, b, None, 0, 1)
+        for a, b in itertools.product(expand(fact.a), expand(fact.b)):
+            if a == b:
+                continue
+            if fact.what == "avoid":
+                draft.forbid("through", a, None, b, fact.first, fact.last)
+                continue
+            draft.forbid("adjacent", a, b, None, fact.first, fact.last)
+            if fact.what == "away":
+                draft.relate("separation", a, b, share, fact)
+
+
+def _late_zone(stock: Inventory, name: str) -> list[str]:
+    kinds = {"bedroom": {"bedroom"}, "living": {"living_room", "dining_room", "family_room"}, "work": {"office", "meeting_room"}}
+    return [r.id for r in stock.rooms if r.type in kinds.get(name, ()) or (r.type == "bedroom" and r.role == name)]

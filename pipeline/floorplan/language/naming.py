@@ -1,294 +1,306 @@
-"""Which rooms the phrases of a sentence name: new ones, and those that were named before."""
+"""Which rooms a noun phrase names: new ones, and those that were named before."""
 
 from __future__ import annotations
 
-from pipeline.floorplan.language import items as kinds
-from pipeline.floorplan.language import lexicon
-from pipeline.floorplan.language.facts import PERSONAL, Reading
+from pipeline.floorplan.language.facts import Reading
 from pipeline.floorplan.language.inventory import Named
-from pipeline.floorplan.language.items import Item
+from pipeline.floorplan.language.phrases import Element
 
-DEFINITE = {"the", "that", "this", "those", "these", "both", "all", "each", "every", "said", "its", "their", "same"}
-MANY = {"both", "all", "each", "every", "those", "these"}
-NEGATIONS = {"no", "without", "not", "never", "don't", "doesn't", "nor", "neither", "skip", "omit", "isn't"}
-OWN = {"own", "private", "ensuite", "personal", "attached"}
-OTHER = {"other", "remaining"}
-NEEDLESS = ("needed", "necessary", "required", "wanted")
+ALONE = {"living_room", "kitchen", "dining_room", "hallway", "entry", "utility", "garage", "staircase", "family_room", "studio_room"}
+PLURAL_NAMES = {"staircase", "closet", "storage"}  # their plural often means one
+ROLES = {"primary", "guest", "child", "elder", "staff", "carer", "shared", "ensuite"}
 
 
-def mentions(state: Reading, sentence: list[Item]) -> None:
-    """Find out which rooms each phrase of the sentence names; make those that are new."""
-    suites: tuple[str, ...] = ()  # suites that "each has a bedroom" speaks of
-    has = False
-    for k, item in enumerate(sentence):
-        if item.kind == kinds.LEVEL:
-            _storey(state, sentence, k)
-        elif item.kind == kinds.WORD and item.words in lexicon.OWNERS:
-            state.owner, state.owning = item.words, ""
-        elif item.kind == kinds.CUE:
-            has = item.cue == lexicon.HAS or (has and item.words == "and")
-        elif item.kind in {kinds.HOME, kinds.MUTE, kinds.ENTER}:
-            state.understood(item)
-            if item.kind == kinds.HOME:
-                state.home = state.home or item
-                state.studio = state.studio or (item if item.type else None)
-        elif item.kind == kinds.EVERY and item.type:
-            item.ids = [r.id for r in state.inventory.of(item.type)]
-            state.understood(item)
-        elif item.kind in {kinds.ROOM, kinds.SUITE}:
-            item.mods = _mods(sentence, k)
-            state.understood(item)
-            if _negated(state, sentence, k):
-                state.banned.append((item.type, item))
-                item.kind = kinds.MUTE
-                continue
-            if _functional(state, sentence, k):
-                continue
-            item.ids = [r.id for r in _name(state, sentence, k, suites if has or item.type == "bedroom" else ())]
-            if item.kind == kinds.SUITE:
-                suites = tuple(item.ids)
-                state.say("suite", tuple(item.ids), (), item)
-                item.kind = kinds.ROOM
-            _adjectives(state, item)
-            _belongings(state, item)
-        elif item.kind == kinds.PRONOUN and item.words in {"each", "each of them"}:
-            beds = [i.ids for i in sentence[:k] if i.kind == kinds.ROOM and i.type == "bedroom" and len(i.ids) > 1]
-            suites = suites or (tuple(beds[-1]) if beds else ())
-            item.ids = list(suites)
+def introduce(state: Reading, sentences: list[list[Element]]) -> None:
+    """Make the rooms that numbers and indefinite articles introduce: whole counts first, so that later words may tell them apart."""
+    for whole in (True, False):
+        for sentence in sentences:
+            level = _first_level(sentence)
+            suites = False  # "a suite: ... a bedroom": the suite's own
+            for k, e in enumerate(sentence):
+                if e.kind == "level":
+                    level = int(e.value) if not (level is None and k) else level
+                if e.suite and e.kind == "np":
+                    suites = True
+                if (
+                    e.kind == "np"
+                    and e.introduces
+                    and not e.ids
+                    and not e.suite
+                    and not (suites and e.type == "bedroom")
+                    and _whole(sentence, k) == whole
+                ):
+                    made = _count_all(state, e) if whole else _introduced(state, sentence, k, _backward(sentence, k, level))
+                    e.ids = [r.id for r in made]
 
 
-def _storey(state: Reading, sentence: list[Item], k: int) -> None:
-    """Read "Upstairs: two bedrooms" speaks of what follows, "two bedrooms upstairs" of what stands before."""
-    item = sentence[k]
-    state.understood(item)
-    following = sentence[k + 1] if k + 1 < len(sentence) else None
-    ends = following is None or following.kind in {kinds.AND, kinds.CUE} or (following.kind == kinds.COMMA and following.words == ",")
-    if k == 0 or not ends:
-        state.level = item.level
-        return
-    for earlier in reversed(sentence[:k]):
-        if earlier.kind == kinds.LEVEL:
-            break
-        if earlier.kind == kinds.ROOM:
-            for room in (state.inventory.get(i) for i in earlier.ids):
-                room.level = item.level
+def _first_level(sentence: list[Element]) -> int | None:
+    first = next((e for e in sentence if e.kind in {"np", "level"}), None)
+    return int(first.value) if first is not None and first.kind == "level" else None
 
 
-def _belongings(state: Reading, item: Item) -> None:
-    """Read "Grandparents with their own bedroom, bathroom and kitchen": what follows the bedroom in the list is theirs too."""
-    if len(item.ids) != 1 or not state.owner:
-        return
-    room = state.inventory.get(item.ids[0])
-    if room.type == "bedroom" and set(item.mods) & {"own"}:
-        state.owning = room.id
-    elif state.owning and room.type == "bathroom" and not room.role:
-        state.say("own", (room.id,), (state.owning,), item)
-    elif state.owning and room.type == "kitchen":
-        room.role = state.inventory.get(state.owning).role
-        state.say("door", (room.id,), (state.owning,), item)
-
-
-def _mods(sentence: list[Item], k: int) -> list[str]:
-    words: list[str] = []
-    for item in reversed(sentence[:k]):
-        if item.kind == kinds.WORD:
-            words.insert(0, item.words)
-        elif item.kind == kinds.PRONOUN and item.words in {"that", "both", "each", "one", "these", "all of them"}:
-            words.insert(0, item.words)
-            if item.words in {"both", "each", "that", "one"} and item.last == _next_first(sentence, item):
-                item.kind = kinds.WORD
-        elif item.kind == kinds.AMOUNT and item.unit == "rooms":
+def _backward(sentence: list[Element], k: int, level: int | None) -> int | None:
+    """Return the storey of a phrase: of the level named before it, or behind it where sentences name levels behind."""
+    if level is not None and _first_level(sentence) is not None:
+        return level
+    for e in sentence[k + 1 :]:
+        if e.kind == "level":
+            return int(e.value)
+        if e.kind in {"np", "and", "comma"}:
             continue
-        else:
+        if e.kind in {"cue", "colon"}:
             break
-        if len(words) == 6:
-            break
-    return words
+    return None
 
 
-def _next_first(sentence: list[Item], item: Item) -> int:
-    later = [i.first for i in sentence if i.first >= item.last]
-    return min(later, default=-1)
-
-
-def _negated(state: Reading, sentence: list[Item], k: int) -> bool:
-    item = sentence[k]
-    after = [i.words for i in sentence[k + 1 : k + 5] if i.kind in {kinds.WORD, kinds.MUTE}]
-    following = sentence[k + 1] if k + 1 < len(sentence) else None
-    if set(item.mods) & NEGATIONS:
-        limit = any(w in {"narrower", "smaller", "less", "wider", "longer"} for w in after[:2]) or (
-            following is not None and following.kind == kinds.AMOUNT
-        )
-        return not limit
-    # "a balcony is not needed"
-    if "not" in after[:2] and any(w in NEEDLESS for w in after[:4]):
+def _whole(sentence: list[Element], k: int) -> bool:
+    """Whether the number of a phrase is the count of all such rooms: "a two-bedroom flat", "three baths in total"."""
+    e = sentence[k]
+    if e.compound and not e.role:
         return True
-    # a list under one negation: "no balcony, garage or cellar"
-    for before in range(k - 1, -1, -1):
-        earlier = sentence[before]
-        if earlier.kind == kinds.AND and earlier.words == "or":
-            continue
-        if earlier.kind == kinds.COMMA and any(i.kind == kinds.AND and i.words == "or" for i in sentence[k:] + sentence[before:k]):
-            continue
-        if earlier.kind == kinds.WORD and earlier.words in {"a", "an", "any"}:
-            continue
-        return earlier.kind == kinds.MUTE and any(b is earlier for _, b in state.banned) and not item.mods
+    return any(x.kind == "flag" and x.value == "total" for x in sentence[k + 1 : k + 2]) and e.number is not None and not e.amounts
+
+
+def _count_all(state: Reading, e: Element) -> list[Named]:
+    stock = state.inventory
+    while len(stock.of(e.type)) < int(e.number or 1):
+        stock.add(e.type, "", e.text, None, open_slot=True).whole = True
+    return stock.of(e.type)[: int(e.number or 1)]
+
+
+def _introduced(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:
+    """Return the rooms of a phrase with a number or an indefinite article."""
+    e, stock = sentence[k], state.inventory
+    count = int(e.number or (2 if e.plural and e.type not in PLURAL_NAMES else 1))
+    same = stock.of(e.type)
+    slots = [r for r in same if r.open_slot and (level is None or r.level in {None, level}) and not r.role]
+    role = e.role if e.role in ROLES else ""
+    if "another" not in e.det:
+        if role and role != "ensuite":
+            here = [r for r in same if r.role == role]
+            if here and len(here) == count:
+                return here
+            wide = [r for r in slots if r.whole or _listed(sentence, k, r)]
+            if len(wide) >= count and e.type != "bathroom":
+                return [_close(r, role, e.text) for r in wide[:count]]
+        elif not role and slots:
+            if len(slots) == count == len(same) and count > 1:
+                return slots
+            known = all(r.whole for r in slots) or (e.number is not None and count < len(slots) and len(slots) > 1)
+            if known and count <= len(slots) and not _conjoined(sentence, k):
+                return [_close(r, "", e.text, level) for r in slots[:count]]
+        if count == 1 and e.number is None and not role and e.type in ALONE and same and not _repeated(sentence, k):
+            return same[:1]
+    return [stock.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
+
+
+def _listed(sentence: list[Element], k: int, room: Named) -> bool:
+    """Whether a phrase spells out a count in front of a colon or a bracket: "three bedrooms: a master, two for the kids"."""
+    for j in range(k - 1, -1, -1):
+        e = sentence[j]
+        if e.kind in {"colon", "open"}:
+            return any(room.id in x.ids and len(x.ids) > 1 for x in sentence[:j])
     return False
 
 
-def _functional(state: Reading, sentence: list[Item], k: int) -> bool:
-    """Tell whether a phrase names a function of a room, as a kitchenette in the one room of a studio does."""
-    item = sentence[k]
-    surface = " ".join(t.text for t in state.tokens[item.first : item.last])
-    mains = state.inventory.of("studio_room")
-    before = sentence[k - 1] if k else None
-    back = [i for i in sentence[:k] if i.kind in {kinds.CUE, kinds.ROOM}]
-    joined = bool(back) and back[-1].kind == kinds.CUE and back[-1].cue == lexicon.HAS
-    if item.type == "kitchen" and surface.startswith("kitchenette") and mains and joined:
-        mains[0].functions.add("cooking")
-        item.kind = kinds.MUTE
-        return True
-    if surface in {"dining area", "eating area", "dining space"} and joined and before is not None:
-        kitchen = state.inventory.of("kitchen")
-        if kitchen and back[-2:-1] and back[-2].type == "kitchen":
-            kitchen[0].functions.add("dining")
-            item.kind = kinds.MUTE
+def _conjoined(sentence: list[Element], k: int) -> bool:
+    """Whether the same kind of room was counted in the same list, so that this one comes on top."""
+    kind = sentence[k].type
+    for e in reversed(sentence[:k]):
+        if e.kind in {"cue", "colon", "open", "verb", "comma"}:
+            return False
+        if e.kind == "np" and e.type == kind:
             return True
     return False
 
 
-def _count(item: Item) -> tuple[int | None, int]:
-    """Return (number of rooms, ordinal) that the words in front say."""
-    number, ordinal = None, 0
-    for word in item.mods:
-        if word in lexicon.ORDINALS:
-            ordinal = lexicon.ORDINALS[word]
-        elif word.isdigit():
-            number = int(word)
-        elif word in lexicon.NUMBERS and word not in {"half", "single", "double", "twin", "dozen", "couple"}:
-            number = int(lexicon.NUMBERS[word])
-        elif word in {"another", "single"}:
-            number = 1
-    return number, ordinal
+def _repeated(sentence: list[Element], k: int) -> bool:
+    return any(e.kind == "np" and e.type == sentence[k].type for e in sentence[:k])
 
 
-def _name(  # noqa: C901, PLR0911, PLR0912 - one branch per way to name a room: a grammar
-    state: Reading, sentence: list[Item], k: int, suites: tuple[str, ...]
-) -> list[Named]:
-    """Return the rooms that the phrase k names."""
-    item, stock = sentence[k], state.inventory
-    number, ordinal = _count(item)
-    roles = [lexicon.ADJECTIVES[w] for w in item.mods if w in lexicon.ADJECTIVES]
-    role = item.role if item.role not in {"landing", "ensuite", "shared"} else ""
-    if item.type in {"bedroom", "office"} and roles:
-        role = role or roles[-1]
-    surface = " ".join(t.text for t in state.tokens[item.first : item.last])
-    level = 1 if item.role == "landing" else state.level
-    # what follows a room's name as its own bathroom or kitchen is told apart by the owner
-    if item.type in {"bedroom", "kitchen", "bathroom"} and not role and state.owner and set(item.mods) & {"own"}:
-        role = lexicon.OWNERS[state.owner] if item.type != "bathroom" else role
-    if item.type == "kitchen" and roles == ["primary"]:
-        role = "primary"
-    definite = bool(set(item.mods) & DEFINITE) and not (set(item.mods) & OWN)
-    many = item.plural or bool(set(item.mods) & MANY)
-    other = bool(set(item.mods) & OTHER)
-    following = sentence[k + 1] if k + 1 < len(sentence) else None
-    compound = (following is not None and following.kind == kinds.HOME) or (
-        number is not None and item.type == "bedroom" and following is not None and following.kind == kinds.WORD
-        and len(sentence) > k + 2 and sentence[k + 2].kind == kinds.HOME
-    )  # fmt: skip
-    if suites and item.type == "bedroom" and not role and ordinal == 0:
+def _close(room: Named, role: str, surface: str, level: int | None = None) -> Named:
+    room.open_slot = False
+    room.role = room.role or role
+    room.surface = surface
+    room.level = room.level if room.level is not None else level
+    return room
+
+
+def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[str]:
+    """Return the ids of the rooms that the phrase k names; make those that are missing."""
+    e = sentence[k]
+    if not e.ids:
+        e.ids = [r.id for r in _named(state, sentence, k, level)]
+    if level is not None:
+        for room in (state.inventory.get(i) for i in e.ids):
+            room.level = level if room.level is None and not e.definite else room.level
+    for room in (state.inventory.get(i) for i in e.ids):
+        if e.dining:
+            room.functions.add("dining")
+        if e.size != 1.0:
+            room.size = e.size
+    return e.ids
+
+
+def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911, PLR0912 - one answer per kind of phrase
+    e, stock = sentence[k], state.inventory
+    same = stock.of(e.type)
+    role = e.role if e.role in ROLES else ""
+    if e.suite:
+        return _suites(state, e, role, level)
+    suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), None) if e.type == "bedroom" and not role else None
+    if suites and not e.ordinal:
         return [stock.get(i) for i in suites]
-    if compound and item.type in {"bedroom", "bathroom"}:
-        return [stock.add(item.type, "", surface, None, open_slot=True) for _ in range(number or 1)]
-    if item.role == "ensuite" and _predicate(sentence, k):
-        return []
-    if item.role == "ensuite" and definite:
-        old = [r for r in stock.of("bathroom") if "suite" in r.surface]
-        if old:
-            return old[:1]
-    if suites and item.type in {"bathroom", "closet"} and (set(item.mods) & OWN) and not item.plural:
-        return [stock.specialise(item.type, "", surface) or stock.add(item.type, "", surface, level) for _ in suites]
-    if definite and not (number == 1 and not set(item.mods) & {"the", "that", "this"}):
-        found = stock.refer(item.type, role, surface, many or (number or 0) > 1, other, ordinal, state.level)
-        last = surface.split()[-1]
-        if item.type == "hallway" and not any(last in r.surface.split() for r in found):
-            found = [r for r in stock.of("entry") if last in r.surface.split()] or found
-        if not found and item.type == "hallway":
-            found = stock.refer("entry", "", surface, False, False, 0, state.level)
-        if not found and role == "primary" and "the" in item.mods and item.type == "bedroom" and not many:
-            made = stock.specialise(item.type, role, surface)
-            return [made] if made else [stock.add(item.type, role, surface, level)]
+    if e.type == "hallway" and e.definite:
+        word = e.text.rsplit(maxsplit=1)[-1]
+        halls = [r for r in stock.rooms if r.type in {"hallway", "entry"} and word in r.surface.split()]
+        if halls:
+            return halls[:1]
+    if e.part:
+        free = [r for r in same if r.open_slot] or same
+        total = int(e.number or 0)
+        while len(same) < max(total, e.part):
+            free.append(stock.add(e.type, "", e.text, level, open_slot=True))
+            same = stock.of(e.type)
+        return [_close(r, role, e.text) for r in free[: e.part]]
+    if "another" in e.det and not e.definite:
+        return [stock.add(e.type, role, e.text, level)]
+    if e.index:
+        return [_indexed(state, e, role, level)]
+    if e.ordinal:
+        return _ordinal(state, e, role, level)
+    if "other" in e.det:
+        last = {i for g in state.past[-1:] for i in g} | {i for x in sentence[:k] for i in x.ids}
+        rest = [r for r in same if r.open_slot] or [r for r in same if r.id not in last] or same[-1:]
+        many = e.plural or (e.number or 0) > 1
+        return (rest if many else [_close(r, "", e.text) for r in rest[:1]]) or [stock.add(e.type, role, e.text, level)]
+    if role:
+        found = _by_role(state, sentence, k, role)
         if found:
-            if number and number > 1 and len(found) > number:
-                found = found[:number]
-            for room in found:
-                if role and not room.role:
-                    room.role = role
-            if len(found) == 1 and (role or ordinal):
-                found[0].open_slot = False
             return found
-    return _new(state, item, role, surface, number, ordinal, level)
+    elif same:
+        return _known(state, sentence, k, level)
+    count = int(e.number or (2 if e.plural and e.type not in PLURAL_NAMES else 1))
+    return [stock.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
 
 
-def _new(state: Reading, item: Item, role: str, surface: str, number: int | None, ordinal: int, level: int | None) -> list[Named]:
+def fresh(state: Reading, e: Element, level: int | None, owner: str) -> list[str]:
+    """Return a room that somebody has of their own: one that was only counted, or a new one."""
+    role = e.role if e.role in ROLES else ""
+    theirs = [r for r in state.inventory.of(e.type) if r.role == owner and e.type == "bedroom"]
+    slots = theirs or [r for r in state.inventory.of(e.type) if r.open_slot and not r.role]
+    room = _close(slots[0], role, e.text) if slots else state.inventory.add(e.type, role, e.text, level)
+    e.ids = [room.id]
+    return e.ids
+
+
+def _suites(state: Reading, e: Element, role: str, level: int | None) -> list[Named]:
     stock = state.inventory
-    slots = [r for r in stock.of(item.type) if r.open_slot]
-    count = number or (2 if item.plural and item.type not in {"staircase", "closet", "storage"} else 1)
-    if not role and number is not None and number > 1 and len(slots) == number == len(stock.of(item.type)):
-        return slots  # "two-bedroom flat ... two bedrooms"
-    if role and number is None and not item.plural:
-        same = [r for r in stock.of(item.type) if r.role == role]
-        if same and not (set(item.mods) & {"another", "a", "an"}):
-            return same[:1]
-    if ordinal > 1 and not role and item.type == "bedroom":
-        rest = [r for r in stock.of("bedroom") if r.role != "primary"]
-        if len(stock.of("bedroom")) >= ordinal and rest:
-            rest[0].open_slot = False
-            return rest[:1]
-    if item.type in {"hallway", "staircase"} and stock.of(item.type) and not (ordinal > 1 or {"another", "own"} & set(item.mods)):
-        return stock.refer(item.type, "", surface, False, False, 0, level) or stock.of(item.type)[:1]
-    if (
-        not role
-        and not ordinal
-        and not item.mods
-        and item.type not in PERSONAL
-        and count == 1
-        and len(stock.of(item.type)) == 1
-        and not slots
-    ):
-        return stock.of(item.type)  # a bare name: "dining next to both"
-    made: list[Named] = []
-    for _ in range(count):
-        fresh = "another" in item.mods or (count > 1 and not role) or len(made) >= len(slots)
-        taken = None if fresh else stock.specialise(item.type, role, surface)
-        made.append(taken or stock.add(item.type, role, surface, level, open_slot=count > 1))
-    if item.role == "shared":
-        for room in made:
-            room.role = room.role or "shared"
-    return made
+    count = int(e.number or (2 if e.plural else 1))
+    same = [r for r in stock.of("bedroom") if r.role == role] if role else []
+    if same and not e.introduces:
+        return same
+    slots = [r for r in stock.of("bedroom") if r.open_slot and not r.role]
+    made = [_close(r, role, e.text) for r in slots[:count]]
+    return made + [stock.add("bedroom", role, e.text, level) for _ in range(count - len(made))]
 
 
-def _predicate(sentence: list[Item], k: int) -> bool:
-    """Whether "en suite" says something about the bathroom named just before it."""
-    return k > 0 and sentence[k - 1].kind in {kinds.ROOM, kinds.PRONOUN} and not sentence[k].mods
+def _indexed(state: Reading, e: Element, role: str, level: int | None) -> Named:
+    stock = state.inventory
+    for room in stock.of(e.type):
+        if room.index == e.index:
+            return room
+    free = [r for r in stock.of(e.type) if not r.index and r.open_slot]
+    room = free[0] if free else stock.add(e.type, role, e.text, level)
+    room.index, room.open_slot = e.index, False
+    return room
 
 
-def _adjectives(state: Reading, item: Item) -> None:
-    """Sizes and kinds in the words in front: "a very large living room", "an eat-in kitchen"."""
-    text = " ".join(item.mods)
-    for words, factor in lexicon.BIG.items():
-        if f" {words} " in f" {text} ":
-            for i in item.ids:
-                state.inventory.get(i).size = factor
-            break
-    if {"largest", "biggest"} & set(item.mods) and item.ids:
-        others = tuple(r.id for r in state.inventory.of(item.type))
-        state.say("largest", tuple(item.ids), others, item)
-    if "smaller" in item.mods and item.ids:
-        rest = tuple(r.id for r in state.inventory.of(item.type) if r.id not in item.ids)
-        state.say("area_order", rest[:1], tuple(item.ids), item, 1.0)
-    if {"similar", "equal", "identical"} & set(item.mods) and len(item.ids) > 1:
-        state.say("area_equal", tuple(item.ids), (), item, 0.15)
-    if {"open"} & set(item.mods) and item.type == "kitchen":
-        state.say("open_kitchen", tuple(item.ids), (), item)
+def _ordinal(state: Reading, e: Element, role: str, level: int | None) -> list[Named]:
+    stock = state.inventory
+    same = stock.of(e.type)
+    if len(same) >= e.ordinal:
+        rest = same if e.ordinal == 1 else [r for r in same if r.role != "primary"]
+        loose = [r for r in rest if r.open_slot] or rest[-1:]
+        return [_close(loose[0], role, e.text)] if loose else same[:1]
+    if any(r.whole for r in same):
+        state.say("beyond", tuple(r.id for r in same), (), e, float(e.ordinal))
+        return same[-1:]
+    while len(stock.of(e.type)) < e.ordinal - 1:
+        stock.add(e.type, "", e.text, level, open_slot=True)
+    return [stock.add(e.type, role, e.text, level)]
+
+
+def _by_role(state: Reading, sentence: list[Element], k: int, role: str) -> list[Named]:  # noqa: PLR0911 - one branch per case: a grammar
+    """Return the rooms of a role; one that was only counted may take it."""
+    e, stock = sentence[k], state.inventory
+    same = stock.of(e.type)
+    found = [r for r in same if r.role == role]
+    many = e.plural or bool(e.det & {"all", "both", "each"}) or (e.number or 0) > 1
+    if found and not (e.introduces and not many):
+        return found if many or len(found) == 1 else found[:1]
+    if e.type == "bathroom":
+        if role in {"ensuite", "primary"}:
+            return []
+        slots = [r for r in same if r.open_slot and not r.role]
+        plain = [r for r in same if not r.role and not state.inventory.owned(r.id)]
+        if slots:
+            return [_close(slots[0], role, e.text)]
+        return [_close(plain[0], role, e.text)] if e.definite and len(plain) == 1 else []
+    if e.type != "bedroom":
+        plain = [r for r in same if not r.role]
+        return [_close(plain[0], role, e.text)] if plain and e.definite and not _repeated(sentence, k) else []
+    slots = [
+        r for r in same if r.open_slot and not r.role and (e.definite or r.whole or _listed(sentence, k, r) or not _conjoined(sentence, k))
+    ]
+    if many and slots:
+        count = int(e.number or len(slots))
+        return [_close(r, role, e.text) for r in slots[:count]]
+    if slots:
+        return [_close(slots[0], role, e.text)]
+    plain = [r for r in same if not r.role]
+    if len(plain) == 1 and len(same) == 1 and e.definite:
+        return [_close(plain[0], role, e.text)]
+    return []
+
+
+def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:
+    """Return the rooms that a phrase without role points at, where there are such rooms."""
+    e, stock = sentence[k], state.inventory
+    same = stock.of(e.type)
+    if level is not None:
+        same = [r for r in same if r.level in {None, level}] or same
+    many = e.plural or bool(e.det & {"all", "both", "each"}) or (e.number or 0) > 1
+    if many:
+        number = int(e.number or 0)
+        if number > len(same) and all(not r.whole for r in same) and e.definite:
+            while len(stock.of(e.type)) < number:
+                stock.add(e.type, "", e.text, level, open_slot=True)
+            same = stock.of(e.type)
+        elif number > len(same):
+            state.say("beyond", tuple(r.id for r in same), (), e, float(number))
+        elif 0 < number < len(same):
+            last = [r for g in state.past[-1:] for r in (stock.get(i) for i in g) if r.type == e.type]
+            loose = [r for r in same if r.open_slot]
+            return last if len(last) == number else (loose if len(loose) >= number else same)[:number]
+        return same
+    if not e.det and _repeated_bare(sentence, k):
+        return [stock.add(e.type, "", e.text, level)]
+    if len(same) > 1:
+        word = e.text.rsplit(maxsplit=1)[-1]
+        same = [r for r in same if word in r.surface.split()] or same
+        recent = [r for r in same if any(r.id in x.ids for x in sentence[:k])]
+        plain = [r for r in same if not r.role]
+        return (recent[-1:] if e.definite and recent else plain or same)[:1]
+    return same[:1]
+
+
+def _repeated_bare(sentence: list[Element], k: int) -> bool:
+    """Whether a list names the same kind of room again: "bedroom, bedroom, bath"."""
+    for e in reversed(sentence[:k]):
+        if e.kind == "np":
+            if e.type == sentence[k].type:
+                return True
+        elif e.kind not in {"comma", "and", "amount", "open", "close"}:
+            return False
+    return False

@@ -1,4 +1,4 @@
-"""Prompt → FloorProgram, without network and always the same: words → items → rooms and facts → program."""
+"""Prompt → FloorProgram, without network and always the same: characters → marks → phrases → rooms and facts → program."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from pydantic import ValidationError
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan.check import check
 from pipeline.floorplan.completion import complete
-from pipeline.floorplan.language import items as kinds
 from pipeline.floorplan.language.assembly import assemble
-from pipeline.floorplan.language.items import sentences
+from pipeline.floorplan.language.detection import detect
+from pipeline.floorplan.language.marks import listen, segment
+from pipeline.floorplan.language.order import reorder
+from pipeline.floorplan.language.phrases import sentences
 from pipeline.floorplan.language.reading import read
-from pipeline.floorplan.language.spelling import repair
-from pipeline.floorplan.language.tokens import tokenize
 from pipeline.floorplan.program import FloorProgram
 
 LONGEST = 20_000  # characters
 
 
 def parse(prompt: str) -> FloorProgram:
-    """Return the completed program of an English prompt.
+    """Return the completed program of a prompt in English, German, Spanish or Chinese.
 
     Raises UsageError when it is empty or too long, RefusedError when nothing in it is understood or it contradicts itself.
     """
@@ -33,20 +33,23 @@ def parse(prompt: str) -> FloorProgram:
 def understand(prompt: str) -> FloorProgram:
     """Return what the prompt says, and no more: nothing is filled in or checked."""
     bounded(prompt)
-    tokens = repair(tokenize(prompt))
-    parsed = sentences(tokens)
-    known = {kinds.ROOM, kinds.HOME, kinds.SUITE}
-    if not any(i.kind in known or (i.kind == kinds.AMOUNT and i.unit == "rooms") for s in parsed for i in s):
+    heard = listen(prompt, detect(prompt))
+    marks = reorder(segment(heard), heard)
+    parsed = sentences(marks, heard)
+    spoken = {e.kind for s in parsed for e in s}
+    if not spoken & {"np", "home"} and not any(e.kind == "amount" and e.value == "rooms" for s in parsed for e in s):
         shown = re.sub(r"\s+", " ", prompt.strip())[:60]
         raise RefusedError(
             f"nothing in the prompt names a room or a home: {shown!r}", "name rooms, e.g. living room, two bedrooms, bathroom"
         )
+    state = read(heard, parsed)
+    state.looks = [e for s in parsed for e in s if e.kind == "look"]
     try:
-        return assemble(prompt, tokens, parsed, read(tokens, parsed))
+        return assemble(state, parsed, marks)
     except ValidationError as error:  # a number beyond what a program may hold
         fault = error.errors()[0]
         where = ".".join(map(str, fault["loc"]))
-        raise RefusedError(f"{where} cannot be {fault['input']}: {fault['msg']}", "ask for a home of usual size") from error
+        raise RefusedError(f"{where} cannot be {str(fault['input'])[:60]}: {fault['msg']}", "ask for a home of usual size") from error
 
 
 def bounded(prompt: str) -> None:

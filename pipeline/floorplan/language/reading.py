@@ -1,22 +1,36 @@
-"""Reads the items of a prompt from left to right: which rooms there are, and what is said about them."""
+"""Reads a prompt from left to right: which rooms there are, and what is said about them."""
 
 from __future__ import annotations
 
-from pipeline.floorplan.language import items as kinds
-from pipeline.floorplan.language.facts import Reading, heard
-from pipeline.floorplan.language.items import Item
-from pipeline.floorplan.language.naming import mentions
-from pipeline.floorplan.language.relating import relations
-from pipeline.floorplan.language.tokens import Token
+from pipeline.floorplan.language.clauses import Clause
+from pipeline.floorplan.language.facts import Reading
+from pipeline.floorplan.language.marks import Words
+from pipeline.floorplan.language.naming import introduce
+from pipeline.floorplan.language.negation import ban
+from pipeline.floorplan.language.phrases import Element
+
+STYLED = {"look"}
 
 
-def read(tokens: list[Token], parsed: list[list[Item]]) -> Reading:
-    """Read all sentences."""
-    state = Reading(tokens)
-    for sentence in parsed:
-        state.owner, state.owning = "", ""
-        mentions(state, sentence)
-        relations(state, sentence)
-        state.past = heard(state, sentence, len(sentence))
-        state.level = state.level if any(i.kind == kinds.LEVEL and i.first == sentence[0].first for i in sentence) else None
+def read(heard: Words, sentences: list[list[Element]]) -> Reading:
+    """Read all sentences: what is ruled out, what is introduced, then what is said of it."""
+    state = Reading(heard)
+    for sentence in sentences:
+        ban(sentence)
+    _studio(state, sentences)
+    introduce(state, sentences)
+    for sentence in sentences:
+        Clause(state, sentence).read()
     return state
+
+
+def _studio(state: Reading, sentences: list[list[Element]]) -> None:
+    """Let the kitchenette of a studio be a function of its one room, not a kitchen of its own."""
+    everything = [e for s in sentences for e in s]
+    one = any(e.kind == "home" and e.value for e in everything) or any(e.kind == "np" and e.type == "studio_room" for e in everything)
+    if not one or any(e.kind == "np" and e.type == "bedroom" and not e.banned for e in everything):
+        return
+    for e in everything:
+        if e.kind == "np" and e.type == "kitchen" and e.mark is not None and e.mark.value == "kitchen/corner":
+            e.kind = "corner"
+            state.understood(e.first, e.last)

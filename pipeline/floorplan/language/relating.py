@@ -1,204 +1,247 @@
-"""What the cues of a sentence say about the rooms around them: joined, open, near, apart, owned, avoided."""
+"""What stands before and behind a cue: who is joined to whom, who owns what."""
 
 from __future__ import annotations
 
-from pipeline.floorplan.language import items as kinds
-from pipeline.floorplan.language import lexicon
-from pipeline.floorplan.language.amounts import attach
-from pipeline.floorplan.language.facts import HALLS, PERSONAL, Reading, heard, named
-from pipeline.floorplan.language.groups import conjuncts, object_group, open_plan, point
-from pipeline.floorplan.language.items import Item
+from typing import TYPE_CHECKING
 
-ON_HALL = {
-    "bedroom",
-    "bathroom",
-    "wc",
-    "office",
-    "closet",
-    "storage",
-    "utility",
-    "playroom",
-    "library",
-    "media_room",
-    "gym",
-    "meeting_room",
-}
+from pipeline.floorplan.language.facts import Group
+from pipeline.floorplan.language.naming import name
+from pipeline.floorplan.language.owning import has, measures
+from pipeline.floorplan.language.phrases import Element
+
+if TYPE_CHECKING:
+    from pipeline.floorplan.language.clauses import Clause
+
+WIDE = {"leads", "between", "chain", "enter", "avoid", "away", "cmp_all", "except"}
 
 
-def relations(state: Reading, sentence: list[Item]) -> None:  # noqa: C901, PLR0912 - one branch per kind of item: a grammar
-    """Read what the cues of a sentence say about the rooms around them."""
-    subject: tuple[str, ...] = ()  # of the clause
-    near: tuple[str, ...] = ()  # the latest group
-    objects: tuple[str, ...] = ()  # of the latest cue
-    index = 0
+def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, PLR0912 - one answer per kind of cue
+    """Read one cue; return where to go on."""
+    state = clause.state
+    if e.value == "has":
+        return has(clause, k, e)
+    if e.value == "except":
+        group, j = objects(clause, k + 1, "except", ())
+        if group:
+            state.say("except", group, (), e)
+            clause.run, clause.latest = [], group
+        return max(j, k + 1)
+    left = _left(clause, k, e)
+    group, j = objects(clause, k + 1, e.value, left)
+    if not group:
+        ahead = clause.sentence[k + 1] if k + 1 < len(clause.sentence) else None
+        mutual = ahead is not None and ahead.kind == "reciprocal"
+        if mutual or (e.value == "wall" and (clause.run or clause.subject)):
+            _mutual(clause, e)
+            return k + 1 + mutual
+        if e.value == "between":
+            state.understood(e.first, e.last)
+        return k + 1
+    if e.value == "in" and not _inside(clause, left, group):
+        clause.latest, clause.run = group, [x for x in clause.sentence[k:j] if x.kind == "np"][-1:]
+        return j
+    if clause.sentence[j - 1].kind == "zone" and e.value in {"door", "in"}:
+        return j
+    state.understood(e.first, e.last)
+    if e.value == "from_to":
+        clause.subject = left
+        state.say("leads", left, group, e)
+        further, j = objects(clause, j + 1, "leads", left) if j < len(clause.sentence) and clause.sentence[j].kind == "to" else ((), j)
+        if further:
+            state.say("leads", left, further, e)
+        clause.latest, clause.run = further or group, []
+        return j
+    only = (
+        e.only
+        or (clause.only is not None)
+        or (j < len(clause.sentence) and clause.sentence[j].kind == "flag" and clause.sentence[j].value == "only")
+    )
+    if e.value == "chain":
+        left = clause.objects or left
+    if e.value == "from" and _leads_on(clause, j):
+        clause.subject = clause.latest = group
+        clause.objects = ()
+        clause.run = []
+        return j
+    if not left or _inverted(clause, k, j):
+        clause.waiting = (e, group)
+        clause.subject, clause.latest, clause.run, clause.verb = (), group, [], False
+        return j
+    _emit(clause, e, left, group)
+    if only and e.value in {"door", "from"}:
+        state.say("only", left, (), e)
+    clause.only = None
+    clause.subject, clause.latest, clause.objects, clause.run, clause.verb, clause.relative = left, group, group, [], False, False
+    return j
+
+
+def _inside(clause: Clause, left: Group, group: Group) -> bool:
+    """Whether "X in Y" means that X opens off Y, as a cupboard in the hall does."""
+    kinds = {clause.stock.get(i).type for i in left if not i.startswith("*")}
+    hosts = {clause.stock.get(i).type for i in group if not i.startswith("*")}
+    return (
+        bool(kinds)
+        and kinds <= {"storage", "closet", "wc", "bathroom", "balcony", "utility"}
+        and bool(hosts)
+        and hosts <= {"hallway", "entry", "bedroom", "kitchen", "utility"}
+    )
+
+
+def _leads_on(clause: Clause, j: int) -> bool:
+    """Whether "from the garage" goes on with "you get into ..."."""
+    for x in clause.sentence[j:]:
+        if x.kind == "cue":
+            return x.value == "leads"
+        if x.kind not in {"verb", "det", "flag", "adj", "word", "pron"}:
+            return False
+    return False
+
+
+def _inverted(clause: Clause, k: int, j: int) -> bool:
+    """Whether the subject follows: "off the foyer are a wc and the living room", "next to the kitchen, a pantry"."""
+    before = [x for x in clause.sentence[:k] if x.kind in {"np", "pron", "every", "zone", "home"}]
+    if before and clause.run:
+        return False
+    if before and not (
+        k and clause.sentence[k - 1].kind in {"comma", "and"} and j < len(clause.sentence) and clause.sentence[j].kind == "verb"
+    ):
+        return False
+    return any(x.kind == "np" and not x.banned for x in clause.sentence[j:])
+
+
+def _emit(clause: Clause, e: Element, left: Group, group: Group) -> None:
+    state, cue = clause.state, "door" if e.value in {"from", "chain", "in"} else e.value
+    if clause.negative is not None:
+        clause.negative = None
+        what = {"near": "ban", "wall": "ban", "away": "near", "open": "not_open", "avoid": "avoid"}.get(cue, "not_connected")
+        state.say(what, left, group, e)
+    elif cue == "ensuite":
+        state.say("own", left, group, e)
+        clause.stock.belongings.update(left)
+    else:
+        state.say(cue, left, group, e)
+
+
+def _mutual(clause: Clause, e: Element) -> None:
+    """Read "next to each other", "the two bedrooms must not share a wall with one another"."""
+    rooms = tuple(i for x in clause.run for i in x.ids)
+    rooms = clause.latest if len(clause.latest) > 1 and e.value != "open" else rooms
+    rooms = rooms if len(rooms) > 1 else clause.subject
+    clause.state.understood(e.first, e.last)
+    if clause.negative is not None or e.value == "away":
+        clause.negative = None
+        clause.state.say("ban", rooms, rooms, e)
+        if e.value == "away":
+            clause.state.say("away", rooms[:1], rooms[1:], e)
+    else:
+        clause.state.say("merge" if e.value == "open" else e.value, rooms, (), e)
+
+
+def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one branch per case: a grammar
+    """Return the subject of a cue: the phrase in front, the list in front of a verb, or what the clause is about."""
+    if not clause.run:
+        return clause.subject
+    before = clause.sentence[k - 1] if k else None
+    apart = before is not None and before.kind == "comma" and len(clause.run) > 1
+    listed = [i for x in clause.run for i in x.ids]
+    last = clause.run[-1]
+    if clause.relative or (apart and not clause.verb):
+        return tuple(last.ids)
+    if e.value == "avoid" and clause.objects:
+        return clause.subject
+    verbal = clause.verb or e.value in {"leads", "away"} or any(x.det & {"both", "all"} for x in clause.run)
+    if verbal or e.value == "wall":
+        return tuple(_since_clause(clause))
+    tail = [last]
+    for a, b in zip(reversed(clause.run[:-1]), reversed(clause.run[1:]), strict=True):
+        between = clause.sentence[_place(clause, a) + 1 : _place(clause, b)]
+        if any(x.kind == "comma" for x in between) or not any(x.kind == "and" for x in between):
+            break
+        tail.insert(0, a)
+    if len(tail) < len(clause.run) and len(tail) == 1:
+        return tuple(last.ids)
+    if len(tail) > 1 and (e.value not in {"door", "near", "open"} or _mixed(tail)):
+        return tuple(last.ids) if e.value != "door" else tuple(i for x in tail for i in x.ids if i in listed)
+    return tuple(i for x in tail for i in x.ids) if len(tail) > 1 and e.value == "door" else tuple(last.ids)
+
+
+def _mixed(tail: list[Element]) -> bool:
+    return len({x.type for x in tail}) > 1
+
+
+def _place(clause: Clause, e: Element) -> int:
+    return next((i for i, x in enumerate(clause.sentence) if x is e), 0)
+
+
+def _since_clause(clause: Clause) -> list[str]:
+    """Return the list in front of a verb. After objects of an earlier cue only what follows their comma counts."""
+    return list(dict.fromkeys(i for x in clause.run for i in x.ids))
+
+
+def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:  # noqa: PLR0912 - one branch per kind of element: a grammar
+    """Return the rooms named after a cue, and where reading goes on."""
+    group: list[str] = []
+    sentence = clause.sentence
+    index = end = k
+    joined = ""
+    first: Element | None = None
     while index < len(sentence):
-        item = sentence[index]
-        if item.kind == kinds.ENTER:
-            group, index = object_group(state, sentence, index + 1, wide=False)
-            if group:
-                state.entrance = group[0]
-                near = subject = group
-            continue
-        if item.kind in {kinds.ROOM, kinds.PRONOUN, kinds.EVERY, kinds.HOME}:
-            if item.kind == kinds.ROOM and item.role == "ensuite" and not item.ids and near:
-                state.say("ensuite", near, (), item)
-            if item.kind == kinds.HOME:
-                near = ()
+        e = sentence[index]
+        if e.kind == "np":
+            if e.banned or (group and not joined) or (group and first is not None and not _continues(clause, index, cue, joined, first)):
+                break
+            ids = name(clause.state, sentence, index, clause.level if clause.forward else None)
+            clause.state.understood(e.first, e.last)
+            measures(clause, e)
+            if e.adjectives & {"largest"} and cue != "cmp":
+                clause.state.say("largest", tuple(ids), tuple(r.id for r in clause.stock.of(e.type)), e)
+            group += [i for i in ids if i not in group and i not in left]
+            first, joined, end = first or e, "", index + 1
+        elif e.kind in {"pron", "det"} and not group and e.value in {"it", "both", "group", "one", "rest", "some", "each", "all"}:
+            if e.kind == "det" and any(x.kind == "np" for x in sentence[index + 1 : index + 2]):
                 index += 1
                 continue
-            group = point(state, sentence, index, subject, near)
-            if item.kind == kinds.ROOM or item.role in {"both", "one", "rest"} or item.kind == kinds.EVERY or not near:
-                near = group
-            if item.kind != kinds.PRONOUN or item.role != "it":
-                objects = ()
-            if not subject or item.role in {"group", "both", "one", "rest"}:
-                subject = group
-            elif item.words in {"that", "which"}:
-                subject = near
-            elif item.kind == kinds.PRONOUN and item.role == "it" and group:
-                near = subject if not objects else near
-        elif item.kind == kinds.AMOUNT:
-            attach(state, sentence, index, subject, near)
-        elif item.kind == kinds.CUE:
-            index, subject, near, objects = _cue(state, sentence, index, subject, near, objects)
-            continue
-        elif item.kind == kinds.MUTE and item.words in {"window to the outside", "windows to the outside"} and near:
-            state.say("window", near, (), item)
-        elif item.kind == kinds.WORD:
-            _word(state, sentence, index, near)
-        index += 1
-
-
-def _word(state: Reading, sentence: list[Item], k: int, near: tuple[str, ...]) -> None:
-    """Single words that say something about rooms: "daylight", "only", "open plan"."""
-    word = sentence[k].words
-    if word == "plan" and k and sentence[k - 1].words == "open":
-        open_plan(state, sentence, k)
-    if word in {"daylight", "windows", "window"} and near:
-        before = {i.words for i in sentence[max(0, k - 3) : k]}
-        what = "no_window" if before & {"no", "without", "windowless"} else "window"
-        state.say(what, near, (), sentence[k])
-    if word == "only" and state.facts and state.facts[-1].what == lexicon.DOOR and near:
-        state.say("only", state.facts[-1].a, (), sentence[k])
-
-
-def _cue(  # noqa: C901, PLR0911, PLR0912 - one branch per kind of item: a grammar
-    state: Reading, sentence: list[Item], k: int, subject: tuple[str, ...], near: tuple[str, ...], objects: tuple[str, ...]
-) -> tuple[int, tuple[str, ...], tuple[str, ...], tuple[str, ...]]:
-    """Read one cue; return where to go on, and the new subject, latest group and objects."""
-    item = sentence[k]
-    cue = item.cue
-    unchanged = (k + 1, subject, near, objects)
-    if k + 1 < len(sentence) and sentence[k + 1].kind == kinds.COMMA and sentence[k + 1].words != ":":
-        return unchanged
-    if cue == lexicon.HAS or item.words in {"on", "along", "around", "by", "near", "connects", "serves"}:
-        ahead = next((i for i in sentence[k + 1 : k + 8] if i.kind != kinds.WORD), None)
-        if ahead is None or ahead.kind not in {kinds.ROOM, kinds.PRONOUN} or not (ahead.ids or ahead.kind == kinds.PRONOUN):
-            if not (cue == lexicon.HAS and ahead is not None and ahead.kind == kinds.AMOUNT):
-                return unchanged
-            return unchanged
-        if item.words in {"on", "along", "around"} and state.inventory.get(ahead.ids[0]).type not in HALLS if ahead.ids else False:
-            return unchanged
-    negative = any(i.words in {"not", "n't", "never", "shouldn't", "mustn't", "don't"} for i in sentence[max(0, k - 3) : k])
-    chain = item.words in {"on to", "through to"}
-    if not near and not subject and objects == ():
-        subject = next(reversed(heard(state, sentence, k)), ()) if cue != lexicon.HAS else ()
-        near = subject
-    source = objects if chain and objects else (subject if objects and not chain else (near or subject))
-    if cue == lexicon.HAS:
-        return _has(state, sentence, k, source, subject, near)
-    wide = cue in {lexicon.LEADS, lexicon.OPEN, lexicon.BETWEEN}
-    if cue == lexicon.DOOR and item.words in {
-        "connects to",
-        "connected to",
-        "connected with",
-        "with access to",
-        "has access to",
-        "linked to",
-    }:
-        wide = True
-    if cue == lexicon.THROUGH:
-        return _through(state, sentence, k, subject, objects)
-    group, end = object_group(state, sentence, k + 1, wide, subject=source)
-    if not group:
-        if cue == lexicon.OPEN and len(subject) + len(near) > 1:
-            return unchanged
-        return unchanged
-    state.understood(item)
-    halls = [i for i in group if not i.startswith(("*", "<")) and state.inventory.get(i).type in HALLS]
-    if cue == lexicon.DOOR and halls and not objects and source and not source[0].startswith("*"):
-        listed = conjuncts(state, sentence, k)
-        source = tuple(i for i in listed if state.inventory.get(i).type in ON_HALL and i not in halls) or source
-    if group == ("<each other>",):
-        listed = named(near) if len(near) > 1 and cue != lexicon.OPEN else ()
-        listed = listed or conjuncts(state, sentence, k) or named(tuple(dict.fromkeys(subject + near)))
-        if negative or cue in {lexicon.BAN, lexicon.AWAY}:
-            state.say(lexicon.BAN, listed, listed, item)
+            found = clause.point(e, index, left)
+            clause.state.understood(e.first, e.last)
+            return tuple(i for i in found if i not in left), index + 1
+        elif e.kind == "zone" and not group:
+            clause.zone(index, e)
+            return tuple(e.ids), index + 1
+        elif e.kind == "every" and not group:
+            clause.state.understood(e.first, e.last)
+            return ("*",), index + 1
+        elif e.kind in {"comma", "and", "or"}:
+            if not group and e.kind == "comma":
+                break
+            joined = "and" if e.kind in {"and", "or"} else (joined or "comma")
+        elif (
+            e.kind in {"det", "size", "adj", "verb", "word", "owner", "open", "to"}
+            and not (e.kind == "to" and group and not joined)
+            and not (e.kind in {"verb", "open"} and group)
+        ) or (e.kind == "colon" and not group and cue == "leads"):
+            pass
+        elif e.kind == "amount" and group and sentence[index - 1].kind == "np":
+            break
         else:
-            state.say("merge" if cue == lexicon.OPEN else cue, listed, (), item)
-        return end, subject, near, ()
-    if cue == lexicon.AWAY and source:
-        state.say("away", source, group, item, 0.35)
-    elif cue in {lexicon.NEAR, lexicon.WALL} and negative:
-        state.say(lexicon.BAN, source, group, item)
-    elif negative and cue in {lexicon.OPEN, lexicon.DOOR, lexicon.LEADS}:
-        state.say("not_open" if cue == lexicon.OPEN else "not_connected", source, group, item)
-    else:
-        nook = cue == lexicon.DOOR and _before(sentence, k, {"nook", "alcove", "niche"})
-        state.say("open" if nook else cue, source, group, item)
-    only = "only" in item.words.split() or (end < len(sentence) and sentence[end].words == "only") or _before(sentence, k, {"only"}, 2)
-    if only and cue == lexicon.DOOR:
-        state.say("only", source, (), item)
-    return end, source, source, group
+            break
+        index += 1
+    return tuple(group), end
 
 
-def _before(sentence: list[Item], k: int, words: set[str], reach: int = 5) -> bool:
-    return any(i.words in words for i in sentence[max(0, k - reach) : k])
-
-
-def _has(
-    state: Reading, sentence: list[Item], k: int, source: tuple[str, ...], subject: tuple[str, ...], near: tuple[str, ...]
-) -> tuple[int, tuple[str, ...], tuple[str, ...], tuple[str, ...]]:
-    """Read "X with its own bathroom": rooms that belong to a room hang on it."""
-    item = sentence[k]
-    before = next((i for i in reversed(sentence[:k]) if i.kind in {kinds.ROOM, kinds.HOME, kinds.PRONOUN}), None)
-    if before is not None and before.kind == kinds.HOME:
-        return k + 1, subject, near, ()
-    source = near or source or subject
-    own = named(source)
-    owner = [i for i in own if state.inventory.get(i).type == "bedroom"]
-    if not owner:
-        living = [i for i in own if state.inventory.get(i).type in {"living_room", "kitchen", "dining_room", "studio_room", "office"}]
-        if living and item.words in {"with", "has", "having"}:
-            extra = {"balcony", "sunroom", "storage"}
-            group, end = object_group(state, sentence, k + 1, wide=False, subject=source, only=extra)
-            group = named(group)
-            if group and len(living) == 1:
-                state.understood(item)
-                state.say(lexicon.DOOR, group, tuple(living), item)
-                return end, subject, tuple(living), ()
-        return k + 1, subject, near, ()
-    group, end = object_group(state, sentence, k + 1, wide=True, subject=own, only=PERSONAL)
-    group = named(group)
-    if not group:
-        return k + 1, subject, near, ()
-    state.understood(item)
-    for kind in dict.fromkeys(state.inventory.get(i).type for i in group):
-        things = tuple(i for i in group if state.inventory.get(i).type == kind)
-        state.say("own", things, tuple(owner), item)
-    return end, tuple(owner), group, group
-
-
-def _through(
-    state: Reading, sentence: list[Item], k: int, subject: tuple[str, ...], objects: tuple[str, ...]
-) -> tuple[int, tuple[str, ...], tuple[str, ...], tuple[str, ...]]:
-    group, end = object_group(state, sentence, k + 1, wide=False)
-    group, listed = named(group), named(subject)
-    rooms = [i for i in sentence[:k] if i.kind == kinds.ROOM]
-    if not objects and rooms:
-        listed = conjuncts(state, sentence, k)
-        listed = tuple(i for i in listed if i not in group) or listed
-    if group and listed:
-        state.understood(sentence[k])
-        state.say(lexicon.THROUGH, listed, group, sentence[k])
-    return end, subject, subject, objects
+def _continues(clause: Clause, index: int, cue: str, joined: str, first: Element) -> bool:
+    """Whether a list after a cue goes on with the phrase at index, or a new statement begins there."""
+    e, sentence = clause.sentence[index], clause.sentence
+    ahead = next((x for x in sentence[index + 1 :] if x.kind not in {"det", "amount", "adj", "flag", "word"}), None)
+    starts = ahead is not None and (
+        ahead.kind in {"verb", "cmp", "neg", "relative"} or (ahead.kind == "cue" and ahead.value != "has" and cue != "avoid")
+    )
+    if starts and not (ahead is not None and ahead.kind == "relative"):
+        return False
+    if cue in WIDE:
+        return not (cue == "between" and joined == "comma")
+    if joined == "comma":
+        return False
+    new = bool(e.det & {"indefinite", "another"}) or e.number is not None
+    if cue in {"door", "near", "open", "wall", "from", "ensuite", "cmp", "via"} and new and not e.definite:
+        return bool(first.det & {"indefinite"}) and cue == "near"
+    return not (e.definite != first.definite and not e.definite and cue != "open")

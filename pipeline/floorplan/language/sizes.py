@@ -1,64 +1,71 @@
-"""Amounts in a prompt → areas, widths, numbers of pieces, sizes of rooms against each other."""
+"""Amounts in a prompt → areas, widths, numbers of pieces, the whole home."""
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
+from pipeline.errors import RefusedError
+from pipeline.floorplan.check import ImpossibleError
 from pipeline.floorplan.language.draft import Draft
 from pipeline.floorplan.language.facts import HALLS, Reading
-from pipeline.floorplan.language.inventory import Inventory, Named
-from pipeline.floorplan.language.items import Item
+from pipeline.floorplan.language.inventory import Named
+from pipeline.floorplan.language.marks import Mark
+from pipeline.floorplan.program import MAX_ROOMS, Evidence
 
 ABOUT = 0.1  # "about 75 m2" allows this much either way
-TIMES = re.compile(
-    r"(?:the )?(master|main bedroom|main office|living room|kitchen|bedroom|office)[^.;]{0,40}?(one and a half times|1\.5 times|1½ times|twice|two times|three times|at least as (?:large|big))"
-    r"[^.;]{0,30}?(?:size of|as large as|as big as|bigger than|larger than|as) the (second bedroom|other bedrooms?|guest bedroom|kitchen|living room|bedroom|meeting room)"
-)
-FACTORS = {"one and a half times": 1.5, "1.5 times": 1.5, "1½ times": 1.5, "twice": 2.0, "two times": 2.0, "three times": 3.0}
+SAME = 0.02  # two totals that differ by less are one, said twice
 
 
 def attach(draft: Draft, state: Reading) -> None:
     """Attach amounts: areas, widths, numbers of pieces, free shares."""
     stock = state.inventory
-    for item, ids in state.amounts:
-        around = " ".join(t.text for t in draft.tokens[max(0, item.first - 4) : item.last + 3])
-        value = item.number or 0.0
-        rooms = [stock.get(i) for i in ids or ()]
-        if item.unit == "area" and value > 0:
-            where = [f"rooms.{r.id}.area" for r in rooms] or ["total_area"]
-            box = _range(item)
-            for room in rooms:
-                room.low, room.high, room.target = box.get("min", room.low), box.get("max", room.high), box.get("target", room.target)
-            if not rooms and "total_area" not in draft.fields:
-                draft.fields["total_area"] = _whole_range(box)
-            for field in where:
-                draft.cite(item.first, item.last, field)
-        elif item.unit == "length":
-            _length(draft, item, rooms, around)
-        elif item.unit == "share" and re.search(r"free|walkable|clear|empty|open floor|floor", around):
+    for mark, ids in state.amounts:
+        rooms = [stock.get(i) for i in ids or () if not i.startswith("*")]
+        if mark.value == "area" and mark.number > 0:
+            _area(draft, mark, rooms)
+        elif mark.value in {"length", "doors", "corridors"}:
+            _length(draft, mark, rooms)
+        elif mark.value == "share":
             for room in rooms or stock.rooms:
-                room.walkable = min(value, 1.0)
-            draft.cite(item.first, item.last, "rooms.walkable")
-        elif item.unit == "pieces":
+                room.walkable = min(mark.number, 1.0)
+            draft.cite(mark.first, mark.last, "rooms.walkable")
+        elif mark.value == "pieces":
             for room in rooms:
-                room.objects = int(value)
-                draft.cite(item.first, item.last, f"rooms.{room.id}.objects")
-        elif item.unit == "rooms" and value >= 2:
-            while len(stock.rooms) < min(int(value), 40):
-                missing = [k for k in ("living_room", "kitchen", "bathroom") if not stock.of(k)]
-                stock.add(missing[0] if missing else "bedroom", "", "room", None)
-            draft.fields["only"] = True
-            draft.cite(item.first, item.last, "rooms")
+                room.objects = int(mark.number)
+                draft.cite(mark.first, mark.last, f"rooms.{room.id}.objects")
 
 
-def _range(item: Item) -> dict[str, float]:
-    value = item.number or 0.0
-    if item.high is not None:
-        return {"min": value, "max": item.high}
-    if item.bound == "least":
-        return {"min": value}
-    return {"max": value} if item.bound == "most" else {"target": value}
+def _area(draft: Draft, mark: Mark, rooms: list[Named]) -> None:
+    box = _range(mark)
+    for room in rooms:
+        room.low, room.high, room.target = box.get("min", room.low), box.get("max", room.high), box.get("target", room.target)
+        if mark.side is not None:
+            room.min_width = mark.side
+        draft.cite(mark.first, mark.last, f"rooms.{room.id}.area")
+    if rooms:
+        return
+    made = _whole_range(box)
+    old = draft.fields.get("total_area")
+    draft.cite(mark.first, mark.last, "total_area")
+    if old is None:
+        draft.fields["total_area"] = made
+        return
+    low, high = (
+        max((x for x in (old.get("min"), made.get("min")) if x is not None), default=None),
+        min((x for x in (old.get("max"), made.get("max")) if x is not None), default=None),
+    )
+    if low is not None and high is not None and low > high * (1 + SAME):
+        words = [Evidence.model_validate(e) for e in draft.evidence if e["field"] == "total_area"]
+        raise ImpossibleError("two total areas are asked for", "keep one of the two", words)
+    draft.fields["total_area"] = {**old, "min": low, "max": high}
+
+
+def _range(mark: Mark) -> dict[str, float]:
+    if mark.high is not None:
+        return {"min": mark.number, "max": mark.high}
+    if mark.bound == "least":
+        return {"min": mark.number}
+    return {"max": mark.number} if mark.bound == "most" else {"target": mark.number}
 
 
 def _whole_range(box: dict[str, float]) -> dict[str, Any]:
@@ -67,42 +74,53 @@ def _whole_range(box: dict[str, float]) -> dict[str, Any]:
     return {**box, "stated": True}
 
 
-def _length(draft: Draft, item: Item, rooms: list[Named], around: str) -> None:
-    value = item.number or 0.0
+def _length(draft: Draft, mark: Mark, rooms: list[Named]) -> None:
+    value = mark.number
     access = draft.fields.setdefault("accessibility", {})
-    halls = [r for r in rooms if r.type in HALLS]
-    if "door" in around and 0.6 <= value <= 1.2:
+    if mark.value == "doors" and 0.6 <= value <= 1.2:
         access["min_door"] = max(value, 0.7)
-        draft.cite(item.first, item.last, "accessibility.min_door")
-    elif halls or "corridor" in around or "hallway" in around:
+        draft.cite(mark.first, mark.last, "accessibility.min_door")
+    elif mark.value == "corridors" or any(r.type in HALLS for r in rooms):
         if 0.7 <= value <= 3.0:
             access["min_corridor"] = max(value, 0.8)
-            draft.cite(item.first, item.last, "accessibility.min_corridor")
-    elif "wide" in around and 1.0 <= value <= 20.0:
+            draft.cite(mark.first, mark.last, "accessibility.min_corridor")
+    elif 1.0 <= value <= 20.0:
         for room in rooms:
             room.min_width = value
-            draft.cite(item.first, item.last, f"rooms.{room.id}.min_width")
+            draft.cite(mark.first, mark.last, f"rooms.{room.id}.min_width")
 
 
-def compare(draft: Draft, stock: Inventory, text: str) -> None:
-    """Sizes of rooms against each other."""
-    for match in TIMES.finditer(text):
-        larger = _by_words(stock, match.group(1))
-        smaller = [r for r in _by_words(stock, match.group(3)) if r not in larger]
-        for a in larger[:1]:
-            for b in smaller:
-                draft.relations.append({"kind": "area_order", "a": a.id, "b": b.id, "value": FACTORS.get(match.group(2), 1.0)})
-                at = draft.prompt.lower().find(match.group(2)[:8])
-                end = at + len(match.group(2))
-                if at >= 0:
-                    draft.evidence.append({"start": at, "end": end, "text": draft.prompt[at:end], "field": f"relations.area_order.{a.id}"})
+def fill(draft: Draft, state: Reading) -> None:
+    """Make as many rooms as a number of rooms says: "a three-room flat", in German and Chinese counted as people there do."""
+    if state.rooms is None:
+        return
+    count, mark = state.rooms
+    stock, language = state.inventory, state.heard.lexicon.language
+    draft.cite(mark.first, mark.last, "rooms")
+    if count > MAX_ROOMS:
+        raise RefusedError(f"{count} rooms are asked for", f"ask for {MAX_ROOMS} at most")
+    if language in {"de", "zh"} and mark.text.split()[-1] not in {"raeume", "个 房 间"} and count <= 9:
+        _living_rooms(state, count)
+        return
+    if count < 2:
+        return
+    while len(stock.rooms) < count:
+        missing = [k for k in ("living_room", "kitchen", "bathroom") if not stock.of(k)]
+        stock.add(missing[0] if missing else "bedroom", "", "room", None)
+    draft.fields["only"] = True
 
 
-def _by_words(stock: Inventory, words: str) -> list[Named]:
-    beds = stock.of("bedroom")
-    if words in {"master", "main bedroom"}:
-        return [r for r in beds if r.role == "primary"]
-    if words in {"second bedroom", "other bedroom", "other bedrooms", "guest bedroom"}:
-        return [r for r in beds if r.role != "primary"]
-    kind = {"living room": "living_room", "main office": "office", "meeting room": "meeting_room"}.get(words, words)
-    return stock.of(kind)
+def _living_rooms(state: Reading, count: int) -> None:
+    """German usage counts rooms to live and sleep in: three are a living room and two bedrooms; one is a studio."""
+    stock = state.inventory
+    lived = {"living_room", "bedroom", "office", "dining_room", "playroom", "library", "studio_room", "family_room"}
+    if count == 1 and not stock.of("bedroom"):
+        state.studio = state.studio or state.homes[0] if state.homes else state.studio
+        if not stock.of("studio_room") and not stock.of("living_room"):
+            stock.add("studio_room", "", "studio", None)
+        return
+    banned = {kind for kind, _ in state.banned}
+    if "living_room" not in banned and not stock.of("living_room") and not stock.of("studio_room"):
+        stock.add("living_room", "", "", None)
+    while sum(r.type in lived for r in stock.rooms) < count:
+        stock.add("bedroom", "", "", None, open_slot=True)

@@ -1,56 +1,135 @@
-"""Repair of typing errors against a closed vocabulary (optimal string alignment distance)."""
+"""Repair of typing errors against a closed vocabulary: edit distance, inflection, missing spaces, compounds."""
 
 from __future__ import annotations
 
 import functools
-from dataclasses import replace
+import itertools
+from collections.abc import Sequence
 
-from pipeline.floorplan.language import lexicon
-from pipeline.floorplan.language.tokens import Token
+from pipeline.floorplan.language.german import split as compound
+from pipeline.floorplan.language.lexicon import Language, Lexicon, lexicon
+from pipeline.floorplan.language.text import Token
 
-SHORTEST, LONG = 5, 7  # words shorter than SHORTEST are left alone; from LONG letters on two errors are repaired
-CUE_WORDS = ("adjacent", "between", "without", "connected", "separated", "downstairs", "upstairs", "adjoining", "largest")
+SHORTEST, LONG = 4, 8  # one error from SHORTEST letters on, two from LONG on
+LONGEST = 30  # no word of a home is longer
+ROWS = ("qwertzuiop", "asdfghjkl", "yxcvbnm", "qwertyuiop", "zxcvbnm")
+NEIGHBOURS = frozenset(p for r in ROWS for a, b in itertools.pairwise(r) for p in ((a, b), (b, a)))
+
+
+def repair(tokens: Sequence[Token], texts: Sequence[str], lex: Lexicon) -> tuple[list[Token], list[str]]:
+    """Return the tokens with their words of the vocabulary: inflected and mistyped ones replaced, run-together ones split."""
+    made: list[Token] = []
+    words: list[str] = []
+    for token, text in zip(tokens, texts, strict=True):
+        parts = (text,) if text in lex.vocabulary or not text.replace("'", "").isalpha() else resolve(text, lex.language)
+        for part in parts:
+            made.append(token)
+            words.append(part)
+    return made, words
+
+
+@functools.lru_cache(maxsize=8192)
+def resolve(word: str, language: Language) -> tuple[str, ...]:  # noqa: PLR0911 - one branch per case: a grammar
+    """Return the known words that an unknown one stands for, or itself."""
+    lex = lexicon(language)
+    if len(word) > LONGEST or len(word) < 3 or "\u3400" <= word[0] <= "\u9fff":
+        return (word,)
+    stem = _stem(word, lex)
+    if stem:
+        return (stem,)
+    if word.endswith("'s") and word[:-2] in lex.vocabulary:
+        return (word[:-2],)
+    near, gap = _nearest(word, lex.targets)
+    if gap == 1 and near:
+        return (near,)
+    parts = _split(word, lex)
+    if parts:
+        return parts
+    if near:
+        return (near,)
+    for ending in lex.endings:  # mistyped and inflected
+        if word.endswith(ending) and len(word) - len(ending) >= SHORTEST + 1:
+            near, _ = _nearest(word[: -len(ending)], lex.targets)
+            if near:
+                return (near,)
+    return (word,)
+
+
+def _stem(word: str, lex: Lexicon) -> str:
+    for ending in lex.endings:
+        cut = word[: -len(ending)]
+        if word.endswith(ending) and len(cut) >= 3:
+            for known in (cut, cut + "e"):
+                if known in lex.vocabulary:
+                    return known
+    return ""
+
+
+def _split(word: str, lex: Lexicon) -> tuple[str, ...]:
+    """Split "twobedroom" or "openkitchen": two known words, one of them worth a repair."""
+    targets = _strong(lex.language)
+    if lex.language == "de":
+        return compound(word, lex.vocabulary, targets)
+    for cut in range(len(word) - 3, 2, -1):
+        a, b = word[:cut], word[cut:]
+        if a in lex.vocabulary and b in lex.vocabulary and (a in targets or b in targets) and len(a) >= 3 and len(b) >= 3:
+            return (a, b)
+    return ()
 
 
 @functools.cache
-def vocabulary() -> tuple[frozenset[str], tuple[str, ...]]:
-    """Return all known words, and those worth repairing towards: words of rooms, homes, units, numbers, cues and styles."""
-    phrases = [*lexicon.ROOMS, *map(lexicon.plural, lexicon.ROOMS), *lexicon.SUITES, *map(lexicon.plural, lexicon.SUITES)]
-    phrases += [*lexicon.CUES, *lexicon.UNITS, *lexicon.STYLES, *lexicon.NUMBERS, *lexicon.HOMES, *lexicon.ADJECTIVES, *lexicon.OWNERS]
-    phrases += [*lexicon.BIG, *lexicon.LEAST, *lexicon.MOST, *lexicon.ABOUT, *lexicon.ORDINALS]
-    known = {w for p in phrases for w in p.split()} | lexicon.FILLER | {h + "s" for h in lexicon.HOMES}
-    nouns = [*lexicon.ROOMS, *map(lexicon.plural, lexicon.ROOMS), *lexicon.HOMES, *lexicon.UNITS, *lexicon.NUMBERS, *CUE_WORDS]
-    targets = {w for p in nouns for w in p.split() if w.isalpha() and len(w) >= SHORTEST}
-    return frozenset(known), tuple(sorted(targets))
+def _strong(language: Language) -> frozenset[str]:
+    return frozenset(lexicon(language).targets)
 
 
-def repair(tokens: list[Token]) -> list[Token]:
-    """Replace unknown words by the one known word that is near enough; leave what is ambiguous or far."""
-    known, targets = vocabulary()
-    return [replace(t, text=_nearest(t.text, targets)) if _doubtful(t.text, known) else t for t in tokens]
-
-
-def _doubtful(word: str, known: frozenset[str]) -> bool:
-    return word.isalpha() and len(word) >= SHORTEST - 1 and word not in known
-
-
-@functools.lru_cache(maxsize=4096)
-def _nearest(word: str, targets: tuple[str, ...]) -> str:
-    allowed = 1 if len(word) < LONG else 2
-    best, least = word, allowed + 1
+def _nearest(word: str, targets: Sequence[str]) -> tuple[str, int]:
+    """Return the one known word that is near enough, and its distance; ("", 9) where there is none or two are as near."""
+    allowed = 0 if len(word) < SHORTEST else (1 if len(word) < LONG - 1 else 2)
+    best, least, tied = "", 9.0, False
     for target in targets:
         if abs(len(target) - len(word)) > allowed:
             continue
-        gap = distance(word, target, allowed)
-        if gap > 1 and target[0] != word[0]:  # two errors, and the first letter one of them: too far
+        most = 1 if len(target) < LONG - 1 and allowed == 2 else allowed
+        if len(word) < LONG and most == 2 and sorted(word) != sorted(target):
+            most = 1
+        gap = distance(word, target, most)
+        if gap > most or (len(target) == SHORTEST and len(word) <= SHORTEST and _risky(word, target)):
             continue
-        if gap < least or (gap == least and gap <= allowed and target[0] == word[0] != best[0]):
-            best, least = target, gap
-    return best
+        if word[0] != target[0] and (gap > 1 or len(word) < 6):
+            continue
+        cost = gap - (0.3 if _slip(word, target) else 0.0) + (0.2 if word[0] != target[0] else 0.0)
+        if cost < least:
+            best, least, tied = target, cost, False
+        elif cost == least and target != best:
+            tied = True
+    if tied and least > 1.5:
+        return "", 9
+    return best, (1 if least <= 1.2 else 2) if best else 9
+
+
+def _risky(word: str, target: str) -> bool:
+    """Whether a four-letter word differs otherwise than by swapped or doubled letters: it may well be another word."""
+    return sorted(word) != sorted(target)
+
+
+def _slip(word: str, target: str) -> bool:
+    """Whether the error is a usual one: swapped, doubled or neighbouring keys."""
+    if sorted(word) == sorted(target):
+        return True
+    if len(word) != len(target):
+        longer, shorter = sorted((word, target), key=len, reverse=True)
+        return any(
+            longer[:k] + longer[k + 1 :] == shorter and longer[k] in longer[max(0, k - 1) : k] + longer[k + 1 : k + 2]
+            for k in range(len(longer))
+        )
+    wrong = [(a, b) for a, b in zip(word, target, strict=True) if a != b]
+    return len(wrong) == 1 and wrong[0] in NEIGHBOURS
 
 
 def distance(a: str, b: str, most: int) -> int:
     """Edit distance with swaps of neighbours; anything above `most` counts as most + 1."""
+    if a == b:
+        return 0
     before: list[int] = []
     row = list(range(len(b) + 1))
     for i, x in enumerate(a, 1):

@@ -1,53 +1,84 @@
 """Numbers, amounts, typing errors."""
 
 import pytest
+import yaml
 
-from pipeline.floorplan.language.items import number_at, sentences
-from pipeline.floorplan.language.lexicon import plural
-from pipeline.floorplan.language.spelling import distance, repair
-from pipeline.floorplan.language.tokens import tokenize
+from pipeline.floorplan.language.lexicon import FOLDER, LANGUAGES, lexicon
+from pipeline.floorplan.language.marks import listen, segment
+from pipeline.floorplan.language.spelling import distance, resolve
+from pipeline.floorplan.language.text import clean, fold, tokenize
 
 
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [("seven", 7), ("twenty five", 25), ("1,900", 1900), ("one hundred and ten", 110), ("2.5", 2.5), ("2,5", 2.5), ("two hundred", 200), ("1.250", 1250)],
-)  # fmt: skip
-def test_numbers(text, value):
-    assert number_at(tokenize(text), 0)[0] == value
+def amounts(text, language="en"):
+    return [m for m in segment(listen(text, language)) if m.kind == "amount"]
 
 
 @pytest.mark.parametrize(
-    ("text", "low", "high", "bound", "unit"),
+    ("text", "language", "value"),
     [
-        ("at least 18 m²", 18, None, "least", "area"),
-        ("10 to 12 m²", 10, 12, "", "area"),
-        ("10-12 sqm", 10, 12, "", "area"),
-        ("7 m² or more", 7, None, "least", "area"),
-        ("about 100 sq ft", 9.2903, None, "about", "area"),
-        ("1.2 m", 1.2, None, "", "length"),
-        ("90 cm", 0.9, None, "", "length"),
-        ("70 %", 0.7, None, "", "share"),
-        ("eight pieces of furniture", 8, None, "", "pieces"),
+        ("seven", "en", 7), ("twenty five", "en", 25), ("1,900", "en", 1900), ("one hundred and ten", "en", 110), ("2.5", "en", 2.5), ("two hundred", "en", 200),
+        ("fünfundsiebzig", "de", 75), ("hundertzwanzig", "de", 120), ("1.250", "de", 1250), ("75,5", "de", 75.5), ("setenta y cinco", "es", 75), ("ciento veinte", "es", 120),
+        ("二十五", "zh", 25), ("一百二十", "zh", 120), ("十二", "zh", 12), ("120", "zh", 120),
+    ],
+)  # fmt: skip
+def test_numbers(text, language, value):
+    (mark,) = segment(listen(text, language))
+    assert (mark.kind, mark.number) == ("num", value)
+
+
+@pytest.mark.parametrize(
+    ("text", "language", "low", "high", "bound", "unit"),
+    [
+        ("at least 18 m²", "en", 18, None, "least", "area"),
+        ("10 to 12 m²", "en", 10, 12, "", "area"),
+        ("between 60 and 70 m2", "en", 60, 70, "", "area"),
+        ("10-12 sqm", "en", 10, 12, "", "area"),
+        ("7 m² or more", "en", 7, None, "least", "area"),
+        ("about 100 sq. ft", "en", 9.2903, None, "about", "area"),
+        ("4 x 5 m", "en", 20, None, "", "area"),
+        ("1.2 m", "en", 1.2, None, "", "length"),
+        ("90 cm", "en", 0.9, None, "", "length"),
+        ("70 %", "en", 0.7, None, "", "share"),
+        ("eight pieces of furniture", "en", 8, None, "", "pieces"),
+        ("mindestens 75,5 qm", "de", 75.5, None, "least", "area"),
+        ("60 bis 70 Quadratmeter", "de", 60, 70, "", "area"),
+        ("entre 60 y 70 metros", "es", 60, 70, "", "area"),
+        ("45 metros cuadrados como máximo", "es", 45, None, "most", "area"),
+        ("120平米", "zh", 120, None, "", "area"),
+        ("不超过60平方米", "zh", 60, None, "most", "area"),
     ],
 )
-def test_amounts(text, low, high, bound, unit):
-    (item,) = sentences(tokenize(text))[0]
-    assert item.number == pytest.approx(low)
-    assert item.high == (None if high is None else pytest.approx(high))
-    assert (item.bound, item.unit) == (bound, unit)
+def test_amounts(text, language, low, high, bound, unit):
+    (mark,) = amounts(text, language)
+    assert mark.number == pytest.approx(low)
+    assert mark.high == (None if high is None else pytest.approx(high))
+    assert (mark.bound, mark.value) == (bound, unit)
 
 
 @pytest.mark.parametrize(
-    ("wrong", "right"),
-    [("bedrom", "bedroom"), ("kichten", "kitchen"), ("batroom", "bathroom"), ("livign", "living"), ("balconny", "balcony")],
-)
-def test_typing_errors_are_repaired(wrong, right):
-    assert repair(tokenize(wrong))[0].text == right
+    ("wrong", "language", "right"),
+    [
+        ("bedrom", "en", ("bedroom",)), ("kichten", "en", ("kitchen",)), ("batroom", "en", ("bathroom",)), ("livign", "en", ("living",)), ("balconny", "en", ("balcony",)),
+        ("twobedroom", "en", ("two", "bedroom")), ("openkitchen", "en", ("open", "kitchen")), ("schlafzimer", "de", ("schlafzimmer",)), ("schlafzimmern", "de", ("schlafzimmer",)),
+        ("kuche", "de", ("kuche",)), ("dormitoro", "es", ("dormitorio",)), ("cosina", "es", ("cocina",)),
+    ],
+)  # fmt: skip
+def test_typing_errors_are_repaired(wrong, language, right):
+    assert resolve(wrong, language) == right
 
 
-@pytest.mark.parametrize("word", ["house", "couch", "both", "tall", "without", "xylophone"])
+@pytest.mark.parametrize("language", ["en", "de", "es"])
+def test_common_words_stay_as_they_are(language):
+    raw = yaml.safe_load((FOLDER / f"{language}.yaml").read_text(encoding="utf-8"))
+    words = [fold(w.strip()) for w in raw["common"].split(",")]
+    assert len(words) > 200
+    heard = listen(" ".join(words), language)
+    assert heard.texts == words
+
+
+@pytest.mark.parametrize("word", ["house", "couch", "both", "tall", "without", "xylophone", "flibbertigibbet"])
 def test_other_words_are_left_alone(word):
-    assert repair(tokenize(word))[0].text == word
+    assert listen(word, "en").texts == [word]
 
 
 def test_distance_is_a_bounded_metric():
@@ -57,11 +88,25 @@ def test_distance_is_a_bounded_metric():
     assert distance("hall", "halls", 2) == distance("halls", "hall", 2) == 1
 
 
-def test_plurals():
-    assert [plural(w) for w in ("balcony", "bath", "walk in closet", "wc", "library")] == [
-        "balconies",
-        "baths",
-        "walk in closets",
-        "wcs",
-        "libraries",
-    ]
+def test_text_is_cleaned_and_keeps_its_places():
+    text, places = clean("A\u200bB\u202eＣ\x00廳")
+    assert text == "abc 厅"
+    assert places == [0, 2, 4, 5, 6]
+    assert [(t.text, t.start, t.end) for t in tokenize("Küche, 12 m²")] == [("küche", 0, 5), (",", 5, 6), ("12", 7, 9), ("m²", 10, 12)]
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_lexicons_mean_what_they_say(language):
+    found = lexicon(language)
+    assert found.trie
+    assert {"near", "open", "door", "away", "between", "has"} <= {m.value for m in _meanings(found.trie) if m.kind == "cue"} | {
+        f[2] for f in found.frames
+    }
+
+
+def _meanings(node):
+    for key, value in node.items():
+        if key:
+            yield from _meanings(value)
+        else:
+            yield value

@@ -1,0 +1,97 @@
+"""Chinese word order: what stands in front of a head with 的, frames around their object, counts of a home's rooms ("三室两厅")."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from pipeline.floorplan.language.marks import Mark
+
+HEADS = {"room", "suite"}
+OF = "的"
+
+
+def rearrange(marks: list[Mark]) -> list[Mark]:
+    """Return the marks in the order of head, cue, object."""
+    return _possessed(_measured(_between(_counted(marks))))
+
+
+def _counted(marks: list[Mark]) -> list[Mark]:
+    """Read "三室两厅一厨两卫": bedrooms, living room (and dining room), kitchens, bathrooms. The count of bedrooms is the whole."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        made.append(mark)
+        if mark.kind == "room" and mark.value == "living_room/halls":
+            number = next((m for m in reversed(made[:-1][-2:]) if m.kind == "num"), None)
+            made[-1] = replace(mark, value="living_room")
+            if number is not None and number.number >= 2:
+                place = made.index(number)
+                made[place] = replace(number, number=1.0)
+                made += [Mark("join", "and", 0.0, False, mark.first, mark.first, "")]
+                made += [
+                    replace(number, number=number.number - 1.0),
+                    replace(mark, value="dining_room" if number.number == 2 else "family_room"),
+                ]
+                if number.number > 2:
+                    made[-2] = replace(number, number=1.0)
+        elif mark.kind == "room" and mark.value == "bedroom/count":
+            made[-1] = replace(mark, value="bedroom")
+            if not (k + 1 < len(marks) and marks[k + 1].kind == "home"):
+                made.append(Mark("home", "", 0.0, False, mark.first, mark.first, ""))
+    return made
+
+
+def _between(marks: list[Mark]) -> list[Mark]:
+    """Read "在厨房和客厅之间" as "between kitchen and living room"."""
+    made = list(marks)
+    for k, mark in enumerate(made):
+        if mark.kind == "cue" and mark.value == "between":
+            names = [j for j in range(max(0, k - 6), k) if made[j].kind in HEADS]
+            if len(names) >= 2:
+                start = names[-2]
+                while start and made[start - 1].kind in {"num", "clf", "adj", "size", "det"}:
+                    start -= 1
+                made = [*made[:start], mark, *made[start:k], *made[k + 1 :]]
+    return made
+
+
+def _measured(marks: list[Mark]) -> list[Mark]:
+    """Drop 的 between an amount or an adjective and its head: "20平米的客厅"."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        before = made[-1] if made else None
+        after = marks[k + 1] if k + 1 < len(marks) else None
+        if (
+            mark.text == OF
+            and before is not None
+            and after is not None
+            and before.kind in {"amount", "adj", "size", "bound", "flag", "look"}
+        ):
+            continue
+        made.append(mark)
+    return made
+
+
+def _possessed(marks: list[Mark]) -> list[Mark]:
+    """Read "主卧的卫生间" as "bathroom off the main bedroom" and "带阳台的客厅" as "living room with balcony"."""
+    made = list(marks)
+    k = 0
+    while k < len(made):
+        mark = made[k]
+        if mark.text == OF and mark.kind in {"fill", "of"} and k and made[k - 1].kind in HEADS:
+            head = k + 1
+            while head < len(made) and made[head].kind in {"num", "clf", "adj", "size", "det"}:
+                head += 1
+            if head < len(made) and made[head].kind in HEADS:
+                has = next((j for j in range(k - 1, max(-1, k - 6), -1) if made[j].kind == "cue" and made[j].value == "has"), None)
+                clause = [m for m in made[max(0, (has or 0)) : k] if m.kind in {"comma", "stop"}]
+                starts = has is not None and (has == 0 or made[has - 1].kind not in {"room", "suite", "pron", "home"}) and not clause
+                if has is not None and starts:
+                    made[has : head + 1] = [*made[k + 1 : head + 1], *made[has:k]]
+                    k = head
+                    continue
+                cue = replace(mark, kind="cue", value="door")
+                made[k - 1 : head + 1] = [*made[k + 1 : head + 1], cue, made[k - 1]]
+                k = head
+                continue
+        k += 1
+    return made

@@ -1,0 +1,393 @@
+"""What the cues of a sentence say about the rooms around them: joined, open, near, apart, owned, avoided, larger."""
+
+from __future__ import annotations
+
+from pipeline.floorplan.language.facts import Group, Reading
+from pipeline.floorplan.language.naming import fresh, name
+from pipeline.floorplan.language.phrases import Element
+from pipeline.floorplan.language.pointing import point
+from pipeline.floorplan.language.quantities import attach, belongs
+from pipeline.floorplan.language.relating import objects, relate
+
+SOCIAL = {"kitchen", "dining_room", "living_room", "family_room"}
+
+
+class Clause:
+    """Reads one sentence from left to right."""
+
+    def __init__(self, state: Reading, sentence: list[Element]) -> None:
+        self.state, self.sentence = state, sentence
+        self.stock = state.inventory
+        self.run: list[Element] = []  # the list of phrases in front of the next cue
+        self.subject: Group = ()
+        self.latest: Group = ()
+        self.objects: Group = ()
+        self.waiting: tuple[Element, Group] | None = None  # a cue in front of its subject: "next to the kitchen lies ..."
+        self.negative: Element | None = None
+        self.verb = self.relative = False
+        self.only: Element | None = None
+        self.factor: Element | None = None
+        self.owner = ""
+        self.owning = ""
+        first = next((e for e in sentence if e.kind in {"np", "level"}), None)
+        self.forward = first is not None and first.kind == "level"
+        self.level: int | None = None
+
+    def read(self) -> None:
+        """Read all elements."""
+        k = 0
+        while k < len(self.sentence):
+            e = self.sentence[k]
+            handler = getattr(self, f"_{e.kind}", None)
+            k = handler(k, e) if handler else k + 1
+        if self.waiting:
+            self._complete()
+        said = [tuple(e.ids) for e in self.sentence if e.ids and e.kind == "np"]
+        self.state.past = [*self.state.past, *said][-12:]
+
+    # one method per kind of element; each returns where reading goes on
+
+    def _np(self, k: int, e: Element) -> int:
+        if e.banned:
+            self._ban(e)
+            return k + 1
+        self.state.understood(e.first, e.last)
+        if e.role == "ensuite" and e.type == "bathroom" and not e.ids and self._predicate(k, e):
+            self.state.say("ensuite", (), self.latest, e)
+            return k + 1
+        if (
+            self.owner
+            and not e.ids
+            and ("own" in e.det or (self.owning and self.run and not e.det))
+            and e.type in {"bedroom", "bathroom", "kitchen"}
+        ):
+            ids = tuple(fresh(self.state, e, self.storey(k), self.owner))
+        else:
+            ids = tuple(name(self.state, self.sentence, k, self.storey(k)))
+        self._own(e, ids)
+        self._measure(e, ids)
+        self._push(k, e, ids)
+        if "open" in e.adjectives or "combined" in e.adjectives:
+            self._merge(k, e)
+        if e.adjectives & {"largest", "smallest"} and not self.factor:
+            others = tuple(r.id for r in self.stock.of(e.type))
+            self.state.say("largest" if "largest" in e.adjectives else "smallest", ids, others, e)
+        if "smaller" in e.adjectives:
+            rest = tuple(r.id for r in self.stock.of(e.type) if r.id not in ids)
+            self.state.say("area_order", rest[:1], ids, e, 1.0)
+        if "equal" in e.adjectives and len(ids) > 1:
+            self.state.say("area_equal", ids, (), e, 0.15)
+        return k + 1
+
+    def _push(self, k: int, e: Element, ids: Group) -> None:
+        """Take a group into the list in front of the next cue."""
+        before = next((x for x in reversed(self.sentence[:k]) if x.kind not in {"det", "size", "adj"}), None)
+        if (
+            before is None
+            or before.kind not in {"comma", "and", "or", "np", "amount", "open", "close", "colon"}
+            or not self.run
+            or before.kind == "colon"
+        ):
+            self.run = []
+            self.verb = False
+        self.run.append(e)
+        e.ids = list(ids)
+        self.latest = ids
+        if self.waiting and not set(ids) <= set(self.waiting[1]):
+            self.subject = tuple(dict.fromkeys((*self.subject, *ids))) if self.subject else ids
+        if not self.subject:
+            self.subject = ids
+
+    def _predicate(self, k: int, e: Element) -> bool:
+        """Whether "en suite" is said of a bathroom or a bedroom just named: "one of them en suite"."""
+        before = self.sentence[k - 1] if k else None
+        return before is not None and before.kind in {"np", "pron"} and not e.det and e.number is None
+
+    def _own(self, e: Element, ids: Group) -> None:
+        """Read "grandparents with their own bedroom, bathroom and small kitchen": what follows in the list is theirs."""
+        if not self.owner:
+            return
+        room = self.stock.get(ids[0])
+        if room.type == "bedroom" and "own" in e.det:
+            room.role = room.role or self.owner
+            self.owning = room.id
+        elif self.owning and room.type == "bathroom" and not room.role and not self.stock.owned(room.id):
+            self.give(ids, (self.owning,), e)
+        elif self.owning and room.type == "kitchen":
+            room.role = self.stock.get(self.owning).role
+            self.state.say("door", ids, (self.owning,), e)
+
+    def _measure(self, e: Element, ids: Group) -> None:
+        for mark in e.amounts:
+            whole = (e.compound and mark.last <= e.first) or belongs(self.state, self.sentence, e, mark)
+            self.state.understood(mark.first, mark.last)
+            self.state.amounts.append((mark, None if whole else ids))
+
+    def storey(self, k: int) -> int | None:
+        """Return the storey that is said of the phrase at k."""
+        if self.sentence[k].role == "landing":
+            return 1
+        if self.forward:
+            return self.level
+        for e in self.sentence[k + 1 :]:
+            if e.kind == "level":
+                return int(e.value)
+            if e.kind not in {"np", "and", "comma", "or", "det"}:
+                return None
+        return None
+
+    def _level(self, k: int, e: Element) -> int:
+        self.state.understood(e.first, e.last)
+        if self.forward:
+            self.level = int(e.value)
+            self.run = []
+        else:
+            for room in (self.stock.get(i) for i in self.latest if not i.startswith("*")):
+                room.level = int(e.value)
+        return k + 1
+
+    def _ban(self, e: Element) -> None:
+        self.state.understood(e.first, e.last)
+        if e.role == "ensuite":
+            self.state.say("no_ensuite", tuple(r.id for r in self.stock.of("bathroom")) or ("*bathroom",), (), e)
+        else:
+            self.state.banned.append((e.type, e))
+
+    def _home(self, k: int, e: Element) -> int:
+        self.state.understood(e.first, e.last)
+        self.state.homes.append(e)
+        if e.value and self.state.studio is None:
+            self.state.studio = e
+        for mark in e.amounts:
+            attach(self.state, self.sentence, k, mark, (), home=True)
+        self.run = []
+        return k + 1
+
+    def _amount(self, k: int, e: Element) -> int:
+        if e.mark is not None:
+            attach(self.state, self.sentence, k, e.mark, self.latest)
+        return k + 1
+
+    def _flag(self, k: int, e: Element) -> int:
+        self.state.understood(e.first, e.last)
+        self.state.flags.setdefault(e.value, e)
+        rooms = tuple(i for i in (self.latest or self.subject) if not i.startswith("*"))
+        negative = self.negated(k)
+        if e.value == "daylight" and rooms:
+            self.state.say("no_window" if negative else "window", rooms, (), e)
+        elif e.value == "only":
+            self.only = e
+            if self.state.facts and self.state.facts[-1].what in {"door", "leads"} and k and self.sentence[k - 1].kind == "np":
+                self.state.say("only", self.state.facts[-1].a, (), e)
+        elif e.value == "open_plan":
+            social = tuple(i for x in self.run for i in x.ids if not i.startswith("*") and self.stock.get(i).type in SOCIAL)
+            if len(social) > 1 and not negative:
+                self.state.say("merge", social, (), e)
+            else:
+                self._merge_after(k + 1, e)
+        return k + 1
+
+    def negated(self, k: int) -> bool:
+        """Whether a negation stands just in front of the element at k."""
+        return any(x.kind == "neg" for x in self.sentence[max(0, k - 3) : k])
+
+    def _owner(self, k: int, e: Element) -> int:
+        self.state.understood(e.first, e.last)
+        self.owner, self.owning = e.value, ""
+        return k + 1
+
+    def _verb(self, k: int, _: Element) -> int:
+        before = next((x for x in reversed(self.sentence[:k]) if x.kind not in {"word", "ignored", "flag"}), None)
+        if before is not None and before.kind in {"and", "comma"} and self.subject and self.objects:
+            self.run = []  # "the bedroom has a bath and is ...": the subject goes on
+        self.verb = True
+        return k + 1
+
+    def _relative(self, k: int, e: Element) -> int:
+        self.relative = True
+        self.state.understood(e.first, e.last)
+        return k + 1
+
+    def _neg(self, k: int, e: Element) -> int:
+        self.negative = e
+        return k + 1
+
+    def _comma(self, k: int, _: Element) -> int:
+        if not any(x.kind in {"cue", "cmp"} for x in self.sentence[k + 1 : k + 4]):
+            self.negative = None
+        if self.waiting and self.subject and self.waiting[0].value != "from" and self.verb:
+            self._complete()
+        return k + 1
+
+    def _zone(self, k: int, e: Element) -> int:
+        self.zone(k, e)
+        return k + 1
+
+    def zone(self, k: int, e: Element) -> None:
+        """Take the rooms of a zone into the list."""
+        self.state.understood(e.first, e.last)
+        kinds = {"bedroom": ("bedroom",), "living": ("living_room", "dining_room", "family_room"), "work": ("office", "meeting_room")}
+        members = tuple(r.id for r in self.stock.rooms if r.type in kinds.get(e.value, ()) or (r.type == "bedroom" and r.role == e.value))
+        e.ids = list(members) if members else [f"*zone_{e.value}"]
+        self.state.zones.setdefault(e.value, (members, e))
+        self._push(k, e, tuple(e.ids))
+
+    def _every(self, k: int, e: Element) -> int:
+        self.state.understood(e.first, e.last)
+        e.ids = ["*"]
+        self._push(k, e, ("*",))
+        return k + 1
+
+    def _det(self, k: int, e: Element) -> int:
+        if e.value in {"both", "each", "all"} and not any(x.kind == "np" for x in self.sentence[k + 1 : k + 2]):
+            return self._pron(k, Element("pron", "both" if e.value == "both" else "group", e.first, e.last, e.text))
+        return k + 1
+
+    def _pron(self, k: int, e: Element) -> int:
+        group = self.point(e, k, self.subject if e.value == "it" and (self.objects or self.run) else ())
+        if group:
+            self.state.understood(e.first, e.last)
+            self.run = [Element("np", "", e.first, e.last, e.text, ids=list(group))]
+            self.latest = group
+            if e.value in {"one", "rest", "group", "both", "some"} or not self.subject:
+                self.subject = group
+        return k + 1
+
+    def point(self, e: Element, k: int, but: Group) -> Group:
+        """Return the rooms that a pronoun stands for; as an object it does not point at the subject `but`."""
+        return point(self.state, self.sentence[:k], e, but)
+
+    def _enter(self, k: int, e: Element) -> int:
+        group, j = self.after(k + 1, "enter", ())
+        if not group and self.latest:
+            group, j = self.latest, k + 1
+        if group and not group[0].startswith(("*", "<")):
+            self.state.understood(e.first, e.last)
+            self.state.entrance = (group[0], e)
+            self.subject = self.latest = group
+            self.run = []
+            self.waiting = None
+        return max(j, k + 1)
+
+    def _outside(self, k: int, e: Element) -> int:
+        self.state.understood(e.first, e.last)
+        self.state.outside = (self.owning or next((i for i in self.latest), ""), e)
+        return k + 1
+
+    def _factor(self, k: int, e: Element) -> int:
+        self.state.understood(e.first, e.last)
+        self.factor = e
+        ahead = self.sentence[k + 1] if k + 1 < len(self.sentence) else None
+        if ahead is not None and ahead.kind == "np":
+            return self._cmp(k, e)
+        return k + 1
+
+    def _cmp(self, k: int, e: Element) -> int:
+        """Read "at least 1.5 times as large as the largest bedroom"."""
+        self.state.understood(e.first, e.last)
+        left = self.subject if (self.verb and self.subject) else (self.latest or self.subject)
+        if e.value == "alike":
+            rooms = tuple(i for x in self.run for i in x.ids) if len(self.latest) < 2 else self.latest
+            rooms = rooms if len(rooms) > 1 else self.subject
+            self.state.say("area_equal", tuple(i for i in rooms if not i.startswith("*")), (), e, 0.15)
+            return k + 1
+        right, j = self.after(k + 1, "cmp", left)
+        ahead = next((x for x in self.sentence[k + 1 : j] if x.kind == "np"), None)
+        if ahead is not None and "largest" in ahead.adjectives:
+            right = tuple(r.id for r in self.stock.of(ahead.type))
+        value = self.factor.number or 1.0 if self.factor else 1.0
+        if self.factor is None:
+            behind = self.sentence[j] if j < len(self.sentence) else None
+            if behind is not None and behind.kind == "factor":
+                value, j = behind.number or 1.0, j + 1
+        self.factor = None
+        a, b = (right, left) if e.value == "smaller" else (left, right)
+        if self.negative:
+            a, b, self.negative = b, a, None
+        if e.value == "equal" and a and b:
+            self.state.say("area_equal", (*a, *b), (), e, 0.15)
+        elif a and b:
+            for x in a:
+                self.state.say("area_order", (x,), tuple(i for i in b if i != x), e, value)
+        self.latest, self.run = right, []
+        return max(j, k + 1)
+
+    def _via(self, k: int, e: Element) -> int:
+        """Read "the only way into the bathroom is through the bedroom"."""
+        things, j = self.after(k + 1, "via", ())
+        hosts, j = self.after(j, "via", things)
+        if things and hosts:
+            self.state.say("door", things, hosts, e)
+            self.state.say("only", things, (), e)
+        return max(j, k + 1)
+
+    def _reciprocal(self, k: int, _: Element) -> int:
+        return k + 1
+
+    def _cue(self, k: int, e: Element) -> int:
+        return relate(self, k, e)
+
+    def _complete(self) -> None:
+        """Give a cue that stood in front of its subject what followed."""
+        assert self.waiting is not None
+        cue, group = self.waiting
+        self.waiting = None
+        rooms = tuple(i for i in self.subject if i not in group)
+        if rooms:
+            if self.negative:
+                self.state.say("ban" if cue.value in {"near", "wall"} else "not_connected", rooms, group, cue)
+            else:
+                self.state.say("door" if cue.value == "from" else cue.value, rooms, group, cue)
+                if self.only or cue.only:
+                    self.state.say("only", rooms, (), cue)
+
+    def _merge(self, k: int, e: Element) -> None:
+        """Read "open kitchen/living room" and "combined kitchen and living room"; an open kitchen alone is open to where one lives."""
+        listed = list(e.ids)
+        joined = False
+        for x in self.sentence[k + 1 :]:
+            if x.kind == "np" and joined and x.type in SOCIAL and not x.banned:
+                listed += name(self.state, self.sentence, self.sentence.index(x), self.storey(k))
+                joined = False
+            elif (
+                x.kind == "and"
+                or (x.kind == "comma" and e.type in SOCIAL and _and_follows(self.sentence, x))
+                or (x.kind == "cue" and x.value == "has" and len(listed) == 1)
+            ):
+                joined = True
+            else:
+                break
+        if len(dict.fromkeys(listed)) > 1 and e.type in SOCIAL:
+            self.state.say("merge", tuple(listed), (), e)
+        elif e.type == "kitchen":
+            self.state.say("open_kitchen", tuple(e.ids), (), e)
+
+    def _merge_after(self, k: int, e: Element) -> None:
+        listed = [
+            i
+            for x in self.sentence[k:]
+            if x.kind == "np" and x.type in SOCIAL
+            for i in name(self.state, self.sentence, self.sentence.index(x), None)
+        ]
+        if len(listed) > 1:
+            self.state.say("merge", tuple(listed), (), e)
+
+    def after(self, k: int, cue: str, left: Group) -> tuple[Group, int]:
+        """Return the rooms named after a cue, and where reading goes on."""
+        return objects(self, k, cue, left)
+
+    def give(self, things: Group, owners: Group, e: Element) -> None:
+        """Let rooms belong to others."""
+        self.stock.belongings.update(things)
+        self.state.say("own", things, owners, e)
+
+
+def _and_follows(sentence: list[Element], comma: Element) -> bool:
+    """Whether a comma parts a list of social rooms that an "and" closes: "open-plan living, dining and kitchen area"."""
+    k = next(i for i, x in enumerate(sentence) if x is comma)
+    for x in sentence[k + 1 :]:
+        if x.kind == "and":
+            return True
+        if x.kind != "comma" and not (x.kind == "np" and x.type in SOCIAL):
+            return False
+    return False

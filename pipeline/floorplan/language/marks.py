@@ -1,0 +1,229 @@
+"""From characters to marks: the phrases of a prompt with their meaning, numbers and amounts put together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, Lexicon, Meaning, lexicon
+from pipeline.floorplan.language.spelling import repair
+from pipeline.floorplan.language.text import Token, fold, tokenize
+
+STOPS = {".", "!", "?", ";"}
+PUNCTUATION = {
+    ",": "comma",
+    ":": "colon",
+    "(": "open",
+    ")": "close",
+    "/": "slash",
+    "&": "and",
+    "+": "and",
+    "•": "bullet",
+    "|": "comma",
+    "*": "bullet",
+}
+FOREIGN = STRONG | {"num", "adj", "cue"}  # what a word of another language may mean in a mixed prompt
+USUAL_HEIGHT = 15.0  # a length from here on, said of a room or a home, is an area ("60 metros")
+
+
+@dataclass(slots=True)
+class Mark:
+    """Words of a prompt and their meaning. `first`, `last`: tokens[first:last]. Amounts have `number`, `high`, `bound` and a unit in `value`."""
+
+    kind: str
+    value: str = ""
+    number: float = 0.0
+    plural: bool = False
+    first: int = 0
+    last: int = 0
+    text: str = ""
+    only: bool = False
+    high: float | None = None
+    bound: str = ""
+    side: float | None = None  # the shorter side of "4 x 5 m"
+    spans: tuple[tuple[int, int], ...] = field(default=())
+
+
+@dataclass
+class Words:
+    """The tokens of a prompt as they are read: cleaned words beside the places in the prompt, and the language."""
+
+    prompt: str
+    tokens: list[Token]
+    texts: list[str]
+    lexicon: Lexicon
+
+
+def listen(prompt: str, language: Language) -> Words:
+    """Return the words of a prompt, typing errors repaired."""
+    lex = lexicon(language)
+    tokens = tokenize(prompt)
+    tokens, texts = repair(tokens, [fold(t.text) for t in tokens], lex)
+    return Words(prompt, tokens, texts, lex)
+
+
+def segment(heard: Words) -> list[Mark]:
+    """Return the marks of a prompt in reading order."""
+    made: list[Mark] = []
+    i = 0
+    while i < len(heard.texts):
+        mark = _mark(heard, i)
+        if mark.last > i:
+            i = mark.last
+            if mark.kind != "hyphen":
+                made.append(mark)
+        else:
+            i += 1
+    return _amounts(_numbers(made, heard), heard)
+
+
+def _mark(heard: Words, i: int) -> Mark:  # noqa: PLR0911 - one branch per case: a grammar
+    token, text, lex = heard.tokens[i], heard.texts[i], heard.lexicon
+    found = lex.find(heard.texts, i)
+    if token.number is not None and (found is None or found[0] == i + 1):
+        return Mark("num", "figure", token.number, False, i, i + 1, text)
+    if found is not None:
+        end, meaning, only = found
+        return _meant(heard, i, end, meaning, only)
+    if text == "\n":
+        return Mark("line", "", 0.0, False, i, i + 1, text)
+    if text in STOPS:
+        after = heard.texts[i + 1] if i + 1 < len(heard.texts) else "\n"
+        short = text == "." and i > 0 and heard.texts[i - 1] in lex.abbreviations and after != "\n"
+        return Mark("hyphen" if short else "stop", "", 0.0, False, i, i + 1, text)
+    if text in {"-", "–", "—", "~", "="}:
+        spaced = i > 0 and heard.tokens[i - 1].end < token.start and i + 1 < len(heard.texts) and heard.tokens[i + 1].start > token.end
+        numbers = i > 0 and heard.tokens[i - 1].number is not None
+        kind = "dash" if numbers or text == "~" else ("comma" if spaced else "hyphen")
+        if i == 0 or heard.texts[i - 1] == "\n":
+            kind = "bullet"
+        return Mark(kind, "", 0.0, False, i, i + 1, text)
+    if text in PUNCTUATION:
+        kind = PUNCTUATION[text]
+        return Mark("join", "and", 0.0, False, i, i + 1, text) if kind == "and" else Mark(kind, "", 0.0, False, i, i + 1, text)
+    for other in LANGUAGES:
+        if other != lex.language:
+            foreign = lexicon(other).find(heard.texts, i)
+            if foreign is not None and foreign[1].kind in FOREIGN and (foreign[1].kind in STRONG or foreign[0] > i + 1 or len(text) > 3):
+                return _meant(heard, i, foreign[0], foreign[1], foreign[2])
+    return Mark("word", "", 0.0, False, i, i + 1, text)
+
+
+def _meant(heard: Words, i: int, end: int, meaning: Meaning, only: bool) -> Mark:
+    text = " ".join(heard.texts[i:end])
+    return Mark(meaning.kind, meaning.value, meaning.number, meaning.plural, i, end, text, only)
+
+
+def _numbers(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Put number words together: "one hundred and ten", "setenta y cinco", "二十五"."""
+    made: list[Mark] = []
+    k = 0
+    while k < len(marks):
+        mark = marks[k]
+        if mark.kind != "num" or mark.value == "figure":
+            made.append(mark)
+            k += 1
+            continue
+        total, current, end = 0.0, mark.number, k + 1
+        if mark.number >= 100:
+            total, current = mark.number, 0.0
+        while end < len(marks):
+            ahead = marks[end]
+            joined = ahead.kind == "join" and ahead.value == "and" and end + 1 < len(marks) and marks[end + 1].kind == "num"
+            if joined and (current >= 20 or (total >= 100 and not current)) and marks[end + 1].value != "figure":
+                ahead, step = marks[end + 1], 2
+            else:
+                step = 1
+            if ahead.kind != "num" or ahead.value == "figure":
+                break
+            value = ahead.number
+            if value >= 100:
+                total, current = total + max(current, 1.0) * value, 0.0
+            elif value == 10 and heard.lexicon.language == "zh" and 0 < current < 10:
+                current *= 10
+            elif current == 0 or (current % 10 == 0 and value < 10 and current >= 10):
+                current += value
+            else:
+                break
+            end += step
+        made.append(
+            replace(mark, number=total + current, last=marks[end - 1].last, text=" ".join(heard.texts[mark.first : marks[end - 1].last]))
+        )
+        k = end
+    return made
+
+
+def _amounts(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Put amounts together: "at least 18 m²", "10 to 12 m²", "4 x 5 m", "seven square metres or more"."""
+    made: list[Mark] = []
+    k = 0
+    while k < len(marks):
+        if (
+            k + 1 < len(marks)
+            and marks[k].kind == "num"
+            and marks[k + 1].kind == "times"
+            and len(marks[k + 1].text) > (heard.lexicon.language != "zh")
+        ):
+            made.append(Mark("factor", "", marks[k].number, False, marks[k].first, marks[k + 1].last, marks[k].text))
+            k += 2
+            continue
+        found = _amount(marks, k, heard.lexicon)
+        if found is None:
+            made.append(marks[k])
+            k += 1
+        else:
+            mark, end = found
+            mark.first, mark.last = marks[k].first, marks[end - 1].last
+            mark.text = " ".join(heard.texts[mark.first : mark.last])
+            made.append(mark)
+            k = end
+    return made
+
+
+def _amount(marks: Sequence[Mark], k: int, lex: Lexicon) -> tuple[Mark, int] | None:  # noqa: PLR0912 - one branch per case: a grammar
+    bound, i, ranged = "", k, False
+    while i < len(marks) and (
+        marks[i].text in lex.bounds
+        or marks[i].text in lex.range_from
+        or (i > k and marks[i].kind in {"fill", "det"} and marks[i].value in {"", "indefinite"})
+    ):
+        if marks[i].text in lex.bounds:
+            bound = {"least": "least", "or_more": "least", "most": "most", "or_less": "most"}.get(
+                lex.bounds[marks[i].text], bound or "about"
+            )
+        ranged = ranged or marks[i].text in lex.range_from
+        i += 1
+        if i - k > 4:
+            return None
+    if i >= len(marks) or marks[i].kind != "num":
+        return None
+    low, i = marks[i].number, i + 1
+    high = side = None
+    unit = None
+    if i < len(marks) and marks[i].kind == "hyphen":
+        i += 1
+    if i < len(marks) and marks[i].kind == "unit":
+        unit, i = marks[i], i + 1
+    if i + 1 < len(marks) and marks[i + 1].kind == "num" and marks[i].kind != "comma":
+        after = marks[i + 2] if i + 2 < len(marks) else None
+        same = after is not None and after.kind == "unit" and (unit is None or after.value == unit.value)
+        joins = marks[i].kind == "dash" or marks[i].text in lex.range_to
+        crossed = marks[i].kind == "times" or marks[i].text in {"x", "by"}
+        if same and after is not None and ((joins and marks[i + 1].number > low) or crossed):
+            if crossed:
+                side, low = min(low, marks[i + 1].number), low * marks[i + 1].number
+            else:
+                high = marks[i + 1].number
+            unit, i = after, i + 3
+    if unit is None:
+        return None
+    behind = lex.bounds.get(marks[i].text, "about") if i < len(marks) else "about"
+    if behind != "about" and not (i + 1 < len(marks) and marks[i + 1].kind == "num"):
+        bound, i = ("least" if behind in {"or_more", "least"} else "most"), i + 1
+    factor, value = unit.number, unit.value
+    if side is not None and value == "length":
+        return Mark("amount", "area", low * factor * factor, bound=bound, side=side * factor), i
+    if value == "length" and factor >= 0.3 and low * factor >= USUAL_HEIGHT:
+        value, factor = "area", (1.0 if factor == 1.0 else 0.092903)
+    top = None if high is None else high * factor
+    return Mark("amount", value, low * factor, high=top, bound=bound), i

@@ -1,0 +1,86 @@
+"""What is ruled out: the scope of "no", "without" and their like over a list of rooms."""
+
+from __future__ import annotations
+
+from pipeline.floorplan.language.phrases import Element
+
+BEFORE_CUE = {"near", "door", "open", "wall", "away", "leads", "between"}
+
+
+def ban(sentence: list[Element]) -> None:
+    """Mark the noun phrases that are ruled out, and turn bounds that a negation turns."""
+    for k, e in enumerate(sentence):
+        if e.kind == "neg":
+            j = _target(sentence, k + 1)
+            if j is None:
+                continue
+            phrase = sentence[j]
+            if any(m.bound in {"least", "most"} for m in phrase.amounts):
+                for m in phrase.amounts:
+                    m.bound = {"least": "most", "most": "least"}.get(m.bound, m.bound)
+                e.kind = "used"
+            elif not _related(sentence, j) and not phrase.definite:
+                e.kind = "used"
+                _list(sentence, j)
+        elif e.kind == "needless":
+            for j in range(k - 1, -1, -1):
+                if sentence[j].kind == "np":
+                    sentence[j].banned = True
+                    if not (j and sentence[j - 1].kind in {"and", "or"}):
+                        break
+                elif sentence[j].kind not in {"and", "or", "verb", "neg", "det"}:
+                    break
+
+
+def _target(sentence: list[Element], k: int) -> int | None:
+    """Return the noun phrase that a negation in front of k rules out; None where it turns a cue or says nothing of rooms."""
+    for j in range(k, len(sentence)):
+        e = sentence[j]
+        if e.kind == "np":
+            return j
+        if e.kind == "cue" and e.value == "has":
+            continue
+        if e.kind not in {"verb", "adj", "det", "owner", "size", "word", "relative"}:
+            return None
+    return None
+
+
+def _related(sentence: list[Element], j: int) -> bool:
+    """Whether a relation follows at once, which is what is negated: "no kitchen next to the bedroom"."""
+    for e in sentence[j + 1 :]:
+        if e.kind == "verb":
+            continue
+        return e.kind == "cue" and e.value in BEFORE_CUE and e.text not in {"inside", "within", "on"}
+    return False
+
+
+def _list(sentence: list[Element], j: int) -> None:
+    """Mark a list under one negation: "no balcony, garage or cellar"."""
+    sentence[j].banned = True
+    joined = ""
+    for i in range(j + 1, len(sentence)):
+        e = sentence[i]
+        if e.kind in {"comma", "and", "or"}:
+            joined = e.kind if joined != "or" else joined
+        elif e.kind == "np" and joined:
+            bare = e.number is None and not e.amounts and not e.definite and not e.det & {"own", "another"}
+            free = bare and (joined == "or" or not e.det & {"indefinite"}) and not e.adjectives & {"open", "combined"}
+            if joined == "comma":
+                free = free and _closes(sentence, i + 1)
+            own = i + 1 < len(sentence) and sentence[i + 1].kind in {"cue", "verb", "neg"} and joined != "or"
+            if not free or own:
+                return
+            e.banned = True
+            joined = ""
+        elif e.kind != "det":
+            return
+
+
+def _closes(sentence: list[Element], i: int) -> bool:
+    """Whether the list goes on to an "or"."""
+    for e in sentence[i:]:
+        if e.kind == "or":
+            return True
+        if e.kind not in {"np", "comma", "det"}:
+            return False
+    return False

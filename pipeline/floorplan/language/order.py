@@ -1,0 +1,109 @@
+"""Word order: marks of a language are brought into the order that the grammar reads (head, cue, object)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from pipeline.floorplan.language.chinese import rearrange as chinese
+from pipeline.floorplan.language.marks import Mark, Words
+
+ENDS = {"stop", "line", "colon"}
+FARTHEST = 14  # marks between the two parts of a frame
+
+
+def reorder(marks: list[Mark], heard: Words) -> list[Mark]:
+    """Return the marks in the order that the grammar reads."""
+    framed = _frames(marks, heard)
+    rules: dict[str, Callable[[list[Mark]], list[Mark]]] = {"de": _german, "es": _spanish, "zh": chinese}
+    rule = rules.get(heard.lexicon.language)
+    return rule(framed) if rule else framed
+
+
+def _frames(marks: list[Mark], heard: Words) -> list[Mark]:
+    """Make one cue of its two parts: "an ... grenzt" stands where "an" stood."""
+    made = list(marks)
+    if not heard.lexicon.frames:
+        return made
+    k = 0
+    while k < len(made):
+        found = _frame(made, k, heard)
+        if found is not None:
+            cue, after_first, second, after_second = found
+            first = replace(made[k], kind="cue", value=cue, last=made[after_first - 1].last, number=0.0)
+            only = any(m.text in {"nur", "solo", "只", "只能", "only", "ausschliesslich"} for m in made[max(0, k - 2) : k])
+            first.only = first.only or only
+            tail = [m for m in made[second:after_second] if m.kind in ENDS]
+            made[k:after_second] = [first, *made[after_first:second], *tail]
+        k += 1
+    return made
+
+
+def _frame(marks: list[Mark], k: int, heard: Words) -> tuple[str, int, int, int] | None:
+    for first, second, cue in heard.lexicon.frames:
+        start = _matches(marks, k, first)
+        if start is None:
+            continue
+        named = False
+        for j in range(start, min(len(marks), start + FARTHEST)):
+            if marks[j].kind in ENDS or (
+                marks[j].kind == "cue" and marks[j].value not in {"has", "in", "door"} and _matches(marks, j, second) is None
+            ):
+                break
+            end = _matches(marks, j, second) if named else None
+            if end is not None:
+                return cue, start, j, end
+            named = named or marks[j].kind in {"room", "suite", "pron", "every", "zone"}
+    return None
+
+
+def _matches(marks: list[Mark], k: int, wanted: tuple[str, ...]) -> int | None:
+    """Return where the marks go on after the words wanted, where they stand at k; adverbs between them are skipped."""
+    need = list(wanted)
+    while need and k < len(marks):
+        have = marks[k].text.split()
+        if have == need[: len(have)]:
+            need = need[len(have) :]
+        elif len(need) == len(wanted) or marks[k].kind not in {"adverb", "flag"}:
+            return None
+        k += 1
+    return None if need else k
+
+
+def _german(marks: list[Mark]) -> list[Mark]:
+    """Read "vier gleich große Zimmer" as bedrooms, and "25 m² großes Wohnzimmer" with its area behind the head."""
+    made = list(marks)
+    for k, mark in enumerate(made):
+        described = k > 1 and made[k - 1].kind in {"adj", "size"} and any(m.kind == "num" for m in made[max(0, k - 4) : k])
+        if mark.kind == "unit" and mark.value == "rooms" and described:
+            made[k] = replace(mark, kind="room", value="bedroom", plural=True)
+        if (
+            mark.kind == "det"
+            and mark.text in {"die", "den"}
+            and k + 1 < len(made)
+            and made[k + 1].kind == "room"
+            and made[k + 1].text.endswith("zimmer")
+        ):
+            made[k + 1] = replace(made[k + 1], plural=mark.text == "die")
+    return made
+
+
+def _spanish(marks: list[Mark]) -> list[Mark]:
+    """Read adjectives behind their noun: "dormitorio principal", "cocina abierta", "baño propio"."""
+    made: list[Mark] = []
+    for mark in marks:
+        before = made[-1] if made else None
+        behind = (before is not None and before.kind in {"room", "suite", "post"}) or (
+            before is not None and before.kind == "size" and before.value == "post"
+        )
+        if behind and mark.kind == "adj":
+            made.append(replace(mark, kind="post"))
+        elif behind and mark.kind == "det" and mark.value in {"own", "another"}:
+            made.append(replace(mark, kind="post", value="own"))
+        elif behind and mark.kind == "size":
+            made.append(replace(mark, value="post"))
+        elif behind and mark.kind == "adverb" and mark.text in {"muy", "mas", "bastante", "totalmente", "completamente"}:
+            continue
+        else:
+            made.append(mark)
+    return made

@@ -1,0 +1,167 @@
+"""What rooms have: "a bedroom with its own bathroom", "the living room has a terrace"."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from pipeline.floorplan.language.facts import PERSONAL, Group
+from pipeline.floorplan.language.naming import name
+from pipeline.floorplan.language.phrases import Element
+
+if TYPE_CHECKING:
+    from pipeline.floorplan.language.clauses import Clause
+
+HOSTS = {
+    "living_room",
+    "family_room",
+    "studio_room",
+    "dining_room",
+    "kitchen",
+    "hallway",
+    "entry",
+    "office",
+    "garage",
+    "media_room",
+    "bathroom",
+}
+
+
+def measures(clause: Clause, e: Element) -> None:
+    """Note the areas of a phrase."""
+    for mark in e.amounts:
+        clause.state.understood(mark.first, mark.last)
+        clause.state.amounts.append((mark, tuple(e.ids)))
+    e.amounts = []
+
+
+def has(clause: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one branch per case: a grammar
+    """Read "X with its own bathroom", "the living room has a terrace": rooms that hang on the one named before."""
+    sentence, stock = clause.sentence, clause.stock
+    before = next((x for x in reversed(sentence[:k]) if x.kind in {"np", "home", "pron", "every", "det", "level"}), None)
+    if before is None or before.kind in {"home", "level"} or not (clause.run or clause.subject):
+        return k + 1
+    if clause.run and sentence[k - 1].kind == "comma" and not clause.verb:
+        return k + 1
+    owners = tuple(i for i in (clause.run[-1].ids if clause.run else clause.subject) if not i.startswith("*"))
+    if clause.run and len(clause.run) > 1 and (clause.verb or e.text in {"have", "both have"}):
+        listed = tuple(i for x in clause.run for i in x.ids if not i.startswith("*"))
+        owners = listed if not any(x.part for x in clause.run) and {stock.get(i).type for i in listed} == {"bedroom"} else owners
+    if not owners:
+        return k + 1
+    kind = stock.get(owners[0]).type
+    negative = clause.negated(k)
+    clause.negative = None
+    if kind == "bedroom":
+        return _belongs(clause, k, e, owners) if not negative else k + 1
+    ahead = _next_phrase(sentence, k + 1)
+    if ahead is None or kind not in HOSTS or len(owners) > 1 or sentence[ahead].banned:
+        return k + 1
+    thing = sentence[ahead]
+    if kind == "kitchen" and thing.type == "dining_room" and thing.text != "dining room":
+        stock.get(owners[0]).functions.add("dining")
+        clause.state.understood(thing.first, thing.last)
+        return ahead + 1
+    if kind == "studio_room" and thing.type == "kitchen":
+        stock.get(owners[0]).functions.add("cooking")
+        thing.banned = True
+        clause.state.understood(thing.first, thing.last)
+        return ahead + 1
+    if thing.type in {"bedroom", "living_room", "family_room", "garage"} or (thing.ids and thing.definite):
+        return k + 1
+    ids = tuple(name(clause.state, sentence, ahead, clause.storey(ahead)))
+    clause.state.understood(e.first, thing.last)
+    opened = thing.type in {"kitchen", "dining_room"} and kind in {"living_room", "kitchen", "dining_room", "studio_room", "family_room"}
+    clause.state.say("open" if opened else "door", ids, owners, e)
+    measures(clause, thing)
+    clause.latest, clause.run, clause.subject = ids, [thing], clause.subject or owners
+    return ahead + 1
+
+
+def _next_phrase(sentence: list[Element], k: int) -> int | None:
+    for j in range(k, len(sentence)):
+        if sentence[j].kind == "np":
+            return j
+        if sentence[j].kind not in {"det", "size", "adj", "flag", "verb", "word", "amount"}:
+            return None
+    return None
+
+
+def _belongs(clause: Clause, k: int, e: Element, owners: Group) -> int:
+    """Give bedrooms what follows: bathrooms, closets, balconies, as many as there are owners."""
+    sentence, stock = clause.sentence, clause.stock
+    j, end, joined = k + 1, k + 1, ""
+    given: Group = ()
+    while j < len(sentence):
+        x = sentence[j]
+        if x.kind == "np":
+            if x.type == "bedroom" and not given and not x.ids and any(y.suite for y in sentence[:k]):
+                x.ids = list(owners)
+                clause.state.understood(x.first, x.last)
+                measures(clause, x)
+                joined, end = "", j + 1
+                j += 1
+                continue
+            if x.banned or x.type not in PERSONAL or (given and not joined):
+                break
+            own = bool(x.det & {"own"})
+            public = x.role in {"shared", "guest"} or (x.number or 1) > len(owners) or x.definite
+            if public or (joined == "comma" and not own and not _list_ends(sentence, j)):
+                break
+            if joined == "and" and not own and x.number is not None:
+                break
+            if joined and x.type == "wc" and not own:
+                break
+            ids = _things(clause, j, owners)
+            clause.state.understood(e.first, e.last)
+            clause.state.understood(x.first, x.last)
+            hosts = given if "through" in x.adjectives and given else owners
+            clause.give(ids, hosts, x)
+            measures(clause, x)
+            given, joined, end = ids, "", j + 1
+        elif x.kind in {"and", "comma"}:
+            joined = "and" if x.kind == "and" or joined == "and" else "comma"
+        elif x.kind == "amount" and not given and x.value in {"area", "length"} and x.mark is not None:
+            clause.state.amounts.append((x.mark, owners))
+            clause.state.understood(x.first, x.last)
+            end, joined = j + 1, ""
+        elif x.kind not in {"det", "size", "adj", "word", "flag"} and not (x.kind == "cue" and x.value == "has"):
+            break
+        j += 1
+    if given:
+        clause.latest, clause.subject, clause.objects = given, owners, given
+        clause.run = [Element("np", "", e.first, e.last, "", ids=list(given), type=stock.get(given[0]).type)]
+        clause.verb = False
+    return end
+
+
+def _list_ends(sentence: list[Element], j: int) -> bool:
+    """Whether "and" with a personal room closes the list that the phrase at j stands in: "with a bath, closet and balcony"."""
+    for x in sentence[j + 1 :]:
+        if x.kind == "and":
+            return True
+        if not (x.kind in {"comma", "det"} or (x.kind == "np" and x.type in PERSONAL)):
+            return False
+    return False
+
+
+def _things(clause: Clause, j: int, owners: Group) -> Group:
+    """Return one room for each owner: those that were counted first, then new ones."""
+    x, stock = clause.sentence[j], clause.stock
+    ids = list(x.ids)
+    role = x.role if x.role == "primary" and len(owners) == 1 else ""
+    slots = [r for r in stock.of(x.type) if r.open_slot and r.id not in ids and not stock.owned(r.id)]
+    if not ids and x.number is None and not slots and len(owners) == 1 and "own" not in x.det and x.definite:
+        ids = name(clause.state, clause.sentence, j, None)
+    while len(ids) < len(owners):
+        if slots:
+            room = slots.pop(0)
+            room.open_slot, room.surface = False, x.text
+        else:
+            room = stock.add(x.type, role, x.text, None)
+            room.level = stock.get(owners[0]).level
+        ids.append(room.id)
+    x.ids = ids[: len(owners)] if len(ids) > len(owners) and x.type == "bathroom" else ids
+    if x.size != 1.0:
+        for room in (stock.get(i) for i in x.ids):
+            room.size = x.size
+    return tuple(x.ids)

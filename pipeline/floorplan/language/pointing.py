@@ -1,0 +1,37 @@
+"""Which rooms a pronoun stands for."""
+
+from __future__ import annotations
+
+from pipeline.floorplan.language.facts import Group, Reading
+from pipeline.floorplan.language.phrases import Element
+
+
+def point(state: Reading, before: list[Element], e: Element, but: Group) -> Group:
+    """Return the rooms that a pronoun stands for after the elements `before`; as an object it does not point at the subject `but`."""
+    here = [tuple(x.ids) for x in before if x.kind in {"np", "zone"} and x.ids]
+    heard = [*state.past, *here]
+    if e.value == "it":
+        if here and but:
+            return next((g for g in reversed(heard) if not set(g) & set(but)), ())
+        if but:
+            return next((g for g in reversed(state.past) if not set(g) & set(but)), ())
+        return here[0] if here else (state.past[-1] if state.past else ())
+    if e.value == "both":
+        pair: Group = next((g for g in reversed(heard) if len(g) == 2), ())
+        single = dict.fromkeys(i for g in reversed(heard) for i in g if i not in but)
+        return pair if pair and pair == heard[-1] else (tuple(single)[:2] if len(single) > 1 else pair)
+    plural: Group = next((g for g in reversed(heard) if len(g) > 1), heard[-1] if heard else ())
+    if e.value in {"one", "rest", "some"} and plural and not plural[0].startswith("*"):
+        return _part(state, e, plural)
+    return plural
+
+
+def _part(state: Reading, e: Element, plural: Group) -> Group:
+    """Return one of a group, or those of it that nothing was said of yet."""
+    kind = state.inventory.get(plural[0]).type
+    free = [r for r in state.inventory.of(kind) if r.open_slot]
+    if e.value != "one":
+        return tuple(r.id for r in free) or plural
+    for room in free[:1]:
+        room.open_slot = False
+    return tuple(r.id for r in free[:1])

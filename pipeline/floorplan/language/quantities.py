@@ -1,0 +1,72 @@
+"""What an amount measures: the room beside it, or the whole home."""
+
+from __future__ import annotations
+
+from pipeline.floorplan.defaults import DEFAULTS
+from pipeline.floorplan.language.facts import Group, Reading
+from pipeline.floorplan.language.marks import Mark
+from pipeline.floorplan.language.phrases import Element
+
+WHOLE = 1.6  # an area of so many usual areas of the room in front of it, set off by a comma, is the home's
+
+
+def belongs(state: Reading, sentence: list[Element], e: Element, mark: Mark) -> bool:
+    """Whether an amount right behind a room measures the home: "... kitchen and bath 85 m²"."""
+    if mark.value != "area" or not e.ids or mark.last <= e.first:
+        return False
+    usual = sum(DEFAULTS[state.inventory.get(i).type].area for i in e.ids)
+    k = next(i for i, x in enumerate(sentence) if x is e)
+    rooms = [x for x in sentence if x.kind == "np"]
+    measured = [x for x in rooms if x.amounts]
+    last = not any(x.kind == "np" for x in sentence[k + 1 :])
+    total = k + 1 < len(sentence) and sentence[k + 1].kind == "flag" and sentence[k + 1].value == "total"
+    return total or (len(rooms) > 2 and len(measured) == 1 and last and mark.number > 2.5 * usual)
+
+
+def attach(state: Reading, sentence: list[Element], k: int, mark: Mark, latest: Group, home: bool = False) -> None:  # noqa: PLR0911 - one branch per case: a grammar
+    """Attach an amount that stands by itself, or behind the word for the home."""
+    state.understood(mark.first, mark.last)
+    if mark.value == "storeys":
+        if mark.number >= 1:
+            state.storeys = state.storeys or (int(mark.number), mark)
+        return
+    if mark.value == "rooms":
+        state.rooms = state.rooms or (int(mark.number), mark)
+        return
+    if mark.value == "car":
+        return
+    around = [x for x in sentence[max(0, k - 2) : k + 2] if x.kind == "flag"]
+    if any(x.value == "total" for x in around):
+        state.amounts.append((mark, None))
+        return
+    if mark.value == "length":
+        before = next((x for x in reversed(sentence[:k]) if x.kind in {"flag", "np"} and x.value not in {"wide", "only"}), None)
+        after = sentence[k + 1] if k + 1 < len(sentence) else None
+        for x in (before, after):
+            if x is not None and x.kind == "flag" and x.value in {"doors", "corridors"}:
+                state.amounts.append(
+                    (Mark(mark.kind, x.value, mark.number, False, mark.first, mark.last, mark.text, bound=mark.bound), None)
+                )
+                return
+    rooms = tuple(i for i in latest if not i.startswith(("*", "<")))
+    if home or not rooms:
+        state.amounts.append((mark, None))
+        return
+    if _closes(state, sentence, k, mark, rooms):
+        state.amounts.append((mark, None))
+        return
+    state.amounts.append((mark, rooms))
+
+
+def _closes(state: Reading, sentence: list[Element], k: int, mark: Mark, rooms: Group) -> bool:
+    """Whether an area set off by a comma or a colon is the home's: more than the room in front would take."""
+    if mark.value != "area" or not k:
+        return False
+    loose = sentence[k - 1].kind in {"comma", "and"}
+    if not loose:
+        return False
+    usual = sum(DEFAULTS[state.inventory.get(i).type].area for i in rooms)
+    named = [x for x in sentence[:k] if x.kind == "np"]
+    home = any(x.kind == "home" for x in sentence[:k])
+    measured = any(x.amounts for x in named)
+    return not measured and mark.number > WHOLE * usual and (home or (len(named) > 1 and mark.number > 2.5 * usual))
