@@ -25,6 +25,7 @@ FOLDER = Path(__file__).resolve().parents[3] / "manifests" / "lexicon"
 Language = Literal["en", "de", "es", "zh"]
 LANGUAGES: tuple[Language, ...] = get_args(Language)
 Phrases = Mapping[str | int | float, str]
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the one in C is eight times as fast
 STRONG = frozenset({"room", "suite", "home"})
 
 
@@ -253,7 +254,7 @@ def lexicon(language: Language) -> Lexicon:
     """Return the lexicon of a language. Raises ContentError when its file is not as described."""
     path = FOLDER / f"{language}.yaml"
     try:
-        raw = yaml.load(path.read_text(encoding="utf-8"), getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # noqa: S506 - both loaders are safe
+        raw = LOADER(path.read_text(encoding="utf-8")).get_single_data()
         entries = _Entries.model_validate(raw)
         for key in entries.rooms:
             if not {part.split("/")[0] for part in key.split("+")} <= set(get_args(RoomType)):

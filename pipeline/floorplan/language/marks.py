@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, Lexicon, Meaning, lexicon
+from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, Lexicon, lexicon
+from pipeline.floorplan.language.meaning import Meaning
 from pipeline.floorplan.language.spelling import repair
 from pipeline.floorplan.language.text import Token, fold, tokenize
 
