@@ -53,6 +53,11 @@ class Taxonomy:
         """Names of the layout model's categories, in class order."""
         return tuple(c.name for c in self.categories.values() if c.layout)
 
+    @property
+    def small(self) -> frozenset[str]:
+        """Names of the categories that the layout model does not learn."""
+        return frozenset(c.name for c in self.categories.values() if not c.layout)
+
     def from_future(self, name: str) -> str | None:
         """Return the category for a 3D-FUTURE name of any spelling, or None."""
         wanted = normalise(name)

@@ -18,6 +18,7 @@ OBJECTS = Table(
         Column("size", VEC3, "full extents (w, d, h)", "m", "object"),
         Column("scale", VEC3, "factor on the asset's own size; 1 for articulated assets", "", "object"),
         Column("openable", pa.bool_(), "has a door, drawer or lid that opens"),
+        Column("support", pa.string(), "object that it stands on or in; empty: the floor, a wall, the ceiling"),
         Column("latent", LATENT, "the shape latent that the layout model asked for; zeros in training tables"),
         Column("retrieval_distance", pa.float64(), "distance of the match, see pipeline/retrieval"),
         Column("source_id", pa.string(), "id of the object in its source; empty for generated homes"),

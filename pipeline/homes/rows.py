@@ -75,6 +75,7 @@ def object_row(scene_id: str, placement: Placement, *, openable: bool) -> Row:
         "size": placement.size.tolist(),
         "scale": placement.scale.tolist(),
         "openable": openable,
+        "support": "",
         "latent": placement.latent.tolist(),
         "retrieval_distance": placement.retrieval_distance,
         "source_id": "",

@@ -17,6 +17,7 @@ from pipeline.sources.front_floor import Floor, outline
 from pipeline.sources.front_objects import Model, Placed, overlapping, placed
 from pipeline.sources.front_poses import yaw_and_tilt
 from pipeline.sources.front_rows import ReadRoom, object_row, opening_row, room_row, scene_row
+from pipeline.sources.front_supports import floating, supports
 from pipeline.sources.front_walkable import HEIGHT, STEP, walkable
 from pipeline.sources.guarded import Folder, read_json
 from pipeline.sources.identity import slug
@@ -76,7 +77,7 @@ def rows_of(house: HouseFile, rooms: list[ReadRoom], rows: HouseRows, taxonomy: 
         row["walkable_free"] = share
     rows.openings = [opening_row(scene_id, o) for o in openings]
     rows.objects = [
-        object_row(scene_id, room.room_id, k, o, f"{house.uid}/{room.record.instance}/{o.child.instance}")
+        object_row(scene_id, room, k, f"{house.uid}/{room.record.instance}/{o.child.instance}")
         for room in rooms
         for k, o in enumerate(room.objects)
     ]
@@ -187,7 +188,7 @@ def _fill(
                 rejects.append(reject("room", where, reason, f"{count} of {len(room.record.children)} children"))
         if len(candidates) > MAX_OBJECTS:
             raise SourceError("too_large", where, f"{len(candidates)} objects in {where}")
-        dropped = overlapping(candidates, limits)
+        dropped = overlapping(candidates, limits, taxonomy.small)
         for i, made in enumerate(candidates):
             name = f"{where}/{made.child.instance}"
             if i in dropped:
@@ -197,6 +198,18 @@ def _fill(
                 continue
             rejects.extend(reject("object", name, reason, detail) for reason, detail in made.notes)
             room.objects.append(made)
+        _support(room, taxonomy, where, rejects)
+
+
+def _support(room: ReadRoom, taxonomy: Taxonomy, where: str, rejects: list[Row]) -> None:
+    """Find what the room's objects stand on; small things whose support was left out are left out as well."""
+    held = supports(room.objects, taxonomy)
+    while any(lost := [floating(o, on, taxonomy) for o, on in zip(room.objects, held, strict=True)]):
+        names = [f"{where}/{o.child.instance}" for o, gone in zip(room.objects, lost, strict=True) if gone]
+        rejects.extend(reject("object", name, "no_support") for name in names)
+        room.objects = [o for o, gone in zip(room.objects, lost, strict=True) if not gone]
+        held = supports(room.objects, taxonomy)
+    room.supports = held
 
 
 def _walkable(rooms: list[ReadRoom], openings: list[Opening]) -> list[float]:

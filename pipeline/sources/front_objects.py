@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -142,13 +142,15 @@ def shared_volume(a: Placed, b: Placed) -> float:
     return area * height / float(min(np.prod(a.pose.size), np.prod(b.pose.size)))
 
 
-def overlapping(objects: list[Placed], limits: FrontFilters) -> dict[int, tuple[int, float]]:
+def overlapping(objects: list[Placed], limits: FrontFilters, small: Collection[str] = ()) -> dict[int, tuple[int, float]]:
     """Return {index of the object to drop: (index of what it is in, share)}.
 
     Rule: largest box first, an object is dropped when it shares more than `max_overlap` of the smaller one's volume
     with one that was kept; a seat at a table may share up to `max_overlap_tucked`, for its box reaches under the top.
+    Things of the `small` categories lie in furniture's boxes by right.
     """
-    order = sorted(range(len(objects)), key=lambda i: (-float(np.prod(objects[i].pose.size)), i))
+    large = [i for i, o in enumerate(objects) if o.category not in small]
+    order = sorted(large, key=lambda i: (-float(np.prod(objects[i].pose.size)), i))
     shapes = [o.footprint() for o in objects]
     tree = shapely.STRtree(shapes) if shapes else None
     near: dict[int, list[int]] = {}

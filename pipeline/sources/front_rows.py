@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from shapely.geometry import Polygon
@@ -15,6 +15,7 @@ from pipeline.sources.identity import split_of
 from pipeline.sources.reasons import Row
 from pipeline.taxonomy import Taxonomy
 
+THIN = 0.05  # [m] what is flatter lies under one's feet
 STANDING = 0.3  # [m] an object whose bottom is lower takes up floor; pendant lamps and wall units do not
 
 
@@ -29,12 +30,26 @@ class ReadRoom:
     polygon: Polygon
     height: float
     objects: list[Placed]
+    supports: list[int] = field(default_factory=list)
+
+    def named(self, number: int) -> str:
+        """Return the id of the room's object of that number; empty for -1."""
+        return f"{self.objects[number].category}_{self.room_id}_{number}" if number >= 0 else ""
+
+    def covering(self) -> list[Placed]:
+        """Return what takes up floor: neither what hangs, nor what lies on furniture, nor what one walks on."""
+        held = self.supports or [-1] * len(self.objects)
+        return [
+            o
+            for o, on in zip(self.objects, held, strict=True)
+            if o.span[0] < STANDING and o.span[1] > THIN and (on < 0 or o.span[0] < THIN)
+        ]
 
 
 def room_row(scene_id: str, uid: str, room: ReadRoom, taxonomy: Taxonomy) -> Row:
     """Return a rooms row; `walkable_free` is filled in once the openings are known."""
     area = room.floor.area
-    covered = sum(float(np.prod(o.pose.size[:2])) for o in room.objects if o.span[0] < STANDING)
+    covered = sum(float(np.prod(o.pose.size[:2])) for o in room.covering())
     return {
         "scene_id": scene_id,
         "room_id": room.room_id,
@@ -74,12 +89,13 @@ def opening_row(scene_id: str, opening: Opening) -> Row:
     }
 
 
-def object_row(scene_id: str, room_id: str, number: int, made: Placed, source: str) -> Row:
-    """Return an objects row."""
+def object_row(scene_id: str, room: ReadRoom, number: int, source: str) -> Row:
+    """Return the objects row of a room's object; `source` is its room and child in the file."""
+    made = room.objects[number]
     return {
         "scene_id": scene_id,
-        "object_id": f"{made.category}_{room_id}_{number}",
-        "room_id": room_id,
+        "object_id": room.named(number),
+        "room_id": room.room_id,
         "category": made.category,
         "asset_id": made.asset_id,
         "position": made.pose.position.tolist(),
@@ -87,6 +103,7 @@ def object_row(scene_id: str, room_id: str, number: int, made: Placed, source: s
         "size": made.pose.size.tolist(),
         "scale": made.scale.tolist(),
         "openable": made.openable,
+        "support": room.named(room.supports[number]) if room.supports else "",
         "latent": [0.0] * 32,
         "retrieval_distance": 0.0,
         "source_id": f"{source}#{made.jid}",
@@ -99,7 +116,7 @@ def scene_row(
     """Return the scenes row of a house; `index` and `walkable_free` are filled in later."""
     area = sum(room.floor.area for room in rooms)
     objects = [o for room in rooms for o in room.objects]
-    covered = sum(float(np.prod(o.pose.size[:2])) for o in objects if o.span[0] < STANDING)
+    covered = sum(float(np.prod(o.pose.size[:2])) for room in rooms for o in room.covering())
     return {
         "scene_id": scene_id,
         "index": 0,

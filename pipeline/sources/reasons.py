@@ -59,6 +59,7 @@ REASONS: dict[str, Reason] = {
     "outside_room": Reason("object", "dropped", "less than `min_inside` of its footprint lies in the room"),
     "duplicate": Reason("object, model", "dropped", "the same model at the same pose was read before"),
     "overlap": Reason("object", "dropped", "shares more than `max_overlap` of its volume with a larger object"),
+    "no_support": Reason("object", "dropped", "a small thing whose support was left out: it would hang in the air"),
     "mirrored": Reason(
         "object", "repaired", "mirrored scale: the model's mirror image stands there, an asset of its own whose id ends in `_mirrored`"
     ),

@@ -31,6 +31,14 @@ def with_child(tmp, placed, record=None, jids=(BED, STAND, LAMP), **options):
     return read(tmp, **options)
 
 
+def floating_cup(tmp):
+    """A cup at the height of a table that is not there."""
+    cup = child("x/model", "furniture/9", (1, 0.75, 3.5))
+    tree = making.two_rooms(extra=[cup], more_furniture=[chair_record("x/model", CHAIR)])
+    front(tmp, tree, (BED, STAND, LAMP, CHAIR), [making.info(CHAIR, "Cup"), *map(making.info, (BED, STAND, LAMP))])
+    return read(tmp)
+
+
 def with_stand(tmp, **placing):
     return with_child(tmp, child("x/model", "furniture/9", **{"pos": (1, 0, 3.5), **placing}), chair_record("x/model", STAND))
 
@@ -278,6 +286,7 @@ CASES = {
     "outside_room": lambda t: with_stand(t, pos=(2, 0, 4.2)),
     "duplicate": duplicate,
     "overlap": lambda t: with_stand(t, pos=(2, 0, 1.5)),
+    "no_support": floating_cup,
     "mirrored": lambda t: with_stand(t, scale=(-1, 1, 1)),
     "centimetres": centimetres,
     "opening_unresolved": lambda t: (front(t, making.two_rooms(more_meshes=[slab("far", "Window", (50, 1, 50), (52, 2, 50.2))])), read(t))[

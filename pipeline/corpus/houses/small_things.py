@@ -25,7 +25,22 @@ MARGIN = 0.01
 TRIES = 6
 LOWEST, HIGHEST = 0.03, 1.75
 """Surfaces within these heights above the support's foot are used [m]."""
-FACING = frozenset({"laptop", "keyboard", "printer", "toaster", "coffee_machine", "clock", "picture", "table_lamp", "safe", "box", "book"})
+FACING = frozenset(
+    {
+        "laptop",
+        "keyboard",
+        "printer",
+        "toaster",
+        "coffee_machine",
+        "table_lamp",
+        "safe",
+        "storage_box",
+        "basket",
+        "book",
+        "camera",
+        "briefcase",
+    }
+)
 """Things with a front, which look where their support looks."""
 HUNG_AT = 1.35
 """Underside of pictures and mirrors [m]."""
