@@ -79,7 +79,7 @@ class Folder:
         if not shown or len(joined) > 1024 or any(ord(c) < 32 for c in joined):
             raise SourceError("unsafe_path", shown[:80], "is no path")
         tail = shown.replace("\\", "/")
-        if _SCHEME.match(tail) or tail.startswith(("/", "~")):
+        if _SCHEME.match(tail) or DRIVE.match(tail) or tail.startswith(("/", "~")):
             raise SourceError("unsafe_path", shown[:80], "is an absolute path or has a scheme")
         depth = 0
         for part in PurePosixPath(joined.replace("\\", "/")).parts:

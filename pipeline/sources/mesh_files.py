@@ -16,7 +16,7 @@ from pipeline.sources.urdf import Shape
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-MAX_TOTAL = 4_000_000  # triangles of all files of an object together, counted once per use
+MAX_TOTAL = 1_500_000  # triangles of all files of an object together, counted once per use
 
 
 class MeshFiles:

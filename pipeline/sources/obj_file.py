@@ -25,6 +25,7 @@ MAX_CORNERS = 3_000_000  # face corners of one file
 MAX_VERTICES = 500_000
 MAX_FACES = 1_000_000
 MAX_GROUPS = 2048
+MAX_MATERIALS = 4096  # of one file; later ones are not read
 MAX_COORDINATE = 1e5  # a mesh that reaches further is nonsense in any unit
 
 
@@ -130,6 +131,8 @@ def parse_mtl(data: bytes) -> dict[str, MtlMaterial]:
             continue
         key, rest = words[0], words[1].strip()
         if key == "newmtl":
+            if len(found) >= MAX_MATERIALS:
+                break
             name = rest
             found.setdefault(name, MtlMaterial(name))
         elif name is not None:

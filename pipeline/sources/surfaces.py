@@ -51,8 +51,7 @@ class Palette:
 
         A path that leaves the folder is no missing texture: it raises. A drive letter is somebody's own disk.
         """
-        if DRIVE.match(path):
-            path = path.replace("\\", "/").rsplit("/", 1)[-1]
+        path = _without_drive(path)
         key = f"{base}/{path}"
         if key not in self._images:
             self._images[key] = self._load(path, base)
@@ -74,6 +73,7 @@ class Palette:
         return name
 
     def _library(self, library: str, base: str) -> dict[str, MtlMaterial]:
+        library = _without_drive(library)
         key = f"{base}/{library}"
         if key not in self._libraries:
             self._libraries[key] = {}
@@ -85,6 +85,11 @@ class Palette:
                         raise
                     self.notes.append(("missing_texture", f"{library}: {error.detail}"))
         return self._libraries[key]
+
+
+def _without_drive(path: str) -> str:
+    """Return the file's name of a path on somebody's own disk, any other path as it is."""
+    return path.replace("\\", "/").rsplit("/", 1)[-1] if DRIVE.match(path) else path
 
 
 def read_obj(folder: Folder, relative: str, base: str = "") -> ObjFile:
