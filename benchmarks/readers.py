@@ -2,13 +2,12 @@
 
     python benchmarks/readers.py [houses]
 
-Needs what `make run` leaves in data/raw/. Houses are those of the corpus, each padded to 2 MB with copies of its own
-wall meshes at another place, as real files are mostly meshes.
+Needs what `make run` leaves in data/raw/. Houses are those of the corpus, each padded to 2 MB with feature
+walls made of its own walls, as real files are mostly meshes.
 """
 
 from __future__ import annotations
 
-import copy
 import json
 import resource
 import sys
@@ -34,22 +33,34 @@ R = TypeVar("R")
 
 
 def padded(tree: dict[str, Any], size: int) -> str:
-    """Return a house as JSON text of about `size` bytes: copies of its wall meshes are added, each referenced by a room."""
+    """Return a house as JSON text of about `size` bytes: feature walls of some 60 vertices, each referenced by a room."""
     walls = [m for m in tree["mesh"] if m["type"] in {"WallInner", "WallOuter", "Baseboard", "Ceiling"}]
     short = size - len(json.dumps(tree))
     number = 0
     while short > 0 and walls:
-        extra = copy.deepcopy(walls[number % len(walls)])
-        extra["uid"] = f"pad/{number}"
-        extra["type"] = "CustomizedFeatureWall"
-        extra["xyz"] = [round(v + 1e-3 * (number % 97), 5) for v in extra["xyz"]]
-        extra["normal"] = [round(v + 1e-5, 5) for v in extra["normal"]]
+        extra = feature_wall(walls[number % len(walls)], number)
         tree["mesh"].append(extra)
         child = {"ref": extra["uid"], "instanceid": f"mesh/p{number}", "pos": [0, 0, 0], "rot": [0, 0, 0, 1], "scale": [1, 1, 1]}
         tree["scene"]["room"][number % len(tree["scene"]["room"])]["children"].append(child)
         short -= len(json.dumps(extra)) + len(json.dumps(child)) + 4
         number += 1
     return json.dumps(tree)
+
+
+def feature_wall(wall: dict[str, Any], number: int) -> dict[str, Any]:
+    """Return a mesh record of several copies of a wall, one before the other."""
+    corners = len(wall["xyz"]) // 3
+    copies = max(1, 60 // max(1, corners))
+    shift = [round(0.004 * k + 1e-4 * (number % 89), 5) for k in range(copies)]
+    return {
+        **wall,
+        "uid": f"pad/{number}",
+        "type": "CustomizedFeatureWall",
+        "xyz": [round(v + s, 5) for s in shift for v in wall["xyz"]],
+        "normal": [round(v + 1e-5, 5) for _ in shift for v in wall["normal"]],
+        "uv": [round(v + s, 5) for s in shift for v in wall["uv"]],
+        "faces": [f + corners * k for k in range(copies) for f in wall["faces"]],
+    }
 
 
 def measured(what: str, step: Callable[[T], R], items: Sequence[T], keep: Callable[[R], None] | None = None) -> None:

@@ -6,6 +6,7 @@ Frame of everything here: the file's own (y up, metres, front +z; plan coordinat
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -17,6 +18,7 @@ from pipeline.sources.reasons import Row, SourceError, reject
 
 Floats = NDArray[np.float64]
 ORIGIN, NO_TURN, ONE = np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.ones(3)
+_SHADING = re.compile(rb'"(?:normal|uv)"\s*:\s*\[[^\[\]{}"]*\]')
 MAX_AREA = 1e5  # [m2] no room is larger: such a figure says nothing
 
 
@@ -106,6 +108,14 @@ def floats(values: Any, where: str) -> Floats:
     if array.ndim != 1 or not np.isfinite(array).all():
         raise SourceError("bad_number", where, "holds a number that is not finite")
     return array
+
+
+def without_shading(data: bytes) -> bytes:
+    """Return a house file with the meshes' normals and texture coordinates emptied: nobody reads them, and they are most of it.
+
+    In the release they are partly wrong (normals) or null (uv).
+    """
+    return _SHADING.sub(b'"uv":[]', data)
 
 
 def parse_house(tree: Any, name: str) -> HouseFile:

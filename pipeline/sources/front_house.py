@@ -12,14 +12,14 @@ from shapely.geometry import Polygon
 
 from pipeline.entities.plan import Opening, Room
 from pipeline.sources import front_openings
-from pipeline.sources.front_file import HouseFile, RoomRecord, parse_house
+from pipeline.sources.front_file import HouseFile, RoomRecord, parse_house, without_shading
 from pipeline.sources.front_floor import Floor, outline
 from pipeline.sources.front_objects import Model, Placed, overlapping, placed
 from pipeline.sources.front_poses import yaw_and_tilt
 from pipeline.sources.front_rows import ReadRoom, object_row, opening_row, room_row, scene_row
 from pipeline.sources.front_supports import floating, supports
 from pipeline.sources.front_walkable import HEIGHT, STEP, walkable
-from pipeline.sources.guarded import Folder, read_json
+from pipeline.sources.guarded import MAX_JSON, Folder, parse_json
 from pipeline.sources.identity import slug
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import FrontFilters
@@ -49,7 +49,7 @@ def read_house(folder: Folder, file: str, models: Mapping[str, Model], taxonomy:
     """Read one house. A file that is refused gives one reject row with its reason."""
     name = file.rsplit("/", 1)[-1].removesuffix(".json")
     try:
-        return house_rows(parse_house(read_json(folder, file), name), models, taxonomy, limits, licence)
+        return house_rows(parse_house(parse_json(without_shading(folder.read(file, MAX_JSON)), file), name), models, taxonomy, limits, licence)
     except SourceError as error:
         return HouseRows(rejects=[reject("house", name, error.code, error.detail)])
 
