@@ -49,7 +49,9 @@ def read_house(folder: Folder, file: str, models: Mapping[str, Model], taxonomy:
     """Read one house. A file that is refused gives one reject row with its reason."""
     name = file.rsplit("/", 1)[-1].removesuffix(".json")
     try:
-        return house_rows(parse_house(parse_json(without_shading(folder.read(file, MAX_JSON)), file), name), models, taxonomy, limits, licence)
+        return house_rows(
+            parse_house(parse_json(without_shading(folder.read(file, MAX_JSON)), file), name), models, taxonomy, limits, licence
+        )
     except SourceError as error:
         return HouseRows(rejects=[reject("house", name, error.code, error.detail)])
 
@@ -226,23 +228,31 @@ def openings_of(
     holes = _holes(house, rejects)
     if len(holes) > MAX_HOLES:
         raise SourceError("too_large", house.uid, f"{len(holes)} doors, windows and holes")
-    holes = front_openings.merge(holes)
+    narrow = [h for h in holes if h.width < front_openings.MIN_WIDTH]
+    holes = front_openings.merge(h for h in holes if h.width >= front_openings.MIN_WIDTH)
+    between, odd = front_openings.jambs(narrow, holes)
+    holes = front_openings.merge([*holes, *between])
+    rejects += [_unresolved(house, h) for h in odd if not front_openings.covered(h.centre, holes)]
     found: list[Opening] = []
     depths: dict[int, list[float]] = {1: [], 2: []}
     for hole in holes:
         opening = front_openings.resolve(hole, outlines, f"opening_{len(found)}", limits.wall_reach)
         if opening is None:
-            at = ", ".join(f"{v:.2f}" for v in hole.centre)
-            rejects.append(reject("opening", house.uid, "opening_unresolved", f"{hole.evidence} at ({at}), {hole.width:.2f} m wide"))
+            rejects.append(_unresolved(house, hole))
             continue
         found.append(opening)
         if 0.05 <= hole.depth <= 0.5:
             depths[len(opening.rooms)].append(hole.depth)
     height = float(np.median([room.height for room in rooms]))
-    found += front_openings.touching(outlines, height, len(found))
+    found += front_openings.touching(outlines, height, found)
     inner = round(float(np.median(depths[2])), 4) if depths[2] else INNER_WALL
     outer = round(float(np.median(depths[1])), 4) if depths[1] else OUTER_WALL
     return found, (inner, outer)
+
+
+def _unresolved(house: HouseFile, hole: front_openings.Hole) -> Row:
+    at = ", ".join(f"{v:.2f}" for v in hole.centre)
+    return reject("opening", house.uid, "opening_unresolved", f"{hole.evidence} at ({at}), {hole.width:.2f} m wide")
 
 
 def _holes(house: HouseFile, rejects: list[Row]) -> list[front_openings.Hole]:

@@ -3,7 +3,7 @@ import pytest
 from shapely.geometry import box
 
 from pipeline.sources import front_openings
-from pipeline.sources.front_openings import Outline, from_furniture, from_mesh, merge, resolve, touching
+from pipeline.sources.front_openings import Outline, from_furniture, from_mesh, jambs, merge, resolve, touching
 from tests.sources import making
 from tests.sources.making import floor, slab
 from tests.sources.reading import read
@@ -43,7 +43,8 @@ def test_kinds(kind, low, high, want, rooms):
 
 def test_far_and_narrow_are_nothing():
     assert opening(reveal("door", (50, 0, 1), (50.12, 2.1, 2))) is None
-    assert reveal("door", (4, 0, 1), (4.12, 2.1, 1.2)) is None
+    assert reveal("door", (4, 0, 1), (4.12, 2.1, 1.2)).width < front_openings.MIN_WIDTH
+    assert from_mesh("door", np.zeros((6, 3))) is None
 
 
 def test_leaf_in_its_reveal_is_one_door():
@@ -64,7 +65,9 @@ def test_leaf_alone_takes_the_direction_of_the_wall():
 
 def test_reveals_of_both_sides_are_one():
     a, b = reveal("door", (4, 0, 1), (4.06, 2.1, 1.9)), reveal("door", (4.06, 0, 1), (4.12, 2.1, 1.9))
-    assert len(merge([a, b])) == 1
+    (both,) = merge([a, b])
+    assert both.depth == pytest.approx(0.12)
+    assert np.allclose(both.centre, [4.06, -1.45])
 
 
 def test_doors_side_by_side_stay_two():
@@ -82,9 +85,63 @@ def test_oblique_wall():
 
 def test_rooms_without_a_wall_between_are_open():
     rooms = [Outline("a", box(0, 0, 4, 4)), Outline("b", box(4, 1, 7, 3)), Outline("c", box(4.12, 5, 7, 8))]
-    (made,) = touching(rooms, 2.7, 5)
-    assert (made.kind, made.rooms, made.opening_id) == ("open", ("a", "b"), "opening_5")
+    (made,) = touching(rooms, 2.7, [])
+    assert (made.kind, made.rooms, made.opening_id) == ("open", ("a", "b"), "opening_0")
     assert made.width == pytest.approx(2, abs=0.1)
+
+
+def test_floors_that_meet_under_a_door_are_that_door():
+    """Real floors reach under their doors; where no door is told, a doorway it is all the same."""
+    strip = box(4, -1.9, 4.12, -1.0)
+    rooms = [Outline("left", ROOMS[0].polygon.union(strip)), ROOMS[1]]
+    door = resolve(reveal("door", (4, 0, 1), (4.12, 2.1, 1.9)), rooms, "o", 0.4)
+    assert touching(rooms, 2.7, [door]) == []
+    (made,) = touching(rooms, 2.7, [])
+    assert (made.kind, made.rooms, made.height) == ("portal", ("left", "right"), 2.1)
+    assert made.width == pytest.approx(0.9, abs=0.07)
+
+
+def test_an_open_front_beside_a_door_is_there_too():
+    rooms = [Outline("left", box(0, -4, 4, 0)), Outline("right", box(4, -4, 6, 0))]
+    door = resolve(reveal("door", (3.94, 0, 1), (4.06, 2.1, 1.9)), rooms, "o", 0.4)
+    assert [o.kind for o in touching(rooms, 2.7, [door])] == ["open"]
+
+
+def test_jambs_by_themselves_make_a_door():
+    """Reveals delivered jamb by jamb: two that face each other are an opening, one alone is told, beside a reveal it is part of it."""
+    left, right = (reveal("door", (4, 0, z), (4.12, 2.1, z + 0.001)) for z in (1.0, 1.9))
+    made, rest = jambs([left, right], [])
+    assert rest == []
+    (door,) = merge(made)
+    assert opening(door).rooms == ("left", "right")
+    assert door.width == pytest.approx(0.9, abs=0.01)
+    assert door.depth == pytest.approx(0.12)
+    whole = reveal("door", (4, 0, 1), (4.12, 2.1, 1.9))
+    assert jambs([left, right], [whole])[0] == []
+    assert front_openings.covered(left.centre, [whole])
+    assert jambs([left], []) == ([], [left])
+    low = reveal("door", (4, 0, 1.9), (4.12, 1.2, 1.901))
+    assert jambs([left, low], [])[0] == []
+
+
+@pytest.mark.parametrize("depth", [0.12, 0.24, 0.3, 0.9])
+def test_walls_and_bays_of_any_usual_depth(depth):
+    made = opening(reveal("window", (0.5, 0.9, 0), (2.5, 2.1, -depth)))
+    assert (made.kind, made.rooms, made.width) == ("window", ("left",), 2.0)
+
+
+@pytest.mark.parametrize("thickness", [0.12, 0.2, 0.24, 0.3])
+@pytest.mark.parametrize("side", [0.0, 0.5, 1.0])
+def test_a_leaf_anywhere_in_a_wall_joins_its_rooms(thickness, side):
+    rooms = [Outline("left", box(0, -4, 4, 0)), Outline("right", box(4 + thickness, -4, 7, 0))]
+    leaf = from_furniture("door/single swing door", np.array([4 + side * thickness, 0, 2.0]), np.pi / 2, None)
+    assert resolve(leaf, rooms, "o", 0.4).rooms == ("left", "right")
+
+
+def test_windows_without_a_size_stay_below_the_ceiling():
+    made = opening(from_furniture("window/window", np.array([2.0, 0.9, 0.1]), 0.0, None))
+    assert (made.kind, made.sill) == ("window", 0.9)
+    assert made.sill + made.height < 2.5
 
 
 def test_broken_mesh_is_told(tmp_path):
@@ -95,3 +152,13 @@ def test_broken_mesh_is_told(tmp_path):
     assert made.reasons == {"opening_unresolved"}
     assert len(made.openings) == 3
     assert front_openings.MESHES["Hole"] == "hole"
+
+
+def test_a_hole_within_one_room_joins_nothing():
+    assert opening(reveal("door", (2, 0, 1), (2.12, 2.1, 1.9))) is None
+
+
+def test_a_floor_that_reaches_under_the_entrance_makes_no_room_of_the_outside():
+    rooms = [Outline("left", box(0, -4, 4, 0).union(box(4, -1.9, 4.24, -1.0)))]
+    made = resolve(reveal("door", (4, 0, 1), (4.24, 2.1, 1.9)), rooms, "o", 0.4)
+    assert (made.kind, made.rooms) == ("entrance", ("left",))
