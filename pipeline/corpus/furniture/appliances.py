@@ -181,8 +181,15 @@ def microwave(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
             )
         )
     feet = [revolve([(0.012, 0.0), (0.015, 0.012)], 10, (sx * 0.42 * w, sy * 0.3 * d))[0] for sx in (-1, 1) for sy in (-1, 1)]
-    cavity = next(p.solid.bounds() for p in shape.movers[0].pieces if p.name == "front_frame")
-    table = revolve([(0.02, 0.027), (0.02, 0.035), (0.11, 0.035), (0.12, 0.042)], 20, (float(cavity[:, 0].mean()), 0.03))
+    low = next(p.solid.bounds() for p in shape.base if p.name == "bottom")
+    divider = next(p.solid.bounds() for p in shape.base if p.name.startswith("divider"))
+    left, right, z = float(low[0, 0]), float(divider[0, 0]), float(low[1, 2])
+    wide = 0.46 * min(right - left, float(low[1, 1] - low[0, 1]) - 0.02)
+    table = revolve(
+        [(0.02, z + 0.001), (0.02, z + 0.008), (0.9 * wide, z + 0.008), (wide, z + 0.015)],
+        20,
+        ((left + right) / 2, float(low[:, 1].mean())),
+    )
     base = (
         shape.base
         + pieces("feet", feet, PLASTIC)

@@ -34,9 +34,9 @@ def toilet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     def span(share: float) -> tuple[float, float]:
         return (cy - share * ry, cy + share * ry)
 
-    foot = stack([_oval(0.66 * rx, span(0.66), 0.0), _oval(0.60 * rx, span(0.60), 0.12 * h)])
-    neck = stack([_oval(0.60 * rx, span(0.60), 0.12 * h), _oval(0.76 * rx, span(0.76), 0.62 * rim)])
-    outer = [_oval(k * rx, span(k), z) for k, z in ((0.76, 0.62 * rim), (1.0, rim))]
+    foot = stack([_oval(0.74 * rx, span(0.80), 0.0), _oval(0.70 * rx, span(0.76), 0.10 * h)])
+    neck = stack([_oval(0.70 * rx, span(0.76), 0.10 * h), _oval(0.90 * rx, span(0.90), 0.62 * rim)])
+    outer = [_oval(k * rx, span(k), z) for k, z in ((0.90, 0.62 * rim), (1.0, rim))]
     inner = [_oval(k * rx, span(k), z) for k, z in ((0.42, 0.62 * rim), (0.76, rim))]
     wall = shell(outer, inner)
     bridge = box((-0.36 * w, 0.36 * w), (bowl_y[1] - 0.06, d / 2 - 0.02), (0.45 * rim, rim), 0.012)

@@ -79,6 +79,7 @@ BUILDERS: Mapping[str, Builder] = {
     "toaster": countertop.toaster,
     "coffee_machine": countertop.coffee_machine,
     "kitchen_pot": countertop.kitchen_pot,
+    "saucepan": countertop.kitchen_pot,
     "room_door": doorways.room_door,
     "tall_unit": kitchen.tall_unit,
     "desk": desks.desk,
@@ -169,5 +170,6 @@ NEITHER = [
     "toaster",
     "coffee_machine",
     "kitchen_pot",
+    "saucepan",
 ]
 MATERIALS: Mapping[str, str] = {**dict.fromkeys(SOFT, "soft"), **dict.fromkeys(NEITHER, "Others")}

@@ -49,7 +49,7 @@ class Case:
     """How a carcass is made. Lengths in metres.
 
     `inset` fronts lie between the panels, others cover them. `overhang` is how far the top reaches out in front and at
-    the sides; `top` its thickness; `gap` is left between fronts: thick doors need more, their inner edge swings wide.
+    the sides, `nose` how far in front alone; `top` its finish; `gap` is left between fronts: thick doors need more, their inner edge swings wide.
     """
 
     body: Finish
@@ -63,6 +63,7 @@ class Case:
     board: float = 0.018
     inset: bool = False
     gap: float = GAP
+    nose: float = 0.0
 
 
 def case(size: Sequence[float], columns: Sequence[Column], how: Case, *, reserve: float | None = None) -> Shape:
@@ -70,13 +71,13 @@ def case(size: Sequence[float], columns: Sequence[Column], how: Case, *, reserve
     w, d, h = size
     b = how.board
     stand = reach(how.style.handle) if reserve is None else reserve
-    face = -d / 2 + max(stand, how.overhang)  # plane of the fronts
+    face = -d / 2 + max(stand, how.overhang + how.nose)  # plane of the fronts
     x = (-w / 2 + how.overhang, w / 2 - how.overhang)
     y = (face if how.inset else face + how.style.thickness + 0.002, d / 2)
     top = how.top_thickness
     z = (how.feet_height, h - top)
     base: list[Piece] = []
-    base += pieces("top", box((-w / 2, w / 2), (face - how.overhang, d / 2), (z[1], h), 0.003), how.top or how.body)
+    base += pieces("top", box((-w / 2, w / 2), (face - how.overhang - how.nose, d / 2), (z[1], h), 0.003), how.top or how.body)
     base += pieces("side_left", box((x[0], x[0] + b), y, z, 0.0015), how.body)
     base += pieces("side_right", box((x[1] - b, x[1]), y, z, 0.0015), how.body)
     inner = (x[0] + b, x[1] - b)

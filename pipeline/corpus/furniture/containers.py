@@ -97,7 +97,7 @@ def bucket(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     base += staves("wall", ring((r + 0.003, r + 0.003), (r - 0.008, r - 0.008), (rim - 0.014, rim), 24), finish)
     z = rim - 0.03
     base += pieces("lugs", lugs(r, z, (0.0, 0.0)), finish)
-    movers = [bail(r + 0.021, z, (0.0, 0.0), STEEL)]
+    movers = [bail((w / 2 - 0.004, w - r - 0.004), z, (0.0, 0.0), STEEL)]
     if covered:
         dome = revolve([(r + 0.002, rim + 0.002), (r + 0.002, rim + 0.008), (0.9 * r, rim + 0.012)], 24)
         made = pieces("lid", dome, finish, group="lid")

@@ -137,18 +137,15 @@ def _jug(x: float, y: float, low: float, high: float, r: float) -> tuple[Piece, 
 
 
 def kitchen_pot(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a pot with a lid that lifts off: two ears, one long handle, or a bail."""
+    """Build a pot with a lid that lifts off: two ears, a long handle, or a bail."""
     w, d, h = size
     finish = (STEEL, _enamel(rng), Finish("cast_iron", (0.03, 0.03, 0.032), 0.6, density=5000))[int(rng.integers(3))]
     grip = STEEL if finish is not STEEL or rng.random() < 0.5 else PLASTIC
-    long_one = form == "saucepan"
-    if long_one:
-        r = min(d / 2, 0.3 * w)
-        centre = (-w / 2 + r, 0.0)
-    elif form == "bail":
-        r, centre = d / 4 + w / 4 - 0.028, (0.0, -0.007)
+    long_one = form == "stick"
+    if form == "bail":  # the hoop lies level behind the pot, so that the pot is in front of the middle of its box
+        r, centre = w / 2 - 0.025, (0.0, 0.0)
     else:
-        r, centre = min(d / 2, w / 2 - 0.032), (0.0, 0.0)
+        r, centre = d / 2, (-w / 2 + d / 2 if long_one else 0.0, 0.0)
     knob_high = min(0.035, 0.2 * h)
     rim = h - knob_high - 0.02
     wall = ring((0.94 * r, r), (0.94 * r - 0.008, r - 0.008), (0.008, rim), 24, centre)
@@ -162,12 +159,20 @@ def kitchen_pot(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
         stick = rod((centre[0] + r - 0.004, 0.0, 0.86 * rim), (w / 2, 0.0, 0.95 * rim), 0.011, 0.009)
         base += pieces("stick", stick, grip, "line_fixed_handle", "stick")
     elif form == "bail":
-        movers.append(bail(r + 0.021, 0.9 * rim, centre, STEEL))
+        movers.append(bail((w / 2 - 0.004, d - r - 0.004), 0.9 * rim, centre, STEEL))
         base += pieces("lugs", lugs(r, 0.9 * rim, centre), STEEL)
     else:
+        reach = w / 2 - r
         for s in (-1, 1):
-            ear = [box((s * (r + 0.024) - 0.006, s * (r + 0.024) + 0.006), (-0.035, 0.035), (0.80 * rim, 0.80 * rim + 0.012), 0.003)]
-            span = sorted((s * (r - 0.004), s * (r + 0.018)))
+            ear = [
+                box(
+                    (s * (r + reach - 0.006) - 0.006, s * (r + reach - 0.006) + 0.006),
+                    (-0.035, 0.035),
+                    (0.80 * rim, 0.80 * rim + 0.012),
+                    0.003,
+                )
+            ]
+            span = sorted((s * (r - 0.004), s * (r + reach - 0.012)))
             ear += [
                 box((span[0], span[1]), (sy * 0.028 - 0.006, sy * 0.028 + 0.006), (0.80 * rim, 0.80 * rim + 0.012), 0.002) for sy in (-1, 1)
             ]
@@ -175,12 +180,15 @@ def kitchen_pot(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
     return Shape(base, tuple(movers))
 
 
-def bail(r: float, z: float, centre: tuple[float, float], finish: Finish, wire: float = 0.004) -> Mover:
-    """Return a bucket's handle: half a hoop of radius `r` that lies level behind the wall and swings over to the front."""
-    angles = np.linspace(0, math.pi, 8)
-    points = [(centre[0] + r * math.cos(a), centre[1] + r * math.sin(a), z) for a in angles]
+def bail(radii: tuple[float, float], z: float, centre: tuple[float, float], finish: Finish, wire: float = 0.004) -> Mover:
+    """Return a bucket's handle: half a hoop that lies level behind the wall and swings over to the front.
+
+    `radii` [m]: half of its width, and how far it reaches back.
+    """
+    angles = np.linspace(0, math.pi, 8).tolist()
+    points = [(centre[0] + radii[0] * math.cos(a), centre[1] + radii[1] * math.sin(a), z) for a in angles]
     solids: list[Solid] = [rod(a, b, wire, n=6) for a, b in itertools.pairwise(points)]
-    middle = centre[1] + r * math.sin(float(angles[3]))
+    middle = centre[1] + radii[1] * math.sin(angles[3])
     solids[3] = rod((centre[0] - 0.05, middle, z), (centre[0] + 0.05, middle, z), 2 * wire, n=8)
     made = pieces("bail", [s for k, s in enumerate(solids) if k != 3], finish) + pieces("bail_grip", solids[3], PLASTIC)
     return Mover("bail", made, "revolute", (1, 0, 0), (centre[0], centre[1], z), math.pi, "hinge_handle", "handle", UP)

@@ -166,7 +166,7 @@ def keyboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     w, d, h = size
     top = h - 0.006
     finish = (DARK, SILVER, PALE)[int(rng.integers(3))]
-    cap = KEY_PALE if finish is DARK and rng.random() < 0.5 else KEY
+    cap = (KEY_PALE, PLASTIC_WHITE)[int(rng.integers(2))] if finish is not SILVER else KEY
     base = pieces("board", box((-w / 2, w / 2), (-d / 2, d / 2), (0.002, top), 0.003), finish, group="board")
     base += pieces(
         "feet", [box((-0.45 * w, 0.45 * w), (s * 0.4 * d - 0.006, s * 0.4 * d + 0.006), (0, 0.002)) for s in (-1, 1)], RUBBER, group="board"
@@ -178,12 +178,12 @@ def keyboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
         y = 0.47 * d - (r + 1) * pitch
         cells = np.linspace(-0.485 * w, 0.485 * w, count + 1)
         for k in range(count):
-            x = (float(cells[k]) + 0.0012, float(cells[k + 1]) - 0.0012)
-            movers.append(top_button(f"key_{r}_{k}", x, (y + 0.0012, y + pitch - 0.0012), (top + 0.0028, h), cap, 0.0025))
+            x = (float(cells[k]) + 0.002, float(cells[k + 1]) - 0.002)
+            movers.append(top_button(f"key_{r}_{k}", x, (y + 0.002, y + pitch - 0.002), (top + 0.0028, h), cap, 0.0025))
     if form == "rows":
         y = -0.47 * d
         for name, x in (("left", (-0.485, -0.3)), ("space", (-0.29, 0.25)), ("right", (0.26, 0.485))):
-            movers.append(top_button(f"key_{name}", (x[0] * w, x[1] * w), (y, y + pitch - 0.0024), (top + 0.0028, h), cap, 0.0025))
+            movers.append(top_button(f"key_{name}", (x[0] * w, x[1] * w), (y, y + pitch - 0.004), (top + 0.0028, h), cap, 0.0025))
     return Shape(base, tuple(movers))
 
 

@@ -17,13 +17,14 @@ from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, rod, s
 from pipeline.corpus.furniture.storage import Size, front_style
 
 PLINTH = 0.1  # height of a kitchen unit's recessed plinth [m]
+NOSE = 0.018  # how far a worktop stands out over its fronts [m]
 
 
 def unit_style(rng: np.random.Generator, scheme: Scheme, panels: str = "") -> Case:
     """Draw how a kitchen unit is made: white carcass boards, a stone or wooden counter, fronts that cover the edges."""
     style = front_style(rng, scheme, panels)
     counter = (STONE, MARBLE, scheme.body)[int(rng.integers(3))]
-    return Case(scheme.body, style, "plinth", PLINTH, PLASTIC, top=counter, top_thickness=0.038, overhang=0.0)
+    return Case(scheme.body, style, "plinth", PLINTH, PLASTIC, top=counter, top_thickness=0.038, nose=NOSE)
 
 
 def kitchen_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -46,7 +47,7 @@ def kitchen_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Sch
 
 def wall_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a wall unit with doors, plain or glazed, or with fronts that lift."""
-    how = replace(unit_style(rng, scheme, "glass" if form == "glass" else ""), feet="none", feet_height=0.0)
+    how = replace(unit_style(rng, scheme, "glass" if form == "glass" else ""), feet="none", feet_height=0.0, nose=0.0)
     how = replace(how, top=scheme.body, top_thickness=0.018)
     w = size[0]
     count = max(1, round(w / 0.9))
@@ -58,7 +59,7 @@ def wall_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
 
 def tall_unit(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a unit as tall as the room's doors: a larder of two doors, one that is pulled out, or doors over drawers."""
-    how = replace(unit_style(rng, scheme), top=scheme.body, top_thickness=0.018)
+    how = replace(unit_style(rng, scheme), top=scheme.body, top_thickness=0.018, nose=0.0)
     side = "left" if rng.random() < 0.5 else "right"
     door = Cell("pair" if size[0] > 0.75 else side, 1.0, 3)  # type: ignore[arg-type]
     cells: tuple[Cell, ...]
@@ -138,11 +139,11 @@ def sink_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     if form == "drawer":  # the bowl leaves no room for a drawer above
         cells = (Cell("blank", 0.5), Cell("drawer", 0.9))
     shape = case((w, d, body), [Column(1, cells)], how)
-    face = -d / 2 + reach(how.style.handle)
+    face = -d / 2 + max(reach(how.style.handle), how.nose)
     half = min(0.3, 0.5 * w - 0.09)
     hole_x, hole_y = (-half, half), (face + 0.09, d / 2 - 0.13)
     z = (body - how.top_thickness, body)
-    top = counter((-w / 2, w / 2), (face, d / 2), hole_x, hole_y, z, how.top or STONE)
+    top = counter((-w / 2, w / 2), (face - how.nose, d / 2), hole_x, hole_y, z, how.top or STONE)
     top += bowl((hole_x[0], hole_x[1]), hole_y, body - 0.003, 0.17, STEEL)
     return joined(_topless(shape, top), tap(0.0, d / 2 - 0.065, body, h - body, 0.2, scheme.handle))
 
@@ -152,7 +153,7 @@ def vanity(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     w, d, h = size
     body = h - 0.17
     legs = rng.random() < 0.4
-    how = replace(unit_style(rng, scheme), overhang=0.006)
+    how = replace(unit_style(rng, scheme), overhang=0.006, nose=0.0)
     how = replace(how, feet="square", feet_height=0.16, feet_finish=scheme.accent) if legs else replace(how, feet_height=0.08)
     top = (CERAMIC, MARBLE, STONE)[int(rng.integers(3))]
     how = replace(how, top=top, top_thickness=0.03)

@@ -34,6 +34,14 @@ FRONT_TASTES: Mapping[str, tuple[str, str]] = {
     "New Chinese": ("shaker slab raised slats", "ring ring bar"),
     "Vintage/Retro": ("cane slab reeded slab", "knob ring cup edge"),
     "Mediterranean": ("slats raised shaker", "knob ring cup"),
+    "European": ("raised shaker slab", "knob bar ring"),
+    "European Classic": ("raised raised shaker", "ring knob"),
+    "Neoclassical": ("raised shaker reeded", "ring knob bar"),
+    "Chinoiserie": ("shaker slab raised", "ring"),
+    "Ming Qing": ("shaker slab slats", "ring"),
+    "Southeast Asia": ("cane slats cane", "knob ring"),
+    "Korean": ("slab slab cane", "groove knob edge"),
+    "Kids": ("slab slab shaker", "knob groove"),
 }
 ANY_TASTE = ("slab slab shaker", "bar flat knob edge")
 
