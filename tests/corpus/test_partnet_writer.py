@@ -6,7 +6,11 @@ import pytest
 
 from pipeline.corpus.furniture.assembly import shape_of
 from pipeline.corpus.furniture.catalogue import catalogue
+from pipeline.corpus.furniture.shape import colliders
 from pipeline.corpus.partnet_writer import write_partnet
+from pipeline.sources.guarded import Folder
+from pipeline.sources.partnet import read_shape
+from pipeline.sources.solids import parts
 
 CHOSEN = ("wardrobe", "cabinet", "oven", "washing_machine", "toilet", "trash_can", "desk", "sink_cabinet")
 WORLD = np.array([[0, 0, -1], [-1, 0, 0], [0, 1, 0]])  # mesh frame to world: up +z, front -x
@@ -214,6 +218,31 @@ def test_annotation_has_oriented_boxes_in_gapartnets_vertex_order(folders):
             if kind in {"hinge_lid", "slider_lid"}:
                 assert np.allclose(R[:, 2], (0, 0, 1)) or np.allclose(R[:, 2], (-1, 0, 0)), "up, or a sliding door's front"
     assert {"hinge_door", "slider_drawer", "hinge_knob", "slider_button", "hinge_lid", "line_fixed_handle"} <= seen
+
+
+def test_the_reader_finds_the_same_joints_and_colliders(tmp_path):
+    """One model of every form, through the files and back."""
+    forms = {(m.category, m.form): m for m in catalogue(1).partnet}
+    write_partnet(tuple(forms.values()), tmp_path)
+    for model in forms.values():
+        shape = shape_of(model)
+        read = read_shape(Folder.at(tmp_path / model.model_id), model.model_id, 64)
+        low, high = read.bounds()
+        unit = float(max(model.size) / (high - low).max())
+        middle = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
+        assert not read.notes, (model, read.notes)
+        assert len(read.joints) == len(shape.movers)
+        by_name = {joint.name: joint for joint in read.joints}
+        for k, mover in enumerate(shape.movers):
+            joint = by_name[f"joint_{k}"]
+            reach = unit if mover.type == "prismatic" else 1.0
+            assert (joint.type, joint.part_class) == (mover.type, mover.part_class), (model, mover.name)
+            assert np.allclose([joint.lower * reach, joint.upper * reach], [mover.lower, mover.upper], rtol=1e-4), (model, mover.name)
+            assert np.allclose(joint.axis, mover.axis, atol=1e-9), (model, mover.name)
+            assert np.allclose((joint.origin - middle) * unit, mover.origin, atol=1e-4 * unit), (model, mover.name)
+        made = [part for body in read.bodies for vertices, faces in body.collisions for part in parts(vertices, faces)]
+        assert len(made) == len(colliders(shape.base)) + sum(len(colliders(m.pieces)) for m in shape.movers), model
+        assert min(part.fill for part in made) > 0.95, model
 
 
 def test_meta_values_are_strings(folders):
