@@ -131,8 +131,11 @@ def opening_direction(asset: Asset, joint_index: int) -> NDArray[np.float64]:
 def facing(asset: Asset, joint_index: int) -> NDArray[np.float64]:
     """Return the plan direction (2,) from which a part is opened [object frame]: where its handle sets off to.
 
-    For what opens upwards or down it is the object's front.
+    For what opens upwards or down, or slides in its own plane, it is the object's front.
     """
+    joint = asset.joints[joint_index]
+    if joint.type == "prismatic" and joint.part_class == "slider_lid":
+        return np.array([0.0, -1.0])
     flat = opening_direction(asset, joint_index)[:2]
     length = float(np.linalg.norm(flat))
     return flat / length if length > 0.5 else np.array([0.0, -1.0])

@@ -12,7 +12,7 @@ from pipeline.usd.joints import convert_fixed, convert_joint
 from pipeline.usd.layer import apply, identifiers, label, prim
 from pipeline.usd.material import bind
 from pipeline.usd.mesh import convert_mesh
-from pipeline.usd.physics import convert_body, convert_collider, convert_filter, hide, volume
+from pipeline.usd.physics import convert_body, convert_collider, convert_filter, gravity_load, hide, volume
 
 RESERVED = ("joints", "materials")  # scopes beside the links
 MOVERS = {
@@ -54,8 +54,8 @@ def convert_asset(root: Sdf.PrimSpec, asset: Asset, materials: Sequence[Sdf.Path
         apply(root, ["PhysicsArticulationRootAPI"])
         scope = prim(root, "joints", "Scope")
         convert_fixed(scope, root.path, links[0].path)
-        for name, joint in zip(joint_names(asset), asset.joints, strict=True):
-            convert_joint(scope, name, joint, links[joint.parent].path, links[joint.child].path)
+        for index, (name, joint) in enumerate(zip(joint_names(asset), asset.joints, strict=True)):
+            convert_joint(scope, name, joint, links[joint.parent].path, links[joint.child].path, gravity_load(asset, index))
         for i, spec in enumerate(links):
             convert_filter(spec, [links[k].path for k in _passes(asset, i)])
 

@@ -10,13 +10,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 from pxr import Sdf, Vt
 
-from pipeline.entities.asset import Asset, Joint
+from pipeline.entities.asset import Asset
 from pipeline.usd.articulation import joint_names, link_names
 from pipeline.usd.layer import apply, attribute, new_layer, over, relationship, save
-from pipeline.usd.physics import GRAVITY
+from pipeline.usd.physics import gravity_load
 
 ROOT_API = "PhysicsArticulationRootAPI"
 HINGE = (0.02, 0.1)  # damping [N m s / degree], dry friction [N m]: a push opens a door, a touch does not
@@ -63,19 +62,14 @@ def write_mujoco_overlay(scene: Path) -> Path:
 
 
 def _convert_root(root: Sdf.PrimSpec, asset: Asset) -> None:
-    resistances = [_resistance(name, joint, asset) for name, joint in zip(joint_names(asset), asset.joints, strict=True)]
+    resistances = [_resistance(name, asset, index) for index, name in enumerate(joint_names(asset))]
     _convert_over(root, link_names(asset)[0], resistances)
 
 
-def _resistance(name: str, joint: Joint, asset: Asset) -> Resistance:
+def _resistance(name: str, asset: Asset, index: int) -> Resistance:
     """Choose a joint's resistance; what gravity would pull open is held closed by friction."""
-    link = asset.links[joint.child]
-    weight = np.array([0.0, 0.0, -GRAVITY * link.mass])
-    if joint.type == "prismatic":
-        damping, friction, load = *SLIDE, float(weight @ joint.axis)
-    else:
-        damping, friction, load = *HINGE, float(np.cross(link.com - joint.origin, weight) @ joint.axis)
-    return Resistance(name, damping, friction + HOLD * max(0.0, load))
+    damping, friction = SLIDE if asset.joints[index].type == "prismatic" else HINGE
+    return Resistance(name, damping, friction + HOLD * max(0.0, gravity_load(asset, index)))
 
 
 def _convert_over(root: Sdf.PrimSpec, base: str, joints: Iterable[Resistance]) -> None:

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Gf, Sdf
 
-from pipeline.entities.asset import Link, Mesh
+from pipeline.entities.asset import Asset, Link, Mesh
+from pipeline.geometry.kinematics import moved_links
 from pipeline.usd.layer import apply, attribute, prim, relationship
 
 GRAVITY = 9.81  # [m/s2]
@@ -53,6 +54,17 @@ def convert_filter(spec: Sdf.PrimSpec, others: Iterable[Sdf.Path]) -> None:
     if targets:
         apply(spec, ["PhysicsFilteredPairsAPI"])
         relationship(spec, "physics:filteredPairs", targets)
+
+
+def gravity_load(asset: Asset, joint_index: int) -> float:
+    """Return what gravity does to a joint at rest [N m or N]: positive where it pulls open, negative where it keeps shut."""
+    joint = asset.joints[joint_index]
+    load = 0.0
+    for i in moved_links(asset, joint_index):
+        link = asset.links[i]
+        weight = np.array([0.0, 0.0, -GRAVITY * link.mass])
+        load += float((weight if joint.type == "prismatic" else np.cross(link.com - joint.origin, weight)) @ joint.axis)
+    return load
 
 
 def principal(inertia: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

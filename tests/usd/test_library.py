@@ -1,14 +1,18 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from pxr import Usd, UsdGeom, UsdPhysics, UsdShade, UsdUtils
 
+from pipeline.entities.asset import Joint
 from pipeline.errors import ContentError
 from pipeline.usd import write_library
 from pipeline.usd.check import check_stage
+from pipeline.usd.joints import detent
+from pipeline.usd.physics import gravity_load
 
 
 @pytest.fixture(scope="module")
@@ -128,3 +132,17 @@ def test_the_mujoco_variant_moves_the_root_to_the_base(library):
 @pytest.mark.parametrize("name", ["cabinet_a", "chair_a"])
 def test_assets_compose_without_a_warning(library, name):
     check_stage(library[0] / name / f"{name}.usda")
+
+
+def test_gravity_does_not_open_what_hangs_or_looks_up(cabinet):
+    def joint(kind, part, axis):
+        return Joint("j", kind, 0, 1, np.array(axis, float), np.zeros(3), 0.0, 0.5, part)
+
+    stiffness, force = detent(joint("revolute", "hinge_door", (1, 0, 0)), 2.0)
+    assert force > 2.0
+    assert stiffness * 0.5 > force > stiffness * 0.001, "it is soft enough to be pulled open, and firm at rest"
+    assert detent(joint("revolute", "hinge_door", (1, 0, 0)), -2.0) == (0.0, 0.0)
+    assert detent(joint("prismatic", "slider_button", (0, 1, 0)), 0.0)[1] > 0, "buttons spring back"
+    assert gravity_load(cabinet, 0) == pytest.approx(0.0)
+    key = replace(cabinet, joints=(joint("prismatic", "slider_button", (0, 0, -1)), *cabinet.joints[1:]))
+    assert gravity_load(key, 0) == pytest.approx(9.81 * cabinet.links[1].mass)
