@@ -47,11 +47,20 @@ class Gap:
 
 
 @dataclass(frozen=True, slots=True)
+class Demand:
+    """How many objects of these categories a room is to have: at least `least`, at most `most` (None: any number)."""
+
+    categories: tuple[str, ...]
+    least: int = 0
+    most: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class RoomContext:
     """A room to furnish.
 
     `polygon` (n, 2) [m, world], inner wall faces, counter-clockwise. `n_target` is the exact number of objects that is
-    asked for, or None. `elevation` [m] is the z of the floor, `height` [m] that of the ceiling above it.
+    asked for, or None; `demands` bound the numbers of categories. `elevation` [m] is the z of the floor, `height` [m] that of the ceiling above it.
     """
 
     layout_type: str
@@ -60,13 +69,14 @@ class RoomContext:
     n_target: int | None = None
     elevation: float = 0.0
     height: float = 2.7
+    demands: tuple[Demand, ...] = ()
 
     @classmethod
-    def of(cls, plan: Plan, room_id: str, layout_type: str, n_target: int | None = None) -> RoomContext:
+    def of(cls, plan: Plan, room_id: str, layout_type: str, n_target: int | None = None, demands: tuple[Demand, ...] = ()) -> RoomContext:
         """Take one room out of a plan."""
         room = plan.room(room_id)
         gaps = tuple(Gap.of(o, room_id) for o in plan.openings if room_id in o.rooms)
-        return cls(layout_type, room.polygon, gaps, n_target, plan.elevation(room_id), room.height)
+        return cls(layout_type, room.polygon, gaps, n_target, plan.elevation(room_id), room.height, demands)
 
     @property
     def centre(self) -> NDArray[np.float64]:

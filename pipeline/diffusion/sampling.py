@@ -15,6 +15,7 @@ from pipeline import seeds, taxonomy
 from pipeline.diffusion.batch import RoomBatch, room_batch
 from pipeline.diffusion.checkpoint import Header, load_weights
 from pipeline.diffusion.context import Library, Proposal, RoomContext
+from pipeline.diffusion.demands import impose
 from pipeline.diffusion.denoiser import Denoiser
 from pipeline.diffusion.floor import floor_tokens
 from pipeline.diffusion.guidance import Guide, shift
@@ -96,7 +97,7 @@ class Sampler:
     def _parts(self, rooms: Sequence[RoomContext]) -> Iterator[tuple[int, list[int]]]:
         """Cut rooms into batches of equal slots: yields the number of slots and the indices of the rooms."""
         asks = self.settings.quantity or self.settings.count_condition
-        needed = [self.header.slots_for(r.layout_type, r.n_target if asks else None) for r in rooms]
+        needed = [self.header.slots_for(r.layout_type, (r.n_target if asks else None) or _named(r)) for r in rooms]
         for slots in sorted(set(needed)):
             alike = [i for i, n in enumerate(needed) if n == slots]
             for start in range(0, len(alike), self.settings.batch):
@@ -109,13 +110,14 @@ class Sampler:
         device = self.net.head.weight.device
         told = self._told(rooms).to(device)
         counts = torch.tensor([-1 if r.n_target is None else min(r.n_target, slots) for r in rooms], device=device)
+        demands = [room.demands for room in rooms]
         code = self.net.floor_code(told)
         guide = Guide(told, counts, self.library, openable_classes(self.header.norm.classes).to(device), self.settings)
         schedule, ones = linear(self.header.timesteps), torch.ones(len(rooms), device=device)
         thousandth = 1000 / self.header.timesteps
 
         def expect(x: Tensor, alpha: float, sigma: float) -> Tensor:
-            return self.net.expected(x, alpha * ones, sigma * ones, told, code)[0]
+            return impose(self.net.expected(x, alpha * ones, sigma * ones, told, code)[0], demands, self.header.norm.classes)
 
         def steer(x0: Tensor, level: float) -> Tensor:
             return shift(guide, self.net.codec, x0, level * thousandth)
@@ -137,6 +139,12 @@ class Sampler:
         counts = [-1 if r.n_target is None or not self.settings.count_condition else r.n_target for r in rooms]
         layouts = [self.header.layouts.index(r.layout_type) for r in rooms]
         return room_batch([floor_tokens(r) for r in rooms], layouts, counts, [r.height for r in rooms])
+
+
+def _named(room: RoomContext) -> int | None:
+    """Return how many objects a room must have room for beside what it usually holds, None where nothing is demanded."""
+    least = sum(d.least for d in room.demands)
+    return 2 * least + 6 if least else None
 
 
 def openable_classes(classes: Sequence[str]) -> Tensor:

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from pipeline.errors import RefusedError
 from pipeline.floorplan.defaults import DEFAULTS, OUTSIDE
 from pipeline.floorplan.distance import distances, nearness
+from pipeline.floorplan.furniture import faults
 from pipeline.floorplan.program import MAX_ROOMS, Evidence, FloorProgram, RoomReq
 
 LEAST_SHARE = 0.4  # a room of less than this share of its type's usual area is no such room
@@ -35,6 +36,13 @@ def check(program: FloorProgram) -> None:
     _distances(program)
     _corners(program)
     _planar(program)
+    check_furniture(program)
+
+
+def check_furniture(program: FloorProgram) -> None:
+    """Raise ImpossibleError for the first wish for furniture that no room can meet."""
+    for message, remedy, fields in faults(program):
+        raise ImpossibleError(message, remedy, cited(program, *fields))
 
 
 def cited(program: FloorProgram, *fields: str) -> list[Evidence]:

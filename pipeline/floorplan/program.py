@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 MAX_ROOMS = 40
+MAX_PIECES = 200
 
 RoomType = Literal[
     "living_room",
@@ -60,6 +61,52 @@ class Range(Model):
     stated: bool = False
 
 
+FurnitureStyle = Literal[
+    "Modern",
+    "Chinoiserie",
+    "Kids",
+    "European",
+    "Japanese",
+    "Southeast Asia",
+    "Industrial",
+    "American Country",
+    "Vintage/Retro",
+    "Light Luxury",
+    "Mediterranean",
+    "Korean",
+    "New Chinese",
+    "Nordic",
+    "European Classic",
+    "Ming Qing",
+    "Neoclassical",
+    "Minimalist",
+]
+Pieces = Annotated[int, Field(ge=0, le=MAX_PIECES)]
+
+
+class Things(Model):
+    """How many of one category, or of a group such as `any_chair`: at least `min`, at most `max`; both alike: exactly; 0: none."""
+
+    category: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$", description="a category of manifests/taxonomy.yaml, or a group")]
+    min: Pieces = 0
+    max: Pieces | None = None
+
+
+class Furniture(Model):
+    """Wishes for what stands in a room (or in every room, where the whole home has them).
+
+    `least` and `most` bound the number of pieces, both alike: exactly. `style` is one of 3D-FUTURE's. At least `openable` pieces have
+    something that opens; `walkable` is the share of the floor that a robot gets to.
+    """
+
+    least: Pieces | None = None
+    most: Pieces | None = None
+    counts: tuple[Things, ...] = ()
+    style: FurnitureStyle | None = None
+    openable: Pieces | None = None
+    walkable: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
+
+
 class RoomReq(Model):
     """One room (or `count` like ones). `area` in m2 between inner wall faces, `min_width` in m.
 
@@ -80,8 +127,19 @@ class RoomReq(Model):
     window: Literal["required", "forbidden", "auto"] = "auto"
     objects: Annotated[int, Field(ge=0, le=60)] | None = None
     walkable: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
+    furniture: Furniture = Furniture()
     stated: bool = True
     inferred: bool = False
+
+    def wishes(self) -> Furniture:
+        """Return all wishes for the room's furniture."""
+        wish = self.furniture
+        more: dict[str, Any] = {}
+        if self.objects is not None and wish.least is None and wish.most is None:
+            more |= {"least": self.objects, "most": self.objects}
+        if self.walkable is not None and wish.walkable is None:
+            more["walkable"] = self.walkable
+        return wish.model_copy(update=more) if more else wish
 
 
 class Link(Model):
@@ -193,7 +251,7 @@ class Span(Model):
 class FloorProgram(Model):
     """A request for a home. Every field is optional; `total_area` [m2] counts neither balconies nor garages.
 
-    `only` closes the list of rooms: nothing is added that was not named. `nonrect` is the least number of rooms that are not
+    `furniture` are wishes for every room that is furnished. `only` closes the list of rooms: nothing is added that was not named. `nonrect` is the least number of rooms that are not
     rectangles. `irregular` widens what an outline may look like.
     """
 
@@ -209,6 +267,7 @@ class FloorProgram(Model):
     entrance: Entrance = Entrance()
     accessibility: Accessibility = Accessibility()
     style: Style = Style()
+    furniture: Furniture = Furniture()
     nonrect: Annotated[int, Field(ge=0, le=10)] = 0
     scale: Annotated[float, Field(ge=0.5, le=2.0)] = 1.0
     only: bool = False

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
+from pipeline.floorplan.program import FloorProgram
 from pipeline.homes.factory import Factory, HomeDraft
 from pipeline.homes.furnish import Draft
 from pipeline.homes.request import Request
@@ -43,7 +44,6 @@ def draft_rows(drafts: Iterable[HomeDraft], seed: int, assets: Mapping[str, Asse
 def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], factory: Factory) -> list[HomeDraft]:
     """Rebuild the first drafts of `requests` from their rows."""
     homes = {home.index: home for home in homes_of(tables)}
-    asked = {(r["scene_id"], r["room_id"]): (r["asked_objects"], r["walkable_target"]) for r in tables["rooms"]}
     lost: dict[str, list[str]] = {}
     for row in tables["rejects"]:
         if row["reason"] == NO_ASSET:
@@ -51,7 +51,8 @@ def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], fact
     made = []
     for request in requests:
         home = homes[request.index]
-        jobs = factory.jobs(home.plan, request.index, 0, {room: wish for (scene, room), wish in asked.items() if scene == home.scene_id})
+        program = FloorProgram.model_validate_json(home.program)
+        jobs = factory.jobs(home.plan, request.index, 0, {room.id: room.wishes() for room in program.rooms})
         drafts = tuple(Draft(job, home.in_room(job.room_id), tuple(lost.get(f"{home.scene_id}/{job.room_id}#0", ()))) for job in jobs)
         made.append(HomeDraft(request, home.prompt, home.program, home.plan, drafts))
     return made

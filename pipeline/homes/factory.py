@@ -16,6 +16,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pipeline import floorplan, params, seeds, tables, taxonomy
 from pipeline.arrange import PostoptSettings
 from pipeline.diffusion.sampling import Sampler
@@ -23,7 +25,9 @@ from pipeline.diffusion.settings import SampleSettings
 from pipeline.entities.home import Home
 from pipeline.entities.plan import Plan
 from pipeline.errors import ContentError, RefusedError
+from pipeline.floorplan.furniture import members, needed, plain
 from pipeline.floorplan.language import parse
+from pipeline.floorplan.program import Furniture
 from pipeline.homes.exports import files_of, write_assets
 from pipeline.homes.finish import RoomResult, finish
 from pipeline.homes.furnish import Draft, furnish
@@ -39,8 +43,8 @@ from pipeline.shards import code_digest, scene_id
 from pipeline.verify import Certificate, VerifySettings, verify_home
 from schemas.assets import LATENTS
 
+WISHES = frozenset({"count_missed", "category_missed", "openable_missed", "walkable_missed"})  # reasons that a request cannot be met
 PLANS = 8  # plans of one attempt that the judge may find unsound
-Wish = tuple[int | None, float | None]  # exact number of objects, share of free floor
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +141,7 @@ class Factory:
             else:
                 program = floorplan.complete(program)
                 solved = self._sound_plan(program, (request.index, attempt))
-        wishes = {room.id: (room.objects, room.walkable) for room in program.rooms}
+        wishes = {room.id: room.wishes() for room in program.rooms}
         return prompt, program.model_dump_json(exclude_defaults=True), solved, self.jobs(solved, request.index, attempt, wishes)
 
     def _sound_plan(self, program: floorplan.FloorProgram, keys: tuple[int, int]) -> Plan:
@@ -150,7 +154,7 @@ class Factory:
             solved = floorplan.solve(program, self.seed, (*keys, retry))
         return solved
 
-    def jobs(self, plan: Plan, index: int, attempt: int, wishes: Mapping[str, Wish]) -> list[RoomJob]:
+    def jobs(self, plan: Plan, index: int, attempt: int, wishes: Mapping[str, Furniture]) -> list[RoomJob]:
         """Return one job per room that the layout model furnishes; `wishes` by room id.
 
         The first plan's rooms count their attempts from 0, those of plan k from 100 k, so that no draw is made twice.
@@ -160,14 +164,23 @@ class Factory:
             kind = layout_type(room, plan, taxonomy.load())
             if kind is None:
                 continue
-            count, walkable = wishes.get(room.room_id, (None, None))
-            if count is not None and count > self.sampler.slots:
-                raise RefusedError(
-                    f"{count} objects are asked for in {room.room_id}, and a room takes at most {self.sampler.slots}",
-                    "ask for fewer, or train with more train.slots",
-                )
-            found.append(RoomJob(plan, room.room_id, kind, index, number, 100 * attempt, count, walkable))
+            wish = wishes.get(room.room_id, Furniture())
+            self._possible(room.room_id, wish)
+            draw = seeds.generator(self.seed, "pieces", index, number, attempt)
+            found.append(RoomJob(plan, room.room_id, kind, index, number, 100 * attempt, told_count(wish, draw), wish.walkable, wish))
         return found
+
+    def _possible(self, room_id: str, wish: Furniture) -> None:
+        """Raise RefusedError for wishes that the layout model or the library cannot meet."""
+        most = max(wish.least or 0, needed(wish))
+        if most > self.sampler.slots:
+            raise RefusedError(
+                f"{most} objects are asked for in {room_id}, and a room takes at most {self.sampler.slots}",
+                "ask for fewer, or train with more train.slots",
+            )
+        for things in wish.counts:
+            if things.min and not any(self.index.shelves.get(name) is not None for name in members(things.category)):
+                raise RefusedError(f"the library has no {plain(things.category)} for {room_id}", "ask for something else")
 
     def draft(self, jobs: Sequence[RoomJob]) -> list[Draft]:
         """Furnish a batch of rooms: diffusion and retrieval, nothing moved yet."""
@@ -240,7 +253,8 @@ class Factory:
         """Start a home again with another plan. Raises ContentError when it has had all its attempts."""
         index = work.request.index
         if work.attempt + 1 >= self.shard.home_attempts:
-            raise ContentError(
+            kind = RefusedError if failure in WISHES else ContentError
+            raise kind(
                 f"home {index} (seed {self.seed}) failed {self.shard.home_attempts} times, last by {failure} ({detail})",
                 "ask for fewer or smaller things, or larger rooms",
             )
@@ -295,6 +309,17 @@ class Factory:
     def write_library(self, folder: Path, asset_ids: Sequence[str] | None = None) -> None:
         """Write the asset library (or those of it that are named) with its tables and thumbnails, on all cores."""
         write_assets(self.library, folder, sorted(asset_ids if asset_ids is not None else self.library), os.cpu_count() or 1)
+
+
+def told_count(wish: Furniture, rng: np.random.Generator) -> int | None:
+    """Return the number of objects that the sampler is told: any number within the bounds; None where nobody asked."""
+    least, most = wish.least, wish.most
+    if least is None and most is None:
+        return None
+    low = max(least or 0, needed(wish))
+    high = most if most is not None else max(low + 2, 4)
+    low = low if least is not None else max(low, high // 2)
+    return int(rng.integers(low, max(high, low) + 1))
 
 
 def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:

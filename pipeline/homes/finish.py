@@ -8,8 +8,10 @@ from dataclasses import dataclass, replace
 from pipeline.arrange import PostoptSettings, Site, post_optimise
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
+from pipeline.floorplan.furniture import members
 from pipeline.homes.furnish import Draft
 from pipeline.homes.guilt import Guilt
+from pipeline.homes.request import RoomJob
 from pipeline.homes.rounding import rounded
 from pipeline.retrieval.index import AssetIndex
 from pipeline.taxonomy import Taxonomy
@@ -35,6 +37,7 @@ class RoomResult:
     detail: str = ""
     binding: bool = False
     free: float = 1.0  # measured free floor where a share is asked for, else 1
+    openers: frozenset[str] = frozenset()  # assets of its objects that open
 
     def rank(self) -> tuple[bool, bool, int]:
         """Order results of one room: without failure first, then wishes met, then the number of objects."""
@@ -43,17 +46,21 @@ class RoomResult:
     def without(self, guilty: Mapping[str, Guilt], taxonomy: Taxonomy) -> RoomResult:
         """Return the result less the objects of these ids, judged again."""
         left = tuple(p for p in self.placements if p.object_id not in guilty)
-        failure, detail, binding = shortcoming(self.draft, left, taxonomy, self.free)
+        failure, detail, binding = shortcoming(self.draft, left, taxonomy, self.openers, self.free)
         return replace(self, placements=left, failure=failure, detail=detail, binding=binding)
 
 
-def shortcoming(draft: Draft, placements: tuple[Placement, ...], taxonomy: Taxonomy, free: float = 1.0) -> tuple[str, str, bool]:
-    """Return (reason code, detail, binding) of what a room lacks, ("", "", False) when nothing; `free` is its free floor."""
+def shortcoming(
+    draft: Draft, placements: tuple[Placement, ...], taxonomy: Taxonomy, openers: frozenset[str] = frozenset(), free: float = 1.0
+) -> tuple[str, str, bool]:
+    """Return (reason code, detail, binding) of what a room lacks, ("", "", False) when nothing.
+
+    `openers` are the assets of the draft that open, `free` is the room's free floor.
+    """
     job = draft.job
-    if job.count is not None and len(placements) != job.count:
-        return "count_missed", f"{len(placements)} objects, asked for {job.count}", True
-    if job.walkable is not None and free < job.walkable:
-        return "walkable_missed", f"{free:.3f} of the floor is free, asked for {job.walkable:.3f}", True
+    unmet = _unmet(job, placements, openers, free)
+    if unmet:
+        return *unmet, True
     there = {p.category for p in placements}
     # A stated number of objects may be too small for what the room type would have.
     for group in taxonomy.essentials.get(job.layout_type, ()) if job.count is None else ():
@@ -64,6 +71,23 @@ def shortcoming(draft: Draft, placements: tuple[Placement, ...], taxonomy: Taxon
     return "", "", False
 
 
+def _unmet(job: RoomJob, placements: tuple[Placement, ...], openers: frozenset[str], free: float) -> tuple[str, str] | None:
+    """Return (reason code, detail) of the first wish that is not met."""
+    least, most = job.bounds
+    if len(placements) < (least or 0) or (most is not None and len(placements) > most):
+        return "count_missed", f"{len(placements)} objects, asked for {_asked(least or 0, most)}"
+    for wish in job.furniture.counts:
+        have = sum(p.category in members(wish.category) for p in placements)
+        if have < wish.min or (wish.max is not None and have > wish.max):
+            return "category_missed", f"{have} {wish.category}, asked for {_asked(wish.min, wish.max)}"
+    opening = sum(p.asset_id in openers for p in placements)
+    if opening < (job.furniture.openable or 0):
+        return "openable_missed", f"{opening} objects open, asked for {job.furniture.openable}"
+    if job.walkable is not None and free < job.walkable:
+        return "walkable_missed", f"{free:.3f} of the floor is free, asked for {job.walkable:.3f}"
+    return None
+
+
 def finish(
     draft: Draft, assets: Mapping[str, Asset], index: AssetIndex, settings: PostoptSettings, robot: Robot, taxonomy: Taxonomy
 ) -> RoomResult:
@@ -71,9 +95,18 @@ def finish(
     job, placements = draft.job, draft.placements
     site = Site.of(job.plan, job.room_id, radius=robot.radius + MARGIN, step=robot.step, height=robot.height)
     rejects: list[Reject] = [("object", "no_asset", category) for category in draft.lost]
-    arranged = post_optimise(site, placements, assets, settings, index.smaller, target=job.walkable, keep_count=job.count is not None)
+    smaller = index.favouring(job.furniture.style).smaller
+    arranged = post_optimise(site, placements, assets, settings, smaller, target=job.walkable, keep_count=job.bounds[0] is not None)
     placements = tuple(rounded(p) for p in arranged.placements)
     rejects += [("object", r.reason, f"{r.object_id}: {r.detail}") for r in arranged.rejects]
     free = arranged.ratio
-    failure, detail, binding = shortcoming(draft, placements, taxonomy, free)
-    return RoomResult(draft, placements, tuple(rejects), failure, detail, binding, free)
+    openers = frozenset(p.asset_id for p in placements if assets[p.asset_id].openable)
+    failure, detail, binding = shortcoming(draft, placements, taxonomy, openers, free)
+    return RoomResult(draft, placements, tuple(rejects), failure, detail, binding, free, openers)
+
+
+def _asked(least: int, most: int | None) -> str:
+    """Return bounds in words."""
+    if most is None:
+        return f"at least {least}"
+    return str(least) if least == most else f"at most {most}" if not least else f"{least} to {most}"

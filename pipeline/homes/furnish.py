@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeline.diffusion.context import Proposal, RoomContext
 from pipeline.diffusion.sampling import Sampler
@@ -13,7 +14,7 @@ from pipeline.entities.home import Placement
 from pipeline.homes.request import RoomJob
 from pipeline.homes.rounding import rounded
 from pipeline.retrieval.anchor import anchored
-from pipeline.retrieval.index import AssetIndex
+from pipeline.retrieval.index import AssetIndex, Match
 from pipeline.taxonomy import Taxonomy
 
 
@@ -31,7 +32,7 @@ def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxono
 
     Draws are keyed by (seed, home, room, attempt) alone, so a room does not depend on which rooms share its batch.
     """
-    contexts = [RoomContext.of(job.plan, job.room_id, job.layout_type, job.count) for job in jobs]
+    contexts = [RoomContext.of(job.plan, job.room_id, job.layout_type, job.count, job.demands) for job in jobs]
     keys = [(job.index, job.number, job.attempt) for job in jobs]
     proposals = sampler.sample_rooms(contexts, keys)
     return [retrieve(job, context, found, index, taxonomy) for job, context, found in zip(jobs, contexts, proposals, strict=True)]
@@ -46,7 +47,7 @@ def retrieve(job: RoomJob, context: RoomContext, proposals: Sequence[Proposal], 
         return Draft(job, ())
     categories = [p.category for p in proposals]
     sizes = np.array([p.size for p in proposals])
-    matches = index.match(categories, sizes, np.array([p.latent for p in proposals]))
+    matches = _matches(job, index.favouring(job.furniture.style), categories, sizes, np.array([p.latent for p in proposals]))
     placements: list[Placement] = []
     lost: list[str] = []
     for number, (proposal, match) in enumerate(zip(proposals, matches, strict=True)):
@@ -69,6 +70,24 @@ def retrieve(job: RoomJob, context: RoomContext, proposals: Sequence[Proposal], 
         )
         placements.append(rounded(placement))
     return Draft(job, tuple(placements), tuple(lost))
+
+
+def _matches(
+    job: RoomJob, index: AssetIndex, categories: Sequence[str], sizes: NDArray[np.float64], latents: NDArray[np.float32]
+) -> list[Match | None]:
+    """Return the nearest assets; where more shall open, the objects that lose least by it get assets that do."""
+    matches = index.match(categories, sizes, latents)
+    lacking = (job.furniture.openable or 0) - sum(m.openable for m in matches if m)
+    if lacking > 0:
+        opening = index.openers().match(categories, sizes, latents)
+        still = [k for k, (m, o) in enumerate(zip(matches, opening, strict=True)) if m and o and not m.openable]
+        for k in sorted(still, key=lambda k: (_distance(opening[k]) - _distance(matches[k]), k))[:lacking]:
+            matches[k] = opening[k]
+    return matches
+
+
+def _distance(match: Match | None) -> float:
+    return match.distance if match else np.inf
 
 
 def _height(mount: str, proposal: Proposal, height: float, context: RoomContext) -> float:

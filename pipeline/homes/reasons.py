@@ -17,6 +17,8 @@ REASONS: dict[str, Reason] = {
     "blocks_joint": Reason("object", "dropped", "a door, drawer or lid stops at it"),
     "blocks_way": Reason("object", "dropped", "nobody could enter the room for it"),
     "count_missed": Reason("room", "tried again", "not the number of objects that was asked for"),
+    "category_missed": Reason("room", "tried again", "more or fewer objects of a category than was asked for"),
+    "openable_missed": Reason("room", "tried again", "fewer objects that open than was asked for"),
     "walkable_missed": Reason("room", "tried again", "less free floor than was asked for"),
     "lacks_essential": Reason("room", "tried again", "without what makes the room: a bedroom without a bed"),
     "too_few_left": Reason("room", "tried again", "too many of its objects had to go"),

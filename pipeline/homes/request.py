@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from pipeline.diffusion.context import Demand
 from pipeline.entities.plan import Plan, Room
+from pipeline.floorplan.furniture import members
+from pipeline.floorplan.program import Furniture
 from pipeline.taxonomy import Taxonomy
 
 
@@ -27,7 +30,8 @@ class RoomJob:
     """One room to furnish; equal to nothing but itself.
 
     `index` is the home's, `number` the room's position in the plan, `attempt` counts from 0: with the seed they key
-    every random draw. `count` is the exact number of objects that is asked for, `walkable` the share of free floor.
+    every random draw. `count` is the number of objects that the sampler is told, `walkable` the share of free floor,
+    `furniture` all that is wished for.
     """
 
     plan: Plan
@@ -38,6 +42,18 @@ class RoomJob:
     attempt: int = 0
     count: int | None = None
     walkable: float | None = None
+    furniture: Furniture = field(default_factory=Furniture)
+
+    @property
+    def demands(self) -> tuple[Demand, ...]:
+        """What is wished for by category, as the sampler takes it."""
+        return tuple(Demand(members(c.category), c.min, c.max) for c in self.furniture.counts)
+
+    @property
+    def bounds(self) -> tuple[int | None, int | None]:
+        """Least and most number of objects; a job that states a count alone means it exactly."""
+        least, most = self.furniture.least, self.furniture.most
+        return (self.count, self.count) if least is None and most is None else (least, most)
 
     @property
     def room(self) -> Room:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -46,6 +46,17 @@ class AssetIndex:
     sweep_boxes: NDArray[np.float32]
     shelves: Mapping[str, NDArray[np.int64]]
     settings: RetrievalSettings
+    styles: tuple[str, ...] = ()
+    style: str = ""
+
+    def favouring(self, style: str | None) -> AssetIndex:
+        """Return the index that prefers a style: assets of another style are farther by `prefer_style`, those of none half as much."""
+        return replace(self, style=style or "")
+
+    def openers(self) -> AssetIndex:
+        """Return the index of the assets that open alone."""
+        shelves = {name: shelf[self.openable[shelf]] for name, shelf in self.shelves.items()}
+        return replace(self, shelves={name: shelf for name, shelf in shelves.items() if len(shelf)})
 
     @classmethod
     def from_tables(
@@ -91,6 +102,7 @@ class AssetIndex:
             boxes,
             shelves,
             settings,
+            tuple(str(r.get("style", "")) for r in rows),
         )
 
     def match(
@@ -138,6 +150,9 @@ class AssetIndex:
         openable = self.openable[shelf]
         if openable.any():
             total = np.where(openable[None], total, (total + s.prefer_offset) * s.prefer_openable)
+        if self.style:
+            alike = np.array([0.0 if self.styles[k] == self.style else 0.5 if not self.styles[k] else 1.0 for k in shelf])
+            total = total + s.prefer_style * alike[None]
         return total
 
     def smaller(self, asset_id: str, max_area: float) -> Match | None:
