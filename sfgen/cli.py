@@ -44,10 +44,10 @@ def generate(
     \b
     Example:
       sfgen generate "a two-bedroom apartment with an open kitchen" --out home/
-      sfgen generate --plan my_plan.json --out home/
+      sfgen generate --plan my_plan.json "a bedroom with eight pieces, two nightstands, 70 % free, nordic" --out home/
     """
-    if bool(prompt) == bool(plan):
-        raise Complaint(f"{'a prompt and --plan are' if prompt else 'no prompt is'} given; give PROMPT or --plan FILE", 2)
+    if not prompt and not plan:
+        raise Complaint("no prompt is given; give PROMPT, or --plan FILE", 2)
     root = factory_root()
     stage("generate").main(root, prompt=prompt, out=out, seed=seed, source=plan, house=house)
 

@@ -11,6 +11,8 @@ from pipeline.execution import single_thread
 from pipeline.floorplan import FloorProgram, describe, plan_json, request
 from pipeline.floorplan.draw import svg
 from pipeline.floorplan.own import program_of, read_own
+from pipeline.floorplan.wishes import with_wishes
+from pipeline.homes.delivery import deliveries, report
 from pipeline.homes.factory import open_factory
 from pipeline.homes.request import Request
 from pipeline.homes.soundness import require_sound
@@ -23,7 +25,7 @@ def main(root: Path, *, out: Path, prompt: str = "", seed: int = 0, source: Path
 
     A language model reads the prompt where one is configured.
     """
-    program, wish, repairs = asked_in_words(prompt) if source is None else asked_by_plan(root, source, house)
+    program, wish, repairs = asked_in_words(prompt) if source is None else asked_by_plan(root, source, house, prompt)
     single_thread()
     factory = open_factory(root, seed)
     told = digest([wish.prompt, wish.program, wish.plan])
@@ -34,6 +36,8 @@ def main(root: Path, *, out: Path, prompt: str = "", seed: int = 0, source: Path
         if dataset.missing():
             commit_library(dataset, lambda folder: factory.write_library(folder, used))
             commit_shard(dataset, 0, gather(0, [(outcome.rows, {**outcome.files, **drawings(outcome.home, program, repairs)})]))
+    styles = {p.asset_id: str(factory.library.rows[p.asset_id]["style"]) for p in outcome.home.placements}
+    sys.stdout.write(report(deliveries(FloorProgram.model_validate_json(outcome.home.program), outcome.rows, styles)))
     for repair in repairs:
         sys.stdout.write(f"repaired: {repair['where']}: {repair['text']}\n")
     for file in sorted(p for p in out.glob("*/shard-00000/*") if p.is_file()):
@@ -47,13 +51,15 @@ def asked_in_words(prompt: str) -> tuple[FloorProgram, Request, list[dict[str, s
     return program, Request(0, asked, program.model_dump_json(exclude_defaults=True)), []
 
 
-def asked_by_plan(root: Path, source: Path, house: str | None) -> tuple[FloorProgram, Request, list[dict[str, str]]]:
-    """Return the program and the request of a plan of the user's own, and what was repaired in it."""
+def asked_by_plan(root: Path, source: Path, house: str | None, prompt: str) -> tuple[FloorProgram, Request, list[dict[str, str]]]:
+    """Return the program and the request of a plan of the user's own, and what was repaired in it; `prompt` wishes for furniture."""
     own = read_own(source, house)
     require_sound(root, own.plan)
     program = program_of(own.plan)
+    if prompt:
+        program = with_wishes(program, require_prompt(prompt))
     document = json.dumps(plan_json(own.plan))
-    return program, Request(0, describe(program), program.model_dump_json(exclude_defaults=True), document), own.repairs_json()
+    return program, Request(0, prompt or describe(program), program.model_dump_json(exclude_defaults=True), document), own.repairs_json()
 
 
 def drawings(home: Home, program: FloorProgram, repairs: list[dict[str, str]]) -> dict[str, bytes]:

@@ -50,7 +50,7 @@ class AssetIndex:
     style: str = ""
 
     def favouring(self, style: str | None) -> AssetIndex:
-        """Return the index that prefers a style: assets of another style are farther by `prefer_style`, those of none half as much."""
+        """Return the index that prefers a style: assets of another are farther by `prefer_style`; what opens has often none, and stays."""
         return replace(self, style=style or "")
 
     def openers(self) -> AssetIndex:
@@ -151,8 +151,8 @@ class AssetIndex:
         if openable.any():
             total = np.where(openable[None], total, (total + s.prefer_offset) * s.prefer_openable)
         if self.style:
-            alike = np.array([0.0 if self.styles[k] == self.style else 0.5 if not self.styles[k] else 1.0 for k in shelf])
-            total = total + s.prefer_style * alike[None]
+            other = np.array([self.styles[k] not in {"", self.style} for k in shelf])
+            total = total + s.prefer_style * other[None]
         return total
 
     def smaller(self, asset_id: str, max_area: float) -> Match | None:

@@ -13,6 +13,6 @@ class RetrievalSettings:
     size_weight: float = 1.0  # weight of the rms log ratio of the sizes
     prefer_openable: float = 1.5  # assets that do not open are so many times as far, where the category has some that do
     prefer_offset: float = 0.15  # and this much farther, so that a near-perfect static match does not always win
-    prefer_style: float = 0.6  # assets of another style than the asked one are so much farther, those without a style half of it
+    prefer_style: float = 1.5  # where a style is asked for: assets of another are so much farther
     stretch: float = 0.15  # largest change of a static asset's size per axis; articulated ones are never scaled
     sweep_boxes: int = 4  # boxes kept per asset for the articulated-collision guidance

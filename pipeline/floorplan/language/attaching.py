@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import bisect
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from pipeline.floorplan.check import ImpossibleError
 from pipeline.floorplan.furniture import natural
-from pipeline.floorplan.language.furnishing import STOPS, Claim, Scan, words
-from pipeline.floorplan.program import Evidence, FloorProgram, Furniture, RoomReq, Things
+from pipeline.floorplan.language.furnishing import Claim, Scan
+from pipeline.floorplan.language.vocabulary import STOPS, words
+from pipeline.floorplan.program import MAX_PIECES, Evidence, FloorProgram, Furniture, RoomReq, Things
 
 LONG = 400  # characters of a list of wishes
 FAR = 24  # characters between a wish and the room that follows it
@@ -33,10 +35,11 @@ def attach(program: FloorProgram, claims: Sequence[Claim], prompt: str, mentions
         return program
     named = list(mentions) if mentions is not None else mentioned(program)
     kinds = {r.id: r.type for r in program.rooms}
+    stops = [-1, *(i for i, c in enumerate(prompt) if c in STOPS and not _decimal(prompt, i)), len(prompt)]
     made: dict[str, list[Claim]] = {}
     evidence: list[dict[str, Any]] = []
     for claim in claims:
-        ids = _targets(claim, claims, named, kinds, prompt)
+        ids = _targets(claim, claims, named, kinds, prompt, stops)
         for room in ids or ("",):
             made.setdefault(room, []).append(claim)
             where = f"rooms.{room}.furniture" if room else "furniture"
@@ -64,6 +67,13 @@ def combined(claims: Sequence[Claim], prompt: str, where: str) -> Furniture:
     counts: dict[str, Things] = {}
     fields: dict[str, Any] = {}
     for claim in claims:
+        if max(claim.least, claim.most or 0) > MAX_PIECES:
+            _clash(
+                f"{max(claim.least, claim.most or 0)} things are asked for in {where}, and {MAX_PIECES} are the most",
+                [claim],
+                claim,
+                prompt,
+            )
         if claim.kind == "count":
             old = counts.get(claim.name, Things(category=claim.name))
             most = min((m for m in (old.max, claim.most) if m is not None), default=None)
@@ -98,12 +108,14 @@ def _with(room: RoomReq, claims: Sequence[Claim], prompt: str) -> RoomReq:
     return room.model_copy(update={"furniture": combined(claims, prompt, room.id)})
 
 
-def _targets(claim: Claim, claims: Sequence[Claim], named: Sequence[Mention], kinds: Mapping[str, str], prompt: str) -> tuple[str, ...]:  # noqa: PLR0911 - one return per rule
+def _targets(  # noqa: PLR0911 - one return per rule
+    claim: Claim, claims: Sequence[Claim], named: Sequence[Mention], kinds: Mapping[str, str], prompt: str, stops: Sequence[int]
+) -> tuple[str, ...]:
     """Return the ids of the rooms that a claim means, () for the whole home."""
     if claim.home:
         return ()
-    begin = next((i + 1 for i in range(claim.start - 1, -1, -1) if prompt[i] in STOPS and not _decimal(prompt, i)), 0)
-    end = next((i for i in range(claim.end, len(prompt)) if prompt[i] in STOPS and not _decimal(prompt, i)), len(prompt))
+    place = bisect.bisect_left(stops, claim.start)
+    begin, end = stops[place - 1] + 1, stops[place]
     before = [m for m in named if begin <= m.start and m.end <= claim.start]
     after = [m for m in named if claim.end <= m.start and m.end <= end]
     if claim.inward and after and after[0].start - claim.end <= FAR:

@@ -1,49 +1,19 @@
 """Wishes for furniture in words: how many things, which, in what style, what opens, how much floor stays free.
 
 They are read before the rooms are, in all four languages at once, and taken out of the prompt: what is left speaks of rooms alone. Which
-room a wish means is settled afterwards (`attaching.py`), when the rooms and their places in the prompt are known.
+room a wish means is settled afterwards (`attaching.py`); `masking.py` takes them out, when the rooms and their places in the prompt are known.
 """
 
 from __future__ import annotations
 
-import functools
-import re
-import unicodedata
-from collections.abc import Mapping, Sequence
+import bisect
 from dataclasses import dataclass
 from typing import Literal
 
 from pipeline.floorplan.furniture import lexicon
+from pipeline.floorplan.language.vocabulary import FIGURES, HAN_DIGITS, LEAST_TYPO, MOST, NUMBERS, ROOMS, STOPS, near, phrases, words
 
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
-HAN = "\u3400-\u9fff"
-WORD = re.compile(rf"\d+(?:[.,]\d+)?|[{HAN}]|[^\W\d_{HAN}]+(?:'[^\W\d_]+)?|[%.,;:!?()\n+&、。;,!?]")
-STOPS = frozenset(".;!?\n。;!?")
-ENDINGS = ("en", "es", "as", "os", "em", "e", "n", "s", "a", "o")
-NUMBERS = {
-    "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10, "eleven": 11, "twelve": 12,
-    "thirteen": 13, "fourteen": 14, "fifteen": 15, "sixteen": 16, "seventeen": 17, "eighteen": 18, "nineteen": 19, "twenty": 20, "thirty": 30,
-    "forty": 40, "fifty": 50, "sixty": 60, "seventy": 70, "eighty": 80, "ninety": 90, "pair": 2, "couple": 2, "dozen": 12,
-    "eins": 1, "zwei": 2, "drei": 3, "vier": 4, "funf": 5, "sechs": 6, "sieben": 7, "acht": 8, "neun": 9, "zehn": 10, "elf": 11, "zwolf": 12,
-    "dreizehn": 13, "vierzehn": 14, "funfzehn": 15, "sechzehn": 16, "zwanzig": 20, "dreissig": 30, "vierzig": 40, "funfzig": 50, "sechzig": 60,
-    "siebzig": 70, "achtzig": 80, "neunzig": 90,
-    "dos": 2, "tres": 3, "cuatro": 4, "cinco": 5, "seis": 6, "siete": 7, "ocho": 8, "nueve": 9, "diez": 10, "once": 11, "doce": 12, "trece": 13,
-    "catorce": 14, "quince": 15, "dieciseis": 16, "veinte": 20, "treinta": 30, "cuarenta": 40, "cincuenta": 50, "sesenta": 60, "setenta": 70,
-    "ochenta": 80, "noventa": 90,
-}  # fmt: skip
-HAN_DIGITS = {c: k for k, c in enumerate("零一二三四五六七八九")} | {"两": 2, "俩": 2}
-ROOMS = frozenset({"room", "rooms", "area", "corner", "niche", "nook", "zone", "space", "raum", "ecke", "bereich"})
-LEAST_TYPO = 6  # letters of a word that may hold a typing error
-
-
-@dataclass(frozen=True, slots=True)
-class Word:
-    """A word, folded (no accents, lower case), its stem, and its place in the prompt."""
-
-    text: str
-    stem: str
-    start: int
-    end: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,57 +34,6 @@ class Claim:
     inward: bool = False
 
 
-def fold(text: str) -> str:
-    """Return lower case without accents; sharp s as ss."""
-    lower = unicodedata.normalize("NFKC", text).lower().replace("ß", "ss")
-    return "".join(c for c in unicodedata.normalize("NFD", lower) if not unicodedata.combining(c))
-
-
-def stem(word: str) -> str:
-    """Return a folded word without the endings of plurals, cases and genders of English, German and Spanish."""
-    for _ in range(2):
-        cut = next((e for e in ENDINGS if word.endswith(e) and len(word) - len(e) >= 3), "")
-        word = word.removesuffix(cut) if cut else word
-    return word
-
-
-def words(text: str) -> list[Word]:
-    """Split a text; Chinese into single characters. Hyphens part words."""
-    found = []
-    for match in WORD.finditer(text):
-        folded = fold(match.group())
-        found.append(Word(folded, stem(folded) if folded.isalpha() else folded, match.start(), match.end()))
-    return found
-
-
-@functools.cache
-def phrases() -> Mapping[str, tuple[tuple[tuple[str, ...], str, str, bool], ...]]:
-    """Return by first stem: (stems, kind, name, whether an owner is needed), the longest first."""
-    table: dict[str, list[tuple[tuple[str, ...], str, str, bool]]] = {}
-
-    def add(form: str, kind: str, name: str) -> None:
-        owned = form.startswith("@")
-        stems = tuple(w.stem for w in words(form.removeprefix("@")))
-        table.setdefault(stems[0], []).append((stems, kind, name, owned))
-
-    data = lexicon()
-    for name, forms in data["names"].items():
-        for listed in forms.values():
-            for form in listed:
-                add(form, "name", name)
-    for name, listed in data["styles"].items():
-        for form in listed:
-            add(form, "look", name)
-    for name, listed in data["words"].items():
-        for form in listed:
-            if form != "-":
-                add(str(form), name, form)
-    for name, listed in data["owners"].items():
-        for form in listed:
-            add(form, "owner", name)
-    return {k: tuple(sorted(v, key=lambda p: -len(p[0]))) for k, v in table.items()}
-
-
 class Scan:
     """Reads claims from left to right."""
 
@@ -122,40 +41,45 @@ class Scan:
         self.prompt = prompt
         self.words = words(prompt)
         self.claims: list[Claim] = []
+        stems = [w.stem for w in self.words]
+        self.there = [
+            [(len(p), kind, name, owned) for p, kind, name, owned in phrases().get(stem, ()) if tuple(stems[k : k + len(p)]) == p]
+            for k, stem in enumerate(stems)
+        ]
+        self.stops = [-1, *(k for k, w in enumerate(self.words) if w.text in STOPS)]
         self.negated = False  # "no TV or armchairs": the negation goes on
 
     def phrase(self, k: int, *kinds: str) -> tuple[int, str]:
         """Return (length, name) of the longest phrase of those kinds at word k, (0, "") where there is none."""
         if not 0 <= k < len(self.words):
             return 0, ""
-        for stems, kind, name, owned in phrases().get(self.words[k].stem, ()):
-            if kind in kinds and tuple(w.stem for w in self.words[k : k + len(stems)]) == stems and (not owned or self._owned(k, name)):
-                return len(stems), name
+        for length, kind, name, owned in self.there[k]:
+            if kind in kinds and (not owned or self._owned(k, name)):
+                return length, name
         return 0, ""
 
     def _owned(self, k: int, name: str) -> bool:
         """Whether a room that has such things is named before word k in the same clause, or right after it."""
         near = range(max(0, k - 14), k)
         stop = max((j for j in near if self.words[j].text in STOPS), default=-1)
-        if any(self._owner(j, name) for j in near if j > stop):
+        owner = max((j for j in near if j > stop and self._owner(j, name)), default=None)
+        # "a bedroom with a wardrobe" has one; "a bedroom, a bathroom and a wardrobe" are three rooms
+        if owner is not None and any(self.phrase(j, "with")[0] for j in range(owner + 1, k)):
             return True
         return any(self.phrase(j, "in")[0] and any(self._owner(j + d, name) for d in (1, 2, 3)) for j in (k + 1,))
 
     def _owner(self, k: int, name: str) -> bool:
         if not 0 <= k < len(self.words):
             return False
-        for stems, kind, of, _ in phrases().get(self.words[k].stem, ()):
-            if kind == "owner" and of == name and tuple(w.stem for w in self.words[k : k + len(stems)]) == stems:
-                return True
-        return False
+        return any(kind == "owner" and of == name for _, kind, of, _ in self.there[k])
 
     def number(self, k: int) -> tuple[int, float | None]:
         """Return (length, value) of a numeral at word k; of "8 to 10" only the first is read here."""
         if not 0 <= k < len(self.words):
             return 0, None
         text = self.words[k].text
-        if text[0].isdigit():
-            return 1, float(text.replace(",", "."))
+        if FIGURES.fullmatch(text):
+            return 1, min(float(text.replace(",", ".")), MOST)
         if text in NUMBERS:
             tens = NUMBERS[text]
             ones = NUMBERS.get(self.words[k + 1].text, 0) if tens >= 20 and k + 1 < len(self.words) else 0
@@ -171,7 +95,7 @@ class Scan:
         if "十" in run:
             tens, _, ones = run.partition("十")
             return len(run), float(10 * HAN_DIGITS.get(tens, 1) + HAN_DIGITS.get(ones, 0))
-        return len(run), float("".join(str(HAN_DIGITS[c]) for c in run))
+        return len(run), min(float("".join(str(HAN_DIGITS[c]) for c in run)), MOST)
 
     def amount(self, k: int) -> tuple[int, int, int | None] | None:
         """Return (length, least, most) of an amount at word k: bounds, ranges, articles, negations."""
@@ -221,7 +145,7 @@ class Scan:
 
     def _put(self, kind: Kind, first: int, last: int, name: str = "", least: int = 0, most: int | None = None, value: float = 0.0) -> int:
         start, end = self.words[first].start, self.words[last - 1].end
-        begin = max((j + 1 for j in range(first) if self.words[j].text in STOPS), default=0)
+        begin = self.stops[bisect.bisect_left(self.stops, first) - 1] + 1
         near = [*range(max(begin, first - 5), first), *range(last, min(last + 4, len(self.words)))]
         stop = next((j for j in near if j >= last and self.words[j].text in STOPS), len(self.words))
         home = any(self.phrase(j, "home")[0] for j in near if j < stop)
@@ -327,17 +251,17 @@ class Scan:
         """Return (place, length, name) of a thing at word k or after a style; typing errors are mended after an amount."""
         for skip in (0, self.phrase(k, "look")[0]):
             length, name = self.phrase(k + skip, "name")
-            if length and not self._part_of_a_room(k + skip, length, counted=counted):
+            if length and not self._part_of_a_room(k + skip, length):
                 return k + skip, length, name
         if counted and k < len(self.words):
             return k, *self._mended(k)
         return k, 0, ""
 
-    def _part_of_a_room(self, k: int, length: int, *, counted: bool) -> bool:
-        """Whether a thing's name is part of another: "tv room", "walk-in wardrobe", "a range of"."""
+    def _part_of_a_room(self, k: int, length: int) -> bool:
+        """Whether a thing's name is part of a room's: "tv room", "walk-in wardrobe"."""
         after = self.words[k + length].text if k + length < len(self.words) else ""
         before = [w.text for w in self.words[max(0, k - 2) : k]]
-        return after in ROOMS or before == ["walk", "in"] or (self.words[k].text == "range" and not counted)
+        return after in ROOMS or before == ["walk", "in"]
 
     def _mended(self, k: int) -> tuple[int, str]:
         word = self.words[k].stem
@@ -375,80 +299,3 @@ class Scan:
         found, name = self.phrase(k, "look")
         if found == length:
             self.claims.append(Claim("style", self.words[k].start, self.words[k + length - 1].end, name))
-
-
-def near(a: str, b: str) -> bool:
-    """Whether two words differ by one letter: changed, missing, added, or exchanged with its neighbour."""
-    if a == b or abs(len(a) - len(b)) > 1:
-        return a == b
-    k = next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
-    if len(a) == len(b):
-        return a[k + 1 :] == b[k + 1 :] or (a[k : k + 2] == b[k : k + 2][::-1] and a[k + 2 :] == b[k + 2 :])
-    longer, shorter = (a, b) if len(a) > len(b) else (b, a)
-    return longer[k + 1 :] == shorter[k:]
-
-
-def read_furniture(prompt: str) -> tuple[str, list[Claim]]:
-    """Return the prompt without its wishes for furniture (blanks in their place, so that places hold), and the wishes."""
-    scan = Scan(prompt)
-    claims = scan.run()
-    return (masked(scan, claims) if claims else prompt), claims
-
-
-def masked(scan: Scan, claims: Sequence[Claim]) -> str:
-    """Blank the wishes, what joins them, and what leads to them."""
-    covered = _covered(scan, claims)
-    blank = list(covered)
-    k = 0
-    while k < len(scan.words):
-        if not covered[k]:
-            k += 1
-            continue
-        last = k
-        while True:  # go on over what joins two wishes
-            j = last + 1
-            while j < len(scan.words) and not covered[j] and (step := scan.phrase(j, "and", "with", "article")[0]):
-                j += step
-            if j < len(scan.words) and covered[j]:
-                blank[last : j + 1] = [True] * (j + 1 - last)
-                last = j
-            else:
-                break
-        _lead(scan, blank, k, last)
-        k = last + 1
-    text = list(scan.prompt)
-    for w, gone in zip(scan.words, blank, strict=True):
-        if gone:
-            text[w.start : w.end] = " " * (w.end - w.start)
-    return "".join(text)
-
-
-def _covered(scan: Scan, claims: Sequence[Claim]) -> list[bool]:
-    """Tell which words belong to a wish; "everywhere" belongs to the wish for the whole home that it stands by."""
-    spans = sorted((c.start, c.end) for c in claims)
-    covered = [False] * len(scan.words)
-    k = 0
-    for start, end in spans:
-        while k < len(scan.words) and scan.words[k].start < start:
-            k += 1
-        j = k
-        while j < len(scan.words) and scan.words[j].start < end:
-            covered[j] = True
-            j += 1
-    for c in (c for c in claims if c.home):
-        for j, w in enumerate(scan.words):
-            if c.start - 40 < w.start < c.end + 40 and (step := scan.phrase(j, "home")[0]):
-                covered[j : j + step] = [True] * step
-    return covered
-
-
-def _lead(scan: Scan, blank: list[bool], first: int, last: int) -> None:
-    """Blank the "with" before a run of wishes, or, where a room of the same owner follows, the "and" after it."""
-    lead = next((n for n in (3, 2, 1) if first - n >= 0 and scan.phrase(first - n, "with")[0] == n), 0)
-    join = scan.phrase(last + 1, "and")[0]
-    follows = range(last + 1 + join, min(last + 4 + join, len(scan.words)))
-    shared = bool(join) and scan.words[last + 1].text not in STOPS and any(scan.phrase(j, "own_rooms")[0] for j in follows)
-    if lead and shared:
-        blank[last + 1 : last + 1 + join] = [True] * join
-    elif lead:
-        blank[first - lead : first] = [True] * lead

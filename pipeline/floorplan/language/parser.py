@@ -10,8 +10,10 @@ from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan.check import check
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.language.assembly import assemble
+from pipeline.floorplan.language.attaching import attach
 from pipeline.floorplan.language.detection import detect
 from pipeline.floorplan.language.marks import listen, segment
+from pipeline.floorplan.language.masking import read_furniture
 from pipeline.floorplan.language.order import reorder
 from pipeline.floorplan.language.phrases import sentences
 from pipeline.floorplan.language.reading import read
@@ -33,7 +35,13 @@ def parse(prompt: str) -> FloorProgram:
 def understand(prompt: str) -> FloorProgram:
     """Return what the prompt says, and no more: nothing is filled in or checked."""
     bounded(prompt)
-    heard = listen(prompt, detect(prompt))
+    plain, wishes = read_furniture(prompt)
+    return attach(understand_rooms(plain, prompt), wishes, prompt)
+
+
+def understand_rooms(plain: str, prompt: str) -> FloorProgram:
+    """Return what a prompt says of rooms, and no more; `plain` is it without its wishes for furniture, all else in its place."""
+    heard = listen(plain, detect(prompt))
     marks = reorder(segment(heard), heard)
     parsed = sentences(marks, heard)
     spoken = {e.kind for s in parsed for e in s}

@@ -1,0 +1,104 @@
+"""The words in which furniture is wished for: how prompts are split, what alike words have in common, the phrases that are known."""
+
+from __future__ import annotations
+
+import functools
+import re
+import unicodedata
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from pipeline.floorplan.furniture import lexicon
+
+HAN = "\u3400-\u9fff"
+WORD = re.compile(rf"\d+(?:[.,]\d+)?|[{HAN}]|[^\W\d_{HAN}]+(?:'[^\W\d_]+)?|[%.,;:!?()\n+&、。;,!?]")
+STOPS = frozenset(".;!?\n。;!?")
+ENDINGS = ("en", "es", "as", "os", "em", "e", "n", "s", "a", "o")
+NUMBERS = {
+    "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10, "eleven": 11, "twelve": 12,
+    "thirteen": 13, "fourteen": 14, "fifteen": 15, "sixteen": 16, "seventeen": 17, "eighteen": 18, "nineteen": 19, "twenty": 20, "thirty": 30,
+    "forty": 40, "fifty": 50, "sixty": 60, "seventy": 70, "eighty": 80, "ninety": 90, "pair": 2, "couple": 2, "dozen": 12,
+    "eins": 1, "zwei": 2, "drei": 3, "vier": 4, "funf": 5, "sechs": 6, "sieben": 7, "acht": 8, "neun": 9, "zehn": 10, "elf": 11, "zwolf": 12,
+    "dreizehn": 13, "vierzehn": 14, "funfzehn": 15, "sechzehn": 16, "zwanzig": 20, "dreissig": 30, "vierzig": 40, "funfzig": 50, "sechzig": 60,
+    "siebzig": 70, "achtzig": 80, "neunzig": 90,
+    "dos": 2, "tres": 3, "cuatro": 4, "cinco": 5, "seis": 6, "siete": 7, "ocho": 8, "nueve": 9, "diez": 10, "once": 11, "doce": 12, "trece": 13,
+    "catorce": 14, "quince": 15, "dieciseis": 16, "veinte": 20, "treinta": 30, "cuarenta": 40, "cincuenta": 50, "sesenta": 60, "setenta": 70,
+    "ochenta": 80, "noventa": 90,
+}  # fmt: skip
+FIGURES = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
+MOST = 1e6  # of any amount
+HAN_DIGITS = {c: k for k, c in enumerate("零一二三四五六七八九")} | {"两": 2, "俩": 2}
+ROOMS = frozenset({"room", "rooms", "area", "corner", "niche", "nook", "zone", "space", "raum", "ecke", "bereich"})
+LEAST_TYPO = 6  # letters of a word that may hold a typing error
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """A word, folded (no accents, lower case), its stem, and its place in the prompt."""
+
+    text: str
+    stem: str
+    start: int
+    end: int
+
+
+def fold(text: str) -> str:
+    """Return lower case without accents; sharp s as ss."""
+    lower = unicodedata.normalize("NFKC", text).lower().replace("ß", "ss")
+    return "".join(c for c in unicodedata.normalize("NFD", lower) if not unicodedata.combining(c))
+
+
+def stem(word: str) -> str:
+    """Return a folded word without the endings of plurals, cases and genders of English, German and Spanish."""
+    for _ in range(2):
+        cut = next((e for e in ENDINGS if word.endswith(e) and len(word) - len(e) >= 3), "")
+        word = word.removesuffix(cut) if cut else word
+    return word
+
+
+def words(text: str) -> list[Word]:
+    """Split a text; Chinese into single characters. Hyphens part words."""
+    found = []
+    for match in WORD.finditer(text):
+        folded = fold(match.group())
+        found.append(Word(folded, stem(folded) if folded.isalpha() else folded, match.start(), match.end()))
+    return found
+
+
+@functools.cache
+def phrases() -> Mapping[str, tuple[tuple[tuple[str, ...], str, str, bool], ...]]:
+    """Return by first stem: (stems, kind, name, whether an owner is needed), the longest first."""
+    table: dict[str, list[tuple[tuple[str, ...], str, str, bool]]] = {}
+
+    def add(form: str, kind: str, name: str) -> None:
+        owned = form.startswith("@")
+        stems = tuple(w.stem for w in words(form.removeprefix("@")))
+        table.setdefault(stems[0], []).append((stems, kind, name, owned))
+
+    data = lexicon()
+    for name, forms in data["names"].items():
+        for listed in forms.values():
+            for form in listed:
+                add(form, "name", name)
+    for name, listed in data["styles"].items():
+        for form in listed:
+            add(form, "look", name)
+    for name, listed in data["words"].items():
+        for form in listed:
+            if form != "-":
+                add(str(form), name, form)
+    for name, listed in data["owners"].items():
+        for form in listed:
+            add(form, "owner", name)
+    return {k: tuple(sorted(v, key=lambda p: -len(p[0]))) for k, v in table.items()}
+
+
+def near(a: str, b: str) -> bool:
+    """Whether two words differ by one letter: changed, missing, added, or exchanged with its neighbour."""
+    if a == b or abs(len(a) - len(b)) > 1:
+        return a == b
+    k = next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
+    if len(a) == len(b):
+        return a[k + 1 :] == b[k + 1 :] or (a[k : k + 2] == b[k : k + 2][::-1] and a[k + 2 :] == b[k + 2 :])
+    longer, shorter = (a, b) if len(a) > len(b) else (b, a)
+    return longer[k + 1 :] == shorter[k:]

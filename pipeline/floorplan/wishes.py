@@ -1,0 +1,58 @@
+"""Words about the furniture of a plan that is given: they may name its rooms, and ask for no others."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+
+from pipeline.errors import RefusedError
+from pipeline.floorplan.check import ImpossibleError, check_furniture
+from pipeline.floorplan.furniture import spread
+from pipeline.floorplan.language.attaching import Mention, attach, mentioned
+from pipeline.floorplan.language.masking import read_furniture
+from pipeline.floorplan.language.parser import bounded, understand_rooms
+from pipeline.floorplan.program import Evidence, FloorProgram, RoomReq
+
+
+def with_wishes(program: FloorProgram, prompt: str) -> FloorProgram:
+    """Return the program of a given plan with the prompt's wishes for furniture.
+
+    Raises RefusedError when the prompt has no such wish, names a room that the plan lacks, or asks for what no room can meet.
+    """
+    bounded(prompt)
+    plain, claims = read_furniture(prompt)
+    if not claims:
+        raise RefusedError(
+            f"nothing in the prompt is a wish for furniture: {' '.join(prompt.split())[:60]!r}",
+            'the plan is given; say what shall stand in it, e.g. "a bedroom with two nightstands, nordic"',
+        )
+    try:
+        said: FloorProgram | None = understand_rooms(plain)
+    except RefusedError:  # no room is named: the wishes are the whole home's
+        said = None
+    mentions = _in_plan(program, said, prompt) if said is not None else []
+    wished = spread(attach(program, claims, prompt, mentions))
+    check_furniture(wished)
+    return wished
+
+
+def _in_plan(program: FloorProgram, said: FloorProgram, prompt: str) -> list[Mention]:
+    """Return the mentions with the ids of the plan's rooms instead of those that the words alone would make."""
+    rooms: Mapping[str, RoomReq] = {r.id: r for r in said.rooms}
+    found = []
+    for mention in mentioned(said):
+        ids = tuple(dict.fromkeys(i for name in mention.ids for i in _alike(program, rooms[name])))
+        if not ids:
+            words = Evidence(start=mention.start, end=mention.end, text=prompt[mention.start : mention.end], field="rooms")
+            kind = rooms[mention.ids[0]].type.replace("_", " ")
+            have = ", ".join(sorted({r.type.replace("_", " ") for r in program.rooms}))
+            raise ImpossibleError(f"the plan has no {kind}", f"it has {have}", [words])
+        found.append(dataclasses.replace(mention, ids=ids))
+    return found
+
+
+def _alike(program: FloorProgram, room: RoomReq) -> tuple[str, ...]:
+    """Return the plan's rooms of that id, else of that type and role, else of that type."""
+    alike = [r for r in program.rooms if r.type == room.type]
+    exact = [r for r in alike if room.role and r.role == room.role]
+    return tuple(r.id for r in exact or alike)

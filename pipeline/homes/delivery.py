@@ -1,0 +1,77 @@
+"""What was asked of a home's furniture beside what stands there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pipeline.floorplan.furniture import members, plain
+from pipeline.floorplan.program import FloorProgram, Furniture, RoomReq
+
+
+@dataclass(frozen=True, slots=True)
+class Delivery:
+    """One wish: the room, what it is about, what was asked, what is there, whether it is met (None: a preference)."""
+
+    room: str
+    what: str
+    asked: str
+    delivered: str
+    met: bool | None
+
+
+def deliveries(program: FloorProgram, rows: Mapping[str, Sequence[Mapping[str, Any]]], styles: Mapping[str, str]) -> list[Delivery]:
+    """Compare a program with the rows of a finished home; `styles` gives the style of each asset, "" where it is unknown."""
+    measured = {row["room_id"]: row for row in rows["rooms"]}
+    found: list[Delivery] = []
+    for room in program.rooms:
+        wish = room.wishes()
+        if wish != Furniture() and room.id in measured:
+            objects = [o for o in rows["objects"] if o["room_id"] == room.id]
+            found += _room(room, wish, measured[room.id], objects, styles)
+    return found
+
+
+def report(found: Sequence[Delivery]) -> str:
+    """Return the deliveries as a table, "" where nothing was asked."""
+    if not found:
+        return ""
+    marks = {True: "yes", False: "NO", None: ""}
+    rows = [("room", "furniture", "asked", "delivered", "met"), *((d.room, d.what, d.asked, d.delivered, marks[d.met]) for d in found)]
+    wide = [max(len(row[k]) for row in rows) + 2 for k in range(5)]
+    return "\n".join("".join(cell.ljust(w) for cell, w in zip(row, wide, strict=True)).rstrip() for row in rows) + "\n"
+
+
+def bounds(least: int | None, most: int | None) -> str:
+    """Return bounds in words."""
+    if most is None:
+        return f"at least {least}"
+    if most == 0:
+        return "none"
+    return str(most) if least == most else f"{least} to {most}" if least else f"at most {most}"
+
+
+def _room(
+    room: RoomReq, wish: Furniture, row: Mapping[str, Any], objects: Sequence[Mapping[str, Any]], styles: Mapping[str, str]
+) -> list[Delivery]:
+    found: list[Delivery] = []
+    if wish.least is not None or wish.most is not None:
+        found.append(_counted(room.id, "pieces", wish.least or 0, wish.most, len(objects)))
+    for things in wish.counts:
+        have = sum(o["category"] in members(things.category) for o in objects)
+        found.append(_counted(room.id, plain(things.category), things.min, things.max, have))
+    if wish.openable is not None:
+        found.append(_counted(room.id, "that open", wish.openable, None, int(row["openable"])))
+    if wish.walkable is not None:
+        free = float(row["walkable_free"])
+        found.append(Delivery(room.id, "free floor", f"{wish.walkable:.0%}", f"{free:.0%}", free >= wish.walkable - 0.005))
+    if wish.style is not None:
+        known = [styles[o["asset_id"]] for o in objects if styles.get(o["asset_id"])]
+        text = f"{sum(s == wish.style for s in known)} of {len(known)} with a style" if known else "nothing has a style"
+        found.append(Delivery(room.id, "style", wish.style, text, None))
+    return found
+
+
+def _counted(room: str, what: str, least: int, most: int | None, have: int) -> Delivery:
+    return Delivery(room, what, bounds(least, most), str(have), least <= have and (most is None or have <= most))
