@@ -98,7 +98,7 @@ def plain(category: str) -> str:
 
 
 def _room_faults(room: RoomReq) -> Iterable[tuple[str, str, tuple[str, ...]]]:
-    wish, here = room.wishes(), f"rooms.{room.id}.furniture"
+    wish, here = room.furniture, f"rooms.{room.id}.furniture"
     if wish == Furniture():
         return
     if not furnished(room.type):

@@ -110,7 +110,7 @@ class Furniture(Model):
 class RoomReq(Model):
     """One room (or `count` like ones). `area` in m2 between inner wall faces, `min_width` in m.
 
-    `objects` and `walkable` are wishes for the furniture: the number of pieces, and the share of the floor that stays free.
+    `furniture` are the wishes for what stands in it.
     `inferred` rooms were not named; the plan needs them.
     """
 
@@ -125,21 +125,9 @@ class RoomReq(Model):
     exterior: Literal["none", "wall", "corner", "door"] | None = None
     exterior_length: Metres | None = None
     window: Literal["required", "forbidden", "auto"] = "auto"
-    objects: Annotated[int, Field(ge=0, le=60)] | None = None
-    walkable: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
     furniture: Furniture = Furniture()
     stated: bool = True
     inferred: bool = False
-
-    def wishes(self) -> Furniture:
-        """Return all wishes for the room's furniture."""
-        wish = self.furniture
-        more: dict[str, Any] = {}
-        if self.objects is not None and wish.least is None and wish.most is None:
-            more |= {"least": self.objects, "most": self.objects}
-        if self.walkable is not None and wish.walkable is None:
-            more["walkable"] = self.walkable
-        return wish.model_copy(update=more) if more else wish
 
 
 class Link(Model):

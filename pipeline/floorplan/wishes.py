@@ -27,7 +27,7 @@ def with_wishes(program: FloorProgram, prompt: str) -> FloorProgram:
             'the plan is given; say what shall stand in it, e.g. "a bedroom with two nightstands, nordic"',
         )
     try:
-        said: FloorProgram | None = understand_rooms(plain)
+        said: FloorProgram | None = understand_rooms(plain, prompt)
     except RefusedError:  # no room is named: the wishes are the whole home's
         said = None
     mentions = _in_plan(program, said, prompt) if said is not None else []

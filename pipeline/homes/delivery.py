@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from pipeline import taxonomy
 from pipeline.floorplan.furniture import members, plain
 from pipeline.floorplan.program import FloorProgram, Furniture, RoomReq
 
@@ -24,11 +25,12 @@ class Delivery:
 def deliveries(program: FloorProgram, rows: Mapping[str, Sequence[Mapping[str, Any]]], styles: Mapping[str, str]) -> list[Delivery]:
     """Compare a program with the rows of a finished home; `styles` gives the style of each asset, "" where it is unknown."""
     measured = {row["room_id"]: row for row in rows["rooms"]}
+    pieces = set(taxonomy.load().names)  # what lies on or in furniture is no piece of it
     found: list[Delivery] = []
     for room in program.rooms:
-        wish = room.wishes()
+        wish = room.furniture
         if wish != Furniture() and room.id in measured:
-            objects = [o for o in rows["objects"] if o["room_id"] == room.id]
+            objects = [o for o in rows["objects"] if o["room_id"] == room.id and o["category"] in pieces]
             found += _room(room, wish, measured[room.id], objects, styles)
     return found
 

@@ -52,7 +52,7 @@ def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], fact
     for request in requests:
         home = homes[request.index]
         program = FloorProgram.model_validate_json(home.program)
-        jobs = factory.jobs(home.plan, request.index, 0, {room.id: room.wishes() for room in program.rooms})
+        jobs = factory.jobs(home.plan, request.index, 0, {room.id: room.furniture for room in program.rooms})
         drafts = tuple(Draft(job, home.in_room(job.room_id), tuple(lost.get(f"{home.scene_id}/{job.room_id}#0", ()))) for job in jobs)
         made.append(HomeDraft(request, home.prompt, home.program, home.plan, drafts))
     return made

@@ -141,7 +141,7 @@ class Factory:
             else:
                 program = floorplan.complete(program)
                 solved = self._sound_plan(program, (request.index, attempt))
-        wishes = {room.id: room.wishes() for room in program.rooms}
+        wishes = {room.id: room.furniture for room in program.rooms}
         return prompt, program.model_dump_json(exclude_defaults=True), solved, self.jobs(solved, request.index, attempt, wishes)
 
     def _sound_plan(self, program: floorplan.FloorProgram, keys: tuple[int, int]) -> Plan:

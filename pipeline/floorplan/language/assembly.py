@@ -62,8 +62,6 @@ def _room(room: Named) -> dict[str, Any]:
         "exterior": room.exterior,
         "exterior_length": room.exterior_length,
         "window": room.window,
-        "objects": room.objects,
-        "walkable": room.walkable,
         "min_width": room.min_width,
     }
 

@@ -251,7 +251,7 @@ class Scan:
         """Return (place, length, name) of a thing at word k or after a style; typing errors are mended after an amount."""
         for skip in (0, self.phrase(k, "look")[0]):
             length, name = self.phrase(k + skip, "name")
-            if length and not self._part_of_a_room(k + skip, length):
+            if length and not self._part_of_a_room(k + skip, length) and self.phrase(k + skip, "small")[0] <= length:
                 return k + skip, length, name
         if counted and k < len(self.words):
             return k, *self._mended(k)

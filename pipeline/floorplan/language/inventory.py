@@ -33,8 +33,6 @@ class Named:
     exterior: str | None = None
     exterior_length: float | None = None
     window: str = "auto"
-    objects: int | None = None
-    walkable: float | None = None
     min_width: float | None = None
 
 

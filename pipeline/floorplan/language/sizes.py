@@ -1,4 +1,4 @@
-"""Amounts in a prompt → areas, widths, numbers of pieces, the whole home."""
+"""Amounts in a prompt → areas, widths, the whole home."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SAME = 0.02  # two totals that differ by less are one, said twice
 
 
 def attach(draft: Draft, state: Reading) -> None:
-    """Attach amounts: areas, widths, numbers of pieces, free shares."""
+    """Attach amounts: areas and widths."""
     stock = state.inventory
     for mark, ids in state.amounts:
         rooms = [stock.get(i) for i in ids or () if not i.startswith("*")]
@@ -25,14 +25,6 @@ def attach(draft: Draft, state: Reading) -> None:
             _area(draft, mark, rooms)
         elif mark.value in {"length", "doors", "corridors"}:
             _length(draft, mark, rooms)
-        elif mark.value == "share":
-            for room in rooms or stock.rooms:
-                room.walkable = min(mark.number, 1.0)
-            draft.cite(mark.first, mark.last, "rooms.walkable")
-        elif mark.value == "pieces":
-            for room in rooms:
-                room.objects = int(mark.number)
-                draft.cite(mark.first, mark.last, f"rooms.{room.id}.objects")
 
 
 def _area(draft: Draft, mark: Mark, rooms: list[Named]) -> None:

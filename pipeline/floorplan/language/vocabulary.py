@@ -80,6 +80,8 @@ def phrases() -> Mapping[str, tuple[tuple[tuple[str, ...], str, str, bool], ...]
         for listed in forms.values():
             for form in listed:
                 add(form, "name", name)
+    for form in data["small"]:
+        add(form, "small", form)
     for name, listed in data["styles"].items():
         for form in listed:
             add(form, "look", name)

@@ -83,6 +83,7 @@ def test_what_is_read(prompt, wanted):
         "un piso de dos dormitorios con cocina abierta",
         "三室两厅一厨两卫,120平米",
         "a wide range of rooms",
+        "a bedroom, table lamp and 台灯",
     ],
 )
 def test_rooms_are_no_furniture(prompt):
@@ -136,7 +137,7 @@ def test_every_wish_points_at_its_words():
 @pytest.mark.parametrize(
     ("prompt", "clashing"),
     [
-        ("a bedroom of 6 m2 with 40 pieces", {"40 pieces", "of 6 m2"}),
+        ("a bedroom of 6 m2 with 40 pieces", {"40 pieces", "6 m2"}),
         ("a bedroom with two nightstands but only one piece of furniture", {"two nightstands", "only one piece of furniture"}),
         ("a bedroom with two nightstands and no nightstands", {"two nightstands", "no nightstands"}),
         ("a flat with a garage with a sofa", {"a sofa"}),
@@ -144,7 +145,7 @@ def test_every_wish_points_at_its_words():
         ("a flat with a kitchen with a bathtub", {"a bathtub"}),
         ("a bedroom with 9999999999999999999999 chairs", {"9999999999999999999999 chairs"}),
         ("a bedroom with ten pieces of which twelve open: twelve openable things", {"ten pieces"}),
-        ("a bedroom of 9 m2 with ten pieces and 80 % free", {"ten pieces", "80 % free", "of 9 m2"}),
+        ("a bedroom of 9 m2 with ten pieces and 80 % free", {"ten pieces", "80 % free", "9 m2"}),
         ("a nordic bedroom with a desk, industrial, and a kitchen", {"nordic", "industrial"}),
     ],
 )

@@ -134,18 +134,6 @@ def test_areas_sum_to_a_stated_total():
     assert sum(r.area.target for r in program.rooms if r.type != "balcony") == pytest.approx(100, abs=0.01)
 
 
-<<<<<<< HEAD
-def test_furniture_wishes():
-    program = parse("a flat with a bedroom with eight pieces, 70 % free")
-    bed = next(r for r in program.rooms if r.type == "bedroom")
-    assert (bed.objects, bed.walkable) == (8, pytest.approx(0.7))
-    program = parse("an apartment with a bedroom with 6 pieces of furniture and a living room with ten objects, 60% walkable")
-    wishes = {r.type: (r.objects, r.walkable) for r in program.rooms if r.objects}
-    assert wishes == {"bedroom": (6, None), "living_room": (10, pytest.approx(0.6))}
-
-
-=======
->>>>>>> fad614a (Furniture: what was asked is printed beside what ships; wishes for a plan that is given; tests, docs)
 def test_accessibility_and_relations():
     program = parse(
         "Wheelchair flat: doors at least 95 cm wide, no corridor narrower than 1.3 m, two bedrooms, the largest bedroom has a bath"
