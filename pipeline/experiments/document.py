@@ -19,7 +19,7 @@ from pipeline.experiments.settings import MetricsSettings
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.rows import homes_of
 from pipeline.manifest import write_bytes
-from pipeline.report import sections
+from pipeline.report import calibration, sections
 from pipeline.report.page import Picture, Section, render
 from pipeline.report.plots import Curve, lines
 from schemas.objects import OBJECTS
@@ -59,7 +59,17 @@ def write_report(
         sections.training_section(_json(root / "metrics" / "encode.json"), _json(root / "metrics" / "train.json"), loss),
         sections.reject_section([_told(r) for r in rejects]),
     ]
+    if found := _json(root / "metrics" / "calibration.json"):
+        chapters.insert(-1, _calibration(folder, found))
     write_bytes(folder / "index.html", render("Homes for robots", LEAD, chapters).encode())
+
+
+def _calibration(folder: Path, found: Mapping[str, Any]) -> Section:
+    pictures = []
+    for name, png in calibration.plots(found).items():
+        write_bytes(folder / "plots" / f"{name}.png", png)
+        pictures.append(Picture(f"plots/{name}.png", name.replace("_", ", ")))
+    return calibration.calibration_section(found, pictures)
 
 
 def _told(reject: RejectCount) -> list[str]:

@@ -15,7 +15,7 @@ LINE = 0.12
 """Half a wall on each side of a room: wall lines lie this much further apart than the faces [m]."""
 LONGEST_NOOK = 5.5
 """A corridor longer than this is a room of its own, not a part of the living room [m]."""
-LARGEST_AISLE = 3.4
+LARGEST_AISLE = 3.1
 """What is larger is called a corridor [m2]."""
 SHORTEST = {"Kitchen": 1.8, "Bathroom": 1.6, "SecondBathroom": 1.55, "Library": 2.35}
 """Least distance between the wall lines of a room in a strip [m]; 2.75 for all others."""

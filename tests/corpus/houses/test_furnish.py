@@ -10,8 +10,12 @@ from shapely.geometry import LineString, Point, Polygon
 
 from pipeline import taxonomy
 from pipeline.corpus.houses import walkable
+from pipeline.corpus.houses.agenda import agenda
 from pipeline.corpus.houses.house import make_house
+from pipeline.corpus.houses.planner import make_plan
 from pipeline.corpus.houses.space import Space
+from pipeline.manifest import digest
+from pipeline.seeds import generator
 
 HOUSES = houses(24)
 CHAIRS = {"dining_chair", "chinese_chair"}
@@ -195,3 +199,9 @@ def _same(a, b):
     return (
         a.uid == b.uid and a.items == b.items and [r.polygon.tolist() for r in a.plan.rooms] == [r.polygon.tolist() for r in b.plan.rooms]
     )
+
+
+def test_no_two_of_a_thousand_plans_are_alike():
+    plans = [make_plan(generator(7, "house", index), agenda(7, index).rooms) for index in range(1000)]
+    digests = {digest([[r.type, r.polygon.tolist()] for r in plan.rooms]) for plan in plans}
+    assert len(digests) == len(plans)
