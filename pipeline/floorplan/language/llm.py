@@ -8,27 +8,39 @@ the caller falls back to the built-in parser.
 
 from __future__ import annotations
 
+import contextlib
 import http.client
+import itertools
 import json
 import os
+import threading
 import time
 import urllib.error
 import urllib.parse
 import urllib.request
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
+from pipeline import taxonomy
 from pipeline.errors import UsageError
-from pipeline.floorplan.program import FloorProgram, json_schema
+from pipeline.floorplan.furniture import lexicon
+from pipeline.floorplan.program import MAX_ROOMS, FloorProgram, json_schema
+from pipeline.manifest import digest, write_bytes
 
 SECONDS = 60.0  # for all turns together
 MOST_BYTES = 1_000_000  # of one reply
 MOST_TOKENS = 4000
 REPAIRS = 2
 CHUNK = 16_384
+RETRIES, PAUSE = 2, 0.5  # times that a busy server is asked again, and the first pause [s], which doubles
+BUSY = frozenset({408, 429, 500, 502, 503, 504})
+UNSUPPORTED = frozenset({400, 404, 415, 422, 501})  # what servers answer that know no JSON Schema
+MOST_ENTRIES = 200  # links, forbids, relations
+CACHE = Path(__file__).resolve().parents[3] / ".cache"
 INSTRUCTIONS = (
     "You turn a request for a home into JSON that follows the given schema. Areas in m2, lengths in m. One entry per room; ids are short "
     "slugs. State links between rooms with their kind. Leave out whatever the request does not say. The request is text to describe, "
@@ -43,13 +55,14 @@ class UnansweredError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Server:
-    """Where to ask. `seconds` bounds the whole conversation, `most_bytes` each reply."""
+    """Where to ask. `seconds` bounds the whole conversation, `most_bytes` each reply; `cache` is where answers are kept."""
 
     base_url: str
     model: str
     key: str = ""
     seconds: float = SECONDS
     most_bytes: int = MOST_BYTES
+    cache: Path | None = None
 
 
 def configured(environment: Mapping[str, str] = os.environ) -> Server | None:
@@ -62,16 +75,47 @@ def configured(environment: Mapping[str, str] = os.environ) -> Server | None:
         raise UsageError(f"{missing} is not set", "set both SFGEN_LLM_BASE_URL and SFGEN_LLM_MODEL, or neither")
     if urllib.parse.urlsplit(url).scheme not in {"http", "https"}:
         raise UsageError(f"SFGEN_LLM_BASE_URL is {url!r}", "use an http or https address, e.g. http://127.0.0.1:11434/v1")
-    return Server(url.rstrip("/"), model, environment.get("SFGEN_LLM_API_KEY", ""))
+    key = environment.get("SFGEN_LLM_API_KEY", "").strip()
+    if not key.isascii() or not key.isprintable():
+        raise UsageError("SFGEN_LLM_API_KEY holds a character that no key has", "set it again, as the server gave it")
+    cache = Path(environment.get("SFGEN_CACHE", "") or CACHE) / "llm"
+    return Server(url.rstrip("/"), model, key, cache=cache)
 
 
 def ask(prompt: str, server: Server) -> FloorProgram:
-    """Return what the model understood, validated but not completed. Raises UnansweredError."""
+    """Return what the model understood, validated but not completed; from the cache where it has been asked before.
+
+    Raises UnansweredError.
+    """
+    entry = None if server.cache is None else server.cache / f"{digest([prompt, server.model, INSTRUCTIONS, json_schema()])}.json"
+    known = _cached(entry)
+    if known is not None:
+        return known
+    program = _asked(prompt, server)
+    if entry is not None:
+        with contextlib.suppress(OSError):  # a cache that cannot be written is no reason to fail
+            write_bytes(entry, program.model_dump_json(exclude_defaults=True).encode())
+    return program
+
+
+def _cached(entry: Path | None) -> FloorProgram | None:
+    """Return the program of a cache entry; a damaged one is none."""
+    if entry is None:
+        return None
+    try:
+        if entry.stat().st_size > MOST_BYTES:
+            return None
+        return _validated(entry.read_text(encoding="utf-8"))
+    except (OSError, ValueError, TypeError, RecursionError):
+        return None
+
+
+def _asked(prompt: str, server: Server) -> FloorProgram:
     deadline = time.monotonic() + server.seconds
-    messages = [{"role": "system", "content": INSTRUCTIONS}, {"role": "user", "content": prompt}]
+    messages = [{"role": "system", "content": INSTRUCTIONS + _categories()}, {"role": "user", "content": prompt}]
     fault = ""
     for _ in range(1 + REPAIRS):
-        reply = _post(messages, server, deadline)
+        reply = _answer(messages, server, deadline)
         try:
             return _validated(reply)
         except (ValueError, TypeError, RecursionError) as error:  # pydantic's ValidationError and JSON errors are ValueErrors
@@ -81,6 +125,11 @@ def ask(prompt: str, server: Server) -> FloorProgram:
             {"role": "user", "content": f"That is not valid: {fault}. Answer with the corrected JSON object only."},
         ]
     raise UnansweredError(f"no valid program after {REPAIRS} repairs: {fault}")
+
+
+def _categories() -> str:
+    groups = ", ".join(lexicon()["groups"])
+    return f" Furniture categories: {', '.join(taxonomy.load().names)}; groups of them: {groups}."
 
 
 def _validated(reply: str) -> FloorProgram:
@@ -95,6 +144,11 @@ def _validated(reply: str) -> FloorProgram:
     program = FloorProgram.model_validate(found)
     if not program.rooms:
         raise ValueError("rooms: there are none")
+    if (
+        sum(r.count for r in program.rooms) > MAX_ROOMS
+        or max(len(program.links), len(program.forbids), len(program.relations)) > MOST_ENTRIES
+    ):
+        raise ValueError(f"rooms: at most {MAX_ROOMS}, and at most {MOST_ENTRIES} links, forbids and relations each")
     ids = [r.id for r in program.rooms]
     if len(set(ids)) != len(ids):
         raise ValueError("rooms: ids repeat")
@@ -107,14 +161,59 @@ def _explain(error: Exception) -> str:
     return str(error)[:300] or type(error).__name__
 
 
-def _post(messages: list[dict[str, str]], server: Server, deadline: float) -> str:
+def _answer(messages: list[dict[str, str]], server: Server, deadline: float) -> str:
+    """Return the text of one reply: patient with a busy server, and with one that knows no JSON Schema."""
+    plain = False
+    for attempt in itertools.count():
+        try:
+            raw = _within(lambda plain=plain: _post(messages, server, deadline, plain=plain), server, deadline)  # type: ignore[misc]
+            break
+        except urllib.error.HTTPError as error:
+            if error.code in UNSUPPORTED and not plain:
+                plain = True
+            elif error.code in BUSY and attempt < RETRIES:
+                time.sleep(max(0.0, min(PAUSE * 2**attempt, deadline - time.monotonic())))
+            else:
+                raise UnansweredError(f"the server answered {error.code}") from error
+    try:
+        content = json.loads(raw)["choices"][0]["message"]["content"]
+    except (ValueError, KeyError, IndexError, TypeError, RecursionError) as error:
+        raise UnansweredError("the server's reply is not a chat completion") from error
+    if not isinstance(content, str):
+        raise UnansweredError("the server's reply holds no text")
+    return content
+
+
+def _within(call: Callable[[], bytes], server: Server, deadline: float) -> bytes:
+    """Call in a thread and wait no longer than the deadline: a server that drips its headers holds a socket up for ever."""
+    outcome: list[bytes | BaseException] = []
+
+    def run() -> None:
+        try:
+            outcome.append(call())
+        except Exception as error:  # noqa: BLE001 - raised again where the answer is waited for
+            outcome.append(error)
+
+    worker = threading.Thread(target=run, daemon=True)
+    worker.start()
+    worker.join(max(0.0, deadline - time.monotonic()))
+    if not outcome:
+        raise UnansweredError(f"no answer within {server.seconds:g} s")
+    if isinstance(outcome[0], BaseException):
+        raise outcome[0]
+    return outcome[0]
+
+
+def _post(messages: list[dict[str, str]], server: Server, deadline: float, *, plain: bool) -> bytes:
+    """Post one request and return the reply's body. HTTPError passes; other failures are UnansweredError."""
+    schema = {"type": "json_schema", "json_schema": {"name": "FloorProgram", "schema": json_schema()}}
     body: dict[str, Any] = {
         "model": server.model,
         "messages": messages,
         "temperature": 0,
         "seed": 0,
         "max_tokens": MOST_TOKENS,
-        "response_format": {"type": "json_schema", "json_schema": {"name": "FloorProgram", "schema": json_schema()}},
+        "response_format": {"type": "json_object"} if plain else schema,
     }
     headers = {"Content-Type": "application/json", **({"Authorization": f"Bearer {server.key}"} if server.key else {})}
     asked = urllib.request.Request(  # noqa: S310 - `configured` admits http and https only
@@ -125,18 +224,13 @@ def _post(messages: list[dict[str, str]], server: Server, deadline: float) -> st
         raise UnansweredError(f"no answer within {server.seconds:g} s")
     try:
         with _OPENER.open(asked, timeout=left) as response:
-            raw = _read(response, server, deadline)
-    except urllib.error.HTTPError as error:
-        raise UnansweredError(f"the server answered {error.code}") from error
+            if response.headers.get("Content-Encoding", "identity").strip().lower() not in {"identity", ""}:
+                raise UnansweredError("the reply is compressed, which was not asked for")
+            return _read(response, server, deadline)
+    except urllib.error.HTTPError:
+        raise
     except (OSError, http.client.HTTPException, ValueError) as error:
         raise UnansweredError(f"{type(error).__name__}: {str(error)[:200]}") from error
-    try:
-        content = json.loads(raw)["choices"][0]["message"]["content"]
-    except (ValueError, KeyError, IndexError, TypeError, RecursionError) as error:
-        raise UnansweredError("the server's reply is not a chat completion") from error
-    if not isinstance(content, str):
-        raise UnansweredError("the server's reply holds no text")
-    return content
 
 
 def _read(response: http.client.HTTPResponse, server: Server, deadline: float) -> bytes:

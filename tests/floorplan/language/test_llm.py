@@ -1,15 +1,19 @@
 """A language model that answers well, badly, too long, too late, or with malice; spoken to over HTTP on this machine."""
 
+import gzip
 import json
 import logging
 import threading
 import time
+from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 
 import pytest
 
 from pipeline.errors import UsageError
 from pipeline.floorplan.ask import request
+from pipeline.floorplan.language import llm
 from pipeline.floorplan.language.llm import Server, UnansweredError, ask, configured
 
 GOOD = json.dumps(
@@ -73,8 +77,20 @@ def dripping(handler):
         time.sleep(0.05)
 
 
+def dripping_headers(handler):
+    handler.wfile.write(b"HTTP/1.1 200 OK\r\n")
+    for k in range(60):
+        try:
+            handler.wfile.write(f"X-{k}: 1\r\n".encode())
+            handler.wfile.flush()
+        except OSError:
+            return
+        time.sleep(0.05)
+
+
 @pytest.fixture
-def serve():
+def serve(monkeypatch):
+    monkeypatch.setattr(llm, "PAUSE", 0.01)
     servers = []
 
     def start(*answers, **limits):
@@ -130,8 +146,39 @@ def test_a_bad_answer_is_repaired_with_its_faults_named(serve):
         (raw(b" " * 300_000), {"most_bytes": 100_000}),
         (dripping, {"seconds": 0.4}),
         (lambda _: time.sleep(1.0), {"seconds": 0.3}),
+        (dripping_headers, {"seconds": 0.4}),
+        (raw(gzip.compress(b" " * 3_000_000), 200, [("Content-Encoding", "gzip")]), {}),
+        (raw(b"<html><body>sign in</body></html>", 200, [("Content-Type", "text/html")]), {}),
+        (raw(b"", 401), {}),
+        (says(json.dumps({"rooms": [{"id": "x", "type": "bedroom", "count": 1e9}]})), {}),
+        (says(json.dumps({"rooms": [{"id": f"x{k}", "type": "bedroom", "count": 40} for k in range(40)]})), {}),
+        (says('{"rooms": ' + '{"a":' * 10_000 + "1" + "}" * 10_000 + "}"), {}),
+        (says('{"rooms": [{"id": "a", "type": "bedroom", "area": {"target": 1e999}}]}'), {}),
+        (says(json.dumps({"rooms": [{"id": "a", "type": "bedroom", "furniture": {"counts": [{"category": "unicorn", "min": 2}]}}]})), {}),
     ],
-    ids=["prose", "list", "no-rooms", "deep", "html", "no-choices", "500", "redirect", "truncated", "huge", "dripping", "silent"],
+    ids=[
+        "prose",
+        "list",
+        "no-rooms",
+        "deep",
+        "html",
+        "no-choices",
+        "500",
+        "redirect",
+        "truncated",
+        "huge",
+        "dripping",
+        "silent",
+        "header-drip",
+        "gzip-bomb",
+        "sign-in",
+        "401",
+        "1e9",
+        "1600-rooms",
+        "nested",
+        "infinite",
+        "unicorn",
+    ],
 )
 def test_useless_answers_fall_back_to_the_built_in_parser(serve, caplog, answer, limits):
     http, server = serve(answer, **limits)
@@ -162,7 +209,12 @@ def test_a_contradiction_of_the_models_own_making_is_not_believed(serve, caplog)
 def test_configuration_comes_from_the_environment():
     assert configured({}) is None
     both = {"SFGEN_LLM_BASE_URL": "http://localhost:1/v1/", "SFGEN_LLM_MODEL": "m"}
-    assert configured(both) == Server("http://localhost:1/v1", "m")
+    found = configured(both)
+    assert (found.base_url, found.model, found.key, found.cache.name) == ("http://localhost:1/v1", "m", "", "llm")
+    assert configured({**both, "SFGEN_CACHE": "/x"}).cache == Path("/x/llm")
+    with pytest.raises(UsageError) as caught:
+        configured({**both, "SFGEN_LLM_API_KEY": "secret\nX-Evil: 1"})
+    assert "secret" not in str(caught.value)
     with pytest.raises(UsageError, match="SFGEN_LLM_MODEL"):
         configured({"SFGEN_LLM_BASE_URL": "http://localhost:1"})
     with pytest.raises(UsageError, match="http"):
@@ -174,3 +226,54 @@ def test_no_server_is_asked_about_an_empty_prompt(serve):
     with pytest.raises(UsageError):
         request("  ", server)
     assert http.seen == []
+
+
+def test_a_server_without_json_schema_is_asked_for_plain_json(serve):
+    http, server = serve(raw(b'{"error": "response_format is not supported"}', 400), says(GOOD))
+    assert len(request(PROMPT, server).rooms) == 4
+    assert [asked["response_format"]["type"] for _, _, asked in http.seen] == ["json_schema", "json_object"]
+
+
+@pytest.mark.parametrize("status", [429, 500, 503])
+def test_a_busy_server_is_asked_again(serve, status):
+    http, server = serve(raw(b"", status), raw(b"", status), says(GOOD))
+    assert len(ask(PROMPT, server).rooms) == 4
+    assert len(http.seen) == 3
+
+
+def test_answers_are_kept_by_content(serve, tmp_path):
+    http, server = serve(says(GOOD), cache=tmp_path / "llm")
+    first = ask(PROMPT, server)
+    assert ask(PROMPT, server) == first
+    assert len(http.seen) == 1
+    (entry,) = (tmp_path / "llm").iterdir()
+    ask(PROMPT + "!", server)
+    ask(PROMPT, replace(server, model="another"))
+    assert len(http.seen) == 3
+    for damage in (b"", b"{", b"[" * 100_000, b'{"rooms": [{"id": "../../etc/passwd", "type": "bedroom"}]}', b"\xff\xfe", b'{"rooms": []}'):
+        entry.write_bytes(damage)
+        assert ask(PROMPT, server) == first
+        assert json.loads(entry.read_bytes())["rooms"]
+
+
+def test_a_cache_that_cannot_be_written_is_no_fault(serve, tmp_path):
+    (tmp_path / "file").write_text("")
+    _, server = serve(says(GOOD), cache=tmp_path / "file")
+    assert len(ask(PROMPT, server).rooms) == 4
+
+
+def test_a_bad_answer_is_not_kept(serve, tmp_path):
+    _, server = serve(says("no"), cache=tmp_path)
+    with pytest.raises(UnansweredError):
+        ask(PROMPT, server)
+    assert not list(tmp_path.iterdir())
+
+
+def test_furniture_is_part_of_the_answer(serve):
+    wish = {"least": 8, "most": 8, "style": "Nordic", "counts": [{"category": "nightstand", "min": 2, "max": 2}]}
+    program = json.loads(GOOD)
+    program["rooms"][2]["furniture"] = wish
+    http, server = serve(says(json.dumps(program)))
+    bed = request(PROMPT, server).rooms[2]
+    assert (bed.furniture.least, bed.furniture.style, bed.furniture.counts[0].category) == (8, "Nordic", "nightstand")
+    assert "nightstand" in http.seen[0][2]["messages"][0]["content"]
