@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL.Image import Image as PilImage
 
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
@@ -45,17 +46,17 @@ def path_trace(
 
     Doors, drawers and lids stand at `open_fraction` of their range. Raises UsageError where Mitsuba is not installed.
     """
-    mi = _mitsuba()
+    mi = mitsuba()
     azimuth = _azimuth(home, level, size)
     batches = home_batches(home, assets, level, open_fraction, np.array([math.sin(azimuth), -math.cos(azimuth)]))
     points = np.concatenate([b.faces.reshape(-1, 3) for b in batches])
     fine = (FINER * size[0], FINER * size[1])
-    camera = _camera(points, fine, azimuth)
+    camera = framed(points, fine, azimuth, ELEVATION)
     scene: dict[str, Any] = {
         "type": "scene",
         "integrator": {"type": "path", "max_depth": 5},
         "sky": {"type": "constant", "radiance": {"type": "rgb", "value": list(SKY)}},
-        "sun": _sun(mi, points, azimuth),
+        "sun": sun(mi, points, azimuth),
         "sensor": {
             "type": "perspective",
             "fov": FIELD_OF_VIEW,
@@ -72,11 +73,12 @@ def path_trace(
     image = np.asarray(mi.render(mi.load_dict(scene), seed=0), np.float32)
     guides = _guides(camera, batches)
     image = denoise(image, guides)
-    _save(np.where((guides.depth > 0)[..., None], image, np.float32(PAPER)), path, size)
+    save(np.where((guides.depth > 0)[..., None], image, np.float32(PAPER)), path, size)
     return path
 
 
-def _mitsuba() -> ModuleType:
+def mitsuba() -> ModuleType:
+    """Return Mitsuba with its scalar variant chosen. Raises UsageError where it is not installed."""
     try:
         import mitsuba as mi
     except ImportError as error:
@@ -115,9 +117,9 @@ def _azimuth(home: Home, level: int, size: tuple[int, int]) -> float:
     return AZIMUTH + (math.pi / 2 if (depth > 1.15 * width) == (size[0] >= size[1]) and abs(depth / width - 1) > 0.15 else 0.0)
 
 
-def _camera(points: NDArray[np.float64], size: tuple[int, int], azimuth: float) -> Camera:
-    """Stand where all points (N, 3) are in the picture, with a small margin."""
-    ca, sa, ce, se = math.cos(azimuth), math.sin(azimuth), math.cos(ELEVATION), math.sin(ELEVATION)
+def framed(points: NDArray[np.float64], size: tuple[int, int], azimuth: float, elevation: float) -> Camera:
+    """Stand where all points (N, 3) are in the picture, with a small margin; angles [rad] as of AZIMUTH and ELEVATION."""
+    ca, sa, ce, se = math.cos(azimuth), math.sin(azimuth), math.cos(elevation), math.sin(elevation)
     back, right = np.array([sa * ce, -ca * ce, se]), np.array([ca, sa, 0.0])
     up = np.cross(back, right)
     tangent = math.tan(math.radians(FIELD_OF_VIEW) / 2)
@@ -150,7 +152,7 @@ def _guides(camera: Camera, batches: list[Batch], samples: int = 2) -> Guides:
     return Guides(albedo, normals, depth)
 
 
-def _sun(mi: ModuleType, points: NDArray[np.float64], azimuth: float) -> dict[str, Any]:
+def sun(mi: ModuleType, points: NDArray[np.float64], azimuth: float) -> dict[str, Any]:
     """Place the sun as a far glowing ball; its radiance gives SUN_IRRADIANCE whatever its size."""
     centre = (points.min(axis=0) + points.max(axis=0)) / 2
     c, s = math.cos(azimuth), math.sin(azimuth)
@@ -195,12 +197,17 @@ def _surface(batch: Batch) -> dict[str, Any]:
     return {"type": "twosided", "bsdf": inner}
 
 
-def _save(image: NDArray[np.float32], path: Path, size: tuple[int, int]) -> None:
+def save(image: NDArray[np.float32], path: Path, size: tuple[int, int]) -> None:
+    """Write what `developed` makes of an image as a PNG."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    developed(image, size).save(path)
+
+
+def developed(image: NDArray[np.float32], size: tuple[int, int]) -> PilImage:
     """Expose, compress the highlights above the middle, encode as sRGB, average down to `size`."""
     from PIL import Image
 
     exposed = np.maximum(image * EXPOSURE, 0.0)
     toned = np.where(exposed < 0.6, exposed, 0.6 + 0.4 * (exposed - 0.6) / (exposed - 0.6 + 0.4))
     encoded = np.where(toned <= 0.0031308, 12.92 * toned, 1.055 * np.maximum(toned, 1e-6) ** (1 / 2.4) - 0.055)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    Image.fromarray((np.clip(encoded, 0, 1) * 255 + 0.5).astype(np.uint8)).resize(size, Image.Resampling.BOX).save(path)
+    return Image.fromarray((np.clip(encoded, 0, 1) * 255 + 0.5).astype(np.uint8)).resize(size, Image.Resampling.BOX)

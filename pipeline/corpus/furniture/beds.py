@@ -1,178 +1,272 @@
-"""Beds: double, single, children's and bunk beds, with mattress, pillows and cover. The head is at the back (+Y)."""
+"""Beds for one and two: panel, padded, buttoned, slatted, four-poster, sleigh, metal and platform beds. The head is at the back (+y)."""
 
 from __future__ import annotations
 
 import itertools
+import math
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import BEDDING, MATTRESS, Scheme
+from pipeline.corpus.furniture.bent import curve, sheet, tube
+from pipeline.corpus.furniture.finishes import BEDDING, MATTRESS, Scheme, cane
+from pipeline.corpus.furniture.legs import leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, cushion, rod
-from pipeline.corpus.furniture.storage import Size, pick
+from pipeline.corpus.furniture.solids import Solid, box, cushion, pillow, revolve, rod
+from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.upholstery import Span, channels, duvet, throw_pillow, tufted
 
-Span = tuple[float, float]
+SOFT = frozenset({"upholstered", "tufted", "wing"})
 
 
 def bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a bed with a panel, padded, slatted or tufted headboard."""
+    """Build a bed of one of the forms, made up with a mattress, a duvet and pillows."""
     w, d, h = size
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
-    lift = float(rng.uniform(0.1, 0.16))
-    frame_top = lift + float(rng.uniform(0.14, 0.2))
-    top = min(frame_top + 0.18, 0.55 * h + 0.06)
-    head = 0.1 if form in ("upholstered", "tufted") else 0.05
-    soft = form in ("upholstered", "tufted")
-    side = min(0.04 + 0.05 * soft, 0.03 * w + 0.02)
-    base = pieces("headboard", _headboard(form, x, (y[1] - head, y[1]), lift, h), scheme.soft if soft else scheme.body)
-    frame: list[Solid]
-    rail_y = (y[0], y[1] - head)
+    if form == "platform":
+        return _platform(rng, size, scheme)
+    soft = form in SOFT
+    lift = float(rng.uniform(0.1, 0.16)) if form != "canopy" else 0.16
+    rail_top = min(lift + float(rng.uniform(0.15, 0.2)), 0.4 * h)
+    top = min(rail_top + 0.17, 0.55 * h + 0.05)
+    head = {"upholstered": 0.1, "tufted": 0.12, "wing": 0.1, "sleigh": 0.16, "metal": 0.05}.get(form, 0.06)
+    foot = {"sleigh": 0.12, "metal": 0.05, "canopy": 0.06}.get(form, 0.0)
+    made = _head(rng, form, x, (y[1] - head, y[1]), lift, h, scheme)
+    side = 0.07 if soft else 0.032
+    rail = (y[0] + foot, y[1] - head)
+    cloth = scheme.soft if soft else scheme.handle if form == "metal" else scheme.body
     if soft:
-        frame = [cushion(x, rail_y, (lift, frame_top), 0.03)]
+        frame: list[Solid] = [
+            cushion((x[0], x[0] + side), rail, (lift, rail_top), 0.02, 2),
+            cushion((x[1] - side, x[1]), rail, (lift, rail_top), 0.02, 2),
+        ]
+        frame.append(cushion((x[0] + side, x[1] - side), (rail[0], rail[0] + side), (lift, rail_top), 0.02, 2))
     else:
         frame = [
-            box((x[0], x[0] + side), rail_y, (lift, frame_top), 0.004),
-            box((x[1] - side, x[1]), rail_y, (lift, frame_top), 0.004),
-            box((x[0] + side, x[1] - side), (y[0], y[0] + side), (lift, frame_top), 0.004),
-            box((x[0] + side, x[1] - side), (y[0] + side, y[1] - head), (frame_top - 0.06, frame_top - 0.03)),
+            box((x[0] + 0.008, x[0] + side), rail, (lift, rail_top), 0.004),
+            box((x[1] - side, x[1] - 0.008), rail, (lift, rail_top), 0.004),
         ]
-    base += pieces("frame", frame, scheme.soft if soft else scheme.body)
-    corners = [(px, py) for px in (x[0] + 0.07, x[1] - 0.07) for py in (y[0] + 0.08, y[1] - head - 0.06)]
-    feet = [rod((px, py, 0), (px, py, lift), 0.02, 0.028, 10) for px, py in corners]
-    base += pieces("feet", feet, scheme.accent)
-    inner_x, inner_y = (x[0] + side, x[1] - side), (y[0] + side, y[1] - head)
-    low = frame_top - 0.03 if not soft else frame_top
-    return Shape(base + bedding(rng, inner_x, inner_y, low, top, scheme))
+        if not foot:
+            frame.append(box((x[0] + side, x[1] - side), (rail[0], rail[0] + side), (lift, rail_top), 0.004))
+    low = rail_top - 0.03
+    inner_x, inner_y = (x[0] + side, x[1] - side), (rail[0] + (0.0 if foot else side), rail[1])
+    frame.append(box(inner_x, inner_y, (low - 0.03, low)))
+    made += pieces("frame", frame, cloth)
+    if foot:
+        made += _foot(form, x, (y[0], y[0] + foot), lift, min(0.62 * h, top + 0.16), h, scheme)
+    kind = "bun" if scheme.manner.ornament > 0.5 and lift < 0.16 else "square" if form in ("panel", "slatted") else "tapered"
+    if form not in ("canopy", "metal", "sleigh"):
+        feet = [s.moved((0, -0.04, 0)) for s in legs(kind, (w / 2 - 0.07, d / 2 - 0.12), lift, 0.055)]
+        made += pieces("feet", feet, leg_finish(scheme, kind))
+    return Shape(made + bedding(rng, inner_x, inner_y, low, top, scheme, h - top))
 
 
-def bedding(rng: np.random.Generator, x: Span, y: Span, low: float, top: float, scheme: Scheme) -> tuple[Piece, ...]:
-    """Return a mattress from `low` to `top` [m], a duvet over it, pillows at the head, and often a throw at the foot."""
-    made = pieces("mattress", cushion((x[0] + 0.01, x[1] - 0.01), (y[0] + 0.01, y[1] - 0.005), (low, top), 0.05, 2), MATTRESS)
-    fold = y[1] - 0.62
-    duvet = cushion((x[0] - 0.005, x[1] + 0.005), (y[0] + 0.003, fold), (top - 0.09, top + 0.045), 0.045, 3)
-    made += pieces("duvet", duvet, BEDDING if rng.random() < 0.5 else scheme.second)
-    made += pieces(
-        "duvet_fold", cushion((x[0] - 0.003, x[1] + 0.003), (fold - 0.2, fold + 0.02), (top + 0.02, top + 0.065), 0.022), BEDDING
-    )
-    count = 2 if x[1] - x[0] > 1.25 else 1
-    xs = np.linspace(x[0] + 0.03, x[1] - 0.03, count + 1)
-    pillows = []
-    for a, b in itertools.pairwise(xs):
-        middle, half = (a + b) / 2, min(0.36, 0.48 * (b - a))
-        pad = cushion((middle - half, middle + half), (y[1] - 0.47, y[1] - 0.07), (top + 0.005, top + 0.135), 0.06, 3)
-        pillows.append(pad.turned("x", 0.16, (0, y[1] - 0.47, top)))
-    made += pieces("pillows", pillows, BEDDING)
-    if rng.random() < 0.6:
-        foot = y[0] + 0.22 * (y[1] - y[0])
-        throw = cushion((x[0] - 0.012, x[1] + 0.012), (foot, foot + 0.45), (top - 0.12, top + 0.055), 0.03)
-        made += pieces("throw", throw, scheme.soft if scheme.soft.name != scheme.second.name else scheme.second)
+def bedding(rng: np.random.Generator, x: Span, y: Span, low: float, top: float, scheme: Scheme, room: float = 1.0) -> tuple[Piece, ...]:
+    """Return a mattress from `low` to `top`, a duvet turned down over it, pillows at the head, often cushions and a throw.
+
+    There are cushions only where there is `room` above for them.
+    """
+    mx, my = (x[0] + 0.014, x[1] - 0.014), (y[0] + 0.014, y[1] - 0.006)
+    made = pieces("mattress", cushion(mx, my, (low, top), 0.045, 3), MATTRESS)
+    wide, long = mx[1] - mx[0], my[1] - my[0]
+    head = min(0.62, 0.34 * long)
+    cover = BEDDING if rng.random() < 0.45 else scheme.second
+    fold = my[1] - head
+    thick = 0.045
+    drop = min(0.8 * (top - low), 0.16)
+    made += duvet(mx, (my[0], fold - 0.2), top, thick, drop, cover, foot=False)
+    turned = cushion((mx[0] - 0.02, mx[1] + 0.02), (fold - 0.198, fold + 0.03), (top, top + 1.5 * thick), 0.03, 3)
+    made += pieces("duvet_fold", turned, BEDDING if cover is not BEDDING else scheme.soft if rng.random() < 0.5 else BEDDING)
+    count = 2 if wide > 1.25 else 1
+    share = wide / count
+    deep = min(0.44, head - 0.1)
+    half = min(0.36, 0.47 * share)
+    pads = []
+    for k in range(count):
+        middle = mx[0] + share * (k + 0.5)
+        pad = pillow((middle - half, middle + half), (my[1] - deep - 0.02, my[1] - 0.02), (top, top + 0.15), 3)
+        pads.append(pad.turned("x", 0.22, (0, my[1] - deep, top)).moved((0, 0.0, 0.012)))
+        if room > 0.3 and rng.random() < 0.5 * scheme.manner.tufts + 0.35:
+            front = throw_pillow(
+                (middle, my[1] - deep - 0.13, top + 1.5 * thick + 0.002), min(0.4, 1.5 * half, deep), 0.5, float(rng.uniform(-0.15, 0.15))
+            )
+            made += pieces("cushion", front, scheme.soft)
+    made += pieces("pillows", pads, BEDDING)
+    if rng.random() < 0.55:
+        foot = my[0] + 0.14 * long
+        band = duvet((mx[0] - 0.027, mx[1] + 0.027), (foot, foot + 0.45), top + 1.25 * thick, 0.014, drop * 0.95, scheme.soft, foot=False)
+        made += tuple(Piece("throw", p.solid, p.finish) for p in band)
     return made
 
 
-def _headboard(form: str, x: Span, y: Span, lift: float, h: float) -> list[Solid]:
-    """Return a headboard over `x`, `y` up to `h` [m]."""
+def _head(rng: np.random.Generator, form: str, x: Span, y: Span, lift: float, h: float, scheme: Scheme) -> tuple[Piece, ...]:  # noqa: PLR0911 - one return per form
+    """Return a headboard over `x`, `y` up to `h`."""
     w = x[1] - x[0]
+    wood = scheme.timber if form in ("slatted", "canopy", "sleigh") else scheme.body
     if form == "upholstered":
         count = max(2, round(w / 0.45))
         xs = np.linspace(x[0], x[1], count + 1)
-        return [box(x, (y[0] + 0.05, y[1]), (lift, h - 0.01), 0.006)] + [
-            cushion((a + 0.001, b - 0.001), (y[0], y[0] + 0.06), (lift + 0.12, h), 0.028) for a, b in itertools.pairwise(xs)
-        ]
+        board = pieces("headboard", box(x, (y[0] + 0.052, y[1]), (lift, h - 0.012), 0.006), scheme.soft)
+        if rng.random() < 0.5:
+            return board + pieces("pads", channels(x, (y[0], y[0] + 0.05), (lift + 0.12, h), max(6, round(w / 0.14))), scheme.soft)
+        return board + pieces(
+            "pads",
+            [cushion((a + 0.001, b - 0.001), (y[0], y[0] + 0.05), (lift + 0.12, h), 0.024, 3) for a, b in itertools.pairwise(xs)],
+            scheme.soft,
+        )
     if form == "tufted":
-        rows, columns = 3, max(3, round(w / 0.35))
-        xs, zs = np.linspace(x[0] + 0.05, x[1] - 0.05, columns + 1), np.linspace(lift + 0.2, h - 0.05, rows + 1)
-        frame = [cushion(x, (y[0] + 0.045, y[1]), (lift, h), 0.025)]
-        pads = [
-            cushion((a, b), (y[0], y[0] + 0.06), (c, e), 0.028, 1) for a, b in itertools.pairwise(xs) for c, e in itertools.pairwise(zs)
-        ]
-        return frame + pads
-    posts = [box((px, px + 0.05), y, (0, h), 0.006) for px in (x[0], x[1] - 0.05)]
-    inner = (x[0] + 0.05, x[1] - 0.05)
+        return pieces("headboard", tufted(x, y, (lift, h), max(4, round(w / 0.26)), max(2, round((h - lift) / 0.26))), scheme.soft)
+    if form == "wing":
+        made = pieces("headboard", cushion((x[0] + 0.06, x[1] - 0.06), y, (lift, h), 0.04, 3), scheme.soft)
+        wings = [cushion((a, a + 0.058), (y[0] - 0.16, y[1]), (lift + 0.3, h - 0.02), 0.026, 2) for a in (x[0], x[1] - 0.058)]
+        return made + pieces("wings", wings, scheme.soft)
+    if form == "sleigh":
+        return pieces("headboard", _scroll(x, y[0] + 0.03, lift, h), wood) + _sleigh_posts(x, y, lift, 0.75 * h, scheme)
+    if form == "metal":
+        return pieces("headboard", _hoop(x, (y[0] + y[1]) / 2, h, scheme), scheme.handle)
+    post = 0.06 if form == "canopy" else 0.05
+    made = (
+        pieces("posts", [box((a, a + post), y, (0, h), 0.006) for a in (x[0], x[1] - post)], wood)
+        if form != "canopy"
+        else _posters(x, y, h, scheme)
+    )
+    inner = (x[0] + post, x[1] - post)
+    crown = h if form != "canopy" else min(0.62 * h, 1.25)
     if form == "slatted":
-        count = max(5, round(w / 0.12))
+        count = max(5, round(w / 0.11))
         xs = np.linspace(inner[0] + 0.05, inner[1] - 0.05, count)
-        rails = [box(inner, (y[0] + 0.008, y[1] - 0.008), z, 0.004) for z in ((lift + 0.12, lift + 0.2), (h - 0.09, h - 0.01))]
-        return posts + rails + [box((a - 0.014, a + 0.014), (y[0] + 0.015, y[1] - 0.015), (lift + 0.2, h - 0.09), 0.002) for a in xs]
-    return [
-        *posts,
-        box(inner, (y[0] + 0.012, y[1] - 0.008), (lift, h - 0.02), 0.006),
-        box((x[0] - 0.0, x[1]), y, (h - 0.001, h + 0.02), 0.006),
+        rails = [box(inner, (y[0] + 0.01, y[1] - 0.01), z, 0.004) for z in ((lift + 0.14, lift + 0.21), (crown - 0.09, crown - 0.005))]
+        return made + pieces(
+            "headboard",
+            rails + [box((a - 0.014, a + 0.014), (y[0] + 0.018, y[1] - 0.018), (lift + 0.21, crown - 0.09), 0.002) for a in xs],
+            wood,
+        )
+    weave = rng.random() < scheme.manner.cane
+    field = (inner[0] + 0.07, inner[1] - 0.07)
+    deep = (y[0] + 0.012, y[1] - 0.008)
+    boards = [box((inner[0], field[0]), deep, (lift, crown - 0.02), 0.003), box((field[1], inner[1]), deep, (lift, crown - 0.02), 0.003)]
+    boards += [box(field, deep, z, 0.003) for z in ((lift, lift + 0.3), (crown - 0.1, crown - 0.02))]
+    panel = box(field, (deep[0] + 0.012, deep[1] - 0.006), (lift + 0.3, crown - 0.1))
+    made += pieces("headboard", boards, wood) + pieces("panel", panel, cane(rng) if weave else scheme.front)
+    if form == "panel":
+        made += pieces("cap", box((x[0] + post, x[1] - post), y, (crown - 0.02, crown), 0.005), wood)
+    return made
+
+
+def _scroll(x: Span, y: float, lift: float, h: float) -> list[Solid]:
+    """Return a board that rises from the rail and rolls outwards at its top."""
+    wide, r = x[1] - x[0] - 0.09, 0.05
+    path = curve([np.array(p) for p in ((y, lift), (y - 0.006, 0.55 * h), (y + 0.035, h - 2 * r + 0.01))], 3)
+    middle = (x[0] + x[1]) / 2
+    roll = rod((middle - wide / 2 - 0.02, y + 0.06, h - r), (middle + wide / 2 + 0.02, y + 0.06, h - r), r, n=16)
+    return [s.moved((middle, 0, 0)) for s in sheet(path, 0.035, wide)] + [roll]
+
+
+def _sleigh_posts(x: Span, y: Span, lift: float, h: float, scheme: Scheme) -> tuple[Piece, ...]:
+    return (
+        pieces("posts", [box((a, a + 0.043), (y[0] + 0.005, y[0] + 0.075), (0, h), 0.008) for a in (x[0], x[1] - 0.043)], scheme.timber)
+        if lift
+        else ()
+    )
+
+
+def _hoop(x: Span, y: float, h: float, scheme: Scheme) -> list[Solid]:
+    """Return a bent tube with bars in it, and knobs where there is ornament."""
+    r = 0.017
+    w = x[1] - x[0]
+    rise = 0.12 * w if scheme.manner.ornament > 0.2 else 0.0
+    low = h - rise
+    bow = [
+        (x[0] + r, y, 0.0),
+        (x[0] + r, y, low - 0.08 * (rise == 0)),
+        *((x[0] + r + (w - 2 * r) * t, y, low - r + rise * math.sin(math.pi * t)) for t in np.linspace(0.06, 0.94, 8)),
+        (x[1] - r, y, low - 0.08 * (rise == 0)),
+        (x[1] - r, y, 0.0),
     ]
+    made = tube(bow, r, 8)
+    z = 0.42 * h
+    made.append(rod((x[0] + 2 * r, y, z), (x[1] - 2 * r, y, z), 0.7 * r, n=8))
+    count = max(5, round(w / 0.14))
+    for t in (np.arange(count) + 0.5) / count:
+        top = low - 2 * r + rise * math.sin(math.pi * t) - 0.012 * (rise > 0)
+        at = x[0] + r + (w - 2 * r) * float(t)
+        if top > z + 0.06:
+            made.append(rod((at, y, z + 0.7 * r), (at, y, top), 0.4 * r, n=6))
+    return made
 
 
-def kids_bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a bed with rails all around, a bunk bed with a ladder, or a bed in a house's frame. The sleeper lies along x where it is wide."""
+def _posters(x: Span, y: Span, h: float, scheme: Scheme) -> tuple[Piece, ...]:
+    """Return two tall posts of a four-poster: turned where there is ornament, else square."""
+    made: list[Solid] = []
+    middle = (y[0] + y[1]) / 2
+    for a in (x[0] + 0.03, x[1] - 0.03):
+        if scheme.manner.ornament > 0.5:
+            block = box((a - 0.03, a + 0.03), (middle - 0.03, middle + 0.03), (0.0, 0.45), 0.004)
+            steps = [
+                (0.022, 0.45),
+                (0.03, 0.5),
+                (0.018, 0.58),
+                (0.028, 0.75 + 0.1 * h),
+                (0.018, h - 0.14),
+                (0.028, h - 0.08),
+                (0.028, h - 0.05),
+            ]
+            made += [block, *revolve(steps, 12, (a, middle))]
+        else:
+            made.append(box((a - 0.025, a + 0.025), (middle - 0.025, middle + 0.025), (0, h - 0.05), 0.004))
+    return pieces("posters", made, scheme.timber)
+
+
+def _foot(form: str, x: Span, y: Span, lift: float, top: float, h: float, scheme: Scheme) -> tuple[Piece, ...]:
+    """Return a footboard; a four-poster's carries the frame of the canopy."""
+    if form == "sleigh":
+        tall = min(0.62 * h, 0.72)
+        board = [s.mirrored().turned("z", math.pi) for s in _scroll(x, -y[1] + 0.03, lift, tall)]
+        return pieces("footboard", board, scheme.timber) + pieces(
+            "posts",
+            [box((a, a + 0.043), (y[1] - 0.075, y[1] - 0.005), (0, 0.75 * tall), 0.008) for a in (x[0], x[1] - 0.043)],
+            scheme.timber,
+        )
+    if form == "metal":
+        return pieces("footboard", _hoop(x, (y[0] + y[1]) / 2, min(0.72 * h, 0.7), scheme), scheme.handle)
+    made = _posters(x, y, h, scheme)
+    rail = box((x[0] + 0.06, x[1] - 0.06), (y[0] + 0.01, y[1] - 0.01), (lift, min(top, lift + 0.3)), 0.004)
+    made += pieces("footboard", rail, scheme.body)
+    z = (h - 0.05, h)
+    deep = -y[0]  # the frame of the canopy runs from the foot to the head, alike at both ends
+    frame = [box((a, a + 0.06), (-deep, deep), z, 0.004) for a in (x[0], x[1] - 0.06)]
+    frame += [box((x[0] + 0.06, x[1] - 0.06), (b, b + 0.06), z, 0.004) for b in (-deep, deep - 0.06)]
+    return made + pieces("canopy", frame, scheme.timber)
+
+
+def _platform(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
+    """Build a low deck of boards that stands out around the mattress, with a plain back that leans."""
     w, d, h = size
-    if form == "bunk":
-        return _bunk(rng, size, scheme)
-    if form == "house":
-        return _house(rng, size, scheme)
-    lift = 0.12
-    t = 0.04
-    x, y = (-w / 2, w / 2), (-d / 2, d / 2)
-    low = min(0.38, 0.42 * h)
-    posts = [box((px, px + t), (py, py + t), (0, h if py > 0 else 0.75 * h), 0.006) for px in (x[0], x[1] - t) for py in (y[0], y[1] - t)]
-    rails = [
-        box((x[0] + t, x[1] - t), (y[1] - t, y[1]), (lift, h - 0.03), 0.004),
-        box((x[0] + t, x[1] - t), (y[0], y[0] + 0.03), (lift, low), 0.004),
-        *(box((px, px + 0.03), (y[0] + t, y[1] - t), (lift, low), 0.004) for px in (x[0] + 0.005, x[1] - 0.035)),
-        *(box((px, px + 0.03), (y[0] + t, y[1] - t), (low + 0.1, low + 0.16), 0.004) for px in (x[0] + 0.005, x[1] - 0.035)),
-        box((x[0] + t, x[1] - t), (y[0] + 0.03, y[1] - t), (lift + 0.08, lift + 0.1)),
+    deck = min(0.26, 0.32 * h)
+    x, y = w / 2, d / 2
+    count = max(3, round(w / 0.28))
+    boards = [
+        box((a + 0.0008, b - 0.0008), (-y, y - 0.08), (deck - 0.035, deck), 0.003)
+        for a, b in itertools.pairwise(np.linspace(-x, x, count + 1))
     ]
-    base = pieces("frame", posts + rails, scheme.front)
-    return Shape(base + bedding(rng, (x[0] + t, x[1] - t), (y[0] + t, y[1] - t), lift + 0.1, low + 0.06, scheme))
-
-
-def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
-    """Two berths over each other and a ladder at the front."""
-    w, d, h = size
-    t = 0.06
-    deep = d - 0.06
-    x, y = (-w / 2, w / 2), (-d / 2 + 0.06, d / 2)
-    posts = [box((px, px + t), (py, py + t), (0, h), 0.006) for px in (x[0], x[1] - t) for py in (y[0], y[1] - t)]
-    base = pieces("posts", posts, scheme.front)
-    levels = (0.22, 0.22 + 0.52 * h)
-    inner_x, inner_y = (x[0] + t, x[1] - t), (y[0] + 0.03, y[1] - 0.03)
-    for k, z in enumerate(levels):
-        boards = [
-            *(box(inner_x, (py, py + 0.03), (z, z + 0.14), 0.003) for py in (y[0], y[1] - 0.03)),
-            *(box((px, px + 0.03), (y[0] + t, y[1] - t), (z, z + 0.14), 0.003) for px in (x[0] + 0.01, x[1] - 0.04)),
-            box(inner_x, inner_y, (z + 0.02, z + 0.04)),
-        ]
-        guard = z + 0.14 + 0.62 * (h - levels[1] - 0.14)
-        boards += [box((px, px + 0.03), (y[0] + t, y[1] - t), (guard, guard + 0.06), 0.003) for px in (x[0] + 0.01, x[1] - 0.04)]
-        if k:
-            boards += [box(inner_x, (y[1] - 0.03, y[1]), (guard, guard + 0.06), 0.003)]
-            boards += [box((x[0] + t, x[1] - 0.62), (y[0], y[0] + 0.03), (guard, guard + 0.06), 0.003)]
-        base += pieces(f"berth_{k}", boards, scheme.front)
-        if deep > 0.5:
-            base += tuple(
-                Piece(f"{p.name}_{k}", p.solid, p.finish)
-                for p in bedding(rng, inner_x, inner_y, z + 0.04, z + 0.19, scheme)
-                if p.name != "throw"
+    made = pieces("deck", boards, scheme.body)
+    made += pieces(
+        "plinth",
+        box((-x + 0.16, x - 0.16), (-y + 0.18, y - 0.18), (0, deck - 0.035), 0.003),
+        scheme.accent if scheme.accent is not scheme.handle else scheme.timber,
+    )
+    wide = min(0.7 * w, 1.2) if rng.random() < 0.3 else w
+    board = [box((-wide / 2, wide / 2), (y - 0.045, y - 0.01), (0.06, h), 0.006)]
+    made += pieces("headboard", board, scheme.timber)
+    if rng.random() < 0.5:
+        half = (w - 0.06) / 2
+        pads = [
+            cushion(
+                (s * half / 2 - half / 2 + 0.01, s * half / 2 + half / 2 - 0.01), (y - 0.11, y - 0.047), (deck + 0.12, h - 0.02), 0.028, 3
             )
-    ladder: list[Solid] = []
-    lx = (x[1] - 0.56, x[1] - 0.12)
-    ladder += [box((px - 0.02, px + 0.02), (-d / 2, -d / 2 + 0.05), (0, min(h, levels[1] + 0.5)), 0.004) for px in lx]
-    ladder += [
-        box((lx[0] + 0.02, lx[1] - 0.02), (-d / 2 + 0.008, -d / 2 + 0.045), (z, z + 0.03), 0.003) for z in np.arange(0.25, levels[1], 0.27)
-    ]
-    return Shape(base + pieces("ladder", ladder, scheme.accent))
-
-
-def _house(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
-    """Build a low bed inside a frame with a pitched roof."""
-    w, d, h = size
-    t = 0.05
-    x, y = (-w / 2, w / 2), (-d / 2, d / 2)
-    eaves = 0.72 * h
-    solids = [box((px, px + t), (py, py + t), (0, eaves), 0.005) for px in (x[0], x[1] - t) for py in (y[0], y[1] - t)]
-    for py in (y[0] + t / 2, y[1] - t / 2):
-        solids += [rod((px, py, eaves - 0.01), (0, py, h - 0.02), 0.024, n=8) for px in (x[0] + t / 2, x[1] - t / 2)]
-    solids.append(box((-t / 2, t / 2), y, (h - t, h), 0.004))
-    solids += [box((px, px + t), (y[0] + t, y[1] - t), (eaves - t, eaves), 0.004) for px in (x[0], x[1] - t)]
-    rails = [box((px, px + 0.03), (y[0] + t, y[1] - t), (0.1, 0.36), 0.004) for px in (x[0] + 0.01, x[1] - 0.04)]
-    rails += [box((x[0] + t, x[1] - t), (py, py + 0.03), (0.1, 0.36), 0.004) for py in (y[0] + 0.01, y[1] - 0.04)]
-    rails.append(box((x[0] + t, x[1] - t), (y[0] + t, y[1] - t), (0.14, 0.16)))
-    base = pieces("house", solids, scheme.front) + pieces("rails", rails, scheme.front if pick(rng, "a b") == "a" else scheme.body)
-    return Shape(base + bedding(rng, (x[0] + t, x[1] - t), (y[0] + t, y[1] - t), 0.16, 0.36, scheme))
+            for s in (-1, 1)
+        ]
+        made += pieces("back_pads", pads, scheme.soft)
+    edge = min(0.12, 0.06 * w)
+    return Shape(
+        made + bedding(rng, (-x + edge, x - edge), (-y + edge, y - 0.12), deck, deck + min(0.2, 0.4 * (h - deck)), scheme, 0.6 * (h - deck))
+    )

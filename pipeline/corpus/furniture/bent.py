@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.corpus.furniture.solids import Face, Solid, Vector, stack
+from pipeline.corpus.furniture.solids import Face, Solid, Vector, slab, stack
 
 Points = NDArray[np.float64]
 
@@ -54,8 +54,10 @@ def tube(path: Sequence[Vector] | Points, radius: float | Sequence[float] | Poin
     angles = (np.arange(n) + 0.5) * (2 * np.pi / n)
     made = []
     u = _across(along[0])
+    v = np.cross(along[0], u)
     for k, direction in enumerate(along):
-        u = u - direction * float(u @ direction)  # carried along the path, so that the facets do not twist
+        turned, slid = np.cross(v, direction), u - direction * float(u @ direction)  # carried along, so that the facets do not twist
+        u = turned if np.linalg.norm(turned) > np.linalg.norm(slid) else slid
         u /= np.linalg.norm(u)
         v = np.cross(direction, u)
         spokes = np.cos(angles)[:, None] * u + np.sin(angles)[:, None] * v
@@ -83,6 +85,28 @@ def band(path: Points, thick: float, z: tuple[float, float], *, closed: bool = F
         ring = np.array([right[i], right[j], left[j], left[i]])
         made.append(stack([np.column_stack([ring, np.full(4, z[0])]), np.column_stack([ring, np.full(4, z[1])])]))
     return made
+
+
+def wall(path: Points, thick: float, low: float, tops: Sequence[float] | Points, ease: float = 0.0) -> list[Solid]:
+    """Return an upright wall over a path in plan (m, 2) whose top rises and falls: `tops` (m,) [m]; `ease` rounds the upper edge."""
+    left, right = _sides(path, thick, closed=False)
+    made = []
+    for i in range(len(path) - 1):
+        ring = np.array([right[i], right[i + 1], left[i + 1], left[i]])
+        z = np.array([tops[i], tops[i + 1], tops[i + 1], tops[i]])
+        rings = [np.column_stack([ring, np.full(4, low)]), np.column_stack([ring, z - ease])]
+        if ease > 0:
+            centre = np.array([path[i], path[i + 1], path[i + 1], path[i]])
+            rings.append(np.column_stack([centre + (ring - centre) * 0.72, z - 0.3 * ease]))
+            rings.append(np.column_stack([centre + (ring - centre) * 0.3, z]))
+        made.append(settled(stack(rings)))
+    return made
+
+
+def upright(outline: Points, x: tuple[float, float], bevel: float) -> Solid:
+    """Return a board over a convex outline (n, 2) in (y, z), counter-clockwise, across `x`, its edges eased by `bevel`."""
+    made = slab(outline, x, bevel)
+    return Solid(made.vertices[:, [2, 0, 1]], made.faces)
 
 
 def _sides(path: Points, thick: float, closed: bool) -> tuple[Points, Points]:

@@ -12,7 +12,7 @@ from pipeline.corpus.furniture.finishes import MIRROR, Scheme
 from pipeline.corpus.furniture.shape import Piece, Shape, joined, moved, pieces
 from pipeline.corpus.furniture.solids import box, revolve, ring
 from pipeline.corpus.furniture.storage import Size, front_style
-from pipeline.corpus.furniture.tables import cased_table, legged, top_finish
+from pipeline.corpus.furniture.tables import cased_table, legged
 
 
 def desk(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -25,7 +25,7 @@ def desk(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     elif form == "drawers":
         shape = cased_table(rng, (w, d, work), scheme, drawer_height=0.11, count=2 if w < 1.5 else 3)
     else:
-        shape = legged(rng, (w, d, work), scheme, kinds="square tapered splayed")
+        shape = legged(rng, (w, d, work), scheme, without="block bun horse")
         shape = Shape(
             shape.base + pieces("modesty", box((-0.44 * w, 0.44 * w), (0.3 * d, 0.3 * d + 0.015), (0.4 * work, work - 0.05)), scheme.body)
         )
@@ -60,7 +60,7 @@ def _pedestal_desk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shap
     rows = int(rng.integers(2, 5))
     cells = tuple(Cell("drawer", 0.8 if k < rows - 1 else 1.3) for k in range(rows))
     chest = case((wide, d - 0.03, h - t), [Column(1, cells)], how)
-    base = pieces("top", box((-w / 2, w / 2), (-d / 2, d / 2), (h - t, h), 0.004), top_finish(rng, scheme, stone=0.0, glass=0.0))
+    base = pieces("top", box((-w / 2, w / 2), (-d / 2, d / 2), (h - t, h), 0.004), scheme.body)
     x = -side * (w / 2 - 0.03)
     if rng.random() < 0.5:
         base += pieces("panel", box((x - 0.014, x + 0.014), (-0.44 * d, 0.46 * d), (0, h - t), 0.002), scheme.body)

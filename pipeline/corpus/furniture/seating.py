@@ -1,4 +1,4 @@
-"""Chairs and stools."""
+"""Chairs at tables, and Chinese armchairs. The front is -y. Lengths in metres."""
 
 # ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
 
@@ -9,256 +9,285 @@ import math
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import PLASTIC, Scheme
+from pipeline.corpus.furniture.backs import Frame, back
+from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, tube
+from pipeline.corpus.furniture.finishes import Finish, Scheme, cane
+from pipeline.corpus.furniture.legs import draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, box, circle, cushion, revolve, rod, rounded, slab
-from pipeline.corpus.furniture.storage import Size, pick
+from pipeline.corpus.furniture.solids import Solid, beam, box, cushion, revolve, rod, rounded, slab
+from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.styles import CLASSIC, ORIENTAL
+from pipeline.corpus.furniture.upholstery import seat_cushion
 
-Spot = tuple[float, float]
-
-
-def chair_legs(rng: np.random.Generator, half: Spot, height: float, kind: str) -> list[Solid]:
-    """Return four legs at (+-half) under a seat at `height` [m]."""
-    made: list[Solid] = []
-    for sx in (-1, 1):
-        for sy in (-1, 1):
-            x, y = sx * half[0], sy * half[1]
-            if kind == "square":
-                made.append(beam((x, y, 0), (x, y, height), 0.036, 0.036, 0.7))
-            elif kind == "metal":
-                made.append(rod((x, y, 0), (x - sx * 0.02, y - sy * 0.02, height), 0.009, n=8))
-            else:
-                made.append(rod((x, y, 0), (x - sx * 0.05, y - sy * 0.05, height), 0.011, 0.02, 10))
-    if kind == "square" and rng.random() < 0.6:
-        z = 0.35 * height
-        made += [box((sx * half[0] - 0.01, sx * half[0] + 0.01), (-half[1] + 0.016, half[1] - 0.016), (z, z + 0.025)) for sx in (-1, 1)]
-    return made
+TUBE = 0.011  # radius of bent steel
 
 
 def dining_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a chair of wood, with a shell, upholstered, or with spindles."""
+    """Build a chair: framed (wood, upholstered, spindle, medallion, cafe), a shell, a wishbone, a cantilever, or one that folds."""
+    made = {"shell": _shell_chair, "wishbone": _wishbone, "cantilever": _cantilever, "folding": _folding}.get(form)
+    return Shape(made(rng, size, scheme) if made else _framed(rng, form, size, scheme))
+
+
+def _framed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
     w, d, h = size
     seat = min(0.47, 0.56 * h)
-    kind = pick(rng, "square round metal") if form != "wood" else "square"
-    frame = scheme.handle if kind == "metal" else scheme.accent
-    x, y = 0.5 * w, 0.5 * d
-    lean = 0.10 * d
-    base = pieces("legs", chair_legs(rng, (x - 0.022, y - 0.06 if form != "shell" else y - 0.05), seat - 0.04, kind), frame)
-    back_y = y - lean - 0.01
-    if form == "shell":
-        shell = scheme.soft if rng.random() < 0.5 else scheme.front
-        base += pieces("seat", cushion((-x, x), (-y, y - 0.08), (seat - 0.05, seat), 0.024), shell)
-        back = [
-            cushion((-0.96 * x, 0.96 * x), (back_y - 0.03, back_y + 0.02), (seat - 0.03, h), 0.02).turned(
-                "x", -lean / (h - seat), (0, back_y, seat)
-            ),
-        ]
-        wings = [
-            cushion(
-                (s * x - 0.03 if s > 0 else -x, x if s > 0 else -x + 0.03),
-                (-0.2 * y, back_y),
-                (seat - 0.03, seat + 0.4 * (h - seat)),
-                0.014,
-            )
-            for s in (-1, 1)
-        ]
-        return Shape(base + pieces("back", back, shell) + (pieces("arms", wings, shell) if rng.random() < 0.5 else ()))
-    rail = box((-x + 0.01, x - 0.01), (-y + 0.02, back_y + 0.01), (seat - 0.075, seat - 0.04), 0.003)
-    base += pieces("seat_frame", rail, frame if kind != "metal" else scheme.body)
-    if form == "wood":
-        base += pieces("seat", slab(rounded((-x, x), (-y, back_y + 0.02), 0.05, 3), (seat - 0.04, seat), 0.006), scheme.body)
-    else:
-        base += pieces("seat", cushion((-x, x), (-y, back_y + 0.02), (seat - 0.045, seat + 0.02), 0.03), scheme.soft)
-    posts = [beam((s * (x - 0.025), back_y, seat - 0.045), (s * (x - 0.035), back_y + lean, h), 0.03, 0.028) for s in (-1, 1)]
-
-    def at(t: float) -> float:
-        return back_y + lean * t
-
-    def bar(t0: float, t1: float, thick: float = 0.018) -> Solid:
-        z0, z1 = seat + t0 * (h - seat), seat + t1 * (h - seat)
-        return beam((0, at(t0), z0), (0, at(t1), z1), 2 * x - 0.075, thick)
-
-    if form == "upholstered":
-        z0 = seat + 0.12 * (h - seat)
-        pad = cushion((-0.96 * x, 0.96 * x), (back_y - 0.03, back_y + 0.03), (z0, h), 0.024).turned(
-            "x", -lean / (h - seat), (0, back_y, z0)
-        )
-        return Shape(base + pieces("back", pad, scheme.soft) + pieces("posts", [s.scaled(np.array([0.9, 1, 0.96])) for s in posts], frame))
-    bars = [bar(0.82, 1.0)]
-    if form == "spindle":
-        xs = np.linspace(-x + 0.08, x - 0.08, max(4, round(w / 0.09)))
-        bars += [rod((sx, back_y, seat - 0.002), (sx, at(0.85), seat + 0.85 * (h - seat)), 0.008, n=6) for sx in xs]
-    else:
-        bars += [bar(0.5, 0.64), bar(0.2, 0.33)] if rng.random() < 0.6 else [bar(0.3, 0.75)]
-    return Shape(base + pieces("posts", posts, frame) + pieces("back", bars, frame))
-
-
-def lounge_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build an easy chair in a wooden frame, an office chair on castors, or a wing chair."""
-    if form == "office":
-        return _office_chair(size, scheme)
-    w, d, h = size
-    seat = min(0.42, 0.48 * h)
     x, y = w / 2, d / 2
-    if form == "wing":
-        legs = [
-            rod((s * (x - 0.07), t * (y - 0.08), 0), (s * (x - 0.09), t * (y - 0.1), 0.16), 0.013, 0.022, 10)
+    thick = 0.034 * scheme.manner.slim
+    kind = (
+        "ming"
+        if scheme.style in ORIENTAL
+        else draw_kind(rng, scheme, "plank cross hairpin block bun sled pipe" if form != "cafe" else "plank cross block bun")
+    )
+    wood = leg_finish(scheme, kind)
+    rise = 0.12 * (h - seat)
+    back_y = y - rise - 0.5 * thick
+    top = 0.05 if form != "wood" else 0.026
+    rail = 0.045
+    under = seat - top - rail
+    half = inside(kind, (x, (back_y + y) / 2 + 0.3 * thick), under, thick)
+    middle = (back_y - y) / 2 + 0.3 * thick
+    made = pieces("legs", [s.moved((0, middle, 0)) for s in legs(kind, half, under, thick)], wood)
+    made += pieces(
+        "rail", slab(rounded((-x + 0.012, x - 0.012), (-y + 0.016, back_y + 0.5 * thick), 0.02, 2), (under, under + rail), 0.004), wood
+    )
+    span_x, span_y = (-x, x), (-y, back_y - 0.55 * thick)
+    if form == "wood":
+        made += pieces("seat", slab(rounded(span_x, span_y, 0.05, 3), (seat - top, seat), scheme.manner.edge), scheme.body)
+    elif scheme.manner.cane > 0.3 and rng.random() < scheme.manner.cane:
+        made += pieces("seat", slab(rounded(span_x, span_y, 0.05, 3), (seat - top, seat - 0.01), 0.006), cane(rng))
+    else:
+        piping = scheme.second if rng.random() < scheme.manner.piping else None
+        made += seat_cushion(span_x, span_y, (seat - top, seat + 0.02), 0.04, scheme.soft, piping, 0.018)
+    frame = Frame(x - 0.012, back_y, under + rail, h, rise / (h - seat), thick, wood)
+    kinds = {"wood": "slat ladder panel cane", "upholstered": "pad", "spindle": "spindle", "medallion": "medallion", "cafe": "cross"}[form]
+    if form == "wood" and scheme.style in ORIENTAL:
+        kinds = "splat"
+    elif form == "wood" and scheme.style in CLASSIC:
+        kinds = "splat ladder"
+    choice = kinds.split()[int(rng.integers(len(kinds.split())))]
+    if choice == "pad":
+        short = [
+            beam((s * 0.62 * x, back_y, under + rail), (s * 0.62 * x, back_y, seat - 0.021 + 0.08 * (h - seat + 0.02)), 0.03, 0.022)
             for s in (-1, 1)
-            for t in (-1, 1)
         ]
-        base = pieces("legs", legs, scheme.accent)
-        base += pieces("body", cushion((-x + 0.02, x - 0.02), (-y + 0.02, y - 0.02), (0.16, seat - 0.09), 0.03), scheme.soft)
-        base += pieces("seat", cushion((-x + 0.1, x - 0.1), (-y, y - 0.14), (seat - 0.09, seat + 0.02), 0.04), scheme.soft)
-        base += pieces("back", cushion((-x + 0.06, x - 0.06), (y - 0.15, y), (seat - 0.08, h), 0.05), scheme.soft)
-        arms = [
-            cushion((s * x - 0.1 if s > 0 else -x, x if s > 0 else -x + 0.1), (-y + 0.04, y - 0.05), (0.2, seat + 0.17), 0.035)
-            for s in (-1, 1)
-        ]
-        wings = [
-            cushion(
-                (s * x - 0.07 if s > 0 else -x + 0.01, x - 0.01 if s > 0 else -x + 0.07), (y - 0.3, y - 0.04), (seat + 0.1, h - 0.03), 0.03
+        made += pieces("posts", lean(short, under + rail, frame.slope), wood)
+        frame = Frame(frame.x, frame.y, seat - 0.02, h, frame.slope, thick, wood)
+    made += back(rng, choice, frame, scheme)
+    if kind in ("square", "ming", "turned") and rng.random() < 0.55:
+        z = 0.36 * under
+        low = [
+            box(
+                (s * half[0] - 0.009, s * half[0] + 0.009),
+                (middle - half[1] + 0.5 * thick, middle + half[1] - 0.5 * thick),
+                (z, z + 0.026),
+                0.002,
             )
             for s in (-1, 1)
         ]
-        return Shape(base + pieces("arms", arms + wings, scheme.soft))
-    frame: list[Solid] = []
-    arm = seat + 0.17
-    for s in (-1, 1):
-        px = s * (x - 0.02)
-        frame += [
-            beam((px, -y + 0.04, 0), (px, -y + 0.06, arm - 0.025), 0.032, 0.04),
-            beam((px, y - 0.03, 0), (px, y - 0.12, arm - 0.025), 0.032, 0.04),
+        made += pieces("stretchers", low, wood)
+    return made
+
+
+def _bucket(x: float, profile: list[tuple[float, float]], thick: float, steps: int = 3) -> list[Solid]:
+    """Return a seat and a back in one bent board: `profile` in (y, z), as wide as 2 x, a little narrower at both ends."""
+    path = curve([np.array(p) for p in profile], steps)
+    t = np.linspace(-1, 1, len(path))
+    return sheet(path, thick, 2 * x * (1 - 0.13 * np.abs(t) ** 3))
+
+
+def _shell_chair(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+    """Build a bent shell of plywood, plastic or cloth on four legs, a wire base, or a swivel foot."""
+    w, d, h = size
+    seat, x, y = min(0.46, 0.55 * h), w / 2, d / 2
+    u = rng.random()
+    soft = u < 0.45
+    finish = scheme.soft if soft else scheme.front
+    thick = 0.035 if soft else 0.013
+    profile = [
+        (-y + thick, seat - 0.02),
+        (-0.72 * y, seat),
+        (0.1 * y, seat - 0.025),
+        (0.52 * y, seat + 0.01),
+        (0.74 * y, seat + 0.3 * (h - seat)),
+        (y - 0.02, h),
+    ]
+    made = pieces("shell", _bucket(x, profile, thick, 3), finish)
+    if soft or rng.random() < 0.3:  # low sides that hold the sitter
+        wings = [
+            cushion(
+                (min(s * x, s * (x - 0.03)), max(s * x, s * (x - 0.03))),
+                (-0.25 * y, 0.6 * y),
+                (seat + 0.025, seat + 0.42 * (h - seat)),
+                0.014,
+                2,
+            )
+            for s in (-1, 1)
         ]
-        frame += [box((px - 0.028 if s > 0 else -x, x if s > 0 else px + 0.028), (-y + 0.01, y - 0.06), (arm - 0.025, arm), 0.006)]
-        frame += [box((px - 0.012, px + 0.012), (-y + 0.06, y - 0.06), (seat - 0.17, seat - 0.12), 0.003)]
-    frame += [box((-x + 0.03, x - 0.03), (sy - 0.012, sy + 0.012), (seat - 0.17, seat - 0.12), 0.003) for sy in (-y + 0.09, y - 0.15)]
-    tilt = -0.22
-    pads = [
-        cushion((-x + 0.045, x - 0.045), (-y + 0.02, y - 0.16), (seat - 0.12, seat), 0.04),
-        cushion((-x + 0.045, x - 0.045), (y - 0.26, y - 0.14), (seat - 0.02, h / math.cos(tilt) - 0.01), 0.045).turned(
-            "x", tilt, (0, y - 0.2, seat)
-        ),
-    ]
-    return Shape(pieces("frame", frame, scheme.accent) + pieces("pads", pads, scheme.soft))
+        made += pieces("arms", wings, finish)
+    if not soft and rng.random() < 0.4:
+        made += seat_cushion((-0.8 * x, 0.8 * x), (-0.7 * y, 0.4 * y), (seat + 0.008, seat + 0.04), 0.015, scheme.soft, None, 0.006)
+    top = seat - 0.06
+    base = int(rng.integers(3))
+    if base == 0:
+        column = revolve([(0.42 * w, 0.0), (0.42 * w, 0.01), (0.03, 0.03), (0.022, top - 0.02), (0.12, top - 0.012), (0.12, top)], 20)
+        return made + pieces("foot", column, scheme.handle)
+    kind = "splayed" if base == 1 else "dowel"
+    finish = scheme.timber if base == 1 else scheme.handle
+    feet = legs(kind, (0.3 * w, 0.3 * d), top - 0.012, 0.036 if base == 1 else 0.026)
+    plate = slab(rounded((-0.34 * w, 0.34 * w), (-0.34 * d, 0.34 * d), 0.03, 2), (top - 0.012, top), 0.002)
+    return made + pieces("legs", feet, finish) + pieces("plate", plate, scheme.handle)
 
 
-def _office_chair(size: Size, scheme: Scheme) -> Shape:
-    """Five castors, a gas spring, a padded seat, a back and two arms."""
+def _wishbone(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+    """Build a round crest that becomes the arms, on posts, with a forked splat and a woven seat."""
     w, d, h = size
-    seat = min(0.5, 0.52 * h)
-    r = 0.46 * min(w, d)
-    base: list[Solid] = []
-    wheels: list[Solid] = []
-    for k in range(5):
-        a = math.pi / 2 + k * 2 * math.pi / 5
-        c, s = math.cos(a), math.sin(a)
-        base.append(rod((0.03 * c, 0.03 * s, 0.10), (r * c, r * s, 0.068), 0.022, 0.014, 8))
-        wheels.append(rod((r * c - 0.018 * s, r * s + 0.018 * c, 0.027), (r * c + 0.018 * s, r * s - 0.018 * c, 0.027), 0.027, n=10))
-    base += revolve([(0.034, 0.06), (0.034, 0.13), (0.02, 0.14), (0.02, seat - 0.09)], 12)
-    x, y = 0.46 * w, 0.44 * d
-    made = pieces("castors", wheels, PLASTIC) + pieces("star", base, scheme.handle)
-    made += pieces("seat", cushion((-x + 0.03, x - 0.03), (-y, y - 0.1), (seat - 0.09, seat), 0.035), scheme.soft)
-    back = cushion((-x + 0.05, x - 0.05), (y - 0.1, y - 0.03), (seat + 0.1, h), 0.03)
-    made += pieces("back", back, scheme.soft)
-    made += pieces("bracket", box((-0.03, 0.03), (y - 0.06, y - 0.02), (seat - 0.08, seat + 0.3), 0.005), PLASTIC)
-    arms: list[Solid] = []
-    for s in (-1, 1):
-        px = s * (w / 2 - 0.03)
-        arms += [box((px - 0.03, px + 0.03), (-0.25 * d, 0.22 * d), (seat + 0.19, seat + 0.22), 0.006)]
-        arms += [box((px - 0.012, px + 0.012), (-0.05 * d, 0.05 * d), (seat - 0.08, seat + 0.19), 0.002)]
-        arms += [box((min(px, s * 0.2 * w), max(px, s * 0.2 * w)), (-0.05 * d, 0.05 * d), (seat - 0.105, seat - 0.08), 0.002)]
-    return Shape(made + pieces("arms", arms, PLASTIC))
-
-
-def dressing_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a round upholstered stool, with a low back where it is tall."""
-    w, d, h = size
-    seat = h if h < 0.56 else min(0.48, 0.6 * h)
-    half = 0.36 * w
-    base = pieces("legs", chair_legs(rng, (half, half * d / w), seat - 0.09, pick(rng, "round metal")), scheme.accent)
-    pad = [
-        s.scaled(np.array([1.0, d / w, 1.0]))
-        for s in revolve([(0.47 * w, seat - 0.09), (0.5 * w, seat - 0.07), (0.5 * w, seat - 0.03), (0.45 * w, seat)], 24)
+    seat, x, y, wood = min(0.45, 0.55 * h), w / 2, d / 2, scheme.timber
+    r = 0.016
+    bow = arc((0.0, 0.0), x - 0.018, 0.0, math.pi, 10, (y - 0.02) / (x - 0.018))
+    path = np.column_stack([bow, np.interp(np.abs(bow[:, 0]), [0, x], [h - r, h - 0.1 * h])])
+    crest = tube(np.concatenate([[path[0] + np.array([0, -0.35 * y, -0.02])], path, [path[-1] + np.array([0, -0.35 * y, -0.02])]]), r, 8)
+    front = [rod((s * (x - 0.03), -y + 0.035, 0), (s * (x - 0.02), -y + 0.05, seat + 0.008), 0.013, 0.018, 8) for s in (-1, 1)]
+    rear = [
+        tube(
+            curve([(s * 0.62 * x, y - 0.03, 0), (s * 0.66 * x, 0.55 * y, seat), (s * 0.80 * x, 0.42 * y, h - 0.13)], 2),
+            [0.013, 0.016, 0.018, 0.016, 0.014],
+            8,
+        )
+        for s in (-1, 1)
     ]
-    base += pieces("seat", pad, scheme.soft)
-    if h > seat + 0.1:
-        back = cushion((-0.46 * w, 0.46 * w), (0.5 * d - 0.07, 0.5 * d), (seat - 0.03, h), 0.034)
-        base += pieces("back", back, scheme.soft)
-    return Shape(base)
+    top = h - 2 * r
+    fork = [rod((0, 0.62 * y, seat + 0.01), (0, 0.72 * y, seat + 0.45 * (top - seat)), 0.016, 0.018, 8)]
+    fork += [rod((s * 0.006, 0.72 * y, seat + 0.45 * (top - seat)), (s * 0.16 * x, 0.9 * y, top), 0.012, 0.01, 8) for s in (-1, 1)]
+    rails = [rod((-x + 0.045, -y + 0.05, seat - 0.025), (x - 0.045, -y + 0.05, seat - 0.025), 0.014, n=8)]
+    rails += [rod((s * (x - 0.028), -y + 0.06, seat - 0.05), (s * 0.70 * x, 0.5 * y, seat - 0.05), 0.012, n=8) for s in (-1, 1)]
+    weave = Finish("cord", (0.56, 0.46, 0.32), 0.95, pattern="knit", density=300)
+    quad = np.array([(-x + 0.03, -y + 0.036), (x - 0.03, -y + 0.036), (0.66 * x, 0.5 * y), (-0.66 * x, 0.5 * y)])
+    made = pieces("frame", crest + front + [s for leg in rear for s in leg] + rails, wood) + pieces("fork", fork, wood)
+    return made + pieces("seat", slab(quad, (seat - 0.012, seat + 0.008), 0.004), weave)
+
+
+def _cantilever(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+    """Bent steel from the floor over the front up to the seat and the back, with cane, leather or cloth between."""
+    w, d, h = size
+    seat, x, y = min(0.46, 0.56 * h), w / 2 - TUBE, d / 2
+    side = [
+        (y - 0.03, TUBE),
+        (-y + 0.06, TUBE),
+        (-y + TUBE, 0.06),
+        (-y + TUBE, seat - 0.08),
+        (-y + 0.06, seat - 0.02),
+        (0.55 * y, seat - 0.035),
+        (0.66 * y, seat + 0.02),
+        (y - 0.012, h - 0.012),
+    ]
+    frame = [s for sx in (-1, 1) for s in tube([(sx * x, a, b) for a, b in side], TUBE, 8)]
+    frame += [rod((-x + TUBE, y - 0.03, TUBE), (x - TUBE, y - 0.03, TUBE), TUBE, n=8)]
+    panel = scheme.soft if rng.random() < 0.6 else cane(rng)
+    inner = (-x + TUBE + 0.002, x - TUBE - 0.002)
+    thick = 0.03 if panel is scheme.soft else 0.014
+    made = pieces("frame", frame, scheme.handle) + pieces(
+        "seat", cushion(inner, (-y + 0.05, 0.5 * y), (seat - 0.035, seat - 0.035 + thick), 0.012, 2), panel
+    )
+    low = seat + 0.28 * (h - seat)
+    slope = (y - 0.012 - 0.66 * y) / (h - seat - 0.03)
+    pad = cushion(inner, (0.66 * y - thick / 2, 0.66 * y + thick / 2), (low, h), 0.012, 2)
+    return made + pieces("back", lean([pad], seat + 0.02, slope), panel)
+
+
+def _folding(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+    """Two crossed frames with slats for a seat and a back."""
+    w, d, h = size
+    seat, x, y = min(0.45, 0.55 * h), w / 2, d / 2
+    wood, metal = (scheme.front, scheme.handle)
+    t = 0.02
+    long = [beam((s * (x - 0.6 * t), -y + 0.02, 0), (s * (x - 0.6 * t), y - 0.02, h), t, 0.032) for s in (-1, 1)]
+    short = [beam((s * (x - 1.75 * t), y - 0.05, 0), (s * (x - 1.75 * t), -y + 0.06, seat - 0.026), t, 0.03) for s in (-1, 1)]
+    bars = [rod((-x + 2.4 * t, sy, z), (x - 2.4 * t, sy, z), 0.007, n=6) for sy, z in ((y - 0.09, 0.08), (-y + 0.1, seat - 0.09))]
+    made = pieces("frames", long + short, metal if rng.random() < 0.4 else wood) + pieces("bars", bars, metal)
+    reach = -y + 0.02 + (2 * y - 0.04) * seat / h  # where the long frame passes the seat
+    ys = np.linspace(-y, reach - 0.045, 6)
+    made += pieces(
+        "seat",
+        [box((-x + 1.3 * t, x - 1.3 * t), (a + 0.003, b - 0.003), (seat - 0.024, seat), 0.003) for a, b in itertools.pairwise(ys)],
+        wood,
+    )
+    slope = (2 * y - 0.04) / h
+    at = -y + 0.02 + slope * 0.7 * h
+    boards = [box((-x + 1.3 * t, x - 1.3 * t), (at - 0.007, at + 0.007), (q * h, (q + 0.09) * h), 0.003) for q in (0.7, 0.81, 0.92)]
+    return made + pieces("back", lean(boards, 0.7 * h, slope), wood)
 
 
 def chinese_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build the official's chair: round posts, stretchers near the floor, a splat, arms and a yoke."""
+    """Build an official's hat chair with a yoke, a rose chair with a low square back, or a horseshoe armchair."""
     w, d, h = size
     seat = min(0.5, 0.55 * h)
     x, y = 0.5 * w - 0.03, 0.5 * d - 0.03
-    wood = scheme.body
-    posts: list[Solid] = []
-    arm = seat + 0.45 * (h - seat)
-    for s in (-1, 1):
-        posts += [rod((s * x, -y, 0), (s * x, -y, arm), 0.017, 0.015, 10), rod((s * x, y, 0), (s * x, y, h - 0.05), 0.017, 0.015, 10)]
-        posts += [rod((s * x, -y - 0.03, arm), (s * x, y, arm + 0.02), 0.015, n=8), rod((s * x, -y, 0.1), (s * x, y, 0.1), 0.012, n=8)]
-    posts += [rod((-x, sy, z), (x, sy, z), 0.012, n=8) for sy, z in ((-y, 0.07), (y, 0.12))]
-    posts.append(rod((-x - 0.03, y, h - 0.04), (x + 0.03, y, h - 0.04), 0.02, n=10))
-    base = pieces("posts", posts, wood)
-    base += pieces("seat", box((-x - 0.03, x + 0.03), (-y - 0.03, y + 0.03), (seat - 0.04, seat), 0.006), wood)
-    base += pieces("apron", [box((-x, x), (sy * y - 0.006, sy * y + 0.006), (seat - 0.1, seat - 0.04), 0.002) for sy in (-1, 1)], wood)
-    base += pieces("splat", box((-0.09, 0.09), (y - 0.008, y + 0.008), (seat, h - 0.055), 0.003), wood)
-    pad = cushion((-0.8 * x, 0.8 * x), (-0.8 * y, 0.8 * y), (seat + 0.0005, seat + 0.03), 0.013)
-    return Shape(base + (pieces("pad", pad, scheme.soft) if rng.random() < 0.5 else ()))
-
-
-def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a high seat on legs with a foot ring, or on a column."""
-    w, d, h = size
-    seat = h if h < 0.85 else 0.72 * h
-    made: tuple[Piece, ...]
-    if form == "pedestal":
-        column = revolve([(0.46 * w, 0.0), (0.46 * w, 0.012), (0.03, 0.035), (0.025, seat - 0.07)], 20)
-        rest = [s.moved((0, 0, 0)) for s in _foot_ring(0.3 * w, 0.32 * seat)]
-        made = pieces("column", column, scheme.handle) + pieces("foot_rest", rest, scheme.handle)
-    else:
-        kind = pick(rng, "square round metal")
-        half = (0.45 * w, 0.45 * d)
-        made = pieces("legs", chair_legs(rng, half, seat - 0.06, kind), scheme.accent)
-        z = 0.3 * seat
-        made += pieces(
-            "foot_rest",
-            [rod((-half[0], sy * half[1] * 0.97, z), (half[0], sy * half[1] * 0.97, z), 0.01, n=8) for sy in (-1, 1)],
-            scheme.handle,
-        )
-    made += pieces("seat", cushion((-0.5 * w, 0.5 * w), (-0.5 * d, 0.42 * d), (seat - 0.07, seat), 0.028), scheme.soft)
-    if h > seat + 0.1:
-        back = cushion((-0.45 * w, 0.45 * w), (0.5 * d - 0.05, 0.5 * d), (seat + 0.05, h), 0.022)
-        struts = [
-            box((s * 0.3 * w - 0.012, s * 0.3 * w + 0.012), (0.38 * d, 0.5 * d - 0.03), (seat - 0.06, seat + 0.12), 0.002) for s in (-1, 1)
+    wood = scheme.timber
+    board = 0.032
+    sides = [rod((-x + 0.017, sy, z), (x - 0.017, sy, z), 0.012, n=8) for sy, z in ((-y, 0.07), (y, 0.12))] + [
+        rod((s * x, -y + 0.017, 0.1), (s * x, y - 0.017, 0.1), 0.012, n=8) for s in (-1, 1)
+    ]
+    made = pieces(
+        "posts", [rod((s * x, t * y, 0), (s * x, t * y, seat - board), 0.018, 0.016, 10) for s in (-1, 1) for t in (-1, 1)] + sides, wood
+    )
+    made += pieces("seat", box((-x - 0.03, x + 0.03), (-y - 0.03, y + 0.03), (seat - board, seat), 0.006), wood)
+    apron = [box((-x + 0.02, x - 0.02), (t * y - 0.006, t * y + 0.006), (seat - 0.09, seat - board), 0.002) for t in (-1, 1)]
+    apron += [box((s * x - 0.006, s * x + 0.006), (-y + 0.02, y - 0.02), (seat - 0.08, seat - board), 0.002) for s in (-1, 1)]
+    made += pieces("apron", apron, wood)
+    arm = seat + (0.5 if form != "rose" else 0.62) * (h - seat)
+    r = 0.0145
+    upper: list[Solid] = []
+    if form == "horseshoe":
+        bow = arc((0.0, 0.12 * y), x + 0.012, 0.0, math.pi, 10, (0.88 * y) / (x + 0.012))
+        high = np.interp(bow[:, 1], [0.12 * y, y], [arm, h - r])
+        path = np.column_stack([bow, high])
+        start = np.array([x + 0.012, -y, arm - 0.01])
+        upper += tube(np.concatenate([[start], path, [start * np.array([-1, 1, 1])]]), r, 8)
+        upper += [
+            rod(
+                (s * x, t * y, seat),
+                (s * (x + 0.01 * (t < 0)), t * y * (1.0 if t < 0 else 0.55), (arm - 0.01 if t < 0 else arm + 0.1 * (h - arm)) - r),
+                0.014,
+                n=8,
+            )
+            for s in (-1, 1)
+            for t in (-1, 1)
         ]
-        made += pieces("back", back, scheme.soft) + pieces("struts", struts, scheme.handle)
-    return Shape(made)
-
-
-def _foot_ring(radius: float, z: float) -> list[Solid]:
-    points = circle(radius, 12)
-    return [rod((*points[i], z), (*points[(i + 1) % 12], z), 0.009, n=6) for i in range(12)] + [rod((0, 0, z), (0, -radius, z), 0.009, n=6)]
-
-
-def stool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a bed-end bench, an ottoman or a stool on legs."""
-    w, d, h = size
-    if form == "ottoman":
-        foot = pieces(
-            "feet",
-            [rod((s * 0.38 * w, t * 0.36 * d, 0), (s * 0.38 * w, t * 0.36 * d, 0.05), 0.02, 0.02, 10) for s in (-1, 1) for t in (-1, 1)],
-            scheme.accent,
+        top = h - 2 * r
+    else:
+        top = h - 0.045 if form == "official" else h - 2 * r
+        upper += [rod((s * x, y, seat), (s * x, y, top), 0.016, 0.014, 10) for s in (-1, 1)]
+        upper += [rod((s * x, -y, seat), (s * x, -y, arm - r), 0.015, n=8) for s in (-1, 1)]
+        upper += [rod((s * x, -y - 0.03, arm), (s * x, y - 0.016, arm + 0.015), r, n=8) for s in (-1, 1)]
+        if form == "official":
+            upper += tube(
+                curve(
+                    [
+                        (-x - 0.03, y, h - 0.04),
+                        (-0.5 * x, y, h - 0.028),
+                        (0, y, h - 0.02),
+                        (0.5 * x, y, h - 0.028),
+                        (x + 0.03, y, h - 0.04),
+                    ],
+                    2,
+                ),
+                0.017,
+                8,
+            )
+        else:
+            upper += [rod((-x, y, h - r), (x, y, h - r), r, n=8)]
+            upper += [rod((-x + 0.016, y, z), (x - 0.016, y, z), 0.009, n=8) for z in (seat + 0.09, seat + 0.62 * (top - seat))]
+    made += pieces("frame", upper, wood)
+    splat = box((-0.085, 0.085), (y - 0.007, y + 0.007), (seat, top - 0.004 if form != "rose" else seat + 0.6 * (top - seat)), 0.003)
+    made += pieces("splat", splat, wood)
+    if rng.random() < 0.55:
+        made += seat_cushion(
+            (-0.84 * x, 0.84 * x),
+            (-0.86 * y, 0.8 * y),
+            (seat + 0.0005, seat + 0.045),
+            0.02,
+            scheme.soft,
+            scheme.second if rng.random() < 0.4 else None,
+            0.008,
         )
-        body = pieces("body", cushion((-0.5 * w, 0.5 * w), (-0.5 * d, 0.5 * d), (0.05, 0.68 * h), 0.02), scheme.soft)
-        return Shape(foot + body + pieces("seat", cushion((-0.5 * w, 0.5 * w), (-0.5 * d, 0.5 * d), (0.68 * h, h), 0.045), scheme.soft))
-    half = (0.5 * w - 0.05, 0.5 * d - 0.05)
-    legs = chair_legs(rng, half, h - 0.11, pick(rng, "square round metal"))
-    thick = 0.11 if form == "bench" else 0.08
-    base = pieces("legs", legs, scheme.accent)
-    base += pieces("frame", box((-0.47 * w, 0.47 * w), (-0.45 * d, 0.45 * d), (h - thick - 0.03, h - thick), 0.003), scheme.body)
-    count = max(1, round(w / 0.6)) if form == "bench" else 1
-    xs = np.linspace(-0.5 * w, 0.5 * w, count + 1)
-    pads = [cushion((a + 0.001, b - 0.001), (-0.5 * d, 0.5 * d), (h - thick, h), 0.035) for a, b in itertools.pairwise(xs)]
-    return Shape(base + pieces("seat", pads, scheme.soft))
+    return Shape(made)

@@ -1,136 +1,296 @@
-"""Sofas, armchairs, chaises and bean bags."""
+"""Sofas, armchairs, corner sofas, chaises and bean bags. The front is -y. Lengths in metres."""
 
 # ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
 
 from __future__ import annotations
 
 import itertools
+import math
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import Scheme
+from pipeline.corpus.furniture.bent import curve, lean, sheet, wall
+from pipeline.corpus.furniture.finishes import Finish, Scheme
+from pipeline.corpus.furniture.legs import draw_kind, leg, leg_finish, legs
+from pipeline.corpus.furniture.lounge import lounge_chair
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, cushion, revolve, rod
-from pipeline.corpus.furniture.storage import Size, pick
+from pipeline.corpus.furniture.solids import Solid, beam, box, cushion, revolve, rod
+from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.upholstery import Span, bolster, channels, seat_cushion, throw_pillow, tufted
+
+ARMS = {"track": 0.13, "legs": 0.09, "roll": 0.2, "chesterfield": 0.2, "camelback": 0.17, "cloud": 0.22, "u_shape": 0.15}
+LIFTS = {"track": 0.05, "legs": 0.15, "roll": 0.09, "chesterfield": 0.1, "camelback": 0.17, "cloud": 0.03, "u_shape": 0.06}
 
 
 def sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a frame on feet, arms, seat and back cushions, one per seat, and throw pillows."""
+    """Build a sofa: square, slim or rolled arms, a buttoned Chesterfield, a camel's back, a wooden frame, a low cloud, or curved ends."""
+    if form == "tub":
+        return lounge_chair(rng, "tub", size, scheme)
+    if form == "frame":
+        return Shape(_framed(rng, size, scheme))
     w, d, h = size
-    seats = max(1, round((w - 0.4) / 0.72))
-    seat = float(rng.uniform(0.40, 0.45)) * min(1.0, h / 0.78)
-    arm = {"track": 0.13, "legs": 0.09, "roll": 0.19, "tub": 0.12}[form] * min(1.0, w / 0.8)
-    lift = {"track": 0.05, "legs": 0.15, "roll": 0.09, "tub": 0.12}[form]
+    seats = max(1, round((w - 0.4) / (0.72 if form != "cloud" else 0.95)))
+    seat = float(rng.uniform(0.40, 0.44)) * min(1.0, h / 0.78) * (0.92 if form == "cloud" else 1.0)
+    arm = ARMS[form] * min(1.0, w / 0.85)
+    lift = LIFTS[form]
     deep = min(0.2, 0.22 * d)
-    base = _feet((-w / 2, w / 2), (-d / 2, d / 2), lift, form, scheme)
-    base += pieces("frame", cushion((-w / 2 + 0.01, w / 2 - 0.01), (-d / 2 + 0.02, d / 2 - 0.005), (lift, seat - 0.13), 0.02), scheme.soft)
-    base += _arms(form, w, d, lift, seat, arm, h, scheme)
-    base += pieces(
-        "back", cushion((-w / 2 + 0.5 * arm, w / 2 - 0.5 * arm), (d / 2 - 0.6 * deep, d / 2), (lift + 0.01, h - 0.05), 0.045), scheme.soft
-    )
-    base += _cushions((-w / 2 + arm, w / 2 - arm), (-d / 2, d / 2 - 0.6 * deep), seat, h, seats, deep, scheme)
+    front = -d / 2 + (0.28 * d if form == "u_shape" and w > 2.2 else 0.0)
+    made = feet(rng, scheme, (-w / 2, w / 2), (-d / 2, d / 2), lift, form)
+    base_top = seat - 0.14
+    side = arm if form == "track" else 0.012
+    made += pieces("frame", cushion((-w / 2 + side, w / 2 - side), (front + 0.03, d / 2 - 0.008), (lift, base_top), 0.018, 2), scheme.soft)
+    inner = (-w / 2 + arm, w / 2 - arm)
+    if form == "u_shape":
+        made += _returns(w, d, front, lift, base_top, seat, arm, scheme)
+    top = min(h - 0.04, seat + 0.2) if form != "chesterfield" else h - 0.08
+    rolled = form in ("roll", "chesterfield", "camelback")
+    rear = d / 2 - 0.62 * deep - 0.002 if rolled else d / 2 - 0.012
+    made += _arms(form, w, (-d / 2 + 0.012, rear), (base_top if form != "track" else lift + 0.004, top), arm, lift, scheme)
+    behind = (-w / 2 + 0.04, w / 2 - 0.04) if rolled else inner
+    made += _back(rng, form, behind, (d / 2 - 0.62 * deep, d / 2), (base_top, h), scheme)
+    if form in ("chesterfield", "camelback"):
+        xs = np.linspace(inner[0], inner[1], max(1, seats) + 1)
+        for a, b in itertools.pairwise(xs):
+            made += seat_cushion(
+                (float(a) + 0.001, float(b) - 0.001),
+                (front, d / 2 - 0.62 * deep - 0.002),
+                (base_top, seat + 0.03),
+                0.04,
+                scheme.soft,
+                _piping(rng, scheme),
+                0.03,
+            )
+        return Shape(made)
+    made += _cushions(rng, inner, (front, d / 2 - 0.62 * deep), (base_top, seat), h, seats, deep, scheme)
     if w > 1.2:
-        base += _pillows(rng, w / 2 - arm, d / 2 - 1.5 * deep, seat, scheme)
-    return Shape(base)
+        made += _pillows(rng, w / 2 - arm, d / 2 - 1.75 * deep, (seat + 0.022, h), scheme)
+    return Shape(made)
 
 
-def _feet(x: tuple[float, float], y: tuple[float, float], lift: float, form: str, scheme: Scheme) -> tuple[Piece, ...]:
+def _piping(rng: np.random.Generator, scheme: Scheme) -> Finish | None:
+    return scheme.second if rng.random() < scheme.manner.piping else None
+
+
+def feet(rng: np.random.Generator, scheme: Scheme, x: Span, y: Span, lift: float, form: str) -> tuple[Piece, ...]:
+    """Return feet under a frame: the style's legs where there is room for them, else blocks."""
+    kind = (
+        draw_kind(rng, scheme, "plank cross sled hairpin pipe")
+        if form in ("legs", "camelback")
+        else "bun"
+        if scheme.manner.ornament > 0.5 or form == "chesterfield"
+        else "square"
+    )
+    middle_x, middle_y = (x[0] + x[1]) / 2, (y[0] + y[1]) / 2
+    half = ((x[1] - x[0]) / 2 - 0.08, (y[1] - y[0]) / 2 - 0.08)
+    made = [s.moved((middle_x, middle_y, 0)) for s in legs(kind, half, lift, 0.045)]
+    if x[1] - x[0] > 1.9 and form != "u_shape":
+        made += [s.moved((middle_x, middle_y, 0)) for sy in (-1, 1) for s in leg(kind, (0.0, sy * half[1]), (1, sy), lift, 0.045)]
+    return pieces("feet", made, leg_finish(scheme, kind))
+
+
+def _arms(form: str, w: float, y: Span, z: Span, arm: float, lift: float, scheme: Scheme) -> tuple[Piece, ...]:
+    """Return both arms; z from the frame's top (or the floor's lift) to the arm's top."""
     made: list[Solid] = []
-    for px in (x[0] + 0.08, x[1] - 0.08):
-        for py in (y[0] + 0.08, y[1] - 0.08):
-            if form == "legs":
-                made.append(rod((px, py, 0), (px, py, lift + 0.03), 0.014, 0.022, 10))
-            else:
-                made.append(box((px - 0.03, px + 0.03), (py - 0.03, py + 0.03), (0, lift + 0.005), 0.004))
-    return pieces("feet", made, scheme.accent)
-
-
-def _arms(form: str, w: float, d: float, lift: float, seat: float, arm: float, h: float, scheme: Scheme) -> tuple[Piece, ...]:
-    """Return both arms: square, slim, or rolled; a tub's arms run as high as its back."""
-    made: list[Solid] = []
-    top = min(h - 0.03 if form == "tub" else seat + 0.2, h - 0.02)
+    soft = scheme.manner.soft
     for s in (-1, 1):
-        x = (w / 2 - arm, w / 2) if s > 0 else (-w / 2, -w / 2 + arm)
-        if form == "roll":
-            made.append(cushion((x[0] + 0.03 * (s > 0), x[1] - 0.03 * (s < 0)), (-d / 2 + 0.03, d / 2 - 0.03), (lift, top - 0.09), 0.03))
-            made.append(rod(((x[0] + x[1]) / 2, -d / 2 + 0.015, top - 0.08), ((x[0] + x[1]) / 2, d / 2 - 0.04, top - 0.08), 0.085, n=14))
+        lo, hi = (w / 2 - arm, w / 2) if s > 0 else (-w / 2, -w / 2 + arm)
+        if form in ("roll", "chesterfield", "camelback"):
+            r = 0.5 * arm * (0.95 if form != "camelback" else 0.8)
+            core = 0.16 * arm
+            made.append(cushion((lo + core * (s > 0), hi - core * (s < 0)), (y[0] + 0.02, y[1]), (z[0], z[1] - 2 * r + 0.012), 0.02, 2))
+            made.append(rod(((lo + hi) / 2, y[0] + 0.004, z[1] - r), ((lo + hi) / 2, y[1], z[1] - r), r, n=16))
+            made.append(rod(((lo + hi) / 2, y[0] - 0.004, z[1] - r), ((lo + hi) / 2, y[0] + 0.004, z[1] - r), 0.55 * r, 0.62 * r, n=14))
+        elif form == "cloud":
+            made.append(cushion((lo, hi), y, z, 0.1, 4))
         else:
-            made.append(cushion(x, (-d / 2 + 0.01, d / 2 - 0.01), (lift + 0.005, top), 0.035 if form != "legs" else 0.025))
+            low = lift + 0.004 if form == "track" else z[0]
+            made.append(cushion((lo, hi), y, (low, z[1]), min(soft, 0.4 * arm), 3))
     return pieces("arms", made, scheme.soft)
 
 
-def _cushions(
-    x: tuple[float, float], y: tuple[float, float], seat: float, h: float, seats: int, deep: float, scheme: Scheme
-) -> tuple[Piece, ...]:
-    xs = np.linspace(x[0] + 0.002, x[1] - 0.002, seats + 1)
-    pads, backs = [], []
-    for a, b in itertools.pairwise(xs):
-        pads.append(cushion((a + 0.002, b - 0.002), (y[0], y[1] - 0.3 * deep), (seat - 0.13, seat + 0.02), 0.05, 3))
-        tilted = cushion((a + 0.004, b - 0.004), (y[1] - 0.75 * deep, y[1] - 0.02), (seat + 0.02, h), 0.06, 3)
-        backs.append(tilted.turned("x", -0.1, (0, y[1] - 0.3 * deep, seat + 0.1)))
-    return pieces("seat_cushions", pads, scheme.soft) + pieces("back_cushions", backs, scheme.soft)
+def _back(rng: np.random.Generator, form: str, x: Span, y: Span, z: Span, scheme: Scheme) -> tuple[Piece, ...]:
+    """Return the back behind the cushions; a Chesterfield's is buttoned and rolled, a camel's back is arched."""
+    low, h = z
+    if form == "chesterfield":
+        r = 0.09
+        pads = tufted(x, (y[0], y[1] - 0.02), (low, h - 2 * r + 0.01), max(3, round((x[1] - x[0]) / 0.17)), 2)
+        inset = ARMS[form] * min(1.0, (x[1] - x[0] + 0.08) / 0.85) - 0.038  # the roll runs between the arms
+        roll = rod((x[0] + inset, y[1] - r, h - r), (x[1] - inset, y[1] - r, h - r), r, n=16)
+        return pieces("back", pads, scheme.soft) + pieces("roll", roll, scheme.soft)
+    if form == "camelback":
+        t = np.linspace(-1, 1, 13)
+        path = np.column_stack([x[0] + (x[1] - x[0]) * (t + 1) / 2, np.full(13, (y[0] + y[1]) / 2)])
+        return pieces("back", wall(path, y[1] - y[0], low, h - 0.2 * (h - low) * (1 - np.cos(t * math.pi)) / 2, 0.05), scheme.soft)
+    if form == "cloud":
+        return pieces("back", cushion(x, y, (low, h - 0.06), 0.05, 3), scheme.soft)
+    if form == "legs" and rng.random() < 0.25 + 0.4 * scheme.manner.tufts:
+        return pieces("back", channels(x, y, (low, h - 0.03), max(4, round((x[1] - x[0]) / 0.11))), scheme.soft)
+    return pieces("back", cushion((x[0], x[1]), y, (low, h - 0.04), 0.04, 3), scheme.soft)
 
 
-def _pillows(rng: np.random.Generator, x: float, y: float, seat: float, scheme: Scheme) -> tuple[Piece, ...]:
+def _cushions(rng: np.random.Generator, x: Span, y: Span, z: Span, h: float, seats: int, deep: float, scheme: Scheme) -> tuple[Piece, ...]:
+    """Return seat and back cushions, one of each per seat (sometimes one long seat); y from the front to the back's face."""
+    low, seat = z
+    piping = _piping(rng, scheme)
+    soft = scheme.manner.soft
+    made: tuple[Piece, ...] = ()
+    long = seats > 1 and rng.random() < 0.25
+    for a, b in itertools.pairwise(np.linspace(x[0], x[1], (1 if long else seats) + 1)):
+        made += seat_cushion(
+            (float(a) + 0.003, float(b) - 0.003), (y[0], y[1] - 0.003), (low, seat + 0.022), soft, scheme.soft, piping, 0.028
+        )
+    slope = 0.16
+    backs = []
+    for a, b in itertools.pairwise(np.linspace(x[0], x[1], seats + 1)):
+        tall = h - float(rng.uniform(0.0, 0.025))
+        at = y[1] - slope * (h - seat) - 0.004
+        backs.append(cushion((float(a) + 0.005, float(b) - 0.005), (at - 0.75 * deep, at), (seat + 0.024, tall), min(0.06, 0.36 * deep), 3))
+    return made + pieces("back_cushions", lean(backs, seat + 0.024, slope), scheme.soft)
+
+
+def _pillows(rng: np.random.Generator, x: float, y: float, z: Span, scheme: Scheme) -> tuple[Piece, ...]:
     made = []
     for s in ([-1, 1], [-1], [1])[int(rng.integers(3))]:
-        px = s * (x - 0.25)
-        pad = cushion((px - 0.21, px + 0.21), (y - 0.05, y + 0.08), (seat + 0.03, seat + 0.43), 0.06, 3)
-        made.append(pad.turned("x", -0.25, (0, y, seat)).turned("z", -0.2 * s, (px, y, 0)))
+        size = min(float(rng.uniform(0.38, 0.46)), z[1] - z[0])
+        made.append(throw_pillow((s * (x - 0.27), y - 0.12, z[0]), size, 0.32, -0.25 * s))
     return pieces("pillows", made, scheme.second)
+
+
+def _returns(w: float, d: float, front: float, lift: float, top: float, seat: float, arm: float, scheme: Scheme) -> tuple[Piece, ...]:
+    """Return the seats that come forward at both ends of a sofa in the shape of a U."""
+    if front <= -d / 2:
+        return ()
+    made: tuple[Piece, ...] = ()
+    wide = min(0.75, 0.28 * w)
+    for s in (-1, 1):
+        lo, hi = (w / 2 - arm - wide, w / 2 - arm) if s > 0 else (-w / 2 + arm, -w / 2 + arm + wide)
+        made += pieces("frame_end", cushion((lo + 0.005, hi - 0.002), (-d / 2 + 0.02, front + 0.028), (lift, top), 0.018, 2), scheme.soft)
+        made += seat_cushion((lo + 0.003, hi - 0.003), (-d / 2, front - 0.003), (top, seat + 0.022), 0.05, scheme.soft, None, 0.025)
+    return made
+
+
+def _framed(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+    """Loose cushions in an open frame of wood with laths behind them."""
+    w, d, h = size
+    x, y = w / 2, d / 2
+    seat = 0.42 * min(1.0, h / 0.78)
+    t = 0.045 * scheme.manner.slim
+    wood = scheme.timber
+    arm = seat + 0.18
+    low = seat - 0.16
+    solids: list[Solid] = []
+    for s in (-1, 1):
+        px = s * (x - 0.5 * t - 0.006)
+        solids += [beam((px, -y + 0.04, 0), (px, -y + 0.05, arm - 0.025), t, t), beam((px, y - 0.03, 0), (px, y - 0.06, arm - 0.025), t, t)]
+        rest = curve([(-y + 0.004, arm - 0.014), (0.0, arm - 0.008), (y - 0.01, arm - 0.02)], 2)
+        solids += [q.moved((px - s * 0.006, 0, 0)) for q in sheet(rest, 0.024, [1.2 * t, 1.45 * t, 1.5 * t, 1.4 * t, 1.2 * t])]
+    inner = (-x + t + 0.012, x - t - 0.012)
+    solids += [box((inner[0], inner[1]), (a, a + 0.026), (low - 0.06, low), 0.004) for a in (-y + 0.03, y - 0.17)]
+    solids += [
+        box((px - 0.012, px + 0.012), (-y + 0.056, y - 0.17), (low - 0.05, low - 0.02), 0.002)
+        for px in np.linspace(inner[0] + 0.1, inner[1] - 0.1, max(2, round(w / 0.5)))
+    ]
+    slope = 0.2
+    back = y - 0.04 - slope * (h - seat)
+    span = inner[1] - inner[0]
+    laths = [box((inner[0], inner[1]), (back, back + 0.022), (z, z + 0.045), 0.004) for z in (seat - 0.02, h - 0.06)]
+    count = max(4, round(span / 0.16))
+    laths += [
+        box((px - 0.011, px + 0.011), (back + 0.005, back + 0.018), (seat + 0.025, h - 0.06), 0.002)
+        for px in np.linspace(inner[0] + 0.03, inner[1] - 0.03, count)
+    ]
+    made = pieces("frame", solids, wood) + pieces("laths", lean(laths, seat - 0.02, slope), wood)
+    seats = max(1, round(span / 0.65))
+    piping = _piping(rng, scheme)
+    pads = []
+    for a, b in itertools.pairwise(np.linspace(inner[0], inner[1], seats + 1)):
+        made += seat_cushion(
+            (float(a) + 0.003, float(b) - 0.003), (-y, back - 0.105), (low, seat), scheme.manner.soft, scheme.soft, piping, 0.02
+        )
+        pads.append(cushion((float(a) + 0.005, float(b) - 0.005), (back - 0.1, back - 0.003), (seat - 0.02, h - 0.002), 0.035, 3))
+    return made + pieces("back_cushions", lean(pads, seat - 0.02, slope), scheme.soft)
 
 
 def l_shaped_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a sofa along the back and a chaise that reaches forward at one end (`form`: left or right, seen from the front)."""
     w, d, h = size
+    style = ("track", "legs", "cloud")[int(rng.integers(3))]
     main = min(0.98, 0.55 * d)
-    style = pick(rng, "track legs")
-    lift = 0.05 if style == "track" else 0.14
-    seat, arm, deep = 0.43 * min(1.0, h / 0.78), 0.15, 0.2
+    lift, arm, deep = LIFTS[style], ARMS[style] * 1.1, 0.2
+    seat = 0.43 * min(1.0, h / 0.78)
+    top = seat - 0.14
     long = min(1.0, 0.36 * w)
     y0 = d / 2 - main  # front of the main part
-    chaise_x = (-w / 2, -w / 2 + long)
-    base = _feet((-w / 2, w / 2), (y0, d / 2), lift, style, scheme) + _feet(chaise_x, (-d / 2, y0), lift, style, scheme)
-    base += pieces("frame", cushion((-w / 2 + 0.01, w / 2 - 0.01), (y0 + 0.02, d / 2), (lift, seat - 0.13), 0.02), scheme.soft)
-    base += pieces(
-        "frame_chaise", cushion((chaise_x[0] + 0.01, chaise_x[1]), (-d / 2 + 0.02, y0 + 0.05), (lift, seat - 0.13), 0.02), scheme.soft
-    )
-    base += pieces("back", cushion((-w / 2, w / 2), (d / 2 - 0.6 * deep, d / 2), (lift, h - 0.05), 0.045), scheme.soft)
-    top = seat + 0.2
-    base += pieces("arms", cushion((w / 2 - arm, w / 2), (y0 + 0.01, d / 2 - 0.02), (lift, top), 0.04), scheme.soft)
-    base += pieces("arm_chaise", cushion((-w / 2, -w / 2 + arm), (y0 + 0.2, d / 2 - 0.02), (lift, top), 0.04), scheme.soft)
+    cx = (-w / 2, -w / 2 + long)
+    made = feet(rng, scheme, (-w / 2, w / 2), (y0, d / 2), lift, style) + feet(rng, scheme, cx, (-d / 2, y0 - 0.1), lift, style)
+    made += pieces("frame", cushion((-w / 2 + 0.012, w / 2 - 0.012), (y0 + 0.03, d / 2 - 0.008), (lift, top), 0.018, 2), scheme.soft)
+    made += pieces("frame_chaise", cushion((cx[0] + 0.012, cx[1] - 0.01), (-d / 2 + 0.02, y0 + 0.028), (lift, top), 0.018, 2), scheme.soft)
+    back = (d / 2 - 0.62 * deep, d / 2)
+    made += _back(rng, style, (-w / 2 + arm, w / 2 - arm), back, (top, h), scheme)
+    rest = seat + 0.2
+    radius = 0.1 if style == "cloud" else min(scheme.manner.soft, 0.4 * arm)
+    sides = [
+        cushion((w / 2 - arm, w / 2), (y0 + 0.012, d / 2 - 0.012), (top, rest), radius, 3),
+        cushion((-w / 2, -w / 2 + arm), (y0 + 0.012, d / 2 - 0.012), (top, rest), radius, 3),
+    ]
+    made += pieces("arms", sides, scheme.soft)
     seats = max(1, round((w - long - arm) / 0.75))
-    base += _cushions((chaise_x[1], w / 2 - arm), (y0, d / 2 - 0.6 * deep), seat, h, seats, deep, scheme)
-    pad = [cushion((-w / 2 + arm + 0.002, chaise_x[1] - 0.002), (y0 + 0.2, d / 2 - 0.9 * deep), (seat - 0.13, seat + 0.02), 0.05, 3)]
-    pad.append(cushion((-w / 2 + 0.005, chaise_x[1] - 0.002), (-d / 2, y0 + 0.198), (seat - 0.13, seat + 0.02), 0.05, 3))
-    back = cushion((-w / 2 + arm + 0.004, chaise_x[1] - 0.004), (d / 2 - 1.35 * deep, d / 2 - 0.7 * deep), (seat + 0.02, h), 0.06, 3)
-    base += pieces("chaise_cushions", [*pad, back.turned("x", -0.1, (0, d / 2 - 0.9 * deep, seat + 0.1))], scheme.soft)
-    base += _pillows(rng, w / 2 - arm, d / 2 - 1.5 * deep, seat, scheme)
+    face = back[0]
+    made += _cushions(rng, (cx[1], w / 2 - arm), (y0, face), (top, seat), h, seats, deep, scheme)
+    piping = _piping(rng, scheme)
+    made += seat_cushion(
+        (cx[0] + arm + 0.003, cx[1] - 0.003), (y0, face - 0.003), (top, seat + 0.022), scheme.manner.soft, scheme.soft, piping, 0.025
+    )
+    made += seat_cushion((cx[0], cx[1] - 0.003), (-d / 2, y0 - 0.003), (top, seat + 0.022), scheme.manner.soft, scheme.soft, piping, 0.025)
+    slope = 0.16
+    at = face - slope * (h - seat) - 0.004
+    pad = cushion((cx[0] + arm + 0.005, cx[1] - 0.005), (at - 0.75 * deep, at), (seat + 0.024, h - 0.01), 0.06, 3)
+    made += pieces("chaise_back", lean([pad], seat + 0.024, slope), scheme.soft)
+    made += _pillows(rng, w / 2 - arm, d / 2 - 1.75 * deep, (seat + 0.022, h), scheme)
     if form == "right":
-        base = tuple(Piece(p.name, p.solid.mirrored(), p.finish, p.part) for p in base)
-    return Shape(base)
+        made = tuple(Piece(p.name, p.solid.mirrored(), p.finish, p.part) for p in made)
+    return Shape(made)
 
 
 def lazy_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a bean bag with a raised back."""
+    """Build a bean bag in the shape of a drop, a floor chair of two thick pads, or a soft block seat with a rolled back."""
     w, d, h = size
-    seat = min(0.4, 0.55 * h)
-    bag = revolve([(0.40 * w, 0.0), (0.48 * w, 0.25 * seat), (0.5 * w, 0.5 * seat), (0.46 * w, 0.82 * seat), (0.36 * w, seat)], 24)
-    made = pieces("bag", [s.scaled(np.array([1, d / w, 1])) for s in bag], scheme.soft)
-    back = cushion((-0.42 * w, 0.42 * w), (0.16 * d, 0.46 * d), (0.35 * seat, h), 0.14 * w, 4)
-    return Shape(made + pieces("back", back.turned("x", -0.12, (0, 0.4 * d, seat)), scheme.soft))
+    x, y = w / 2, d / 2
+    if form == "bean":
+        steps = ((0.78, 0.0), (0.92, 0.08), (0.99, 0.2), (1.0, 0.32), (0.94, 0.5), (0.78, 0.7), (0.55, 0.87), (0.3, 0.97), (0.14, 1.0))
+        drop = [q.scaled(np.array([1.0, y / x, 1.0])) for q in revolve([(a * x, b * h) for a, b in steps], 26)]
+        return Shape(pieces("bag", lean(drop, 0.0, 0.22), scheme.soft))
+    if form == "floor":
+        thick = min(0.16, 0.3 * h)
+        slope = 0.3
+        front = y - 0.15 - slope * h
+        pads = [
+            cushion((-x, x), (front, front + 0.15), (a + 0.001, b - 0.001), 0.05, 3) for a, b in itertools.pairwise(np.linspace(0.0, h, 4))
+        ]
+        made = pieces("seat", cushion((-x, x), (-y, front - 0.003), (0, thick), 0.06, 3, 0.02), scheme.soft)
+        return Shape(made + pieces("back", lean(pads, 0.0, slope), scheme.soft))
+    seat = min(0.38, 0.52 * h)
+    made = pieces("body", cushion((-x, x), (-y, y), (0, seat), 0.11, 4, 0.03), scheme.soft)
+    made += pieces("back", cushion((-x, x), (y - 0.3 * d, y), (seat - 0.012, h), 0.12, 4), scheme.soft)
+    return Shape(made + pieces("bolster", bolster((-0.8 * x, 0.8 * x), y - 0.3 * d - 0.075, seat + 0.05, 0.075), scheme.second))
 
 
 def chaise_longue(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a long seat with a raised back at its end and one arm."""
+    """Build a long seat with a raised back and one arm, or a scrolled recamier."""
     w, d, h = size
-    seat = 0.42
-    base = _feet((-w / 2, w / 2), (-d / 2, d / 2), 0.14, "legs", scheme)
-    base += pieces("frame", cushion((-w / 2 + 0.01, w / 2 - 0.01), (-d / 2 + 0.02, d / 2 - 0.02), (0.14, seat - 0.12), 0.02), scheme.soft)
-    base += pieces("seat", cushion((-w / 2, w / 2), (-d / 2, d / 2 - 0.16), (seat - 0.12, seat + 0.02), 0.05, 3), scheme.soft)
-    base += pieces("back", cushion((-w / 2, w / 2), (d / 2 - 0.2, d / 2), (0.16, h), 0.07, 3), scheme.soft)
+    x, y = w / 2, d / 2
+    seat = 0.42 * min(1.0, h / 0.8)
+    kind = draw_kind(rng, scheme, "plank cross sled hairpin")
+    made = pieces("legs", legs(kind, (x - 0.06, y - 0.08), 0.15, 0.045), leg_finish(scheme, kind))
+    made += pieces("frame", cushion((-x + 0.008, x - 0.008), (-y + 0.015, y - 0.015), (0.15, seat - 0.13), 0.02, 2), scheme.soft)
+    made += seat_cushion((-x, x), (-y, y - 0.17), (seat - 0.13, seat + 0.022), scheme.manner.soft, scheme.soft, _piping(rng, scheme), 0.025)
+    if form == "recamier":
+        pad = tufted((-x, x), (y - 0.17, y - 0.06), (seat - 0.13, h - 0.16), max(2, round(w / 0.18)), 3)
+        made += pieces("back", pad, scheme.soft) + pieces("scroll", bolster((-x, x), y - 0.085, h - 0.085, 0.085), scheme.soft)
+        return Shape(made + pieces("bolster", bolster((-0.75 * x, 0.75 * x), y - 0.255, seat + 0.105, 0.08), scheme.second))
+    made += pieces("back", cushion((-x, x), (y - 0.165, y), (seat - 0.13, h), 0.06, 3), scheme.soft)
     s = -1 if rng.random() < 0.5 else 1
-    x = (w / 2 - 0.1, w / 2) if s > 0 else (-w / 2, -w / 2 + 0.1)
-    base += pieces("arm", cushion(x, (0.0, d / 2 - 0.1), (seat + 0.021, seat + 0.22), 0.04), scheme.soft)
-    roll = rod((-0.4 * w, d / 2 - 0.29, seat + 0.1), (0.4 * w, d / 2 - 0.29, seat + 0.1), 0.08, n=14)
-    return Shape(base + pieces("bolster", roll, scheme.second))
+    lo, hi = (x - 0.11, x) if s > 0 else (-x, -x + 0.11)
+    made += pieces("arm", cushion((lo, hi), (0.05 * y, y - 0.168), (seat + 0.024, seat + 0.24), 0.04, 3), scheme.soft)
+    at = (-0.75 * x, x - 0.125) if s > 0 else (-x + 0.125, 0.75 * x)
+    return Shape(made + pieces("bolster", bolster(at, y - 0.168 - 0.085, seat + 0.107, 0.08), scheme.second))

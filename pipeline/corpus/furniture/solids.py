@@ -132,18 +132,20 @@ def cushion(
 
     With a `crown` [m] the top swells towards its middle by that much; the box stays within `z`.
     """
-    radius = min(radius, 0.49 * min(x[1] - x[0], y[1] - y[0], z[1] - z[0] - crown))
+    across = min(x[1] - x[0], y[1] - y[0])
+    radius = min(radius, 0.49 * min(across, z[1] - z[0] - crown))
+    high = z[1] - min(crown, 0.18 * (0.5 * across - 0.8 * radius))  # a steeper crown would not be convex
+    crown = z[1] - high
     turn, rise, top = _quarter(steps)
     middle_x, middle_y = (x[0] + x[1]) / 2, (y[0] + y[1]) / 2
     corner_x = np.repeat([x[1] - radius, x[0] + radius, x[0] + radius, x[1] - radius], steps + 1) - middle_x
     corner_y = np.repeat([y[1] - radius, y[1] - radius, y[0] + radius, y[0] + radius], steps + 1) - middle_y
-    high = z[1] - crown
     levels = [(-p, z[0] + radius) for p in rise[::-1]] + [(p, high - radius) for p in rise]
     rings = []
     for phi, base in levels:
         r, height = radius * math.cos(phi), base + radius * math.sin(phi) / top
         rings.append(np.stack([corner_x + r * turn[0], corner_y + r * turn[1], np.full(turn.shape[1], height)], axis=1))
-    for share, scale in ((0.6, 0.66), (1.0, 0.25)) if crown > 0 else ():
+    for share, scale in ((0.42, 0.82), (0.8, 0.52), (1.0, 0.2)) if crown > 0 else ():
         ring = rings[len(levels) - 1] * np.array([scale, scale, 1.0])
         ring[:, 2] = high + share * crown
         rings.append(ring)

@@ -38,7 +38,7 @@ class Manner:
 
 
 MANNERS: Mapping[str, Manner] = {
-    "Modern": Manner(0.17, "oak walnut grey_oak smoked_oak", "white light_grey anthracite", "grey_cloth charcoal linen cognac black_leather",
+    "Modern": Manner(0.15, "oak walnut grey_oak smoked_oak", "white light_grey anthracite", "grey_cloth charcoal linen cognac black_leather",
         "black_metal steel", "square block sled plank blade", "weave weave boucle leather", "marble sintered glass smoked_glass", "drum cone dome globe",
         paint=0.5, tube=0.5, stone=0.3, slim=0.95),
     "Nordic": Manner(0.12, "ash birch oak beech beech", "white sage dusty_blue blush", "linen grey_cloth ochre_cloth teal_cloth snow_cloth", "black_metal white_metal brass",

@@ -1,57 +1,50 @@
-"""Tables: dining, coffee, side and end tables."""
+"""Dining tables and bars, and the parts that all tables share: tops, aprons, feet. Lengths in metres."""
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.corpus.furniture.bent import turns
 from pipeline.corpus.furniture.casework import Cell, Column, case
-from pipeline.corpus.furniture.finishes import GLASS, MARBLE, Finish, Scheme
-from pipeline.corpus.furniture.shape import Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, box, circle, revolve, ring, rod, rounded, slab
-from pipeline.corpus.furniture.storage import Size, case_style, front_style, pick
+from pipeline.corpus.furniture.finishes import Finish, Scheme
+from pipeline.corpus.furniture.legs import WIDE, draw_kind, inside, leg_finish, legs, pedestal
+from pipeline.corpus.furniture.shape import Piece, Shape, pieces
+from pipeline.corpus.furniture.solids import Solid, beam, box, circle, revolve, rod, rounded, slab
+from pipeline.corpus.furniture.storage import Size, case_style, front_style
 
 
-def top_finish(rng: np.random.Generator, scheme: Scheme, *, stone: float = 0.15, glass: float = 0.08) -> Finish:
-    """Draw what a table top is made of: mostly the body's finish, sometimes marble or glass."""
+def top_finish(rng: np.random.Generator, scheme: Scheme, *, stone: float = 1.0) -> Finish:
+    """Draw what a table top is made of: the style's stone or glass at its chance times `stone`, else wood or lacquer."""
+    return scheme.stone if rng.random() < stone * scheme.manner.stone else scheme.body
+
+
+def outline(rng: np.random.Generator, scheme: Scheme, w: float, d: float) -> NDArray[np.float64]:
+    """Draw a table top's outline: nearly square corners, well rounded ones, an oval, or a boat."""
     u = rng.random()
-    return MARBLE if u < stone else GLASS if u < stone + glass else scheme.body
+    if u < 0.12 and w > 1.2:
+        t = np.linspace(-1, 1, 11)
+        side = np.column_stack([w / 2 * t, (0.1 * t**2 - 0.5) * d])
+        return np.concatenate([side, -side])
+    radius = 0.012 + scheme.manner.edge if u < 0.55 else min(0.14, 0.2 * d) if u < 0.88 else 0.499 * min(w, d)
+    return rounded((-w / 2, w / 2), (-d / 2, d / 2), radius, 4 if radius < 0.2 else 8)
 
 
-def outline(rng: np.random.Generator, w: float, d: float) -> NDArray[np.float64]:
-    """Draw a table top's outline: square corners softened, or well rounded, or (where nearly square) an oval."""
-    u = rng.random()
-    radius = 0.012 if u < 0.5 else min(0.12, 0.2 * d) if u < 0.85 else 0.499 * min(w, d)
-    return rounded((-w / 2, w / 2), (-d / 2, d / 2), radius)
-
-
-def legs(rng: np.random.Generator, w: float, d: float, height: float, kind: str, inset: float) -> list[Solid]:
-    """Return four legs under a rectangle (w, d): square, tapered, turned, or A-shaped pairs."""
-    made: list[Solid] = []
-    thick = float(rng.uniform(0.035, 0.06)) * (1.0 if height > 0.55 else 0.8)
-    for sx in (-1, 1):
-        for sy in (-1, 1):
-            x, y = sx * (w / 2 - inset - thick / 2), sy * (d / 2 - inset - thick / 2)
-            if kind == "square":
-                made.append(box((x - thick / 2, x + thick / 2), (y - thick / 2, y + thick / 2), (0, height), 0.003))
-            elif kind == "tapered":
-                made.append(beam((x, y, 0), (x, y, height), thick, thick, 0.55))
-            elif kind == "splayed":
-                made.append(
-                    rod((x + sx * inset * 0.7, y + sy * inset * 0.7, 0), (x - sx * 0.03, y - sy * 0.03, height), 0.014, 0.6 * thick, 10)
-                )
-            else:
-                profile = [(0.4 * thick, 0.0), (0.55 * thick, 0.08 * height), (0.42 * thick, 0.2 * height), (0.6 * thick, 0.75 * height)]
-                profile += [(0.45 * thick, 0.82 * height), (0.62 * thick, 0.86 * height), (0.62 * thick, height)]
-                made += revolve(profile, 12, (x, y))
-    return made
+def top(edge: NDArray[np.float64], z: tuple[float, float], scheme: Scheme) -> list[Solid]:
+    """Return a table top: a plain board with eased edges, or where there is ornament one with a moulded rim below it."""
+    ease = min(scheme.manner.edge, 0.4 * (z[1] - z[0]))
+    if scheme.manner.ornament < 0.4:
+        return [slab(edge, z, ease)]
+    cut = z[1] - 0.45 * (z[1] - z[0])
+    return [slab(edge * 0.965, (z[0], cut), 0.003), slab(edge, (cut, z[1]), min(ease, 0.4 * (z[1] - cut)))]
 
 
 def apron(w: float, d: float, z: tuple[float, float], inset: float, thick: float = 0.02) -> list[Solid]:
-    """Return the four rails under a table top."""
+    """Return the four rails under a table top, their outer faces `inset` from the edges of w x d."""
     x, y = w / 2 - inset, d / 2 - inset
     return [
         box((-x, x), (-y, -y + thick), z, 0.002),
@@ -61,143 +54,164 @@ def apron(w: float, d: float, z: tuple[float, float], inset: float, thick: float
     ]
 
 
-def legged(rng: np.random.Generator, size: Size, scheme: Scheme, *, kinds: str = "square tapered splayed turned") -> Shape:
-    """Build a top on an apron and four legs."""
+def legged(rng: np.random.Generator, size: Size, scheme: Scheme, *, without: str = "", kind: str = "") -> Shape:
+    """Build a top on legs of the style's form (or of that `kind`), joined by rails between them."""
     w, d, h = size
-    t = float(rng.uniform(0.022, 0.04))
-    kind = pick(rng, kinds)
+    t = float(rng.uniform(0.022, 0.036)) * min(scheme.manner.slim, 1.15)
+    kind = kind or draw_kind(rng, scheme, without + (" bun" if h > 0.3 else ""))
     material = top_finish(rng, scheme)
-    inset = 0.03 if kind != "splayed" else 0.06
-    base = pieces("top", slab(outline(rng, w, d), (h - t, h), 0.004), material)
-    under = scheme.body if material is MARBLE or material is GLASS else scheme.accent
-    drop = 0.07 if h > 0.55 else 0.05
-    base += pieces("apron", apron(w, d, (h - t - drop, h - t), inset + 0.012), under)
-    return Shape(base + pieces("legs", legs(rng, w, d, h - t, kind, inset), under))
+    made = pieces("top", top(outline(rng, scheme, w, d), (h - t, h), scheme), material)
+    finish = leg_finish(scheme, kind)
+    thick = (0.062 if h > 0.6 else 0.046) * scheme.manner.slim
+    room = 0.16 * min(w, d) if d > 0.9 * w else 0.05
+    outer = (w / 2 - room * 0.6, d / 2 - room * 0.6)
+    if kind in ("hairpin", "sled", "cross", "plank", "blade", "pipe"):
+        half = inside(kind, (outer[0] - (0.06 * w if kind in WIDE else 0), outer[1]), h - t, thick)
+        return Shape(made + pieces("legs", legs(kind, half, h - t, thick), finish) + _brace(kind, half, h - t, finish))
+    drop = (0.075 if h > 0.6 else 0.045) + 0.02 * scheme.manner.ornament
+    half = inside(kind, outer, h - t, thick)
+    made += pieces("legs", legs(kind, half, h - t, thick), finish)
+    made += pieces("apron", rails(half, (h - t - drop, h - t), 0.5 * thick + (0.004 if kind not in ("turned", "fluted") else 0.0)), finish)
+    return Shape(made)
 
 
-def dining_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Four legs, trestles, a round pedestal or slab sides."""
+def rails(half: tuple[float, float], z: tuple[float, float], gap: float) -> list[Solid]:
+    """Return four rails between the tops of legs at (+-half), each `gap` short of a leg's middle."""
+    x, y = half
+    return [box((-x + gap, x - gap), (s * y - 0.01, s * y + 0.01), z, 0.002) for s in (-1, 1)] + [
+        box((s * x - 0.01, s * x + 0.01), (-y + gap, y - gap), z, 0.002) for s in (-1, 1)
+    ]
+
+
+def _brace(kind: str, half: tuple[float, float], h: float, finish: Finish) -> tuple[Piece, ...]:
+    """Return what keeps side frames apart: a beam under the top, or nothing."""
+    if kind not in WIDE:
+        return ()
+    return pieces("beam", box((-half[0] + 0.032, half[0] - 0.032), (-0.02, 0.02), (h - 0.045, h - 0.001), 0.002), finish)
+
+
+def dining_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:  # noqa: PLR0911 - one return per form
+    """Four legs, trestles, a round pedestal, slab sides, a crossed base, a farm table, a tulip foot, a drum, or a bar."""
     w, d, h = size
-    t = float(rng.uniform(0.025, 0.045))
+    t = float(rng.uniform(0.026, 0.042))
     if form == "legs":
-        return legged(rng, size, scheme)
-    material = top_finish(rng, scheme, stone=0.35)
-    if form == "pedestal":
-        base = pieces("top", slab(circle(w / 2, 32), (h - t, h), 0.006), material)
-        return Shape(base + pieces("pedestal", pedestal(rng, min(0.3 * w, 0.34), h - t), scheme.accent))
-    base = pieces("top", slab(outline(rng, w, d), (h - t, h), 0.005), material)
+        return legged(rng, size, scheme, without="block")
+    if form == "farm":
+        return _farm(rng, size, scheme)
+    material = top_finish(rng, scheme, stone=1.8)
+    if form in ("pedestal", "tulip", "drum"):
+        made = pieces("top", top(circle(w / 2, 36), (h - t, h), scheme), material)
+        if form == "drum":
+            return Shape(made + fluted_drum(0.3 * w, h - t, scheme))
+        foot = trumpet(0.32 * w, h - t) if form == "tulip" else pedestal(rng, scheme, min(0.32 * w, 0.4), h - t)
+        metal = form == "tulip" or (scheme.accent is scheme.handle and scheme.manner.ornament < 0.5)
+        return Shape(made + pieces("pedestal", foot, scheme.front if form == "tulip" else scheme.handle if metal else scheme.timber))
+    made = pieces("top", top(outline(rng, scheme, w, d), (h - t, h), scheme), material)
     solids: list[Solid] = []
-    x = 0.33 * w
+    x = 0.32 * w
+    if form == "bar":
+        return Shape(made + _bar(size, t, scheme))
     if form == "trestle":
         for s in (-1, 1):
-            solids += [beam((s * x, sy * 0.4 * d, 0), (s * x, sy * 0.12 * d, h - t), 0.05, 0.06) for sy in (-1, 1)]
-            solids.append(box((s * x - 0.025, s * x + 0.025), (-0.36 * d, 0.36 * d), (h - t - 0.04, h - t - 0.001), 0.004))
-        solids.append(box((-x, x), (-0.02, 0.02), (0.35 * h, 0.35 * h + 0.07), 0.004))
-    else:
-        middles = (-x - 0.06, x + 0.06)
-        solids += [box((m - 0.03, m + 0.03), (-0.4 * d, 0.4 * d), (0, h - t), 0.006) for m in middles]
-        solids.append(box((-x - 0.03, x + 0.03), (-0.015, 0.015), (0.5 * h, h - t), 0.003))
-    return Shape(base + pieces("trestle", solids, scheme.accent if form == "trestle" else scheme.body))
+            solids += [beam((s * x, sy * 0.38 * d, 0.05), (s * x, sy * 0.1 * d, h - t - 0.05), 0.05, 0.06) for sy in (-1, 1)]
+            solids.append(box((s * x - 0.03, s * x + 0.03), (-0.42 * d, 0.42 * d), (0.0, 0.05), 0.006))
+            solids.append(box((s * x - 0.03, s * x + 0.03), (-0.38 * d, 0.38 * d), (h - t - 0.05, h - t), 0.006))
+        solids.append(box((-x + 0.026, x - 0.026), (-0.014, 0.014), (0.1, 0.17), 0.004))
+        return Shape(made + pieces("trestle", solids, scheme.timber))
+    if form == "cross":
+        bars = [((s * 0.30 * w, -0.32 * d), (-s * 0.14 * w, 0.3 * d)) for s in (-1, 1)]
+        for k, ((x0, y0), (x1, y1)) in enumerate(bars):
+            for s in (-1, 1):
+                dx = s * (0.035 if k == 0 else 0.105) * 1.0
+                solids.append(
+                    beam(
+                        (s * abs(x0) + dx, y0 if k == 0 else y1, 0),
+                        (s * abs(x1) * 0.4 + dx, y1 if k == 0 else y0, h - t - 0.02),
+                        0.06,
+                        0.05,
+                    )
+                )
+        solids.append(box((-0.33 * w, 0.33 * w), (-0.36 * d, 0.36 * d), (h - t - 0.02, h - t), 0.003))
+        return Shape(made + pieces("cross", solids, scheme.handle if scheme.manner.tube > 0.3 else scheme.timber))
+    thick = 0.05
+    solids += [box((s * x - thick / 2, s * x + thick / 2), (-0.4 * d, 0.4 * d), (0, h - t), 0.006) for s in (-1, 1)]
+    solids.append(box((-x + thick / 2, x - thick / 2), (-0.016, 0.016), (0.55 * h, h - t), 0.003))
+    return Shape(made + pieces("slabs", solids, scheme.body))
 
 
-def pedestal(rng: np.random.Generator, radius: float, height: float) -> list[Solid]:
-    """Return a round foot and column: a trumpet, a turned column, or a drum."""
-    kind = rng.integers(3)
-    if kind == 0:
-        profile = [(radius, 0.0), (radius, 0.012), (0.35 * radius, 0.1 * height), (0.2 * radius, 0.35 * height)]
-        profile += [(0.2 * radius, 0.7 * height), (0.45 * radius, height)]
-    elif kind == 1:
-        profile = [(radius, 0.0), (radius, 0.025), (0.28 * radius, 0.03), (0.28 * radius, height - 0.02), (0.6 * radius, height)]
-    else:
-        profile = [(0.75 * radius, 0.0), (0.8 * radius, 0.02), (0.8 * radius, height)]
-    return revolve(profile, 24)
-
-
-def coffee_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Legs with a lower shelf, a drum, a sled frame, or a case with drawers."""
+def _farm(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
+    """Planks with breadboard ends on four stout turned legs and a deep apron."""
     w, d, h = size
-    if form == "legs":
-        shape = legged(rng, size, scheme)
-        if h > 0.3 and rng.random() < 0.6:
-            lower = box((-0.42 * w, 0.42 * w), (-0.4 * d, 0.4 * d), (0.3 * h, 0.3 * h + 0.016), 0.002)
-            return Shape(shape.base + pieces("shelf", lower, scheme.body))
-        return shape
-    if form == "drum":
-        base = pieces("top", slab(circle(w / 2, 32), (h - 0.025, h), 0.005), top_finish(rng, scheme, stone=0.4))
-        n = 24
-        if rng.random() < 0.5:
-            body = revolve([(0.40 * w, 0.0), (0.43 * w, 0.03), (0.43 * w, h - 0.025)], n)
-            return Shape(base + pieces("drum", body, scheme.body))
-        rods = [
-            rod(
-                (*(0.42 * w * np.array([math.cos(a), math.sin(a)])), 0.015),
-                (*(0.42 * w * np.array([math.cos(a), math.sin(a)])), h - 0.025),
-                0.006,
-                n=6,
-            )
-            for a in np.arange(n) * 2 * math.pi / n
-        ]
-        return Shape(
-            base + pieces("foot", slab(circle(0.44 * w, 32), (0, 0.015), 0.003), scheme.handle) + pieces("rods", rods, scheme.handle)
+    t = 0.036
+    end = min(0.1, 0.08 * w)
+    ys = np.linspace(-d / 2, d / 2, max(4, round(d / 0.16)) + 1)
+    planks = [
+        box((-w / 2 + end + 0.001, w / 2 - end - 0.001), (a + 0.0006, b - 0.0006), (h - t, h), 0.003) for a, b in itertools.pairwise(ys)
+    ]
+    planks += [box((s * (w / 2 - end / 2) - end / 2, s * (w / 2 - end / 2) + end / 2), (-d / 2, d / 2), (h - t, h), 0.004) for s in (-1, 1)]
+    kind = "turned" if scheme.manner.ornament > 0.2 else "block"
+    thick = 0.082
+    half = inside(kind, (w / 2 - 0.05, d / 2 - 0.05), h - t, thick)
+    under = scheme.front if rng.random() < 0.5 else scheme.timber
+    made = pieces("top", planks, scheme.timber) + pieces("legs", legs(kind, half, h - t, thick), under)
+    return Shape(made + pieces("apron", rails(half, (h - t - 0.1, h - t), 0.52 * thick + (0.012 if kind == "block" else 0.0)), under))
+
+
+def trumpet(radius: float, height: float) -> list[Solid]:
+    """Return a foot like an upturned trumpet: a thin disc that rises in one sweep into a slender stem."""
+    steps = (
+        (1.0, 0.0),
+        (1.0, 0.008),
+        (0.8, 0.02),
+        (0.55, 0.045),
+        (0.34, 0.1),
+        (0.2, 0.22),
+        (0.15, 0.42),
+        (0.15, 0.66),
+        (0.2, 0.82),
+        (0.36, 0.95),
+        (0.5, 1.0),
+    )
+    return revolve([(a * radius, b * height) for a, b in steps], 24)
+
+
+def fluted_drum(radius: float, height: float, scheme: Scheme) -> tuple[Piece, ...]:
+    """Return a round base clad in upright half-round staves."""
+    core = revolve([(radius, 0.0), (radius, height)], 24)
+    r = math.pi * radius / 30
+    staves = [
+        rod(
+            ((radius + 0.85 * r) * math.cos(a), (radius + 0.85 * r) * math.sin(a), 0.0),
+            ((radius + 0.85 * r) * math.cos(a), (radius + 0.85 * r) * math.sin(a), height),
+            0.95 * r,
+            n=6,
         )
-    if form == "sled":
-        t = float(rng.uniform(0.02, 0.035))
-        base = pieces("top", slab(outline(rng, w, d), (h - t, h), 0.004), top_finish(rng, scheme, stone=0.3, glass=0.25))
-        return Shape(base + pieces("frame", hoops(w, d, h - t, 0.02), scheme.handle))
-    return cased_table(rng, size, scheme, drawer_height=min(0.16, 0.45 * h), count=1 if w < 0.95 else 2)
+        for a in turns(30)
+    ]
+    return pieces("drum", core, scheme.body) + pieces("staves", staves, scheme.body)
 
 
-def hoops(w: float, d: float, height: float, thick: float) -> list[Solid]:
-    """Return two closed frames of square tube under a top."""
-    made = []
-    for s in (-1, 1):
-        x = (s * 0.42 * w - thick / 2, s * 0.42 * w + thick / 2)
-        y = 0.42 * d
-        made += [box(x, (-y, y), (0, thick), 0.002), box(x, (-y, y), (height - thick, height), 0.002)]
-        made += [box(x, (sy * y - thick / 2, sy * y + thick / 2), (thick, height - thick), 0.002) for sy in (-1, 1)]
-    return made
+def _bar(size: Size, t: float, scheme: Scheme) -> tuple[Piece, ...]:
+    """Return a counter's front of upright boards on a plinth, a shelf behind it and a foot rail before it."""
+    w, d, h = size
+    xs = np.linspace(-0.46 * w, 0.46 * w, max(5, round(w / 0.14)) + 1)
+    y = -0.22 * d
+    boards = [box((a + 0.001, b - 0.001), (y, y + 0.02), (0.06, h - t), 0.003) for a, b in itertools.pairwise(xs)]
+    sides = [box((s * 0.45 * w - 0.012, s * 0.45 * w + 0.012), (y + 0.02, 0.42 * d), (0.0, h - t), 0.002) for s in (-1, 1)]
+    inner = (-0.45 * w + 0.012, 0.45 * w - 0.012)
+    made = pieces("front", boards, scheme.front) + pieces("sides", sides, scheme.body)
+    made += pieces("shelf", [box(inner, (y + 0.02, 0.4 * d), (z, z + 0.02)) for z in (0.1, 0.48 * h)], scheme.body)
+    made += pieces("plinth", box((-0.45 * w, 0.45 * w), (y + 0.004, y + 0.02), (0.0, 0.06)), scheme.handle)
+    z = 0.17
+    rail = [rod((-0.45 * w, y - 0.1, z), (0.45 * w, y - 0.1, z), 0.014, n=10)] + [
+        rod((s * 0.36 * w, y, z), (s * 0.36 * w, y - 0.087, z), 0.009, n=8) for s in (-1, 0, 1)
+    ]
+    return made + pieces("rail", rail, scheme.handle)
 
 
 def cased_table(rng: np.random.Generator, size: Size, scheme: Scheme, *, drawer_height: float, count: int) -> Shape:
-    """Build a top over a shallow case of drawers on tall legs."""
-    style = front_style(rng, scheme, "slab slab shaker", "bar knob edge flat")
-    how = case_style(rng, scheme, style, "square tapered sled", (0.1, 0.1))
-    how = replace(how, feet_height=size[2] - drawer_height - how.top_thickness - how.board, inset=True, overhang=0.012)
-    return case(size, [Column(1, (Cell("drawer"),)) for _ in range(count)], how)
-
-
-def corner_side_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Legs, a pedestal, a C-shaped frame, or a drawer over a shelf."""
+    """Build a shallow case with a row of drawers on legs."""
     w, d, h = size
-    if form == "legs":
-        return legged(rng, size, scheme)
-    if form == "pedestal":
-        base = pieces("top", slab(circle(w / 2, 28), (h - 0.022, h), 0.004), top_finish(rng, scheme, stone=0.35))
-        return Shape(base + pieces("pedestal", pedestal(rng, 0.36 * w, h - 0.022), scheme.accent))
-    if form == "c_shape":
-        base = pieces("top", slab(outline(rng, w, d), (h - 0.022, h), 0.004), top_finish(rng, scheme, stone=0.3))
-        t = 0.022
-        solids = []
-        for s in (-1, 1):
-            x = (s * 0.4 * w - t / 2, s * 0.4 * w + t / 2)
-            solids += [box(x, (-0.48 * d, 0.48 * d), (0, t), 0.002), box(x, (0.48 * d - t, 0.48 * d), (t, h - 0.022), 0.002)]
-        solids.append(box((-0.4 * w + t / 2, 0.4 * w - t / 2), (0.48 * d - t, 0.48 * d), (0, t), 0.002))
-        return Shape(base + pieces("frame", solids, scheme.handle))
     style = front_style(rng, scheme, "slab slab shaker")
-    how = replace(case_style(rng, scheme, style, "tapered square sled hairpin", (0.45 * h, 0.6 * h)), overhang=0.0)
-    return case(size, [Column(1, (Cell("drawer"),))], how)
-
-
-def round_end_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a round top on three legs or on a cage of rods."""
-    w, _, h = size
-    if form == "drum":
-        return coffee_table(rng, "drum", size, scheme)
-    base = pieces("top", slab(circle(w / 2, 28), (h - 0.022, h), 0.004), top_finish(rng, scheme, stone=0.3))
-    solids = []
-    for k in range(3):
-        a = k * 2 * math.pi / 3 + math.pi / 2
-        u = np.array([math.cos(a), math.sin(a)])
-        solids.append(rod((*(0.42 * w * u), 0), (*(0.2 * w * u), h - 0.022), 0.012, 0.02, 10))
-    solids += ring((0.3 * w, 0.3 * w), (0.3 * w - 0.012, 0.3 * w - 0.012), (0.4 * h, 0.4 * h + 0.012), 16)
-    return Shape(base + pieces("legs", solids, scheme.accent))
+    how = replace(case_style(rng, scheme, style, "tapered square sled", (0.1, 0.2)), feet_height=max(0.05, h - drawer_height - 0.04))
+    return case((w, d, h), [Column(1, (Cell("drawer"),)) for _ in range(count)], how)

@@ -101,9 +101,9 @@ def vase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     for k in range(count):
         a = 2 * math.pi * k / count + float(rng.uniform(-0.4, 0.4))
         out, top = float(rng.uniform(0.5, 1.0)), h * float(rng.uniform(0.86, 1.0))
-        c, s = 0.5 * w * out * math.cos(a), 0.5 * d * out * math.sin(a)
+        c, s = (0.5 * w - 0.035) * out * math.cos(a), (0.5 * d - 0.035) * out * math.sin(a)
         path = curve([(0.1 * c, 0.1 * s, 0.8 * tall), (0.3 * c, 0.3 * s, 0.5 * (tall + top)), (c, s, top)], 2)
-        stems += tube(path, np.linspace(0.003, 0.0018, len(path)), 5)
+        stems += tube(path, np.linspace(0.003, 0.0018, len(path)), 4)
         for j in range(2, len(path)):
             for side in (-1, 1):
                 turn = a + side * 0.9

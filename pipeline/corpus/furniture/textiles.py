@@ -66,7 +66,7 @@ def _panel(start: float, end: float, d: float, h: float, cloth: Finish) -> tuple
     wide = abs(end - start)
     folds = max(3, round(wide / 0.11))
     t = np.linspace(0, 1, 4 * folds + 1)
-    path = np.column_stack([start + (end - start) * t, (0.5 * d - 0.02) * 0.8 * np.sin(2 * math.pi * folds * t)])
+    path = np.column_stack([start + (end - start) * t, (0.5 * d - 0.004) * np.sin(2 * math.pi * folds * t)])
     return pieces("cloth", band(path, 0.006, (0.0, h)), cloth)
 
 

@@ -75,7 +75,7 @@ def mirror(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     rim = 0.6 * r if form == "sunburst" else 0.93 * r
     made = pieces("mirror", standing([slab(circle(rim, 36), (0.0, 0.006))], back - 0.004, h / 2), MIRROR)
     if form == "sunburst":
-        hoop = ring((1.06 * rim, 1.06 * rim), (rim, rim), (0.0, 0.8 * d), 36)
+        hoop = ring((1.06 * rim, 1.06 * rim), (rim, rim), (0.0, d), 36)
         rays = [rod((1.06 * rim * math.cos(a), back - 0.012, h / 2 + 1.06 * rim * math.sin(a)), (q * math.cos(a), back - 0.012, h / 2 + q * math.sin(a)), 0.007, 0.002, 6)
                 for k, a in enumerate(turns(24)) for q in (r if k % 2 == 0 else 0.84 * r,)]  # fmt: skip
         return Shape(made + pieces("frame", standing(hoop, back, h / 2), frame) + pieces("rays", rays, frame))

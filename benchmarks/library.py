@@ -1,0 +1,120 @@
+"""Contact sheets of the furniture library, path-traced.
+
+python benchmarks/library.py FOLDER [--only beds,chairs] [--count 30] [--spp 24] [--cell 200] [--seed 0]
+
+One sheet per group of categories; each model is written as its files, read back as any 3D-FUTURE model is, and rendered.
+"""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from PIL import Image
+
+from pipeline import taxonomy
+from pipeline.corpus.furniture.catalogue import Model, catalogue
+from pipeline.corpus.future_writer import write_future
+from pipeline.entities.asset import Asset
+from pipeline.preview.sheet import contact_sheet
+from pipeline.preview.showroom import portrait
+from pipeline.sources.future import read_model, read_model_info
+from pipeline.sources.guarded import Folder
+from pipeline.sources.settings import ModelLimits
+
+SHEETS = {
+    "beds": ("double_bed", "single_bed", "kids_bed"),
+    "chairs": ("dining_chair", "lounge_chair", "dressing_chair", "chinese_chair", "barstool", "stool"),
+    "sofas": ("multi_seat_sofa", "loveseat_sofa", "armchair", "l_shaped_sofa", "lazy_sofa", "chaise_longue_sofa"),
+    "tables": ("dining_table", "desk", "dressing_table"),
+    "small_tables": ("coffee_table", "corner_side_table", "round_end_table"),
+    "cabinets": (
+        "bookshelf",
+        "shelf",
+        "sideboard",
+        "tv_stand",
+        "wardrobe",
+        "nightstand",
+        "cabinet",
+        "wine_cabinet",
+        "children_cabinet",
+        "shoe_cabinet",
+    ),
+    "lamps": ("pendant_lamp", "ceiling_lamp", "floor_lamp", "wall_lamp", "table_lamp"),
+    "things": (
+        "plant",
+        "vase",
+        "rug",
+        "curtain",
+        "pillow",
+        "picture",
+        "mirror",
+        "clock",
+        "cup",
+        "plate",
+        "bowl",
+        "book",
+        "book_stack",
+        "basket",
+    ),
+}
+
+
+def chosen(models: Sequence[Model], categories: Sequence[str], count: int) -> list[Model]:
+    """Take about `count` models of the categories in turn: first one of each form, styles as different as they come."""
+    queues = []
+    for category in categories:
+        mine = [m for m in models if m.category == category]
+        seen: set[str] = set()
+        first = [m for m in mine if m.form not in seen and not seen.add(m.form)]  # type: ignore[func-returns-value]
+        queues.append(first + [m for m in mine if m not in first])
+    made: list[Model] = []
+    share = {
+        c: max(1, round(count * len([m for m in models if m.category == c]) / len([m for m in models if m.category in categories])))
+        for c in categories
+    }
+    for category, queue in zip(categories, queues, strict=True):
+        made += queue[: share[category]]
+    return made[:count]
+
+
+def assets(models: Sequence[Model]) -> list[Asset]:
+    """Write the models, and read them back."""
+    with tempfile.TemporaryDirectory() as name:
+        write_future(models, Path(name))
+        folder = Folder.at(Path(name))
+        infos, _ = read_model_info(folder, "model_info.json")
+        return [read_model(folder, infos[m.model_id], taxonomy.load(), ModelLimits(), "CC0-1.0").asset for m in models]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--only", default=",".join(SHEETS))
+    parser.add_argument("--count", type=int, default=30)
+    parser.add_argument("--columns", type=int, default=6)
+    parser.add_argument("--spp", type=int, default=24)
+    parser.add_argument("--cell", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=0)
+    given = parser.parse_args()
+    given.folder.mkdir(parents=True, exist_ok=True)
+    library = catalogue(given.seed).future
+    for name in given.only.split(","):
+        start = time.process_time()
+        models = chosen(library, SHEETS[name], given.count)
+        pictures = []
+        for model, asset in zip(models, assets(models), strict=True):
+            hangs = taxonomy.load().categories[model.category].mount == "wall"
+            picture = portrait(asset, given.cell, given.spp, on_wall=hangs)
+            pictures.append((f"{model.category.replace('_', ' ')}: {model.form.replace('_', ' ')} | {model.style}", picture))
+        sheet = contact_sheet(pictures, given.columns, given.cell)
+        path = given.folder / f"library_{name}.png"
+        sheet.quantize(256, dither=Image.Dither.NONE).save(path, optimize=True)
+        print(f"{path}: {len(models)} models, {path.stat().st_size / 1e6:.2f} MB, {time.process_time() - start:.0f} CPU s", flush=True)
+
+
+if __name__ == "__main__":
+    main()

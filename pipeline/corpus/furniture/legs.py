@@ -1,0 +1,232 @@
+"""Legs: twenty forms that stand under a corner, at a side, or in the middle of a seat, a case or a table top. Lengths in metres."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.corpus.furniture.bent import curve, tube
+from pipeline.corpus.furniture.finishes import Finish, Scheme
+from pipeline.corpus.furniture.solids import Solid, beam, box, revolve, rod, stack
+
+Spot = tuple[float, float]
+METAL = frozenset({"hairpin", "pipe", "blade", "sled", "cross"})
+WIDE = frozenset({"sled", "cross", "plank"})  # forms that join the two legs of a side
+
+
+def leg_finish(scheme: Scheme, kind: str) -> Finish:
+    """Return what legs of a form are made of: metal forms of metal, others of wood, or lacquered like the fronts."""
+    if kind in METAL:
+        return scheme.handle
+    return scheme.accent if scheme.accent is not scheme.handle else scheme.timber
+
+
+def draw_kind(rng: np.random.Generator, scheme: Scheme, without: str = "") -> str:
+    """Draw a leg form that the style likes; `without` names forms that do not fit here."""
+    kinds = [k for k in scheme.manner.legs.split() if k not in without.split()] or ["tapered"]
+    return kinds[int(rng.integers(len(kinds)))]
+
+
+def legs(kind: str, half: Spot, height: float, thick: float) -> list[Solid]:
+    """Return legs under the corners at (+-half), `height` high, about `thick` wide."""
+    if kind in WIDE:
+        return [s for side in (-1, 1) for s in _frame(kind, side * half[0], half[1], height, thick)]
+    return [s for sx in (-1, 1) for sy in (-1, 1) for s in leg(kind, (sx * half[0], sy * half[1]), (sx, sy), height, thick)]
+
+
+def inside(kind: str, outer: Spot, height: float, thick: float) -> Spot:
+    """Return where the tops of legs stand so that all of them stays within (+-outer), however far they splay."""
+    if kind == "splayed":
+        reach = min(0.12 * height, 0.06) + 0.3 * thick
+    elif kind in ("dowel", "ming"):
+        reach = min(0.03 * height, 0.02) + 0.42 * thick
+    elif kind == "hairpin":
+        reach = 0.05 * height + 0.01
+    elif kind == "cabriole":
+        reach = 0.55 * min(thick, 0.35 * height) + 0.42 * thick
+    else:
+        reach = {"block": 0.7, "pipe": 0.65, "turned": 0.56, "bun": 0.85}.get(kind, 0.52) * thick
+    return max(outer[0] - reach, 0.3 * outer[0]), max(outer[1] - reach, 0.3 * outer[1])
+
+
+def leg(kind: str, at: Spot, out: Spot, height: float, thick: float) -> list[Solid]:
+    """Return one leg whose top is centred at `at`; `out` (signs of x and y) points away from the middle of the piece."""
+    x, y = at
+    sx, sy = out
+    t, h = thick, height
+    if kind in ("square", "block"):
+        r = t / 2 if kind == "square" else 0.7 * t
+        return [box((x - r, x + r), (y - r, y + r), (0, h), 0.003)]
+    if kind == "tapered":
+        return [beam((x, y, 0), (x, y, h), t, t, 0.5)]
+    if kind == "splayed":
+        reach = min(0.12 * h, 0.06)
+        return [rod((x + sx * reach, y + sy * reach, 0), (x, y, h), 0.3 * t, 0.52 * t, 10)]
+    if kind in ("dowel", "ming"):
+        reach = min(0.03 * h, 0.02)
+        return [rod((x + sx * reach, y + sy * reach, 0), (x, y, h), 0.42 * t, n=10)]
+    return _ORNATE.get(kind, _turned)(x, y, sx, sy, h, t)
+
+
+def _turned(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
+    if h < 0.16:
+        return _bun(x, y, sx, sy, h, t)
+    profile = [(0.34, 0.0), (0.5, 0.05), (0.3, 0.12), (0.44, 0.42), (0.56, 0.68), (0.34, 0.76), (0.54, 0.8), (0.54, 0.84)]
+    block = box((x - 0.52 * t, x + 0.52 * t), (y - 0.52 * t, y + 0.52 * t), (0.84 * h, h), 0.002)
+    return [*revolve([(r * t, z * h) for r, z in profile], 12, (x, y)), block]
+
+
+def _fluted(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:  # noqa: ARG001 - one signature for all
+    if h < 0.12:
+        return [beam((x, y, 0), (x, y, h), t, t, 0.55)]
+    angles = np.arange(16) * (2 * math.pi / 16)
+    star = np.where(np.arange(16) % 2 == 0, 1.0, 0.93)[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    low, high = (np.column_stack([np.array([x, y]) + r * t * star, np.full(16, z)]) for r, z in ((0.26, 0.06 * h), (0.44, 0.82 * h)))
+    foot = revolve([(0.2 * t, 0.0), (0.34 * t, 0.03 * h), (0.3 * t, 0.06 * h)], 12, (x, y))
+    return [*foot, _round_hull(low, high), box((x - 0.54 * t, x + 0.54 * t), (y - 0.54 * t, y + 0.54 * t), (0.82 * h, h), 0.003)]
+
+
+def _round_hull(low: NDArray[np.float64], high: NDArray[np.float64]) -> Solid:
+    """Return the stack of the outer corners of two star-shaped rings, as facets of alternating width."""
+    keep = np.arange(0, len(low), 2)
+    return stack([low[keep], high[keep]])
+
+
+def _cabriole(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
+    d = np.array([sx, sy]) / math.sqrt(2)
+    points, radii = [], []
+    for share, out, r in (
+        (0.0, 0.62, 0.42),
+        (0.05, 0.55, 0.4),
+        (0.16, 0.12, 0.24),
+        (0.4, 0.02, 0.28),
+        (0.66, 0.36, 0.42),
+        (0.84, 0.5, 0.52),
+        (1.0, 0.12, 0.56),
+    ):
+        reach = out * min(t, 0.35 * h) * 1.25
+        points.append((x + d[0] * reach, y + d[1] * reach, share * h))
+        radii.append(r * t)
+    return tube(points, radii, 8)
+
+
+def _hairpin(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:  # noqa: ARG001 - one signature for all
+    r, spread, reach = 0.0055, 0.055 + 0.06 * h, 0.05 * h
+    x0, y0 = x + sx * reach, y + sy * reach
+    rods = [
+        rod((x - sx * spread, y, h - 0.003), (x0 - sx * 0.0065, y0 + sy * 0.004, 0.006), r, n=6),
+        rod((x, y - sy * spread, h - 0.003), (x0 + sx * 0.004, y0 - sy * 0.0065, 0.006), r, n=6),
+    ]
+    plate = box(
+        (min(x, x - sx * spread) - r, max(x, x - sx * spread) + r),
+        (min(y, y - sy * spread) - r, max(y, y - sy * spread) + r),
+        (h - 0.003, h),
+    )
+    return [*rods, plate, revolve([(0.013, 0.0), (0.013, 0.006)], 10, (x0, y0))[0]]
+
+
+def _bun(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
+    if h >= 0.16:
+        return _turned(x, y, sx, sy, h, t)
+    r = max(0.6 * t, 0.028)
+    return revolve([(0.55 * r, 0.0), (r, 0.25 * h), (r, 0.5 * h), (0.6 * r, 0.78 * h), (0.85 * r, 0.86 * h), (0.85 * r, h)], 14, (x, y))
+
+
+def _horse(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
+    """Build a square leg whose foot turns inwards, like a hoof."""
+    r, low = 0.46 * t, min(0.16 * h, 0.07)
+
+    def ring(grow: float, shift: float, z: float) -> NDArray[np.float64]:
+        cx, cy, q = x - sx * shift, y - sy * shift, r + grow
+        return np.array([(cx - q, cy - q, z), (cx + q, cy - q, z), (cx + q, cy + q, z), (cx - q, cy + q, z)])
+
+    return [stack([ring(0.12 * t, 0.3 * t, 0.0), ring(0.0, 0.0, low)]), box((x - r, x + r), (y - r, y + r), (low, h), 0.002)]
+
+
+def _bamboo(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:  # noqa: ARG001 - one signature for all
+    count = max(1, round(h / 0.16))
+    made, node, r = [], 0.008, 0.38 * t
+    edges = np.linspace(0, h, count + 1)
+    for k in range(count):
+        low = edges[k] + (node if k else 0.0)
+        made.append(rod((x, y, low), (x, y, edges[k + 1]), r, n=10))
+        if k:
+            made += revolve(
+                [(r, edges[k]), (1.22 * r, edges[k] + 0.35 * node), (1.22 * r, edges[k] + 0.65 * node), (r, edges[k] + node)], 10, (x, y)
+            )
+    return made
+
+
+def _pipe(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:  # noqa: ARG001 - one signature for all
+    r = max(0.3 * t, 0.011)
+    flange = [revolve([(2.1 * r, z), (2.1 * r, z + 0.005)], 12, (x, y))[0] for z in (0.0, h - 0.005)]
+    return [*flange, rod((x, y, 0.005), (x, y, h - 0.005), r, n=10)]
+
+
+def _blade(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:  # noqa: ARG001 - one signature for all
+    return [beam((x, y, 0), (x, y, h), 0.016, max(0.7 * t, 0.022), 0.8)]
+
+
+_ORNATE = {
+    "fluted": _fluted, "cabriole": _cabriole, "hairpin": _hairpin, "bun": _bun, "horse": _horse, "bamboo": _bamboo, "pipe": _pipe, "blade": _blade,
+}  # fmt: skip
+
+
+def _frame(kind: str, x: float, y: float, h: float, t: float) -> list[Solid]:
+    """Return what stands at one side: a sled, a cross, or a plank, in the plane of that x."""
+    if kind == "plank":
+        r = 0.4 * t
+        return [box((x - r, x + r), (-y - 0.3 * t, y + 0.3 * t), (0, h), 0.003)]
+    s = min(0.5 * t, 0.012 + 0.01 * h)
+    if kind == "cross":
+        a = beam((x - s, -y, 0), (x - s, y, h), 2 * s, 2.2 * s)
+        b = beam((x + s, y, 0), (x + s, -y, h), 2 * s, 2.2 * s)
+        return [a, b]
+    return [
+        box((x - s, x + s), (-y - s, y + s), (0, 1.6 * s), 0.002),
+        box((x - s, x + s), (-y - s, -y + s), (1.6 * s, h), 0.002),
+        box((x - s, x + s), (y - s, y + s), (1.6 * s, h), 0.002),
+    ]
+
+
+def pedestal(rng: np.random.Generator, scheme: Scheme, radius: float, height: float) -> list[Solid]:
+    """Return a foot and a column for a round top: a trumpet, a disc with a tube, a drum, a turned column on three feet."""
+    classic = scheme.manner.ornament > 0.5
+    kind = int(rng.integers(2, 4)) if classic else int(rng.integers(3))
+    r, h = radius, height
+    if kind == 0:
+        steps = ((1.0, 0.0), (1.0, 0.012), (0.62, 0.035), (0.36, 0.1), (0.2, 0.24), (0.14, 0.45), (0.14, 0.7), (0.22, 0.88), (0.42, 1.0))
+        return revolve([(a * r, b * h) for a, b in steps], 24)
+    if kind == 1:
+        return revolve(
+            [
+                (r, 0.0),
+                (r, 0.012),
+                (0.94 * r, 0.02),
+                (0.05 + 0.05 * r, 0.022),
+                (0.05 + 0.05 * r, h - 0.012),
+                (0.6 * r, h - 0.01),
+                (0.6 * r, h),
+            ],
+            24,
+        )
+    if kind == 2:
+        return revolve([(0.62 * r, 0.0), (0.62 * r, 0.03), (0.5 * r, 0.05), (0.42 * r, 0.5 * h), (0.5 * r, 0.94 * h), (0.62 * r, h)], 20)
+    column = [(0.17, 0.2), (0.24, 0.26), (0.24, 0.3), (0.14, 0.36), (0.26, 0.52), (0.28, 0.6), (0.14, 0.8), (0.24, 0.92), (0.44, 1.0)]
+    made = revolve([(a * r, b * h) for a, b in column], 16)
+    for k in range(3):
+        a = math.pi / 2 + 2 * math.pi * k / 3
+        c, s = math.cos(a), math.sin(a)
+        path = curve(
+            [
+                (0.23 * r * c, 0.23 * r * s, 0.27 * h),
+                (0.5 * r * c, 0.5 * r * s, 0.24 * h),
+                (0.8 * r * c, 0.8 * r * s, 0.06 * h),
+                (r * c, r * s, 0.025),
+            ],
+            2,
+        )
+        made += tube(path, np.linspace(0.055, 0.026, len(path)), 8)
+    return made
