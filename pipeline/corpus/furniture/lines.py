@@ -55,7 +55,9 @@ def _line(future: str, names: str, static: int, moving: int = 0) -> Line:
 
 
 LINES: Mapping[str, Line] = {
-    "double_bed": _line("King-size Bed", "panel, upholstered, slatted, tufted=Bed Frame, canopy>1.4=Bed Frame, sleigh, metal, platform, wing", 24),
+    "double_bed": _line(
+        "King-size Bed", "panel, upholstered, slatted, tufted=Bed Frame, canopy>1.4=Bed Frame, sleigh, metal, platform, wing", 24
+    ),
     "single_bed": _line("Single bed", "panel, upholstered, slatted, metal, tufted", 14),
     "kids_bed": _line("Kids Bed", "rails, bunk>1.35=Bunk Bed, loft>1.35=Bunk Bed, house>1.2, car, couch=Couch Bed", 12),
     "nightstand": _line("Nightstand", "drawers, shelf_drawer, door_drawer", 12, 18),
@@ -74,13 +76,19 @@ LINES: Mapping[str, Line] = {
     "coffee_table": _line("Coffee Table", "-legs, -drum*, -sled, drawer, -tray*, -block, -planks, -ming", 24, 9),
     "corner_side_table": _line("Corner/Side Table", "-legs, -pedestal*, -c_shape, drawer, -drum*, -hourglass*, -ming", 22, 9),
     "round_end_table": _line("Round End Table", "tripod*, drum*, tulip*, tray*", 8),
-    "dining_chair": _line("Dining Chair", "wood, shell, upholstered, spindle, wishbone, cantilever, medallion, cafe, folding=Folding chair", 26),
-    "lounge_chair": _line("Lounge Chair / Cafe Chair / Office Chair", "easy, office, wing, lounger, tub, sling, rattan, hanging>1.0=Hanging Chair", 24),
+    "dining_chair": _line(
+        "Dining Chair", "wood, shell, upholstered, spindle, wishbone, cantilever, medallion, cafe, folding=Folding chair", 26
+    ),
+    "lounge_chair": _line(
+        "Lounge Chair / Cafe Chair / Office Chair", "easy, office, wing, lounger, tub, sling, rattan, hanging>1.0=Hanging Chair", 24
+    ),
     "dressing_chair": _line("Dressing Chair", "stool*, back, drum*", 8),
     "chinese_chair": _line("Classic Chinese Chair", "official, rose, horseshoe", 9),
     "barstool": _line("Barstool", "legs, pedestal, saddle", 12),
     "stool": _line("Footstool / Sofastool / Bed End Stool / Stool", "bench, ottoman, legs, pouf*, drum*", 16),
-    "multi_seat_sofa": _line("Three-Seat / Multi-seat Sofa", "track, legs, roll, chesterfield, camelback, frame, cloud, u_shape=U-shaped Sofa", 22),
+    "multi_seat_sofa": _line(
+        "Three-Seat / Multi-seat Sofa", "track, legs, roll, chesterfield, camelback, frame, cloud, u_shape=U-shaped Sofa", 22
+    ),
     "loveseat_sofa": _line("Loveseat Sofa", "track, legs, roll, chesterfield, camelback, frame, cloud", 18),
     "l_shaped_sofa": _line("L-shaped Sofa", "left, right", 16),
     "armchair": _line("armchair", "track, legs, roll, tub, chesterfield, frame, cloud", 24),
