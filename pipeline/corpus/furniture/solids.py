@@ -268,14 +268,13 @@ def ring(
 def hull(points: NDArray[np.float64]) -> Solid:
     """Return the convex hull of `points` (n, 3)."""
     found = ConvexHull(points)
-    keep = np.unique(found.simplices)
-    number = {int(old): new for new, old in enumerate(keep)}
-    faces = []
-    for corners, normal in zip(found.simplices, found.equations[:, :3], strict=True):
-        a, b, c = points[corners]
-        turned = corners if np.dot(np.cross(b - a, c - a), normal) > 0 else corners[::-1]
-        faces.append(tuple(number[int(v)] for v in turned))
-    return Solid(points[keep], tuple(faces))
+    keep, corners = np.unique(found.simplices, return_inverse=True)
+    corners = corners.reshape(found.simplices.shape)
+    kept = points[keep]
+    a, b, c = (kept[corners[:, k]] for k in range(3))
+    inwards = np.linalg.det(np.stack([b - a, c - a, found.equations[:, :3]], axis=1)) < 0
+    corners[inwards] = corners[inwards][:, ::-1]
+    return Solid(kept, tuple(map(tuple, corners.tolist())))
 
 
 def _at(outline: NDArray[np.float64], height: float) -> NDArray[np.float64]:
