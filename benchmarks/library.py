@@ -2,7 +2,8 @@
 
 python benchmarks/library.py FOLDER [--only beds,chairs] [--count 30] [--spp 24] [--cell 200] [--seed 0]
 
-One sheet per group of categories; each model is written as its files, read back as any 3D-FUTURE model is, and rendered.
+One sheet per group of categories. Static models are written as their files, read back as any 3D-FUTURE model is, and rendered;
+of models that open (the sheets open_*) two pictures stand side by side, closed and open.
 """
 
 from __future__ import annotations
@@ -61,6 +62,18 @@ SHEETS = {
         "basket",
     ),
 }
+OPEN_SHEETS = {
+    "open_furniture": ("wardrobe", "nightstand", "cabinet", "sideboard", "desk", "tv_stand", "wine_cabinet", "shoe_cabinet"),
+    "open_kitchen_bath": (
+        *("kitchen_cabinet", "tall_unit", "sink_cabinet", "refrigerator", "oven", "dishwasher", "microwave", "washing_machine"),
+        *("toilet", "vanity", "trash_can"),
+    ),
+    "open_things": (
+        *("laptop", "phone", "camera", "printer", "toaster", "coffee_machine", "kitchen_pot", "bucket", "storage_box", "suitcase"),
+        *("briefcase", "safe", "drawer_organiser", "room_door"),
+    ),
+}
+OPEN = 0.7  # of the range of every joint
 
 
 def chosen(models: Sequence[Model], categories: Sequence[str], count: int) -> list[Model]:
@@ -90,10 +103,31 @@ def assets(models: Sequence[Model]) -> list[Asset]:
         return [read_model(folder, infos[m.model_id], taxonomy.load(), ModelLimits(), "CC0-1.0").asset for m in models]
 
 
+def pictures(name: str, given: argparse.Namespace) -> list[tuple[str, Image.Image]]:
+    """Render the models of one sheet, each with its caption."""
+    library = catalogue(given.seed)
+    made = []
+    if name in OPEN_SHEETS:
+        for model in chosen(library.partnet, OPEN_SHEETS[name], given.count):
+            asset = model.build()
+            made += [(caption(model), portrait(asset, given.cell, given.spp, fraction)) for fraction in (0.0, OPEN)]
+        return made
+    models = chosen(library.future, SHEETS[name], given.count)
+    for model, asset in zip(models, assets(models), strict=True):
+        hangs = taxonomy.load().categories[model.category].mount == "wall"
+        made.append((caption(model), portrait(asset, given.cell, given.spp, on_wall=hangs)))
+    return made
+
+
+def caption(model: Model) -> str:
+    """Return what a model is, in words."""
+    return f"{model.category.replace('_', ' ')}: {model.form.replace('_', ' ')} | {model.style}"
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--only", default=",".join(SHEETS))
+    parser.add_argument("--only", default=",".join([*SHEETS, *OPEN_SHEETS]))
     parser.add_argument("--count", type=int, default=30)
     parser.add_argument("--columns", type=int, default=6)
     parser.add_argument("--spp", type=int, default=24)
@@ -101,19 +135,13 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     given = parser.parse_args()
     given.folder.mkdir(parents=True, exist_ok=True)
-    library = catalogue(given.seed).future
     for name in given.only.split(","):
         start = time.process_time()
-        models = chosen(library, SHEETS[name], given.count)
-        pictures = []
-        for model, asset in zip(models, assets(models), strict=True):
-            hangs = taxonomy.load().categories[model.category].mount == "wall"
-            picture = portrait(asset, given.cell, given.spp, on_wall=hangs)
-            pictures.append((f"{model.category.replace('_', ' ')}: {model.form.replace('_', ' ')} | {model.style}", picture))
-        sheet = contact_sheet(pictures, given.columns, given.cell)
+        made = pictures(name, given)
+        sheet = contact_sheet(made, given.columns, given.cell)
         path = given.folder / f"library_{name}.png"
         sheet.quantize(256, dither=Image.Dither.NONE).save(path, optimize=True)
-        print(f"{path}: {len(models)} models, {path.stat().st_size / 1e6:.2f} MB, {time.process_time() - start:.0f} CPU s", flush=True)
+        print(f"{path}: {len(made)} pictures, {path.stat().st_size / 1e6:.2f} MB, {time.process_time() - start:.0f} CPU s", flush=True)
 
 
 if __name__ == "__main__":
