@@ -37,7 +37,15 @@ def _counted(marks: list[Mark]) -> list[Mark]:
             made[-1] = replace(mark, value="bedroom")
             if not (k + 1 < len(marks) and marks[k + 1].kind == "home"):
                 made.append(Mark("home", "", 0.0, False, mark.first, mark.first, ""))
+        elif mark.kind == "amount" and mark.value == "area" and _summed(marks, k):
+            made[-1:] = [Mark("home", "", 0.0, False, mark.first, mark.first, ""), mark]
     return made
+
+
+def _summed(marks: list[Mark], k: int) -> bool:
+    """Whether counts of rooms run up to the amount at k: "两房一厅 80平"."""
+    kinds = [m.kind for m in marks[max(0, k - 4) : k]]
+    return kinds[-4:] == ["num", "room", "num", "room"]
 
 
 def _between(marks: list[Mark]) -> list[Mark]:

@@ -12,6 +12,7 @@ from pipeline.floorplan.language.text import HAN, Token, fold, tokenize
 READ = "English, German, Spanish and Chinese"
 ENOUGH = 0.5  # share of words that must be known
 MOST = 400  # words that are looked at
+SURE, REPAIRED = 0.75, 80  # share of words that settles it; words that are repaired otherwise
 ROOMS_WEIGHT = 2.0
 
 
@@ -25,8 +26,12 @@ def detect(prompt: str) -> Language:
     foreign = _foreign(tokens)
     if han and han >= 0.3 * len(texts) and not foreign:
         return "zh"
-    scores = {language: _score(language, texts) for language in LANGUAGES if language != "zh"}
+    scores = {language: _score(language, texts, repaired=False) for language in LANGUAGES if language != "zh"}
     best = max(scores, key=lambda x: scores[x][0])
+    if scores[best][1] < SURE * len(texts):  # typing errors, or another language
+        texts = texts[:REPAIRED]
+        scores = {language: _score(language, texts, repaired=True) for language in LANGUAGES if language != "zh"}
+        best = max(scores, key=lambda x: scores[x][0])
     known, strong = scores[best][1], scores[best][2]
     share = (known + min(han, 2)) / len(texts)
     if foreign > 0.3 * len(texts) or share < ENOUGH * (0.6 if strong >= 2 and len(texts) < 8 else 1.0):
@@ -44,7 +49,7 @@ def _foreign(tokens: list[Token]) -> int:
     return sum(t.text[0].isalpha() and not re.match(rf"[a-zà-ÿœß{HAN}]", t.text) for t in tokens)
 
 
-def _score(language: Language, texts: list[str]) -> tuple[float, int, int]:
+def _score(language: Language, texts: list[str], *, repaired: bool) -> tuple[float, int, int]:
     """Return (score, known words, words of rooms and homes)."""
     lex = lexicon(language)
     known = strong = 0
@@ -53,7 +58,7 @@ def _score(language: Language, texts: list[str]) -> tuple[float, int, int]:
         if text in lex.vocabulary:
             parts: tuple[str, ...] = (text,)
         else:
-            parts = resolve(text, language)
+            parts = resolve(text, language) if repaired else (text,)
             if parts == (text,):
                 continue
         known += 1

@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from pipeline.errors import RefusedError
+from pipeline.floorplan.program import MAX_ROOMS
+
+MOST = MAX_ROOMS + 1
+
 NAMES = {
     "living_room": "living", "family_room": "family", "kitchen": "kitchen", "dining_room": "dining", "bedroom": "bed", "bathroom": "bath", "wc": "wc", "hallway": "hall", "entry": "entry", "closet": "closet", "utility": "utility", "storage": "storage",
     "garage": "garage", "balcony": "balcony", "staircase": "stairs", "office": "office", "studio_room": "studio", "media_room": "media", "gym": "gym", "library": "library", "playroom": "playroom", "meeting_room": "meeting", "workshop": "workshop",
@@ -53,6 +58,8 @@ class Inventory:
 
     def add(self, kind: str, role: str, surface: str, level: int | None, open_slot: bool = False) -> Named:
         """Add a room."""
+        if len(self.rooms) >= MOST:
+            raise RefusedError(f"more than {MAX_ROOMS} rooms are asked for", f"ask for {MAX_ROOMS} at most")
         count = len(self.of(kind)) + 1
         base = NAMES[kind]
         name = base if count == 1 else f"{base}_{count}"

@@ -61,7 +61,7 @@ def _belongings(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
                     near = [r for r in hosts if not _has_bath(draft, stock, r.id)] or hosts
                     _give(draft, stock, room.id, near[0].id, fact)
                 elif room.type == "bedroom":
-                    slots = [r for r in stock.of("bathroom") if r.open_slot and not draft.linked(r.id)]
+                    slots = [r for r in stock.of("bathroom") if (r.open_slot or r.whole) and not r.role and not draft.linked(r.id)]
                     loose = [r for r in stock.of("bathroom") if r.role == "ensuite" and not draft.linked(r.id)]
                     bath = (loose or slots or [stock.add("bathroom", "", "en suite", room.level)])[0]
                     bath.open_slot = False

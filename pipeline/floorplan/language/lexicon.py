@@ -103,7 +103,7 @@ class Lexicon:
     adverbs: frozenset[str] = frozenset()
     endings: tuple[str, ...] = ()
     abbreviations: frozenset[str] = frozenset()
-    frames: tuple[tuple[tuple[str, ...], tuple[str, ...], str], ...] = ()
+    frames: Mapping[str, tuple[tuple[tuple[str, ...], tuple[str, ...], str], ...]] = field(default_factory=dict)  # by the first word
     looks: tuple[_Look, ...] = ()
     range_from: frozenset[str] = frozenset()
     range_to: frozenset[str] = frozenset()
@@ -287,8 +287,9 @@ def lexicon(language: Language) -> Lexicon:
             first, second = phrase.split("...")
             for a in _spellings(first.strip(), language):
                 frames += [(a, b, cue) for b in _spellings(second.strip(), language)]
-    made.frames = tuple(sorted(frames, key=lambda f: -len(f[0]) - len(f[1])))
-    made.vocabulary.update(w for a, b, _ in made.frames for w in (*a, *b))
+    frames.sort(key=lambda f: -len(f[0]) - len(f[1]))
+    made.frames = {word: tuple(f for f in frames if f[0][0] == word) for word in {f[0][0] for f in frames}}
+    made.vocabulary.update(w for a, b, _ in frames for w in (*a, *b))
     return made
 
 

@@ -201,7 +201,7 @@ def _amount(marks: Sequence[Mark], k: int, lex: Lexicon) -> tuple[Mark, int] | N
     low, i = marks[i].number, i + 1
     high = side = None
     unit = None
-    if i < len(marks) and marks[i].kind == "hyphen":
+    if i + 1 < len(marks) and marks[i].kind in {"hyphen", "dash"} and marks[i + 1].kind == "unit":
         i += 1
     if i < len(marks) and marks[i].kind == "unit":
         unit, i = marks[i], i + 1

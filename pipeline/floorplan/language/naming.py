@@ -180,7 +180,7 @@ def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -
             return found
     elif same:
         return _known(state, sentence, k, level)
-    count = int(e.number or (2 if e.plural and e.type not in PLURAL_NAMES else 1))
+    count = int(e.number or (2 if "both" in e.det or (e.plural and e.type not in PLURAL_NAMES) else 1))
     return [stock.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
 
 
@@ -269,7 +269,10 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
     e, stock = sentence[k], state.inventory
     same = stock.of(e.type)
     if level is not None:
-        same = [r for r in same if r.level in {None, level}] or same
+        here = [r for r in same if r.level in {None, level}]
+        if not here and not e.definite and not e.plural:
+            return [stock.add(e.type, "", e.text, level)]
+        same = here or same
     many = e.plural or bool(e.det & {"all", "both", "each"}) or (e.number or 0) > 1
     if many:
         number = int(e.number or 0)
@@ -284,7 +287,7 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
             loose = [r for r in same if r.open_slot]
             return last if len(last) == number else (loose if len(loose) >= number else same)[:number]
         return same
-    if not e.det and _repeated_bare(sentence, k):
+    if not e.det and (_repeated_bare(sentence, k) or (e.type == "storage" and all(e.text != r.surface for r in same))):
         return [stock.add(e.type, "", e.text, level)]
     if len(same) > 1:
         word = e.text.rsplit(maxsplit=1)[-1]
@@ -297,10 +300,13 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
 
 def _repeated_bare(sentence: list[Element], k: int) -> bool:
     """Whether a list names the same kind of room again: "bedroom, bedroom, bath"."""
-    for e in reversed(sentence[:k]):
+    if sentence[k].type in ALONE:
+        return False
+    for j in range(k - 1, -1, -1):
+        e = sentence[j]
         if e.kind == "np":
             if e.type == sentence[k].type:
-                return True
+                return not j or sentence[j - 1].kind not in {"cue", "enter", "det"}
         elif e.kind not in {"comma", "and", "amount", "open", "close"}:
             return False
     return False

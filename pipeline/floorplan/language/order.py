@@ -40,7 +40,7 @@ def _frames(marks: list[Mark], heard: Words) -> list[Mark]:
 
 
 def _frame(marks: list[Mark], k: int, heard: Words) -> tuple[str, int, int, int] | None:
-    for first, second, cue in heard.lexicon.frames:
+    for first, second, cue in heard.lexicon.frames.get(marks[k].text.split(" ", 1)[0], ()):
         start = _matches(marks, k, first)
         if start is None:
             continue

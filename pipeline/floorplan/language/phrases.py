@@ -10,7 +10,7 @@ from pipeline.floorplan.language.marks import Mark, Words
 PREMODIFIERS = {"det", "num", "ord", "adj", "size", "clf", "times"}
 DROPPED = {"fill", "adverb", "word", "clf", "hyphen", "bullet", "unit", "times", "dash", "num", "ignored", "bound", "ord"}
 MOST_INDEX = 12
-OPENED = ("open", "combined")
+RELATIVES = {"der", "die", "das", "dem", "den", "that"}
 
 
 @dataclass(slots=True)
@@ -115,7 +115,7 @@ def _elements(marks: list[Mark]) -> list[Element]:
             made.append(phrase)
             pre = []
             continue
-        if mark.kind == "pron" and _heads_phrase(marks, k + 1):
+        if mark.kind == "pron" and _heads_phrase(marks, k + 1) and marks[k + 1].value != "bathroom/ensuite":
             mark = _as_determiner(mark)
         if mark.kind == "home":
             pre, sized = [p for p in pre if p.kind != "amount"], [p for p in pre if p.kind == "amount"]
@@ -173,6 +173,8 @@ def _loose(pre: Sequence[Mark]) -> list[Element]:
     for e in made:
         if e.kind == "num":  # "two baths, one en suite"
             e.kind, e.value = "pron", "one"
+        elif e.kind == "det" and e.text in RELATIVES:  # "ein Bad, das vom Flur erreichbar ist"
+            e.kind = "relative"
     return made
 
 

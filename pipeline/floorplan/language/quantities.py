@@ -7,6 +7,7 @@ from pipeline.floorplan.language.facts import Group, Reading
 from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.phrases import Element
 
+LISTED = 1.3  # the same behind a list of three rooms and more
 WHOLE = 1.6  # an area of so many usual areas of the room in front of it, set off by a comma, is the home's
 
 
@@ -48,6 +49,9 @@ def attach(state: Reading, sentence: list[Element], k: int, mark: Mark, latest: 
                     (Mark(mark.kind, x.value, mark.number, False, mark.first, mark.last, mark.text, bound=mark.bound), None)
                 )
                 return
+    if mark.value == "area" and k and sentence[k - 1].kind == "cue" and sentence[k - 1].value == "in":
+        state.amounts.append((mark, None))  # "ten rooms in 40 m2"
+        return
     rooms = tuple(i for i in latest if not i.startswith(("*", "<")))
     if home or not rooms:
         state.amounts.append((mark, None))
@@ -69,4 +73,6 @@ def _closes(state: Reading, sentence: list[Element], k: int, mark: Mark, rooms: 
     named = [x for x in sentence[:k] if x.kind == "np"]
     home = any(x.kind == "home" for x in sentence[:k])
     measured = any(x.amounts for x in named)
+    if len(named) > 2 and not measured and mark.number > LISTED * usual:
+        return True
     return not measured and mark.number > WHOLE * usual and (home or (len(named) > 1 and mark.number > 2.5 * usual))

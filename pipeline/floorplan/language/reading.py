@@ -28,6 +28,7 @@ def _studio(state: Reading, sentences: list[list[Element]]) -> None:
     """Let the kitchenette of a studio be a function of its one room, not a kitchen of its own."""
     everything = [e for s in sentences for e in s]
     one = any(e.kind == "home" and e.value for e in everything) or any(e.kind == "np" and e.type == "studio_room" for e in everything)
+    one = one or any(e.kind == "amount" and e.value == "rooms" and e.number == 1 for e in everything)
     if not one or any(e.kind == "np" and e.type == "bedroom" and not e.banned for e in everything):
         return
     for e in everything:

@@ -12,7 +12,7 @@ from pipeline.floorplan.language.phrases import Element
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
 
-WIDE = {"leads", "between", "chain", "enter", "avoid", "away", "cmp_all", "except"}
+WIDE = {"leads", "between", "chain", "avoid", "except"}
 
 
 def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, PLR0912 - one answer per kind of cue
@@ -58,7 +58,9 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     )
     if e.value == "chain":
         left = clause.objects or left
-    if e.value == "from" and _leads_on(clause, j):
+    if e.value == "from" and left and _entered(clause, j):
+        j += 1
+    elif e.value == "from" and _leads_on(clause, j):
         clause.subject = clause.latest = group
         clause.objects = ()
         clause.run = []
@@ -95,6 +97,14 @@ def _leads_on(clause: Clause, j: int) -> bool:
         if x.kind not in {"verb", "det", "flag", "adj", "word", "pron"}:
             return False
     return False
+
+
+def _entered(clause: Clause, j: int) -> bool:
+    """Whether "reached from the kitchen" ends there: a verb of going without an object."""
+    if j >= len(clause.sentence) or clause.sentence[j].kind != "cue" or clause.sentence[j].value != "leads":
+        return False
+    ahead = clause.sentence[j + 1] if j + 1 < len(clause.sentence) else None
+    return ahead is None or ahead.kind in {"comma", "stop", "and"}
 
 
 def _inverted(clause: Clause, k: int, j: int) -> bool:
@@ -210,6 +220,8 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
         elif e.kind == "every" and not group:
             clause.state.understood(e.first, e.last)
             return ("*",), index + 1
+        elif e.kind == "cue" and e.value in {"in", "leads"} and joined and cue in WIDE:
+            pass
         elif e.kind in {"comma", "and", "or"}:
             if not group and e.kind == "comma":
                 break
@@ -236,6 +248,14 @@ def _continues(clause: Clause, index: int, cue: str, joined: str, first: Element
         ahead.kind in {"verb", "cmp", "neg", "relative"} or (ahead.kind == "cue" and ahead.value != "has" and cue != "avoid")
     )
     if starts and not (ahead is not None and ahead.kind == "relative"):
+        return False
+    if (
+        cue == "leads"
+        and joined == "comma"
+        and e.number is not None
+        and first.number is None
+        and not any(x.kind == "and" for x in sentence[index:])
+    ):
         return False
     if cue in WIDE:
         return not (cue == "between" and joined == "comma")

@@ -39,7 +39,7 @@ def resolve(word: str, language: Language) -> tuple[str, ...]:  # noqa: PLR0911 
         return (stem,)
     if word.endswith("'s") and word[:-2] in lex.vocabulary:
         return (word[:-2],)
-    near, gap = _nearest(word, lex.targets)
+    near, gap = _nearest(word, language)
     if gap == 1 and near:
         return (near,)
     parts = _split(word, lex)
@@ -49,7 +49,7 @@ def resolve(word: str, language: Language) -> tuple[str, ...]:  # noqa: PLR0911 
         return (near,)
     for ending in lex.endings:  # mistyped and inflected
         if word.endswith(ending) and len(word) - len(ending) >= SHORTEST + 1:
-            near, _ = _nearest(word[: -len(ending)], lex.targets)
+            near, _ = _nearest(word[: -len(ending)], language)
             if near:
                 return (near,)
     return (word,)
@@ -82,29 +82,54 @@ def _strong(language: Language) -> frozenset[str]:
     return frozenset(lexicon(language).targets)
 
 
-def _nearest(word: str, targets: Sequence[str]) -> tuple[str, int]:
+def _nearest(word: str, language: Language) -> tuple[str, int]:
     """Return the one known word that is near enough, and its distance; ("", 9) where there is none or two are as near."""
     allowed = 0 if len(word) < SHORTEST else (1 if len(word) < LONG - 1 else 2)
     best, least, tied = "", 9.0, False
-    for target in targets:
-        if abs(len(target) - len(word)) > allowed:
-            continue
-        most = 1 if len(target) < LONG - 1 and allowed == 2 else allowed
-        if len(word) < LONG and most == 2 and sorted(word) != sorted(target):
-            most = 1
-        gap = distance(word, target, most)
-        if gap > most or (len(target) == SHORTEST and len(word) <= SHORTEST and _risky(word, target)):
-            continue
-        if word[0] != target[0] and (gap > 1 or len(word) < 6):
-            continue
-        cost = gap - (0.3 if _slip(word, target) else 0.0) + (0.2 if word[0] != target[0] else 0.0)
-        if cost < least:
-            best, least, tied = target, cost, False
-        elif cost == least and target != best:
-            tied = True
+    mask, shelves = _letters(word), _shelves(language)
+    for size in range(len(word) - allowed, len(word) + allowed + 1):
+        for target, letters in shelves.get(size, ()):
+            if (mask ^ letters).bit_count() > 2 * allowed:  # an edit changes two letters at most
+                continue
+            cost = _cost(word, target, allowed)
+            if cost < least:
+                best, least, tied = target, cost, False
+            elif cost == least and target != best:
+                tied = True
     if tied and least > 1.5:
         return "", 9
     return best, (1 if least <= 1.2 else 2) if best else 9
+
+
+def _cost(word: str, target: str, allowed: int) -> float:
+    """Return how far a known word is: edits, usual slips cheaper, another first letter dearer; 9 where it is too far."""
+    most = 1 if len(target) < LONG - 1 else allowed
+    if len(word) < LONG and most == 2 and sorted(word) != sorted(target):
+        most = 1
+    gap = distance(word, target, most)
+    if gap > most or (len(target) == SHORTEST and len(word) <= SHORTEST and _risky(word, target)):
+        return 9.0
+    other = word[0] != target[0]
+    if other and (gap > 1 or len(word) < 6):
+        return 9.0
+    return gap - (0.3 if _slip(word, target) else 0.0) + (0.2 if other else 0.0)
+
+
+def _letters(word: str) -> int:
+    """Return the set of a word's letters as bits."""
+    made = 0
+    for char in word:
+        made |= 1 << (ord(char) & 31)
+    return made
+
+
+@functools.cache
+def _shelves(language: Language) -> dict[int, list[tuple[str, int]]]:
+    """Return the words worth a repair by length, each with its letters."""
+    made: dict[int, list[tuple[str, int]]] = {}
+    for target in lexicon(language).targets:
+        made.setdefault(len(target), []).append((target, _letters(target)))
+    return made
 
 
 def _risky(word: str, target: str) -> bool:
