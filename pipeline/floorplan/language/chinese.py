@@ -12,7 +12,7 @@ OF = "的"
 
 def rearrange(marks: list[Mark]) -> list[Mark]:
     """Return the marks in the order of head, cue, object."""
-    return _possessed(_measured(_between(_counted(marks))))
+    return _times(_possessed(_measured(_between(_counted(marks)))))
 
 
 def _counted(marks: list[Mark]) -> list[Mark]:
@@ -58,7 +58,21 @@ def _between(marks: list[Mark]) -> list[Mark]:
                 start = names[-2]
                 while start and made[start - 1].kind in {"num", "clf", "adj", "size", "det"}:
                     start -= 1
-                made = [*made[:start], mark, *made[start:k], *made[k + 1 :]]
+                rest = made[k + 1 :]
+                if rest and rest[0].kind in {"cue", "verb"} and rest[0].value in {"has", ""}:
+                    rest = rest[1:]
+                made = [*made[:start], mark, *made[start:k], *rest]
+    return made
+
+
+def _times(marks: list[Mark]) -> list[Mark]:
+    """Read "客厅是厨房的两倍": the factor stands in front of what it is measured by."""
+    made = list(marks)
+    for k, mark in enumerate(made):
+        back = k - 2 if k > 1 and made[k - 1].text == OF else k - 1
+        compared = any(m.kind == "cmp" for m in made[max(0, k - 4) : k])
+        if mark.kind == "factor" and back >= 0 and made[back].kind in HEADS and not compared:
+            made.insert(back, made.pop(k))
     return made
 
 

@@ -175,6 +175,9 @@ class Clause:
         negative = self.negated(k)
         if e.value == "daylight" and rooms:
             self.state.say("no_window" if negative else "window", rooms, (), e)
+        elif e.value == "too" and self.run and self.state.facts:
+            last = self.state.facts[-1]
+            self.state.say(last.what, self.latest, last.b, e)
         elif e.value == "only":
             self.only = e
             if self.state.facts and self.state.facts[-1].what in {"door", "leads"} and k and self.sentence[k - 1].kind == "np":
@@ -215,7 +218,7 @@ class Clause:
     def _comma(self, k: int, _: Element) -> int:
         if not any(x.kind in {"cue", "cmp"} for x in self.sentence[k + 1 : k + 4]):
             self.negative = None
-        if self.waiting and self.subject and self.waiting[0].value != "from" and self.verb:
+        if self.waiting and self.subject and self.waiting[0].value != "from" and (self.verb or self.waiting[0].value == "between"):
             self._complete()
         return k + 1
 
@@ -277,7 +280,7 @@ class Clause:
     def _factor(self, k: int, e: Element) -> int:
         self.state.understood(e.first, e.last)
         self.factor = e
-        ahead = self.sentence[k + 1] if k + 1 < len(self.sentence) else None
+        ahead = next((x for x in self.sentence[k + 1 :] if x.kind not in {"relative", "det"}), None)
         if ahead is not None and ahead.kind == "np":
             return self._cmp(k, e)
         return k + 1
@@ -285,7 +288,8 @@ class Clause:
     def _cmp(self, k: int, e: Element) -> int:
         """Read "at least 1.5 times as large as the largest bedroom"."""
         self.state.understood(e.first, e.last)
-        left = self.subject if (self.verb and self.subject) else (self.latest or self.subject)
+        listed = tuple(i for x in self.run for i in x.ids)
+        left = listed or self.subject or self.latest
         if e.value == "alike":
             rooms = tuple(i for x in self.run for i in x.ids) if len(self.latest) < 2 else self.latest
             rooms = rooms if len(rooms) > 1 else self.subject

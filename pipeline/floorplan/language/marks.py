@@ -41,6 +41,7 @@ class Mark:
     only: bool = False
     high: float | None = None
     bound: str = ""
+    total: bool = False  # said of everything together
     side: float | None = None  # the shorter side of "4 x 5 m"
     spans: tuple[tuple[int, int], ...] = field(default=())
 
@@ -182,7 +183,7 @@ def _amounts(marks: Sequence[Mark], heard: Words) -> list[Mark]:
 
 
 def _amount(marks: Sequence[Mark], k: int, lex: Lexicon) -> tuple[Mark, int] | None:  # noqa: PLR0912 - one branch per case: a grammar
-    bound, i, ranged = "", k, False
+    bound, i, ranged, total = "", k, False, False
     while i < len(marks) and (
         marks[i].text in lex.bounds
         or marks[i].text in lex.range_from
@@ -193,6 +194,7 @@ def _amount(marks: Sequence[Mark], k: int, lex: Lexicon) -> tuple[Mark, int] | N
                 lex.bounds[marks[i].text], bound or "about"
             )
         ranged = ranged or marks[i].text in lex.range_from
+        total = total or (marks[i].kind == "flag" and marks[i].value == "total")
         i += 1
         if i - k > 4:
             return None
@@ -227,4 +229,4 @@ def _amount(marks: Sequence[Mark], k: int, lex: Lexicon) -> tuple[Mark, int] | N
     if value == "length" and factor >= 0.3 and low * factor >= USUAL_HEIGHT:
         value, factor = "area", (1.0 if factor == 1.0 else 0.092903)
     top = None if high is None else high * factor
-    return Mark("amount", value, low * factor, high=top, bound=bound), i
+    return Mark("amount", value, low * factor, high=top, bound=bound, total=total), i

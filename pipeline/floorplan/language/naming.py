@@ -27,7 +27,7 @@ def introduce(state: Reading, sentences: list[list[Element]]) -> None:
                     and e.introduces
                     and not e.ids
                     and not e.suite
-                    and not (suites and e.type == "bedroom")
+                    and not (suites and e.type == "bedroom" and e.number is None)
                     and _whole(sentence, k) == whole
                 ):
                     made = _count_all(state, e) if whole else _introduced(state, sentence, k, _backward(sentence, k, level))
@@ -75,6 +75,8 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
     same = stock.of(e.type)
     slots = [r for r in same if r.open_slot and (level is None or r.level in {None, level}) and not r.role]
     role = e.role if e.role in ROLES else ""
+    if slots and _predicative(sentence, k):
+        return [_close(slots[0], role, e.text)]
     if "another" not in e.det:
         if role and role != "ensuite":
             here = [r for r in same if r.role == role]
@@ -92,6 +94,11 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
         if count == 1 and e.number is None and not role and e.type in ALONE and same and not _repeated(sentence, k):
             return same[:1]
     return [stock.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
+
+
+def _predicative(sentence: list[Element], k: int) -> bool:
+    """Whether a phrase says what one of several is: "four bedrooms, one of which is a guest room"."""
+    return k > 1 and sentence[k - 1].kind == "verb" and sentence[k - 2].kind == "pron" and sentence[k - 2].value == "one"
 
 
 def _listed(sentence: list[Element], k: int, room: Named) -> bool:
@@ -149,7 +156,7 @@ def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -
     if e.suite:
         return _suites(state, e, role, level)
     suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), None) if e.type == "bedroom" and not role else None
-    if suites and not e.ordinal:
+    if suites and not e.ordinal and e.number is None:
         return [stock.get(i) for i in suites]
     if e.type == "hallway" and e.definite:
         word = e.text.rsplit(maxsplit=1)[-1]

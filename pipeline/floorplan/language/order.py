@@ -8,7 +8,7 @@ from dataclasses import replace
 from pipeline.floorplan.language.chinese import rearrange as chinese
 from pipeline.floorplan.language.marks import Mark, Words
 
-ENDS = {"stop", "line", "colon"}
+ENDS = {"stop", "line", "colon", "comma"}
 FARTHEST = 14  # marks between the two parts of a frame
 
 
@@ -85,7 +85,23 @@ def _german(marks: list[Mark]) -> list[Mark]:
             and made[k + 1].text.endswith("zimmer")
         ):
             made[k + 1] = replace(made[k + 1], plural=mark.text == "die")
+    for k in range(len(made)):
+        _final(made, k)
     return made
+
+
+HAVING = {"hat", "haben", "besitzt", "besitzen", "bekommt", "bekommen", "hatte"}
+
+
+def _final(made: list[Mark], k: int) -> None:
+    """Put a "hat" at the end of a clause in front of what is had: "eines, das ein eigenes Bad hat"."""
+    ahead = made[k + 1].kind if k + 1 < len(made) else "stop"
+    if made[k].text not in HAVING or ahead not in {"comma", "stop", "join", "line"} or not k or made[k - 1].kind not in {"room", "suite"}:
+        return
+    start = k - 1
+    while start and made[start - 1].kind in {"det", "num", "adj", "size", "ord", "clf"}:
+        start -= 1
+    made.insert(start, made.pop(k))
 
 
 def _spanish(marks: list[Mark]) -> list[Mark]:

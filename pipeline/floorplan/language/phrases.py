@@ -10,6 +10,7 @@ from pipeline.floorplan.language.marks import Mark, Words
 PREMODIFIERS = {"det", "num", "ord", "adj", "size", "clf", "times"}
 DROPPED = {"fill", "adverb", "word", "clf", "hyphen", "bullet", "unit", "times", "dash", "num", "ignored", "bound", "ord"}
 MOST_INDEX = 12
+WITH = {"mit", "with", "con"}
 RELATIVES = {"der", "die", "das", "dem", "den", "that"}
 
 
@@ -112,6 +113,9 @@ def _elements(marks: list[Mark]) -> list[Element]:
                 made[-2].adjectives.add("combined")
             phrase = _phrase(heads[-1], pre, compound)
             k = _behind(marks, k + 1, phrase, after_numbers)
+            while len(heads) > 1 and k < len(marks) and marks[k].kind == "amount":
+                made[-2 * len(heads) + 2].amounts.append(marks[k])
+                k += 1
             made.append(phrase)
             pre = []
             continue
@@ -124,13 +128,13 @@ def _elements(marks: list[Mark]) -> list[Element]:
             pre = []
             k += 1
             continue
-        behind = bool(made) and made[-1].kind in {"np", "home"} and not pre
+        behind = bool(made) and made[-1].kind in {"np", "home"} and not pre and not _ahead(marks, k)
         if mark.kind == "amount" and behind and mark.value in {"area", "length"}:
             made[-1].amounts.append(mark)
             made[-1].last = max(made[-1].last, mark.last) if made[-1].last == mark.first else made[-1].last
         elif mark.kind in PREMODIFIERS or (mark.kind == "amount" and mark.value == "area"):
             pre.append(mark)
-        elif mark.kind in {"fill", "adverb", "look", "hyphen"} and pre:
+        elif mark.kind in {"fill", "adverb", "look", "hyphen", "dash"} and pre:
             if mark.kind == "look":
                 made.append(_plain(mark))
         else:
@@ -140,6 +144,13 @@ def _elements(marks: list[Mark]) -> list[Element]:
                 made.append(_plain(mark))
         k += 1
     return made + _loose(pre)
+
+
+def _ahead(marks: Sequence[Mark], k: int) -> bool:
+    """Whether the amount at k is said of the room that follows: "mit 25 m² großem Wohnzimmer"."""
+    if not _heads_phrase(marks, k + 1) or marks[k].kind != "amount":
+        return False
+    return marks[k + 1].kind == "size" or marks[k].text.split()[0] in WITH
 
 
 def _heads_phrase(marks: Sequence[Mark], k: int) -> bool:

@@ -21,6 +21,10 @@ def point(state: Reading, before: list[Element], e: Element, but: Group) -> Grou
         single = dict.fromkeys(i for g in reversed(heard) for i in g if i not in but)
         return pair if pair and pair == heard[-1] else (tuple(single)[:2] if len(single) > 1 else pair)
     plural: Group = next((g for g in reversed(heard) if len(g) > 1), heard[-1] if heard else ())
+    if e.value == "group" and len(plural) == 1 and not plural[0].startswith("*"):
+        kind = state.inventory.get(plural[0]).type
+        same = [i for g in heard for i in g if not i.startswith("*") and state.inventory.get(i).type == kind]
+        plural = tuple(dict.fromkeys(same))
     if e.value in {"one", "rest", "some"} and plural and not plural[0].startswith("*"):
         return _part(state, e, plural)
     return plural

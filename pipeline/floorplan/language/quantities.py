@@ -15,13 +15,18 @@ def belongs(state: Reading, sentence: list[Element], e: Element, mark: Mark) -> 
     """Whether an amount right behind a room measures the home: "... kitchen and bath 85 m²"."""
     if mark.value != "area" or not e.ids or mark.last <= e.first:
         return False
+    if mark.total:
+        return True
     usual = sum(DEFAULTS[state.inventory.get(i).type].area for i in e.ids)
     k = next(i for i, x in enumerate(sentence) if x is e)
     rooms = [x for x in sentence if x.kind == "np"]
     measured = [x for x in rooms if x.amounts]
     last = not any(x.kind == "np" for x in sentence[k + 1 :])
+    listed = len(rooms) > 2 or (
+        any(x.kind == "home" and not x.amounts for x in sentence[:k]) and mark.first == e.last and mark.text[0].isdigit()
+    )
     total = k + 1 < len(sentence) and sentence[k + 1].kind == "flag" and sentence[k + 1].value == "total"
-    return total or (len(rooms) > 2 and len(measured) == 1 and last and mark.number > 2.5 * usual)
+    return total or (listed and len(measured) == 1 and last and mark.number > 2.5 * usual)
 
 
 def attach(state: Reading, sentence: list[Element], k: int, mark: Mark, latest: Group, home: bool = False) -> None:  # noqa: PLR0911 - one branch per case: a grammar
@@ -37,7 +42,7 @@ def attach(state: Reading, sentence: list[Element], k: int, mark: Mark, latest: 
     if mark.value == "car":
         return
     around = [x for x in sentence[max(0, k - 2) : k + 2] if x.kind == "flag"]
-    if any(x.value == "total" for x in around):
+    if mark.total or any(x.value == "total" for x in around):
         state.amounts.append((mark, None))
         return
     if mark.value == "length":

@@ -24,7 +24,7 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
         group, j = objects(clause, k + 1, "except", ())
         if group:
             state.say("except", group, (), e)
-            clause.run, clause.latest = [], group
+            clause.run, clause.latest = [x for x in clause.sentence[k:j] if x.kind == "np"][-1:], group
         return max(j, k + 1)
     left = _left(clause, k, e)
     group, j = objects(clause, k + 1, e.value, left)
@@ -152,6 +152,8 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one b
     if not clause.run:
         return clause.subject
     before = clause.sentence[k - 1] if k else None
+    if before is not None and before.kind == "comma" and clause.objects and set(clause.objects) == {i for x in clause.run for i in x.ids}:
+        return clause.subject  # "a guest room with its own bath, away from ..."
     apart = before is not None and before.kind == "comma" and len(clause.run) > 1
     listed = [i for x in clause.run for i in x.ids]
     last = clause.run[-1]
@@ -160,6 +162,11 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one b
     if e.value == "avoid" and clause.objects:
         return clause.subject
     verbal = clause.verb or e.value in {"leads", "away"} or any(x.det & {"both", "all"} for x in clause.run)
+    coordinate = len(clause.run) < 2 or any(
+        x.kind in {"and", "or"} for x in clause.sentence[_place(clause, clause.run[-2]) : _place(clause, last)]
+    )
+    if not coordinate and not any(x.det & {"both", "all"} for x in clause.run):
+        return tuple(last.ids)
     if verbal or e.value == "wall":
         return tuple(_since_clause(clause))
     tail = [last]

@@ -10,6 +10,7 @@ from pipeline.floorplan.language.draft import Draft
 from pipeline.floorplan.language.facts import HALLS, Reading
 from pipeline.floorplan.language.inventory import Named
 from pipeline.floorplan.language.marks import Mark
+from pipeline.floorplan.language.text import spread
 from pipeline.floorplan.program import MAX_ROOMS, Evidence
 
 ABOUT = 0.1  # "about 75 m2" allows this much either way
@@ -92,7 +93,7 @@ def fill(draft: Draft, state: Reading) -> None:
     if count > MAX_ROOMS:
         raise RefusedError(f"{count} rooms are asked for", f"ask for {MAX_ROOMS} at most")
     if language in {"de", "zh"} and mark.text.split()[-1] not in {"raeume", "个 房 间"} and count <= 9:
-        _living_rooms(state, count)
+        _living_rooms(draft, state, count)
         return
     if count < 2:
         return
@@ -102,10 +103,24 @@ def fill(draft: Draft, state: Reading) -> None:
     draft.fields["only"] = True
 
 
-def _living_rooms(state: Reading, count: int) -> None:
+def _words(draft: Draft, state: Reading, rooms: list[Named]) -> list[Evidence]:
+    found = [Evidence.model_validate(e) for e in draft.evidence if e["field"] == "rooms"]
+    spans = {r.span for r in rooms if r.span is not None}
+    for first, last in sorted(spans):
+        start, end = spread(state.heard.tokens[first:last])
+        found.append(Evidence(start=start, end=end, text=draft.prompt[start:end], field="rooms"))
+    return found
+
+
+def _living_rooms(draft: Draft, state: Reading, count: int) -> None:
     """German usage counts rooms to live and sleep in: three are a living room and two bedrooms; one is a studio."""
     stock = state.inventory
     lived = {"living_room", "bedroom", "office", "dining_room", "playroom", "library", "studio_room", "family_room"}
+    beds = [r for r in stock.of("bedroom") if r.stated]
+    if len(beds) > count:
+        raise ImpossibleError(
+            f"{len(beds)} bedrooms are asked for in a home of {count} rooms", "keep one of the two counts", _words(draft, state, beds)
+        )
     if count == 1 and not stock.of("bedroom"):
         state.studio = state.studio or state.homes[0] if state.homes else state.studio
         if not stock.of("studio_room") and not stock.of("living_room"):
