@@ -23,7 +23,7 @@ def assemble(state: Reading, parsed: list[list[Element]], marks: list[Mark]) -> 
     draft = Draft(state.heard)
     stock = state.inventory
     sizes.fill(draft, state)
-    _studio(state)
+    _studio(draft, state)
     for kind, e in state.banned:
         draft.forbid("room_type", kind, None, None, e.first, e.last)
     _beyond(draft, state)
@@ -102,7 +102,7 @@ def _place(draft: Draft, room: Named) -> tuple[int, int]:
     return draft.tokens[room.span[0]].start, draft.tokens[room.span[1] - 1].end
 
 
-def _studio(state: Reading) -> None:
+def _studio(draft: Draft, state: Reading) -> None:
     """Make a studio without a named main room one room to live and sleep in."""
     stock = state.inventory
     if state.studio is not None and not stock.of("studio_room") and not stock.of("bedroom"):
@@ -113,5 +113,11 @@ def _studio(state: Reading) -> None:
         room.span = room.span or (state.studio.first, state.studio.last)
         if not stock.of("kitchen"):
             room.functions.add("cooking")
+    beds = [r for r in stock.of("bedroom") if r.open_slot or r.stated]
+    if state.studio is not None and len(beds) > 1:
+        spans = [(state.studio.first, state.studio.last), *sorted({r.span for r in beds if r.span is not None})]
+        places = [(draft.tokens[a].start, draft.tokens[b - 1].end) for a, b in spans]
+        words = [Evidence(start=s, end=e, text=draft.prompt[s:e], field="rooms") for s, e in places]
+        raise ImpossibleError(f"a studio is one room, and {len(beds)} bedrooms are asked for", "ask for a flat", words)
     for room in stock.of("studio_room"):
         room.functions |= {"living", "sleeping"}

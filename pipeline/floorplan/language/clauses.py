@@ -69,6 +69,8 @@ class Clause:
         self._push(k, e, ids)
         if "open" in e.adjectives or "combined" in e.adjectives:
             self._merge(k, e)
+        if e.suite:
+            self.state.say("suite", ids, (), e)
         if e.adjectives & {"largest", "smallest"} and not self.factor:
             others = tuple(r.id for r in self.stock.of(e.type))
             self.state.say("largest" if "largest" in e.adjectives else "smallest", ids, others, e)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import itertools
 
+from pipeline.floorplan.check import ImpossibleError
 from pipeline.floorplan.language.draft import Draft
 from pipeline.floorplan.language.facts import HALLS, Fact, Group, Reading
 from pipeline.floorplan.language.inventory import Inventory
+from pipeline.floorplan.program import Evidence
 
 MERGE_ORDER = ("living_room", "family_room", "dining_room", "kitchen", "studio_room")
 OPPOSITE, FAR = 0.45, 0.35  # "at the other end" and "away from", as shares of the diagonal
@@ -28,6 +30,7 @@ def pairs(a: Group, b: Group) -> list[tuple[str, str]]:
 def join(draft: Draft, state: Reading) -> None:
     """Write all facts into the program."""
     stock, facts = state.inventory, state.facts
+    _itself(draft, facts)
     _belongings(draft, stock, facts)
     _merged(draft, stock, facts)
     for fact in facts:
@@ -40,6 +43,15 @@ def join(draft: Draft, state: Reading) -> None:
     _everything(draft, stock, facts)
     _suites(draft, stock, facts)
     _apart(draft, state)
+
+
+def _itself(draft: Draft, facts: list[Fact]) -> None:
+    """Refuse a room that is to be reached through itself."""
+    for fact in facts:
+        if fact.what == "itself" and fact.a:
+            draft.cite(fact.first, fact.last, f"links.{fact.a[0]}-{fact.a[0]}")
+            words = [Evidence.model_validate(draft.evidence[-1])]
+            raise ImpossibleError(f"{fact.a[0]} cannot be reached through itself", "say what it opens off", words)
 
 
 def _belongings(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:

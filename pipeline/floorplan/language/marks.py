@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, Lexicon, lexicon
 from pipeline.floorplan.language.meaning import Meaning
-from pipeline.floorplan.language.spelling import repair
+from pipeline.floorplan.language.spelling import inflected, repair
 from pipeline.floorplan.language.text import Token, fold, tokenize
 
 STOPS = {".", "!", "?", ";"}
@@ -103,6 +103,9 @@ def _mark(heard: Words, i: int) -> Mark:  # noqa: PLR0911 - one branch per case:
     if text in PUNCTUATION:
         kind = PUNCTUATION[text]
         return Mark("join", "and", 0.0, False, i, i + 1, text) if kind == "and" else Mark(kind, "", 0.0, False, i, i + 1, text)
+    stem = inflected(text, lex)
+    if stem is not None:
+        return _meant(heard, i, i + 1, stem, only=False)
     for other in LANGUAGES:
         if other != lex.language:
             foreign = lexicon(other).find(heard.texts, i)

@@ -64,11 +64,12 @@ def _whole(sentence: list[Element], k: int) -> bool:
 def _count_all(state: Reading, e: Element) -> list[Named]:
     stock = state.inventory
     while len(stock.of(e.type)) < int(e.number or 1):
-        stock.add(e.type, "", e.text, None, open_slot=True).whole = True
+        room = stock.add(e.type, "", e.text, None, open_slot=True)
+        room.whole, room.span = True, (e.first, e.last)
     return stock.of(e.type)[: int(e.number or 1)]
 
 
-def _introduced(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:
+def _introduced(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one branch per case: a grammar
     """Return the rooms of a phrase with a number or an indefinite article."""
     e, stock = sentence[k], state.inventory
     count = int(e.number or (2 if e.plural and e.type not in PLURAL_NAMES else 1))
@@ -142,6 +143,7 @@ def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> 
         for room in (state.inventory.get(i) for i in e.ids):
             room.level = level if room.level is None and not e.definite else room.level
     for room in (state.inventory.get(i) for i in e.ids):
+        room.span = room.span or (e.first, e.last)
         if e.dining:
             room.functions.add("dining")
         if e.size != 1.0:
@@ -154,7 +156,7 @@ def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -
     same = stock.of(e.type)
     role = e.role if e.role in ROLES else ""
     if e.suite:
-        return _suites(state, e, role, level)
+        return _suites(state, sentence, k, role, level)
     suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), None) if e.type == "bedroom" and not role else None
     if suites and not e.ordinal and e.number is None:
         return [stock.get(i) for i in suites]
@@ -201,13 +203,13 @@ def fresh(state: Reading, e: Element, level: int | None, owner: str) -> list[str
     return e.ids
 
 
-def _suites(state: Reading, e: Element, role: str, level: int | None) -> list[Named]:
-    stock = state.inventory
+def _suites(state: Reading, sentence: list[Element], k: int, role: str, level: int | None) -> list[Named]:
+    e, stock = sentence[k], state.inventory
     count = int(e.number or (2 if e.plural else 1))
     same = [r for r in stock.of("bedroom") if r.role == role] if role else []
     if same and not e.introduces:
         return same
-    slots = [r for r in stock.of("bedroom") if r.open_slot and not r.role]
+    slots = [r for r in stock.of("bedroom") if r.open_slot and not r.role and (r.whole or e.definite or _listed(sentence, k, r))]
     made = [_close(r, role, e.text) for r in slots[:count]]
     return made + [stock.add("bedroom", role, e.text, level) for _ in range(count - len(made))]
 

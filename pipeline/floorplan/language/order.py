@@ -116,6 +116,8 @@ def _spanish(marks: list[Mark]) -> list[Mark]:
             made.append(replace(mark, kind="post"))
         elif behind and mark.kind == "det" and mark.value in {"own", "another"}:
             made.append(replace(mark, kind="post", value="own"))
+        elif behind and mark.text == "mas" and before is not None and before.kind == "room":
+            made.append(replace(mark, kind="post", value="another"))
         elif behind and mark.kind == "size":
             made.append(replace(mark, value="post"))
         elif behind and mark.kind == "adverb" and mark.text in {"muy", "mas", "bastante", "totalmente", "completamente"}:

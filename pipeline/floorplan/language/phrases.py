@@ -131,7 +131,6 @@ def _elements(marks: list[Mark]) -> list[Element]:
         behind = bool(made) and made[-1].kind in {"np", "home"} and not pre and not _ahead(marks, k)
         if mark.kind == "amount" and behind and mark.value in {"area", "length"}:
             made[-1].amounts.append(mark)
-            made[-1].last = max(made[-1].last, mark.last) if made[-1].last == mark.first else made[-1].last
         elif mark.kind in PREMODIFIERS or (mark.kind == "amount" and mark.value == "area"):
             pre.append(mark)
         elif mark.kind in {"fill", "adverb", "look", "hyphen", "dash"} and pre:
@@ -254,8 +253,8 @@ def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> 
             phrase.det.add("own")
             phrase.last = mark.last
         elif mark.kind == "post":
-            if mark.value == "own":
-                phrase.det.add("own")
+            if mark.value in {"own", "another"}:
+                phrase.det.add(mark.value)
             elif mark.value in {"primary", "guest", "child", "shared"}:
                 phrase.role = phrase.role or mark.value
             elif mark.value == "ensuite":

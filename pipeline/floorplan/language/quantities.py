@@ -21,7 +21,7 @@ def belongs(state: Reading, sentence: list[Element], e: Element, mark: Mark) -> 
     k = next(i for i, x in enumerate(sentence) if x is e)
     rooms = [x for x in sentence if x.kind == "np"]
     measured = [x for x in rooms if x.amounts]
-    last = not any(x.kind == "np" for x in sentence[k + 1 :])
+    last = not any(x.kind == "np" and x.first >= mark.last for x in sentence[k + 1 :])
     listed = len(rooms) > 2 or (
         any(x.kind == "home" and not x.amounts for x in sentence[:k]) and mark.first == e.last and mark.text[0].isdigit()
     )

@@ -195,7 +195,7 @@ def _since_clause(clause: Clause) -> list[str]:
     return list(dict.fromkeys(i for x in clause.run for i in x.ids))
 
 
-def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:  # noqa: PLR0912 - one branch per kind of element: a grammar
+def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:  # noqa: C901, PLR0912 - one branch per kind of element: a grammar
     """Return the rooms named after a cue, and where reading goes on."""
     group: list[str] = []
     sentence = clause.sentence
@@ -214,10 +214,13 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
                 clause.state.say("largest", tuple(ids), tuple(r.id for r in clause.stock.of(e.type)), e)
             group += [i for i in ids if i not in group and i not in left]
             first, joined, end = first or e, "", index + 1
-        elif e.kind in {"pron", "det"} and not group and e.value in {"it", "both", "group", "one", "rest", "some", "each", "all"}:
+        elif e.kind in {"pron", "det"} and not group and e.value in {"it", "both", "group", "one", "rest", "some", "each", "all", "self"}:
             if e.kind == "det" and any(x.kind == "np" for x in sentence[index + 1 : index + 2]):
                 index += 1
                 continue
+            if e.value == "self":
+                clause.state.say("itself", left, (), e)
+                return (), index + 1
             found = clause.point(e, index, left)
             clause.state.understood(e.first, e.last)
             return tuple(i for i in found if i not in left), index + 1
@@ -234,7 +237,7 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
                 break
             joined = "and" if e.kind in {"and", "or"} else (joined or "comma")
         elif (
-            e.kind in {"det", "size", "adj", "verb", "word", "owner", "open", "to"}
+            e.kind in {"det", "size", "adj", "verb", "word", "owner", "open", "to", "relative"}
             and not (e.kind == "to" and group and not joined)
             and not (e.kind in {"verb", "open"} and group)
         ) or (e.kind == "colon" and not group and cue == "leads"):

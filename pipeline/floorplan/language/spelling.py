@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from pipeline.floorplan.language.german import split as compound
 from pipeline.floorplan.language.lexicon import Language, Lexicon, lexicon
+from pipeline.floorplan.language.meaning import Meaning
 from pipeline.floorplan.language.text import Token
 
 SHORTEST, LONG = 4, 8  # one error from SHORTEST letters on, two from LONG on
@@ -53,6 +54,16 @@ def resolve(word: str, language: Language) -> tuple[str, ...]:  # noqa: PLR0911 
             if near:
                 return (near,)
     return (word,)
+
+
+def inflected(word: str, lex: Lexicon) -> Meaning | None:
+    """Return what the uninflected form of a word means by itself: "kleine" is "klein"."""
+    for ending in lex.endings:
+        if word.endswith(ending) and len(word) - len(ending) >= SHORTEST - 1:
+            found: Meaning | None = lex.trie.get(word[: -len(ending)], {}).get("")
+            if found is not None:
+                return found
+    return None
 
 
 def _stem(word: str, lex: Lexicon) -> str:
