@@ -11,6 +11,91 @@ from pipeline.floorplan.language.text import HAN, Token, fold, tokenize
 
 READ = "English, German, Spanish and Chinese"
 ENOUGH = 0.5  # share of words that must be known
+REPAIR = 0.8  # what a mistyped word counts of a known one
+OTHERS = frozenset(  # words of languages that are not read, and that look like none of the four
+    [
+        "avec",
+        "deux",
+        "trois",
+        "quatre",
+        "une",
+        "des",
+        "les",
+        "et",
+        "chambre",
+        "chambres",
+        "cuisine",
+        "salle",
+        "bain",
+        "appartement",
+        "maison",
+        "sejour",
+        "tre",
+        "quattro",
+        "camera",
+        "camere",
+        "letto",
+        "bagno",
+        "bagni",
+        "cucina",
+        "soggiorno",
+        "appartamento",
+        "uma",
+        "dois",
+        "duas",
+        "quarto",
+        "quartos",
+        "cozinha",
+        "banheiro",
+        "banheiros",
+        "een",
+        "met",
+        "slaapkamer",
+        "slaapkamers",
+        "keuken",
+        "badkamer",
+        "woonkamer",
+        "och",
+        "sovrum",
+        "kok",
+        "badrum",
+        "vardagsrum",
+        "lagenhet",
+        "med",
+        "soverom",
+        "kjokken",
+        "baderom",
+        "og",
+        "stue",
+        "makuuhuone",
+        "makuuhuonetta",
+        "keittio",
+        "kylpyhuone",
+        "pokoje",
+        "pokoi",
+        "kuchnia",
+        "lazienka",
+        "mieszkanie",
+        "loznice",
+        "kuchyne",
+        "koupelna",
+        "byt",
+        "szoba",
+        "konyha",
+        "furdoszoba",
+        "lakas",
+        "yatak",
+        "odasi",
+        "mutfak",
+        "banyo",
+        "daire",
+        "ve",
+        "dormitoare",
+        "bucatarie",
+        "baie",
+        "cu",
+    ]
+)
 MOST = 400  # words that are looked at
 SURE, REPAIRED = 0.75, 80  # share of words that settles it; words that are repaired otherwise
 ROOMS_WEIGHT = 2.0
@@ -32,9 +117,10 @@ def detect(prompt: str) -> Language:
         texts = texts[:REPAIRED]
         scores = {language: _score(language, texts, repaired=True) for language in LANGUAGES if language != "zh"}
         best = max(scores, key=lambda x: scores[x][0])
-    known, strong = scores[best][1], scores[best][2]
-    share = (known + min(han, 2)) / len(texts)
-    if foreign > 0.3 * len(texts) or share < ENOUGH * (0.6 if strong >= 2 and len(texts) < 8 else 1.0):
+    exact, close = scores[best][1], scores[best][2]
+    others = sum(t in OTHERS for t in texts)
+    share = (exact + REPAIR * close + min(han, 2)) / len(texts)
+    if foreign > 0.3 * len(texts) or share < ENOUGH or (others > 1 and others >= 0.15 * len(texts)):
         raise RefusedError(_shown(prompt, "the prompt is in no language that is read here"), f"write it in {READ}")
     return best
 
@@ -50,20 +136,19 @@ def _foreign(tokens: list[Token]) -> int:
 
 
 def _score(language: Language, texts: list[str], *, repaired: bool) -> tuple[float, int, int]:
-    """Return (score, known words, words of rooms and homes)."""
+    """Return (score, known words, words that are known once repaired)."""
     lex = lexicon(language)
-    known = strong = 0
+    exact = close = 0
     score = 0.0
     for text in texts:
-        if text in lex.vocabulary:
-            parts: tuple[str, ...] = (text,)
-        else:
-            parts = resolve(text, language) if repaired else (text,)
+        parts: tuple[str, ...] = (text,)
+        known = text in lex.vocabulary
+        if not known:
+            parts = resolve(text, language) if repaired else parts
             if parts == (text,):
                 continue
-        known += 1
+        exact, close = exact + known, close + (not known)
         node = lex.trie.get(parts[0], {})
         named = "" in node and node[""].kind in STRONG
-        strong += named
-        score += (ROOMS_WEIGHT if named else 1.0) * (1.0 if parts == (text,) else 0.6)
-    return score, known, strong
+        score += (ROOMS_WEIGHT if named else 1.0) * (1.0 if known else 0.6)
+    return score, exact, close

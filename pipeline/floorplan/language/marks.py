@@ -109,7 +109,11 @@ def _mark(heard: Words, i: int) -> Mark:  # noqa: PLR0911 - one branch per case:
     for other in LANGUAGES:
         if other != lex.language:
             foreign = lexicon(other).find(heard.texts, i)
-            if foreign is not None and foreign[1].kind in FOREIGN and (foreign[1].kind in STRONG or foreign[0] > i + 1 or len(text) > 3):
+            if (
+                foreign is not None
+                and foreign[1].kind in FOREIGN
+                and (foreign[1].kind in STRONG or foreign[0] > i + 1 or len(text) > 3 or (foreign[1].kind == "num" and len(text) > 2))
+            ):
                 return _meant(heard, i, foreign[0], foreign[1], foreign[2])
     return Mark("word", "", 0.0, False, i, i + 1, text)
 

@@ -10,6 +10,7 @@ from pipeline.floorplan.language.marks import Mark, Words
 PREMODIFIERS = {"det", "num", "ord", "adj", "size", "clf", "times"}
 DROPPED = {"fill", "adverb", "word", "clf", "hyphen", "bullet", "unit", "times", "dash", "num", "ignored", "bound", "ord"}
 MOST_INDEX = 12
+LONGEST = 150  # marks of a sentence; a longer one is read in parts, cut at commas
 WITH = {"mit", "with", "con"}
 RELATIVES = {"der", "die", "das", "dem", "den", "that"}
 
@@ -73,6 +74,8 @@ def sentences(marks: Sequence[Mark], heard: Words) -> list[list[Element]]:
                     found[-1].append(Mark("comma", "", 0.0, False, mark.first, mark.last, ","))
             else:
                 found.append([])
+        elif mark.kind == "comma" and len(found[-1]) > LONGEST:
+            found.append([])
         else:
             found[-1].append(mark)
     return [e for e in (_elements(s) for s in found if s) if e]
@@ -110,7 +113,8 @@ def _elements(marks: list[Mark]) -> list[Element]:
             heads = _heads(mark)
             for head in heads[:-1]:
                 made += [_phrase(head, pre, compound), Element("and", "", mark.first, mark.first, "")]
-                made[-2].adjectives.add("combined")
+                made[-2].adjectives.update({"combined"} if head.value != "bedroom" else ())
+                pre = [p for p in pre if p.kind != "num"]
             phrase = _phrase(heads[-1], pre, compound)
             k = _behind(marks, k + 1, phrase, after_numbers)
             while len(heads) > 1 and k < len(marks) and marks[k].kind == "amount":
