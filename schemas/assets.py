@@ -18,11 +18,19 @@ ASSETS = Table(
         Column("split", pa.string(), "train, val or test, by model"),
         Column("size", VEC3, "full extents (w, d, h) with all joints at 0", "m", "object"),
         Column("unit_scale", pa.float64(), "factor from the source's units to metres"),
+        Column("scale_from", pa.string(), "where that is from: file (its own unit), or the category to whose sizes it was fitted"),
+        Column(
+            "scale_rms",
+            pa.float64(),
+            "deviation of the size from that category's, in standard deviations; null: of a model's own unit",
+            nullable=True,
+        ),
         Column("articulated", pa.bool_(), "has joints"),
         Column("openable", pa.bool_(), "has a door, drawer or lid that opens"),
         Column("joints", pa.int32(), "number of joints"),
         Column("triangles", pa.int32(), "triangles of the visual meshes"),
         Column("mass", pa.float64(), "mass of all links", "kg"),
+        Column("density", pa.float64(), "density of the matter from whose volume it was taken", "kg/m3"),
         Column("licence", pa.string(), "SPDX id or name of the asset's licence"),
         Column("file", pa.string(), "path of the asset file, relative to the folder of the library"),
         Column("sha256", pa.string(), "digest of that file"),
@@ -37,6 +45,7 @@ ASSET_JOINTS = Table(
         Column("joint_id", pa.string(), "unique in the asset; matches [a-z][a-z0-9_]*"),
         Column("type", pa.string(), "revolute, prismatic or continuous"),
         Column("part_class", pa.string(), "GAPartNet part class"),
+        Column("inferred", pa.bool_(), "the part class is a guess from names and shape; the source does not say"),
         Column("axis", VEC3, "unit axis; positive motion opens", "", "object"),
         Column("origin", VEC3, "a point on the axis at rest", "m", "object"),
         Column("lower", pa.float64(), "lower limit (rad or m)"),
@@ -44,6 +53,22 @@ ASSET_JOINTS = Table(
         Column("sweep_min", VEC3, "lower corner of the box that the moving part sweeps", "m", "object"),
         Column("sweep_max", VEC3, "upper corner of that box", "m", "object"),
         Column("handle", VEC3, "where a hand takes hold, at rest", "m", "object"),
+    ),
+)
+
+ASSET_PARTS = Table(
+    "asset_parts",
+    "One row per part of an asset in GAPartNet's sense: what moves, and the handles and buttons on it.",
+    (
+        Column("asset_id", pa.string(), "row of the assets table"),
+        Column("joint_id", pa.string(), "joint with which the part moves, row of asset_joints; empty: it is fixed to the base"),
+        Column("part_class", pa.string(), "GAPartNet part class"),
+        Column("annotated", pa.bool_(), "the class is the source's own; otherwise it was inferred"),
+        Column("centre", VEC3, "middle of the part's oriented box at rest", "m", "object"),
+        Column("axis_x", VEC3, "unit x of the box: a hinge's axis in the opening sense, the long side of a handle", "", "object"),
+        Column("axis_y", VEC3, "unit y of the box: z x x", "", "object"),
+        Column("axis_z", VEC3, "unit z of the box: outwards", "", "object"),
+        Column("size", VEC3, "full extents along x, y, z of the box", "m", "part"),
     ),
 )
 

@@ -27,7 +27,7 @@ from pipeline.sources.future import ModelInfo, read_model, read_model_info
 from pipeline.sources.guarded import Folder
 from pipeline.sources.household import candidates, oriented, read_household
 from pipeline.sources.identity import split_of
-from pipeline.sources.library_rows import asset_row, joint_rows
+from pipeline.sources.library_rows import Scale, asset_row, joint_rows, part_rows
 from pipeline.sources.partnet import URDFS, read_shape
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import FrontFilters, ModelLimits
@@ -45,6 +45,7 @@ class LibraryRows:
 
     assets: list[Row] = field(default_factory=list)
     joints: list[Row] = field(default_factory=list)
+    parts: list[Row] = field(default_factory=list)
     rejects: list[Row] = field(default_factory=list)
     models: dict[str, Model] = field(default_factory=dict)
 
@@ -52,6 +53,7 @@ class LibraryRows:
         """Append what another gave."""
         self.assets += other.assets
         self.joints += other.joints
+        self.parts += other.parts
         self.rejects += other.rejects
         self.models.update(other.models)
 
@@ -152,7 +154,7 @@ def read_future(task: LibraryTask, info: ModelInfo) -> LibraryRows:
         words, hint = taxonomy.load(), task.hints.get(info.model_id)
         model = read_model(models, info, words, task.limits, task.licence, hint, task.pieces(articulated=False))
         asset = model.asset
-        _keep(made, task, asset, material=words.materials.get(info.material.lower(), ""), unit_scale=model.box.unit)
+        _keep(made, task, asset, Scale(model.box.unit), words.materials.get(info.material.lower(), ""), info.material)
         made.rejects += model.rejects
         w, d, h = asset.size.tolist()
         made.models[info.model_id] = Model(model.box, asset.category, asset.asset_id, (w, d, h), asset.openable)
@@ -177,18 +179,20 @@ def read_partnet(task: LibraryTask, found: Found) -> LibraryRows:
         for asset, fit, rejects in articulated.assets(
             shape, found.stem, categories, kinds, task.limits, task.licence, task.pieces(articulated=True)
         ):
-            _keep(made, task, asset, material="", unit_scale=fit.scale)
+            _keep(made, task, asset, Scale(fit.scale, fit.category if fit.fitted else "file", fit.rms))
             made.rejects += rejects
 
     return _guarded(made, "model", found.source_id, work)
 
 
-def _keep(made: LibraryRows, task: LibraryTask, asset: Asset, *, material: str, unit_scale: float) -> None:
+def _keep(made: LibraryRows, task: LibraryTask, asset: Asset, scale: Scale, material: str = "", matter: str = "") -> None:
+    """Write an asset and its rows; `matter` is the material by which its density was chosen."""
     file = f"{asset.asset_id}.safetensors"
     digest = save_asset(task.out / file, asset)
     split = split_of(asset.source_id)
-    made.assets.append(asset_row(asset, material=material, split=split, unit_scale=unit_scale, file=file, sha256=digest))
+    made.assets.append(asset_row(asset, material=material, matter=matter, split=split, scale=scale, file=file, sha256=digest))
     made.joints += joint_rows(asset)
+    made.parts += part_rows(asset)
 
 
 def _guarded(made: LibraryRows, what: str, where: str, work: Callable[[], None]) -> LibraryRows:

@@ -19,6 +19,7 @@ from pipeline.sources.solids import Part
 Floats = NDArray[np.float64]
 PATH = Path(__file__).resolve().parents[2] / "manifests" / "calibration" / "signs.yaml"
 CLEAR = 0.9  # opacity below which a door is glazed
+LEAF = 0.05  # share of the front from which on what slides along it is a door
 FLAT = 5.0  # a piece this much wider than thick, both ways, is a board
 
 
@@ -45,7 +46,9 @@ def signs(shape: ArticulatedShape, base: Sequence[Part]) -> Signs:
     low, high = shape.bounds()
     doors = [p for p in shape.parts if p.part_class == "hinge_door"]
     drawers = [p for p in shape.parts if p.part_class == "slider_drawer"]
-    front = sum(_reach(p)[0] * _reach(p)[2] for p in doors + drawers) / max(float((high - low)[0] * (high - low)[2]), 1e-12)
+    whole = max(float((high - low)[0] * (high - low)[2]), 1e-12)
+    sliding = [area for area in _sliding(shape) if area > LEAF * whole]
+    front = (sum(_reach(p)[0] * _reach(p)[2] for p in doors + drawers) + sum(sliding)) / whole
     extents = [np.sort(np.ptp(p.hull, axis=0)) for p in base]
     sizes = {
         "leaf_width": tuple(float(p.size[1]) for p in doors),
@@ -55,7 +58,7 @@ def signs(shape: ArticulatedShape, base: Sequence[Part]) -> Signs:
     }
     leaves = {p.body for p in doors}
     clear = any(shape.palette.materials[m.material].opacity < CLEAR for k in leaves for m in shape.bodies[k].visuals)
-    return Signs(sizes, len(doors), len(drawers), clear, min(front, 1.0), _grip(shape.parts, doors))
+    return Signs(sizes, len(doors) + len(sliding), len(drawers), clear, min(front, 1.0), _grip(shape.parts, doors))
 
 
 def log_likelihood(found: Signs, category: str, scale: float) -> float:
@@ -74,6 +77,12 @@ def log_likelihood(found: Signs, category: str, scale: float) -> float:
     if found.grip is not None:
         total += _normal(found.grip, *entry["grip"])
     return total
+
+
+def _sliding(shape: ArticulatedShape) -> list[float]:
+    """Return the areas, seen from the front, of what slides along the front: doors that have no class of their own."""
+    extents = [np.ptp(shape.bodies[j.child].points(), axis=0) for j in shape.joints if j.type == "prismatic" and abs(j.axis[0]) > 0.8]
+    return [float(e[0] * e[2]) for e in extents]
 
 
 def _entry(category: str) -> Mapping[str, Any]:

@@ -1,18 +1,30 @@
-"""Rows of assets and asset_joints."""
+"""Rows of assets, asset_joints and asset_parts."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from pipeline.entities.asset import Asset
 from pipeline.geometry.kinematics import handle_point, sweep_box
+from pipeline.sources.densities import density
 from pipeline.sources.reasons import Row
 
 STEPS = 9  # positions of a joint's range whose boxes are united
 
 
-def asset_row(asset: Asset, *, material: str, split: str, unit_scale: float, file: str, sha256: str) -> Row:
-    """Return the row of the assets table; `unit_scale` is the factor from the source's units to metres."""
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """How an asset came to its size: `factor` from the source's units to metres, from where, and how well it fits there."""
+
+    factor: float
+    origin: str = "file"
+    rms: float | None = None
+
+
+def asset_row(asset: Asset, *, material: str, matter: str, split: str, scale: Scale, file: str, sha256: str) -> Row:
+    """Return the row of the assets table; `matter` is the material by which the density was chosen."""
     return {
         "asset_id": asset.asset_id,
         "source": asset.source,
@@ -23,12 +35,15 @@ def asset_row(asset: Asset, *, material: str, split: str, unit_scale: float, fil
         "material": material,
         "split": split,
         "size": asset.size.tolist(),
-        "unit_scale": unit_scale,
+        "unit_scale": scale.factor,
+        "scale_from": scale.origin,
+        "scale_rms": None if scale.rms is None else round(scale.rms, 4),
         "articulated": asset.articulated,
         "openable": asset.openable,
         "joints": len(asset.joints),
         "triangles": int(sum(len(m.faces) for m in asset.meshes())),
         "mass": round(float(sum(link.mass for link in asset.links)), 4),
+        "density": density(asset.super_category, matter),
         "licence": asset.licence,
         "file": file,
         "sha256": sha256,
@@ -48,6 +63,7 @@ def _joint_row(asset: Asset, index: int) -> Row:
         "joint_id": joint.name,
         "type": joint.type,
         "part_class": joint.part_class,
+        "inferred": not any(p.annotated for p in asset.parts if (p.link, p.part_class) == (joint.child, joint.part_class)),
         "axis": joint.axis.tolist(),
         "origin": joint.origin.tolist(),
         "lower": joint.lower,
@@ -56,3 +72,20 @@ def _joint_row(asset: Asset, index: int) -> Row:
         "sweep_max": high.tolist(),
         "handle": np.round(handle_point(asset, index), 4).tolist(),
     }
+
+
+def part_rows(asset: Asset) -> list[Row]:
+    """Return one row per part box of an asset."""
+    carriers = {joint.child: joint.name for joint in asset.joints}
+    return [
+        {
+            "asset_id": asset.asset_id,
+            "joint_id": carriers.get(part.link, ""),
+            "part_class": part.part_class,
+            "annotated": part.annotated,
+            "centre": part.centre.tolist(),
+            **{f"axis_{name}": axis.tolist() for name, axis in zip("xyz", part.axes, strict=True)},
+            "size": part.size.tolist(),
+        }
+        for part in asset.parts
+    ]

@@ -27,12 +27,16 @@ METRIC = 3.0  # rms of standard deviations within which a shape passes for one t
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """`scale` [m per unit] as `category`; `rms` in standard deviations; log-likelihood of the object at that scale."""
+    """`scale` [m per unit] as `category`; `rms` in standard deviations; log-likelihood of the object at that scale.
+
+    `fitted`: the scale was chosen for that category; otherwise it is the unit of the file.
+    """
 
     category: str
     scale: float
     rms: float
     likelihood: float
+    fitted: bool
 
 
 def fit(extent: Floats, category: str, found: Signs | None = None) -> Fit | None:
@@ -46,25 +50,25 @@ def fit(extent: Floats, category: str, found: Signs | None = None) -> Fit | None
     location, spread = known.logarithmic()
     weight = 1 / spread**2
     log_scale = float(((location - np.log(extent)) * weight).sum() / weight.sum())
-    return _at(extent, category, math.exp(log_scale), found)
+    return _at(extent, category, math.exp(log_scale), found, fitted=True)
 
 
 def metric(extent: Floats, category: str, found: Signs | None = None, unit: float = 1.0) -> Fit | None:
     """Return the fit of an object that is to scale already, of `unit` metres per unit, or None where it is no such thing."""
     if sizes().get(category) is None or extent.min() <= 0:
         return None
-    made = _at(extent, category, unit, found)
+    made = _at(extent, category, unit, found, fitted=False)
     return made if made.rms <= METRIC else None
 
 
-def _at(extent: Floats, category: str, scale: float, found: Signs | None) -> Fit:
+def _at(extent: Floats, category: str, scale: float, found: Signs | None, *, fitted: bool) -> Fit:
     known = sizes()[category]
     location, spread = known.logarithmic()
     z = (np.log(extent) + math.log(scale) - location) / spread
     likelihood = float(-0.5 * (z**2).sum() - np.log(spread).sum() - 1.5 * math.log(2 * math.pi)) + math.log(known.count + COMMON)
     if found is not None:
         likelihood += log_likelihood(found, category, scale)
-    return Fit(category, round(scale, 6), float(np.sqrt((z**2).mean())), likelihood)
+    return Fit(category, round(scale, 6), float(np.sqrt((z**2).mean())), likelihood, fitted)
 
 
 def best(fits: Iterable[Fit | None], *, rms: float, keep: int, margin: float) -> tuple[Fit, ...]:

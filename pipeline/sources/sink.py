@@ -11,7 +11,7 @@ from pipeline import tables
 from pipeline.errors import ContentError
 from pipeline.sources.batch import LibraryRows, numbered
 from pipeline.sources.front_house import HouseRows
-from schemas.assets import ASSET_JOINTS, ASSETS
+from schemas.assets import ASSET_JOINTS, ASSET_PARTS, ASSETS
 from schemas.objects import OBJECTS
 from schemas.openings import OPENINGS
 from schemas.rejects import REJECTS
@@ -78,7 +78,8 @@ def write_houses(folder: Path, houses: Iterable[HouseRows], library: LibraryRows
 
 
 def write_library(folder: Path, library: LibraryRows, summary: Summary) -> None:
-    """Write assets and asset_joints, and count them."""
+    """Write assets, asset_joints and asset_parts, and count them."""
     tables.write(folder / f"{ASSETS.name}.parquet", ASSETS, library.assets)
     tables.write(folder / f"{ASSET_JOINTS.name}.parquet", ASSET_JOINTS, library.joints)
+    tables.write(folder / f"{ASSET_PARTS.name}.parquet", ASSET_PARTS, library.parts)
     summary.add_library(library)

@@ -12,7 +12,7 @@ from pipeline import tables
 from pipeline.entities.files import load_asset
 from pipeline.shards import TABLES, check
 from pipeline.usd import check_stage
-from schemas.assets import ASSET_JOINTS, ASSETS, LATENTS
+from schemas.assets import ASSET_JOINTS, ASSET_PARTS, ASSETS, LATENTS
 from schemas.objects import OBJECTS
 from schemas.openings import OPENINGS
 from schemas.rejects import REJECTS
@@ -46,7 +46,7 @@ def rate(found):
 
 @pytest.mark.slow
 def test_every_table_is_there_with_its_schema(root):
-    for table in (SCENES, ROOMS, OPENINGS, OBJECTS, ASSETS, ASSET_JOINTS):
+    for table in (SCENES, ROOMS, OPENINGS, OBJECTS, ASSETS, ASSET_JOINTS, ASSET_PARTS):
         assert tables.read(root / "data" / "tables" / f"{table.name}.parquet", table)
     for table in (SCENES, ROOMS, OPENINGS, OBJECTS):
         assert tables.read(root / "data" / "samples" / f"{table.name}.parquet", table)

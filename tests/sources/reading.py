@@ -46,6 +46,7 @@ def read(root, *, front="front", partnet="partnet", filters=None, limits=None):
         objects=houses.objects,
         assets=library.assets,
         joints=library.joints,
+        parts=library.parts,
         models=library.models,
         rejects=rejects,
         reasons={r["reason"] for r in rejects},

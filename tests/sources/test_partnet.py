@@ -354,3 +354,27 @@ def test_texture_beside_the_meshes_folder(tmp_path):
     shape = read_shape(Folder.at(folder), "40000", 512)
     assert list(shape.palette.textures) == ["texture_0.png"]
     assert shape.palette.notes == []
+
+
+def test_rows_say_how_the_scale_was_found_and_what_was_guessed(tmp_path):
+    making.write_partnet(tmp_path / "partnet", "1")
+    making.write_partnet(tmp_path / "partnet", "2", gapartnet=False)
+    text = '<robot name="r"><link name="a"><visual><geometry><box size="0.6 0.9 0.85"/></geometry></visual></link></robot>'
+    (tmp_path / "partnet" / "cabinet.urdf").write_text(text)
+    made = read(tmp_path)
+    for row in made.assets:
+        own = row["source"] == "urdf"
+        assert row["scale_from"] == ("file" if own else row["category"])
+        assert own == (row["unit_scale"] == 1.0)
+        assert row["scale_rms"] >= 0
+        assert row["density"] > 0
+    guessed = {row["asset_id"][:2]: set() for row in made.joints}
+    for row in made.joints:
+        guessed[row["asset_id"][:2]].add(row["inferred"])
+    assert guessed == {"ga": {False}, "pm": {True}}
+    for asset_id in {row["asset_id"] for row in made.joints}:
+        parts = [row for row in made.parts if row["asset_id"] == asset_id]
+        assert {row["joint_id"] for row in parts} == {"joint_0", "joint_1"}
+        assert {row["annotated"] for row in parts if row["part_class"] != "line_fixed_handle"} == {asset_id.startswith("ga")}
+        for row in parts:
+            assert np.allclose(np.cross(row["axis_x"], row["axis_y"]), row["axis_z"], atol=1e-6)

@@ -27,6 +27,7 @@ def make_root(root, count=10):
                 {
                     "asset_id": asset.asset_id, "source": "partnet-mobility", "source_id": str(i), "category": category, "super_category": "",
                     "style": "", "material": "", "split": "train" if i % 3 else "test", "size": asset.size.tolist(), "unit_scale": scale,
+                    "scale_from": category, "scale_rms": 1.0, "density": 600.0,
                     "articulated": False, "openable": False, "joints": 0, "triangles": 12, "mass": 1.0, "licence": "CC0-1.0",
                     "file": f"{asset.asset_id}.safetensors", "sha256": sha,
                 }

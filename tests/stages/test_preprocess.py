@@ -10,7 +10,7 @@ from pipeline.entities.files import load_asset
 from pipeline.errors import ContentError
 from pipeline.manifest import sha256_file
 from pipeline.sources.settings import PreprocessSettings
-from schemas.assets import ASSET_JOINTS, ASSETS
+from schemas.assets import ASSET_JOINTS, ASSET_PARTS, ASSETS
 from schemas.objects import OBJECTS
 from schemas.openings import OPENINGS
 from schemas.rejects import REJECTS
@@ -19,7 +19,7 @@ from schemas.scenes import SCENES
 from stages.preprocess import main
 from tests.sources import making
 
-ALL = (SCENES, ROOMS, OPENINGS, OBJECTS, ASSETS, ASSET_JOINTS, REJECTS)
+ALL = (SCENES, ROOMS, OPENINGS, OBJECTS, ASSETS, ASSET_JOINTS, ASSET_PARTS, REJECTS)
 ID = re.compile(r"^[a-z][a-z0-9_]*$")
 
 
