@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.sources.gltf_file import MAX_GLB, GltfMaterial, parse_glb
 from pipeline.sources.guarded import Folder
 from pipeline.sources.obj_file import MAX_OBJ, ObjFile, ObjGroup, parse_obj
 from pipeline.sources.primitives import MAX_STL, parse_stl, primitive
@@ -25,6 +26,7 @@ class MeshFiles:
     def __init__(self, folder: Folder, base: str, notes: list[Note]) -> None:
         self.folder, self.base, self.notes = folder, base, notes
         self.files: dict[str, ObjFile | None] = {}
+        self.materials: dict[str, dict[str, GltfMaterial]] = {}  # by mesh file and name, where a file brings its own
         self.total = 0
 
     def geometry(self, shape: Shape, T: Floats) -> list[tuple[ObjGroup, ObjFile, Floats]]:
@@ -61,6 +63,9 @@ class MeshFiles:
         suffix = path.lower().rsplit(".", 1)[-1]
         if suffix == "obj":
             return parse_obj(self.folder.read(path, MAX_OBJ, self.base), path)
+        if suffix == "glb":
+            file, self.materials[path] = parse_glb(self.folder.read(path, MAX_GLB, self.base), path)
+            return file
         if suffix == "stl":
             return _plain(*parse_stl(self.folder.read(path, MAX_STL, self.base), path))
         self.folder.path(path, self.base)  # a path that leaves the folder is refused whatever it names

@@ -129,6 +129,9 @@ class ShapeReader:
         return made
 
     def _material(self, shape: Shape, file: ObjFile, group: ObjGroup) -> int:
+        own = self.files.materials.get(shape.mesh, {}).get(group.material)
+        if own:
+            return self.palette.own(own.color, own.roughness, own.image, f"{shape.mesh}#{group.material}")
         if shape.color and not file.library:
             return self.palette.add(shape.color[:3], shape.color[3], None)
         base = PurePosixPath(self.base, shape.mesh.replace("\\", "/")).parent.as_posix() if shape.mesh else ""

@@ -40,11 +40,25 @@ class Palette:
     def add(self, color: tuple[float, float, float], opacity: float, texture: str | None, roughness: float = 0.6) -> int:
         """Return the index of a material of sRGB `color`, made when it is new."""
         linear = (_linear(color[0]), _linear(color[1]), _linear(color[2]))
+        return self._made(linear, opacity, texture, roughness)
+
+    def _made(self, linear: tuple[float, float, float], opacity: float, texture: str | None, roughness: float) -> int:
         plain = Material("", linear, roughness, 0.0, round(max(opacity, 0.05), 4), texture)
         if plain not in self._index:
             self._index[plain] = len(self.materials)
             self.materials.append(Material(f"material_{len(self.materials)}", linear, roughness, 0.0, plain.opacity, texture))
         return self._index[plain]
+
+    def own(self, color: tuple[float, float, float, float], roughness: float, image: bytes, where: str) -> int:
+        """Return the index of a material that a mesh file brings along: linear `color` with opacity, the bytes of an image or none."""
+        texture = None
+        if image:
+            try:
+                texture = self._kept(*prepared(image, where, self.texture_limit))
+            except SourceError as error:
+                self.notes.append(("missing_texture", f"{where}: {error.detail}"))
+        r, g, b = (1.0, 1.0, 1.0) if texture else color[:3]
+        return self._made((round(r, 5), round(g, 5), round(b, 5)), color[3], texture, round(max(roughness, 0.2), 3))
 
     def image(self, path: str, base: str) -> str | None:
         """Return the name under which the image is kept, or None with a note where it cannot be had.
@@ -65,6 +79,10 @@ class Palette:
                 raise
             self.notes.append(("missing_texture", f"{path}: {error.detail}"))
             return None
+        return self._kept(data, suffix)
+
+    def _kept(self, data: bytes, suffix: str) -> str:
+        """Return the name under which image bytes are kept, each only once."""
         known = next((name for name, blob in self.textures.items() if blob == data), None)
         if known:
             return known
