@@ -154,6 +154,10 @@ def _connected(state: _State, among: Bools, seed: int) -> tuple[int, ...]:
 
 def _shallow(state: _State, members: Sequence[int], axis: int, pocket: float) -> bool:
     """Whether no point in the pieces' common hull is further than `pocket` from them, seen on a grid, coarse then fine."""
+    centres = np.array([state.pieces[k].centre for k in members])
+    first, second = np.triu_indices(len(centres), 1)
+    if _away(state, members, (centres[first] + centres[second]) / 2) > pocket:  # what lies between two of them is in the hull
+        return False
     found = _hull([state.pieces[k] for k in members])
     if found is None:
         return False
