@@ -6,7 +6,7 @@ from pipeline.floorplan.areas import with_areas
 from pipeline.floorplan.check import names
 from pipeline.floorplan.connect import connect, resolve
 from pipeline.floorplan.distance import distances, nearness
-from pipeline.floorplan.furniture import spread
+from pipeline.floorplan.furniture import allot, spread
 from pipeline.floorplan.program import Entrance, FloorProgram, RoomReq
 
 UPSTAIRS = {"bedroom", "bathroom", "playroom"}
@@ -22,7 +22,7 @@ def complete(program: FloorProgram) -> FloorProgram:
     names(program)
     program = _join(program)
     program = program.model_copy(update={"entrance": _entrance(program)})
-    return with_areas(spread(program))
+    return allot(with_areas(spread(program)))
 
 
 def _expand(program: FloorProgram) -> tuple[RoomReq, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -66,7 +66,8 @@ def spread(program: FloorProgram) -> FloorProgram:
     if wish == Furniture():
         return program
     everywhere = wish.model_copy(update={"counts": tuple(c for c in wish.counts if not c.min)})
-    rooms = [r.model_copy(update={"furniture": merged(everywhere, r.furniture)}) if furnished(r.type) else r for r in program.rooms]
+    each = everywhere.model_copy(update={"least": None, "most": None, "openable": None})
+    rooms = [r.model_copy(update={"furniture": merged(each, r.furniture)}) if furnished(r.type) else r for r in program.rooms]
     kept: list[Things] = []
     for things in (c for c in wish.counts if c.min):
         home = next((k for kind in natural(things.category) for k, r in enumerate(rooms) if r.type == kind), None)
@@ -80,6 +81,37 @@ def spread(program: FloorProgram) -> FloorProgram:
     )
 
 
+def allot(program: FloorProgram) -> FloorProgram:
+    """Share the home's number of pieces, and of pieces that open, among its rooms by their areas; what a room states stays."""
+    wish, rooms = program.furniture, list(program.rooms)
+    bound = wish.most if wish.most is not None else wish.least
+    if bound is not None:
+        chosen = [k for k, r in enumerate(rooms) if furnished(r.type) and r.furniture.least is None and r.furniture.most is None]
+        spare = bound - sum(max(r.furniture.least or 0, r.furniture.most or 0) for r in rooms)
+        for k, n in _shares(rooms, chosen, spare, [needed(rooms[k].furniture) for k in chosen]):
+            own = {"least": n if wish.least is not None else None, "most": n if wish.most is not None else None}
+            rooms[k] = rooms[k].model_copy(update={"furniture": rooms[k].furniture.model_copy(update=own)})
+    if wish.openable is not None:
+        chosen = [k for k, r in enumerate(rooms) if furnished(r.type) and r.furniture.openable is None]
+        spare = wish.openable - sum(r.furniture.openable or 0 for r in rooms)
+        for k, n in _shares(rooms, chosen, spare, [0] * len(chosen)):
+            rooms[k] = rooms[k].model_copy(update={"furniture": rooms[k].furniture.model_copy(update={"openable": n})})
+    return program.model_copy(update={"rooms": tuple(rooms)})
+
+
+def _shares(rooms: Sequence[RoomReq], chosen: Sequence[int], total: int, least: Sequence[int]) -> list[tuple[int, int]]:
+    """Return (room, number): `least` each, the rest of `total` by area, the largest remainders first."""
+    if not chosen:
+        return []
+    rest = max(total - sum(least), 0)
+    areas = [rooms[k].area.target or 1.0 for k in chosen]
+    exact = [rest * a / sum(areas) for a in areas]
+    whole = [int(e) for e in exact]
+    for i in sorted(range(len(chosen)), key=lambda i: (whole[i] - exact[i], i))[: rest - sum(whole)]:
+        whole[i] += 1
+    return [(k, n + low) for k, n, low in zip(chosen, whole, least, strict=True)]
+
+
 def faults(program: FloorProgram) -> Iterable[tuple[str, str, tuple[str, ...]]]:
     """Yield (message, remedy, fields of the evidence) for every wish that cannot be met."""
     for things in program.furniture.counts:
@@ -90,6 +122,10 @@ def faults(program: FloorProgram) -> Iterable[tuple[str, str, tuple[str, ...]]]:
             yield f"no room of the home is one for a {plain(things.category)}", "say which room it shall stand in", (field,)
     for room in program.rooms:
         yield from _room_faults(room)
+    named, most = sum(max(r.furniture.least or 0, needed(r.furniture)) for r in program.rooms), program.furniture.most
+    if most is not None and named > most:
+        fields = ("furniture", *(f"rooms.{r.id}.furniture" for r in program.rooms))
+        yield f"the home is to have {most} pieces, and its rooms {named}", "ask for more pieces or for fewer things", fields
 
 
 def plain(category: str) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan.check import ImpossibleError, check_furniture
-from pipeline.floorplan.furniture import spread
+from pipeline.floorplan.furniture import allot, spread
 from pipeline.floorplan.language.attaching import Mention, attach, mentioned
 from pipeline.floorplan.language.masking import read_furniture
 from pipeline.floorplan.language.parser import bounded, understand_rooms
@@ -31,7 +31,7 @@ def with_wishes(program: FloorProgram, prompt: str) -> FloorProgram:
     except RefusedError:  # no room is named: the wishes are the whole home's
         said = None
     mentions = _in_plan(program, said, prompt) if said is not None else []
-    wished = spread(attach(program, claims, prompt, mentions))
+    wished = allot(spread(attach(program, claims, prompt, mentions)))
     check_furniture(wished)
     return wished
 

@@ -27,6 +27,10 @@ def deliveries(program: FloorProgram, rows: Mapping[str, Sequence[Mapping[str, A
     measured = {row["room_id"]: row for row in rows["rooms"]}
     pieces = set(taxonomy.load().names)  # what lies on or in furniture is no piece of it
     found: list[Delivery] = []
+    home = program.furniture
+    if home.least is not None or home.most is not None:
+        there = sum(o["category"] in pieces for o in rows["objects"])
+        found.append(_counted("(home)", "pieces", home.least or 0, home.most, there))
     for room in program.rooms:
         wish = room.furniture
         if wish != Furniture() and room.id in measured:

@@ -39,7 +39,8 @@ def attach(program: FloorProgram, claims: Sequence[Claim], prompt: str, mentions
     made: dict[str, list[Claim]] = {}
     evidence: list[dict[str, Any]] = []
     for claim in claims:
-        ids = _targets(claim, claims, named, kinds, prompt, stops)
+        every = tuple(kinds) if claim.home and claim.kind in {"pieces", "openable"} else ()
+        ids = every or _targets(claim, claims, named, kinds, prompt, stops)
         for room in ids or ("",):
             made.setdefault(room, []).append(claim)
             where = f"rooms.{room}.furniture" if room else "furniture"
@@ -117,6 +118,8 @@ def _targets(  # noqa: PLR0911 - one return per rule
     place = bisect.bisect_left(stops, claim.start)
     begin, end = stops[place - 1] + 1, stops[place]
     before = [m for m in named if begin <= m.start and m.end <= claim.start]
+    if before and claim.kind != "count" and Scan(prompt[before[-1].end : before[-1].end + 40]).phrase(0, "dwelling")[0]:
+        return ()  # "a two-bedroom flat with 30 pieces": the flat's
     after = [m for m in named if claim.end <= m.start and m.end <= end]
     if claim.inward and after and after[0].start - claim.end <= FAR:
         return after[0].ids

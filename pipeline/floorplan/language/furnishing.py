@@ -11,7 +11,19 @@ from dataclasses import dataclass
 from typing import Literal
 
 from pipeline.floorplan.furniture import lexicon
-from pipeline.floorplan.language.vocabulary import FIGURES, HAN_DIGITS, LEAST_TYPO, MOST, NUMBERS, ROOMS, STOPS, near, phrases, words
+from pipeline.floorplan.language.vocabulary import (
+    COMMAS,
+    FIGURES,
+    HAN_DIGITS,
+    LEAST_TYPO,
+    MOST,
+    NUMBERS,
+    ROOMS,
+    STOPS,
+    near,
+    phrases,
+    words,
+)
 
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
 
@@ -147,8 +159,10 @@ class Scan:
         start, end = self.words[first].start, self.words[last - 1].end
         begin = self.stops[bisect.bisect_left(self.stops, first) - 1] + 1
         near = [*range(max(begin, first - 5), first), *range(last, min(last + 4, len(self.words)))]
-        stop = next((j for j in near if j >= last and self.words[j].text in STOPS), len(self.words))
-        home = any(self.phrase(j, "home")[0] for j in near if j < stop)
+        # "eight pieces, everything nordic": what a comma parts is said of something else
+        left = max((j for j in near if j < first and self.words[j].text in COMMAS), default=-1)
+        right = next((j for j in near if j >= last and self.words[j].text in COMMAS), len(self.words))
+        home = any(self.phrase(j, "home")[0] for j in near if left < j < right)
         self.claims.append(Claim(kind, start, end, name, least, most, value, home, bool(self.phrase(last, "in")[0])))
         return last - first
 
@@ -168,7 +182,7 @@ class Scan:
         if value is None:
             return 0
         for j in range(end, min(end + 7, len(self.words))):
-            if self.words[j].text in STOPS or self.words[j].text in {",", "、"}:
+            if self.words[j].text in COMMAS:
                 break
             if free := self.phrase(j, "free")[0]:
                 while extra := self.phrase(j + free, "free")[0]:
@@ -186,7 +200,7 @@ class Scan:
         if not free:
             return 0
         for j in range(k + free, min(k + free + 5, len(self.words))):
-            if self.words[j].text in STOPS or self.words[j].text in {",", "、"}:
+            if self.words[j].text in COMMAS:
                 return 0
             length, value = self.number(j)
             if value is not None and (percent := self.phrase(j + length, "percent")[0]):

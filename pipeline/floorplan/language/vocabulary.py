@@ -13,6 +13,7 @@ from pipeline.floorplan.furniture import lexicon
 HAN = "\u3400-\u9fff"
 WORD = re.compile(rf"\d+(?:[.,]\d+)?|[{HAN}]|[^\W\d_{HAN}]+(?:'[^\W\d_]+)?|[%.,;:!?()\n+&、。;,!?]")
 STOPS = frozenset(".;!?\n。;!?")
+COMMAS = STOPS | {",", "、"}
 ENDINGS = ("en", "es", "as", "os", "em", "e", "n", "s", "a", "o")
 NUMBERS = {
     "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10, "eleven": 11, "twelve": 12,

@@ -125,6 +125,20 @@ def test_wishes_for_the_whole_home_reach_every_furnished_room():
     assert complete(program) == program
 
 
+def test_a_number_for_the_whole_home_is_shared_by_area():
+    program = parse("a two-bedroom flat with 30 pieces of furniture")
+    assert sum(r.furniture.least for r in program.rooms) == 30
+    assert all(r.furniture.least == r.furniture.most for r in program.rooms)
+    assert complete(program) == program
+    every = parse("3 dorm, 2 baños, salón con 8 muebles, todo minimalista")
+    assert {r.id: r.furniture.least for r in every.rooms if r.furniture.least} == {"living": 8}
+    assert {r.furniture.style for r in every.rooms} == {"Minimalist"}
+    loose = parse("a two-bedroom flat with at least 20 pieces of furniture and at least five things that open")
+    assert sum(r.furniture.least or 0 for r in loose.rooms) == 20
+    assert {r.furniture.most for r in loose.rooms} == {None}
+    assert sum(r.furniture.openable or 0 for r in loose.rooms) == 5
+
+
 def test_every_wish_points_at_its_words():
     prompt = "a flat with a bedroom with eight pieces, two nightstands, 70 % free, nordic, and a kitchen, a living room and a bathroom"
     cited = {e.field: e.text for e in parse(prompt).evidence if ".furniture" in e.field}
