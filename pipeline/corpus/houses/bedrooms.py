@@ -82,9 +82,9 @@ def place_bed(arranger: Arranger, category: str) -> tuple[Model, Spot] | None:
         model = arranger.pick(category, width=width, depth=max(short - 0.4, 2.05))
         if model is None:
             return None
-        if attempt < 2:  # beds are as large as the room lets them: of two, the larger
-            other = arranger.pick(category, width=width, depth=max(short - 0.4, 2.05))
-            model = max(model, other or model, key=lambda m: m.size[0] + m.size[1])
+        if attempt < 2:  # beds are as large as the room lets them: of three, the largest
+            others = [arranger.pick(category, width=width, depth=max(short - 0.4, 2.05)) for _ in range(2)]
+            model = max([model, *(m for m in others if m)], key=lambda m: m.size[0] + 1.5 * m.size[1])
         space.blind = attempt >= 1 or arranger.chance(0.15)  # a headboard before a window: now and then
         beside = BESIDE[min(attempt, len(BESIDE) - 1)] if attempt < 6 and category == "double_bed" else 0.0
         found = _bed_spots(arranger, model, beside)
@@ -139,7 +139,7 @@ def nightstands(arranger: Arranger, bed: tuple[Model, Spot], count: int) -> None
     signs = [-1, 1] if count == 2 else [int(arranger.rng.choice([-1, 1]))] * count
     width = 0.75
     for attempt in range(5):
-        stand = arranger.pick("nightstand", width=width, depth=0.45 if attempt < 3 else math.inf)
+        stand = arranger.pick("nightstand", width=width, depth=0.44 if attempt < 3 else math.inf)
         if stand is None:
             return
         gap = float(abs(arranger.rng.normal(0.05, 0.04)) + 0.01)

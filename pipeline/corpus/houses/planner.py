@@ -27,21 +27,23 @@ def make_plan(rng: np.random.Generator, furnished: Sequence[str]) -> Plan:
     for attempt in range(PROGRAMS):
         wanted = program.sample(rng, furnished)
         for _ in range(DRAFTS):  # redrawn for one program, so that hard programs are not crowded out by easy ones
-            plan = _attempt(rng, wanted)
-            if plan is not None and (attempt >= STRICT or not lacking(plan, furnished)):
+            plan = _attempt(rng, wanted, furnished if attempt < STRICT else ())
+            if plan is not None:
                 return plan
     raise ContentError(f"no house plan after {PROGRAMS} programs", "choose another seed in params.yaml")
 
 
-def lacking(plan: Plan, furnished: Sequence[str]) -> Counter[str]:
-    """Return the types of which the plan has too few rooms; any corridor serves as a hall."""
+def lacking(types: Sequence[str], furnished: Sequence[str]) -> Counter[str]:
+    """Return the furnished types of which there are too few rooms; any corridor serves as a hall."""
     wanted = Counter("Hallway" if t in openings.CORRIDORS else t for t in furnished)
-    return wanted - Counter("Hallway" if r.type in openings.CORRIDORS else r.type for r in plan.rooms)
+    return wanted - Counter("Hallway" if t in openings.CORRIDORS else t for t in types)
 
 
-def _attempt(rng: np.random.Generator, wanted: program.Program) -> Plan | None:
+def _attempt(rng: np.random.Generator, wanted: program.Program, furnished: Sequence[str]) -> Plan | None:
     make = draft.spine if rng.random() < 0.55 else draft.centre
     sketch = make(rng, wanted)
+    if lacking(sketch.types, furnished):
+        return None
     rooms = [
         p
         for i, p in enumerate(sketch.patches)

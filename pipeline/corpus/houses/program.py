@@ -14,7 +14,7 @@ AREAS: dict[str, tuple[float, float, float, float]] = {
     "Bedroom": (14.0, 2.8, 10.5, 20.5),
     "ElderlyRoom": (12.0, 1.5, 10.0, 15.0),
     "KidsRoom": (10.6, 1.6, 8.5, 14.0),
-    "Library": (9.4, 1.3, 7.6, 12.5),
+    "Library": (8.9, 1.0, 7.6, 11.0),
     "LivingDiningRoom": (33.5, 7.0, 19.0, 56.0),
     "LivingRoom": (17.0, 2.6, 13.5, 24.0),
     "DiningRoom": (17.5, 2.6, 12.0, 23.0),
