@@ -10,6 +10,8 @@ from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.records import Model
 from pipeline.corpus.houses.space import Spot, ahead, back_gap, box_of, on_side, shifted
 
+FARTHEST_TV = 1.2
+"""Most free floor between a bed's foot and the TV stand [m]."""
 FOOT = 0.6
 SIDE = 0.5
 """Free floor at the foot and beside a bed [m]."""
@@ -170,7 +172,7 @@ def tv_opposite(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
                 continue
             place = on_side(space, i, s + float(arranger.rng.normal(0, 0.04)), stand.size[1], back_gap(arranger.rng))
             away = abs((place.x - spot.x) * np.sin(spot.yaw) - (place.y - spot.y) * np.cos(spot.yaw))
-            if 0.6 < away - model.size[1] / 2 - stand.size[1] / 2 < 1.5 and space.try_add(
+            if 0.6 < away - model.size[1] / 2 - stand.size[1] / 2 < FARTHEST_TV and space.try_add(
                 stand, place, keep=[ahead(place, stand.size[1], 0.4, stand.size[0])]
             ):
                 return True
