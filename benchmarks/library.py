@@ -110,7 +110,8 @@ def pictures(name: str, given: argparse.Namespace) -> list[tuple[str, Image.Imag
     if name in OPEN_SHEETS:
         for model in chosen(library.partnet, OPEN_SHEETS[name], given.count):
             asset = model.build()
-            made += [(caption(model), portrait(asset, given.cell, given.spp, fraction)) for fraction in (0.0, OPEN)]
+            words = (f"{model.category}: {model.form}".replace("_", " "), model.style)
+            made += [(text, portrait(asset, given.cell, given.spp, at)) for text, at in zip(words, (0.0, OPEN), strict=True)]
         return made
     models = chosen(library.future, SHEETS[name], given.count)
     for model, asset in zip(models, assets(models), strict=True):

@@ -102,7 +102,7 @@ def colliders(parts: Iterable[Piece]) -> list[Solid]:
     groups: dict[str, list[Solid]] = {}
     for piece in parts:
         (groups.setdefault(piece.group, []) if piece.group else alone).append(piece.solid)
-    return alone + [_hull_or_box(members) for members in groups.values()]
+    return alone + [_smaller(_hull_or_box(members)) for members in groups.values()]
 
 
 def _hull_or_box(members: list[Solid]) -> Solid:
@@ -115,13 +115,15 @@ def _hull_or_box(members: list[Solid]) -> Solid:
     return made
 
 
-def fitted(shape: Shape, size: Vector) -> Shape:
+def fitted(shape: Shape, size: Vector, *, groups: bool = False) -> Shape:
     """Return the shape scaled to `size` (w, d, h) exactly and centred over the origin, bottom at 0.
 
     Builders come within a few percent of their box; this takes up the rest. Lengths of sliding joints scale along.
     Every solid is drawn in by CLEARANCE first, so that no two share a corner and readers that weld vertices keep them apart.
+    With `groups` the pieces of a group are left as they are, without a seam between them: only their hulls collide.
     """
-    shape = Shape(_drawn_in(shape.base), tuple(replace(m, pieces=_drawn_in(m.pieces)) for m in shape.movers))
+    movers = tuple(replace(m, pieces=_drawn_in(m.pieces, groups=groups)) for m in shape.movers)
+    shape = Shape(_drawn_in(shape.base, groups=groups), movers)
     low, high = shape.bounds()
     factors = np.asarray(size, float) / (high - low)
     offset = -np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
@@ -129,25 +131,26 @@ def fitted(shape: Shape, size: Vector) -> Shape:
     def place(parts: tuple[Piece, ...]) -> tuple[Piece, ...]:
         return tuple(replace(p, solid=p.solid.moved(offset).scaled(factors)) for p in parts)
 
-    movers = []
+    placed = []
     for mover in shape.movers:
         x, y, z = ((np.asarray(mover.origin) + offset) * factors).tolist()
         stretch = float(np.abs(np.asarray(mover.axis)) @ factors) if mover.type == "prismatic" else 1.0
-        movers.append(
+        placed.append(
             replace(mover, pieces=place(mover.pieces), origin=(x, y, z), upper=mover.upper * stretch, lower=mover.lower * stretch)
         )
-    return Shape(place(shape.base), tuple(movers))
+    return Shape(place(shape.base), tuple(placed))
 
 
-def _drawn_in(parts: tuple[Piece, ...]) -> tuple[Piece, ...]:
-    """Return the pieces, each scaled about the centre of its box so that it is CLEARANCE smaller on every side."""
-    made = []
-    for piece in parts:
-        low, high = piece.solid.bounds()
-        centre, extent = (low + high) / 2, high - low
-        factors = 1 - 2 * np.minimum(CLEARANCE, 0.1 * extent) / extent
-        made.append(replace(piece, solid=Solid((piece.solid.vertices - centre) * factors + centre, piece.solid.faces)))
-    return tuple(made)
+def _drawn_in(parts: tuple[Piece, ...], *, groups: bool) -> tuple[Piece, ...]:
+    return tuple(piece if groups and piece.group else replace(piece, solid=_smaller(piece.solid)) for piece in parts)
+
+
+def _smaller(solid: Solid) -> Solid:
+    """Return the solid scaled about the centre of its box so that it is CLEARANCE smaller on every side."""
+    low, high = solid.bounds()
+    centre, extent = (low + high) / 2, high - low
+    factors = 1 - 2 * np.minimum(CLEARANCE, 0.1 * extent) / extent
+    return Solid((solid.vertices - centre) * factors + centre, solid.faces)
 
 
 def frozen(shape: Shape) -> Shape:
