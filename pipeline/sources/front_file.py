@@ -5,9 +5,10 @@ Frame of everything here: the file's own (y up, metres, front +z; plan coordinat
 
 from __future__ import annotations
 
+import json
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +19,7 @@ from pipeline.sources.reasons import Row, SourceError, reject
 
 Floats = NDArray[np.float64]
 ORIGIN, NO_TURN, ONE = np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.ones(3)
-_SHADING = re.compile(rb'"(?:normal|uv)"\s*:\s*\[[^\[\]{}"]*\]')
+_ARRAYS = re.compile(rb'"(xyz|faces|normal|uv)"\s*:\s*\[([-+0-9.eEnul,\s]*)\]')  # numbers and null: NaN stays, to be refused
 MAX_AREA = 1e5  # [m2] no room is larger: such a figure says nothing
 
 
@@ -36,7 +37,7 @@ class Furniture:
 
 @dataclass(frozen=True, slots=True)
 class MeshRecord:
-    """A mesh of the building; the arrays stay lists until somebody needs them."""
+    """A mesh of the building; `xyz` and `faces` stay lists, or the text between their brackets, until somebody needs them."""
 
     uid: str
     type: str
@@ -45,7 +46,7 @@ class MeshRecord:
 
     def vertices(self) -> Floats:
         """Return (V, 3) world coordinates. Raises SourceError for anything that is not finite triples."""
-        values = floats(self.xyz, f"mesh {self.uid}")
+        values = floats(_listed(self.xyz, f"mesh {self.uid}"), f"mesh {self.uid}")
         if len(values) % 3:
             raise SourceError("bad_structure", f"mesh {self.uid}", "xyz is not a list of triples")
         return values.reshape(-1, 3)
@@ -54,7 +55,7 @@ class MeshRecord:
         """Return (T, 3, 3) corner coordinates."""
         vertices = self.vertices()
         try:
-            index = np.asarray(self.faces, dtype=np.int64)
+            index = np.asarray(_listed(self.faces, f"mesh {self.uid}"), dtype=np.int64)
         except (TypeError, ValueError, OverflowError) as error:
             raise SourceError("bad_structure", f"mesh {self.uid}", "faces are not integers") from error
         if index.ndim != 1 or len(index) % 3 or (len(index) and (index.min() < 0 or index.max() >= len(vertices))):
@@ -99,6 +100,16 @@ class HouseFile:
     rejects: tuple[Row, ...]
 
 
+def _listed(values: Any, where: str) -> Any:
+    """Parse the text of a number array; anything else stays as it is."""
+    if not isinstance(values, bytes):
+        return values
+    try:
+        return json.loads(b"[" + values + b"]")
+    except ValueError as error:
+        raise SourceError("bad_number", where, "holds something that is no number") from error
+
+
 def floats(values: Any, where: str) -> Floats:
     """Return a flat list of finite numbers as an array, or raise SourceError `bad_number`."""
     try:
@@ -110,16 +121,26 @@ def floats(values: Any, where: str) -> Floats:
     return array
 
 
-def without_shading(data: bytes) -> bytes:
-    """Return a house file with the meshes' normals and texture coordinates emptied: nobody reads them, and they are most of it.
+def deferred(data: bytes) -> tuple[bytes, list[bytes]]:
+    """Return a house file with the number arrays of its meshes replaced by their positions in the returned list.
 
-    In the release they are partly wrong (normals) or null (uv).
+    They are most of the file, and only those of floors, ceilings, walls and openings are ever read: `MeshRecord` parses
+    them when it is asked. Normals and texture coordinates, partly wrong or null in the release, are left out.
     """
-    return _SHADING.sub(b'"uv":[]', data)
+    kept: list[bytes] = []
+
+    def put(found: re.Match[bytes]) -> bytes:
+        key, numbers = found.groups()
+        if key in {b"normal", b"uv"}:
+            return b'"uv":[]'
+        kept.append(numbers)
+        return b'"%s":%d' % (key, len(kept) - 1)
+
+    return _ARRAYS.sub(put, data), kept
 
 
-def parse_house(tree: Any, name: str) -> HouseFile:
-    """Read a parsed house file; `name` is the file's stem. Raises SourceError `bad_structure` when the frame is missing."""
+def parse_house(tree: Any, name: str, arrays: Sequence[bytes] = ()) -> HouseFile:
+    """Read a parsed house file; `name` is the file's stem, `arrays` what `deferred` took out of it. Raises SourceError `bad_structure` when the frame is missing."""
     scene = tree.get("scene") if isinstance(tree, dict) else None
     if not isinstance(scene, dict) or not isinstance(scene.get("room"), list):
         raise SourceError("bad_structure", name, "has no scene.room list; it is no 3D-FRONT house")
@@ -128,7 +149,7 @@ def parse_house(tree: Any, name: str) -> HouseFile:
     if uid != name:
         rejects.append(reject("house", name, "uid_mismatch", f"the file says {uid!r}"))
     furniture = _first_by_uid((furniture_record(r) for r in _records(tree, "furniture")), name, "furniture", rejects)
-    meshes = _first_by_uid((_mesh(r) for r in _records(tree, "mesh")), name, "mesh", rejects)
+    meshes = _first_by_uid((_mesh(r, arrays) for r in _records(tree, "mesh")), name, "mesh", rejects)
     rooms = tuple(_room(r, name, furniture, rejects) for r in scene["room"] if isinstance(r, dict))
     return HouseFile(name, furniture, meshes, rooms, _entry_rooms(tree), tuple(rejects))
 
@@ -193,8 +214,12 @@ def furniture_record(record: Mapping[str, Any]) -> Furniture:
     )
 
 
-def _mesh(record: Mapping[str, Any]) -> MeshRecord:
-    return MeshRecord(_text(record.get("uid")), _text(record.get("type")), record.get("xyz") or [], record.get("faces") or [])
+def _mesh(record: Mapping[str, Any], arrays: Sequence[bytes]) -> MeshRecord:
+    def array(key: str) -> Any:
+        value = record.get(key)
+        return arrays[value] if type(value) is int and 0 <= value < len(arrays) else value or []
+
+    return MeshRecord(_text(record.get("uid")), _text(record.get("type")), array("xyz"), array("faces"))
 
 
 def _room(record: Mapping[str, Any], house: str, furniture: Mapping[str, Furniture], rejects: list[Row]) -> RoomRecord:

@@ -12,7 +12,7 @@ from shapely.geometry import Polygon
 
 from pipeline.entities.plan import Opening, Room
 from pipeline.sources import front_openings
-from pipeline.sources.front_file import HouseFile, RoomRecord, parse_house, without_shading
+from pipeline.sources.front_file import HouseFile, RoomRecord, deferred, parse_house
 from pipeline.sources.front_floor import Floor, outline
 from pipeline.sources.front_objects import Model, Placed, overlapping, placed
 from pipeline.sources.front_poses import yaw_and_tilt
@@ -49,9 +49,8 @@ def read_house(folder: Folder, file: str, models: Mapping[str, Model], taxonomy:
     """Read one house. A file that is refused gives one reject row with its reason."""
     name = file.rsplit("/", 1)[-1].removesuffix(".json")
     try:
-        return house_rows(
-            parse_house(parse_json(without_shading(folder.read(file, MAX_JSON)), file), name), models, taxonomy, limits, licence
-        )
+        text, arrays = deferred(folder.read(file, MAX_JSON))
+        return house_rows(parse_house(parse_json(text, file), name, arrays), models, taxonomy, limits, licence)
     except SourceError as error:
         return HouseRows(rejects=[reject("house", name, error.code, error.detail)])
 

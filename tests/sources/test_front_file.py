@@ -1,7 +1,10 @@
+import json
+
+import numpy as np
 import pytest
 
 from pipeline import taxonomy
-from pipeline.sources.front_file import Furniture, declared_box, parse_house
+from pipeline.sources.front_file import Furniture, declared_box, deferred, parse_house
 from pipeline.sources.front_objects import category_of
 from pipeline.sources.reasons import SourceError
 from tests.sources import making
@@ -94,3 +97,24 @@ def test_same_room_id_in_two_houses_is_two_rooms(tmp_path):
     made = read(tmp_path)
     assert len({(r["scene_id"], r["room_id"]) for r in made.rooms}) == 4
     assert [s["index"] for s in made.scenes] == [0, 1]
+
+
+def test_deferred_arrays_are_the_arrays():
+    """Taking the meshes' numbers out before parsing changes nothing of what is read, whatever stands between them."""
+    tree = making.two_rooms()
+    tree["mesh"][0]["uv"] = [None, 1.5e-3]
+    tree["mesh"][1]["xyz"] = []
+    plain = parse_house(json.loads(json.dumps(tree)), "house-a")
+    for text in (json.dumps(tree), json.dumps(tree, indent=3), json.dumps(tree, separators=(",", ":"))):
+        short, arrays = deferred(text.encode())
+        house = parse_house(json.loads(short), "house-a", arrays)
+        assert house.meshes.keys() == plain.meshes.keys()
+        for uid, mesh in plain.meshes.items():
+            assert np.array_equal(house.meshes[uid].triangles(), mesh.triangles())
+
+
+def test_a_number_in_place_of_an_array_is_no_mesh():
+    tree = making.two_rooms()
+    tree["mesh"][0] |= {"xyz": 10**9, "faces": "[0, 1, 2]"}
+    with pytest.raises(SourceError):
+        parse_house(tree, "house-a").meshes["f1"].triangles()
