@@ -18,7 +18,21 @@ import yaml
 from pipeline.errors import ContentError
 
 # Every section of params.yaml: a misspelt one shall not pass as one more.
-SECTIONS = ("seed", "corpus", "preprocess", "encode", "train", "sample", "retrieval", "postopt", "verify", "dataset", "shard", "metrics")
+SECTIONS = (
+    "seed",
+    "corpus",
+    "preprocess",
+    "encode",
+    "train",
+    "sample",
+    "retrieval",
+    "postopt",
+    "verify",
+    "dataset",
+    "prior",
+    "shard",
+    "metrics",
+)
 
 T = TypeVar("T")
 Tree = dict[str, Any]

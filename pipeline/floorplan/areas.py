@@ -108,7 +108,8 @@ def _balance(rooms: Sequence[RoomReq], target: list[float], free: Sequence[bool]
     sums = {v: sum(t for r, t in zip(rooms, target, strict=True) if (r.level or 0) == v) + stairs * (v > 0) for v in levels}
     most = max(sums.values())
     for level in levels:
-        loose = [i for i, r in enumerate(rooms) if (r.level or 0) == level and free[i] and r.type != "staircase"]
+        # what has a target already was stretched before, or is meant: completing twice changes nothing
+        loose = [i for i, r in enumerate(rooms) if (r.level or 0) == level and r.area.target is None and free[i] and r.type != "staircase"]
         flexible = sum(target[i] for i in loose)
         if flexible > 0 and sums[level] < 0.999 * most:
             factor = min(1.0 + (most - sums[level]) / flexible, MOST_STRETCH)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from pipeline.floorplan.defaults import OUTSIDE
-from pipeline.floorplan.program import FloorProgram
+from pipeline.floorplan.program import FloorProgram, RoomType
 
 NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 PLURALS = {"storage": "storage rooms", "library": "libraries", "office": "offices", "balcony": "balconies", "wc": "WCs"}
@@ -13,21 +13,43 @@ SINGULAR = {"wc": "WC", "storage": "storage room", "utility": "utility room", "s
 
 
 def describe(program: FloorProgram) -> str:
-    """Return a sentence that names the rooms, what is open to what, and the area."""
-    counts = Counter(r.type for r in program.rooms)
-    beds = counts.pop("bedroom", 0)
-    kind = "studio" if "studio_room" in counts else ("home" if not beds else f"{_number(beds)}-bedroom home")
-    rest = [_phrase(name, count) for name, count in counts.items() if name != "studio_room"]
+    """Return a sentence or two that name the rooms, storey by storey, what is open to what, and the area."""
     area = sum(r.area.target or 0.0 for r in program.rooms if r.type not in OUTSIDE)
-    text = f"{_article(kind)} {kind} of {area:.0f} m²"
-    if rest:
-        text += " with " + (", ".join(rest[:-1]) + " and " + rest[-1] if len(rest) > 1 else rest[0])
-    fronts = [(_type(program, k.a), _type(program, k.b)) for k in program.links if k.kind == "open"]
-    if fronts:
-        text += "; " + ", ".join(f"the {_one(a)} open to the {_one(b)}" for a, b in fronts)
-    if program.storeys > 1:
-        text += f"; on {_number(program.storeys)} floors"
-    return text + "."
+    if program.storeys == 1:
+        counts = Counter(r.type for r in program.rooms)
+        beds = counts.pop("bedroom", 0)
+        kind = "studio" if "studio_room" in counts else ("home" if not beds else f"{_number(beds)}-bedroom home")
+        rest = [_phrase(name, count) for name, count in counts.items() if name != "studio_room"]
+        text = f"{_article(kind)} {kind} of {area:.0f} m²"
+        if rest:
+            text += " with " + _list(rest)
+        missing = _missing(counts, beds)
+        if missing:
+            text += ", without " + " or ".join(missing)
+    else:
+        text = f"A home of {area:.0f} m² on {_number(program.storeys)} floors"
+        for level, where in zip(range(program.storeys), ("downstairs", "upstairs", "on the second floor"), strict=False):
+            counts = Counter(r.type for r in program.rooms if r.level == level)
+            text += f"; {where}: " + _list([_phrase(name, count) for name, count in counts.items()])
+    fronts = [{_type(program, k.a), _type(program, k.b)} for k in program.links if k.kind == "open"]
+    named = [f"the {_one(min(f))} open to the {_one(max(f))}" for f in fronts if "staircase" not in f]
+    return text + "".join(f"; {n}" for n in named[:1]) + "".join(f", {n}" for n in named[1:]) + "."
+
+
+def _missing(counts: Counter[RoomType], beds: int) -> list[str]:
+    """Return what a reader would take for granted."""
+    missing = []
+    if beds and not counts["kitchen"]:
+        missing.append("a kitchen of its own")
+    if beds and not counts["living_room"]:
+        missing.append("a living room")
+    if beds > 1 and not counts["hallway"] and not counts["entry"]:
+        missing.append("a hallway")
+    return missing
+
+
+def _list(parts: list[str]) -> str:
+    return ", ".join(parts[:-1]) + " and " + parts[-1] if len(parts) > 1 else parts[0]
 
 
 def _number(count: int) -> str:

@@ -34,6 +34,7 @@ TERMS = (
     "stair_snug",
 )
 WEIGHTS = (0.5, 12.0, 1.6, 14.0, 1.6, 1.0, 0.3, 0.12, 1.0, 0.5, 2.0, 1.0)
+TONGUE = 4  # cells: no part of a room is narrower
 SPLIT = 4.5  # m2 charged when a room falls apart at a neck; the legacy solver charges 45 in its units of 0.25 m2 x 0.4
 
 
@@ -255,8 +256,9 @@ def room_shape(grid: Labels, out: Measures, spec: Spec, i: int, shape: Floats) -
     else:
         shape[i, 0] = hull_area(grid, i, out.box)
     shape[i, 1] = 0.0
-    for part in range(3):
-        side = spec.least[i] if part == 0 else (half if part == 1 else spec.strict[i])
+    tongue = min(TONGUE, spec.strict[i])
+    for part in range(4):
+        side = spec.least[i] if part == 0 else (half if part == 1 else (tongue if part == 2 else spec.strict[i]))
         if notch > 0:
             reached, pieces = ell_opening(w, h, notch, (w * h - cells) // notch, side)
         else:
@@ -265,11 +267,14 @@ def room_shape(grid: Labels, out: Measures, spec: Spec, i: int, shape: Floats) -
             shape[i, 1] += square_metre * (cells - reached)
             if pieces > 1:
                 shape[i, 2] = 1.0
+        elif part == 2:
+            if pieces > 1 or reached < cells:
+                shape[i, 3] += 0.3 + (cells - reached) / cells
         elif side > 1:
             if reached == 0:
-                shape[i, 3] = 1.0
+                shape[i, 3] += 1.0
             elif spec.corridor[i] > 0 and (pieces > 1 or reached < cells):
-                shape[i, 3] = 0.3 + (cells - reached) / cells
+                shape[i, 3] += 0.3 + (cells - reached) / cells
 
 
 @compiled

@@ -22,10 +22,13 @@ from pipeline.floorplan.program import FloorProgram
 from pipeline.floorplan.storeys import EDGE, UNIT, Storey, storey
 
 TRIES = 24  # whole attempts before a program is refused
+LENGTHS = (1, 1, 2, 2, 4, 4, 4, 4, 8)  # how much longer attempts search
+EASE = (3, 4, 7)  # attempts from which what nobody stated is let go, step by step
+EASED_ASPECT = 2.2  # of the outline then
 STARTS, MOST_STARTS = 4, 9  # slicing trees per attempt: usual, and while all of them lack something
 RUNS = 2  # annealing runs per storey and attempt, from the best of these
 SLICES = 700  # slicing proposals per room and start
-PROPOSALS = 180  # annealing proposals per room and run
+PROPOSALS, LONGEST = 180, 3  # annealing proposals per room and run; how much longer runs get
 HOT, COLD, PENALTY = 1.2, 0.01, 40.0
 SHARES = (1.0, 0.4, 0.0)  # how much of their freedom the walls' lines use; less when openings then find no place
 LEAST_CUT = 4  # cells
@@ -85,14 +88,15 @@ class Outline(NamedTuple):
 
 
 def _attempt(program: FloorProgram, rng: np.random.Generator, attempt: int, effort: Effort) -> tuple[Plan, NDArray[np.float64]] | None:
-    requests = [storey(program, level) for level in range(program.storeys)]
-    outline = _outline(program, requests, rng)
-    length = 1 + attempt // 6
+    ease = sum(attempt >= k for k in EASE)
+    requests = [storey(program, level, None, ease) for level in range(program.storeys)]
+    outline = _outline(program, requests, rng, ease)
+    length = LENGTHS[min(attempt, len(LENGTHS) - 1)]
     solved: list[tuple[Storey, Labels]] = []
     terms = np.zeros(len(TERMS))
     stair: tuple[int, int, int, int] | None = None
     for level in range(program.storeys):
-        request = requests[level] if stair is None else storey(program, level, stair)
+        request = requests[level] if stair is None else storey(program, level, stair, ease)
         made = _storey_grid(request, program, outline, rng, length, effort)
         if made is None:
             return None
@@ -107,7 +111,7 @@ def _attempt(program: FloorProgram, rng: np.random.Generator, attempt: int, effo
     return None if plan is None else (plan, terms)
 
 
-def _outline(program: FloorProgram, requests: list[Storey], rng: np.random.Generator) -> Outline:
+def _outline(program: FloorProgram, requests: list[Storey], rng: np.random.Generator, ease: int = 0) -> Outline:
     """Draw the building's rectangle: large enough for the largest storey and for what is cut out of its corners."""
     shape = program.footprint.shape
     if shape == "any":
@@ -115,6 +119,8 @@ def _outline(program: FloorProgram, requests: list[Storey], rng: np.random.Gener
     cuts = {"rectangle": 0, "L": 1, "T": 2}[shape]
     low = max(program.footprint.min_aspect * (1.03 if program.footprint.stated else 1.0), 1.0)
     high = max(program.footprint.max_aspect, low)
+    if ease and not program.footprint.stated:
+        high = max(high, EASED_ASPECT)
     aspect = np.exp(rng.uniform(np.log(low), np.log(high)))
     whole = max(r.gross.sum() for r in requests) * (1.0 + (0.16, 0.2)[cuts - 1] * (cuts > 0))
     width = max(round(float(whole * aspect) ** 0.5), 2)
@@ -134,7 +140,7 @@ def _storey_grid(
     """Return a grid without violations: the best of several annealing runs, each from one of the best slicing trees; and its terms."""
     starts: list[tuple[float, Labels]] = []
     for trial in range(MOST_STARTS):
-        cells, cost = _slice(request, program, outline, rng, effort)
+        cells, cost = _slice(request, program, outline, rng, length, effort)
         if np.isfinite(cost):
             soft, hard, _ = anneal.score(cells, request.spec, request.weights, 0.0)
             starts.append((soft + PENALTY * min(hard, 10.0 if request.spec.stair_room >= 0 else np.inf), cells))
@@ -148,7 +154,7 @@ def _storey_grid(
     best: tuple[Labels, NDArray[np.float64]] | None = None
     least = np.inf
     for _, cells in sorted(starts, key=lambda s: s[0])[:RUNS]:
-        draws = rng.random((PROPOSALS * n * length, anneal.DRAWS))
+        draws = rng.random((PROPOSALS * n * min(length, LONGEST), anneal.DRAWS))
         grid, soft, hard, terms, _, evaluated = anneal.run(cells, request.spec, request.weights, fixed, draws, HOT, COLD, PENALTY)
         effort.runs += 1
         effort.proposals += evaluated
@@ -157,7 +163,9 @@ def _storey_grid(
     return best
 
 
-def _slice(request: Storey, program: FloorProgram, outline: Outline, rng: np.random.Generator, effort: Effort) -> tuple[Labels, float]:
+def _slice(
+    request: Storey, program: FloorProgram, outline: Outline, rng: np.random.Generator, length: int, effort: Effort
+) -> tuple[Labels, float]:
     """Anneal one slicing tree in the outline; return its bordered grid and cost (infinite when a cut-out is misplaced)."""
     n, spec, width, height = len(request.rooms), request.spec, outline.width, outline.height
     spare = width * height - request.gross.sum()
@@ -172,7 +180,7 @@ def _slice(request: Storey, program: FloorProgram, outline: Outline, rng: np.ran
     for k in range(1, m):
         expr[2 * k - 1] = order[k]
         expr[2 * k] = slicing.V if k % 2 else slicing.H
-    draws = rng.random((SLICES * m, slicing.DRAWS))
+    draws = rng.random((SLICES * m * length, slicing.DRAWS))
     square = np.where(spec.square > 0, 0.6, 0.08) * 2.0**program.style.squareness
     low = np.concatenate([request.gross_low, empty * 0.7])
     high = np.concatenate([request.gross_high, empty * 1.3])

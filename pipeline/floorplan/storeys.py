@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.floorplan.daylight import YIELDS, daylit
 from pipeline.floorplan.defaults import DEFAULTS, OUTSIDE
 from pipeline.floorplan.energy import TERMS, WEIGHTS, Spec
 from pipeline.floorplan.grid import INNER, OUTER
@@ -16,7 +18,9 @@ UNIT = 0.25  # side of a cell [m]
 # Straight common wall that an opening needs [m]: clear width, 0.1 m beside the frame on both sides, half a wall at both ends.
 SIDES = 0.45
 OPEN_FRONT, PORTAL = 1.5, 1.2  # least clear widths [m]
-LOOSE = 0.32  # how far an unstated area may miss its target
+LOOSE, EASED = 0.32, 0.45  # how far an unstated area may miss its target; where nothing else helps
+SMALL, BUSY = 7.0, 3  # rooms of less area [m2] or so many links give up their outside wall first
+EASED_WIDTH = 1.2  # least width of rooms then [m]
 STATED = 0.10  # how far a stated target may be missed
 EDGE = 0.012  # hard bounds are drawn in by this share, so that rounding cannot cross them
 FREE_HALL = (0.6, 1.7)  # how far an unstated hallway's area may move
@@ -58,13 +62,17 @@ def weights_of(program: FloorProgram) -> NDArray[np.float64]:
     return np.asarray(np.array(WEIGHTS) * np.exp2(knobs))
 
 
-def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, int] | None = None) -> Storey:
-    """Translate one storey of a completed program. `stair_cells` is the rectangle that the staircase must take, if it is fixed."""
+def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, int] | None = None, ease: int = 0) -> Storey:
+    """Translate one storey of a completed program. `stair_cells` is the rectangle that the staircase must take, if it is fixed.
+
+    `ease` lets go of what nobody stated: 1 of usual widths and of much of the usual areas, 2 of usual outside walls of rooms that are
+    small, busy or can do without, 3 of all usual outside walls.
+    """
     rooms = tuple(r for r in program.rooms if r.level == level or (r.type == "staircase" and level < program.storeys))
     index = {r.id: i for i, r in enumerate(rooms)}
     n = len(rooms)
     target = np.array([r.area.target or DEFAULTS[r.type].area for r in rooms])
-    low, high = _bounds(rooms, target)
+    low, high = _bounds(rooms, target, EASED if ease else LOOSE)
     door = program.accessibility.min_door
     link, need = np.zeros((n, n), np.int64), np.zeros((n, n), np.int64)
     for k in program.links:
@@ -76,6 +84,7 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
     here = program.model_copy(update={"rooms": rooms})
     ban, apart, order = _relations(here, index)
     widths = [_width(r, program) for r in rooms]
+    outside = _outside(rooms, program, level, ease)
     # a small room cannot be as wide as its type usually is
     least = np.array([cells(min(w, 0.92 * t**0.5) + 2 * INNER) for w, t in zip(widths, target, strict=True)])
     strict = np.maximum((0.8 * least).astype(np.int64), 3)
@@ -83,6 +92,8 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
     for i, r in enumerate(rooms):
         if r.min_width is not None or r.type in {"hallway", "entry"}:
             strict[i] = least[i]
+        elif ease:
+            strict[i] = min(strict[i], cells(EASED_WIDTH + 2 * INNER))
         if r.type == "wc":
             strict[i] = cells(0.85 + 2 * INNER)
     total = np.array([0.0, np.inf])
@@ -107,7 +118,7 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
         link,
         need,
         ban,
-        np.array([_outside(r, program, level) for r in rooms]),
+        np.array(outside),
         np.array([cells(r.exterior_length + 0.5) if r.exterior_length else 0 for r in rooms]),
         np.array([int(r.exterior == "corner") for r in rooms]),
         apart,
@@ -130,8 +141,8 @@ def _gross(target: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(side * side / UNIT**2)
 
 
-def _bounds(rooms: tuple[RoomReq, ...], target: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    low, high = target * (1 - LOOSE), target * (1 + LOOSE)
+def _bounds(rooms: tuple[RoomReq, ...], target: NDArray[np.float64], loose: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    low, high = target * (1 - loose), target * (1 + loose)
     for i, r in enumerate(rooms):
         if r.type in {"hallway", "entry"} and not r.area.stated:
             low[i], high[i] = target[i] * FREE_HALL[0], target[i] * FREE_HALL[1]
@@ -152,8 +163,22 @@ def _width(room: RoomReq, program: FloorProgram) -> float:
     return DEFAULTS[room.type].width
 
 
-def _outside(room: RoomReq, program: FloorProgram, level: int) -> int:
-    """Straight outside wall that a room needs [cells]."""
+def _outside(rooms: tuple[RoomReq, ...], program: FloorProgram, level: int, ease: int) -> list[int]:
+    """Straight outside wall that each room needs [cells]: what was asked for, and usual ones as far as all fit together."""
+    asked = [_asked_outside(r, program, level) for r in rooms]
+    usual = [
+        r for r, a in zip(rooms, asked, strict=True) if a == 0 and DEFAULTS[r.type].exterior and r.type != "entry" and r.exterior != "none"
+    ]
+    ids = {r.id for r in rooms}
+    links = [k for k in program.links if k.a in ids and k.b in ids]
+    if ease >= 2:
+        doors = Counter(i for k in links for i in (k.a, k.b))
+        usual = [r for r in usual if ease == 2 and r.type not in YIELDS and (r.area.target or 0.0) >= SMALL and doors[r.id] < BUSY]
+    lit = daylit(links, [r.id for r, a in zip(rooms, asked, strict=True) if a], [(r.id, r.type) for r in usual])
+    return [a or (cells(0.8 + SIDES) if r.id in lit else 0) for r, a in zip(rooms, asked, strict=True)]
+
+
+def _asked_outside(room: RoomReq, program: FloorProgram, level: int) -> int:
     into = level == 0 and program.entrance.into == room.id
     own = any(room in program.select(s) for s in program.entrance.separate)
     if room.type == "garage":
@@ -164,7 +189,7 @@ def _outside(room: RoomReq, program: FloorProgram, level: int) -> int:
         return 0
     if room.exterior in {"wall", "corner"} or room.window == "required":
         return cells(1.0 + SIDES)
-    return cells(0.8 + SIDES) if DEFAULTS[room.type].exterior and room.type != "entry" else 0
+    return 0
 
 
 def _relations(program: FloorProgram, index: dict[str, int]) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:

@@ -27,6 +27,7 @@ from pipeline.entities.plan import Plan
 from pipeline.errors import ContentError, RefusedError
 from pipeline.floorplan.furniture import members, needed, plain
 from pipeline.floorplan.language import parse
+from pipeline.floorplan.priors import PriorSettings
 from pipeline.floorplan.program import Furniture
 from pipeline.homes.exports import files_of, write_assets
 from pipeline.homes.finish import RoomResult, finish
@@ -97,6 +98,7 @@ class Factory:
     shard: ShardSettings
     postopt: PostoptSettings
     verify: VerifySettings
+    prior: PriorSettings
     digests: Mapping[str, str]
     seconds: dict[str, float] = field(default_factory=dict)
 
@@ -134,7 +136,7 @@ class Factory:
             elif request.prompt:
                 program, prompt = parse(request.prompt), request.prompt
             else:
-                program = floorplan.prior(seeds.generator(self.seed, "program", request.index))
+                program = floorplan.prior(seeds.generator(self.seed, "program", request.index), self.prior)
                 prompt = floorplan.describe(program)
             if request.plan:  # the user's own, which `check_sound` has seen
                 solved = floorplan.plan_from_json(json.loads(request.plan))
@@ -330,7 +332,7 @@ def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
     library = Library.read(data / "tables", data / "assets")
     latents = tables.read(data / "latents" / "latents.parquet", LATENTS)
     index = AssetIndex.from_tables(library.rows.values(), latents, library.joints, params.section(RetrievalSettings, tree, "retrieval"))
-    names = ("sample", "retrieval", "postopt", "verify", "shard")
+    names = ("sample", "retrieval", "postopt", "verify", "prior", "shard")
     return Factory(
         seed,
         Sampler.load(weights, params.section(SampleSettings, tree, "sample"), seed, index),
@@ -339,6 +341,7 @@ def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
         params.section(ShardSettings, tree, "shard"),
         params.section(PostoptSettings, tree, "postopt"),
         params.section(VerifySettings, tree, "verify"),
+        params.section(PriorSettings, tree, "prior"),
         {
             "code": code_digest(root),
             "library": library.digest(),

@@ -238,3 +238,10 @@ def test_an_ell_is_opened_without_its_cells():
         for side in range(1, 9):
             assert grid.ell_opening(w, h, a, b, side) == grid.opening(cells, 0, out.box, side)
         assert out.cells[0] + 0.5 * a * b == grid.hull_area(cells, 0, out.box)
+
+
+@pytest.mark.parametrize(("width", "broken"), [(1, True), (3, True), (4, False)])
+def test_no_part_of_a_room_is_a_sliver(width, broken):
+    rows = ["a" * 8 + "b" * 8] * 6 + ["a" * width + "b" * (16 - width)] * 5
+    request = spec(2, strict=np.full(2, 4), high=np.full(2, 99.0))
+    assert (score(labels(*rows, n=2), request, np.ones(12), 0.0)[1] > 0) == broken

@@ -1,16 +1,18 @@
 """Programs: their schema, their completion, their checks, the prior and its words."""
 
 from collections import Counter
+from pathlib import Path
 
 import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from pipeline import taxonomy
-from pipeline.errors import RefusedError
+from pipeline import params, taxonomy
+from pipeline.errors import ContentError, RefusedError
 from pipeline.floorplan import complete, describe, json_schema, parse, prior
 from pipeline.floorplan.check import check, reach
 from pipeline.floorplan.defaults import DEFAULTS
+from pipeline.floorplan.priors import TYPES, PriorSettings
 from pipeline.floorplan.program import FloorProgram, Forbid, Link, Range, Relation, RoomReq, RoomType
 
 
@@ -61,18 +63,40 @@ def test_the_prior_draws_sound_programs(seed):
     assert reach(made, made.entrance.into, frozenset()) == {r.id for r in made.rooms}
     kinds = {r.type for r in made.rooms}
     assert "bathroom" in kinds
-    assert kinds & {"living_room", "studio_room"}
+    assert kinds & {"living_room", "studio_room"} or {"bedroom", "kitchen", "hallway"} <= kinds
     words = describe(made)
     assert words.endswith(".")
     assert words[0] == "A"
 
 
 def test_the_prior_is_varied():
-    counts = Counter(tuple(sorted(r.type for r in prior(np.random.default_rng(s)).rooms)) for s in range(200))
-    assert len(counts) > 60
-    beds = Counter(sum(r.type == "bedroom" for r in prior(np.random.default_rng(s)).rooms) for s in range(200))
-    assert set(beds) == {0, 1, 2, 3, 4, 5}
+    made = [prior(np.random.default_rng(s)) for s in range(300)]
+    assert len(Counter(tuple(sorted(r.type for r in p.rooms)) for p in made)) > 110
+    assert {sum(r.type == "bedroom" for r in p.rooms) for p in made} == {0, 1, 2, 3, 4, 5, 6}
+    assert {p.storeys for p in made} == {1, 2}
+    assert {p.footprint.shape for p in made} == {"rectangle", "L"}
     assert prior(np.random.default_rng(5)) == prior(np.random.default_rng(5))
+
+
+@pytest.mark.parametrize("kind", TYPES)
+def test_each_type_of_plan_keeps_to_itself(kind):
+    settings = PriorSettings(types={kind: 1.0})
+    for seed in range(12):
+        made = prior(np.random.default_rng(seed), settings)
+        check(made)
+        assert complete(made) == made
+        assert TYPES[kind].least <= sum(r.type == "bedroom" for r in made.rooms) <= TYPES[kind].most
+        assert made.storeys == (2 if kind in {"terrace", "detached"} else 1)
+
+
+def test_weights_decide_what_the_prior_draws():
+    one = PriorSettings(bedrooms=(1.0, 0.0, 0.0, 0.0, 0.0, 0.0), types={"flat": 1.0, "studio": 0.0})
+    assert {sum(r.type == "bedroom" for r in prior(np.random.default_rng(s), one).rooms) for s in range(20)} == {1}
+    for wrong in ({"types": {"igloo": 1.0}}, {"types": {"flat": -1.0}}, {"types": {"flat": 0.0}}, {"types": {}}, {"bedrooms": (1.0,)}):
+        with pytest.raises(ContentError, match=r"prior\."):
+            PriorSettings(**wrong)
+    tree = params.read(Path(__file__).resolve().parents[2] / "params.yaml")
+    assert set(params.section(PriorSettings, tree, "prior").types) == set(TYPES)
 
 
 def test_descriptions_are_understood_again():

@@ -58,7 +58,7 @@ def start(seed):
     request = storey(program(), 0)
     rng = np.random.default_rng(seed)
     side = int(np.ceil(np.sqrt(request.gross.sum())))
-    return request, _slice(request, program(), Outline(side, side, 0), rng, Effort())[0], rng
+    return request, _slice(request, program(), Outline(side, side, 0), rng, 1, Effort())[0], rng
 
 
 def test_annealing_keeps_the_outline_and_whole_rooms_and_is_repeatable():

@@ -12,6 +12,7 @@ from pipeline.arrange import PostoptSettings
 from pipeline.diffusion.context import Proposal
 from pipeline.diffusion.settings import SampleSettings
 from pipeline.entities.files import save_asset
+from pipeline.floorplan.priors import PriorSettings
 from pipeline.homes.factory import Factory
 from pipeline.homes.library import Library
 from pipeline.homes.settings import ShardSettings
@@ -122,4 +123,4 @@ def factory(library):
     latents = [{"asset_id": a, "latent": np.full(32, i, np.float32)} for i, a in enumerate(sorted(library))]
     index = AssetIndex.from_tables(library.rows.values(), latents)
     shard = ShardSettings(homes=4, chunk=2, preview=0)
-    return Factory(3, Rules(3), index, library, shard, PostoptSettings(), VerifySettings(), {})
+    return Factory(3, Rules(3), index, library, shard, PostoptSettings(), VerifySettings(), PriorSettings(), {})
