@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 from pipeline.floorplan.defaults import DEFAULTS, EATIN_KITCHEN, OUTSIDE, PRIMARY_BEDROOM
 from pipeline.floorplan.program import FloorProgram, Range, RoomReq
 
 HALL_SHARE, HALL_LEAST = 0.08, 4.0
+HALL_PER_DOOR = 1.0  # m2: doors on both sides of a corridor 1.1 m wide, one every 1.8 m
 LEAST_SCALE, MOST_SCALE = 0.45, 2.6  # how far defaults may shrink or stretch to meet a stated total
 MOST_STRETCH = 1.35  # how far rooms of a smaller storey may grow
 SLACK = 1.06  # a target lies this far inside a one-sided bound
@@ -18,7 +20,7 @@ def with_areas(program: FloorProgram) -> FloorProgram:
     rooms = list(program.rooms)
     free = [not r.area.stated for r in rooms]
     target = [_first_guess(r, rooms, program.scale) for r in rooms]
-    _halls(rooms, target, free)
+    _halls(program, rooms, target, free)
     _relate(program, rooms, target, free)
     _total(program, rooms, target, free)
     _relate(program, rooms, target, free)
@@ -58,13 +60,14 @@ def _default(room: RoomReq, rooms: Sequence[RoomReq]) -> float:
     return DEFAULTS[room.type].area
 
 
-def _halls(rooms: Sequence[RoomReq], target: list[float], free: Sequence[bool]) -> None:
-    """Give free hallways their share of what the other rooms of their storeys take."""
+def _halls(program: FloorProgram, rooms: Sequence[RoomReq], target: list[float], free: Sequence[bool]) -> None:
+    """Give free hallways their share of what the other rooms of their storeys take, and wall enough for their doors."""
+    doors = Counter(i for k in program.links if k.kind != "wall" for i in (k.a, k.b))
     for level in {r.level for r in rooms}:
         halls = [i for i, r in enumerate(rooms) if r.type == "hallway" and r.area.target is None and free[i] and r.level == level]
         others = sum(t for r, t in zip(rooms, target, strict=True) if r.type not in {"hallway", *OUTSIDE} and r.level == level)
         for i in halls:
-            target[i] = max(HALL_LEAST, HALL_SHARE * others / len(halls))
+            target[i] = max(HALL_LEAST, HALL_SHARE * others / len(halls), HALL_PER_DOOR * doors[rooms[i].id])
 
 
 def _relate(program: FloorProgram, rooms: Sequence[RoomReq], target: list[float], free: Sequence[bool]) -> None:

@@ -33,7 +33,7 @@ TERMS = (
     "stair_fit",
     "stair_snug",
 )
-WEIGHTS = (0.5, 12.0, 1.6, 14.0, 1.6, 1.0, 0.3, 0.12, 1.0, 0.5, 2.0, 1.0)
+WEIGHTS = (0.5, 24.0, 1.6, 14.0, 1.6, 1.0, 0.3, 0.12, 1.0, 0.5, 2.0, 1.0)
 TONGUE = 4  # cells: no part of a room is narrower
 SPLIT = 4.5  # m2 charged when a room falls apart at a neck; the legacy solver charges 45 in its units of 0.25 m2 x 0.4
 
@@ -234,7 +234,7 @@ def stair_snug(both: float, stair: float, own: float) -> float:
 
 
 @compiled
-def room_shape(grid: Labels, out: Measures, spec: Spec, i: int, shape: Floats) -> None:
+def room_shape(grid: Labels, out: Measures, spec: Spec, i: int, shape: Floats) -> None:  # noqa: PLR0912 - compiled
     """Write what depends on the cells of room i alone to `shape[i]`: hull [cells], area missed [m2], 1 if it splits, violation."""
     w, h = out.box[i, 2] - out.box[i, 0], out.box[i, 3] - out.box[i, 1]
     cells = out.cells[i]

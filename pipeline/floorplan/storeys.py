@@ -18,8 +18,10 @@ UNIT = 0.25  # side of a cell [m]
 # Straight common wall that an opening needs [m]: clear width, 0.1 m beside the frame on both sides, half a wall at both ends.
 SIDES = 0.45
 OPEN_FRONT, PORTAL = 1.5, 1.2  # least clear widths [m]
-LOOSE, EASED = 0.32, 0.45  # how far an unstated area may miss its target; where nothing else helps
+# How far an unstated area may miss its target: a share, and a strip of this width [m] along one side, for the raster; where nothing else helps.
+LOOSE, STRIP, EASED = 0.02, 0.2, 0.4
 SMALL, BUSY = 7.0, 3  # rooms of less area [m2] or so many links give up their outside wall first
+EASED_HALL = 2.5  # how much larger than its target an unstated hallway may be then
 EASED_WIDTH = 1.2  # least width of rooms then [m]
 STATED = 0.10  # how far a stated target may be missed
 EDGE = 0.012  # hard bounds are drawn in by this share, so that rounding cannot cross them
@@ -72,7 +74,7 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
     index = {r.id: i for i, r in enumerate(rooms)}
     n = len(rooms)
     target = np.array([r.area.target or DEFAULTS[r.type].area for r in rooms])
-    low, high = _bounds(rooms, target, EASED if ease else LOOSE)
+    low, high = _bounds(rooms, target, ease)
     door = program.accessibility.min_door
     link, need = np.zeros((n, n), np.int64), np.zeros((n, n), np.int64)
     for k in program.links:
@@ -131,7 +133,7 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
     gross_low, gross_high = gross.copy(), gross.copy()
     for i, r in enumerate(rooms):
         if r.type in {"hallway", "entry"} and not r.area.stated:
-            gross_low[i], gross_high[i] = gross[i] * 0.75, gross[i] * 1.3
+            gross_low[i], gross_high[i] = gross[i] * 0.75, gross[i] * (1.9 if ease else 1.3)
     return Storey(level, rooms, spec, weights_of(program), gross, gross_low, gross_high, np.array(widths) + 2 * INNER)
 
 
@@ -141,11 +143,12 @@ def _gross(target: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(side * side / UNIT**2)
 
 
-def _bounds(rooms: tuple[RoomReq, ...], target: NDArray[np.float64], loose: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _bounds(rooms: tuple[RoomReq, ...], target: NDArray[np.float64], ease: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    loose, most = (EASED, EASED_HALL) if ease else (LOOSE + STRIP / np.sqrt(target), FREE_HALL[1])
     low, high = target * (1 - loose), target * (1 + loose)
     for i, r in enumerate(rooms):
         if r.type in {"hallway", "entry"} and not r.area.stated:
-            low[i], high[i] = target[i] * FREE_HALL[0], target[i] * FREE_HALL[1]
+            low[i], high[i] = target[i] * FREE_HALL[0], target[i] * most
         if r.area.stated and r.area.target is not None and r.area.min is None and r.area.max is None:
             low[i], high[i] = target[i] * (1 - STATED), target[i] * (1 + STATED)
         if r.area.min is not None:

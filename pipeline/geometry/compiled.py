@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 import numba
 
@@ -26,8 +26,9 @@ def source_digest(root: Path) -> str:
     return found.hexdigest()[:16]
 
 
-if not numba.config.CACHE_DIR:
-    numba.config.CACHE_DIR = str(ROOT / "__pycache__" / "numba" / source_digest(ROOT))
+CONFIG: Any = numba.config
+if not CONFIG.CACHE_DIR:
+    CONFIG.CACHE_DIR = str(ROOT / "__pycache__" / "numba" / source_digest(ROOT))
 
 
 def compiled(function: F) -> F:

@@ -65,7 +65,7 @@ def test_annealing_keeps_the_outline_and_whole_rooms_and_is_repeatable():
     for seed in range(3):
         request, cells, rng = start(seed)
         n = len(request.rooms)
-        draws = rng.random((600, anneal.DRAWS))
+        draws = rng.random((2000, anneal.DRAWS))
         fixed = np.zeros(n + 1, np.int64)
         found = [anneal.run(cells, request.spec, request.weights, fixed, draws, 1.2, 0.01, 40.0) for _ in range(2)]
         np.testing.assert_array_equal(found[0][0], found[1][0])
