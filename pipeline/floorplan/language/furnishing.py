@@ -152,7 +152,7 @@ class Scan:
         while k < len(self.words):
             if self.words[k].text in STOPS:
                 self.negated = False
-            k += self._share(k) or self._things(k) or self._look(k) or self.phrase(k, "small")[0] or 1
+            k += self.phrase(k, "small")[0] or self._share(k) or self._things(k) or self._look(k) or 1
         return self.claims
 
     def _put(self, kind: Kind, first: int, last: int, name: str = "", least: int = 0, most: int | None = None, value: float = 0.0) -> int:

@@ -30,7 +30,7 @@ FIGURES = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
 MOST = 1e6  # of any amount
 HAN_DIGITS = {c: k for k, c in enumerate("零一二三四五六七八九")} | {"两": 2, "俩": 2}
 ROOMS = frozenset({"room", "rooms", "area", "corner", "niche", "nook", "zone", "space", "raum", "ecke", "bereich"})
-LEAST_TYPO = 6  # letters of a word that may hold a typing error
+LEAST_TYPO = 8  # letters of a word that may hold a typing error
 
 
 @dataclass(frozen=True, slots=True)

@@ -83,6 +83,9 @@ def test_what_is_read(prompt, wanted):
         "un piso de dos dormitorios con cocina abierta",
         "三室两厅一厨两卫,120平米",
         "a wide range of rooms",
+        "una casa de dos plantas con dos baños, para una silla de ruedas",
+        "zwei Bäder, ein Büro und zwei Balkone",
+        "a buffer zone and a store cupboard in the hall",
         "a bedroom, table lamp and 台灯",
     ],
 )
