@@ -103,7 +103,7 @@ def test_deferred_arrays_are_the_arrays():
     """Taking the meshes' numbers out before parsing changes nothing of what is read, whatever stands between them."""
     tree = making.two_rooms()
     tree["mesh"][0]["uv"] = [None, 1.5e-3]
-    tree["mesh"][1]["xyz"] = []
+    tree["mesh"][1] |= {"xyz": [], "faces": []}
     plain = parse_house(json.loads(json.dumps(tree)), "house-a")
     for text in (json.dumps(tree), json.dumps(tree, indent=3), json.dumps(tree, separators=(",", ":"))):
         short, arrays = deferred(text.encode())
