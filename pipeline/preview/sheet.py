@@ -24,5 +24,6 @@ def contact_sheet(pictures: Sequence[tuple[str, Image.Image]], columns: int = 4,
         small = picture.convert("RGB")
         small.thumbnail((cell, cell), Image.Resampling.LANCZOS, reducing_gap=3.0)
         sheet.paste(small, (x + (cell - small.width) // 2, y + (cell - small.height) // 2))
-        draw.text((x + cell // 2, y + cell + strip // 2), caption, INK, font(size), anchor="mm")
+        fitting = next((n for n in range(size, 7, -1) if draw.textlength(caption, font(n)) <= cell + GAP - 4), 7)
+        draw.text((x + cell // 2, y + cell + strip // 2), caption, INK, font(fitting), anchor="mm")
     return sheet

@@ -9,6 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.corpus.furniture.bent import settled
 from pipeline.corpus.furniture.finishes import CERAMIC, GLASS, PLASTIC_WHITE, STEEL, Scheme
 from pipeline.corpus.furniture.fronts import lid, top_button
 from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, pieces, staves
@@ -34,8 +35,8 @@ def toilet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     def span(share: float) -> tuple[float, float]:
         return (cy - share * ry, cy + share * ry)
 
-    foot = stack([_oval(0.74 * rx, span(0.80), 0.0), _oval(0.70 * rx, span(0.76), 0.10 * h)])
-    neck = stack([_oval(0.70 * rx, span(0.76), 0.10 * h), _oval(0.90 * rx, span(0.90), 0.62 * rim)])
+    foot = settled(stack([_oval(0.74 * rx, span(0.80), 0.0), _oval(0.70 * rx, span(0.76), 0.10 * h)]))
+    neck = settled(stack([_oval(0.70 * rx, span(0.76), 0.10 * h), _oval(0.90 * rx, span(0.90), 0.62 * rim)]))
     outer = [_oval(k * rx, span(k), z) for k, z in ((0.90, 0.62 * rim), (1.0, rim))]
     inner = [_oval(k * rx, span(k), z) for k, z in ((0.42, 0.62 * rim), (0.76, rim))]
     wall = shell(outer, inner)

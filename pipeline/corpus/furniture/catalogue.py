@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeline import seeds, taxonomy
 from pipeline.corpus.furniture import sizes
@@ -88,6 +89,7 @@ def _models(seed: int, category: str, line: Line, count: int, *, articulated: bo
     forms = _turns(rng, [f for f in line.forms if not (articulated and f.still)], count)
     styles = [_style(rng, f"{category}.{form.name}") for form in forms]
     boxes = sizes.draw(rng, sizes.load()[category], count, [form.round for form in forms])
+    _raise(forms, boxes)
     models = []
     for form, style, box in zip(forms, styles, boxes, strict=True):
         w, d, h = (round(float(x), 3) for x in box)
@@ -110,6 +112,16 @@ def _models(seed: int, category: str, line: Line, count: int, *, articulated: bo
             )
         )
     return models
+
+
+def _raise(forms: Sequence[Form], boxes: NDArray[np.float64]) -> None:
+    """Swap heights of `boxes` (count, 3) in place, so that forms that need a height have it where there is one to be had."""
+    for k, form in enumerate(forms):
+        if boxes[k, 2] < form.least_height:
+            able = [j for j, other in enumerate(forms) if boxes[j, 2] >= form.least_height and boxes[k, 2] >= other.least_height]
+            if able:
+                j = min(able, key=lambda j: float(boxes[j, 2]))
+                boxes[[k, j], 2] = boxes[[j, k], 2]
 
 
 def _style(rng: np.random.Generator, form: str) -> str:

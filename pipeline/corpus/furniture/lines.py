@@ -136,7 +136,7 @@ LINES: Mapping[str, Line] = {
     "toaster": _line("Toaster", "two_slots, tray", 1, 6),
     "coffee_machine": _line("Coffee Machine", "jug, espresso, capsule", 1, 8),
     "kitchen_pot": _line("Kitchen Pot", "ears, bail*", 1, 5),
-    "saucepan": _line("Saucepan", "stick", 1, 4),
+    "saucepan": _line("Saucepan", "stick", 1, 5),
     "bucket": _line("Bucket", "zinc*, plain*, lid*", 1, 7),
     "storage_box": _line("Storage Box", "hinged, flaps, slide", 1, 9),
     "suitcase": _line("Suitcase", "upright", 1, 5),
