@@ -122,7 +122,7 @@ def pictures(name: str, given: argparse.Namespace) -> list[tuple[str, Image.Imag
 
 def caption(model: Model) -> str:
     """Return what a model is, in words."""
-    return f"{model.category.replace('_', ' ')}: {model.form.replace('_', ' ')} | {model.style}"
+    return f"{model.category} {model.form}, {model.style}".replace("_", " ")
 
 
 def main() -> None:
