@@ -53,9 +53,13 @@ class Scan:
         self.prompt = prompt
         self.words = words(prompt)
         self.claims: list[Claim] = []
-        stems = [w.stem for w in self.words]
+        stems, storeys = [w.stem for w in self.words], set(lexicon()["storeys"])
         self.there = [
-            [(len(p), kind, name, owned) for p, kind, name, owned in phrases().get(stem, ()) if tuple(stems[k : k + len(p)]) == p]
+            [
+                (len(p), kind, name, owned)
+                for p, kind, name, owned in phrases().get(stem, ())
+                if tuple(stems[k : k + len(p)]) == p and (len(p) > 1 or self.words[k].text not in storeys)
+            ]
             for k, stem in enumerate(stems)
         ]
         self.stops = [-1, *(k for k, w in enumerate(self.words) if w.text in STOPS)]
