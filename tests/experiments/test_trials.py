@@ -12,7 +12,7 @@ from pipeline.experiments import tables as paper
 from pipeline.experiments.rooms import spread
 from pipeline.experiments.rooms import test_rooms as rooms_of
 from pipeline.experiments.settings import MetricsSettings
-from pipeline.experiments.trials import trial
+from pipeline.experiments.trials import Trial, trial
 from pipeline.homes.rows import opening_row, room_row, scene_row
 
 SETTINGS = MetricsSettings(rooms=2, counts=(3,), taus=(0.5, 0.7))
@@ -78,3 +78,13 @@ def test_tables_have_every_row_and_rates_lie_in_their_intervals(factory, trials)
 def test_shipped_rooms_reach_their_share_of_free_floor(trials):
     for tau in SETTINGS.taus:
         assert all(r["walkable_free"] >= tau - 0.03 for r in trials[f"walkable_{tau:.2f}"].shipped["rooms"])
+
+
+def test_things_that_the_layout_model_does_not_learn_are_not_compared():
+    def rows(*names):
+        return {"objects": [{"category": name} for name in names]}
+
+    drafted = {name: Trial(rows("double_bed"), {}, {}) for name in (paper.ALL_PLAIN, paper.ALL_GUIDED)}
+    held_out = [{"category": name} for name in ("double_bed", "cup", "rug")]
+    table = paper.category_table(drafted, [{"category": "double_bed"}], held_out, ("double_bed", "nightstand"))
+    assert table["guided"] == {"real_to_generated": 0.0, "generated_to_real": 0.0, "real_objects": 1, "generated_objects": 1}
