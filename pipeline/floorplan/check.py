@@ -57,7 +57,8 @@ def names(program: FloorProgram) -> None:
         raise ImpossibleError(f"two rooms are called {twice[0]!r}", "give each room an id of its own")
     if len(program.rooms) > MAX_ROOMS:
         raise ImpossibleError(f"{len(program.rooms)} rooms are asked for", f"ask for {MAX_ROOMS} at most")
-    wanted = {s for k in program.links for s in (k.a, k.b)} | {s for r in program.relations for s in (r.a, r.b) if s}
+    wanted = {s for k in program.links for s in (k.a, k.b)} | {s for r in program.relations for s in (r.a, r.b, r.c) if s}
+    wanted |= {m for z in program.zones for m in z.members}
     if program.entrance.into:
         wanted.add(program.entrance.into)
     for selector in sorted(wanted):

@@ -209,7 +209,7 @@ class Clause:
         return k + 1
 
     def _relative(self, k: int, e: Element) -> int:
-        self.relative = True
+        self.relative = e.text not in {"where", "wo", "donde"}
         self.state.understood(e.first, e.last)
         return k + 1
 
