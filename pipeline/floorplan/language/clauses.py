@@ -92,6 +92,8 @@ class Clause:
         ):
             self.run = []
             self.verb = False
+        elif self.objects and {i for x in self.run for i in x.ids} == set(self.objects):
+            self.run = []  # what was given to somebody is no part of a new list
         self.run.append(e)
         e.ids = list(ids)
         self.latest = ids

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from pipeline.floorplan.furniture import lexicon
+from pipeline.floorplan.language.dwellings import named
 from pipeline.floorplan.language.vocabulary import (
     COMMAS,
     FIGURES,
@@ -54,16 +55,26 @@ class Scan:
         self.words = words(prompt)
         self.claims: list[Claim] = []
         stems, storeys = [w.stem for w in self.words], set(lexicon()["storeys"])
+        self.language, self.rooms = named(prompt)
         self.there = [
             [
                 (len(p), kind, name, owned)
                 for p, kind, name, owned in phrases().get(stem, ())
-                if tuple(stems[k : k + len(p)]) == p and (len(p) > 1 or self.words[k].text not in storeys)
+                if tuple(stems[k : k + len(p)]) == p
+                and (len(p) > 1 or self.words[k].text not in storeys)
+                and not (kind == "name" and len(p) == 1 and self._room(k, name))
             ]
             for k, stem in enumerate(stems)
         ]
         self.stops = [-1, *(k for k, w in enumerate(self.words) if w.text in STOPS)]
         self.negated = False  # "no TV or armchairs": the negation goes on
+
+    def _room(self, k: int, name: str) -> bool:
+        """Whether word k names a room, and the prompt's language does not call that furniture so: "Büro" is no "buró"."""
+        if self.language is None or self.words[k].start not in self.rooms:
+            return False
+        forms = lexicon()["names"][name].get(self.language, ())
+        return not any(words(form.removeprefix("@"))[0].stem == self.words[k].stem for form in forms)
 
     def phrase(self, k: int, *kinds: str) -> tuple[int, str]:
         """Return (length, name) of the longest phrase of those kinds at word k, (0, "") where there is none."""
@@ -285,7 +296,7 @@ class Scan:
         word = self.words[k].stem
         if len(word) < LEAST_TYPO - 1 or not word.isalpha() or not word.isascii():
             return 0, ""
-        if self.phrase(k, "owner", "dwelling")[0]:
+        if self.words[k].start in self.rooms or self.phrase(k, "owner", "dwelling")[0]:
             return 0, ""
         for first, entries in phrases().items():
             for stems, kind, name, owned in entries:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 from pydantic import ValidationError
 
@@ -41,7 +42,7 @@ def understand(prompt: str) -> FloorProgram:
 
 def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     """Return what a prompt says of rooms, and no more; `plain` is it without its wishes for furniture, all else in its place."""
-    heard = listen(plain, detect(prompt))
+    heard = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
     marks = reorder(segment(heard), heard)
     parsed = sentences(marks, heard)
     spoken = {e.kind for s in parsed for e in s}
