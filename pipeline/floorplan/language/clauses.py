@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from pipeline.floorplan.language.facts import Group, Reading
+from pipeline.floorplan.language.facts import SOCIAL, Group, Reading
 from pipeline.floorplan.language.naming import fresh, name
 from pipeline.floorplan.language.phrases import Element
-from pipeline.floorplan.language.pointing import point
+from pipeline.floorplan.language.pointing import and_follows, point
 from pipeline.floorplan.language.quantities import attach, belongs
 from pipeline.floorplan.language.relating import objects, relate
-
-SOCIAL = {"kitchen", "dining_room", "living_room", "family_room"}
 
 
 class Clause:
@@ -359,7 +357,7 @@ class Clause:
                 joined = False
             elif (
                 x.kind == "and"
-                or (x.kind == "comma" and e.type in SOCIAL and _and_follows(self.sentence, x))
+                or (x.kind == "comma" and e.type in SOCIAL and and_follows(self.sentence, x))
                 or (x.kind == "cue" and x.value == "has" and len(listed) == 1)
             ):
                 joined = True
@@ -388,14 +386,3 @@ class Clause:
         """Let rooms belong to others."""
         self.stock.belongings.update(things)
         self.state.say("own", things, owners, e)
-
-
-def _and_follows(sentence: list[Element], comma: Element) -> bool:
-    """Whether a comma parts a list of social rooms that an "and" closes: "open-plan living, dining and kitchen area"."""
-    k = next(i for i, x in enumerate(sentence) if x is comma)
-    for x in sentence[k + 1 :]:
-        if x.kind == "and":
-            return True
-        if x.kind != "comma" and not (x.kind == "np" and x.type in SOCIAL):
-            return False
-    return False

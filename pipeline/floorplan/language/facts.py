@@ -10,6 +10,7 @@ from pipeline.floorplan.language.phrases import Element
 
 HALLS = {"hallway", "entry"}
 GROUPS = {"door", "leads", "open", "near", "wall", "ban", "avoid", "away"}
+SOCIAL = {"kitchen", "dining_room", "living_room", "family_room"}
 PERSONAL = {"bathroom", "wc", "closet", "balcony", "office", "storage", "sunroom"}
 Group = tuple[str, ...]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pipeline.floorplan.language.facts import Group, Reading
+from pipeline.floorplan.language.facts import SOCIAL, Group, Reading
 from pipeline.floorplan.language.phrases import Element
 
 
@@ -39,3 +39,14 @@ def _part(state: Reading, e: Element, plural: Group) -> Group:
     for room in free[:1]:
         room.open_slot = False
     return tuple(r.id for r in free[:1])
+
+
+def and_follows(sentence: list[Element], comma: Element) -> bool:
+    """Whether a comma parts a list of social rooms that an "and" closes: "open-plan living, dining and kitchen area"."""
+    k = next(i for i, x in enumerate(sentence) if x is comma)
+    for x in sentence[k + 1 :]:
+        if x.kind == "and":
+            return True
+        if x.kind != "comma" and not (x.kind == "np" and x.type in SOCIAL):
+            return False
+    return False
