@@ -62,9 +62,12 @@ def tube(path: Sequence[Vector] | Points, radius: float | Sequence[float] | Poin
         v = np.cross(direction, u)
         spokes = np.cos(angles)[:, None] * u + np.sin(angles)[:, None] * v
         ends = []
+        length = float(np.linalg.norm(p[(k + 1) % len(p)] - p[k]))
         for j in (k, (k + 1) % len(p)):
             ring = radii[j] * spokes
             slide = -(ring @ normals[j]) / float(direction @ normals[j])
+            if np.abs(slide).max() > 0.45 * length:  # too sharp a bend for so short a piece: cut square
+                slide = np.zeros(n)
             ends.append(p[j] + ring + slide[:, None] * direction)
         made.append(settled(stack(ends)))
     return made
