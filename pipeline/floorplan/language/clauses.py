@@ -7,7 +7,7 @@ from pipeline.floorplan.language.naming import fresh, name
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.pointing import and_follows, point
 from pipeline.floorplan.language.quantities import attach, belongs
-from pipeline.floorplan.language.relating import objects, relate
+from pipeline.floorplan.language.relating import listed, objects, relate
 
 
 class Clause:
@@ -146,6 +146,8 @@ class Clause:
         else:
             for room in (self.stock.get(i) for i in self.latest if not i.startswith("*")):
                 room.level = int(e.value)
+            if k + 1 < len(self.sentence) and self.sentence[k + 1].kind == "comma":
+                self.run = []
         return k + 1
 
     def _ban(self, e: Element) -> None:
@@ -290,8 +292,7 @@ class Clause:
     def _cmp(self, k: int, e: Element) -> int:
         """Read "at least 1.5 times as large as the largest bedroom"."""
         self.state.understood(e.first, e.last)
-        listed = tuple(i for x in self.run for i in x.ids)
-        left = listed or self.subject or self.latest
+        left = listed(self) or self.subject or self.latest
         if e.value == "alike":
             rooms = tuple(i for x in self.run for i in x.ids) if len(self.latest) < 2 else self.latest
             rooms = rooms if len(rooms) > 1 else self.subject
@@ -339,7 +340,11 @@ class Clause:
         cue, group = self.waiting
         self.waiting = None
         rooms = tuple(i for i in self.subject if i not in group)
-        if rooms:
+        if cue.value == "ensuite" and not rooms:  # "an en suite to the bedroom": the cue itself is the room
+            bath = Element("np", "", cue.first, cue.last, cue.text, type="bathroom", role="ensuite")
+            rooms = tuple(fresh(self.state, bath, None, ""))
+            self.give(rooms, group, cue)
+        elif rooms:
             if self.negative:
                 self.state.say("ban" if cue.value in {"near", "wall"} else "not_connected", rooms, group, cue)
             else:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from pipeline.floorplan.language.clauses import Clause
 from pipeline.floorplan.language.facts import Reading
 from pipeline.floorplan.language.marks import Words
@@ -18,10 +20,24 @@ def read(heard: Words, sentences: list[list[Element]]) -> Reading:
     for sentence in sentences:
         ban(sentence)
     _studio(state, sentences)
+    sentences = [_parted(sentence) for sentence in sentences]
     introduce(state, sentences)
     for sentence in sentences:
         Clause(state, sentence).read()
     return state
+
+
+def _parted(sentence: list[Element]) -> list[Element]:
+    """Read "two bathrooms, one en suite" as "two bathrooms, one of them en suite"."""
+    made: list[Element] = []
+    for k, e in enumerate(sentence):
+        counted = sentence[k - 2] if k > 1 and sentence[k - 1].kind in {"comma", "open"} else None
+        several = counted is not None and counted.kind == "np" and counted.type == e.type == "bathroom" and (counted.number or 1) > 1
+        if several and e.role == "ensuite" and e.number in {None, 1} and not e.det:
+            made += [Element("pron", "one", e.first, e.first, e.text), replace(e, number=None)]
+        else:
+            made.append(e)
+    return made
 
 
 def _studio(state: Reading, sentences: list[list[Element]]) -> None:

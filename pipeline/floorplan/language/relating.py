@@ -12,6 +12,7 @@ from pipeline.floorplan.language.phrases import Element
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
 
+CLOSED = {"balcony", "garage", "bathroom", "wc", "closet", "storage", "utility", "bedroom"}
 WIDE = {"leads", "between", "chain", "avoid", "except"}
 
 
@@ -26,6 +27,8 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
             state.say("except", group, (), e)
             clause.run, clause.latest = [x for x in clause.sentence[k:j] if x.kind == "np"][-1:], group
         return max(j, k + 1)
+    if e.value == "by":
+        return _by_way_of(clause, k, e)
     left = _left(clause, k, e)
     group, j = objects(clause, k + 1, e.value, left)
     if not group:
@@ -75,6 +78,20 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     clause.only = None
     clause.subject, clause.latest, clause.objects, clause.run, clause.verb, clause.relative = left, group, group, [], False, False
     return j
+
+
+def _by_way_of(clause: Clause, k: int, e: Element) -> int:
+    """Read "the garage is connected to the kitchen via a utility room": the way that was just said leads through it."""
+    said = clause.state.facts[-1] if clause.state.facts else None
+    if said is None or said.what not in {"door", "leads"} or not said.b or clause.run:
+        return k + 1
+    group, j = objects(clause, k + 1, "door", (*said.a, *said.b))
+    if group:
+        clause.state.facts.pop()
+        clause.state.say("door", said.a, group, e)
+        clause.state.say("door", group, said.b, e)
+        clause.latest, clause.objects, clause.run = group, group, []
+    return max(j, k + 1)
 
 
 def _inside(clause: Clause, left: Group, group: Group) -> bool:
@@ -165,7 +182,7 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one b
     coordinate = len(clause.run) < 2 or any(
         x.kind in {"and", "or"} for x in clause.sentence[_place(clause, clause.run[-2]) : _place(clause, last)]
     )
-    if not coordinate and not any(x.det & {"both", "all"} for x in clause.run):
+    if not coordinate:  # "study downstairs, all bedrooms upstairs, garage connected to ...": commas part statements
         return tuple(last.ids)
     if verbal or e.value == "wall":
         return tuple(_since_clause(clause))
@@ -180,6 +197,14 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one b
     if len(tail) > 1 and (e.value not in {"door", "near", "open"} or _mixed(tail)):
         return tuple(last.ids) if e.value != "door" else tuple(i for x in tail for i in x.ids if i in listed)
     return tuple(i for x in tail for i in x.ids) if len(tail) > 1 and e.value == "door" else tuple(last.ids)
+
+
+def listed(clause: Clause) -> Group:
+    """Return the rooms in front of a comparison: the last phrase, with those that an "and" joins to it."""
+    run = clause.run
+    if len(run) < 2 or any(x.kind in {"and", "or"} for x in clause.sentence[_place(clause, run[-2]) : _place(clause, run[-1])]):
+        return tuple(i for x in run for i in x.ids)
+    return tuple(run[-1].ids)
 
 
 def _mixed(tail: list[Element]) -> bool:
@@ -250,9 +275,11 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
     return tuple(group), end
 
 
-def _continues(clause: Clause, index: int, cue: str, joined: str, first: Element) -> bool:
+def _continues(clause: Clause, index: int, cue: str, joined: str, first: Element) -> bool:  # noqa: PLR0911 - one answer per case: a grammar
     """Whether a list after a cue goes on with the phrase at index, or a new statement begins there."""
     e, sentence = clause.sentence[index], clause.sentence
+    if cue == "open" and e.type in CLOSED and not e.definite:
+        return False  # "a kitchen open to the living room and a terrace": nothing stands open to these
     ahead = next((x for x in sentence[index + 1 :] if x.kind not in {"det", "amount", "adj", "flag", "word"}), None)
     starts = ahead is not None and (
         ahead.kind in {"verb", "cmp", "neg", "relative"} or (ahead.kind == "cue" and ahead.value != "has" and cue != "avoid")
