@@ -19,24 +19,14 @@ Json = dict[str, Any]
 
 
 def conditions(settings: MetricsSettings) -> list[Condition]:
-    """Return every condition that the tables need, by name."""
-    made = [
-        Condition("plain", articulation="none"),
-        Condition("guided"),
-        Condition("heuristic", articulation="heuristic", finished=False),
-    ]
-    for n in settings.counts:
-        made += [
-            Condition(f"count_{n}", count=n),
-            Condition(f"count_{n}_plain", count=n, articulation="none", finished=False),
-        ]
-    made += [Condition(f"walkable_{tau:.2f}", walkable=tau) for tau in settings.taus]
-    made += [
-        Condition(ALL_PLAIN, articulation="none", finished=False),
-        Condition(ALL_GUIDED, finished=False),
-    ]
-    middle = settings.taus[len(settings.taus) // 2]
-    made.append(Condition("plain_walkable", articulation="none", walkable=middle))
+    """Return every condition that the tables need, by name; those that take longest first, so that no worker is left alone at the end."""
+    made = [Condition(f"walkable_{tau:.2f}", walkable=tau) for tau in sorted(settings.taus, reverse=True)]
+    made.append(Condition("plain_walkable", articulation="none", walkable=settings.taus[len(settings.taus) // 2]))
+    made += [Condition(f"count_{n}", count=n) for n in sorted(settings.counts, reverse=True)]
+    made += [Condition("plain", articulation="none"), Condition("guided")]
+    made += [Condition(ALL_PLAIN, articulation="none", finished=False), Condition(ALL_GUIDED, finished=False)]
+    made += [Condition(f"count_{n}_plain", count=n, articulation="none", finished=False) for n in settings.counts]
+    made.append(Condition("heuristic", articulation="heuristic", finished=False))
     return made
 
 

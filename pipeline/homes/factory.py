@@ -309,8 +309,10 @@ class Factory:
         return Outcome(home, work.certificate, rows, exported)
 
     def write_library(self, folder: Path, asset_ids: Sequence[str] | None = None) -> None:
-        """Write the asset library (or those of it that are named) with its tables and thumbnails, on all cores."""
-        write_assets(self.library, folder, sorted(asset_ids if asset_ids is not None else self.library), os.cpu_count() or 1)
+        """Write the asset library (all that homes may hold, or those that are named) with its tables and thumbnails, on all cores."""
+        known = set(taxonomy.load().names)
+        chosen = asset_ids if asset_ids is not None else [a for a, row in self.library.rows.items() if row["category"] in known]
+        write_assets(self.library, folder, sorted(chosen), os.cpu_count() or 1)
 
 
 def told_count(wish: Furniture, rng: np.random.Generator) -> int | None:

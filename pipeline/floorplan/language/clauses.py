@@ -7,7 +7,7 @@ from pipeline.floorplan.language.naming import fresh, name
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.pointing import and_follows, point
 from pipeline.floorplan.language.quantities import attach, belongs
-from pipeline.floorplan.language.relating import listed, objects, relate
+from pipeline.floorplan.language.relating import listed, objects, relate, superlative
 
 
 class Clause:
@@ -246,8 +246,17 @@ class Clause:
         return k + 1
 
     def _det(self, k: int, e: Element) -> int:
+        if e.value == "all" and len(self.run) > 1 and not any(x.kind == "np" for x in self.sentence[k + 1 : k + 2]):
+            self.subject = self.latest = tuple(i for x in self.run for i in x.ids)  # "kitchen, two bedrooms, bath - all off the hall"
+            self.run = [Element("np", "", e.first, e.last, e.text, ids=list(self.latest))]
+            return k + 1
         if e.value in {"both", "each", "all"} and not any(x.kind == "np" for x in self.sentence[k + 1 : k + 2]):
             return self._pron(k, Element("pron", "both" if e.value == "both" else "group", e.first, e.last, e.text))
+        return k + 1
+
+    def _adj(self, k: int, e: Element) -> int:
+        if self.verb:
+            superlative(self, e)
         return k + 1
 
     def _pron(self, k: int, e: Element) -> int:
@@ -327,9 +336,6 @@ class Clause:
             self.state.say("door", things, hosts, e)
             self.state.say("only", things, (), e)
         return max(j, k + 1)
-
-    def _reciprocal(self, k: int, _: Element) -> int:
-        return k + 1
 
     def _cue(self, k: int, e: Element) -> int:
         return relate(self, k, e)

@@ -31,6 +31,7 @@ def join(draft: Draft, state: Reading) -> None:
     """Write all facts into the program."""
     stock, facts = state.inventory, state.facts
     _itself(draft, facts)
+    _circle(draft, facts)
     _belongings(draft, stock, facts)
     _merged(draft, stock, facts)
     for fact in facts:
@@ -52,6 +53,25 @@ def _itself(draft: Draft, facts: list[Fact]) -> None:
             draft.cite(fact.first, fact.last, f"links.{fact.a[0]}-{fact.a[0]}")
             words = [Evidence.model_validate(draft.evidence[-1])]
             raise ImpossibleError(f"{fact.a[0]} cannot be reached through itself", "say what it opens off", words)
+
+
+def _circle(draft: Draft, facts: list[Fact]) -> None:
+    """Refuse rooms each of which is to be reached only through the other."""
+    hosts: dict[str, tuple[str, Fact]] = {}
+    for way, only in itertools.pairwise(facts):
+        if only.what == "only" and way.what == "door" and way.a == only.a and len(way.b) == 1:
+            hosts |= dict.fromkeys(way.a, (way.b[0], way))
+    for start in hosts:
+        seen, here = [start], hosts[start][0]
+        while here in hosts and here not in seen:
+            seen.append(here)
+            here = hosts[here][0]
+        if here == start and len(seen) > 1:
+            before = len(draft.evidence)
+            for name in seen:
+                draft.cite(hosts[name][1].first, hosts[name][1].last, f"links.{name}-{hosts[name][0]}")
+            words = [Evidence.model_validate(e) for e in draft.evidence[before:]]
+            raise ImpossibleError(f"{' and '.join(seen)} are each to be reached only through the other", "say what one opens off", words)
 
 
 def _belongings(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:

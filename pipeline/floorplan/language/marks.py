@@ -76,7 +76,7 @@ def segment(heard: Words) -> list[Mark]:
                 made.append(mark)
         else:
             i += 1
-    return _amounts(_numbers(made, heard), heard)
+    return _amounts(_halves(_numbers(made, heard)), heard)
 
 
 def _mark(heard: Words, i: int) -> Mark:  # noqa: PLR0911 - one branch per case: a grammar
@@ -162,6 +162,38 @@ def _numbers(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     return made
 
 
+def _halves(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "two and a half baths" and "2.5 baths" as two bathrooms and a WC, as agents count."""
+    made: list[Mark] = []
+    k = 0
+    while k < len(marks):
+        mark, ahead = marks[k], marks[k + 1 : k + 4]
+        kinds = [m.kind for m in ahead]
+        spoken = kinds == ["join", "det", "room"] and ahead[2].value == "wc" and ahead[2].text.startswith("half")
+        figure = mark.number % 1 == 0.5 and kinds[:1] == ["room"] and ahead[0].value.startswith("bathroom")
+        if mark.kind == "num" and (spoken or figure):
+            room = ahead[2 if spoken else 0]
+            whole = replace(mark, number=float(int(mark.number)))
+            made += [whole, replace(room, value="bathroom")] if whole.number else []
+            made += [Mark("join", "and", 0.0, False, room.last, room.last, "and")] if whole.number else []
+            made += [replace(mark, number=1.0), replace(room, value="wc")]
+            k += 4 if spoken else 2
+        else:
+            made.append(mark)
+            k += 1
+    return made
+
+
+def _elliptic(marks: Sequence[Mark], k: int, lex: Lexicon) -> list[Mark]:
+    """Return the marks from k with the unit that was said before: "at least 12 m² but no more than 15"."""
+    unit = next((m for m in reversed(marks[:k]) if m.kind in {"unit", "room", "home"}), None)
+    bounded = lex.bounds.get(marks[k].text) in {"least", "most"} and k + 1 < len(marks) and marks[k + 1].kind == "num"
+    alone = k + 2 >= len(marks) or marks[k + 2].kind in {"comma", "but", "stop", "join", "line"}
+    if unit is None or unit.kind != "unit" or not bounded or not alone:
+        return []
+    return [marks[k], marks[k + 1], replace(unit, first=marks[k + 1].last, last=marks[k + 1].last)]
+
+
 def _amounts(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Put amounts together: "at least 18 m²", "10 to 12 m²", "4 x 5 m", "seven square metres or more"."""
     made: list[Mark] = []
@@ -177,6 +209,9 @@ def _amounts(marks: Sequence[Mark], heard: Words) -> list[Mark]:
             k += 2
             continue
         found = _amount(marks, k, heard.lexicon)
+        said = [] if found else _elliptic(marks, k, heard.lexicon)
+        if said and (short := _amount(said, 0, heard.lexicon)):
+            found = short[0], k + 2
         if found is None:
             made.append(marks[k])
             k += 1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pipeline.floorplan.language.phrases import Element
 
-BEFORE_CUE = {"near", "door", "open", "wall", "away", "leads", "between"}
+BEFORE_CUE = {"near", "door", "open", "wall", "away", "apart", "leads", "between"}
 
 
 def ban(sentence: list[Element]) -> None:

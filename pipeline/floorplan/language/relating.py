@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pipeline.floorplan.language.facts import Group
+from pipeline.floorplan.language.facts import SOCIAL, Group
+from pipeline.floorplan.language.lexicon import ONLY
 from pipeline.floorplan.language.naming import name
 from pipeline.floorplan.language.owning import has, measures
 from pipeline.floorplan.language.phrases import Element
@@ -12,6 +13,7 @@ from pipeline.floorplan.language.phrases import Element
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
 
+ASIDE = {"balcony", "garage", "hallway", "staircase"}  # not meant when the largest room is spoken of
 CLOSED = {"balcony", "garage", "bathroom", "wc", "closet", "storage", "utility", "bedroom"}
 WIDE = {"leads", "between", "chain", "avoid", "except"}
 
@@ -56,6 +58,7 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
         return j
     only = (
         e.only
+        or e.text.split(" ")[0] in ONLY
         or (clause.only is not None)
         or (j < len(clause.sentence) and clause.sentence[j].kind == "flag" and clause.sentence[j].value == "only")
     )
@@ -138,6 +141,9 @@ def _inverted(clause: Clause, k: int, j: int) -> bool:
 
 def _emit(clause: Clause, e: Element, left: Group, group: Group) -> None:
     state, cue = clause.state, "door" if e.value in {"from", "chain", "in"} else e.value
+    if cue == "apart":  # a kitchen apart from the living room has a door; a bedroom apart from it lies away
+        kinds = {clause.stock.get(i).type for i in (*left, *group) if not i.startswith("*")}
+        cue = "not_open" if kinds <= SOCIAL else "away"
     if clause.negative is not None:
         clause.negative = None
         what = {"near": "ban", "wall": "ban", "away": "near", "open": "not_open", "avoid": "avoid"}.get(cue, "not_connected")
@@ -155,10 +161,10 @@ def _mutual(clause: Clause, e: Element) -> None:
     rooms = clause.latest if len(clause.latest) > 1 and e.value != "open" else rooms
     rooms = rooms if len(rooms) > 1 else clause.subject
     clause.state.understood(e.first, e.last)
-    if clause.negative is not None or e.value == "away":
+    if clause.negative is not None or e.value in {"away", "apart"}:
         clause.negative = None
         clause.state.say("ban", rooms, rooms, e)
-        if e.value == "away":
+        if e.value in {"away", "apart"}:
             clause.state.say("away", rooms[:1], rooms[1:], e)
     else:
         clause.state.say("merge" if e.value == "open" else e.value, rooms, (), e)
@@ -178,7 +184,7 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one b
         return tuple(last.ids)
     if e.value == "avoid" and clause.objects:
         return clause.subject
-    verbal = clause.verb or e.value in {"leads", "away"} or any(x.det & {"both", "all"} for x in clause.run)
+    verbal = clause.verb or e.value in {"leads", "away", "apart"} or any(x.det & {"both", "all"} for x in clause.run)
     coordinate = len(clause.run) < 2 or any(
         x.kind in {"and", "or"} for x in clause.sentence[_place(clause, clause.run[-2]) : _place(clause, last)]
     )
@@ -205,6 +211,15 @@ def listed(clause: Clause) -> Group:
     if len(run) < 2 or any(x.kind in {"and", "or"} for x in clause.sentence[_place(clause, run[-2]) : _place(clause, run[-1])]):
         return tuple(i for x in run for i in x.ids)
     return tuple(run[-1].ids)
+
+
+def superlative(clause: Clause, e: Element) -> None:
+    """Read "the living room should be the largest room"."""
+    others = tuple(r.id for r in clause.stock.rooms if r.id not in clause.latest and r.type not in ASIDE)
+    if e.value in {"largest", "smallest"} and len(clause.latest) == 1 and others:
+        a, b = (clause.latest, others) if e.value == "largest" else (others, clause.latest)
+        for one in a:
+            clause.state.say("area_order", (one,), b, e, 1.0)
 
 
 def _mixed(tail: list[Element]) -> bool:

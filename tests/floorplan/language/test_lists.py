@@ -50,3 +50,42 @@ def test_a_list_goes_on_after_what_something_is_open_to(prompt):
 def test_an_exception_to_no_bathroom_is_no_way_out():
     with pytest.raises(RefusedError, match="bathroom"):
         parse("no bathroom but an en suite to the bedroom")
+
+
+def test_all_of_a_list_is_the_list():
+    program = understand("kitchen, living room, 2 bedrooms, bathroom - all off a central hallway")
+    assert links(program) == {
+        ("door", other, "hall") if other < "hall" else ("door", "hall", other) for other in ("bath", "bed", "bed_2", "kitchen", "living")
+    }
+
+
+def test_half_baths_are_counted_as_agents_do():
+    for prompt in ("a house with two and a half baths", "a house with 2.5 baths"):
+        program = understand(prompt)
+        assert (len(program.select("bathroom")), len(program.select("wc"))) == (2, 1)
+
+
+def test_a_bound_without_its_unit_has_the_one_said_before():
+    (kitchen,) = understand("the kitchen must be at least 12 square meters but no more than 15").select("kitchen")
+    assert (kitchen.area.min, kitchen.area.max) == (12.0, 15.0)
+
+
+def test_the_largest_room_is_larger_than_all_others():
+    program = understand("two bedrooms and a kitchen. The living room should be the largest room")
+    assert {(r.a, r.b) for r in program.relations if r.kind == "area_order"} == {("living", b) for b in ("bed", "bed_2", "kitchen")}
+
+
+def test_a_room_that_is_reached_only_through_what_it_leads_to_is_refused():
+    with pytest.raises(RefusedError):
+        parse("A bathroom that can be reached only through the bedroom, and the bedroom only through the bathroom")
+
+
+@pytest.mark.parametrize("prompt", ["一室一厅,厨房要和客厅分开", "a one-bedroom flat with the kitchen separate from the living room"])
+def test_a_kitchen_apart_from_where_one_lives_has_a_door(prompt):
+    program = parse(prompt)
+    assert not any(link.kind == "open" and "kitchen" in (link.a, link.b) for link in program.links)
+
+
+def test_the_main_one_of_some_bedrooms():
+    program = understand("casa con cuatro habitaciones, la principal con vestidor y baño propio")
+    assert [len(program.select(kind)) for kind in ("bedroom", "closet", "bathroom")] == [4, 1, 1]
