@@ -47,7 +47,7 @@ def generate(
       sfgen generate --plan my_plan.json "a bedroom with eight pieces, two nightstands, 70 % free, nordic" --out home/
     """
     if not prompt and not plan:
-        raise Complaint("no prompt is given; give PROMPT, or --plan FILE", 2)
+        raise Complaint("the prompt is empty; give PROMPT, or --plan FILE", 2)
     root = factory_root()
     stage("generate").main(root, prompt=prompt, out=out, seed=seed, source=plan, house=house)
 

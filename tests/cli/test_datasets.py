@@ -26,6 +26,7 @@ class Paper:
         self.seed = seed
         self.digests = {"weights": weights}
         self.asked = []
+        self.library = SimpleNamespace(rows={f"asset_{k}": {"style": ""} for k in range(2)})
 
     def write_library(self, folder, asset_ids=None):
         made.library(folder)
@@ -40,7 +41,9 @@ class Paper:
         placed = [SimpleNamespace(asset_id="asset_1"), SimpleNamespace(asset_id="asset_0"), SimpleNamespace(asset_id="asset_1")]
         return [
             SimpleNamespace(
-                rows=rows, files=files, home=SimpleNamespace(scene_id=scene_id(self.seed, r.index), plan=plan, placements=placed)
+                rows=rows,
+                files=files,
+                home=SimpleNamespace(scene_id=scene_id(self.seed, r.index), plan=plan, placements=placed, program=r.program or "{}"),
             )
             for r, (rows, files) in zip(requests, homes, strict=True)
         ]
