@@ -76,7 +76,7 @@ def segment(heard: Words) -> list[Mark]:
                 made.append(mark)
         else:
             i += 1
-    return _amounts(_halves(_numbers(made, heard)), heard)
+    return _amounts(_slim(_halves(_numbers(made, heard))), heard)
 
 
 def _mark(heard: Words, i: int) -> Mark:  # noqa: PLR0911 - one branch per case: a grammar
@@ -181,6 +181,17 @@ def _halves(marks: Sequence[Mark]) -> list[Mark]:
         else:
             made.append(mark)
             k += 1
+    return made
+
+
+def _slim(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "a narrow three-bedroom townhouse" as a home on a narrow plot; a narrow room is only that."""
+    made = list(marks)
+    for k, mark in enumerate(marks):
+        if mark.kind == "adj" and mark.value == "slim":
+            ahead = [m.kind for m in marks[k + 1 : k + 5] if m.kind not in {"adj", "num", "look", "size"}]
+            if ahead[:1] == ["home"] or ahead[:2] == ["room", "home"]:
+                made[k] = replace(mark, kind="flag", value="narrow")
     return made
 
 

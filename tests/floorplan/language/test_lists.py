@@ -89,3 +89,8 @@ def test_a_kitchen_apart_from_where_one_lives_has_a_door(prompt):
 def test_the_main_one_of_some_bedrooms():
     program = understand("casa con cuatro habitaciones, la principal con vestidor y baño propio")
     assert [len(program.select(kind)) for kind in ("bedroom", "closet", "bathroom")] == [4, 1, 1]
+
+
+def test_a_narrow_home_stands_on_a_narrow_plot_and_a_narrow_room_does_not():
+    assert understand("a narrow three-bedroom townhouse on two floors").footprint.min_aspect >= 1.4
+    assert not understand("a flat with a narrow kitchen and a bedroom").footprint.stated
