@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from pipeline.floorplan.language.facts import SOCIAL, Group
@@ -178,39 +179,40 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one b
     if before is not None and before.kind == "comma" and clause.objects and set(clause.objects) == {i for x in clause.run for i in x.ids}:
         return clause.subject  # "a guest room with its own bath, away from ..."
     apart = before is not None and before.kind == "comma" and len(clause.run) > 1
-    listed = [i for x in clause.run for i in x.ids]
     last = clause.run[-1]
     if clause.relative or (apart and not clause.verb):
         return tuple(last.ids)
     if e.value == "avoid" and clause.objects:
         return clause.subject
     verbal = clause.verb or e.value in {"leads", "away", "apart"} or any(x.det & {"both", "all"} for x in clause.run)
-    coordinate = len(clause.run) < 2 or any(
-        x.kind in {"and", "or"} for x in clause.sentence[_place(clause, clause.run[-2]) : _place(clause, last)]
-    )
-    if not coordinate:  # "study downstairs, all bedrooms upstairs, garage connected to ...": commas part statements
+    if not _coordinate(clause):  # "study downstairs, all bedrooms upstairs, garage connected to ...": commas part statements
         return tuple(last.ids)
     if verbal or e.value == "wall":
-        return tuple(_since_clause(clause))
+        return _ids(clause.run)
+    if e.value != "door":
+        return tuple(last.ids)
     tail = [last]
     for a, b in zip(reversed(clause.run[:-1]), reversed(clause.run[1:]), strict=True):
         between = clause.sentence[_place(clause, a) + 1 : _place(clause, b)]
         if any(x.kind == "comma" for x in between) or not any(x.kind == "and" for x in between):
             break
         tail.insert(0, a)
-    if len(tail) < len(clause.run) and len(tail) == 1:
-        return tuple(last.ids)
-    if len(tail) > 1 and (e.value not in {"door", "near", "open"} or _mixed(tail)):
-        return tuple(last.ids) if e.value != "door" else tuple(i for x in tail for i in x.ids if i in listed)
-    return tuple(i for x in tail for i in x.ids) if len(tail) > 1 and e.value == "door" else tuple(last.ids)
+    return _ids(tail)
 
 
 def listed(clause: Clause) -> Group:
     """Return the rooms in front of a comparison: the last phrase, with those that an "and" joins to it."""
-    run = clause.run
-    if len(run) < 2 or any(x.kind in {"and", "or"} for x in clause.sentence[_place(clause, run[-2]) : _place(clause, run[-1])]):
-        return tuple(i for x in run for i in x.ids)
-    return tuple(run[-1].ids)
+    return _ids(clause.run if _coordinate(clause) else clause.run[-1:])
+
+
+def _coordinate(clause: Clause) -> bool:
+    """Whether the last two phrases in front of a cue are joined by more than a comma; one alone is."""
+    ends = [_place(clause, x) for x in clause.run[-2:]]
+    return len(ends) < 2 or any(x.kind in {"and", "or"} for x in clause.sentence[ends[0] : ends[1]])
+
+
+def _ids(phrases: Iterable[Element]) -> Group:
+    return tuple(dict.fromkeys(i for x in phrases for i in x.ids))
 
 
 def superlative(clause: Clause, e: Element) -> None:
@@ -222,17 +224,8 @@ def superlative(clause: Clause, e: Element) -> None:
             clause.state.say("area_order", (one,), b, e, 1.0)
 
 
-def _mixed(tail: list[Element]) -> bool:
-    return len({x.type for x in tail}) > 1
-
-
 def _place(clause: Clause, e: Element) -> int:
     return next((i for i, x in enumerate(clause.sentence) if x is e), 0)
-
-
-def _since_clause(clause: Clause) -> list[str]:
-    """Return the list in front of a verb. After objects of an earlier cue only what follows their comma counts."""
-    return list(dict.fromkeys(i for x in clause.run for i in x.ids))
 
 
 def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:  # noqa: C901, PLR0912 - one branch per kind of element: a grammar
