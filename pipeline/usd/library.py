@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from io import BytesIO
 from pathlib import Path, PurePosixPath
 from types import MappingProxyType
 from typing import Any
@@ -13,7 +12,6 @@ from pxr import Gf, Sdf
 
 from pipeline.entities.asset import Asset
 from pipeline.errors import ContentError
-from pipeline.manifest import write_bytes
 from pipeline.rendering.thumbnail import thumbnail
 from pipeline.usd.articulation import convert_asset
 from pipeline.usd.layer import attribute, label, new_layer, prim, save, vec3s
@@ -32,7 +30,10 @@ def write_library(assets: Iterable[Asset], folder: Path) -> list[Path]:
 
 
 def write_asset(asset: Asset, folder: Path) -> list[Path]:
-    """Write one asset: interface .usda, payload .usdc (file names carry the id, so that packages never confuse them)."""
+    """Write one asset: interface .usda, payload .usdc (file names carry the id, so that packages never confuse them).
+
+    Nothing is flushed to disk here: the commit of the library does that for all files at once.
+    """
     written = [
         save(_payload(asset), folder / f"{asset.asset_id}_payload.usdc"),
         save(_interface(asset), folder / f"{asset.asset_id}.usda"),
@@ -43,11 +44,10 @@ def write_asset(asset: Asset, folder: Path) -> list[Path]:
         target = PurePosixPath(name)
         if target.is_absolute() or ".." in target.parts:
             raise ContentError(f"asset {asset.asset_id} has a texture outside its folder: {name!r}", "run the preprocess stage again")
-        write_bytes(folder / name, blob)
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(blob)
         written.append(folder / name)
-    buffer = BytesIO()
-    thumbnail(asset).save(buffer, "PNG")
-    write_bytes(folder / "thumbnail.png", buffer.getvalue())
+    thumbnail(asset).save(folder / "thumbnail.png")
     return [*written, folder / "thumbnail.png"]
 
 
