@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from pipeline.entities.asset import Asset, Joint, Mesh, PartBox
 from pipeline.sources import metric_scale
 from pipeline.sources.category_signs import Signs, signs
-from pipeline.sources.colliders import Decompose, Solids, link, solids
+from pipeline.sources.colliders import Decompose, Solids, link, matter_volume, solids
 from pipeline.sources.densities import density
+from pipeline.sources.inertials import Inertial, flaw, joined
 from pipeline.sources.metric_scale import UNITS, Fit
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
@@ -45,17 +46,19 @@ def assets(
     middle = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
     for number, fit in enumerate(fits):
         kind = taxonomy.categories[fit.category].super
-        links = [
-            link(body.name, _metric(body, middle, fit.scale), solid.scaled(middle, fit.scale), density(kind, ""), kind)
-            for body, solid in zip(bodies, matter, strict=True)
-        ]
+        links, weighed = [], []
+        for body, solid in zip(bodies, matter, strict=True):
+            real = solid.scaled(middle, fit.scale)
+            stated, note = _stated(body, real, middle, fit, kind)
+            weighed += note
+            links.append(link(body.name, _metric(body, middle, fit.scale), real, density(kind, ""), kind, stated))
         asset = Asset(
             f"{SHORT[shape.source]}_{stem}_{fit.category}", fit.category, np.round(extent * fit.scale, 4),
             tuple(links), tuple(_joint(j, middle, fit.scale) for j in shape.joints), tuple(shape.palette.materials),
             shape.source, shape.source_id, licence, "", kind, dict(shape.palette.textures),
             tuple(_part(p, middle, fit.scale) for p in shape.parts),
         )  # fmt: skip
-        yield asset, fit, _rejects(shape, matter) if number == 0 else []  # what befell the folder is told once
+        yield asset, fit, _rejects(shape, matter, weighed) if number == 0 else []  # what befell the folder is told once
 
 
 def _fits(shape: ArticulatedShape, extent: Floats, found: Signs, categories: Sequence[str], limits: ModelLimits) -> tuple[Fit, ...]:
@@ -70,9 +73,27 @@ def _fits(shape: ArticulatedShape, extent: Floats, found: Signs, categories: Seq
     return metric_scale.best((metric_scale.fit(extent, c, found) for c in categories), rms=limits.fit_rms, keep=keep, margin=margin)
 
 
-def _rejects(shape: ArticulatedShape, matter: list[Solids]) -> list[Row]:
+def _stated(body: ShapeBody, matter: Solids, middle: Floats, fit: Fit, kind: str) -> tuple[Inertial | None, list[tuple[str, str]]]:
+    """Return the inertial that the source states of a body [m, kg], None where it states none or a wrong one, and a note which."""
+    pieces = [i for i in body.inertials if i is not None]
+    if not pieces:
+        return None, []
+    points = (body.points() - middle) * fit.scale
+    stated = joined(pieces).scaled(middle, fit.scale)
+    why = flaw(stated, points.min(axis=0), points.max(axis=0), matter_volume(matter, kind))
+    if fit.fitted:
+        why = "is of another size"
+    elif len(pieces) < len(body.inertials):
+        why = f"is of {len(pieces)} of its {len(body.inertials)} links"
+    if why:
+        return None, [("inertial_refused", f"{body.name}: {why}")]
+    return stated, [("inertial_used", f"{body.name}: {stated.mass:.4g} kg")]
+
+
+def _rejects(shape: ArticulatedShape, matter: list[Solids], weighed: list[tuple[str, str]]) -> list[Row]:
     rows = [reject(what, shape.source_id, reason, detail) for what, reason, detail in shape.notes]
-    return rows + [reject("model", shape.source_id, reason, detail) for solid in matter for reason, detail in solid.notes]
+    notes = [*(note for solid in matter for note in solid.notes), *weighed]
+    return rows + [reject("model", shape.source_id, reason, detail) for reason, detail in notes]
 
 
 def _metric(body: ShapeBody, middle: Floats, scale: float) -> list[Mesh]:

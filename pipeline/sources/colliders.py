@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Link, Mesh
 from pipeline.sources.densities import BOARD, BOXES, HOLLOW, MINIMUM
+from pipeline.sources.inertials import Inertial
 from pipeline.sources.merging import merged
 from pipeline.sources.settings import ModelLimits
 from pipeline.sources.solids import Part, dissected, mass_properties, parts
@@ -64,14 +65,25 @@ def solids(name: str, meshes: Iterable[tuple[Floats, Ints]], limits: ModelLimits
     return Solids(tuple(part for part, _, _ in found), tuple(pieces), tuple(notes))
 
 
-def link(name: str, visuals: Iterable[Mesh], matter: Solids, density: float, kind: str = "") -> Link:
-    """Return the link [m, kg] of visual meshes and solids of one `density` [kg/m3]; `kind` is the super-category."""
-    mass, com, inertia = mass_properties([(_hollowed(p, kind), density) for p in matter.parts])
+def link(name: str, visuals: Iterable[Mesh], matter: Solids, density: float, kind: str = "", stated: Inertial | None = None) -> Link:
+    """Return the link [m, kg] of visual meshes and solids; `kind` is the super-category.
+
+    It weighs what is `stated`, else what its matter does at one `density` [kg/m3].
+    """
+    if stated is not None:
+        mass, com, inertia = stated.mass, stated.centre, stated.inertia
+    else:
+        mass, com, inertia = mass_properties([(_hollowed(p, kind), density) for p in matter.parts])
     if 0 < mass < MINIMUM:
         inertia = inertia * (MINIMUM / mass)
     least = 1e-6 * np.eye(3)  # engines refuse inertias of thin parts that round to zero
     colliders = tuple(_piece(k, p) for k, p in enumerate(matter.pieces))
     return Link(name, tuple(visuals), colliders, round(max(mass, MINIMUM), 5), np.round(com, 6), np.round(inertia, 9) + least)
+
+
+def matter_volume(matter: Solids, kind: str) -> float:
+    """Return the volume of matter [m3] of a link of that super-category."""
+    return float(sum(_hollowed(p, kind).volume for p in matter.parts))
 
 
 def _hollowed(part: Part, kind: str) -> Part:

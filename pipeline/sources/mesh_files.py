@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.sources.collada_file import MAX_DAE, parse_dae
 from pipeline.sources.gltf_file import MAX_GLB, GltfMaterial, parse_glb
 from pipeline.sources.guarded import Folder
-from pipeline.sources.obj_file import MAX_OBJ, ObjFile, ObjGroup, parse_obj
+from pipeline.sources.obj_file import MAX_OBJ, MtlMaterial, ObjFile, ObjGroup, parse_obj
 from pipeline.sources.primitives import MAX_STL, parse_stl, primitive
 from pipeline.sources.reasons import SourceError
 from pipeline.sources.shape import Note
@@ -26,7 +27,8 @@ class MeshFiles:
     def __init__(self, folder: Folder, base: str, notes: list[Note]) -> None:
         self.folder, self.base, self.notes = folder, base, notes
         self.files: dict[str, ObjFile | None] = {}
-        self.materials: dict[str, dict[str, GltfMaterial]] = {}  # by mesh file and name, where a file brings its own
+        # By mesh file and name, where a file brings its own.
+        self.materials: dict[str, dict[str, GltfMaterial] | dict[str, MtlMaterial]] = {}
         self.total = 0
 
     def geometry(self, shape: Shape, T: Floats) -> list[tuple[ObjGroup, ObjFile, Floats]]:
@@ -65,6 +67,9 @@ class MeshFiles:
             return parse_obj(self.folder.read(path, MAX_OBJ, self.base), path)
         if suffix == "glb":
             file, self.materials[path] = parse_glb(self.folder.read(path, MAX_GLB, self.base), path)
+            return file
+        if suffix == "dae":
+            file, self.materials[path] = parse_dae(self.folder.read(path, MAX_DAE, self.base), path)
             return file
         if suffix == "stl":
             return _plain(*parse_stl(self.folder.read(path, MAX_STL, self.base), path))

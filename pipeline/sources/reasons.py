@@ -76,6 +76,12 @@ REASONS: dict[str, Reason] = {
     "looks_from_colliders": Reason("model", "repaired", "a body without visual meshes that can be read shows its collision meshes"),
     "base_made": Reason("model", "repaired", "a door without a frame: a post along its hinge is made to be its base"),
     "part_box_refused": Reason("model", "repaired", "the annotated box of a part is no box; that of its geometry is used"),
+    "inertial_used": Reason("model", "repaired", "a body weighs what the URDF says of it, not what its volume does at a usual density"),
+    "inertial_refused": Reason(
+        "model",
+        "repaired",
+        "the URDF's mass or inertia of a body cannot be: not positive, moments that no body has, a mass beyond all densities",
+    ),
     "angle_snapped": Reason("model", "repaired", "angles that are nearly right ones, such as 1.565, are taken as right"),
     "missing_mesh": Reason("model", "repaired", "a mesh file that the URDF names is missing; the rest is used"),
     "no_metric_fit": Reason("model", "dropped", "no scale makes it fit the sizes of a category that it may serve as"),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import JointType, Mesh
 from pipeline.geometry.kinematics import rotation
+from pipeline.sources.inertials import Inertial
 from pipeline.sources.surfaces import Palette
 
 Floats = NDArray[np.float64]
@@ -19,11 +20,12 @@ Note = tuple[str, str, str]  # (what, reason, detail)
 
 @dataclass(slots=True)
 class ShapeBody:
-    """A rigid body: visual meshes, collision meshes."""
+    """A rigid body: visual meshes, collision meshes, and what each of its links with geometry states of its mass, if anything."""
 
     name: str
     visuals: list[Mesh] = field(default_factory=list)
     collisions: list[tuple[Floats, Ints]] = field(default_factory=list)
+    inertials: list[Inertial | None] = field(default_factory=list)
 
     @property
     def empty(self) -> bool:
@@ -38,7 +40,8 @@ class ShapeBody:
     def moved(self, T: Floats) -> ShapeBody:
         """Return the body under the rigid motion T (4, 4)."""
         visuals = [replace(m, vertices=apply(T, np.asarray(m.vertices, np.float64)).astype(np.float32)) for m in self.visuals]
-        return ShapeBody(self.name, visuals, [(apply(T, v), f) for v, f in self.collisions])
+        inertials = [i and i.moved(T) for i in self.inertials]
+        return ShapeBody(self.name, visuals, [(apply(T, v), f) for v, f in self.collisions], inertials)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from pipeline.sources import joint_rules
 from pipeline.sources.guarded import Folder
 from pipeline.sources.mesh_files import MeshFiles
 from pipeline.sources.mobility_v2 import Mobility
-from pipeline.sources.obj_file import ObjFile, ObjGroup
+from pipeline.sources.obj_file import MtlMaterial, ObjFile, ObjGroup
 from pipeline.sources.part_boxes import annotated_part
 from pipeline.sources.part_classes import Annotation, fixed_class, named_class
 from pipeline.sources.reasons import SourceError
@@ -113,6 +113,8 @@ class ShapeReader:
 
     def _fill(self, body: ShapeBody, link: UrdfLink, T: Floats, *, moves: bool) -> None:
         body.visuals += self._visuals(link, T, len(body.visuals), moves=moves)
+        if link.visuals or link.collisions:
+            body.inertials.append(link.inertial and link.inertial.moved(T))
         for shape in link.collisions:
             body.collisions += [(points, group.faces) for group, _, points in self.files.geometry(shape, T)]
 
@@ -130,12 +132,15 @@ class ShapeReader:
 
     def _material(self, shape: Shape, file: ObjFile, group: ObjGroup) -> int:
         own = self.files.materials.get(shape.mesh, {}).get(group.material)
+        base = PurePosixPath(self.base, shape.mesh.replace("\\", "/")).parent.as_posix() if shape.mesh else ""
+        base = "" if base == "." else base
+        if isinstance(own, MtlMaterial):
+            return self.palette.entry(own, base)
         if own:
             return self.palette.own(own.color, own.roughness, own.image, f"{shape.mesh}#{group.material}")
         if shape.color and not file.library:
             return self.palette.add(shape.color[:3], shape.color[3], None)
-        base = PurePosixPath(self.base, shape.mesh.replace("\\", "/")).parent.as_posix() if shape.mesh else ""
-        return self.palette.index(file.library, "" if base == "." else base, group.material)
+        return self.palette.index(file.library, base, group.material)
 
     def _borrow_looks(self, bodies: list[ShapeBody], body_of: Mapping[str, int]) -> None:
         """Take the visuals of the second URDF where it has the same links in the same places; else keep our own."""

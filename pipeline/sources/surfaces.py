@@ -32,7 +32,10 @@ class Palette:
 
     def index(self, library: str, base: str, name: str) -> int:
         """Return the index of the material `name` of the MTL file `library` (relative to the folder `base`)."""
-        entry = self._library(library, base).get(name) or MtlMaterial(name or "plain")
+        return self.entry(self._library(library, base).get(name) or MtlMaterial(name or "plain"), base)
+
+    def entry(self, entry: MtlMaterial, base: str) -> int:
+        """Return the index of a material whose texture's path is relative to the folder `base`."""
         texture = self.image(entry.map, base) if entry.map else None
         color = (1.0, 1.0, 1.0) if texture else entry.diffuse
         return self.add(color, entry.opacity, texture, roughness=_roughness(entry.shininess))

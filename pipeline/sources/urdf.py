@@ -16,6 +16,7 @@ import numpy as np
 from defusedxml import ElementTree
 from numpy.typing import NDArray
 
+from pipeline.sources.inertials import Inertial
 from pipeline.sources.reasons import SourceError
 
 Floats = NDArray[np.float64]
@@ -24,6 +25,7 @@ MAX_URDF = 8 << 20  # bytes
 MAX_ELEMENTS = 100_000
 MAX_LINKS = 1000
 MAX_SHAPES = 5000
+MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,11 +42,12 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class UrdfLink:
-    """A link with its shapes."""
+    """A link with its shapes, and the inertial that it states, in the link's frame."""
 
     name: str
     visuals: tuple[Shape, ...]
     collisions: tuple[Shape, ...]
+    inertial: Inertial | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +82,7 @@ def parse_urdf(data: bytes, where: str) -> Urdf:
         if not name or name in links:
             raise SourceError("not_urdf", where, f"a link is unnamed or named twice ({name[:40]!r})")
         shapes = {k: tuple(_shape(e, colors, where) for e in element.findall(k)) for k in ("visual", "collision")}
-        links[name] = UrdfLink(name, shapes["visual"], shapes["collision"])
+        links[name] = UrdfLink(name, shapes["visual"], shapes["collision"], _inertial(element, where))
     joints = [_joint(e, where) for e in root.findall("joint")]
     if len(links) > MAX_LINKS or sum(len(v.visuals) + len(v.collisions) for v in links.values()) > MAX_SHAPES:
         raise SourceError("too_large", where, f"has {len(links)} links")
@@ -142,6 +145,22 @@ def _joint(element: Any, where: str) -> UrdfJoint:
     return UrdfJoint(name, (element.get("type") or "fixed").strip(), ends["parent"], ends["child"], _origin(element, where), axis, limits)
 
 
+def _inertial(element: Any, where: str) -> Inertial | None:
+    """Return a link's inertial, of nan where it is broken: a wrong mass is no reason to lose a model."""
+    found = element.find("inertial")
+    if found is None:
+        return None
+    mass, moments = found.find("mass"), found.find("inertia")
+    try:
+        (kg,) = _vector(mass.get("value") if mass is not None else None, (math.nan,), where)
+        values = [_vector(moments.get(k) if moments is not None else None, (math.nan,), where, 1e12)[0] for k in MOMENTS]
+        T = _origin(found, where)
+    except SourceError:
+        kg, values, T = np.float64(math.nan), [math.nan] * 6, np.eye(4)
+    xx, xy, xz, yy, yz, zz = values
+    return Inertial(float(kg), np.zeros(3), np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])).moved(T)
+
+
 def _shape(element: Any, colors: dict[str, Any], where: str) -> Shape:
     geometry = element.find("geometry")
     mesh, scale = "", np.ones(3)
@@ -197,7 +216,7 @@ def _origin(element: Any, where: str) -> Floats:
     return T
 
 
-def _vector(text: str | None, default: tuple[float, ...], where: str) -> Floats:
+def _vector(text: str | None, default: tuple[float, ...], where: str, most: float = 1e6) -> Floats:
     """Parse numbers separated by blanks or commas, as many as `default` has."""
     if text is None:
         return np.array(default)
@@ -208,6 +227,6 @@ def _vector(text: str | None, default: tuple[float, ...], where: str) -> Floats:
         raise SourceError("bad_number", where, f"{text[:40]!r} is no list of numbers") from error
     if len(values) != len(default):
         raise SourceError("bad_number", where, f"{text[:40]!r} has {len(values)} numbers, not {len(default)}")
-    if not np.isfinite(values).all() or np.abs(values).max() > 1e6:
+    if not np.isfinite(values).all() or np.abs(values).max() > most:
         raise SourceError("bad_number", where, f"{text[:40]!r} is not finite, or absurd")
     return values

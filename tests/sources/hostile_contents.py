@@ -5,7 +5,7 @@ import json
 import struct
 import zlib
 
-from tests.sources import making
+from tests.sources import collada, making
 
 GOOD = json.dumps(making.two_rooms())
 HOUSES = {  # content of a house file -> reason
@@ -246,3 +246,26 @@ NAMES = [
     "con",
     "-rf",
 ]
+
+DAES = {  # content of a mesh of a URDF by itself -> reason
+    "zero_bytes": (b"", "not_obj"),
+    "entities": (f"<!DOCTYPE a [<!ENTITY l0 'x'>{BILLION}]><COLLADA>&l9;</COLLADA>".encode(), "not_obj"),
+    "external": (b'<!DOCTYPE a [<!ENTITY x SYSTEM "file:///etc/passwd">]><COLLADA>&x;</COLLADA>', "not_obj"),
+    "html": (b"<html></html>", "not_obj"),
+    "deep": (b"<a>" * 150_000, "not_obj"),
+    "many_elements": (b"<COLLADA>" + b"<a/>" * 6_000_000 + b"</COLLADA>", "too_large"),
+    "nodes_in_a_loop": (collada.dae(nodes='<node id="a"><instance_node url="#a"/></node>'), "not_obj"),
+    "nodes_that_double": (
+        collada.dae(
+            nodes="".join(f'<node id="n{k}"><instance_node url="#n{k + 1}"/><instance_node url="#n{k + 1}"/></node>' for k in range(60))
+            + '<node id="n60"><instance_geometry url="#box"/></node>'
+        ),
+        "too_large",
+    ),
+    "a_billion_values_declared": (collada.dae().replace(b'count="8" stride', b'count="1000000000" stride'), "not_obj"),
+    "many_numbers": (collada.dae().replace(b"<p>", b"<p>" + b"0 0 0 " * 2_700_000), "too_large"),
+    "nan": (collada.dae().replace(b"-0.5 ", b"nan ", 1), "bad_number"),
+    "texture_elsewhere": (collada.dae(diffuse=collada.TEXTURE, image="../../../secret.png"), "unsafe_path"),
+    "texture_by_scheme": (collada.dae(diffuse=collada.TEXTURE, image="file:///etc/passwd"), "unsafe_path"),
+    **{f"truncated_at_{k}0_percent": ((d := collada.dae())[: len(d) * k // 10], "not_obj") for k in TENTHS},
+}

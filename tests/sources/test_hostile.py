@@ -148,6 +148,19 @@ def test_texture(name, hostile):
     assert made["assets"] == 1
 
 
+@pytest.mark.parametrize("name", sorted(contents.DAES))
+def test_collada(name, hostile):
+    root, read = hostile
+    data, reason = contents.DAES[name]
+    (root / "partnet").mkdir()
+    (root / "partnet" / "body.dae").write_bytes(data)
+    text = '<robot name="r"><link name="a"><visual><geometry><mesh filename="body.dae"/></geometry></visual></link></robot>'
+    (root / "partnet" / "cabinet.urdf").write_text(text)
+    made, reasons = read()
+    assert reasons == {reason}
+    assert made["assets"] == 0
+
+
 @pytest.mark.parametrize("name", sorted(contents.STLS))
 def test_collision_mesh(name, hostile):
     root, read = hostile

@@ -173,11 +173,11 @@ def test_meshes_of_a_kind_that_is_not_read_show_their_colliders(tmp_path):
     for kind in ("visual",):
         start = text.index(f"<{kind}")
         end = text.index(f"</{kind}>") + len(f"</{kind}>")
-        text = text[:start] + '<visual><geometry><mesh filename="body.dae"/></geometry></visual>' + text[end:]
+        text = text[:start] + '<visual><geometry><mesh filename="body.fbx"/></geometry></visual>' + text[end:]
     head, tail = text.split('<link name="door_left">')
-    body = '<link name="root"><visual><geometry><mesh filename="body.dae"/></geometry></visual>' + head[head.index("<collision") :]
+    body = '<link name="root"><visual><geometry><mesh filename="body.fbx"/></geometry></visual>' + head[head.index("<collision") :]
     write(tmp_path, head[: head.index('<link name="root">')] + body + '<link name="door_left">' + tail)
-    (tmp_path / "partnet" / "kitchen_cabinet" / "body.dae").write_text("<COLLADA/>")
+    (tmp_path / "partnet" / "kitchen_cabinet" / "body.fbx").write_text("Kaydara")
     asset, made = only(tmp_path)
     assert made.reasons == {"missing_mesh", "looks_from_colliders"}
     assert len(asset.links[0].visuals) == 4

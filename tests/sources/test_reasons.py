@@ -170,6 +170,7 @@ def household(tmp, text):
 
 
 CASE = '<geometry><box size="0.4 0.9 0.9"/></geometry>'
+INERTIAL = '<inertial><mass value="40"/><inertia ixx="3" ixy="0" ixz="0" iyy="3" iyz="0" izz="3"/></inertial>'
 
 
 def missing_texture(tmp):
@@ -303,6 +304,8 @@ CASES = {
         f'<link name="a"/><link name="b"><visual>{CASE}</visual></link><joint name="j" type="revolute"><parent link="a"/><child link="b"/>'
         '<axis xyz="0 0 1"/><limit lower="0" upper="1"/></joint>',
     ),
+    "inertial_used": lambda t: household(t, f'<link name="a">{INERTIAL}<visual>{CASE}</visual></link>'),
+    "inertial_refused": lambda t: household(t, f'<link name="a">{INERTIAL.replace("40", "-40")}<visual>{CASE}</visual></link>'),
     "angle_snapped": lambda t: household(t, f'<link name="a"><visual><origin rpy="0 0 1.565"/>{CASE}</visual></link>'),
     "part_box_refused": part_box_refused,
     "joint_limits_found": partnet_limits,
