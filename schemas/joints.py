@@ -2,7 +2,7 @@
 
 import pyarrow as pa
 
-from schemas.table import VEC3, Column, Table
+from schemas.table import NAMES, VEC3, Column, Table
 
 JOINTS = Table(
     "joints",
@@ -17,8 +17,9 @@ JOINTS = Table(
         Column("origin", VEC3, "a point on the axis at rest", "m", "world"),
         Column("lower", pa.float64(), "lower limit (rad or m)"),
         Column("upper", pa.float64(), "upper limit (rad or m)"),
+        Column("after", NAMES, "joints of the object that must be open before it can move; it is judged with them open"),
         Column("clear_upper", pa.float64(), "largest position that is reached from 0 without touching (rad or m)"),
-        Column("clear", pa.bool_(), "the whole range is free"),
+        Column("clear", pa.bool_(), "the whole range is free, and that of the joints it waits for"),
         Column("blocker", pa.string(), "what it touches first; empty when clear"),
         Column("stand", VEC3, "x, y, yaw at which a robot can stand to open it", "m, m, rad", "world", nullable=True),
     ),

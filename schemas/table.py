@@ -8,10 +8,11 @@ from typing import Any
 
 import pyarrow as pa
 
-SCHEMA_VERSION = "1"
+SCHEMA_VERSION = "2"  # 2: joints say which others they wait for; furniture is counted apart from small things
 
 VEC2 = pa.list_(pa.float64(), 2)
 VEC3 = pa.list_(pa.float64(), 3)
+NAMES = pa.list_(pa.string())
 LATENT = pa.list_(pa.float32(), 32)
 POLYGON = pa.list_(VEC2)
 

@@ -57,7 +57,8 @@ class PlacedObject:
     """A placed asset.
 
     `position` (3,) [m, world] is the bottom centre of its box with all joints at 0; `size` (3,) [m] the full extents
-    (w, d, h) in its own frame; `yaw` [rad]; `scale` (3,) the factor on the asset's own size; `latent` (32,).
+    (w, d, h) in its own frame; `yaw` [rad]; `scale` (3,) the factor on the asset's own size; `latent` (32,). `support`
+    is the object that it stands on or in, "" for the floor, a wall or the ceiling.
     """
 
     object_id: str
@@ -71,6 +72,7 @@ class PlacedObject:
     openable: bool
     latent: NDArray[np.float32]
     retrieval_distance: float
+    support: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,7 +80,7 @@ class Joint:
     """A joint of a placed object, or of a room door (`object_id` is then an opening's).
 
     `axis` (3,) and `origin` (3,) [m] in the world frame; limits [rad or m]; `clear_upper` is how far it opens before it
-    touches something; `stand` (3,) is where a robot can stand to open it: x, y [m], yaw [rad].
+    touches something, with the joints `after` of the same object open; `stand` (3,) is where a robot can stand to open it: x, y [m], yaw [rad].
     """
 
     object_id: str
@@ -93,6 +95,7 @@ class Joint:
     clear: bool
     blocker: str
     stand: Floats | None
+    after: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,13 +128,13 @@ class Home:
 
 
 def record(cls: type[Record], row: dict[str, Any]) -> Record:
-    """Build a record from a table row; columns that it does not know are left out."""
-    return cls(**{f.name: _value(f.name, row[f.name]) for f in fields(cls)})  # type: ignore[arg-type]
+    """Build a record from a table row; columns that it does not know are left out, and older datasets lack some."""
+    return cls(**{f.name: _value(f.name, row[f.name]) for f in fields(cls) if f.name in row})  # type: ignore[arg-type]
 
 
 def _value(name: str, value: Any) -> Any:
     if not isinstance(value, list):
         return value
-    if name == "rooms":
+    if name in {"rooms", "after"}:
         return tuple(value)
     return np.array(value, np.float32 if name == "latent" else np.float64)

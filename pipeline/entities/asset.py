@@ -76,7 +76,8 @@ class Joint:
 
     `axis` (3,) unit and `origin` (3,) [m] in the object frame at rest; positive motion opens. Limits in rad
     (revolute) or m (prismatic), lower <= 0 <= upper; a continuous joint has limits (-inf, inf).
-    `part_class` is one of PART_CLASSES.
+    `part_class` is one of PART_CLASSES. `after` names the asset's joints that must be open before this one can move: a drawer
+    waits for the door before it.
     """
 
     name: str
@@ -88,6 +89,7 @@ class Joint:
     lower: float
     upper: float
     part_class: str
+    after: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -103,6 +103,7 @@ def _decode(header: dict[str, Any], tensors: dict[str, np.ndarray[Any, Any]]) ->
                 "origin": np.array(j["origin"]),
                 "lower": _unbound(j["lower"], -1),
                 "upper": _unbound(j["upper"], 1),
+                "after": tuple(j.get("after", ())),
             }
         )
         for j in header["joints"]

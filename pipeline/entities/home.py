@@ -17,7 +17,8 @@ class Placement:
     `position` (3,) [m]: world position of the bottom centre of the asset's box with all joints at 0, storey
     elevation included; `yaw` [rad] in (-pi, pi]; `size` (3,) [m] full extents (w, d, h) in the object frame, equal to
     asset size * `scale`; `scale` (3,) is 1 for articulated assets. `latent` (32,) and `retrieval_distance` are what
-    the layout model asked for and how far the match is.
+    the layout model asked for and how far the match is. `support` is the object that it stands on or in, "" for the floor,
+    a wall or the ceiling.
     """
 
     object_id: str
@@ -30,6 +31,7 @@ class Placement:
     scale: NDArray[np.float64] = field(default_factory=lambda: np.ones(3))
     latent: NDArray[np.float32] = field(default_factory=lambda: np.zeros(32, np.float32))
     retrieval_distance: float = 0.0
+    support: str = ""
 
     def footprint(self) -> NDArray[np.float64]:
         """Return the corners (4, 2) of the box in plan, counter-clockwise [m, world]."""

@@ -6,18 +6,35 @@ Everything is in the object frame (origin bottom centre of the box at rest, fron
 from __future__ import annotations
 
 import math
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.entities.asset import Asset, Joint, Link
+from pipeline.entities.asset import Asset, Joint, JointType, Link
 
 HANDLES = ("line_fixed_handle", "round_fixed_handle", "hinge_handle")  # part classes that a hand takes hold of
 OPENERS = ("hinge_door", "slider_drawer", "hinge_lid", "slider_lid")  # part classes that open something
 
 
-def joint_motion(joint: Joint, position: float) -> NDArray[np.float64]:
-    """Return the transform (4, 4) by which `joint` alone moves its child from rest, at `position` [rad or m]."""
+class Axis(Protocol):
+    """What a joint moves about or along: unit `axis` (3,) through `origin` (3,), at rest."""
+
+    @property
+    def type(self) -> JointType:
+        """Whether it turns or slides."""
+
+    @property
+    def axis(self) -> NDArray[np.float64]:
+        """Unit direction (3,)."""
+
+    @property
+    def origin(self) -> NDArray[np.float64]:
+        """A point (3,) on it."""
+
+
+def joint_motion(joint: Axis, position: float) -> NDArray[np.float64]:
+    """Return the transform (4, 4) by which `joint` alone moves its child from rest, at `position` [rad, or units of `origin`]."""
     T = np.eye(4)
     if joint.type == "prismatic":
         T[:3, 3] = joint.axis * position

@@ -112,14 +112,15 @@ def solid(asset: Asset) -> Solid:
 def make_solid(asset: Asset) -> Solid:
     """Compute the prisms of an asset at rest and in motion."""
     pieces = [p for i, link in enumerate(asset.links) for points in _pieces(link) if (p := prism(points, i)) is not None]
-    return Solid(stacked(pieces), tuple(_sweep(asset, j) for j in range(len(asset.joints))))
+    return Solid(stacked(pieces), tuple(sweep_of(asset, j) for j in range(len(asset.joints))))
 
 
 def _pieces(link: Link) -> list[Floats]:
     return [np.asarray(mesh.vertices, np.float64) for mesh in (link.colliders or link.visuals)]
 
 
-def _sweep(asset: Asset, index: int) -> Sweep:
+def sweep_of(asset: Asset, index: int) -> Sweep:
+    """Return what joint `index` moves over its range, the others at 0."""
     joint = asset.joints[index]
     pieces = [points for i in moved_links(asset, index) for points in _pieces(asset.links[i])]
     lower, upper = joint_range(joint)

@@ -22,8 +22,8 @@ class Guilt:
 def guilty_objects(home: Home, certificate: Certificate) -> dict[str, Guilt]:
     """Return what must go, by object_id.
 
-    Of two objects in each other the smaller goes; of a blocked joint what blocks it, or its owner where a wall does; of a
-    room that cannot be entered the floor-standing object nearest to one of its doors.
+    Of two objects in each other the smaller goes; of a blocked joint what blocks it, or its owner where a wall does or the owner
+    is a small thing that lies on something else; of a room that cannot be entered the floor-standing object nearest to one of its doors.
     """
     placed = {p.object_id: p for p in home.placements}
     guilty: dict[str, Guilt] = {}
@@ -38,7 +38,8 @@ def guilty_objects(home: Home, certificate: Certificate) -> dict[str, Guilt]:
     for joint in certificate.joints:
         if joint.clear:
             continue
-        blamed = placed.get(joint.blocker) or placed.get(joint.object_id)
+        owner = placed.get(joint.object_id)
+        blamed = owner if owner is not None and owner.support else placed.get(joint.blocker) or owner
         if blamed is not None:
             detail = f"{joint.object_id}/{joint.joint_id} stops at {joint.blocker}"
             guilty.setdefault(blamed.object_id, Guilt(blamed.room_id, "blocks_joint", detail))
@@ -52,7 +53,7 @@ def guilty_objects(home: Home, certificate: Certificate) -> dict[str, Guilt]:
 def _nearest_to_door(home: Home, room_id: str) -> Placement | None:
     doors = [o.segment.mean(0) for o in home.plan.openings if room_id in o.rooms and o.kind != "window"]
     floor = home.plan.elevation(room_id)
-    standing = [p for p in home.in_room(room_id) if p.position[2] < floor + 0.1]
+    standing = [p for p in home.in_room(room_id) if p.position[2] < floor + 0.1 and not p.support]
     if not doors or not standing:
         return None
     # Footprint corners and centre stand in for the outline: the order matters here, not the distance.

@@ -75,7 +75,7 @@ def object_row(scene_id: str, placement: Placement, *, openable: bool) -> Row:
         "size": placement.size.tolist(),
         "scale": placement.scale.tolist(),
         "openable": openable,
-        "support": "",
+        "support": placement.support,
         "latent": placement.latent.tolist(),
         "retrieval_distance": placement.retrieval_distance,
         "source_id": "",
@@ -107,6 +107,7 @@ def placement_of(row: Mapping[str, Any]) -> Placement:
         np.array(row["scale"], float),
         np.array(row["latent"], np.float32),
         row["retrieval_distance"],
+        row["support"],
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Joint, Mesh, PartBox
+from pipeline.geometry.waiting import ordered
 from pipeline.sources import metric_scale
 from pipeline.sources.category_signs import Signs, signs
 from pipeline.sources.colliders import Decompose, Solids, link, matter_volume, solids
@@ -58,7 +59,7 @@ def assets(
             shape.source, shape.source_id, licence, "", kind, dict(shape.palette.textures),
             tuple(_part(p, middle, fit.scale) for p in shape.parts),
         )  # fmt: skip
-        yield asset, fit, _rejects(shape, matter, weighed) if number == 0 else []  # what befell the folder is told once
+        yield ordered(asset), fit, _rejects(shape, matter, weighed) if number == 0 else []  # what befell the folder is told once
 
 
 def _fits(shape: ArticulatedShape, extent: Floats, found: Signs, categories: Sequence[str], limits: ModelLimits) -> tuple[Fit, ...]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import JointType
+from pipeline.geometry.kinematics import joint_motion
 from pipeline.sources.mobility_v2 import Mobility
 from pipeline.sources.shape import Note, ShapeBody, ShapeJoint, ShapePart, apply, below
 from pipeline.sources.urdf import UrdfJoint
@@ -86,7 +87,7 @@ def closed(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapeP
         if joint.part_class not in {"hinge_door", "slider_drawer"} or not math.isfinite(joint.upper):
             continue
         moved = below(joints, joint.child)
-        ends = [(q, _volume(boxes, moved, joint.motion(q))) for q in (0.0, joint.lower, joint.upper) if q == 0.0 or abs(q) > 1e-9]
+        ends = [(q, _volume(boxes, moved, joint_motion(joint, q))) for q in (0.0, joint.lower, joint.upper) if q == 0.0 or abs(q) > 1e-9]
         best = min(ends[1:], key=lambda e: e[1], default=ends[0])
         if best[1] < CLOSED * ends[0][1]:
             notes.append(("joint", "joint_rest_shifted", f"{joint.name}: drawn open, closed by {best[0]:.4f}"))
@@ -145,7 +146,7 @@ def _screw(first: ShapeJoint, second: ShapeJoint, word: str, span: float) -> Sha
 
 def _shift(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapePart], number: int, rest: float) -> None:
     joint = joints[number]
-    T = joint.motion(rest)
+    T = joint_motion(joint, rest)
     moved = below(joints, joint.child)
     for body in moved:
         bodies[body] = bodies[body].moved(T)

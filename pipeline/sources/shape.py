@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import JointType, Mesh
-from pipeline.geometry.kinematics import rotation
 from pipeline.sources.inertials import Inertial
 from pipeline.sources.surfaces import Palette
 
@@ -58,16 +57,6 @@ class ShapeJoint:
     upper: float
     part_class: str
     inferred: bool = True
-
-    def motion(self, position: float) -> Floats:
-        """Return the transform (4, 4) by which the joint moves its child from rest."""
-        T = np.eye(4)
-        if self.type == "prismatic":
-            T[:3, 3] = self.axis * position
-            return T
-        T[:3, :3] = rotation(self.axis, position)
-        T[:3, 3] = self.origin - T[:3, :3] @ self.origin
-        return T
 
     def moved(self, T: Floats) -> ShapeJoint:
         """Return the joint under the rigid motion T (4, 4)."""

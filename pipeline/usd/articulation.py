@@ -9,7 +9,7 @@ from pxr import Sdf
 
 from pipeline.entities.asset import Asset, Link, Mesh
 from pipeline.usd.joints import convert_fixed, convert_joint
-from pipeline.usd.layer import apply, identifiers, label, prim
+from pipeline.usd.layer import apply, identifiers, label, prim, relationship
 from pipeline.usd.material import bind
 from pipeline.usd.mesh import convert_mesh
 from pipeline.usd.physics import convert_body, convert_collider, convert_filter, gravity_load, hide, volume
@@ -54,8 +54,12 @@ def convert_asset(root: Sdf.PrimSpec, asset: Asset, materials: Sequence[Sdf.Path
         apply(root, ["PhysicsArticulationRootAPI"])
         scope = prim(root, "joints", "Scope")
         convert_fixed(scope, root.path, links[0].path)
-        for index, (name, joint) in enumerate(zip(joint_names(asset), asset.joints, strict=True)):
-            convert_joint(scope, name, joint, links[joint.parent].path, links[joint.child].path, gravity_load(asset, index))
+        prims = dict(zip((joint.name for joint in asset.joints), joint_names(asset), strict=True))
+        for index, joint in enumerate(asset.joints):
+            ends = links[joint.parent].path, links[joint.child].path
+            made = convert_joint(scope, prims[joint.name], joint, *ends, gravity_load(asset, index))
+            if joint.after:  # engines know no such order; whoever plans for a robot does
+                relationship(made, "sfgen:after", [scope.path.AppendChild(prims[name]) for name in joint.after])
         for i, spec in enumerate(links):
             convert_filter(spec, [links[k].path for k in _passes(asset, i)])
 

@@ -19,7 +19,8 @@ class JointCheck:
     """One joint of a placed object, or of a room door (`object_id` is then the opening's, `part_class` door_leaf).
 
     `axis` (3,) and `origin` (3,) [m] in the world at rest; limits in rad or m. `clear_upper` is the largest position that
-    is reached from 0 without touching, `clear` whether the whole range is free, `blocker` what is touched first.
+    is reached from 0 without touching, `clear` whether the whole range is free, `blocker` what is touched first. The joints
+    `after` of the same object are open meanwhile; where one of them is not clear, this one does not move.
     `stand` (x, y, yaw) is where a robot can stand to open it, None where it cannot.
     """
 
@@ -35,6 +36,7 @@ class JointCheck:
     clear: bool
     blocker: str
     stand: tuple[float, float, float] | None
+    after: tuple[str, ...] = ()
 
     @property
     def opens(self) -> bool:
@@ -64,7 +66,7 @@ class RoomCheck:
     """One room's floor.
 
     `walkable_paper` is the paper's (A_room - sum A_i) / A_room over floor-standing objects (what hangs from walls or
-    ceiling takes no floor); `walkable_printed` over all objects, as the formula is printed. `walkable_free` is the share
+    ceiling, or lies on furniture, takes no floor); `walkable_printed` over all furniture, as the formula is printed. `walkable_free` is the share
     that the robot covers while it moves where it can get from the entrance (`connected`: it gets into this room).
     """
 
@@ -78,12 +80,16 @@ class RoomCheck:
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """What the judge found in one home. `joints` are ordered as the placements, then the room doors."""
+    """What the judge found in one home. `joints` are ordered as the placements, then the room doors.
+
+    `small` are the ids of the small things: their joints must move too, but they count neither as openable nor for `reach`.
+    """
 
     scene_id: str
     joints: tuple[JointCheck, ...]
     objects: tuple[ObjectCheck, ...]
     rooms: tuple[RoomCheck, ...]
+    small: frozenset[str] = frozenset()
 
     @property
     def collisions(self) -> int:
@@ -97,14 +103,17 @@ class Certificate:
 
     @property
     def openable(self) -> int:
-        """Number of objects with a door, drawer or lid."""
-        return len({j.object_id for j in self.joints if j.opens})
+        """Number of pieces of furniture with a door, drawer or lid."""
+        return len({j.object_id for j in self._opening()})
 
     @property
     def reach(self) -> float:
-        """Share of openable objects with a part that the robot can stand at and open wholly; 1 where none opens."""
-        good = {j.object_id for j in self.joints if j.opens and j.clear and j.stand is not None}
+        """Share of openable furniture with a part that the robot can stand at and open wholly; 1 where none opens."""
+        good = {j.object_id for j in self._opening() if j.clear and j.stand is not None}
         return len(good) / self.openable if self.openable else 1.0
+
+    def _opening(self) -> list[JointCheck]:
+        return [j for j in self.joints if j.opens and j.object_id not in self.small]
 
     def walkable(self, name: str) -> float:
         """Return the mean of a rooms' figure over the home, weighted by area (so a share of the whole floor)."""
@@ -144,6 +153,7 @@ class Certificate:
                 "origin": _rounded(j.origin),
                 "lower": j.lower,
                 "upper": j.upper,
+                "after": list(j.after),
                 "clear_upper": j.clear_upper,
                 "clear": j.clear,
                 "blocker": j.blocker,

@@ -47,7 +47,7 @@ def check_rooms(home: Home, walks: dict[int, tuple[Walk, int]]) -> dict[str, Roo
         inside = walked.floor.room[walked.reached(label)]
         entered = np.bincount(inside[inside >= 0], minlength=len(rooms))
         for number, room in enumerate(rooms):
-            own = home.in_room(room.room_id)
+            own = tuple(p for p in home.in_room(room.room_id) if not p.support)
             found[room.room_id] = RoomCheck(
                 room.room_id,
                 room.area,

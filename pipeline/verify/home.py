@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from pipeline import taxonomy
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
 from pipeline.geometry.walls import levels
 from pipeline.verify.bodies import bodies
+from pipeline.verify.carrying import carried
 from pipeline.verify.certificate import Certificate
 from pipeline.verify.floors import check_rooms, walk_level
 from pipeline.verify.joints import check_joints, check_leaves
@@ -19,11 +21,14 @@ def verify_home(home: Home, assets: Mapping[str, Asset], settings: VerifySetting
     """Judge one home: every joint swept, every object at rest, every room's floor."""
     settings = settings or VerifySettings()
     made = bodies(home.placements, assets)
+    held = carried(home.placements, made, settings.float_gap)
     walks = {level: walk_level(home, level, made, settings) for level in levels(home.plan)}
     rooms = check_rooms(home, walks)
+    small = taxonomy.load().small
     return Certificate(
         home.scene_id,
-        (*check_joints(home, assets, made, walks, settings), *check_leaves(home, made, walks, settings)),
-        check_objects(home, made, settings),
+        (*check_joints(home, assets, made, held, walks, settings), *check_leaves(home, made, walks, settings)),
+        check_objects(home, made, held, settings),
         tuple(rooms[room.room_id] for room in home.plan.rooms),
+        frozenset(p.object_id for p in home.placements if p.category in small),
     )

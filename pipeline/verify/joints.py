@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
-from pipeline.geometry.contact import first_hits, wall_excesses
+from pipeline.geometry.contact import first_hits, group_boxes, wall_excesses
 from pipeline.geometry.freefloor import Walk
-from pipeline.geometry.kinematics import facing, handle_point, joint_range, rotation
+from pipeline.geometry.kinematics import facing, handle_point, joint_range, moved_links, rotation
 from pipeline.geometry.leaves import leaf_handles, leaf_sweep
 from pipeline.geometry.polygons import contains
-from pipeline.geometry.prisms import Prisms, Sweep
+from pipeline.geometry.prisms import Prisms, Sweep, stacked
 from pipeline.geometry.standing import stand_pose
 from pipeline.geometry.walls import Leaf, leaves
 from pipeline.verify.bodies import Bodies
+from pipeline.verify.carrying import Carrier, riders, swept
 from pipeline.verify.certificate import JointCheck
 from pipeline.verify.settings import Robot, VerifySettings
 
@@ -28,8 +30,10 @@ Walks = Mapping[int, tuple[Walk, int]]
 WALL = "wall"  # blocker's name where a part meets a wall
 
 
-def check_joints(home: Home, assets: Mapping[str, Asset], made: Bodies, walks: Walks, settings: VerifySettings) -> list[JointCheck]:
-    """Check every joint of every placed object, in order."""
+def check_joints(
+    home: Home, assets: Mapping[str, Asset], made: Bodies, held: Mapping[int, Carrier], walks: Walks, settings: VerifySettings
+) -> list[JointCheck]:
+    """Check every joint of every placed object, in order. What lies in a drawer comes out with it."""
     checks = []
     for g, placement in enumerate(home.placements):
         asset = assets[placement.asset_id]
@@ -39,16 +43,18 @@ def check_joints(home: Home, assets: Mapping[str, Asset], made: Bodies, walks: W
         room = np.ascontiguousarray(home.plan.room(placement.room_id).polygon, np.float64)
         walked, label = walks[home.plan.room(placement.room_id).level]
         floor = home.plan.elevation(placement.room_id)
+        moved = [sweep.prisms.placed(placement.position, placement.yaw, placement.scale) for sweep in made.solids[g].sweeps]
+        own = []
         for index, joint in enumerate(asset.joints):
-            sweep = made.solids[g].sweeps[index]
-            moved = sweep.prisms.placed(placement.position, placement.yaw, placement.scale)
-            hits = _hits(moved, g, made, settings.touch)
-            hits[(hits < 0) & (wall_excesses(moved.corners, moved.count, room) > settings.wall)] = -2
-            clear_upper, clear, blocker = _progress(sweep, moved, hits, home)
+            hits = _way(made, g, index, asset, moved[index], turn, held, settings)
+            hits[(hits < 0) & (wall_excesses(moved[index].corners, moved[index].count, room) > settings.wall)] = -2
+            clear_upper, clear, blocker = _progress(made.solids[g].sweeps[index], moved[index], hits, home)
             grip = placement.position + turn @ (handle_point(asset, index) * placement.scale)
             heading = turn[:2, :2] @ facing(asset, index)
             lower, upper = joint_range(joint)
-            checks.append(
+            # Where the robot stands, it stands clear of the doors that it has opened before.
+            opened = stacked([moved[index], *(m for m, j in zip(moved, asset.joints, strict=True) if j.name in joint.after)])
+            own.append(
                 JointCheck(
                     placement.object_id,
                     joint.name,
@@ -61,10 +67,56 @@ def check_joints(home: Home, assets: Mapping[str, Asset], made: Bodies, walks: W
                     clear_upper,
                     clear,
                     blocker,
-                    _stand(grip[:2], heading, moved, floor, walked, label, settings.robot),
+                    _stand(grip[:2], heading, opened, floor, walked, label, settings.robot),
+                    joint.after,
                 )
             )
+        checks += _in_turn(own)
     return checks
+
+
+def _in_turn(checks: list[JointCheck]) -> list[JointCheck]:
+    """Return the checks of one object, in which no joint moves that waits for one that is not clear."""
+    stuck = {c.joint_id: c.blocker for c in checks if not c.clear}
+    held = {c.joint_id: next((stuck[name] for name in c.after if name in stuck), "") for c in checks}
+    return [replace(c, clear=False, clear_upper=0.0, blocker=held[c.joint_id]) if held[c.joint_id] else c for c in checks]
+
+
+def _way(
+    made: Bodies,
+    owner: int,
+    index: int,
+    asset: Asset,
+    moved: Prisms,
+    turn: Floats,
+    held: Mapping[int, Carrier],
+    settings: VerifySettings,
+) -> NDArray[np.int64]:
+    """Return per prism of a joint's sweep the object that it meets, -1 for none; what rides along must come through as well."""
+    along = riders(asset, index, owner, held)
+    if not along:
+        return _hits(moved, owner, made, settings.touch)
+    boxes = made.boxes.copy()
+    boxes[along] = (*[np.inf] * 3, *[-np.inf] * 3)
+    free = replace(made, boxes=boxes)
+    hits = _hits(moved, owner, free, settings.touch)
+    things = swept(made, along, asset.joints[index], turn, made.solids[owner].sweeps[index].reached)
+    met = _hits(things, owner, free, settings.touch)
+    still = np.flatnonzero(~np.isin(made.prisms.part, moved_links(asset, index)))
+    still = still[(still >= made.start[owner]) & (still < made.start[owner + 1])]
+    frame = _hits(things, -1, _only(made, still), settings.touch)
+    for k in np.flatnonzero((met >= 0) | (frame >= 0)):
+        blocked = (hits < 0) & (moved.part == things.part[k])
+        hits[blocked] = met[k] if met[k] >= 0 else along[0]
+    return hits
+
+
+def _only(made: Bodies, which: NDArray[np.int64]) -> Bodies:
+    """Return some prisms as one group."""
+    p = made.prisms
+    kept = Prisms(p.corners[which], p.count[which], p.z[which], p.part[which])
+    start = np.array([0, len(which)])
+    return Bodies(kept, start, kept.boxes(), group_boxes(kept, start), ())
 
 
 def check_leaves(home: Home, made: Bodies, walks: Walks, settings: VerifySettings) -> list[JointCheck]:

@@ -11,11 +11,12 @@ from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Room
 from pipeline.geometry.contact import pair_depths, wall_excesses
 from pipeline.verify.bodies import Bodies
+from pipeline.verify.carrying import Carrier
 from pipeline.verify.certificate import ObjectCheck
 from pipeline.verify.settings import VerifySettings
 
 
-def check_objects(home: Home, made: Bodies, settings: VerifySettings) -> tuple[ObjectCheck, ...]:
+def check_objects(home: Home, made: Bodies, held: Mapping[int, Carrier], settings: VerifySettings) -> tuple[ObjectCheck, ...]:
     """Check every object against all others, the walls of its room, and gravity."""
     p = made.prisms
     depths = pair_depths(p.corners, p.count, p.z, made.flat, made.start, made.boxes, settings.touch)
@@ -31,7 +32,7 @@ def check_objects(home: Home, made: Bodies, settings: VerifySettings) -> tuple[O
                 hits,
                 round(float(outside[g]), 6),
                 bool(outside[g] <= settings.wall),
-                _supported(g, placement, home, made, settings),
+                g in held if placement.support else _supported(g, placement, home, made, settings),
             )
         )
     return tuple(checks)

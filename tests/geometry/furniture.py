@@ -59,6 +59,20 @@ def cupboard(asset_id="cupboard", category="wardrobe", size=(0.6, 0.5, 1.8), ang
     return asset(asset_id, category, size, [base, door], [hinge])
 
 
+def inner_drawer(asset_id="inner", angle=math.pi / 2, *, outer=False):
+    """A carcass 0.6 m wide with a drawer; before it a door hinged at the left. `outer`: the drawer is beneath the door instead."""
+    low = 0.1 if outer else 0.6
+    door_low = 0.45 if outer else 0.0
+    base = link("base", *(box((x, -0.24, 0), (x + 0.02, 0.25, 1.0)) for x in (-0.3, 0.28)), box((-0.3, 0.23, 0), (0.3, 0.25, 1.0)))
+    door = link("door", box((-0.3, -0.26, door_low), (0.3, -0.24, 1.0)))
+    drawer = link("drawer", box((-0.27, -0.22, low), (0.27, 0.2, low + 0.2)))
+    joints = [
+        Joint("door", "revolute", 0, 1, np.array([0, 0, -1.0]), np.array([-0.3, -0.26, 0.0]), 0.0, angle, "hinge_door"),
+        Joint("drawer", "prismatic", 0, 2, np.array([0, -1.0, 0]), np.zeros(3), 0.0, 0.35, "slider_drawer"),
+    ]
+    return asset(asset_id, "cabinet", (0.6, 0.51, 1.0), [base, door, drawer], joints)
+
+
 def table(asset_id="table", category="dining_table", size=(1.4, 0.8, 0.75)):
     """A top on four legs: there is room beneath."""
     w, d, h = size

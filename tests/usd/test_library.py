@@ -146,3 +146,12 @@ def test_gravity_does_not_open_what_hangs_or_looks_up(cabinet):
     assert gravity_load(cabinet, 0) == pytest.approx(0.0)
     key = replace(cabinet, joints=(joint("prismatic", "slider_button", (0, 0, -1)), *cabinet.joints[1:]))
     assert gravity_load(key, 0) == pytest.approx(9.81 * cabinet.links[1].mass)
+
+
+def test_what_waits_for_another_joint_says_so(cabinet, tmp_path):
+    slide, hinge, knob = cabinet.joints
+    files = write_library([replace(cabinet, joints=(replace(slide, after=(hinge.name,)), hinge, knob))], tmp_path)
+    stage = open_asset((tmp_path, files), "cabinet_a")
+    after = stage.GetPrimAtPath("/cabinet_a/joints/drawer_slide").GetRelationship("sfgen:after")
+    assert after.GetTargets() == ["/cabinet_a/joints/door_hinge"]
+    assert not stage.GetPrimAtPath("/cabinet_a/joints/door_hinge").GetRelationship("sfgen:after")

@@ -66,7 +66,7 @@ def build(model: Model) -> Asset:
 
 def _joint(mover: Mover, index: dict[str, int]) -> Joint:
     return Joint(
-        name=f"{mover.name}_joint",
+        name=_joint_name(mover.name),
         type=mover.type,
         parent=index[mover.parent],
         child=index[mover.name],
@@ -75,7 +75,12 @@ def _joint(mover: Mover, index: dict[str, int]) -> Joint:
         lower=mover.lower,
         upper=mover.upper,
         part_class=mover.part_class,
+        after=tuple(_joint_name(name) for name in mover.after),
     )
+
+
+def _joint_name(mover: str) -> str:
+    return f"{mover}_joint"
 
 
 def _link(name: str, parts: tuple[Piece, ...], palette: list[Finish]) -> Link:

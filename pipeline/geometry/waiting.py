@@ -1,0 +1,94 @@
+"""Which joints of an asset wait for others: a drawer behind a door comes out once the door is open."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.asset import Asset, Joint
+from pipeline.geometry.contact import first_hits, group_boxes
+from pipeline.geometry.kinematics import OPENERS, joint_motion, joint_range, link_points, moved_links
+from pipeline.geometry.prisms import Prisms, prism, stacked, sweep_of
+
+TOUCH = 0.005  # parts that are in each other by no more do not block each other [m]
+HELD = ("hinge_handle", "hinge_knob", "slider_button")  # what a hand takes hold of waits for nothing
+Floats = NDArray[np.float64]
+
+
+def ordered(asset: Asset) -> Asset:
+    """Return the asset, each joint's `after` found from its geometry.
+
+    A joint waits for a door, drawer or lid whose parts lie in its way at rest, and do so no more once that is open. Parts
+    that are in each other at rest tell nothing, nor do two that would wait for each other.
+    """
+    waits = waiting(asset)
+    if not any(waits):
+        return asset
+    joints = asset.joints
+    named = tuple(replace(j, after=tuple(joints[i].name for i in w)) for j, w in zip(joints, waits, strict=True))
+    return replace(asset, joints=named)
+
+
+def waiting(asset: Asset) -> list[tuple[int, ...]]:
+    """Return for each joint of an asset the indices of the joints that it waits for."""
+    joints = asset.joints
+    moved = [moved_links(asset, k) for k in range(len(joints))]
+    points = [np.concatenate([link_points(asset.links[i]) for i in links]) for links in moved]
+    rest = [_box(own) for own in points]
+    found: list[set[int]] = [set() for _ in joints]
+    for k, joint in enumerate(joints):
+        if joint.part_class in HELD:
+            continue
+        way = _way(joint, points[k], rest[k])
+        sweep: Prisms | None = None
+        for i, other in enumerate(joints):
+            related = i == k or other.child in moved[k] or joint.child in moved[i]
+            if related or other.part_class not in OPENERS or not _overlap(way, rest[i]):
+                continue
+            sweep = sweep if sweep is not None else sweep_of(asset, k).prisms
+            at_rest, opened = (_links(asset, moved[i], joint_motion(other, q)) for q in (0.0, joint_range(other)[1]))
+            own = _links(asset, moved[k], np.eye(4))
+            if _meet(sweep, at_rest) and not _meet(own, at_rest) and not _meet(sweep, opened):
+                found[k].add(i)
+    return [tuple(sorted(i for i in own if k not in found[i])) for k, own in enumerate(found)]
+
+
+def _way(joint: Joint, points: Floats, rest: Floats) -> Floats:
+    """Return a box (2, 3) that holds all that a joint moves, rough and quick."""
+    if not len(points):
+        return rest
+    lower, upper = joint_range(joint)
+    if joint.type == "prismatic":
+        ends = np.stack([rest + joint.axis * lower, rest + joint.axis * upper])
+    else:
+        away = points - joint.origin
+        along = away @ joint.axis
+        radius = np.linalg.norm(away - np.outer(along, joint.axis), axis=1).max() * np.sqrt(1.0 - np.minimum(joint.axis**2, 1.0))
+        middle = joint.origin + np.outer([along.min(), along.max()], joint.axis)
+        ends = np.stack([middle - radius, middle + radius])
+    return np.stack([ends.min((0, 1)), ends.max((0, 1))])
+
+
+def _links(asset: Asset, links: Sequence[int], T: Floats) -> Prisms:
+    """Return the prisms of links, moved by T (4, 4) from rest."""
+    meshes = [m for i in links for m in (asset.links[i].colliders or asset.links[i].visuals)]
+    made = (prism(np.asarray(m.vertices, np.float64) @ T[:3, :3].T + T[:3, 3]) for m in meshes)
+    return stacked([p for p in made if p is not None])
+
+
+def _meet(a: Prisms, b: Prisms) -> bool:
+    start = np.array([0, len(b)])
+    alone = np.full(len(a), -1)
+    hits = first_hits(a.corners, a.count, a.z, a.boxes(), alone, b.corners, b.count, b.z, b.boxes(), start, group_boxes(b, start), TOUCH)
+    return bool((hits >= 0).any())
+
+
+def _box(points: Floats) -> Floats:
+    return np.stack([points.min(0), points.max(0)]) if len(points) else np.array([[np.inf] * 3, [-np.inf] * 3])
+
+
+def _overlap(a: Floats, b: Floats) -> bool:
+    return bool(np.all(np.minimum(a[1], b[1]) - np.maximum(a[0], b[0]) > TOUCH))

@@ -1,0 +1,74 @@
+"""What carries what: things that stand on or in an object, on which of its links, and where they go when that link slides out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.asset import Asset, Joint
+from pipeline.entities.home import Placement
+from pipeline.geometry.kinematics import moved_links
+from pipeline.geometry.polygons import contains
+from pipeline.geometry.prisms import Prisms, prism, stacked
+from pipeline.verify.bodies import Bodies
+
+LEVEL = 0.1  # a slide whose axis rises less than this per metre keeps what lies in it
+
+
+@dataclass(frozen=True, slots=True)
+class Carrier:
+    """The placement (index) that a thing stands on, and the link of its asset that bears it."""
+
+    placement: int
+    link: int
+
+
+def carried(placements: Sequence[Placement], made: Bodies, gap: float) -> dict[int, Carrier]:
+    """Return what bears each placement that names a `support`, by index; what nothing there bears is missing.
+
+    Its middle must lie over a piece of the support whose top is within `gap` [m] of its bottom.
+    """
+    index = {p.object_id: g for g, p in enumerate(placements)}
+    p = made.prisms
+    found = {}
+    for g, placement in enumerate(placements):
+        h = index.get(placement.support) if placement.support else None
+        if h is None or h == g:
+            continue
+        own = np.arange(made.start[h], made.start[h + 1])
+        x, y, z = placement.position.tolist()
+        for i in own[np.abs(p.z[own, 1] - z) <= gap]:
+            if contains(x, y, np.ascontiguousarray(p.polygon(int(i)))):
+                found[g] = Carrier(h, int(p.part[i]))
+                break
+    return found
+
+
+def riders(asset: Asset, index: int, owner: int, held: Mapping[int, Carrier]) -> list[int]:
+    """Return the placements that ride along when joint `index` of placement `owner` moves: they lie in a drawer."""
+    joint = asset.joints[index]
+    if joint.type != "prismatic" or abs(float(joint.axis[2])) > LEVEL:
+        return []
+    moved = moved_links(asset, index)
+    return [g for g, carrier in held.items() if carrier.placement == owner and carrier.link in moved]
+
+
+def swept(made: Bodies, things: Sequence[int], joint: Joint, turn: NDArray[np.float64], reached: NDArray[np.float64]) -> Prisms:
+    """Return what riding things cover on the way of a slide, as `Sweep.prisms` has it; `turn` (3, 3) is the owner's rotation."""
+    p = made.prisms
+    axis = turn @ joint.axis
+    groups = []
+    for limit in (1, -1):
+        steps = np.flatnonzero(np.sign(reached) == limit)
+        before = np.concatenate([[0.0], reached[steps[:-1]]]) if len(steps) else np.zeros(0)
+        for step, start in zip(steps, before, strict=True):
+            for i in (i for g in things for i in range(int(made.start[g]), int(made.start[g + 1]))):
+                corners = p.polygon(i)
+                points = [np.column_stack([corners, np.full(len(corners), z)]) for z in p.z[i]]
+                ends = [piece + axis * q for piece in points for q in (start, reached[step])]
+                covered = prism(np.concatenate(ends), int(step))
+                groups += [covered] if covered is not None else []
+    return stacked(groups)
