@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from operator import itemgetter
 from pathlib import Path
+from typing import Any
 
 from pipeline import params, seeds, tables, taxonomy
 from pipeline.execution import map_shards, track
@@ -14,8 +17,10 @@ from pipeline.experiments.document import write_report
 from pipeline.experiments.plans import plan_table, read_benchmark
 from pipeline.experiments.rooms import spread, test_rooms
 from pipeline.experiments.settings import MetricsSettings
-from pipeline.experiments.trials import Condition, Trial, trial
+from pipeline.experiments.trials import Condition, Drafts, Trial, trial
 from pipeline.homes.factory import open_factory
+from pipeline.homes.request import RoomJob
+from pipeline.homes.rows import Row
 from pipeline.manifest import write_bytes, write_json
 from pipeline.metrics.articulation import sweeps_of
 from schemas.objects import OBJECTS
@@ -31,9 +36,11 @@ def main(root: Path) -> None:
     """Measure, and write metrics/metrics.json, plots/ and report/."""
     tree = params.read(root / "params.yaml")
     settings, seed = params.section(MetricsSettings, tree, "metrics"), tree["seed"]
-    every = paper.conditions(settings)
-    done = map_shards(partial(run, root, seed, settings), enumerate(every), workers=min(os.cpu_count() or 1, len(every)))
-    trials = {every[n].name: made for n, made in track(done, len(every), "metrics", unit="condition")}
+    parts: list[Callable[[], Any]] = [partial(run, root, seed, settings, family) for family in paper.families(settings)]
+    parts.append(partial(plans, root, settings))
+    found = map_shards(measure, enumerate(parts), workers=min(os.cpu_count() or 1, len(parts)))
+    *families, plan = (made for _, made in sorted(track(found, len(parts), "metrics", unit="experiment"), key=itemgetter(0)))
+    trials: dict[str, Trial] = {name: made for family in families for name, made in family.items()}
     factory = open_factory(root, seed)
     rng = seeds.generator(seed, "bootstrap")
     source = {t.name: tables.read(root / "data" / "tables" / f"{t.name}.parquet", t) for t in (SCENES, OBJECTS)}
@@ -48,7 +55,7 @@ def main(root: Path) -> None:
         "articulation": paper.articulation_table(rng, trials, sweeps_of(factory.library.joints), factory.library),
         "ablation": paper.ablation_table(rng, trials, settings.taus),
         "category": paper.category_table(trials, real, held_out, taxonomy.load().names),
-        "plan": plan_table(read_benchmark((root / "manifests/prompts/benchmark.yaml").read_text(encoding="utf-8")), settings.plan_seeds),
+        "plan": plan,
     }
     write_json(root / "metrics" / "metrics.json", figures)
     for name, text in paper.curves(figures).items():
@@ -56,18 +63,32 @@ def main(root: Path) -> None:
     write_report(root, figures, reject_counts(root), factory, settings)
 
 
-def run(root: Path, seed: int, settings: MetricsSettings, condition: Condition) -> Trial:
-    """Run one condition: the step that workers run."""
+def measure(part: Callable[[], Any]) -> Any:
+    """Do one part of the work: the step that workers run."""
+    return part()
+
+
+def run(root: Path, seed: int, settings: MetricsSettings, family: Sequence[Condition]) -> dict[str, Trial]:
+    """Run the conditions of one family, which share their drafts; return them by name."""
     named = (SCENES, ROOMS, OPENINGS)
     source = {t.name: tables.read(root / "data" / "tables" / f"{t.name}.parquet", t) for t in named}
+    factory = open_factory(root, seed)
+    drafts = Drafts(factory, family[0].articulation)
+    return {condition.name: trial(factory, _rooms(source, settings, condition), condition, drafts) for condition in family}
+
+
+def _rooms(source: Mapping[str, Sequence[Row]], settings: MetricsSettings, condition: Condition) -> Sequence[RoomJob]:
     if condition.name in {paper.ALL_PLAIN, paper.ALL_GUIDED}:
-        return trial(
-            open_factory(root, seed), test_rooms(source, settings.split, taxonomy.load().layout_types)[: settings.all_rooms], condition
-        )
+        return test_rooms(source, settings.split, taxonomy.load().layout_types)[: settings.all_rooms]
     jobs = test_rooms(source, settings.split, LIVED_IN)
     if condition.count is not None:  # rooms that can hold so many things: 1.2 m2 of floor for each
         jobs = [job for job in jobs if job.room.area >= 1.2 * condition.count] or jobs
-    return trial(open_factory(root, seed), spread(jobs, settings.rooms), condition)
+    return spread(jobs, settings.rooms)
+
+
+def plans(root: Path, settings: MetricsSettings) -> dict[str, Any]:
+    """Score the floor plans of the benchmark's prompts."""
+    return plan_table(read_benchmark((root / "manifests/prompts/benchmark.yaml").read_text(encoding="utf-8")), settings.plan_seeds)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,15 +19,19 @@ Trials = Mapping[str, Trial]
 Json = dict[str, Any]
 
 
-def conditions(settings: MetricsSettings) -> list[Condition]:
-    """Return every condition that the tables need, by name; those that take longest first, so that no worker is left alone at the end."""
-    made = [Condition(f"walkable_{tau:.2f}", walkable=tau) for tau in sorted(settings.taus, reverse=True)]
-    made.append(Condition("plain_walkable", articulation="none", walkable=settings.taus[len(settings.taus) // 2]))
-    made += [Condition(f"count_{n}", count=n) for n in sorted(settings.counts, reverse=True)]
-    made += [Condition("plain", articulation="none"), Condition("guided")]
-    made += [Condition(ALL_PLAIN, articulation="none", finished=False), Condition(ALL_GUIDED, finished=False)]
-    made += [Condition(f"count_{n}_plain", count=n, articulation="none", finished=False) for n in settings.counts]
-    made.append(Condition("heuristic", articulation="heuristic", finished=False))
+def families(settings: MetricsSettings) -> list[list[Condition]]:
+    """Return every condition that the tables need, by what the layout model is told: one family's rooms come from the same drafts.
+
+    The families that take longest come first, so that no worker is left alone at the end.
+    """
+    made = [[Condition(f"walkable_{tau:.2f}", walkable=tau) for tau in sorted(settings.taus, reverse=True)]]
+    made[0] += [Condition("guided"), Condition(ALL_GUIDED, finished=False)]
+    plain = Condition("plain", articulation="none")
+    middle = settings.taus[len(settings.taus) // 2]
+    made += [[replace(plain, name="plain_walkable", walkable=middle), plain, replace(plain, name=ALL_PLAIN, finished=False)]]
+    made += [[Condition(f"count_{n}", count=n)] for n in sorted(settings.counts, reverse=True)]
+    made += [[replace(plain, name=f"count_{n}_plain", count=n, finished=False)] for n in settings.counts]
+    made += [[Condition("heuristic", articulation="heuristic", finished=False)]]
     return made
 
 

@@ -1,4 +1,4 @@
-"""One condition of an experiment: rooms drafted, judged as they come, finished and judged again; as table rows."""
+"""Conditions of an experiment: rooms drafted, judged as they come, finished and judged again; as table rows."""
 
 from __future__ import annotations
 
@@ -42,27 +42,47 @@ class Trial:
     shipped: dict[str, list[Row]]
 
 
-def trial(factory: Factory, jobs: Sequence[RoomJob], condition: Condition) -> Trial:
+class Drafts:
+    """What the layout model draws for rooms under one guidance, each draw made once.
+
+    Draws are keyed by room, attempt and count alone, so conditions that differ only in what is done afterwards share them.
+    """
+
+    def __init__(self, factory: Factory, articulation: Articulation) -> None:
+        sampler = factory.sampler.unguided()
+        if articulation != "none":
+            sampler = replace(factory.sampler, settings=replace(factory.sampler.settings, articulation=articulation))
+        self._factory = replace(factory, sampler=sampler)
+        self._made: dict[tuple[int, int, int, int | None], Draft] = {}
+
+    def of(self, jobs: Sequence[RoomJob]) -> list[Draft]:
+        """Return a draft of each job."""
+        fresh = [job for job in jobs if _key(job) not in self._made]
+        if fresh:
+            self._made |= zip(map(_key, fresh), self._factory.draft(fresh), strict=True)
+        return [replace(self._made[_key(job)], job=job) for job in jobs]
+
+
+def _key(job: RoomJob) -> tuple[int, int, int, int | None]:
+    return job.index, job.number, job.attempt, job.count
+
+
+def trial(factory: Factory, jobs: Sequence[RoomJob], condition: Condition, drafts: Drafts) -> Trial:
     """Run one condition over rooms. Same rooms, same noise in every condition: only what is named differs."""
-    sampler = factory.sampler.unguided()
-    if condition.articulation != "none":
-        sampler = replace(factory.sampler, settings=replace(factory.sampler.settings, articulation=condition.articulation))
-    made = replace(factory, sampler=sampler)
-    asked = [replace(job, count=condition.count, walkable=condition.walkable) for job in jobs]
-    drafts = made.draft(asked)
-    drafted = _rows(factory, [(draft, draft.placements) for draft in drafts])
+    asked = drafts.of([replace(job, count=condition.count, walkable=condition.walkable) for job in jobs])
+    drafted = _rows(factory, [(draft, draft.placements) for draft in asked])
     if not condition.finished:
         return Trial(drafted, _rows(factory, []), _rows(factory, []))
-    first, best = _finished(made, drafts)
+    first, best = _finished(factory, asked, drafts)
     shipped = [(r.draft, r.placements) for r in best if not r.binding]
     return Trial(drafted, _rows(factory, [(r.draft, r.placements) for r in first]), _rows(factory, shipped))
 
 
-def _finished(factory: Factory, drafts: Sequence[Draft]) -> tuple[list[RoomResult], list[RoomResult]]:
+def _finished(factory: Factory, asked: Sequence[Draft], drafts: Drafts) -> tuple[list[RoomResult], list[RoomResult]]:
     """Take rooms to the end: return the first try of each, and the best of as many tries as a room of a home has."""
     first: dict[int, RoomResult] = {}
     best: dict[int, RoomResult] = {}
-    pending = list(enumerate(drafts))
+    pending = list(enumerate(asked))
     for attempt in range(factory.shard.room_attempts):
         for i, draft in pending:
             result = _cleared(
@@ -74,9 +94,9 @@ def _finished(factory: Factory, drafts: Sequence[Draft]) -> tuple[list[RoomResul
         pending = [(i, draft) for i, draft in pending if best[i].failure]
         if not pending or attempt + 1 == factory.shard.room_attempts:
             break
-        redrawn = factory.draft([replace(draft.job, attempt=attempt + 1) for _, draft in pending])
+        redrawn = drafts.of([replace(draft.job, attempt=attempt + 1) for _, draft in pending])
         pending = [(i, draft) for (i, _), draft in zip(pending, redrawn, strict=True)]
-    return [first[i] for i in range(len(drafts))], [best[i] for i in range(len(drafts))]
+    return [first[i] for i in range(len(asked))], [best[i] for i in range(len(asked))]
 
 
 def _cleared(factory: Factory, result: RoomResult) -> RoomResult:

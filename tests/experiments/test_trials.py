@@ -1,18 +1,19 @@
 import sys
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "homes"))
-from conftest import factory, library  # noqa: F401 - the factory of rules
+from conftest import Rules, factory, library  # noqa: F401 - the factory of rules
 
 from pipeline.errors import ContentError
 from pipeline.experiments import tables as paper
 from pipeline.experiments.rooms import spread
 from pipeline.experiments.rooms import test_rooms as rooms_of
 from pipeline.experiments.settings import MetricsSettings
-from pipeline.experiments.trials import Trial, trial
+from pipeline.experiments.trials import Condition, Drafts, Trial, trial
 from pipeline.homes.rows import opening_row, room_row, scene_row
 
 SETTINGS = MetricsSettings(rooms=2, counts=(3,), taus=(0.5, 0.7))
@@ -34,7 +35,11 @@ def jobs():
 
 @pytest.fixture(scope="module")
 def trials(factory, jobs):  # noqa: F811
-    return {c.name: trial(factory, jobs, c) for c in paper.conditions(SETTINGS)}
+    made = {}
+    for family in paper.families(SETTINGS):
+        drafts = Drafts(factory, family[0].articulation)
+        made |= {c.name: trial(factory, jobs, c, drafts) for c in family}
+    return made
 
 
 def test_rooms_come_alone_with_their_own_openings(jobs):
@@ -88,3 +93,27 @@ def test_things_that_the_layout_model_does_not_learn_are_not_compared():
     held_out = [{"category": name} for name in ("double_bed", "cup", "rug")]
     table = paper.category_table(drafted, [{"category": "double_bed"}], held_out, ("double_bed", "nightstand"))
     assert table["guided"] == {"real_to_generated": 0.0, "generated_to_real": 0.0, "real_objects": 1, "generated_objects": 1}
+
+
+def test_conditions_of_a_family_draw_alike_and_share_their_draws(factory, jobs):  # noqa: F811
+    for family in paper.families(SETTINGS):
+        assert len({(c.articulation, c.count) for c in family}) == 1
+    drawn = []
+    drafts = Drafts(replace(factory, sampler=Counting(**vars(factory.sampler), drawn=drawn)), "joints")
+    condition = Condition("walkable_0.70", walkable=0.7)
+    first = trial(factory, jobs, condition, drafts)
+    made = len(drawn)
+    assert trial(factory, jobs, condition, drafts) == first  # and nothing drawn again
+    assert len(drawn) == made >= len(jobs)
+    assert trial(factory, jobs, condition, Drafts(factory, "joints")) == first
+
+
+@dataclass(frozen=True)
+class Counting(Rules):
+    """Notes what it draws."""
+
+    drawn: list = field(default_factory=list)
+
+    def sample_rooms(self, rooms, keys):
+        self.drawn.extend(keys)
+        return super().sample_rooms(rooms, keys)
