@@ -46,7 +46,7 @@ def die_always(_job):
 
 def nap(folder, job):
     (Path(folder) / f"pid-{os.getpid()}").touch()
-    time.sleep(60)
+    time.sleep(300)
     return job
 
 
