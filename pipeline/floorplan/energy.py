@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.grid import Labels, Measures, ell_opening, hull_area, inner_area, notch_width, opening, simple
+from pipeline.floorplan.grid import Halves, Labels, Measures, ell_opening, hull_area, inner_area, notch_width, opening, simple
 from pipeline.geometry.compiled import compiled
 
 Ints = NDArray[np.int64]
@@ -65,6 +65,7 @@ class Spec(NamedTuple):
     stair_room: int  # index of the staircase, or -1
     stair: Ints  # (4,) its rectangle x0, y0, x1, y1 [cells]
     nonrect: int  # at least so many rooms that are not rectangles
+    half: Halves  # half the thickness of walls [m]
 
 
 def tree(link: Ints, root: int) -> Ints:
@@ -293,7 +294,7 @@ def terms(
     hard = 0.0
     bent = 0
     for i in range(n):
-        areas[i] = inner_area(out, i, n, spec.unit)
+        areas[i] = inner_area(out, i, n, spec.unit, spec.half)
         if stale[i] > 0:
             if exact or out.corners[i, 1] == 0:
                 room_shape(grid, out, spec, i, shape)

@@ -17,7 +17,12 @@ Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
 Labels = NDArray[np.int16]
 
-INNER, OUTER = 0.06, 0.12  # half the thickness of inner and outer walls [m]
+
+class Halves(NamedTuple):
+    """Half the thickness of inner and outer walls [m]: how far inner faces lie from the lines of the grid."""
+
+    inner: float
+    outer: float
 
 
 class Measures(NamedTuple):
@@ -169,15 +174,15 @@ def _corner(out: Measures, a: int, b: int, c: int, d: int, n: int) -> None:
 
 
 @compiled
-def inner_area(out: Measures, room: int, n: int, unit: float) -> float:
+def inner_area(out: Measures, room: int, n: int, unit: float, half: Halves) -> float:
     """Area between inner wall faces [m2]: cells less half a wall along each side, corners counted once."""
     outer = out.walls[room, n]
     inner = 0
     for b in range(n):
         inner += out.walls[room, b]
     turn = out.corners[room, 0] - out.corners[room, 1]
-    mean = INNER if outer + inner == 0 else (INNER * inner + OUTER * outer) / (inner + outer)
-    return float(out.cells[room] * unit * unit - unit * (INNER * inner + OUTER * outer) + turn * mean * mean)
+    mean = half.inner if outer + inner == 0 else (half.inner * inner + half.outer * outer) / (inner + outer)
+    return float(out.cells[room] * unit * unit - unit * (half.inner * inner + half.outer * outer) + turn * mean * mean)
 
 
 @compiled

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.floorplan import trace
-from pipeline.floorplan.grid import Labels
+from pipeline.floorplan.grid import Halves, Labels
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -86,11 +86,12 @@ def fit(
     slack: Floats,
     held: NDArray[np.bool_],
     share: float,
+    half: Halves,
 ) -> Floats:
     """Return moved coordinates [m], rounded to 1 mm.
 
     `target` (n,) areas [m2], `trust` (n,) their weights, `slack` (n,) how far the lines of each room may move [m],
-    `held` (k,) lines that stay, `share` scales all bounds (0: nothing moves).
+    `held` (k,) lines that stay, `share` scales all bounds (0: nothing moves), `half` are the walls.
     """
     at = lines.at.copy()
     ids = [corner_lines(lines, c) for c in outlines]
@@ -105,7 +106,7 @@ def fit(
                     bound[k] = min(bound[k], AT_JOG)
     bound *= np.where(held, 0.0, share)
     for _ in range(ROUNDS):
-        error, slope = _areas(at, outlines, ids, sides, target)
+        error, slope = _areas(at, outlines, ids, sides, target, half)
         weight = np.sqrt(trust) / target
         ridge = np.sqrt(RIDGE) / FARTHEST
         left = np.vstack([slope * weight[:, None], np.eye(at.size) * ridge])
@@ -115,11 +116,13 @@ def fit(
     return np.round(at, 3)
 
 
-def _areas(at: Floats, outlines: list[trace.Corners], ids: list[Ints], sides: list[list[bool]], target: Floats) -> tuple[Floats, Floats]:
+def _areas(
+    at: Floats, outlines: list[trace.Corners], ids: list[Ints], sides: list[list[bool]], target: Floats, half: Halves
+) -> tuple[Floats, Floats]:
     """Return inner areas minus targets (n,) and their derivatives by the lines' coordinates (n, k)."""
     error, slope = np.empty(len(outlines)), np.zeros((len(outlines), at.size))
     for r, (corners, own, inner) in enumerate(zip(outlines, ids, sides, strict=True)):
-        p = trace.faces(corners, at[own], inner)
+        p = trace.faces(corners, at[own], inner, half)
         q = np.roll(p, -1, axis=0)
         error[r] = 0.5 * np.sum(p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1]) - target[r]
         for i in range(len(corners)):

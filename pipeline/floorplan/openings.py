@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from pipeline.entities.plan import Opening, OpeningKind, Room, Swing
 from pipeline.floorplan.defaults import DEFAULTS, DOOR_HEIGHT
-from pipeline.floorplan.grid import INNER, OUTER
 from pipeline.floorplan.program import FloorProgram, RoomReq
 
 FRAME = 0.10  # least wall beside an opening, from the inner faces of side walls [m]
@@ -24,6 +23,7 @@ ANGLE = 1.5  # how far leaves open [rad]
 ENTRANCE_WIDTH, GATE_WIDTH, BALCONY_WIDTH = 0.9, 2.4, 0.85
 SILL, WINDOW_HEIGHT = 0.9, 1.3
 BATH_SILL, BATH_WINDOW = 1.4, 0.8
+LINTEL, LEAST_WINDOW = 0.1, 0.6  # between openings and ceilings; height of a window under a low one [m]
 WIDEST_WINDOW, NARROWEST_WINDOW = 2.4, 0.6
 STEP = 0.05  # raster of the places that are tried [m]
 
@@ -34,7 +34,7 @@ Point = NDArray[np.float64]
 class Run:
     """A straight stretch of wall that is clear on both sides: line end points on the wall's centre line [m].
 
-    `along` and `inward` are unit vectors; `inward` points into room `rooms[0]`.
+    `along` and `inward` are unit vectors; `inward` points into room `rooms[0]`; `half` is half the wall's thickness [m].
     """
 
     rooms: tuple[str, ...]
@@ -44,6 +44,7 @@ class Run:
     length: float
     level: int
     vertical: bool
+    half: float
 
     def segment(self, offset: float, width: float) -> Point:
         """Return the end points of an opening of `width` that begins `offset` from the start."""
@@ -58,16 +59,22 @@ class Site:
     openings: list[Opening]
     swept: list[tuple[str, shapely.Geometry]]
     taken: list[tuple[int, bool, float, float, float]]  # level, vertical, line, from, to
+    thickness: float  # of the thickest wall [m]
+    ceiling: float  # height of the rooms [m]
 
     def free(self, run: Run, offset: float, width: float) -> bool:
         """Whether the stretch of wall overlaps no opening there is."""
         low, high = _interval(run, offset, width)
         line = run.start[0] if run.vertical else run.start[1]
         for level, vertical, at, start, end in self.taken:
-            near = level == run.level and vertical == run.vertical and abs(at - line) < 2 * OUTER
+            near = level == run.level and vertical == run.vertical and abs(at - line) < self.thickness
             if near and low < end + FRAME and start < high + FRAME:
                 return False
         return True
+
+    def under(self, top: float) -> float:
+        """Return the height of a top that stays under the ceiling [m]."""
+        return round(min(top, self.ceiling - LINTEL), 3)
 
     def put(self, run: Run, opening: Opening, offset: float) -> None:
         """Record an opening."""
@@ -99,7 +106,8 @@ def place(
 
     `depth` is each room's distance from the entrance in openings: leaves swing into the farther room.
     """
-    site = Site({r.room_id: r for r in rooms}, [], [], [])
+    shell = program.shell
+    site = Site({r.room_id: r for r in rooms}, [], [], [], max(shell.inner_wall, shell.outer_wall), shell.ceiling)
     requests = {r.id: r for r in program.rooms}
     wide = [k for k in program.links if k.kind in {"open", "portal"}]
     narrow = [k for k in program.links if k.kind in {"door", "any"}]
@@ -143,7 +151,7 @@ def _wide(site: Site, between: Sequence[Run], kind: str, rooms: set[str], reques
         return False
     offset = (best.length - width) / 2
     label: OpeningKind = "open" if kind == "open" else "portal"
-    height = 2.4 if kind == "open" else 2.2
+    height = site.under(2.4 if kind == "open" else 2.2)
     ids = (best.rooms[0], best.rooms[1])
     site.put(best, Opening(_next_id(site, kind), label, ids, best.segment(offset, width), height, level=best.level), offset)
     return True
@@ -166,7 +174,7 @@ def _entrance(program: FloorProgram, site: Site, runs: Sequence[Run], rng: np.ra
             if best is None or best.length < GATE_WIDTH + 2 * FRAME:
                 return False
             offset = (best.length - GATE_WIDTH) / 2
-            gate = Opening(_next_id(site, "door"), "door", (room.id,), best.segment(offset, GATE_WIDTH), 2.1, level=best.level)
+            gate = Opening(_next_id(site, "door"), "door", (room.id,), best.segment(offset, GATE_WIDTH), site.under(2.1), level=best.level)
             site.put(best, gate, offset)
         elif room.id in own and room.id != into and not _door(site, walls, "door", width, room.id, DOOR_HEIGHT, rng):
             return False
@@ -191,9 +199,9 @@ def _door(site: Site, walls: Sequence[Run], kind: OpeningKind, width: float, int
             segment = run.segment(offset, width)
             hinge = _near_corner(floor, segment, run.along)
             for end in (hinge, 1 - hinge):
-                if _leaf_fits(site, floor, into, segment, end, inward, width, INNER if len(run.rooms) == 2 else OUTER):
+                if _leaf_fits(site, floor, into, segment, end, inward, width, run.half):
                     swing = Swing(into, end, ANGLE)
-                    site.put(run, Opening(_next_id(site, kind), kind, run.rooms, segment, height, 0.0, swing, run.level), offset)
+                    site.put(run, Opening(_next_id(site, kind), kind, run.rooms, segment, site.under(height), 0.0, swing, run.level), offset)
                     site.swept.append((into, leaf_sweep(segment, end, inward, width)))
                     return True
     return False
@@ -241,8 +249,10 @@ def _windows(site: Site, room: RoomReq, walls: Sequence[Run]) -> None:
             offset = _window_place(site, run, size)
             if offset is not None:
                 sill, height = (BATH_SILL, BATH_WINDOW) if bath else (SILL, WINDOW_HEIGHT)
+                sill = min(sill, site.ceiling - LINTEL - LEAST_WINDOW)
+                height = site.under(sill + height) - sill
                 segment = run.segment(offset, size)
-                site.put(run, Opening(_next_id(site, "window"), "window", run.rooms, segment, height, sill, None, run.level), offset)
+                site.put(run, Opening(_next_id(site, "window"), "window", run.rooms, segment, round(height, 3), sill, None, run.level), offset)
                 placed += 1
                 break
 

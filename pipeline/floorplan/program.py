@@ -177,11 +177,24 @@ class Zone(Model):
 
 
 class Footprint(Model):
-    """The outline: its shape, and the ratio of its longer to its shorter side."""
+    """The outline: its shape, and the ratio of its longer to its shorter side.
+
+    `corners`: chamfered ones are cut at 45 degrees wherever no opening stands in the way.
+    """
 
     shape: Literal["rectangle", "L", "T", "any"] = "rectangle"
+    corners: Literal["plain", "chamfered"] = "plain"
     min_aspect: Annotated[float, Field(ge=1.0, le=5.0)] = 1.0
     max_aspect: Annotated[float, Field(ge=1.0, le=5.0)] = 1.6
+    stated: bool = False
+
+
+class Shell(Model):
+    """Thickness of walls between rooms and of outside walls, and the height of rooms from floor to ceiling [m]."""
+
+    inner_wall: Annotated[float, Field(ge=0.05, le=0.6)] = 0.12
+    outer_wall: Annotated[float, Field(ge=0.05, le=0.6)] = 0.24
+    ceiling: Annotated[float, Field(ge=1.8, le=8.0)] = 2.7
     stated: bool = False
 
 
@@ -247,6 +260,7 @@ class FloorProgram(Model):
     storeys: Annotated[int, Field(ge=1, le=3)] = 1
     total_area: Range = Range()
     footprint: Footprint = Footprint()
+    shell: Shell = Shell()
     rooms: tuple[RoomReq, ...] = ()
     links: tuple[Link, ...] = ()
     forbids: tuple[Forbid, ...] = ()

@@ -12,18 +12,20 @@ from pipeline import seeds
 from pipeline.entities.plan import Plan, Room
 from pipeline.errors import RefusedError
 from pipeline.floorplan import anneal, lines, slicing, trace
+from pipeline.floorplan.chamfers import chamfered
 from pipeline.floorplan.check import check
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.defaults import OUTSIDE
 from pipeline.floorplan.energy import TERMS
-from pipeline.floorplan.grid import INNER, OUTER, Labels
+from pipeline.floorplan.grid import Halves, Labels
 from pipeline.floorplan.openings import Run, place
 from pipeline.floorplan.program import FloorProgram
-from pipeline.floorplan.storeys import EDGE, UNIT, Storey, storey
+from pipeline.floorplan.storeys import EDGE, UNIT, Storey, founded, storey
 
 TRIES = 24  # whole attempts before a program is refused
 LENGTHS = (1, 1, 2, 2, 4, 4, 4, 4, 8)  # how much longer attempts search
 EASE = (3, 4, 7)  # attempts from which what nobody stated is let go, step by step
+BOLD, OVERHANG = 12, 0.04  # attempts from which a storey may hang over the one below by more than this share of the outline
 EASED_ASPECT = 2.2  # of the outline then
 STARTS, MOST_STARTS = 4, 9  # slicing trees per attempt: usual, and while all of them lack something
 RUNS = 2  # annealing runs per storey and attempt, from the best of these
@@ -32,6 +34,7 @@ PROPOSALS, LONGEST = 180, 3  # annealing proposals per room and run; how much lo
 HOT, COLD, PENALTY = 1.2, 0.01, 40.0
 SHARES = (1.0, 0.4, 0.0)  # how much of their freedom the walls' lines use; less when openings then find no place
 LEAST_CUT = 4  # cells
+STOREY_HEIGHT, CEILING = 3.0, 0.3  # floor to floor at least, thickness of what lies between [m]
 SLICE_HOT, SLICE_COLD = 6.0, 0.05
 
 
@@ -66,6 +69,7 @@ def search(program: FloorProgram, seed: int, keys: tuple[int, ...] = ()) -> Solu
     """Return what `solve` returns, and the effort."""
     program = complete(program)
     check(program)
+    program = founded(program)
     effort = Effort()
     for attempt in range(TRIES):
         effort.attempts += 1
@@ -101,6 +105,8 @@ def _attempt(program: FloorProgram, rng: np.random.Generator, attempt: int, effo
         if made is None:
             return None
         grid = made[0]
+        if solved and attempt < BOLD and _hangs(grid, solved[-1]):
+            return None
         terms += made[1]
         if program.storeys > 1 and stair is None:
             stair = _rectangle(grid, next(i for i, r in enumerate(request.rooms) if r.type == "staircase"))
@@ -125,6 +131,12 @@ def _outline(program: FloorProgram, requests: list[Storey], rng: np.random.Gener
     whole = max(r.gross.sum() for r in requests) * (1.0 + (0.16, 0.2)[cuts - 1] * (cuts > 0))
     width = max(round(float(whole * aspect) ** 0.5), 2)
     return Outline(width, max(round(float(whole / width)), 2), cuts)
+
+
+def _hangs(grid: Labels, below: tuple[Storey, Labels]) -> bool:
+    """Whether much of a storey has nothing under it."""
+    bare = below[1] == len(below[0].rooms)
+    return bool(np.sum((grid != grid[0, 0]) & bare) > OVERHANG * grid.size)
 
 
 def _rectangle(grid: Labels, room: int) -> tuple[int, int, int, int] | None:
@@ -233,39 +245,59 @@ def _stamp(grid: Labels, room: int, stair: tuple[int, ...], n: int) -> None:
 def _build(program: FloorProgram, storeys: list[tuple[Storey, Labels]], rng: np.random.Generator) -> Plan | None:
     """Turn the grids into rooms and openings; None when an opening finds no place."""
     depth = _depths(program)
+    flights = _flights(storeys)
     draw = rng.bit_generator.state
     for share in SHARES:
         rng.bit_generator.state = draw
         rooms: list[Room] = []
         runs: list[Run] = []
         for request, grid in storeys:
-            _realise(request, grid, share, rooms, runs)
+            _realise(program, request, grid, share, rooms, runs, flights)
         if not _within(program, storeys, rooms):
             continue
         openings = place(program, rooms, runs, depth, rng)
         if openings is not None:
-            return Plan(tuple(rooms), openings, program.entrance.into or rooms[0].room_id, 2 * INNER, 2 * OUTER)
+            shell, entrance = program.shell, program.entrance.into or rooms[0].room_id
+            storey_height = max(STOREY_HEIGHT, shell.ceiling + CEILING)
+            plan = Plan(tuple(rooms), openings, entrance, shell.inner_wall, shell.outer_wall, round(storey_height, 3))
+            if program.footprint.corners == "plain":
+                return plan
+            return chamfered(program, plan, lambda made: _within(program, storeys, made))
     return None
 
 
-def _realise(request: Storey, grid: Labels, share: float, rooms: list[Room], runs: list[Run]) -> None:
+def _flights(storeys: list[tuple[Storey, Labels]]) -> list[bool]:
+    """Return which sides of a staircase have a room behind them on any storey: it is one room, and its walls stand above each other."""
+    found: list[list[bool]] = []
+    for request, grid in storeys if len(storeys) > 1 else []:
+        room = next(i for i, r in enumerate(request.rooms) if r.type == "staircase")
+        found.append(_inner_sides(grid, trace.outline(grid, room), len(request.rooms)))
+    return [any(sides) for sides in zip(*found, strict=True)]
+
+
+def _realise(
+    program: FloorProgram, request: Storey, grid: Labels, share: float, rooms: list[Room], runs: list[Run], flights: list[bool]
+) -> None:
     """Append a storey's rooms and the stretches of wall that openings can stand in; lines move by `share` of what they may."""
     spec, n = request.spec, len(request.rooms)
     corners = [trace.outline(grid, i) for i in range(n)]
-    sides = [_inner_sides(grid, corners[i], n) for i in range(n)]
+    sides = [
+        flights if flights and r.type == "staircase" else _inner_sides(grid, corners[i], n) for i, r in enumerate(request.rooms)
+    ]
     found = lines.find(grid, UNIT)
-    slack = np.where(spec.corridor > 0, (spec.strict * UNIT - request.clear) / 2, lines.FARTHEST)
+    tight = np.array([r.type == "hallway" or r.min_width is not None for r in request.rooms])
+    slack = np.where(tight, (spec.strict * UNIT - request.clear) / 2, lines.FARTHEST)
     trust = np.where(np.array([r.type in {"hallway", "entry"} and not r.area.stated for r in request.rooms]), 0.2, 1.0)
     held = np.zeros(found.at.size, dtype=bool)
     for i in (i for i, r in enumerate(request.rooms) if r.type == "staircase"):
         held |= lines.outer(found, grid, n)  # outside walls and stairs stand above each other
         held[lines.corner_lines(found, corners[i])] = True
-    at = lines.fit(found, corners, sides, spec.target, trust, np.maximum(slack, 0.0), held, share)
+    at = lines.fit(found, corners, sides, spec.target, trust, np.maximum(slack, 0.0), held, share, spec.half)
     for i, room in enumerate(request.rooms):
         if room.type == "staircase" and request.level > 0:
             continue  # one room with its lowest level
-        polygon = np.round(trace.faces(corners[i], at[lines.corner_lines(found, corners[i])], sides[i]), 3)
-        rooms.append(Room(room.id, room.type, polygon, request.level, role=room.role))
+        polygon = np.round(trace.faces(corners[i], at[lines.corner_lines(found, corners[i])], sides[i], spec.half), 3)
+        rooms.append(Room(room.id, room.type, polygon, request.level, program.shell.ceiling, room.role))
     runs += _runs(request, trace.walls(grid, n), rooms, found, at)
 
 
@@ -300,7 +332,7 @@ def _inner_sides(grid: Labels, corners: trace.Corners, n: int) -> list[bool]:
 
 def _runs(request: Storey, walls: list[trace.Wall], rooms: list[Room], found: lines.Lines, at: NDArray[np.float64]) -> list[Run]:
     """Return the stretches of wall that openings can stand in: where both rooms' inner faces lie opposite each other."""
-    by_id = {r.room_id: r for r in rooms}
+    by_id, half = {r.room_id: r for r in rooms}, request.spec.half
     runs: list[Run] = []
     for wall in walls:
         names = (request.rooms[wall.a].id,) + ((request.rooms[wall.b].id,) if wall.b >= 0 else ())
@@ -309,21 +341,22 @@ def _runs(request: Storey, walls: list[trace.Wall], rooms: list[Room], found: li
         ends = [_crossing(found, at, wall, k) for k in (wall.start, wall.end)]
         middle = (ends[0] + ends[1]) / 2
         lows = (wall.a_low, not wall.a_low)
-        faces = [_face(by_id[name].polygon, axis, line, middle, low) for name, low in zip(names, lows, strict=False)]
+        faces = [_face(by_id[name].polygon, axis, line, middle, low, half) for name, low in zip(names, lows, strict=False)]
         if any(f is None for f in faces):
             continue
         spans = [f for f in faces if f is not None]
         start, end = max(f[0] for f in spans), min(f[1] for f in spans)
         if len(spans) == 1:  # a face may run on behind a room that the wall turns to
-            start, end = max(start, ends[0] + INNER), min(end, ends[1] - INNER)
-            line = spans[0][2] + (OUTER if wall.a_low else -OUTER)
+            start, end = max(start, ends[0] + half.inner), min(end, ends[1] - half.inner)
+            line = spans[0][2] + (half.outer if wall.a_low else -half.outer)
         if end - start < 0.5:
             continue
         point, along, inward = np.zeros(2), np.zeros(2), np.zeros(2)
         point[1 - axis], point[axis] = line, start
         along[axis] = 1.0
         inward[1 - axis] = -1.0 if wall.a_low else 1.0
-        runs.append(Run(names, np.round(point, 3), along, inward, round(end - start, 3), request.level, wall.vertical))
+        thick = half.inner if len(spans) == 2 else half.outer
+        runs.append(Run(names, np.round(point, 3), along, inward, round(end - start, 3), request.level, wall.vertical, thick))
     return runs
 
 
@@ -334,14 +367,16 @@ def _crossing(found: lines.Lines, at: NDArray[np.float64], wall: trace.Wall, k: 
     return float(at[ids[0]]) if ids else k * UNIT
 
 
-def _face(polygon: NDArray[np.float64], axis: int, line: float, middle: float, low: bool) -> tuple[float, float, float] | None:
+def _face(
+    polygon: NDArray[np.float64], axis: int, line: float, middle: float, low: bool, half: Halves
+) -> tuple[float, float, float] | None:
     """Return (start, end, line) of the polygon's side that faces a wall; `low`: the room lies on its low side."""
     for p, q in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
         if p[1 - axis] != q[1 - axis]:
             continue
         face, start, end = float(p[1 - axis]), float(min(p[axis], q[axis])), float(max(p[axis], q[axis]))
         distance = line - face if low else face - line
-        if 0.5 * INNER < distance < 1.5 * OUTER and start < middle < end:
+        if 0.5 * min(half) < distance < 1.5 * max(half) and start < middle < end:
             return start, end, face
     return None
 

@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 from pipeline.floorplan.daylight import YIELDS, daylit
 from pipeline.floorplan.defaults import DEFAULTS, OUTSIDE
 from pipeline.floorplan.energy import TERMS, WEIGHTS, Spec
-from pipeline.floorplan.grid import INNER, OUTER
+from pipeline.floorplan.grid import Halves
 from pipeline.floorplan.program import FloorProgram, RoomReq
 
 UNIT = 0.25  # side of a cell [m]
-# Straight common wall that an opening needs [m]: clear width, 0.1 m beside the frame on both sides, half a wall at both ends.
-SIDES = 0.45
+FRAME = 0.105  # wall beside the frame of an opening [m]
 OPEN_FRONT, PORTAL = 1.5, 1.2  # least clear widths [m]
 # How far an unstated area may miss its target: a share, and a strip of this width [m] along one side, for the raster; where nothing else helps.
 LOOSE, STRIP, EASED = 0.02, 0.2, 0.4
@@ -25,6 +24,7 @@ EASED_HALL = 2.5  # how much larger than its target an unstated hallway may be t
 EASED_WIDTH = 1.2  # least width of rooms then [m]
 STATED = 0.10  # how far a stated target may be missed
 EDGE = 0.012  # hard bounds are drawn in by this share, so that rounding cannot cross them
+MOST_STRETCH = 1.4  # how far usual areas are stretched under a larger storey
 FREE_HALL = (0.6, 1.7)  # how far an unstated hallway's area may move
 
 
@@ -39,7 +39,7 @@ class Storey:
     gross: NDArray[np.float64]
     gross_low: NDArray[np.float64]
     gross_high: NDArray[np.float64]
-    clear: NDArray[np.float64]  # (n,) clear width plus walls that corridors must keep [m]
+    clear: NDArray[np.float64]  # (n,) width between the middles of walls that corridors, and rooms of a stated width, must keep [m]
 
 
 def cells(metres: float) -> int:
@@ -47,15 +47,25 @@ def cells(metres: float) -> int:
     return int(np.ceil(metres / UNIT - 1e-9))
 
 
-def wall_for(kind: str, door: float, small: bool) -> int:
-    """Return the straight wall [cells] that a link of that kind needs."""
+def halves(program: FloorProgram) -> Halves:
+    """Return half the thickness of the program's walls [m]."""
+    return Halves(program.shell.inner_wall / 2, program.shell.outer_wall / 2)
+
+
+def sides(program: FloorProgram) -> float:
+    """Return what an opening needs of straight wall beside its clear width [m]: its frame's, and half a wall at both ends."""
+    return 2 * FRAME + 2 * max(halves(program))
+
+
+def wall_for(kind: str, door: float, small: bool, beside: float) -> int:
+    """Return the straight wall [cells] that a link of that kind needs; `beside` [m] as `sides` returns it."""
     if kind == "wall":
         return 2
     if kind == "open":
-        return cells((1.1 if small else OPEN_FRONT) + SIDES)
+        return cells((1.1 if small else OPEN_FRONT) + beside)
     if kind == "portal":
-        return cells((1.0 if small else PORTAL) + SIDES)
-    return cells(door + SIDES)
+        return cells((1.0 if small else PORTAL) + beside)
+    return cells(door + beside)
 
 
 def weights_of(program: FloorProgram) -> NDArray[np.float64]:
@@ -75,29 +85,29 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
     n = len(rooms)
     target = np.array([r.area.target or DEFAULTS[r.type].area for r in rooms])
     low, high = _bounds(rooms, target, ease)
-    door = program.accessibility.min_door
+    half, door = halves(program), program.accessibility.min_door
     link, need = np.zeros((n, n), np.int64), np.zeros((n, n), np.int64)
     for k in program.links:
         if k.a in index and k.b in index:
             a, b = index[k.a], index[k.b]
-            need[a, b] = need[b, a] = wall_for(k.kind, door, min(target[a], target[b]) < 7.0)
+            need[a, b] = need[b, a] = wall_for(k.kind, door, min(target[a], target[b]) < 7.0, sides(program))
             if k.kind != "wall":
                 link[a, b] = link[b, a] = 1
     here = program.model_copy(update={"rooms": rooms})
     ban, apart, order = _relations(here, index)
-    widths = [_width(r, program) for r in rooms]
+    clear = np.array([_clear(r, program) for r in rooms])
     outside = _outside(rooms, program, level, ease)
     # a small room cannot be as wide as its type usually is
-    least = np.array([cells(min(w, 0.92 * t**0.5) + 2 * INNER) for w, t in zip(widths, target, strict=True)])
+    least = np.array([cells(min(w, 0.92 * t**0.5 + 2 * half.inner)) for w, t in zip(clear, target, strict=True)])
     strict = np.maximum((0.8 * least).astype(np.int64), 3)
     corridor = np.array([int(r.type == "hallway") for r in rooms])
     for i, r in enumerate(rooms):
         if r.min_width is not None or r.type in {"hallway", "entry"}:
             strict[i] = least[i]
         elif ease:
-            strict[i] = min(strict[i], cells(EASED_WIDTH + 2 * INNER))
+            strict[i] = min(strict[i], cells(EASED_WIDTH + 2 * half.inner))
         if r.type == "wc":
-            strict[i] = cells(0.85 + 2 * INNER)
+            strict[i] = cells(0.85 + 2 * half.inner)
     total = np.array([0.0, np.inf])
     wish = program.total_area
     if program.storeys == 1 and wish.stated:
@@ -128,18 +138,51 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
         index[_stairs(rooms)] if stair_cells is not None else -1,
         np.array(stair_cells or (0, 0, 0, 0)),
         program.nonrect if level == 0 else 0,
+        half,
     )
-    gross = _gross(target)
+    gross = _gross(target, half)
     gross_low, gross_high = gross.copy(), gross.copy()
     for i, r in enumerate(rooms):
         if r.type in {"hallway", "entry"} and not r.area.stated:
             gross_low[i], gross_high[i] = gross[i] * 0.75, gross[i] * (1.9 if ease else 1.3)
-    return Storey(level, rooms, spec, weights_of(program), gross, gross_low, gross_high, np.array(widths) + 2 * INNER)
+    return Storey(level, rooms, spec, weights_of(program), gross, gross_low, gross_high, clear)
 
 
-def _gross(target: NDArray[np.float64]) -> NDArray[np.float64]:
+def founded(program: FloorProgram) -> FloorProgram:
+    """Stretch the usual areas of storeys that are smaller than what stands on them, so that no room hangs in the air.
+
+    A stated total stays: then what stands on them shrinks as well.
+    """
+    half = halves(program)
+    rooms = list(program.rooms)
+    above = 0.0
+    for level in reversed(range(program.storeys)):
+        gross = {
+            i: float(_gross(np.array([r.area.target or DEFAULTS[r.type].area]), half)[0])
+            for i, r in enumerate(rooms)
+            if r.level == level or r.type == "staircase"
+        }
+        free = [i for i in gross if not rooms[i].area.stated and rooms[i].type != "staircase"]
+        flexible, whole = sum(gross[i] for i in free), sum(gross.values())
+        if flexible and whole < above:
+            factor = min(1.0 + (above - whole) / flexible, MOST_STRETCH)
+            for i in free:
+                area = rooms[i].area
+                rooms[i] = rooms[i].model_copy(update={"area": area.model_copy(update={"target": (area.target or 0.0) * factor})})
+            whole += (factor - 1.0) * flexible
+        above = max(above, whole)
+    loose = [i for i, r in enumerate(rooms) if not r.area.stated and r.type not in OUTSIDE]
+    before, after = (sum(rs[i].area.target or 0.0 for i in loose) for rs in (program.rooms, rooms))
+    if program.total_area.stated and after > before:
+        for i in loose:
+            area = rooms[i].area
+            rooms[i] = rooms[i].model_copy(update={"area": area.model_copy(update={"target": (area.target or 0.0) * before / after})})
+    return program.model_copy(update={"rooms": tuple(rooms)})
+
+
+def _gross(target: NDArray[np.float64], half: Halves) -> NDArray[np.float64]:
     """Area up to wall centre lines [cells] of a room of that inner area, were it nearly square."""
-    side = np.sqrt(target) + 2 * (0.65 * INNER + 0.35 * OUTER)
+    side = np.sqrt(target) + 2 * (0.65 * half.inner + 0.35 * half.outer)
     return np.asarray(side * side / UNIT**2)
 
 
@@ -158,12 +201,15 @@ def _bounds(rooms: tuple[RoomReq, ...], target: NDArray[np.float64], ease: int) 
     return low, high
 
 
-def _width(room: RoomReq, program: FloorProgram) -> float:
+def _clear(room: RoomReq, program: FloorProgram) -> float:
+    """Return the width between the middles of a room's walls [m]: what is asked for holds beside an outside wall too."""
+    half = halves(program)
+    usual = DEFAULTS[room.type].width + 2 * half.inner
     if room.min_width is not None:
-        return room.min_width
+        return room.min_width + half.inner + half.outer
     if room.type == "hallway":
-        return max(DEFAULTS["hallway"].width, program.accessibility.min_corridor)
-    return DEFAULTS[room.type].width
+        return max(usual, program.accessibility.min_corridor + half.inner + half.outer)
+    return usual
 
 
 def _outside(rooms: tuple[RoomReq, ...], program: FloorProgram, level: int, ease: int) -> list[int]:
@@ -178,20 +224,20 @@ def _outside(rooms: tuple[RoomReq, ...], program: FloorProgram, level: int, ease
         doors = Counter(i for k in links for i in (k.a, k.b))
         usual = [r for r in usual if ease == 2 and r.type not in YIELDS and (r.area.target or 0.0) >= SMALL and doors[r.id] < BUSY]
     lit = daylit(links, [r.id for r, a in zip(rooms, asked, strict=True) if a], [(r.id, r.type) for r in usual])
-    return [a or (cells(0.8 + SIDES) if r.id in lit else 0) for r, a in zip(rooms, asked, strict=True)]
+    return [a or (cells(0.8 + sides(program)) if r.id in lit else 0) for r, a in zip(rooms, asked, strict=True)]
 
 
 def _asked_outside(room: RoomReq, program: FloorProgram, level: int) -> int:
     into = level == 0 and program.entrance.into == room.id
     own = any(room in program.select(s) for s in program.entrance.separate)
     if room.type == "garage":
-        return cells(2.4 + SIDES)
+        return cells(2.4 + sides(program))
     if into or own or room.exterior == "door":
-        return cells(0.9 + SIDES)
+        return cells(0.9 + sides(program))
     if room.exterior == "none":
         return 0
     if room.exterior in {"wall", "corner"} or room.window == "required":
-        return cells(1.0 + SIDES)
+        return cells(1.0 + sides(program))
     return 0
 
 

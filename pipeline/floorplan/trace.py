@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.grid import INNER, OUTER, Labels
+from pipeline.floorplan.grid import Halves, Labels
 
 Corners = list[tuple[int, int]]
 
@@ -75,8 +75,8 @@ def walls(grid: Labels, n: int) -> list[Wall]:
     return found
 
 
-def faces(corners: Corners, lines: NDArray[np.float64], inner_sides: list[bool]) -> NDArray[np.float64]:
-    """Shift each side of a polygon inward by half its wall: inner walls 0.06 m, outer ones 0.12 m.
+def faces(corners: Corners, lines: NDArray[np.float64], inner_sides: list[bool], half: Halves) -> NDArray[np.float64]:
+    """Shift each side of a polygon inward by half its wall.
 
     `lines` (k, 2) are the corners in metres, `inner_sides[i]` whether side i (corner i to i+1) has a room behind any part of it.
     """
@@ -86,7 +86,7 @@ def faces(corners: Corners, lines: NDArray[np.float64], inner_sides: list[bool])
         before, here = (i - 1) % count, i
         for side in (before, here):
             p, q = lines[side], lines[(side + 1) % count]
-            offset = INNER if inner_sides[side] else OUTER
+            offset = half.inner if inner_sides[side] else half.outer
             # the inside lies to the left of a counter-clockwise walk
             if corners[side][1] == corners[(side + 1) % count][1]:  # horizontal side: it fixes y
                 result[i, 1] = lines[i, 1] + offset * np.sign(q[0] - p[0])
