@@ -25,7 +25,7 @@ def faults(program: FloorProgram, plan: Plan, shapes: Shapes) -> list[str]:
 
 
 def _asked(program: FloorProgram, plan: Plan, shapes: Shapes) -> Iterator[str]:
-    """What was asked for is there, and nothing else."""
+    """Yield links without their opening, and openings that nobody asked for."""
     del shapes
     wanted = {frozenset((k.a, k.b)): k.kind for k in program.links if k.kind != "wall"}
     between = Counter(frozenset(o.rooms) for o in plan.openings if len(o.rooms) == 2)
@@ -33,7 +33,7 @@ def _asked(program: FloorProgram, plan: Plan, shapes: Shapes) -> Iterator[str]:
         yield f"openings differ from links: {sorted(map(sorted, set(wanted) ^ set(between)))}"
     for o in plan.openings:
         kind = wanted.get(frozenset(o.rooms), "any")
-        if len(o.rooms) == 2 and kind != "any" and o.kind != kind:
+        if len(o.rooms) == 2 and kind not in {"any", o.kind}:
             yield f"{o.opening_id} is no {kind}"
     if [o.rooms for o in plan.openings if o.kind == "entrance"] != [(program.entrance.into,)]:
         yield "the entrance is not where it was asked for"
@@ -47,7 +47,7 @@ def _asked(program: FloorProgram, plan: Plan, shapes: Shapes) -> Iterator[str]:
 
 
 def _stand(program: FloorProgram, plan: Plan, shapes: Shapes) -> Iterator[str]:
-    """Every opening stands in a wall of exactly its rooms, under their ceilings, wide enough, apart from the others."""
+    """Yield openings that do not stand in a wall of exactly their rooms, under the ceiling, wide enough, apart from the others."""
     for o in plan.openings:
         along, normal = axes(o)
         half = (plan.inner_wall if len(o.rooms) == 2 else plan.outer_wall) / 2
@@ -65,7 +65,9 @@ def _stand(program: FloorProgram, plan: Plan, shapes: Shapes) -> Iterator[str]:
                 yield f"{o.opening_id} ({o.kind}) leads into a room, not outside"
         if o.sill + o.height > min(plan.room(i).height for i in o.rooms) + 1e-9:
             yield f"{o.opening_id} is higher than its rooms"
-        least = {"door": program.accessibility.min_door, "entrance": max(0.9, program.accessibility.min_door), "window": 0.5}.get(o.kind, 0.79)
+        least = {"door": program.accessibility.min_door, "entrance": max(0.9, program.accessibility.min_door), "window": 0.5}.get(
+            o.kind, 0.79
+        )
         if o.width < least - 1e-3:
             yield f"{o.opening_id} ({o.kind}) is {o.width:.2f} m wide"
         if abs(float(along @ normal)) > 1e-9 or np.abs(np.round(o.segment, 4) - o.segment).max() > 1e-9:
@@ -128,7 +130,7 @@ def _leaves(program: FloorProgram, plan: Plan, shapes: Shapes) -> Iterator[str]:
 
 
 def _windows(program: FloorProgram, plan: Plan, shapes: Shapes) -> Iterator[str]:
-    """Rooms that are to have light have it; those that take windows have one where an outside wall is free."""
+    """Yield rooms without the light that they are to have, or without a window in a free outside wall."""
     for r in program.rooms:
         mine = [o for o in plan.openings if o.kind == "window" and o.rooms == (r.id,)]
         takes = r.window != "forbidden" and (r.window == "required" or DEFAULTS[r.type].window)

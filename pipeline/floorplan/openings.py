@@ -201,7 +201,9 @@ def _door(site: Site, walls: Sequence[Run], kind: OpeningKind, width: float, int
             for end in (hinge, 1 - hinge):
                 if _leaf_fits(site, floor, into, segment, end, inward, width, run.half):
                     swing = Swing(into, end, ANGLE)
-                    site.put(run, Opening(_next_id(site, kind), kind, run.rooms, segment, site.under(height), 0.0, swing, run.level), offset)
+                    site.put(
+                        run, Opening(_next_id(site, kind), kind, run.rooms, segment, site.under(height), 0.0, swing, run.level), offset
+                    )
                     site.swept.append((into, leaf_sweep(segment, end, inward, width)))
                     return True
     return False
@@ -252,7 +254,9 @@ def _windows(site: Site, room: RoomReq, walls: Sequence[Run]) -> None:
                 sill = min(sill, site.ceiling - LINTEL - LEAST_WINDOW)
                 height = site.under(sill + height) - sill
                 segment = run.segment(offset, size)
-                site.put(run, Opening(_next_id(site, "window"), "window", run.rooms, segment, round(height, 3), sill, None, run.level), offset)
+                site.put(
+                    run, Opening(_next_id(site, "window"), "window", run.rooms, segment, round(height, 3), sill, None, run.level), offset
+                )
                 placed += 1
                 break
 

@@ -281,9 +281,7 @@ def _realise(
     """Append a storey's rooms and the stretches of wall that openings can stand in; lines move by `share` of what they may."""
     spec, n = request.spec, len(request.rooms)
     corners = [trace.outline(grid, i) for i in range(n)]
-    sides = [
-        flights if flights and r.type == "staircase" else _inner_sides(grid, corners[i], n) for i, r in enumerate(request.rooms)
-    ]
+    sides = [flights if flights and r.type == "staircase" else _inner_sides(grid, corners[i], n) for i, r in enumerate(request.rooms)]
     found = lines.find(grid, UNIT)
     tight = np.array([r.type == "hallway" or r.min_width is not None for r in request.rooms])
     slack = np.where(tight, (spec.strict * UNIT - request.clear) / 2, lines.FARTHEST)

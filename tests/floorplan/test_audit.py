@@ -95,7 +95,7 @@ BROKEN = {
     "no leaf": lambda p: turned(p, "door", lambda o: dataclasses.replace(o, swing=None)),
     "door on another storey": lambda p: turned(p, "door", lambda o: dataclasses.replace(o, level=1 - o.level)),
     "twice": lambda p: dataclasses.replace(p, openings=(*p.openings, dataclasses.replace(p.openings[0], opening_id="again"))),
-    "hanging": lambda p: dataclasses.replace(p, rooms=tuple(dataclasses.replace(r, polygon=r.polygon + [3.0, 0.0]) if r.level == 1 else r for r in p.rooms)),
+    "hanging": lambda p: dataclasses.replace(p, rooms=tuple(dataclasses.replace(r, polygon=r.polygon + np.array([3.0, 0.0])) if r.level == 1 else r for r in p.rooms)),
     "missing": lambda p: dataclasses.replace(p, rooms=p.rooms[1:]),
 }  # fmt: skip
 
@@ -127,7 +127,9 @@ def test_a_wish_that_the_plan_misses_is_found(plan, name):
     assert audit.faults(PROGRAM.model_copy(update=ASKED[name]), plan)
 
 
-@pytest.mark.parametrize("change", [{"min_width": 7.0}, {"window": "forbidden"}, {"exterior_length": 30.0}, {"area": Range(min=50.0, stated=True)}])
+@pytest.mark.parametrize(
+    "change", [{"min_width": 7.0}, {"window": "forbidden"}, {"exterior_length": 30.0}, {"area": Range(min=50.0, stated=True)}]
+)
 def test_a_wish_for_a_room_that_the_plan_misses_is_found(plan, change):
     rooms = tuple(r.model_copy(update=change) if r.id == "living" else r for r in PROGRAM.rooms)
     assert audit.faults(PROGRAM.model_copy(update={"rooms": rooms}), plan)
@@ -149,7 +151,11 @@ def test_a_failure_is_counted_and_does_not_stop_the_run(monkeypatch, capsys, err
     assert all(f"prior {k}: {kind}" in said for k in (5, 6))
 
 
-SHELLS = [Shell(inner_wall=0.08, outer_wall=0.3, ceiling=2.3), Shell(inner_wall=0.2, outer_wall=0.45, ceiling=3.4), Shell(inner_wall=0.25, outer_wall=0.25)]
+SHELLS = [
+    Shell(inner_wall=0.08, outer_wall=0.3, ceiling=2.3),
+    Shell(inner_wall=0.2, outer_wall=0.45, ceiling=3.4),
+    Shell(inner_wall=0.25, outer_wall=0.25),
+]
 
 
 @pytest.mark.parametrize("shell", SHELLS)
