@@ -100,5 +100,6 @@ def _rooms(plan: Plan, cuts: Cuts) -> list[Room]:
         for k, here in enumerate(room.polygon):
             leg = cuts.get((room.room_id, k))
             corners += [here] if leg is None else list(_ends(room.polygon, k, leg))
-        rooms.append(dataclasses.replace(room, polygon=np.round(np.array(corners, np.float64), 3)))
+        polygon: Floats = np.round(np.vstack(corners), 3)
+        rooms.append(dataclasses.replace(room, polygon=polygon))
     return rooms
