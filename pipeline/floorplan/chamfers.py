@@ -100,6 +100,6 @@ def _rooms(plan: Plan, cuts: Cuts) -> list[Room]:
         for k, here in enumerate(room.polygon):
             leg = cuts.get((room.room_id, k))
             corners += [here] if leg is None else list(_ends(room.polygon, k, leg))
-        polygon: Floats = np.round(np.vstack(corners), 3)
+        polygon: Floats = np.array(corners, dtype=np.float64).round(3)
         rooms.append(dataclasses.replace(room, polygon=polygon))
     return rooms
