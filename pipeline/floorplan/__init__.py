@@ -7,7 +7,7 @@ from pipeline.floorplan.document import plan_from_json, plan_json, refusal_json
 from pipeline.floorplan.language import parse
 from pipeline.floorplan.priors import prior
 from pipeline.floorplan.program import FloorProgram, json_schema
-from pipeline.floorplan.solver import solve
+from pipeline.floorplan.solver import solve, warm
 
 __all__ = [
     "FloorProgram",
@@ -21,4 +21,5 @@ __all__ = [
     "refusal_json",
     "request",
     "solve",
+    "warm",
 ]

@@ -148,7 +148,8 @@ def anneal(  # noqa: PLR0912 - compiled
     kept = np.zeros((n, 4))
     touched = np.ones(n + 1, np.int64)
     measure(grid, n, out)
-    hard = terms(grid, out, spec, edges, values, areas, shape, touched, True)
+    exact = n > 0  # a plain True is a type of its own: `terms` would be compiled twice
+    hard = terms(grid, out, spec, edges, values, areas, shape, touched, exact)
     soft = _weighted(values, weights)
     if hard < np.inf:
         _settle(shape, kept, touched)

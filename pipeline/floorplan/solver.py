@@ -19,7 +19,7 @@ from pipeline.floorplan.defaults import OUTSIDE
 from pipeline.floorplan.energy import TERMS
 from pipeline.floorplan.grid import Halves, Labels
 from pipeline.floorplan.openings import Run, place
-from pipeline.floorplan.program import FloorProgram
+from pipeline.floorplan.program import FloorProgram, RoomReq
 from pipeline.floorplan.storeys import EDGE, UNIT, Storey, founded, storey
 
 TRIES = 24  # whole attempts before a program is refused
@@ -63,6 +63,11 @@ def solve(program: FloorProgram, seed: int, keys: tuple[int, ...] = ()) -> Plan:
     Raises RefusedError when the program contradicts itself or no attempt meets it.
     """
     return search(program, seed, keys).plan
+
+
+def warm() -> None:
+    """Plan a studio, so that all kernels of planning are compiled and in the cache: before workers start, which would each compile them."""
+    solve(FloorProgram(rooms=(RoomReq(id="room", type="studio_room"), RoomReq(id="bath", type="bathroom"))), 0)
 
 
 def search(program: FloorProgram, seed: int, keys: tuple[int, ...] = ()) -> Solution:

@@ -35,8 +35,10 @@ def compiled(function: F) -> F:
     """Compile `function` on its first call. The plain form stays at `.py_func`: the oracle of the tests.
 
     Division by zero gives infinity, as in arrays: the checks for it would make the code larger, and slower to compile by a quarter.
+    No wrapper for callers from C: nothing calls it, and each costs as much as a small function.
     """
+    options = {"error_model": "numpy", "no_cfunc_wrapper": True}
     try:
-        return cast("F", numba.njit(cache=True, error_model="numpy")(function))
+        return cast("F", numba.njit(cache=True, **options)(function))
     except RuntimeError:  # numba finds no folder for its cache
-        return cast("F", numba.njit(cache=False, error_model="numpy")(function))
+        return cast("F", numba.njit(cache=False, **options)(function))
