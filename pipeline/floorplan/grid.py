@@ -115,7 +115,7 @@ def measure(grid: Labels, n: int, out: Measures) -> None:
         band = 1
         while y + band <= height and _same_rows(grid, y + band):
             band += 1
-        row_len = np.int64(0)  # a plain 0 is a type of its own at first: all that is called with it would be compiled twice
+        row_len = y - y  # a plain 0 is a type of its own at first: all that is called with it would be compiled twice
         start = 0
         b, d = grid[y, 0], grid[y + 1, 0]
         for x in range(width + 1):

@@ -37,7 +37,7 @@ def compiled(function: F) -> F:
     Division by zero gives infinity, as in arrays: the checks for it would make the code larger, and slower to compile by a quarter.
     No wrapper for callers from C: nothing calls it, and each costs as much as a small function.
     """
-    options = {"error_model": "numpy", "no_cfunc_wrapper": True}
+    options: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True}
     try:
         return cast("F", numba.njit(cache=True, **options)(function))
     except RuntimeError:  # numba finds no folder for its cache
