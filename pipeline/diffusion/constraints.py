@@ -17,6 +17,7 @@ from pipeline.diffusion.relations import Boxes
 
 CLEARANCE = 0.45  # [m] kept free at a doorway whose leaf does not turn into the room
 LEAF_HEIGHT = 2.0  # [m] a door leaf and a person need that much
+EIGHT = ((-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (0, 1), (-1, 0), (1, 0))  # corners and side middles, in halves of the sides
 
 
 class Prisms(NamedTuple):
@@ -101,59 +102,91 @@ def overlap(a: Prisms, b: Prisms) -> Tensor:
     return depth.clamp_min(0) * (rise.detach() / 0.05).clamp(0, 1)
 
 
-def outside(prisms: Prisms, rooms: RoomBatch) -> Tensor:
-    """Return half the squared distances [m2] by which corners and side middles of prisms (B, P) lie out of their room, summed."""
-    w, d = prisms.half.unbind(-1)
-    steps = torch.tensor([[-1, -1], [1, -1], [1, 1], [-1, 1], [0, -1], [0, 1], [-1, 0], [1, 0]], dtype=w.dtype, device=w.device)
-    depth = torch.stack([-prisms.axis[..., 1], prisms.axis[..., 0]], -1)
-    points = (
-        prisms.centre[:, :, None]
-        + steps[:, :1] * (prisms.axis * w[..., None])[:, :, None]
-        + steps[:, 1:] * (depth * d[..., None])[:, :, None]
-    )
-    start, stop, there = rooms.ends[:, :, 0], rooms.ends[:, :, 1], rooms.walls
-    at = points[:, :, :, None]
-    a, b = start[:, None, None], stop[:, None, None]
-    edge = b - a
-    place = (((at - a) * edge).sum(-1) / (edge**2).sum(-1).clamp_min(1e-6)).clamp(0, 1)
-    nearest = torch.linalg.vector_norm(at - a - place[..., None] * edge + 1e-9, dim=-1)
-    nearest = nearest.masked_fill(~there[:, None, None], 1e3).amin(-1)
-    crosses = ((a[..., 1] > at[..., 1]) != (b[..., 1] > at[..., 1])) & (
-        at[..., 0]
-        < edge[..., 0] * (at[..., 1] - a[..., 1]) / torch.where(edge[..., 1] == 0, torch.ones_like(edge[..., 1]), edge[..., 1]) + a[..., 0]
-    )
-    inside = (crosses & there[:, None, None]).sum(-1) % 2 == 1
-    beyond = torch.where(inside, torch.zeros_like(nearest), nearest)
-    return (beyond**2).sum(-1) / 2  # a side of a box has two corners or more beyond a wall
+def outside(prisms: Prisms, rooms: RoomBatch, owner: Tensor) -> Tensor:
+    """Return half the squared distances [m2] by which corners and side middles of prisms (L,) lie out of their rooms `owner` (L,), summed."""
+    steps = torch.tensor(EIGHT, dtype=prisms.half.dtype, device=prisms.half.device)
+    depth = torch.stack([-prisms.axis[:, 1], prisms.axis[:, 0]], -1)
+    w, d = prisms.half[:, None, :1], prisms.half[:, None, 1:]
+    points = prisms.centre[:, None] + steps[:, :1] * prisms.axis[:, None] * w + steps[:, 1:] * depth[:, None] * d
+    start, edge, there = rooms.ends[:, :, 0], rooms.ends[:, :, 1] - rooms.ends[:, :, 0], rooms.walls
+    with torch.no_grad():
+        ay, ey, at = start[owner][:, None, :, 1], edge[owner][:, None, :, 1], points[:, :, None]
+        crosses = (ay > at[..., 1]) != (ay + ey > at[..., 1])
+        x = start[owner][:, None, :, 0] + edge[owner][:, None, :, 0] * (at[..., 1] - ay) / torch.where(ey == 0, torch.ones_like(ey), ey)
+        inside = (crosses & (at[..., 0] < x) & there[owner][:, None]).sum(-1) % 2 == 1
+    thing, corner = torch.nonzero(~inside, as_tuple=True)  # distances matter for points beyond the walls alone, and these are few
+    room, point = owner[thing], points[thing, corner][:, None]
+    a, along = start[room], edge[room]
+    place = (((point - a) * along).sum(-1) / (along**2).sum(-1).clamp_min(1e-6)).clamp(0, 1)
+    away = point - a - place[..., None] * along
+    squared = (away**2).sum(-1).masked_fill(~there[room], 1e6).amin(-1)  # a side of a box has two corners or more beyond a wall
+    return torch.zeros_like(prisms.low).index_add(0, thing, squared / 2)
 
 
-def articulated_collision(boxes: Boxes, occupied: Tensor, sweeps: Tensor | None, rooms: RoomBatch, room_scale: float = 1.0) -> Tensor:
+def articulated_collision(boxes: Boxes, occupied: Tensor, sweeps: Tensor | None, rooms: RoomBatch) -> Tensor:
     """Return phi_articoll (B,) of B rooms [m2]: how deep bodies and what their joints sweep reach into each other.
 
     Paper eq. articoll sums IoU(b'_i, b_j) over ordered pairs, b' the extended state. Here b' is the body and, per joint,
     the box that it really sweeps (`sweeps` (B, N, K, 2, 3), None for bodies alone); in place of the IoU stands half the
-    square of the depth (see `overlap`), whose descent is the depth itself, along the shortest way out. Doorways are obstacles too, and so is what lies outside the room. `occupied` (B, N) selects slots.
+    square of the depth (see `overlap`), whose descent is the depth itself, along the shortest way out. Doorways are
+    obstacles too, and so is what lies outside the room. `occupied` (B, N) selects slots.
+
+    Most slots are empty and most things open nothing: the pairs that are there are listed, and only these are computed.
     """
-    body = bodies(boxes)
-    both = occupied[:, :, None] & occupied[:, None]
-    other = ~torch.eye(occupied.shape[1], dtype=torch.bool, device=occupied.device)
-    static = Prisms(*(part[:, None] for part in body))
-    phi = 0.25 * (overlap(Prisms(*(part[:, :, None] for part in body)), static) ** 2 * (both & other)).sum((1, 2))
-    doors, there = doorways(rooms)
-    door = Prisms(*(part[:, None] for part in doors))
-    blocked = occupied[:, :, None] & there[:, None]
-    phi = phi + 0.5 * (overlap(Prisms(*(part[:, :, None] for part in body)), door) ** 2 * blocked).sum((1, 2))
-    phi = phi + 0.5 * room_scale * (outside(body, rooms) * occupied).sum(1)
+    batch, slots = occupied.shape
+    body, (doors, there) = bodies(boxes), doorways(rooms)
+    first_door, first_sweep = batch * slots, batch * (slots + there.shape[1])
+    things, mates = [_packed(body), _packed(doors)], occupied[:, :, None] & occupied[:, None]
+    own, door = _numbers(occupied, 0), _numbers(there, first_door)
+    pairs = [
+        _listed(mates.triu(1), own[:, :, None], own[:, None]),
+        _listed(occupied[:, :, None] & there[:, None], own[:, :, None], door[:, None]),
+    ]
+    if sweeps is not None:
+        moving, real = swept(body, sweeps)
+        real = real & occupied[:, :, None]
+        things.append(_packed(moving))
+        swept_by = _numbers(real, first_sweep)[..., None]
+        others = mates & ~torch.eye(slots, dtype=torch.bool, device=occupied.device)
+        pairs += [
+            _listed(real[..., None] & others[:, :, None], swept_by, own[:, None, None]),
+            _listed(real[..., None] & there[:, None, None], swept_by, door[:, None, None]),
+        ]
+    listed = torch.cat(things)
+    left, right, owner = (torch.cat(parts) for parts in zip(*pairs, strict=True))
+    a, b = _unpacked(listed.detach()[left]), _unpacked(listed.detach()[right])
+    reach = (a.half**2).sum(-1).sqrt() + (b.half**2).sum(-1).sqrt()
+    meet = torch.nonzero(((b.centre - a.centre) ** 2).sum(-1) < reach**2)[:, 0]
+    depth = overlap(_unpacked(listed[left[meet]]), _unpacked(listed[right[meet]]))
+    phi = torch.zeros_like(body.low[:, 0]).index_add(0, owner[meet], depth**2 / 2)
+    standing = torch.nonzero(occupied.flatten())[:, 0]
+    phi = phi.index_add(0, standing // slots, outside(_unpacked(listed[standing]), rooms, standing // slots) / 2)
     if sweeps is None:
         return phi
-    moving, real = swept(body, sweeps)
-    real = real & occupied[:, :, None]
-    flat = Prisms(*(part.flatten(1, 2)[:, :, None] for part in moving))
-    used = real.flatten(1)
-    hits = (used[:, :, None] & occupied[:, None]) & other.repeat_interleave(sweeps.shape[2], 0)
-    phi = phi + 0.5 * (overlap(flat, static) ** 2 * hits).sum((1, 2))
-    phi = phi + 0.5 * (overlap(flat, door) ** 2 * (used[:, :, None] & there[:, None])).sum((1, 2))
-    return phi + 0.25 * room_scale * (outside(Prisms(*(part.flatten(1, 2) for part in moving)), rooms) * used).sum(1)
+    moved = torch.nonzero(real.flatten())[:, 0]
+    room = moved // real[0].numel()
+    return phi.index_add(0, room, outside(_unpacked(listed[first_sweep + moved]), rooms, room) / 4)
+
+
+def _packed(prisms: Prisms) -> Tensor:
+    """Prisms (..., ) as the rows (n, 8) of a list."""
+    return torch.cat([prisms.centre, prisms.half, prisms.axis, prisms.low[..., None], prisms.high[..., None]], -1).flatten(0, -2)
+
+
+def _unpacked(rows: Tensor) -> Prisms:
+    """Undo `_packed`."""
+    centre, half, axis, low, high = rows.split([2, 2, 2, 1, 1], -1)
+    return Prisms(centre, half, axis, low[..., 0], high[..., 0])
+
+
+def _numbers(like: Tensor, first: int) -> Tensor:
+    """Return the places in the list of what `like` (B, ...) selects from, counted from `first`."""
+    return torch.arange(first, first + like.numel(), device=like.device).view_as(like)
+
+
+def _listed(chosen: Tensor, left: Tensor, right: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+    """Return the places of both things of each chosen pair, and its room; `chosen` (B, ...), to whose shape the places broadcast."""
+    return left.expand_as(chosen)[chosen], right.expand_as(chosen)[chosen], torch.nonzero(chosen)[:, 0]
 
 
 def quantity_target(empty_logit: Tensor, count: Tensor) -> Tensor:

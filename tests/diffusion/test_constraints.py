@@ -12,18 +12,22 @@ from pipeline.diffusion.codec import EMPTY_SCALE, Codec
 from pipeline.diffusion.constraints import (
     Prisms,
     articulated_collision,
+    bodies,
     doorways,
     heuristic_sweeps,
     outside,
     overlap,
     quantity,
     quantity_target,
+    swept,
 )
 from pipeline.diffusion.floor import floor_tokens
 from pipeline.diffusion.guidance import articulation_descent, quantity_descent, size_shift
 from pipeline.diffusion.relations import Boxes, boxes_of
 from pipeline.diffusion.settings import SampleSettings
 from tests.diffusion.small_world import make_context
+
+FIELDS = ("centre", "half", "bottom", "height", "axis")
 
 
 def prism(x, y, w, d, yaw=0.0, low=0.0, high=1.0):
@@ -77,24 +81,25 @@ def body(rows):
     )
 
 
-def test_outside_is_zero_inside_and_grows_beyond_the_wall():
-    from pipeline.diffusion.constraints import bodies
+def beyond_walls(row, rooms):
+    return outside(Prisms(*(part[0] for part in bodies(body([row])))), rooms, torch.zeros(1, dtype=torch.long))
 
+
+def test_outside_is_zero_inside_and_grows_beyond_the_wall():
     context, rooms = room()
     half = (context.polygon.max(0) - context.polygon.min(0)) / 2
-    reach = [float(outside(bodies(body([[half[0] - 0.5 + beyond, 0.0, 1.0, 1.0, 0.0]])), rooms)) for beyond in (-0.1, 0.1, 0.3)]
+    reach = [float(beyond_walls([half[0] - 0.5 + beyond, 0.0, 1.0, 1.0, 0.0], rooms)) for beyond in (-0.1, 0.1, 0.3)]
     assert reach[0] == 0
     assert 0 < reach[1] < reach[2]
 
 
 def test_outside_knows_the_notch_of_an_l_shaped_room():
-    from pipeline.diffusion.constraints import bodies
     from pipeline.diffusion.context import RoomContext
 
     polygon = np.array([[0, 0], [4, 0], [4, 2], [2, 2], [2, 4], [0, 4]], float)
     rooms = room_batch([floor_tokens(RoomContext("bedroom", polygon))], [0], [-1], [2.7])
-    assert float(outside(bodies(body([[-1, -1, 1.0, 1.0, 0.3]])), rooms)) == 0
-    assert float(outside(bodies(body([[1, 1, 1.0, 1.0, 0.3]])), rooms)) > 0
+    assert float(beyond_walls([-1, -1, 1.0, 1.0, 0.3], rooms)) == 0
+    assert float(beyond_walls([1, 1, 1.0, 1.0, 0.3], rooms)) > 0
 
 
 def test_a_leaf_keeps_its_quarter_disc_free():
@@ -122,6 +127,36 @@ def test_a_joint_s_sweep_counts_although_the_bodies_are_apart():
     turned = body([[0, 0.4, 1.0, 0.5, math.pi], [0, -0.5, 0.8, 0.5, 0.0]])
     assert float(articulated_collision(turned, both, sweeps, rooms)) == 0
     assert float(articulated_collision(boxes, torch.tensor([[True, False]]), sweeps, rooms)) == 0
+
+
+def test_the_penalty_is_the_sum_over_pairs():
+    """Every pair counts once, whatever the order and the emptiness of slots, and rooms of a batch do not see each other."""
+    rng = seeds.generator(3, "pairs")
+    context, single = room()
+    rooms = room_batch([floor_tokens(context)] * 3, [0] * 3, [-1] * 3, [2.7] * 3)
+    rows = rng.uniform([-2, -2, 0.3, 0.3, -3], [2, 2, 1.2, 1.2, 3], (3, 6, 5))
+    occupied = torch.from_numpy(rng.random((3, 6)) < 0.7)
+    sweeps = torch.full((3, 6, 2, 2, 3), torch.nan)
+    sweeps[:, ::2, 1] = torch.tensor([[-0.3, -0.9, 0.1], [0.3, -0.2, 0.9]])
+    boxes = [body(r.tolist()) for r in rows]
+    together = articulated_collision(Boxes(*(torch.cat([getattr(b, k) for b in boxes]) for k in FIELDS)), occupied, sweeps, rooms)
+    doors = [Prisms(*(part[0, k] for part in doorways(single)[0])) for k in torch.nonzero(doorways(single)[1][0])[:, 0]]
+    for n, box in enumerate(boxes):
+        made = bodies(box)
+        moving, real = swept(made, sweeps[n : n + 1])
+        held = torch.nonzero(occupied[n])[:, 0].tolist()
+        things = {i: Prisms(*(part[0, i] for part in made)) for i in held}
+        arms = {(i, k): Prisms(*(part[0, i, k] for part in moving)) for i in held for k in range(2) if real[0, i, k]}
+        depths = [overlap(things[i], things[j]) for i in held for j in held if i < j]
+        depths += [overlap(arm, things[j]) for (i, _), arm in arms.items() for j in held if i != j]
+        depths += [overlap(p, door) for p in (*things.values(), *arms.values()) for door in doors]
+        beyond = [0.5 * _beyond(p, single) for p in things.values()] + [0.25 * _beyond(p, single) for p in arms.values()]
+        assert float(together[n]) == pytest.approx(float(sum(d**2 / 2 for d in depths)) + sum(beyond), rel=1e-5, abs=1e-6)
+    assert together.min() > 0
+
+
+def _beyond(prism, rooms):
+    return float(outside(Prisms(*(part[None] for part in prism)), rooms, torch.zeros(1, dtype=torch.long)))
 
 
 def test_descending_lowers_the_penalty_where_the_printed_sign_climbs(norm):
