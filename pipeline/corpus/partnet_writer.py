@@ -16,13 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline import seeds
-from pipeline.corpus.furniture import wavefront
+from pipeline.corpus.furniture import texture, wavefront
 from pipeline.corpus.furniture.assembly import shape_of
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.furniture.links import Component, Frame, LinkRecord, link_records, without_handles
 from pipeline.corpus.furniture.shape import Mover, Shape, colliders
+from pipeline.corpus.furniture.texture import Atlas
 from pipeline.corpus.furniture.wavefront import mesh_frame
 
+TEXTURE = "images/texture_0.png"  # in an object's folder
 BASE_RPY = "1.570796326794897 0 -1.570796326794897"
 WORLD = np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # mesh frame to PartNet's world
 # Corners of a part's box in its own axes, in GAPartNet's order.
@@ -46,8 +48,11 @@ def write_model(model: Model, folder: Path) -> None:
     links = link_records(shape, frame)
     objects = folder / "textured_objs"
     objects.mkdir(parents=True, exist_ok=True)
+    sheet = texture.atlas(shape.pieces())
     for component in (c for link in links for c in link.components):
-        _write_component(component, frame, objects)
+        _write_component(component, frame, objects, sheet)
+    (folder / TEXTURE).parent.mkdir(exist_ok=True)
+    (folder / TEXTURE).write_bytes(texture.paint(seeds.generator(model.seed, "corpus.furniture.texture"), sheet))
     merged = without_handles(links)
     name = f"partnet_{seeds.key(model.seed, 'corpus.furniture.shapenet'):032x}"
     _write_text(folder / "mobility.urdf", urdf(name, merged, frame))
@@ -195,15 +200,15 @@ def meta(model: Model, name: str) -> dict[str, str]:
     }
 
 
-def _write_component(component: Component, frame: Frame, folder: Path) -> None:
-    """Write the OBJ and MTL of one component, a group per material."""
+def _write_component(component: Component, frame: Frame, folder: Path, sheet: Atlas) -> None:
+    """Write the OBJ and MTL of one component, a group per material; all components of an object share one texture."""
     finishes = list(dict.fromkeys(piece.finish for piece in component.pieces))
     names = {finish: wavefront.material_name(finish, k) for k, finish in enumerate(finishes)}
     stem = f"original-{component.number}"
     groups = [wavefront.Group(stem, names[f], tuple(p for p in component.pieces if p.finish == f)) for f in finishes]
-    text = wavefront.text(groups, f"{stem}.mtl")
+    text = wavefront.text(groups, f"{stem}.mtl", sheet)
     (folder / f"{stem}.obj").write_bytes(text.obj(frame.scale, -frame.centre))
-    (folder / f"{stem}.mtl").write_bytes(wavefront.mtl([(names[f], f) for f in finishes]))
+    (folder / f"{stem}.mtl").write_bytes(wavefront.mtl([(names[f], f) for f in finishes], f"../{TEXTURE}"))
     if not component.collides_as_seen:
         convex = wavefront.bare(f"convex-{component.number}", colliders(component.pieces))
         (folder / f"convex-{component.number}.obj").write_bytes(convex.obj(frame.scale, -frame.centre))

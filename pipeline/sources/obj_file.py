@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,12 +51,13 @@ class ObjFile:
 
 @dataclass(frozen=True, slots=True)
 class MtlMaterial:
-    """What we use of an MTL entry: diffuse colour, opacity and the diffuse map's path as written."""
+    """What we use of an MTL entry: diffuse colour, opacity, shininess (Ns), metalness (Pm) and the diffuse map's path as written."""
 
     name: str
     diffuse: tuple[float, float, float] = (0.8, 0.8, 0.8)
     opacity: float = 1.0
     shininess: float = 50.0
+    metallic: float = 0.0
     map: str = ""
 
 
@@ -153,10 +154,12 @@ def _set(entry: MtlMaterial, key: str, rest: str) -> MtlMaterial:
     elif key == "Ns":
         value = _finite(rest.split()[:1])
         changes = {"shininess": value[0]} if value else {}
+    elif key == "Pm":
+        value = _finite(rest.split()[:1])
+        changes = {"metallic": min(max(value[0], 0.0), 1.0)} if value else {}
     elif key == "map_Kd":
         changes = {"map": _without_options(rest)}
-    fields = {"name": entry.name, "diffuse": entry.diffuse, "opacity": entry.opacity, "shininess": entry.shininess, "map": entry.map}
-    return MtlMaterial(**{**fields, **changes})  # type: ignore[arg-type]
+    return replace(entry, **changes)  # type: ignore[arg-type]
 
 
 def _without_options(rest: str) -> str:

@@ -38,18 +38,22 @@ class Palette:
         """Return the index of a material whose texture's path is relative to the folder `base`."""
         texture = self.image(entry.map, base) if entry.map else None
         color = (1.0, 1.0, 1.0) if texture else entry.diffuse
-        return self.add(color, entry.opacity, texture, roughness=_roughness(entry.shininess))
+        return self.add(color, entry.opacity, texture, _roughness(entry.shininess), entry.metallic)
 
-    def add(self, color: tuple[float, float, float], opacity: float, texture: str | None, roughness: float = 0.6) -> int:
+    def add(
+        self, color: tuple[float, float, float], opacity: float, texture: str | None, roughness: float = 0.6, metallic: float = 0.0
+    ) -> int:
         """Return the index of a material of sRGB `color`, made when it is new."""
         linear = (_linear(color[0]), _linear(color[1]), _linear(color[2]))
-        return self._made(linear, opacity, texture, roughness)
+        return self._made(linear, opacity, texture, roughness, metallic)
 
-    def _made(self, linear: tuple[float, float, float], opacity: float, texture: str | None, roughness: float) -> int:
-        plain = Material("", linear, roughness, 0.0, round(max(opacity, 0.05), 4), texture)
+    def _made(
+        self, linear: tuple[float, float, float], opacity: float, texture: str | None, roughness: float, metallic: float = 0.0
+    ) -> int:
+        plain = Material("", linear, roughness, metallic, round(max(opacity, 0.05), 4), texture)
         if plain not in self._index:
             self._index[plain] = len(self.materials)
-            self.materials.append(Material(f"material_{len(self.materials)}", linear, roughness, 0.0, plain.opacity, texture))
+            self.materials.append(Material(f"material_{len(self.materials)}", linear, roughness, metallic, plain.opacity, texture))
         return self._index[plain]
 
     def own(self, color: tuple[float, float, float, float], roughness: float, image: bytes, where: str) -> int:

@@ -39,7 +39,7 @@ def main_material(model: Model) -> str:
 def shape_of(model: Model) -> Shape:
     """Return the shape of a model, its box exactly `model.size`; static models have their movers fixed."""
     rng = seeds.generator(model.seed, "corpus.furniture.shape")
-    shape = fitted(BUILDERS[model.category](rng, model.form, model.size, scheme_of(model)), model.size, groups=model.articulated)
+    shape = fitted(BUILDERS[model.category](rng, model.form, model.size, scheme_of(model)), model.size)
     return shape if model.articulated else frozen(shape)
 
 

@@ -8,13 +8,13 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from pipeline import seeds
 from pipeline.corpus.furniture.finishes import Pattern
 
 Tones = NDArray[np.float64]
 SIDE = 512  # pixels of a pattern's master, which repeats
+_ROWS, _COLUMNS = np.fft.fftfreq(SIDE), np.fft.rfftfreq(SIDE)  # [per pixel]
 SCALE = 256.0  # [pixels per metre] of the masters: they span two metres
 # How far from its colour a finish goes, as a share of it, where it has no second colour.
 CONTRAST: Mapping[str, float] = {
@@ -41,8 +41,10 @@ def _spread(values: Tones) -> Tones:
 
 
 def _noise(rng: np.random.Generator, rows: float, columns: float) -> Tones:
-    """Return smooth noise whose features are `rows` x `columns` pixels; it repeats."""
-    return np.asarray(ndimage.gaussian_filter(rng.standard_normal((SIDE, SIDE)), (rows, columns), mode="wrap"))
+    """Return smooth noise whose features are `rows` x `columns` pixels; it repeats: a Gaussian filter, by its spectrum."""
+    along, across = (np.exp(-2 * (math.pi * sigma * frequency) ** 2) for sigma, frequency in ((rows, _ROWS), (columns, _COLUMNS)))
+    spectrum = np.fft.rfft2(rng.standard_normal((SIDE, SIDE))) * along[:, None] * across
+    return np.fft.irfft2(spectrum, (SIDE, SIDE))
 
 
 @functools.cache

@@ -102,7 +102,8 @@ def colliders(parts: Iterable[Piece]) -> list[Solid]:
     groups: dict[str, list[Solid]] = {}
     for piece in parts:
         (groups.setdefault(piece.group, []) if piece.group else alone).append(piece.solid)
-    return alone + [_smaller(_hull_or_box(members)) for members in groups.values()]
+    hulls = [_hull_or_box(members) for members in groups.values()]
+    return alone + [_smaller(made, *made.bounds()) for made in hulls]
 
 
 def _hull_or_box(members: list[Solid]) -> Solid:
@@ -115,15 +116,14 @@ def _hull_or_box(members: list[Solid]) -> Solid:
     return made
 
 
-def fitted(shape: Shape, size: Vector, *, groups: bool = False) -> Shape:
+def fitted(shape: Shape, size: Vector) -> Shape:
     """Return the shape scaled to `size` (w, d, h) exactly and centred over the origin, bottom at 0.
 
     Builders come within a few percent of their box; this takes up the rest. Lengths of sliding joints scale along.
-    Every solid is drawn in by CLEARANCE first, so that no two share a corner and readers that weld vertices keep them apart.
-    With `groups` the pieces of a group are left as they are, without a seam between them: only their hulls collide.
+    Every component is drawn in by CLEARANCE first, so that no two touch; the pieces of one meet without a seam.
     """
-    movers = tuple(replace(m, pieces=_drawn_in(m.pieces, groups=groups)) for m in shape.movers)
-    shape = Shape(_drawn_in(shape.base, groups=groups), movers)
+    movers = tuple(replace(m, pieces=_drawn_in(m.pieces)) for m in shape.movers)
+    shape = Shape(_drawn_in(shape.base), movers)
     low, high = shape.bounds()
     factors = np.asarray(size, float) / (high - low)
     offset = -np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
@@ -141,13 +141,17 @@ def fitted(shape: Shape, size: Vector, *, groups: bool = False) -> Shape:
     return Shape(place(shape.base), tuple(placed))
 
 
-def _drawn_in(parts: tuple[Piece, ...], *, groups: bool) -> tuple[Piece, ...]:
-    return tuple(piece if groups and piece.group else replace(piece, solid=_smaller(piece.solid)) for piece in parts)
+def _drawn_in(parts: tuple[Piece, ...]) -> tuple[Piece, ...]:
+    """Draw in the components of one body: pieces of a group, or else of one name."""
+    components: dict[str, list[NDArray[np.float64]]] = {}
+    for piece in parts:
+        components.setdefault(piece.group or piece.name, []).append(piece.solid.bounds())
+    bounds = {name: (np.min([b[0] for b in found], axis=0), np.max([b[1] for b in found], axis=0)) for name, found in components.items()}
+    return tuple(replace(piece, solid=_smaller(piece.solid, *bounds[piece.group or piece.name])) for piece in parts)
 
 
-def _smaller(solid: Solid) -> Solid:
-    """Return the solid scaled about the centre of its box so that it is CLEARANCE smaller on every side."""
-    low, high = solid.bounds()
+def _smaller(solid: Solid, low: NDArray[np.float64], high: NDArray[np.float64]) -> Solid:
+    """Return the solid scaled about the centre of a box so that the box is CLEARANCE smaller on every side."""
     centre, extent = (low + high) / 2, high - low
     factors = 1 - 2 * np.minimum(CLEARANCE, 0.1 * extent) / extent
     return Solid((solid.vertices - centre) * factors + centre, solid.faces)

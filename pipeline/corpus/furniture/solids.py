@@ -59,7 +59,10 @@ class Solid:
 
     def bounds(self) -> NDArray[np.float64]:
         """Return the lower and upper corner (2, 3)."""
-        return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+        made = np.empty((2, 3))
+        self.vertices.min(axis=0, out=made[0])
+        self.vertices.max(axis=0, out=made[1])
+        return made
 
     def moved(self, offset: Vector) -> Solid:
         """Return the solid translated by `offset` (3,)."""
@@ -85,6 +88,34 @@ class Solid:
     def mirrored(self) -> Solid:
         """Return the mirror image in x, faces turned so that they still look outwards."""
         return Solid(self.vertices * np.array([-1.0, 1.0, 1.0]), tuple(f[::-1] for f in self.faces))
+
+
+def merged(solids: Sequence[Solid]) -> tuple[NDArray[np.float64], Topology]:
+    """Return the solids as one: their vertices (V, 3) in a row, and the index arrays of all their faces."""
+    shared = [topology(solid.faces) for solid in solids]
+    vertices = np.concatenate([solid.vertices for solid in solids])
+    first = _offsets([len(solid.vertices) for solid in solids])
+    corner = _offsets([len(t.corners) for t in shared])
+    return vertices, Topology(
+        np.concatenate([t.corners + k for t, k in zip(shared, first, strict=True)]),
+        np.concatenate([t.lengths for t in shared]),
+        np.concatenate([t.starts + k for t, k in zip(shared, corner, strict=True)]),
+        np.concatenate([t.following + k for t, k in zip(shared, corner, strict=True)]),
+        np.concatenate([t.triangles + np.int32(k) for t, k in zip(shared, first, strict=True)]),
+    )
+
+
+def _offsets(counts: Sequence[int]) -> list[int]:
+    return [0, *np.cumsum(counts[:-1]).tolist()]
+
+
+def normals(vertices: NDArray[np.float64], faces: Topology) -> NDArray[np.float64]:
+    """Return the unit normal of each face (F, 3), by Newell's sum over its edges."""
+    p = vertices[faces.corners] - vertices[faces.corners[faces.starts]].repeat(faces.lengths, axis=0)
+    q = p[faces.following]
+    crossed = np.stack([p[:, i] * q[:, j] - p[:, j] * q[:, i] for i, j in ((1, 2), (2, 0), (0, 1))], axis=1)
+    made = np.add.reduceat(crossed, faces.starts, axis=0)
+    return np.asarray(made / np.maximum(np.sqrt((made**2).sum(axis=1, keepdims=True)), 1e-30))
 
 
 def stack(rings: Sequence[NDArray[np.float64]]) -> Solid:

@@ -40,11 +40,11 @@ def cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     finish = glaze(rng)
     if form == "tumbler":
         clear = Finish("clear_glass", (0.80, 0.86, 0.86), 0.05, 0.0, 0.35, density=2500)
-        return Shape(pieces("cup", vessel([(0.40 * w, 0.0), (0.5 * w, h)], 0.003, 0.006, 16), clear))
+        return Shape(pieces("cup", vessel([(0.40 * w, 0.0), (0.5 * w, h)], 0.003, 0.006, 24), clear))
     r = 0.5 * d
     x = r - w / 2  # the body stands left of the middle, the handle is right of it
     profile = [(0.92 * r, 0.0), (r, 0.12 * h), (r, h)] if form == "mug" else [(0.5 * r, 0.0), (0.86 * r, 0.4 * h), (r, h)]
-    body = [s.moved((x, 0, 0)) for s in vessel(profile, 0.005, 0.006, 16)]
+    body = [s.moved((x, 0, 0)) for s in vessel(profile, 0.005, 0.006, 20)]
     edge = x + r - 0.004
     loop = curve(
         [
@@ -74,7 +74,7 @@ def bowl(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     r = w / 2
     finish = Finish("turned_wood", shade(rng, WOODS["beech"]), 0.5, pattern="grain", density=650) if form == "wood" else glaze(rng)
     profile = [(0.42 * r, 0.0), (0.78 * r, 0.32 * h), (0.95 * r, 0.7 * h), (r, h)]
-    return Shape(pieces("bowl", vessel(profile, 0.006, 0.08 * h, 20), finish))
+    return Shape(pieces("bowl", vessel(profile, 0.006, 0.08 * h, 24), finish))
 
 
 def vase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -89,10 +89,11 @@ def vase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     }
     outline = shapes.get(form, [(0.62, 0.0), (0.8, 0.3), (1.0, 0.75), (0.7, 0.95), (0.74, 1.0)])
     profile = [(a * r, b * tall) for a, b in outline]
+    n = 16 if form == "twigs" else 24
     lower, upper = profile[: len(profile) - 2], profile[len(profile) - 3 :]
-    base = pieces("vase", revolve(lower, 20), finish)
+    base = pieces("vase", revolve(lower, n), finish)
     for (r0, z0), (r1, z1) in itertools.pairwise(upper):
-        base += pieces("neck", ring((r0, r1), (0.78 * r0, 0.78 * r1), (z0, z1), 20), finish)
+        base += pieces("neck", ring((r0, r1), (0.78 * r0, 0.78 * r1), (z0, z1), n), finish)
     if form != "twigs":
         return Shape(base)
     stems: list[Solid] = []

@@ -6,7 +6,7 @@ import functools
 import math
 import struct
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture import patterns
 from pipeline.corpus.furniture.finishes import Color, Finish
 from pipeline.corpus.furniture.shape import Piece
-from pipeline.corpus.furniture.solids import Solid, topology
 
 FINEST = 256.0  # [pixels per metre]
 LARGEST = 320  # pixels a side; a model too large for that at FINEST gets fewer per metre
@@ -45,39 +44,44 @@ class Atlas:
     height: int
     scale: float
 
-    def uv(self, solid: Solid, finish: Finish, number: int = 0) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """Return texture coordinates for a solid: `uv` (3 V, 2), and per face which of the three projections to use (F,).
+    def uv(self, pieces: Sequence[Piece], corners: Corners) -> NDArray[np.float64]:
+        """Return the texture coordinates (C, 2) of the corners of pieces.
 
-        Projection k looks along axis k; the longer extent lies along the grain (v). Coordinate row: k * V + vertex. Pieces of
-        one finish lie at different places of its field, by their `number`.
+        A face is seen along one axis; the longer extent of its piece across that axis lies along the grain (v). Pieces lie at
+        different places of their finish's field, by their place in the list.
         """
-        field = self.fields[self.finishes.index(finish)]
-        low, high = solid.bounds()
-        extent = high - low
-        local = (solid.vertices - low) * self.scale
-        if finish.pattern == "plain":
-            local = local * (min(field.width, field.height) - 2 * MARGIN) / max(float(extent.max()) * self.scale, 1e-9)
-            extent = extent * 0
-        sets = []
+        index = {finish: k for k, finish in enumerate(self.finishes)}
+        of = np.array([index[piece.finish] for piece in pieces])
+        whole, plain = (np.array([test(f.pattern) for f in self.finishes])[of] for test in (patterns.WHOLE.__contains__, "plain".__eq__))
+        field = np.array([(f.x, f.y, f.width, f.height) for f in self.fields], float)[of]
+        low, extent = corners.low, corners.high - corners.low
+        scale = np.where(plain, (PLAIN - 2 * MARGIN) / np.maximum(extent.max(axis=1), 1e-9), self.scale)
+        number = np.arange(len(pieces))[:, None]
+        axes, starts = np.empty((len(pieces), 3, 2), np.int64), np.empty((len(pieces), 3, 2))
         for axis in range(3):
             i, j = (a for a in range(3) if a != axis)
-            u, v = (i, j) if extent[j] >= extent[i] or finish.pattern in patterns.WHOLE else (j, i)
-            spare = np.array([field.width, field.height]) - 2 * MARGIN - self.scale * extent[[u, v]]
-            if finish.pattern in patterns.WHOLE:
-                spare = spare * 0
-            start = np.maximum(spare, 0) * np.array([(number * GOLDEN + 0.3 * axis) % 1, (number * GOLDEN**2 + 0.7 * axis) % 1])
-            sets.append((np.array([field.x, field.y]) + MARGIN + start + local[:, [u, v]]) / np.array([self.width, self.height]))
-        return np.concatenate(sets), np.argmax(np.abs(normals(solid)), axis=1)
+            along = ((extent[:, j] >= extent[:, i]) | whole)[:, None]
+            axes[:, axis] = np.where(along, (i, j), (j, i))
+            room = field[:, 2:] - 2 * MARGIN - scale[:, None] * np.take_along_axis(extent, axes[:, axis], axis=1)
+            place = np.concatenate([number * GOLDEN + 0.3 * axis, number * GOLDEN**2 + 0.7 * axis], axis=1) % 1
+            starts[:, axis] = field[:, :2] + MARGIN + np.where(whole[:, None], 0.0, np.maximum(room, 0)) * place
+        piece, side = corners.piece, corners.axis
+        local = np.take_along_axis(corners.points - low[piece], axes[piece, side], axis=1) * scale[piece, None]
+        return np.asarray((starts[piece, side] + local) / np.array([self.width, self.height]))
 
 
-def normals(solid: Solid) -> NDArray[np.float64]:
-    """Return the unit normal of each face (F, 3), by Newell's sum over its edges."""
-    shared = topology(solid.faces)
-    p = solid.vertices[shared.corners] - solid.vertices[shared.corners[shared.starts]].repeat(shared.lengths, axis=0)
-    q = p[shared.following]
-    crossed = np.stack([p[:, i] * q[:, j] - p[:, j] * q[:, i] for i, j in ((1, 2), (2, 0), (0, 1))], axis=1)
-    made = np.add.reduceat(crossed, shared.starts, axis=0)
-    return np.asarray(made / np.maximum(np.sqrt((made**2).sum(axis=1, keepdims=True)), 1e-30))
+@dataclass(frozen=True, slots=True)
+class Corners:
+    """The corners of faces of pieces: `points` (C, 3) [m], `piece` (C,) and `axis` (C,) that their face is seen along.
+
+    `low` and `high` (P, 3) are the pieces' bounds.
+    """
+
+    points: NDArray[np.float64]
+    piece: NDArray[np.int64]
+    axis: NDArray[np.int64]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
 
 
 def atlas(pieces: Iterable[Piece]) -> Atlas:

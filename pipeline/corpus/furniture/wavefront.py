@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.shape import Piece
-from pipeline.corpus.furniture.solids import Face, Solid, topology
-from pipeline.corpus.furniture.texture import Atlas, normals, srgb
+from pipeline.corpus.furniture.solids import Face, Solid, Topology, merged, normals, topology
+from pipeline.corpus.furniture.texture import Atlas, Corners, srgb
 
 
 def mesh_frame(points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -46,51 +46,41 @@ class Text:
 
 def text(groups: Sequence[Group], library: str, sheet: Atlas | None = None) -> Text:
     """Return groups of solids as OBJ text: triangles and quads as they are, larger faces in fans, flat normals."""
-    positions: list[NDArray[np.float64]] = []
-    directions: list[NDArray[np.float64]] = []
-    uvs: list[NDArray[np.float64]] = []
-    parts: list[tuple[str, Group, list[NDArray[np.int64]], list[NDArray[np.int64]]]] = []
-    vertices = faces = coordinates = 0
-    for group in groups:
-        tris: list[NDArray[np.int64]] = []
-        quads: list[NDArray[np.int64]] = []
-        for number, piece in enumerate(group.pieces):
-            solid = piece.solid
-            shared = topology(solid.faces)
-            normal = normals(solid)
-            positions.append(solid.vertices)
-            directions.append(normal)
-            face = np.repeat(np.arange(len(shared.lengths)), shared.lengths)
-            columns = [shared.corners + vertices, face + faces]
-            if sheet is not None:
-                uv, projection = sheet.uv(solid, piece.finish, number)
-                rows = projection[face] * len(solid.vertices) + shared.corners
-                used, inverse = np.unique(rows, return_inverse=True)
-                uvs.append(uv[used])
-                columns.insert(1, inverse + coordinates)
-                coordinates += len(used)
-            corners = np.stack(columns, axis=1)
-            tri, quad = faces_of(solid.faces)
-            tris.append(corners[tri].reshape(-1, 3 * len(columns)))
-            quads.append(corners[quad].reshape(-1, 4 * len(columns)))
-            vertices += len(solid.vertices)
-            faces += len(normal)
-        parts.append((group.name, group, tris, quads))
-    known, index = _distinct(np.round(mesh_frame(np.concatenate(directions)), 3) + 0.0)
-    width = 2 if sheet is None else 3
-    corner = "%d//%d" if sheet is None else "%d/%d/%d"
-    body = []
-    for name, group, tris, quads in parts:
-        body.append(f"g {name}\nusemtl {group.material}\n")
-        for count, found in ((3, np.concatenate(tris)), (4, np.concatenate(quads))):
-            table = found.reshape(-1, width)
-            table[:, -1] = index[table[:, -1]]
-            body.append(("f" + count * f" {corner}" + "\n") * len(found) % tuple((found + 1).ravel().tolist()))
+    pieces = [piece for group in groups for piece in group.pieces]
+    vertices, shared = merged([piece.solid for piece in pieces])
+    normal = normals(vertices, shared)
+    known, index = _distinct(np.round(mesh_frame(normal), 3) + 0.0)
+    columns = [shared.corners, np.repeat(index, shared.lengths)]
     lines = ["vn %g %g %g\n" * len(known) % tuple(known.ravel().tolist())]
-    if uvs:
-        uv = np.concatenate(uvs)
+    if sheet is not None:
+        corners = corners_of(pieces, vertices, shared, normal)
+        _, first, place = np.unique(3 * shared.corners + corners.axis, return_index=True, return_inverse=True)
+        uv = sheet.uv(pieces, corners)[first]
+        columns.insert(1, place)
         lines.insert(0, "vt %.4f %.4f\n" * len(uv) % tuple(uv.ravel().tolist()))
-    return Text(f"mtllib {library}\n", mesh_frame(np.concatenate(positions)), "".join(lines + body))
+    table = np.stack(columns, axis=1) + 1
+    corner = "%d//%d" if sheet is None else "%d/%d/%d"
+    start = 0
+    for group in groups:
+        lines.append(f"g {group.name}\nusemtl {group.material}\n")
+        rows: tuple[list[NDArray[np.int64]], list[NDArray[np.int64]]] = ([], [])
+        for piece in group.pieces:
+            for made, found in zip(rows, faces_of(piece.solid.faces), strict=True):
+                made.append(found.ravel() + start)
+            start += len(topology(piece.solid.faces).corners)
+        for count, parts in zip((3, 4), rows, strict=True):
+            wanted = table[np.concatenate(parts)]
+            lines.append(("f" + count * f" {corner}" + "\n") * (len(wanted) // count) % tuple(wanted.ravel().tolist()))
+    return Text(f"mtllib {library}\n", mesh_frame(vertices), "".join(lines))
+
+
+def corners_of(pieces: Sequence[Piece], vertices: NDArray[np.float64], shared: Topology, normal: NDArray[np.float64]) -> Corners:
+    """Return the corners of all faces of the pieces, each seen along the axis that its face looks along most."""
+    counts = [len(piece.solid.vertices) for piece in pieces]
+    firsts = np.concatenate([[0], np.cumsum(counts[:-1])]).astype(np.int64)
+    owner = np.repeat(np.arange(len(pieces)), counts)[shared.corners]
+    axis = np.repeat(np.argmax(np.abs(normal), axis=1), shared.lengths)
+    return Corners(vertices[shared.corners], owner, axis, np.minimum.reduceat(vertices, firsts), np.maximum.reduceat(vertices, firsts))
 
 
 @functools.lru_cache(maxsize=8192)
@@ -128,7 +118,10 @@ def material_name(finish: Finish, number: int) -> str:
 
 
 def mtl(finishes: Iterable[tuple[str, Finish]], texture: str | None = None) -> bytes:
-    """Return an MTL file; Kd is sRGB as in the real sets, Ns the Blinn-Phong exponent 2 / roughness^4 - 2."""
+    """Return an MTL file; Kd is sRGB as in the real sets, Ns the Blinn-Phong exponent 2 / roughness^4 - 2.
+
+    Metals say so by Pm, of the usual extension of MTL for physically based surfaces.
+    """
     lines = []
     for name, finish in finishes:
         shininess = min(900.0, max(1.0, 2 / finish.roughness**4 - 2))
@@ -138,6 +131,8 @@ def mtl(finishes: Iterable[tuple[str, Finish]], texture: str | None = None) -> b
             f"Ns {shininess:.1f}",
             f"d {finish.opacity:g}",
         ]
+        if finish.metallic:
+            lines.append(f"Pm {finish.metallic:g}")
         if texture and finish.opacity == 1.0:
             lines.append(f"map_Kd {texture}")
         lines.append("")

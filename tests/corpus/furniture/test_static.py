@@ -13,8 +13,9 @@ from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.lines import LINES
 from pipeline.corpus.furniture.shape import frozen, pieces
-from pipeline.corpus.furniture.solids import Solid, box, cushion, pillow
+from pipeline.corpus.furniture.solids import Solid, box, cushion, merged, normals, pillow, topology
 from pipeline.corpus.furniture.styles import MANNERS, SUITED
+from pipeline.corpus.furniture.wavefront import corners_of
 from pipeline.seeds import generator
 
 SMALL = {
@@ -53,7 +54,7 @@ def distinct(vectors):
 def directions(solid: Solid):
     """Distinct face normals and edge directions, up to sign."""
     edges = [solid.vertices[list(f)] - solid.vertices[[*f[1:], f[0]]] for f in solid.faces]
-    return distinct(texture.normals(solid)), distinct(np.concatenate(edges))
+    return distinct(normals(solid.vertices, topology(solid.faces))), distinct(np.concatenate(edges))
 
 
 def depth(a, axes_a, b, axes_b):
@@ -186,17 +187,16 @@ def test_texture_coordinates_keep_real_sizes_and_stay_in_their_field():
         "b", box((0, 0.5), (0, 0.5), (0, 0.1)), cloth
     )
     sheet = texture.atlas(parts)
+    vertices, shared = merged([p.solid for p in parts])
+    corners = corners_of(parts, vertices, shared, normals(vertices, shared))
+    pixels = sheet.uv(parts, corners) * [sheet.width, sheet.height]
     for number, part in enumerate(parts):
-        field = sheet.fields[sheet.finishes.index(part.finish)]
-        uv, projection = sheet.uv(part.solid, part.finish, number)
-        pixels = uv * [sheet.width, sheet.height]
-        assert (pixels >= [field.x, field.y]).all()
-        assert (pixels <= [field.x + field.width, field.y + field.height]).all()
-        for face, axis in zip(part.solid.faces, projection, strict=True):
-            rows = int(axis) * len(part.solid.vertices) + np.array(face)
-            around = np.linalg.norm(np.roll(pixels[rows], -1, axis=0) - pixels[rows], axis=1)
-            edges = part.solid.vertices[list(face)]
-            assert np.allclose(around, sheet.scale * np.linalg.norm(np.roll(edges, -1, axis=0) - edges, axis=1))
+        field, mine = sheet.fields[sheet.finishes.index(part.finish)], pixels[corners.piece == number]
+        assert (mine >= [field.x, field.y]).all()
+        assert (mine <= [field.x + field.width, field.y + field.height]).all()
+    around = np.linalg.norm(pixels[shared.following] - pixels, axis=1)
+    edges = vertices[shared.corners]
+    assert np.allclose(around, sheet.scale * np.linalg.norm(edges[shared.following] - edges, axis=1))
 
 
 def test_grain_runs_along_the_part():
