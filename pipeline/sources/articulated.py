@@ -52,7 +52,7 @@ def assets(
             real = solid.scaled(middle, fit.scale)
             stated, note = _stated(body, real, middle, fit, kind)
             weighed += note
-            links.append(link(body.name, _metric(body, middle, fit.scale), real, density(kind, ""), kind, stated))
+            links.append(link(body.name, _metric(body, middle, fit.scale), real, density(kind, "", fit.category), kind, stated))
         asset = Asset(
             f"{SHORT[shape.source]}_{stem}_{fit.category}", fit.category, np.round(extent * fit.scale, 4),
             tuple(links), tuple(_joint(j, middle, fit.scale) for j in shape.joints), tuple(shape.palette.materials),

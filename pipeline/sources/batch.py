@@ -28,6 +28,7 @@ from pipeline.sources.guarded import Folder
 from pipeline.sources.household import candidates, oriented, read_household
 from pipeline.sources.identity import split_of
 from pipeline.sources.library_rows import Scale, asset_row, joint_rows, part_rows
+from pipeline.sources.masses import held
 from pipeline.sources.partnet import URDFS, read_shape
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import FrontFilters, ModelLimits
@@ -186,11 +187,17 @@ def read_partnet(task: LibraryTask, found: Found) -> LibraryRows:
 
 
 def _keep(made: LibraryRows, task: LibraryTask, asset: Asset, scale: Scale, material: str = "", matter: str = "") -> None:
-    """Write an asset and its rows; `matter` is the material by which its density was chosen."""
+    """Write an asset and its rows; `matter` is the material by which its density was chosen.
+
+    A mass by volume is held to what such things weigh; a URDF to scale may state its own.
+    """
+    asset, heavier = (asset, 1.0) if asset.source == "urdf" else held(asset)
     file = f"{asset.asset_id}.safetensors"
     digest = save_asset(task.out / file, asset)
     split = split_of(asset.source_id)
-    made.assets.append(asset_row(asset, material=material, matter=matter, split=split, scale=scale, file=file, sha256=digest))
+    made.assets.append(
+        asset_row(asset, material=material, matter=matter, split=split, scale=scale, file=file, sha256=digest, heavier=heavier)
+    )
     made.joints += joint_rows(asset)
     made.parts += part_rows(asset)
 

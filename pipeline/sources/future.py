@@ -106,7 +106,7 @@ def read_model(
             collisions.append((points, group.faces))
     kind = taxonomy.categories[category].super
     matter = solids("base", collisions, limits, decompose)
-    base = link("base", visuals, matter, density(kind, info.material), kind)
+    base = link("base", visuals, matter, density(kind, info.material, category), kind)
     if not base.visuals or not base.colliders:
         raise SourceError("not_obj", info.model_id, "has no face with an area")
     asset = Asset(

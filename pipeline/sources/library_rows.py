@@ -23,8 +23,8 @@ class Scale:
     rms: float | None = None
 
 
-def asset_row(asset: Asset, *, material: str, matter: str, split: str, scale: Scale, file: str, sha256: str) -> Row:
-    """Return the row of the assets table; `matter` is the material by which the density was chosen."""
+def asset_row(asset: Asset, *, material: str, matter: str, split: str, scale: Scale, file: str, sha256: str, heavier: float) -> Row:
+    """Return the row of the assets table; `matter` is the material by which the density was chosen, `heavier` the factor on it."""
     return {
         "asset_id": asset.asset_id,
         "source": asset.source,
@@ -43,7 +43,7 @@ def asset_row(asset: Asset, *, material: str, matter: str, split: str, scale: Sc
         "joints": len(asset.joints),
         "triangles": int(sum(len(m.faces) for m in asset.meshes())),
         "mass": round(float(sum(link.mass for link in asset.links)), 4),
-        "density": density(asset.super_category, matter),
+        "density": round(density(asset.super_category, matter, asset.category) * heavier, 3),
         "licence": asset.licence,
         "file": file,
         "sha256": sha256,

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pipeline.sources.colliders import link, solids
+from pipeline.sources.densities import MINIMUM
 from pipeline.sources.merging import merged
 from pipeline.sources.settings import ModelLimits
 from pipeline.sources.solids import MAX_HULL, components, hull, mass_properties, parts, signed_volume
@@ -86,7 +87,7 @@ def test_inertia_of_a_link_is_physical():
     values = np.linalg.eigvalsh(made.inertia)
     assert values.min() > 0
     assert values[2] <= values[0] + values[1] + 1e-12
-    assert made.mass >= 0.05
+    assert made.mass >= MINIMUM
 
 
 def test_scaling_a_part_is_taking_the_scaled_mesh_apart():

@@ -13,7 +13,7 @@ from pipeline.corpus.furniture.bent import settled
 from pipeline.corpus.furniture.finishes import CERAMIC, GLASS, PLASTIC_WHITE, STEEL, Scheme
 from pipeline.corpus.furniture.fronts import lid, top_button
 from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, ring, rod, shell, slab, stack
+from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, hull, revolve, ring, rod, rounded, shell, slab, stack
 from pipeline.corpus.furniture.storage import Size
 
 
@@ -40,7 +40,9 @@ def toilet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     outer = [_oval(k * rx, span(k), z) for k, z in ((0.90, 0.62 * rim), (1.0, rim))]
     inner = [_oval(k * rx, span(k), z) for k, z in ((0.42, 0.62 * rim), (0.76, rim))]
     wall = shell(outer, inner)
-    bridge = box((-0.36 * w, 0.36 * w), (bowl_y[1] - 0.06, d / 2 - 0.02), (0.45 * rim, rim), 0.012)
+    heel, shelf = ((-0.27 * w, 0.27 * w), (cy + 0.3 * ry, d / 2 - 0.06)), ((-0.36 * w, 0.36 * w), (bowl_y[1] - 0.05, d / 2 - 0.012))
+    outlines = [(heel, 0.0), (shelf, 0.8 * rim), (shelf, rim)]
+    bridge = hull(np.concatenate([np.column_stack([rounded(*spans, 0.04), np.full(20, z)]) for spans, z in outlines]))
     half = (0.44 if form == "lever" else 0.5) * w  # a lever stands out of the tank's side
     tank = cushion((-half, half), tank_y, (rim, h - 0.03), 0.025)
     base = pieces("bowl", [foot, neck], CERAMIC) + staves("bowl", wall, CERAMIC)

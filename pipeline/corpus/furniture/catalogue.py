@@ -14,12 +14,11 @@ from pipeline import seeds, taxonomy
 from pipeline.corpus.furniture import sizes
 from pipeline.corpus.furniture.lines import LINES, OTHER_SUPER_CATEGORY, SUPER_CATEGORIES, Form, Line
 from pipeline.corpus.furniture.styles import MANNERS, SUITED
-from pipeline.entities.asset import Asset
 
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """One model. `size` (w, d, h) [m] is the box at rest in the object frame; `build` makes its meshes and joints.
+    """One model. `size` (w, d, h) [m] is the box at rest in the object frame; what `assembly.shape_of` gives it.
 
     `model_id` is a uuid4 for 3D-FUTURE, digits for PartNet-Mobility; `future_name` and `super_category` are what
     model_info.json calls it, `partnet_category` what meta.json does ("" for static models); `form` and `seed` decide its look.
@@ -46,12 +45,6 @@ class Model:
     def articulated(self) -> bool:
         """Whether the model is of the articulated library."""
         return bool(self.partnet_category)
-
-    def build(self) -> Asset:
-        """Make the asset: meshes, convex colliders, masses and (of articulated models) joints, in the object frame."""
-        from pipeline.corpus.furniture.assembly import build
-
-        return build(self)
 
 
 @dataclass(frozen=True, slots=True)

@@ -198,11 +198,15 @@ def suitcase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     """Build an upright case: wheels, a rear shell with a pull and a hoop to carry it by, a front shell that turns at the left."""
     w, d, h = size
     finish = _case_shell(rng)
-    wheel, t = 0.045, 0.01
+    wheel, t, face = 0.045, 0.01, 0.03  # the faces are thick enough to be rounded
     x, y, z = (-w / 2, w / 2), (-d / 2, d / 2), (wheel + 0.006, h - 0.035)
     middle = 0.0
-    shell = [box(x, (y[1] - t, y[1]), z, 0.004), box((x[0], x[0] + t), (middle, y[1] - t), z), box((x[1] - t, x[1]), (middle, y[1] - t), z)]
-    shell += [box((x[0] + t, x[1] - t), (middle, y[1] - t), (a, a + t)) for a in (z[0], z[1] - t)]
+    shell = [
+        box(x, (y[1] - face, y[1]), z, 0.009),
+        box((x[0], x[0] + t), (middle, y[1] - face), z),
+        box((x[1] - t, x[1]), (middle, y[1] - face), z),
+    ]
+    shell += [box((x[0] + t, x[1] - t), (middle, y[1] - face), (a, a + t)) for a in (z[0], z[1] - t)]
     base = pieces("rear", shell, finish)
     wheels = []
     for sx in (-1, 1):
@@ -217,11 +221,11 @@ def suitcase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     base += pieces("tubes", [rod((s * 0.2 * w, y[1] - 0.02, z[1]), (s * 0.2 * w, y[1] - 0.02, h - 0.014), 0.006) for s in (-1, 1)], STEEL)
     base += pieces("pull", box((-0.22 * w, 0.22 * w), (y[1] - 0.034, y[1] - 0.006), (h - 0.014, h), 0.004), PLASTIC, "line_fixed_handle")
     front = [
-        box(x, (y[0], y[0] + t), z, 0.004),
-        box((x[0], x[0] + t), (y[0] + t, middle - 0.003), z),
-        box((x[1] - t, x[1]), (y[0] + t, middle - 0.003), z),
+        box(x, (y[0], y[0] + face), z, 0.009),
+        box((x[0], x[0] + t), (y[0] + face, middle - 0.003), z),
+        box((x[1] - t, x[1]), (y[0] + face, middle - 0.003), z),
     ]
-    front += [box((x[0] + t, x[1] - t), (y[0] + t, middle - 0.003), (a, a + t)) for a in (z[0], z[1] - t)]
+    front += [box((x[0] + t, x[1] - t), (y[0] + face, middle - 0.003), (a, a + t)) for a in (z[0], z[1] - t)]
     made = pieces("front", front, finish)
     grooves = [
         box((x[0] + (k + 0.5) * w / 7 - 0.008, x[0] + (k + 0.5) * w / 7 + 0.008), (y[0] - 0.003, y[0]), (z[0] + 0.03, z[1] - 0.03))

@@ -80,7 +80,9 @@ LINES: Mapping[str, Line] = {
         "Dining Chair", "wood, shell, upholstered, spindle, wishbone, cantilever, medallion, cafe, folding=Folding chair", 26
     ),
     "lounge_chair": _line(
-        "Lounge Chair / Cafe Chair / Office Chair", "easy, office, wing, lounger, tub, sling, rattan, hanging>1.0=Hanging Chair", 24
+        "Lounge Chair / Cafe Chair / Office Chair",
+        "easy, office>0.85, wing>0.85, lounger, tub, sling, rattan, hanging>1.0=Hanging Chair",
+        24,
     ),
     "dressing_chair": _line("Dressing Chair", "stool*, back, drum*", 8),
     "chinese_chair": _line("Classic Chinese Chair", "official, rose, horseshoe", 9),

@@ -43,7 +43,9 @@ def cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
         return Shape(pieces("cup", vessel([(0.40 * w, 0.0), (0.5 * w, h)], 0.003, 0.006, 24), clear))
     r = 0.5 * d
     x = r - w / 2  # the body stands left of the middle, the handle is right of it
-    profile = [(0.92 * r, 0.0), (r, 0.12 * h), (r, h)] if form == "mug" else [(0.5 * r, 0.0), (0.86 * r, 0.4 * h), (r, h)]
+    profile = (
+        [(0.92 * r, 0.0), (r, 0.12 * h), (r, h)] if form == "mug" else [(0.5 * r, 0.0), (0.74 * r, 0.14 * h), (0.92 * r, 0.45 * h), (r, h)]
+    )
     body = [s.moved((x, 0, 0)) for s in vessel(profile, 0.005, 0.006, 20)]
     edge = x + r - 0.004
     loop = curve(
@@ -91,7 +93,7 @@ def vase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     profile = [(a * r, b * tall) for a, b in outline]
     n = 16 if form == "twigs" else 24
     lower, upper = profile[: len(profile) - 2], profile[len(profile) - 3 :]
-    base = pieces("vase", revolve(lower, n), finish)
+    base = pieces("vase", revolve(curve(lower, 3).tolist(), n), finish)
     for (r0, z0), (r1, z1) in itertools.pairwise(upper):
         base += pieces("neck", ring((r0, r1), (0.78 * r0, 0.78 * r1), (z0, z1), n), finish)
     if form != "twigs":

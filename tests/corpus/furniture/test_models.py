@@ -3,14 +3,10 @@
 from functools import cache
 
 import numpy as np
-import pytest
 
-from pipeline.corpus.furniture.assembly import build, mass_properties, shape_of
+from pipeline.corpus.furniture.assembly import shape_of
 from pipeline.corpus.furniture.catalogue import catalogue
-from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.lines import LINES
-from pipeline.corpus.furniture.shape import pieces
-from pipeline.corpus.furniture.solids import box
 
 
 def models():
@@ -71,33 +67,11 @@ def test_static_models_do_not_move():
     assert all(s.movers for _, s in moving())
 
 
-def test_assets():
-    for model in models()[::9]:
-        asset = model.build()
-        assert np.allclose(asset.size, model.size)
-        points = np.concatenate([m.vertices for m in asset.meshes()])
-        assert np.allclose(np.ptp(points, axis=0), model.size, atol=1e-5)
-        assert asset.articulated == model.articulated
-        for link in asset.links:
-            assert link.mass > 0
-            assert (np.linalg.eigvalsh(link.inertia) > 0).all()
-        total = sum(link.mass for link in asset.links)
-        assert 0.02 < total < 1000, (model, total)
-
-
-def test_mass_of_a_block():
-    block = pieces("block", box((1, 3), (0, 1), (0, 1)), Finish("x", (0, 0, 0), density=500))
-    mass, com, inertia = mass_properties(block)
-    assert mass == pytest.approx(1000)
-    assert np.allclose(com, (2, 0.5, 0.5))
-    assert np.allclose(inertia, np.diag([1000 / 12 * 2, 1000 / 12 * 5, 1000 / 12 * 5]))
-
-
 def test_building_twice_gives_the_same():
     for model in models()[::25]:
         shape_of.cache_clear()
-        first = build(model)
+        first = list(shape_of(model).pieces())
         shape_of.cache_clear()
-        second = build(model)
-        assert all(np.array_equal(a.vertices, b.vertices) for a, b in zip(first.meshes(), second.meshes(), strict=True))
-        assert first.materials == second.materials
+        second = list(shape_of(model).pieces())
+        assert all(np.array_equal(a.solid.vertices, b.solid.vertices) for a, b in zip(first, second, strict=True))
+        assert [p.finish for p in first] == [p.finish for p in second]
