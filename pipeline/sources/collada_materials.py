@@ -25,7 +25,7 @@ def material(name: str, elements: Elements) -> MtlMaterial:
     texture = shader.find("diffuse/texture")
     path = _image(texture.get("texture", ""), profile, elements) if texture is not None else ""
     shininess = _number(shader.findtext("shininess/float"), plain.shininess)
-    return MtlMaterial(name, color[:3], _opacity(shader), max(shininess, 0.0), path)
+    return MtlMaterial(name, color[:3], _opacity(shader), max(shininess, 0.0), map=path)
 
 
 def _following(element: Any, tag: str, elements: Elements) -> Any:
