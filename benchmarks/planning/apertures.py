@@ -70,7 +70,7 @@ def _stand(program: FloorProgram, plan: Plan, shapes: Shapes) -> Iterator[str]:
         )
         if o.width < least - 1e-3:
             yield f"{o.opening_id} ({o.kind}) is {o.width:.2f} m wide"
-        if abs(float(along @ normal)) > 1e-9 or np.abs(np.round(o.segment, 4) - o.segment).max() > 1e-9:
+        if abs(float(along @ normal)) > 1e-9 or np.abs(np.round(o.segment, 3) - o.segment).max() > 1e-9:
             yield f"{o.opening_id} has a crooked segment"
     for k, a in enumerate(plan.openings):
         for b in plan.openings[:k]:

@@ -47,8 +47,9 @@ class Run:
     half: float
 
     def segment(self, offset: float, width: float) -> Point:
-        """Return the end points of an opening of `width` that begins `offset` from the start."""
-        return np.round(np.array([self.start + offset * self.along, self.start + (offset + width) * self.along]), 4)
+        """Return the end points of an opening of `width` that begins `offset` from the start, to 1 mm."""
+        low, high = round(offset, 3), round(offset, 3) + round(width, 3)
+        return np.round(np.array([self.start + low * self.along, self.start + high * self.along]), 3)
 
 
 @dataclass

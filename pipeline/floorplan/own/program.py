@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from pipeline.entities.plan import Plan
-from pipeline.floorplan.program import Entrance, FloorProgram, Link, Range, RoomReq
+from pipeline.floorplan.program import Entrance, FloorProgram, Link, Range, RoomReq, Shell
 
+THINNEST, THICKEST = 0.05, 0.6  # that a program states [m]; walls measured in a plan may lie beyond
 KINDS = {"door": "door", "open": "open", "portal": "portal"}
 
 
@@ -35,5 +36,10 @@ def program_of(plan: Plan) -> FloorProgram:
         rooms=tuple(rooms),
         links=links,
         entrance=Entrance(into=plan.entrance),
+        shell=Shell(inner_wall=_wall(plan.inner_wall), outer_wall=_wall(plan.outer_wall), ceiling=max(r.height for r in plan.rooms)),
         only=True,
     )
+
+
+def _wall(thickness: float) -> float:
+    return round(min(max(thickness, THINNEST), THICKEST), 4)
