@@ -270,8 +270,9 @@ class Clause:
         return k + 1
 
     def point(self, e: Element, k: int, but: Group) -> Group:
-        """Return the rooms that a pronoun stands for; as an object it does not point at the subject `but`."""
-        return point(self.state, self.sentence[:k], e, but)
+        """Return the rooms that a pronoun stands for: after "but" the subject still, as an object what is not the subject `but`."""
+        same = self.subject if e.value == "it" and k and self.sentence[k - 1].kind == "but" else ()
+        return same or point(self.state, self.sentence[:k], e, but)
 
     def _enter(self, k: int, e: Element) -> int:
         group, j = self.after(k + 1, "enter", ())

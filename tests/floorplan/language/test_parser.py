@@ -246,3 +246,8 @@ def test_rooms_next_to_each_other_share_a_wall_and_no_door():
 def test_numbers_beyond_measure_are_refused(prompt):
     with pytest.raises(RefusedError):
         parse(prompt)
+
+
+def test_what_but_leads_on_is_still_about_the_subject():
+    said = "A flat with a bedroom. The bathroom should be reachable from the living room, not through the bedroom, but it should share a wall with it."
+    assert ("bathroom", "bedroom") in links(parse(said), "wall")
