@@ -25,7 +25,8 @@ def main(root: Path, paths: Sequence[Path]) -> None:
             raise UsageError("--use embedded goes with no other --use", "give it alone")
         plain = PreprocessSettings()
         changes: dict[tuple[str, str], str | None] = {
-            ("preprocess", key): getattr(plain, key) for key in ("front", "partnet", "front_licence", "partnet_licence")
+            ("preprocess", key): getattr(plain, key)
+            for key in ("front", "partnet", "peers", "front_licence", "partnet_licence", "peers_licence")
         }
         save(root, params.rewritten(text, {**changes, ("shard", "licence"): "CC0-1.0"}))
         for key in LICENCES:
@@ -36,6 +37,9 @@ def main(root: Path, paths: Sequence[Path]) -> None:
     changes = {("shard", "licence"): MADE}
     for source in found:
         changes |= {("preprocess", source.key): written(root, source.root), ("preprocess", f"{source.key}_licence"): LICENCES[source.key]}
+    if {source.key for source in found} & {"front", "peers"} == {"front"}:  # its houses, no longer somebody's rooms
+        changes[("preprocess", "peers")] = None
+        (root / inventory.FOLDER / "peers.csv").unlink(missing_ok=True)
     text = params.rewritten(text, changes)
     for source in found:
         files = inventory.write(root / inventory.FOLDER / f"{source.key}.csv", inventory.scan(source))

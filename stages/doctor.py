@@ -11,7 +11,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from pipeline import params
-from pipeline.sources.recognition import front_at, partnet_at
+from pipeline.errors import ContentError
+from pipeline.sources.recognition import front_at, partnet_at, peers_at
 from pipeline.sources.settings import PreprocessSettings
 from stages.runner import run
 
@@ -78,15 +79,17 @@ def packages() -> Iterator[str]:
 def sources(root: Path) -> Iterator[str]:
     """Yield what lies in the folders that stage `preprocess` reads."""
     settings = params.section(PreprocessSettings, params.read(root / "params.yaml"), "preprocess")
-    for key, path in (("front", settings.front), ("partnet", settings.partnet)):
+    describe = {"front": front_at, "partnet": partnet_at, "peers": peers_at}
+    named = {"front": settings.front, "partnet": settings.partnet} | ({"peers": settings.peers} if settings.peers else {})
+    for key, path in named.items():
         if path is None:
             yield f"+ {key}: none, by params.yaml"
         elif not (root / path).is_dir():
             yield f"- {key}: {path} is missing; `dvc repro corpus` makes the embedded data, `sfgen doctor --use PATH` names yours"
         else:
             try:
-                yield f"+ {key}: {front_at(root / path) if key == 'front' else partnet_at(root / path)}"
-            except OSError as error:
+                yield f"+ {key}: {describe[key](root / path)}"
+            except (OSError, ContentError) as error:
                 yield f"- {key}: {path} cannot be read ({error})"
 
 

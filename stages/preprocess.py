@@ -16,14 +16,14 @@ from tqdm import tqdm
 from pipeline import params, taxonomy
 from pipeline.errors import ContentError
 from pipeline.sources import batch, inventory
-from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
+from pipeline.sources.batch import Found, HouseTask, LibraryRows, LibraryTask
 from pipeline.sources.front_hints import hints
 from pipeline.sources.front_house import HouseRows
 from pipeline.sources.guarded import Folder
 from pipeline.sources.household import named_categories
 from pipeline.sources.mirrored import add_mirrored
 from pipeline.sources.peers_reader import PeersTask, kinds_of, peers_houses, read_peers
-from pipeline.sources.recognition import front_at, partnet_at
+from pipeline.sources.recognition import Source, front_at, partnet_at, peers_at
 from pipeline.sources.settings import PreprocessSettings
 from pipeline.sources.sink import write_houses, write_library
 from stages.runner import run
@@ -34,30 +34,38 @@ def main(root: Path) -> None:
     settings = params.section(PreprocessSettings, params.read(root / "params.yaml"), "preprocess")
     workers = settings.workers or cores()
     front = folder(root, "front", settings.front, () if settings.peers else (batch.HOUSES, batch.MODELS))
+    require_listed(root, front, front_at)
     partnet = folder(root, "partnet", settings.partnet, ()) if settings.partnet else None
-    library = read_library(root, front, partnet, settings, workers)
-    step, task, houses = homes(root, front, library, settings)
+    objects = batch.partnet_objects(partnet) if partnet else []
+    if partnet:
+        require_listed(root, partnet, lambda path: partnet_at(path, objects))
+    peers = folder(root, "peers", settings.peers, ()) if settings.peers else None
+    if peers:
+        require_listed(root, peers, peers_at)
+    library = read_library(root, front, partnet, objects, settings, workers)
+    step, task, houses = homes(front, peers, library, settings)
     out = root / "data" / "tables"
     read = progress(batch.each(step, task, houses, workers), "houses", len(houses))
-    summary = write_houses(out, read, library, root / settings.peers if settings.peers else front)
+    summary = write_houses(out, read, library, peers or front)
     library.assets += add_mirrored(root / "data" / "assets", library.assets, summary.assets)
     write_library(out, library, summary)
     sys.stdout.writelines(f"{line}\n" for line in summary.lines())
 
 
 def homes(
-    root: Path, front: Path, library: LibraryRows, settings: PreprocessSettings
+    front: Path, peers: Path | None, library: LibraryRows, settings: PreprocessSettings
 ) -> tuple[Callable[[Any, Any], HouseRows], Any, Sequence[Any]]:
     """Return how a house is read, what each of them needs, and the houses: 3D-FRONT files, or the peers' cached rooms."""
-    if settings.peers:
-        source = folder(root, "peers", settings.peers, ())
-        kinds = kinds_of(source)
-        return read_peers, PeersTask(source, kinds, library.models, settings.filters, settings.front_licence), peers_houses(source, kinds)
+    if peers:
+        kinds = kinds_of(peers)
+        return read_peers, PeersTask(peers, kinds, library.models, settings.filters, settings.peers_licence), peers_houses(peers, kinds)
     return batch.read_front, HouseTask(front, library.models, settings.filters, settings.front_licence), batch.house_files(front)
 
 
-def read_library(root: Path, front: Path, partnet: Path | None, settings: PreprocessSettings, workers: int) -> LibraryRows:
-    """Read all models, write their assets, and remove assets of earlier runs."""
+def read_library(
+    root: Path, front: Path, partnet: Path | None, objects: Sequence[Found], settings: PreprocessSettings, workers: int
+) -> LibraryRows:
+    """Read all models, those of `partnet` being `objects`, write their assets, and remove assets of earlier runs."""
     out, cache = root / "data" / "assets", root / ".cache" / "coacd"
     library = LibraryRows()
     houses = [] if settings.peers else batch.house_files(front)
@@ -68,10 +76,9 @@ def read_library(root: Path, front: Path, partnet: Path | None, settings: Prepro
         for made in progress(batch.each(batch.read_future, task, infos, workers), "models", len(infos)):
             library.add(made)
     if partnet:
-        names = batch.partnet_objects(partnet)
         categories = named_categories(Folder.at(partnet))
         task = LibraryTask(partnet, out, settings.models, settings.partnet_licence, cache, categories=categories)
-        for made in progress(batch.each(batch.read_partnet, task, names, workers), "articulated", len(names)):
+        for made in progress(batch.each(batch.read_partnet, task, objects, workers), "articulated", len(objects)):
             library.add(made)
     if not library.assets and not settings.peers:
         raise ContentError(f"{front} gives no usable model", "check the folders in section preprocess of params.yaml")
@@ -89,9 +96,14 @@ def folder(root: Path, key: str, path: str, parts: Iterable[str]) -> Path:
         if not part.is_dir():
             remedy = "name the folder of the data with `sfgen doctor --use PATH`, or make the embedded corpus with `dvc repro corpus`"
             raise ContentError(f"preprocess.{key}: {part} is {'no folder' if part.exists() else 'missing'}", remedy)
-    if key != "peers" and not found.resolve().is_relative_to((root / "data" / "raw").resolve()):  # what stage corpus made is DVC's to watch
-        inventory.require_match(root / inventory.FOLDER / f"{key}.csv", front_at(found) if key == "front" else partnet_at(found))
     return found
+
+
+def require_listed(root: Path, path: Path, describe: Callable[[Path], Source]) -> None:
+    """Raise ContentError when a copy is not what its inventory lists; what stage corpus made is DVC's to watch."""
+    if not path.resolve().is_relative_to((root / "data" / "raw").resolve()):
+        source = describe(path)
+        inventory.require_match(root / inventory.FOLDER / f"{source.key}.csv", source)
 
 
 def progress(results: Iterable[Any], name: str, total: int) -> Iterable[Any]:

@@ -44,6 +44,7 @@ class PreprocessSettings:
     peers: str | None = None
     front_licence: str = "CC0-1.0"
     partnet_licence: str = "CC0-1.0"
+    peers_licence: str = "LicenseRef-3D-FRONT-3D-FUTURE"
     workers: int = 0  # processes; 0: one per core
     filters: FrontFilters = FrontFilters()
     models: ModelLimits = ModelLimits()

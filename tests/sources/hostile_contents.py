@@ -263,7 +263,7 @@ DAES = {  # content of a mesh of a URDF by itself -> reason
         "too_large",
     ),
     "a_billion_values_declared": (collada.dae().replace(b'count="8" stride', b'count="1000000000" stride'), "not_obj"),
-    "many_numbers": (collada.dae().replace(b"<p>", b"<p>" + b"0 0 0 " * 2_700_000), "too_large"),
+    "many_numbers": (collada.dae().replace(b"<p>", b"<p>" + b"0 0 0 " * 2_790_000 + b"9 9 9 "), "not_obj"),
     "nan": (collada.dae().replace(b"-0.5 ", b"nan ", 1), "bad_number"),
     "texture_elsewhere": (collada.dae(diffuse=collada.TEXTURE, image="../../../secret.png"), "unsafe_path"),
     "texture_by_scheme": (collada.dae(diffuse=collada.TEXTURE, image="file:///etc/passwd"), "unsafe_path"),

@@ -7,8 +7,12 @@ import pytest
 
 from pipeline import params
 from pipeline.errors import ContentError, UsageError
-from pipeline.sources import inventory
-from stages import adopt, preprocess
+from pipeline.sources import batch, inventory, recognition
+from pipeline.sources.peers_files import BOXES, STATS, stats, write_stats
+from pipeline.sources.peers_labels import KINDS
+from pipeline.sources.recognition import recognised
+from stages import adopt, doctor, preprocess
+from tests.sources import making
 from tests.sources.test_recognition import front, partnet
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -87,3 +91,62 @@ def test_dvc_sees_an_inventory_that_changed(tmp_path):
     assert "up to date" in dvc("status")
     (tmp_path / inventory.FOLDER / "front.csv").write_text("path,size,mtime_ns\n")
     assert "modified" in dvc("status")
+
+
+def cached(root):
+    """A folder with one room as the peers cache it."""
+    room = root / "bedroom" / "house-1_Bedroom-2"
+    room.mkdir(parents=True)
+    write_stats(root / "bedroom" / STATS, stats([], KINDS["bedroom"].classes))
+    (room / BOXES).write_bytes(b"")
+    return root
+
+
+def test_rooms_of_the_peers_have_an_inventory_too(root, tmp_path, capsys):
+    rooms = cached(tmp_path / "rooms")
+    adopt.main(root, [rooms])
+    assert section(root)["peers"] == str(rooms)
+    assert "LicenseRef" in section(root)["peers_licence"]
+    assert "1 rooms, 1 houses" in capsys.readouterr().out
+    assert "+ peers: " in "\n".join(doctor.sources(root))
+    making.write_library(root / "data/raw/3d-front")
+    (root / "data/raw/3d-front/3D-FRONT").mkdir()
+    (root / "data/raw/partnet").mkdir()
+    (rooms / "bedroom" / "house-1_Bedroom-2" / BOXES).write_bytes(b"changed")
+    with pytest.raises(ContentError, match=r"boxes.npz had 0 bytes, has 7.*doctor --use"):
+        preprocess.main(root)
+    (root / inventory.FOLDER / "peers.csv").unlink()
+    with pytest.raises(ContentError, match=r"peers\.csv is missing"):
+        preprocess.main(root)
+
+
+def test_houses_of_3d_front_take_the_place_of_cached_rooms(root, tmp_path):
+    adopt.main(root, [cached(tmp_path / "rooms")])
+    adopt.main(root, [front(tmp_path / "copy")])
+    assert section(root)["peers"] is None
+    assert not (root / inventory.FOLDER / "peers.csv").exists()
+
+
+def test_rooms_beside_3d_front_are_not_taken_for_it(tmp_path):
+    both = cached(front(tmp_path / "both"))
+    assert [s.key for s in recognised(both)] == ["front"]
+    assert [s.key for s in recognised(both / "bedroom")] == ["peers"]
+
+
+def test_rooms_of_unknown_classes_are_told(root, tmp_path):
+    (tmp_path / "odd").mkdir()
+    (tmp_path / "odd" / STATS).write_text('{"class_labels": ["spaceship"]}')
+    with pytest.raises(ContentError, match="classes that are none of the peers'"):
+        adopt.main(root, [tmp_path / "odd"])
+
+
+def test_a_folder_of_objects_is_walked_once(root, tmp_path, monkeypatch):
+    adopt.main(root, [partnet(tmp_path / "objects")])
+    making.write_library(root / "data/raw/3d-front")
+    making.write_house(root / "data/raw/3d-front", making.two_rooms())
+    walks = []
+    look = batch.partnet_objects
+    monkeypatch.setattr(batch, "partnet_objects", lambda path: walks.append(path) or look(path))
+    monkeypatch.setattr(recognition, "partnet_objects", lambda path: walks.append(path) or look(path))
+    preprocess.main(root)
+    assert len(walks) == 1
