@@ -37,10 +37,9 @@ def surfaces_of(model: Model) -> Surfaces:
     for piece in shape_of(model).pieces():
         vertices = piece.solid.vertices
         boxes.append(piece.solid.bounds())
-        z = float(vertices[:, 2].max())
+        on_top = (vertices[:, 2] > vertices[:, 2].max() - LEVEL).tolist()
         for face in piece.solid.faces:
-            corners = vertices[list(face)]
-            if corners[:, 2].min() > z - LEVEL and (top := level(corners)) is not None:
+            if all(on_top[k] for k in face) and (top := level(vertices[list(face)])) is not None:
                 tops.append(top)
     return Surfaces(np.array(boxes).reshape(-1, 2, 3), np.array(tops).reshape(-1, 5))
 

@@ -144,7 +144,7 @@ def nightstands(arranger: Arranger, bed: tuple[Model, Spot], count: int) -> None
         stand = arranger.pick("nightstand", width=width, depth=0.44 if attempt < 3 else math.inf)
         if stand is None:
             return
-        gap = float(abs(arranger.rng.normal(0.05, 0.04)) + 0.01)
+        gap = float(abs(arranger.rng.normal(0.08, 0.04)) + 0.01)
         back = -(model.size[1] - stand.size[1]) / 2
         places = [shifted(spot, sign * (model.size[0] / 2 + stand.size[0] / 2 + gap), back) for sign in signs]
         fitting = [p for p in places if arranger.space.nestle(stand, p, dry=True)]

@@ -18,7 +18,7 @@ UNDER = 0.35
 """Most of a chair's depth that is under the table."""
 OFF_LAMP = 0.1
 """Deviation of the lamp from the table's middle [m]."""
-DEEPEST = {2: 0.95, 4: 1.0, 6: 1.2, 8: 1.5}
+DEEPEST = {2: 0.95, 4: 1.0, 6: 1.15, 8: 1.5}
 """Depth of a table for so many, where there is one [m]."""
 BEHIND = 0.3
 """Free floor behind a chair [m]."""
@@ -81,7 +81,7 @@ def seats_at(table: Model, chair: Model, count: int, gap: float) -> list[tuple[f
 def _place(arranger: Arranger, table: Model, chair: Model, count: int) -> bool:
     """Try places all over the room, square to the walls, and take the one with the most air; then hang the lamp."""
     space, rng = arranger.space, arranger.rng
-    gap = float(rng.uniform(-0.08, 0.08))
+    gap = float(rng.uniform(-0.1, 0.05))
     chairs = seats_at(table, chair, count, gap)
     ends = any(abs(c[1]) < 1e-9 for c in chairs)
     width = 2 * max(abs(c[0]) for c in chairs) + (chair.size[1] if ends else chair.size[0])
