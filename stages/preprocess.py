@@ -23,7 +23,7 @@ from pipeline.sources.guarded import Folder
 from pipeline.sources.household import named_categories
 from pipeline.sources.mirrored import add_mirrored
 from pipeline.sources.peers_reader import PeersTask, kinds_of, peers_houses, read_peers
-from pipeline.sources.recognition import Source, front_at, partnet_at, peers_at
+from pipeline.sources.recognition import front_at, partnet_at, peers_at
 from pipeline.sources.settings import PreprocessSettings
 from pipeline.sources.sink import write_houses, write_library
 from stages.runner import run
@@ -34,14 +34,14 @@ def main(root: Path) -> None:
     settings = params.section(PreprocessSettings, params.read(root / "params.yaml"), "preprocess")
     workers = settings.workers or cores()
     front = folder(root, "front", settings.front, () if settings.peers else (batch.HOUSES, batch.MODELS))
-    require_listed(root, front, front_at)
+    inventory.require_listed(root, front, front_at)
     partnet = folder(root, "partnet", settings.partnet, ()) if settings.partnet else None
     objects = batch.partnet_objects(partnet) if partnet else []
     if partnet:
-        require_listed(root, partnet, lambda path: partnet_at(path, objects))
+        inventory.require_listed(root, partnet, lambda path: partnet_at(path, objects))
     peers = folder(root, "peers", settings.peers, ()) if settings.peers else None
     if peers:
-        require_listed(root, peers, peers_at)
+        inventory.require_listed(root, peers, peers_at)
     library = read_library(root, front, partnet, objects, settings, workers)
     step, task, houses = homes(front, peers, library, settings)
     out = root / "data" / "tables"
@@ -97,13 +97,6 @@ def folder(root: Path, key: str, path: str, parts: Iterable[str]) -> Path:
             remedy = "name the folder of the data with `sfgen doctor --use PATH`, or make the embedded corpus with `dvc repro corpus`"
             raise ContentError(f"preprocess.{key}: {part} is {'no folder' if part.exists() else 'missing'}", remedy)
     return found
-
-
-def require_listed(root: Path, path: Path, describe: Callable[[Path], Source]) -> None:
-    """Raise ContentError when a copy is not what its inventory lists; what stage corpus made is DVC's to watch."""
-    if not path.resolve().is_relative_to((root / "data" / "raw").resolve()):
-        source = describe(path)
-        inventory.require_match(root / inventory.FOLDER / f"{source.key}.csv", source)
 
 
 def progress(results: Iterable[Any], name: str, total: int) -> Iterable[Any]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from pipeline.errors import ContentError
@@ -95,3 +95,13 @@ def require_match(path: Path, source: Source) -> None:
         raise ContentError(
             f"{source.root} is not what {path.name} lists: {shown}{more}", f"take it as it is with `sfgen doctor --use '{source.root}'`"
         )
+
+
+def require_listed(root: Path, path: Path, describe: Callable[[Path], Source]) -> None:
+    """Raise ContentError when a copy is not what its inventory in the checkout `root` lists.
+
+    What stage corpus made, under data/raw, is DVC's to watch.
+    """
+    if not path.resolve().is_relative_to((root / "data" / "raw").resolve()):
+        source = describe(path)
+        require_match(root / FOLDER / f"{source.key}.csv", source)
