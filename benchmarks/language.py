@@ -1,6 +1,7 @@
-"""How exactly prompts are read: the share of prompts whose program states what they say, per language and half.
+"""How exactly prompts are read: the share of prompts whose program states what they say, per file, language and half.
 
-`python -m benchmarks.language [--half held|tuned] [--language en] [--faults]`. Ground truth: `manifests/prompts/languages.yaml`.
+`python -m benchmarks.language [--file sentences] [--half held|tuned] [--language en] [--faults]`. Ground truth:
+`manifests/prompts/languages.yaml` and `sentences.yaml`.
 """
 
 from __future__ import annotations
@@ -17,15 +18,16 @@ import yaml
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan import FloorProgram, parse
-from pipeline.floorplan.program import Range
+from pipeline.floorplan.program import Furniture, Range
 
-CASES = Path(__file__).resolve().parents[1] / "manifests" / "prompts" / "languages.yaml"
+PROMPTS = Path(__file__).resolve().parents[1] / "manifests" / "prompts"
+FILES = ("languages", "sentences")
 CLOSE = 0.12  # relative error of an area that is still "about" it
 
 
-def load() -> list[dict[str, Any]]:
-    """Return the cases in file order."""
-    cases: list[dict[str, Any]] = yaml.safe_load(CASES.read_text(encoding="utf-8"))
+def load(name: str = FILES[0]) -> list[dict[str, Any]]:
+    """Return the cases of a file, in its order."""
+    cases: list[dict[str, Any]] = yaml.safe_load((PROMPTS / f"{name}.yaml").read_text(encoding="utf-8"))
     return cases
 
 
@@ -37,7 +39,7 @@ def faults(case: Mapping[str, Any]) -> list[str]:
         return [] if case.get("refused") else [f"refused: {error}"]
     if case.get("refused"):
         return ["not refused"]
-    return [*_rooms(program, case), *_links(program, case), *_amounts(program, case), *_relations(program, case)]
+    return [*_rooms(program, case), *_links(program, case), *_amounts(program, case), *_relations(program, case), *_shape(program, case), *_furnished(program, case)]
 
 
 def _rooms(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
@@ -104,21 +106,69 @@ def _relations(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
         pairs = [(kinds.get(r.a, r.a), kinds.get(r.b or "", r.b), r.value) for r in program.relations if r.kind == "area_order"]
         if (a, b, value) not in pairs:
             yield f"{a} larger than {b}: {pairs}"
+    for a, b in case.get("unlinked", ()):
+        if not any({kinds.get(f.a, f.a), kinds.get(f.b or "", f.b)} == {a, b} for f in program.forbids):
+            yield f"{a} and {b} may be joined"
+    for a, b, c in case.get("between", ()):
+        rows = [(kinds.get(r.a, r.a), {kinds.get(r.b or "", r.b), kinds.get(r.c or "", r.c)}) for r in program.relations if r.kind == "between"]
+        if (a, {b, c}) not in rows:
+            yield f"{a} not between {b} and {c}"
+
+
+def _shape(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
+    """Storeys, outline, height, widths and knobs."""
+    for kind, level, count in case.get("levels", ()):
+        here = sum(r.type == kind and r.level == level for r in program.rooms)
+        if here != count:
+            yield f"{here} {kind} on level {level}"
+    if "zones" in case and not (program.zones or any(r.kind == "separation" for r in program.relations)):
+        yield "no zones"
+    if case.get("step_free", False) and not program.accessibility.step_free:
+        yield "not step-free"
+    if "min_door" in case and abs(program.accessibility.min_door - case["min_door"]) > 0.001:
+        yield f"doors of {program.accessibility.min_door} m"
+    if "footprint" in case and program.footprint.shape != case["footprint"]:
+        yield f"footprint {program.footprint.shape}"
+    if case.get("narrow", False) and program.footprint.min_aspect <= 1.0:
+        yield "not narrow"
+    for knob, sign in case.get("style", {}).items():
+        if getattr(program.style, knob) * sign <= 0:
+            yield f"{knob} {getattr(program.style, knob)}"
+    if "ceiling" in case and getattr(program, "ceiling_height", None) != case["ceiling"]:
+        yield "ceiling"
+
+
+def _furnished(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
+    """Furniture of the first room of a type, or of the home."""
+    for kind, category, least, most in case.get("furniture", ()):
+        if not any((t.category, t.min, t.max) == (category, least, most) for f in _wishes(program, kind) for t in f.counts):
+            yield f"{category} in {kind}: {[f.counts for f in _wishes(program, kind)]}"
+    for kind, least, most in case.get("pieces", ()):
+        if not any((f.least, f.most) == (least, most) for f in _wishes(program, kind)):
+            yield f"pieces in {kind}"
+    for kind, share in case.get("walkable", ()):
+        if not any(f.walkable == share for f in _wishes(program, kind)):
+            yield f"walkable in {kind}"
+
+
+def _wishes(program: FloorProgram, kind: str) -> list[Furniture]:
+    return [r.furniture for r in program.rooms if r.type == kind] if kind else [program.furniture]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the share of exact prompts and of exact facts."""
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--file", choices=FILES)
     parser.add_argument("--half", choices=("held", "tuned"))
     parser.add_argument("--language")
     parser.add_argument("--faults", action="store_true")
     asked = parser.parse_args(arguments)
-    exact: Counter[tuple[str, str]] = Counter()
-    count: Counter[tuple[str, str]] = Counter()
+    exact: Counter[tuple[str, str, str]] = Counter()
+    count: Counter[tuple[str, str, str]] = Counter()
     spent = 0.0
-    for case in load():
-        key = (case["id"][:2], case["half"])
-        if (asked.half and asked.half != key[1]) or (asked.language and asked.language != key[0]):
+    for name, case in ((f, c) for f in FILES if asked.file in (None, f) for c in load(f)):
+        key = (name, case["id"][:2], case["half"])
+        if (asked.half and asked.half != key[2]) or (asked.language and asked.language != key[1]):
             continue
         start = time.process_time()
         wrong = faults(case)
@@ -128,7 +178,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if wrong and asked.faults:
             print(f"{case['id']}: {case['prompt']}\n    " + "\n    ".join(wrong))
     for key in sorted(count):
-        print(f"{key[0]} {key[1]}: {exact[key]} of {count[key]} exact")
+        print(f"{' '.join(key)}: {exact[key]} of {count[key]} exact")
     print(f"{1000 * spent / max(sum(count.values()), 1):.1f} ms a prompt (CPU, completion and checks with it)")
     return 0
 
