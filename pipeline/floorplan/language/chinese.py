@@ -12,7 +12,29 @@ OF = "的"
 
 def rearrange(marks: list[Mark]) -> list[Mark]:
     """Return the marks in the order of head, cue, object."""
-    return _times(_possessed(_measured(_between(_counted(marks)))))
+    return _times(_possessed(_measured(_between(_counted(_verbs(marks))))))
+
+
+COPULAS = {"是", "为", "要"}
+AMONG = {"里", "中", "里面", "当中", "其中", "之中"}
+
+
+def _verbs(marks: list[Mark]) -> list[Mark]:
+    """Read 是, 为 and 要 as verbs where no number follows, and "三间卧室里主卧最大" as a list of the three."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        ahead = marks[k + 1] if k + 1 < len(marks) else None
+        if mark.kind == "bound" and mark.text in COPULAS and (ahead is None or ahead.kind != "num"):
+            made.append(replace(mark, kind="verb"))
+        elif mark.text in AMONG and k and ahead is not None and ahead.kind == marks[k - 1].kind == "room" and _alike(marks[k - 1], ahead):
+            made.append(replace(mark, kind="colon"))
+        else:
+            made.append(mark)
+    return made
+
+
+def _alike(a: Mark, b: Mark) -> bool:
+    return a.value.partition("/")[0] == b.value.partition("/")[0]
 
 
 def _counted(marks: list[Mark]) -> list[Mark]:

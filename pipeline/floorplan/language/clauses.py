@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from pipeline.floorplan.language.facts import SOCIAL, Group, Reading
-from pipeline.floorplan.language.naming import fresh, name
+from dataclasses import replace
+
+from pipeline.floorplan.language.facts import ROLES, SOCIAL, Group, Reading
+from pipeline.floorplan.language.naming import fresh, heads, name
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.pointing import and_follows, point
 from pipeline.floorplan.language.quantities import attach, belongs
@@ -50,6 +52,10 @@ class Clause:
             self._ban(e)
             return k + 1
         self.state.understood(e.first, e.last)
+        before = self.sentence[k - 1] if k else None
+        if before is not None and before.kind == "pron" and before.value == "one" and before.ids and e.role and not e.ids and e.type == "bedroom":
+            self._role(before, e.role)  # "four bedrooms, one of them the guest room"
+            e.ids = before.ids
         if e.role == "ensuite" and e.type == "bathroom" and not e.ids and self._predicate(k, e):
             self.state.say("ensuite", (), self.latest, e)
             return k + 1
@@ -67,6 +73,8 @@ class Clause:
         self._push(k, e, ids)
         if "open" in e.adjectives or "combined" in e.adjectives:
             self._merge(k, e)
+        elif e.type in SOCIAL and (j := self._written_as_one(k, e)):
+            self.state.say("merge", (*ids, *name(self.state, self.sentence, j, self.storey(k))), (), e)
         if e.suite:
             self.state.say("suite", ids, (), e)
         if e.adjectives & {"largest", "smallest"} and not self.factor:
@@ -100,6 +108,15 @@ class Clause:
         if not self.subject:
             self.subject = ids
 
+    def _written_as_one(self, k: int, e: Element) -> int:
+        """Return the place of the room that is written as one with that at k, "kitchen/living", "salón-cocina"; 0 for none."""
+        j = next((j for j, x in enumerate(self.sentence[k + 1 : k + 3], k + 1) if x.kind == "np"), 0)
+        if not j or self.sentence[j].type not in SOCIAL - {e.type}:
+            return 0
+        tokens = self.state.heard.tokens
+        between = self.state.heard.prompt[tokens[e.last - 1].end : tokens[self.sentence[j].first].start]
+        return j if between in {"/", "-", "–", "/-"} else 0
+
     def _predicate(self, k: int, e: Element) -> bool:
         """Whether "en suite" is said of a bathroom or a bedroom just named: "one of them en suite"."""
         before = self.sentence[k - 1] if k else None
@@ -131,9 +148,9 @@ class Clause:
             return 1
         if self.forward:
             return self.level
-        for e in self.sentence[k + 1 :]:
+        for j, e in enumerate(self.sentence[k + 1 :], k + 1):
             if e.kind == "level":
-                return int(e.value)
+                return None if heads(self.sentence, j) else int(e.value)
             if e.kind not in {"np", "and", "comma", "or", "det"}:
                 return None
         return None
@@ -143,11 +160,30 @@ class Clause:
         if self.forward:
             self.level = int(e.value)
             self.run = []
+        elif heads(self.sentence, k) or ("*" in self.latest and any(x.kind == "colon" for x in self.sentence[k + 1 : k + 2])):
+            self.state.heights |= dict.fromkeys((i for i in self.latest if i == "*"), int(e.value))
+            self.forward, self.level, self.run = True, int(e.value), []
         else:
             for room in (self.stock.get(i) for i in self.latest if not i.startswith("*")):
                 room.level = int(e.value)
+            self.state.heights |= {i.removeprefix("*zone_"): int(e.value) for i in self.latest if i.startswith("*")}
             if k + 1 < len(self.sentence) and self.sentence[k + 1].kind == "comma":
                 self.run = []
+        return k + 1
+
+    def _wing(self, k: int, e: Element) -> int:
+        """Read "the bedrooms in one wing": they are a zone."""
+        ids = tuple(i for x in self.run for i in x.ids)
+        self.state.understood(e.first, e.last)
+        if not ids or all(i.startswith("*zone_") for i in ids) or "*" in ids:
+            self.state.wings += tuple(i.removeprefix("*zone_") for i in ids if i != "*")
+        else:
+            zone = next((n for n, (members, _) in self.state.zones.items() if members and set(members) == set(ids)), None)
+            kinds = {self.stock.get(i).type for i in ids if not i.startswith("*")}
+            zone = zone or ("bedroom" if kinds == {"bedroom"} else f"wing_{len(self.state.wings) + 1}")
+            self.state.zones.setdefault(zone, (ids, e))
+            self.state.wings += (zone,)
+        self.run = []
         return k + 1
 
     def _ban(self, e: Element) -> None:
@@ -200,8 +236,15 @@ class Clause:
 
     def _owner(self, k: int, e: Element) -> int:
         self.state.understood(e.first, e.last)
+        before = self.sentence[k - 1] if k else None
+        if before is not None and before.kind == "pron" and before.value == "one" and before.ids:
+            self._role(before, e.value)
         self.owner, self.owning = e.value, ""
         return k + 1
+
+    def _role(self, who: Element, role: str) -> None:
+        for room in (self.stock.get(i) for i in who.ids):
+            room.role = room.role or (role if room.type == "bedroom" else "")
 
     def _verb(self, k: int, _: Element) -> int:
         before = next((x for x in reversed(self.sentence[:k]) if x.kind not in {"word", "ignored", "flag"}), None)
@@ -246,6 +289,8 @@ class Clause:
         return k + 1
 
     def _det(self, k: int, e: Element) -> int:
+        if e.value == "other" and next((x.kind for x in self.sentence[k + 1 :] if x.kind != "verb"), "") in {"level", "colon"}:
+            return self._every(k, e)
         if e.value == "all" and len(self.run) > 1 and not any(x.kind == "np" for x in self.sentence[k + 1 : k + 2]):
             self.subject = self.latest = tuple(i for x in self.run for i in x.ids)  # "kitchen, two bedrooms, bath - all off the hall"
             self.run = [Element("np", "", e.first, e.last, e.text, ids=list(self.latest))]
@@ -254,13 +299,27 @@ class Clause:
             return self._pron(k, Element("pron", "both" if e.value == "both" else "group", e.first, e.last, e.text))
         return k + 1
 
+    def _but(self, k: int, _: Element) -> int:
+        self.negative = None  # "not open, but next to the dining room"
+        return k + 1
+
     def _adj(self, k: int, e: Element) -> int:
+        before = self.sentence[k - 1] if k else None
+        if before is not None and before.kind == "pron" and before.value == "one" and e.value in ROLES:
+            self._role(before, e.value)  # "four bedrooms, uno de ellos para invitados"
         if self.verb:
             superlative(self, e)
         return k + 1
 
     def _pron(self, k: int, e: Element) -> int:
+        ahead = next((x for x in self.sentence[k + 1 :] if x.kind not in {"det", "verb"}), None)
+        if e.value == "rest" and ahead is not None and ahead.kind in {"level", "colon"}:
+            return self._every(k, e)
         group = self.point(e, k, self.subject if e.value == "it" and (self.objects or self.run) else ())
+        if not group and e.value == "one" and ahead is not None and ahead.kind == "owner" and self.run:
+            kind = self.stock.get(self.run[-1].ids[0]).type  # "a bathroom for the parents and one for the kids"
+            group = (self.stock.add(kind, "", e.text, None).id,)
+        e.ids = list(group)
         if group:
             self.state.understood(e.first, e.last)
             self.run = [Element("np", "", e.first, e.last, e.text, ids=list(group))]
@@ -275,6 +334,8 @@ class Clause:
         return same or point(self.state, self.sentence[:k], e, but)
 
     def _enter(self, k: int, e: Element) -> int:
+        if self.run and k and self.sentence[k - 1].kind == "np" and e.text.startswith("se "):  # "al baño se entra por el pasillo"
+            return relate(self, k, replace(e, kind="cue", value="door"))
         group, j = self.after(k + 1, "enter", ())
         if not group and self.latest:
             group, j = self.latest, k + 1

@@ -7,6 +7,7 @@ from typing import Any
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.draft import Draft
 from pipeline.floorplan.language.facts import Reading
+from pipeline.floorplan.language.joints import late_zone
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.program import Style
 
@@ -19,6 +20,7 @@ NARROW = {"min_aspect": 1.5, "max_aspect": 2.1}
 def read_whole(draft: Draft, state: Reading) -> None:
     """Read what concerns the whole home."""
     stock, flags = state.inventory, state.flags
+    _heights(state)
     levels = [r.level for r in stock.rooms if r.level is not None]
     storeys = state.storeys[0] if state.storeys else 1
     if state.storeys:
@@ -37,6 +39,19 @@ def read_whole(draft: Draft, state: Reading) -> None:
         for room in stock.of("living_room")[:1]:
             room.exterior_length = PANORAMA
             draft.cite(flags["panorama"].first, flags["panorama"].last, f"rooms.{room.id}.exterior_length")
+
+
+def _heights(state: Reading) -> None:
+    """Put zones, and what is spoken of as the rest, on their storey."""
+    ground = {"living_room", "kitchen", "dining_room", "garage", "entry", "wc", "utility"}
+    if (state.storeys or (1,))[0] > 1 and all(r.level for r in state.inventory.rooms):
+        for room in state.inventory.rooms:  # "front room, kitchen, two bedrooms and a bathroom above": not all of the list
+            room.level = None if room.type in ground else room.level
+    for name, level in sorted(state.heights.items(), key=lambda h: h[0] == "*"):
+        zone = set(state.zones[name][0] or late_zone(state.inventory, name)) if name in state.zones else set()
+        for room in state.inventory.rooms:
+            if room.id in zone or (name == "*" and room.level is None and room.type != "staircase"):
+                room.level = level
 
 
 def _closed(draft: Draft, flags: dict[str, Element], named: bool) -> None:

@@ -12,6 +12,7 @@ HALLS = {"hallway", "entry"}
 GROUPS = {"door", "leads", "open", "near", "wall", "ban", "avoid", "away"}
 SOCIAL = {"kitchen", "dining_room", "living_room", "family_room"}
 PERSONAL = {"bathroom", "wc", "closet", "balcony", "office", "storage", "sunroom"}
+ROLES = {"primary", "guest", "child"}  # said by an adjective
 Group = tuple[str, ...]
 
 
@@ -39,6 +40,8 @@ class Reading:
     flags: dict[str, Element] = field(default_factory=dict)
     looks: list[Element] = field(default_factory=list)
     zones: dict[str, tuple[Group, Element]] = field(default_factory=dict)
+    wings: tuple[str, ...] = ()  # zones that lie in parts of their own
+    heights: dict[str, int] = field(default_factory=dict)  # the storey of zones, and of all other rooms ("*")
     entrance: tuple[str, Element] | None = None
     outside: tuple[str, Element] | None = None  # the owner of a door of its own
     homes: list[Element] = field(default_factory=list)

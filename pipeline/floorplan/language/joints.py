@@ -11,7 +11,7 @@ from pipeline.floorplan.language.inventory import Inventory
 from pipeline.floorplan.program import Evidence
 
 MERGE_ORDER = ("living_room", "family_room", "dining_room", "kitchen", "studio_room")
-OPPOSITE, FAR = 0.45, 0.35  # "at the other end" and "away from", as shares of the diagonal
+OPPOSITE, FAR, WINGS = 0.45, 0.35, 0.2  # "at the other end", "away from" and "in another wing", as shares of the diagonal
 KINDS = {"door": "door", "leads": "door", "near": "any", "open": "open", "wall": "wall"}
 INNER = {"closet", "bathroom", "balcony", "storage", "wc", "utility", "garage"}
 
@@ -246,7 +246,7 @@ def _apart(draft: Draft, state: Reading) -> None:  # noqa: C901 - one branch per
         for i in ids:
             if i.startswith("*zone_"):
                 members = state.zones[i[6:]][0]
-                made += members or _late_zone(stock, i[6:])
+                made += members or late_zone(stock, i[6:])
             elif i.startswith("*"):
                 made += [r.id for r in stock.rooms if not i[1:] or r.type == i[1:]]
             else:
@@ -254,10 +254,14 @@ def _apart(draft: Draft, state: Reading) -> None:  # noqa: C901 - one branch per
         return made
 
     for name, (members, e) in state.zones.items():
-        ids = list(members) or _late_zone(stock, name)
+        ids = list(members) or late_zone(stock, name)
         if ids:
             draft.zones.append({"name": name, "members": ids})
             draft.cite(e.first, e.last, f"zones.{name}")
+    zones = {z["name"] for z in draft.zones}
+    for a, b in itertools.pairwise(n for n in dict.fromkeys(state.wings) if n in zones):
+        e = state.zones[b][1]
+        draft.relate("separation", a, b, WINGS, Fact("away", (a,), (b,), 0.0, e.first, e.last))
     for fact in state.facts:
         if fact.what == "no_ensuite":
             for bed in stock.of("bedroom"):
@@ -276,6 +280,7 @@ def _apart(draft: Draft, state: Reading) -> None:  # noqa: C901 - one branch per
                 draft.relate("separation", a, b, share, fact)
 
 
-def _late_zone(stock: Inventory, name: str) -> list[str]:
+def late_zone(stock: Inventory, name: str) -> list[str]:
+    """Return the rooms of a zone that was named before they were."""
     kinds = {"bedroom": {"bedroom"}, "living": {"living_room", "dining_room", "family_room"}, "work": {"office", "meeting_room"}}
     return [r.id for r in stock.rooms if r.type in kinds.get(name, ()) or (r.type == "bedroom" and r.role == name)]

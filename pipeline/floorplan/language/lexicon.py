@@ -59,11 +59,15 @@ class _Entries(BaseModel):
     frames: dict[str, str] = {}
     negators: str
     needless: str = ""
+    corrections: str = ""
+    enough: str = ""
     but: str = ""
     determiners: dict[str, str]
     pronouns: dict[str, str] = {}
     everything: str = ""
     zones: dict[str, str] = {}
+    wings: dict[str, str] = {}
+    activities: dict[str, str] = {}
     adjectives: dict[str, str] = {}
     sizes: dict[float, str] = {}
     owners: dict[str, str] = {}
@@ -73,6 +77,7 @@ class _Entries(BaseModel):
     comparisons: dict[str, str] = {}
     factors: dict[float, str] = {}
     times: str = ""
+    lengths: str = ""
     styles: list[_Look] = []
     flags: dict[str, str] = {}
     joiners: dict[str, str]
@@ -184,6 +189,11 @@ def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0
                 yield p, Meaning(kind, str(key), number)
 
     yield from flat("ignored", e.ignored)
+    yield from flat("fix", e.corrections)
+    yield from flat("enough", e.enough)
+    yield from keyed("wing", e.wings)
+    yield from keyed("zone", e.zones)
+    yield from keyed("activity", e.activities)
     for key, phrases in e.rooms.items():
         for p in split(phrases):
             for form, many in _forms(e.language, p):
@@ -206,7 +216,6 @@ def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0
     yield from flat("neg", e.negators)
     yield from keyed("pron", e.pronouns)
     yield from flat("every", e.everything)
-    yield from keyed("zone", e.zones)
     yield from keyed("level", e.levels)
     yield from keyed("cmp", e.comparisons)
     yield from keyed("factor", e.factors)
@@ -228,6 +237,7 @@ def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0
     yield from flat("but", e.but)
     yield from keyed("join", e.joiners)
     yield from flat("times", e.times)
+    yield from flat("long", e.lengths)
     yield from flat("relative", e.relatives)
     yield from flat("verb", e.verbs)
     yield from flat("clf", e.classifiers)

@@ -65,7 +65,7 @@ def listen(prompt: str, language: Language) -> Words:
 
 
 def segment(heard: Words) -> list[Mark]:
-    """Return the marks of a prompt in reading order."""
+    """Return the marks of a prompt in reading order; numbers and units still stand apart."""
     made: list[Mark] = []
     i = 0
     while i < len(heard.texts):
@@ -76,7 +76,7 @@ def segment(heard: Words) -> list[Mark]:
                 made.append(mark)
         else:
             i += 1
-    return _amounts(_slim(_halves(_numbers(made, heard))), heard)
+    return _slim(_halves(_numbers(made, heard)))
 
 
 def _mark(heard: Words, i: int) -> Mark:  # noqa: PLR0911 - one branch per case: a grammar
@@ -190,7 +190,7 @@ def _slim(marks: Sequence[Mark]) -> list[Mark]:
     for k, mark in enumerate(marks):
         if mark.kind == "adj" and mark.value == "slim":
             ahead = [m.kind for m in marks[k + 1 : k + 5] if m.kind not in {"adj", "num", "look", "size"}]
-            if ahead[:1] == ["home"] or ahead[:2] == ["room", "home"]:
+            if ahead[:1] == ["home"] or ahead[:2] == ["room", "home"] or (k and marks[k - 1].kind == "home"):
                 made[k] = replace(mark, kind="flag", value="narrow")
     return made
 
@@ -205,7 +205,7 @@ def _elliptic(marks: Sequence[Mark], k: int, lex: Lexicon) -> list[Mark]:
     return [marks[k], marks[k + 1], replace(unit, first=marks[k + 1].last, last=marks[k + 1].last)]
 
 
-def _amounts(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+def measured(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Put amounts together: "at least 18 m²", "10 to 12 m²", "4 x 5 m", "seven square metres or more"."""
     made: list[Mark] = []
     k = 0
@@ -215,6 +215,7 @@ def _amounts(marks: Sequence[Mark], heard: Words) -> list[Mark]:
             and marks[k].kind == "num"
             and marks[k + 1].kind == "times"
             and len(marks[k + 1].text) > (heard.lexicon.language != "zh")
+            and not (k + 2 < len(marks) and marks[k + 2].kind == "num")
         ):
             made.append(Mark("factor", "", marks[k].number, False, marks[k].first, marks[k + 1].last, marks[k].text))
             k += 2

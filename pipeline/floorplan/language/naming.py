@@ -11,6 +11,12 @@ PLURAL_NAMES = {"staircase", "closet", "storage"}  # their plural often means on
 ROLES = {"primary", "guest", "child", "elder", "staff", "carer", "shared", "ensuite"}
 
 
+def heads(sentence: list[Element], k: int) -> bool:
+    """Whether the level at k opens a new part of a sentence: "living room, kitchen, and upstairs two bedrooms"."""
+    before, after = sentence[k - 1].kind if k else "", next((x for x in sentence[k + 1 :] if x.kind != "det"), None)
+    return before in {"comma", "and"} and after is not None and after.kind in {"np", "colon"}
+
+
 def introduce(state: Reading, sentences: list[list[Element]]) -> None:
     """Make the rooms that numbers and indefinite articles introduce: whole counts first, so that later words may tell them apart."""
     for whole in (True, False):
@@ -19,7 +25,7 @@ def introduce(state: Reading, sentences: list[list[Element]]) -> None:
             suites = False  # "a suite: ... a bedroom": the suite's own
             for k, e in enumerate(sentence):
                 if e.kind == "level":
-                    level = int(e.value) if not (level is None and k) else level
+                    level = int(e.value) if not (level is None and k) or heads(sentence, k) else level
                 if e.suite and e.kind == "np":
                     suites = True
                 if (
@@ -41,11 +47,11 @@ def _first_level(sentence: list[Element]) -> int | None:
 
 def _backward(sentence: list[Element], k: int, level: int | None) -> int | None:
     """Return the storey of a phrase: of the level named before it, or behind it where sentences name levels behind."""
-    if level is not None and _first_level(sentence) is not None:
+    if level is not None:
         return level
-    for e in sentence[k + 1 :]:
+    for j, e in enumerate(sentence[k + 1 :], k + 1):
         if e.kind == "level":
-            return int(e.value)
+            return None if heads(sentence, j) else int(e.value)
         if e.kind in {"np", "and", "comma"}:
             continue
         if e.kind in {"cue", "colon"}:
@@ -296,6 +302,8 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
             loose = [r for r in same if r.open_slot]
             return last if len(last) == number else (loose if len(loose) >= number else same)[:number]
         return same
+    if not e.det and e.type == "bathroom" and state.heard.lexicon.language != "zh" and all(stock.owned(r.id) for r in same):
+        return [stock.add(e.type, "", e.text, level)]  # "a master with en suite, ..., bathroom"
     if not e.det and (_repeated_bare(sentence, k) or (e.type == "storage" and all(e.text != r.surface for r in same))):
         return [stock.add(e.type, "", e.text, level)]
     if len(same) > 1:

@@ -13,6 +13,8 @@ def ban(sentence: list[Element]) -> None:
         if e.kind == "neg":
             j = _target(sentence, k + 1)
             if j is None:
+                if k + 1 == len(sentence) or sentence[k + 1].kind in {"comma", "close", "but"}:
+                    _behind(sentence, k)
                 continue
             phrase = sentence[j]
             if any(m.bound in {"least", "most"} for m in phrase.amounts):
@@ -45,6 +47,18 @@ def _target(sentence: list[Element], k: int) -> int | None:
     return None
 
 
+def _behind(sentence: list[Element], k: int) -> None:
+    """Mark what a negation behind it rules out: "Kinderzimmer gibt es keine", "balcony: no"; not what it says of a room that is counted."""
+    for j in range(k - 1, -1, -1):
+        e = sentence[j]
+        if e.kind == "np":
+            e.banned = e.number is None and not e.definite and not e.amounts
+            sentence[k].kind = "used" if e.banned else "neg"
+            return
+        if e.kind not in {"verb", "colon", "det", "word"}:
+            return
+
+
 def _related(sentence: list[Element], j: int) -> bool:
     """Whether a relation follows at once, which is what is negated: "no kitchen next to the bedroom"."""
     for e in sentence[j + 1 :]:
@@ -64,7 +78,7 @@ def _list(sentence: list[Element], j: int) -> None:
             joined = e.kind if joined != "or" else joined
         elif e.kind == "np" and joined:
             bare = e.number is None and not e.amounts and not e.definite and not e.det & {"own", "another"}
-            free = bare and (joined == "or" or not e.det & {"indefinite"}) and not e.adjectives & {"open", "combined"}
+            free = bare and (joined in {"or", "comma"} or not e.det & {"indefinite"}) and not e.adjectives & {"open", "combined"}
             if joined == "comma":
                 free = free and _closes(sentence, i + 1)
             own = i + 1 < len(sentence) and sentence[i + 1].kind in {"cue", "verb", "neg"} and joined != "or"

@@ -13,11 +13,13 @@ from pipeline.floorplan.completion import complete
 from pipeline.floorplan.language.assembly import assemble
 from pipeline.floorplan.language.attaching import attach
 from pipeline.floorplan.language.detection import detect
-from pipeline.floorplan.language.marks import listen, segment
+from pipeline.floorplan.language.marks import listen, measured, segment
 from pipeline.floorplan.language.masking import read_furniture
 from pipeline.floorplan.language.order import reorder
 from pipeline.floorplan.language.phrases import sentences
 from pipeline.floorplan.language.reading import read
+from pipeline.floorplan.language.revising import revise
+from pipeline.floorplan.language.shorthand import crossed, widen
 from pipeline.floorplan.program import FloorProgram
 
 LONGEST = 20_000  # characters
@@ -43,7 +45,8 @@ def understand(prompt: str) -> FloorProgram:
 def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     """Return what a prompt says of rooms, and no more; `plain` is it without its wishes for furniture, all else in its place."""
     heard = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
-    marks = reorder(segment(heard), heard)
+    revised = revise(widen(measured(crossed(segment(heard), heard), heard), heard), heard)
+    marks = reorder(revised.marks, heard)
     parsed = sentences(marks, heard)
     spoken = {e.kind for s in parsed for e in s}
     if not spoken & {"np", "home"} and not any(e.kind == "amount" and e.value == "rooms" for s in parsed for e in s):
@@ -54,7 +57,7 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     state = read(heard, parsed)
     state.looks = [e for s in parsed for e in s if e.kind == "look"]
     try:
-        return assemble(state, parsed, marks)
+        return assemble(state, parsed, [*marks, *revised.aside])
     except ValidationError as error:  # a number beyond what a program may hold
         fault = error.errors()[0]
         where = ".".join(map(str, fault["loc"]))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pipeline.floorplan.language.marks import Mark, Words
 
 PREMODIFIERS = {"det", "num", "ord", "adj", "size", "clf", "times"}
-DROPPED = {"fill", "adverb", "word", "clf", "hyphen", "bullet", "unit", "times", "dash", "num", "ignored", "bound", "ord"}
+DROPPED = {"fill", "adverb", "word", "clf", "hyphen", "bullet", "unit", "times", "dash", "num", "ignored", "bound", "ord", "long", "enough", "fix", "activity"}
 MOST_INDEX = 12
 LONGEST = 150  # marks of a sentence; a longer one is read in parts, cut at commas
 WITH = {"mit", "with", "con"}
@@ -141,7 +141,7 @@ def _elements(marks: list[Mark]) -> list[Element]:
             if mark.kind == "look":
                 made.append(_plain(mark))
         else:
-            made += _loose(pre)
+            made += _loose(pre, mark)
             pre = []
             if mark.kind not in DROPPED or mark.kind == "word":
                 made.append(_plain(mark))
@@ -182,8 +182,10 @@ def _postposed(marks: Sequence[Mark]) -> bool:
     return first == 0 and kinds[1:3] == ["num", "clf"]
 
 
-def _loose(pre: Sequence[Mark]) -> list[Element]:
-    made = [_plain(m) for m in pre if m.kind in {"amount", "adj", "det"} or (m.kind == "num" and m.value == "1.0")]
+def _loose(pre: Sequence[Mark], ahead: Mark | None = None) -> list[Element]:
+    owned = ahead is not None and ahead.kind == "owner"  # "four bedrooms, two for the kids"
+    kept = {"amount", "adj"} if owned else {"amount", "adj", "det"}
+    made = [_plain(m) for m in pre if m.kind in kept or (m.kind == "num" and (m.value == "1.0" or owned))]
     for e in made:
         if e.kind == "num":  # "two baths, one en suite"
             e.kind, e.value = "pron", "one"
@@ -221,6 +223,7 @@ def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool) -> Element:  # noqa
         if part.kind == "num" or (part.kind == "det" and part.value == "another"):
             if part.kind == "num" and part.number == int(part.number) and part.number > 0:
                 made.number = part.number
+            made.banned = made.banned or (part.kind == "num" and part.number == 0)
             made.det.update({"another"} if part.kind == "det" else ())
         elif part.kind == "det":
             if part.value == "partitive":

@@ -49,7 +49,7 @@ def attach(state: Reading, sentence: list[Element], k: int, mark: Mark, latest: 
         before = next((x for x in reversed(sentence[:k]) if x.kind in {"flag", "np"} and x.value not in {"wide", "only"}), None)
         after = sentence[k + 1] if k + 1 < len(sentence) else None
         for x in (before, after):
-            if x is not None and x.kind == "flag" and x.value in {"doors", "corridors"}:
+            if x is not None and x.kind == "flag" and x.value in {"doors", "corridors", "ceiling"}:
                 state.amounts.append(
                     (Mark(mark.kind, x.value, mark.number, False, mark.first, mark.last, mark.text, bound=mark.bound), None)
                 )

@@ -24,7 +24,7 @@ def attach(draft: Draft, state: Reading) -> None:
         rooms = [stock.get(i) for i in ids or () if not i.startswith("*")]
         if mark.value == "area" and mark.number > 0:
             _area(draft, mark, rooms)
-        elif mark.value in {"length", "doors", "corridors"}:
+        elif mark.value in {"length", "doors", "corridors", "ceiling"}:
             _length(draft, mark, rooms)
 
 

@@ -1,0 +1,146 @@
+"""Short ways to say rooms and sizes: "2LDK", "dos baños y medio", "4x5", "12 m long and 9 m wide", "cooking, dining, living in one"."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from pipeline.floorplan.language.marks import Mark, Words
+
+FEET, METRES = 0.3048, 1.0
+LARGEST = 80.0  # a side-by-side product above this is no room in square metres: then the figures are feet
+HALVES = {"medio", "half", "halbes", "半"}
+JOINS = {"comma", "join", "slash", "fill", "det", "bullet", "hyphen"}
+TOGETHER = {"living_room", "dining_room", "kitchen"}
+GROUND = {"ground", "groundfloor", "street"}
+SHIFTED = {"first floor": "1", "first storey": "1", "second floor": "2", "second storey": "2"}
+
+
+def widen(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Return the marks with shorthand written out."""
+    made = _studies(_floors(_paired(_activities(list(marks))), heard), heard)
+    return _half_baths(_counts(made))
+
+
+def crossed(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Give "4x5" without unit one: that of the other lengths, else feet where metres would make a hall of it."""
+    made: list[Mark] = []
+    lengths = [m.number for m in marks if m.kind == "unit" and m.value in {"length", "area"}]
+    imperial = bool(lengths) and all(f in {FEET, 0.092903, 0.0254} for f in lengths)
+    for k, mark in enumerate(marks):
+        made.append(mark)
+        pair = k > 1 and mark.kind == "num" and marks[k - 2].kind == "num" and (marks[k - 1].kind == "times" or marks[k - 1].text in {"x", "by"})
+        if not pair or (k + 1 < len(marks) and marks[k + 1].kind == "unit") or mark.value != "figure":
+            continue
+        product = mark.number * marks[k - 2].number
+        feet = imperial or (not lengths and heard.lexicon.language == "en" and product > LARGEST and product < 1000)
+        made.append(Mark("unit", "length", FEET if feet else METRES, False, mark.last, mark.last, ""))
+    return made
+
+
+def _paired(marks: list[Mark]) -> list[Mark]:
+    """Read "12 m long and 9 m wide" as an area."""
+    made: list[Mark] = []
+    k = 0
+    while k < len(marks):
+        found = _sides(marks, k)
+        if found:
+            mark, k = found
+            made.append(mark)
+        else:
+            made.append(marks[k])
+            k += 1
+    return made
+
+
+def _sides(marks: Sequence[Mark], k: int) -> tuple[Mark, int] | None:
+    sides: list[Mark] = []
+    words: set[str] = set()
+    j = k
+    while j < len(marks) and len(sides) < 3:
+        mark = marks[j]
+        if mark.kind == "amount" and mark.value == "length":
+            sides.append(mark)
+        elif mark.kind == "long":
+            words.add("long")
+        elif mark.kind == "flag" and mark.value == "wide":
+            words.add("wide")
+        elif not (sides and mark.kind in {"comma", "join", "fill", "det"}):
+            break
+        j += 1
+        if len(sides) == 2 and words == {"long", "wide"}:
+            break
+    if len(sides) != 2 or words != {"long", "wide"}:
+        return None
+    if j < len(marks) and (marks[j].kind == "long" or (marks[j].kind == "flag" and marks[j].value == "wide")):
+        j += 1
+    a, b = sides
+    side = min(a.number, b.number)
+    return replace(a, value="area", number=a.number * b.number, first=marks[k].first, last=marks[j - 1].last, side=side, total=False), j
+
+
+def _activities(marks: list[Mark]) -> list[Mark]:
+    """Read "cooking, dining and living in one room" as the three rooms; one word alone, or with sleeping, is none."""
+    made = list(marks)
+    k = 0
+    while k < len(made):
+        if made[k].kind != "activity":
+            k += 1
+            continue
+        found, j = [k], k + 1
+        while j < len(made) and (made[j].kind in JOINS or made[j].kind == "activity"):
+            found += [j] if made[j].kind == "activity" else []
+            j += 1
+        kinds = {made[i].value for i in found}
+        near = [m for m in (made[j] if j < len(made) else None, *reversed(made[max(0, k - 3) : k])) if m is not None]
+        rooms = {m.value for m in near if m.kind == "room"} & TOGETHER
+        listed = any(m.kind in {"comma", "join", "slash"} for m in made[found[0] : found[-1]])
+        whole = len(kinds) > 2 or (len(kinds) > 1 and any(m.kind == "flag" and m.value == "open_plan" for m in near)) or (bool(rooms - kinds) and len(kinds | rooms) > 1 and k > 0 and made[k - 1].kind in {"comma", "join", "slash"})
+        for i in found:
+            named = whole and (listed or len(found) == 1)
+            made[i] = replace(made[i], kind="room" if named else "fill")
+        k = j
+    return made
+
+
+def _floors(marks: list[Mark], heard: Words) -> list[Mark]:
+    """Count floors as in Europe where a prompt knows a ground floor: then the first floor is the one above."""
+    if heard.lexicon.language != "en" or not any(m.kind == "level" and GROUND & set(m.text.split()) for m in marks):
+        return marks
+    return [
+        replace(m, value=next((v for s, v in SHIFTED.items() if m.text.endswith(s)), m.value)) if m.kind == "level" else m for m in marks
+    ]
+
+
+def _studies(marks: list[Mark], heard: Words) -> list[Mark]:
+    """Read Spanish "estudio" as a study where the home has bedrooms."""
+    if heard.lexicon.language != "es" or not any(m.kind == "room" and m.value.startswith("bedroom") for m in marks):
+        return marks
+    study = [k for k, m in enumerate(marks) if m.kind == "home" and m.text == "estudio" and k]
+    return [replace(m, kind="room", value="office") if k in study else m for k, m in enumerate(marks)]
+
+
+def _counts(marks: list[Mark]) -> list[Mark]:
+    """Read "2LDK" as two bedrooms, living, dining and kitchen in one; without a number it is these three."""
+    made: list[Mark] = []
+    for mark in marks:
+        if mark.kind == "room" and mark.value.endswith("/count") and "+" in mark.value:
+            counted = bool(made) and made[-1].kind == "num"
+            made.append(replace(mark, value=("bedroom+" if counted else "") + mark.value.removesuffix("/count")))
+        else:
+            made.append(mark)
+    return made
+
+
+def _half_baths(marks: list[Mark]) -> list[Mark]:
+    """Read "dos baños y medio" as two bathrooms and a WC, as agents count."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        ahead = marks[k - 1] if k else None
+        halved = mark.text in HALVES and ahead is not None and ahead.kind == "join" and k > 1 and marks[k - 2].value == "bathroom"
+        ends = k + 1 >= len(marks) or marks[k + 1].kind in {"comma", "stop", "line", "join", "close"}
+        if halved and ends:
+            made += [Mark("num", "", 1.0, False, mark.first, mark.last, mark.text), Mark("room", "wc", 0.0, False, mark.first, mark.last, mark.text)]
+        else:
+            made.append(mark)
+    return made
