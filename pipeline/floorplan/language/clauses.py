@@ -35,6 +35,7 @@ class Clause:
 
     def read(self) -> None:
         """Read all elements."""
+        self._no_door()
         k = 0
         while k < len(self.sentence):
             e = self.sentence[k]
@@ -44,6 +45,21 @@ class Clause:
             self._complete()
         said = [tuple(e.ids) for e in self.sentence if e.ids and e.kind == "np"]
         self.state.past = [*self.state.past, *said][-12:]
+
+    def _no_door(self) -> None:
+        """Read "no door between kitchen and bedroom", "keine Tür von der Garage ins Schlafzimmer"; the words are taken out."""
+        ends = [-1, *(k for k, e in enumerate(self.sentence) if e.kind in {"comma", "but"}), len(self.sentence)]
+        for first, last in zip(ends, ends[1:], strict=False):
+            part = self.sentence[first + 1 : last]
+            none = next((j for j, e in enumerate(part) if e.kind in {"neg", "used"}), None)
+            door = next((e for e in part[none:][1:4] if e.kind == "flag" and e.value == "doors"), None) if none is not None else None
+            rooms = [k for k in range(first + 1, last) if self.sentence[k].kind == "np"]
+            if door is None or len(rooms) != 2:
+                continue
+            a, b = (tuple(name(self.state, self.sentence, k, None)) for k in rooms)
+            self.state.say("not_connected", a, b, door)
+            self.sentence[first + 1 : last] = []
+            return
 
     # one method per kind of element; each returns where reading goes on
 
@@ -215,6 +231,8 @@ class Clause:
         negative = self.negated(k)
         if e.value == "daylight" and rooms:
             self.state.say("no_window" if negative else "window", rooms, (), e)
+        elif e.value == "ends" and len(self.latest) == 2 and k and self.sentence[k - 1].kind in {"np", "verb", "det", "word", "cue"}:
+            self.state.say("away", self.latest[:1], self.latest[1:], e)
         elif e.value == "too" and self.run and self.state.facts:
             last = self.state.facts[-1]
             self.state.say(last.what, self.latest, last.b, e)
@@ -316,6 +334,8 @@ class Clause:
         if e.value == "rest" and ahead is not None and ahead.kind in {"level", "colon"}:
             return self._every(k, e)
         group = self.point(e, k, self.subject if e.value == "it" and (self.objects or self.run) else ())
+        if e.value == "rest" and group and (count := self._others(e)) and self.stock.get(group[0]).type == "bedroom":
+            group = self._made(group[0], count)
         if not group and e.value == "one" and ahead is not None and ahead.kind == "owner" and self.run:
             kind = self.stock.get(self.run[-1].ids[0]).type  # "a bathroom for the parents and one for the kids"
             group = (self.stock.add(kind, "", e.text, None).id,)
@@ -327,6 +347,21 @@ class Clause:
             if e.value in {"one", "rest", "group", "both", "some"} or not self.subject:
                 self.subject = group
         return k + 1
+
+    def _others(self, e: Element) -> int:
+        """Return how many "the other two" are."""
+        lex = self.state.heard.lexicon
+        numbers = [m.number for w in e.text.split() if (m := lex.trie.get(w, {}).get("")) is not None and m.kind == "num"]
+        return int(numbers[0]) if numbers else (2 if "beiden" in e.text else 0)
+
+    def _made(self, like: str, count: int) -> Group:
+        """Return so many rooms that nothing was said of, new ones where they are too few."""
+        kind = self.stock.get(like).type
+        spoken = {i for x in self.sentence for i in x.ids} | {i for g in self.state.past[-1:] for i in g}
+        free = [r for r in self.stock.of(kind) if r.open_slot] or [r for r in self.stock.of(kind) if r.id not in spoken]
+        while len(free) < count:
+            free.append(self.stock.add(kind, "", "other", None))
+        return tuple(r.id for r in free[:count])
 
     def point(self, e: Element, k: int, but: Group) -> Group:
         """Return the rooms that a pronoun stands for: after "but" the subject still, as an object what is not the subject `but`."""
@@ -380,6 +415,8 @@ class Clause:
                 value, j = behind.number or 1.0, j + 1
         self.factor = None
         a, b = (right, left) if e.value == "smaller" else (left, right)
+        if value < 1.0:  # "half the size of"
+            a, b, value = b, a, 1.0 / value
         if self.negative:
             a, b, self.negative = b, a, None
         if e.value == "equal" and a and b:
@@ -423,11 +460,12 @@ class Clause:
     def _merge(self, k: int, e: Element) -> None:
         """Read "open kitchen/living room" and "combined kitchen and living room"; an open kitchen alone is open to where one lives."""
         listed = list(e.ids)
-        joined = False
+        written_on = self.state.heard.lexicon.language == "zh"  # "客厅餐厅厨房" needs no comma
+        joined = written_on
         for x in self.sentence[k + 1 :]:
             if x.kind == "np" and joined and x.type in SOCIAL and not x.banned:
                 listed += name(self.state, self.sentence, self.sentence.index(x), self.storey(k))
-                joined = False
+                joined = written_on
             elif (
                 x.kind == "and"
                 or (x.kind == "comma" and e.type in SOCIAL and and_follows(self.sentence, x))

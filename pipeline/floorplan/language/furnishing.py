@@ -149,6 +149,8 @@ class Scan:
         if upper is not None:
             last, k2, bound = int(upper), k2 + joint + further, "between"
         k2 += self._filler(k2)
+        if not bound and length == 1 and self.words[k].text == "一" and upper is None:
+            return k2 - k, 1, None  # "一张书桌" is "a desk"
         least, most = {"least": (first, None), "most": (0, first)}.get(bound, (first, last))
         return k2 - k, least, most
 
@@ -190,8 +192,12 @@ class Scan:
         else:
             size += self.phrase(k + size, "article")[0] if size else 0
             length, value = self.number(k + size)
-            percent = self.phrase(k + size + length, "percent")[0] if value is not None else 0
-            if not percent:
+            if value is None and (half := self.phrase(k + size, "half")[0]):
+                length, value, percent = half, 50.0, 0
+            else:
+                percent = self.phrase(k + size + length, "percent")[0] if value is not None else 0
+                half = 0
+            if not (percent or half):
                 return self._free_first(k)
             end = k + size + length + percent
         if value is None:
@@ -290,7 +296,7 @@ class Scan:
         """Whether a thing's name is part of a room's: "tv room", "walk-in wardrobe"."""
         after = self.words[k + length].text if k + length < len(self.words) else ""
         before = [w.text for w in self.words[max(0, k - 2) : k]]
-        return after in ROOMS or before == ["walk", "in"]
+        return after in ROOMS or (after != "" and after in "间房室" and "\u3400" <= self.words[k].text <= "\u9fff") or before == ["walk", "in"]
 
     def _mended(self, k: int) -> tuple[int, str]:
         word = self.words[k].stem

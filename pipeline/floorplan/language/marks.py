@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, Lexicon, lexicon
 from pipeline.floorplan.language.meaning import Meaning
@@ -43,7 +43,7 @@ class Mark:
     bound: str = ""
     total: bool = False  # said of everything together
     side: float | None = None  # the shorter side of "4 x 5 m"
-    spans: tuple[tuple[int, int], ...] = field(default=())
+    parts: tuple[float, ...] = ()  # "bedrooms of 14, 12 and 10 m2": one each
 
 
 @dataclass

@@ -188,6 +188,10 @@ def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -
         last = {i for g in state.past[-1:] for i in g} | {i for x in sentence[:k] for i in x.ids}
         rest = [r for r in same if r.open_slot] or [r for r in same if r.id not in last] or same[-1:]
         many = e.plural or (e.number or 0) > 1
+        if e.number is not None and e.type == "bedroom":
+            rest = [r for r in rest if r.open_slot or r.id not in last]
+            while len(rest) < e.number:
+                rest.append(stock.add(e.type, role, e.text, level))
         return (rest if many else [_close(r, "", e.text) for r in rest[:1]]) or [stock.add(e.type, role, e.text, level)]
     if role:
         found = _by_role(state, sentence, k, role)

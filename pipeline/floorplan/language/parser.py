@@ -19,7 +19,7 @@ from pipeline.floorplan.language.order import reorder
 from pipeline.floorplan.language.phrases import sentences
 from pipeline.floorplan.language.reading import read
 from pipeline.floorplan.language.revising import revise
-from pipeline.floorplan.language.shorthand import crossed, widen
+from pipeline.floorplan.language.shorthand import crossed, dealt, shared_unit, widen
 from pipeline.floorplan.program import FloorProgram
 
 LONGEST = 20_000  # characters
@@ -45,7 +45,8 @@ def understand(prompt: str) -> FloorProgram:
 def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     """Return what a prompt says of rooms, and no more; `plain` is it without its wishes for furniture, all else in its place."""
     heard = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
-    revised = revise(widen(measured(crossed(segment(heard), heard), heard), heard), heard)
+    amounts = dealt(measured(shared_unit(crossed(segment(heard), heard)), heard))
+    revised = revise(widen(amounts, heard), heard)
     marks = reorder(revised.marks, heard)
     parsed = sentences(marks, heard)
     spoken = {e.kind for s in parsed for e in s}

@@ -8,6 +8,7 @@ from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.phrases import Element
 
 LISTED = 1.3  # the same behind a list of three rooms and more
+HUGE = 5.0  # the same behind a room of a home that has no area yet
 WHOLE = 1.6  # an area of so many usual areas of the room in front of it, set off by a comma, is the home's
 
 
@@ -26,7 +27,13 @@ def belongs(state: Reading, sentence: list[Element], e: Element, mark: Mark) -> 
         any(x.kind == "home" and not x.amounts for x in sentence[:k]) and mark.first == e.last and mark.text[0].isdigit()
     )
     total = k + 1 < len(sentence) and sentence[k + 1].kind == "flag" and sentence[k + 1].value == "total"
-    return total or (listed and len(measured) == 1 and last and mark.number > 2.5 * usual)
+    huge = home_before(sentence, k) and mark.number > HUGE * usual
+    return total or (len(measured) == 1 and huge) or (listed and len(measured) == 1 and last and mark.number > 2.5 * usual)
+
+
+def home_before(sentence: list[Element], k: int) -> bool:
+    """Whether a home without an area of its own is spoken of before k."""
+    return any(x.kind == "home" and not x.amounts for x in sentence[:k])
 
 
 def attach(state: Reading, sentence: list[Element], k: int, mark: Mark, latest: Group, home: bool = False) -> None:  # noqa: PLR0911 - one branch per case: a grammar

@@ -32,6 +32,8 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
         return max(j, k + 1)
     if e.value == "by":
         return _by_way_of(clause, k, e)
+    if e.value in {"thru", "thru_to"}:
+        return _through(clause, k, e)
     left = _left(clause, k, e)
     group, j = objects(clause, k + 1, e.value, left)
     if not group:
@@ -82,6 +84,26 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     clause.only = None
     clause.subject, clause.latest, clause.objects, clause.run, clause.verb, clause.relative = left, group, group, [], False, False
     return j
+
+
+def _through(clause: Clause, k: int, e: Element) -> int:
+    """Read "you pass through the dining room to reach the kitchen", and what must not be so."""
+    first, j = objects(clause, k + 1, "door", ())
+    if not first or j >= len(clause.sentence):
+        return k + 1
+    second, j = objects(clause, j, "door", first)
+    if not second:
+        return max(j, k + 1)
+    things, hosts = (second, first) if e.value == "thru" else (first, second)
+    none = clause.negative is not None or any(w in NONE for w in e.text.split())
+    clause.negative = None
+    clause.state.say("avoid" if none else "door", things, hosts, e)
+    clause.subject = clause.latest = clause.objects = things
+    clause.run = []
+    return j
+
+
+NONE = {"不用", "不必", "not"}
 
 
 def _by_way_of(clause: Clause, k: int, e: Element) -> int:
@@ -146,7 +168,7 @@ def _emit(clause: Clause, e: Element, left: Group, group: Group) -> None:
         kinds = {clause.stock.get(i).type for i in (*left, *group) if not i.startswith("*")}
         cue = "not_open" if kinds <= SOCIAL else "away"
     if clause.negative is not None:
-        clause.negative = None
+        left, clause.negative = _none(clause, left), None
         what = {"near": "ban", "wall": "ban", "away": "near", "open": "not_open", "avoid": "avoid"}.get(cue, "not_connected")
         state.say(what, left, group, e)
     elif cue == "ensuite":
@@ -154,6 +176,14 @@ def _emit(clause: Clause, e: Element, left: Group, group: Group) -> None:
         clause.stock.belongings.update(left)
     else:
         state.say(cue, left, group, e)
+
+
+def _none(clause: Clause, left: Group) -> Group:
+    """Return all rooms of the kind that "no bedroom" names."""
+    named = next((x for x in clause.run[-1:] if clause.negative is not None and x.first >= clause.negative.last), None)
+    near = named is not None and clause.negative is not None and named.first - clause.negative.last < 2 and not named.definite
+    same = tuple(r.id for r in clause.stock.of(named.type)) if named is not None and near and len(left) == 1 else ()
+    return same or left
 
 
 def _mutual(clause: Clause, e: Element) -> None:

@@ -38,6 +38,65 @@ def crossed(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     return made
 
 
+def shared_unit(marks: Sequence[Mark]) -> list[Mark]:
+    """Write "14, 12 and 10 m2" with a unit each, where more than one room of a kind stands in front."""
+    made = list(marks)
+    for k in range(len(made) - 1, 0, -1):
+        if made[k].kind != "unit" or made[k].value != "area" or made[k - 1].kind != "num":
+            continue
+        j, places = k - 1, [k - 1]
+        while j >= 2 and _parted(made[j - 1]) and made[j - 2].kind == "num":
+            j -= 2
+            places.append(j)
+        if len(places) > 1 and _several(made, j):
+            for place in places[1:]:
+                made.insert(place + 1, replace(made[k], first=made[place].last, last=made[place].last))
+    return made
+
+
+def _parted(mark: Mark) -> bool:
+    return mark.kind in {"comma", "slash"} or (mark.kind == "join" and mark.value == "and")
+
+
+def _several(marks: Sequence[Mark], k: int) -> bool:
+    """Whether rooms of one kind stand in front of the amounts at k."""
+    j = k - 1
+    while j >= 0 and marks[j].kind in LEADS:
+        j -= 1
+    if j < 0 or marks[j].kind != "room":
+        return False
+    counted = any(m.kind == "num" and m.number > 1 for m in marks[max(0, j - 3) : j])
+    return marks[j].plural or counted
+
+
+LEADS = {"open", "colon", "fill", "bound", "adverb", "det", "verb", "cue", "hyphen", "dash", "bullet"}
+
+
+def dealt(marks: Sequence[Mark]) -> list[Mark]:
+    """Make one amount of those that several rooms share out: "two bedrooms (14 m2 and 12 m2)"; rooms nobody counted are so many."""
+    made: list[Mark] = []
+    k = 0
+    while k < len(marks):
+        run, j = [k], k + 1
+        while marks[k].kind == "amount" and marks[k].value == "area" and j + 1 < len(marks) and _parted(marks[j]) and marks[j + 1].kind == "amount":
+            if marks[j + 1].value != "area":
+                break
+            run.append(j + 1)
+            j += 2
+        if len(run) > 1 and _several(marks, k):
+            amounts = [marks[i] for i in run]
+            made.append(replace(marks[k], last=amounts[-1].last, parts=tuple(m.number for m in amounts)))
+            place = next(i for i in range(len(made) - 2, -1, -1) if made[i].kind == "room")
+            if not any(m.kind == "num" for m in made[max(0, place - 3) : place]):
+                room = made[place]
+                made.insert(place, Mark("num", "", float(len(run)), False, room.first, room.first, ""))
+            k = j
+        else:
+            made.append(marks[k])
+            k += 1
+    return made
+
+
 def _paired(marks: list[Mark]) -> list[Mark]:
     """Read "12 m long and 9 m wide" as an area."""
     made: list[Mark] = []

@@ -30,7 +30,9 @@ def attach(draft: Draft, state: Reading) -> None:
 
 def _area(draft: Draft, mark: Mark, rooms: list[Named]) -> None:
     box = _range(mark)
-    for room in rooms:
+    for k, room in enumerate(rooms):
+        if mark.parts:
+            box = {"target": mark.parts[min(k, len(mark.parts) - 1)]}
         room.low, room.high, room.target = box.get("min", room.low), box.get("max", room.high), box.get("target", room.target)
         if mark.side is not None:
             room.min_width = mark.side
