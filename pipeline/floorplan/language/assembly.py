@@ -15,6 +15,7 @@ from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.program import Evidence, FloorProgram
 
+SORTS = {"storage", "balcony", "wc", "utility", "closet", "garage", "hallway", "entry", "office", "family_room", "playroom"}  # types of many names
 ROLES = {"primary", "guest", "child", "elder", "staff", "carer", "shared"}
 
 
@@ -25,6 +26,8 @@ def assemble(state: Reading, parsed: list[list[Element]], marks: list[Mark]) -> 
     sizes.fill(draft, state)
     _studio(draft, state)
     for kind, e in state.banned:
+        if kind in SORTS and any(r.surface and r.surface != e.text for r in stock.of(kind)):
+            continue  # "no cellar but a pantry": another room of the type is wanted
         draft.forbid("room_type", kind, None, None, e.first, e.last)
     _beyond(draft, state)
     joints.join(draft, state)

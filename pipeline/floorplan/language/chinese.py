@@ -108,7 +108,7 @@ def _measured(marks: list[Mark]) -> list[Mark]:
             mark.text == OF
             and before is not None
             and after is not None
-            and before.kind in {"amount", "adj", "size", "bound", "flag", "look"}
+            and (before.kind in {"amount", "adj", "size", "bound", "flag", "look"} or (before.kind == "room" and after.kind == "home"))
         ):
             continue
         made.append(mark)

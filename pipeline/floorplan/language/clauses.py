@@ -43,6 +43,7 @@ class Clause:
             k = handler(k, e) if handler else k + 1
         if self.waiting:
             self._complete()
+        self.state.topic = tuple(i for i in self.subject if not i.startswith("*")) or self.state.topic
         said = [tuple(e.ids) for e in self.sentence if e.ids and e.kind == "np"]
         self.state.past = [*self.state.past, *said][-12:]
 
@@ -206,7 +207,7 @@ class Clause:
         self.state.understood(e.first, e.last)
         if e.role == "ensuite":
             self.state.say("no_ensuite", tuple(r.id for r in self.stock.of("bathroom")) or ("*bathroom",), (), e)
-        else:
+        elif not (e.type == "bedroom" and e.role):  # "no guest room" leaves the other bedrooms
             self.state.banned.append((e.type, e))
 
     def _home(self, k: int, e: Element) -> int:
@@ -231,7 +232,7 @@ class Clause:
         negative = self.negated(k)
         if e.value == "daylight" and rooms:
             self.state.say("no_window" if negative else "window", rooms, (), e)
-        elif e.value == "ends" and len(self.latest) == 2 and k and self.sentence[k - 1].kind in {"np", "verb", "det", "word", "cue"}:
+        elif e.value == "ends" and len(self.latest) == 2 and k and self.sentence[k - 1].kind in {"np", "verb", "det", "word", "cue", "home"}:
             self.state.say("away", self.latest[:1], self.latest[1:], e)
         elif e.value == "too" and self.run and self.state.facts:
             last = self.state.facts[-1]
@@ -334,8 +335,10 @@ class Clause:
         if e.value == "rest" and ahead is not None and ahead.kind in {"level", "colon"}:
             return self._every(k, e)
         group = self.point(e, k, self.subject if e.value == "it" and (self.objects or self.run) else ())
-        if e.value == "rest" and group and (count := self._others(e)) and self.stock.get(group[0]).type == "bedroom":
-            group = self._made(group[0], count)
+        spoken = [i for g in (self.subject, *reversed(self.state.past)) for i in g if not i.startswith("*")]
+        bed = next((i for i in spoken if self.stock.get(i).type == "bedroom"), None)
+        if e.value == "rest" and bed is not None and (count := self._others(e)):
+            group = self._made(bed, count)
         if not group and e.value == "one" and ahead is not None and ahead.kind == "owner" and self.run:
             kind = self.stock.get(self.run[-1].ids[0]).type  # "a bathroom for the parents and one for the kids"
             group = (self.stock.add(kind, "", e.text, None).id,)

@@ -48,6 +48,7 @@ class Reading:
     studio: Element | None = None
     storeys: tuple[int, Mark] | None = None
     rooms: tuple[int, Mark] | None = None  # "a three-room flat"
+    topic: Group = ()  # what the last sentence was about
     past: list[Group] = field(default_factory=list)  # groups named in earlier sentences, the latest last
     used: set[int] = field(default_factory=set)
 

@@ -21,6 +21,19 @@ def numerals(simple: Mapping[float, str]) -> Iterator[tuple[str, Meaning]]:
         yield from ((start + w, Meaning("num", str(100 + n), 100.0 + n)) for n, w in below.items())
 
 
+TAILS = ("schlafzimmer", "zimmer", "raum", "bereich", "bad", "kueche")
+
+
+def completed(texts: list[str], known: Collection[str]) -> list[str]:
+    """Return the words with "Arbeits- oder Gästezimmer" written out; the hyphen stays where it is."""
+    made = list(texts)
+    for k in range(len(texts) - 3):
+        if texts[k + 1] == "-" and texts[k + 2] in {"oder", "und", ","} and texts[k].isalpha():
+            tail = next((t for t in TAILS if texts[k + 3].endswith(t) and texts[k] + t in known), None)
+            made[k] = texts[k] + tail if tail else texts[k]
+    return made
+
+
 def split(word: str, known: Collection[str], wanted: Collection[str]) -> tuple[str, ...]:
     """Split a compound into known words, one of them wanted; empty where it is none: "dreizimmerwohnung" is three words."""
     for cut in range(len(word) - SHORTEST, SHORTEST - 1, -1):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from pipeline.floorplan.language.german import completed
 from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, Lexicon, lexicon
 from pipeline.floorplan.language.meaning import Meaning
 from pipeline.floorplan.language.spelling import inflected, repair
@@ -60,7 +61,8 @@ def listen(prompt: str, language: Language) -> Words:
     """Return the words of a prompt, typing errors repaired."""
     lex = lexicon(language)
     tokens = tokenize(prompt)
-    tokens, texts = repair(tokens, [fold(t.text) for t in tokens], lex)
+    written = [fold(t.text) for t in tokens]
+    tokens, texts = repair(tokens, completed(written, lex.vocabulary) if language == "de" else written, lex)
     return Words(prompt, tokens, texts, lex)
 
 

@@ -82,6 +82,9 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
     same = stock.of(e.type)
     slots = [r for r in same if r.open_slot and (level is None or r.level in {None, level}) and not r.role]
     role = e.role if e.role in ROLES else ""
+    if e.number is not None and not role and "another" not in e.det and count > len(same) and any(r.whole for r in same):
+        state.say("beyond", tuple(r.id for r in same), (), e, float(count))
+        return same
     if slots and _predicative(sentence, k):
         return [_close(slots[0], role, e.text)]
     if "another" not in e.det:

@@ -46,7 +46,7 @@ def _frame(marks: list[Mark], k: int, heard: Words) -> tuple[str, int, int, int]
             continue
         named = False
         for j in range(start, min(len(marks), start + FARTHEST)):
-            if marks[j].kind in ENDS or (
+            if (marks[j].kind in ENDS and not (marks[j].kind == "comma" and cue.startswith("thru"))) or (
                 marks[j].kind == "cue" and marks[j].value not in {"has", "in", "door"} and _matches(marks, j, second) is None
             ):
                 break

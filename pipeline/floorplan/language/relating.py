@@ -32,7 +32,7 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
         return max(j, k + 1)
     if e.value == "by":
         return _by_way_of(clause, k, e)
-    if e.value in {"thru", "thru_to"}:
+    if e.value.startswith("thru"):
         return _through(clause, k, e)
     left = _left(clause, k, e)
     group, j = objects(clause, k + 1, e.value, left)
@@ -91,19 +91,18 @@ def _through(clause: Clause, k: int, e: Element) -> int:
     first, j = objects(clause, k + 1, "door", ())
     if not first or j >= len(clause.sentence):
         return k + 1
+    while j < len(clause.sentence) and clause.sentence[j].kind in {"verb", "comma"}:
+        j += 1
     second, j = objects(clause, j, "door", first)
     if not second:
         return max(j, k + 1)
     things, hosts = (second, first) if e.value == "thru" else (first, second)
-    none = clause.negative is not None or any(w in NONE for w in e.text.split())
+    none = clause.negative is not None or e.value == "thru_not"
     clause.negative = None
     clause.state.say("avoid" if none else "door", things, hosts, e)
     clause.subject = clause.latest = clause.objects = things
     clause.run = []
     return j
-
-
-NONE = {"不用", "不必", "not"}
 
 
 def _by_way_of(clause: Clause, k: int, e: Element) -> int:
@@ -124,6 +123,8 @@ def _inside(clause: Clause, left: Group, group: Group) -> bool:
     """Whether "X in Y" means that X opens off Y, as a cupboard in the hall does."""
     kinds = {clause.stock.get(i).type for i in left if not i.startswith("*")}
     hosts = {clause.stock.get(i).type for i in group if not i.startswith("*")}
+    if kinds == {"balcony"} and len(hosts) == 1:
+        return True
     return (
         bool(kinds)
         and kinds <= {"storage", "closet", "wc", "bathroom", "balcony", "utility"}
@@ -287,6 +288,8 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
             found = clause.point(e, index, left)
             clause.state.understood(e.first, e.last)
             return tuple(i for i in found if i not in left), index + 1
+        elif e.kind == "owner" and not group and not any(x.kind in {"np", "word"} for x in sentence[index + 1 : index + 2]):
+            return _theirs(clause, e, left), index + 1
         elif e.kind == "zone" and not group:
             clause.zone(index, e)
             return tuple(e.ids), index + 1
@@ -311,6 +314,13 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
             break
         index += 1
     return tuple(group), end
+
+
+def _theirs(clause: Clause, owner: Element, left: Group) -> Group:
+    """Return the bedroom of those who are named alone: "next to the parents'", "junto al de los padres"."""
+    found = [r.id for r in clause.stock.of("bedroom") if r.role == owner.value and r.id not in left]
+    clause.state.understood(owner.first, owner.last)
+    return tuple(found or [clause.stock.add("bedroom", owner.value, owner.text, None).id])
 
 
 def _continues(clause: Clause, index: int, cue: str, joined: str, first: Element) -> bool:  # noqa: PLR0911 - one answer per case: a grammar

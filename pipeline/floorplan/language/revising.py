@@ -92,7 +92,9 @@ def _corrected(marks: list[Mark]) -> list[Mark]:
                     marks[old] = after
                     del marks[k : j + 1]
                     continue
-            elif after is not None and after.kind == "num":
+            elif after is not None and (after.kind == "num" or (after.kind, after.value) == ("pron", "one")):
+                after = after if after.kind == "num" else replace(after, kind="num", value="1.0", number=1.0)
+                marks[j] = after
                 room = _counted(marks, j)
                 name = marks[room] if room is not None and room > j else None
                 place = _earlier(marks, k, name) or _indefinite(marks, k, name)
@@ -101,7 +103,11 @@ def _corrected(marks: list[Mark]) -> list[Mark]:
                     end = (room if name is not None and room is not None else j) + 1
                     while end < len(marks) and marks[end].kind == "clf":
                         end += 1
-                    del marks[k:end]
+                    start = k
+                    while start and marks[start - 1].kind in {"neg", "comma", "hyphen", "dash", "but", "fill"}:  # "un dormitorio, no, mejor dos"
+                        start -= 1
+                    del marks[start:end]
+                    k = start
                     continue
             del marks[k]
             continue

@@ -83,7 +83,7 @@ def dealt(marks: Sequence[Mark]) -> list[Mark]:
                 break
             run.append(j + 1)
             j += 2
-        if len(run) > 1 and _several(marks, k):
+        if len(run) > 1 and _shared_out(marks, run):
             amounts = [marks[i] for i in run]
             made.append(replace(marks[k], last=amounts[-1].last, parts=tuple(m.number for m in amounts)))
             place = next(i for i in range(len(made) - 2, -1, -1) if made[i].kind == "room")
@@ -95,6 +95,20 @@ def dealt(marks: Sequence[Mark]) -> list[Mark]:
             made.append(marks[k])
             k += 1
     return made
+
+
+def _shared_out(marks: Sequence[Mark], run: Sequence[int]) -> bool:
+    """Whether amounts in a row are those of rooms in front of them, and none is the home's."""
+    sizes = [marks[i].number for i in run]
+    after = marks[run[-1] + 1] if run[-1] + 1 < len(marks) else None
+    total = any(marks[i].total for i in run) or (after is not None and (after.kind == "home" or after.value == "total"))
+    j = run[0] - 1
+    while j >= 0 and marks[j].kind in LEADS:
+        j -= 1
+    return j >= 0 and marks[j].kind == "room" and not total and max(sizes) < ALIKE * min(sizes)
+
+
+ALIKE = 3.0  # rooms of a kind differ by less in area
 
 
 def _paired(marks: list[Mark]) -> list[Mark]:

@@ -35,6 +35,8 @@ def resolve(word: str, language: Language) -> tuple[str, ...]:  # noqa: PLR0911 
     lex = lexicon(language)
     if len(word) > LONGEST or len(word) < 3 or "\u3400" <= word[0] <= "\u9fff":
         return (word,)
+    if language == "es" and (alike := _alike(language).get(sound(word))):
+        return (alike,)
     stem = _stem(word, lex)
     if stem:
         return (stem,)
@@ -54,6 +56,26 @@ def resolve(word: str, language: Language) -> tuple[str, ...]:  # noqa: PLR0911 
             if near:
                 return (near,)
     return (word,)
+
+
+SOUNDS = (("qu", "k"), ("ce", "se"), ("ci", "si"), ("ch", "x"), ("ll", "y"), ("h", ""), ("v", "b"), ("z", "s"), ("c", "k"), ("x", "ch"), ("ge", "je"), ("gi", "ji"))
+
+
+def sound(word: str) -> str:
+    """Return how a Spanish word sounds, near enough: "vaño" and "baño", "cosina" and "cocina" alike."""
+    for written, heard in SOUNDS:
+        word = word.replace(written, heard)
+    return word
+
+
+@functools.cache
+def _alike(language: Language) -> dict[str, str]:
+    """Return the words worth a repair by their sound, where only one sounds so."""
+    lex = lexicon(language)
+    made: dict[str, str] = {}
+    for target in lex.targets:
+        made[sound(target)] = "" if sound(target) in made else target
+    return made
 
 
 def inflected(word: str, lex: Lexicon) -> Meaning | None:
