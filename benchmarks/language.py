@@ -39,7 +39,14 @@ def faults(case: Mapping[str, Any]) -> list[str]:
         return [] if case.get("refused") else [f"refused: {error}"]
     if case.get("refused"):
         return ["not refused"]
-    return [*_rooms(program, case), *_links(program, case), *_amounts(program, case), *_relations(program, case), *_shape(program, case), *_furnished(program, case)]
+    return [
+        *_rooms(program, case),
+        *_links(program, case),
+        *_amounts(program, case),
+        *_relations(program, case),
+        *_shape(program, case),
+        *_furnished(program, case),
+    ]
 
 
 def _rooms(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
@@ -110,7 +117,9 @@ def _relations(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
         if not any({kinds.get(f.a, f.a), kinds.get(f.b or "", f.b)} == {a, b} for f in program.forbids):
             yield f"{a} and {b} may be joined"
     for a, b, c in case.get("between", ()):
-        rows = [(kinds.get(r.a, r.a), {kinds.get(r.b or "", r.b), kinds.get(r.c or "", r.c)}) for r in program.relations if r.kind == "between"]
+        rows = [
+            (kinds.get(r.a, r.a), {kinds.get(r.b or "", r.b), kinds.get(r.c or "", r.c)}) for r in program.relations if r.kind == "between"
+        ]
         if (a, {b, c}) not in rows:
             yield f"{a} not between {b} and {c}"
 

@@ -15,7 +15,19 @@ from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.program import Evidence, FloorProgram
 
-SORTS = {"storage", "balcony", "wc", "utility", "closet", "garage", "hallway", "entry", "office", "family_room", "playroom"}  # types of many names
+SORTS = {
+    "storage",
+    "balcony",
+    "wc",
+    "utility",
+    "closet",
+    "garage",
+    "hallway",
+    "entry",
+    "office",
+    "family_room",
+    "playroom",
+}  # types of many names
 ROLES = {"primary", "guest", "child", "elder", "staff", "carer", "shared"}
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from pipeline.floorplan.language.marks import Mark
 
+SECOND = {"次卧", "次卧室", "侧卧"}  # the bedroom beside the main one
 HEADS = {"room", "suite"}
 OF = "的"
 
@@ -41,6 +42,9 @@ def _counted(marks: list[Mark]) -> list[Mark]:
     """Read "三室两厅一厨两卫": bedrooms, living room (and dining room), kitchens, bathrooms. The count of bedrooms is the whole."""
     made: list[Mark] = []
     for k, mark in enumerate(marks):
+        counted = any(m.kind in {"num", "ord"} for m in made[-3:])
+        if mark.kind == "room" and mark.text.replace(" ", "") in SECOND and not counted:
+            made.append(Mark("ord", "2", 2.0, False, mark.first, mark.first, ""))
         made.append(mark)
         if mark.kind == "room" and mark.value == "living_room/halls":
             number = next((m for m in reversed(made[:-1][-2:]) if m.kind == "num"), None)

@@ -5,11 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 from pipeline.floorplan.language.facts import ROLES, SOCIAL, Group, Reading
-from pipeline.floorplan.language.naming import fresh, heads, name
+from pipeline.floorplan.language.naming import fresh, name
+from pipeline.floorplan.language.openness import merge, merge_after, no_door, written_as_one
 from pipeline.floorplan.language.phrases import Element
-from pipeline.floorplan.language.pointing import and_follows, point
+from pipeline.floorplan.language.places import level, storey, wing, zone
+from pipeline.floorplan.language.pointing import point
 from pipeline.floorplan.language.quantities import attach, belongs
 from pipeline.floorplan.language.relating import listed, objects, relate, superlative
+
+ELSEWHERE = {"level": level, "wing": wing, "zone": zone, "cue": relate}  # what other modules read, by kind of element
 
 
 class Clause:
@@ -35,10 +39,13 @@ class Clause:
 
     def read(self) -> None:
         """Read all elements."""
-        self._no_door()
+        no_door(self)
         k = 0
         while k < len(self.sentence):
             e = self.sentence[k]
+            if e.kind in ELSEWHERE:
+                k = ELSEWHERE[e.kind](self, k, e)
+                continue
             handler = getattr(self, f"_{e.kind}", None)
             k = handler(k, e) if handler else k + 1
         if self.waiting:
@@ -46,21 +53,6 @@ class Clause:
         self.state.topic = tuple(i for i in self.subject if not i.startswith("*")) or self.state.topic
         said = [tuple(e.ids) for e in self.sentence if e.ids and e.kind == "np"]
         self.state.past = [*self.state.past, *said][-12:]
-
-    def _no_door(self) -> None:
-        """Read "no door between kitchen and bedroom", "keine Tür von der Garage ins Schlafzimmer"; the words are taken out."""
-        ends = [-1, *(k for k, e in enumerate(self.sentence) if e.kind in {"comma", "but"}), len(self.sentence)]
-        for first, last in zip(ends, ends[1:], strict=False):
-            part = self.sentence[first + 1 : last]
-            none = next((j for j, e in enumerate(part) if e.kind in {"neg", "used"}), None)
-            door = next((e for e in part[none:][1:4] if e.kind == "flag" and e.value == "doors"), None) if none is not None else None
-            rooms = [k for k in range(first + 1, last) if self.sentence[k].kind == "np"]
-            if door is None or len(rooms) != 2:
-                continue
-            a, b = (tuple(name(self.state, self.sentence, k, None)) for k in rooms)
-            self.state.say("not_connected", a, b, door)
-            self.sentence[first + 1 : last] = []
-            return
 
     # one method per kind of element; each returns where reading goes on
 
@@ -70,7 +62,15 @@ class Clause:
             return k + 1
         self.state.understood(e.first, e.last)
         before = self.sentence[k - 1] if k else None
-        if before is not None and before.kind == "pron" and before.value == "one" and before.ids and e.role and not e.ids and e.type == "bedroom":
+        if (
+            before is not None
+            and before.kind == "pron"
+            and before.value == "one"
+            and before.ids
+            and e.role
+            and not e.ids
+            and e.type == "bedroom"
+        ):
             self._role(before, e.role)  # "four bedrooms, one of them the guest room"
             e.ids = before.ids
         if e.role == "ensuite" and e.type == "bathroom" and not e.ids and self._predicate(k, e):
@@ -82,16 +82,16 @@ class Clause:
             and ("own" in e.det or (self.owning and self.run and not e.det))
             and e.type in {"bedroom", "bathroom", "kitchen"}
         ):
-            ids = tuple(fresh(self.state, e, self.storey(k), self.owner))
+            ids = tuple(fresh(self.state, e, storey(self, k), self.owner))
         else:
-            ids = tuple(name(self.state, self.sentence, k, self.storey(k)))
+            ids = tuple(name(self.state, self.sentence, k, storey(self, k)))
         self._own(e, ids)
         self._measure(e, ids)
-        self._push(k, e, ids)
+        self.push(k, e, ids)
         if "open" in e.adjectives or "combined" in e.adjectives:
-            self._merge(k, e)
-        elif e.type in SOCIAL and (j := self._written_as_one(k, e)):
-            self.state.say("merge", (*ids, *name(self.state, self.sentence, j, self.storey(k))), (), e)
+            merge(self, k, e)
+        elif e.type in SOCIAL and (j := written_as_one(self, k, e)):
+            self.state.say("merge", (*ids, *name(self.state, self.sentence, j, storey(self, k))), (), e)
         if e.suite:
             self.state.say("suite", ids, (), e)
         if e.adjectives & {"largest", "smallest"} and not self.factor:
@@ -104,7 +104,7 @@ class Clause:
             self.state.say("area_equal", ids, (), e, 0.15)
         return k + 1
 
-    def _push(self, k: int, e: Element, ids: Group) -> None:
+    def push(self, k: int, e: Element, ids: Group) -> None:
         """Take a group into the list in front of the next cue."""
         before = next((x for x in reversed(self.sentence[:k]) if x.kind not in {"det", "size", "adj"}), None)
         if (
@@ -124,15 +124,6 @@ class Clause:
             self.subject = tuple(dict.fromkeys((*self.subject, *ids))) if self.subject else ids
         if not self.subject:
             self.subject = ids
-
-    def _written_as_one(self, k: int, e: Element) -> int:
-        """Return the place of the room that is written as one with that at k, "kitchen/living", "salón-cocina"; 0 for none."""
-        j = next((j for j, x in enumerate(self.sentence[k + 1 : k + 3], k + 1) if x.kind == "np"), 0)
-        if not j or self.sentence[j].type not in SOCIAL - {e.type}:
-            return 0
-        tokens = self.state.heard.tokens
-        between = self.state.heard.prompt[tokens[e.last - 1].end : tokens[self.sentence[j].first].start]
-        return j if between in {"/", "-", "–", "/-"} else 0
 
     def _predicate(self, k: int, e: Element) -> bool:
         """Whether "en suite" is said of a bathroom or a bedroom just named: "one of them en suite"."""
@@ -158,50 +149,6 @@ class Clause:
             whole = (e.compound and mark.last <= e.first) or belongs(self.state, self.sentence, e, mark)
             self.state.understood(mark.first, mark.last)
             self.state.amounts.append((mark, None if whole else ids))
-
-    def storey(self, k: int) -> int | None:
-        """Return the storey that is said of the phrase at k."""
-        if self.sentence[k].role == "landing":
-            return 1
-        if self.forward:
-            return self.level
-        for j, e in enumerate(self.sentence[k + 1 :], k + 1):
-            if e.kind == "level":
-                return None if heads(self.sentence, j) else int(e.value)
-            if e.kind not in {"np", "and", "comma", "or", "det"}:
-                return None
-        return None
-
-    def _level(self, k: int, e: Element) -> int:
-        self.state.understood(e.first, e.last)
-        if self.forward:
-            self.level = int(e.value)
-            self.run = []
-        elif heads(self.sentence, k) or ("*" in self.latest and any(x.kind == "colon" for x in self.sentence[k + 1 : k + 2])):
-            self.state.heights |= dict.fromkeys((i for i in self.latest if i == "*"), int(e.value))
-            self.forward, self.level, self.run = True, int(e.value), []
-        else:
-            for room in (self.stock.get(i) for i in self.latest if not i.startswith("*")):
-                room.level = int(e.value)
-            self.state.heights |= {i.removeprefix("*zone_"): int(e.value) for i in self.latest if i.startswith("*")}
-            if k + 1 < len(self.sentence) and self.sentence[k + 1].kind == "comma":
-                self.run = []
-        return k + 1
-
-    def _wing(self, k: int, e: Element) -> int:
-        """Read "the bedrooms in one wing": they are a zone."""
-        ids = tuple(i for x in self.run for i in x.ids)
-        self.state.understood(e.first, e.last)
-        if not ids or all(i.startswith("*zone_") for i in ids) or "*" in ids:
-            self.state.wings += tuple(i.removeprefix("*zone_") for i in ids if i != "*")
-        else:
-            zone = next((n for n, (members, _) in self.state.zones.items() if members and set(members) == set(ids)), None)
-            kinds = {self.stock.get(i).type for i in ids if not i.startswith("*")}
-            zone = zone or ("bedroom" if kinds == {"bedroom"} else f"wing_{len(self.state.wings) + 1}")
-            self.state.zones.setdefault(zone, (ids, e))
-            self.state.wings += (zone,)
-        self.run = []
-        return k + 1
 
     def _ban(self, e: Element) -> None:
         self.state.understood(e.first, e.last)
@@ -232,8 +179,13 @@ class Clause:
         negative = self.negated(k)
         if e.value == "daylight" and rooms:
             self.state.say("no_window" if negative else "window", rooms, (), e)
-        elif e.value == "ends" and len(self.latest) == 2 and k and self.sentence[k - 1].kind in {"np", "verb", "det", "word", "cue", "home"}:
+        elif (
+            e.value == "ends" and len(self.latest) == 2 and k and self.sentence[k - 1].kind in {"np", "verb", "det", "word", "cue", "home"}
+        ):
             self.state.say("away", self.latest[:1], self.latest[1:], e)
+        elif e.value == "too" and self.state.facts and k + 1 < len(self.sentence) and self.sentence[k + 1].kind == "np":
+            last = self.state.facts[-1]  # "..., ebenso das Bad"
+            self.state.say(last.what, tuple(name(self.state, self.sentence, k + 1, storey(self, k + 1))), last.b, e)
         elif e.value == "too" and self.run and self.state.facts:
             last = self.state.facts[-1]
             self.state.say(last.what, self.latest, last.b, e)
@@ -246,7 +198,7 @@ class Clause:
             if len(social) > 1 and not negative:
                 self.state.say("merge", social, (), e)
             else:
-                self._merge_after(k + 1, e)
+                merge_after(self, k + 1, e)
         return k + 1
 
     def negated(self, k: int) -> bool:
@@ -288,23 +240,10 @@ class Clause:
             self._complete()
         return k + 1
 
-    def _zone(self, k: int, e: Element) -> int:
-        self.zone(k, e)
-        return k + 1
-
-    def zone(self, k: int, e: Element) -> None:
-        """Take the rooms of a zone into the list."""
-        self.state.understood(e.first, e.last)
-        kinds = {"bedroom": ("bedroom",), "living": ("living_room", "dining_room", "family_room"), "work": ("office", "meeting_room")}
-        members = tuple(r.id for r in self.stock.rooms if r.type in kinds.get(e.value, ()) or (r.type == "bedroom" and r.role == e.value))
-        e.ids = list(members) if members else [f"*zone_{e.value}"]
-        self.state.zones.setdefault(e.value, (members, e))
-        self._push(k, e, tuple(e.ids))
-
     def _every(self, k: int, e: Element) -> int:
         self.state.understood(e.first, e.last)
         e.ids = ["*"]
-        self._push(k, e, ("*",))
+        self.push(k, e, ("*",))
         return k + 1
 
     def _det(self, k: int, e: Element) -> int:
@@ -439,9 +378,6 @@ class Clause:
             self.state.say("only", things, (), e)
         return max(j, k + 1)
 
-    def _cue(self, k: int, e: Element) -> int:
-        return relate(self, k, e)
-
     def _complete(self) -> None:
         """Give a cue that stood in front of its subject what followed."""
         assert self.waiting is not None
@@ -459,38 +395,6 @@ class Clause:
                 self.state.say("door" if cue.value == "from" else cue.value, rooms, group, cue)
                 if self.only or cue.only:
                     self.state.say("only", rooms, (), cue)
-
-    def _merge(self, k: int, e: Element) -> None:
-        """Read "open kitchen/living room" and "combined kitchen and living room"; an open kitchen alone is open to where one lives."""
-        listed = list(e.ids)
-        written_on = self.state.heard.lexicon.language == "zh"  # "客厅餐厅厨房" needs no comma
-        joined = written_on
-        for x in self.sentence[k + 1 :]:
-            if x.kind == "np" and joined and x.type in SOCIAL and not x.banned:
-                listed += name(self.state, self.sentence, self.sentence.index(x), self.storey(k))
-                joined = written_on
-            elif (
-                x.kind == "and"
-                or (x.kind == "comma" and e.type in SOCIAL and and_follows(self.sentence, x))
-                or (x.kind == "cue" and x.value == "has" and len(listed) == 1)
-            ):
-                joined = True
-            else:
-                break
-        if len(dict.fromkeys(listed)) > 1 and e.type in SOCIAL:
-            self.state.say("merge", tuple(listed), (), e)
-        elif e.type == "kitchen":
-            self.state.say("open_kitchen", tuple(e.ids), (), e)
-
-    def _merge_after(self, k: int, e: Element) -> None:
-        listed = [
-            i
-            for x in self.sentence[k:]
-            if x.kind == "np" and x.type in SOCIAL
-            for i in name(self.state, self.sentence, self.sentence.index(x), None)
-        ]
-        if len(listed) > 1:
-            self.state.say("merge", tuple(listed), (), e)
 
     def after(self, k: int, cue: str, left: Group) -> tuple[Group, int]:
         """Return the rooms named after a cue, and where reading goes on."""

@@ -91,8 +91,11 @@ class Scan:
         stop = max((j for j in near if self.words[j].text in STOPS), default=-1)
         owner = max((j for j in near if j > stop and self._owner(j, name)), default=None)
         # "a bedroom with a wardrobe" has one; "a bedroom, a bathroom and a wardrobe" are three rooms
-        if owner is not None and any(self.phrase(j, "with")[0] for j in range(owner + 1, k)):
-            return True
+        if owner is not None:
+            between = self.prompt[self.words[owner].end : self.words[k].start]
+            bracket = between.rfind("(") > between.rfind(")")
+            if bracket or any(self.phrase(j, "with")[0] for j in range(owner + 1, k)):
+                return True
         return any(self.phrase(j, "in")[0] and any(self._owner(j + d, name) for d in (1, 2, 3)) for j in (k + 1,))
 
     def _owner(self, k: int, name: str) -> bool:
@@ -296,7 +299,9 @@ class Scan:
         """Whether a thing's name is part of a room's: "tv room", "walk-in wardrobe"."""
         after = self.words[k + length].text if k + length < len(self.words) else ""
         before = [w.text for w in self.words[max(0, k - 2) : k]]
-        return after in ROOMS or (after != "" and after in "间房室" and "\u3400" <= self.words[k].text <= "\u9fff") or before == ["walk", "in"]
+        return (
+            after in ROOMS or (after != "" and after in "间房室" and "\u3400" <= self.words[k].text <= "\u9fff") or before == ["walk", "in"]
+        )
 
     def _mended(self, k: int) -> tuple[int, str]:
         word = self.words[k].stem

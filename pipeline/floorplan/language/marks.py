@@ -24,6 +24,7 @@ PUNCTUATION = {
     "|": "comma",
     "*": "bullet",
 }
+ARROWS = {"->", "=>", "→"}
 FOREIGN = STRONG | {"num", "adj", "cue"}  # what a word of another language may mean in a mixed prompt
 USUAL_HEIGHT = 15.0  # a length from here on, said of a room or a home, is an area ("60 metros")
 
@@ -89,6 +90,8 @@ def _mark(heard: Words, i: int) -> Mark:  # noqa: PLR0911 - one branch per case:
     if found is not None:
         end, meaning, only = found
         return _meant(heard, i, end, meaning, only)
+    if text in ARROWS:
+        return Mark("cue", "chain", 0.0, False, i, i + 1, text)
     if text == "\n":
         return Mark("line", "", 0.0, False, i, i + 1, text)
     if text in STOPS:

@@ -182,20 +182,13 @@ def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -
             same = stock.of(e.type)
         return [_close(r, role, e.text) for r in free[: e.part]]
     if "another" in e.det and not e.definite:
-        return [stock.add(e.type, role, e.text, level)]
+        return [stock.add(e.type, role, e.text, level, open_slot=(e.number or 1) > 1) for _ in range(int(e.number or 1))]
     if e.index:
         return [_indexed(state, e, role, level)]
     if e.ordinal:
         return _ordinal(state, e, role, level)
     if "other" in e.det:
-        last = {i for g in state.past[-1:] for i in g} | {i for x in sentence[:k] for i in x.ids}
-        rest = [r for r in same if r.open_slot] or [r for r in same if r.id not in last] or same[-1:]
-        many = e.plural or (e.number or 0) > 1
-        if e.number is not None and e.type == "bedroom":
-            rest = [r for r in rest if r.open_slot or r.id not in last]
-            while len(rest) < e.number:
-                rest.append(stock.add(e.type, role, e.text, level))
-        return (rest if many else [_close(r, "", e.text) for r in rest[:1]]) or [stock.add(e.type, role, e.text, level)]
+        return _others(state, sentence, k, role, level)
     if role:
         found = _by_role(state, sentence, k, role)
         if found:
@@ -204,6 +197,20 @@ def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -
         return _known(state, sentence, k, level)
     count = int(e.number or (2 if "both" in e.det or (e.plural and e.type not in PLURAL_NAMES) else 1))
     return [stock.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
+
+
+def _others(state: Reading, sentence: list[Element], k: int, role: str, level: int | None) -> list[Named]:
+    """Return "the other two bedrooms": those that nothing was said of, new ones where they are too few."""
+    e, stock = sentence[k], state.inventory
+    same = stock.of(e.type)
+    last = {i for g in state.past[-1:] for i in g} | {i for x in sentence[:k] for i in x.ids}
+    rest = [r for r in same if r.open_slot] or [r for r in same if r.id not in last] or same[-1:]
+    many = e.plural or (e.number or 0) > 1
+    if e.number is not None and e.type == "bedroom":
+        rest = [r for r in rest if r.open_slot or r.id not in last]
+        while len(rest) < e.number:
+            rest.append(stock.add(e.type, role, e.text, level))
+    return (rest if many else [_close(r, "", e.text) for r in rest[:1]]) or [stock.add(e.type, role, e.text, level)]
 
 
 def fresh(state: Reading, e: Element, level: int | None, owner: str) -> list[str]:
@@ -286,7 +293,7 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str) -> list
     return []
 
 
-def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:
+def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one branch per case: a grammar
     """Return the rooms that a phrase without role points at, where there are such rooms."""
     e, stock = sentence[k], state.inventory
     same = stock.of(e.type)

@@ -7,12 +7,13 @@ from pipeline.floorplan.language.phrases import Element
 BEFORE_CUE = {"near", "door", "open", "wall", "away", "apart", "leads", "between"}
 
 
-def ban(sentence: list[Element]) -> None:
+def ban(sentence: list[Element]) -> None:  # noqa: PLR0912 - one branch per case: a grammar
     """Mark the noun phrases that are ruled out, and turn bounds that a negation turns."""
     for k, e in enumerate(sentence):
         if e.kind == "neg":
             j = _target(sentence, k + 1)
             if j is None:
+                _any(sentence, k)
                 if k + 1 == len(sentence) or sentence[k + 1].kind in {"comma", "close", "but"}:
                     _behind(sentence, k)
                 continue
@@ -21,7 +22,9 @@ def ban(sentence: list[Element]) -> None:
                 for m in phrase.amounts:
                     m.bound = {"least": "most", "most": "least"}.get(m.bound, m.bound)
                 e.kind = "used"
-            elif not _related(sentence, j) and not phrase.definite:
+            elif _related(sentence, j):
+                _any(sentence, k)
+            elif not phrase.definite:
                 e.kind = "used"
                 _list(sentence, j)
         elif e.kind == "needless":
@@ -45,6 +48,17 @@ def _target(sentence: list[Element], k: int) -> int | None:
         if e.kind not in {"verb", "adj", "det", "owner", "size", "word", "relative"}:
             return None
     return None
+
+
+def _any(sentence: list[Element], k: int) -> None:
+    """Let "a bedroom" behind a negated cue mean any bedroom, not a new one: "must not be reached through a bedroom"."""
+    cue = False
+    for e in sentence[k + 1 :]:
+        if e.kind in {"comma", "but"}:
+            return
+        cue = cue or (e.kind == "cue" and e.value in BEFORE_CUE)
+        if cue and e.kind == "np" and "indefinite" in e.det and e.number is None:
+            e.det = {"all"}
 
 
 def _behind(sentence: list[Element], k: int) -> None:

@@ -15,7 +15,9 @@ FARTHEST = 14  # marks between the two parts of a frame
 def reorder(marks: list[Mark], heard: Words) -> list[Mark]:
     """Return the marks in the order that the grammar reads."""
     framed = _frames(marks, heard)
-    rules: dict[str, Callable[[list[Mark]], list[Mark]]] = {"de": _german, "es": _spanish, "zh": chinese}
+    if heard.lexicon.language == "de":
+        return _german(framed, heard)
+    rules: dict[str, Callable[[list[Mark]], list[Mark]]] = {"es": _spanish, "zh": chinese}
     rule = rules.get(heard.lexicon.language)
     return rule(framed) if rule else framed
 
@@ -70,10 +72,12 @@ def _matches(marks: list[Mark], k: int, wanted: tuple[str, ...]) -> int | None:
     return None if need else k
 
 
-def _german(marks: list[Mark]) -> list[Mark]:
+def _german(marks: list[Mark], heard: Words) -> list[Mark]:
     """Read "vier gleich große Zimmer" as bedrooms, and "25 m² großes Wohnzimmer" with its area behind the head."""
     made = list(marks)
     for k, mark in enumerate(made):
+        if mark.kind == "room" and heard.tokens[mark.last - 1].text.lower().endswith("zimmern"):
+            made[k] = replace(mark, plural=True)
         described = k > 1 and made[k - 1].kind in {"adj", "size"} and any(m.kind == "num" for m in made[max(0, k - 4) : k])
         if mark.kind == "unit" and mark.value == "rooms" and described:
             made[k] = replace(mark, kind="room", value="bedroom", plural=True)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from pipeline.floorplan.language.facts import PERSONAL, Group
 from pipeline.floorplan.language.naming import name
 from pipeline.floorplan.language.phrases import Element
+from pipeline.floorplan.language.places import storey
 
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
@@ -68,7 +69,7 @@ def has(clause: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one branc
         return ahead + 1
     if thing.type in {"bedroom", "living_room", "family_room", "garage"} or (thing.ids and thing.definite):
         return k + 1
-    ids = tuple(name(clause.state, sentence, ahead, clause.storey(ahead)))
+    ids = tuple(name(clause.state, sentence, ahead, storey(clause, ahead)))
     clause.state.understood(e.first, thing.last)
     opened = thing.type in {"kitchen", "dining_room"} and kind in {"living_room", "kitchen", "dining_room", "studio_room", "family_room"}
     clause.state.say("open" if opened else "door", ids, owners, e)
@@ -107,7 +108,7 @@ def _belongs(clause: Clause, k: int, e: Element, owners: Group) -> int:
             public = x.role in {"shared", "guest"} or (x.number or 1) > len(owners) or x.definite
             if public or (joined == "comma" and not own and not _list_ends(sentence, j)):
                 break
-            if joined == "and" and not own and x.number is not None:
+            if (joined and "another" in x.det) or (joined == "and" and not own and x.number is not None):
                 break
             if joined and x.type == "wc" and not own:
                 break

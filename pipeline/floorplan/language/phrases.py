@@ -8,9 +8,28 @@ from dataclasses import dataclass, field, replace
 from pipeline.floorplan.language.marks import Mark, Words
 
 PREMODIFIERS = {"det", "num", "ord", "adj", "size", "clf", "times"}
-DROPPED = {"fill", "adverb", "word", "clf", "hyphen", "bullet", "unit", "times", "dash", "num", "ignored", "bound", "ord", "long", "enough", "fix", "activity"}
+DROPPED = {
+    "fill",
+    "adverb",
+    "word",
+    "clf",
+    "hyphen",
+    "bullet",
+    "unit",
+    "times",
+    "dash",
+    "num",
+    "ignored",
+    "bound",
+    "ord",
+    "long",
+    "enough",
+    "fix",
+    "activity",
+}
 MOST_INDEX = 12
 LONGEST = 150  # marks of a sentence; a longer one is read in parts, cut at commas
+ALSO = {"also", "tambien", "ademas", "y ademas", "ausserdem", "und ausserdem", "dazu", "zudem", "ferner"}  # begin a new part of a list
 WITH = {"mit", "with", "con"}
 RELATIVES = {"der", "die", "das", "dem", "den", "that"}
 
@@ -197,7 +216,7 @@ def _loose(pre: Sequence[Mark], ahead: Mark | None = None) -> list[Element]:
 def _plain(mark: Mark) -> Element:
     kind = "and" if mark.kind == "slash" else mark.kind
     if mark.kind == "join":
-        kind = mark.value
+        kind = "comma" if mark.text in ALSO else mark.value
     return Element(kind, mark.value, mark.first, mark.last, mark.text, number=mark.number, only=mark.only, mark=mark)
 
 

@@ -8,7 +8,7 @@ from pipeline.floorplan.language.phrases import Element
 
 def point(state: Reading, before: list[Element], e: Element, but: Group) -> Group:
     """Return the rooms that a pronoun stands for after the elements `before`; as an object it does not point at the subject `but`."""
-    here = [tuple(x.ids) for x in before if x.kind in {"np", "zone"} and x.ids]
+    here = [tuple(x.ids) for x in before if x.kind in {"np", "zone", "owner"} and x.ids]
     heard = [*state.past, *here]
     if e.value == "it":
         if here and but:
@@ -36,9 +36,10 @@ def _part(state: Reading, e: Element, plural: Group) -> Group:
     free = [r for r in state.inventory.of(kind) if r.open_slot]
     if e.value != "one":
         return tuple(r.id for r in free) or plural
-    for room in free[:1]:
+    count = int(e.number or 1)
+    for room in free[:count]:
         room.open_slot = False
-    return tuple(r.id for r in free[:1])
+    return tuple(r.id for r in free[:count])
 
 
 def and_follows(sentence: list[Element], comma: Element) -> bool:

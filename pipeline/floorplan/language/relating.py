@@ -10,10 +10,12 @@ from pipeline.floorplan.language.lexicon import ONLY
 from pipeline.floorplan.language.naming import name
 from pipeline.floorplan.language.owning import has, measures
 from pipeline.floorplan.language.phrases import Element
+from pipeline.floorplan.language.places import zone
 
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
 
+THROUGH = {"through", "via", "durch", "ueber", "por", "traves", "经", "过"}
 ASIDE = {"balcony", "garage", "hallway", "staircase"}  # not meant when the largest room is spoken of
 CLOSED = {"balcony", "garage", "bathroom", "wc", "closet", "storage", "utility", "bedroom"}
 WIDE = {"leads", "between", "chain", "avoid", "except"}
@@ -34,6 +36,7 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
         return _by_way_of(clause, k, e)
     if e.value.startswith("thru"):
         return _through(clause, k, e)
+    clause.relative = clause.relative or e.text.startswith("que ")
     left = _left(clause, k, e)
     group, j = objects(clause, k + 1, e.value, left)
     if not group:
@@ -74,6 +77,8 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
         clause.objects = ()
         clause.run = []
         return j
+    if not left and e.text.endswith("有"):  # beside something that is no room
+        return k + 1
     if not left or _inverted(clause, k, j):
         clause.waiting = (e, group)
         clause.subject, clause.latest, clause.run, clause.verb = (), group, [], False
@@ -170,7 +175,12 @@ def _emit(clause: Clause, e: Element, left: Group, group: Group) -> None:
         cue = "not_open" if kinds <= SOCIAL else "away"
     if clause.negative is not None:
         left, clause.negative = _none(clause, left), None
-        what = {"near": "ban", "wall": "ban", "away": "near", "open": "not_open", "avoid": "avoid"}.get(cue, "not_connected")
+        through = cue == "door" and bool(THROUGH & set(e.text.split()))
+        what = (
+            "avoid"
+            if through
+            else {"near": "ban", "wall": "ban", "away": "near", "open": "not_open", "avoid": "avoid"}.get(cue, "not_connected")
+        )
         state.say(what, left, group, e)
     elif cue == "ensuite":
         state.say("own", left, group, e)
@@ -269,7 +279,12 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
     while index < len(sentence):
         e = sentence[index]
         if e.kind == "np":
-            if e.banned or (group and not joined) or (group and first is not None and not _continues(clause, index, cue, joined, first)):
+            pair = cue == "between" and joined == "and" and len(group) == 1
+            if (
+                e.banned
+                or (group and not joined)
+                or (group and first is not None and not pair and not _continues(clause, index, cue, joined, first))
+            ):
                 break
             ids = name(clause.state, sentence, index, clause.level if clause.forward else None)
             clause.state.understood(e.first, e.last)
@@ -291,7 +306,7 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
         elif e.kind == "owner" and not group and not any(x.kind in {"np", "word"} for x in sentence[index + 1 : index + 2]):
             return _theirs(clause, e, left), index + 1
         elif e.kind == "zone" and not group:
-            clause.zone(index, e)
+            zone(clause, index, e)
             return tuple(e.ids), index + 1
         elif e.kind == "every" and not group:
             clause.state.understood(e.first, e.last)
@@ -320,7 +335,8 @@ def _theirs(clause: Clause, owner: Element, left: Group) -> Group:
     """Return the bedroom of those who are named alone: "next to the parents'", "junto al de los padres"."""
     found = [r.id for r in clause.stock.of("bedroom") if r.role == owner.value and r.id not in left]
     clause.state.understood(owner.first, owner.last)
-    return tuple(found or [clause.stock.add("bedroom", owner.value, owner.text, None).id])
+    owner.ids = found or [clause.stock.add("bedroom", owner.value, owner.text, None).id]
+    return tuple(owner.ids)
 
 
 def _continues(clause: Clause, index: int, cue: str, joined: str, first: Element) -> bool:  # noqa: PLR0911 - one answer per case: a grammar
@@ -335,7 +351,7 @@ def _continues(clause: Clause, index: int, cue: str, joined: str, first: Element
     if starts and not (ahead is not None and ahead.kind == "relative"):
         return False
     if (
-        cue == "leads"
+        cue in {"leads", "chain"}
         and joined == "comma"
         and e.number is not None
         and first.number is None

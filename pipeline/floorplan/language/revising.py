@@ -33,7 +33,7 @@ def revise(marks: Sequence[Mark], heard: Words) -> Revised:
     made = _corrected(list(marks))
     made = _content(made)
     _contradicted(made, heard)
-    return _chosen(_few(made), heard)
+    return _chosen(_few(made))
 
 
 def _counted(marks: Sequence[Mark], k: int) -> int | None:
@@ -104,7 +104,14 @@ def _corrected(marks: list[Mark]) -> list[Mark]:
                     while end < len(marks) and marks[end].kind == "clf":
                         end += 1
                     start = k
-                    while start and marks[start - 1].kind in {"neg", "comma", "hyphen", "dash", "but", "fill"}:  # "un dormitorio, no, mejor dos"
+                    while start and marks[start - 1].kind in {
+                        "neg",
+                        "comma",
+                        "hyphen",
+                        "dash",
+                        "but",
+                        "fill",
+                    }:  # "un dormitorio, no, mejor dos"
                         start -= 1
                     del marks[start:end]
                     k = start
@@ -161,7 +168,9 @@ def _contradicted(marks: Sequence[Mark], heard: Words) -> None:
         if place is not None and marks[place[0]].number != mark.number and marks[place[1]].kind == "room":
             words = [_cited(heard, marks, *sorted(place)), _cited(heard, marks, k, end - 1)]
             what = marks[place[1]].value.partition("/")[0].replace("_", " ")
-            raise ImpossibleError(f"{marks[place[0]].number:g} {what}s are asked for, and then {mark.number:g}", "keep one of the two counts", words)
+            raise ImpossibleError(
+                f"{marks[place[0]].number:g} {what}s are asked for, and then {mark.number:g}", "keep one of the two counts", words
+            )
 
 
 def _cited(heard: Words, marks: Sequence[Mark], first: int, last: int) -> Evidence:
@@ -175,21 +184,23 @@ def _few(marks: list[Mark]) -> list[Mark]:
     while k + 2 < len(marks):
         a, between, b = marks[k : k + 3]
         joined = (between.kind == "join" and between.value in {"or", "to"}) or between.kind in {"dash", "hyphen", "to"}
-        if a.kind == b.kind == "num" and joined and a.number < b.number and (place := _counted(marks, k + 2)) is not None and place > k + 2:
-            if marks[place].kind == "room":
-                del marks[k + 1 : k + 3]
+        place = _counted(marks, k + 2) if a.kind == b.kind == "num" and joined and a.number < b.number else None
+        if place is not None and place > k + 2 and marks[place].kind == "room":
+            del marks[k + 1 : k + 3]
         k += 1
     return marks
 
 
-def _chosen(marks: list[Mark], heard: Words) -> Revised:
+def _chosen(marks: list[Mark]) -> Revised:
     """Of "a study or a guest room" take the first; the second stands aside."""
     aside: list[Mark] = []
     k = 0
     negated = False
     while k < len(marks):
         mark = marks[k]
-        negated = (negated or mark.kind in {"neg", "except"} or (mark.kind == "cue" and mark.value in {"except", "avoid", "away"})) and mark.kind not in ENDS
+        negated = (
+            negated or mark.kind in {"neg", "except"} or (mark.kind == "cue" and mark.value in {"except", "avoid", "away"})
+        ) and mark.kind not in ENDS
         if mark.kind == "join" and mark.value == "or" and not negated and k and marks[k - 1].kind in {"room", "suite"}:
             j = k + 1
             while j < len(marks) and marks[j].kind in CHOICE:

@@ -19,7 +19,43 @@ SHIFTED = {"first floor": "1", "first storey": "1", "second floor": "2", "second
 def widen(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with shorthand written out."""
     made = _studies(_floors(_paired(_activities(list(marks))), heard), heard)
-    return _half_baths(_counts(made))
+    return _both(_partial(_half_baths(_counts(made))), heard)
+
+
+def _partial(marks: list[Mark]) -> list[Mark]:
+    """Read "two of them", "davon zwei", "其中两间" as so many of those that were named."""
+    made: list[Mark] = []
+    k = 0
+    while k < len(marks):
+        pair = marks[k : k + 2]
+        kinds = [m.kind for m in pair]
+        after = next((m for m in marks[k + 2 :] if m.kind != "clf"), None)
+        alone = after is None or after.kind not in {"room", "suite", "unit", "adj", "size"}
+        some = [m for m in pair if m.kind == "pron" and m.value == "some"]
+        if sorted(kinds) == ["num", "pron"] and some and (kinds[0] == "num" or alone):
+            number = next(m.number for m in pair if m.kind == "num")
+            made.append(replace(some[0], value="one", number=number, first=pair[0].first, last=pair[1].last))
+            k += 2
+            while k < len(marks) and marks[k].kind == "clf":
+                k += 1
+        else:
+            made.append(marks[k])
+            k += 1
+    return made
+
+
+def _both(marks: list[Mark], heard: Words) -> list[Mark]:
+    """Tell "both bedrooms" from "both the bedroom and the hall" and "dan los dos a la cocina"."""
+    made = list(marks)
+    if heard.lexicon.language not in {"en", "es"}:
+        return made
+    for k, mark in enumerate(made):
+        j = k + 1
+        while j < len(made) and made[j].kind in {"det", "adj", "fill"}:
+            j += 1
+        if mark.kind == "det" and mark.value == "both" and j < len(made) and made[j].kind == "room" and not made[j].plural:
+            made[k] = replace(mark, kind="fill" if heard.lexicon.language == "en" else "pron")
+    return made
 
 
 def crossed(marks: Sequence[Mark], heard: Words) -> list[Mark]:
@@ -29,7 +65,12 @@ def crossed(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     imperial = bool(lengths) and all(f in {FEET, 0.092903, 0.0254} for f in lengths)
     for k, mark in enumerate(marks):
         made.append(mark)
-        pair = k > 1 and mark.kind == "num" and marks[k - 2].kind == "num" and (marks[k - 1].kind == "times" or marks[k - 1].text in {"x", "by"})
+        pair = (
+            k > 1
+            and mark.kind == "num"
+            and marks[k - 2].kind == "num"
+            and (marks[k - 1].kind == "times" or marks[k - 1].text in {"x", "by"})
+        )
         if not pair or (k + 1 < len(marks) and marks[k + 1].kind == "unit") or mark.value != "figure":
             continue
         product = mark.number * marks[k - 2].number
@@ -49,8 +90,9 @@ def shared_unit(marks: Sequence[Mark]) -> list[Mark]:
             j -= 2
             places.append(j)
         if len(places) > 1 and _several(made, j):
+            unit = made[k]
             for place in places[1:]:
-                made.insert(place + 1, replace(made[k], first=made[place].last, last=made[place].last))
+                made.insert(place + 1, replace(unit, first=made[place].last, last=made[place].last))
     return made
 
 
@@ -78,7 +120,13 @@ def dealt(marks: Sequence[Mark]) -> list[Mark]:
     k = 0
     while k < len(marks):
         run, j = [k], k + 1
-        while marks[k].kind == "amount" and marks[k].value == "area" and j + 1 < len(marks) and _parted(marks[j]) and marks[j + 1].kind == "amount":
+        while (
+            marks[k].kind == "amount"
+            and marks[k].value == "area"
+            and j + 1 < len(marks)
+            and _parted(marks[j])
+            and marks[j + 1].kind == "amount"
+        ):
             if marks[j + 1].value != "area":
                 break
             run.append(j + 1)
@@ -168,7 +216,11 @@ def _activities(marks: list[Mark]) -> list[Mark]:
         near = [m for m in (made[j] if j < len(made) else None, *reversed(made[max(0, k - 3) : k])) if m is not None]
         rooms = {m.value for m in near if m.kind == "room"} & TOGETHER
         listed = any(m.kind in {"comma", "join", "slash"} for m in made[found[0] : found[-1]])
-        whole = len(kinds) > 2 or (len(kinds) > 1 and any(m.kind == "flag" and m.value == "open_plan" for m in near)) or (bool(rooms - kinds) and len(kinds | rooms) > 1 and k > 0 and made[k - 1].kind in {"comma", "join", "slash"})
+        whole = (
+            len(kinds) > 2
+            or (len(kinds) > 1 and any(m.kind == "flag" and m.value == "open_plan" for m in near))
+            or (bool(rooms - kinds) and len(kinds | rooms) > 1 and k > 0 and made[k - 1].kind in {"comma", "join", "slash"})
+        )
         for i in found:
             named = whole and (listed or len(found) == 1)
             made[i] = replace(made[i], kind="room" if named else "fill")
@@ -213,7 +265,10 @@ def _half_baths(marks: list[Mark]) -> list[Mark]:
         halved = mark.text in HALVES and ahead is not None and ahead.kind == "join" and k > 1 and marks[k - 2].value == "bathroom"
         ends = k + 1 >= len(marks) or marks[k + 1].kind in {"comma", "stop", "line", "join", "close"}
         if halved and ends:
-            made += [Mark("num", "", 1.0, False, mark.first, mark.last, mark.text), Mark("room", "wc", 0.0, False, mark.first, mark.last, mark.text)]
+            made += [
+                Mark("num", "", 1.0, False, mark.first, mark.last, mark.text),
+                Mark("room", "wc", 0.0, False, mark.first, mark.last, mark.text),
+            ]
         else:
             made.append(mark)
     return made

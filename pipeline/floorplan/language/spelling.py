@@ -58,7 +58,20 @@ def resolve(word: str, language: Language) -> tuple[str, ...]:  # noqa: PLR0911 
     return (word,)
 
 
-SOUNDS = (("qu", "k"), ("ce", "se"), ("ci", "si"), ("ch", "x"), ("ll", "y"), ("h", ""), ("v", "b"), ("z", "s"), ("c", "k"), ("x", "ch"), ("ge", "je"), ("gi", "ji"))
+SOUNDS = (
+    ("qu", "k"),
+    ("ce", "se"),
+    ("ci", "si"),
+    ("ch", "x"),
+    ("ll", "y"),
+    ("h", ""),
+    ("v", "b"),
+    ("z", "s"),
+    ("c", "k"),
+    ("x", "ch"),
+    ("ge", "je"),
+    ("gi", "ji"),
+)
 
 
 def sound(word: str) -> str:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 HAN = "\u3400-\u9fff"
 WORD = re.compile(
-    rf"\d+(?:[.,]\d{{3}})+(?![\d])|\d+(?:[.,]\d+)?|[{HAN}]|m²|ft²|m2(?!\d)|ft2(?!\d)|[^\W\d_{HAN}]+(?:'(?:s|t|ve|d|ll|re|m)\b)?'?|w/o\b|[<>]=|1½|½|[%.,;:!?()/&~+=*•|–—\-×。、;:!?()\n\[\]]",
+    rf"\d+(?:[.,]\d{{3}})+(?![\d])|\d+(?:[.,]\d+)?|[{HAN}]|m²|ft²|m2(?!\d)|ft2(?!\d)|[^\W\d_{HAN}]+(?:'(?:s|t|ve|d|ll|re|m)\b)?'?|w/o\b|->|=>|→|[<>]=|1½|½|[%.,;:!?()/&~+=*•|–—\-×。、;:!?()\n\[\]]",
     re.IGNORECASE,
 )
 ALIKE = str.maketrans(

@@ -166,3 +166,24 @@ def test_prompts_are_read_in_milliseconds():
     for prompt in prompts:
         understand(prompt)
     assert (time.process_time() - start) / len(prompts) < 0.02
+
+
+SENTENCES = load("sentences")
+
+
+@pytest.mark.parametrize("language", ["en", "de", "es", "zh"])
+def test_half_of_the_sentences_is_held_out(language):
+    mine = [c for c in SENTENCES if c["id"].startswith(language)]
+    assert len(mine) == 50
+    assert sum(c["half"] == "held" for c in mine) == 25
+
+
+def test_sentences_are_read():
+    """The set was written before the grammar; how many of it are exact is a figure of the benchmark, and must not fall."""
+    exact = sum(not faults(c) for c in SENTENCES if c["half"] == "tuned")
+    assert exact >= 97
+
+
+@pytest.mark.parametrize("case", [c for c in SENTENCES if c["half"] == "tuned" and not c.get("refused")], ids=lambda c: c["id"])
+def test_no_reasonable_prompt_is_refused(case):
+    parse(case["prompt"])

@@ -4,13 +4,14 @@ import pytest
 import yaml
 
 from pipeline.floorplan.language.lexicon import FOLDER, LANGUAGES, lexicon
-from pipeline.floorplan.language.marks import listen, segment
+from pipeline.floorplan.language.marks import listen, measured, segment
 from pipeline.floorplan.language.spelling import distance, resolve
 from pipeline.floorplan.language.text import clean, fold, tokenize
 
 
 def amounts(text, language="en"):
-    return [m for m in segment(listen(text, language)) if m.kind == "amount"]
+    heard = listen(text, language)
+    return [m for m in measured(segment(heard), heard) if m.kind == "amount"]
 
 
 @pytest.mark.parametrize(

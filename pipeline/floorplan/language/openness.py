@@ -1,0 +1,76 @@
+"""Rooms that are open to each other, and doors that must not be."""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING
+
+from pipeline.floorplan.language.facts import SOCIAL
+from pipeline.floorplan.language.naming import name
+from pipeline.floorplan.language.phrases import Element
+from pipeline.floorplan.language.places import storey
+from pipeline.floorplan.language.pointing import and_follows
+
+if TYPE_CHECKING:
+    from pipeline.floorplan.language.clauses import Clause
+
+
+def merge(clause: Clause, k: int, e: Element) -> None:
+    """Read "open kitchen/living room" and "combined kitchen and living room"; an open kitchen alone is open to where one lives."""
+    listed = list(e.ids)
+    written_on = clause.state.heard.lexicon.language == "zh"  # "客厅餐厅厨房" needs no comma
+    joined = written_on
+    for x in clause.sentence[k + 1 :]:
+        if x.kind == "np" and joined and x.type in SOCIAL and not x.banned:
+            listed += name(clause.state, clause.sentence, clause.sentence.index(x), storey(clause, k))
+            joined = written_on
+        elif (
+            x.kind == "and"
+            or (x.kind == "comma" and e.type in SOCIAL and and_follows(clause.sentence, x))
+            or (x.kind == "cue" and x.value == "has" and len(listed) == 1)
+        ):
+            joined = True
+        else:
+            break
+    if len(dict.fromkeys(listed)) > 1 and e.type in SOCIAL:
+        clause.state.say("merge", tuple(listed), (), e)
+    elif e.type == "kitchen":
+        clause.state.say("open_kitchen", tuple(e.ids), (), e)
+
+
+def merge_after(clause: Clause, k: int, e: Element) -> None:
+    """Read "open plan: living, dining, kitchen": what is named behind the words."""
+    listed = [
+        i
+        for x in clause.sentence[k:]
+        if x.kind == "np" and x.type in SOCIAL
+        for i in name(clause.state, clause.sentence, clause.sentence.index(x), None)
+    ]
+    if len(listed) > 1:
+        clause.state.say("merge", tuple(listed), (), e)
+
+
+def written_as_one(clause: Clause, k: int, e: Element) -> int:
+    """Return the place of the room that is written as one with that at k, "kitchen/living", "salón-cocina"; 0 for none."""
+    j = next((j for j, x in enumerate(clause.sentence[k + 1 : k + 3], k + 1) if x.kind == "np"), 0)
+    if not j or clause.sentence[j].type not in SOCIAL - {e.type}:
+        return 0
+    tokens = clause.state.heard.tokens
+    between = clause.state.heard.prompt[tokens[e.last - 1].end : tokens[clause.sentence[j].first].start]
+    return j if between in {"/", "-", "–", "/-"} else 0
+
+
+def no_door(clause: Clause) -> None:
+    """Read "no door between kitchen and bedroom", "keine Tür von der Garage ins Schlafzimmer"; the words are taken out."""
+    ends = [-1, *(k for k, e in enumerate(clause.sentence) if e.kind in {"comma", "but"}), len(clause.sentence)]
+    for first, last in itertools.pairwise(ends):
+        part = clause.sentence[first + 1 : last]
+        none = next((j for j, e in enumerate(part) if e.kind in {"neg", "used"}), None)
+        door = next((e for e in part[none:][1:4] if e.kind == "flag" and e.value == "doors"), None) if none is not None else None
+        rooms = [k for k in range(first + 1, last) if clause.sentence[k].kind == "np"]
+        if door is None or len(rooms) != 2:
+            continue
+        a, b = (tuple(name(clause.state, clause.sentence, k, None)) for k in rooms)
+        clause.state.say("not_connected", a, b, door)
+        clause.sentence[first + 1 : last] = []
+        return
