@@ -143,7 +143,7 @@ def _shape(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
     for knob, sign in case.get("style", {}).items():
         if getattr(program.style, knob) * sign <= 0:
             yield f"{knob} {getattr(program.style, knob)}"
-    if "ceiling" in case and getattr(program, "ceiling_height", None) != case["ceiling"]:
+    if "ceiling" in case and program.shell.ceiling != case["ceiling"]:
         yield "ceiling"
 
 

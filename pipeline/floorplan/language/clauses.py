@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from pipeline.floorplan.language.comparing import compare, factor
 from pipeline.floorplan.language.facts import ROLES, SOCIAL, Group, Reading
 from pipeline.floorplan.language.naming import fresh, name
 from pipeline.floorplan.language.openness import merge, merge_after, no_door, written_as_one
@@ -11,9 +12,16 @@ from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import level, storey, wing, zone
 from pipeline.floorplan.language.pointing import point
 from pipeline.floorplan.language.quantities import attach, belongs
-from pipeline.floorplan.language.relating import listed, objects, relate, superlative
+from pipeline.floorplan.language.relating import objects, relate, superlative
 
-ELSEWHERE = {"level": level, "wing": wing, "zone": zone, "cue": relate}  # what other modules read, by kind of element
+ELSEWHERE = {
+    "level": level,
+    "wing": wing,
+    "zone": zone,
+    "cue": relate,
+    "factor": factor,
+    "cmp": compare,
+}  # what other modules read, by kind of element
 
 
 class Clause:
@@ -328,46 +336,6 @@ class Clause:
         self.state.understood(e.first, e.last)
         self.state.outside = (self.owning or next((i for i in self.latest), ""), e)
         return k + 1
-
-    def _factor(self, k: int, e: Element) -> int:
-        self.state.understood(e.first, e.last)
-        self.factor = e
-        ahead = next((x for x in self.sentence[k + 1 :] if x.kind not in {"relative", "det"}), None)
-        if ahead is not None and ahead.kind == "np":
-            return self._cmp(k, e)
-        return k + 1
-
-    def _cmp(self, k: int, e: Element) -> int:
-        """Read "at least 1.5 times as large as the largest bedroom"."""
-        self.state.understood(e.first, e.last)
-        left = listed(self) or self.subject or self.latest
-        if e.value == "alike":
-            rooms = tuple(i for x in self.run for i in x.ids) if len(self.latest) < 2 else self.latest
-            rooms = rooms if len(rooms) > 1 else self.subject
-            self.state.say("area_equal", tuple(i for i in rooms if not i.startswith("*")), (), e, 0.15)
-            return k + 1
-        right, j = self.after(k + 1, "cmp", left)
-        ahead = next((x for x in self.sentence[k + 1 : j] if x.kind == "np"), None)
-        if ahead is not None and "largest" in ahead.adjectives:
-            right = tuple(r.id for r in self.stock.of(ahead.type))
-        value = self.factor.number or 1.0 if self.factor else 1.0
-        if self.factor is None:
-            behind = self.sentence[j] if j < len(self.sentence) else None
-            if behind is not None and behind.kind == "factor":
-                value, j = behind.number or 1.0, j + 1
-        self.factor = None
-        a, b = (right, left) if e.value == "smaller" else (left, right)
-        if value < 1.0:  # "half the size of"
-            a, b, value = b, a, 1.0 / value
-        if self.negative:
-            a, b, self.negative = b, a, None
-        if e.value == "equal" and a and b:
-            self.state.say("area_equal", (*a, *b), (), e, 0.15)
-        elif a and b:
-            for x in a:
-                self.state.say("area_order", (x,), tuple(i for i in b if i != x), e, value)
-        self.latest, self.run = right, []
-        return max(j, k + 1)
 
     def _via(self, k: int, e: Element) -> int:
         """Read "the only way into the bathroom is through the bedroom"."""

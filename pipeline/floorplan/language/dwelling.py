@@ -71,6 +71,7 @@ def _outline(draft: Draft, state: Reading) -> None:
         ("shape_t", {"shape": "T"}),
         ("rectangle", {"shape": "rectangle"}),
         ("narrow", NARROW),
+        ("chamfered", {"corners": "chamfered"}),
     ):
         if flag in state.flags:
             draft.fields["footprint"] = {**draft.fields.get("footprint", {}), **made, "stated": True}

@@ -8,6 +8,7 @@ from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.phrases import Element
 
 LISTED = 1.3  # the same behind a list of three rooms and more
+NAMED = {"doors", "corridors", "ceiling", "walls", "inner_walls", "outer_walls"}  # what a length may measure besides rooms
 HUGE = 5.0  # the same behind a room of a home that has no area yet
 WHOLE = 1.6  # an area of so many usual areas of the room in front of it, set off by a comma, is the home's
 
@@ -56,7 +57,7 @@ def attach(state: Reading, sentence: list[Element], k: int, mark: Mark, latest: 
         before = next((x for x in reversed(sentence[:k]) if x.kind in {"flag", "np"} and x.value not in {"wide", "only"}), None)
         after = sentence[k + 1] if k + 1 < len(sentence) else None
         for x in (before, after):
-            if x is not None and x.kind == "flag" and x.value in {"doors", "corridors", "ceiling"}:
+            if x is not None and x.kind == "flag" and x.value in NAMED:
                 state.amounts.append(
                     (Mark(mark.kind, x.value, mark.number, False, mark.first, mark.last, mark.text, bound=mark.bound), None)
                 )

@@ -24,7 +24,9 @@ def attach(draft: Draft, state: Reading) -> None:
         rooms = [stock.get(i) for i in ids or () if not i.startswith("*")]
         if mark.value == "area" and mark.number > 0:
             _area(draft, mark, rooms)
-        elif mark.value in {"length", "doors", "corridors", "ceiling"}:
+        elif mark.value in SHELL:
+            _shell(draft, mark)
+        elif mark.value in {"length", "doors", "corridors"}:
             _length(draft, mark, rooms)
 
 
@@ -67,6 +69,23 @@ def _whole_range(box: dict[str, float]) -> dict[str, Any]:
     if "target" in box:
         return {"target": box["target"], "min": box["target"] * (1 - ABOUT), "max": box["target"] * (1 + ABOUT), "stated": True}
     return {**box, "stated": True}
+
+
+SHELL = {"ceiling": ("ceiling",), "walls": ("inner_wall", "outer_wall"), "inner_walls": ("inner_wall",), "outer_walls": ("outer_wall",)}
+
+
+def _shell(draft: Draft, mark: Mark) -> None:
+    """Set the height of rooms or the thickness of walls; what no home has is refused with the words."""
+    for field in SHELL[mark.value]:
+        draft.cite(mark.first, mark.last, f"shell.{field}")
+        low, high = LIMITS[field]
+        if not low <= mark.number <= high:
+            words = [Evidence.model_validate(draft.evidence[-1])]
+            raise ImpossibleError(f"{field.replace('_', ' ')} of {mark.number:g} m", f"ask for {low:g} to {high:g} m", words)
+        draft.fields["shell"] = {**draft.fields.get("shell", {}), field: mark.number, "stated": True}
+
+
+LIMITS = {"ceiling": (1.8, 8.0), "inner_wall": (0.05, 0.6), "outer_wall": (0.05, 0.6)}  # [m]
 
 
 def _length(draft: Draft, mark: Mark, rooms: list[Named]) -> None:
