@@ -28,6 +28,11 @@ class Category:
     size: tuple[float, float, float] | None
     layout: bool = True
 
+    @property
+    def loose(self) -> bool:
+        """Whether it lies where it was put and can be taken away: a body of its own in simulators."""
+        return not self.layout and self.mount == "floor"
+
 
 @dataclass(frozen=True, slots=True)
 class Taxonomy:

@@ -1,19 +1,22 @@
 """Post-optimisation: walkable area (algorithm 2 of the paper), then what is left of collisions is separated."""
 
+from pipeline.arrange.laying import Laying
 from pipeline.arrange.room import Arranged, post_optimise
 from pipeline.arrange.separate import Reject, Separated, separate
-from pipeline.arrange.settings import PostoptSettings, SeparateSettings, WalkableSettings
+from pipeline.arrange.settings import PostoptSettings, SeparateSettings, ThingsSettings, WalkableSettings
 from pipeline.arrange.site import Site
 from pipeline.arrange.walkable import Controlled, control_walkable, free_ratio, paper_ratio
 
 __all__ = [
     "Arranged",
     "Controlled",
+    "Laying",
     "PostoptSettings",
     "Reject",
     "SeparateSettings",
     "Separated",
     "Site",
+    "ThingsSettings",
     "WalkableSettings",
     "control_walkable",
     "free_ratio",

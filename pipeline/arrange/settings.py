@@ -31,8 +31,19 @@ class SeparateSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class ThingsSettings:
+    """Small things on and in finished furniture."""
+
+    rate: float = 1.0  # factor on the expected numbers of manifests/calibration/rates.yaml; 0: no small things
+    hidden: float = 0.1  # weight of a place in a drawer or behind a door, beside 1 of an open one
+    margin: float = 0.01  # distance from edges and from each other [m]
+    tries: int = 8  # places that are tried per thing
+
+
+@dataclass(frozen=True, slots=True)
 class PostoptSettings:
     """Section `postopt` of params.yaml. The robot's radius, height and raster cell are those of section `verify`."""
 
     walkable: WalkableSettings = field(default_factory=WalkableSettings)
     separate: SeparateSettings = field(default_factory=SeparateSettings)
+    things: ThingsSettings = field(default_factory=ThingsSettings)

@@ -22,7 +22,7 @@ from pipeline import floorplan, params, seeds, tables, taxonomy
 from pipeline.arrange import PostoptSettings
 from pipeline.diffusion.sampling import Sampler
 from pipeline.diffusion.settings import SampleSettings
-from pipeline.entities.home import Home
+from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Plan
 from pipeline.errors import ContentError, RefusedError
 from pipeline.floorplan.furniture import members, needed, plain
@@ -37,6 +37,7 @@ from pipeline.homes.library import Library
 from pipeline.homes.request import Request, RoomJob, layout_type
 from pipeline.homes.rows import Row, home_rows, reject_row
 from pipeline.homes.settings import ShardSettings
+from pipeline.homes.things import placeable, small_things
 from pipeline.manifest import digest, sha256_file
 from pipeline.retrieval.index import AssetIndex
 from pipeline.retrieval.settings import RetrievalSettings
@@ -85,6 +86,7 @@ class _Work:
     rejects: list[Row] = field(default_factory=list)
     tries: int = 0
     certificate: Certificate | None = None
+    things: tuple[Placement, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -277,7 +279,27 @@ class Factory:
             elif faults := certificate.faults(self.verify.policy):
                 self._replan(work, *faults[0])
             else:
-                work.certificate = certificate
+                work.things, work.certificate = self._furnished(work, home, certificate)
+
+    def _furnished(self, work: _Work, home: Home, certificate: Certificate) -> tuple[tuple[Placement, ...], Certificate]:
+        """Lay small things on the furniture of a sound home and judge it again; what the judge faults is not laid."""
+        with self.timed("things"):
+            draw = seeds.generator(self.seed, "things", home.index, work.attempt)
+            laid = small_things(home, self.library, self.postopt.things, draw, self.postopt.separate.touch)
+        while laid:
+            whole = replace(home, placements=home.placements + laid)
+            with self.timed("verify_things"):
+                judged = verify_home(whole, self.library, self.verify)
+            guilty = guilty_objects(whole, judged)
+            if not guilty and judged.ok(self.verify.policy):
+                return laid, judged
+            lost = {p.object_id for p in laid if p.object_id in guilty} or {p.object_id for p in laid}
+            for p in (p for p in laid if p.object_id in lost):
+                reason = guilty.get(p.object_id, Guilt(p.room_id, "unsupported", "the judge finds fault with the home"))
+                reject = ("object", reason.reason, f"{p.object_id}: {reason.detail}")
+                work.rejects.append(reject_row(home.scene_id, p.room_id, work.attempt, reject))
+            laid = tuple(p for p in laid if p.object_id not in lost)
+        return (), certificate
 
     def _expel(self, work: _Work, guilty: Mapping[str, Guilt]) -> None:
         """Take the guilty objects out of their rooms, each with its reason."""
@@ -295,7 +317,7 @@ class Factory:
     def _home(self, work: _Work) -> Home:
         placed = tuple(p for room in work.plan.rooms if room.room_id in work.results for p in work.results[room.room_id].placements)
         index = work.request.index
-        return Home(scene_id(self.seed, index), self.seed, index, work.prompt, work.program, work.plan, placed)
+        return Home(scene_id(self.seed, index), self.seed, index, work.prompt, work.program, work.plan, placed + work.things)
 
     def _outcome(self, work: _Work, *, files: bool) -> Outcome:
         assert work.certificate is not None
@@ -310,7 +332,7 @@ class Factory:
 
     def write_library(self, folder: Path, asset_ids: Sequence[str] | None = None) -> None:
         """Write the asset library (all that homes may hold, or those that are named) with its tables and thumbnails, on all cores."""
-        known = set(taxonomy.load().names)
+        known = {*taxonomy.load().names, *(placeable() if self.postopt.things.rate > 0 else ())}
         chosen = asset_ids if asset_ids is not None else [a for a, row in self.library.rows.items() if row["category"] in known]
         write_assets(self.library, folder, sorted(chosen), os.cpu_count() or 1)
 

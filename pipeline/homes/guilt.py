@@ -22,7 +22,7 @@ class Guilt:
 def guilty_objects(home: Home, certificate: Certificate) -> dict[str, Guilt]:
     """Return what must go, by object_id.
 
-    Of two objects in each other the smaller goes; of a blocked joint what blocks it, or its owner where a wall does or the owner
+    Of two objects in each other the smaller goes, and what lies on another before what stands; of a blocked joint what blocks it, or its owner where a wall does or the owner
     is a small thing that lies on something else; of a room that cannot be entered the floor-standing object nearest to one of its doors.
     """
     placed = {p.object_id: p for p in home.placements}
@@ -33,7 +33,7 @@ def guilty_objects(home: Home, certificate: Certificate) -> dict[str, Guilt]:
         elif not check.supported:
             guilty[check.object_id] = Guilt(check.room_id, "unsupported", "floats, or sticks through the ceiling")
         for other in check.hits:
-            smaller = min((placed[check.object_id], placed[other]), key=lambda p: (float(p.size.prod()), p.object_id))
+            smaller = min((placed[check.object_id], placed[other]), key=lambda p: (not p.support, float(p.size.prod()), p.object_id))
             guilty[smaller.object_id] = Guilt(smaller.room_id, "collision", f"{check.object_id} and {other} are in each other")
     for joint in certificate.joints:
         if joint.clear:

@@ -22,6 +22,9 @@ class Library(Mapping[str, Asset]):
         self.joints = joints
         self.rows = {row["asset_id"]: row for row in rows}
         self._loaded: dict[str, Asset] = {}
+        self._shelves: dict[str, list[str]] = {}
+        for asset_id in sorted(self.rows):
+            self._shelves.setdefault(self.rows[asset_id]["category"], []).append(asset_id)
 
     @classmethod
     def read(cls, folder: Path, files: Path) -> Library:
@@ -43,6 +46,10 @@ class Library(Mapping[str, Asset]):
 
     def __len__(self) -> int:
         return len(self.rows)
+
+    def of(self, category: str) -> list[str]:
+        """Return the ids of a category's assets, sorted."""
+        return self._shelves.get(category, [])
 
     def unread(self) -> Library:
         """Return the same library with nothing read yet: small enough to be sent to workers."""

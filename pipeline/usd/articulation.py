@@ -1,4 +1,7 @@
-"""Links and joints of an asset under its root prim: an articulation, or colliders alone where nothing moves."""
+"""Links and joints of an asset under its root prim: an articulation, or colliders alone where nothing moves.
+
+Small things are bodies of their own: they rest by gravity on what they stand on, and what opens of them moves along.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from pxr import Sdf
 
+from pipeline import taxonomy
 from pipeline.entities.asset import Asset, Link, Mesh
 from pipeline.usd.joints import convert_fixed, convert_joint
 from pipeline.usd.layer import apply, identifiers, label, prim, relationship
@@ -37,23 +41,30 @@ def joint_names(asset: Asset) -> list[str]:
     return identifiers((joint.name for joint in asset.joints), ("world_fixed",))
 
 
+def loose(asset: Asset) -> bool:
+    """Whether an asset is a small thing that lies free, fixed to nothing."""
+    known = taxonomy.load().categories.get(asset.category)
+    return known is not None and known.loose
+
+
 def convert_asset(root: Sdf.PrimSpec, asset: Asset, materials: Sequence[Sdf.Path]) -> None:
     """Write all links, and where anything moves the joints, under `root`."""
-    names = link_names(asset)
+    names, free = link_names(asset), loose(asset)
     links = [prim(root, name) for name in names]
     moving = {joint.child: joint for joint in asset.joints}
     for i, (spec, link) in enumerate(zip(links, asset.links, strict=True)):
-        if asset.articulated:
+        if asset.articulated or free:
             convert_body(spec, link)
         if i in moving:
             part = moving[i].part_class
             label(spec, "class", [MOVERS.get(part, HANDLES.get(part, "part"))])
             label(spec, "part", [part])
-        _convert_pieces(spec, link, asset, materials, weigh=asset.articulated)
+        _convert_pieces(spec, link, asset, materials, weigh=asset.articulated or free)
     if asset.articulated:
         apply(root, ["PhysicsArticulationRootAPI"])
         scope = prim(root, "joints", "Scope")
-        convert_fixed(scope, root.path, links[0].path)
+        if not free:
+            convert_fixed(scope, root.path, links[0].path)
         prims = dict(zip((joint.name for joint in asset.joints), joint_names(asset), strict=True))
         for index, joint in enumerate(asset.joints):
             ends = links[joint.parent].path, links[joint.child].path

@@ -11,7 +11,7 @@ from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home, Placement
 from pipeline.errors import ContentError
 from pipeline.geometry.walls import levels, shell
-from pipeline.usd.layer import new_layer, place, prim, save
+from pipeline.usd.layer import new_layer, place, prim, relationship, save
 from pipeline.usd.lights import convert_dome, convert_lamp
 from pipeline.usd.material import Palette
 from pipeline.usd.physics import convert_scene
@@ -50,7 +50,7 @@ def write_home(home: Home, assets: Mapping[str, Asset], path: Path, library: str
 
 
 def convert_placement(parent: Sdf.PrimSpec, placement: Placement, assets: Mapping[str, Asset], library: str) -> Sdf.PrimSpec:
-    """Write one placed object: a reference, where it stands, its room; articulated ones at their own size only."""
+    """Write one placed object: a reference, where it stands, on what, its room; articulated ones at their own size only."""
     asset = assets.get(placement.asset_id)
     if asset is None:
         raise ContentError(
@@ -63,6 +63,8 @@ def convert_placement(parent: Sdf.PrimSpec, placement: Placement, assets: Mappin
     spec = prim(parent, placement.object_id)
     spec.referenceList.prependedItems = [Sdf.Reference(f"{library}/{asset.asset_id}/{asset.asset_id}.usda")]
     place(spec, placement.position.tolist(), placement.yaw, placement.scale.tolist())
+    if placement.support:
+        relationship(spec, "sfgen:support", [parent.path.AppendChild(placement.support)])
     spec.customData = {"articulated": asset.articulated, "room_id": placement.room_id}
     return spec
 

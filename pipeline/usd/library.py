@@ -13,7 +13,7 @@ from pxr import Gf, Sdf
 from pipeline.entities.asset import Asset
 from pipeline.errors import ContentError
 from pipeline.rendering.thumbnail import thumbnail
-from pipeline.usd.articulation import convert_asset
+from pipeline.usd.articulation import convert_asset, loose
 from pipeline.usd.layer import attribute, label, new_layer, prim, save, vec3s
 from pipeline.usd.material import convert_materials
 from pipeline.usd.mujoco import asset_overlay
@@ -102,7 +102,7 @@ def _about(asset: Asset) -> dict[str, Any]:
             "super_category": asset.super_category,
             "style": asset.style,
             "asset_license": asset.licence,
-            "rigid_body_count": len(asset.links) if asset.articulated else 0,
+            "rigid_body_count": len(asset.links) if asset.articulated or loose(asset) else 0,
             "collider_count": sum(len(link.colliders) for link in asset.links),
             "mass": float(sum(link.mass for link in asset.links)),
             "asset_extents": Gf.Vec3f(*map(float, high - low)),

@@ -13,7 +13,7 @@ from pathlib import Path
 from pxr import Sdf, Vt
 
 from pipeline.entities.asset import Asset
-from pipeline.usd.articulation import joint_names, link_names
+from pipeline.usd.articulation import joint_names, link_names, loose
 from pipeline.usd.layer import apply, attribute, new_layer, over, relationship, save
 from pipeline.usd.physics import gravity_load
 
@@ -63,7 +63,7 @@ def write_mujoco_overlay(scene: Path) -> Path:
 
 def _convert_root(root: Sdf.PrimSpec, asset: Asset) -> None:
     resistances = [_resistance(name, asset, index) for index, name in enumerate(joint_names(asset))]
-    _convert_over(root, link_names(asset)[0], resistances)
+    _convert_over(root, link_names(asset)[0], resistances, fixed=not loose(asset))
 
 
 def _resistance(name: str, asset: Asset, index: int) -> Resistance:
@@ -72,14 +72,15 @@ def _resistance(name: str, asset: Asset, index: int) -> Resistance:
     return Resistance(name, damping, friction + HOLD * max(0.0, gravity_load(asset, index)))
 
 
-def _convert_over(root: Sdf.PrimSpec, base: str, joints: Iterable[Resistance]) -> None:
-    """Move the articulation root to the base, hang the base on the world, give the joints their resistance."""
+def _convert_over(root: Sdf.PrimSpec, base: str, joints: Iterable[Resistance], *, fixed: bool = True) -> None:
+    """Move the articulation root to the base, hang the base on the world where it is fixed, give the joints their resistance."""
     removal = Sdf.TokenListOp()
     removal.deletedItems = [ROOT_API]
     root.SetInfo("apiSchemas", removal)
     apply(over(root, base), [ROOT_API])
     scope = over(root, "joints")
-    relationship(over(scope, "world_fixed"), "physics:body0", [])
+    if fixed:
+        relationship(over(scope, "world_fixed"), "physics:body0", [])
     for joint in joints:
         spec = over(scope, joint.name)
         apply(spec, ["NewtonJointAPI", "MjcJointAPI"])  # MuJoCo reads no DriveAPI, but these

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -40,7 +41,9 @@ def carried(placements: Sequence[Placement], made: Bodies, gap: float) -> dict[i
             continue
         own = np.arange(made.start[h], made.start[h + 1])
         x, y, z = placement.position.tolist()
-        for i in own[np.abs(p.z[own, 1] - z) <= gap]:
+        off = np.abs(p.z[own, 1] - z)
+        # The nearest top bears it: a drawer's floor, not the board of the carcass just below.
+        for i in own[np.argsort(off, kind="stable")][: int((off <= gap).sum())]:
             if contains(x, y, np.ascontiguousarray(p.polygon(int(i)))):
                 found[g] = Carrier(h, int(p.part[i]))
                 break
@@ -56,19 +59,18 @@ def riders(asset: Asset, index: int, owner: int, held: Mapping[int, Carrier]) ->
     return [g for g, carrier in held.items() if carrier.placement == owner and carrier.link in moved]
 
 
-def swept(made: Bodies, things: Sequence[int], joint: Joint, turn: NDArray[np.float64], reached: NDArray[np.float64]) -> Prisms:
-    """Return what riding things cover on the way of a slide, as `Sweep.prisms` has it; `turn` (3, 3) is the owner's rotation."""
+def way(made: Bodies, things: Sequence[int], joint: Joint, turn: NDArray[np.float64], ends: Sequence[float]) -> Prisms:
+    """Return what riding things cover between each position of a slide and the next; `part` numbers the stretches.
+
+    `turn` (3, 3) is the owner's rotation, `ends` (S + 1,) the positions.
+    """
     p = made.prisms
     axis = turn @ joint.axis
     groups = []
-    for limit in (1, -1):
-        steps = np.flatnonzero(np.sign(reached) == limit)
-        before = np.concatenate([[0.0], reached[steps[:-1]]]) if len(steps) else np.zeros(0)
-        for step, start in zip(steps, before, strict=True):
-            for i in (i for g in things for i in range(int(made.start[g]), int(made.start[g + 1]))):
-                corners = p.polygon(i)
-                points = [np.column_stack([corners, np.full(len(corners), z)]) for z in p.z[i]]
-                ends = [piece + axis * q for piece in points for q in (start, reached[step])]
-                covered = prism(np.concatenate(ends), int(step))
-                groups += [covered] if covered is not None else []
+    for i in (i for g in things for i in range(int(made.start[g]), int(made.start[g + 1]))):
+        corners = p.polygon(i)
+        points = np.concatenate([np.column_stack([corners, np.full(len(corners), z)]) for z in p.z[i]])
+        for step, (a, b) in enumerate(itertools.pairwise(ends)):
+            covered = prism(np.concatenate([points + axis * a, points + axis * b]), step)
+            groups += [covered] if covered is not None else []
     return stacked(groups)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
+from pipeline.entities.plan import Plan
 from pipeline.geometry.contact import first_hits, group_boxes, wall_excesses
 from pipeline.geometry.freefloor import Walk
 from pipeline.geometry.kinematics import facing, handle_point, joint_range, moved_links, rotation
@@ -20,7 +21,7 @@ from pipeline.geometry.prisms import Prisms, Sweep, stacked
 from pipeline.geometry.standing import stand_pose
 from pipeline.geometry.walls import Leaf, leaves
 from pipeline.verify.bodies import Bodies
-from pipeline.verify.carrying import Carrier, riders, swept
+from pipeline.verify.carrying import Carrier, riders, way
 from pipeline.verify.certificate import JointCheck
 from pipeline.verify.settings import Robot, VerifySettings
 
@@ -100,14 +101,22 @@ def _way(
     boxes[along] = (*[np.inf] * 3, *[-np.inf] * 3)
     free = replace(made, boxes=boxes)
     hits = _hits(moved, owner, free, settings.touch)
-    things = swept(made, along, asset.joints[index], turn, made.solids[owner].sweeps[index].reached)
-    met = _hits(things, owner, free, settings.touch)
     still = np.flatnonzero(~np.isin(made.prisms.part, moved_links(asset, index)))
     still = still[(still >= made.start[owner]) & (still < made.start[owner + 1])]
-    frame = _hits(things, -1, _only(made, still), settings.touch)
-    for k in np.flatnonzero((met >= 0) | (frame >= 0)):
-        blocked = (hits < 0) & (moved.part == things.part[k])
-        hits[blocked] = met[k] if met[k] >= 0 else along[0]
+    frame = _only(made, still)
+    reached = made.solids[owner].sweeps[index].reached
+    # The stretches from rest upwards, then those from rest downwards, as the sweep numbers them.
+    upward = np.concatenate([[0.0], reached[reached > 0]])
+    downward = np.concatenate([[0.0], reached[reached < 0]])
+    for ends, first in ((upward, 0), (downward, len(upward) - 1)):
+        for stretch in (ends[[0, -1]], ends):  # the whole way at once; step by step only if something is in it
+            things = way(made, along, asset.joints[index], turn, stretch.tolist())
+            met = _hits(things, owner, free, settings.touch)
+            met[(met < 0) & (_hits(things, -1, frame, settings.touch) >= 0)] = along[0]
+            if (met < 0).all():
+                break
+        for k in np.flatnonzero(met >= 0):
+            hits[(hits < 0) & (moved.part == first + things.part[k])] = met[k]
     return hits
 
 
@@ -124,10 +133,9 @@ def check_leaves(home: Home, made: Bodies, walks: Walks, settings: VerifySetting
     levels = {o.opening_id: o.level for o in home.plan.openings}
     swings = {o.opening_id: o.swing.room_id for o in home.plan.openings if o.swing is not None}
     checks = []
-    for leaf in leaves(home.plan):
+    for leaf, sweep in _leaf_sweeps(home.plan):
         level = levels[leaf.opening_id]
         elevation = level * home.plan.storey_height
-        sweep = leaf_sweep(leaf, elevation)
         hits = _hits(sweep.prisms, -1, made, settings.touch)
         room = next((r.polygon for r in home.plan.rooms if r.room_id == swings[leaf.opening_id]), None)
         if room is not None:
@@ -154,6 +162,19 @@ def check_leaves(home: Home, made: Bodies, walks: Walks, settings: VerifySetting
             )
         )
     return checks
+
+
+_SWEPT: dict[int, tuple[Plan, list[tuple[Leaf, Sweep]]]] = {}
+
+
+def _leaf_sweeps(plan: Plan) -> list[tuple[Leaf, Sweep]]:
+    """Return a plan's door leaves and what they sweep; those of the last plan are kept, for a home is judged several times."""
+    if id(plan) not in _SWEPT:
+        levels = {o.opening_id: o.level for o in plan.openings}
+        found = [(leaf, leaf_sweep(leaf, levels[leaf.opening_id] * plan.storey_height)) for leaf in leaves(plan)]
+        _SWEPT.clear()
+        _SWEPT[id(plan)] = (plan, found)
+    return _SWEPT[id(plan)][1]
 
 
 def _hits(moved: Prisms, owner: int, made: Bodies, touch: float) -> NDArray[np.int64]:

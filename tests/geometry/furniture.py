@@ -73,6 +73,37 @@ def inner_drawer(asset_id="inner", angle=math.pi / 2, *, outer=False):
     return asset(asset_id, "cabinet", (0.6, 0.51, 1.0), [base, door, drawer], joints)
 
 
+def shelves(asset_id="shelves", category="shelf", size=(0.8, 0.35, 1.2)):
+    """Two sides, a back and four boards, open before."""
+    w, d, h = size
+    sides = [box((x, -d / 2, 0), (x + 0.02, d / 2, h)) for x in (-w / 2, w / 2 - 0.02)]
+    boards = [box((-w / 2 + 0.02, -d / 2, z), (w / 2 - 0.02, d / 2 - 0.01, z + 0.02)) for z in (0.05, 0.4, 0.75, h - 0.02)]
+    return asset(asset_id, category, size, [link("base", *sides, *boards, box((-w / 2, d / 2 - 0.01, 0), (w / 2, d / 2, h)))])
+
+
+def tray_chest(asset_id="tray_chest", category="nightstand", size=(0.5, 0.4, 0.5), travel=0.3):
+    """A carcass of boards with a hollow drawer, front flush with it."""
+    w, d, h = size
+    sides = [box((x, -d / 2, 0), (x + 0.02, d / 2, h)) for x in (-w / 2, w / 2 - 0.02)]
+    boards = [box((-w / 2 + 0.02, -d / 2, z), (w / 2 - 0.02, d / 2, z + 0.02)) for z in (0.1, h - 0.02)]
+    base = link("base", *sides, *boards, box((-w / 2 + 0.02, d / 2 - 0.01, 0.12), (w / 2 - 0.02, d / 2, h - 0.02)))
+    x, y0, y1, z0, z1 = w / 2 - 0.03, -d / 2, d / 2 - 0.03, 0.13, 0.3
+    walls = [box((-x, y0, z0), (x, y0 + 0.02, h - 0.03)), box((-x, y1 - 0.01, z0), (x, y1, z1))]
+    walls += [box((s, y0 + 0.02, z0), (s + 0.01, y1 - 0.01, z1)) for s in (-x, x - 0.01)]
+    drawer = link("drawer", *walls, box((-x + 0.01, y0 + 0.02, z0), (x - 0.01, y1 - 0.01, z0 + 0.01)))
+    slide = Joint("drawer", "prismatic", 0, 1, np.array([0.0, -1.0, 0.0]), np.zeros(3), 0.0, travel, "slider_drawer")
+    return asset(asset_id, category, size, [base, drawer], [slide])
+
+
+def flip(asset_id="flip", category="laptop", size=(0.3, 0.22, 0.02), angle=1.9):
+    """Two boards, hinged at the back; the upper one opens past the upright."""
+    w, d, h = size
+    base = link("base", box((-w / 2, -d / 2, 0), (w / 2, d / 2, h / 2)))
+    lid = link("lid", box((-w / 2, -d / 2, h / 2), (w / 2, d / 2, h)))
+    hinge = Joint("lid", "revolute", 0, 1, np.array([-1.0, 0.0, 0.0]), np.array([0.0, d / 2, h / 2]), 0.0, angle, "hinge_lid")
+    return asset(asset_id, category, size, [base, lid], [hinge])
+
+
 def table(asset_id="table", category="dining_table", size=(1.4, 0.8, 0.75)):
     """A top on four legs: there is room beneath."""
     w, d, h = size
@@ -110,6 +141,11 @@ LIBRARY = {
         cupboard(),
         table(),
         chair(),
+        shelves(),
+        tray_chest(),
+        flip(),
+        block("cup", "cup", (0.09, 0.09, 0.1)),
+        block("book", "book", (0.16, 0.22, 0.03)),
     )
 }
 

@@ -84,11 +84,9 @@ def assets():
     return [*made, furniture.table(), furniture.chair()]
 
 
-@pytest.fixture(scope="session")
-def library(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("library")
+def library_of(folder, made):
     rows = []
-    for asset in assets():
+    for asset in made:
         digest = save_asset(folder / f"{asset.asset_id}.safetensors", asset)
         rows.append(
             {
@@ -118,9 +116,18 @@ def library(tmp_path_factory):
     return Library(folder, rows, [])
 
 
-@pytest.fixture(scope="session")
-def factory(library):
+def factory_of(library):
     latents = [{"asset_id": a, "latent": np.full(32, i, np.float32)} for i, a in enumerate(sorted(library))]
     index = AssetIndex.from_tables(library.rows.values(), latents)
     shard = ShardSettings(homes=4, chunk=2, preview=0)
     return Factory(3, Rules(3), index, library, shard, PostoptSettings(), VerifySettings(), PriorSettings(), {})
+
+
+@pytest.fixture(scope="session")
+def library(tmp_path_factory):
+    return library_of(tmp_path_factory.mktemp("library"), assets())
+
+
+@pytest.fixture(scope="session")
+def factory(library):
+    return factory_of(library)

@@ -1,0 +1,174 @@
+"""Lays small things on and in the furniture of a room: wholly on a level surface, in nobody's way, however doors and drawers move."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.arrange.item import wrapped
+from pipeline.arrange.settings import ThingsSettings
+from pipeline.arrange.surfaces import Surfaces, surfaces
+from pipeline.entities.asset import Asset
+from pipeline.entities.home import Placement
+from pipeline.geometry.contact import first_hits, group_boxes, wall_excesses
+from pipeline.geometry.kinematics import moved_links, rotation
+from pipeline.geometry.prisms import Prisms, prism, solid, stacked
+
+Floats = NDArray[np.float64]
+UNIT = np.ones(3)
+WOBBLE = 0.1  # spread of the yaw of what has a front [rad]
+
+
+@dataclass(frozen=True, slots=True)
+class Groups:
+    """Prisms in the world; those of group g are `start[g]` .. `start[g + 1]`; `flat` (P, 4) and `boxes` (G, 6) bound them."""
+
+    prisms: Prisms
+    start: NDArray[np.int64]
+    flat: Floats
+    boxes: Floats
+
+    @classmethod
+    def of(cls, groups: Sequence[Prisms]) -> Groups:
+        """Join groups."""
+        start = np.concatenate([[0], np.cumsum([len(g) for g in groups], dtype=np.int64)]).astype(np.int64)
+        prisms = stacked(list(groups))
+        return cls(prisms, start, prisms.boxes(), group_boxes(prisms, start))
+
+    def plus(self, groups: Sequence[Prisms]) -> Groups:
+        """Return the groups and some more."""
+        more = Groups.of(groups)
+        start = np.concatenate([self.start, self.start[-1] + more.start[1:]])
+        flat, boxes = np.concatenate([self.flat, more.flat]), np.concatenate([self.boxes, more.boxes])
+        return Groups(stacked([self.prisms, more.prisms]), start, flat, boxes)
+
+    def hit(self, moved: Prisms, touch: float, without: Sequence[int] = ()) -> bool:
+        """Tell whether prisms touch any group, some left out."""
+        boxes = self.boxes
+        if len(without):
+            boxes = boxes.copy()
+            boxes[list(without)] = (*[np.inf] * 3, *[-np.inf] * 3)
+        if not len(self.prisms) or not len(moved):
+            return False
+        p, alone = self.prisms, np.full(len(moved), -1)
+        hits = first_hits(
+            moved.corners, moved.count, moved.z, moved.boxes(), alone, p.corners, p.count, p.z, self.flat, self.start, boxes, touch
+        )
+        return bool((hits >= 0).any())
+
+
+class Laying:
+    """A room whose furniture stands. Things are added one by one; nothing is taken away."""
+
+    def __init__(
+        self, polygon: Floats, furniture: Sequence[Placement], assets: Mapping[str, Asset], settings: ThingsSettings, touch: float
+    ) -> None:
+        self.polygon = np.ascontiguousarray(polygon, np.float64)
+        self.furniture, self.assets, self.settings, self.touch = furniture, assets, settings, touch
+        self.solids = [solid(assets[p.asset_id]) for p in furniture]
+        self.rest = Groups.of([s.rest.placed(p.position, p.yaw, p.scale) for s, p in zip(self.solids, furniture, strict=True)])
+        joints = [(g, k) for g, s in enumerate(self.solids) for k in range(len(s.sweeps))]
+        self.joints = {key: n for n, key in enumerate(joints)}
+        self.sweeps = Groups.of(
+            [self.solids[g].sweeps[k].prisms.placed(furniture[g].position, furniture[g].yaw, furniture[g].scale) for g, k in joints]
+        )
+        self.laid = Groups.of([])
+        self.laid_sweeps = Groups.of([])
+        self._taken: dict[int, list[Floats]] = {}
+
+    def lay(self, rng: np.random.Generator, asset: Asset, support: int, *, facing: bool) -> tuple[Floats, float] | None:
+        """Find a place for an asset on furniture `support` (index); return position (3,) [m] and yaw [rad], None if there is none.
+
+        `facing`: it looks where its support looks. Open surfaces are preferred to what lies behind doors and in drawers.
+        """
+        placement = self.furniture[support]
+        found = surfaces(self.assets[placement.asset_id])
+        turn = float(rng.normal(0, WOBBLE) if facing else rng.uniform(-math.pi, math.pi))
+        tops = self._candidates(rng, found, placement.scale, asset.size, turn)
+        for top, x, y in tops:
+            z = float(found.tops[top, 4] * placement.scale[2])
+            if self._boxed(support, asset.size, (x, y, z), turn):
+                continue
+            yaw = wrapped(placement.yaw + turn)
+            c, s = math.cos(placement.yaw), math.sin(placement.yaw)
+            position = np.round(placement.position + np.array([c * x - s * y, s * x + c * y, z]), 4) + 0.0
+            if self._free(asset, position, yaw, support, int(found.link[top])):
+                self._add(asset, position, yaw)
+                self._taken.setdefault(support, []).append(_box(asset.size, (x, y, z), turn, self.settings.margin))
+                return position, yaw
+        return None
+
+    def _candidates(
+        self, rng: np.random.Generator, found: Surfaces, scale: Floats, size: Floats, turn: float
+    ) -> list[tuple[int, float, float]]:
+        """Draw (surface, x, y) at which the thing lies wholly on a surface, object frame of the support."""
+        if not len(found):
+            return []
+        low, high = _reach(size, turn)
+        margin = self.settings.margin
+        first = found.tops[:, :2] * scale[:2] - low + margin
+        last = found.tops[:, 2:4] * scale[:2] - high - margin
+        weight = np.where(found.hidden, self.settings.hidden, 1.0) * (last >= first).all(1)
+        if weight.sum() <= 0:
+            return []
+        which = rng.choice(len(weight), self.settings.tries, p=weight / weight.sum())
+        spots = rng.uniform(first[which], last[which])
+        return [(int(k), float(x), float(y)) for k, (x, y) in zip(which, spots, strict=True)]
+
+    def _boxed(self, support: int, size: Floats, at: tuple[float, float, float], turn: float) -> bool:
+        """Tell whether a thing's box meets that of another thing on the same furniture."""
+        box = _box(size, at, turn, 0.0)
+        return any(bool(np.all(box[0] < other[1]) and np.all(box[1] > other[0])) for other in self._taken.get(support, ()))
+
+    def _free(self, asset: Asset, position: Floats, yaw: float, support: int, link: int) -> bool:
+        """Tell whether a thing stands free there, no joint sweeps through it, and its own joints move."""
+        made = solid(asset)
+        rest = made.rest.placed(position, yaw, UNIT)
+        if not len(rest) or self.rest.hit(rest, self.touch) or self.laid.hit(rest, self.touch) or self._outside(rest):
+            return False
+        bearer = self.assets[self.furniture[support].asset_id]
+        carrying = [k for k in range(len(bearer.joints)) if link in moved_links(bearer, k)]
+        if self.sweeps.hit(rest, self.touch, [self.joints[support, k] for k in carrying]) or self.laid_sweeps.hit(rest, self.touch):
+            return False
+        for sweep in made.sweeps:
+            moved = sweep.prisms.placed(position, yaw, UNIT)
+            if self.rest.hit(moved, self.touch) or self.laid.hit(moved, self.touch) or self._outside(moved):
+                return False
+        return all(self._rides(rest, support, bearer, k) for k in carrying)
+
+    def _rides(self, rest: Prisms, support: int, bearer: Asset, joint: int) -> bool:
+        """Tell whether a thing comes out with the drawer that it lies in."""
+        placement, moving = self.furniture[support], bearer.joints[joint]
+        way = rotation(np.array([0.0, 0.0, 1.0]), placement.yaw) @ moving.axis * moving.upper
+        ends = [[np.column_stack([rest.polygon(i), np.full(rest.count[i], z)]) for z in rest.z[i]] for i in range(len(rest))]
+        out = stacked([p for own in ends if (p := prism(np.concatenate([*own, *(e + way for e in own)]))) is not None])
+        body = self.solids[support].rest.placed(placement.position, placement.yaw, placement.scale)
+        still = ~np.isin(body.part, moved_links(bearer, joint))
+        frame = Prisms(body.corners[still], body.count[still], body.z[still], body.part[still])
+        clear = not self.rest.hit(out, self.touch, [support]) and not self.laid.hit(out, self.touch)
+        return clear and not Groups.of([frame]).hit(out, self.touch) and not self._outside(out)
+
+    def _outside(self, moved: Prisms) -> bool:
+        return bool((wall_excesses(moved.corners, moved.count, self.polygon) > self.touch).any())
+
+    def _add(self, asset: Asset, position: Floats, yaw: float) -> None:
+        made = solid(asset)
+        self.laid = self.laid.plus([made.rest.placed(position, yaw, UNIT)])
+        if made.sweeps:
+            self.laid_sweeps = self.laid_sweeps.plus([s.prisms.placed(position, yaw, UNIT) for s in made.sweeps])
+
+
+def _reach(size: Floats, turn: float) -> tuple[Floats, Floats]:
+    """Return the corners (2,), (2,) of the box around a footprint turned by `turn` about its middle."""
+    c, s = abs(math.cos(turn)), abs(math.sin(turn))
+    half = np.array([c * size[0] + s * size[1], s * size[0] + c * size[1]]) / 2
+    return -half, half
+
+
+def _box(size: Floats, at: tuple[float, float, float], turn: float, margin: float) -> Floats:
+    low, high = _reach(size, turn)
+    return np.array([[*(np.array(at[:2]) + low - margin), at[2] - margin], [*(np.array(at[:2]) + high + margin), at[2] + size[2] + margin]])
