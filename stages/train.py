@@ -6,6 +6,7 @@ plots/loss.csv and DVCLive's folder dvclive/.
 
 from __future__ import annotations
 
+import math
 import os
 from functools import partial
 from pathlib import Path
@@ -29,10 +30,14 @@ from stages.runner import run
 def main(root: Path) -> None:
     """Train, or go on training, the denoiser of params.yaml."""
     settings, seed = settings_of(root)
-    size = 1 if torch.cuda.is_available() else settings.workers or team_size(settings.batch, os.cpu_count() or 1)
+    size = (
+        1
+        if torch.cuda.is_available()
+        else settings.workers or team_size(math.gcd(settings.batch, settings.many_batch), os.cpu_count() or 1)
+    )
     job = open_job(root, settings, seed, Team(0, size))
     with gathered(size, partial(follow, root)):
-        lead(root, job, settings, seed)
+        lead(root, job, settings)
 
 
 def settings_of(root: Path) -> tuple[TrainSettings, int]:
@@ -49,7 +54,7 @@ def follow(root: Path, team: Team) -> None:
         pass
 
 
-def lead(root: Path, job: Job, settings: TrainSettings, seed: int) -> None:
+def lead(root: Path, job: Job, settings: TrainSettings) -> None:
     """Train, validate, log and save; write the weights and what the stage reports."""
     trainer = job.trainer
 
@@ -57,7 +62,7 @@ def lead(root: Path, job: Job, settings: TrainSettings, seed: int) -> None:
         save_checkpoint(root / CHECKPOINT, job.key, state.done, state.groups())
 
     def checked() -> dict[str, dict[str, float]]:
-        return validation(trainer.average, trainer.levels, *job.checked, settings, seed)
+        return validation(trainer, *job.checked)
 
     by_level: dict[str, dict[str, float]] = {}
     with LiveLog(root, resume=trainer.done) as log, tqdm(total=trainer.total, initial=trainer.done, desc="train", unit="step") as bar:

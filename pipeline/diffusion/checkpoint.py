@@ -19,7 +19,7 @@ from pipeline.errors import ContentError
 from pipeline.manifest import canonical, write_bytes
 from pipeline.params import build
 
-FORMAT = "sfgen-denoiser-1"
+FORMAT = "sfgen-denoiser-2"
 REMEDY = "run `make run`, or `dvc repro train`, which makes it"
 
 

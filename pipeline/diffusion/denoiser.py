@@ -16,6 +16,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor, nn
 
+from pipeline.diffusion.attention import MODULATIONS, SUBLAYERS, Block, Surroundings, modulated, pointed, split_heads, weights
 from pipeline.diffusion.batch import RoomBatch
 from pipeline.diffusion.codec import CONTINUOUS, YAW, Codec, Normalisation
 from pipeline.diffusion.floor import KINDS
@@ -36,87 +37,18 @@ from pipeline.diffusion.relations import (
 from pipeline.diffusion.settings import ModelSettings
 
 FLOOR_FEATURES = 5 + len(KINDS)
+WALL_OFFERS, PAIR_OFFERS = WALL_MOVES + WALL_TURNS, PAIR_MOVES + PAIR_TURNS
 MOST = 24  # counts above are told as this
 
 
 class FloorCode(NamedTuple):
-    """What does not change between sampling steps: tokens (B, M, d), the room's own code (B, d)."""
+    """What does not change between sampling steps.
 
-    tokens: Tensor
+    `keys`: of walls and openings (B, H, M, c), keys and values for each layer, then the pointer's keys; `room` (B, d).
+    """
+
+    keys: tuple[Tensor, ...]
     room: Tensor
-
-
-class Attention(nn.Module):
-    """Attention whose scores and values also know the geometry of each pair (B, N, M, R)."""
-
-    def __init__(self, width: int, heads: int, relation: int) -> None:
-        super().__init__()
-        self.heads = heads
-        self.query, self.keys = nn.Linear(width, width), nn.Linear(width, 2 * width)
-        self.bias = nn.Linear(relation, heads)
-        self.relation = nn.Linear(heads * relation, width, bias=False)
-        self.out = nn.Linear(width, width)
-
-    def forward(self, x: Tensor, source: Tensor, relation: Tensor, mask: Tensor | None) -> Tensor:
-        """Attend from x (B, N, d) to source (B, M, d), where `mask` (B, M) holds."""
-        query = self.query(x).unflatten(-1, (self.heads, -1)).transpose(1, 2)
-        key, value = (part.unflatten(-1, (self.heads, -1)).transpose(1, 2) for part in self.keys(source).chunk(2, -1))
-        score = query @ key.transpose(2, 3) / math.sqrt(query.shape[-1]) + self.bias(relation).permute(0, 3, 1, 2)
-        if mask is not None:
-            score = score.masked_fill(~mask[:, None, None], -1e9)
-        weight = score.softmax(-1)
-        seen = (weight @ value).transpose(1, 2).flatten(2)
-        where = (weight.transpose(1, 2) @ relation).flatten(2)  # (B, N, H, M) @ (B, N, M, R)
-        out: Tensor = self.out(seen) + self.relation(where)
-        return out
-
-
-class Pointer(nn.Module):
-    """Chooses pairs by attention and sums the directions that they offer, each with a weight of its own."""
-
-    def __init__(self, width: int, heads: int, relation: int, moves: int, turns: int) -> None:
-        super().__init__()
-        self.heads, self.moves = heads, moves
-        self.query, self.key, self.bias = nn.Linear(width, width), nn.Linear(width, width), nn.Linear(relation, heads)
-        self.amount = nn.Linear(width, heads * (moves + turns))
-        nn.init.zeros_(self.amount.weight)
-        nn.init.zeros_(self.amount.bias)
-
-    def forward(self, x: Tensor, source: Tensor, relation: Tensor, directions: Tensor, mask: Tensor | None) -> Tensor:
-        """Return the sums (B, N, 2, 2) for moves and for turns; `directions` (B, N, M, moves + turns, 2)."""
-        query, key = (v.unflatten(-1, (self.heads, -1)).transpose(1, 2) for v in (self.query(x), self.key(source)))
-        score = query @ key.transpose(2, 3) / math.sqrt(query.shape[-1]) + self.bias(relation).permute(0, 3, 1, 2)
-        if mask is not None:
-            score = score.masked_fill(~mask[:, None, None], -1e9)
-        weight = score.softmax(-1).transpose(1, 2)  # (B, N, H, M)
-        offered = (weight @ directions.flatten(3)).unflatten(-1, (-1, 2))  # (B, N, H, moves + turns, 2)
-        taken = offered * self.amount(x).unflatten(-1, (self.heads, -1))[..., None]
-        return torch.stack([taken[..., : self.moves, :].sum((2, 3)), taken[..., self.moves :, :].sum((2, 3))], 2)
-
-
-class Block(nn.Module):
-    """Look at the other objects, at the floor, then think; conditioned by adaptive layer norm."""
-
-    def __init__(self, width: int, heads: int, relation: int) -> None:
-        super().__init__()
-        pairs, walls = relation + PAIR_NOISE, relation + WALL_NOISE
-        self.norms = nn.ModuleList(nn.LayerNorm(width, elementwise_affine=False) for _ in range(3))
-        self.objects, self.floor = Attention(width, heads, pairs), Attention(width, heads, walls)
-        self.think = nn.Sequential(nn.Linear(width, 3 * width), nn.SiLU(), nn.Linear(3 * width, width))
-        self.modulation = nn.Linear(width, 9 * width)
-        nn.init.zeros_(self.modulation.weight)
-        with torch.no_grad():
-            self.modulation.bias.copy_(torch.tensor([0.0, 0.0, 1.0]).repeat(3).repeat_interleave(width))
-
-    def forward(self, x: Tensor, floor: Tensor, mask: Tensor, pairs: Tensor, walls: Tensor, condition: Tensor) -> Tensor:
-        """Return the new tokens (B, N, d)."""
-        shift, scale, gate = zip(*(part.chunk(3, -1) for part in self.modulation(condition)[:, None].chunk(3, -1)), strict=True)
-        inputs = [lambda v, i=i: self.norms[i](v) * (1 + scale[i]) + shift[i] for i in range(3)]
-        seen = inputs[0](x)
-        x = x + gate[0] * self.objects(seen, seen, pairs, None)
-        x = x + gate[1] * self.floor(inputs[1](x), floor, walls, mask)
-        out: Tensor = x + gate[2] * self.think(inputs[2](x))
-        return out
 
 
 class Denoiser(nn.Module):
@@ -124,7 +56,7 @@ class Denoiser(nn.Module):
 
     def __init__(self, norm: Normalisation, layouts: int, settings: ModelSettings) -> None:
         super().__init__()
-        width, relation = settings.width, settings.relation
+        width, relation, layers, heads = settings.width, settings.relation, settings.layers, settings.heads
         self.norm, self.settings, self.codec = norm, settings, Codec(norm)
         self.slot = nn.Linear(norm.channels, width)  # two vectors of two channels go in as four lengths and products
         self.floor_in = nn.Sequential(nn.Linear(FLOOR_FEATURES, width), nn.SiLU(), nn.Linear(width, width))
@@ -135,20 +67,30 @@ class Denoiser(nn.Module):
         self.walls = nn.Sequential(
             nn.Linear(WALL_FEATURES + WALL_NOISE + len(KINDS), relation), nn.ReLU(), nn.Linear(relation, relation), nn.ReLU()
         )
-        self.blocks = nn.ModuleList(Block(width, settings.heads, relation) for _ in range(settings.layers))
-        self.last = nn.LayerNorm(width, elementwise_affine=False)
-        self.last_modulation = nn.Linear(width, 2 * width)
-        self.head = nn.Linear(width, norm.channels - 4 + 8)
-        self.by_wall = Pointer(width, settings.heads, relation + WALL_NOISE, WALL_MOVES, WALL_TURNS)
-        self.by_pair = Pointer(width, settings.heads, relation + PAIR_NOISE, PAIR_MOVES, PAIR_TURNS)
-        for layer in (self.head, self.last_modulation):
-            nn.init.zeros_(layer.weight)
-            nn.init.zeros_(layer.bias)
+        pair, wall = relation + PAIR_NOISE, relation + WALL_NOISE
+        self.pair_bias, self.wall_bias = nn.Linear(pair, (layers + 1) * heads), nn.Linear(wall, (layers + 1) * heads)
+        self.floor_keys = nn.Linear(width, (2 * layers + 1) * width)
+        self.modulation = nn.Linear(width, (MODULATIONS * layers + 2) * width)
+        self.blocks = nn.ModuleList(Block(width, heads, pair, wall) for _ in range(layers))
+        self.point = nn.Linear(width, 3 * width)  # queries to walls and to slots, keys of slots
+        self.parts = [CONTINUOUS - 4, 8, len(norm.classes) + 1, heads * WALL_OFFERS, heads * PAIR_OFFERS]
+        self.head = nn.Linear(width, sum(self.parts))
+        nn.init.zeros_(self.head.weight)
+        nn.init.zeros_(self.head.bias)
+        nn.init.zeros_(self.modulation.weight)
+        with torch.no_grad():  # shift 0, scale 1, gate 1
+            ones = torch.tensor([0.0, 1.0, 1.0]).repeat(SUBLAYERS * layers + 1)[: MODULATIONS * layers + 2]
+            self.modulation.bias.copy_(ones.repeat_interleave(width))
 
     def _apply(self, fn: object, recurse: bool = True) -> Denoiser:
         super()._apply(fn, recurse)  # type: ignore[no-untyped-call]
         self.codec = Codec(self.norm, self.head.weight.device)
         return self
+
+    def by_layer(self, bias: Tensor) -> tuple[Tensor, ...]:
+        """Split biases (B, N, M, (layers + 1) H) into (B, H, N, M) for each layer, and for the pointer."""
+        found: tuple[Tensor, ...] = bias.unflatten(-1, (-1, self.settings.heads)).permute(3, 0, 4, 1, 2).contiguous().unbind(0)
+        return found
 
     def floor_code(self, rooms: RoomBatch) -> FloorCode:
         """Encode the room; independent of the noise level, so a sampler calls it once."""
@@ -166,7 +108,7 @@ class Denoiser(nn.Module):
         pooled = tokens.sum(1) / rooms.mask.sum(1, keepdim=True).clamp_min(1)
         size = torch.cat([reach / 3, area.clamp_min(0.5).log()[:, None] - 2, rooms.height[:, None] - 2.7], -1)
         room = self.room(torch.cat([pooled, size], -1)) + self.layout(rooms.layout) + self.count(told)
-        return FloorCode(tokens, room)
+        return FloorCode(split_heads(self.floor_keys(tokens), 2 * self.settings.layers + 1, self.settings.heads), room)
 
     def forward(self, x: Tensor, alpha: Tensor, rooms: RoomBatch, code: FloorCode | None = None) -> tuple[Tensor, Tensor]:
         """Return the raw output for the continuous channels (B, N, 40) and the class logits (B, N, C + 1).
@@ -182,18 +124,25 @@ class Denoiser(nn.Module):
         pairs = torch.cat([self.pairs(torch.cat([pair.far, pair.near], -1)), pair.near], -1)
         kind = nn.functional.one_hot(rooms.kind, len(KINDS)).float()[:, None].expand(-1, x.shape[1], -1, -1)
         walls = torch.cat([self.walls(torch.cat([wall.far, wall.near, kind], -1)), wall.near], -1)
+        pair_bias = self.by_layer(self.pair_bias(pairs))
+        wall_bias = self.by_layer(self.wall_bias(walls).masked_fill(~rooms.mask[:, None, :, None], -1e9))
+        modulation = self.modulation(condition)[:, None].chunk(MODULATIONS * self.settings.layers + 2, -1)
         tokens = self.slot(torch.cat([invariants(x), x[..., 2:6], x[..., YAW.stop :]], -1))
-        for block in self.blocks:
-            tokens = block(tokens, code.tokens, rooms.mask, pairs, walls, condition)
-        shift, scale = self.last_modulation(condition)[:, None].chunk(2, -1)
-        tokens = self.last(tokens) * (1 + scale) + shift
-        plain, own, logits = self.head(tokens).split([CONTINUOUS - 4, 8, self.codec.classes + 1], -1)
+        for i, block in enumerate(self.blocks):
+            own, keys = modulation[MODULATIONS * i : MODULATIONS * (i + 1)], (code.keys[2 * i], code.keys[2 * i + 1])
+            tokens = block(tokens, Surroundings(pairs, pair_bias[i]), Surroundings(walls, wall_bias[i]), keys, own)
+        tokens = modulated(tokens, *modulation[-2:])
+        plain, own, logits, by_wall, by_pair = self.head(tokens).split(self.parts, -1)
+        to_walls, to_slots, slot_keys = split_heads(self.point(tokens), 3, self.settings.heads)
         axis = x[..., YAW]
         front = torch.stack([axis[..., 1], -axis[..., 0]], -1)
         mine = torch.stack([x[..., :2], axis, front, aligned(boxes, rooms, blur)], -2)  # (B, N, 4, 2)
         goes = own.unflatten(-1, (2, 4)) @ mine  # (B, N, 2, 2): move, turn
-        goes = goes + self.by_wall(tokens, code.tokens, walls, torch.cat([wall.moves, wall.turns], -2), rooms.mask)
-        goes = goes + self.by_pair(tokens, tokens, pairs, torch.cat([pair.moves, pair.turns], -2), None)
+        for query, key, bias, relation, amount, moves in (
+            (to_walls, code.keys[-1], wall_bias[-1], wall, by_wall, WALL_MOVES),
+            (to_slots, slot_keys, pair_bias[-1], pair, by_pair, PAIR_MOVES),
+        ):
+            goes = goes + pointed(weights(query, key, bias), torch.cat([relation.moves, relation.turns], -2), amount, moves)
         logits = logits + self.codec.evidence(x[..., CONTINUOUS:], alpha[:, None, None], sigma[:, None, None])
         prior = torch.zeros_like(logits)
         prior[..., -1] = empty_odds(rooms.count, x.shape[1])[:, None]

@@ -82,8 +82,8 @@ def load(root: Path, settings: TrainSettings) -> tuple[Sets, Header]:
         settings.slots,
         settings.timesteps,
         settings.model,
-        small_types(sets, words.layout_types, settings.few_slots),
-        settings.few_slots,
+        small_types(sets, words.layout_types, settings.few_slots) if settings.few_share else (),
+        settings.few_slots if settings.few_share else settings.slots,
     )
 
 

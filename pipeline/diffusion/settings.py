@@ -26,15 +26,16 @@ class TrainSettings:
 
     model: ModelSettings = field(default_factory=ModelSettings)
     slots: int = 24
-    few_slots: int = 12  # slots of rooms that hold little; most training steps see these alone
-    few_share: float = 0.7  # share of the steps that do
+    few_slots: int = 12  # slots of rooms that hold little; most training steps see such rooms alone
+    few_share: float = 0.7  # share of the steps that do; 0: every step sees all rooms, with all slots
     timesteps: int = 1000
     steps: int = 1500
     epochs: int = 0  # > 0: so many passes instead of `steps`
     batch: int = 64
-    learning_rate: float = 2e-3
+    optimiser: Literal["muon", "adamw"] = "muon"
+    learning_rate: float = 4e-3
     warmup: int = 60
-    decay: Literal["cosine", "step"] = "cosine"
+    decay: Literal["cosine", "linear", "step"] = "cosine"
     decay_every: int = 20000  # step decay: epochs between halvings
     weight_decay: float = 0.0
     clip: float = 1.0
@@ -51,6 +52,11 @@ class TrainSettings:
     validate_every: int = 500
     threads: int = 1  # torch threads of each process, part of the checkpoint's digest; 0: one per core
     workers: int = 0  # processes that share each batch, on machines without a GPU; 0: one per core
+
+    @property
+    def many_batch(self) -> int:
+        """Rooms of a step that sees rooms with all slots: as many slots as a step with few."""
+        return max(1, self.batch * min(self.few_slots, self.slots) // self.slots) if self.few_share else self.batch
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,8 +16,8 @@ from torch import Tensor
 from pipeline import seeds
 from pipeline.diffusion.batch import Objects, RoomBatch, motions, moved_objects, moved_rooms
 from pipeline.diffusion.checkpoint import Header, build_net
-from pipeline.diffusion.denoiser import Denoiser
 from pipeline.diffusion.loss import Levels, denoising_loss, draw
+from pipeline.diffusion.optimiser import Optimiser
 from pipeline.diffusion.schedule import linear
 from pipeline.diffusion.settings import TrainSettings
 from pipeline.diffusion.team import ALONE, Team
@@ -46,17 +46,36 @@ class Trainer:
         self.seed, self.settings, self.total, self.per_epoch, self.device, self.done = seed, settings, total, per_epoch, device, 0
         self.team = team
         self.levels = Levels.of(linear(settings.timesteps), device)
-        self.optimiser = torch.optim.AdamW(
-            self.net.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay, betas=(0.9, 0.98), fused=True
-        )
+        self.optimiser = Optimiser(self.net, settings)
+        self.few = torch.tensor([name in header.few for name in header.layouts], device=device)
 
     def rate(self, step: int) -> float:
-        """Learning rate at a step: a short warm-up, then a cosine to zero, or halving every `decay_every` epochs."""
+        """Learning rate at a step: a short warm-up, then a cosine or a straight line to zero, or halving every `decay_every` epochs."""
         s = self.settings
         warm = min(1.0, (step + 1) / max(s.warmup, 1))
+        if s.decay == "linear":
+            return s.learning_rate * warm * (1 - step / self.total)
         if s.decay == "cosine":
             return s.learning_rate * warm * 0.5 * (1 + math.cos(math.pi * step / self.total))
         return s.learning_rate * warm * 0.5 ** (step // self.per_epoch // s.decay_every)
+
+    def small(self, rooms: RoomBatch) -> Tensor:
+        """Return which rooms (n,) are sampled with few slots: those of types that hold little, and that do hold little."""
+        return self.few[rooms.layout] & (rooms.count <= self.settings.few_slots - 2)
+
+    def chosen(self, rng: torch.Generator, rooms: RoomBatch, weights: NDArray[np.float64]) -> tuple[Tensor, int]:
+        """Draw the rows of a step's rooms by `weights` (n,), and the number of slots that they get.
+
+        A step sees either rooms with few slots or rooms with all of them, as they will be sampled, and fewer of the latter,
+        so that both cost the same. Large rooms hold half of all objects; in mixed batches they would be a tenth.
+        """
+        s, chances, small = self.settings, torch.from_numpy(weights), self.small(rooms).cpu()
+        few = bool(torch.rand(1, generator=rng) < s.few_share)
+        few = bool(small.any()) if few else not bool((~small).any())
+        chances = chances * ((rooms.count <= s.few_slots - 2).cpu() if few else ~small)
+        return torch.multinomial(
+            chances, s.batch if few else s.many_batch, replacement=True, generator=rng
+        ), s.few_slots if few else s.slots
 
     def step(self, rooms: RoomBatch, objects: Objects, weights: NDArray[np.float64]) -> Step:
         """Take one step on rooms drawn by `weights` (n,). All it draws comes from a generator keyed by (seed, step).
@@ -66,28 +85,21 @@ class Trainer:
         """
         s = self.settings
         rng = torch.Generator().manual_seed(seeds.key(self.seed, "train-step", self.done) % 2**63)
-        chances = torch.from_numpy(weights)
-        small = (rooms.count <= s.few_slots - 2).cpu()
-        # Most rooms hold few objects; a step on these alone, with half the slots, costs less than half.
-        few = bool(torch.rand(1, generator=rng) < s.few_share) and bool(small.any()) and s.few_slots < s.slots
-        rows = torch.multinomial(chances * small if few else chances, s.batch, replacement=True, generator=rng)
-        slots = s.few_slots if few else s.slots
-        motion = motions(rng, s.batch, s.tilt).to(self.device)
-        drawn = draw(rng, s.batch, slots, self.net.norm.channels, s.timesteps, s.low_noise, s.count_known)
-        own = self.team.share(s.batch)
+        rows, slots = self.chosen(rng, rooms, weights)
+        batch = len(rows)
+        motion = motions(rng, batch, s.tilt).to(self.device)
+        drawn = draw(rng, batch, slots, self.net.norm.channels, s.timesteps, s.low_noise, s.count_known)
+        own = self.team.share(batch)
         rows, motion = rows[own].to(self.device), motion[own]
         seen = moved_objects(objects.rows(rows).first(slots), motion, self.net.codec)
         told = moved_rooms(rooms.rows(rows).trimmed(), motion)
         loss = denoising_loss(self.net.train(), self.levels, told, seen, type(drawn)(*(v[own].to(self.device) for v in drawn)), s)
         geometry, shape, classes = (term.mean() for term in loss)
         rate = self.rate(self.done)
-        for group in self.optimiser.param_groups:
-            group["lr"] = rate
-        self.optimiser.zero_grad(set_to_none=True)
         (geometry + s.latent_weight * shape + s.class_weight * classes).backward()
         terms = self.team.averaged(list(self.net.parameters()), torch.stack([geometry, shape, classes]).detach())
         torch.nn.utils.clip_grad_norm_(self.net.parameters(), s.clip)
-        self.optimiser.step()
+        self.optimiser.step(rate)
         self._follow()
         self.done += 1
         mean_geometry, mean_shape, mean_classes = terms.tolist()
@@ -95,29 +107,20 @@ class Trainer:
 
     def groups(self) -> dict[str, dict[str, Tensor]]:
         """Return everything that a checkpoint holds."""
-        names = [name for name, _ in self.net.named_parameters()]
-        state = self.optimiser.state_dict()["state"]
-        moments = {f"{names[i]}/{k}": v for i, entry in state.items() for k, v in entry.items()}
-        return {"net": dict(self.net.state_dict()), "average": dict(self.average.state_dict()), "optimiser": moments}
+        return {"net": dict(self.net.state_dict()), "average": dict(self.average.state_dict()), "optimiser": self.optimiser.moments()}
 
     def restore(self, done: int, groups: dict[str, dict[str, Tensor]]) -> None:
         """Continue from a checkpoint."""
         self.net.load_state_dict(groups["net"])
         self.average.load_state_dict(groups["average"])
-        order = {name: i for i, (name, _) in enumerate(self.net.named_parameters())}
-        state: dict[int, dict[str, Tensor]] = {}
-        for key, value in groups.get("optimiser", {}).items():
-            name, kind = key.rsplit("/", 1)
-            state.setdefault(order[name], {})[kind] = value
-        self.optimiser.load_state_dict({**self.optimiser.state_dict(), "state": state})
+        self.optimiser.restore(groups.get("optimiser", {}))
         self.done = done
 
     @torch.no_grad()
     def _follow(self) -> None:
         """Move the average towards the weights; faster at first, so that it is not a memory of the random start."""
         decay = min(self.settings.ema, (1 + self.done) / (10 + self.done))
-        for slow, fast in zip(self.average.parameters(), self.net.parameters(), strict=True):
-            slow.lerp_(fast, 1 - decay)
+        torch._foreach_lerp_(list(self.average.parameters()), list(self.net.parameters()), 1 - decay)
 
 
 def train(
@@ -131,21 +134,25 @@ def train(
 
 
 @torch.no_grad()
-def validation(
-    net: Denoiser, levels: Levels, rooms: RoomBatch, objects: Objects, settings: TrainSettings, seed: int
-) -> dict[str, dict[str, float]]:
-    """Return the mean loss terms at five noise levels, with noise keyed by (seed, level): the same at every call."""
+def validation(trainer: Trainer, rooms: RoomBatch, objects: Objects) -> dict[str, dict[str, float]]:
+    """Return the averaged net's mean loss terms at five noise levels, each room with the slots that it is sampled with.
+
+    The noise is keyed by (seed, level), and so the same at every call.
+    """
     found: dict[str, dict[str, float]] = {}
-    device = rooms.layout.device
+    settings, net, small = trainer.settings, trainer.average, trainer.small(rooms)
+    parts = [(slots, torch.nonzero(mask)[:, 0]) for slots, mask in ((settings.few_slots, small), (settings.slots, ~small))]
     for t in (5, 50, 200, 400, 700):
         level = max(1, round(t * settings.timesteps / 1000))
-        rng = torch.Generator().manual_seed(seeds.key(seed, "validate", t) % 2**63)
+        rng = torch.Generator().manual_seed(seeds.key(trainer.seed, "validate", t) % 2**63)
         terms = []
-        for rows in torch.arange(len(rooms)).split(settings.batch):
-            drawn = draw(rng, len(rows), objects.classes.shape[1], net.norm.channels, settings.timesteps, 0.0, 1.0)
-            drawn = type(drawn)(*(v.to(device) for v in drawn))._replace(t=torch.full((len(rows),), level, device=device))
+        for slots, rows in [(slots, rows) for slots, listed in parts for rows in listed.split(settings.batch) if len(rows)]:
+            drawn = draw(rng, len(rows), slots, net.norm.channels, settings.timesteps, 0.0, 1.0)
+            drawn = type(drawn)(*(v.to(trainer.device) for v in drawn))
+            drawn = drawn._replace(t=torch.full((len(rows),), level, device=trainer.device))
             plain = replace(settings, constraint=False)  # validation measures denoising alone
-            terms.append(torch.stack(denoising_loss(net.eval(), levels, rooms.rows(rows), objects.rows(rows), drawn, plain)))
+            seen = objects.rows(rows).first(slots)
+            terms.append(torch.stack(denoising_loss(net, trainer.levels, rooms.rows(rows), seen, drawn, plain)))
         mean = torch.cat(terms, 1).mean(1).tolist()
         found[f"t{t}"] = dict(zip(("geometry", "shape", "classes"), (round(v, 6) for v in mean), strict=True))
     return found

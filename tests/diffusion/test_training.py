@@ -146,10 +146,26 @@ def test_empty_slots_cost_nothing_in_geometry(header, data):
 
 
 def test_validation_is_the_same_at_every_call(header, data):
-    net, levels = Trainer(0, header, SETTINGS, 1, 1, CPU).net, Levels.of(linear(), CPU)
-    first, second = (validation(net, levels, data[0], data[1], SETTINGS, 0) for _ in range(2))
+    trainer = Trainer(0, header, SETTINGS, 1, 1, CPU)
+    first, second = (validation(trainer, *data[:2]) for _ in range(2))
     assert first == second
     assert set(first) == {"t5", "t50", "t200", "t400", "t700"}
+
+
+def test_a_step_sees_rooms_with_the_slots_that_they_are_sampled_with(norm):
+    """Bedrooms hold at most 4 things here, dining rooms 6: these are the large rooms."""
+    rooms, _ = stacked(made := make_examples(30), Codec(norm), 12)
+    settings = replace(SETTINGS, few_slots=6, few_share=0.5)
+    header = Header(norm, LAYOUTS, 12, 1000, SETTINGS.model, ("bedroom",), 6)
+    trainer, rng = Trainer(0, header, settings, 6, 3, CPU), torch.Generator().manual_seed(0)
+    seen = [trainer.chosen(rng, rooms, layout_weights(made)) for _ in range(40)]
+    assert {slots for _, slots in seen} == {6, 12}
+    for rows, slots in seen:
+        assert len(rows) * slots == 8 * 6
+        assert all((rooms.layout[rows] == 0) & (rooms.count[rows] <= 4)) if slots == 6 else all(rooms.layout[rows] == 1)
+    mixed = Trainer(0, replace(header, few=(), few_slots=12), replace(settings, few_share=0.0), 6, 3, CPU)
+    rows, slots = mixed.chosen(rng, rooms, layout_weights(made))
+    assert (len(rows), slots) == (8, 12)
 
 
 def test_rare_layout_types_are_drawn_more_often_than_they_occur():

@@ -1,0 +1,99 @@
+"""The optimiser: Muon (Jordan et al. 2024) for the layers' matrices, AdamW for everything else.
+
+Muon moves a matrix by its momentum with all singular values made 1, so that every direction of a layer learns at the same
+pace; docs/model.md has figures of both. `optimiser: adamw` is AdamW throughout.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import torch
+from torch import Tensor, nn
+
+from pipeline.diffusion.settings import TrainSettings
+
+MOMENTUM = 0.95
+BETAS = (0.9, 0.98)
+AS_LARGE = 0.2  # root mean square of AdamW's usual update, which Muon's is given, so that both share one learning rate
+# Quintic polynomials x -> a x + b x^3 + c x^5 that, one after the other, bring singular values in [1e-3, 1] to 1 (Amsel et al. 2025).
+QUINTICS = (
+    (4.0848, -6.8946, 2.9270),
+    (3.9505, -6.3029, 2.6377),
+    (3.7418, -5.5913, 2.3037),
+    (2.8769, -3.1427, 1.2046),
+    (2.8366, -3.0525, 1.2012),
+)
+
+
+class Optimiser:
+    """Owns the moments of a net's parameters."""
+
+    def __init__(self, net: nn.Module, settings: TrainSettings) -> None:
+        named, width, weight_decay = dict(net.named_parameters()), settings.model.width, settings.weight_decay
+        self.matrices = {name: p for name, p in named.items() if settings.optimiser == "muon" and is_hidden(name, p, width)}
+        self.momenta = {name: torch.zeros_like(p) for name, p in self.matrices.items()}
+        self.others = {name: p for name, p in named.items() if name not in self.matrices}
+        self.width, self.weight_decay = width, weight_decay
+        self.adam = torch.optim.AdamW(self.others.values(), weight_decay=weight_decay, betas=BETAS, fused=True)
+
+    @torch.no_grad()
+    def step(self, rate: float) -> None:
+        """Move the parameters along their gradients at a learning rate, and forget the gradients."""
+        for group in self.adam.param_groups:
+            group["lr"] = rate
+        self.adam.step()
+        alike: dict[tuple[int, int], list[tuple[Tensor, Tensor]]] = {}
+        for name, p in self.matrices.items():
+            gradient, momentum = p.grad, self.momenta[name]
+            if gradient is None:
+                continue
+            momentum.lerp_(gradient, 1 - MOMENTUM)
+            ahead = gradient.lerp(momentum, MOMENTUM)  # Nesterov's: where the momentum will be
+            for part, move in zip(squares(p, self.width), squares(ahead, self.width), strict=True):
+                alike.setdefault((part.shape[0], part.shape[1]), []).append((part, move))
+        for shape, pairs in alike.items():
+            moves = orthogonalised(torch.stack([move for _, move in pairs])) * (rate * AS_LARGE * max(shape) ** 0.5)
+            for (part, _), move in zip(pairs, moves, strict=True):
+                part.mul_(1 - rate * self.weight_decay).sub_(move)
+        for p in (*self.matrices.values(), *self.others.values()):
+            p.grad = None
+
+    def moments(self) -> dict[str, Tensor]:
+        """Return the moments by `<parameter>/<kind>`, for a checkpoint."""
+        names, state = list(self.others), self.adam.state_dict()["state"]
+        found = {f"{names[i]}/{kind}": value for i, entry in state.items() for kind, value in entry.items()}
+        return found | {f"{name}/momentum": value for name, value in self.momenta.items()}
+
+    def restore(self, moments: Mapping[str, Tensor]) -> None:
+        """Take up what `moments` gave."""
+        order = {name: i for i, name in enumerate(self.others)}
+        state: dict[int, dict[str, Tensor]] = {}
+        for key, value in moments.items():
+            name, kind = key.rsplit("/", 1)
+            if name in self.momenta:
+                self.momenta[name].copy_(value)
+            else:
+                state.setdefault(order[name], {})[kind] = value
+        self.adam.load_state_dict({**self.adam.state_dict(), "state": state})
+
+
+def is_hidden(name: str, parameter: Tensor, width: int) -> bool:
+    """Whether a parameter maps hidden channels to hidden channels: what Muon is for. Inputs, heads, biases and modulations are not."""
+    layer = name.startswith(("blocks.", "floor_keys.", "point."))
+    return layer and parameter.ndim == 2 and parameter.shape[0] % width == 0
+
+
+def squares(matrix: Tensor, width: int) -> Sequence[Tensor]:
+    """Cut a matrix into those that were written as one: rows in portions of `width`."""
+    parts: Sequence[Tensor] = matrix.split(width, 0)  # type: ignore[no-untyped-call]
+    return parts
+
+
+def orthogonalised(matrices: Tensor) -> Tensor:
+    """Return the nearest matrices (K, m, n) with singular values near 1, by Newton-Schulz steps; m <= n."""
+    x: Tensor = matrices / (1.01 * torch.linalg.matrix_norm(matrices, keepdim=True)).clamp_min(1e-12)
+    for a, b, c in QUINTICS:
+        square = x @ x.transpose(1, 2)
+        x = torch.baddbmm(x, torch.baddbmm(square, square, square, beta=b, alpha=c), x, beta=a)
+    return x
