@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from pipeline.entities.plan import Plan, Room
 
 PASSAGES = ("door", "open", "portal")
-BUDGET = 40_000  # matchings that are tried before the greedy one is kept
+BUDGET = 200_000  # partial matchings that are looked at before the best so far is kept
 
 Edge = frozenset[str]
 
@@ -24,58 +23,73 @@ def edges_of(plan: Plan) -> dict[Edge, set[str]]:
 
 
 def match(plan: Plan, graph: Mapping[str, Any]) -> dict[str, str]:
-    """Return the matching {room of the plan: room of the truth} of most common edges, then of nearest areas."""
-    wanted = {(e["a"], e["b"]) for e in graph["edges"]}
-    near = {frozenset(e) for e in wanted}
-    made = set(edges_of(plan))
-    truth = {r["id"]: r for r in graph["rooms"]}
-    by_type: dict[str, tuple[list[Room], list[str]]] = {}
-    for room in plan.rooms:
-        by_type.setdefault(room.type, ([], []))[0].append(room)
-    for name, row in truth.items():
-        by_type.setdefault(row["type"], ([], []))[1].append(name)
-    groups = [(a, b) for a, b in by_type.values() if a and b]
-    groups.sort(key=lambda g: len(g[0]) * len(g[1]))
+    """Return the matching {room of the plan: room of the truth} of most common edges, then of nearest areas.
 
-    def gain(found: Mapping[str, str]) -> tuple[int, float]:
-        hits = sum(1 for e in made if frozenset(found.get(i, "") for i in e) in near)
-        gap = sum(abs(room.area - truth[found[room.room_id]].get("area", room.area)) for room in plan.rooms if room.room_id in found)
-        return hits, -gap
-
-    current: dict[str, str] = {}
-    for rooms, names in groups:  # a first guess: by size
-        ordered = sorted(names, key=lambda n: -truth[n].get("area", 0.0))
-        current.update({r.room_id: n for r, n in zip(sorted(rooms, key=lambda r: -r.area), ordered, strict=False)})
-    total = 1
-    for rooms, names in groups:
-        total *= len(list(itertools.islice(_injections(rooms, names), BUDGET)))
-    if total <= BUDGET:
-        best, score = current, gain(current)
-        for choice in itertools.product(*(list(_injections(a, b)) for a, b in groups)):
-            found = {i: n for part in choice for i, n in part.items()}
-            value = gain(found)
-            if value > score:
-                best, score = found, value
-        return best
-    # too many: improve one type after the other until nothing changes
-    score = gain(current)
-    improved = True
-    while improved:
-        improved = False
-        for rooms, names in groups:
-            for part in itertools.islice(_injections(rooms, names), BUDGET):
-                trial = {**{k: v for k, v in current.items() if k not in {r.room_id for r in rooms}}, **part}
-                value = gain(trial)
-                if value > score:
-                    current, score, improved = trial, value, True
-    return current
+    As many rooms of each type are matched as there are in both. Exact, by branch and bound; among equals the first is taken.
+    """
+    search = _Search(plan, graph)
+    search.branch(0, {}, 0, 0.0)
+    return search.best
 
 
-def _injections(rooms: Sequence[Room], names: Sequence[str]) -> Any:
-    """Yield every way to match the smaller of two sets into the larger."""
-    if len(rooms) <= len(names):
-        for chosen in itertools.permutations(names, len(rooms)):
-            yield {r.room_id: n for r, n in zip(rooms, chosen, strict=True)}
-    else:
-        for picked in itertools.permutations(rooms, len(names)):
-            yield {r.room_id: n for r, n in zip(picked, names, strict=True)}
+class _Search:
+    """Branch and bound over the rooms, type by type: bounded by the edges that may yet be met and the areas that are left."""
+
+    def __init__(self, plan: Plan, graph: Mapping[str, Any]) -> None:
+        self.near = {frozenset((e["a"], e["b"])) for e in graph["edges"]}
+        self.area = {r["id"]: r.get("area") for r in graph["rooms"]}
+        names: dict[str, list[str]] = {}
+        for row in graph["rooms"]:
+            names.setdefault(row["type"], []).append(row["id"])
+        self.names = names
+        rooms = [r for r in plan.rooms if r.type in names]
+        order = {t: k for k, t in enumerate(sorted({r.type for r in rooms}, key=lambda t: (sum(r.type == t for r in rooms), t)))}
+        self.rooms = sorted(rooms, key=lambda r: (order[r.type], -r.area))
+        self.joined = {r.room_id: [next(iter(e - {r.room_id})) for e in edges_of(plan) if r.room_id in e] for r in rooms}
+        place = {r.room_id: k for k, r in enumerate(self.rooms)}
+        # edges between matched types that are decided from room k on
+        ends = [sorted(place[i] for i in e) for e in edges_of(plan) if all(i in place for i in e)]
+        self.open = [sum(e[1] >= k for e in ends) for k in range(len(self.rooms) + 1)]
+        self.best: dict[str, str] = {}
+        self.score = (-1, 0.0)
+        self.left = BUDGET
+
+    def branch(self, k: int, found: dict[str, str], hits: int, gap: float) -> None:
+        """Assign room k and those after it; `hits` edges are met so far, areas differ by `gap` [m2]."""
+        self.left -= 1
+        if self.left < 0 and self.best:
+            return
+        if k == len(self.rooms):
+            if (hits, -gap) > self.score:
+                self.best, self.score = dict(found), (hits, -gap)
+            return
+        most = hits + self.open[k]
+        if most < self.score[0] or (most == self.score[0] and -(gap + self._least(k, found)) <= self.score[1] + 1e-12):
+            return
+        room = self.rooms[k]
+        taken = set(found.values())
+        free = [n for n in self.names[room.type] if n not in taken]
+        waiting = sum(r.type == room.type for r in self.rooms[k:])
+        for name in sorted(free, key=lambda n: (-self._met(room, n, found), self._gap(room, n))):
+            found[room.room_id] = name
+            self.branch(k + 1, found, hits + self._met(room, name, found), gap + self._gap(room, name))
+            del found[room.room_id]
+        if waiting > len(free):  # more rooms than the truth has: this one may stay alone
+            self.branch(k + 1, found, hits, gap)
+
+    def _met(self, room: Room, name: str, found: Mapping[str, str]) -> int:
+        return sum(other in found and frozenset((name, found[other])) in self.near for other in self.joined[room.room_id])
+
+    def _gap(self, room: Room, name: str) -> float:
+        wanted = self.area[name]
+        return 0.0 if wanted is None else abs(room.area - wanted)
+
+    def _least(self, k: int, found: Mapping[str, str]) -> float:
+        """Return the least sum of differences that rooms from k on can have: matched by size where there are as many names."""
+        taken, total = set(found.values()), 0.0
+        for kind in {r.type for r in self.rooms[k:]}:
+            rooms = [r.area for r in self.rooms[k:] if r.type == kind]
+            wanted = [self.area[n] for n in self.names[kind] if n not in taken]
+            if len(rooms) == len(wanted) and None not in wanted:
+                total += sum(abs(a - b) for a, b in zip(sorted(rooms), sorted(wanted), strict=True))
+        return total

@@ -52,8 +52,11 @@ class Scene:
         return bool(kinds)
 
     def adjacency(self, check: Mapping[str, Any]) -> list[float]:
-        """Return 1 or 0 for each room of `a` (each), or one value (some)."""
+        """Return 1 or 0 for each room of `a` (each), of those that the truth has a partner for; or one value (some)."""
         ones, others = self.select(check["a"]), self.select(check["b"])
+        known = set(self.names.values())
+        if check.get("quant") != "some":
+            ones = [r for r in ones if r.room_id in known] or ones
         met = [any(self.joined(a, b, check.get("via", "any")) for b in others if b.room_id != a.room_id) for a in ones]
         if check.get("quant") == "some" or not met:
             return [float(any(met))]

@@ -5,9 +5,10 @@ to the other; balconies and garages are rooms, outside doors are none. Where the
 its weighted benchmark score) leaves rules open, these hold:
 
 - the matching of rooms by type is the one of largest |E_match|, ties broken by agreement of areas;
-- edges that the truth marks `optional`, and rooms that it marks `inferred`, are neither missing nor spurious (lenient); the
-  strict values count everything as printed;
+- edges that the truth marks `optional`, rooms that it marks `inferred`, circulation that stands for them, and edges of both are neither
+  missing nor spurious (lenient); the strict values count everything as printed;
 - presence = (sum over types of min(made, asked) + absent types kept out) / (sum asked + number of absent types);
+- adjacency = met / asked, where `each` asks once for each room of the truth; rooms beyond those count in S_node and S_edge alone;
 - numeric constraints lose credit linearly, to none at twice the tolerance.
 """
 
@@ -25,6 +26,7 @@ from pipeline.metrics.plan_checks import constraint
 from pipeline.metrics.plan_graph import edges_of, match
 from pipeline.metrics.plan_scene import Scene
 
+CIRCULATION = frozenset({"hallway", "entry"})
 WEIGHTS = (0.5, 0.3, 0.2)  # presence, adjacency, constraints: the paper's benchmark score
 
 
@@ -59,7 +61,7 @@ def score(plan: Plan, case: Mapping[str, Any]) -> PlanScores:
         truth[row["type"]] = truth.get(row["type"], 0.0) + row["area"]
     scene = Scene(plan, {n: i for i, n in found.items()})
     presence = _presence(plan, checks)
-    adjacent = [part for c in checks.get("adjacency", ()) for part in scene.adjacency(c)]
+    adjacent = [part for c in checks.get("adjacency", ()) for part in _adjacent(scene, graph, c)]
     met = [constraint(scene, c) for c in checks.get("constraints", ())]
     adjacency = float(np.mean(adjacent)) if adjacent else 1.0
     constraints = float(np.mean(met)) if met else 1.0
@@ -72,6 +74,8 @@ def s_constraint(made: Mapping[str, float], truth: Mapping[str, float]) -> float
     """1 - D_L1 / 2 of two distributions of area over room types (paper eq. constraint_score)."""
     keys = set(made) | set(truth)
     a, b = sum(made.values()), sum(truth.values())
+    if not a or not b:
+        return float(a == b)
     return 1.0 - 0.5 * sum(abs(made.get(k, 0.0) / a - truth.get(k, 0.0) / b) for k in keys)
 
 
@@ -87,22 +91,42 @@ def _node(plan: Plan, graph: Mapping[str, Any], found: Mapping[str, str]) -> tup
     inferred = {r["id"] for r in graph["rooms"] if r.get("inferred")}
     strict = len(found) / max(len(plan.rooms), len(graph["rooms"]))
     kept = [n for n in found.values() if n not in inferred]
-    circulation = {"hallway", "entry"}
-    free = inferred or not any(r["type"] in circulation for r in graph["rooms"])
-    spare = {r.room_id for r in plan.rooms if r.room_id not in found and r.type in circulation} if free else set()
-    made = len(plan.rooms) - (len(found) - len(kept)) - len(spare)
+    made = len(plan.rooms) - (len(found) - len(kept)) - len(_spare(plan, graph, found))
     return len(kept) / max(made, len(graph["rooms"]) - len(inferred)), strict
 
 
+def _spare(plan: Plan, graph: Mapping[str, Any], found: Mapping[str, str]) -> set[str]:
+    """Return circulation that the truth has no partner for, where it infers some or has none at all: it counts for nothing."""
+    infers = any(r.get("inferred") for r in graph["rooms"]) or not any(r["type"] in CIRCULATION for r in graph["rooms"])
+    return {r.room_id for r in plan.rooms if r.room_id not in found and r.type in CIRCULATION} if infers else set()
+
+
 def _edge(plan: Plan, graph: Mapping[str, Any], found: Mapping[str, str]) -> tuple[float, float]:
-    made = set(edges_of(plan))
+    """Return S_edge, lenient and strict: met edges over the larger number of edges. No edges at all, where none are asked for, is 1."""
     truth = {frozenset((e["a"], e["b"])) for e in graph["edges"]}
-    loose = {frozenset((e["a"], e["b"])) for e in graph["edges"] if e.get("optional")}
-    images = [frozenset(found.get(i, f"?{i}") for i in e) for e in made]
-    hits = [e for e in images if e in truth]
-    strict = len(hits) / max(len(made), len(truth), 1)
-    firm = [e for e in images if e not in loose]
-    return len([e for e in firm if e in truth]) / max(len(firm), len(truth - loose), 1), strict
+    optional = {frozenset((e["a"], e["b"])) for e in graph["edges"] if e.get("optional")}
+    free = {r["id"] for r in graph["rooms"] if r.get("inferred")} | {f"?{i}" for i in _spare(plan, graph, found)}
+    images = [frozenset(found.get(i, f"?{i}") for i in e) for e in edges_of(plan)]
+    firm = [e for e in images if e not in optional and not e & free]
+    asked = [e for e in truth if e not in optional and not e & free]
+    return _ratio(firm, asked), _ratio(images, list(truth))
+
+
+def _ratio(made: Sequence[frozenset[str]], asked: Sequence[frozenset[str]]) -> float:
+    most = max(len(made), len(asked))
+    return len(set(made) & set(asked)) / most if most else 1.0
+
+
+def _adjacent(scene: Scene, graph: Mapping[str, Any], check: Mapping[str, Any]) -> list[float]:
+    """Return what an adjacency check gives: a value for each room that is to have the neighbour, 0 for one that is missing.
+
+    Rooms beyond those of the truth count for nothing here.
+    """
+    wanted = sum(check["a"] in {r["id"], r["type"]} for r in graph["rooms"])
+    parts = scene.adjacency(check)
+    if check.get("quant") == "some":
+        return parts
+    return parts + [0.0] * (wanted - len(parts))
 
 
 def _presence(plan: Plan, checks: Mapping[str, Any]) -> float:

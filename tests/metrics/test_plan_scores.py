@@ -204,3 +204,186 @@ def test_scores_do_not_change_when_the_plan_is_turned():
 def test_every_check_of_the_benchmark_is_known():
     cases = yaml.safe_load(Path("manifests/prompts/benchmark.yaml").read_text(encoding="utf-8"))
     assert {c["type"] for case in cases for c in case["checks"]["constraints"]} <= set(CHECKS)
+
+
+def plan_of(rooms, doors, entrance="l"):
+    """Rooms (id, type, area) in a row, joined by doors (a, b); only types, areas and joints matter."""
+    made, x = [], 0.0
+    for name, kind, area in rooms:
+        made.append(box(name, kind, x, 0, x + area / 4, 4))
+        x += area / 4 + 0.12
+    return Plan(
+        tuple(made), tuple(Opening(f"o{k}", "door", pair, np.array([[0.0, 0], [1, 0]]), 2.0) for k, pair in enumerate(doors)), entrance
+    )
+
+
+def graph_of(rooms, edges):
+    rows = [{"id": i, "type": t, "area": a, **({"inferred": True} if i.startswith("~") else {})} for i, t, a in rooms]
+    return {"rooms": rows, "edges": [{"a": a, "b": b, "kind": "door", **({"optional": True} if more else {})} for a, b, *more in edges]}
+
+
+def scored(plan, rooms, edges, **checks):
+    return score(plan, {"graph": graph_of(rooms, edges), "checks": checks})
+
+
+LIVING, BED, HALL, BATH = "living_room", "bedroom", "hallway", "bathroom"
+
+
+def test_s_node_is_matched_over_the_larger_number():
+    rooms = [("L", LIVING, 20), ("B", BED, 12), ("C", BED, 12), ("W", BATH, 5)]
+    assert scored(plan_of([("l", LIVING, 20), ("b", BED, 12)], []), rooms, []).node == pytest.approx(2 / 4)
+    more = [("l", LIVING, 20), ("b", BED, 12), ("c", BED, 12), ("w", BATH, 5), ("x", "office", 9)]
+    assert scored(plan_of(more, []), rooms, []).node == pytest.approx(4 / 5)
+    swapped = [("l", LIVING, 20), ("b", BED, 12), ("c", BED, 12), ("w", "wc", 5)]  # a room of another type is missing and spurious
+    assert scored(plan_of(swapped, []), rooms, []).node == pytest.approx(3 / 4)
+
+
+def test_s_edge_is_matched_over_the_larger_number():
+    rooms = [("L", LIVING, 20), ("B", BED, 12), ("W", BATH, 5)]
+    made = [("l", LIVING, 20), ("b", BED, 12), ("w", BATH, 5)]
+    asked = [("L", "B"), ("B", "W")]
+    assert scored(plan_of(made, [("l", "b"), ("b", "w")]), rooms, asked).edge == 1.0
+    assert scored(plan_of(made, [("l", "b")]), rooms, asked).edge == pytest.approx(1 / 2)
+    assert scored(plan_of(made, [("l", "b"), ("l", "w"), ("b", "w")]), rooms, asked).edge == pytest.approx(2 / 3)
+    assert scored(plan_of(made, [("l", "w")]), rooms, asked).edge == 0.0
+
+
+def test_without_edges_none_is_missing():
+    assert scored(plan_of([("s", "studio_room", 20)], [], "s"), [("S", "studio_room", 20)], []).edge == 1.0
+    assert scored(plan_of([("l", LIVING, 20), ("b", BED, 12)], [("l", "b")]), [("L", LIVING, 20), ("B", BED, 12)], []).edge == 0.0
+
+
+def test_outside_doors_and_windows_are_no_edges():
+    rooms = [("L", LIVING, 24), ("H", HALL, 8), ("A", BED, 16), ("B", BED, 15)]
+    assert len(edges_of(PLAN)) == 3 < len(PLAN.openings)
+    assert scored(PLAN, rooms, [("L", "H"), ("H", "A"), ("H", "B")]).edge == 1.0
+
+
+def test_of_matchings_with_equal_edges_the_one_of_nearest_areas():
+    rooms = [("L", LIVING, 20), ("B", BED, 10), ("C", BED, 16)]
+    plan = plan_of([("l", LIVING, 20), ("x", BED, 16), ("y", BED, 10)], [("l", "x"), ("l", "y")])
+    graph = graph_of(rooms, [("L", "B"), ("L", "C")])
+    assert match(plan, graph) == {"l": "L", "x": "C", "y": "B"}
+    # but edges come first: only one of them is met by the nearest areas
+    assert match(plan, graph_of([*rooms, ("W", BATH, 5)], [("L", "B"), ("B", "W")]))["x"] == "C"
+    other = plan_of([("l", LIVING, 20), ("x", BED, 16), ("y", BED, 10), ("w", BATH, 5)], [("l", "x"), ("x", "w")])
+    assert match(other, graph_of([*rooms, ("W", BATH, 5)], [("L", "B"), ("B", "W")]))["x"] == "B"
+
+
+def test_the_matching_is_exact():
+    """Against every permutation, on random graphs with more and with fewer rooms than the truth."""
+    rng = np.random.default_rng(5)
+    for _ in range(60):
+        kinds = [LIVING, BED, BATH]
+        made = [(f"r{k}", str(rng.choice(kinds)), float(rng.integers(4, 20))) for k in range(int(rng.integers(2, 7)))]
+        asked = [(f"T{k}", str(rng.choice(kinds)), float(rng.integers(4, 20))) for k in range(int(rng.integers(2, 7)))]
+        doors = [(a[0], b[0]) for i, a in enumerate(made) for b in made[:i] if rng.random() < 0.5]
+        edges = [(a[0], b[0]) for i, a in enumerate(asked) for b in asked[:i] if rng.random() < 0.5]
+        found = match(plan_of(made, doors), graph_of(asked, edges))
+
+        def value(pairs, made=made, asked=asked, doors=doors, edges=edges):
+            size, want = {i: a for i, _, a in made}, {i: a for i, _, a in asked}
+            near = {frozenset(e) for e in edges}
+            hits = sum(a in pairs and b in pairs and frozenset((pairs[a], pairs[b])) in near for a, b in doors)
+            return hits, -round(sum(abs(size[i] - want[n]) for i, n in pairs.items()), 6)
+
+        options = []
+        for kind in kinds:
+            ours, theirs = [r[0] for r in made if r[1] == kind], [r[0] for r in asked if r[1] == kind]
+            few, many = sorted((ours, theirs), key=len)
+            pairs = [list(zip(few, p, strict=True)) for p in itertools.permutations(many, len(few))]
+            options.append([dict(p) if few is ours else {b: a for a, b in p} for p in pairs])
+        best = max(value({k: v for part in choice for k, v in part.items()}) for choice in itertools.product(*options))
+        assert value(found) == best
+
+
+def test_many_like_rooms_are_matched_at_once():
+    rooms = [(f"b{k}", BED, 10.0 + k / 7) for k in range(14)] + [("h", HALL, 12)]
+    plan = plan_of(rooms, [("h", f"b{k}") for k in range(14)], "h")
+    truth = [(i.upper(), t, a) for i, t, a in rooms]
+    assert match(plan, graph_of(truth, [("H", f"B{k}") for k in range(14)])) == {i: i.upper() for i, _, _ in rooms}
+
+
+def test_circulation_that_is_inferred_is_neither_missing_nor_spurious():
+    rooms = [("L", LIVING, 20), ("~H", HALL, 8), ("B", BED, 12), ("W", BATH, 5)]
+    edges = [("L", "~H"), ("~H", "B"), ("~H", "W"), ("L", "B", "optional")]
+    whole = plan_of([("l", LIVING, 20), ("h", HALL, 8), ("b", BED, 12), ("w", BATH, 5)], [("l", "h"), ("h", "b"), ("h", "w")])
+    assert (scored(whole, rooms, edges).node, scored(whole, rooms, edges).edge) == (1.0, 1.0)
+    without = plan_of([("l", LIVING, 20), ("b", BED, 12), ("w", BATH, 5)], [("l", "b")])
+    assert (scored(without, rooms, edges).node, scored(without, rooms, edges).edge) == (1.0, 1.0)
+    assert scored(without, rooms, edges).strict_node == pytest.approx(3 / 4)
+    assert scored(without, rooms, edges).strict_edge == pytest.approx(1 / 4)
+    # a hallway of the plan's own where the truth has none
+    plain = [("L", LIVING, 20), ("B", BED, 12), ("W", BATH, 5)]
+    assert scored(whole, plain, []).node == 1.0
+    assert scored(whole, plain, []).edge == 1.0
+    assert scored(whole, plain, []).strict_node == pytest.approx(3 / 4)
+    assert scored(whole, plain, []).strict_edge == 0.0
+    # but not where the truth names its circulation: then one more is one too many
+    named = [*plain, ("H", HALL, 8)]
+    double = plan_of([("l", LIVING, 20), ("h", HALL, 8), ("b", BED, 12), ("w", BATH, 5), ("e", "entry", 4)], [])
+    assert scored(double, named, []).node == pytest.approx(4 / 5)
+
+
+def test_s_constraint_counts_balcony_and_garage_and_shares_not_metres():
+    rooms = [("L", LIVING, 20), ("O", "balcony", 10), ("G", "garage", 20)]
+    plan = plan_of([("l", LIVING, 40), ("o", "balcony", 20), ("g", "garage", 40)], [])
+    assert scored(plan, rooms, []).constraint == pytest.approx(1.0)  # twice as large, same shares
+    plan = plan_of([("l", LIVING, 20), ("o", "balcony", 5), ("g", "garage", 20)], [])
+    assert scored(plan, rooms, []).constraint == pytest.approx(1 - 0.5 * (2 * (20 / 45 - 0.4) + (0.2 - 5 / 45)))
+    five = dict.fromkeys("abcde", 1.0)
+    moved = {**five, "a": 1.25, "b": 1.25, "c": 0.75, "d": 0.75}  # 5 points of share on four types
+    assert s_constraint(moved, five) == pytest.approx(1 - 0.5 * 4 * 0.05)
+
+
+def test_presence_takes_no_notice_of_more_than_asked():
+    plan = plan_of([("l", LIVING, 20), ("b", BED, 12), ("c", BED, 12), ("d", BED, 12)], [])
+    assert scored(plan, [], [], presence={BED: 2, LIVING: 1}).presence == 1.0
+    assert scored(plan, [], [], presence={BED: 4}).presence == pytest.approx(3 / 4)
+    assert scored(plan, [], [], absent=[BED, "garage"]).presence == pytest.approx(1 / 2)
+    assert scored(plan, [], []).presence == 1.0
+
+
+def test_each_asks_once_for_each_room_of_the_truth():
+    rooms = [("L", LIVING, 20), ("B", BED, 12), ("C", BED, 12), ("D", BED, 12)]
+    check = [{"a": BED, "b": LIVING, "via": "door", "quant": "each"}]
+    two = plan_of([("l", LIVING, 20), ("b", BED, 12), ("c", BED, 12)], [("l", "b"), ("l", "c")])
+    assert scored(two, rooms, [], adjacency=check).adjacency == pytest.approx(2 / 3)  # the third bedroom is missing
+    more = plan_of([("l", LIVING, 20), *((f"b{k}", BED, 12) for k in range(4))], [("l", f"b{k}") for k in range(3)])
+    edges = [("L", "B"), ("L", "C"), ("L", "D")]
+    assert scored(more, rooms, edges, adjacency=check).adjacency == 1.0  # the fourth was not asked for
+    some = [{**check[0], "quant": "some"}]
+    assert scored(two, rooms, [], adjacency=some).adjacency == 1.0
+
+
+@pytest.mark.parametrize(("area", "credit"), [(60, 1.0), (66, 0.5), (69, 0.25), (72, 0.0), (80, 0.0), (40, 1.0), (36, 0.5), (32, 0.0)])
+def test_numbers_lose_credit_linearly_to_none_at_twice_the_tolerance(area, credit):
+    plan = plan_of([("l", LIVING, area)], [])
+    checks = {"constraints": [{"type": "total_area", "min": 40, "max": 60, "tol": 0.1}, {"type": "storeys", "equals": 1}]}
+    found = scored(plan, [("L", LIVING, area)], [], **checks)
+    assert found.constraints == pytest.approx((credit + 1) / 2)
+    assert found.success == (credit == 1.0)
+
+
+def test_strict_success_wants_everything_exactly():
+    rooms, door = [("L", LIVING, 20), ("B", BED, 12)], [("l", "b")]
+    plan = plan_of([("l", LIVING, 20), ("b", BED, 12)], door)
+    good = {
+        "presence": {BED: 1},
+        "adjacency": [{"a": BED, "b": LIVING, "quant": "each"}],
+        "constraints": [{"type": "room_count", "equals": 2}],
+    }
+    assert scored(plan, rooms, [], **good).success
+    assert scored(plan, [], [("X", "Y")], **good).success  # the graph's scores have no part in it
+    for wrong in (
+        {"presence": {BED: 2}},
+        {"adjacency": [{"a": BED, "b": LIVING, "via": "open"}]},
+        {"constraints": [{"type": "room_count", "equals": 3}]},
+    ):
+        assert not scored(plan, rooms, [], **(good | wrong)).success
+
+
+def test_the_benchmark_score_is_the_papers_weighting():
+    plan = plan_of([("l", LIVING, 20), ("b", BED, 12)], [])
+    found = scored(plan, [], [], presence={BED: 2}, adjacency=[{"a": BED, "b": LIVING}], constraints=[{"type": "storeys", "equals": 1}])
+    assert found.benchmark == pytest.approx(0.5 * 0.5 + 0.3 * 0.0 + 0.2 * 1.0)
