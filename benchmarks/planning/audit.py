@@ -18,7 +18,7 @@ from pipeline.floorplan.program import FloorProgram
 
 DEAD = frozenset({"bathroom", "wc"})
 BEHIND_BEDROOMS = frozenset({"bathroom", "wc", "closet", "balcony", "storage", "office", "sunroom", "utility"})
-STATED = 0.101  # how far a stated target may be missed
+STATED = 0.1001  # how far a stated target may be missed
 USUAL, USUAL_HALL = (0.55, 1.45), (0.55, 2.65)  # factors on targets that nobody stated
 THIN, VOID, OVERHANG = 0.4, 0.02, 0.35  # [m] half of what is passable; [m2] of nothing between rooms; [m] beyond the storey below
 Shapes = Mapping[str, shapely.Polygon]

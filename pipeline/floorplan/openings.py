@@ -18,6 +18,8 @@ from pipeline.floorplan.defaults import DEFAULTS, DOOR_HEIGHT
 from pipeline.floorplan.program import FloorProgram, RoomReq
 
 FRAME = 0.10  # least wall beside an opening, from the inner faces of side walls [m]
+TRIES = ((1.0, FRAME), (0.7, FRAME), (0.5, FRAME), (0.35, FRAME))  # windows: share of the wished width, distance from corners [m]
+CUT_TRIES = ((1.0, 0.7), (0.7, 0.7))  # where the outline's corners are to be cut
 LEAF_GAP = 0.03  # leaf tip to other leaves' sweeps [m]
 ANGLE = 1.5  # how far leaves open [rad]
 ENTRANCE_WIDTH, GATE_WIDTH, BALCONY_WIDTH = 0.9, 2.4, 0.85
@@ -131,7 +133,8 @@ def place(
         if not any(_door(site, between, "door", w, side, DOOR_HEIGHT, rng) for side in sides for w in widths):
             return None
     for room in program.rooms:
-        _windows(site, room, [r for r in runs if r.rooms == (room.id,)])
+        tries = (CUT_TRIES if program.footprint.corners == "chamfered" else ()) + TRIES
+        _windows(site, room, [r for r in runs if r.rooms == (room.id,)], tries)
     return tuple(site.openings)
 
 
@@ -235,8 +238,11 @@ def _leaf_fits(site: Site, floor: shapely.Polygon, into: str, segment: Point, hi
     return True
 
 
-def _windows(site: Site, room: RoomReq, walls: Sequence[Run]) -> None:
-    """Give a room its windows: one per outside stretch, on the longest wall first, two at most unless light is required."""
+def _windows(site: Site, room: RoomReq, walls: Sequence[Run], tries: Sequence[tuple[float, float]]) -> None:
+    """Give a room its windows: one per outside stretch, on the longest wall first, three at most.
+
+    `tries` are shares of the wished width, and how far a window of it keeps from the ends of the wall [m].
+    """
     wanted = room.window == "required" or (room.window == "auto" and DEFAULTS[room.type].window)
     if not wanted or room.window == "forbidden":
         return
@@ -247,9 +253,9 @@ def _windows(site: Site, room: RoomReq, walls: Sequence[Run]) -> None:
         if placed >= most or (placed and run.length < 1.6):
             break
         width = min(0.55 * run.length, 0.7 if bath else WIDEST_WINDOW)
-        for share in (1.0, 0.7, 0.5, 0.35):
+        for share, margin in tries:
             size = round(max(width * share, NARROWEST_WINDOW), 2)
-            offset = _window_place(site, run, size)
+            offset = _window_place(site, run, size, margin)
             if offset is not None:
                 sill, height = (BATH_SILL, BATH_WINDOW) if bath else (SILL, WINDOW_HEIGHT)
                 sill = min(sill, site.ceiling - LINTEL - LEAST_WINDOW)
@@ -262,13 +268,13 @@ def _windows(site: Site, room: RoomReq, walls: Sequence[Run]) -> None:
                 break
 
 
-def _window_place(site: Site, run: Run, width: float) -> float | None:
-    """Return the free place nearest to the middle of the wall."""
-    if run.length < width + 2 * FRAME:
+def _window_place(site: Site, run: Run, width: float, margin: float) -> float | None:
+    """Return the free place nearest to the middle of the wall, `margin` from its ends."""
+    if run.length < width + 2 * margin:
         return None
     middle = (run.length - width) / 2
     for k in range(int(middle / STEP) + 1):
         for offset in (middle - k * STEP, middle + k * STEP):
-            if FRAME <= offset <= run.length - width - FRAME and site.free(run, offset, width):
+            if margin <= offset <= run.length - width - margin and site.free(run, offset, width):
                 return offset
     return None

@@ -193,7 +193,7 @@ def _bounds(rooms: tuple[RoomReq, ...], target: NDArray[np.float64], ease: int) 
         if r.type in {"hallway", "entry"} and not r.area.stated:
             low[i], high[i] = target[i] * FREE_HALL[0], target[i] * most
         if r.area.stated and r.area.target is not None and r.area.min is None and r.area.max is None:
-            low[i], high[i] = target[i] * (1 - STATED), target[i] * (1 + STATED)
+            low[i], high[i] = target[i] * (1 - STATED) * (1 + EDGE), target[i] * (1 + STATED) * (1 - EDGE)
         if r.area.min is not None:
             low[i] = max(low[i], r.area.min * (1 + EDGE))
         if r.area.max is not None:
