@@ -27,11 +27,11 @@ export DVC_NO_ANALYTICS := 1
 
 run: $(READY) ## the whole factory: installs, runs every stage, says where dataset, report and pictures lie
 ifeq ($(PRESET),)
-	dvc repro
+	nice python -m stages.warm & dvc repro
 	python -m stages.doctor --places
 else
 	python .ci/scratch.py $(SCRATCH) $(PRESET)
-	cd $(SCRATCH) && dvc repro && python -m stages.doctor --places
+	cd $(SCRATCH) && { nice python -m stages.warm & dvc repro && python -m stages.doctor --places; }
 endif
 
 test: $(DEV) ## all tests

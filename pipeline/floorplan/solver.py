@@ -65,9 +65,9 @@ def solve(program: FloorProgram, seed: int, keys: tuple[int, ...] = ()) -> Plan:
     return search(program, seed, keys).plan
 
 
-def warm() -> None:
+def warm() -> Plan:
     """Plan a studio, so that all kernels of planning are compiled and in the cache: before workers start, which would each compile them."""
-    solve(FloorProgram(rooms=(RoomReq(id="room", type="studio_room"), RoomReq(id="bath", type="bathroom"))), 0)
+    return solve(FloorProgram(rooms=(RoomReq(id="room", type="studio_room"), RoomReq(id="bath", type="bathroom"))), 0)
 
 
 def search(program: FloorProgram, seed: int, keys: tuple[int, ...] = ()) -> Solution:
