@@ -268,38 +268,35 @@ class Factory:
         work.pending, work.last, work.results, work.first = fresh.pending, fresh.last, {}, {}
 
     def _judge(self, work: _Work) -> None:
-        """Verify the whole home; what is at fault goes, and a room that is then not good enough is tried again."""
+        """Lay small things and verify the whole home; what is at fault goes, and a room that is then not good enough is tried again."""
         while work.certificate is None and not work.pending:
-            home = self._home(work)
-            with self.timed("verify"):
-                certificate = verify_home(home, self.library, self.verify)
-            guilty = guilty_objects(home, certificate)
+            bare = self._home(work)
+            with self.timed("things"):
+                draw = seeds.generator(self.seed, "things", work.request.index, work.attempt)
+                laid = small_things(bare, self.library, self.postopt.things, draw, self.postopt.separate.touch)
+            laid, certificate, guilty = self._verdict(work, bare, laid)
             if guilty:
-                self._expel(work, guilty)
+                self._expel(work, guilty)  # things are laid anew on what is left
             elif faults := certificate.faults(self.verify.policy):
                 self._replan(work, *faults[0])
             else:
-                work.things, work.certificate = self._furnished(work, home, certificate)
+                work.things, work.certificate = laid, certificate
 
-    def _furnished(self, work: _Work, home: Home, certificate: Certificate) -> tuple[tuple[Placement, ...], Certificate]:
-        """Lay small things on the furniture of a sound home and judge it again; what the judge faults is not laid."""
-        with self.timed("things"):
-            draw = seeds.generator(self.seed, "things", home.index, work.attempt)
-            laid = small_things(home, self.library, self.postopt.things, draw, self.postopt.separate.touch)
-        while laid:
-            whole = replace(home, placements=home.placements + laid)
-            with self.timed("verify_things"):
-                judged = verify_home(whole, self.library, self.verify)
-            guilty = guilty_objects(whole, judged)
-            if not guilty and judged.ok(self.verify.policy):
-                return laid, judged
-            lost = {p.object_id for p in laid if p.object_id in guilty} or {p.object_id for p in laid}
-            for p in (p for p in laid if p.object_id in lost):
-                reason = guilty.get(p.object_id, Guilt(p.room_id, "unsupported", "the judge finds fault with the home"))
-                reject = ("object", reason.reason, f"{p.object_id}: {reason.detail}")
-                work.rejects.append(reject_row(home.scene_id, p.room_id, work.attempt, reject))
-            laid = tuple(p for p in laid if p.object_id not in lost)
-        return (), certificate
+    def _verdict(self, work: _Work, bare: Home, laid: tuple[Placement, ...]) -> tuple[tuple[Placement, ...], Certificate, dict[str, Guilt]]:
+        """Judge a home with its small things, leaving out those at fault; return the others, the certificate, the guilty furniture."""
+        while True:
+            home = replace(bare, placements=bare.placements + laid)
+            with self.timed("verify"):
+                certificate = verify_home(home, self.library, self.verify)
+            guilty = guilty_objects(home, certificate)
+            small = {p.object_id for p in laid}
+            furniture = {k: guilt for k, guilt in guilty.items() if k not in small}
+            if furniture or not guilty:
+                return laid, certificate, furniture
+            for object_id, guilt in sorted(guilty.items()):
+                reject = ("object", guilt.reason, f"{object_id}: {guilt.detail}")
+                work.rejects.append(reject_row(home.scene_id, guilt.room_id, work.results[guilt.room_id].draft.job.attempt, reject))
+            laid = tuple(p for p in laid if p.object_id not in guilty)
 
     def _expel(self, work: _Work, guilty: Mapping[str, Guilt]) -> None:
         """Take the guilty objects out of their rooms, each with its reason."""
