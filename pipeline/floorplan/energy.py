@@ -33,7 +33,7 @@ TERMS = (
     "stair_fit",
     "stair_snug",
 )
-WEIGHTS = (0.5, 24.0, 1.6, 14.0, 1.6, 1.0, 0.3, 0.12, 1.0, 0.5, 2.0, 1.0)
+WEIGHTS = (2.0, 24.0, 1.6, 40.0, 1.6, 2.0, 1.0, 0.12, 4.0, 0.5, 2.0, 1.0)
 TONGUE = 4  # cells: no part of a room is narrower
 SPLIT = 4.5  # m2 charged when a room falls apart at a neck; the legacy solver charges 45 in its units of 0.25 m2 x 0.4
 
@@ -66,6 +66,8 @@ class Spec(NamedTuple):
     stair: Ints  # (4,) its rectangle x0, y0, x1, y1 [cells]
     nonrect: int  # at least so many rooms that are not rectangles
     half: Halves  # half the thickness of walls [m]
+    heed: Floats  # (n,) how much the wanted area counts
+    flight: Ints  # (3,) index of the staircase or -1, longer and shorter side of what its flights take [cells]
 
 
 def tree(link: Ints, root: int) -> Ints:
@@ -121,12 +123,15 @@ def circulation(out: Measures, edges: Ints) -> float:
 
 
 @compiled
-def area(areas: Floats, target: Floats) -> float:
-    """Term 2: mean over rooms of max(q, 1/q) - 1 with q = inner area / target (absolute, unlike the legacy shares)."""
+def area(areas: Floats, target: Floats, heed: Floats) -> float:
+    """Term 2: mean over rooms of max(q, 1/q) - 1 with q = inner area / target (absolute, unlike the legacy shares).
+
+    Rooms count as `heed` says: corridors of no stated area take what is left.
+    """
     total = 0.0
     for i in range(target.size):
         q = max(areas[i], 0.05) / target[i]
-        total += max(q, 1.0 / q) - 1.0
+        total += heed[i] * (max(q, 1.0 / q) - 1.0)
     return total / target.size * 4.0
 
 
@@ -213,24 +218,20 @@ def min_width(shape: Floats) -> float:
 
 
 @compiled
-def overlap(grid: Labels, room: int, stair: Ints) -> int:
-    """Cells of `room` inside the stair rectangle."""
-    both = 0
-    for y in range(stair[1], stair[3]):
-        for x in range(stair[0], stair[2]):
-            both += grid[y + 1, x + 1] == room
-    return both
+def overlap(w: int, h: int, long: int, short: int) -> float:
+    """Cells that a staircase of w x h shares with the rectangle of its flights, laid into it as well as it goes."""
+    return float(min(max(w, h), long) * min(min(w, h), short))
 
 
 @compiled
 def stair_fit(both: float, stair: float) -> float:
-    """Term 11: (share of the stair rectangle that the staircase covers - 1)^2."""
+    """Term 11: (share of the flights' rectangle that the staircase covers - 1)^2."""
     return (both / max(stair, 1.0) - 1.0) ** 2
 
 
 @compiled
 def stair_snug(both: float, stair: float, own: float) -> float:
-    """Term 12: (IoU of staircase and stair rectangle - 1)^2."""
+    """Term 12: (IoU of staircase and the flights' rectangle - 1)^2."""
     return (both / max(own + stair - both, 1.0) - 1.0) ** 2
 
 
@@ -306,7 +307,7 @@ def terms(
     if bent < spec.nonrect:
         hard += 0.3 * (spec.nonrect - bent)
     values[0] = circulation(out, edges)
-    values[1] = area(areas, spec.target)
+    values[1] = area(areas, spec.target, spec.heed)
     values[2] = squareness(out.box, spec.square)
     values[3] = convexity(shape, out.cells)
     values[4] = simplicity(out.corners, n)
@@ -316,11 +317,14 @@ def terms(
     values[8] = useful_area(areas, spec.useful)
     values[9] = min_width(shape)
     values[10], values[11] = 0.0, 0.0
-    if spec.stair_room >= 0:
-        rectangle = float((spec.stair[2] - spec.stair[0]) * (spec.stair[3] - spec.stair[1]))
-        both = float(overlap(grid, spec.stair_room, spec.stair))
+    room = spec.flight[0]
+    if room >= 0:
+        rectangle = float(spec.flight[1] * spec.flight[2])
+        w, h = out.box[room, 2] - out.box[room, 0], out.box[room, 3] - out.box[room, 1]
+        both = overlap(w, h, spec.flight[1], spec.flight[2])
         values[10] = n * stair_fit(both, rectangle)
-        values[11] = n * stair_snug(both, rectangle, float(out.cells[spec.stair_room]))
+        values[11] = n * stair_snug(both, rectangle, float(w * h))
+        hard += 0.5 * out.corners[room, 1]  # storeys share the staircase: a rectangle
     return hard + violations(out, spec, areas)
 
 

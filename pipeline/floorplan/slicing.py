@@ -106,14 +106,61 @@ class Wishes(NamedTuple):
     apart: Floats
     stair: Ints
     stair_room: int
-    stair_weights: Floats  # (2,)
+    flight: Ints
+    habitable: Ints
+    useful: Ints
+    edges: Ints  # (k, 2) room and parent on the ways from the entrance, nearest first
+    wanted: Floats  # (m,) areas up to wall centre lines [cells], and
+    heed: Floats  # (n,) what missing them costs, for rooms whose area is flexible
+    weights: Floats  # (12,) of the terms of `energy`
+
+
+@compiled
+def leaning(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes) -> float:
+    """Return the weighted terms that the topology decides, as `energy` has them: circulation, exterior, corner_light, useful_area."""
+    habitable, useful, edges, weights = wishes.habitable, wishes.useful, wishes.edges, wishes.weights
+    m = rect.shape[0]
+    lit, wall, corners, own, whole = 0, 0, 0, 0.0, 0.0
+    for a in range(n):
+        w, h = rect[a, 2] - rect[a, 0], rect[a, 3] - rect[a, 1]
+        beside = h * ((rect[a, 0] == 0) + (rect[a, 2] == width)) + w * ((rect[a, 1] == 0) + (rect[a, 3] == height))
+        for v in range(n, m):
+            beside += contact(rect, a, v)
+        wall += beside
+        lit += beside * habitable[a]
+        if habitable[a] > 0:
+            corners += _corners(rect, a, width, height, n)
+        own += gross[a] * useful[a]
+        whole += gross[a]
+    total = 4.0 * weights[5] * (lit / max(wall, 1) - 1.0) ** 2
+    total += 4.0 * weights[6] * (corners / (4.0 + m - n) - 1.0) ** 2
+    total += 4.0 * weights[8] * (1.0 - own / whole) ** 2
+    travel = np.zeros((n, 4))
+    detours = 0.0
+    for k in range(edges.shape[0]):
+        room, parent = edges[k, 0], edges[k, 1]
+        straight, length = 0.0, 0.0
+        for axis in range(2):
+            low, high = max(rect[room, axis], rect[parent, axis]), min(rect[room, axis + 2], rect[parent, axis + 2])
+            here = 0.5 * (rect[parent, axis] + rect[parent, axis + 2])
+            through = 0.5 * (low + high)
+            there = 0.5 * (rect[room, axis] + rect[room, axis + 2])
+            ahead = travel[parent, 2 * axis] + max(through - here, 0.0) + max(there - through, 0.0)
+            back = travel[parent, 2 * axis + 1] + max(here - through, 0.0) + max(through - there, 0.0)
+            travel[room, 2 * axis], travel[room, 2 * axis + 1] = ahead, back
+            straight += max(ahead, back)
+            length += ahead + back
+        if straight > 0.0:
+            detours += (length / straight - 1.0) ** 2
+    return total + 4.0 * weights[0] * detours / max(n - 1, 1)
 
 
 @compiled
 def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes) -> float:  # noqa: C901, PLR0912, PLR0915 - compiled
     """Score a layout of rectangles; leaves from `n` on are voids that must lie in a corner. Smaller is better."""
-    need, ban, outside, corner, least, square, apart, stair, stair_room, stair_weights = wishes
-    total = 0.0
+    need, ban, outside, corner, least, square, apart = wishes.need, wishes.ban, wishes.outside, wishes.corner, wishes.least, wishes.square, wishes.apart
+    stair, stair_room, flight, weights = wishes.stair, wishes.stair_room, wishes.flight, wishes.weights
+    total = leaning(rect, width, height, n, gross, wishes)
     diagonal = (width * width + height * height) ** 0.5
     m = rect.shape[0]
     for a in range(n):
@@ -127,6 +174,9 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
             total += 2.0 * (ratio - 2.0)
         off = w * h / gross[a]
         total += 3.0 * (max(off, 1.0 / off) - 1.0)
+        if wishes.heed[a] > 0.0:
+            off = gross[a] / wishes.wanted[a]
+            total += wishes.heed[a] * (max(off, 1.0 / off) - 1.0)
         if outside[a] > 0:
             best = 0
             if rect[a, 0] == 0 or rect[a, 2] == width:
@@ -172,10 +222,12 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
         own = float((rect[stair_room, 2] - rect[stair_room, 0]) * (rect[stair_room, 3] - rect[stair_room, 1]))
         whole = float((stair[2] - stair[0]) * (stair[3] - stair[1]))
         gap = max(0, -w) + max(0, -h)
-        total += (
-            n * (stair_weights[0] * (both / whole - 1.0) ** 2 + stair_weights[1] * (both / (own + whole - both) - 1.0) ** 2)
-            + 12.0 * gap / diagonal
-        )
+        total += n * (2.0 * (both / whole - 1.0) ** 2 + (both / (own + whole - both) - 1.0) ** 2) + 12.0 * gap / diagonal
+    elif flight[0] >= 0:
+        w, h = rect[flight[0], 2] - rect[flight[0], 0], rect[flight[0], 3] - rect[flight[0], 1]
+        both = float(min(max(w, h), flight[1]) * min(min(w, h), flight[2]))
+        whole = float(flight[1] * flight[2])
+        total += n * (weights[10] * (both / whole - 1.0) ** 2 + weights[11] * (both / (w * h + whole - both) - 1.0) ** 2)
     return total
 
 

@@ -16,7 +16,7 @@ from pipeline.floorplan.chamfers import chamfered
 from pipeline.floorplan.check import check
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.defaults import OUTSIDE
-from pipeline.floorplan.energy import TERMS
+from pipeline.floorplan.energy import TERMS, area, tree, useful_area
 from pipeline.floorplan.grid import Halves, Labels
 from pipeline.floorplan.openings import Run, place
 from pipeline.floorplan.program import FloorProgram, RoomReq
@@ -34,6 +34,7 @@ PROPOSALS, LONGEST = 180, 3  # annealing proposals per room and run; how much lo
 HOT, COLD, PENALTY = 1.2, 0.01, 40.0
 SHARES = (1.0, 0.4, 0.0)  # how much of their freedom the walls' lines use; less when openings then find no place
 LEAST_CUT = 4  # cells
+HALL_TRUST = 0.02  # how much the lines care for the area of an unstated hallway, beside that of a room
 STOREY_HEIGHT, CEILING = 3.0, 0.3  # floor to floor at least, thickness of what lies between [m]
 SLICE_HOT, SLICE_COLD = 6.0, 0.05
 
@@ -119,7 +120,19 @@ def _attempt(program: FloorProgram, rng: np.random.Generator, attempt: int, effo
                 return None
         solved.append((request, grid))
     plan = _build(program, solved, rng)
-    return None if plan is None else (plan, terms)
+    return None if plan is None else (plan, _as_built(terms, plan, solved))
+
+
+def _as_built(terms: NDArray[np.float64], plan: Plan, storeys: list[tuple[Storey, Labels]]) -> NDArray[np.float64]:
+    """Return the terms with those of areas taken from the plan itself: its walls have left the raster."""
+    areas = {r.room_id: r.area for r in plan.rooms}
+    found = terms.copy()
+    found[[TERMS.index("area"), TERMS.index("useful_area")]] = 0.0
+    for request, _ in storeys:
+        spec, made = request.spec, np.array([areas[r.id] for r in request.rooms])
+        found[TERMS.index("area")] += area(made, spec.target, spec.heed)
+        found[TERMS.index("useful_area")] += useful_area(made, spec.useful)
+    return found
 
 
 def _outline(program: FloorProgram, requests: list[Storey], rng: np.random.Generator, ease: int = 0) -> Outline:
@@ -201,9 +214,11 @@ def _slice(
     square = np.where(spec.square > 0, 0.6, 0.08) * 2.0**program.style.squareness
     low = np.concatenate([request.gross_low, empty * 0.7])
     high = np.concatenate([request.gross_high, empty * 1.3])
+    flexible = request.weights[1] * 4.0 / n * spec.heed * (request.gross_high > request.gross_low)
     wishes = slicing.Wishes(
-        spec.need, spec.ban, spec.outside, spec.corner, spec.strict, square, spec.apart, spec.stair, spec.stair_room, request.weights[10:]
-    )
+        spec.need, spec.ban, spec.outside, spec.corner, spec.strict, square, spec.apart, spec.stair, spec.stair_room, spec.flight,
+        spec.habitable, spec.useful, tree(spec.link, spec.root), gross, flexible, request.weights,
+    )  # fmt: skip
     effort.slicings += 1
     effort.sliced += draws.shape[0]
     rects, cost = slicing.search(expr, draws, SLICE_HOT, SLICE_COLD, width, height, n, gross, low, high, wishes)
@@ -290,7 +305,7 @@ def _realise(
     found = lines.find(grid, UNIT)
     tight = np.array([r.type == "hallway" or r.min_width is not None for r in request.rooms])
     slack = np.where(tight, (spec.strict * UNIT - request.clear) / 2, lines.FARTHEST)
-    trust = np.where(np.array([r.type in {"hallway", "entry"} and not r.area.stated for r in request.rooms]), 0.2, 1.0)
+    trust = np.where(np.array([r.type in {"hallway", "entry"} and not r.area.stated for r in request.rooms]), HALL_TRUST, 1.0)
     held = np.zeros(found.at.size, dtype=bool)
     for i in (i for i, r in enumerate(request.rooms) if r.type == "staircase"):
         held |= lines.outer(found, grid, n)  # outside walls and stairs stand above each other

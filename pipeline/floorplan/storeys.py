@@ -20,6 +20,8 @@ OPEN_FRONT, PORTAL = 1.5, 1.2  # least clear widths [m]
 # How far an unstated area may miss its target: a share, and a strip of this width [m] along one side, for the raster; where nothing else helps.
 LOOSE, STRIP, EASED = 0.02, 0.2, 0.4
 SMALL, BUSY = 7.0, 3  # rooms of less area [m2] or so many links give up their outside wall first
+HALL_HEED = 0.25  # how much an unstated hallway's usual area counts beside that of a room
+FLIGHTS = (2.85, 2.1)  # what two flights side by side take, with their landings [m]: 16 risers of 0.18 m, treads of 0.27 m
 EASED_HALL = 2.5  # how much larger than its target an unstated hallway may be then
 EASED_WIDTH = 1.2  # least width of rooms then [m]
 STATED = 0.10  # how far a stated target may be missed
@@ -139,6 +141,8 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
         np.array(stair_cells or (0, 0, 0, 0)),
         program.nonrect if level == 0 else 0,
         half,
+        np.array([HALL_HEED if r.type in {"hallway", "entry"} and not r.area.stated else 1.0 for r in rooms]),
+        np.array([index[_stairs(rooms)], *(cells(s + 2 * half.inner) for s in FLIGHTS)] if program.storeys > 1 else [-1, 0, 0]),
     )
     gross = _gross(target, half)
     gross_low, gross_high = gross.copy(), gross.copy()

@@ -92,9 +92,11 @@ def test_circulation_counts_detours_only():
 
 
 def test_area_is_absolute():
-    assert energy.area(np.array([10.0, 12.0]), np.array([10.0, 12.0])) == 0.0
-    assert energy.area(np.array([5.0, 12.0]), np.array([10.0, 12.0])) == pytest.approx(4.0 * 1.0 / 2)
-    assert energy.area(np.array([20.0, 24.0]), np.array([10.0, 12.0])) == pytest.approx(4.0)  # shares would say 0
+    wanted, heed = np.array([10.0, 12.0]), np.ones(2)
+    assert energy.area(np.array([10.0, 12.0]), wanted, heed) == 0.0
+    assert energy.area(np.array([5.0, 12.0]), wanted, heed) == pytest.approx(4.0 * 1.0 / 2)
+    assert energy.area(np.array([20.0, 24.0]), wanted, heed) == pytest.approx(4.0)  # shares would say 0
+    assert energy.area(np.array([20.0, 24.0]), wanted, np.array([1.0, 0.25])) == pytest.approx(4.0 * 1.25 / 2)
 
 
 def test_squareness():
@@ -140,7 +142,17 @@ def test_stair_terms():
     assert energy.stair_fit(6.0, 8.0) == pytest.approx(0.0625)
     assert energy.stair_snug(6.0, 8.0, 10.0) == pytest.approx((6 / 12 - 1) ** 2)
     assert energy.stair_snug(8.0, 8.0, 8.0) == 0.0
-    assert energy.overlap(TWO, 1, np.array([2, 1, 5, 3])) == 4
+    assert energy.overlap(4, 9, 6, 5) == 24  # 4 of the shorter side, all of the longer
+    assert energy.overlap(9, 4, 6, 5) == 24
+    assert energy.overlap(8, 6, 6, 5) == 30
+
+
+def test_a_staircase_is_a_rectangle_and_measured_against_its_flights():
+    request = spec(2, flight=np.array([0, 3, 2]))
+    assert score(ELL, request, np.ones(12), 0.0)[1] > 0.0
+    found = score(TWO, request, np.ones(12), 0.0)
+    assert found[1] == 0.0
+    assert found[2][10:].tolist() == pytest.approx([0.0, 2 * (6 / 9 - 1) ** 2])  # 3 x 3 cells for flights of 3 x 2
 
 
 def spec(n, **changes):
@@ -148,7 +160,7 @@ def spec(n, **changes):
     base = energy.Spec(
         UNIT, 0, np.full(n, 1.0), np.zeros(n), np.full(n, 99.0), np.array([0.0, 99.0]), ones, ones, ones, ones, ones, ones, zeros,
         np.zeros((n, n), np.int64), np.zeros((n, n), np.int64), np.zeros((n, n), np.int64), zeros, zeros, zeros, np.zeros((n, n)), np.zeros((n, n)),
-        -1, np.zeros(4, np.int64), 0, HALF,
+        -1, np.zeros(4, np.int64), 0, HALF, np.ones(n), np.array([-1, 0, 0]),
     )  # fmt: skip
     return base._replace(**changes)
 
