@@ -1,18 +1,25 @@
-"""Each knob against its own term, and the picture of it (docs/images/knobs.png)."""
+"""Each knob against its own term: a table, its record (docs/knobs.json) and the picture of it (docs/images/knobs.png)."""
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 from pipeline.experiments.knobs import VALUES, knob_picture, knob_table, monotone
 
-PICTURE = Path(__file__).resolve().parents[2] / "docs" / "images" / "knobs.png"
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
 def main(seeds: int) -> None:
-    """Print the means of each term over its knob's values, and draw them."""
+    """Print the means of each term over its knob's values, keep and draw them."""
     table = knob_table(seeds)
-    print(f"means over {seeds} seeds of each knob's own term\n{'knob':14s}" + "".join(f"{f'2^{v}':>9s}" for v in VALUES) + "  monotone")
-    for name, means in table["terms"].items():
-        print(f"{name:14s}" + "".join(f"{m:9.4f}" for m in means) + f"  {'yes' if monotone(means) else 'NO'}")
-    PICTURE.write_bytes(knob_picture(table))
+    print(
+        f"means over {seeds} seeds of each knob's own term\n{'knob':14s}"
+        + "".join(f"{f'2^{v}':>9s}" for v in VALUES)
+        + "    ends / error  monotone"
+    )
+    for name, found in table["terms"].items():
+        row = "".join(f"{m:9.4f}" for m in found["mean"])
+        print(f"{name:14s}{row} {found['ends'][0] / max(found['ends'][1], 1e-12):15.1f}  {'yes' if monotone(found) else 'NO'}")
+    (DOCS / "knobs.json").write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
+    (DOCS / "images" / "knobs.png").write_bytes(knob_picture(table))

@@ -2,53 +2,89 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeline.floorplan import FloorProgram, complete
 from pipeline.floorplan.energy import TERMS
-from pipeline.floorplan.program import RoomReq, Style
+from pipeline.floorplan.program import Link, RoomReq, Style
 from pipeline.floorplan.solver import search
 from pipeline.report.plots import Curve, panels
 
 VALUES = (-3, -2, -1, 0, 1, 2, 3)
+FLAT = ("living_room", "kitchen", "bedroom", "bedroom", "bathroom", "hallway", "wc", "balcony")
+WAYS = (("entry", "living_room"), ("living_room", "dining_room"), ("dining_room", "kitchen"), ("living_room", "hallway"))
+DEEP = ("entry", "living_room", "dining_room", "kitchen", "hallway", "bedroom", "bedroom", "bathroom", "office")
+GROUND, UPPER = ("entry", "living_room", "kitchen", "wc"), ("bedroom", "bedroom", "bathroom")
 
 
-def subjects() -> tuple[FloorProgram, FloorProgram]:
-    """Return the two programs whose plans are measured: a flat of eight rooms, and a house of two storeys for the stair terms."""
-    flat = ("living_room", "kitchen", "bedroom", "bedroom", "bathroom", "hallway", "wc", "balcony")
-    ground, upper = ("entry", "living_room", "kitchen", "wc"), ("bedroom", "bedroom", "bathroom")
-    rooms = [RoomReq.model_validate({"id": f"g{i}", "type": k, "level": 0}) for i, k in enumerate(ground)]
-    rooms += [RoomReq.model_validate({"id": f"u{i}", "type": k, "level": 1}) for i, k in enumerate(upper)]
-    return (
-        complete(FloorProgram(rooms=tuple(RoomReq.model_validate({"id": f"r{i}", "type": k}) for i, k in enumerate(flat)), only=True)),
-        complete(FloorProgram(rooms=tuple(rooms), storeys=2)),
-    )
+def subjects() -> dict[str, FloorProgram]:
+    """Return the program on which each knob is measured: one in which what it weighs is in tension with the rest.
+
+    A flat of eight rooms; for `circulation` rooms in a row, where ways can double back; for `convexity` the flat with `simplicity` -3, for
+    bends that are not there have no depth; for the stairs a house of two storeys.
+    """
+    flat = complete(FloorProgram(rooms=_rooms(FLAT), only=True))
+    deep = complete(FloorProgram(rooms=_rooms(DEEP), links=tuple(Link(a=a, b=b) for a, b in WAYS), only=True))
+    house = complete(FloorProgram(rooms=_rooms(GROUND, 0) + _rooms(UPPER, 1), storeys=2))
+    bent = flat.model_copy(update={"style": Style(simplicity=-3)})
+    return {name: house if name.startswith("stair") else {"circulation": deep, "convexity": bent}.get(name, flat) for name in TERMS}
+
+
+def _rooms(types: tuple[str, ...], level: int | None = None) -> tuple[RoomReq, ...]:
+    return tuple(RoomReq.model_validate({"id": f"r{level or 0}_{i}", "type": k, "level": level}) for i, k in enumerate(types))
 
 
 def knob_table(seeds: int) -> dict[str, Any]:
-    """Return {values, seeds, terms: {knob: means of its own term over seeds}}; the same seeds for every value of a knob."""
-    flat, house = subjects()
-    means: dict[str, list[float]] = {}
-    for knob, name in enumerate(TERMS):
-        program = house if name.startswith("stair") else flat
-        means[name] = []
-        for value in VALUES:
-            turned = program.model_copy(update={"style": Style.model_validate({name: value})})
-            made = [search(turned, seed).terms[knob] for seed in range(seeds)]
-            means[name].append(round(float(np.mean(made)), 5))
-    return {"values": list(VALUES), "seeds": seeds, "terms": means}
+    """Return {values, seeds, terms: {knob: {mean, error, step, ends}}}.
+
+    `mean` and its standard `error` (7,) of the knob's own term, unweighted, over plans as they are returned; `step` (6, 2) differences of
+    neighbouring values, seed by seed, with their standard errors; `ends` (2,) the same from the first value to the last.
+    """
+    terms: dict[str, Any] = {}
+    for (name, program), knob in zip(subjects().items(), range(len(TERMS)), strict=True):
+        found = np.array([_measure(program, name, value, knob, seeds) for value in VALUES])
+        mean, error = _mean(found.T)
+        steps = [_mean((after - before)[:, None]) for before, after in pairwise(found)]
+        ends = _mean((found[-1] - found[0])[:, None])
+        terms[name] = {
+            "mean": mean.round(5).tolist(),
+            "error": error.round(5).tolist(),
+            "step": [[round(float(m[0]), 5), round(float(e[0]), 5)] for m, e in steps],
+            "ends": [round(float(ends[0][0]), 5), round(float(ends[1][0]), 5)],
+        }
+    return {"values": list(VALUES), "seeds": seeds, "terms": terms}
 
 
-def monotone(means: Sequence[float]) -> bool:
-    """Whether a term never rises with its knob and falls from end to end."""
-    return all(b <= a + 1e-9 for a, b in pairwise(means)) and means[-1] < means[0]
+def _measure(program: FloorProgram, name: str, value: int, knob: int, seeds: int) -> NDArray[np.float64]:
+    turned = program.model_copy(update={"style": program.style.model_copy(update={name: value})})
+    return np.array([search(turned, seed).terms[knob] for seed in range(seeds)])
+
+
+def _mean(samples: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return means over the first axis and their standard errors."""
+    return samples.mean(axis=0), samples.std(axis=0, ddof=1) / np.sqrt(len(samples))
+
+
+def monotone(found: Mapping[str, Any]) -> bool:
+    """Whether a term falls as its knob rises: no step rises by more than its standard error, and the ends differ by more than three."""
+    return all(step <= error for step, error in found["step"]) and found["ends"][0] < -3 * found["ends"][1]
 
 
 def knob_picture(table: Mapping[str, Any]) -> bytes:
-    """Return a PNG with a panel per knob."""
-    curves = [Curve(name.replace("_", " "), table["values"], means) for name, means in table["terms"].items()]
-    return panels(curves, title=f"each knob against its own term, means over {table['seeds']} seeds", x="knob: weight x 2^k")
+    """Return a PNG with a panel per knob: means with their standard errors."""
+    curves = [
+        Curve(
+            name.replace("_", " "),
+            table["values"],
+            found["mean"],
+            [m - e for m, e in zip(found["mean"], found["error"], strict=True)],
+            [m + e for m, e in zip(found["mean"], found["error"], strict=True)],
+        )
+        for name, found in table["terms"].items()
+    ]
+    return panels(curves, title=f"each knob against its own term, means over {table['seeds']} seeds", x="knob k: weight times 2^k")

@@ -220,7 +220,7 @@ def min_width(shape: Floats) -> float:
 @compiled
 def overlap(w: int, h: int, long: int, short: int) -> float:
     """Cells that a staircase of w x h shares with the rectangle of its flights, laid into it as well as it goes."""
-    return float(min(max(w, h), long) * min(min(w, h), short))
+    return float(min(max(w, h), long) * min(w, h, short))
 
 
 @compiled

@@ -152,13 +152,21 @@ def leaning(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: 
             length += ahead + back
         if straight > 0.0:
             detours += (length / straight - 1.0) ** 2
-    return total + 4.0 * weights[0] * detours / max(n - 1, 1)
+    return float(total + 4.0 * weights[0] * detours / max(n - 1, 1))
 
 
 @compiled
 def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes) -> float:  # noqa: C901, PLR0912, PLR0915 - compiled
     """Score a layout of rectangles; leaves from `n` on are voids that must lie in a corner. Smaller is better."""
-    need, ban, outside, corner, least, square, apart = wishes.need, wishes.ban, wishes.outside, wishes.corner, wishes.least, wishes.square, wishes.apart
+    need, ban, outside, corner, least, square, apart = (
+        wishes.need,
+        wishes.ban,
+        wishes.outside,
+        wishes.corner,
+        wishes.least,
+        wishes.square,
+        wishes.apart,
+    )
     stair, stair_room, flight, weights = wishes.stair, wishes.stair_room, wishes.flight, wishes.weights
     total = leaning(rect, width, height, n, gross, wishes)
     diagonal = (width * width + height * height) ** 0.5
@@ -225,7 +233,7 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
         total += n * (2.0 * (both / whole - 1.0) ** 2 + (both / (own + whole - both) - 1.0) ** 2) + 12.0 * gap / diagonal
     elif flight[0] >= 0:
         w, h = rect[flight[0], 2] - rect[flight[0], 0], rect[flight[0], 3] - rect[flight[0], 1]
-        both = float(min(max(w, h), flight[1]) * min(min(w, h), flight[2]))
+        both = float(min(max(w, h), flight[1]) * min(w, h, flight[2]))
         whole = float(flight[1] * flight[2])
         total += n * (weights[10] * (both / whole - 1.0) ** 2 + weights[11] * (both / (w * h + whole - both) - 1.0) ** 2)
     return total
