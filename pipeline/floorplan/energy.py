@@ -68,6 +68,7 @@ class Spec(NamedTuple):
     half: Halves  # half the thickness of walls [m]
     heed: Floats  # (n,) how much the wanted area counts
     flight: Ints  # (3,) index of the staircase or -1, longer and shorter side of what its flights take [cells]
+    between: Ints  # (k, 3) room a lies between b and c: seen from its centroid, theirs lie in opposite halves
 
 
 def tree(link: Ints, root: int) -> Ints:
@@ -363,6 +364,12 @@ def violations(out: Measures, spec: Spec, areas: Floats) -> float:  # noqa: C901
                 far = (dx * dx + dy * dy) ** 0.5 / diagonal
                 if far < spec.apart[a, b]:
                     hard += 0.2 + 3.0 * (spec.apart[a, b] - far)
+    for k in range(spec.between.shape[0]):
+        a, b, c = spec.between[k, 0], spec.between[k, 1], spec.between[k, 2]
+        ahead = (out.centre[b, 0] - out.centre[a, 0]) * (out.centre[c, 0] - out.centre[a, 0])
+        ahead += (out.centre[b, 1] - out.centre[a, 1]) * (out.centre[c, 1] - out.centre[a, 1])
+        if ahead > 0.0:
+            hard += 0.2 + 3.0 * ahead**0.5 / diagonal
     if total < spec.total[0]:
         hard += 0.1 + 3.0 * (spec.total[0] - total) / spec.total[0]
     elif total > spec.total[1]:

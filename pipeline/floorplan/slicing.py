@@ -107,6 +107,7 @@ class Wishes(NamedTuple):
     stair: Ints
     stair_room: int
     flight: Ints
+    between: Ints
     habitable: Ints
     useful: Ints
     edges: Ints  # (k, 2) room and parent on the ways from the entrance, nearest first
@@ -214,6 +215,14 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
                 far = (dx * dx + dy * dy) ** 0.5 / diagonal
                 if far < apart[a, b]:
                     total += 3.0 + 30.0 * (apart[a, b] - far)
+    for k in range(wishes.between.shape[0]):
+        a, b, c = wishes.between[k, 0], wishes.between[k, 1], wishes.between[k, 2]
+        ahead = 0.0
+        for axis in range(2):
+            middle = rect[a, axis] + rect[a, axis + 2]
+            ahead += 0.25 * (rect[b, axis] + rect[b, axis + 2] - middle) * (rect[c, axis] + rect[c, axis + 2] - middle)
+        if ahead > 0.0:
+            total += 3.0 + 10.0 * ahead**0.5 / diagonal
     for v in range(n, m):
         sides = 0
         if (rect[v, 0] == 0) != (rect[v, 2] == width):

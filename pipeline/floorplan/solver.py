@@ -216,7 +216,7 @@ def _slice(
     high = np.concatenate([request.gross_high, empty * 1.3])
     flexible = request.weights[1] * 4.0 / n * spec.heed * (request.gross_high > request.gross_low)
     wishes = slicing.Wishes(
-        spec.need, spec.ban, spec.outside, spec.corner, spec.strict, square, spec.apart, spec.stair, spec.stair_room, spec.flight,
+        spec.need, spec.ban, spec.outside, spec.corner, spec.strict, square, spec.apart, spec.stair, spec.stair_room, spec.flight, spec.between,
         spec.habitable, spec.useful, tree(spec.link, spec.root), gross, flexible, request.weights,
     )  # fmt: skip
     effort.slicings += 1

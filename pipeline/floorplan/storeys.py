@@ -143,6 +143,7 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
         half,
         np.array([HALL_HEED if r.type in {"hallway", "entry"} and not r.area.stated else 1.0 for r in rooms]),
         np.array([index[_stairs(rooms)], *(cells(s + 2 * half.inner) for s in FLIGHTS)] if program.storeys > 1 else [-1, 0, 0]),
+        _between(here, index, ease),
     )
     gross = _gross(target, half)
     gross_low, gross_high = gross.copy(), gross.copy()
@@ -269,6 +270,20 @@ def _relations(program: FloorProgram, index: dict[str, int]) -> tuple[NDArray[np
             elif r.kind == "area_equal":
                 order[a, b] = order[b, a] = max(order[a, b], 1 / (1 + r.value) + EDGE)
     return ban, apart, order
+
+
+def _between(program: FloorProgram, index: dict[str, int], ease: int) -> NDArray[np.int64]:
+    """Return rows (a, b, c) of rooms of which a lies between b and c; none where nothing else helps: the links to both stay."""
+    found = [
+        (index[a.id], index[b.id], index[c.id])
+        for r in program.relations
+        if r.kind == "between" and r.b and r.c and ease < 2
+        for a in program.select(r.a)
+        for b in program.select(r.b)
+        for c in program.select(r.c)
+        if len({a.id, b.id, c.id}) == 3
+    ]
+    return np.array(found, np.int64).reshape(-1, 3)
 
 
 def _stairs(rooms: tuple[RoomReq, ...]) -> str:

@@ -160,7 +160,7 @@ def spec(n, **changes):
     base = energy.Spec(
         UNIT, 0, np.full(n, 1.0), np.zeros(n), np.full(n, 99.0), np.array([0.0, 99.0]), ones, ones, ones, ones, ones, ones, zeros,
         np.zeros((n, n), np.int64), np.zeros((n, n), np.int64), np.zeros((n, n), np.int64), zeros, zeros, zeros, np.zeros((n, n)), np.zeros((n, n)),
-        -1, np.zeros(4, np.int64), 0, HALF, np.ones(n), np.array([-1, 0, 0]),
+        -1, np.zeros(4, np.int64), 0, HALF, np.ones(n), np.array([-1, 0, 0]), np.zeros((0, 3), np.int64),
     )  # fmt: skip
     return base._replace(**changes)
 
@@ -220,6 +220,13 @@ def test_a_room_between_two_others_has_no_corner():
     row = labels("abc", "abc", "abc", n=3)
     hard = [score(row, spec(3, corner=np.eye(3, dtype=np.int64)[i]), np.ones(12), 0.0)[1] for i in range(3)]
     assert hard == [0.0, 1.0, 0.0]
+
+
+def test_between_is_what_lies_on_the_way():
+    row = labels("aabbcc", "aabbcc", n=3)
+    bend = labels("aabb", "aabb", "cccc", n=3)  # from a, b and c lie to the right and above: at a right angle or less
+    for cells, one, broken in ((row, (1, 0, 2), False), (row, (0, 1, 2), True), (bend, (0, 1, 2), True)):
+        assert (score(cells, spec(3, between=np.array([one])), np.ones(12), 0.0)[1] > 0) == broken
 
 
 def test_a_room_in_two_pieces_or_with_a_hole_is_no_room():
