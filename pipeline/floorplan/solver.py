@@ -20,6 +20,7 @@ from pipeline.floorplan.energy import TERMS, area, tree, useful_area
 from pipeline.floorplan.grid import Halves, Labels
 from pipeline.floorplan.openings import Run, place
 from pipeline.floorplan.program import FloorProgram, RoomReq
+from pipeline.floorplan.stairwell import rectangle, stamp
 from pipeline.floorplan.storeys import EDGE, UNIT, Storey, founded, storey
 
 TRIES = 24  # whole attempts before a program is refused
@@ -115,7 +116,7 @@ def _attempt(program: FloorProgram, rng: np.random.Generator, attempt: int, effo
             return None
         terms += made[1]
         if program.storeys > 1 and stair is None:
-            stair = _rectangle(grid, next(i for i, r in enumerate(request.rooms) if r.type == "staircase"))
+            stair = rectangle(grid, next(i for i, r in enumerate(request.rooms) if r.type == "staircase"))
             if stair is None:
                 return None
         solved.append((request, grid))
@@ -155,13 +156,6 @@ def _hangs(grid: Labels, below: tuple[Storey, Labels]) -> bool:
     """Whether much of a storey has nothing under it."""
     bare = below[1] == len(below[0].rooms)
     return bool(np.sum((grid != grid[0, 0]) & bare) > OVERHANG * grid.size)
-
-
-def _rectangle(grid: Labels, room: int) -> tuple[int, int, int, int] | None:
-    """Return a room's rectangle (x0, y0, x1, y1) [cells], or None when it is none."""
-    ys, xs = np.nonzero(grid[1:-1, 1:-1] == room)
-    box = (int(xs.min()), int(ys.min()), int(xs.max()) + 1, int(ys.max()) + 1)
-    return box if xs.size == (box[2] - box[0]) * (box[3] - box[1]) else None
 
 
 def _storey_grid(
@@ -232,7 +226,7 @@ def _slice(
     if not all(corners) or (voids == 2 and not _same_side(cut)):
         return grid, np.inf
     if spec.stair_room >= 0:
-        _stamp(grid, spec.stair_room, tuple(spec.stair.tolist()), n)
+        stamp(grid, spec.stair_room, tuple(spec.stair.tolist()), n)
     return grid, float(cost)
 
 
@@ -242,24 +236,6 @@ def _same_side(cut: NDArray[np.int64]) -> bool:
     across = max(ax0, bx0) - min(ax1, bx1) >= LEAST_CUT and (ay0 == 0) == (by0 == 0)
     along = max(ay0, by0) - min(ay1, by1) >= LEAST_CUT and (ax0 == 0) == (bx0 == 0)
     return bool(across or along)
-
-
-def _stamp(grid: Labels, room: int, stair: tuple[int, ...], n: int) -> None:
-    """Put the staircase where it stands on the other storeys; what it leaves goes to the rooms beside it, cell by cell."""
-    x0, y0, x1, y1 = stair
-    left = grid == room
-    grid[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = room
-    left[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = False
-    while left.any():
-        before = int(left.sum())
-        for y, x in np.argwhere(left).tolist():
-            beside = [int(grid[y + dy, x + dx]) for dy, dx in ((0, 1), (0, -1), (1, 0), (-1, 0)) if not left[y + dy, x + dx]]
-            beside = [b for b in beside if b not in {n, room}]
-            if beside:
-                grid[y, x], left[y, x] = beside[0], False
-        if int(left.sum()) == before:
-            grid[left] = n
-            return
 
 
 def _build(program: FloorProgram, storeys: list[tuple[Storey, Labels]], rng: np.random.Generator) -> Plan | None:
