@@ -123,6 +123,8 @@ def _targets(  # noqa: PLR0911 - one return per rule
     after = [m for m in named if claim.end <= m.start and m.end <= end]
     if claim.inward and after and after[0].start - claim.end <= FAR:
         return after[0].ids
+    if prompt[claim.end :].startswith("的") and after and after[0].start - claim.end <= 4:  # "带淋浴的卫生间"
+        return after[0].ids
     if claim.kind == "style":
         return _styled(claim, claims, before, after, prompt)
     if before:

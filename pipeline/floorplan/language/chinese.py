@@ -80,12 +80,13 @@ def _between(marks: list[Mark]) -> list[Mark]:
     for k, mark in enumerate(made):
         if mark.kind == "cue" and mark.value == "between":
             names = [j for j in range(max(0, k - 6), k) if made[j].kind in HEADS]
-            if len(names) >= 2:
-                start = names[-2]
+            several = bool(names) and any(m.kind == "num" and m.number > 1 for m in made[max(0, names[-1] - 2) : names[-1]])
+            if len(names) >= 2 or several:
+                start = names[-1] if several else names[-2]
                 while start and made[start - 1].kind in {"num", "clf", "adj", "size", "det"}:
                     start -= 1
                 rest = made[k + 1 :]
-                if rest and rest[0].kind in {"cue", "verb"} and rest[0].value in {"has", ""}:
+                if rest and (rest[0].kind == "verb" or (rest[0].kind == "cue" and rest[0].value == "has")):
                     rest = rest[1:]
                 made = [*made[:start], mark, *made[start:k], *rest]
     return made

@@ -100,6 +100,8 @@ class Clause:
             merge(self, k, e)
         elif e.type in SOCIAL and (j := written_as_one(self, k, e)):
             self.state.say("merge", (*ids, *name(self.state, self.sentence, j, storey(self, k))), (), e)
+        if "closed" in e.adjectives and e.type == "kitchen":
+            self.state.say("closed", ids, (), e)
         if e.suite:
             self.state.say("suite", ids, (), e)
         if e.adjectives & {"largest", "smallest"} and not self.factor:

@@ -12,6 +12,7 @@ from typing import Literal
 
 from pipeline.floorplan.furniture import lexicon
 from pipeline.floorplan.language.dwellings import named
+from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.vocabulary import (
     COMMAS,
     FIGURES,
@@ -62,7 +63,7 @@ class Scan:
                 for p, kind, name, owned in phrases().get(stem, ())
                 if tuple(stems[k : k + len(p)]) == p
                 and (len(p) > 1 or self.words[k].text not in storeys)
-                and not (kind == "name" and len(p) == 1 and self._room(k, name))
+                and not (kind == "name" and len(p) == 1 and (self._room(k, name) or self._common(k, name)))
             ]
             for k, stem in enumerate(stems)
         ]
@@ -72,6 +73,13 @@ class Scan:
     def _room(self, k: int, name: str) -> bool:
         """Whether word k names a room, and the prompt's language does not call that furniture so: "Büro" is no "buró"."""
         if self.language is None or self.words[k].start not in self.rooms:
+            return False
+        forms = lexicon()["names"][name].get(self.language, ())
+        return not any(words(form.removeprefix("@"))[0].stem == self.words[k].stem for form in forms)
+
+    def _common(self, k: int, name: str) -> bool:
+        """Whether word k is a word of the prompt's language that only looks like furniture of another: "never" and "nevera"."""
+        if self.language is None or self.words[k].text not in spoken(self.language).vocabulary:
             return False
         forms = lexicon()["names"][name].get(self.language, ())
         return not any(words(form.removeprefix("@"))[0].stem == self.words[k].stem for form in forms)
@@ -309,6 +317,8 @@ class Scan:
             return 0, ""
         if self.words[k].start in self.rooms or self.phrase(k, "owner", "dwelling")[0]:
             return 0, ""
+        if self.language is not None and self.words[k].text in spoken(self.language).vocabulary:
+            return 0, ""  # "never" is no "nevera"
         for first, entries in phrases().items():
             for stems, kind, name, owned in entries:
                 if (

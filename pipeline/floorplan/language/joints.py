@@ -191,6 +191,9 @@ def _related(draft: Draft, stock: Inventory, fact: Fact, facts: list[Fact]) -> N
         for a in fact.a:
             stock.get(a).window = "required" if what == "window" else "forbidden"
             draft.cite(fact.first, fact.last, f"rooms.{a}.window")
+    elif what == "closed":
+        for room in (r for kind in MERGE_ORDER for r in stock.of(kind) if r.id not in fact.a):
+            draft.forbid("open", fact.a[0], room.id, None, fact.first, fact.last)
     elif what in {"not_open", "not_connected"}:
         for a, b in itertools.product(fact.a, fact.b):
             draft.forbid("open" if what == "not_open" else "connected", a, b, None, fact.first, fact.last)

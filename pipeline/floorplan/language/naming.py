@@ -95,7 +95,7 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
             wide = [r for r in slots if r.whole or _listed(sentence, k, r)]
             if len(wide) >= count and e.type != "bathroom":
                 return [_close(r, role, e.text) for r in wide[:count]]
-        elif not role and slots:
+        elif not role and slots and not _contrasted(sentence, k):
             if len(slots) == count == len(same) and count > 1:
                 return slots
             known = all(r.whole for r in slots) or (e.number is not None and count < len(slots) and len(slots) > 1)
@@ -103,7 +103,16 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
                 return [_close(r, "", e.text, level) for r in slots[:count]]
         if count == 1 and e.number is None and not role and e.type in ALONE and same and not _repeated(sentence, k):
             return same[:1]
-    return [stock.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
+    made = [stock.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
+    for room in made:
+        room.extra, room.span = "another" in e.det, (e.first, e.last)
+    return made
+
+
+def _contrasted(sentence: list[Element], k: int) -> bool:
+    """Whether a count is told apart from the one in front by an adjective: "3 hab dobles, 1 hab individual"."""
+    before = next((e for e in reversed(sentence[:k]) if e.kind == "np" and e.type == sentence[k].type), None)
+    return before is not None and bool(before.said) and bool(sentence[k].said) and not before.said & sentence[k].said
 
 
 def _predicative(sentence: list[Element], k: int) -> bool:
@@ -190,7 +199,7 @@ def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -
     if "other" in e.det:
         return _others(state, sentence, k, role, level)
     if role:
-        found = _by_role(state, sentence, k, role)
+        found = _by_role(state, sentence, k, role, level)
         if found:
             return found
     elif same:
@@ -260,7 +269,7 @@ def _ordinal(state: Reading, e: Element, role: str, level: int | None) -> list[N
     return [stock.add(e.type, role, e.text, level)]
 
 
-def _by_role(state: Reading, sentence: list[Element], k: int, role: str) -> list[Named]:  # noqa: PLR0911 - one branch per case: a grammar
+def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: int | None) -> list[Named]:  # noqa: PLR0911 - one branch per case: a grammar
     """Return the rooms of a role; one that was only counted may take it."""
     e, stock = sentence[k], state.inventory
     same = stock.of(e.type)
@@ -280,14 +289,19 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str) -> list
         plain = [r for r in same if not r.role]
         return [_close(plain[0], role, e.text)] if plain and e.definite and not _repeated(sentence, k) else []
     slots = [
-        r for r in same if r.open_slot and not r.role and (e.definite or r.whole or _listed(sentence, k, r) or not _conjoined(sentence, k))
+        r
+        for r in same
+        if r.open_slot
+        and not r.role
+        and (e.definite or r.whole or _listed(sentence, k, r) or not _conjoined(sentence, k))
+        and (e.definite or r.level is None or r.level == level)  # counted on another storey: others
     ]
     if many and slots:
         count = int(e.number or len(slots))
         return [_close(r, role, e.text) for r in slots[:count]]
     if slots:
         return [_close(slots[0], role, e.text)]
-    plain = [r for r in same if not r.role]
+    plain = [r for r in same if not r.role and not (r.extra and r.span is not None and r.span[0] > e.first)]
     if len(plain) == 1 and len(same) == 1 and e.definite:
         return [_close(plain[0], role, e.text)]
     return []
@@ -296,7 +310,9 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str) -> list
 def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one branch per case: a grammar
     """Return the rooms that a phrase without role points at, where there are such rooms."""
     e, stock = sentence[k], state.inventory
-    same = stock.of(e.type)
+    same = [r for r in stock.of(e.type) if not (r.extra and r.span is not None and r.span[0] > e.first)]
+    if not same:  # "..., another bath" comes later
+        return [stock.add(e.type, "", e.text, level)]
     if level is not None:
         here = [r for r in same if r.level in {None, level}]
         if not here and not e.definite and not e.plural:

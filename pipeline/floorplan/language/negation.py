@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from pipeline.floorplan.language.facts import SOCIAL
 from pipeline.floorplan.language.phrases import Element
 
 BEFORE_CUE = {"near", "door", "open", "wall", "away", "apart", "leads", "between"}
 
 
-def ban(sentence: list[Element]) -> None:  # noqa: PLR0912 - one branch per case: a grammar
+def ban(sentence: list[Element]) -> None:  # noqa: C901, PLR0912 - one branch per case: a grammar
     """Mark the noun phrases that are ruled out, and turn bounds that a negation turns."""
     for k, e in enumerate(sentence):
         if e.kind == "neg":
@@ -24,6 +25,9 @@ def ban(sentence: list[Element]) -> None:  # noqa: PLR0912 - one branch per case
                 e.kind = "used"
             elif _related(sentence, j):
                 _any(sentence, k)
+            elif phrase.adjectives & {"open", "combined"} and phrase.type in SOCIAL:
+                e.kind = "used"  # "no open kitchen" is a closed one
+                phrase.adjectives = (phrase.adjectives - {"open", "combined"}) | {"closed"}
             elif not phrase.definite:
                 e.kind = "used"
                 _list(sentence, j)

@@ -36,7 +36,10 @@ def _frames(marks: list[Mark], heard: Words) -> list[Mark]:
             only = any(m.text in {"nur", "solo", "只", "只能", "only", "ausschliesslich"} for m in made[max(0, k - 2) : k])
             first.only = first.only or only
             tail = [m for m in made[second:after_second] if m.kind in ENDS]
-            made[k:after_second] = [first, *made[after_first:second], *tail]
+            inside = made[after_first:second]
+            none = [inside.pop()] if inside and inside[-1].kind == "neg" else []  # "厨房与卧室不相通"
+            made[k:after_second] = [*none, first, *inside, *tail]
+            k += len(none)
         k += 1
     return made
 
@@ -116,8 +119,8 @@ def _spanish(marks: list[Mark]) -> list[Mark]:
         behind = (before is not None and before.kind in {"room", "suite", "post"}) or (
             before is not None and before.kind == "size" and before.value == "post"
         )
-        if behind and mark.kind == "adj":
-            made.append(replace(mark, kind="post"))
+        if behind and (mark.kind == "adj" or (mark.text == "individual" and before is not None and before.value.startswith("bedroom"))):
+            made.append(replace(mark, kind="post", value=mark.value if mark.kind == "adj" else "plain"))
         elif behind and mark.kind == "det" and mark.value in {"own", "another"}:
             made.append(replace(mark, kind="post", value="own"))
         elif behind and mark.text == "mas" and before is not None and before.kind == "room":

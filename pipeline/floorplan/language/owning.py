@@ -67,6 +67,8 @@ def has(clause: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one branc
         thing.banned = True
         clause.state.understood(thing.first, thing.last)
         return ahead + 1
+    if thing.type == "balcony" and kind in {"bathroom", "hallway"}:
+        return k + 1  # "两室一厨一卫带阳台": the home has it
     if thing.type in {"bedroom", "living_room", "family_room", "garage"} or (thing.ids and thing.definite):
         return k + 1
     ids = tuple(name(clause.state, sentence, ahead, storey(clause, ahead)))
@@ -105,7 +107,8 @@ def _belongs(clause: Clause, k: int, e: Element, owners: Group) -> int:
             if x.banned or x.type not in PERSONAL or (given and not joined):
                 break
             own = bool(x.det & {"own"})
-            public = x.role in {"shared", "guest"} or (x.number or 1) > len(owners) or x.definite
+            both = any(y.kind in {"det", "pron"} and y.value in {"both", "all", "group"} for y in sentence[j + 1 : j + 3])
+            public = (both and len(owners) > 1) or x.role in {"shared", "guest"} or (x.number or 1) > len(owners) or x.definite
             if public or (joined == "comma" and not own and not _list_ends(sentence, j)):
                 break
             if (joined and "another" in x.det) or (joined == "and" and not own and x.number is not None):

@@ -52,6 +52,7 @@ class Element:
     part: int = 0  # "two of the four": 2
     det: set[str] = field(default_factory=set)
     adjectives: set[str] = field(default_factory=set)
+    said: set[str] = field(default_factory=set)  # adjectives as written
     size: float = 1.0
     amounts: list[Mark] = field(default_factory=list)
     suite: bool = False
@@ -255,6 +256,7 @@ def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool) -> Element:  # noqa
             made.ordinal = int(part.number)
         elif part.kind == "adj":
             made.adjectives.add(part.value)
+            made.said.add(part.text)
             if (
                 part.value in {"primary", "guest", "child", "shared"}
                 and not made.role
@@ -287,6 +289,7 @@ def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> 
                 phrase.role = "ensuite"
             else:
                 phrase.adjectives.add(mark.value)
+                phrase.said.add(mark.text)
             phrase.last = mark.last
         elif mark.kind == "size" and mark.value == "post":
             phrase.size = mark.number

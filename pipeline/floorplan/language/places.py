@@ -35,7 +35,8 @@ def level(clause: Clause, k: int, e: Element) -> int:
         clause.state.heights |= dict.fromkeys((i for i in clause.latest if i == "*"), int(e.value))
         clause.forward, clause.level, clause.run = True, int(e.value), []
     else:
-        for room in (clause.stock.get(i) for i in clause.latest if not i.startswith("*")):
+        owners = clause.subject if clause.objects and clause.latest == clause.objects else ()  # "a guest room with bath, downstairs"
+        for room in (clause.stock.get(i) for i in (*clause.latest, *owners) if not i.startswith("*")):
             room.level = int(e.value)
         clause.state.heights |= {i.removeprefix("*zone_"): int(e.value) for i in clause.latest if i.startswith("*")}
         if k + 1 < len(clause.sentence) and clause.sentence[k + 1].kind == "comma":

@@ -15,6 +15,7 @@ from pipeline.floorplan.language.places import zone
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
 
+MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two rooms at the end: "kitchen and bath adjacent"
 THROUGH = {"through", "via", "durch", "ueber", "por", "traves", "经", "过"}
 ASIDE = {"balcony", "garage", "hallway", "staircase"}  # not meant when the largest room is spoken of
 CLOSED = {"balcony", "garage", "bathroom", "wc", "closet", "storage", "utility", "bedroom"}
@@ -40,14 +41,7 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     left = _left(clause, k, e)
     group, j = objects(clause, k + 1, e.value, left)
     if not group:
-        ahead = clause.sentence[k + 1] if k + 1 < len(clause.sentence) else None
-        mutual = ahead is not None and ahead.kind == "reciprocal"
-        if mutual or (e.value == "wall" and (clause.run or clause.subject)):
-            _mutual(clause, e)
-            return k + 1 + mutual
-        if e.value == "between":
-            state.understood(e.first, e.last)
-        return k + 1
+        return _alone(clause, k, e)
     if e.value == "in" and not _inside(clause, left, group):
         clause.latest, clause.run = group, [x for x in clause.sentence[k:j] if x.kind == "np"][-1:]
         return j
@@ -108,6 +102,21 @@ def _through(clause: Clause, k: int, e: Element) -> int:
     clause.subject = clause.latest = clause.objects = things
     clause.run = []
     return j
+
+
+def _alone(clause: Clause, k: int, e: Element) -> int:
+    """Read a cue that nothing follows: "next to each other", "kitchen and bath adjacent"."""
+    ahead = clause.sentence[k + 1] if k + 1 < len(clause.sentence) else None
+    mutual = ahead is not None and ahead.kind == "reciprocal"
+    ends = ahead is None or ahead.kind in {"comma", "but", "close"}
+    rooms = _ids(clause.run)
+    listed_alone = ends and e.value in MUTUAL and len(rooms) > 1 and "*" not in rooms and _coordinate(clause)
+    if mutual or listed_alone or (e.value == "wall" and (clause.run or clause.subject)):
+        _mutual(clause, e)
+        return k + 1 + mutual
+    if e.value == "between":
+        clause.state.understood(e.first, e.last)
+    return k + 1
 
 
 def _by_way_of(clause: Clause, k: int, e: Element) -> int:
@@ -204,7 +213,11 @@ def _mutual(clause: Clause, e: Element) -> None:
     rooms = rooms if len(rooms) > 1 else clause.subject
     clause.state.understood(e.first, e.last)
     if clause.negative is not None or e.value in {"away", "apart"}:
+        unlinked = clause.negative is not None and e.value in {"door", "open"}
         clause.negative = None
+        if unlinked:
+            clause.state.say("not_connected" if e.value == "door" else "not_open", rooms[:1], rooms[1:], e)
+            return
         clause.state.say("ban", rooms, rooms, e)
         if e.value in {"away", "apart"}:
             clause.state.say("away", rooms[:1], rooms[1:], e)

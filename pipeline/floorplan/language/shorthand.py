@@ -19,7 +19,32 @@ SHIFTED = {"first floor": "1", "first storey": "1", "second floor": "2", "second
 def widen(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with shorthand written out."""
     made = _studies(_floors(_paired(_activities(list(marks))), heard), heard)
-    return _both(_partial(_half_baths(_counts(made))), heard)
+    return _summed(_both(_partial(_half_baths(_counts(made))), heard), heard)
+
+
+def _summed(marks: list[Mark], heard: Words) -> list[Mark]:
+    """Read Spanish "cinco habitaciones en total: salón, cocina, ..." as five rooms where the list has so many."""
+    if heard.lexicon.language != "es":
+        return marks
+    for k in range(1, len(marks)):
+        j = k + 1
+        while j < len(marks) and marks[j].kind == "flag" and marks[j].value == "total":
+            j += 1
+        if (
+            marks[k].kind != "room"
+            or marks[k].value != "bedroom"
+            or marks[k - 1].kind != "num"
+            or j >= len(marks)
+            or marks[j].kind != "colon"
+        ):
+            continue
+        last = next((i for i in range(j, len(marks)) if marks[i].kind in {"stop", "line"}), len(marks))
+        part = marks[j:last]
+        rooms = [(m, part[i - 1].number if part[i - 1].kind == "num" else 1.0) for i, m in enumerate(part) if m.kind == "room"]
+        if sum(n for _, n in rooms) == marks[k - 1].number and any(m.value != "bedroom" for m, _ in rooms):
+            amount = replace(marks[k - 1], kind="amount", value="rooms", last=marks[k].last, text="estancias")
+            return [*marks[: k - 1], amount, *marks[k + 1 :]]
+    return marks
 
 
 def _partial(marks: list[Mark]) -> list[Mark]:
