@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 
 from pipeline.errors import RefusedError
@@ -101,6 +102,7 @@ SURE, REPAIRED = 0.75, 80  # share of words that settles it; words that are repa
 ROOMS_WEIGHT = 2.0
 
 
+@functools.lru_cache(maxsize=16)
 def detect(prompt: str) -> Language:
     """Return the language of a prompt. Raises RefusedError where too few of its words belong to any of the four."""
     tokens = tokenize(prompt)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from pipeline.errors import RefusedError
+from pipeline.floorplan.check import ImpossibleError
 from pipeline.floorplan.language.draft import Draft
 from pipeline.floorplan.language.facts import Reading
 from pipeline.floorplan.language.joints import late_zone
 from pipeline.floorplan.language.phrases import Element
-from pipeline.floorplan.program import Style
+from pipeline.floorplan.program import Evidence, Style
 
 MOST_STOREYS = 3
 PANORAMA = 8.5  # outside wall of a living room with panoramic glazing [m]
@@ -26,7 +26,9 @@ def read_whole(draft: Draft, state: Reading) -> None:
     if state.storeys:
         draft.cite(state.storeys[1].first, state.storeys[1].last, "storeys")
     if storeys > MOST_STOREYS:
-        raise RefusedError(f"{storeys} storeys are asked for", f"ask for {MOST_STOREYS} at most")
+        words = [Evidence.model_validate(draft.evidence[-1])]
+        raise ImpossibleError(f"{storeys} storeys are asked for", f"ask for {MOST_STOREYS} at most", words)
+    _one_storey(draft, state, max(storeys, max(levels, default=0) + 1))
     draft.fields["storeys"] = max(storeys, max(levels, default=0) + 1)
     if draft.fields["storeys"] == 1:
         for room in stock.rooms:
@@ -39,6 +41,24 @@ def read_whole(draft: Draft, state: Reading) -> None:
         for room in stock.of("living_room")[:1]:
             room.exterior_length = PANORAMA
             draft.cite(flags["panorama"].first, flags["panorama"].last, f"rooms.{room.id}.exterior_length")
+
+
+BUNGALOWS = {"bungalow", "平 房"}
+
+
+def _one_storey(draft: Draft, state: Reading, storeys: int) -> None:
+    """Refuse rooms upstairs in a home of one storey, with both words."""
+    one = [e for e in (state.flags.get("single"), *state.homes) if e is not None and (e.kind == "flag" or e.text in BUNGALOWS)]
+    above = [(e.first, e.last) for e in state.levels if e.value != "0"] or (
+        [(state.storeys[1].first, state.storeys[1].last)] if state.storeys else []
+    )
+    if storeys == 1 or not one or not above:
+        return
+    before = len(draft.evidence)
+    for first, last in ((one[0].first, one[0].last), *above):
+        draft.cite(first, last, "storeys")
+    words = [Evidence.model_validate(e) for e in draft.evidence[before:]]
+    raise ImpossibleError("a home of one storey has nothing upstairs", "ask for two storeys", words)
 
 
 def _heights(state: Reading) -> None:
@@ -80,7 +100,7 @@ def _outline(draft: Draft, state: Reading) -> None:
 
 def _access(draft: Draft, state: Reading) -> None:
     access = draft.fields.setdefault("accessibility", {})
-    for flag in ("wheelchair", "step_free"):
+    for flag in ("wheelchair", "step_free", "single"):
         if flag in state.flags:
             access["step_free"] = True
             draft.cite(state.flags[flag].first, state.flags[flag].last, "accessibility.step_free")
@@ -118,7 +138,7 @@ def read_style(draft: Draft, state: Reading) -> None:
         if look.nonrect:
             draft.fields["nonrect"] = look.nonrect
         draft.cite(e.first, e.last, "style")
-    if {"wheelchair", "step_free"} & set(state.flags):
+    if {"wheelchair", "step_free", "single"} & set(state.flags):
         knobs.setdefault("min_width", 2)
     if knobs:
         draft.fields["style"] = Style.model_validate(knobs).model_dump()

@@ -40,6 +40,7 @@ class Reading:
     flags: dict[str, Element] = field(default_factory=dict)
     looks: list[Element] = field(default_factory=list)
     zones: dict[str, tuple[Group, Element]] = field(default_factory=dict)
+    levels: list[Element] = field(default_factory=list)  # words for storeys
     wings: tuple[str, ...] = ()  # zones that lie in parts of their own
     heights: dict[str, int] = field(default_factory=dict)  # the storey of zones, and of all other rooms ("*")
     entrance: tuple[str, Element] | None = None

@@ -180,8 +180,16 @@ class Scan:
         while k < len(self.words):
             if self.words[k].text in STOPS:
                 self.negated = False
+            if self._idle(k):
+                k += 1
+                continue
             k += self.phrase(k, "small")[0] or self._share(k) or self._things(k) or self._look(k) or 1
         return self.claims
+
+    def _idle(self, k: int) -> bool:
+        """Whether no wish begins at word k: it is no numeral and begins no phrase."""
+        text = self.words[k].text
+        return not self.there[k] and text not in NUMBERS and text not in HAN_DIGITS and text not in "十百" and not text[0].isdigit()
 
     def _put(self, kind: Kind, first: int, last: int, name: str = "", least: int = 0, most: int | None = None, value: float = 0.0) -> int:
         start, end = self.words[first].start, self.words[last - 1].end

@@ -41,6 +41,7 @@ def join(draft: Draft, state: Reading) -> None:
             _linked(draft, stock, fact)
         else:
             _related(draft, stock, fact, facts)
+    _ordered(draft)
     _everything(draft, stock, facts)
     _suites(draft, stock, facts)
     _apart(draft, state)
@@ -189,14 +190,35 @@ def _related(draft: Draft, stock: Inventory, fact: Fact, facts: list[Fact]) -> N
             draft.relate("area_equal", a, b, fact.value, fact)
     elif what in {"window", "no_window"}:
         for a in fact.a:
-            stock.get(a).window = "required" if what == "window" else "forbidden"
+            wish = "required" if what == "window" else "forbidden"
             draft.cite(fact.first, fact.last, f"rooms.{a}.window")
+            if stock.get(a).window not in {"auto", wish}:
+                words = [Evidence.model_validate(e) for e in draft.evidence if e["field"] == f"rooms.{a}.window"]
+                raise ImpossibleError(f"{a} is to have a window and to have none", "keep one of the two", words)
+            stock.get(a).window = wish
     elif what == "closed":
         for room in (r for kind in MERGE_ORDER for r in stock.of(kind) if r.id not in fact.a):
             draft.forbid("open", fact.a[0], room.id, None, fact.first, fact.last)
     elif what in {"not_open", "not_connected"}:
         for a, b in itertools.product(fact.a, fact.b):
             draft.forbid("open" if what == "not_open" else "connected", a, b, None, fact.first, fact.last)
+
+
+def _ordered(draft: Draft) -> None:
+    """Refuse rooms each of which is to be larger than the other."""
+    larger: dict[str, set[str]] = {}
+    for r in draft.relations:
+        if r["kind"] == "area_order" and r["value"] >= 1.0:
+            larger.setdefault(r["a"], set()).add(r["b"])
+    for start, below in larger.items():
+        seen: set[str] = set()
+        here = set(below)
+        while here and start not in here:
+            seen |= here
+            here = {b for a in here for b in larger.get(a, ())} - seen
+        if start in here:
+            words = [Evidence.model_validate(e) for e in draft.evidence if e["field"].startswith("relations.area_order")]
+            raise ImpossibleError(f"{start} is to be larger than a room that is to be larger than it", "drop one of the two", words)
 
 
 def _everything(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:

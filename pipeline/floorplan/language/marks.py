@@ -202,10 +202,12 @@ def _slim(marks: Sequence[Mark]) -> list[Mark]:
 
 def _elliptic(marks: Sequence[Mark], k: int, lex: Lexicon) -> list[Mark]:
     """Return the marks from k with the unit that was said before: "at least 12 m² but no more than 15"."""
-    unit = next((m for m in reversed(marks[:k]) if m.kind in {"unit", "room", "home"}), None)
     bounded = lex.bounds.get(marks[k].text) in {"least", "most"} and k + 1 < len(marks) and marks[k + 1].kind == "num"
+    if not bounded:
+        return []
+    unit = next((marks[j] for j in range(k - 1, -1, -1) if marks[j].kind in {"unit", "room", "home"}), None)
     alone = k + 2 >= len(marks) or marks[k + 2].kind in {"comma", "but", "stop", "join", "line"}
-    if unit is None or unit.kind != "unit" or not bounded or not alone:
+    if unit is None or unit.kind != "unit" or not alone:
         return []
     return [marks[k], marks[k + 1], replace(unit, first=marks[k + 1].last, last=marks[k + 1].last)]
 
@@ -271,11 +273,11 @@ def _amount(marks: Sequence[Mark], k: int, lex: Lexicon) -> tuple[Mark, int] | N
         same = after is not None and after.kind == "unit" and (unit is None or after.value == unit.value)
         joins = marks[i].kind == "dash" or marks[i].text in lex.range_to
         crossed = marks[i].kind == "times" or marks[i].text in {"x", "by"}
-        if same and after is not None and ((joins and marks[i + 1].number > low) or crossed):
+        if same and after is not None and ((joins and (marks[i + 1].number > low or (ranged and low > 0))) or crossed):
             if crossed:
                 side, low = min(low, marks[i + 1].number), low * marks[i + 1].number
             else:
-                high = marks[i + 1].number
+                low, high = sorted((low, marks[i + 1].number))
             unit, i = after, i + 3
     if unit is None:
         return None

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pipeline.floorplan.check import ImpossibleError
 from pipeline.floorplan.language.facts import Reading
 from pipeline.floorplan.language.inventory import Named
 from pipeline.floorplan.language.phrases import Element
+from pipeline.floorplan.language.text import spread
+from pipeline.floorplan.program import MAX_ROOMS, Evidence
 
 ALONE = {"living_room", "kitchen", "dining_room", "hallway", "entry", "utility", "garage", "staircase", "family_room", "studio_room"}
 PLURAL_NAMES = {"staircase", "closet", "storage"}  # their plural often means one
@@ -36,8 +39,17 @@ def introduce(state: Reading, sentences: list[list[Element]]) -> None:
                     and not (suites and e.type == "bedroom" and e.number is None)
                     and _whole(sentence, k) == whole
                 ):
+                    _few(state, e)
                     made = _count_all(state, e) if whole else _introduced(state, sentence, k, _backward(sentence, k, level))
                     e.ids = [r.id for r in made]
+
+
+def _few(state: Reading, e: Element) -> None:
+    """Refuse more rooms than a program holds, with the words."""
+    if (e.number or 0) > MAX_ROOMS:
+        start, end = spread(state.heard.tokens[max(e.first - 1, 0) : e.last])
+        words = [Evidence(start=start, end=end, text=state.heard.prompt[start:end], field="rooms")]
+        raise ImpossibleError(f"{e.number:g} {e.type.replace('_', ' ')}s are asked for", f"ask for {MAX_ROOMS} rooms at most", words)
 
 
 def _first_level(sentence: list[Element]) -> int | None:

@@ -107,7 +107,9 @@ def _belongs(clause: Clause, k: int, e: Element, owners: Group) -> int:
             if x.banned or x.type not in PERSONAL or (given and not joined):
                 break
             own = bool(x.det & {"own"})
-            both = any(y.kind in {"det", "pron"} and y.value in {"both", "all", "group"} for y in sentence[j + 1 : j + 3])
+            after = sentence[j + 1 : j + 3]  # "two bedrooms with a bath for both"
+            both = bool(after) and after[0].kind in {"det", "pron"} and after[0].value in {"both", "all"} and "own" not in x.det
+            both = both and not any(y.kind in {"cue", "verb", "np"} for y in after[1:])
             public = (both and len(owners) > 1) or x.role in {"shared", "guest"} or (x.number or 1) > len(owners) or x.definite
             if public or (joined == "comma" and not own and not _list_ends(sentence, j)):
                 break

@@ -20,9 +20,11 @@ from pipeline.floorplan.language.phrases import sentences
 from pipeline.floorplan.language.reading import read
 from pipeline.floorplan.language.revising import revise
 from pipeline.floorplan.language.shorthand import crossed, dealt, shared_unit, widen
+from pipeline.floorplan.language.text import tokenize
 from pipeline.floorplan.program import FloorProgram
 
 LONGEST = 20_000  # characters
+MOST_WORDS = 2_500  # and Chinese characters: reading takes time in proportion to them
 
 
 def parse(prompt: str) -> FloorProgram:
@@ -58,7 +60,7 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     state = read(heard, parsed)
     state.looks = [e for s in parsed for e in s if e.kind == "look"]
     try:
-        return assemble(state, parsed, [*marks, *revised.aside])
+        return assemble(state, parsed, [*marks, *(replace(m, kind="word") for m in revised.aside)])
     except ValidationError as error:  # a number beyond what a program may hold
         fault = error.errors()[0]
         where = ".".join(map(str, fault["loc"]))
@@ -66,8 +68,10 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
 
 
 def bounded(prompt: str) -> None:
-    """Raise UsageError for a prompt that is empty or too long."""
+    """Raise UsageError for a prompt that is empty or too long, in characters or words."""
     if not prompt.strip():
         raise UsageError("the prompt is empty", 'say what you want, e.g. "a two-bedroom flat with an open kitchen"')
     if len(prompt) > LONGEST:
         raise UsageError(f"the prompt is {len(prompt)} characters long", f"keep it under {LONGEST}")
+    if (count := len(tokenize(prompt))) > MOST_WORDS:
+        raise UsageError(f"the prompt has {count} words and marks", f"keep it under {MOST_WORDS}")

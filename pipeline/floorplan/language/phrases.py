@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -115,9 +116,14 @@ def _line(marks: Sequence[Mark], k: int, heard: Words) -> str:
         return "stop"
     place = heard.tokens[after.first].start
     initial = heard.prompt[place]
-    lines = heard.prompt.splitlines()
-    short = max(map(len, lines)) < 48
+    short = _short(heard.prompt)
     return "comma" if after.kind in {"bullet", "num"} or short or initial.isupper() or initial > "\u2e80" else ""
+
+
+@functools.lru_cache(maxsize=4)
+def _short(prompt: str) -> bool:
+    """Whether a prompt is a list: no line of it is long."""
+    return max(map(len, prompt.splitlines())) < 48
 
 
 def _elements(marks: list[Mark]) -> list[Element]:

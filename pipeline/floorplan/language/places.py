@@ -28,6 +28,7 @@ def storey(clause: Clause, k: int) -> int | None:
 def level(clause: Clause, k: int, e: Element) -> int:
     """Put rooms on a storey: those named before it, or, where it comes first, those that follow."""
     clause.state.understood(e.first, e.last)
+    clause.state.levels.append(e)
     if clause.forward:
         clause.level = int(e.value)
         clause.run = []

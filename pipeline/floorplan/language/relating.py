@@ -38,6 +38,8 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     if e.value.startswith("thru"):
         return _through(clause, k, e)
     clause.relative = clause.relative or e.text.startswith("que ")
+    if e.value == "between" and (after := _door_between(clause, k, e)):
+        return after
     left = _left(clause, k, e)
     group, j = objects(clause, k + 1, e.value, left)
     if not group:
@@ -101,6 +103,16 @@ def _through(clause: Clause, k: int, e: Element) -> int:
     clause.state.say("avoid" if none else "door", things, hosts, e)
     clause.subject = clause.latest = clause.objects = things
     clause.run = []
+    return j
+
+
+def _door_between(clause: Clause, k: int, e: Element) -> int:
+    """Read "a door between kitchen and bathroom"; return 0 where no door is spoken of."""
+    group, j = objects(clause, k + 1, "between", ())
+    near = [*clause.sentence[max(0, k - 1) : k], *clause.sentence[j : j + 2]]
+    if len(group) != 2 or clause.negative or not any(x.kind == "flag" and x.value == "doors" for x in near):
+        return 0
+    clause.state.say("door", group[:1], group[1:], e)
     return j
 
 

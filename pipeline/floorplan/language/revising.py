@@ -30,6 +30,7 @@ def revise(marks: Sequence[Mark], heard: Words) -> Revised:
 
     Raises ImpossibleError where two counts contradict each other ("three bedrooms but only two"), with both.
     """
+    _negative(marks, heard)
     made = _corrected(list(marks))
     made = _content(made)
     _contradicted(made, heard)
@@ -146,8 +147,9 @@ def _content(marks: list[Mark]) -> list[Mark]:
 
 def _contradicted(marks: Sequence[Mark], heard: Words) -> None:
     """Refuse "three bedrooms but only two": one of the counts is wrong, and nobody said which."""
-    for k, mark in enumerate(marks):
-        if mark.kind != "num" or not mark.number:
+    for k, said in enumerate(marks):
+        mark = replace(said, number=1.0) if (said.kind, said.value) == ("pron", "one") else said
+        if not mark.number or mark.kind not in {"num", "pron"}:
             continue
         before = k - 1
         while before >= 0 and marks[before].kind in {"verb", "fill", "flag", "adverb", "det"} and k - before < 5:
@@ -155,8 +157,10 @@ def _contradicted(marks: Sequence[Mark], heard: Words) -> None:
         lead = [m for m in marks[max(before, 0) : k] if m.kind == "but"]
         if not lead:
             continue
-        room = _counted(marks, k)
+        room = _counted([*marks[:k], replace(mark, kind="num"), *marks[k + 1 :]], k)
         name = marks[room] if room is not None and room > k else None
+        if mark.kind == "pron" and name is None:
+            continue
         if name is not None and ("/" in name.value or name.kind != "room"):
             continue
         end = (room if name is not None and room is not None else k) + 1
@@ -171,6 +175,21 @@ def _contradicted(marks: Sequence[Mark], heard: Words) -> None:
             raise ImpossibleError(
                 f"{marks[place[0]].number:g} {what}s are asked for, and then {mark.number:g}", "keep one of the two counts", words
             )
+
+
+def _negative(marks: Sequence[Mark], heard: Words) -> None:
+    """Refuse "-3 bedrooms", "0 m2", "0 rooms" and "no rooms": nothing has so many or is so large."""
+    named = any(m.kind in {"room", "suite"} for m in marks)
+    for k, mark in enumerate(marks):
+        place = heard.tokens[mark.first].start if mark.first < len(heard.tokens) else 0
+        minus = mark.kind in {"num", "amount"} and place > 1 and heard.prompt[place - 1] in "-−" and heard.prompt[place - 2] == " "
+        lead = k and marks[k - 1].kind in {"cue", "fill", "bound", "of", "det", "verb"}
+        none = mark.kind == "amount" and not mark.number and mark.value in {"area", "rooms"}
+        empty = mark.kind == "unit" and mark.value == "rooms" and k and marks[k - 1].kind == "neg" and not named
+        if (minus and lead) or none or empty:
+            words = _cited(heard, marks, k - 1 if empty else k, k)
+            text = ("-" if minus else "") + words.text
+            raise ImpossibleError(f"no home has {text!r}", "ask for numbers above zero", [words])
 
 
 def _cited(heard: Words, marks: Sequence[Mark], first: int, last: int) -> Evidence:

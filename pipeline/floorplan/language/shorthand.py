@@ -54,7 +54,7 @@ def _partial(marks: list[Mark]) -> list[Mark]:
     while k < len(marks):
         pair = marks[k : k + 2]
         kinds = [m.kind for m in pair]
-        after = next((m for m in marks[k + 2 :] if m.kind != "clf"), None)
+        after = next((marks[i] for i in range(k + 2, len(marks)) if marks[i].kind != "clf"), None)
         alone = after is None or after.kind not in {"room", "suite", "unit", "adj", "size"}
         some = [m for m in pair if m.kind == "pron" and m.value == "some"]
         if sorted(kinds) == ["num", "pron"] and some and (kinds[0] == "num" or alone):
@@ -130,13 +130,15 @@ def _several(marks: Sequence[Mark], k: int) -> bool:
     j = k - 1
     while j >= 0 and marks[j].kind in LEADS:
         j -= 1
+    if j > 0 and marks[j].kind == "num" and marks[j - 1].kind == "room":  # "卧室三间"
+        return marks[j].number > 1
     if j < 0 or marks[j].kind != "room":
         return False
     counted = any(m.kind == "num" and m.number > 1 for m in marks[max(0, j - 3) : j])
     return marks[j].plural or counted
 
 
-LEADS = {"open", "colon", "fill", "bound", "adverb", "det", "verb", "cue", "hyphen", "dash", "bullet"}
+LEADS = {"open", "colon", "fill", "bound", "adverb", "det", "verb", "cue", "hyphen", "dash", "bullet", "clf"}
 
 
 def dealt(marks: Sequence[Mark]) -> list[Mark]:
@@ -160,7 +162,7 @@ def dealt(marks: Sequence[Mark]) -> list[Mark]:
             amounts = [marks[i] for i in run]
             made.append(replace(marks[k], last=amounts[-1].last, parts=tuple(m.number for m in amounts)))
             place = next(i for i in range(len(made) - 2, -1, -1) if made[i].kind == "room")
-            if not any(m.kind == "num" for m in made[max(0, place - 3) : place]):
+            if not any(m.kind == "num" for m in (*made[max(0, place - 3) : place], *made[place + 1 : place + 2])):
                 room = made[place]
                 made.insert(place, Mark("num", "", float(len(run)), False, room.first, room.first, ""))
             k = j
@@ -174,10 +176,12 @@ def _shared_out(marks: Sequence[Mark], run: Sequence[int]) -> bool:
     """Whether amounts in a row are those of rooms in front of them, and none is the home's."""
     sizes = [marks[i].number for i in run]
     after = marks[run[-1] + 1] if run[-1] + 1 < len(marks) else None
-    total = any(marks[i].total for i in run) or (after is not None and (after.kind == "home" or after.value == "total"))
+    bounds = {marks[i].bound for i in run} & {"least", "most"}
+    total = bool(bounds) or any(marks[i].total for i in run) or (after is not None and (after.kind == "home" or after.value == "total"))
     j = run[0] - 1
     while j >= 0 and marks[j].kind in LEADS:
         j -= 1
+    j -= j > 0 and marks[j].kind == "num"
     return j >= 0 and marks[j].kind == "room" and not total and max(sizes) < ALIKE * min(sizes)
 
 

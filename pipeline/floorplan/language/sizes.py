@@ -39,6 +39,9 @@ def _area(draft: Draft, mark: Mark, rooms: list[Named]) -> None:
         if mark.side is not None:
             room.min_width = mark.side
         draft.cite(mark.first, mark.last, f"rooms.{room.id}.area")
+        if room.low is not None and room.high is not None and room.low > room.high:
+            words = [Evidence.model_validate(e) for e in draft.evidence if e["field"] == f"rooms.{room.id}.area"]
+            raise ImpossibleError(f"{room.id} is to have at least {room.low:g} and at most {room.high:g} m²", "keep one of the two", words)
     if rooms:
         return
     made = _whole_range(box)

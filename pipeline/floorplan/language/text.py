@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 import unicodedata
 from collections.abc import Sequence
@@ -37,6 +38,10 @@ def clean(prompt: str) -> tuple[str, list[int]]:
     made: list[str] = []
     places: list[int] = []
     for place, char in enumerate(prompt):
+        if char.isascii() and (char.isalnum() or char == " "):
+            made.append(char.lower())
+            places.append(place)
+            continue
         kind = unicodedata.category(char)
         if kind in {"Cf", "Mn"} and char != "\u0301" and unicodedata.combining(char) == 0:
             continue
@@ -63,6 +68,11 @@ def clean(prompt: str) -> tuple[str, list[int]]:
 
 def tokenize(prompt: str) -> list[Token]:
     """Split a prompt into words, figures and marks; Chinese into single characters."""
+    return list(_tokens(prompt))
+
+
+@functools.lru_cache(maxsize=16)  # a prompt is read several times: for its language, its furniture, its rooms
+def _tokens(prompt: str) -> tuple[Token, ...]:
     text, places = clean(prompt)
     found = []
     for match in WORD.finditer(text):
@@ -70,7 +80,7 @@ def tokenize(prompt: str) -> list[Token]:
         if raw[0].isalpha() and raw.endswith("'") and not raw.endswith("s'"):
             raw = raw[:-1]
         found.append(Token(raw, places[match.start()], places[match.end() - 1] + 1, _number(raw)))
-    return found
+    return tuple(found)
 
 
 def _number(raw: str) -> float | None:

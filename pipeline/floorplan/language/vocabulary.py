@@ -49,6 +49,7 @@ def fold(text: str) -> str:
     return "".join(c for c in unicodedata.normalize("NFD", lower) if not unicodedata.combining(c))
 
 
+@functools.lru_cache(maxsize=8192)
 def stem(word: str) -> str:
     """Return a folded word without the endings of plurals, cases and genders of English, German and Spanish."""
     for _ in range(2):
