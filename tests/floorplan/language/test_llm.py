@@ -277,3 +277,18 @@ def test_furniture_is_part_of_the_answer(serve):
     bed = request(PROMPT, server).rooms[2]
     assert (bed.furniture.least, bed.furniture.style, bed.furniture.counts[0].category) == (8, "Nordic", "nightstand")
     assert "nightstand" in http.seen[0][2]["messages"][0]["content"]
+
+
+def test_quotes_are_looked_up_in_the_prompt(serve):
+    program = {
+        "rooms": [{"id": "bed", "type": "bedroom"}, {"id": "bath", "type": "bathroom"}, {"id": "gym", "type": "gym"}],
+        "total_area": {"target": 61.0, "stated": True},
+        "evidence": [{"field": "rooms.bed", "text": "One  BEDROOM", "start": 900, "end": 3}, {"field": "rooms.x", "text": "not there"}, 7],
+    }
+    prompt = "One bedroom and a bath of 5 m2 please"
+    _, server = serve(says(json.dumps(program)))
+    made = ask(prompt, server)
+    assert all(prompt[e.start : e.end] == e.text for e in made.evidence)
+    assert {(e.field, e.source) for e in made.evidence} == {("rooms.bed", "llm"), ("rooms.bath", "rule")}
+    assert {r.id: r.stated for r in made.rooms} == {"bed": True, "bath": True, "gym": False}  # nobody spoke of a gym
+    assert not made.total_area.stated
