@@ -29,6 +29,7 @@ class ImpossibleError(RefusedError):
 def check(program: FloorProgram) -> None:
     """Raise ImpossibleError (a RefusedError) for a program that no plan can meet."""
     names(program)
+    _shell(program)
     _forbidden(program)
     _areas(program)
     _degrees(program)
@@ -64,6 +65,16 @@ def names(program: FloorProgram) -> None:
     for selector in sorted(wanted):
         if not program.select(selector):
             raise ImpossibleError(f"no room is called {selector!r}", f"rooms are {', '.join(r.id for r in program.rooms)}")
+
+
+def _shell(program: FloorProgram) -> None:
+    shell = program.shell
+    if shell.outer_wall < shell.inner_wall:
+        raise ImpossibleError(
+            f"outside walls of {shell.outer_wall:g} m are thinner than those between rooms, {shell.inner_wall:g} m",
+            "make them as thick at least",
+            cited(program, "shell"),
+        )
 
 
 def _forbidden(program: FloorProgram) -> None:

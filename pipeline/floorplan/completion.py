@@ -7,7 +7,7 @@ from pipeline.floorplan.check import names
 from pipeline.floorplan.connect import connect, resolve
 from pipeline.floorplan.distance import distances, nearness
 from pipeline.floorplan.furniture import allot, spread
-from pipeline.floorplan.program import Entrance, FloorProgram, RoomReq
+from pipeline.floorplan.program import Entrance, FloorProgram, RoomReq, Shell
 
 UPSTAIRS = {"bedroom", "bathroom", "playroom"}
 HUBLESS = {"living_room", "family_room", "studio_room", "hallway", "entry"}
@@ -15,7 +15,7 @@ HUBLESS = {"living_room", "family_room", "studio_room", "hallway", "entry"}
 
 def complete(program: FloorProgram) -> FloorProgram:
     """Return the program with every gap filled. Completing twice changes nothing."""
-    program = program.model_copy(update={"rooms": _expand(program)})
+    program = program.model_copy(update={"rooms": _expand(program), "shell": _shell(program)})
     program = program.model_copy(update={"rooms": _add_missing(program)})
     program = program.model_copy(update={"rooms": _storeys(program)})
     program = program.model_copy(update={"rooms": _add_circulation(program)})
@@ -40,6 +40,17 @@ def _expand(program: FloorProgram) -> tuple[RoomReq, ...]:
             taken.add(name)
             rooms.append(room.model_copy(update={"id": name, "count": 1}))
     return tuple(rooms)
+
+
+def _shell(program: FloorProgram) -> Shell:
+    """Return the shell; what is usual of it gives way where outside walls would be thinner than those between rooms."""
+    shell, usual = program.shell, Shell()
+    if shell.outer_wall < shell.inner_wall:
+        if shell.outer_wall == usual.outer_wall:
+            return shell.model_copy(update={"outer_wall": shell.inner_wall})
+        if shell.inner_wall == usual.inner_wall:
+            return shell.model_copy(update={"inner_wall": shell.outer_wall})
+    return shell
 
 
 def _forbidden_types(program: FloorProgram) -> set[str]:

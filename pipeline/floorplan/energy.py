@@ -34,7 +34,7 @@ TERMS = (
     "stair_snug",
 )
 WEIGHTS = (2.0, 24.0, 1.6, 40.0, 1.6, 2.0, 1.0, 0.12, 4.0, 0.5, 2.0, 1.0)
-TONGUE = 4  # cells: no part of a room is narrower
+TONGUE = 0.76  # m between inner faces: no part of a room is narrower
 SPLIT = 4.5  # m2 charged when a room falls apart at a neck; the legacy solver charges 45 in its units of 0.25 m2 x 0.4
 
 
@@ -259,7 +259,7 @@ def room_shape(grid: Labels, out: Measures, spec: Spec, i: int, shape: Floats) -
     else:
         shape[i, 0] = hull_area(grid, i, out.box)
     shape[i, 1] = 0.0
-    tongue = min(TONGUE, spec.strict[i])
+    tongue = min(int(np.ceil((TONGUE + 2.0 * max(spec.half.inner, spec.half.outer)) / spec.unit - 1e-9)), spec.strict[i])
     for part in range(4):
         side = spec.least[i] if part == 0 else (half if part == 1 else (tongue if part == 2 else spec.strict[i]))
         if notch > 0:

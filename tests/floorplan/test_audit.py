@@ -170,3 +170,11 @@ def test_walls_ceilings_and_chamfers(shell, corners):
     assert all(o.sill + o.height < shell.ceiling for o in made.openings)
     slanted = [r.room_id for r in made.rooms if np.any(np.abs(np.roll(r.polygon, -1, axis=0) - r.polygon).min(axis=1) > 1e-6)]
     assert bool(slanted) == (corners == "chamfered")
+
+
+def test_outside_walls_are_no_thinner_than_those_between_rooms():
+    rooms = {"rooms": PROGRAM.rooms[:4], "only": True}
+    assert complete(FloorProgram(shell=Shell(inner_wall=0.3), **rooms)).shell.outer_wall == 0.3
+    assert complete(FloorProgram(shell=Shell(outer_wall=0.1), **rooms)).shell.inner_wall == 0.1
+    with pytest.raises(RefusedError, match="thinner"):
+        solve(FloorProgram(shell=Shell(inner_wall=0.3, outer_wall=0.2), **rooms), 0)

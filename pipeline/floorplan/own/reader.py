@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -112,6 +113,13 @@ def _built(sketch: Sketch) -> Plan:
     if levels != list(range(len(levels))):
         raise refuse(f"its storeys are {', '.join(map(str, levels))}; they count from 0 without gaps")
     walls = [s for level in levels for s in stretches(storey(rooms, level), level, outer)]
+    widest = max((s.gap for s in walls if len(s.rooms) == 2), default=0.0)
+    if widest > 2 * outer:  # outside walls stand around every room: thinner ones would not meet between rooms
+        outer = math.ceil(1000 * widest / 2) / 1000
+        sketch.repair(
+            "outer_wall", "plan", f"rooms are {widest:.2f} m apart: outside walls are taken as {outer:.3f} m thick, so that they meet"
+        )
+        walls = [s for level in levels for s in stretches(storey(rooms, level), level, outer)]
     fitted = fit(sketch, rooms, walls)
     _open_where_touching(sketch, walls, fitted)
     entrance = _entrance(sketch, rooms, walls, fitted)

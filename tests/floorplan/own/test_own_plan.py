@@ -258,6 +258,18 @@ def test_one_house_of_many(tmp_path):
             read_own(path, wrong)
 
 
+def test_outside_walls_meet_between_rooms_that_are_far_apart():
+    own = read(
+        lambda d: (
+            d.update(inner_wall=0.1, outer_wall=0.1)
+            or [r.update(polygon=[[x + 0.4 * (x > 5), y] for x, y in r["polygon"]]) for r in d["rooms"]]
+        )
+    )
+    assert "outer_wall" in codes(own)
+    assert own.plan.outer_wall == pytest.approx(0.25, abs=2e-3)
+    check_sound(own.plan, VerifySettings())
+
+
 def test_leaves_do_not_meet():
     own = read(lambda d: d["doors"][0].update(segment=[[5.05, 3.1], [5.05, 3.9]]))
     check_sound(own.plan, VerifySettings())
