@@ -2,7 +2,7 @@
 
 import pyarrow as pa
 
-from schemas.table import VEC3, Column, Table
+from schemas.table import NAMES, VEC3, Column, Table
 
 ASSETS = Table(
     "assets",
@@ -50,6 +50,7 @@ ASSET_JOINTS = Table(
         Column("origin", VEC3, "a point on the axis at rest", "m", "object"),
         Column("lower", pa.float64(), "lower limit (rad or m)"),
         Column("upper", pa.float64(), "upper limit (rad or m)"),
+        Column("after", NAMES, "joints of the asset that must be open before it can move: a drawer behind a door"),
         Column("sweep_min", VEC3, "lower corner of the box that the moving part sweeps", "m", "object"),
         Column("sweep_max", VEC3, "upper corner of that box", "m", "object"),
         Column("handle", VEC3, "where a hand takes hold, at rest", "m", "object"),

@@ -68,6 +68,7 @@ def _joint_row(asset: Asset, index: int) -> Row:
         "origin": joint.origin.tolist(),
         "lower": joint.lower,
         "upper": joint.upper,
+        "after": list(joint.after),
         "sweep_min": low.tolist(),
         "sweep_max": high.tolist(),
         "handle": np.round(handle_point(asset, index), 4).tolist(),
