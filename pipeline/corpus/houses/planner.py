@@ -6,6 +6,8 @@ from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
 
 from pipeline.corpus.houses import draft, openings, outline, program
 from pipeline.entities.plan import Plan, Room
@@ -14,6 +16,8 @@ from pipeline.errors import ContentError
 PROGRAMS, STRICT = 24, 16
 DRAFTS = 30
 SHAFT_SHARE = 0.33
+NECK = 0.5
+"""Narrowest place between two parts of a room [m]."""
 # Narrowest clear side by room type [m].
 NARROWEST = {"Kitchen": 1.55, "Balcony": 0.9, "Bathroom": 1.38, "SecondBathroom": 1.38, "MasterBathroom": 1.4, "LaundryRoom": 1.2}
 NARROWEST |= {"StorageRoom": 1.05, "CloakRoom": 1.4, "Hallway": 1.0, "Aisle": 1.0, "Corridor": 1.0, "Library": 2.1, "KidsRoom": 2.4}
@@ -57,7 +61,10 @@ def _attempt(rng: np.random.Generator, wanted: program.Program, furnished: Seque
     for i, (room_type, loop) in enumerate(zip(sketch.types, loops, strict=True)):
         if loop is None or not _usable(loop, room_type):
             return None
-        made.append(Room(f"room_{i}", room_type, outline.inset(loop), height=height))
+        faces = outline.inset(loop)
+        if not passable(faces):
+            return None
+        made.append(Room(f"room_{i}", room_type, faces, height=height))
     holes = openings.plan_holes(rng, sketch.types, sketch.parents, stretches)
     if holes is None:
         return None
@@ -65,6 +72,12 @@ def _attempt(rng: np.random.Generator, wanted: program.Program, furnished: Seque
     ways = tuple(openings.opening(k, hole, stretches, angle) for k, hole in enumerate(holes))
     entrance = next(w.rooms[0] for w in ways if w.kind == "entrance")
     return Plan(tuple(made), ways, entrance)
+
+
+def passable(faces: NDArray[np.float64]) -> bool:
+    """Whether a room of these inner faces (n, 2) [m] is one piece, nowhere narrower than NECK: walls that are near each other may cross."""
+    polygon = Polygon(faces)
+    return bool(polygon.is_valid and polygon.buffer(-NECK / 2, join_style="mitre").geom_type == "Polygon")
 
 
 def _usable(loop: Sequence[tuple[int, int]], room_type: str) -> bool:

@@ -7,7 +7,7 @@ from shapely.geometry import LineString, Point, Polygon
 
 from pipeline.corpus.houses import program
 from pipeline.corpus.houses.agenda import agenda
-from pipeline.corpus.houses.planner import make_plan
+from pipeline.corpus.houses.planner import make_plan, passable
 from pipeline.seeds import generator
 
 PLANS = [make_plan(generator(1, "test-plan", k), agenda(1, k).rooms) for k in range(40)]
@@ -92,3 +92,16 @@ def test_houses_have_bedrooms_a_kitchen_and_a_bath():
         assert {"Kitchen", "Bathroom"} <= kinds
         assert any("Bedroom" in k for k in kinds)
         assert 4 <= len(house.plan.rooms) <= 16
+
+
+@pytest.mark.parametrize("index", [277, 638, 808])
+def test_walls_of_a_room_that_are_near_each_other_do_not_cross(index):
+    """Houses of seed 0 whose first drafts had a room that a wall's thickness cut in two."""
+    plan = make_plan(generator(0, "house", index), agenda(0, index).rooms)
+    assert all(Polygon(room.polygon).is_valid and passable(room.polygon) for room in plan.rooms)
+
+
+@pytest.mark.parametrize(("neck", "fine"), [(-0.02, False), (0.0, False), (0.3, False), (0.6, True)])
+def test_a_neck_is_wide_enough_to_pass(neck, fine):
+    hourglass = [(0, 0), (3, 0), (3, 2), (1 + neck, 2), (1 + neck, 2.5), (3, 2.5), (3, 4), (0, 4), (0, 2.5), (1, 2.5), (1, 2), (0, 2)]
+    assert passable(np.array(hourglass, float)) is fine
