@@ -21,6 +21,7 @@ Floats = NDArray[np.float64]
 ORIGIN, NO_TURN, ONE = np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.ones(3)
 _ARRAYS = re.compile(rb'"(xyz|faces|normal|uv)"\s*:\s*\[([-+0-9.eEnul,\s]*)\]')  # numbers and null: NaN stays, to be refused
 MAX_AREA = 1e5  # [m2] no room is larger: such a figure says nothing
+FARTHEST = 1e4  # [m] from the origin; no house lies beyond
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +50,8 @@ class MeshRecord:
         values = floats(_listed(self.xyz, f"mesh {self.uid}"), f"mesh {self.uid}")
         if len(values) % 3:
             raise SourceError("bad_structure", f"mesh {self.uid}", "xyz is not a list of triples")
+        if np.abs(values).max(initial=0.0) > FARTHEST:
+            raise SourceError("bad_number", f"mesh {self.uid}", "has coordinates beyond 10 km")
         return values.reshape(-1, 3)
 
     def triangles(self) -> Floats:
@@ -243,7 +246,8 @@ def _child(record: Mapping[str, Any]) -> Child:
     ref = _text(record.get("ref"))
 
     def vector(key: str, default: tuple[float, ...]) -> Floats:
-        values = floats(record.get(key, default), f"{key} of {ref}")
+        given = record.get(key)
+        values = floats(default if given is None else given, f"{key} of {ref}")
         if len(values) != len(default):
             raise SourceError("bad_number", ref, f"{key} has {len(values)} numbers, not {len(default)}")
         return values

@@ -29,6 +29,7 @@ Floats = NDArray[np.float64]
 # Absurd counts: real houses have up to some 30 rooms, 60 openings, 60 objects in a room, 2,000 floor triangles.
 MAX_ROOMS, MAX_CHILDREN, MAX_HOLES = 300, 20_000, 1000
 MAX_OBJECTS, MAX_TRIANGLES = 500, 20_000  # of one room
+MAX_EXTENT = 100.0  # [m] of a house
 WALLS = frozenset({"WallInner", "WallOuter"})
 AREA_TOLERANCE = 0.15  # of the room's size in the file, up to which floors of it differ by their strips under doors
 INNER_WALL, OUTER_WALL = 0.12, 0.24  # [m] 3D-FRONT's usual thicknesses, where no reveal tells
@@ -70,7 +71,13 @@ def house_rows(house: HouseFile, models: Mapping[str, Model], taxonomy: Taxonomy
 
 
 def rows_of(house: HouseFile, rooms: list[ReadRoom], rows: HouseRows, taxonomy: Taxonomy, limits: FrontFilters, licence: str) -> HouseRows:
-    """Complete the rows of a house whose rooms and objects are known; its meshes and built-in furniture give the openings."""
+    """Complete the rows of a house whose rooms and objects are known; its meshes and built-in furniture give the openings.
+
+    Raises SourceError `too_large` for a house that no raster holds.
+    """
+    corners = np.concatenate([room.floor.polygon for room in rooms])
+    if np.ptp(corners, axis=0).max() > MAX_EXTENT:
+        raise SourceError("too_large", house.uid, f"{np.ptp(corners, axis=0).max():.0f} m across")
     scene_id = slug("h", house.uid)
     openings, walls = openings_of(house, rooms, limits, rows.rejects)
     rows.rooms = [room_row(scene_id, house.uid, room, taxonomy) for room in rooms]

@@ -36,6 +36,8 @@ def limits(joint: UrdfJoint, known: Mobility | None, notes: list[Note]) -> Limit
         if joint.type != "fixed":
             notes.append(_note(joint, "joint_unsupported", f"type {joint.type!r}"))
         return None
+    if joint.follows:
+        notes.append(_note(joint, "joint_mimic", f"follows {joint.follows}"))
     if joint.type == "continuous":
         return "continuous", -math.inf, math.inf
     kind: JointType = "revolute" if joint.type == "revolute" else "prismatic"

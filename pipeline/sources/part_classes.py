@@ -104,7 +104,7 @@ def semantics(folder: Folder, name: str = "semantics.txt") -> dict[str, tuple[st
     """Return {link: (joint word, semantic name)} of a file whose lines are "<link> <joint> <semantic>", {} without it."""
     if not folder.has(name):
         return {}
-    text = folder.read(name, MIB).decode("utf-8", "replace")
+    text = folder.read(name, MIB).decode("utf-8-sig", "replace")
     lines = (line.split() for line in text.splitlines())
     return {words[0]: (words[1], words[2]) for words in lines if len(words) >= 3}
 

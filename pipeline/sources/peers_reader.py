@@ -92,7 +92,10 @@ def read_peers(task: PeersTask, house: House) -> HouseRows:
     if not any(room.objects for room in rooms):
         rows.rejects.append(reject("house", uid, "no_objects" if rooms else "no_rooms"))
         return rows
-    return rows_of(HouseFile(uid, {}, {}, (), (), ()), rooms, rows, taxonomy.load(), task.filters, task.licence)
+    try:
+        return rows_of(HouseFile(uid, {}, {}, (), (), ()), rooms, rows, taxonomy.load(), task.filters, task.licence)
+    except SourceError as error:
+        return HouseRows(rejects=[*rows.rejects, reject("house", uid, error.code, error.detail)])
 
 
 def _room(cached: CachedRoom, task: PeersTask, kind: Kind, others: list[ReadRoom], rows: HouseRows) -> ReadRoom:

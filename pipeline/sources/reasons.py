@@ -98,6 +98,7 @@ REASONS: dict[str, Reason] = {
     "joint_limits_found": Reason("joint", "repaired", "limits are missing or leave no range: those of mobility_v2.json are used"),
     "joint_flipped_limits": Reason("joint", "repaired", "lower above upper: exchanged"),
     "joint_rest_shifted": Reason("joint", "repaired", "0 is not within the limits, or a door is drawn open: another limit is the rest"),
+    "joint_mimic": Reason("joint", "repaired", "a joint that the URDF lets follow another one: it moves by itself"),
     "joint_moves_nothing": Reason("joint", "repaired", "a joint to a body without geometry: left out"),
     "screw_collapsed": Reason("joint", "repaired", "two joints through an empty helper link: the one by which the part is used is kept"),
 }

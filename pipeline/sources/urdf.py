@@ -52,7 +52,7 @@ class UrdfLink:
 
 @dataclass(frozen=True, slots=True)
 class UrdfJoint:
-    """A joint as written: T_parent_joint (4, 4), axis (3,) in the joint's frame, limits or None."""
+    """A joint as written: T_parent_joint (4, 4), axis (3,) in the joint's frame, limits or None; `follows`: the joint that it mimics."""
 
     name: str
     type: str
@@ -61,6 +61,7 @@ class UrdfJoint:
     T: Floats
     axis: Floats
     limits: tuple[float, float] | None
+    follows: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +143,10 @@ def _joint(element: Any, where: str) -> UrdfJoint:
         lower, upper = (_vector(limit.get(k), (0.0,), where)[0] for k in ("lower", "upper"))
         limits = (float(lower), float(upper))
     name = element.get("name") or f"{ends['parent']}_{ends['child']}"
-    return UrdfJoint(name, (element.get("type") or "fixed").strip(), ends["parent"], ends["child"], _origin(element, where), axis, limits)
+    mimic = element.find("mimic")
+    follows = mimic.get("joint") or "another" if mimic is not None else ""
+    kind = (element.get("type") or "fixed").strip()
+    return UrdfJoint(name, kind, ends["parent"], ends["child"], _origin(element, where), axis, limits, follows)
 
 
 def _inertial(element: Any, where: str) -> Inertial | None:

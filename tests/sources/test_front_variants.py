@@ -309,3 +309,33 @@ def test_a_model_info_of_the_toolbox_is_named(tmp_path):
     (root / "front" / "3D-FUTURE-model" / "model_info.json").write_text(json.dumps({BED: {"category_id": 1}}))
     with pytest.raises(Exception, match="ToolBox"):
         read(root)
+
+
+@pytest.mark.parametrize("key", ["pos", "rot", "scale"])
+def test_a_pose_that_is_null_is_the_usual_one(key, tmp_path):
+    tree = making.two_rooms()
+    bed = next(c for c in tree["scene"]["room"][0]["children"] if c["ref"] == "b/model")
+    tree["scene"]["room"][0]["children"].append({**bed, "pos": [2, 0, 1.1], "instanceid": "furniture/9"})
+    bed |= {"pos": [2, 0, 1.1], key: None}
+    tree["scene"]["room"][0]["children"].pop()
+    made = read(written(tmp_path, tree))
+    assert "bad_number" not in made.reasons
+    assert (BED in {o["source_id"].rpartition("#")[2] for o in made.objects}) == (key != "pos")  # at 0, 0 it is half outside
+
+
+def test_a_ref_in_both_tables_is_the_furniture_and_the_mesh(tmp_path):
+    tree = making.two_rooms(more_furniture=[chair_record("f1", STAND)])
+    next(c for c in tree["scene"]["room"][0]["children"] if c["ref"] == "f1")["pos"] = [1, 0, 3]
+    made = read(written(tmp_path, tree))
+    assert made.rooms[0]["area"] == 16.0  # meshes are in world coordinates whatever the pose
+    assert [o["position"][:2] for o in made.objects if o["category"] == "nightstand"] == [[1.0, -3.0], [3.4, -0.3]]
+
+
+@pytest.mark.parametrize(("at", "reason"), [(1e30, "bad_number"), (2e4, "bad_number"), (900.0, "too_large")])
+def test_floors_at_the_end_of_the_world(at, reason, tmp_path):
+    """They cost the room, or the house, never the memory of a raster that holds both."""
+    tree = making.two_rooms()
+    tree["mesh"] = [floor("f2", at, 0, at + 3, 4) if m["uid"] == "f2" else m for m in tree["mesh"]]
+    made = read(written(tmp_path, tree))
+    assert made.reasons == {reason} or (reason == "bad_number" and reason in made.reasons)
+    assert len(made.scenes) == (0 if reason == "too_large" else 1)

@@ -378,3 +378,26 @@ def test_rows_say_how_the_scale_was_found_and_what_was_guessed(tmp_path):
         assert {row["annotated"] for row in parts if row["part_class"] != "line_fixed_handle"} == {asset_id.startswith("ga")}
         for row in parts:
             assert np.allclose(np.cross(row["axis_x"], row["axis_y"]), row["axis_z"], atol=1e-6)
+
+
+def test_semantics_with_a_byte_order_mark(tmp_path):
+    folder = making.write_partnet(tmp_path / "partnet", gapartnet=False)
+    assert {j["part_class"] for j in read(tmp_path).joints} == {"hinge_door", "slider_drawer"}
+    (folder / "semantics.txt").write_bytes(b"\xef\xbb\xbflink_0 hinge lid\r\nlink_1 slider drawer\r\nlink_2 heavy furniture_body\r\n")
+    assert {j["part_class"] for j in read(tmp_path).joints} == {"hinge_lid", "slider_drawer"}
+
+
+def test_without_collisions_the_looks_collide(tmp_path):
+    text = re.sub(r"<collision.*?</collision>", "", making.partnet_urdf((-making.W / 2, 0.0, making.D / 2)))
+    asset, made = first(tmp_path, urdf=text)
+    assert all(link.colliders for link in asset.links)
+    assert made.reasons <= {"hull_collider"}
+
+
+def test_without_its_meshes_an_object_is_left_out(tmp_path):
+    folder = making.write_partnet(tmp_path / "partnet")
+    for path in (folder / "textured_objs").iterdir():
+        path.unlink()
+    made = read(tmp_path)
+    assert made.assets == []
+    assert [r["reason"] for r in made.rejects] == ["no_base"]

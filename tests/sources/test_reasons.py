@@ -318,6 +318,7 @@ CASES = {
     "joint_no_range": lambda t: with_joint(t, door("revolute", '<limit lower="0" upper="0"/>')),
     "joint_flipped_limits": lambda t: with_joint(t, door("revolute", '<limit lower="1.2" upper="-0.0"/>')),
     "joint_rest_shifted": lambda t: with_joint(t, door("revolute", '<limit lower="0.2" upper="1.2"/>')),
+    "joint_mimic": lambda t: with_joint(t, door("revolute", '<mimic joint="joint_1" multiplier="2"/><limit lower="0" upper="1"/>')),
     "joint_moves_nothing": moves_nothing,
     "screw_collapsed": screw,
 }
