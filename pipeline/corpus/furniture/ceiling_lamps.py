@@ -177,16 +177,20 @@ def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     metal = scheme.handle
     squash = np.array([1.0, d / w, 1.0])
     if form == "crystal" or (h > 0.3 and form != "spots"):
-        made = pieces("plate", [s.scaled(squash) for s in revolve([(0.5 * w, h - 0.03), (0.5 * w, h - 0.008), (0.47 * w, h)], 28)], metal)
+        disc = revolve([(0.5 * w, h - 0.03), (0.5 * w, h - 0.008), (0.47 * w, h)], 28)
+        panel = [box((-w / 2, w / 2), (-w / 2, w / 2), (h - 0.03, h), 0.006)]
+        edged = form in ("square", "frame")
+        made = pieces("plate", [s.scaled(squash) for s in (panel if edged else disc)], metal)
         rows = 3
         for k in range(rows):
             r = 0.47 * w * (1 - 0.3 * k)
             low = 0.62 * (h - 0.03) * (1 - k / (rows - 1)) if rows > 1 else 0.0
             count = max(10, int(22 * (1 - 0.3 * k)))
-            rods = [
-                rod((r * math.cos(a), r * math.sin(a) * d / w, low), (r * math.cos(a), r * math.sin(a) * d / w, h - 0.03), 0.007, n=5)
-                for a in turns(count, 0.1 * k)
-            ]
+            rods = []
+            for a in turns(count, 0.1 * k):
+                reach = r / max(abs(math.cos(a)), abs(math.sin(a))) if edged else r
+                x, y = reach * math.cos(a), reach * math.sin(a) * d / w
+                rods.append(rod((x, y, low), (x, y, h - 0.03), 0.007, n=5))
             made += pieces("drops", rods, CRYSTAL if form == "crystal" else GLOW)
         return Shape(made)
     if form == "disc":

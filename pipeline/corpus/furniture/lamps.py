@@ -142,14 +142,14 @@ def wall_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
         )
     r = min(w / 2, 0.4 * d) if form == "shade" else min(0.24 * w, 0.4 * d)
     wide = 0.2 * w if form != "shade" or r > 0.4 * w else 0.5 * w
-    made = pieces("plate", box((-wide, wide), (back - 0.016, back), (0.1 * h, 0.7 * h), 0.004), metal)
+    made = pieces("plate", box((-wide, wide), (back - 0.016, back), (0.0, 0.7 * h), 0.004), metal)
     tall = 0.55 * h
     for s in (0,) if form == "shade" else (-1, 1):
         x, y = s * (w / 2 - r), -d / 2 + r
         swing = curve([(0.1 * x, back - 0.016, 0.34 * h), (0.6 * x, 0.5 * (y + back), 0.22 * h), (x, y, 0.26 * h), (x, y, 0.42 * h)], 2)
         made += pieces("arm", tube(swing, 0.0065, 6), metal)
         made += shade(rng, scheme, "pleated" if scheme.manner.ornament > 0.5 else "drum", r, (h - tall, h), (x, y), 16)
-    return Shape(made + pieces("foot", box((-0.012, 0.012), (back - 0.03, back - 0.016), (0.0, 0.1 * h)) if h > 0.2 else [], metal))
+    return Shape(made)
 
 
 def table_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -173,7 +173,9 @@ def table_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
         return Shape(pieces("foot", foot, metal) + pieces("arm", arm, metal) + head)
     if form == "mushroom":
         foot = revolve([(0.5 * r, 0.0), (0.42 * r, 0.1 * h), (0.34 * r, 0.45 * h), (0.4 * r, 0.6 * h)], 20)
-        cap = revolve([(0.97 * r, 0.6 * h), (r, 0.63 * h), (0.92 * r, 0.78 * h), (0.66 * r, 0.93 * h), (0.25 * r, h)], 28)
+        cap = revolve(
+            curve([(0.97 * r, 0.6 * h), (r, 0.63 * h), (0.92 * r, 0.78 * h), (0.66 * r, 0.93 * h), (0.25 * r, h)], 2).tolist(), 28
+        )
         return Shape(pieces("stem", foot, scheme.front) + pieces("cap", cap, GLOW if rng.random() < 0.5 else scheme.front))
     if form == "globe":
         base = pieces(
@@ -185,7 +187,7 @@ def table_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     tall = 0.42 * h
     stem = h - tall
     body = (
-        [(0.45, 0.0), (0.5, 0.03), (0.62, 0.2), (0.5, 0.4), (0.16, 0.52)]
+        curve([(0.45, 0.0), (0.5, 0.03), (0.62, 0.2), (0.5, 0.4), (0.16, 0.52)], 2).tolist()
         if rng.random() < 0.5
         else [(0.5, 0.0), (0.5, 0.03), (0.14, 0.06), (0.26, 0.16), (0.34, 0.28), (0.14, 0.42), (0.2, 0.48)]
     )
