@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from pipeline.floorplan.language.comparing import compare, factor
-from pipeline.floorplan.language.facts import ROLES, SOCIAL, Group, Reading
+from pipeline.floorplan.language.facts import PERSONAL, ROLES, SOCIAL, Group, Reading
 from pipeline.floorplan.language.naming import fresh, name
 from pipeline.floorplan.language.openness import merge, merge_after, no_door, written_as_one
 from pipeline.floorplan.language.phrases import Element
@@ -223,6 +223,15 @@ class Clause:
         self.owner, self.owning = e.value, ""
         return k + 1
 
+    def _one_each(self, e: Element) -> None:
+        """Read "three bedrooms. And a bathroom for each."."""
+        thing = self.stock.get(self.latest[0])
+        owners = next((g for g in reversed(self.state.past) if len(g) > 1 and self.stock.get(g[0]).type == "bedroom"), ())
+        if thing.type not in PERSONAL or not owners:
+            return
+        ids = [thing.id, *(self.stock.add(thing.type, "", e.text, None).id for _ in owners[1:])]
+        self.give(tuple(ids), owners, e)
+
     def _role(self, who: Element, role: str) -> None:
         for room in (self.stock.get(i) for i in who.ids):
             room.role = room.role or (role if room.type == "bedroom" else "")
@@ -257,6 +266,10 @@ class Clause:
         return k + 1
 
     def _det(self, k: int, e: Element) -> int:
+        last = k + 1 >= len(self.sentence) or self.sentence[k + 1].kind in {"comma", "close"}
+        if e.value == "each" and last and k and self.sentence[k - 1].kind == "np" and len(self.latest) == 1:
+            self._one_each(e)
+            return k + 1
         if e.value == "other" and next((x.kind for x in self.sentence[k + 1 :] if x.kind != "verb"), "") in {"level", "colon"}:
             return self._every(k, e)
         if e.value == "all" and len(self.run) > 1 and not any(x.kind == "np" for x in self.sentence[k + 1 : k + 2]):

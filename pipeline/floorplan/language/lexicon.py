@@ -127,7 +127,7 @@ class Lexicon:
             elif at > start and word in self.adverbs:
                 only = only or word in ONLY
                 at += 1
-            elif word == "-" and at > start:
+            elif word in {"-", "/"} and at > start:
                 at += 1
             else:
                 break

@@ -32,6 +32,7 @@ MOST_INDEX = 12
 LONGEST = 150  # marks of a sentence; a longer one is read in parts, cut at commas
 ALSO = {"also", "tambien", "ademas", "y ademas", "ausserdem", "und ausserdem", "dazu", "zudem", "ferner"}  # begin a new part of a list
 WITH = {"mit", "with", "con"}
+OTHERS = {"two": 2.0, "beiden": 2.0, "zwei": 2.0, "dos": 2.0, "three": 3.0, "drei": 3.0, "tres": 3.0}  # "the other two bedrooms"
 RELATIVES = {"der", "die", "das", "dem", "den", "that"}
 
 
@@ -227,7 +228,7 @@ def _plain(mark: Mark) -> Element:
     return Element(kind, mark.value, mark.first, mark.last, mark.text, number=mark.number, only=mark.only, mark=mark)
 
 
-def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool) -> Element:  # noqa: PLR0912 - one branch per case: a grammar
+def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool) -> Element:  # noqa: C901, PLR0912 - one branch per case: a grammar
     """Put a noun phrase together from its head and what stands in front of it."""
     kind, _, role = mark.value.partition("/") if mark.kind == "room" else ("bedroom", "", mark.value)
     made = Element(
@@ -258,6 +259,8 @@ def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool) -> Element:  # noqa
                     continue
                 made.part, made.number = int(made.number), None
             made.det.add(part.value)
+            if part.value == "other" and made.number is None:
+                made.number = next((OTHERS[w] for w in part.text.split() if w in OTHERS), None)
         elif part.kind == "ord":
             made.ordinal = int(part.number)
         elif part.kind == "adj":

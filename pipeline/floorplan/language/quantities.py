@@ -15,8 +15,11 @@ WHOLE = 1.6  # an area of so many usual areas of the room in front of it, set of
 
 def belongs(state: Reading, sentence: list[Element], e: Element, mark: Mark) -> bool:
     """Whether an amount right behind a room measures the home: "... kitchen and bath 85 m²"."""
-    if mark.value != "area" or not e.ids or mark.last <= e.first:
+    if mark.value != "area" or not e.ids:
         return False
+    if mark.last <= e.first:  # "1BR 1BA 550 sf galley kitchen"
+        before = [x for x in sentence if x.kind == "np" and x.last <= mark.first]
+        return len(before) > 1 and mark.number > 3 * sum(DEFAULTS[state.inventory.get(i).type].area for i in e.ids)
     if mark.total:
         return True
     usual = sum(DEFAULTS[state.inventory.get(i).type].area for i in e.ids)

@@ -270,8 +270,21 @@ def _studies(marks: list[Mark], heard: Words) -> list[Mark]:
     """Read Spanish "estudio" as a study where the home has bedrooms."""
     if heard.lexicon.language != "es" or not any(m.kind == "room" and m.value.startswith("bedroom") for m in marks):
         return marks
+    marks = _pisos(marks)
     study = [k for k, m in enumerate(marks) if m.kind == "home" and m.text == "estudio" and k]
     return [replace(m, kind="room", value="office") if k in study else m for k, m in enumerate(marks)]
+
+
+def _pisos(marks: list[Mark]) -> list[Mark]:
+    """Read Spanish "dos pisos" as storeys; "un piso" is a flat."""
+    made: list[Mark] = []
+    for mark in marks:
+        if mark.kind == "home" and mark.text == "pisos" and made and made[-1].kind == "num":
+            number = made.pop()
+            made.append(replace(number, kind="amount", value="storeys", last=mark.last))
+        else:
+            made.append(mark)
+    return made
 
 
 def _counts(marks: list[Mark]) -> list[Mark]:

@@ -116,7 +116,7 @@ def fill(draft: Draft, state: Reading) -> None:
     draft.cite(mark.first, mark.last, "rooms")
     if count > MAX_ROOMS:
         raise RefusedError(f"{count} rooms are asked for", f"ask for {MAX_ROOMS} at most")
-    if language in {"de", "zh"} and mark.text.split()[-1] not in {"raeume", "个 房 间"} and count <= 9:
+    if language in {"de", "zh"} and not mark.text.endswith(("raeume", "个 房 间")) and count <= 9:
         _living_rooms(draft, state, count)
         return
     if count < 2:
