@@ -15,6 +15,7 @@ from pipeline.entities.home import Home
 from pipeline.errors import SfgenError
 from pipeline.execution import map_shards
 from pipeline.experiments.dataset import RejectCount
+from pipeline.experiments.knobs import knob_picture
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.rows import homes_of
@@ -52,6 +53,7 @@ def write_report(
             figures["dataset"], _json(root / "metrics" / "sampling.json") | _json(root / "metrics" / "timing.json"), views
         ),
         sections.plan_section(figures["plan"]),
+        *_knobs(root, folder),
         sections.quantity_section(figures["quantity"], rates["quantity"]),
         sections.articulation_section(figures["articulation"], figures["ablation"]),
         sections.walkable_section(figures["walkable"], rates["walkable"]),
@@ -70,6 +72,16 @@ def _calibration(folder: Path, found: Mapping[str, Any]) -> Section:
         write_bytes(folder / "plots" / f"{name}.png", png)
         pictures.append(Picture(f"plots/{name}.png", name.replace("_", ", ")))
     return calibration.calibration_section(found, pictures)
+
+
+def _knobs(root: Path, folder: Path) -> list[Section]:
+    """Return the chapter of the knobs, from the table that the checkout carries; a checkout without docs has none."""
+    kept = root / "docs" / "knobs.json"
+    if not kept.is_file():
+        return []
+    table = _json(kept)
+    write_bytes(folder / "plots" / "knobs.png", knob_picture(table))
+    return [sections.knob_section(table, Picture("plots/knobs.png", "each knob against its own term"))]
 
 
 def _told(reject: RejectCount) -> list[str]:

@@ -1,0 +1,46 @@
+"""The knob experiment: programs in which every term can move, what counts as monotone, and what the report says of it."""
+
+import pytest
+
+from pipeline.experiments.knobs import VALUES, knob_picture, knob_table, monotone, subjects
+from pipeline.floorplan.energy import TERMS
+from pipeline.report.page import Picture
+from pipeline.report.sections import knob_section
+
+
+@pytest.fixture(scope="module")
+def table():
+    return knob_table(2)
+
+
+def test_every_knob_has_a_program_and_a_row_per_value(table):
+    assert list(subjects()) == list(table["terms"]) == list(TERMS)
+    for found in table["terms"].values():
+        assert len(found["mean"]) == len(found["error"]) == len(VALUES) == len(found["step"]) + 1
+        assert found["ends"][0] == pytest.approx(sum(step for step, _ in found["step"]), abs=1e-4)
+
+
+@pytest.mark.parametrize("name", ["circulation", "stair_fit", "stair_snug"])
+def test_the_program_of_a_rare_term_leaves_it_something_to_do(table, name):
+    assert min(table["terms"][name]["mean"][:3]) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("steps", "ends", "falls"),
+    [
+        ([[-1.0, 0.1], [-1.0, 0.1]], [-2.0, 0.2], True),
+        ([[-1.0, 0.1], [0.05, 0.1]], [-0.95, 0.2], True),  # within its error
+        ([[-1.0, 0.1], [0.2, 0.1]], [-0.8, 0.2], False),
+        ([[-0.1, 0.1], [-0.1, 0.1]], [-0.2, 0.1], False),  # too little
+        ([[0.0, 0.0], [0.0, 0.0]], [0.0, 0.0], False),
+    ],
+)
+def test_monotone_needs_steps_and_ends(steps, ends, falls):
+    assert monotone({"step": steps, "ends": ends}) is falls
+
+
+def test_the_report_shows_what_was_measured(table):
+    assert knob_picture(table).startswith(b"\x89PNG")
+    view = knob_section(table, Picture("plots/knobs.png", "")).tables[0]
+    assert [row[0] for row in view.rows] == [name.replace("_", " ") for name in TERMS]
+    assert all(len(row) == len(view.header) for row in view.rows)
