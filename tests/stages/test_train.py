@@ -60,7 +60,14 @@ def make_root(root, steps=4, houses=9, workers=1):
             made["objects"].append(blank(OBJECTS, scene_id=scene, object_id=f"o{k}", room_id="r", category=name, asset_id=name, **pose))
     for table in (SCENES, ROOMS, OPENINGS, OBJECTS):
         tables.write(root / f"data/tables/{table.name}.parquet", table, made[table.name])
-    box = {"axis": [0.0, -1, 0], "origin": [0.0] * 3, "sweep_min": [-0.5, -0.9, 0.1], "sweep_max": [0.5, -0.5, 0.4], "handle": [0.0] * 3}
+    box = {
+        "after": [],
+        "axis": [0.0, -1, 0],
+        "origin": [0.0] * 3,
+        "sweep_min": [-0.5, -0.9, 0.1],
+        "sweep_max": [0.5, -0.5, 0.4],
+        "handle": [0.0] * 3,
+    }
     tables.write(root / "data/tables/asset_joints.parquet", ASSET_JOINTS, [blank(ASSET_JOINTS, asset_id="nightstand", joint_id="j", **box)])
     latents = [{"asset_id": a, "latent": rng.normal(0, 1, 32).tolist()} for a in ("double_bed", "nightstand")]
     tables.write(root / "data/latents/latents.parquet", LATENTS, latents)
