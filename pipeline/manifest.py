@@ -32,9 +32,13 @@ def canonical(value: Any) -> bytes:
     return json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False, ensure_ascii=False).encode()
 
 
-def write_bytes(path: Path, data: bytes) -> None:
-    """Write a file whole or not at all: temporary name beside it, fsync, rename."""
-    write_with(path, lambda temporary: _put(temporary, data))
+def write_bytes(path: Path, data: bytes, *, flush: bool = True) -> None:
+    """Write a file whole or not at all: temporary name beside it, fsync, rename.
+
+    Without `flush` it is whole after a kill, not after a power cut: for the many files of a stage, which runs again then.
+    """
+    with replacing(path, flush=flush) as temporary:
+        temporary.write_bytes(data)
 
 
 def write_json(path: Path, value: Any) -> None:
@@ -49,18 +53,15 @@ def write_with(path: Path, writer: Callable[[Path], object]) -> None:
 
 
 @contextmanager
-def replacing(path: Path) -> Iterator[Path]:
+def replacing(path: Path, *, flush: bool = True) -> Iterator[Path]:
     """Give a temporary file with the suffix of `path` to fill; it becomes `path` when the block ends without an error."""
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".tmp-{os.getpid()}-{path.name}")
     try:
         yield temporary
-        with temporary.open("rb") as handle:
-            os.fsync(handle.fileno())
+        if flush:
+            with temporary.open("rb") as handle:
+                os.fsync(handle.fileno())
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
-
-
-def _put(path: Path, data: bytes) -> None:
-    path.write_bytes(data)

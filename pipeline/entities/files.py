@@ -22,7 +22,7 @@ FORMAT = "sfgen-asset-1"
 def save_asset(path: Path, asset: Asset) -> str:
     """Write an asset file (atomically) and return its sha256. The bytes depend on nothing but the asset."""
     data = encode(asset)
-    write_bytes(path, data)
+    write_bytes(path, data, flush=False)
     return sha256(data)
 
 
