@@ -79,7 +79,7 @@ def run(root: Path, seed: int, settings: MetricsSettings, family: Sequence[Condi
 
 def _rooms(source: Mapping[str, Sequence[Row]], settings: MetricsSettings, condition: Condition) -> Sequence[RoomJob]:
     if condition.name in {paper.ALL_PLAIN, paper.ALL_GUIDED}:
-        return test_rooms(source, settings.split, taxonomy.load().layout_types)[: settings.all_rooms]
+        return spread(test_rooms(source, settings.split, taxonomy.load().layout_types), settings.all_rooms)
     jobs = test_rooms(source, settings.split, LIVED_IN)
     if condition.count is not None:  # rooms that can hold so many things: 1.2 m2 of floor for each
         jobs = [job for job in jobs if job.room.area >= 1.2 * condition.count] or jobs

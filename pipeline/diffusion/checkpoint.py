@@ -27,7 +27,8 @@ REMEDY = "run `make run`, or `dvc repro train`, which makes it"
 class Header:
     """What travels with the weights: layout types in order, slots, levels, the model's settings.
 
-    Rooms of the layout types `few` get `few_slots` instead of `slots` (see `slots_for`).
+    Rooms of the layout types `few` get `few_slots` instead of `slots` (see `slots_for`). `held` lists, per layout type, the classes
+    that its training rooms hold, by their place in `norm.classes`; nothing else is sampled there. An empty list: anything.
     """
 
     norm: Normalisation
@@ -37,6 +38,7 @@ class Header:
     model: ModelSettings
     few: tuple[str, ...] = ()
     few_slots: int = 12
+    held: tuple[tuple[int, ...], ...] = ()
 
     def slots_for(self, layout: str, count: int | None) -> int:
         """Return how many slots a room gets: few where these hold the asked count, or what such rooms hold, with two to spare."""
@@ -67,6 +69,7 @@ def load_weights(path: Path) -> tuple[Denoiser, Header]:
             build(ModelSettings, value["model"], "train.model"),
             tuple(value["few"]),
             value["few_slots"],
+            tuple(map(tuple, value["held"])),
         )
         net = build_net(header)
         net.load_state_dict(tensors)

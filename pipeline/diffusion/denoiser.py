@@ -149,8 +149,10 @@ class Denoiser(nn.Module):
         logits = logits + prior
         return torch.cat([goes[:, :, 0], plain[..., :4], goes[:, :, 1], plain[..., 4:]], -1), logits
 
-    def expected(self, x: Tensor, alpha: Tensor, sigma: Tensor, rooms: RoomBatch, code: FloorCode | None = None) -> tuple[Tensor, Tensor]:
-        """Return the expected clean slots x0 (B, N, D), and the class logits.
+    def expected(
+        self, x: Tensor, alpha: Tensor, sigma: Tensor, rooms: RoomBatch, code: FloorCode | None = None, allowed: Tensor | None = None
+    ) -> tuple[Tensor, Tensor]:
+        """Return the expected clean slots x0 (B, N, D), and the class logits. Classes that are not `allowed` (B, C + 1) have no chance.
 
         The net says where a slot would stand if it held something; an empty slot's channels are unit noise as data, of
         which alpha * x is the mean given x. The expectation weighs the two by the chance that the slot is empty: without
@@ -158,6 +160,8 @@ class Denoiser(nn.Module):
         """
         a, s, seen = alpha[:, None, None], sigma[:, None, None], x[..., :CONTINUOUS]
         raw, logits = self(x, alpha, rooms, code)
+        if allowed is not None:
+            logits = logits.masked_fill(~allowed[:, None], -torch.inf)
         chance = logits.softmax(-1)
         held = from_target(self.settings.target, raw, seen, a, s)
         continuous = a * seen + (1 - chance[..., -1:]) * (held - a * seen)

@@ -15,7 +15,7 @@ from pipeline import tables, taxonomy
 from pipeline.diffusion.batch import Objects, RoomBatch, stacked
 from pipeline.diffusion.checkpoint import Header, load_checkpoint
 from pipeline.diffusion.codec import Codec, Normalisation
-from pipeline.diffusion.rooms import Sets, layout_weights, sets_of, small_types, stacked_rows, sweeps_by_asset
+from pipeline.diffusion.rooms import Sets, held_classes, layout_weights, sets_of, small_types, stacked_rows, sweeps_by_asset
 from pipeline.diffusion.settings import TrainSettings
 from pipeline.diffusion.team import Team
 from pipeline.diffusion.training import Trainer
@@ -84,6 +84,7 @@ def load(root: Path, settings: TrainSettings) -> tuple[Sets, Header]:
         settings.model,
         small_types(sets, words.layout_types, settings.few_slots) if settings.few_share else (),
         settings.few_slots if settings.few_share else settings.slots,
+        held_classes(sets, words.layout_types),
     )
 
 

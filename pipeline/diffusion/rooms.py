@@ -166,6 +166,14 @@ def stacked_rows(examples: Sequence[Example]) -> NDArray[np.float64]:
     return np.concatenate([e.continuous for e in examples] or [np.zeros((0, CONTINUOUS))])
 
 
+def held_classes(sets: Sets, layouts: tuple[str, ...]) -> tuple[tuple[int, ...], ...]:
+    """Return, per layout type, the classes that training rooms of it hold; none for a type without rooms."""
+    held: dict[int, set[int]] = {}
+    for example in sets.train:
+        held.setdefault(example.layout, set()).update(example.classes.tolist())
+    return tuple(tuple(sorted(held.get(i, ()))) for i in range(len(layouts)))
+
+
 def small_types(sets: Sets, layouts: tuple[str, ...], slots: int) -> tuple[str, ...]:
     """Return the layout types of which 97 % of the rooms leave two of `slots` empty."""
     held: dict[int, list[int]] = {}

@@ -112,12 +112,14 @@ class Sampler:
         counts = torch.tensor([-1 if r.n_target is None else min(r.n_target, slots) for r in rooms], device=device)
         demands = [room.demands for room in rooms]
         code = self.net.floor_code(told)
+        allowed = self._allowed(rooms).to(device)
         guide = Guide(told, counts, self.library, openable_classes(self.header.norm.classes).to(device), self.settings)
         schedule, ones = linear(self.header.timesteps), torch.ones(len(rooms), device=device)
         thousandth = 1000 / self.header.timesteps
 
         def expect(x: Tensor, alpha: float, sigma: float) -> Tensor:
-            return impose(self.net.expected(x, alpha * ones, sigma * ones, told, code)[0], demands, self.header.norm.classes)
+            x0, _ = self.net.expected(x, alpha * ones, sigma * ones, told, code, allowed)
+            return impose(x0, demands, self.header.norm.classes)
 
         def steer(x0: Tensor, level: float) -> Tensor:
             return shift(guide, self.net.codec, x0, level * thousandth)
@@ -130,6 +132,17 @@ class Sampler:
             return ancestral(expect, steer, noise, schedule)
         s = self.settings
         return ddim(expect, steer, noise, schedule, levels(schedule.timesteps, s.steps_coarse, s.steps_middle, s.steps_fine))
+
+    def _allowed(self, rooms: Sequence[RoomContext]) -> Tensor:
+        """Return which classes, or emptiness, (B, C + 1) a slot of each room may take: what its type holds, and what is demanded."""
+        names = self.header.norm.classes
+        allowed = torch.zeros(len(rooms), len(names) + 1, dtype=torch.bool)
+        allowed[:, -1] = True
+        for row, room in zip(allowed, rooms, strict=True):
+            held = self.header.held[self.header.layouts.index(room.layout_type)] if self.header.held else ()
+            asked = [k for d in room.demands for k, name in enumerate(names) if name in d.categories]
+            row[[*held, *asked] if held else slice(None)] = True
+        return allowed
 
     def _told(self, rooms: Sequence[RoomContext]) -> RoomBatch:
         """Encode the rooms' floors, types and (where told) counts."""

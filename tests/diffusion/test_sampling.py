@@ -1,8 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
 
 from pipeline.diffusion.checkpoint import Header, build_net, save_weights
+from pipeline.diffusion.context import Demand
 from pipeline.diffusion.sampling import Sampler
 from pipeline.diffusion.settings import ModelSettings, SampleSettings
 from pipeline.errors import ContentError
@@ -123,3 +126,23 @@ def test_sampling_leaves_torch_s_threads_as_they_were(weights):
     before = torch.get_num_threads()
     sampler(weights).sample_rooms([make_context(0)], [(0, 0, 0)])
     assert torch.get_num_threads() == before
+
+
+def test_rooms_hold_what_rooms_of_their_type_held_and_what_is_asked_for(weights, norm):
+    s = sampler(weights)
+    rooms = [make_context(i, n_target=5) for i in range(6)]
+    keys = [(i, 0, 0) for i in range(6)]
+    few = replace(s, header=replace(s.header, held=((0, 2),) * len(LAYOUTS)))
+    free = {p.category for room in s.sample_rooms(rooms, keys) for p in room}
+    assert not free <= {norm.classes[0], norm.classes[2]}  # else the next line says nothing
+    assert {p.category for room in few.sample_rooms(rooms, keys) for p in room} <= {norm.classes[0], norm.classes[2]}
+    wish = Demand((norm.classes[1],), least=2)
+    asked = few.sample_rooms([replace(room, demands=(wish,)) for room in rooms], keys)
+    assert all(sum(p.category == norm.classes[1] for p in room) >= 2 for room in asked)
+
+
+def test_what_rooms_hold_travels_with_the_weights(weights, tmp_path):
+    s = sampler(weights)
+    header = replace(s.header, held=((0, 3), ()))
+    save_weights(tmp_path / "d.safetensors", header, dict(s.net.state_dict()))
+    assert sampler(tmp_path / "d.safetensors").header == header
