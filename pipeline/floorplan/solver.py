@@ -27,6 +27,7 @@ TRIES = 24  # whole attempts before a program is refused
 LENGTHS = (1, 1, 2, 2, 4, 4, 4, 4, 8)  # how much longer attempts search
 EASE = (3, 4, 7)  # attempts from which what nobody stated is let go, step by step
 BOLD, OVERHANG = 12, 0.04  # attempts from which a storey may hang over the one below by more than this share of the outline
+SLOT = 3  # cells of outside between two rooms that one can leave free
 EASED_ASPECT = 2.2  # of the outline then
 STARTS, MOST_STARTS = 4, 9  # slicing trees per attempt: usual, and while all of them lack something
 RUNS = 2  # annealing runs per storey and attempt, from the best of these
@@ -112,7 +113,7 @@ def _attempt(program: FloorProgram, rng: np.random.Generator, attempt: int, effo
         if made is None:
             return None
         grid = made[0]
-        if solved and attempt < BOLD and _hangs(grid, solved[-1]):
+        if attempt < BOLD and (_slotted(grid) or (solved and _hangs(grid, solved[-1]))):
             return None
         terms += made[1]
         if program.storeys > 1 and stair is None:
@@ -156,6 +157,16 @@ def _hangs(grid: Labels, below: tuple[Storey, Labels]) -> bool:
     """Whether much of a storey has nothing under it."""
     bare = below[1] == len(below[0].rooms)
     return bool(np.sum((grid != grid[0, 0]) & bare) > OVERHANG * grid.size)
+
+
+def _slotted(grid: Labels) -> bool:
+    """Whether rooms stand so close to each other with nothing between that one could only fill it: slots outside of less than three cells."""
+    for outside in (grid == grid[0, 0], (grid == grid[0, 0]).T):
+        for width in range(1, SLOT):
+            between = np.logical_and.reduce([outside[:, k : outside.shape[1] - width - 1 + k] for k in range(1, width + 1)])
+            if np.any(between & ~outside[:, : -width - 1] & ~outside[:, width + 1 :]):
+                return True
+    return False
 
 
 def _storey_grid(

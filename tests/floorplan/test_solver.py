@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan import complete, plan_json, prior, solve
+from pipeline.floorplan import complete, plan_json, prior, solve, solver
 from pipeline.floorplan.openings import leaf_sweep
 from pipeline.floorplan.program import Accessibility, FloorProgram, Footprint, Forbid, Link, Range, Relation, RoomReq
 
@@ -242,3 +242,14 @@ def test_a_hopeless_program_ends_with_a_refusal():
     )  # fmt: skip
     with pytest.raises(RefusedError, match="attempts"):
         solve(program, 0)
+
+
+def test_slots_that_one_can_only_fill_are_seen():
+    rows = ["........", ".aaaaaa.", ".aa..bb.", ".aa..bb.", "........"]  # a notch of two cells
+    grid = np.array([[{"a": 0, "b": 1, ".": 2}[c] for c in row] for row in rows])
+    assert solver._slotted(grid)
+    assert solver._slotted(grid.T)
+    wide = np.array([[{"a": 0, "b": 1, ".": 2}[c] for c in row] for row in [".........", ".aaaaaaa.", ".aa...bb.", "........."]])
+    assert not solver._slotted(wide)
+    assert not solver._slotted(wide.T)
+    assert not solver._slotted(np.array([[2, 2, 2], [2, 0, 2], [2, 2, 2]]))
