@@ -1,7 +1,7 @@
 """How exactly prompts are read: the share of prompts whose program states what they say, per file, language and half.
 
 `python -m benchmarks.language [--file sentences] [--half held|tuned] [--language en] [--faults]`. Ground truth:
-`manifests/prompts/languages.yaml` and `sentences.yaml`.
+`languages.yaml`, `sentences.yaml` and `speech.yaml` in `manifests/prompts`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pipeline.floorplan import FloorProgram, parse
 from pipeline.floorplan.program import Furniture, Range
 
 PROMPTS = Path(__file__).resolve().parents[1] / "manifests" / "prompts"
-FILES = ("languages", "sentences")
+FILES = ("languages", "sentences", "speech")
 CLOSE = 0.12  # relative error of an area that is still "about" it
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pipeline.floorplan.language.comparing import compare, factor
 from pipeline.floorplan.language.facts import PERSONAL, ROLES, SOCIAL, Group, Reading
 from pipeline.floorplan.language.naming import fresh, name
-from pipeline.floorplan.language.openness import merge, merge_after, no_door, written_as_one
+from pipeline.floorplan.language.openness import merge, merge_after, no_door, windows, written_as_one
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import level, storey, wing, zone
 from pipeline.floorplan.language.pointing import point
@@ -185,11 +185,10 @@ class Clause:
     def _flag(self, k: int, e: Element) -> int:
         self.state.understood(e.first, e.last)
         self.state.flags.setdefault(e.value, e)
-        rooms = tuple(i for i in (self.latest or self.subject) if not i.startswith("*"))
         negative = self.negated(k)
-        if e.value == "daylight" and rooms:
-            self.state.say("no_window" if negative else "window", rooms, (), e)
-        elif (
+        if e.value == "daylight":
+            return windows(self, k, e, negative)
+        if (
             e.value == "ends" and len(self.latest) == 2 and k and self.sentence[k - 1].kind in {"np", "verb", "det", "word", "cue", "home"}
         ):
             self.state.say("away", self.latest[:1], self.latest[1:], e)
@@ -267,7 +266,7 @@ class Clause:
 
     def _det(self, k: int, e: Element) -> int:
         last = k + 1 >= len(self.sentence) or self.sentence[k + 1].kind in {"comma", "close"}
-        if e.value == "each" and last and k and self.sentence[k - 1].kind == "np" and len(self.latest) == 1:
+        if (e.value == "each" or e.text in {"cada uno", "cada una"}) and last and k and self.sentence[k - 1].kind == "np" and len(self.latest) == 1:
             self._one_each(e)
             return k + 1
         if e.value == "other" and next((x.kind for x in self.sentence[k + 1 :] if x.kind != "verb"), "") in {"level", "colon"}:
@@ -276,7 +275,12 @@ class Clause:
             self.subject = self.latest = tuple(i for x in self.run for i in x.ids)  # "kitchen, two bedrooms, bath - all off the hall"
             self.run = [Element("np", "", e.first, e.last, e.text, ids=list(self.latest))]
             return k + 1
-        if e.value in {"both", "each", "all"} and not any(x.kind == "np" for x in self.sentence[k + 1 : k + 2]):
+        if e.value == "all" and k and self.sentence[k - 1].kind == "every":
+            return k + 1
+        ahead = self.sentence[k + 1].kind if k + 1 < len(self.sentence) else ""
+        if e.value == "other" and ahead in {"verb", "amount"}:  # "one bedroom of 16 m2, the other of 10"
+            return self._pron(k, Element("pron", "rest", e.first, e.last, e.text))
+        if e.value in {"both", "each", "all"} and ahead != "np":
             return self._pron(k, Element("pron", "both" if e.value == "both" else "group", e.first, e.last, e.text))
         return k + 1
 
@@ -288,6 +292,8 @@ class Clause:
         before = self.sentence[k - 1] if k else None
         if before is not None and before.kind == "pron" and before.value == "one" and e.value in ROLES:
             self._role(before, e.value)  # "four bedrooms, uno de ellos para invitados"
+        if e.value == "equal" and before is not None and before.kind in {"det", "verb", "pron"} and len(self.latest) > 1:
+            self.state.say("area_equal", self.latest, (), e, 0.15)
         if self.verb:
             superlative(self, e)
         return k + 1

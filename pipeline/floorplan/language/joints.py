@@ -292,6 +292,11 @@ def _apart(draft: Draft, state: Reading) -> None:  # noqa: C901 - one branch per
             for bed in stock.of("bedroom"):
                 for bath in stock.of("bathroom"):
                     draft.forbid("connected", bath.id, bed.id, None, fact.first, fact.last)
+        if fact.what == "no_through":
+            for bed in expand(fact.a):
+                for room in stock.rooms:
+                    if room.id != bed and room.type not in INNER and room.id not in draft.linked(bed):
+                        draft.forbid("through", room.id, None, bed, fact.first, fact.last)
         if fact.what not in {"away", "ban", "avoid"}:
             continue
         for a, b in itertools.product(expand(fact.a), expand(fact.b)):

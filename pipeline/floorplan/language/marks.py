@@ -282,7 +282,8 @@ def _amount(marks: Sequence[Mark], k: int, lex: Lexicon) -> tuple[Mark, int] | N
     if unit is None:
         return None
     behind = lex.bounds.get(marks[i].text, "about") if i < len(marks) else "about"
-    if behind != "about" and not (i + 1 < len(marks) and marks[i + 1].kind == "num"):
+    added = i + 1 < len(marks) and marks[i].text == "+" and marks[i + 1].kind in {"room", "suite", "det", "adj", "size", "pron"}
+    if behind != "about" and not added and not (i + 1 < len(marks) and marks[i + 1].kind == "num"):
         bound, i = ("least" if behind in {"or_more", "least"} else "most"), i + 1
     factor, value = unit.number, unit.value
     if side is not None and value == "length":

@@ -224,7 +224,7 @@ def _others(state: Reading, sentence: list[Element], k: int, role: str, level: i
     """Return "the other two bedrooms": those that nothing was said of, new ones where they are too few."""
     e, stock = sentence[k], state.inventory
     same = stock.of(e.type)
-    last = {i for g in state.past[-1:] for i in g} | {i for x in sentence[:k] for i in x.ids}
+    last = {i for g in state.past[-1:] for i in g} | {i for x in sentence[:k] for i in x.ids} | set(state.topic)
     rest = [r for r in same if r.open_slot] or [r for r in same if r.id not in last] or same[-1:]
     many = e.plural or (e.number or 0) > 1
     if e.number is not None and e.type == "bedroom":
@@ -349,6 +349,8 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
     if not e.det and (_repeated_bare(sentence, k) or (e.type == "storage" and all(e.text != r.surface for r in same))):
         return [stock.add(e.type, "", e.text, level)]
     if len(same) > 1:
+        if e.number == 1 and (loose := [r for r in same if r.open_slot and not r.role]):
+            return [_close(loose[0], "", e.text)]  # "one bedroom ..., the other ..."
         word = e.text.rsplit(maxsplit=1)[-1]
         same = [r for r in same if word in r.surface.split()] or same
         recent = [r for r in same if any(r.id in x.ids for x in sentence[:k])]

@@ -1,4 +1,4 @@
-"""Rooms that are open to each other, and doors that must not be."""
+"""Rooms that are open to each other, and doors, ways and windows that must not be."""
 
 from __future__ import annotations
 
@@ -66,11 +66,40 @@ def no_door(clause: Clause) -> None:
     for first, last in itertools.pairwise(ends):
         part = clause.sentence[first + 1 : last]
         none = next((j for j, e in enumerate(part) if e.kind in {"neg", "used"}), None)
+        if none is not None and (flag := next((e for e in part if e.kind == "flag" and e.value == "thoroughfare"), None)):
+            _no_way(clause, part, flag)
+            clause.sentence[first + 1 : last] = []
+            return
         door = next((e for e in part[none:][1:4] if e.kind == "flag" and e.value == "doors"), None) if none is not None else None
         rooms = [k for k in range(first + 1, last) if clause.sentence[k].kind == "np"]
+        if door is None and none is not None and len(rooms) == 2:  # "the bathroom door must not open into the kitchen"
+            door = next((e for e in clause.sentence[rooms[0] + 1 : first + 1 + none] if e.kind == "flag" and e.value == "doors"), None)
         if door is None or len(rooms) != 2:
             continue
         a, b = (tuple(name(clause.state, clause.sentence, k, None)) for k in rooms)
         clause.state.say("not_connected", a, b, door)
         clause.sentence[first + 1 : last] = []
         return
+
+
+def _no_way(clause: Clause, part: list[Element], flag: Element) -> None:
+    """Read "no bedroom is a thoroughfare", "no walk-through bedrooms", "the study must not be a through room"."""
+    rooms: list[str] = []
+    for x in (x for x in part if x.kind == "np"):
+        k = next(i for i, y in enumerate(clause.sentence) if y is x)
+        rooms += [f"*{x.type}"] if x.banned or not x.definite else name(clause.state, clause.sentence, k, None)
+    clause.state.say("no_through", tuple(rooms) or ("*bedroom",), (), flag)
+
+
+def windows(clause: Clause, k: int, e: Element, negative: bool) -> int:
+    """Read "no windows in the bedroom", "the bath needs daylight"; return where to go on."""
+    rooms = tuple(i for i in (clause.latest or clause.subject) if not i.startswith("*"))
+    j = k + 1
+    ahead = clause.sentence[j] if j < len(clause.sentence) else None
+    if ahead is not None and ahead.kind == "cue" and ahead.value == "in" and (negative or not clause.run):
+        named, end = clause.after(j + 1, "in", ())
+        rooms, j = (named, end) if named else (rooms, j)
+    if rooms:
+        clause.state.say("no_window" if negative else "window", rooms, (), e)
+    clause.negative = None
+    return j

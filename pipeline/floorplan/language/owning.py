@@ -69,6 +69,11 @@ def has(clause: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one branc
         return ahead + 1
     if thing.type == "balcony" and kind in {"bathroom", "hallway"}:
         return k + 1  # "两室一厨一卫带阳台": the home has it
+    if kind == "hallway" and thing.type == "bedroom" and not thing.definite:  # "a corridor with two bedrooms and a bathroom"
+        group, j = clause.after(ahead, "leads", owners)
+        clause.state.say("door", group, owners, e)
+        clause.latest, clause.run = group, [thing]
+        return j
     if thing.type in {"bedroom", "living_room", "family_room", "garage"} or (thing.ids and thing.definite):
         return k + 1
     ids = tuple(name(clause.state, sentence, ahead, storey(clause, ahead)))

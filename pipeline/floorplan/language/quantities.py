@@ -30,6 +30,8 @@ def belongs(state: Reading, sentence: list[Element], e: Element, mark: Mark) -> 
     listed = len(rooms) > 2 or (
         any(x.kind == "home" and not x.amounts for x in sentence[:k]) and mark.first == e.last and mark.text[0].isdigit()
     )
+    if len(measured) == 1 and rooms.index(e) and mark.number > HUGE * usual:
+        return True  # "1BR 1BA 550 sf, galley kitchen"
     total = k + 1 < len(sentence) and sentence[k + 1].kind == "flag" and sentence[k + 1].value == "total"
     huge = home_before(sentence, k) and mark.number > HUGE * usual
     return total or (len(measured) == 1 and huge) or (listed and len(measured) == 1 and last and mark.number > 2.5 * usual)
@@ -45,7 +47,7 @@ def attach(state: Reading, sentence: list[Element], k: int, mark: Mark, latest: 
     state.understood(mark.first, mark.last)
     if mark.value == "storeys":
         if mark.number >= 1:
-            state.storeys = state.storeys or (int(mark.number), mark)
+            state.storeys = state.storeys or (2 if mark.number == 1.5 else int(mark.number), mark)  # one and a half: the half is to sleep in
         return
     if mark.value == "rooms":
         state.rooms = state.rooms or (int(mark.number), mark)

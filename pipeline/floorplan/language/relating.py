@@ -19,6 +19,7 @@ MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two
 THROUGH = {"through", "via", "durch", "ueber", "por", "traves", "经", "过"}
 ASIDE = {"balcony", "garage", "hallway", "staircase"}  # not meant when the largest room is spoken of
 CLOSED = {"balcony", "garage", "bathroom", "wc", "closet", "storage", "utility", "bedroom"}
+CONNECTS = {"connect", "connects", "connecting", "links", "linking", "joins", "joining", "une", "conecta", "comunica", "verbindet"}
 WIDE = {"leads", "between", "chain", "avoid", "except"}
 
 
@@ -239,9 +240,11 @@ def _mutual(clause: Clause, e: Element) -> None:
 
 def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one branch per case: a grammar
     """Return the subject of a cue: the phrase in front, the list in front of a verb, or what the clause is about."""
-    if not clause.run:
-        return clause.subject
     before = clause.sentence[k - 1] if k else None
+    if not clause.run:
+        cue = next((x for x in reversed(clause.sentence[:k]) if x.kind == "cue"), None)
+        chained = before is not None and before.kind == "np" and cue is not None and cue.value == e.value == "near"
+        return clause.objects if chained and clause.objects and not clause.relative else clause.subject  # "X next to Y next to Z"
     if before is not None and before.kind == "comma" and clause.objects and set(clause.objects) == {i for x in clause.run for i in x.ids}:
         return clause.subject  # "a guest room with its own bath, away from ..."
     apart = before is not None and before.kind == "comma" and len(clause.run) > 1
@@ -311,6 +314,9 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
                 or (group and first is not None and not pair and not _continues(clause, index, cue, joined, first))
             ):
                 break
+            private = {clause.stock.get(i).type for i in left if not i.startswith("*")} == {"bedroom"}
+            if private and cue == "leads" and joined == "comma" and e.type in SOCIAL:
+                break  # a bedroom leads to its bath, and the list of rooms goes on
             ids = name(clause.state, sentence, index, clause.level if clause.forward else None)
             clause.state.understood(e.first, e.last)
             measures(clause, e)
@@ -336,8 +342,10 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
         elif e.kind == "every" and not group:
             clause.state.understood(e.first, e.last)
             return ("*",), index + 1
-        elif e.kind == "cue" and e.value in {"in", "leads"} and joined and cue in WIDE:
-            pass
+        elif (e.kind == "cue" and e.value in {"in", "leads"} and joined and cue in WIDE) or (
+            group and (e.value == "has" or e.kind == "to") and cue == "leads" and CONNECTS & set(sentence[k - 1].text.split())
+        ):
+            joined = joined or "and"  # "connects the kitchen with the garage"
         elif e.kind in {"comma", "and", "or"}:
             if not group and e.kind == "comma":
                 break

@@ -1,0 +1,156 @@
+"""Ways and rooms said without their own words: "through which you reach ...", "and from there to ...", "one single", "2 ZKBB"."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from pipeline.floorplan.language.marks import Mark, Words
+
+ENDS = {"stop", "line"}
+BY = {"durch", "ueber", "von", "aus", "por", "desde", "through", "via", "from"}  # in front of a relative pronoun
+ARTICLES = {"das", "die", "den", "dem", "der", "el", "la", "los", "las"}
+INTO = {"al", "a", "to", "into", "ins", "in", "in den", "in die", "in das", "zum", "zur"}
+SINGLE = {"single", "individual", "sencilla", "einzelne"}
+LETTERS = {"k": "kitchen", "d": "hallway", "b": "bathroom", "t": "balcony"}  # "ZKDB": rooms, kitchen, hall, bathroom
+MORE = {"comma", "join", "fill", "adverb", "dash"}
+
+
+def written_out(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Return the marks with what is left unsaid put in."""
+    made = _lettered(marks, heard)
+    made = _numbered(_singles(_summed(made)))
+    made = _rather(made)
+    return _elliptic(_relative(made, heard), heard)
+
+
+def _summed(marks: Sequence[Mark]) -> list[Mark]:
+    """Read a plus between rooms as "and"."""
+    return [replace(m, kind="join", value="and") if m.text == "+" and m.kind == "bound" else m for m in marks]
+
+
+def _lettered(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Read German "3 ZKBB" as three rooms, kitchen, bathroom and balcony."""
+    made: list[Mark] = []
+    for mark in marks:
+        made.append(mark)
+        word = mark.text.rsplit(" ", 1)[-1]
+        if heard.lexicon.language != "de" or mark.kind != "amount" or mark.value != "rooms" or not word.startswith("zk"):
+            continue
+        for k, letter in enumerate(word[1:], 1):
+            kind = "balcony" if letter == "b" and "b" in word[:k] else LETTERS.get(letter, "")
+            if kind:
+                made += [Mark("comma", "", 0.0, False, mark.last, mark.last, ","), replace(mark, kind="room", value=kind, number=0.0)]
+    return made
+
+
+def _singles(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "three double bedrooms and one single" as four bedrooms."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        ahead = marks[k + 1].kind if k + 1 < len(marks) else "stop"
+        before = made[-1] if made else None
+        counted = before is not None and (
+            before.kind == "num" or (before.kind, before.value) in {("pron", "one"), ("det", "indefinite"), ("det", "another")}
+        )
+        beds = any(m.kind == "room" and m.value.startswith("bedroom") for m in made[-6:])
+        if mark.text.removesuffix("es").removesuffix("s") in SINGLE and ahead in {"comma", "stop", "line", "join"} and counted and beds:
+            assert before is not None
+            number = before if before.kind == "num" else replace(before, kind="num", value="", number=1.0)
+            made[-1:] = [replace(before, kind="det", value="another"), number]
+            made.append(replace(mark, kind="room", value="bedroom", plural=number.number > 1))
+        else:
+            made.append(mark)
+    return made
+
+
+def _numbered(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "the first is twice the second" as said of the rooms that were counted before."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        made.append(mark)
+        ahead = marks[k + 1].kind if k + 1 < len(marks) else "stop"
+        counted = next((m for m in reversed(made) if m.kind == "room" and m.plural), None)
+        named = len(made) > 1 and made[-2].kind == "det" and made[-2].value == "definite"
+        if mark.kind == "ord" and named and counted is not None and ahead in {"verb", "factor", "cmp", "comma", "stop", "line", "cue"}:
+            made.append(replace(counted, plural=False, first=mark.last, last=mark.last))
+    return made
+
+
+def _rather(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "rather two bathrooms than a dining room": what stands behind "than" where nothing is compared is not wanted."""
+    made = list(marks)
+    for k, mark in enumerate(marks):
+        start = max((i for i in range(k) if marks[i].kind in ENDS), default=-1) + 1
+        compared = any(m.kind in {"cmp", "factor", "size"} for m in marks[start:k])
+        if mark.kind == "fill" and mark.text == "than" and not compared and any(m.kind == "room" for m in marks[start:k]):
+            made[k] = replace(mark, kind="neg")
+    return made
+
+
+def _relative(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Read "a closet through which you reach the bathroom", "durch das man ins Bad kommt", "a la que solo se entra por la cocina"."""
+    made: list[Mark] = []
+    k = 0
+    while k < len(marks):
+        pronoun = _pronoun(marks, k)
+        way = _way(marks, k + pronoun) if pronoun else None
+        if way is None:
+            made.append(marks[k])
+            k += 1
+            continue
+        made.append(replace(marks[k], kind="relative", value="", text="que", last=marks[k + pronoun - 1].last))
+        made += [m for m in marks[k + pronoun : way] if m.kind == "flag"]
+        cue = marks[way]
+        entered = cue.kind == "enter"
+        made.append(replace(cue, kind="cue", value="door" if entered else "leads"))
+        k = way + 1
+    return made
+
+
+def _pronoun(marks: Sequence[Mark], k: int) -> int:
+    """Return how many marks "through which" takes at k; 0 where none stands there."""
+    texts = [m.text for m in marks[k : k + 3]]
+    if len(texts) > 2 and texts[1] in ARTICLES and texts[2] == "que" and (texts[0] in BY or texts[0] == "a"):
+        return 3
+    if len(texts) > 1 and texts[0] == "al" and texts[1] == "que":
+        return 2
+    if len(texts) > 2 and texts[0] in BY and texts[1] in ARTICLES and texts[2] == "man":
+        return 3
+    return 2 if len(texts) > 1 and texts[0] in BY and texts[1] == "which" else 0
+
+
+def _way(marks: Sequence[Mark], k: int) -> int | None:
+    """Return the place of the words for going behind a relative pronoun, if a room follows them."""
+    for j in range(k, min(k + 4, len(marks) - 1)):
+        mark = marks[j]
+        going = (mark.kind == "cue" and mark.value in {"in", "leads"}) or mark.kind == "enter" or mark.text in INTO
+        if going:
+            return j if any(m.kind == "room" for m in marks[j + 1 : j + 4]) else None
+        if mark.kind not in {"flag", "fill", "adverb", "verb", "word"}:
+            return None
+    return None
+
+
+def _elliptic(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Read "..., and from the dining room to the living room" behind a way that was said with its verb."""
+    made = list(marks)
+    for k in range(1, len(made)):
+        start = max((i for i in range(k) if made[i].kind in ENDS), default=-1) + 1
+        said = any(m.kind == "cue" and m.value in {"leads", "thru", "thru_to", "door"} for m in made[start:k])
+        whence = (made[k].kind == "cue" and made[k].value == "from") or (heard.lexicon.language == "es" and made[k].text in {"del", "de"})
+        if not (said and whence and made[k - 1].kind in {"join", "comma"}):
+            continue
+        j = _room_at(made, k + 1)
+        if j is None or j + 2 >= len(made) or made[j + 1].text not in INTO or _room_at(made, j + 2) is None:
+            continue
+        made[k] = replace(made[k], kind="fill")
+        made[j + 1] = replace(made[j + 1], kind="cue", value="leads")
+    return made
+
+
+def _room_at(marks: Sequence[Mark], k: int) -> int | None:
+    """Return the place of the room that a phrase beginning at k names."""
+    while k < len(marks) and marks[k].kind in {"det", "adj", "size", "pron"}:
+        k += 1
+    return k if k < len(marks) and marks[k].kind == "room" else None
