@@ -13,9 +13,25 @@ OF = "的"
 
 def rearrange(marks: list[Mark]) -> list[Mark]:
     """Return the marks in the order of head, cue, object."""
-    return _times(_possessed(_measured(_between(_counted(_verbs(marks))))))
+    return _times(_possessed(_measured(_between(_counted(_verbs(_besides(marks)))))))
 
 
+def _besides(marks: list[Mark]) -> list[Mark]:
+    """Read "另外一个公共卫生间" as one more; "另外一间有阳台" is the other."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        j = k + 1
+        while j < len(marks) and marks[j].kind in {"adj", "size", "shared"}:
+            j += 1
+        one = (mark.kind, mark.value) == ("pron", "one") and bool(made) and made[-1].kind == "det" and made[-1].text in BESIDES
+        if one and j < len(marks) and marks[j].kind in HEADS:
+            made[-1] = replace(made[-1], value="another")
+        else:
+            made.append(mark)
+    return made
+
+
+BESIDES = {"另 外", "另"}
 COPULAS = {"是", "为", "要"}
 AMONG = {"里", "中", "里面", "当中", "其中", "之中"}
 

@@ -271,11 +271,11 @@ class Clause:
             return k + 1
         if e.value == "other" and next((x.kind for x in self.sentence[k + 1 :] if x.kind != "verb"), "") in {"level", "colon"}:
             return self._every(k, e)
+        if e.value == "all" and k and self.sentence[k - 1].kind == "every":
+            return k + 1
         if e.value == "all" and len(self.run) > 1 and not any(x.kind == "np" for x in self.sentence[k + 1 : k + 2]):
             self.subject = self.latest = tuple(i for x in self.run for i in x.ids)  # "kitchen, two bedrooms, bath - all off the hall"
             self.run = [Element("np", "", e.first, e.last, e.text, ids=list(self.latest))]
-            return k + 1
-        if e.value == "all" and k and self.sentence[k - 1].kind == "every":
             return k + 1
         ahead = self.sentence[k + 1].kind if k + 1 < len(self.sentence) else ""
         if e.value == "other" and ahead in {"verb", "amount"}:  # "one bedroom of 16 m2, the other of 10"
@@ -294,6 +294,9 @@ class Clause:
             self._role(before, e.value)  # "four bedrooms, uno de ellos para invitados"
         if e.value == "equal" and before is not None and before.kind in {"det", "verb", "pron"} and len(self.latest) > 1:
             self.state.say("area_equal", self.latest, (), e, 0.15)
+        social = tuple(i for x in self.run for i in x.ids if x.type in SOCIAL)
+        if e.value in {"open", "combined"} and len(social) > 1 and before is not None and before.kind == "np" and not self.negated(k):
+            self.state.say("merge", social, (), e)  # "living and dining room open"
         if self.verb:
             superlative(self, e)
         return k + 1

@@ -21,15 +21,17 @@ def numerals(simple: Mapping[float, str]) -> Iterator[tuple[str, Meaning]]:
         yield from ((start + w, Meaning("num", str(100 + n), 100.0 + n)) for n, w in below.items())
 
 
+SHORT = {"durchs": "durch", "uebers": "ueber", "hinters": "hinter"}  # with the article in one word
 TAILS = ("schlafzimmer", "zimmer", "raum", "bereich", "bad", "kueche")
 
 
 def completed(texts: list[str], known: Collection[str]) -> list[str]:
     """Return the words with "Arbeits- oder Gästezimmer" written out; the hyphen stays where it is."""
-    made = list(texts)
+    made = [SHORT.get(t, t) for t in texts]
     for k in range(len(texts) - 3):
         if texts[k + 1] == "-" and texts[k + 2] in {"oder", "und", ","} and texts[k].isalpha():
-            tail = next((t for t in TAILS if texts[k + 3].endswith(t) and texts[k] + t in known), None)
+            last = next((t for t in texts[k + 3 :] if t.endswith(TAILS)), texts[k + 3])  # "Koch-, Ess- und Wohnbereich"
+            tail = next((t for t in TAILS if last.endswith(t) and texts[k] + t in known), None)
             made[k] = texts[k] + tail if tail else texts[k]
     return made
 

@@ -255,6 +255,15 @@ def _spellings(phrase: str, language: str) -> Iterable[tuple[str, ...]]:
     return {usual, words(bare(phrase))}
 
 
+SOUNDS = {"厨": "橱除", "厅": "听厛", "室": "式事", "卫": "位喂", "间": "见建件", "房": "防", "阳": "羊洋", "卧": "握", "书": "输", "廊": "郎"}
+
+
+def _misheard(phrase: str) -> Iterator[str]:
+    """Return a Chinese name as it is written when one of its characters is taken for another of the same sound."""
+    for k, char in enumerate(phrase):
+        yield from (phrase[:k] + wrong + phrase[k + 1 :] for wrong in SOUNDS.get(char, "") if len(phrase) > 1)
+
+
 REPAIRED = {"room", "suite", "home", "num", "unit", "level", "zone"}  # kinds whose words are worth a repair
 CUES = {"door", "leads", "open", "near", "away", "between", "avoid"}
 
@@ -281,6 +290,10 @@ def lexicon(language: Language) -> Lexicon:
             made.vocabulary.update(spelt)
             if meaning.kind in REPAIRED or (meaning.kind == "cue" and meaning.value in CUES):
                 targets.update(w for w in spelt if w.isalpha() and len(w) >= 4)
+    if language == "zh":
+        for phrase, meaning in [(p, m) for p, m in _meanings(entries) if m.kind == "room" and 1 < len(p) < 4]:
+            for wrong in _misheard(phrase):
+                _insert(made.trie, words(wrong), meaning)
     made.vocabulary.update(w for p in split(entries.common) for w in words(p))
     blocked = {w for p in split(entries.fillers) if " " not in p for w in words(p)}
     made.targets = tuple(sorted(targets - blocked))

@@ -296,7 +296,8 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
         plain = [r for r in same if not r.role and not state.inventory.owned(r.id)]
         if slots:
             return [_close(slots[0], role, e.text)]
-        return [_close(plain[0], role, e.text)] if e.definite and len(plain) == 1 else []
+        bare = state.heard.lexicon.language == "zh" and not e.det and e.number is None  # no articles there
+        return [_close(plain[0], role, e.text)] if (e.definite or bare) and len(plain) == 1 else []
     if e.type != "bedroom":
         plain = [r for r in same if not r.role]
         return [_close(plain[0], role, e.text)] if plain and e.definite and not _repeated(sentence, k) else []
@@ -314,7 +315,7 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
     if slots:
         return [_close(slots[0], role, e.text)]
     plain = [r for r in same if not r.role and not (r.extra and r.span is not None and r.span[0] > e.first)]
-    if len(plain) == 1 and len(same) == 1 and e.definite:
+    if len(plain) == 1 and len(same) == 1 and e.definite and not many:
         return [_close(plain[0], role, e.text)]
     return []
 

@@ -9,6 +9,7 @@ from pipeline.floorplan.language.chinese import rearrange as chinese
 from pipeline.floorplan.language.marks import Mark, Words
 
 ENDS = {"stop", "line", "colon", "comma"}
+ARTICLES = {"der", "die", "das", "den", "dem"}
 FARTHEST = 14  # marks between the two parts of a frame
 
 
@@ -69,6 +70,8 @@ def _matches(marks: list[Mark], k: int, wanted: tuple[str, ...]) -> int | None:
         have = marks[k].text.split()
         if have == need[: len(have)]:
             need = need[len(have) :]
+        elif have[: len(need)] == need and set(have[len(need) :]) <= ARTICLES:  # "in die Küche übergeht"
+            need = []
         elif len(need) == len(wanted) or marks[k].kind not in {"adverb", "flag"}:
             return None
         k += 1

@@ -44,6 +44,9 @@ def has(clause: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one branc
     if clause.run and sentence[k - 1].kind == "comma" and not clause.verb:
         return k + 1
     owners = tuple(i for i in (clause.run[-1].ids if clause.run else clause.subject) if not i.startswith("*"))
+    near = sentence[k - 1]
+    if not clause.run and near.kind == "np" and near.ids and set(near.ids) <= set(clause.objects) and e.text in {"with", "con", "mit"}:
+        owners = tuple(near.ids)  # "the living room leads to a hall with two bedrooms"
     if clause.run and len(clause.run) > 1 and (clause.verb or e.text in {"have", "both have"}):
         listed = tuple(i for x in clause.run for i in x.ids if not i.startswith("*"))
         owners = listed if not any(x.part for x in clause.run) and {stock.get(i).type for i in listed} == {"bedroom"} else owners

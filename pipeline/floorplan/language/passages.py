@@ -10,7 +10,10 @@ from pipeline.floorplan.language.marks import Mark, Words
 ENDS = {"stop", "line"}
 BY = {"durch", "ueber", "von", "aus", "por", "desde", "through", "via", "from"}  # in front of a relative pronoun
 ARTICLES = {"das", "die", "den", "dem", "der", "el", "la", "los", "las"}
-INTO = {"al", "a", "to", "into", "ins", "in", "in den", "in die", "in das", "zum", "zur"}
+BRANCH = {"abgeht", "abgehen", "abzweigt", "abzweigen"}  # at the end of a German clause
+REACH = {"erreicht", "erreichen", "betritt", "betreten", "gelangt", "kommt"}
+FACING = {"dan", "da", "abren", "abre", "salen"}  # "un pasillo al que dan los dormitorios"
+INTO = {"al", "a", "onto", "to", "into", "ins", "in", "in den", "in die", "in das", "zum", "zur"}
 SINGLE = {"single", "individual", "sencilla", "einzelne"}
 LETTERS = {"k": "kitchen", "d": "hallway", "b": "bathroom", "t": "balcony"}  # "ZKDB": rooms, kitchen, hall, bathroom
 MORE = {"comma", "join", "fill", "adverb", "dash"}
@@ -93,6 +96,11 @@ def _relative(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     made: list[Mark] = []
     k = 0
     while k < len(marks):
+        if end := _branching(marks, k):
+            made += [replace(marks[k], kind="relative", value="", text="que"), replace(marks[k], kind="cue", value="leads")]
+            made += marks[k + 1 : end]
+            k = end + 1
+            continue
         pronoun = _pronoun(marks, k)
         way = _way(marks, k + pronoun) if pronoun else None
         if way is None:
@@ -106,6 +114,18 @@ def _relative(marks: Sequence[Mark], heard: Words) -> list[Mark]:
         made.append(replace(cue, kind="cue", value="door" if entered else "leads"))
         k = way + 1
     return made
+
+
+def _branching(marks: Sequence[Mark], k: int) -> int:
+    """Return the place of the verb in "ein Flur, von dem alle Zimmer abgehen", k being that of "von dem"; 0 for any other clause."""
+    if k < 2 or marks[k].text not in {"von der", "von dem"} or marks[k - 1].kind != "comma" or marks[k - 2].kind != "room":
+        return 0
+    for j in range(k + 1, len(marks)):
+        if marks[j].text in BRANCH:
+            return j
+        if marks[j].kind in ENDS:
+            break
+    return 0
 
 
 def _pronoun(marks: Sequence[Mark], k: int) -> int:
@@ -124,6 +144,8 @@ def _way(marks: Sequence[Mark], k: int) -> int | None:
     """Return the place of the words for going behind a relative pronoun, if a room follows them."""
     for j in range(k, min(k + 4, len(marks) - 1)):
         mark = marks[j]
+        if mark.text in FACING and marks[j + 1].kind in {"det", "room", "num"}:
+            return j
         going = (mark.kind == "cue" and mark.value in {"in", "leads"}) or mark.kind == "enter" or mark.text in INTO
         if going:
             return j if any(m.kind == "room" for m in marks[j + 1 : j + 4]) else None
@@ -133,18 +155,19 @@ def _way(marks: Sequence[Mark], k: int) -> int | None:
 
 
 def _elliptic(marks: Sequence[Mark], heard: Words) -> list[Mark]:
-    """Read "..., and from the dining room to the living room" behind a way that was said with its verb."""
+    """Read "..., and from the dining room to the hall", "and the dining room onto the hall" behind a way that was said with its verb."""
     made = list(marks)
     for k in range(1, len(made)):
         start = max((i for i in range(k) if made[i].kind in ENDS), default=-1) + 1
         said = any(m.kind == "cue" and m.value in {"leads", "thru", "thru_to", "door"} for m in made[start:k])
         whence = (made[k].kind == "cue" and made[k].value == "from") or (heard.lexicon.language == "es" and made[k].text in {"del", "de"})
-        if not (said and whence and made[k - 1].kind in {"join", "comma"}):
+        if not said or made[k - 1].kind not in {"join", "comma"} or "or" in made[k - 1].value:
             continue
-        j = _room_at(made, k + 1)
+        j = _room_at(made, k + 1 if whence else k)
         if j is None or j + 2 >= len(made) or made[j + 1].text not in INTO or _room_at(made, j + 2) is None:
             continue
-        made[k] = replace(made[k], kind="fill")
+        if whence:
+            made[k] = replace(made[k], kind="fill")
         made[j + 1] = replace(made[j + 1], kind="cue", value="leads")
     return made
 

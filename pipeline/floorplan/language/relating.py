@@ -243,6 +243,8 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one b
     before = clause.sentence[k - 1] if k else None
     if not clause.run:
         cue = next((x for x in reversed(clause.sentence[:k]) if x.kind == "cue"), None)
+        if clause.relative and clause.objects and clause.state.heard.lexicon.language in {"en", "es"}:
+            return clause.objects  # "away from the parents' bedroom, which is next to ..."
         chained = before is not None and before.kind == "np" and cue is not None and cue.value == e.value == "near"
         return clause.objects if chained and clause.objects and not clause.relative else clause.subject  # "X next to Y next to Z"
     if before is not None and before.kind == "comma" and clause.objects and set(clause.objects) == {i for x in clause.run for i in x.ids}:
@@ -307,10 +309,11 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
     while index < len(sentence):
         e = sentence[index]
         if e.kind == "np":
+            clausal = cue == "cmp" and joined and any(x.kind == "comma" for x in sentence[index - 3 : index]) and bool(e.amounts)
             pair = cue == "between" and joined == "and" and len(group) == 1
             if (
                 e.banned
-                or (group and not joined)
+                or (group and (not joined or clausal))
                 or (group and first is not None and not pair and not _continues(clause, index, cue, joined, first))
             ):
                 break
