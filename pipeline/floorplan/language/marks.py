@@ -272,7 +272,7 @@ def _amount(marks: Sequence[Mark], k: int, lex: Lexicon) -> tuple[Mark, int] | N
         after = marks[i + 2] if i + 2 < len(marks) else None
         same = after is not None and after.kind == "unit" and (unit is None or after.value == unit.value)
         joins = marks[i].kind == "dash" or marks[i].text in lex.range_to
-        crossed = marks[i].kind == "times" or marks[i].text in {"x", "by"}
+        crossed = marks[i].kind == "times" or marks[i].text in {"x", "by", "por"}
         if same and after is not None and ((joins and (marks[i + 1].number > low or (ranged and low > 0))) or crossed):
             if crossed:
                 side, low = min(low, marks[i + 1].number), low * marks[i + 1].number

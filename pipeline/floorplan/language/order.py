@@ -56,6 +56,8 @@ def _frame(marks: list[Mark], k: int, heard: Words) -> tuple[str, int, int, int]
                 marks[j].kind == "cue" and marks[j].value not in {"has", "in", "door"} and _matches(marks, j, second) is None
             ):
                 break
+            if named and cue == "open" and _matches(marks, j, first) is not None and _matches(marks, j, second) is None:
+                break  # "eine Wohnung, in der die Küche in das Esszimmer übergeht"
             end = _matches(marks, j, second) if named else None
             if end is not None:
                 return cue, start, j, end

@@ -15,6 +15,7 @@ from pipeline.floorplan.language.attaching import attach
 from pipeline.floorplan.language.detection import detect
 from pipeline.floorplan.language.marks import listen, measured, segment
 from pipeline.floorplan.language.masking import read_furniture
+from pipeline.floorplan.language.notation import noted
 from pipeline.floorplan.language.order import reorder
 from pipeline.floorplan.language.passages import written_out
 from pipeline.floorplan.language.phrases import sentences
@@ -50,7 +51,7 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     heard = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
     amounts = dealt(measured(shared_unit(crossed(segment(heard), heard)), heard))
     revised = revise(widen(amounts, heard), heard)
-    marks = reorder(written_out(revised.marks, heard), heard)
+    marks = reorder(written_out(noted(revised.marks, heard), heard), heard)
     parsed = sentences(marks, heard)
     spoken = {e.kind for s in parsed for e in s}
     if not spoken & {"np", "home"} and not any(e.kind == "amount" and e.value == "rooms" for s in parsed for e in s):

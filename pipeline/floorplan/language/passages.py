@@ -1,4 +1,4 @@
-"""Ways and rooms said without their own words: "through which you reach ...", "and from there to ...", "one single", "2 ZKBB"."""
+"""Ways said without their own words: "through which you reach ...", "and the dining room onto the hall", "whose bathroom ..."."""
 
 from __future__ import annotations
 
@@ -12,72 +12,14 @@ BY = {"durch", "ueber", "von", "aus", "por", "desde", "through", "via", "from"} 
 ARTICLES = {"das", "die", "den", "dem", "der", "el", "la", "los", "las"}
 BRANCH = {"abgeht", "abgehen", "abzweigt", "abzweigen"}  # at the end of a German clause
 REACH = {"erreicht", "erreichen", "betritt", "betreten", "gelangt", "kommt"}
+WHOSE = {"whose", "cuyo", "cuya", "dessen", "deren"}
 FACING = {"dan", "da", "abren", "abre", "salen"}  # "un pasillo al que dan los dormitorios"
 INTO = {"al", "a", "onto", "to", "into", "ins", "in", "in den", "in die", "in das", "zum", "zur"}
-SINGLE = {"single", "individual", "sencilla", "einzelne"}
-LETTERS = {"k": "kitchen", "d": "hallway", "b": "bathroom", "t": "balcony"}  # "ZKDB": rooms, kitchen, hall, bathroom
-MORE = {"comma", "join", "fill", "adverb", "dash"}
 
 
 def written_out(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with what is left unsaid put in."""
-    made = _lettered(marks, heard)
-    made = _numbered(_singles(_summed(made)))
-    made = _rather(made)
-    return _elliptic(_relative(made, heard), heard)
-
-
-def _summed(marks: Sequence[Mark]) -> list[Mark]:
-    """Read a plus between rooms as "and"."""
-    return [replace(m, kind="join", value="and") if m.text == "+" and m.kind == "bound" else m for m in marks]
-
-
-def _lettered(marks: Sequence[Mark], heard: Words) -> list[Mark]:
-    """Read German "3 ZKBB" as three rooms, kitchen, bathroom and balcony."""
-    made: list[Mark] = []
-    for mark in marks:
-        made.append(mark)
-        word = mark.text.rsplit(" ", 1)[-1]
-        if heard.lexicon.language != "de" or mark.kind != "amount" or mark.value != "rooms" or not word.startswith("zk"):
-            continue
-        for k, letter in enumerate(word[1:], 1):
-            kind = "balcony" if letter == "b" and "b" in word[:k] else LETTERS.get(letter, "")
-            if kind:
-                made += [Mark("comma", "", 0.0, False, mark.last, mark.last, ","), replace(mark, kind="room", value=kind, number=0.0)]
-    return made
-
-
-def _singles(marks: Sequence[Mark]) -> list[Mark]:
-    """Read "three double bedrooms and one single" as four bedrooms."""
-    made: list[Mark] = []
-    for k, mark in enumerate(marks):
-        ahead = marks[k + 1].kind if k + 1 < len(marks) else "stop"
-        before = made[-1] if made else None
-        counted = before is not None and (
-            before.kind == "num" or (before.kind, before.value) in {("pron", "one"), ("det", "indefinite"), ("det", "another")}
-        )
-        beds = any(m.kind == "room" and m.value.startswith("bedroom") for m in made[-6:])
-        if mark.text.removesuffix("es").removesuffix("s") in SINGLE and ahead in {"comma", "stop", "line", "join"} and counted and beds:
-            assert before is not None
-            number = before if before.kind == "num" else replace(before, kind="num", value="", number=1.0)
-            made[-1:] = [replace(before, kind="det", value="another"), number]
-            made.append(replace(mark, kind="room", value="bedroom", plural=number.number > 1))
-        else:
-            made.append(mark)
-    return made
-
-
-def _numbered(marks: Sequence[Mark]) -> list[Mark]:
-    """Read "the first is twice the second" as said of the rooms that were counted before."""
-    made: list[Mark] = []
-    for k, mark in enumerate(marks):
-        made.append(mark)
-        ahead = marks[k + 1].kind if k + 1 < len(marks) else "stop"
-        counted = next((m for m in reversed(made) if m.kind == "room" and m.plural), None)
-        named = len(made) > 1 and made[-2].kind == "det" and made[-2].value == "definite"
-        if mark.kind == "ord" and named and counted is not None and ahead in {"verb", "factor", "cmp", "comma", "stop", "line", "cue"}:
-            made.append(replace(counted, plural=False, first=mark.last, last=mark.last))
-    return made
+    return _whose(_elliptic(_relative(_rather(marks)), heard))
 
 
 def _rather(marks: Sequence[Mark]) -> list[Mark]:
@@ -91,7 +33,7 @@ def _rather(marks: Sequence[Mark]) -> list[Mark]:
     return made
 
 
-def _relative(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+def _relative(marks: Sequence[Mark]) -> list[Mark]:
     """Read "a closet through which you reach the bathroom", "durch das man ins Bad kommt", "a la que solo se entra por la cocina"."""
     made: list[Mark] = []
     k = 0
@@ -169,6 +111,27 @@ def _elliptic(marks: Sequence[Mark], heard: Words) -> list[Mark]:
         if whence:
             made[k] = replace(made[k], kind="fill")
         made[j + 1] = replace(made[j + 1], kind="cue", value="leads")
+    return made
+
+
+def _whose(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "the bedroom, whose bathroom ..." as "with a bathroom", and "and another one to the hall" without its door."""
+    made: list[Mark] = []
+    skipped = 0
+    for k, mark in enumerate(marks):
+        j = k
+        while j < len(marks) and ((marks[j].kind, marks[j].value) in {("det", "another"), ("pron", "one")} or marks[j].number == 1.0):
+            j += 1
+        if skipped > k:
+            continue
+        if mark.kind == "relative" and mark.text in WHOSE and _room_at(marks, k + 1) is not None:
+            if made and made[-1].kind == "comma":
+                made.pop()
+            made.append(replace(mark, kind="cue", value="has", text="with"))
+        elif (mark.kind, mark.value) == ("det", "another") and made and made[-1].kind == "join" and j < len(marks) and marks[j].text in INTO:
+            skipped = j
+        else:
+            made.append(mark)
     return made
 
 

@@ -45,7 +45,8 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     group, j = objects(clause, k + 1, e.value, left)
     if not group:
         return _alone(clause, k, e)
-    if e.value == "in" and not _inside(clause, left, group):
+    apart = k > 0 and clause.sentence[k - 1].kind == "and"  # "a bath, and in the bedroom ..."
+    if e.value == "in" and (apart or not _inside(clause, left, group)):
         clause.latest, clause.run = group, [x for x in clause.sentence[k:j] if x.kind == "np"][-1:]
         return j
     if clause.sentence[j - 1].kind == "zone" and e.value in {"door", "in"}:
@@ -109,6 +110,8 @@ def _through(clause: Clause, k: int, e: Element) -> int:
 
 def _door_between(clause: Clause, k: int, e: Element) -> int:
     """Read "a door between kitchen and bathroom"; return 0 where no door is spoken of."""
+    if not any(x.kind == "flag" and x.value == "doors" for x in clause.sentence):
+        return 0
     group, j = objects(clause, k + 1, "between", ())
     near = [*clause.sentence[max(0, k - 1) : k], *clause.sentence[j : j + 2]]
     if len(group) != 2 or clause.negative or not any(x.kind == "flag" and x.value == "doors" for x in near):

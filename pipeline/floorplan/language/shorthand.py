@@ -94,7 +94,7 @@ def crossed(marks: Sequence[Mark], heard: Words) -> list[Mark]:
             k > 1
             and mark.kind == "num"
             and marks[k - 2].kind == "num"
-            and (marks[k - 1].kind == "times" or marks[k - 1].text in {"x", "by"})
+            and (marks[k - 1].kind == "times" or marks[k - 1].text in {"x", "by", "por"})
         )
         if not pair or (k + 1 < len(marks) and marks[k + 1].kind == "unit") or mark.value != "figure":
             continue

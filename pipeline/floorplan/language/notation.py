@@ -1,0 +1,125 @@
+"""Notes and lists: "kitchen-bedroom: no door", "Ground: ... Upper: ...", "kitchen and dining together", "2 ZKBB", "one single"."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from pipeline.floorplan.language.marks import Mark, Words
+
+HEADINGS = {"ground": "0", "lower": "0", "baja": "0", "upper": "1", "top": "1", "alta": "1"}  # in front of a colon
+COUNTED = {"first": "1", "second": "2"}  # the same where a prompt has a ground floor
+CLOSERS = {"comma", "stop", "line", "close", "join"}
+SOCIAL = {"kitchen", "dining_room", "living_room", "family_room"}
+SINGLE = {"single", "individual", "sencilla", "einzelne"}
+LETTERS = {"k": "kitchen", "d": "hallway", "b": "bathroom", "t": "balcony"}  # "ZKDB": rooms, kitchen, hall, bathroom
+
+
+def noted(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Return the marks with shorthand of lists and notes written out."""
+    made = _doors(_headed(_summed(_lettered(marks, heard))), heard)
+    return _numbered(_singles(_together(_paired(made))))
+
+
+def _lettered(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Read German "3 ZKBB" as three rooms, kitchen, bathroom and balcony."""
+    made: list[Mark] = []
+    for mark in marks:
+        made.append(mark)
+        word = mark.text.rsplit(" ", 1)[-1]
+        if heard.lexicon.language != "de" or mark.kind != "amount" or mark.value != "rooms" or not word.startswith("zk"):
+            continue
+        for k, letter in enumerate(word[1:], 1):
+            kind = "balcony" if letter == "b" and "b" in word[:k] else LETTERS.get(letter, "")
+            if kind:
+                made += [Mark("comma", "", 0.0, False, mark.last, mark.last, ","), replace(mark, kind="room", value=kind, number=0.0)]
+    return made
+
+
+def _summed(marks: Sequence[Mark]) -> list[Mark]:
+    """Read a plus between rooms as "and"."""
+    return [replace(m, kind="join", value="and") if m.text == "+" and m.kind == "bound" else m for m in marks]
+
+
+def _headed(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "Ground: kitchen, WC. Upper: two bedrooms" as storeys."""
+    known = HEADINGS | (COUNTED if any(m.text == "ground" for m in marks) else {})
+    made = list(marks)
+    for k, mark in enumerate(marks[:-1]):
+        if mark.kind in {"word", "ord", "fill", "adj", "size"} and mark.text in known and marks[k + 1].kind == "colon":
+            made[k] = replace(mark, kind="level", value=known[mark.text], number=0.0)
+    return made
+
+
+def _doors(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Read "no bathroom-kitchen door": the second room is no adjective of the door where another stands in front."""
+    made: list[Mark] = []
+    for mark in marks:
+        paired = mark.kind == "ignored" and mark.text.endswith(" door") and bool(made) and made[-1].kind in {"room", "cue"}
+        found = heard.lexicon.find(heard.texts[: mark.last - 1], mark.first) if paired else None
+        if found is not None and found[1].kind == "room" and found[0] == mark.last - 1:
+            cut = mark.last - 1
+            made.append(replace(mark, kind="room", value=found[1].value, last=cut, text=mark.text.removesuffix(" door")))
+            made.append(replace(mark, kind="flag", value="doors", first=cut, text="door"))
+        else:
+            made.append(mark)
+    return made
+
+
+def _paired(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "kitchen-bedroom: door", "kitchen - living: open" as a way between the two."""
+    made = list(marks)
+    for k in range(len(made) - 2):
+        way = {"flag": "door", "adj": "open"}.get(made[k + 2].kind, "") if made[k + 1].kind == "colon" else ""
+        ends = k + 3 >= len(made) or made[k + 3].kind in CLOSERS
+        if not way or not ends or made[k].kind != "room" or made[k + 2].value not in {"doors", "open"}:
+            continue
+        j = k - 1 - (k > 1 and made[k - 1].kind in {"comma", "slash", "dash"})
+        if j >= 0 and made[j].kind == "room" and (j == 0 or made[j - 1].kind in CLOSERS):
+            cue = replace(made[k + 2], kind="cue", value=way)
+            made[j + 1 : k + 3] = [cue, made[k], *([replace(made[k + 1], kind="fill")] * (k + 1 - j - 1))]
+    return made
+
+
+def _together(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "kitchen and dining together" as one open space; "together 40 m2" is a sum."""
+    made = list(marks)
+    for k, mark in enumerate(marks):
+        ends = k + 1 >= len(marks) or marks[k + 1].kind in CLOSERS
+        if mark.kind == "flag" and mark.value == "total" and mark.text in {"together", "zusammen", "juntos", "juntas"} and ends and k > 2:
+            joined = marks[k - 2].kind == "join" and {marks[k - 1].value, marks[k - 3].value} <= SOCIAL
+            made[k] = replace(mark, value="open_plan") if joined else mark
+    return made
+
+
+def _singles(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "three double bedrooms and one single" as four bedrooms."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        ahead = marks[k + 1].kind if k + 1 < len(marks) else "stop"
+        before = made[-1] if made else None
+        counted = before is not None and (
+            before.kind == "num" or (before.kind, before.value) in {("pron", "one"), ("det", "indefinite"), ("det", "another")}
+        )
+        beds = any(m.kind == "room" and m.value.startswith("bedroom") for m in made[-6:])
+        if mark.text.removesuffix("es").removesuffix("s") in SINGLE and ahead in CLOSERS and counted and beds:
+            assert before is not None
+            number = before if before.kind == "num" else replace(before, kind="num", value="", number=1.0)
+            made[-1:] = [replace(before, kind="det", value="another"), number]
+            made.append(replace(mark, kind="room", value="bedroom", plural=number.number > 1))
+        else:
+            made.append(mark)
+    return made
+
+
+def _numbered(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "the first is twice the second" as said of the rooms that were counted before."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        made.append(mark)
+        ahead = marks[k + 1].kind if k + 1 < len(marks) else "stop"
+        counted = next((m for m in reversed(made) if m.kind == "room" and m.plural), None)
+        named = len(made) > 1 and made[-2].kind == "det" and made[-2].value == "definite"
+        if mark.kind == "ord" and named and counted is not None and ahead in {"verb", "factor", "cmp", "comma", "stop", "line", "cue"}:
+            made.append(replace(counted, plural=False, first=mark.last, last=mark.last))
+    return made
