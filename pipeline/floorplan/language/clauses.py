@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from pipeline.floorplan.language.comparing import compare, factor
-from pipeline.floorplan.language.facts import PERSONAL, ROLES, SOCIAL, Group, Reading
+from pipeline.floorplan.language.comparing import compare, factor, superlative
+from pipeline.floorplan.language.facts import ROLES, SOCIAL, Group, Reading
 from pipeline.floorplan.language.naming import fresh, name
 from pipeline.floorplan.language.openness import merge, merge_after, no_door, windows, written_as_one
+from pipeline.floorplan.language.owning import one_each
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import level, storey, wing, zone
 from pipeline.floorplan.language.pointing import point
 from pipeline.floorplan.language.quantities import attach, belongs
-from pipeline.floorplan.language.relating import objects, relate, superlative
+from pipeline.floorplan.language.relating import objects, relate
 
 ELSEWHERE = {
     "level": level,
@@ -188,9 +189,7 @@ class Clause:
         negative = self.negated(k)
         if e.value == "daylight":
             return windows(self, k, e, negative)
-        if (
-            e.value == "ends" and len(self.latest) == 2 and k and self.sentence[k - 1].kind in {"np", "verb", "det", "word", "cue", "home"}
-        ):
+        if e.value == "ends" and len(self.latest) == 2 and k and self.sentence[k - 1].kind in {"np", "verb", "det", "word", "cue", "home"}:
             self.state.say("away", self.latest[:1], self.latest[1:], e)
         elif e.value == "too" and self.state.facts and k + 1 < len(self.sentence) and self.sentence[k + 1].kind == "np":
             last = self.state.facts[-1]  # "..., ebenso das Bad"
@@ -221,15 +220,6 @@ class Clause:
             self._role(before, e.value)
         self.owner, self.owning = e.value, ""
         return k + 1
-
-    def _one_each(self, e: Element) -> None:
-        """Read "three bedrooms. And a bathroom for each."."""
-        thing = self.stock.get(self.latest[0])
-        owners = next((g for g in reversed(self.state.past) if len(g) > 1 and self.stock.get(g[0]).type == "bedroom"), ())
-        if thing.type not in PERSONAL or not owners:
-            return
-        ids = [thing.id, *(self.stock.add(thing.type, "", e.text, None).id for _ in owners[1:])]
-        self.give(tuple(ids), owners, e)
 
     def _role(self, who: Element, role: str) -> None:
         for room in (self.stock.get(i) for i in who.ids):
@@ -264,10 +254,16 @@ class Clause:
         self.push(k, e, ("*",))
         return k + 1
 
-    def _det(self, k: int, e: Element) -> int:
+    def _det(self, k: int, e: Element) -> int:  # noqa: PLR0911 - one answer per case: a grammar
         last = k + 1 >= len(self.sentence) or self.sentence[k + 1].kind in {"comma", "close"}
-        if (e.value == "each" or e.text in {"cada uno", "cada una"}) and last and k and self.sentence[k - 1].kind == "np" and len(self.latest) == 1:
-            self._one_each(e)
+        if (
+            (e.value == "each" or e.text in {"cada uno", "cada una"})
+            and last
+            and k
+            and self.sentence[k - 1].kind == "np"
+            and len(self.latest) == 1
+        ):
+            one_each(self, e)
             return k + 1
         if e.value == "other" and next((x.kind for x in self.sentence[k + 1 :] if x.kind != "verb"), "") in {"level", "colon"}:
             return self._every(k, e)

@@ -61,6 +61,7 @@ class Reading:
         """Record a fact. Whole groups ("*...") mean something to few kinds of fact only."""
         if what not in GROUPS:
             a, b = (tuple(i for i in g if not i.startswith("*")) for g in (a, b))
+        a, b = (("*",) if "*" in g else g for g in (a, b))  # "all rooms are off the hall: kitchen, bath ..."
         self.understood(element.first, element.last)
         if a or b:
             self.facts.append(Fact(what, tuple(dict.fromkeys(a)), tuple(dict.fromkeys(b)), value, element.first, element.last))

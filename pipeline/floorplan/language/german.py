@@ -21,7 +21,7 @@ def numerals(simple: Mapping[float, str]) -> Iterator[tuple[str, Meaning]]:
         yield from ((start + w, Meaning("num", str(100 + n), 100.0 + n)) for n, w in below.items())
 
 
-SHORT = {"durchs": "durch", "uebers": "ueber", "hinters": "hinter"}  # with the article in one word
+SHORT = {"durchs": "durch", "uebers": "ueber", "ans": "an", "hinters": "hinter"}  # with the article in one word
 TAILS = ("schlafzimmer", "zimmer", "raum", "bereich", "bad", "kueche")
 
 

@@ -261,7 +261,7 @@ def _suites(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
                 _give(draft, stock, bath.id, free[0].id, Fact("own", (bath.id,), (free[0].id,), 0.0, *(bath.span or (0, 1))))
 
 
-def _apart(draft: Draft, state: Reading) -> None:  # noqa: C901 - one branch per case: a grammar
+def _apart(draft: Draft, state: Reading) -> None:  # noqa: C901, PLR0912 - one branch per case: a grammar
     """Forbid common walls and ways, and ask for distance, where rooms are to be away from each other."""
     stock = state.inventory
     share = OPPOSITE if "ends" in state.flags else FAR
@@ -293,10 +293,7 @@ def _apart(draft: Draft, state: Reading) -> None:  # noqa: C901 - one branch per
                 for bath in stock.of("bathroom"):
                     draft.forbid("connected", bath.id, bed.id, None, fact.first, fact.last)
         if fact.what == "no_through":
-            for bed in expand(fact.a):
-                for room in stock.rooms:
-                    if room.id != bed and room.type not in INNER and room.id not in draft.linked(bed):
-                        draft.forbid("through", room.id, None, bed, fact.first, fact.last)
+            _no_way(draft, stock, expand(fact.a), fact)
         if fact.what not in {"away", "ban", "avoid"}:
             continue
         for a, b in itertools.product(expand(fact.a), expand(fact.b)):
@@ -308,6 +305,14 @@ def _apart(draft: Draft, state: Reading) -> None:  # noqa: C901 - one branch per
             draft.forbid("adjacent", a, b, None, fact.first, fact.last)
             if fact.what == "away":
                 draft.relate("separation", a, b, share, fact)
+
+
+def _no_way(draft: Draft, stock: Inventory, ids: list[str], fact: Fact) -> None:
+    """Let no way to the rooms of all lead through some; their own bathrooms and closets may lie behind them."""
+    for bed in ids:
+        for room in stock.rooms:
+            if room.id != bed and room.type not in INNER and room.id not in draft.linked(bed):
+                draft.forbid("through", room.id, None, bed, fact.first, fact.last)
 
 
 def late_zone(stock: Inventory, name: str) -> list[str]:

@@ -255,13 +255,25 @@ def _spellings(phrase: str, language: str) -> Iterable[tuple[str, ...]]:
     return {usual, words(bare(phrase))}
 
 
-SOUNDS = {"厨": "橱除", "厅": "听厛", "室": "式事", "卫": "位喂", "间": "见建件", "房": "防", "阳": "羊洋", "卧": "握", "书": "输", "廊": "郎"}
+SOUNDS = {
+    "厨": "橱除",
+    "厅": "听厛",
+    "室": "式事",
+    "卫": "位喂",
+    "间": "见建件",
+    "房": "防",
+    "阳": "羊洋",
+    "卧": "握",
+    "书": "输",
+    "廊": "郎",
+}
 
 
-def _misheard(phrase: str) -> Iterator[str]:
-    """Return a Chinese name as it is written when one of its characters is taken for another of the same sound."""
-    for k, char in enumerate(phrase):
-        yield from (phrase[:k] + wrong + phrase[k + 1 :] for wrong in SOUNDS.get(char, "") if len(phrase) > 1)
+def _misheard(e: _Entries) -> Iterator[tuple[str, Meaning]]:
+    """Return the Chinese names of rooms as they are written when one character is taken for another of the same sound."""
+    for phrase, meaning in _meanings(e):
+        for k, char in enumerate(phrase if meaning.kind == "room" and 1 < len(phrase) < 4 else ""):
+            yield from ((phrase[:k] + wrong + phrase[k + 1 :], meaning) for wrong in SOUNDS.get(char, ""))
 
 
 REPAIRED = {"room", "suite", "home", "num", "unit", "level", "zone"}  # kinds whose words are worth a repair
@@ -290,10 +302,8 @@ def lexicon(language: Language) -> Lexicon:
             made.vocabulary.update(spelt)
             if meaning.kind in REPAIRED or (meaning.kind == "cue" and meaning.value in CUES):
                 targets.update(w for w in spelt if w.isalpha() and len(w) >= 4)
-    if language == "zh":
-        for phrase, meaning in [(p, m) for p, m in _meanings(entries) if m.kind == "room" and 1 < len(p) < 4]:
-            for wrong in _misheard(phrase):
-                _insert(made.trie, words(wrong), meaning)
+    for wrong, meaning in _misheard(entries) if language == "zh" else ():
+        _insert(made.trie, words(wrong), meaning)
     made.vocabulary.update(w for p in split(entries.common) for w in words(p))
     blocked = {w for p in split(entries.fillers) if " " not in p for w in words(p)}
     made.targets = tuple(sorted(targets - blocked))

@@ -8,6 +8,8 @@ from dataclasses import replace
 from pipeline.floorplan.language.marks import Mark, Words
 
 HEADINGS = {"ground": "0", "lower": "0", "baja": "0", "upper": "1", "top": "1", "alta": "1"}  # in front of a colon
+ATTIC = {"dg", "dachgeschoss"}
+BESIDE = {"nebeneinander", "beieinander", "side by side"}
 COUNTED = {"first": "1", "second": "2"}  # the same where a prompt has a ground floor
 CLOSERS = {"comma", "stop", "line", "close", "join"}
 SOCIAL = {"kitchen", "dining_room", "living_room", "family_room"}
@@ -18,7 +20,17 @@ LETTERS = {"k": "kitchen", "d": "hallway", "b": "bathroom", "t": "balcony"}  # "
 def noted(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with shorthand of lists and notes written out."""
     made = _doors(_headed(_summed(_lettered(marks, heard))), heard)
-    return _numbered(_singles(_together(_paired(made))))
+    return _beside(_numbered(_singles(_together(_paired(made)))))
+
+
+def _beside(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "they lie side by side" as "next to each other"."""
+    made: list[Mark] = []
+    for mark in marks:
+        if mark.kind == "reciprocal" and mark.text in BESIDE and not (made and made[-1].kind == "cue"):
+            made.append(replace(mark, kind="cue", value="near"))
+        made.append(mark)
+    return made
 
 
 def _lettered(marks: Sequence[Mark], heard: Words) -> list[Mark]:
@@ -45,6 +57,10 @@ def _headed(marks: Sequence[Mark]) -> list[Mark]:
     """Read "Ground: kitchen, WC. Upper: two bedrooms" as storeys."""
     known = HEADINGS | (COUNTED if any(m.text == "ground" for m in marks) else {})
     made = list(marks)
+    upper = any(m.kind == "level" and m.value == "1" and not ATTIC & set(m.text.split()) for m in marks)
+    for k, mark in enumerate(marks):
+        if mark.kind == "level" and upper and ATTIC & set(mark.text.split()):
+            made[k] = replace(mark, value="2")  # "EG ..., OG ..., DG ..."
     for k, mark in enumerate(marks[:-1]):
         if mark.kind in {"word", "ord", "fill", "adj", "size"} and mark.text in known and marks[k + 1].kind == "colon":
             made[k] = replace(mark, kind="level", value=known[mark.text], number=0.0)

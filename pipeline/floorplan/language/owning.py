@@ -179,3 +179,13 @@ def _things(clause: Clause, j: int, owners: Group) -> Group:
         for room in (stock.get(i) for i in x.ids):
             room.size = x.size
     return tuple(x.ids)
+
+
+def one_each(clause: Clause, e: Element) -> None:
+    """Read "three bedrooms. And a bathroom for each."."""
+    thing = clause.stock.get(clause.latest[0])
+    owners = next((g for g in reversed(clause.state.past) if len(g) > 1 and clause.stock.get(g[0]).type == "bedroom"), ())
+    if thing.type not in PERSONAL or not owners:
+        return
+    ids = [thing.id, *(clause.stock.add(thing.type, "", e.text, None).id for _ in owners[1:])]
+    clause.give(tuple(ids), owners, e)

@@ -128,7 +128,9 @@ def _whose(marks: Sequence[Mark]) -> list[Mark]:
             if made and made[-1].kind == "comma":
                 made.pop()
             made.append(replace(mark, kind="cue", value="has", text="with"))
-        elif (mark.kind, mark.value) == ("det", "another") and made and made[-1].kind == "join" and j < len(marks) and marks[j].text in INTO:
+        elif (
+            (mark.kind, mark.value) == ("det", "another") and made and made[-1].kind == "join" and j < len(marks) and marks[j].text in INTO
+        ):
             skipped = j
         else:
             made.append(mark)

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two rooms at the end: "kitchen and bath adjacent"
 THROUGH = {"through", "via", "durch", "ueber", "por", "traves", "经", "过"}
-ASIDE = {"balcony", "garage", "hallway", "staircase"}  # not meant when the largest room is spoken of
 CLOSED = {"balcony", "garage", "bathroom", "wc", "closet", "storage", "utility", "bedroom"}
 CONNECTS = {"connect", "connects", "connecting", "links", "linking", "joins", "joining", "une", "conecta", "comunica", "verbindet"}
 WIDE = {"leads", "between", "chain", "avoid", "except"}
@@ -287,15 +286,6 @@ def _coordinate(clause: Clause) -> bool:
 
 def _ids(phrases: Iterable[Element]) -> Group:
     return tuple(dict.fromkeys(i for x in phrases for i in x.ids))
-
-
-def superlative(clause: Clause, e: Element) -> None:
-    """Read "the living room should be the largest room"."""
-    others = tuple(r.id for r in clause.stock.rooms if r.id not in clause.latest and r.type not in ASIDE)
-    if e.value in {"largest", "smallest"} and len(clause.latest) == 1 and others:
-        a, b = (clause.latest, others) if e.value == "largest" else (others, clause.latest)
-        for one in a:
-            clause.state.say("area_order", (one,), b, e, 1.0)
 
 
 def _place(clause: Clause, e: Element) -> int:

@@ -187,6 +187,11 @@ def test_sentences_are_read():
     assert exact >= 97
 
 
+def test_speech_is_read():
+    """As above, of the third set."""
+    assert sum(not faults(c) for c in load("speech") if c["half"] == "tuned") >= 57
+
+
 @pytest.mark.parametrize("case", [c for c in SENTENCES if c["half"] == "tuned" and not c.get("refused")], ids=lambda c: c["id"])
 def test_no_reasonable_prompt_is_refused(case):
     parse(case["prompt"])
