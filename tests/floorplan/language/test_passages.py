@@ -20,7 +20,7 @@ def said(prompt):
     [
         ("Kitchen, bath, bedroom; kitchen-bedroom: door; kitchen-bath: no door", "Kitchen, bath, bedroom. The bedroom has a door to the kitchen. No door between kitchen and bath."),
         ("The kitchen leads to the dining room and the dining room to the hall.", "The kitchen leads to the dining room. The dining room leads to the hall."),
-        ("Bedroom with a closet through which you reach the bathroom.", "Bedroom with a closet. The bathroom is off the closet."),
+        ("Bedroom with a dressing room through which you reach the bathroom.", "Bedroom with a dressing room. The bathroom is off the dressing room."),
         ("Das Schlafzimmer hat eine Ankleide, durch die man ins Bad kommt.", "Das Schlafzimmer hat eine Ankleide. Das Bad geht von der Ankleide ab."),
         ("Küche, ein Flur, von dem Bad und Büro abgehen.", "Küche, ein Flur. Vom Flur gehen Bad und Büro ab."),
         ("La despensa, a la que solo se entra por la cocina; salón", "La despensa se abre a la cocina; salón"),
