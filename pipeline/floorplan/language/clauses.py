@@ -293,7 +293,8 @@ class Clause:
         social = tuple(i for x in self.run for i in x.ids if x.type in SOCIAL)
         if e.value in {"open", "combined"} and len(social) > 1 and before is not None and before.kind == "np" and not self.negated(k):
             self.state.say("merge", social, (), e)  # "living and dining room open"
-        if self.verb:
+        ends = k + 1 >= len(self.sentence) or self.sentence[k + 1].kind in {"comma", "and"}
+        if self.verb or (before is not None and before.kind == "np" and ends):  # "客厅最大"
             superlative(self, e)
         return k + 1
 

@@ -19,6 +19,10 @@ def ban(sentence: list[Element]) -> None:  # noqa: C901, PLR0912 - one branch pe
                     _behind(sentence, k)
                 continue
             phrase = sentence[j]
+            if [x.kind for x in sentence[j + 1 : j + 3]] == ["neg", "flag"] and sentence[j + 2].value == "daylight":
+                e.kind = sentence[j + 1].kind = "used"  # "no bathroom without a window": all have one
+                phrase.det.add("all")
+                continue
             if any(m.bound in {"least", "most"} for m in phrase.amounts):
                 for m in phrase.amounts:
                     m.bound = {"least": "most", "most": "least"}.get(m.bound, m.bound)

@@ -20,7 +20,39 @@ LETTERS = {"k": "kitchen", "d": "hallway", "b": "bathroom", "t": "balcony"}  # "
 def noted(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with shorthand of lists and notes written out."""
     made = _doors(_headed(_summed(_lettered(marks, heard))), heard)
-    return _beside(_numbered(_singles(_together(_paired(made)))))
+    made = _numbered(_singles(_together(_paired(made))))
+    return _beside(_largest(_no_two(made)))
+
+
+def _no_two(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "no two bedrooms share a wall" as said of all of them."""
+    made = list(marks)
+    for k in range(1, len(marks) - 2):
+        two = made[k - 1].kind == "neg" and made[k].kind == "num" and made[k].number == 2 and made[k + 1].kind == "room"
+        if two and made[k + 1].plural and any(m.kind in {"verb", "cue"} for m in made[k + 2 : k + 4]):
+            made[k] = replace(made[k], kind="det", value="all", number=0.0)
+    return made
+
+
+ROOM = {"pieza", "habitacion", "estancia", "cuarto"}  # any room, where the largest of all is meant
+
+
+def _largest(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "the largest room is the kitchen" and "el salón es la pieza más grande" as "the kitchen is the largest"."""
+    made = list(marks)
+    for k in range(len(made) - 2):
+        if made[k].kind == "adj" and made[k].value == "largest" and (made[k + 1].kind, made[k + 1].value) == ("unit", "rooms"):
+            j = k + 2
+            while j < len(made) and made[j].kind in {"verb", "det", "adverb"}:
+                j += 1
+            if j < len(made) and made[j].kind == "room" and made[k + 2].kind == "verb":
+                return [*made[:k], *made[k + 3 : j + 1], made[k + 2], made[k], *made[j + 1 :]]
+    for k in range(3, len(made) - 1):
+        said = made[k - 3].kind == "room" and made[k - 2].kind == "verb"
+        if made[k].text in ROOM and said and made[k + 1].text == "mas grande":
+            made[k : k + 2] = [replace(made[k + 1], kind="adj", value="largest", first=made[k].first)]
+            return made
+    return made
 
 
 def _beside(marks: Sequence[Mark]) -> list[Mark]:

@@ -84,7 +84,7 @@ def has(clause: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one branc
     opened = thing.type in {"kitchen", "dining_room"} and kind in {"living_room", "kitchen", "dining_room", "studio_room", "family_room"}
     clause.state.say("open" if opened else "door", ids, owners, e)
     measures(clause, thing)
-    clause.latest, clause.run, clause.subject = ids, [thing], clause.subject or owners
+    clause.latest, clause.run, clause.subject, clause.objects = ids, [thing], clause.subject or owners, ids
     return ahead + 1
 
 

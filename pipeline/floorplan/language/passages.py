@@ -12,6 +12,7 @@ BY = {"durch", "ueber", "von", "aus", "por", "desde", "through", "via", "from"} 
 ARTICLES = {"das", "die", "den", "dem", "der", "el", "la", "los", "las"}
 BRANCH = {"abgeht", "abgehen", "abzweigt", "abzweigen"}  # at the end of a German clause
 REACH = {"erreicht", "erreichen", "betritt", "betreten", "gelangt", "kommt"}
+ONE = {("det", "indefinite"), ("pron", "one"), ("det", "other"), ("det", "another"), ("pron", "rest"), ("fill", "")}
 WHOSE = {"whose", "cuyo", "cuya", "dessen", "deren"}
 FACING = {"dan", "da", "abren", "abre", "salen"}  # "un pasillo al que dan los dormitorios"
 INTO = {"al", "a", "onto", "to", "into", "ins", "in", "in den", "in die", "in das", "zum", "zur"}
@@ -19,7 +20,34 @@ INTO = {"al", "a", "onto", "to", "into", "ins", "in", "in den", "in die", "in da
 
 def written_out(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with what is left unsaid put in."""
+    marks = _two_doors(marks)
     return _whose(_elliptic(_relative(_rather(marks)), heard))
+
+
+def _two_doors(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "the bath has two doors: one to the bedroom and one to the hall" as joined to both."""
+    made = list(marks)
+    for k in range(2, len(marks) - 2):
+        counted = made[k].kind == "flag" and made[k].value == "doors" and made[k - 1].kind in {"num", "det"} and made[k - 2].value == "has"
+        if not counted or made[k + 1].kind not in {"colon", "comma", "dash", "hyphen"}:
+            continue
+        rooms: list[Mark] = []
+        j = k + 2
+        while (start := _toward(made, j)) is not None and (place := _room_at(made, start)) is not None:
+            rooms += [replace(made[j - 1], kind="join", value="and", text="and")] if rooms else []
+            rooms += made[start : place + 1]
+            j = place + 1 + (place + 1 < len(made) and made[place + 1].kind in {"comma", "join"})
+        if rooms:
+            end = j - (made[j - 1].kind in {"comma", "join"})
+            return [*made[: k - 2], replace(made[k], kind="cue", value="door"), *rooms, *_two_doors(made[end:])]
+    return made
+
+
+def _toward(marks: Sequence[Mark], k: int) -> int | None:
+    """Return where the room begins in "one to the hall"; None for anything else."""
+    while k < len(marks) and (marks[k].number == 1.0 or (marks[k].kind, marks[k].value) in ONE):
+        k += 1
+    return k + 1 if k < len(marks) and (marks[k].text in INTO or marks[k].text == "with") else None
 
 
 def _rather(marks: Sequence[Mark]) -> list[Mark]:

@@ -32,6 +32,12 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
         if group:
             state.say("except", group, (), e)
             clause.run, clause.latest = [x for x in clause.sentence[k:j] if x.kind == "np"][-1:], group
+            every = next((x for x in clause.sentence[:k] if x.kind == "every"), None)
+            if every is not None and not any(x.kind == "cue" for x in clause.sentence[:k]):  # "all rooms but the pantry open off the hall"
+                clause.run, clause.latest = [every], ("*",)
+            each = next((x for x in clause.sentence[:k] if x.kind == "np" and x.det & {"each", "all"}), None)
+            if each is not None and clause.sentence[k - 1] is each and (rest := [i for i in each.ids if i not in group]):
+                each.ids, clause.run, clause.latest, clause.subject = rest, [each], tuple(rest), tuple(rest)
         return max(j, k + 1)
     if e.value == "by":
         return _by_way_of(clause, k, e)
@@ -112,10 +118,11 @@ def _door_between(clause: Clause, k: int, e: Element) -> int:
     if not any(x.kind == "flag" and x.value == "doors" for x in clause.sentence):
         return 0
     group, j = objects(clause, k + 1, "between", ())
-    near = [*clause.sentence[max(0, k - 1) : k], *clause.sentence[j : j + 2]]
+    near = [*clause.sentence[max(0, k - 2) : k], *clause.sentence[j : j + 4]]
     if len(group) != 2 or clause.negative or not any(x.kind == "flag" and x.value == "doors" for x in near):
         return 0
-    clause.state.say("door", group[:1], group[1:], e)
+    wide = any((x.kind == "adj" and x.value == "open") or x.text.endswith("abierto") for x in near)  # "an open doorway between kitchen and dining room"
+    clause.state.say("open" if wide else "door", group[:1], group[1:], e)
     return j
 
 
@@ -249,7 +256,7 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one b
             return clause.objects  # "away from the parents' bedroom, which is next to ..."
         chained = before is not None and before.kind == "np" and cue is not None and cue.value == e.value == "near"
         return clause.objects if chained and clause.objects and not clause.relative else clause.subject  # "X next to Y next to Z"
-    if before is not None and before.kind == "comma" and clause.objects and set(clause.objects) == {i for x in clause.run for i in x.ids}:
+    if before is not None and before.kind in {"comma", "and"} and clause.objects and set(clause.objects) == {i for x in clause.run for i in x.ids}:
         return clause.subject  # "a guest room with its own bath, away from ..."
     apart = before is not None and before.kind == "comma" and len(clause.run) > 1
     last = clause.run[-1]
