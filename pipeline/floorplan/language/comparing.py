@@ -10,8 +10,6 @@ from pipeline.floorplan.language.relating import listed
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
 
-ASIDE = {"balcony", "garage", "hallway", "staircase"}  # not meant when the largest room is spoken of
-
 
 def factor(clause: Clause, k: int, e: Element) -> int:
     """Note a factor; "twice the living room" compares at once."""
@@ -58,8 +56,5 @@ def compare(clause: Clause, k: int, e: Element) -> int:
 
 def superlative(clause: Clause, e: Element) -> None:
     """Read "the living room should be the largest room"."""
-    others = tuple(r.id for r in clause.stock.rooms if r.id not in clause.latest and r.type not in ASIDE)
-    if e.value in {"largest", "smallest"} and len(clause.latest) == 1 and others:
-        a, b = (clause.latest, others) if e.value == "largest" else (others, clause.latest)
-        for one in a:
-            clause.state.say("area_order", (one,), b, e, 1.0)
+    if e.value in {"largest", "smallest"} and len(clause.latest) == 1:
+        clause.state.say(f"{e.value}_of_all", clause.latest, (), e)

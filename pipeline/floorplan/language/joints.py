@@ -13,6 +13,7 @@ from pipeline.floorplan.program import Evidence
 MERGE_ORDER = ("living_room", "family_room", "dining_room", "kitchen", "studio_room")
 OPPOSITE, FAR, WINGS = 0.45, 0.35, 0.2  # "at the other end", "away from" and "in another wing", as shares of the diagonal
 KINDS = {"door": "door", "leads": "door", "near": "any", "open": "open", "wall": "wall"}
+ASIDE = {"balcony", "garage", "hallway", "staircase"}  # not meant when the largest room is spoken of
 INNER = {"closet", "bathroom", "balcony", "storage", "wc", "utility", "garage"}
 
 
@@ -182,6 +183,12 @@ def _related(draft: Draft, stock: Inventory, fact: Fact, facts: list[Fact]) -> N
         for b in fact.b:
             if b != fact.a[0]:
                 draft.relate("area_order", b, fact.a[0], 1.0, fact)
+    elif what in {"largest_of_all", "smallest_of_all"}:
+        mine = stock.get(fact.a[0])
+        others = [r for r in stock.rooms if r.id != mine.id and r.stated and (r.type not in ASIDE or what == "smallest_of_all")]
+        for other in (r for r in others if mine.type != "bedroom" or r.type == "bedroom"):
+            a, b = (mine.id, other.id) if what == "largest_of_all" else (other.id, mine.id)
+            draft.relate("area_order", a, b, 1.0, fact)
     elif what == "area_order":
         for a, b in itertools.product(fact.a, fact.b):
             draft.relate("area_order", a, b, fact.value, fact)

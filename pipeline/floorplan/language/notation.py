@@ -20,8 +20,76 @@ LETTERS = {"k": "kitchen", "d": "hallway", "b": "bathroom", "t": "balcony"}  # "
 def noted(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with shorthand of lists and notes written out."""
     made = _doors(_headed(_summed(_lettered(marks, heard))), heard)
-    made = _numbered(_singles(_together(_paired(made))))
+    made = _bare(_limited(made))
+    made = _numbered(_singles(_together(_paired(_more(_one_with(_other(made)))))))
     return _beside(_largest(_no_two(made)))
+
+
+def _other(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "one bedroom of 14 and another of 11 m2" as two bedrooms with their areas."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        made.append(mark)
+        room = next((m for m in reversed(made) if m.kind == "room"), None)
+        j = k + 1 + (k + 1 < len(marks) and marks[k + 1].kind in {"fill", "bound"})
+        area = marks[j] if j < len(marks) and marks[j].kind == "amount" and marks[j].value == "area" else None
+        if (mark.kind, mark.value) != ("det", "another") or room is None or area is None:
+            continue
+        made.append(replace(room, first=mark.last, last=mark.last, plural=False))
+        bare = [i for i in range(max(0, len(made) - 6), len(made)) if made[i].kind == "num" and made[i].value == "figure"]
+        if bare and made[bare[-1] + 1].kind == "join":  # "of 14 and": the same unit
+            number = made[bare[-1]]
+            made[bare[-1]] = replace(area, number=number.number, high=None, bound="", first=number.first, last=number.last)
+    return made
+
+
+def _one_with(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "3 hab (una con baño)" as one of them."""
+    made = list(marks)
+    for k in range(1, len(marks) - 1):
+        article = (marks[k].kind, marks[k].value) == ("det", "indefinite") and marks[k - 1].kind in {"open", "comma", "colon"}
+        if article and (marks[k + 1].kind, marks[k + 1].value) == ("cue", "has"):
+            made[k] = replace(marks[k], kind="pron", value="one", number=1.0)
+    return made
+
+
+def _more(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "dos habitaciones más", "two bedrooms more" as further ones."""
+    made: list[Mark] = []
+    for mark in marks:
+        counted = len(made) > 1 and made[-1].kind == "room" and made[-2].kind == "num"
+        if mark.text in {"mas", "more"} and counted and mark.kind in {"det", "fill", "adverb", "word", "join"}:
+            made.insert(len(made) - 2, replace(made[-2], kind="det", value="another"))
+        else:
+            made.append(mark)
+    return made
+
+
+def _limited(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "no room larger than 18 m2" as a limit of every room, not of the home."""
+    made = list(marks)
+    for k in range(len(marks) - 2):
+        none = made[k].kind == "neg" and (made[k + 1].kind, made[k + 1].value) == ("unit", "rooms")
+        j = k + 2 + (made[k + 2].kind == "verb")
+        if none and j < len(made) and made[j].kind == "amount" and made[j].value == "area" and made[j].bound in {"least", "most"}:
+            amount = replace(made[j], bound="most" if made[j].bound == "least" else "least")
+            return [*made[:k], replace(made[k + 1], kind="every", value="", first=made[k].first), amount, *_limited(made[j + 1 :])]
+    return made
+
+
+def _bare(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "bed 12, bath 4, kitchen 8, living 18" as areas [m2] where three rooms and more have a figure each, and no unit is named."""
+    places = [
+        k
+        for k in range(1, len(marks))
+        if marks[k].kind == "num" and marks[k].value == "figure" and marks[k - 1].kind == "room" and not marks[k - 1].plural
+        if k + 1 >= len(marks) or marks[k + 1].kind in CLOSERS
+    ]
+    figures = [marks[k].number for k in places]
+    measured = any(m.kind == "amount" and m.value == "area" and not m.total for m in marks)
+    if len(figures) < 3 or measured or min(figures) < 2 or max(figures) > 60 or sum(figures) < 6 * len(figures):
+        return list(marks)
+    return [replace(m, kind="amount", value="area") if k in places else m for k, m in enumerate(marks)]
 
 
 def _no_two(marks: Sequence[Mark]) -> list[Mark]:
@@ -134,9 +202,10 @@ def _together(marks: Sequence[Mark]) -> list[Mark]:
     made = list(marks)
     for k, mark in enumerate(marks):
         ends = k + 1 >= len(marks) or marks[k + 1].kind in CLOSERS
-        if mark.kind == "flag" and mark.value == "total" and mark.text in {"together", "zusammen", "juntos", "juntas"} and ends and k > 2:
+        said = (mark.kind, mark.value) == ("flag", "total") or mark.kind == "reciprocal"
+        if said and mark.text in {"together", "zusammen", "juntos", "juntas"} and ends and k > 2:
             joined = marks[k - 2].kind == "join" and {marks[k - 1].value, marks[k - 3].value} <= SOCIAL
-            made[k] = replace(mark, value="open_plan") if joined else mark
+            made[k] = replace(mark, kind="flag", value="open_plan") if joined else mark
     return made
 
 

@@ -41,7 +41,9 @@ def has(clause: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one branc
     before = next((x for x in reversed(sentence[:k]) if x.kind in {"np", "home", "pron", "every", "det", "level"}), None)
     if before is None or before.kind in {"home", "level"} or not (clause.run or clause.subject):
         return k + 1
-    if clause.run and sentence[k - 1].kind == "comma" and not clause.verb:
+    ahead = _next_phrase(sentence, k + 1)
+    own = ahead is not None and "own" in sentence[ahead].det and clause.run[-1:] and clause.run[-1].type == "bedroom"
+    if clause.run and sentence[k - 1].kind == "comma" and not clause.verb and not own:
         return k + 1
     owners = tuple(i for i in (clause.run[-1].ids if clause.run else clause.subject) if not i.startswith("*"))
     near = sentence[k - 1]
@@ -57,7 +59,6 @@ def has(clause: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one branc
     clause.negative = None
     if kind == "bedroom":
         return _belongs(clause, k, e, owners) if not negative else k + 1
-    ahead = _next_phrase(sentence, k + 1)
     if ahead is None or kind not in HOSTS or len(owners) > 1 or sentence[ahead].banned:
         return k + 1
     thing = sentence[ahead]

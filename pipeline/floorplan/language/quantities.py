@@ -73,6 +73,9 @@ def attach(state: Reading, sentence: list[Element], k: int, mark: Mark, latest: 
     if mark.value == "area" and k and sentence[k - 1].kind == "cue" and sentence[k - 1].value == "in":
         state.amounts.append((mark, None))  # "ten rooms in 40 m2"
         return
+    if mark.value == "area" and latest == ("*",) and k and sentence[k - 1].kind in {"every", "verb", "det"}:
+        state.amounts.append((mark, latest))  # "every room at least 9 m2"
+        return
     rooms = tuple(i for i in latest if not i.startswith(("*", "<")))
     if home or not rooms:
         state.amounts.append((mark, None))

@@ -28,13 +28,14 @@ def read(heard: Words, sentences: list[list[Element]]) -> Reading:
 
 
 def _parted(sentence: list[Element]) -> list[Element]:
-    """Read "two bathrooms, one en suite" as "two bathrooms, one of them en suite"."""
+    """Read "three bathrooms, two en suite" as "three bathrooms, two of them en suite"."""
     made: list[Element] = []
     for k, e in enumerate(sentence):
         counted = sentence[k - 2] if k > 1 and sentence[k - 1].kind in {"comma", "open"} else None
         several = counted is not None and counted.kind == "np" and counted.type == e.type == "bathroom" and (counted.number or 1) > 1
-        if several and e.role == "ensuite" and e.number in {None, 1} and not e.det:
-            made += [Element("pron", "one", e.first, e.first, e.text), replace(e, number=None)]
+        fewer = counted is not None and (e.number or 1) < (counted.number or 1)
+        if several and fewer and e.role == "ensuite" and not e.det:
+            made += [Element("pron", "one", e.first, e.first, e.text, number=e.number), replace(e, number=None)]
         else:
             made.append(e)
     return made

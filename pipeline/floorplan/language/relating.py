@@ -11,6 +11,7 @@ from pipeline.floorplan.language.naming import name
 from pipeline.floorplan.language.owning import has, measures
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import zone
+from pipeline.floorplan.language.ways import by_way_of, door_between, excepted, through
 
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
@@ -28,23 +29,13 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     if e.value == "has":
         return has(clause, k, e)
     if e.value == "except":
-        group, j = objects(clause, k + 1, "except", ())
-        if group:
-            state.say("except", group, (), e)
-            clause.run, clause.latest = [x for x in clause.sentence[k:j] if x.kind == "np"][-1:], group
-            every = next((x for x in clause.sentence[:k] if x.kind == "every"), None)
-            if every is not None and not any(x.kind == "cue" for x in clause.sentence[:k]):  # "all rooms but the pantry open off the hall"
-                clause.run, clause.latest = [every], ("*",)
-            each = next((x for x in clause.sentence[:k] if x.kind == "np" and x.det & {"each", "all"}), None)
-            if each is not None and clause.sentence[k - 1] is each and (rest := [i for i in each.ids if i not in group]):
-                each.ids, clause.run, clause.latest, clause.subject = rest, [each], tuple(rest), tuple(rest)
-        return max(j, k + 1)
+        return excepted(clause, k, e)
     if e.value == "by":
-        return _by_way_of(clause, k, e)
+        return by_way_of(clause, k, e)
     if e.value.startswith("thru"):
-        return _through(clause, k, e)
+        return through(clause, k, e)
     clause.relative = clause.relative or e.text.startswith("que ")
-    if e.value == "between" and (after := _door_between(clause, k, e)):
+    if e.value == "between" and (after := door_between(clause, k, e)):
         return after
     left = _left(clause, k, e)
     group, j = objects(clause, k + 1, e.value, left)
@@ -94,38 +85,6 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     return j
 
 
-def _through(clause: Clause, k: int, e: Element) -> int:
-    """Read "you pass through the dining room to reach the kitchen", and what must not be so."""
-    first, j = objects(clause, k + 1, "door", ())
-    if not first or j >= len(clause.sentence):
-        return k + 1
-    while j < len(clause.sentence) and clause.sentence[j].kind in {"verb", "comma"}:
-        j += 1
-    second, j = objects(clause, j, "door", first)
-    if not second:
-        return max(j, k + 1)
-    things, hosts = (second, first) if e.value == "thru" else (first, second)
-    none = clause.negative is not None or e.value == "thru_not"
-    clause.negative = None
-    clause.state.say("avoid" if none else "door", things, hosts, e)
-    clause.subject = clause.latest = clause.objects = things
-    clause.run = []
-    return j
-
-
-def _door_between(clause: Clause, k: int, e: Element) -> int:
-    """Read "a door between kitchen and bathroom"; return 0 where no door is spoken of."""
-    if not any(x.kind == "flag" and x.value == "doors" for x in clause.sentence):
-        return 0
-    group, j = objects(clause, k + 1, "between", ())
-    near = [*clause.sentence[max(0, k - 2) : k], *clause.sentence[j : j + 4]]
-    if len(group) != 2 or clause.negative or not any(x.kind == "flag" and x.value == "doors" for x in near):
-        return 0
-    wide = any((x.kind == "adj" and x.value == "open") or x.text.endswith("abierto") for x in near)  # "an open doorway between kitchen and dining room"
-    clause.state.say("open" if wide else "door", group[:1], group[1:], e)
-    return j
-
-
 def _alone(clause: Clause, k: int, e: Element) -> int:
     """Read a cue that nothing follows: "next to each other", "kitchen and bath adjacent"."""
     ahead = clause.sentence[k + 1] if k + 1 < len(clause.sentence) else None
@@ -139,20 +98,6 @@ def _alone(clause: Clause, k: int, e: Element) -> int:
     if e.value == "between":
         clause.state.understood(e.first, e.last)
     return k + 1
-
-
-def _by_way_of(clause: Clause, k: int, e: Element) -> int:
-    """Read "the garage is connected to the kitchen via a utility room": the way that was just said leads through it."""
-    said = clause.state.facts[-1] if clause.state.facts else None
-    if said is None or said.what not in {"door", "leads"} or not said.b or clause.run:
-        return k + 1
-    group, j = objects(clause, k + 1, "door", (*said.a, *said.b))
-    if group:
-        clause.state.facts.pop()
-        clause.state.say("door", said.a, group, e)
-        clause.state.say("door", group, said.b, e)
-        clause.latest, clause.objects, clause.run = group, group, []
-    return max(j, k + 1)
 
 
 def _inside(clause: Clause, left: Group, group: Group) -> bool:
@@ -256,7 +201,12 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one b
             return clause.objects  # "away from the parents' bedroom, which is next to ..."
         chained = before is not None and before.kind == "np" and cue is not None and cue.value == e.value == "near"
         return clause.objects if chained and clause.objects and not clause.relative else clause.subject  # "X next to Y next to Z"
-    if before is not None and before.kind in {"comma", "and"} and clause.objects and set(clause.objects) == {i for x in clause.run for i in x.ids}:
+    if (
+        before is not None
+        and before.kind in {"comma", "and"}
+        and clause.objects
+        and set(clause.objects) == {i for x in clause.run for i in x.ids}
+    ):
         return clause.subject  # "a guest room with its own bath, away from ..."
     apart = before is not None and before.kind == "comma" and len(clause.run) > 1
     last = clause.run[-1]

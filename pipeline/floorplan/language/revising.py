@@ -31,10 +31,23 @@ def revise(marks: Sequence[Mark], heard: Words) -> Revised:
     Raises ImpossibleError where two counts contradict each other ("three bedrooms but only two"), with both.
     """
     _negative(marks, heard)
-    made = _corrected(list(marks))
+    made = _corrected(_not_towards(marks))
     made = _content(made)
     _contradicted(made, heard)
     return _chosen(_few(made))
+
+
+def _not_towards(marks: Sequence[Mark]) -> list[Mark]:
+    """Read 不对 between two rooms as "not towards", elsewhere it takes back what was said."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        ahead = marks[k + 1].kind if k + 1 < len(marks) else ""
+        if mark.kind == "fix" and mark.text == "不 对" and ahead == "room" and made and made[-1].kind == "room":
+            middle = mark.first + 1
+            made += [replace(mark, kind="neg", last=middle, text="不"), replace(mark, kind="fill", first=middle, text="对")]
+        else:
+            made.append(mark)
+    return made
 
 
 def _counted(marks: Sequence[Mark], k: int) -> int | None:

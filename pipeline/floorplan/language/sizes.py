@@ -16,12 +16,16 @@ from pipeline.floorplan.program import MAX_ROOMS, Evidence
 ABOUT = 0.1  # "about 75 m2" allows this much either way
 SAME = 0.02  # two totals that differ by less are one, said twice
 
+SMALL = {"wc", "hallway", "entry", "storage", "closet", "balcony", "staircase", "bathroom", "utility"}  # not meant by "every room at least"
+
 
 def attach(draft: Draft, state: Reading) -> None:
     """Attach amounts: areas and widths."""
     stock = state.inventory
     for mark, ids in state.amounts:
         rooms = [stock.get(i) for i in ids or () if not i.startswith("*")]
+        if ids == ("*",):
+            rooms = [r for r in stock.rooms if r.type not in SMALL or mark.bound == "most"]
         if mark.value == "area" and mark.number > 0:
             _area(draft, mark, rooms)
         elif mark.value in SHELL:

@@ -65,3 +65,32 @@ def test_headings_are_storeys():
 @pytest.mark.parametrize(("wrong", "right"), [("客听", "客厅"), ("橱房", "厨房"), ("卫生见", "卫生间"), ("书防", "书房")])
 def test_names_of_rooms_that_sound_alike_are_repaired(wrong, right):
     assert said(f"一间卧室,一个{wrong}") == said(f"一间卧室,一个{right}")
+
+
+@pytest.mark.parametrize(
+    "prompt", ["No room larger than 18 m2; two bedrooms, bath, kitchen.", "Kein Zimmer größer als 18 m². Küche, Bad, zwei Schlafzimmer."]
+)
+def test_a_limit_of_every_room_is_not_that_of_the_home(prompt):
+    program = parse(prompt)
+    assert not program.total_area.stated
+    assert {r.area.max for r in program.rooms if r.stated} == {18.0}
+
+
+def test_figures_without_a_unit_are_areas_where_all_rooms_have_one():
+    areas = {r.type: r.area.target for r in parse("bed 12, bath 4, kitchen 8, living 18").rooms if r.stated}
+    assert areas == {"bedroom": 12, "bathroom": 4, "kitchen": 8, "living_room": 18}
+    assert not any(r.area.stated for r in parse("bedroom 1, bedroom 2, bath 1, kitchen").rooms)
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    ["Bitte kein Bad ohne Fenster. Bad, Küche.", "No bathroom without a window. Bath, kitchen.", "Ningún baño sin ventana. Baño, cocina."],
+)
+def test_no_room_without_a_window_is_one_with(prompt):
+    assert [r.window for r in parse(prompt).rooms if r.type == "bathroom"] == ["required"]
+
+
+def test_en_suites_in_brackets_are_among_those_counted():
+    program = parse("5 beds, 3 baths (2 en suite), kitchen")
+    assert sum(r.type == "bathroom" and r.stated for r in program.rooms) == 3
+    assert sum(r.kind == "ensuite" for r in program.relations) == 2

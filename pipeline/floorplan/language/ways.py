@@ -1,0 +1,73 @@
+"""Ways with a third word in them: through a room, by way of one, a door between two, all rooms but one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from pipeline.floorplan.language.phrases import Element
+
+if TYPE_CHECKING:
+    from pipeline.floorplan.language.clauses import Clause
+
+
+def excepted(clause: Clause, k: int, e: Element) -> int:
+    """Read "all rooms but the pantry open off the hall": those that are left out, and who goes on."""
+    group, j = clause.after(k + 1, "except", ())
+    if group:
+        clause.state.say("except", group, (), e)
+        clause.run, clause.latest = [x for x in clause.sentence[k:j] if x.kind == "np"][-1:], group
+        every = next((x for x in clause.sentence[:k] if x.kind == "every"), None)
+        if every is not None and not any(x.kind == "cue" for x in clause.sentence[:k]):  # "all rooms but the pantry open off the hall"
+            clause.run, clause.latest = [every], ("*",)
+        each = next((x for x in clause.sentence[:k] if x.kind == "np" and x.det & {"each", "all"}), None)
+        if each is not None and clause.sentence[k - 1] is each and (rest := [i for i in each.ids if i not in group]):
+            each.ids, clause.run, clause.latest, clause.subject = rest, [each], tuple(rest), tuple(rest)
+    return max(j, k + 1)
+
+
+def through(clause: Clause, k: int, e: Element) -> int:
+    """Read "you pass through the dining room to reach the kitchen", and what must not be so."""
+    first, j = clause.after(k + 1, "door", ())
+    if not first or j >= len(clause.sentence):
+        return k + 1
+    while j < len(clause.sentence) and clause.sentence[j].kind in {"verb", "comma"}:
+        j += 1
+    second, j = clause.after(j, "door", first)
+    if not second:
+        return max(j, k + 1)
+    things, hosts = (second, first) if e.value == "thru" else (first, second)
+    none = clause.negative is not None or e.value == "thru_not"
+    clause.negative = None
+    clause.state.say("avoid" if none else "door", things, hosts, e)
+    clause.subject = clause.latest = clause.objects = things
+    clause.run = []
+    return j
+
+
+def door_between(clause: Clause, k: int, e: Element) -> int:
+    """Read "a door between kitchen and bathroom"; return 0 where no door is spoken of."""
+    if not any(x.kind == "flag" and x.value == "doors" for x in clause.sentence):
+        return 0
+    group, j = clause.after(k + 1, "between", ())
+    near = [*clause.sentence[max(0, k - 2) : k], *clause.sentence[j : j + 4]]
+    if len(group) != 2 or clause.negative or not any(x.kind == "flag" and x.value == "doors" for x in near):
+        return 0
+    wide = any(
+        (x.kind == "adj" and x.value == "open") or x.text.endswith("abierto") for x in near
+    )  # "an open doorway between kitchen and dining room"
+    clause.state.say("open" if wide else "door", group[:1], group[1:], e)
+    return j
+
+
+def by_way_of(clause: Clause, k: int, e: Element) -> int:
+    """Read "the garage is connected to the kitchen via a utility room": the way that was just said leads through it."""
+    said = clause.state.facts[-1] if clause.state.facts else None
+    if said is None or said.what not in {"door", "leads"} or not said.b or clause.run:
+        return k + 1
+    group, j = clause.after(k + 1, "door", (*said.a, *said.b))
+    if group:
+        clause.state.facts.pop()
+        clause.state.say("door", said.a, group, e)
+        clause.state.say("door", group, said.b, e)
+        clause.latest, clause.objects, clause.run = group, group, []
+    return max(j, k + 1)
