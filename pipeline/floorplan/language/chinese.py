@@ -93,7 +93,9 @@ def _summed(marks: list[Mark], k: int) -> bool:
 def _between(marks: list[Mark]) -> list[Mark]:
     """Read "在厨房和客厅之间" as "between kitchen and living room"."""
     made = list(marks)
-    for k, mark in enumerate(made):
+    k = -1
+    while (k := k + 1) < len(made):
+        mark = made[k]
         if mark.kind == "cue" and mark.value == "between":
             names = [j for j in range(max(0, k - 6), k) if made[j].kind in HEADS]
             several = bool(names) and any(m.kind == "num" and m.number > 1 for m in made[max(0, names[-1] - 2) : names[-1]])

@@ -165,6 +165,8 @@ class Clause:
         self.state.understood(e.first, e.last)
         if e.role == "ensuite":
             self.state.say("no_ensuite", tuple(r.id for r in self.stock.of("bathroom")) or ("*bathroom",), (), e)
+        elif e.type == "kitchen" and e.mark is not None and "/" in e.mark.value:
+            return  # "no kitchen-diner" leaves a kitchen
         elif not (e.type == "bedroom" and e.role):  # "no guest room" leaves the other bedrooms
             self.state.banned.append((e.type, e))
 

@@ -243,7 +243,7 @@ def measured(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     return made
 
 
-def _amount(marks: Sequence[Mark], k: int, lex: Lexicon) -> tuple[Mark, int] | None:  # noqa: PLR0912 - one branch per case: a grammar
+def _amount(marks: Sequence[Mark], k: int, lex: Lexicon) -> tuple[Mark, int] | None:  # noqa: C901, PLR0912 - one branch per case: a grammar
     bound, i, ranged, total = "", k, False, False
     while i < len(marks) and (
         marks[i].text in lex.bounds
@@ -281,6 +281,8 @@ def _amount(marks: Sequence[Mark], k: int, lex: Lexicon) -> tuple[Mark, int] | N
             unit, i = after, i + 3
     if unit is None:
         return None
+    if i + 1 < len(marks) and marks[i].value == "total" and lex.bounds.get(marks[i + 1].text) in {"or_less", "or_more", "most", "least"}:
+        total, i = True, i + 1  # "50 m2 in total at most"
     behind = lex.bounds.get(marks[i].text, "about") if i < len(marks) else "about"
     added = i + 1 < len(marks) and marks[i].text == "+" and marks[i + 1].kind in {"room", "suite", "det", "adj", "size", "pron"}
     if behind != "about" and not added and not (i + 1 < len(marks) and marks[i + 1].kind == "num"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -20,7 +21,7 @@ LETTERS = {"k": "kitchen", "d": "hallway", "b": "bathroom", "t": "balcony"}  # "
 def noted(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with shorthand of lists and notes written out."""
     made = _doors(_headed(_summed(_lettered(marks, heard))), heard)
-    made = _bare(_limited(made))
+    made = _bare(_limited(_indexed(made)))
     made = _numbered(_singles(_together(_paired(_more(_one_with(_other(made)))))))
     return _beside(_largest(_no_two(made)))
 
@@ -62,6 +63,18 @@ def _more(marks: Sequence[Mark]) -> list[Mark]:
             made.insert(len(made) - 2, replace(made[-2], kind="det", value="another"))
         else:
             made.append(mark)
+    return made
+
+
+def _indexed(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "bedroom A ..., bedroom B ..." as the first and the second."""
+    letters = {m.text for room, m in itertools.pairwise(marks) if room.kind == "room" and m.kind in {"det", "word", "fill"}}
+    if not {"a", "b"} <= letters:
+        return list(marks)
+    made = list(marks)
+    for k in range(1, len(made)):
+        if made[k - 1].kind == "room" and made[k].text in "abcd" and made[k].kind in {"det", "word", "fill"}:
+            made[k] = replace(made[k], kind="num", value="figure", number=float("abcd".index(made[k].text) + 1))
     return made
 
 

@@ -259,7 +259,8 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
     while index < len(sentence):
         e = sentence[index]
         if e.kind == "np":
-            clausal = cue == "cmp" and joined and any(x.kind == "comma" for x in sentence[index - 3 : index]) and bool(e.amounts)
+            comma = any(x.kind == "comma" for x in sentence[index - 3 : index])
+            clausal = cue == "cmp" and joined and ((comma and bool(e.amounts)) or "equal" in e.adjectives)
             pair = cue == "between" and joined == "and" and len(group) == 1
             if (
                 e.banned

@@ -26,6 +26,7 @@ def said(prompt):
         ("La despensa, a la que solo se entra por la cocina; salón", "La despensa se abre a la cocina; salón"),
         ("De la cocina se pasa al comedor y del comedor al salón.", "De la cocina se pasa al comedor. Del comedor se pasa al salón."),
         ("客厅,走廊尽头是卫生间", "客厅,走廊通向卫生间"),
+        ("厨房和客厅之间要有门,卧室和厨房之间不要有门。", "厨房与客厅相通。卧室与厨房不相通。"),
         ("The hall leads to the bedroom, whose bathroom is tiled.", "The hall leads to the bedroom. The bedroom has its own bathroom."),
     ],
 )  # fmt: skip
