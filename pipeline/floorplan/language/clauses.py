@@ -14,6 +14,7 @@ from pipeline.floorplan.language.places import level, storey, wing, zone
 from pipeline.floorplan.language.pointing import point
 from pipeline.floorplan.language.quantities import attach, belongs
 from pipeline.floorplan.language.relating import objects, relate
+from pipeline.floorplan.language.ways import entered
 
 ELSEWHERE = {
     "level": level,
@@ -347,6 +348,8 @@ class Clause:
         group, j = self.after(k + 1, "enter", ())
         if not group and self.latest:
             group, j = self.latest, k + 1
+        if after := entered(self, j, e, group):
+            return after
         if group and not group[0].startswith(("*", "<")):
             self.state.understood(e.first, e.last)
             self.state.entrance = (group[0], e)

@@ -47,13 +47,11 @@ def attach(state: Reading, sentence: list[Element], k: int, mark: Mark, latest: 
     state.understood(mark.first, mark.last)
     if mark.value == "storeys":
         if mark.number >= 1:
-            state.storeys = state.storeys or (
-                2 if mark.number == 1.5 else int(mark.number),
-                mark,
-            )  # one and a half: the half is to sleep in
+            state.storeys = state.storeys or (int(mark.number), mark)
         return
     if mark.value == "rooms":
-        state.rooms = state.rooms or (int(mark.number), mark)
+        count = 2 if mark.number == 1.5 else int(mark.number)  # of one and a half, the half is to sleep in
+        state.rooms = state.rooms or (count, mark)
         return
     if mark.value == "car":
         return

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from pipeline.floorplan.language.facts import SOCIAL, Group
+from pipeline.floorplan.language.facts import HALLS, SOCIAL, Group
 from pipeline.floorplan.language.lexicon import ONLY
 from pipeline.floorplan.language.naming import name
 from pipeline.floorplan.language.owning import has, measures
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import zone
-from pipeline.floorplan.language.ways import by_way_of, door_between, excepted, through
+from pipeline.floorplan.language.ways import by_way_of, door_between, enter, excepted, through
 
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
@@ -73,6 +73,9 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
         return j
     if not left and e.text.endswith("有"):  # beside something that is no room
         return k + 1
+    first = not any(x.kind in {"np", "pron", "level"} for x in clause.sentence[:k])
+    if e.value == "leads" and not left and first and all(clause.stock.get(i).type in HALLS for i in group if i[0] not in "*<"):
+        return enter(clause, e, group, j)  # "se entra a un vestíbulo ..."
     if not left or _inverted(clause, k, j):
         clause.waiting = (e, group)
         clause.subject, clause.latest, clause.run, clause.verb = (), group, [], False

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from pipeline.floorplan.language.facts import HALLS, Group
 from pipeline.floorplan.language.phrases import Element
 
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
+
+BY = {"durch", "through", "por"}
+THEN = {"then", "dann", "luego", "despues"}
 
 
 def excepted(clause: Clause, k: int, e: Element) -> int:
@@ -71,3 +75,37 @@ def by_way_of(clause: Clause, k: int, e: Element) -> int:
         clause.state.say("door", group, said.b, e)
         clause.latest, clause.objects, clause.run = group, group, []
     return max(j, k + 1)
+
+
+def enter(clause: Clause, e: Element, group: Group, j: int) -> int:
+    """Let a room be the one that one enters, and what follows go on from there."""
+    if group and not group[0].startswith(("*", "<")):
+        clause.state.understood(e.first, e.last)
+        clause.state.entrance = clause.state.entrance or (group[0], e)
+        clause.subject = clause.latest = clause.objects = group
+        clause.run, clause.waiting = [], None
+    return j
+
+
+def entered(clause: Clause, j: int, e: Element, group: Group) -> int:
+    """Read "you come in through the porch into the hall" and "you enter a vestibule, then a hall" on; 0 where no room follows."""
+    rest = clause.sentence[j : j + 3]
+    into = bool(rest) and rest[0].kind == "cue" and rest[0].value in {"in", "leads"} and e.text.split()[-1] in BY
+    step = next((i for i, x in enumerate(rest[:2]) if x.text in THEN), None)
+    if len(group) == 2 and any(x.text in THEN for x in clause.sentence[max(0, j - 4) : j]):  # both were read as one list
+        clause.state.say("door", group[1:], group[:1], e)
+        clause.state.entrance = (group[0], e)
+        clause.subject = clause.latest = clause.objects = group[1:]
+        clause.run, clause.waiting = [], None
+        return j
+    if not group or group[0].startswith(("*", "<")) or not (into or step is not None):
+        return 0
+    further, end = clause.after(j + 1 + (step or 0), "door", group)
+    if not further:
+        return 0
+    clause.state.say("door", further, group, e)
+    if not into or clause.stock.get(group[0]).type in HALLS:
+        clause.state.entrance = (group[0], e)
+    clause.subject = clause.latest = further
+    clause.objects, clause.run, clause.waiting = further, [], None
+    return end

@@ -95,3 +95,17 @@ def test_en_suites_in_brackets_are_among_those_counted():
     program = parse("5 beds, 3 baths (2 en suite), kitchen")
     assert sum(r.type == "bathroom" and r.stated for r in program.rooms) == 3
     assert sum(r.kind == "ensuite" for r in program.relations) == 2
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "You enter a vestibule, then a hall. Kitchen, bath.",
+        "Se entra a un vestíbulo y de ahí a un pasillo. Cocina, baño.",
+        "Vom Eingang kommt man in einen Windfang und von dort in den Flur. Küche, Bad.",
+    ],
+)
+def test_one_enters_and_goes_on(prompt):
+    program = parse(prompt)
+    assert program.select(program.entrance.into)[0].type == "entry"
+    assert ("entry", "hallway", "door") in said(prompt)[1]
