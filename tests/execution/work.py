@@ -53,6 +53,7 @@ def nap(folder, job):
 if __name__ == "__main__":
     from pipeline.execution import map_shards
 
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell runs in the background inherits that it is ignored
     try:
         list(map_shards(functools.partial(nap, sys.argv[1]), enumerate(range(4)), workers=2))
     except KeyboardInterrupt:
