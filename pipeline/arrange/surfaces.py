@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Link
 from pipeline.geometry.convex import hull
+from pipeline.geometry.kept import kept
 from pipeline.geometry.prisms import Prisms, solid
 
 Floats = NDArray[np.float64]
@@ -39,17 +40,10 @@ class Surfaces:
         return len(self.tops)
 
 
-_KNOWN: dict[int, tuple[Asset, Surfaces]] = {}
-
-
+@kept
 def surfaces(asset: Asset) -> Surfaces:
     """Return an asset's surfaces. They depend on the asset alone and are kept while the process lives."""
-    # Keyed by identity, as prisms are: an asset has no hash, and is kept so that its id is never used again.
-    found = _KNOWN.get(id(asset))
-    if found is None:
-        found = (asset, make_surfaces(asset))
-        _KNOWN[id(asset)] = found
-    return found[1]
+    return make_surfaces(asset)
 
 
 def make_surfaces(asset: Asset) -> Surfaces:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Joint, Link
 from pipeline.geometry.convex import hull
+from pipeline.geometry.kept import kept
 from pipeline.geometry.kinematics import joint_motion, joint_range, moved_links
 
 Floats = NDArray[np.float64]
@@ -96,17 +97,10 @@ def prism(points: Floats, part: int = 0) -> Prisms | None:
     return Prisms(corners[None], np.array([len(outline)]), z, np.array([part]))
 
 
-_SOLIDS: dict[int, tuple[Asset, Solid]] = {}
-
-
+@kept
 def solid(asset: Asset) -> Solid:
     """Return an asset's prisms. They depend on the asset alone and are kept while the process lives."""
-    # Keyed by identity (an asset holds arrays and has no hash); the asset is kept too, so an id is never reused.
-    found = _SOLIDS.get(id(asset))
-    if found is None:
-        found = (asset, make_solid(asset))
-        _SOLIDS[id(asset)] = found
-    return found[1]
+    return make_solid(asset)
 
 
 def make_solid(asset: Asset) -> Solid:

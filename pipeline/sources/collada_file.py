@@ -11,14 +11,13 @@ import warnings
 from collections.abc import Iterator
 from typing import Any
 
-import defusedxml
 import numpy as np
-from defusedxml import ElementTree
 from numpy.typing import NDArray
 
 from pipeline.sources.collada_materials import Elements, material
 from pipeline.sources.obj_file import MAX_COORDINATE, MAX_FACES, MAX_GROUPS, MAX_VERTICES, MtlMaterial, ObjFile, ObjGroup
 from pipeline.sources.reasons import SourceError
+from pipeline.sources.xml_file import xml_root
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -48,14 +47,7 @@ def parse_dae(data: bytes, where: str) -> tuple[ObjFile, dict[str, MtlMaterial]]
 
 
 def _tree(data: bytes, where: str) -> Any:
-    if data.count(b"<") > MAX_ELEMENTS:
-        raise SourceError("too_large", where, "has too many elements")
-    try:
-        root = ElementTree.fromstring(data, forbid_dtd=True)
-    except defusedxml.DefusedXmlException as error:
-        raise SourceError("not_obj", where, "has a DTD, an entity or an external reference") from error
-    except (ElementTree.ParseError, ValueError, LookupError, RecursionError) as error:
-        raise SourceError("not_obj", where, f"is not XML ({str(error)[:80]})") from error
+    root = xml_root(data, "not_obj", where, MAX_ELEMENTS)
     for element in root.iter():  # one namespace per version says nothing that the names do not
         if isinstance(element.tag, str):
             element.tag = element.tag.rpartition("}")[2]

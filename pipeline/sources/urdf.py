@@ -11,13 +11,12 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-import defusedxml
 import numpy as np
-from defusedxml import ElementTree
 from numpy.typing import NDArray
 
 from pipeline.sources.inertials import Inertial
 from pipeline.sources.reasons import SourceError
+from pipeline.sources.xml_file import xml_root
 
 Floats = NDArray[np.float64]
 
@@ -93,14 +92,7 @@ def parse_urdf(data: bytes, where: str) -> Urdf:
 def _tree(data: bytes, where: str) -> Any:
     if not data.strip():
         raise SourceError("not_urdf", where, "is empty")
-    if data.count(b"<") > MAX_ELEMENTS:
-        raise SourceError("too_large", where, "has too many elements")
-    try:
-        root = ElementTree.fromstring(data, forbid_dtd=True)
-    except defusedxml.DefusedXmlException as error:
-        raise SourceError("not_urdf", where, "has a DTD, an entity or an external reference") from error
-    except (ElementTree.ParseError, ValueError, LookupError, RecursionError) as error:
-        raise SourceError("not_urdf", where, f"is not XML ({str(error)[:80]})") from error
+    root = xml_root(data, "not_urdf", where, MAX_ELEMENTS)
     if root.tag != "robot":
         raise SourceError("not_urdf", where, f"its root is <{str(root.tag)[:40]}>, not <robot>")
     return root
