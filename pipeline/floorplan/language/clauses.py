@@ -8,10 +8,10 @@ from pipeline.floorplan.language.comparing import compare, factor, superlative
 from pipeline.floorplan.language.facts import ROLES, SOCIAL, Group, Reading
 from pipeline.floorplan.language.naming import fresh, name
 from pipeline.floorplan.language.openness import merge, merge_after, no_door, windows, written_as_one
-from pipeline.floorplan.language.owning import one_each
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import level, storey, wing, zone
 from pipeline.floorplan.language.pointing import point
+from pipeline.floorplan.language.pronouns import cast, determiner, every, pronoun
 from pipeline.floorplan.language.quantities import attach, belongs
 from pipeline.floorplan.language.relating import objects, relate
 from pipeline.floorplan.language.ways import entered
@@ -23,6 +23,9 @@ ELSEWHERE = {
     "cue": relate,
     "factor": factor,
     "cmp": compare,
+    "pron": pronoun,
+    "det": determiner,
+    "every": every,
 }  # what other modules read, by kind of element
 
 
@@ -81,7 +84,7 @@ class Clause:
             and not e.ids
             and e.type == "bedroom"
         ):
-            self._role(before, e.role)  # "four bedrooms, one of them the guest room"
+            cast(self, before, e.role)  # "four bedrooms, one of them the guest room"
             e.ids = before.ids
         if e.role == "ensuite" and e.type == "bathroom" and not e.ids and self._predicate(k, e):
             self.state.say("ensuite", (), self.latest, e)
@@ -220,13 +223,9 @@ class Clause:
         self.state.understood(e.first, e.last)
         before = self.sentence[k - 1] if k else None
         if before is not None and before.kind == "pron" and before.value == "one" and before.ids:
-            self._role(before, e.value)
+            cast(self, before, e.value)
         self.owner, self.owning = e.value, ""
         return k + 1
-
-    def _role(self, who: Element, role: str) -> None:
-        for room in (self.stock.get(i) for i in who.ids):
-            room.role = room.role or (role if room.type == "bedroom" else "")
 
     def _verb(self, k: int, _: Element) -> int:
         before = next((x for x in reversed(self.sentence[:k]) if x.kind not in {"word", "ignored", "flag"}), None)
@@ -251,38 +250,6 @@ class Clause:
             self._complete()
         return k + 1
 
-    def _every(self, k: int, e: Element) -> int:
-        self.state.understood(e.first, e.last)
-        e.ids = ["*"]
-        self.push(k, e, ("*",))
-        return k + 1
-
-    def _det(self, k: int, e: Element) -> int:  # noqa: PLR0911 - one answer per case: a grammar
-        last = k + 1 >= len(self.sentence) or self.sentence[k + 1].kind in {"comma", "close"}
-        if (
-            (e.value == "each" or e.text in {"cada uno", "cada una"})
-            and last
-            and k
-            and self.sentence[k - 1].kind == "np"
-            and len(self.latest) == 1
-        ):
-            one_each(self, e)
-            return k + 1
-        if e.value == "other" and next((x.kind for x in self.sentence[k + 1 :] if x.kind != "verb"), "") in {"level", "colon"}:
-            return self._every(k, e)
-        if e.value == "all" and k and self.sentence[k - 1].kind == "every":
-            return k + 1
-        if e.value == "all" and len(self.run) > 1 and not any(x.kind == "np" for x in self.sentence[k + 1 : k + 2]):
-            self.subject = self.latest = tuple(i for x in self.run for i in x.ids)  # "kitchen, two bedrooms, bath - all off the hall"
-            self.run = [Element("np", "", e.first, e.last, e.text, ids=list(self.latest))]
-            return k + 1
-        ahead = self.sentence[k + 1].kind if k + 1 < len(self.sentence) else ""
-        if e.value == "other" and ahead in {"verb", "amount"}:  # "one bedroom of 16 m2, the other of 10"
-            return self._pron(k, Element("pron", "rest", e.first, e.last, e.text))
-        if e.value in {"both", "each", "all"} and ahead != "np":
-            return self._pron(k, Element("pron", "both" if e.value == "both" else "group", e.first, e.last, e.text))
-        return k + 1
-
     def _but(self, k: int, _: Element) -> int:
         self.negative = None  # "not open, but next to the dining room"
         return k + 1
@@ -290,7 +257,7 @@ class Clause:
     def _adj(self, k: int, e: Element) -> int:
         before = self.sentence[k - 1] if k else None
         if before is not None and before.kind == "pron" and before.value == "one" and e.value in ROLES:
-            self._role(before, e.value)  # "four bedrooms, uno de ellos para invitados"
+            cast(self, before, e.value)  # "four bedrooms, uno de ellos para invitados"
         if e.value == "equal" and before is not None and before.kind in {"det", "verb", "pron"} and len(self.latest) > 1:
             self.state.say("area_equal", self.latest, (), e, 0.15)
         social = tuple(i for x in self.run for i in x.ids if x.type in SOCIAL)
@@ -300,42 +267,6 @@ class Clause:
         if self.verb or (before is not None and before.kind == "np" and ends):  # "客厅最大"
             superlative(self, e)
         return k + 1
-
-    def _pron(self, k: int, e: Element) -> int:
-        ahead = next((x for x in self.sentence[k + 1 :] if x.kind not in {"det", "verb"}), None)
-        if e.value == "rest" and ahead is not None and ahead.kind in {"level", "colon"}:
-            return self._every(k, e)
-        group = self.point(e, k, self.subject if e.value == "it" and (self.objects or self.run) else ())
-        spoken = [i for g in (self.subject, *reversed(self.state.past)) for i in g if not i.startswith("*")]
-        bed = next((i for i in spoken if self.stock.get(i).type == "bedroom"), None)
-        if e.value == "rest" and bed is not None and (count := self._others(e)):
-            group = self._made(bed, count)
-        if not group and e.value == "one" and ahead is not None and ahead.kind == "owner" and self.run:
-            kind = self.stock.get(self.run[-1].ids[0]).type  # "a bathroom for the parents and one for the kids"
-            group = (self.stock.add(kind, "", e.text, None).id,)
-        e.ids = list(group)
-        if group:
-            self.state.understood(e.first, e.last)
-            self.run = [Element("np", "", e.first, e.last, e.text, ids=list(group))]
-            self.latest = group
-            if e.value in {"one", "rest", "group", "both", "some"} or not self.subject:
-                self.subject = group
-        return k + 1
-
-    def _others(self, e: Element) -> int:
-        """Return how many "the other two" are."""
-        lex = self.state.heard.lexicon
-        numbers = [m.number for w in e.text.split() if (m := lex.trie.get(w, {}).get("")) is not None and m.kind == "num"]
-        return int(numbers[0]) if numbers else (2 if "beiden" in e.text else 0)
-
-    def _made(self, like: str, count: int) -> Group:
-        """Return so many rooms that nothing was said of, new ones where they are too few."""
-        kind = self.stock.get(like).type
-        spoken = {i for x in self.sentence for i in x.ids} | {i for g in self.state.past[-1:] for i in g}
-        free = [r for r in self.stock.of(kind) if r.open_slot] or [r for r in self.stock.of(kind) if r.id not in spoken]
-        while len(free) < count:
-            free.append(self.stock.add(kind, "", "other", None))
-        return tuple(r.id for r in free[:count])
 
     def point(self, e: Element, k: int, but: Group) -> Group:
         """Return the rooms that a pronoun stands for: after "but" the subject still, as an object what is not the subject `but`."""
