@@ -2,7 +2,8 @@
 
 python -m benchmarks.plan scores --count 5          the 20 prompts on 5 seeds, against the bars
 python -m benchmarks.plan times --count 200         CPU ms for 5, 8 and 12 rooms
-python -m benchmarks.plan failures --count 1000     programs of the prior, and of an independent generator
+python -m benchmarks.plan failures --count 10000    programs of the prior, and of an independent generator; 1,000 and more are kept in
+                                                    docs/failures.json; one that was stopped goes on with --start
 python -m benchmarks.plan diversity --count 100     one program, many seeds
 python -m benchmarks.plan knobs --count 40          every knob against its own term
 """
@@ -19,23 +20,24 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.plan", description="Floor plans, measured.")
     parser.add_argument("what", nargs="*", choices=[*COUNTS, []], help="default: all")
     parser.add_argument("--count", type=int, help="seeds or programs")
-    parser.add_argument("--first", type=int, default=0, help="failures: the first program")
+    parser.add_argument("--start", type=int, default=0, help="failures: number of the first program")
+    parser.add_argument("--jobs", type=int, default=2, help="failures: processes")
     parser.add_argument("--source", choices=("prior", "trees"), action="append", help="failures: programs of these only")
     chosen = parser.parse_args(arguments)
     failed = 0
     for what in chosen.what or COUNTS:
         count = chosen.count or COUNTS[what]
         print(f"-- {what}", flush=True)
-        failed += run(what, count, chosen.first, chosen.source)
+        failed += run(what, count, chosen)
     return min(1, failed)
 
 
-def run(what: str, count: int, first: int, sources: list[str] | None) -> int:
+def run(what: str, count: int, chosen: argparse.Namespace) -> int:
     """Run one measurement; return the number of failures."""
     from benchmarks.planning import diversity, failures, knobs, scores, times
 
     if what == "failures":
-        return failures.main(count, first, tuple(sources or failures.SOURCES))
+        return failures.main(count, chosen.start, tuple(chosen.source or failures.SOURCES), chosen.jobs)
     {"scores": scores, "times": times, "diversity": diversity, "knobs": knobs}[what].main(count)
     return 0
 

@@ -146,7 +146,7 @@ def test_a_failure_is_counted_and_does_not_stop_the_run(monkeypatch, capsys, err
         raise error
 
     monkeypatch.setattr(failures, "solve", fails)
-    assert failures.main(2, 5, ("prior",)) == 2
+    assert failures.main(2, 5, ("prior",), jobs=1) == 2
     said = capsys.readouterr().out
     assert all(f"prior {k}: {kind}" in said for k in (5, 6))
 
@@ -178,3 +178,22 @@ def test_outside_walls_are_no_thinner_than_those_between_rooms():
     assert complete(FloorProgram(shell=Shell(outer_wall=0.1), **rooms)).shell.inner_wall == 0.1
     with pytest.raises(RefusedError, match="thinner"):
         solve(FloorProgram(shell=Shell(inner_wall=0.3, outer_wall=0.2), **rooms), 0)
+
+
+def test_a_stopped_count_of_failures_goes_on_where_it_was_stopped():
+    """Runs of one commit that follow each other are one; a run replaces what it measures again, and leaves other sources alone."""
+
+    def run(start, count, commit="a", bad=()):
+        found = [{"seed": k, "why": ["refused: x"]} for k in bad]
+        return {"start": start, "count": count, "cpu_s": 1.0 * count, "slowest_s": float(start + 1), "commit": commit, "failures": found}
+
+    first = failures.kept({}, "prior", run(0, 500, bad=(3,)))
+    whole = failures.kept(first, "prior", run(500, 250, bad=(600,)))
+    assert whole["sources"]["prior"] == [run(0, 750, bad=(3, 600)) | {"slowest_s": 501.0}]
+    assert len(failures.kept(first, "prior", run(500, 250, commit="b"))["sources"]["prior"]) == 2
+    assert failures.kept(whole, "prior", run(0, 10))["sources"]["prior"] == [run(0, 10)]
+    assert failures.kept(whole, "trees", run(0, 10))["sources"] == {"prior": whole["sources"]["prior"], "trees": [run(0, 10)]}
+
+
+def test_processes_give_what_one_gives():
+    assert [bad for _, bad in failures.attempts("trees", 0, 3, 2)] == [bad for _, bad in failures.attempts("trees", 0, 3, 1)]

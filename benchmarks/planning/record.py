@@ -1,0 +1,33 @@
+"""Figures that are too dear for `make run`: kept under docs/ with the command and the commit that made them, for the report to show."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCS = ROOT / "docs"
+
+
+def commit() -> str:
+    """Return the commit whose code is measured, with "-dirty" behind it where tracked files differ; "unknown" without git."""
+    command = ["git", "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]
+    try:
+        return subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+
+
+def read(name: str) -> dict[str, Any]:
+    """Return what stands in docs/`name`, nothing where there is no such file."""
+    path = DOCS / name
+    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    return found
+
+
+def write(name: str, figures: Mapping[str, Any]) -> None:
+    """Write docs/`name`."""
+    (DOCS / name).write_text(json.dumps(figures, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
