@@ -83,6 +83,11 @@ class Plan:
         msg = f"no room {room_id!r} in the plan; rooms: {', '.join(r.room_id for r in self.rooms)}"
         raise KeyError(msg)
 
+    def levels_of(self, room: Room) -> range:
+        """Return the storeys that a room takes: a staircase goes on to the top."""
+        top = max(r.level for r in self.rooms) if room.type == "staircase" else room.level
+        return range(room.level, top + 1)
+
     def elevation(self, room_id: str) -> float:
         """Return the z of the room's floor [m]."""
         return self.room(room_id).level * self.storey_height

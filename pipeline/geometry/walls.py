@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from shapely.geometry import LineString, Polygon
 
 from pipeline.entities.plan import Opening, Plan, Room
+from pipeline.geometry.stairs import Step, steps
 from pipeline.geometry.tiling import convex_pieces, polygons
 
 LEAF_THICKNESS = 0.04  # [m]
@@ -83,14 +84,19 @@ class Leaf:
 
 @dataclass(frozen=True, slots=True)
 class Shell:
-    """The walls of one storey. `height` is the ceiling of its highest room; `outline` the outer edge; `region` the cut walls."""
+    """The walls of one storey, up to the floor of the next. `height` is the ceiling of its highest room, `top` where its walls end.
+
+    `outline` is the outer edge, `region` the cut walls; `stairs` the landings on this storey and the flights that lead up from it.
+    """
 
     height: float
+    top: float
     outline: shapely.Geometry
     region: shapely.Geometry
     cuts: tuple[Cut, ...]
     prisms: tuple[Prism, ...]
     leaves: tuple[Leaf, ...]
+    stairs: tuple[Step, ...]
 
 
 def levels(plan: Plan) -> list[int]:
@@ -99,17 +105,17 @@ def levels(plan: Plan) -> list[int]:
 
 
 def shell(plan: Plan, level: int) -> Shell:
-    """Build the wall solids of one storey: what lies between the rooms and the outer edge, less the openings."""
-    rooms = [room for room in plan.rooms if room.level == level]
+    """Build the wall solids of one storey: what lies between the rooms (staircases from below too) and the outer edge, less the openings."""
+    rooms = [room for room in plan.rooms if level in plan.levels_of(room)]
     inner = {room.room_id: Polygon(room.polygon) for room in rooms}
     height = max(room.height for room in rooms)
+    top = height + SLAB if level == max(levels(plan)) else max(height + SLAB, plan.storey_height)
     outline = shapely.union_all([p.buffer(plan.outer_wall, join_style="mitre") for p in inner.values()])
     solid = shapely.set_precision(outline.difference(shapely.union_all(list(inner.values()))), 1e-6)
     cuts = tuple(_cut(o, inner, plan) for o in plan.openings if o.level == level)
     region = solid
     if cuts:
         region = shapely.set_precision(solid.difference(shapely.union_all([_widened(c) for c in cuts])), 1e-6)
-    top = height + SLAB
     prisms = [Prism("wall", piece, 0.0, top) for piece in convex_pieces(region)]
     for cut in cuts:
         if top - cut.top > 1e-3:
@@ -117,7 +123,7 @@ def shell(plan: Plan, level: int) -> Shell:
         if cut.bottom > 1e-3:
             prisms.append(Prism("sill", cut.quad, 0.0, cut.bottom, cut.opening.opening_id))
     leaves = tuple(leaf for cut in cuts if (leaf := _leaf(cut, inner)) is not None)
-    return Shell(height, outline, region, cuts, tuple(prisms), leaves)
+    return Shell(height, top, outline, region, cuts, tuple(prisms), leaves, steps(plan, level))
 
 
 def leaves(plan: Plan) -> tuple[Leaf, ...]:
@@ -132,14 +138,14 @@ def leaves(plan: Plan) -> tuple[Leaf, ...]:
     return tuple(found)
 
 
-def room_panels(room: Room, cuts: tuple[Cut, ...]) -> list[Panel]:
-    """Return the visible wall faces of a room, with holes where openings are."""
-    return _ring_panels(room.room_id, room.polygon, cuts, room.height)
+def room_panels(room: Room, cuts: tuple[Cut, ...], height: float = 0.0) -> list[Panel]:
+    """Return the visible wall faces of a room up to `height` (0: its ceiling), with holes where openings are."""
+    return _ring_panels(room.room_id, room.polygon, cuts, height or room.height)
 
 
 def outer_panels(built: Shell) -> list[Panel]:
     """Return the visible faces outside, and the tops of the walls."""
-    top = built.height + SLAB
+    top = built.top
     panels: list[Panel] = []
     for part in polygons(built.outline):
         # Reversed, so that, as in rooms, what is visible lies on the left of each edge.

@@ -10,6 +10,7 @@ from shapely.geometry import Polygon
 
 from pipeline.entities.asset import Material
 from pipeline.entities.plan import Plan
+from pipeline.geometry.stairs import seen
 from pipeline.geometry.tiling import convex_pieces
 from pipeline.geometry.walls import Shell
 from pipeline.rendering import palette
@@ -21,6 +22,7 @@ WOOD = frozenset(m.name for m in (palette.OAK, palette.LIGHT_OAK, palette.WALNUT
 PLANK = (1.35, 0.19)  # length, width [m]
 TILE = (0.45, 0.45)
 GRAIN = 0.03  # how much planks and tiles differ
+STEP_GRAIN = 0.08  # how much a step differs from the next
 PALENESS = 0.42  # floors are mixed with white, so that furniture stands out
 
 
@@ -42,6 +44,9 @@ def building(plan: Plan, level: int, shell: Shell) -> Soup:
             for piece in convex_pieces(Polygon(room.polygon)):
                 base = pale(material)
                 quads.extend((ring, shaded(base, 1 + GRAIN * shade), 0.0) for ring, shade in pattern(piece, material))
+    for step in seen(plan, level):
+        grey = np.interp(step.top, (-plan.storey_height, 0.0, plan.storey_height), (0.45, 0.95, 1.05))
+        quads.append((step.polygon, shaded(pale(palette.STEP), float(grey) + STEP_GRAIN * (len(quads) % 2)), min(step.top, WALL_TOP - 0.1)))
     for cut in shell.cuts:
         if cut.bottom > 0.05 or cut.opening.kind == "window":
             quads.append((cut.quad, WINDOW, WALL_TOP))

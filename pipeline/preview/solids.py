@@ -12,6 +12,7 @@ from shapely.geometry import Polygon
 
 from pipeline.entities.asset import Asset, Material
 from pipeline.entities.home import Home
+from pipeline.geometry.stairs import Step, seen
 from pipeline.geometry.tiling import convex_pieces
 from pipeline.geometry.walls import Panel, Shell, outer_panels, reveals, room_panels, shell
 from pipeline.preview.building import pattern, shaded
@@ -84,7 +85,11 @@ def _building(home: Home, level: int, built: Shell, heaps: Heaps, cut_height: Cu
                 for ring, shade in pattern(piece, material):
                     plank = replace(material, base_color=shaded(material.base_color, 1 + GRAIN * shade))
                     _paint(heaps, plank, _flat(ring, 0.0))
+        if level in home.plan.levels_of(room):
             _panels(heaps, palette.wall(room.type), room_panels(room, built.cuts), cut_height)
+    for step in seen(home.plan, level):
+        if step.bottom < CUT:
+            _paint(heaps, palette.STEP, _solid(step, min(step.top, CUT)))
     heights = [(p, cut_height(p.polygon)) for p in built.prisms]
     tops = [_flat(p.polygon, height) for p, height in heights if p.bottom < height <= p.top]  # whole sills show their board instead
     for top in tops:
@@ -108,6 +113,13 @@ def _panels(heaps: Heaps, material: Material, panels: list[Panel], cut_height: C
 
 def _flat(ring: NDArray[np.float64], z: float) -> NDArray[np.float64]:
     return _fan(np.column_stack([ring, np.full(len(ring), z)]))
+
+
+def _solid(step: Step, top: float) -> NDArray[np.float64]:
+    """Return the top and the sides of a step as triangles."""
+    low, high = (np.column_stack([step.polygon, np.full(len(step.polygon), z)]) for z in (step.bottom, top))
+    sides = np.stack([low, np.roll(low, -1, axis=0), np.roll(high, -1, axis=0), high], axis=1)
+    return np.concatenate([_flat(step.polygon, top), sides[:, [0, 1, 2]], sides[:, [0, 2, 3]]])
 
 
 def _fan(corners: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -13,6 +13,7 @@ WALNUT = Material("walnut_floor", (0.24, 0.14, 0.08), 0.4)
 TILE = Material("tile_floor", (0.52, 0.55, 0.56), 0.25)
 SLATE = Material("slate_floor", (0.25, 0.27, 0.29), 0.35)
 STONE = Material("stone_floor", (0.48, 0.44, 0.38), 0.4)
+STEP = Material("step", (0.50, 0.36, 0.22), 0.5)
 CONCRETE = Material("concrete_floor", (0.36, 0.36, 0.35), 0.7)
 
 FLOORS = MappingProxyType(

@@ -35,15 +35,16 @@ def write_home(home: Home, assets: Mapping[str, Asset], path: Path, library: str
     for group in (rooms, walls, doors, windows, objects, lights):
         group.kind = "group"
     convert_dome(lights)
-    for level in levels(home.plan):
-        built, elevation = shell(home.plan, level), level * home.plan.storey_height
+    shells = {level: shell(home.plan, level) for level in levels(home.plan)}
+    for level, built in shells.items():
+        elevation = level * home.plan.storey_height
         convert_walls(walls, home.plan, level, built, materials)
         convert_doors(doors, elevation, built, materials)
         convert_windows(windows, elevation, built, materials)
         for room in home.plan.rooms:
             if room.level == level:
-                convert_room(rooms, room, elevation, built, materials)
-                convert_lamp(lights, room, elevation)
+                convert_room(rooms, home.plan, room, shells, materials)
+                convert_lamp(lights, room, home.plan.levels_of(room)[-1] * home.plan.storey_height)
     for placement in home.placements:
         convert_placement(objects, placement, assets, library)
     return save(layer, path)

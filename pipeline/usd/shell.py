@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,27 +21,35 @@ from pipeline.usd.mesh import convert_mesh, convert_polygons
 from pipeline.usd.physics import convert_collider, hide
 
 
-def convert_room(parent: Sdf.PrimSpec, room: Room, elevation: float, shell: Shell, materials: Palette) -> Sdf.PrimSpec:
-    """Write a room: floor and ceiling slabs in convex pieces that one sees and walks on, and its wall faces."""
+def convert_room(parent: Sdf.PrimSpec, plan: Plan, room: Room, shells: Mapping[int, Shell], materials: Palette) -> Sdf.PrimSpec:
+    """Write a room: floor and ceiling slabs in convex pieces that one sees and walks on, and its wall faces.
+
+    A staircase has its floor on its lowest storey, its ceiling on the highest, faces on all; `shells` holds the storeys' walls.
+    """
     spec = prim(parent, room.room_id)
-    place(spec, (0.0, 0.0, elevation))
+    place(spec, (0.0, 0.0, room.level * plan.storey_height))
     label(spec, "class", ["room"])
     label(spec, "room_type", [room.type])
     pieces = convex_pieces(Polygon(room.polygon))
+    storeys = plan.levels_of(room)
+    under = (len(storeys) - 1) * plan.storey_height + room.height
     floor = _scope(spec, "floor")
     for i, piece in enumerate(pieces):
         _slab(floor, f"piece_{i}", piece, -SLAB, 0.0, palette.floor(room.type), materials)
     ceiling = _scope(spec, "ceiling")
     for i, piece in enumerate(pieces):
-        _slab(ceiling, f"piece_{i}", piece, room.height, room.height + SLAB, palette.CEILING, materials)
-    panels = room_panels(room, shell.cuts)
+        _slab(ceiling, f"piece_{i}", piece, under, under + SLAB, palette.CEILING, materials)
+    panels: list[Panel] = []
+    for k, level in enumerate(storeys):
+        faces = room_panels(room, shells[level].cuts, plan.storey_height if level < storeys[-1] else room.height)
+        panels.extend(Panel(face.owner, face.corners + np.array([0.0, 0.0, k * plan.storey_height])) for face in faces)
     if panels:
         _panels(spec, "wall", panels, palette.wall(room.type), materials)
     return spec
 
 
 def convert_walls(parent: Sdf.PrimSpec, plan: Plan, level: int, shell: Shell, materials: Palette) -> Sdf.PrimSpec:
-    """Write a storey's wall solids (colliders, one convex piece each), facade, jambs and thresholds."""
+    """Write a storey's wall solids (colliders, one convex piece each), facade, jambs, thresholds and steps."""
     spec = prim(parent, f"level_{level}")
     place(spec, (0.0, 0.0, level * plan.storey_height))
     label(spec, "class", ["wall"])
@@ -60,6 +68,11 @@ def convert_walls(parent: Sdf.PrimSpec, plan: Plan, level: int, shell: Shell, ma
         if cut.bottom < 1e-3 and cut.opening.kind != "window":
             name = f"threshold_{cut.opening.opening_id}"
             label(_slab(spec, name, cut.quad, -SLAB, 0.0, palette.threshold(plan, cut.opening), materials), "class", ["floor"])
+    if shell.stairs:
+        stairs = prim(spec, "stairs", "Scope")
+        label(stairs, "class", ["stairs"])
+        for i, step in enumerate(shell.stairs):
+            _slab(stairs, f"{step.kind}_{i:02d}", step.polygon, step.bottom, step.top, palette.STEP, materials)
     return spec
 
 
