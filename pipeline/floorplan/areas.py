@@ -90,7 +90,7 @@ def _relate(program: FloorProgram, rooms: Sequence[RoomReq], target: list[float]
             most = max(target[i] for i in smaller)
             for i in larger:
                 if target[i] < ratio * most:
-                    if free[i] or rooms[i].area.max is None:
+                    if free[i] or rooms[i].area.max is rooms[i].area.target is None:
                         target[i] = ratio * most
                     for j in smaller:
                         if free[j]:

@@ -45,6 +45,7 @@ class Mark:
     bound: str = ""
     total: bool = False  # said of everything together
     side: float | None = None  # the shorter side of "4 x 5 m"
+    functions: tuple[str, ...] = ()  # what a room serves as besides
     parts: tuple[float, ...] = ()  # "bedrooms of 14, 12 and 10 m2": one each
 
 

@@ -174,8 +174,7 @@ def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> 
             room.level = level if room.level is None and not e.definite else room.level
     for room in (state.inventory.get(i) for i in e.ids):
         room.span = room.span or (e.first, e.last)
-        if e.dining:
-            room.functions.add("dining")
+        room.functions |= e.functions
         if e.size != 1.0:
             room.size = e.size
     return e.ids

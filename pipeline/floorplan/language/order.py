@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import replace
 
 from pipeline.floorplan.language.chinese import rearrange as chinese
+from pipeline.floorplan.language.lexicon import Language, lexicon
 from pipeline.floorplan.language.marks import Mark, Words
 
 ENDS = {"stop", "line", "colon", "comma"}
-ARTICLES = {"der", "die", "das", "den", "dem"}
+ARTICLES = {"der", "die", "das", "den", "dem", "einer", "einem", "eine", "einen", "ein"}
+MELTED = {"ins": "in", "im": "in", "zum": "zu", "zur": "zu", "vom": "von", "durchs": "durch"}  # prepositions with their article
 FARTHEST = 14  # marks between the two parts of a frame
 
 
@@ -46,7 +49,7 @@ def _frames(marks: list[Mark], heard: Words) -> list[Mark]:
 
 
 def _frame(marks: list[Mark], k: int, heard: Words) -> tuple[str, int, int, int] | None:
-    for first, second, cue in heard.lexicon.frames.get(marks[k].text.split(" ", 1)[0], ()):
+    for first, second, cue in _listed(heard.lexicon.language).get(_plain(marks[k].text.split(" ", 1)[0]), ()):
         start = _matches(marks, k, first)
         if start is None:
             continue
@@ -59,17 +62,33 @@ def _frame(marks: list[Mark], k: int, heard: Words) -> tuple[str, int, int, int]
             if named and cue == "open" and _matches(marks, j, first) is not None and _matches(marks, j, second) is None:
                 break  # "eine Wohnung, in der die Küche in das Esszimmer übergeht"
             end = _matches(marks, j, second) if named else None
-            if end is not None:
+            loose = second == ("ueber",) and end is not None and end < len(marks) and marks[end].kind not in ENDS | {"join"}
+            if end is not None and not loose:  # "die Küche geht ins Esszimmer über", not "ins Bad geht man über den Flur"
                 return cue, start, j, end
             named = named or marks[j].kind in {"room", "suite", "pron", "every", "zone"}
     return None
+
+
+@functools.cache
+def _listed(language: Language) -> dict[str, tuple[tuple[tuple[str, ...], tuple[str, ...], str], ...]]:
+    """Return the frames of a language by their first word, prepositions without the article that melted into them."""
+    made: dict[str, dict[tuple[tuple[str, ...], tuple[str, ...], str], None]] = {}
+    for frames in lexicon(language).frames.values():
+        for first, second, cue in frames:
+            plain = tuple(map(_plain, first)), tuple(map(_plain, second)), cue
+            made.setdefault(plain[0][0], {})[plain] = None
+    return {word: tuple(sorted(found, key=lambda f: -len(f[0]) - len(f[1]))) for word, found in made.items()}
+
+
+def _plain(word: str) -> str:
+    return MELTED.get(word, word)
 
 
 def _matches(marks: list[Mark], k: int, wanted: tuple[str, ...]) -> int | None:
     """Return where the marks go on after the words wanted, where they stand at k; adverbs between them are skipped."""
     need = list(wanted)
     while need and k < len(marks):
-        have = marks[k].text.split()
+        have = [_plain(w) for w in marks[k].text.split()]
         if have == need[: len(have)]:
             need = need[len(have) :]
         elif have[: len(need)] == need and set(have[len(need) :]) <= ARTICLES:  # "in die Küche übergeht"

@@ -22,6 +22,7 @@ from pipeline.floorplan.language.phrases import sentences
 from pipeline.floorplan.language.reading import read
 from pipeline.floorplan.language.revising import revise
 from pipeline.floorplan.language.shorthand import crossed, dealt, shared_unit, widen
+from pipeline.floorplan.language.standins import resolved
 from pipeline.floorplan.language.text import tokenize
 from pipeline.floorplan.program import FloorProgram
 
@@ -51,7 +52,7 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     heard = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
     amounts = dealt(measured(shared_unit(crossed(segment(heard), heard)), heard))
     revised = revise(widen(amounts, heard), heard)
-    marks = reorder(written_out(noted(revised.marks, heard), heard), heard)
+    marks = reorder(written_out(noted(resolved(revised.marks, heard), heard), heard), heard)
     parsed = sentences(marks, heard)
     spoken = {e.kind for s in parsed for e in s}
     if not spoken & {"np", "home"} and not any(e.kind == "amount" and e.value == "rooms" for s in parsed for e in s):

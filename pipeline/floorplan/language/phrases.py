@@ -59,7 +59,7 @@ class Element:
     amounts: list[Mark] = field(default_factory=list)
     suite: bool = False
     compound: bool = False  # "a two-bedroom flat": the number is the whole count
-    dining: bool = False
+    functions: set[str] = field(default_factory=set)
     only: bool = False
     banned: bool = False
     ids: list[str] = field(default_factory=list)
@@ -243,9 +243,10 @@ def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool) -> Element:  # noqa
         suite=mark.kind == "suite",
         compound=compound,
         mark=mark,
+        functions=set(mark.functions) | ({"dining"} if role == "diner" else set()),
     )
     if role in {"diner", "corner"}:
-        made.role, made.dining = "", role == "diner"
+        made.role = ""
     for part in pre:
         if part.kind == "num" or (part.kind == "det" and part.value == "another"):
             if part.kind == "num" and part.number == int(part.number) and part.number > 0:

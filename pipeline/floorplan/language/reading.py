@@ -48,7 +48,8 @@ def _studio(state: Reading, sentences: list[list[Element]]) -> None:
     one = one or any(e.kind == "amount" and e.value == "rooms" and e.number == 1 for e in everything)
     if not one or any(e.kind == "np" and e.type == "bedroom" and not e.banned for e in everything):
         return
-    for e in everything:
-        if e.kind == "np" and e.type == "kitchen" and e.mark is not None and e.mark.value == "kitchen/corner":
+    for k, e in enumerate(everything):
+        held = e.text == "小 厨 房" and k > 1 and everything[k - 1].value == "has" and everything[k - 2].kind == "home"  # "开间带小厨房"
+        if e.kind == "np" and e.type == "kitchen" and e.mark is not None and (held or e.mark.value == "kitchen/corner"):
             e.kind = "corner"
             state.understood(e.first, e.last)

@@ -37,7 +37,9 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     clause.relative = clause.relative or e.text.startswith("que ")
     if e.value == "between" and (after := door_between(clause, k, e)):
         return after
-    left = _left(clause, k, e)
+    ahead = clause.sentence[k + 1] if k + 1 < len(clause.sentence) else None
+    first = k == 0 or clause.sentence[k - 1].kind in {"comma", "and"}
+    left = () if ahead is not None and ahead.value == "pair" and first else _left(clause, k, e)  # "dazwischen liegt das Bad"
     group, j = objects(clause, k + 1, e.value, left)
     if not group:
         return _alone(clause, k, e)
@@ -281,7 +283,7 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
                 clause.state.say("largest", tuple(ids), tuple(r.id for r in clause.stock.of(e.type)), e)
             group += [i for i in ids if i not in group and i not in left]
             first, joined, end = first or e, "", index + 1
-        elif e.kind in {"pron", "det"} and not group and e.value in {"it", "both", "group", "one", "rest", "some", "each", "all", "self"}:
+        elif e.kind in {"pron", "det"} and not group and e.value in {"it", "both", "group", "one", "rest", "some", "each", "all", "self", "pair"}:
             if e.kind == "det" and any(x.kind == "np" for x in sentence[index + 1 : index + 2]):
                 index += 1
                 continue

@@ -1,0 +1,181 @@
+"""Words that stand for rooms: "one" and "another" by themselves, "in between", people who each get a room, a room that serves as another."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from pipeline.floorplan.language.marks import Mark, Words
+
+ALONE = {"eine", "einen", "eines", "einer", "uno", "una", "another", "otra", "otro"}
+ENDS = {"stop", "line", "comma", "close", "join", "colon"}
+PERSONS = set(
+    "student students studenten person persons people personen leute mitbewohner bewohner friends freunde flatmates roommates sharers residents "
+    "estudiante estudiantes persona personas amigos companeros inquilinos".split()
+)
+HAN_PERSONS = ("学生", "人", "室友", "同学", "朋友", "租客", "员工")
+EACH_PERSON = {"每人", "每个人", "每位", "每名", "人均", "每个学生"}
+FUNCTIONS = {"office": "working", "library": "working", "dining_room": "dining", "living_room": "living", "bedroom": "sleeping", "kitchen": "cooking"}
+ENTRIES = {"windfang", "vorraum", "vestibuel", "garderobe"}  # in front of a "Diele", which then is the hall behind
+BESIDE = {"room", "suite"}
+PARTS = {"det", "num", "clf", "adj", "size", "fill", "adverb", "verb", "relative", "bound"}  # what may stand in a phrase
+
+
+def resolved(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Return the marks with the rooms that are meant put in."""
+    made = list(marks)
+    if heard.lexicon.language == "de":
+        made = _vestibule(_room_of(made))
+    elif heard.lexicon.language == "zh":
+        made = _room_with(made)
+    return _between(_standing(_doubling(_persons(made, heard))))
+
+
+def _vestibule(marks: list[Mark]) -> list[Mark]:
+    """Read "Diele" beside a "Windfang" as the hall that lies behind it."""
+    if not any(m.kind == "room" and m.text.split()[-1] in ENTRIES for m in marks):
+        return marks
+    return [replace(m, value="hallway") if m.kind == "room" and m.text.startswith("diele") else m for m in marks]
+
+
+def _room_of(marks: list[Mark]) -> list[Mark]:
+    """Read German "ein Zimmer" as a bedroom, unless it is all that the home has ("eine Wohnung mit einem Zimmer")."""
+    made = list(marks)
+    for k in range(1, len(made)):
+        j = k - 1
+        own = False
+        while j and made[j].kind in {"adj", "size", "adverb"} | ({"det"} if made[j].value in {"own", "another"} else set()):
+            own = own or made[j].value in {"own", "another"}
+            j -= 1
+        own = own or made[j].value == "own"
+        single = made[k].kind == "unit" and made[k].value == "rooms" and made[k].text == "zimmer" and made[j].kind == "det"
+        whole = j > 1 and made[j - 1].kind == "cue" and made[j - 2].kind == "home"
+        if single and made[j].value in {"indefinite", "own", "another"} and (own or not whole) and made[k - 1].value != "largest":
+            made[k] = replace(made[k], kind="room", value="bedroom", number=0.0)
+    return made
+
+
+def _room_with(marks: list[Mark]) -> list[Mark]:
+    """Read Chinese "一个带卫生间的房间" as a bedroom with a bathroom."""
+    made = list(marks)
+    for k in range(3, len(made)):
+        room = made[k].kind == "unit" and made[k].value == "rooms" and made[k - 1].text == "的"
+        start = next((j for j in range(k - 2, max(-1, k - 8), -1) if (made[j].kind, made[j].value) == ("cue", "has")), None) if room else None
+        if start is not None and not any(m.kind in ENDS for m in made[start:k]):
+            made[k] = replace(made[k], kind="room", value="bedroom", number=0.0)
+            if start and (made[start - 1].kind, made[start - 1].value) == ("pron", "one"):
+                made[start - 1] = replace(made[start - 1], kind="num", value="1.0", number=1.0)
+    return made
+
+
+def _persons(marks: list[Mark], heard: Words) -> list[Mark]:
+    """Read "four students, each with a room of their own" as four bedrooms."""
+    count = _headcount(marks, heard)
+    place = next((k for k, m in enumerate(marks) if _each(m)), None)
+    if not count or place is None:
+        return marks
+    j = place + 1
+    while j < len(marks) and j - place < 9 and (marks[j].kind in PARTS | {"amount"} or marks[j].value == "has" or marks[j].text == "的"):
+        j += 1
+    room = marks[j] if j < len(marks) else None
+    if room is None or not ((room.kind == "room" and room.value == "bedroom") or (room.kind == "unit" and room.value == "rooms")):
+        return marks
+    number = Mark("num", "", float(count), False, marks[place].first, marks[place].last, marks[place].text)
+    amounts = [m for m in marks[place:j] if m.kind == "amount"]
+    behind = marks[j + 1 :]
+    if behind and behind[0].kind == "join" and any(m.kind == "room" and m.value in {"bathroom", "wc"} for m in behind[1:4]) and behind[1].kind != "num":
+        shared = behind[1].value == "indefinite" or any(m.value == "shared" for m in behind[1:4])
+        if not shared:  # "each with their own bedroom and bathroom"
+            behind = [replace(behind[0], kind="cue", value="has", text="with"), replace(number, kind="det", value="own"), *behind[1:]]
+    return [*marks[:place], number, replace(room, kind="room", value="bedroom", number=0.0, plural=True), *amounts, *behind]
+
+
+def _each(mark: Mark) -> bool:
+    return (mark.kind, mark.value) == ("det", "each") or mark.text.replace(" ", "") in EACH_PERSON or mark.text in {"cada uno", "cada una"}
+
+
+def _headcount(marks: Sequence[Mark], heard: Words) -> int:
+    """Return how many people are spoken of; 0 where nobody says."""
+    for k, mark in enumerate(marks):
+        words = mark.text.split()
+        named = bool(PERSONS & set(words)) or mark.text.replace(" ", "").endswith(HAN_PERSONS)
+        if mark.kind == "room" or not named:
+            continue
+        before = [m.number for m in marks[max(0, k - 2) : k] if m.kind == "num"]
+        inside = [m.number for w in words if (m := heard.lexicon.trie.get(w, {}).get("")) is not None and m.kind == "num"]
+        number = (before or inside or [0.0])[-1]
+        if 1 < number <= 9:
+            return int(number)
+    return 0
+
+
+def _doubling(marks: list[Mark]) -> list[Mark]:
+    """Read "a guest room that doubles as a study" as one room with two functions."""
+    made: list[Mark] = []
+    k = 0
+    while k < len(marks):
+        mark = marks[k]
+        place = _next(marks, k + 1) if (mark.kind, mark.value) == ("flag", "doubling") else None
+        host = next((i for i in range(len(made) - 1, max(-1, len(made) - 6), -1) if made[i].kind == "room"), None)
+        if place is None or host is None or any(m.kind in {"stop", "line", "join"} for m in made[host:]):
+            made.append(mark)
+            k += 1
+            continue
+        kind, other = (marks_.value.partition("/")[0] for marks_ in (made[host], marks[place]))
+        gained = FUNCTIONS.get(other)
+        if {kind, other} == {"living_room", "dining_room"}:
+            made[host] = replace(made[host], value="living_room+dining_room", last=marks[place].last)
+        elif gained:
+            made[host] = replace(made[host], functions=(*made[host].functions, gained))
+        del made[host + 1 :]
+        made += [] if gained else [replace(marks[place], kind="word")]
+        k = place + 1 + (place + 1 < len(marks) and marks[place + 1].kind == "verb")
+    return made
+
+
+def _next(marks: Sequence[Mark], k: int) -> int | None:
+    """Return the place of the room that follows at k, articles and adjectives skipped."""
+    while k < len(marks) and marks[k].kind in PARTS:
+        k += 1
+    return k if k < len(marks) and marks[k].kind == "room" else None
+
+
+def _standing(marks: list[Mark]) -> list[Mark]:
+    """Read "three bedrooms, two on the hall and one only off the living room": an article without a noun is one of them."""
+    made = list(marks)
+    for k in range(1, len(made) - 1):
+        mark = made[k]
+        article = (mark.kind, mark.value) == ("det", "indefinite") and mark.text in ALONE
+        further = (mark.kind, mark.value) in {("det", "another"), ("det", "other")}
+        j = k + 1
+        while j < len(made) and (made[j].kind == "adverb" or (made[j].kind, made[j].value) == ("flag", "only")):
+            j += 1
+        said = j < len(made) and made[j].kind in {"cue", "verb", "level"} and (made[j].kind != "cue" or article or made[j].value != "has")
+        counted = next((m for i, m in enumerate(made[:k]) if m.kind == "num" and m.number > 1 and _next(made, i + 1) is not None), None)
+        if (article or further) and said and counted is not None and made[k - 1].kind in ENDS and (article or made[j].kind != "verb"):
+            made[k] = replace(mark, kind="pron", value="one", number=1.0)
+    return made
+
+
+def _between(marks: list[Mark]) -> list[Mark]:
+    """Read "two bedrooms with a bathroom in between" and "dazwischen liegt das Bad" as between the two."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        made.append(mark)
+        if (mark.kind, mark.value) != ("cue", "between"):
+            continue
+        ahead = marks[k + 1].kind if k + 1 < len(marks) else "stop"
+        behind = k > 0 and marks[k - 1].kind in BESIDE and ahead in ENDS and mark.text != "之 间"
+        first = ahead == "verb" and (k == 0 or marks[k - 1].kind in ENDS)
+        if not (mark.text in IN_BETWEEN and (behind or first)):
+            continue
+        made.append(Mark("pron", "pair", 0.0, False, mark.last, mark.last, "pair"))
+        start = len(made) - 3
+        while behind and start > 0 and made[start].kind in {"room", "det", "adj", "size", "num"}:
+            start -= 1
+        if behind and start > 0 and (made[start].kind, made[start].value) == ("cue", "has"):
+            made[start] = replace(made[start], kind="comma", value="")
+    return made
+
+
+IN_BETWEEN = {"in between", "dazwischen", "中 间"}
