@@ -6,7 +6,7 @@ from pipeline.floorplan.language.facts import SOCIAL, Group, Reading
 from pipeline.floorplan.language.phrases import Element
 
 
-def point(state: Reading, before: list[Element], e: Element, but: Group) -> Group:
+def point(state: Reading, before: list[Element], e: Element, but: Group) -> Group:  # noqa: PLR0911 - one answer per pronoun
     """Return the rooms that a pronoun stands for after the elements `before`; as an object it does not point at the subject `but`."""
     here = [tuple(x.ids) for x in before if x.kind in {"np", "zone", "owner"} and x.ids]
     heard = [*state.past, *here]

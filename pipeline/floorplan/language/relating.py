@@ -283,7 +283,11 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
                 clause.state.say("largest", tuple(ids), tuple(r.id for r in clause.stock.of(e.type)), e)
             group += [i for i in ids if i not in group and i not in left]
             first, joined, end = first or e, "", index + 1
-        elif e.kind in {"pron", "det"} and not group and e.value in {"it", "both", "group", "one", "rest", "some", "each", "all", "self", "pair"}:
+        elif (
+            e.kind in {"pron", "det"}
+            and not group
+            and e.value in {"it", "both", "group", "one", "rest", "some", "each", "all", "self", "pair"}
+        ):
             if e.kind == "det" and any(x.kind == "np" for x in sentence[index + 1 : index + 2]):
                 index += 1
                 continue

@@ -9,13 +9,20 @@ from pipeline.floorplan.language.marks import Mark, Words
 
 ALONE = {"eine", "einen", "eines", "einer", "uno", "una", "another", "otra", "otro"}
 ENDS = {"stop", "line", "comma", "close", "join", "colon"}
-PERSONS = set(
-    "student students studenten person persons people personen leute mitbewohner bewohner friends freunde flatmates roommates sharers residents "
-    "estudiante estudiantes persona personas amigos companeros inquilinos".split()
-)
+PERSONS = {
+    "student", "students", "studenten", "person", "persons", "people", "personen", "leute", "mitbewohner", "bewohner", "friends", "freunde",
+    "flatmates", "roommates", "sharers", "residents", "estudiante", "estudiantes", "persona", "personas", "amigos", "companeros",
+}  # fmt: skip
 HAN_PERSONS = ("学生", "人", "室友", "同学", "朋友", "租客", "员工")
 EACH_PERSON = {"每人", "每个人", "每位", "每名", "人均", "每个学生"}
-FUNCTIONS = {"office": "working", "library": "working", "dining_room": "dining", "living_room": "living", "bedroom": "sleeping", "kitchen": "cooking"}
+FUNCTIONS = {
+    "office": "working",
+    "library": "working",
+    "dining_room": "dining",
+    "living_room": "living",
+    "bedroom": "sleeping",
+    "kitchen": "cooking",
+}
 ENTRIES = {"windfang", "vorraum", "vestibuel", "garderobe"}  # in front of a "Diele", which then is the hall behind
 BESIDE = {"room", "suite"}
 PARTS = {"det", "num", "clf", "adj", "size", "fill", "adverb", "verb", "relative", "bound"}  # what may stand in a phrase
@@ -60,7 +67,9 @@ def _room_with(marks: list[Mark]) -> list[Mark]:
     made = list(marks)
     for k in range(3, len(made)):
         room = made[k].kind == "unit" and made[k].value == "rooms" and made[k - 1].text == "的"
-        start = next((j for j in range(k - 2, max(-1, k - 8), -1) if (made[j].kind, made[j].value) == ("cue", "has")), None) if room else None
+        start = (
+            next((j for j in range(k - 2, max(-1, k - 8), -1) if (made[j].kind, made[j].value) == ("cue", "has")), None) if room else None
+        )
         if start is not None and not any(m.kind in ENDS for m in made[start:k]):
             made[k] = replace(made[k], kind="room", value="bedroom", number=0.0)
             if start and (made[start - 1].kind, made[start - 1].value) == ("pron", "one"):
@@ -83,7 +92,12 @@ def _persons(marks: list[Mark], heard: Words) -> list[Mark]:
     number = Mark("num", "", float(count), False, marks[place].first, marks[place].last, marks[place].text)
     amounts = [m for m in marks[place:j] if m.kind == "amount"]
     behind = marks[j + 1 :]
-    if behind and behind[0].kind == "join" and any(m.kind == "room" and m.value in {"bathroom", "wc"} for m in behind[1:4]) and behind[1].kind != "num":
+    if (
+        behind
+        and behind[0].kind == "join"
+        and any(m.kind == "room" and m.value in {"bathroom", "wc"} for m in behind[1:4])
+        and behind[1].kind != "num"
+    ):
         shared = behind[1].value == "indefinite" or any(m.value == "shared" for m in behind[1:4])
         if not shared:  # "each with their own bedroom and bathroom"
             behind = [replace(behind[0], kind="cue", value="has", text="with"), replace(number, kind="det", value="own"), *behind[1:]]
@@ -121,7 +135,7 @@ def _doubling(marks: list[Mark]) -> list[Mark]:
             made.append(mark)
             k += 1
             continue
-        kind, other = (marks_.value.partition("/")[0] for marks_ in (made[host], marks[place]))
+        kind, other = (m.value.partition("/")[0] for m in (made[host], marks[place]))
         gained = FUNCTIONS.get(other)
         if {kind, other} == {"living_room", "dining_room"}:
             made[host] = replace(made[host], value="living_room+dining_room", last=marks[place].last)
