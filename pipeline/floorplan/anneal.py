@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.energy import Spec, terms, tree
+from pipeline.floorplan.energy import Spec, terms, together, tree
 from pipeline.floorplan.grid import Labels, Measures, empty, measure
 from pipeline.geometry.compiled import compiled
 
@@ -150,7 +150,7 @@ def anneal(  # noqa: PLR0912 - compiled
     measure(grid, n, out)
     exact = n > 0  # a plain True is a type of its own: `terms` would be compiled twice
     hard = terms(grid, out, spec, edges, values, areas, shape, touched, exact)
-    soft = _weighted(values, weights)
+    soft = _weighted(values, weights) + together(out, spec.near)
     if hard < np.inf:
         _settle(shape, kept, touched)
     best = grid.copy()
@@ -168,10 +168,10 @@ def anneal(  # noqa: PLR0912 - compiled
         measure(trial, n, out)
         # the draw says how much worse the proposal may be; most fall at the first, cheap look
         most = np.inf if hard == np.inf else soft + weight * hard - heat * np.log(draws[k, 7] + 1e-300)
-        new_hard, new_soft = np.inf, np.inf
+        new_hard, new_soft, united = np.inf, np.inf, together(out, spec.near)
         for look in range(2):
             new_hard = terms(trial, out, spec, edges, values, areas, shape, touched, look == 1)
-            new_soft = _weighted(values, weights)
+            new_soft = _weighted(values, weights) + united
             if new_hard == np.inf or new_soft + weight * new_hard > most:
                 new_hard = np.inf
                 break

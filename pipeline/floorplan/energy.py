@@ -35,6 +35,7 @@ TERMS = (
 )
 WEIGHTS = (2.0, 24.0, 1.6, 40.0, 1.6, 2.0, 1.0, 0.12, 4.0, 0.5, 2.0, 1.0)
 TONGUE = 0.76  # m between inner faces: no part of a room is narrower
+TOGETHER = 4.0  # weight of what belongs together, beside the twelve
 SPLIT = 4.5  # m2 charged when a room falls apart at a neck; the legacy solver charges 45 in its units of 0.25 m2 x 0.4
 
 
@@ -69,6 +70,7 @@ class Spec(NamedTuple):
     heed: Floats  # (n,) how much the wanted area counts
     flight: Ints  # (3,) index of the staircase or -1, longer and shorter side of what its flights take [cells]
     between: Ints  # (k, 3) room a lies between b and c: seen from its centroid, theirs lie in opposite halves
+    near: Floats  # (k, 3) rooms a, b that belong together (a hub and what hangs on it, members of a zone), and how much
 
 
 def tree(link: Ints, root: int) -> Ints:
@@ -234,6 +236,20 @@ def stair_fit(both: float, stair: float) -> float:
 def stair_snug(both: float, stair: float, own: float) -> float:
     """Term 12: (IoU of staircase and the flights' rectangle - 1)^2."""
     return (both / max(own + stair - both, 1.0) - 1.0) ** 2
+
+
+@compiled
+def together(out: Measures, near: Floats) -> float:
+    """What hubs and zones ask for, weighted: distances of centroids / diagonal, meant over each hub's and each zone's pairs."""
+    total = 0.0
+    for k in range(near.shape[0]):
+        a, b = int(near[k, 0]), int(near[k, 1])
+        dx, dy = out.centre[a, 0] - out.centre[b, 0], out.centre[a, 1] - out.centre[b, 1]
+        total += near[k, 2] * (dx * dx + dy * dy) ** 0.5
+    if total == 0.0:
+        return 0.0
+    width, height = out.columns.size - 1, out.rows.size - 1
+    return float(TOGETHER * total / (width * width + height * height) ** 0.5)
 
 
 @compiled

@@ -42,16 +42,11 @@ def find(grid: Labels, unit: float) -> Lines:
 
 def _number(walls: NDArray[np.bool_], first: int) -> tuple[Ints, list[float]]:
     """Give each run of unit walls down a column a number from `first` on; return them with their columns."""
-    ids = np.full(walls.shape, -1, np.int64)
-    at: list[float] = []
-    for column in range(walls.shape[1]):
-        for row in range(walls.shape[0]):
-            if not walls[row, column]:
-                continue
-            if row == 0 or not walls[row - 1, column]:
-                at.append(float(column))
-            ids[row, column] = first + len(at) - 1
-    return ids, at
+    across = walls.T
+    begins = across.copy()
+    begins[:, 1:] &= ~across[:, :-1]
+    ids = np.where(across, first - 1 + np.cumsum(begins).reshape(begins.shape), -1)
+    return np.ascontiguousarray(ids.T), np.nonzero(begins)[0].astype(float).tolist()
 
 
 def corner_lines(lines: Lines, corners: trace.Corners) -> Ints:
@@ -95,6 +90,7 @@ def fit(
     """
     at = lines.at.copy()
     ids = [corner_lines(lines, c) for c in outlines]
+    shape = _shape(outlines, ids, sides, half)
     bound = np.full(at.size, FARTHEST)
     for corners, own, most in zip(outlines, ids, slack, strict=True):
         bound[own] = np.minimum(bound[own], most)
@@ -106,7 +102,7 @@ def fit(
                     bound[k] = min(bound[k], AT_JOG)
     bound *= np.where(held, 0.0, share)
     for _ in range(ROUNDS):
-        error, slope = _areas(at, outlines, ids, sides, target, half)
+        error, slope = _areas(at, shape, target)
         weight = np.sqrt(trust) / target
         ridge = np.sqrt(RIDGE) / FARTHEST
         left = np.vstack([slope * weight[:, None], np.eye(at.size) * ridge])
@@ -116,20 +112,34 @@ def fit(
     return np.round(at, 3)
 
 
-def _areas(
-    at: Floats, outlines: list[trace.Corners], ids: list[Ints], sides: list[list[bool]], target: Floats, half: Halves
-) -> tuple[Floats, Floats]:
+class Shape(NamedTuple):
+    """All corners of all rooms, one room after the other."""
+
+    first: Ints  # (n,) each room's first corner
+    room: Ints  # (c,) whose it is
+    next: Ints  # (c,) the corner after it
+    ids: Ints  # (c, 2) the lines that fix it
+    inset: Floats  # (c, 2) from the lines to the room's faces [m]
+    flat: NDArray[np.bool_]  # (c,) whether the side from it runs along x
+
+
+def _shape(outlines: list[trace.Corners], ids: list[Ints], sides: list[list[bool]], half: Halves) -> Shape:
+    counts = np.array([len(c) for c in outlines])
+    first = np.cumsum(counts) - counts
+    after = np.arange(counts.sum()) + 1
+    after[first + counts - 1] = first
+    whole = np.vstack(ids)
+    inset = np.vstack([trace.insets(c, inner, half) for c, inner in zip(outlines, sides, strict=True)])
+    return Shape(first, np.repeat(np.arange(counts.size), counts), after, whole, inset, whole[:, 1] == whole[after, 1])
+
+
+def _areas(at: Floats, shape: Shape, target: Floats) -> tuple[Floats, Floats]:
     """Return inner areas minus targets (n,) and their derivatives by the lines' coordinates (n, k)."""
-    error, slope = np.empty(len(outlines)), np.zeros((len(outlines), at.size))
-    for r, (corners, own, inner) in enumerate(zip(outlines, ids, sides, strict=True)):
-        p = trace.faces(corners, at[own], inner, half)
-        q = np.roll(p, -1, axis=0)
-        error[r] = 0.5 * np.sum(p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1]) - target[r]
-        for i in range(len(corners)):
-            # moving a side along its outward normal by 1 adds its length
-            j = (i + 1) % len(corners)
-            if corners[i][1] == corners[j][1]:
-                slope[r, own[i, 1]] += p[i, 0] - q[i, 0]
-            else:
-                slope[r, own[i, 0]] += q[i, 1] - p[i, 1]
+    p = at[shape.ids] + shape.inset
+    q = p[shape.next]
+    error = 0.5 * np.add.reduceat(p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1], shape.first) - target
+    # moving a side along its outward normal by 1 adds its length
+    line = np.where(shape.flat, shape.ids[:, 1], shape.ids[:, 0])
+    slope = np.zeros((target.size, at.size))
+    np.add.at(slope, (shape.room, line), np.where(shape.flat, p[:, 0] - q[:, 0], q[:, 1] - p[:, 1]))
     return error, slope

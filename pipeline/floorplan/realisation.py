@@ -71,7 +71,7 @@ def _realise(
     for i, room in enumerate(request.rooms):
         if room.type == "staircase" and request.level > 0:
             continue  # one room with its lowest level
-        polygon = np.round(trace.faces(corners[i], at[lines.corner_lines(found, corners[i])], sides[i], spec.half), 3)
+        polygon = np.round(at[lines.corner_lines(found, corners[i])] + trace.insets(corners[i], sides[i], spec.half), 3)
         rooms.append(Room(room.id, room.type, polygon, request.level, program.shell.ceiling, room.role))
     runs += _runs(request, trace.walls(grid, n), rooms, found, at)
 
@@ -146,10 +146,11 @@ def _face(
     polygon: NDArray[np.float64], axis: int, line: float, middle: float, low: bool, half: Halves
 ) -> tuple[float, float, float] | None:
     """Return (start, end, line) of the polygon's side that faces a wall; `low`: the room lies on its low side."""
-    for p, q in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
+    points = polygon.tolist()
+    for p, q in zip(points, [*points[1:], points[0]], strict=True):
         if p[1 - axis] != q[1 - axis]:
             continue
-        face, start, end = float(p[1 - axis]), float(min(p[axis], q[axis])), float(max(p[axis], q[axis]))
+        face, start, end = p[1 - axis], min(p[axis], q[axis]), max(p[axis], q[axis])
         distance = line - face if low else face - line
         if 0.5 * min(half) < distance < 1.5 * max(half) and start < middle < end:
             return start, end, face

@@ -16,6 +16,7 @@ from pipeline.floorplan.check import check
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.energy import TERMS, area, tree, useful_area
 from pipeline.floorplan.grid import Labels
+from pipeline.floorplan.layout import Wishes
 from pipeline.floorplan.program import FloorProgram, RoomReq
 from pipeline.floorplan.realisation import build
 from pipeline.floorplan.stairwell import rectangle, stamp
@@ -215,9 +216,12 @@ def _slice(
     low = np.concatenate([request.gross_low, empty * 0.7])
     high = np.concatenate([request.gross_high, empty * 1.3])
     flexible = request.weights[1] * 4.0 / n * spec.heed * (request.gross_high > request.gross_low)
-    wishes = slicing.Wishes(
-        spec.need, spec.ban, spec.outside, spec.corner, spec.strict, square, spec.apart, spec.stair, spec.stair_room, spec.flight, spec.between,
-        spec.habitable, spec.useful, tree(spec.link, spec.root), gross, flexible, request.weights,
+    pairs = np.argwhere(np.triu((spec.need > 0) | (spec.ban > 0) | (spec.apart > 0), 1))
+    one, other = pairs.T
+    wishes = Wishes(
+        np.column_stack([pairs, spec.need[one, other], spec.ban[one, other]]), spec.apart[one, other], spec.outside, spec.corner, spec.strict,
+        square, spec.stair, spec.stair_room, spec.flight, spec.between, spec.habitable, spec.useful, tree(spec.link, spec.root), spec.near,
+        gross, flexible, request.weights,
     )  # fmt: skip
     effort.slicings += 1
     effort.sliced += draws.shape[0]

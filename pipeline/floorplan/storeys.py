@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -143,7 +144,8 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
         half,
         np.array([HALL_HEED if r.type in {"hallway", "entry"} and not r.area.stated else 1.0 for r in rooms]),
         np.array([index[_stairs(rooms)], *(cells(s + 2 * half.inner) for s in FLIGHTS)] if program.storeys > 1 else [-1, 0, 0]),
-        _between(here, index, ease),
+        _between(here, index),
+        _near(here, index),
     )
     gross = _gross(target, half)
     gross_low, gross_high = gross.copy(), gross.copy()
@@ -272,18 +274,30 @@ def _relations(program: FloorProgram, index: dict[str, int]) -> tuple[NDArray[np
     return ban, apart, order
 
 
-def _between(program: FloorProgram, index: dict[str, int], ease: int) -> NDArray[np.int64]:
-    """Return rows (a, b, c) of rooms of which a lies between b and c; none where nothing else helps: the links to both stay."""
+def _between(program: FloorProgram, index: dict[str, int]) -> NDArray[np.int64]:
+    """Return rows (a, b, c) of rooms of which a lies between b and c."""
     found = [
         (index[a.id], index[b.id], index[c.id])
         for r in program.relations
-        if r.kind == "between" and r.b and r.c and ease < 2
+        if r.kind == "between" and r.b and r.c
         for a in program.select(r.a)
         for b in program.select(r.b)
         for c in program.select(r.c)
         if len({a.id, b.id, c.id}) == 3
     ]
     return np.array(found, np.int64).reshape(-1, 3)
+
+
+def _near(program: FloorProgram, index: dict[str, int]) -> NDArray[np.float64]:
+    """Return rows (a, b, share) of rooms that belong together: members of a zone, a hub and what hangs on it; shares of each sum to 1."""
+    groups = [list(combinations(sorted({index[r.id] for m in z.members for r in program.select(m)}), 2)) for z in program.zones]
+    for relation in program.relations:
+        if relation.kind == "hub":
+            for hub in program.select(relation.a):
+                ends = {k.b if k.a == hub.id else k.a for k in program.links if hub.id in {k.a, k.b} and k.kind != "wall"}
+                groups.append([(index[hub.id], index[i]) for i in sorted(ends) if i in index])
+    found = [(a, b, 1.0 / len(group)) for group in groups for a, b in group]
+    return np.array(found, np.float64).reshape(-1, 3)
 
 
 def _stairs(rooms: tuple[RoomReq, ...]) -> str:

@@ -29,67 +29,53 @@ class Wall(NamedTuple):
 
 def outline(grid: Labels, room: int) -> Corners:
     """Return the corners (x, y) [cells] of a simple room, counter-clockwise (y up), without collinear ones."""
-    mask = grid == room
-    onward: dict[tuple[int, int], tuple[int, int]] = {}
-    for y, x in np.argwhere(mask).tolist():  # bordered indices: the cell spans (x-1, y-1) to (x, y)
-        if not mask[y - 1, x]:
-            onward[x - 1, y - 1] = (x, y - 1)
-        if not mask[y, x + 1]:
-            onward[x, y - 1] = (x, y)
-        if not mask[y + 1, x]:
-            onward[x, y] = (x - 1, y)
-        if not mask[y, x - 1]:
-            onward[x - 1, y] = (x - 1, y - 1)
-    start = min(onward, key=lambda p: (p[1], p[0]))
+    first = int(np.argmax(grid == room))
+    y, x = divmod(first, grid.shape[1])
+    cells = grid.tolist()  # bordered indices: the cell spans (x-1, y-1) to (x, y)
+    start = (x - 1, y - 1)
+    x, y, dx, dy = x, y - 1, 1, 0  # at the end of its lower side
     ring = [start]
-    while (ahead := onward[ring[-1]]) != start:
-        ring.append(ahead)
-    count = len(ring)
-    return [p for i, p in enumerate(ring) if not _collinear(ring[i - 1], p, ring[(i + 1) % count])]
-
-
-def _collinear(p: tuple[int, int], q: tuple[int, int], r: tuple[int, int]) -> bool:
-    return (p[0] == q[0] == r[0]) or (p[1] == q[1] == r[1])
+    while (x, y) != start:
+        # the cells ahead, to the left and to the right; the room lies to the left of the walk
+        right = cells[y + (dy + 1) // 2 + (dx < 0)][x + (dx + 1) // 2 + (dy > 0)] == room
+        left = cells[y + (dy + 1) // 2 + (dx > 0)][x + (dx + 1) // 2 + (dy < 0)] == room
+        if right or not left:
+            ring.append((x, y))
+            dx, dy = (dy, -dx) if right else (-dy, dx)
+        x, y = x + dx, y + dy
+    return ring
 
 
 def walls(grid: Labels, n: int) -> list[Wall]:
     """Return every straight stretch of wall, in a fixed order; `a` is a room, `b` a room or -1 for the outside."""
     found: list[Wall] = []
-    height, width = grid.shape[0] - 2, grid.shape[1] - 2
-    for vertical in (True, False):
-        lines, along = (width, height) if vertical else (height, width)
-        for at in range(lines + 1):
-            low = grid[1:-1, at] if vertical else grid[at, 1:-1]
-            high = grid[1:-1, at + 1] if vertical else grid[at + 1, 1:-1]
-            start = 0
-            for k in range(1, along + 1):
-                if k < along and low[k] == low[start] and high[k] == high[start]:
-                    continue
-                one, two = int(low[start]), int(high[start])
-                if one != two:
-                    if max(one, two) < n:
-                        found.append(Wall(one, two, vertical, at, start, k, True))
-                    else:
-                        found.append(Wall(two if one == n else one, -1, vertical, at, start, k, two == n))
-                start = k
+    body = grid[:, 1:-1], grid[1:-1, :].T
+    for vertical, cells in ((True, body[1]), (False, body[0])):
+        low, high = cells[:-1], cells[1:]
+        wall = low != high
+        on = wall[:, 1:] & (low[:, 1:] == low[:, :-1]) & (high[:, 1:] == high[:, :-1])  # goes on from the cell before
+        begins, ends = wall.copy(), wall.copy()
+        begins[:, 1:] &= ~on
+        ends[:, :-1] &= ~on
+        for (at, start), end in zip(np.argwhere(begins).tolist(), np.nonzero(ends)[1].tolist(), strict=True):
+            one, two = int(low[at, start]), int(high[at, start])
+            if max(one, two) < n:
+                found.append(Wall(one, two, vertical, at, start, end + 1, True))
+            else:
+                found.append(Wall(two if one == n else one, -1, vertical, at, start, end + 1, two == n))
     return found
 
 
-def faces(corners: Corners, lines: NDArray[np.float64], inner_sides: list[bool], half: Halves) -> NDArray[np.float64]:
-    """Shift each side of a polygon inward by half its wall.
+def insets(corners: Corners, inner_sides: list[bool], half: Halves) -> NDArray[np.float64]:
+    """Return how far each corner of a room's inner faces lies from the walls' lines (k, 2) [m]: half a wall inward from both its sides.
 
-    `lines` (k, 2) are the corners in metres, `inner_sides[i]` whether side i (corner i to i+1) has a room behind any part of it.
+    `inner_sides[i]` tells whether side i (corner i to i+1) has a room behind any part of it.
     """
-    count = len(corners)
-    result = np.empty((count, 2))
-    for i in range(count):
-        before, here = (i - 1) % count, i
-        for side in (before, here):
-            p, q = lines[side], lines[(side + 1) % count]
-            offset = half.inner if inner_sides[side] else half.outer
-            # the inside lies to the left of a counter-clockwise walk
-            if corners[side][1] == corners[(side + 1) % count][1]:  # horizontal side: it fixes y
-                result[i, 1] = lines[i, 1] + offset * np.sign(q[0] - p[0])
-            else:
-                result[i, 0] = lines[i, 0] - offset * np.sign(q[1] - p[1])
+    result = np.zeros((len(corners), 2))
+    for i, (x, y) in enumerate(corners):
+        x1, y1 = corners[(i + 1) % len(corners)]
+        offset = half.inner if inner_sides[i] else half.outer
+        # the inside lies to the left of a counter-clockwise walk
+        axis, way = (1, 1.0 if x1 > x else -1.0) if y == y1 else (0, -1.0 if y1 > y else 1.0)
+        result[i, axis] = result[(i + 1) % len(corners), axis] = offset * way
     return result

@@ -74,7 +74,7 @@ def test_inner_area_is_that_of_the_faces():
     corners = trace.outline(TWO, 0)
     sides = [False, True, False, False]  # bottom, right, top, left: only the right side has a room behind
     assert corners == [(0, 0), (3, 0), (3, 3), (0, 3)]
-    faces = trace.faces(corners, np.array(corners, float) * UNIT, sides, HALF)
+    faces = np.array(corners, float) * UNIT + trace.insets(corners, sides, HALF)
     assert faces.tolist() == pytest.approx(np.array([[0.12, 0.12], [0.69, 0.12], [0.69, 0.63], [0.12, 0.63]]))
     exact = shapely.Polygon(faces).area
     assert grid.inner_area(out, 0, 2, UNIT, HALF) == pytest.approx(exact, abs=0.003)
@@ -160,7 +160,7 @@ def spec(n, **changes):
     base = energy.Spec(
         UNIT, 0, np.full(n, 1.0), np.zeros(n), np.full(n, 99.0), np.array([0.0, 99.0]), ones, ones, ones, ones, ones, ones, zeros,
         np.zeros((n, n), np.int64), np.zeros((n, n), np.int64), np.zeros((n, n), np.int64), zeros, zeros, zeros, np.zeros((n, n)), np.zeros((n, n)),
-        -1, np.zeros(4, np.int64), 0, HALF, np.ones(n), np.array([-1, 0, 0]), np.zeros((0, 3), np.int64),
+        -1, np.zeros(4, np.int64), 0, HALF, np.ones(n), np.array([-1, 0, 0]), np.zeros((0, 3), np.int64), np.zeros((0, 3)),
     )  # fmt: skip
     return base._replace(**changes)
 

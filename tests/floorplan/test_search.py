@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pipeline.floorplan import anneal, grid, slicing
+from pipeline.floorplan import anneal, grid, layout, slicing
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.program import FloorProgram, RoomReq
 from pipeline.floorplan.solver import Effort, Outline, _slice
@@ -49,9 +49,9 @@ def test_moves_of_trees_keep_expressions_normalised():
 
 def test_contact_of_rectangles():
     rect = np.array([[0, 0, 4, 4], [4, 2, 8, 6], [0, 4, 4, 8], [9, 9, 10, 10]])
-    assert slicing.contact(rect, 0, 1) == 2
-    assert slicing.contact(rect, 0, 2) == 4
-    assert slicing.contact(rect, 0, 3) == 0
+    assert layout.contact(rect, 0, 1) == 2
+    assert layout.contact(rect, 0, 2) == 4
+    assert layout.contact(rect, 0, 3) == 0
 
 
 def start(seed):
