@@ -240,7 +240,7 @@ def stair_snug(both: float, stair: float, own: float) -> float:
 
 @compiled
 def together(out: Measures, near: Floats) -> float:
-    """What hubs and zones ask for, weighted: distances of centroids / diagonal, meant over each hub's and each zone's pairs."""
+    """Return what hubs and zones ask for, weighted: distances of centroids / diagonal, meant over each hub's and each zone's pairs."""
     total = 0.0
     for k in range(near.shape[0]):
         a, b = int(near[k, 0]), int(near[k, 1])

@@ -33,7 +33,7 @@ def outline(grid: Labels, room: int) -> Corners:
     y, x = divmod(first, grid.shape[1])
     cells = grid.tolist()  # bordered indices: the cell spans (x-1, y-1) to (x, y)
     start = (x - 1, y - 1)
-    x, y, dx, dy = x, y - 1, 1, 0  # at the end of its lower side
+    y, dx, dy = y - 1, 1, 0  # at the end of its lower side
     ring = [start]
     while (x, y) != start:
         # the cells ahead, to the left and to the right; the room lies to the left of the walk
