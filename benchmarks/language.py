@@ -1,7 +1,8 @@
 """How exactly prompts are read: the share of prompts whose program states what they say, per file, language and half.
 
-`python -m benchmarks.language [--file sentences] [--half held|tuned] [--language en] [--faults]`. Ground truth:
-`languages.yaml`, `sentences.yaml` and `speech.yaml` in `manifests/prompts`.
+`python -m benchmarks.language [--file sentences] [--half held|tuned] [--language en] [--faults] [--typos]`. Ground truth:
+`languages.yaml`, `sentences.yaml` and `speech.yaml` in `manifests/prompts`. With --typos: the share of programs that one typing error leaves as
+they were (`benchmarks/slips.py`).
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from typing import Any
 
 import yaml
 
+from benchmarks import slips
 from pipeline.errors import RefusedError
 from pipeline.floorplan import FloorProgram, parse
 from pipeline.floorplan.program import Furniture, Range
@@ -171,7 +173,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--half", choices=("held", "tuned"))
     parser.add_argument("--language")
     parser.add_argument("--faults", action="store_true")
+    parser.add_argument("--typos", action="store_true")
     asked = parser.parse_args(arguments)
+    if asked.typos:
+        cases = [c for f in FILES if asked.file in (None, f) for c in load(f) if asked.language in (None, c["id"][:2])]
+        return slips.main(cases, asked.faults)
     exact: Counter[tuple[str, str, str]] = Counter()
     count: Counter[tuple[str, str, str]] = Counter()
     spent = 0.0

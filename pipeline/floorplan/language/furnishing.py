@@ -17,12 +17,11 @@ from pipeline.floorplan.language.vocabulary import (
     COMMAS,
     FIGURES,
     HAN_DIGITS,
-    LEAST_TYPO,
     MOST,
     NUMBERS,
     ROOMS,
     STOPS,
-    near,
+    mended,
     phrases,
     words,
 )
@@ -53,10 +52,10 @@ class Scan:
 
     def __init__(self, prompt: str) -> None:
         self.prompt = prompt
-        self.words = words(prompt)
         self.claims: list[Claim] = []
-        stems, storeys = [w.stem for w in self.words], set(lexicon()["storeys"])
         self.language, self.rooms = named(prompt)
+        self.words = mended(words(prompt), self.language)
+        stems, storeys = [w.stem for w in self.words], set(lexicon()["storeys"])
         self.there = [
             [
                 (len(p), kind, name, owned)
@@ -265,7 +264,7 @@ class Scan:
             if looks:
                 self._style_at(at, looks)
             return self._after("pieces", k, at + looks + pieces, "", least, most)
-        name_at, length, name = self._name(at, read is not None)
+        name_at, length, name = self._name(at)
         if not length:
             return 0
         if read is None:
@@ -301,14 +300,12 @@ class Scan:
             return things + opens + (self.phrase(tail, "things")[0] or self.phrase(tail, "pieces")[0])
         return 0
 
-    def _name(self, k: int, counted: bool) -> tuple[int, int, str]:
-        """Return (place, length, name) of a thing at word k or after a style; typing errors are mended after an amount."""
+    def _name(self, k: int) -> tuple[int, int, str]:
+        """Return (place, length, name) of a thing at word k or after a style."""
         for skip in (0, self.phrase(k, "look")[0]):
             length, name = self.phrase(k + skip, "name")
             if length and not self._part_of_a_room(k + skip, length) and self.phrase(k + skip, "small")[0] <= length:
                 return k + skip, length, name
-        if counted and k < len(self.words):
-            return k, *self._mended(k)
         return k, 0, ""
 
     def _part_of_a_room(self, k: int, length: int) -> bool:
@@ -318,27 +315,6 @@ class Scan:
         return (
             after in ROOMS or (after != "" and after in "间房室" and "\u3400" <= self.words[k].text <= "\u9fff") or before == ["walk", "in"]
         )
-
-    def _mended(self, k: int) -> tuple[int, str]:
-        word = self.words[k].stem
-        if len(word) < LEAST_TYPO - 1 or not word.isalpha() or not word.isascii():
-            return 0, ""
-        if self.words[k].start in self.rooms or self.phrase(k, "owner", "dwelling")[0]:
-            return 0, ""
-        if self.language is not None and self.words[k].text in spoken(self.language).vocabulary:
-            return 0, ""  # "never" is no "nevera"
-        for first, entries in phrases().items():
-            for stems, kind, name, owned in entries:
-                if (
-                    kind == "name"
-                    and len(stems) == 1
-                    and not owned
-                    and first[0] == word[0]
-                    and len(first) >= LEAST_TYPO - 1
-                    and near(word, first)
-                ):
-                    return 1, name
-        return 0, ""
 
     def _look(self, k: int) -> int:
         """Read a style: "in nordic style", "estilo nórdico", "北欧风格"."""

@@ -16,6 +16,7 @@ import yaml
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from pipeline.errors import ContentError
+from pipeline.floorplan.furniture import lexicon as furniture
 from pipeline.floorplan.language.german import numerals as german_numerals
 from pipeline.floorplan.language.meaning import Meaning
 from pipeline.floorplan.language.text import bare, fold, words
@@ -105,6 +106,7 @@ class Lexicon:
     trie: dict[str, Any] = field(default_factory=dict)
     vocabulary: set[str] = field(default_factory=set)
     targets: tuple[str, ...] = ()
+    others: Mapping[str, float] = field(default_factory=dict)  # all other words of it -> how much farther a typing error is from them
     adverbs: frozenset[str] = frozenset()
     endings: tuple[str, ...] = ()
     abbreviations: frozenset[str] = frozenset()
@@ -278,6 +280,34 @@ def _misheard(e: _Entries) -> Iterator[tuple[str, Meaning]]:
 
 REPAIRED = {"room", "suite", "home", "num", "unit", "level", "zone"}  # kinds whose words are worth a repair
 CUES = {"door", "leads", "open", "near", "away", "between", "avoid"}
+FUNCTION = {
+    "cue",
+    "neg",
+    "det",
+    "pron",
+    "adj",
+    "size",
+    "cmp",
+    "factor",
+    "bound",
+    "join",
+    "flag",
+    "relative",
+    "every",
+    "owner",
+    "via",
+    "enter",
+    "room",
+}
+COMMON = 0.15  # words that are only known not to be errors
+FARTHER = {True: 0.05, False: 0.1}  # words that build sentences, and those that mean nothing
+
+
+def _things(language: Language) -> set[str]:
+    """Return the words for furniture, which a typing error may as well be made in."""
+    names: Iterable[Mapping[str, Iterable[str]]] = furniture()["names"].values()
+    listed = (phrase.removeprefix("@") for forms in names for phrase in forms.get(language, ()))
+    return {w for phrase in listed for form, _ in _forms(language, phrase) for w in words(form) if len(w) > 3}
 
 
 @functools.cache
@@ -296,17 +326,21 @@ def lexicon(language: Language) -> Lexicon:
         raise ContentError(f"{path.name}: {str(error).splitlines()[0]}", "restore the file from the repository") from error
     made = Lexicon(language)
     targets: set[str] = set()
+    others: dict[str, float] = {}
     for phrase, meaning in _meanings(entries):
         for spelt in _spellings(phrase, language):
             _insert(made.trie, spelt, meaning)
             made.vocabulary.update(spelt)
             if meaning.kind in REPAIRED or (meaning.kind == "cue" and meaning.value in CUES):
                 targets.update(w for w in spelt if w.isalpha() and len(w) >= 4)
+            for w in spelt:
+                others[w] = min(FARTHER[meaning.kind in FUNCTION], others.get(w, 1.0))
     for wrong, meaning in _misheard(entries) if language == "zh" else ():
         _insert(made.trie, words(wrong), meaning)
     made.vocabulary.update(w for p in split(entries.common) for w in words(p))
     blocked = {w for p in split(entries.fillers) if " " not in p for w in words(p)}
-    made.targets = tuple(sorted(targets - blocked))
+    named = {w for phrases in entries.rooms.values() for p in split(phrases.replace("|", ",")) for w in words(p)}
+    made.targets = tuple(sorted(targets - blocked, key=lambda w: (w not in named, w)))  # names of rooms first
     made.adverbs = frozenset(fold(w) for w in split(entries.adverbs))
     made.endings = tuple(sorted(split(entries.endings), key=len, reverse=True))
     made.abbreviations = frozenset(fold(w) for w in split(entries.abbreviations))
@@ -323,6 +357,10 @@ def lexicon(language: Language) -> Lexicon:
     frames.sort(key=lambda f: -len(f[0]) - len(f[1]))
     made.frames = {word: tuple(f for f in frames if f[0][0] == word) for word in {f[0][0] for f in frames}}
     made.vocabulary.update(w for a, b, _ in frames for w in (*a, *b))
+    others |= {w: FARTHER[True] for a, b, _ in frames for w in (*a, *b)}
+    others |= {w: COMMON for w in made.vocabulary if w not in others}
+    others = dict.fromkeys(_things(language), FARTHER[True]) | others
+    made.others = {w: far for w, far in others.items() if w not in made.targets and w.isalpha()}
     return made
 
 

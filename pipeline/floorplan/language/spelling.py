@@ -7,12 +7,14 @@ import itertools
 from collections.abc import Sequence
 
 from pipeline.floorplan.language.german import split as compound
-from pipeline.floorplan.language.lexicon import Language, Lexicon, lexicon
+from pipeline.floorplan.language.lexicon import FARTHER, Language, Lexicon, lexicon
 from pipeline.floorplan.language.meaning import Meaning
-from pipeline.floorplan.language.text import Token
+from pipeline.floorplan.language.text import Token, bare, fold
 
 SHORTEST, LONG = 4, 8  # one error from SHORTEST letters on, two from LONG on
+ONE, USUAL = 1.2, 0.9  # how far a word with one error is at most, and with a usual one
 LONGEST = 30  # no word of a home is longer
+TINY = {"cue", "det", "neg", "join", "verb", "fill", "num"}  # what a word of two letters may be where words are run together
 ROWS = ("qwertzuiop", "asdfghjkl", "yxcvbnm", "qwertyuiop", "zxcvbnm")
 NEIGHBOURS = frozenset(p for r in ROWS for a, b in itertools.pairwise(r) for p in ((a, b), (b, a)))
 
@@ -22,7 +24,11 @@ def repair(tokens: Sequence[Token], texts: Sequence[str], lex: Lexicon) -> tuple
     made: list[Token] = []
     words: list[str] = []
     for token, text in zip(tokens, texts, strict=True):
-        parts = (text,) if text in lex.vocabulary or not text.replace("'", "").isalpha() else resolve(text, lex.language)
+        parts = (text,) if text in lex.vocabulary or not text.replace("'", "").isalpha() else resolve(text, lex.language, every=True)
+        if (
+            text not in lex.vocabulary and parts == (text,) and text == fold(token.text) and (plain := bare(token.text)) != text
+        ):  # "Kcühe": the umlaut's two letters would count as two errors
+            parts = (plain,) if plain in lex.vocabulary else resolve(plain, lex.language, every=True)
         for part in parts:
             made.append(token)
             words.append(part)
@@ -30,8 +36,8 @@ def repair(tokens: Sequence[Token], texts: Sequence[str], lex: Lexicon) -> tuple
 
 
 @functools.lru_cache(maxsize=8192)
-def resolve(word: str, language: Language) -> tuple[str, ...]:  # noqa: PLR0911 - one branch per case: a grammar
-    """Return the known words that an unknown one stands for, or itself."""
+def resolve(word: str, language: Language, *, every: bool = False) -> tuple[str, ...]:  # noqa: PLR0911 - one branch per case: a grammar
+    """Return the known words that an unknown one stands for, or itself: names of rooms, numbers and the like, or `every` word of the vocabulary."""
     lex = lexicon(language)
     if len(word) > LONGEST or len(word) < 3 or "\u3400" <= word[0] <= "\u9fff":
         return (word,)
@@ -40,19 +46,22 @@ def resolve(word: str, language: Language) -> tuple[str, ...]:  # noqa: PLR0911 
     stem = _stem(word, lex)
     if stem:
         return (stem,)
-    if word.endswith("'s") and word[:-2] in lex.vocabulary:
-        return (word[:-2],)
-    near, gap = _nearest(word, language)
-    if gap == 1 and near:
+    bared = word.removesuffix("'").removesuffix("'s")
+    if bared != word:
+        return (bared,) if bared in lex.vocabulary else resolve(bared, language, every=every)
+    near, cost = _nearest(word, language, every)
+    if near and cost <= (ONE if near in _strong(language) else USUAL):
         return (near,)
     parts = _split(word, lex)
     if parts:
         return parts
     if near:
         return (near,)
+    if parts := _mended(word, lex):
+        return parts
     for ending in lex.endings:  # mistyped and inflected
         if word.endswith(ending) and len(word) - len(ending) >= SHORTEST + 1:
-            near, _ = _nearest(word[: -len(ending)], language)
+            near, _ = _nearest(word[: -len(ending)], language, every)
             if near:
                 return (near,)
     return (word,)
@@ -112,14 +121,35 @@ def _stem(word: str, lex: Lexicon) -> str:
 
 
 def _split(word: str, lex: Lexicon) -> tuple[str, ...]:
-    """Split "twobedroom" or "openkitchen": two known words, one of them worth a repair."""
+    """Split "twobedroom", "openkitchen", "intothe" into known words."""
     targets = _strong(lex.language)
-    if lex.language == "de":
-        return compound(word, lex.vocabulary, targets)
-    for cut in range(len(word) - 3, 2, -1):
+    if lex.language == "de" and (parts := compound(word, lex.vocabulary, targets)):
+        return parts
+    for cut in range(len(word) - 2, 1, -1):
         a, b = word[:cut], word[cut:]
-        if a in lex.vocabulary and b in lex.vocabulary and (a in targets or b in targets) and len(a) >= 3 and len(b) >= 3:
+        if a not in lex.vocabulary or b not in lex.vocabulary:
+            continue
+        least, most = sorted((len(a), len(b)))
+        speak = all(_speaks(w, lex) for w in (a, b))
+        if (least >= SHORTEST - 1 and (a in targets or b in targets)) or (speak and most >= SHORTEST - 1):
             return (a, b)
+    return ()
+
+
+def _speaks(word: str, lex: Lexicon) -> bool:
+    """Whether a word builds sentences or names a room; of two letters only an article, a preposition and their like."""
+    if len(word) >= SHORTEST - 1:
+        return word in lex.targets or lex.others.get(word, 1.0) <= FARTHER[True]
+    meaning: Meaning | None = lex.trie.get(word, {}).get("")
+    return meaning is not None and meaning.kind in TINY
+
+
+def _mended(word: str, lex: Lexicon) -> tuple[str, ...]:
+    """Split "onebedrom": a known word and a mistyped name of a room."""
+    for cut in range(SHORTEST - 1, len(word) - SHORTEST) if len(word) <= LONGEST - 10 else ():
+        for a, b in ((word[:cut], word[cut:]), (word[-cut:], word[:-cut])):
+            if a in lex.vocabulary and _speaks(a, lex) and len(b) > SHORTEST and (near := _nearest(b, lex.language, every=False)[0]):
+                return (a, near) if word.startswith(a) else (near, a)
     return ()
 
 
@@ -128,23 +158,23 @@ def _strong(language: Language) -> frozenset[str]:
     return frozenset(lexicon(language).targets)
 
 
-def _nearest(word: str, language: Language) -> tuple[str, int]:
-    """Return the one known word that is near enough, and its distance; ("", 9) where there is none or two are as near."""
-    allowed = 0 if len(word) < SHORTEST else (1 if len(word) < LONG - 1 else 2)
+def _nearest(word: str, language: Language, every: bool) -> tuple[str, float]:
+    """Return the one known word that is near enough, and how far it is; ("", 9.0) where there is none or two are as near."""
+    allowed = 1 if len(word) < LONG - 1 else 2
     best, least, tied = "", 9.0, False
     mask, shelves = _letters(word), _shelves(language)
     for size in range(len(word) - allowed, len(word) + allowed + 1):
-        for target, letters in shelves.get(size, ()):
-            if (mask ^ letters).bit_count() > 2 * allowed:  # an edit changes two letters at most
+        for target, letters, far in shelves.get(size, ()):
+            if (mask ^ letters).bit_count() > 2 * allowed or (far and not every):  # an edit changes two letters at most
                 continue
-            cost = _cost(word, target, allowed)
+            cost = _far(word, target) + far if far else _cost(word, target, allowed)
             if cost < least:
                 best, least, tied = target, cost, False
             elif cost == least and target != best:
                 tied = True
     if tied and least > 1.5:
-        return "", 9
-    return best, (1 if least <= 1.2 else 2) if best else 9
+        return "", 9.0
+    return best, least
 
 
 def _cost(word: str, target: str, allowed: int) -> float:
@@ -152,13 +182,30 @@ def _cost(word: str, target: str, allowed: int) -> float:
     most = 1 if len(target) < LONG - 1 else allowed
     if len(word) < LONG and most == 2 and sorted(word) != sorted(target):
         most = 1
-    gap = distance(word, target, most)
-    if gap > most or (len(target) == SHORTEST and len(word) <= SHORTEST and _risky(word, target)):
+    gap = distance(word, target, most) if most > 1 else (1 if slipped(word, target) else 2)
+    if gap > most or (min(len(word), len(target)) <= SHORTEST and not _slip(word, target) and not _dropped(word, target)):
         return 9.0
     other = word[0] != target[0]
     if other and (gap > 1 or len(word) < 6):
         return 9.0
-    return gap - (0.3 if _slip(word, target) else 0.0) + (0.2 if other else 0.0)
+    return gap - (0.3 if _slip(word, target) or _dropped(word, target) else 0.0) + (0.2 if other else 0.0)
+
+
+def _far(word: str, target: str) -> float:
+    """Return how far a word is that is neither a room nor a number: one error, in short words a usual one."""
+    short = min(len(word), len(target))
+    swap = sorted(word) == sorted(target)
+    if short < SHORTEST - 1 or (word[0] != target[0] and not (swap and short > SHORTEST - 1)) or not slipped(word, target):
+        return 9.0
+    slip = _slip(word, target) or _dropped(word, target)
+    if (short < SHORTEST and not swap and len(word) == len(target)) or (short <= SHORTEST and not slip):
+        return 9.0
+    return 0.7 if slip and len(word) >= SHORTEST else 1.0
+
+
+def _dropped(word: str, target: str) -> bool:
+    """Whether a letter inside or at the end was left out."""
+    return len(word) + 1 == len(target) and any(target[:k] + target[k + 1 :] == word for k in range(1, len(target)))
 
 
 def _letters(word: str) -> int:
@@ -170,17 +217,13 @@ def _letters(word: str) -> int:
 
 
 @functools.cache
-def _shelves(language: Language) -> dict[int, list[tuple[str, int]]]:
-    """Return the words worth a repair by length, each with its letters."""
-    made: dict[int, list[tuple[str, int]]] = {}
-    for target in lexicon(language).targets:
-        made.setdefault(len(target), []).append((target, _letters(target)))
+def _shelves(language: Language) -> dict[int, list[tuple[str, int, float]]]:
+    """Return the words of the vocabulary by length, each with its letters and how much farther it is than the name of a room."""
+    made: dict[int, list[tuple[str, int, float]]] = {}
+    lex = lexicon(language)
+    for target, far in (*((t, 0.0) for t in lex.targets), *sorted(lex.others.items())):
+        made.setdefault(len(target), []).append((target, _letters(target), far))
     return made
-
-
-def _risky(word: str, target: str) -> bool:
-    """Whether a four-letter word differs otherwise than by swapped or doubled letters: it may well be another word."""
-    return sorted(word) != sorted(target)
 
 
 def _slip(word: str, target: str) -> bool:
@@ -195,6 +238,17 @@ def _slip(word: str, target: str) -> bool:
         )
     wrong = [(a, b) for a, b in zip(word, target, strict=True) if a != b]
     return len(wrong) == 1 and wrong[0] in NEIGHBOURS
+
+
+def slipped(a: str, b: str) -> bool:
+    """Whether two different words are one letter apart: changed, missing, added, or exchanged with its neighbour."""
+    if abs(len(a) - len(b)) > 1:
+        return False
+    k = next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
+    if len(a) == len(b):
+        return a[k + 1 :] == b[k + 1 :] or (a[k : k + 2] == b[k : k + 2][::-1] and a[k + 2 :] == b[k + 2 :])
+    longer, shorter = (a, b) if len(a) > len(b) else (b, a)
+    return longer[k + 1 :] == shorter[k:]
 
 
 def distance(a: str, b: str, most: int) -> int:

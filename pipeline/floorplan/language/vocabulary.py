@@ -5,10 +5,13 @@ from __future__ import annotations
 import functools
 import re
 import unicodedata
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from pipeline.floorplan.furniture import lexicon
+from pipeline.floorplan.language.lexicon import Language
+from pipeline.floorplan.language.lexicon import lexicon as spoken
+from pipeline.floorplan.language.spelling import resolve
 
 HAN = "\u3400-\u9fff"
 WORD = re.compile(rf"\d+(?:[.,]\d+)?|[{HAN}]|[^\W\d_{HAN}]+(?:'[^\W\d_]+)?|[%.,;:!?()\n+&、。;,!?]")
@@ -30,7 +33,6 @@ FIGURES = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
 MOST = 1e6  # of any amount
 HAN_DIGITS = {c: k for k, c in enumerate("零一二三四五六七八九")} | {"两": 2, "俩": 2}
 ROOMS = frozenset({"room", "rooms", "area", "corner", "niche", "nook", "zone", "space", "raum", "ecke", "bereich"})
-LEAST_TYPO = 8  # letters of a word that may hold a typing error
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +69,26 @@ def words(text: str) -> list[Word]:
     return found
 
 
+def mended(found: Sequence[Word], language: Language | None) -> list[Word]:
+    """Return the words with typing errors repaired, each in its place."""
+    if language in {None, "zh"}:
+        return list(found)
+    assert language is not None
+    known = spoken(language).vocabulary
+    made: list[Word] = []
+    for word in found:
+        unknown = word.text.isalpha() and word.text not in known and word.stem not in stems()
+        parts = resolve(word.text, language, every=True) if unknown else (word.text,)
+        made += [word] if parts == (word.text,) else [Word(p, stem(p), word.start, word.end) for p in parts]
+    return made
+
+
+@functools.cache
+def stems() -> frozenset[str]:
+    """Return the stems of all words that speak of furniture."""
+    return frozenset(s for entries in phrases().values() for entry in entries for s in entry[0])
+
+
 @functools.cache
 def phrases() -> Mapping[str, tuple[tuple[tuple[str, ...], str, str, bool], ...]]:
     """Return by first stem: (stems, kind, name, whether an owner is needed), the longest first."""
@@ -95,14 +117,3 @@ def phrases() -> Mapping[str, tuple[tuple[tuple[str, ...], str, str, bool], ...]
         for form in listed:
             add(form, "owner", name)
     return {k: tuple(sorted(v, key=lambda p: -len(p[0]))) for k, v in table.items()}
-
-
-def near(a: str, b: str) -> bool:
-    """Whether two words differ by one letter: changed, missing, added, or exchanged with its neighbour."""
-    if a == b or abs(len(a) - len(b)) > 1:
-        return a == b
-    k = next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
-    if len(a) == len(b):
-        return a[k + 1 :] == b[k + 1 :] or (a[k : k + 2] == b[k : k + 2][::-1] and a[k + 2 :] == b[k + 2 :])
-    longer, shorter = (a, b) if len(a) > len(b) else (b, a)
-    return longer[k + 1 :] == shorter[k:]

@@ -5,7 +5,7 @@ import yaml
 
 from pipeline.floorplan.language.lexicon import FOLDER, LANGUAGES, lexicon
 from pipeline.floorplan.language.marks import listen, measured, segment
-from pipeline.floorplan.language.spelling import distance, resolve
+from pipeline.floorplan.language.spelling import distance, resolve, slipped
 from pipeline.floorplan.language.text import clean, fold, tokenize
 
 
@@ -68,6 +68,18 @@ def test_typing_errors_are_repaired(wrong, language, right):
     assert resolve(wrong, language) == right
 
 
+@pytest.mark.parametrize(
+    ("wrong", "language", "right"),
+    [
+        ("wiht", "en", ("with",)), ("betwen", "en", ("between",)), ("oposite", "en", ("opposite",)), ("conencted", "en", ("connected",)), ("kidds'", "en", ("kids",)),
+        ("intothe", "en", ("into", "the")), ("onebedrom", "en", ("one", "bedroom")), ("chaors", "en", ("chairs",)), ("zwichen", "de", ("zwischen",)), ("nebem", "de", ("neben",)),
+        ("junot", "es", ("junto",)), ("abeirta", "es", ("abierta",)), ("bao", "es", ("bano",)), ("ono", "en", ("onto",)),
+    ],
+)  # fmt: skip
+def test_words_that_build_sentences_are_repaired(wrong, language, right):
+    assert resolve(wrong, language, every=True) == right
+
+
 @pytest.mark.parametrize("language", ["en", "de", "es"])
 def test_common_words_stay_as_they_are(language):
     raw = yaml.safe_load((FOLDER / f"{language}.yaml").read_text(encoding="utf-8"))
@@ -80,6 +92,12 @@ def test_common_words_stay_as_they_are(language):
 @pytest.mark.parametrize("word", ["house", "couch", "both", "tall", "without", "xylophone", "flibbertigibbet"])
 def test_other_words_are_left_alone(word):
     assert listen(word, "en").texts == [word]
+
+
+@pytest.mark.parametrize(("a", "b", "alike"), [("dsek", "desk", True), ("desck", "desk", True), ("dek", "desk", True), ("dusk", "desk", True), ("disc", "desk", False), ("des", "deskk", False)])  # fmt: skip
+def test_one_letter_apart(a, b, alike):
+    assert slipped(a, b) is alike
+    assert slipped(b, a) is alike
 
 
 def test_distance_is_a_bounded_metric():
