@@ -9,6 +9,7 @@ from pathlib import Path
 from pipeline.entities.home import Home
 from pipeline.execution import single_thread
 from pipeline.floorplan import FloorProgram, describe, plan_json, request
+from pipeline.floorplan.assumptions import assumptions
 from pipeline.floorplan.draw import svg
 from pipeline.floorplan.own import program_of, read_own
 from pipeline.floorplan.wishes import with_wishes
@@ -35,7 +36,8 @@ def main(root: Path, *, out: Path, prompt: str = "", seed: int = 0, source: Path
     with open_or_create(out, header) as dataset:
         if dataset.missing():
             commit_library(dataset, lambda folder: factory.write_library(folder, used))
-            commit_shard(dataset, 0, gather(0, [(outcome.rows, {**outcome.files, **drawings(outcome.home, program, repairs)})]))
+            assumed = assumptions(program) if source is None else []
+            commit_shard(dataset, 0, gather(0, [(outcome.rows, {**outcome.files, **drawings(outcome.home, program, repairs, assumed)})]))
     styles = {p.asset_id: str(factory.library.rows[p.asset_id]["style"]) for p in outcome.home.placements}
     sys.stdout.write(report(deliveries(FloorProgram.model_validate_json(outcome.home.program), outcome.rows, styles)))
     for repair in repairs:
@@ -62,9 +64,9 @@ def asked_by_plan(root: Path, source: Path, house: str | None, prompt: str) -> t
     return program, Request(0, prompt or describe(program), program.model_dump_json(exclude_defaults=True), document), own.repairs_json()
 
 
-def drawings(home: Home, program: FloorProgram, repairs: list[dict[str, str]]) -> dict[str, bytes]:
+def drawings(home: Home, program: FloorProgram, repairs: list[dict[str, str]], assumed: list[dict[str, str]]) -> dict[str, bytes]:
     """Return the home's floor plan as JSON and as a drawing."""
     return {
-        f"plans/{home.scene_id}.json": (json.dumps(plan_json(home.plan, program, repairs), indent=1) + "\n").encode(),
+        f"plans/{home.scene_id}.json": (json.dumps(plan_json(home.plan, program, repairs, assumed), indent=1) + "\n").encode(),
         f"plans/{home.scene_id}.svg": svg(home.plan).encode(),
     }

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from textwrap import fill
 
 from pipeline.entities.plan import Plan
 from pipeline.errors import RefusedError, UsageError
 from pipeline.experiments.prompts import measured, read_prompts, report
 from pipeline.floorplan import FloorProgram, plan_json, refusal_json, request, solve
+from pipeline.floorplan.assumptions import assumptions
 from pipeline.floorplan.document import document_schema
 from pipeline.floorplan.draw import png, svg, terminal
 from pipeline.floorplan.own import program_of, read_own
@@ -17,6 +20,7 @@ from pipeline.homes.soundness import require_sound
 from pipeline.manifest import write_bytes, write_json
 
 STDOUT = "-"
+COLUMNS = 80  # of the terminal
 
 
 def main(
@@ -34,10 +38,11 @@ def main(
     for path in (svg_path, png_path, json_path):
         _check_target(path)
     repairs: list[dict[str, str]] = []
+    assumed: list[dict[str, str]] = []
     try:
         if source is None:
             program = request(prompt)
-            plan = solve(program, seed)
+            plan, assumed = solve(program, seed), assumptions(program)
         else:
             own = read_own(source, house)
             require_sound(root, own.plan)
@@ -45,13 +50,13 @@ def main(
     except RefusedError as error:
         _write_json(json_path, refusal_json(error))
         raise
-    _write_json(json_path, plan_json(plan, program, repairs))
+    _write_json(json_path, plan_json(plan, program, repairs, assumed))
     if svg_path is not None:
         write_bytes(svg_path, svg(plan).encode())
     if png_path is not None:
         write_bytes(png_path, png(plan))
     if json_path is None and svg_path is None and png_path is None:
-        sys.stdout.write(show(plan, program))
+        sys.stdout.write(show(plan, program, assumed))
     if str(json_path) != STDOUT:
         sys.stdout.write("".join(f"repaired: {r['where']}: {r['text']}\n" for r in repairs))
 
@@ -70,9 +75,14 @@ def score(_root: Path, *, prompts: Path, seeds: int = 5, json_path: Path | None 
         sys.stdout.write(report(found))
 
 
-def show(plan: Plan, program: FloorProgram) -> str:
-    """Return the plan in characters, with the words that were not understood."""
+def show(plan: Plan, program: FloorProgram, assumed: Sequence[Mapping[str, str]] = ()) -> str:
+    """Return the plan in characters, with what was assumed and the words that were not understood."""
     text = terminal(plan)
+    if assumed:
+        text += "assumed, for nobody said it:\n"
+        for each in assumed:
+            line = f"{each['field']:9s} {each['text']}"
+            text += fill(line, COLUMNS, initial_indent="  ", subsequent_indent=" " * 12, break_on_hyphens=False) + "\n"
     if program.unparsed:
         text += "not understood: " + ", ".join(s.text for s in program.unparsed) + "\n"
     return text

@@ -60,6 +60,16 @@ def _default(room: RoomReq, rooms: Sequence[RoomReq]) -> float:
     return DEFAULTS[room.type].area
 
 
+def usual_area(room: RoomReq, program: FloorProgram) -> float:
+    """Return what a room of its kind usually has among these [m2]; of a hallway, what its storey's rooms and doors ask for."""
+    if room.type != "hallway":
+        return _default(room, program.rooms) * program.scale
+    rooms = [r.model_copy(update={"area": Range()}) if r.id == room.id else r for r in program.rooms]
+    target = [r.area.target or 0.0 for r in program.rooms]
+    _halls(program, rooms, target, [True] * len(rooms))
+    return next(t for r, t in zip(rooms, target, strict=True) if r.id == room.id)
+
+
 def _halls(program: FloorProgram, rooms: Sequence[RoomReq], target: list[float], free: Sequence[bool]) -> None:
     """Give free hallways their share of what the other rooms of their storeys take, and wall enough for their doors."""
     doors = Counter(i for k in program.links if k.kind != "wall" for i in (k.a, k.b))

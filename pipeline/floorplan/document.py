@@ -71,6 +71,13 @@ class RepairDocument(_Strict):
     text: str
 
 
+class AssumedDocument(_Strict):
+    """Something that the request left open and a default filled in; in `program` it is marked `stated: false`."""
+
+    field: str
+    text: str
+
+
 class ClashDocument(_Strict):
     """Words of the prompt, [start, end) in characters."""
 
@@ -99,6 +106,7 @@ class PlanDocument(_Strict):
     storey_height: Annotated[float | None, Field(description="floor to floor [m]")] = None
     program: FloorProgram | None = None
     repairs: list[RepairDocument] = []
+    assumed: list[AssumedDocument] = []
     refused: RefusedDocument | None = None
 
 
@@ -107,8 +115,13 @@ def document_schema() -> dict[str, Any]:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **PlanDocument.model_json_schema()}
 
 
-def plan_json(plan: Plan, program: FloorProgram | None = None, repairs: Sequence[Mapping[str, str]] = ()) -> dict[str, Any]:
-    """Return the plan as the documented, versioned JSON object."""
+def plan_json(
+    plan: Plan,
+    program: FloorProgram | None = None,
+    repairs: Sequence[Mapping[str, str]] = (),
+    assumed: Sequence[Mapping[str, str]] = (),
+) -> dict[str, Any]:
+    """Return the plan as the documented, versioned JSON object; `assumed` as `assumptions` gives it."""
     stairs = {r.room_id for r in plan.rooms if r.type == "staircase"}
     top = max((r.level for r in plan.rooms), default=0)
     return {
@@ -146,6 +159,7 @@ def plan_json(plan: Plan, program: FloorProgram | None = None, repairs: Sequence
         "storey_height": round(plan.storey_height, MM),
         "program": None if program is None else program.model_dump(mode="json"),
         "repairs": [dict(r) for r in repairs],
+        "assumed": [dict(a) for a in assumed],
         "refused": None,
     }
 
@@ -159,7 +173,7 @@ def refusal_json(error: RefusedError) -> dict[str, Any]:
     clashes = [{"text": c.text, "start": c.start, "end": c.end} for c in getattr(error, "clashes", ())]
     refused = {"code": getattr(error, "code", "refused"), "message": str(error), "clashes": clashes}
     empty = dict.fromkeys(("entrance", "inner_wall", "outer_wall", "storey_height", "program"))
-    return {"version": VERSION, "rooms": [], "openings": [], **empty, "repairs": [], "refused": refused}
+    return {"version": VERSION, "rooms": [], "openings": [], **empty, "repairs": [], "assumed": [], "refused": refused}
 
 
 def plan_from_json(document: object) -> Plan:

@@ -56,7 +56,7 @@ def test_there_are_plans_of_every_kind(documents):
 def test_top_level(documents):
     for program, d in documents:
         assert set(d) == {
-            "version", "rooms", "openings", "entrance", "inner_wall", "outer_wall", "storey_height", "program", "repairs", "refused",
+            "version", "rooms", "openings", "entrance", "inner_wall", "outer_wall", "storey_height", "program", "repairs", "assumed", "refused",
         }  # fmt: skip
         assert d["version"] == 1
         assert d["refused"] is None
