@@ -13,8 +13,9 @@ from pipeline.errors import RefusedError, UsageError
 from pipeline.experiments.prompts import measured, read_prompts, report
 from pipeline.floorplan import FloorProgram, plan_json, refusal_json, request, solve
 from pipeline.floorplan.assumptions import assumptions
+from pipeline.floorplan.characters import terminal
 from pipeline.floorplan.document import document_schema
-from pipeline.floorplan.draw import png, svg, terminal
+from pipeline.floorplan.draw import png, svg
 from pipeline.floorplan.own import program_of, read_own
 from pipeline.homes.soundness import require_sound
 from pipeline.manifest import write_bytes, write_json

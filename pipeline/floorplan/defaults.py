@@ -40,7 +40,7 @@ DEFAULTS: Mapping[str, TypeDefault] = {
     "utility": TypeDefault(5.0, 1.5, window=True, useful=False, through=True),
     "storage": TypeDefault(3.0, 1.1, useful=False),
     "garage": TypeDefault(18.0, 2.8, exterior=True, useful=False, through=True),
-    "balcony": TypeDefault(7.0, 1.4, exterior=True, useful=False, square=False),
+    "balcony": TypeDefault(7.0, 1.4, exterior=True, window=True, useful=False, square=False),
     "staircase": TypeDefault(6.0, 1.8, useful=False, through=True, square=False),
     "office": TypeDefault(10.0, 2.2, exterior=True, window=True, habitable=True),
     "studio_room": TypeDefault(22.0, 3.0, exterior=True, window=True, habitable=True, through=True),

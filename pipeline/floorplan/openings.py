@@ -27,6 +27,7 @@ SILL, WINDOW_HEIGHT = 0.9, 1.3
 BATH_SILL, BATH_WINDOW = 1.4, 0.8
 LINTEL, LEAST_WINDOW = 0.1, 0.6  # between openings and ceilings; height of a window under a low one [m]
 WIDEST_WINDOW, NARROWEST_WINDOW = 2.4, 0.6
+WIDEST_GLASS = 6.0  # of a balcony
 STEP = 0.05  # raster of the places that are tried [m]
 
 Point = NDArray[np.float64]
@@ -241,6 +242,7 @@ def _leaf_fits(site: Site, floor: shapely.Polygon, into: str, segment: Point, hi
 def _windows(site: Site, room: RoomReq, walls: Sequence[Run], tries: Sequence[tuple[float, float]]) -> None:
     """Give a room its windows: one per outside stretch, on the longest wall first, three at most.
 
+    A balcony is a loggia: above its parapet it is glass from corner to corner and up to the ceiling.
     `tries` are shares of the wished width, and how far a window of it keeps from the ends of the wall [m].
     """
     wanted = room.window == "required" or (room.window == "auto" and DEFAULTS[room.type].window)
@@ -253,11 +255,13 @@ def _windows(site: Site, room: RoomReq, walls: Sequence[Run], tries: Sequence[tu
         if placed >= most or (placed and run.length < 1.6):
             break
         width = min(0.55 * run.length, 0.7 if bath else WIDEST_WINDOW)
+        if room.type == "balcony":
+            width = min(run.length - 2 * FRAME, WIDEST_GLASS)
         for share, margin in tries:
             size = round(max(width * share, NARROWEST_WINDOW), 2)
             offset = _window_place(site, run, size, margin)
             if offset is not None:
-                sill, height = (BATH_SILL, BATH_WINDOW) if bath else (SILL, WINDOW_HEIGHT)
+                sill, height = (BATH_SILL, BATH_WINDOW) if bath else (SILL, site.ceiling if room.type == "balcony" else WINDOW_HEIGHT)
                 sill = min(sill, site.ceiling - LINTEL - LEAST_WINDOW)
                 height = site.under(sill + height) - sill
                 segment = run.segment(offset, size)

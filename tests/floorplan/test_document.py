@@ -8,7 +8,8 @@ import pytest
 
 from pipeline.errors import ContentError, RefusedError, UsageError
 from pipeline.floorplan import parse, plan_from_json, plan_json, prior, refusal_json, solve
-from pipeline.floorplan.draw import image, svg, terminal
+from pipeline.floorplan.characters import terminal
+from pipeline.floorplan.draw import image, svg
 from pipeline.floorplan.program import FloorProgram
 from stages.plan import main
 
@@ -73,7 +74,10 @@ def test_refusals_have_a_document():
 def test_drawings(made):
     plan = made[1]
     root = ET.fromstring(svg(plan))
-    assert len([e for e in root.iter() if e.tag.endswith("text")]) == 2 * len(plan.rooms)
+    words = [e.text for e in root.iter() if e.tag.endswith("text")]
+    assert all(r.room_id.replace("_", " ") in words and f"{r.area:.1f} m²" in words for r in plan.rooms)
+    x, y = np.vstack([r.polygon for r in plan.rooms]).T
+    assert {f"{np.ptp(v) + 2 * plan.outer_wall:.2f} m" for v in (x, y)} <= set(words)
     picture = np.asarray(image(plan, 30.0))
     assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 5
     text = terminal(plan)
