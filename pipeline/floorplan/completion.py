@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from pipeline.floorplan.areas import with_areas
-from pipeline.floorplan.check import names
-from pipeline.floorplan.connect import connect, resolve
+from pipeline.floorplan.check import names, reach
+from pipeline.floorplan.connect import connect, is_forbidden, resolve
 from pipeline.floorplan.distance import distances, nearness
 from pipeline.floorplan.furniture import allot, spread
 from pipeline.floorplan.program import Entrance, FloorProgram, RoomReq, Shell
@@ -153,8 +153,17 @@ def _add_circulation(program: FloorProgram) -> tuple[RoomReq, ...]:
 
 
 def _join(program: FloorProgram) -> FloorProgram:
-    """Fill in the links. Where rooms then lie nearer than a `hops` relation allows, a hallway more may put them apart."""
+    """Fill in the links. Where rooms then lie nearer than a `hops` relation allows, a hallway more may put them apart.
+
+    Where what may not be joined would be, or a room lies behind one that must not be passed, an entry more gives another way.
+    """
     joined = program.model_copy(update={"links": connect(program)})
+    if _barred(joined) and not program.only and "entry" not in _forbidden_types(program):
+        entry = RoomReq(id=_name("entry", list(program.rooms)), type="entry", level=0, stated=False, inferred=True)
+        around = program.model_copy(update={"rooms": (*program.rooms, entry)})
+        around = around.model_copy(update={"links": connect(around)})
+        if not _barred(around):
+            return around
     broken = nearness(distances(program), joined.links)
     if not broken or program.only or "hallway" in _forbidden_types(program):
         return joined
@@ -163,6 +172,17 @@ def _join(program: FloorProgram) -> FloorProgram:
     wider = program.model_copy(update={"rooms": (*program.rooms, hall)})
     wider = wider.model_copy(update={"links": connect(wider)})
     return joined if nearness(distances(wider), wider.links) else wider
+
+
+def _barred(program: FloorProgram) -> bool:
+    """Whether a link that nobody stated joins what may not be joined, or a room can only be reached through one to be avoided."""
+    rooms = {r.id: r for r in program.rooms}
+    if any(not k.stated and k.kind != "wall" and is_forbidden(program, rooms[k.a], rooms[k.b]) for k in program.links):
+        return True
+    root = _entrance(program).into or ""
+    ways = [f for f in program.forbids if f.what == "through" and f.avoid]
+    avoided = {f.avoid: reach(program, root, frozenset(r.id for r in program.select(f.avoid or ""))) for f in ways}
+    return any(r.id not in avoided[f.avoid] and r not in program.select(f.avoid or "") for f in ways for r in program.select(f.a))
 
 
 def _entrance(program: FloorProgram) -> Entrance:

@@ -168,7 +168,7 @@ def _hosted(program: FloorProgram, front: RoomReq, main: frozenset[str], links: 
     second = front.type == "kitchen" and front.role not in {"", "primary"}  # a kitchen of somebody's own stands by itself
     for wanted in PARENTS["bedroom"][1:] if second else PARENTS.get(front.type, ANY_HUB):
         hosts = [r for r in program.rooms if r.type == wanted and r.id in main and _meet(r, front)]
-        hosts = [h for h in hosts if not _is_full(program, h, links) and not _is_forbidden(program, h, front)]
+        hosts = [h for h in hosts if not _is_full(program, h, links) and not is_forbidden(program, h, front)]
         hosts = [h for h in hosts if h.type != "hallway" or h.level == front.level or front.type == "staircase"] or hosts
         if wanted == "bedroom" and front.type in {"closet", "bathroom"}:
             hosts = [h for h in hosts if not _has(program, h, front.type, links)] or hosts
@@ -196,7 +196,8 @@ def _is_full(program: FloorProgram, room: RoomReq, links: Sequence[Link]) -> boo
     return load >= 1 and not DEFAULTS[room.type].through and room.type in {"bathroom", "wc", "balcony", "storage", "closet"}
 
 
-def _is_forbidden(program: FloorProgram, a: RoomReq, b: RoomReq) -> bool:
+def is_forbidden(program: FloorProgram, a: RoomReq, b: RoomReq) -> bool:
+    """Whether no opening may join two rooms."""
     for f in program.forbids:
         if f.what in {"adjacent", "connected"} and f.b:
             ones, others = program.select(f.a), program.select(f.b)
