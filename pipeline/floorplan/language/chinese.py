@@ -8,6 +8,8 @@ from pipeline.floorplan.language.marks import Mark
 
 SECOND = {"次卧", "次卧室", "侧卧"}  # the bedroom beside the main one
 HEADS = {"room", "suite"}
+CLOSERS = {"comma", "stop", "line", "join", "close"}
+PLACED = {"near", "away", "apart", "wall", "open", "door", "between"}  # what is said of a room in front of it: "远离卧室的书房"
 OF = "的"
 
 
@@ -23,6 +25,15 @@ def _besides(marks: list[Mark]) -> list[Mark]:
         j = k + 1
         while j < len(marks) and marks[j].kind in {"adj", "size", "shared"}:
             j += 1
+        behind = (
+            (mark.kind, mark.value) == ("pron", "one")
+            and bool(made)
+            and made[-1].kind == "room"
+            and (j >= len(marks) or marks[j].kind in CLOSERS)
+        )
+        if behind:  # "公共卫生间一个"
+            made += [replace(mark, kind="num", value="1.0", number=1.0), replace(mark, kind="clf", first=mark.last)]
+            continue
         one = (mark.kind, mark.value) == ("pron", "one") and bool(made) and made[-1].kind == "det" and made[-1].text in BESIDES
         if one and j < len(marks) and marks[j].kind in HEADS:
             made[-1] = replace(made[-1], value="another")
@@ -79,6 +90,8 @@ def _counted(marks: list[Mark]) -> list[Mark]:
             made[-1] = replace(mark, value="bedroom")
             if not (k + 1 < len(marks) and marks[k + 1].kind == "home"):
                 made.append(Mark("home", "", 0.0, False, mark.first, mark.first, ""))
+        elif mark.kind == "amount" and mark.value == "area" and [m.kind for m in marks[k + 1 : k + 5]] == ["num", "room"] * 2:
+            made[-1:] = [Mark("home", "", 0.0, False, mark.first, mark.first, ""), mark]  # "120平三房两厅"
         elif mark.kind == "amount" and mark.value == "area" and _summed(marks, k):
             made[-1:] = [Mark("home", "", 0.0, False, mark.first, mark.first, ""), mark]
     return made
@@ -97,7 +110,8 @@ def _between(marks: list[Mark]) -> list[Mark]:
     while (k := k + 1) < len(made):
         mark = made[k]
         if mark.kind == "cue" and mark.value == "between":
-            names = [j for j in range(max(0, k - 6), k) if made[j].kind in HEADS]
+            clause = max((j for j in range(k) if made[j].kind in {"comma", "stop", "line", "colon"}), default=-1) + 1
+            names = [j for j in range(max(clause, k - 6), k) if made[j].kind in HEADS]
             several = bool(names) and any(m.kind == "num" and m.number > 1 for m in made[max(0, names[-1] - 2) : names[-1]])
             if len(names) >= 2 or several:
                 start = names[-1] if several else names[-2]
@@ -117,6 +131,8 @@ def _times(marks: list[Mark]) -> list[Mark]:
         back = k - 2 if k > 1 and made[k - 1].text == OF else k - 1
         compared = any(m.kind == "cmp" for m in made[max(0, k - 4) : k])
         if mark.kind == "factor" and back >= 0 and made[back].kind in HEADS and not compared:
+            while back and made[back - 1].kind in {"adj", "size", "det", "ord"}:
+                back -= 1
             made.insert(back, made.pop(k))
     return made
 
@@ -151,6 +167,11 @@ def _possessed(marks: list[Mark]) -> list[Mark]:
             if head < len(made) and made[head].kind in HEADS:
                 has = next((j for j in range(k - 1, max(-1, k - 6), -1) if made[j].kind == "cue" and made[j].value == "has"), None)
                 clause = [m for m in made[max(0, (has or 0)) : k] if m.kind in {"comma", "stop"}]
+                said = _placed(made, k) if has is None else None
+                if said is not None:
+                    made[said : head + 1] = [*made[k + 1 : head + 1], *made[said:k]]
+                    k = head
+                    continue
                 starts = has is not None and (has == 0 or made[has - 1].kind not in {"room", "suite", "pron", "home"}) and not clause
                 if has is not None and starts:
                     made[has : head + 1] = [*made[k + 1 : head + 1], *made[has:k]]
@@ -162,3 +183,16 @@ def _possessed(marks: list[Mark]) -> list[Mark]:
                 continue
         k += 1
     return made
+
+
+LEADS = CLOSERS | {"num", "clf", "det", "adj", "verb", "bound", "cue", "pron", "fill", "colon"}
+
+
+def _placed(marks: list[Mark], k: int) -> int | None:
+    """Return where what is said of a head begins that stands behind the 的 at k: "(远离卧室)的书房"."""
+    for j in range(k - 1, max(-1, k - 6), -1):
+        if marks[j].kind == "cue" and marks[j].value in PLACED:
+            return j if not j or marks[j - 1].kind in LEADS else None
+        if marks[j].kind not in HEADS | {"join", "num", "clf", "adj", "det"}:
+            return None
+    return None

@@ -9,7 +9,7 @@ from pipeline.floorplan.language.facts import ROLES, SOCIAL, Group, Reading
 from pipeline.floorplan.language.naming import fresh, name
 from pipeline.floorplan.language.openness import merge, merge_after, no_door, windows, written_as_one
 from pipeline.floorplan.language.phrases import Element
-from pipeline.floorplan.language.places import level, storey, wing, zone
+from pipeline.floorplan.language.places import close, level, storey, wing, zone
 from pipeline.floorplan.language.pointing import point
 from pipeline.floorplan.language.pronouns import cast, determiner, every, pronoun
 from pipeline.floorplan.language.quantities import attach, belongs
@@ -49,6 +49,7 @@ class Clause:
         first = next((e for e in sentence if e.kind in {"np", "level"}), None)
         self.forward = first is not None and first.kind == "level"
         self.level: int | None = None
+        self.wing: tuple[Element, list[str]] | None = None  # words for a wing in front of its rooms
 
     def read(self) -> None:
         """Read all elements."""
@@ -63,6 +64,7 @@ class Clause:
             k = handler(k, e) if handler else k + 1
         if self.waiting:
             self._complete()
+        close(self)
         self.state.topic = tuple(i for i in self.subject if not i.startswith("*")) or self.state.topic
         said = [tuple(e.ids) for e in self.sentence if e.ids and e.kind == "np"]
         self.state.past = [*self.state.past, *said][-12:]
@@ -134,6 +136,8 @@ class Clause:
             self.run = []  # what was given to somebody is no part of a new list
         self.run.append(e)
         e.ids = list(ids)
+        if self.wing is not None:
+            self.wing[1].extend(ids)
         self.latest = ids
         if self.waiting and not set(ids) <= set(self.waiting[1]):
             self.subject = tuple(dict.fromkeys((*self.subject, *ids))) if self.subject else ids
@@ -244,10 +248,17 @@ class Clause:
         return k + 1
 
     def _comma(self, k: int, _: Element) -> int:
-        if not any(x.kind in {"cue", "cmp"} for x in self.sentence[k + 1 : k + 4]):
+        ahead = self.sentence[k + 1].kind if k + 1 < len(self.sentence) else ""
+        if self.negative is not self.sentence[k - 1] and ahead not in {"cue", "cmp", "or", "neg"}:
             self.negative = None
         if self.waiting and self.subject and self.waiting[0].value != "from" and (self.verb or self.waiting[0].value == "between"):
             self._complete()
+        return k + 1
+
+    def _and(self, k: int, _: Element) -> int:
+        ahead = [x.kind for x in self.sentence[k + 1 : k + 3]]
+        if ahead[:1] == ["verb"] or ahead == ["np", "verb"]:
+            self.negative = None  # "must not be open and should have a door to the hall"
         return k + 1
 
     def _but(self, k: int, _: Element) -> int:
@@ -261,8 +272,13 @@ class Clause:
         if e.value == "equal" and before is not None and before.kind in {"det", "verb", "pron"} and len(self.latest) > 1:
             self.state.say("area_equal", self.latest, (), e, 0.15)
         social = tuple(i for x in self.run for i in x.ids if x.type in SOCIAL)
-        if e.value in {"open", "combined"} and len(social) > 1 and before is not None and before.kind == "np" and not self.negated(k):
+        alone = len(social) == sum(len(x.ids) for x in self.run)
+        joined = before is not None and (before.kind in {"np", "reciprocal"} or (before.kind == "verb" and alone))
+        if e.value in {"open", "combined"} and len(social) > 1 and joined and not self.negated(k):
             self.state.say("merge", social, (), e)  # "living and dining room open"
+        elif e.value == "open" and self.negative is not None and len(social) == 1 and self.stock.get(social[0]).type == "kitchen":
+            self.state.say("closed", social, (), e)  # "the kitchen should not be open"
+            self.negative = None
         ends = k + 1 >= len(self.sentence) or self.sentence[k + 1].kind in {"comma", "and"}
         if self.verb or (before is not None and before.kind == "np" and ends):  # "客厅最大"
             superlative(self, e)
@@ -276,7 +292,15 @@ class Clause:
     def _enter(self, k: int, e: Element) -> int:
         if self.run and k and self.sentence[k - 1].kind == "np" and e.text.startswith("se "):  # "al baño se entra por el pasillo"
             return relate(self, k, replace(e, kind="cue", value="door"))
-        group, j = self.after(k + 1, "enter", ())
+        start = k + 1
+        ahead = self.sentence[start : start + 3]
+        if (
+            len(ahead) > 1
+            and (ahead[0].kind, ahead[0].value) in {("pron", "it"), ("pron", "group"), ("home", "")}
+            and ahead[1].kind == "cue"
+        ):
+            start += 2  # "you enter it through the hall"
+        group, j = self.after(start, "enter", ())
         if not group and self.latest:
             group, j = self.latest, k + 1
         if after := entered(self, j, e, group):

@@ -84,7 +84,8 @@ def _belongings(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
             if not owners:
                 continue
             for thing, owner in zip(fact.a, owners, strict=True):
-                _give(draft, stock, thing, owner, fact)
+                if not _behind(facts, thing, owner):
+                    _give(draft, stock, thing, owner, fact)
         elif fact.what == "ensuite":
             rooms = [stock.get(i) for i in fact.b if not i.startswith("*")]
             baths = [r for r in rooms if r.type == "bathroom"]
@@ -102,6 +103,14 @@ def _belongings(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
                     _give(draft, stock, bath.id, room.id, fact)
                     draft.cite(fact.first, fact.last, f"rooms.{bath.id}")
                 del k
+
+
+def _behind(facts: list[Fact], thing: str, owner: str) -> bool:
+    """Whether a room is reached only through another one of its owner's: "with closet and bath: you reach the bath only through the closet"."""
+    for way, only in itertools.pairwise(facts):
+        if only.what == "only" and way.what == "door" and thing in way.a and only.a == way.a and owner not in way.b:
+            return any(f.what == "own" and owner in f.b and set(way.b) & set(f.a) for f in facts)
+    return False
 
 
 def _has_bath(draft: Draft, stock: Inventory, bed: str) -> bool:

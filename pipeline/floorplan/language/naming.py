@@ -307,7 +307,7 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
         and not r.role
         and (e.definite or r.whole or _listed(sentence, k, r) or not _conjoined(sentence, k))
         and not (r.extra and r.span is not None and r.span[0] > e.first)  # "the main bedroom ...; two more bedrooms"
-        and (e.definite or r.level is None or r.level == level)  # counted on another storey: others
+        and ((e.definite and level is None) or r.level is None or r.level == level)  # counted on another storey: others
     ]
     if many and slots:
         count = int(e.number or len(slots))

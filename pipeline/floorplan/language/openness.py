@@ -62,13 +62,17 @@ def written_as_one(clause: Clause, k: int, e: Element) -> int:
 
 def no_door(clause: Clause) -> None:
     """Read "no door between kitchen and bedroom", "keine Tür von der Garage ins Schlafzimmer"; the words are taken out."""
-    ends = [-1, *(k for k, e in enumerate(clause.sentence) if e.kind in {"comma", "but"}), len(clause.sentence)]
+    parting = {"comma", "but", "colon"} if any(e.value == "thoroughfare" for e in clause.sentence) else {"comma", "but"}
+    ends = [-1, *(k for k, e in enumerate(clause.sentence) if e.kind in parting), len(clause.sentence)]
     for first, last in itertools.pairwise(ends):
         part = clause.sentence[first + 1 : last]
         none = next((j for j, e in enumerate(part) if e.kind in {"neg", "used"}), None)
         if none is not None and (flag := next((e for e in part if e.kind == "flag" and e.value == "thoroughfare"), None)):
             _no_way(clause, part, flag)
             clause.sentence[first + 1 : last] = []
+            return
+        if none is not None and (wall := next((e for e in part[none:][1:6] if (e.kind, e.value) == ("flag", "partition")), None)):
+            _no_wall(clause, first + 1, last, wall)
             return
         door = next((e for e in part[none:][1:4] if e.kind == "flag" and e.value == "doors"), None) if none is not None else None
         rooms = [k for k in range(first + 1, last) if clause.sentence[k].kind == "np"]
@@ -80,6 +84,19 @@ def no_door(clause: Clause) -> None:
         clause.state.say("not_connected", a, b, door)
         clause.sentence[first + 1 : last] = []
         return
+
+
+def _no_wall(clause: Clause, first: int, last: int, wall: Element) -> None:
+    """Read "no wall between kitchen and living room" as open; behind a comma it is said of the two in front."""
+    here = [k for k in range(first, last) if clause.sentence[k].kind == "np"]
+    rooms = here or [k for k in range(first) if clause.sentence[k].kind == "np"][-2:]
+    if len(rooms) < 2:
+        return
+    ids = tuple(i for k in rooms for i in name(clause.state, clause.sentence, k, None))
+    clause.state.say("merge", ids, (), wall)
+    for k in here:
+        clause.state.understood(clause.sentence[k].first, clause.sentence[k].last)
+    clause.sentence[first:last] = [] if here else [wall]
 
 
 def _no_way(clause: Clause, part: list[Element], flag: Element) -> None:

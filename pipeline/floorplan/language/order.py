@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from pipeline.floorplan.language.chinese import rearrange as chinese
@@ -13,6 +13,7 @@ from pipeline.floorplan.language.marks import Mark, Words
 ENDS = {"stop", "line", "colon", "comma"}
 ARTICLES = {"der", "die", "das", "den", "dem", "einer", "einem", "eine", "einen", "ein"}
 MELTED = {"ins": "in", "im": "in", "zum": "zu", "zur": "zu", "vom": "von", "durchs": "durch"}  # prepositions with their article
+HEADS = {"room", "suite"}
 FARTHEST = 14  # marks between the two parts of a frame
 
 
@@ -62,11 +63,19 @@ def _frame(marks: list[Mark], k: int, heard: Words) -> tuple[str, int, int, int]
             if named and cue == "open" and _matches(marks, j, first) is not None and _matches(marks, j, second) is None:
                 break  # "eine Wohnung, in der die Küche in das Esszimmer übergeht"
             end = _matches(marks, j, second) if named else None
-            loose = second == ("ueber",) and end is not None and end < len(marks) and marks[end].kind not in ENDS | {"join"}
-            if end is not None and not loose:  # "die Küche geht ins Esszimmer über", not "ins Bad geht man über den Flur"
+            if end is not None and not _goes_on(marks, end, second):
                 return cue, start, j, end
             named = named or marks[j].kind in {"room", "suite", "pron", "every", "zone"}
     return None
+
+
+def _goes_on(marks: list[Mark], end: int, second: tuple[str, ...]) -> bool:
+    """Whether the second part has an object of its own: "ins Bad geht man über den Flur", "卫生间和洗衣房都不能挨着餐厅"."""
+    if end >= len(marks):
+        return False
+    if second == ("ueber",):
+        return marks[end].kind not in ENDS | {"join"}
+    return second[0] >= "\u3400" and marks[end - 1].kind == "cue" and marks[end].kind in HEADS | {"num", "zone"}
 
 
 @functools.cache
@@ -118,6 +127,20 @@ def _german(marks: list[Mark], heard: Words) -> list[Mark]:
             made[k + 1] = replace(made[k + 1], plural=mark.text == "die")
     for k in range(len(made)):
         _final(made, k)
+    return _articles(made)
+
+
+WITH_ARTICLE = {"ins", "im", "zum", "zur", "vom", "am", "ans", "beim", "durchs"}
+
+
+def _articles(marks: Sequence[Mark]) -> list[Mark]:
+    """Put the article that melted into a preposition in front of its room: "ins Bad" means a bathroom that is known."""
+    made: list[Mark] = []
+    for mark in marks:
+        before = made[-1] if made else None
+        if mark.kind in HEADS and before is not None and before.kind == "cue" and before.text.rsplit(" ", 1)[-1] in WITH_ARTICLE:
+            made.append(Mark("det", "definite", 0.0, False, mark.first, mark.first, ""))
+        made.append(mark)
     return made
 
 

@@ -47,8 +47,27 @@ def level(clause: Clause, k: int, e: Element) -> int:
 
 def wing(clause: Clause, k: int, e: Element) -> int:
     """Read "the bedrooms in one wing": they are a zone."""
-    ids = tuple(i for x in clause.run for i in x.ids)
     clause.state.understood(e.first, e.last)
+    before = clause.sentence[k - 1].kind if k else "comma"
+    ahead = next((x.kind for x in clause.sentence[k + 1 :] if x.kind not in {"det", "colon", "verb", "pron"}), "")
+    if before in {"comma", "colon", "and"} and ahead == "np":  # "on one side the bedrooms, on the other kitchen and living room"
+        close(clause)
+        clause.wing, clause.run = (e, []), []
+        return k + 1
+    _settle(clause, e, tuple(i for x in clause.run for i in x.ids))
+    clause.run = []
+    return k + 1
+
+
+def close(clause: Clause) -> None:
+    """Make a zone of the rooms that were named behind the words for a wing."""
+    if clause.wing is not None:
+        e, ids = clause.wing
+        clause.wing = None
+        _settle(clause, e, tuple(dict.fromkeys(ids)))
+
+
+def _settle(clause: Clause, e: Element, ids: tuple[str, ...]) -> None:
     if not ids or all(i.startswith("*zone_") for i in ids) or "*" in ids:
         clause.state.wings += tuple(i.removeprefix("*zone_") for i in ids if i != "*")
     else:
@@ -57,8 +76,6 @@ def wing(clause: Clause, k: int, e: Element) -> int:
         made = made or ("bedroom" if kinds == {"bedroom"} else f"wing_{len(clause.state.wings) + 1}")
         clause.state.zones.setdefault(made, (ids, e))
         clause.state.wings += (made,)
-    clause.run = []
-    return k + 1
 
 
 def zone(clause: Clause, k: int, e: Element) -> int:

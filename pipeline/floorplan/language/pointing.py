@@ -17,6 +17,8 @@ def point(state: Reading, before: list[Element], e: Element, but: Group) -> Grou
             return next((g for g in reversed(state.past) if not set(g) & set(but)), ())
         return here[0] if here else (state.topic or (state.past[-1] if state.past else ()))
     if e.value == "pair":  # "in between"
+        if not here and len(state.topic) == 2:
+            return state.topic
         twins: Group = next((g for g in reversed(heard) if len(g) == 2), ())
         return twins or tuple(dict.fromkeys(i for g in reversed(heard) for i in g if i not in but))[:2]
     if e.value == "both":

@@ -88,8 +88,8 @@ def _closes(state: Reading, sentence: list[Element], k: int, mark: Mark, rooms: 
     """Whether an area set off by a comma or a colon is the home's: more than the room in front would take."""
     if mark.value != "area" or not k:
         return False
-    loose = sentence[k - 1].kind in {"comma", "and"}
-    if not loose:
+    before = next((x.kind for x in reversed(sentence[:k]) if x.kind != "word"), "")
+    if before not in {"comma", "and"}:
         return False
     usual = sum(DEFAULTS[state.inventory.get(i).type].area for i in rooms)
     named = [x for x in sentence[:k] if x.kind == "np"]

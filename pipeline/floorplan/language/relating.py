@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
 
 MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two rooms at the end: "kitchen and bath adjacent"
-THROUGH = {"through", "via", "durch", "ueber", "por", "traves", "经", "过"}
+THROUGH = {"through", "via", "durch", "ueber", "por", "traves", "经", "过", "通"}
 CLOSED = {"balcony", "garage", "bathroom", "wc", "closet", "storage", "utility", "bedroom"}
 CONNECTS = {"connect", "connects", "connecting", "links", "linking", "joins", "joining", "une", "conecta", "comunica", "verbindet"}
 WIDE = {"leads", "between", "chain", "avoid", "except"}
@@ -202,6 +202,9 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one b
     before = clause.sentence[k - 1] if k else None
     if not clause.run:
         cue = next((x for x in reversed(clause.sentence[:k]) if x.kind == "cue"), None)
+        passed = before is not None and before.kind == "np" and cue is not None and bool(THROUGH & set(cue.text.split()))
+        if passed and clause.objects and e.value in {"door", "leads"} and e.text.split()[0] not in THROUGH:
+            return clause.objects  # "the garage is connected by way of the utility room to the kitchen"
         if clause.relative and clause.objects and clause.state.heard.lexicon.language in {"en", "es"}:
             return clause.objects  # "away from the parents' bedroom, which is next to ..."
         chained = before is not None and before.kind == "np" and cue is not None and cue.value == e.value == "near"

@@ -31,10 +31,47 @@ def revise(marks: Sequence[Mark], heard: Words) -> Revised:
     Raises ImpossibleError where two counts contradict each other ("three bedrooms but only two"), with both.
     """
     _negative(marks, heard)
-    made = _corrected(_not_towards(marks))
+    made = _corrected(_changed(_not_towards(answered(marks))))
     made = _content(made)
     _contradicted(made, heard)
     return _chosen(_few(made))
+
+
+EARLIER = {
+    "zuerst",
+    "urspruenglich",
+    "anfangs",
+    "erst",
+    "originally",
+    "first",
+    "initially",
+    "primero",
+    "originalmente",
+    "inicialmente",
+    "原",
+    "本",
+    "起",
+}
+NOW = {"jetzt", "nun", "now", "ahora", "现 在", "doch"}
+
+
+def answered(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "Balkon: nein" as none."""
+    said = {"nein", "no", "none", "keiner", "keine", "ninguno"}
+    return [
+        replace(m, kind="neg") if m.kind in {"fix", "fill", "word"} and m.text in said and k and marks[k - 1].kind == "colon" else m
+        for k, m in enumerate(marks)
+    ]
+
+
+def _changed(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "first we wanted three baths, now only two" as a correction."""
+    made, before = list(marks), False
+    for k, mark in enumerate(made):
+        before = (before or bool(EARLIER & set(mark.text.split()))) and mark.kind not in ENDS
+        if before and mark.text in NOW and mark.kind not in {"fix", "room", "home"}:
+            made[k] = replace(mark, kind="fix")
+    return made
 
 
 def _not_towards(marks: Sequence[Mark]) -> list[Mark]:

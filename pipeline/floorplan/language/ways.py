@@ -40,6 +40,9 @@ def through(clause: Clause, k: int, e: Element) -> int:
     if not second:
         return max(j, k + 1)
     things, hosts = (second, first) if e.value == "thru" else (first, second)
+    if clause.waiting is not None and clause.waiting[0].value in {"from", "leads"}:  # "from the bedroom through the closet into the bath"
+        clause.state.say("door", first, clause.waiting[1], clause.waiting[0])
+        clause.waiting = None
     none = clause.negative is not None or e.value == "thru_not"
     clause.negative = None
     clause.state.say("avoid" if none else "door", things, hosts, e)
