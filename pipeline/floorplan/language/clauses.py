@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from pipeline.floorplan.language.comparing import compare, factor, superlative
-from pipeline.floorplan.language.facts import ROLES, SOCIAL, Group, Reading
+from pipeline.floorplan.language.facts import ROLES, SOCIAL, Fact, Group, Reading
 from pipeline.floorplan.language.naming import fresh, name
 from pipeline.floorplan.language.openness import merge, merge_after, no_door, windows, written_as_one
 from pipeline.floorplan.language.phrases import Element
@@ -29,6 +29,9 @@ ELSEWHERE = {
 }  # what other modules read, by kind of element
 
 
+DENIED = {"door": "not_connected", "leads": "not_connected", "open": "not_open", "near": "ban", "wall": "ban"}  # what "does not" means
+
+
 class Clause:
     """Reads one sentence from left to right."""
 
@@ -41,6 +44,7 @@ class Clause:
         self.objects: Group = ()
         self.waiting: tuple[Element, Group] | None = None  # a cue in front of its subject: "next to the kitchen lies ..."
         self.negative: Element | None = None
+        self.way: Fact | None = None  # the last way that was said
         self.verb = self.relative = False
         self.only: Element | None = None
         self.factor: Element | None = None
@@ -244,6 +248,13 @@ class Clause:
         return k + 1
 
     def _neg(self, k: int, e: Element) -> int:
+        ends = k + 1 >= len(self.sentence) or self.sentence[k + 1].kind in {"comma", "but", "close"}
+        said = self.state.facts[-1] if self.state.facts else None
+        rooms = tuple(i for x in self.run for i in x.ids if not i.startswith("*"))
+        if ends and said is not None and rooms and said.what in DENIED and not set(rooms) & {*said.a, *said.b}:
+            of = said.b if {self.stock.get(i).type for i in said.b} != {self.stock.get(i).type for i in rooms} else said.a
+            self.state.say(DENIED[said.what], rooms, of, e)  # "the bedrooms open onto the hall, the kitchen however does not"
+            return k + 1
         self.negative = e
         return k + 1
 

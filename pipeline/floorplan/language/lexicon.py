@@ -178,6 +178,32 @@ def _forms(language: str, phrase: str) -> Iterator[tuple[str, bool]]:
         yield form, form != single
 
 
+OWNED = {  # how the bedroom of somebody is called: patterns, and what stands in front of the people
+    "en": (("room|rooms", "bedroom|bedrooms"), ("", "the ", "a ", "an ", "my ", "our ", "his ", "her ", "their ")),
+    "es": (
+        ("habitación|habitaciones", "dormitorio|dormitorios", "cuarto|cuartos", "recámara|recámaras", "alcoba|alcobas"),
+        ("", "la ", "el ", "los ", "las ", "mi ", "mis ", "su ", "sus ", "un ", "una ", "nuestra ", "nuestro "),
+    ),
+}
+
+
+def _owned(language: str, owner: str) -> Iterator[tuple[str, bool]]:
+    """Return (phrase, whether it is a plural) of the bedrooms of somebody: "nanny's room", "room for the nanny"; "habitación de la niñera"."""
+    heads, articles = OWNED.get(language, ((), ()))
+    for head in heads:
+        for form, many in zip(head.split("|"), (False, True), strict=True):
+            for article in articles:
+                if language == "en":
+                    yield f"{form} for {article}{owner}", many
+                else:
+                    yield from ((f"{form} {link} {article}{owner}".replace(" de el ", " del "), many) for link in ("de", "para"))
+            if language == "en":
+                bare = owner.removeprefix("the ")
+                yield from ((f"{bare}{end} {form}", many) for end in ("", "'s", "'"))
+    for article in ("la", "el") if language == "es" else ():  # "junto a la de los niños"
+        yield from ((f"{article} de {whose}{owner}".replace(" de el ", " del "), False) for whose in articles[1:5])
+
+
 def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0912 - one loop per section
     """Return every phrase with its meaning, the sections that win first."""
 
@@ -200,6 +226,9 @@ def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0
         for p in split(phrases):
             for form, many in _forms(e.language, p):
                 yield form, Meaning("room", key, plural=many)
+    for role, phrases in e.owners.items():
+        for p in split(phrases):
+            yield from ((form, Meaning("room", f"bedroom/{role}", plural=many)) for form, many in _owned(e.language, p))
     for p in split(e.kitchen_diner):
         yield p, Meaning("room", "kitchen/diner")
     for key, phrases in e.suites.items():
@@ -252,6 +281,8 @@ def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0
 def _spellings(phrase: str, language: str) -> Iterable[tuple[str, ...]]:
     """Return the words of a phrase, also as they look when umlauts are dropped."""
     usual = words(phrase)
+    if language == "en" and "n't" in phrase:
+        return (usual, words(phrase.replace("n't", "nt")))
     if phrase.isascii() or language == "zh":
         return (usual,)
     return {usual, words(bare(phrase))}

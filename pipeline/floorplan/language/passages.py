@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from pipeline.floorplan.language.marks import Mark, Words
+from pipeline.floorplan.language.wayfinding import ways
 
 ENDS = {"stop", "line"}
 BY = {"durch", "ueber", "von", "aus", "por", "desde", "through", "via", "from"}  # in front of a relative pronoun
@@ -21,7 +22,7 @@ INTO = {"al", "a", "onto", "to", "into", "ins", "in", "in den", "in die", "in da
 def written_out(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with what is left unsaid put in."""
     marks = _two_doors(marks)
-    return _whose(_elliptic(_relative(_rather(marks)), heard))
+    return _whose(ways(_elliptic(_relative(_rather(marks)), heard)))
 
 
 def _two_doors(marks: Sequence[Mark]) -> list[Mark]:
@@ -116,7 +117,8 @@ def _way(marks: Sequence[Mark], k: int) -> int | None:
         mark = marks[j]
         if mark.text in FACING and marks[j + 1].kind in {"det", "room", "num"}:
             return j
-        going = (mark.kind == "cue" and mark.value in {"in", "leads"}) or mark.kind == "enter" or mark.text in INTO
+        reached = (mark.kind, mark.value) == ("flag", "reachable")
+        going = (mark.kind == "cue" and mark.value in {"in", "leads"}) or mark.kind == "enter" or mark.text in INTO or reached
         if going:
             return j if any(m.kind == "room" for m in marks[j + 1 : j + 4]) else None
         if mark.kind not in {"flag", "fill", "adverb", "verb", "word"}:

@@ -34,6 +34,8 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
         return by_way_of(clause, k, e)
     if e.value.startswith("thru"):
         return through(clause, k, e)
+    if e.value == "again":
+        return _again(clause, k, e)
     clause.relative = clause.relative or e.text.startswith("que ")
     if e.value == "between" and (after := door_between(clause, k, e)):
         return after
@@ -88,6 +90,16 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     clause.only = None
     clause.subject, clause.latest, clause.objects, clause.run, clause.verb, clause.relative = left, group, group, [], False, False
     return j
+
+
+def _again(clause: Clause, k: int, e: Element) -> int:
+    """Read "... and to a second bedroom": the way before goes there as well."""
+    said = clause.way
+    group, j = objects(clause, k + 1, "leads", said.a if said else ())
+    if said and group:
+        clause.state.say(said.what, said.a, group, e)
+        clause.latest, clause.objects, clause.run, clause.verb = group, group, [], False
+    return max(j, k + 1)
 
 
 def _alone(clause: Clause, k: int, e: Element) -> int:
@@ -168,6 +180,7 @@ def _emit(clause: Clause, e: Element, left: Group, group: Group) -> None:
         clause.stock.belongings.update(left)
     else:
         state.say(cue, left, group, e)
+        clause.way = state.facts[-1] if cue in {"leads", "door"} and state.facts else clause.way
 
 
 def _none(clause: Clause, left: Group) -> Group:

@@ -1,0 +1,93 @@
+"""Rooms told by who they are for: "the two boys each get a room", "the nanny, whose room ...", "the grandparents have a bedroom"."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from pipeline.floorplan.language.marks import Mark
+
+ENDS = {"stop", "line"}
+WHOSE = {"whose", "cuya", "cuyo", "cuyas", "cuyos", "dessen", "deren"}
+EACH = {"each", "apiece", "cada uno", "cada una", "je", "jeweils", "jeder", "jedes", "cada"}
+LIGHT = {"comma", "verb", "fill", "adverb", "det", "cue", "pron", "word", "num"}  # between people and the room that each of them gets
+FAR = 9  # marks
+
+
+def housed(marks: Sequence[Mark]) -> list[Mark]:
+    """Return the marks with the rooms of people named as theirs."""
+    return _counted(_each(_whose(list(marks))))
+
+
+def _bedroom(mark: Mark) -> bool:
+    return (mark.kind, mark.value) == ("room", "bedroom") or (mark.kind == "unit" and mark.value == "rooms")
+
+
+def _of(mark: Mark, owner: Mark) -> Mark:
+    """Return a bedroom of somebody."""
+    return replace(mark, kind="room", value=f"bedroom/{owner.value}", number=0.0)
+
+
+def _whose(marks: list[Mark]) -> list[Mark]:
+    """Read "the nanny, whose room is next to the nursery, has her own bath" as "the nanny's room is ..., has ..."."""
+    made = list(marks)
+    for k in range(len(made) - 3, -1, -1):
+        if made[k].kind != "owner":
+            continue
+        j = k + 1 + (made[k + 1].kind == "comma")
+        if j + 1 < len(made) and made[j].text in WHOSE and _bedroom(made[j + 1]):
+            made[k : j + 2] = [_of(made[j + 1], made[k])]
+    return made
+
+
+def _each(marks: list[Mark]) -> list[Mark]:
+    """Read "the two children have a room each" and "a room for each of the two children" as two rooms of children."""
+    made = list(marks)
+    for k, mark in enumerate(made):
+        if mark.kind != "owner":
+            continue
+        near = [m for m in reversed(made[max(0, k - 3) : k]) if (m.kind == "num" and m.number > 1) or (m.kind, m.value) == ("det", "both")]
+        count = near[0].number or 2.0 if near else 0.0
+        if not count:
+            continue
+        number = Mark("num", "", count, False, made[k - 1].first, mark.last, mark.text)
+        j = k + 1
+        while j < min(len(made), k + FAR) and made[j].kind in LIGHT and not _bedroom(made[j]):
+            j += 1
+        if j < len(made) and _bedroom(made[j]):  # people, then the room
+            behind = j + 1 < len(made) and made[j + 1].text in EACH
+            if behind or any(m.text in EACH for m in made[k + 1 : j]):
+                start = max(i for i in range(k) if made[i] is near[0])
+                return [*made[:start], number, replace(_of(made[j], mark), plural=True), *_each(made[j + 1 + behind :])]
+        room = next((i for i in range(k - 1, max(-1, k - FAR), -1) if _bedroom(made[i])), None)
+        if room is not None and any(m.text in EACH or m.value == "each" for m in made[room:k]):  # the room, then the people
+            start = room - (room > 0 and (made[room - 1].kind == "num" or made[room - 1].value == "indefinite"))
+            return [*made[:start], number, replace(_of(made[room], mark), plural=True), *_each(made[k + 1 :])]
+    return made
+
+
+BEING = {"son", "seran", "are", "sind"}
+
+
+def _counted(marks: list[Mark]) -> list[Mark]:
+    """Read "the bedrooms, which are three", "los dormitorios, que son tres" with the number in front."""
+    made = list(marks)
+    for k in range(1, len(made)):
+        last = k + 1 >= len(made) or made[k + 1].kind in ENDS | {"comma", "join", "colon"}
+        if made[k].kind != "num" or not last or made[k - 1].text not in BEING:
+            continue
+        j = k - 2
+        while j >= 0 and (made[j].kind in {"relative", "comma", "pron", "adverb"} or made[j].text in {"que", "which"}):
+            j -= 1
+        if j < 0 or (made[j].kind in ENDS and k - 2 != j):
+            continue
+        if made[j].kind in ENDS:  # "The bedrooms open onto the hall. They are three."
+            j = next(
+                (i for i in range(j - 1, -1, -1) if made[i].kind == "room" and made[i].plural and not (i and made[i - 1].kind == "num")), -1
+            )
+        if j >= 0 and made[j].kind == "room" and made[j].plural:
+            start = j - (j > 0 and made[j - 1].kind == "det")
+            between = made[j + 1 : k - 1]
+            light = all(m.kind in {"relative", "comma", "pron", "adverb"} or m.text == "que" for m in between)
+            return _counted([*made[:start], made[k], made[j], *([] if light else between), *made[k + 1 :]])
+    return made

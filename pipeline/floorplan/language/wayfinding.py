@@ -1,0 +1,102 @@
+"""Ways said with verbs of going: "from the foyer you step into ...", "has a door to", "... and to a second bedroom", "you enter by ... to ..."."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from pipeline.floorplan.language.marks import Mark
+
+ENDS = {"stop", "line"}
+ACCESS = {"door", "doors", "access", "puerta", "acceso", "salida", "tuer", "zugang", "ausgang", "exit", "entrance", "entrada"}
+INTO = {"to", "into", "onto", "in", "al", "a", "ins", "in den", "in die", "in das", "zum", "zur"}
+TOWARDS = {"to", "into", "onto", "al", "a"}  # behind an "and" that takes up the way before it
+LIGHT = {"fill", "verb", "adverb", "comma", "word", "det"}  # between a starting point and the verb of going
+WAYS = {"leads", "door", "from_to", "thru", "again"}
+LONG = 7  # marks between a starting point and where one comes from there
+
+
+def ways(marks: Sequence[Mark]) -> list[Mark]:
+    """Return the marks with each way said by a cue."""
+    made: list[Mark] = []
+    for sentence in _sentences(marks):
+        made += _again(_entering(_going(_access(sentence))))
+    return made
+
+
+def _sentences(marks: Sequence[Mark]) -> Iterator[list[Mark]]:
+    """Yield the marks of each sentence, its end with it."""
+    found: list[Mark] = []
+    for mark in marks:
+        found.append(mark)
+        if mark.kind in ENDS:
+            yield found
+            found = []
+    if found:
+        yield found
+
+
+def room_at(marks: Sequence[Mark], k: int) -> int | None:
+    """Return the place of the room that a phrase beginning at k names."""
+    while k < len(marks) and marks[k].kind in {"det", "adj", "size", "num", "ord", "adverb"}:
+        k += 1
+    return k if k < len(marks) and marks[k].kind in {"room", "suite"} else None
+
+
+def _access(marks: list[Mark]) -> list[Mark]:
+    """Read "has no door to the kitchen" as not joined to it: the door is what is had, not the kitchen."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        if (mark.kind, mark.value) == ("cue", "has"):
+            ahead = next((m for m in marks[k + 1 : k + 4] if m.kind not in {"neg", "det", "adverb", "adj", "fill"}), None)
+            if ahead is not None and ahead.kind == "cue" and ahead.value in {"door", "leads"} and ACCESS & set(ahead.text.split()):
+                made.append(replace(mark, kind="verb", value=""))
+                continue
+        made.append(mark)
+    return made
+
+
+def _going(marks: list[Mark]) -> list[Mark]:
+    """Read "from the foyer you step into the living room" and "from the hall to the bedrooms"."""
+    made = list(marks)
+    for k, mark in enumerate(marks):
+        if (mark.kind, mark.value) != ("cue", "from"):
+            continue
+        start = room_at(made, k + 1)
+        if start is None:
+            pronoun = k + 1 < len(made) and made[k + 1].kind == "pron"
+            start = k + 1 if pronoun else None
+        if start is None:
+            continue
+        j = start + 1
+        while j < min(len(made) - 1, start + LONG) and (made[j].kind in LIGHT or made[j].value == "only") and made[j].text not in INTO:
+            j += 1
+        going = made[j].kind == "enter" or (made[j].kind, made[j].value) == ("flag", "reachable") or made[j].text in INTO
+        if j < len(made) and going and room_at(made, j + 1) is not None:
+            made[j] = replace(made[j], kind="cue", value="leads")
+    return made
+
+
+def _entering(marks: list[Mark]) -> list[Mark]:
+    """Read "se pasa por un vestíbulo al salón", "you come in through the porch to the hall": the second room lies behind the first."""
+    made = list(marks)
+    for k, mark in enumerate(marks):
+        if mark.kind != "enter" or mark.text.split()[-1] not in {"por", "through", "via", "durch", "by", "ueber"}:
+            continue
+        room = room_at(made, k + 1)
+        if room is not None and room + 1 < len(made) and made[room + 1].text in INTO and room_at(made, room + 2) is not None:
+            made[room + 1] = replace(made[room + 1], kind="cue", value="leads")
+    return made
+
+
+def _again(marks: list[Mark]) -> list[Mark]:
+    """Read "leads to the master bedroom with its own bath and to a second bedroom": the way goes on behind what the first has."""
+    made = list(marks)
+    way = had = False
+    for k, mark in enumerate(marks):
+        if mark.kind == "cue":
+            way, had = way or mark.value in WAYS, mark.value == "has" if mark.value in WAYS | {"has"} else had
+        joined = k > 0 and marks[k - 1].kind in {"join", "comma"} and marks[k - 1].value != "to"
+        if way and had and joined and mark.text in TOWARDS and room_at(marks, k + 1) is not None:
+            made[k] = replace(mark, kind="cue", value="again")
+    return made
