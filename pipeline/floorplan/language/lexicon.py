@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from pipeline.errors import ContentError
 from pipeline.floorplan.furniture import lexicon as furniture
+from pipeline.floorplan.language.forms import forms, owned
 from pipeline.floorplan.language.german import numerals as german_numerals
 from pipeline.floorplan.language.meaning import Meaning
 from pipeline.floorplan.language.text import bare, fold, words
@@ -139,71 +140,6 @@ class Lexicon:
 ONLY = frozenset({"only", "nur", "solo", "solamente", "只", "仅", "ausschliesslich", "unicamente"})
 
 
-def _plurals(language: str, phrase: str) -> Iterator[str]:
-    head, _, last = phrase.rpartition(" ")
-    made = []
-    if language == "en":
-        if last.endswith("y") and last[-2:-1] not in "aeiou":
-            made = [last[:-1] + "ies"]
-        elif last.endswith(("s", "ch", "sh", "x")):
-            made = [last + "es"]
-        else:
-            made = [last + "s"]
-    elif language == "es":
-        parts = [
-            p if p in {"de", "del", "la", "el", "los", "las", "en", "a", "y", "para", "estar"} else _spanish(p) for p in phrase.split()
-        ]
-        first = phrase.split()
-        yield " ".join(parts)
-        if len(first) > 2 and first[1] in {"de", "del", "para", "en"}:
-            yield " ".join([_spanish(first[0]), *first[1:]])
-        return
-    for form in made:
-        yield f"{head} {form}".strip()
-
-
-def _spanish(word: str) -> str:
-    if word.endswith("ón"):
-        return word[:-2] + "ones"
-    if word.endswith("z"):
-        return word[:-1] + "ces"
-    return word + ("s" if word[-1] in "aeiouáéó" else "es")
-
-
-def _forms(language: str, phrase: str) -> Iterator[tuple[str, bool]]:
-    """Return (form, whether it is a plural) of an entry "singular|plural|plural"."""
-    single, *many = phrase.split("|")
-    yield single, False
-    for form in many or _plurals(language, single):
-        yield form, form != single
-
-
-OWNED = {  # how the bedroom of somebody is called: patterns, and what stands in front of the people
-    "en": (("room|rooms", "bedroom|bedrooms"), ("", "the ", "a ", "an ", "my ", "our ", "his ", "her ", "their ")),
-    "es": (
-        ("habitación|habitaciones", "dormitorio|dormitorios", "cuarto|cuartos", "recámara|recámaras", "alcoba|alcobas"),
-        ("", "la ", "el ", "los ", "las ", "mi ", "mis ", "su ", "sus ", "un ", "una ", "nuestra ", "nuestro "),
-    ),
-}
-
-
-def _owned(language: str, owner: str) -> Iterator[tuple[str, bool]]:
-    """Return (phrase, whether it is a plural) of the bedrooms of somebody: "nanny's room", "room for the nanny"; "habitación de la niñera"."""
-    heads, articles = OWNED.get(language, ((), ()))
-    for head in heads:
-        for form, many in zip(head.split("|"), (False, True), strict=True):
-            for article in articles:
-                if language == "en":
-                    yield f"{form} for {article}{owner}", many
-                else:
-                    yield from ((f"{form} {link} {article}{owner}".replace(" de el ", " del "), many) for link in ("de", "para"))
-            if language == "en":
-                bare = owner.removeprefix("the ")
-                yield from ((f"{bare}{end} {form}", many) for end in ("", "'s", "'"))
-    for article in ("la", "el") if language == "es" else ():  # "junto a la de los niños"
-        yield from ((f"{article} de {whose}{owner}".replace(" de el ", " del "), False) for whose in articles[1:5])
-
-
 def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0912 - one loop per section
     """Return every phrase with its meaning, the sections that win first."""
 
@@ -224,20 +160,20 @@ def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0
     yield from keyed("activity", e.activities)
     for key, phrases in e.rooms.items():
         for p in split(phrases):
-            for form, many in _forms(e.language, p):
+            for form, many in forms(e.language, p):
                 yield form, Meaning("room", key, plural=many)
     for role, phrases in e.owners.items():
         for p in split(phrases):
-            yield from ((form, Meaning("room", f"bedroom/{role}", plural=many)) for form, many in _owned(e.language, p))
+            yield from ((form, Meaning("room", f"bedroom/{role}", plural=many)) for form, many in owned(e.language, p))
     for p in split(e.kitchen_diner):
         yield p, Meaning("room", "kitchen/diner")
     for key, phrases in e.suites.items():
         for p in split(phrases):
-            for form, many in _forms(e.language, p):
+            for form, many in forms(e.language, p):
                 yield form, Meaning("suite", key, plural=many)
     for key, phrases in e.homes.items():
         for p in split(phrases):
-            for form, _ in _forms(e.language, p):
+            for form, _ in forms(e.language, p):
                 yield form, Meaning("home", key)
     yield from keyed("flag", e.flags)
     yield from keyed("owner", e.owners)
@@ -345,8 +281,8 @@ FARTHER = {True: 0.05, False: 0.1}  # words that build sentences, and those that
 def _things(language: Language) -> set[str]:
     """Return the words for furniture, which a typing error may as well be made in."""
     names: Iterable[Mapping[str, Iterable[str]]] = furniture()["names"].values()
-    listed = (phrase.removeprefix("@") for forms in names for phrase in forms.get(language, ()))
-    return {w for phrase in listed for form, _ in _forms(language, phrase) for w in words(form) if len(w) > 3}
+    listed = (phrase.removeprefix("@") for named in names for phrase in named.get(language, ()))
+    return {w for phrase in listed for form, _ in forms(language, phrase) for w in words(form) if len(w) > 3}
 
 
 @functools.cache

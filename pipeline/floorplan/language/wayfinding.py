@@ -36,6 +36,11 @@ def _sentences(marks: Sequence[Mark]) -> Iterator[list[Mark]]:
         yield found
 
 
+def _into(mark: Mark) -> bool:
+    """Whether a mark says where one comes to; an English article does not."""
+    return mark.text in INTO and (mark.kind != "det" or mark.text == "al")
+
+
 def room_at(marks: Sequence[Mark], k: int) -> int | None:
     """Return the place of the room that a phrase beginning at k names."""
     while k < len(marks) and marks[k].kind in {"det", "adj", "size", "num", "ord", "adverb"}:
@@ -69,9 +74,9 @@ def _going(marks: list[Mark]) -> list[Mark]:
         if start is None:
             continue
         j = start + 1
-        while j < min(len(made) - 1, start + LONG) and (made[j].kind in LIGHT or made[j].value == "only") and made[j].text not in INTO:
+        while j < min(len(made) - 1, start + LONG) and (made[j].kind in LIGHT or made[j].value == "only") and not _into(made[j]):
             j += 1
-        going = made[j].kind == "enter" or (made[j].kind, made[j].value) == ("flag", "reachable") or made[j].text in INTO
+        going = made[j].kind == "enter" or (made[j].kind, made[j].value) == ("flag", "reachable") or _into(made[j])
         if j < len(made) and going and room_at(made, j + 1) is not None:
             made[j] = replace(made[j], kind="cue", value="leads")
     return made
@@ -84,7 +89,7 @@ def _entering(marks: list[Mark]) -> list[Mark]:
         if mark.kind != "enter" or mark.text.split()[-1] not in {"por", "through", "via", "durch", "by", "ueber"}:
             continue
         room = room_at(made, k + 1)
-        if room is not None and room + 1 < len(made) and made[room + 1].text in INTO and room_at(made, room + 2) is not None:
+        if room is not None and room + 1 < len(made) and _into(made[room + 1]) and room_at(made, room + 2) is not None:
             made[room + 1] = replace(made[room + 1], kind="cue", value="leads")
     return made
 
@@ -97,6 +102,6 @@ def _again(marks: list[Mark]) -> list[Mark]:
         if mark.kind == "cue":
             way, had = way or mark.value in WAYS, mark.value == "has" if mark.value in WAYS | {"has"} else had
         joined = k > 0 and marks[k - 1].kind in {"join", "comma"} and marks[k - 1].value != "to"
-        if way and had and joined and mark.text in TOWARDS and room_at(marks, k + 1) is not None:
+        if way and had and joined and mark.text in TOWARDS and _into(mark) and room_at(marks, k + 1) is not None:
             made[k] = replace(mark, kind="cue", value="again")
     return made
