@@ -10,7 +10,8 @@ from textwrap import fill
 
 from pipeline.entities.plan import Plan
 from pipeline.errors import RefusedError, UsageError
-from pipeline.experiments.prompts import measured, read_prompts, report
+from pipeline.experiments.prompt_file import read_prompts
+from pipeline.experiments.prompts import measured, report
 from pipeline.floorplan import FloorProgram, plan_json, refusal_json, request, solve
 from pipeline.floorplan.assumptions import assumptions
 from pipeline.floorplan.characters import terminal

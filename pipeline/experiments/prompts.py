@@ -4,20 +4,16 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from pipeline.errors import ContentError, RefusedError, SfgenError, UsageError
+from pipeline.errors import RefusedError, SfgenError
 from pipeline.floorplan import request, solve
-from pipeline.metrics.plan_checks import CHECKS
-from pipeline.metrics.plan_scores import score
-from pipeline.shards import require_prompt
+from pipeline.metrics.plan_scores import checked, score
 
 Json = dict[str, Any]
+CHECKED = ("presence", "adjacency", "constraints", "strict")  # what a case without a graph is scored on
 SCORES = ("node", "constraint", "edge", "presence", "adjacency", "constraints", "strict")
 NAMES = {
     "node": "S_node",
@@ -28,105 +24,6 @@ NAMES = {
     "constraints": "constraints",
     "strict": "strict success",
 }
-MOST_BYTES, MOST_SEEDS = 16 << 20, 1000
-
-
-class _Loose(BaseModel):
-    model_config = ConfigDict(extra="allow", frozen=True, allow_inf_nan=False)
-
-
-class _Room(_Loose):
-    id: str
-    type: str
-    area: Annotated[float, Field(gt=0.0)]
-
-
-class _Edge(_Loose):
-    a: str
-    b: str
-
-
-class _Graph(_Loose):
-    rooms: Annotated[list[_Room], Field(min_length=1, max_length=200)]
-    edges: list[_Edge] = []
-    area_ratio: dict[str, float] | None = None
-
-
-class _Adjacency(_Loose):
-    a: str
-    b: str
-
-
-class _Constraint(_Loose):
-    type: str
-
-
-class _Checks(_Loose):
-    presence: dict[str, int] = {}
-    absent: list[str] = []
-    adjacency: list[_Adjacency] = []
-    constraints: list[_Constraint] = []
-
-
-class _Case(_Loose):
-    prompt: str
-    id: str = ""
-    graph: _Graph | None = None
-    checks: _Checks = _Checks()
-
-
-def read_prompts(path: Path) -> list[Json]:
-    """Read a text file (a prompt a line, `#` begins a comment) or a YAML list of prompts, with ground truth where there is some.
-
-    Raises UsageError for a path that is no file, ContentError naming the entry that is wrong.
-    """
-    if not path.is_file():
-        raise UsageError(
-            f"{path} is {'not a file' if path.exists() else 'missing'}", "give a text file with a prompt a line, or a YAML list"
-        )
-    if path.stat().st_size > MOST_BYTES:
-        raise ContentError(f"{path} is larger than {MOST_BYTES >> 20} MiB", "give fewer prompts")
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise ContentError(f"cannot read {path} ({error})", "give a file in UTF-8") from error
-    if path.suffix.lower() not in {".yaml", ".yml"}:
-        lines = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip() and not line.lstrip().startswith("#")]
-        cases = [{"id": f"line {n}", "prompt": require_prompt(line, f"line {n} of {path}")} for n, line in lines]
-    else:
-        cases = _yaml_cases(path, text)
-    if not cases:
-        raise UsageError(f"{path} holds no prompt", "write one prompt a line")
-    return cases
-
-
-def _yaml_cases(path: Path, text: str) -> list[Json]:
-    remedy = "write a list of {prompt, graph, checks} as manifests/prompts/benchmark.yaml has them; graph and checks may be left out"
-    try:
-        found = yaml.safe_load(text)
-    except (yaml.YAMLError, RecursionError) as error:
-        raise ContentError(f"{path} is not YAML ({str(error).splitlines()[0]})", remedy) from error
-    if not isinstance(found, list):
-        raise ContentError(f"{path} is not a list", remedy)
-    cases: list[Json] = []
-    for n, entry in enumerate(found, 1):
-        where = f"entry {n} of {path}"
-        case = {"prompt": entry} if isinstance(entry, str) else entry
-        try:
-            read = _Case.model_validate(case)
-        except ValidationError as error:
-            first = error.errors()[0]
-            raise ContentError(f"{where}: {'.'.join(map(str, first['loc']))}: {first['msg']}", remedy) from error
-        ids = {r.id for r in read.graph.rooms} if read.graph else set()
-        loose = [e for e in (read.graph.edges if read.graph else ()) if not {e.a, e.b} <= ids]
-        if loose:
-            raise ContentError(f"{where}: the edge {loose[0].a}-{loose[0].b} names a room that the graph lacks", remedy)
-        unknown = [c.type for c in read.checks.constraints if c.type not in CHECKS]
-        if unknown:
-            raise ContentError(f"{where}: the constraint {unknown[0]!r} is unknown", f"known: {', '.join(CHECKS)}")
-        plain = read.model_dump(exclude_none=True)
-        cases.append({**plain, "id": read.id or f"entry {n}", "prompt": require_prompt(read.prompt, where)})
-    return cases
 
 
 def measured(cases: Sequence[Mapping[str, Any]], seeds: int) -> Json:
@@ -137,7 +34,7 @@ def measured(cases: Sequence[Mapping[str, Any]], seeds: int) -> Json:
     rows = []
     for case in cases:
         runs = [_run(case, seed) for seed in range(seeds)]
-        rows.append({"id": case["id"], "prompt": case["prompt"], "scored": "graph" in case, "runs": runs, **_summary(runs)})
+        rows.append({"id": case["id"], "prompt": case["prompt"], "scored": bool(scored(case)), "runs": runs, **_summary(runs)})
     by_seed = [
         {k: float(np.mean([row["runs"][s][k] for row in rows if k in row["runs"][s]])) for k in (*SCORES, "seconds") if _any(rows, s, k)}
         for s in range(seeds)
@@ -162,12 +59,20 @@ def _run(case: Mapping[str, Any], seed: int) -> Json:
         refused = str(error)
     run: Json = {"seed": seed, "seconds": round(time.perf_counter() - start, 4), "cpu_seconds": round(time.process_time() - spent, 4)}
     run["refused"] = refused
+    names = scored(case)
+    if plan is None:
+        return run | dict.fromkeys(names, 0.0)
     if "graph" in case:
-        if plan is None:
-            return run | dict.fromkeys(SCORES, 0.0)
         found = score(plan, case)
         run |= {name: round(float(getattr(found, name)), 6) for name in SCORES[:-1]} | {"strict": float(found.success)}
+    elif names:
+        run |= dict(zip(CHECKED, (round(float(v), 6) for v in checked(plan, case)), strict=True))
     return run
+
+
+def scored(case: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the scores that a case has ground truth for."""
+    return SCORES if "graph" in case else CHECKED if any(case.get("checks", {}).values()) else ()
 
 
 def _summary(runs: Sequence[Mapping[str, Any]]) -> Json:

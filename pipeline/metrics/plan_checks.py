@@ -21,7 +21,7 @@ def _credit(value: float, low: float | None, high: float | None, tolerance: floa
         miss = (low - value) / max(low, 1e-9)
     if high is not None and value > high:
         miss = (value - high) / max(high, 1e-9)
-    return float(max(0.0, 1.0 - miss / (2 * tolerance))) if miss > 1e-6 else 1.0
+    return float(max(0.0, 1.0 - miss / max(2 * tolerance, 1e-9))) if miss > 1e-6 else 1.0
 
 
 def _mean(values: Sequence[float]) -> float:
@@ -93,7 +93,7 @@ def _separation(s: Scene, c: Mapping[str, Any]) -> float:
 
 
 def _zone_split(s: Scene, c: Mapping[str, Any]) -> float:
-    zones = [{s.names[n] for n in members if n in s.names} for members in c["zones"].values()]
+    zones = [{r.room_id for n in members for r in s.select(n)} for members in c["zones"].values()]
     crossings = sum(1 for e in s.edges if len([z for z in zones if e & z]) > 1)
     return float(crossings <= c.get("max_crossings", 0))
 
@@ -154,7 +154,7 @@ def _min_corridor_width(s: Scene, c: Mapping[str, Any]) -> float:
 
 def _irregularity(s: Scene, c: Mapping[str, Any]) -> float:
     bent = sum(len(r.polygon) != 4 for r in s.plan.rooms)
-    return float(min(1.0, bent / c["min_nonrect_rooms"]))
+    return float(min(1.0, bent / max(c["min_nonrect_rooms"], 1)))
 
 
 def _footprint(s: Scene, c: Mapping[str, Any]) -> float:
@@ -205,6 +205,32 @@ CHECKS = {
     "entrance_room": lambda s, c: float(s.plan.entrance in {r.room_id for r in s.select(c["room"])}),
     "min_hops": lambda s, c: float(all(s.hops(a, b) >= c["min"] for a in s.select(c["a"]) for b in s.select(c["b"]))),
 }
+
+
+NEEDS = {  # fields without which a check says nothing
+    "room_area": ("room",), "area_share": ("room",), "area_order": ("larger", "smaller"), "area_equal": ("rooms", "tol"),
+    "area_max_of": ("room", "among"), "not_adjacent": ("a", "b"), "not_open": ("a", "b"), "open_plan": ("rooms",),
+    "separation": ("a", "b", "min_frac_diag"), "zone_split": ("zones",), "ensuite": ("bath", "bedroom"), "degree": ("room", "equals"),
+    "reachable_without": ("target", "avoid"), "between": ("mid", "a", "b"), "exterior_wall": ("room",), "exterior_length": ("room", "min_m"),
+    "min_door_width": ("value",), "min_corridor_width": ("value",), "irregularity": ("min_nonrect_rooms",), "level": ("room", "equals"),
+    "hallway_share": ("max",), "storeys": ("equals",), "room_count": ("equals",), "entrance_room": ("room",), "min_hops": ("a", "b", "min"),
+}  # fmt: skip
+MEASURES = frozenset(
+    {
+        "min",
+        "max",
+        "tol",
+        "min_ratio",
+        "min_frac_diag",
+        "min_m",
+        "value",
+        "equals",
+        "min_aspect",
+        "max_aspect",
+        "min_nonrect_rooms",
+        "max_crossings",
+    }
+)
 
 
 def constraint(scene: Scene, check: Mapping[str, Any]) -> float:

@@ -26,8 +26,9 @@ class Scene:
         points = np.vstack([r.polygon for r in plan.rooms])
         self.diagonal = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
 
-    def select(self, selector: str) -> list[Room]:
-        """Return the rooms that a selector means: the matched room of that id, else all of the type."""
+    def select(self, selector: object) -> list[Room]:
+        """Return the rooms that a selector means: the matched room of that id, else all of the type. Ids may be numbers in a file."""
+        selector = str(selector)
         if selector in self.names:
             return [self.plan.room(self.names[selector])]
         if selector == "all_interior":

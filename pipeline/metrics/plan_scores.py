@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -52,22 +53,28 @@ class PlanScores:
 
 def score(plan: Plan, case: Mapping[str, Any]) -> PlanScores:
     """Score a plan against one case of a prompt set: its `graph` and its `checks`."""
-    graph, checks = case["graph"], case.get("checks", {})
+    graph = case["graph"]
     found = match(plan, graph)
     node, strict_node = _node(plan, graph, found)
     edge, strict_edge = _edge(plan, graph, found)
     truth: dict[str, float] = {}
     for row in graph["rooms"]:
-        truth[row["type"]] = truth.get(row["type"], 0.0) + row["area"]
-    scene = Scene(plan, {n: i for i, n in found.items()})
+        truth[row["type"]] = truth.get(row["type"], 0.0) + (row.get("area") or 0.0)
+    presence, adjacency, constraints, success = checked(plan, case, {n: i for i, n in found.items()})
+    share = s_constraint(areas_by_type(plan.rooms), graph.get("area_ratio") or truth)
+    return PlanScores(node, share, edge, strict_node, strict_edge, presence, adjacency, constraints, success)
+
+
+def checked(plan: Plan, case: Mapping[str, Any], names: Mapping[str, str] = MappingProxyType({})) -> tuple[float, float, float, bool]:
+    """Return presence, adjacency, constraints and whether all are met exactly; `names` maps rooms of the truth to those of the plan."""
+    checks, graph = case.get("checks", {}), case.get("graph", {"rooms": ()})
+    scene = Scene(plan, names)
     presence = _presence(plan, checks)
     adjacent = [part for c in checks.get("adjacency", ()) for part in _adjacent(scene, graph, c)]
     met = [constraint(scene, c) for c in checks.get("constraints", ())]
     adjacency = float(np.mean(adjacent)) if adjacent else 1.0
     constraints = float(np.mean(met)) if met else 1.0
-    success = presence == 1.0 and adjacency == 1.0 and all(v >= 1.0 for v in met)
-    share = s_constraint(areas_by_type(plan.rooms), graph.get("area_ratio") or truth)
-    return PlanScores(node, share, edge, strict_node, strict_edge, presence, adjacency, constraints, success)
+    return presence, adjacency, constraints, presence == 1.0 and adjacency == 1.0 and all(v >= 1.0 for v in met)
 
 
 def s_constraint(made: Mapping[str, float], truth: Mapping[str, float]) -> float:
@@ -122,7 +129,8 @@ def _adjacent(scene: Scene, graph: Mapping[str, Any], check: Mapping[str, Any]) 
 
     Rooms beyond those of the truth count for nothing here.
     """
-    wanted = sum(check["a"] in {r["id"], r["type"]} for r in graph["rooms"])
+    named = any(check["a"] == r["id"] for r in graph["rooms"])  # an id goes before a type of that name
+    wanted = 1 if named else sum(check["a"] == r["type"] for r in graph["rooms"])
     parts = scene.adjacency(check)
     if check.get("quant") == "some":
         return parts
