@@ -1,4 +1,4 @@
-"""Floor plans, measured: `python -m benchmarks.plan` (scores, times, diversity, a sample of failures), or one of them by name.
+"""Floor plans, measured; the figures stand in docs/ and in the report: `python -m benchmarks.plan` (scores, times, diversity, a sample of failures), or one of them by name.
 
 python -m benchmarks.plan scores --count 5          the 20 prompts on 5 seeds, against the bars
 python -m benchmarks.plan times --count 200         CPU ms for 5, 8 and 12 rooms

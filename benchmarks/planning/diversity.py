@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
+from benchmarks.planning import record
 from benchmarks.planning.times import home
 from pipeline.entities.plan import Plan
 from pipeline.floorplan import complete, parse, solve
@@ -61,11 +62,14 @@ def contacts(plan: Plan) -> frozenset[tuple[str, str]]:
 
 
 def main(seeds: int) -> None:
-    """Print the mean pairwise IoU and the number of different wall-contact graphs per program."""
+    """Print the mean pairwise IoU and the number of different wall-contact graphs per program; keep them in docs/planning.json."""
     programs: list[tuple[str, FloorProgram]] = [("8 rooms", home(8)), ("12 rooms", home(12)), *((p, complete(parse(p))) for p in PROMPTS)]
+    figures = []
     for name, program in programs:
         plans = [solve(program, seed) for seed in range(seeds)]
         maps = [label_map(p) for p in plans]
         values = [iou(maps[i], maps[j]) for i in range(seeds) for j in range(i)]
         graphs = len({contacts(p) for p in plans})
         print(f"{name[:60]:60s} mean pairwise IoU {np.mean(values):.3f}; {graphs} wall-contact graphs of {seeds}", flush=True)
+        figures.append({"program": name, "rooms": len(program.rooms), "iou": round(float(np.mean(values)), 3), "graphs": graphs})
+    record.keep("diversity", seeds, figures)

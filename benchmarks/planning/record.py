@@ -31,3 +31,9 @@ def read(name: str) -> dict[str, Any]:
 def write(name: str, figures: Mapping[str, Any]) -> None:
     """Write docs/`name`."""
     (DOCS / name).write_text(json.dumps(figures, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def keep(what: str, count: int, figures: Any) -> None:
+    """Put the figures of one measurement into docs/planning.json, beside those of the others."""
+    told = {"command": f"python -m benchmarks.plan {what} --count {count}", "commit": commit(), "figures": figures}
+    write("planning.json", read("planning.json") | {what: told})

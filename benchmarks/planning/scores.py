@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import yaml
 
+from benchmarks.planning import record
 from pipeline.floorplan import FloorProgram, parse, solve
 from pipeline.floorplan.program import Entrance, Link, Range, RoomReq
 from pipeline.metrics.plan_scores import s_constraint, score
@@ -49,10 +50,15 @@ def ceiling(case: Mapping[str, Any], program: FloorProgram) -> float:
 
 
 def main(seeds: int) -> None:
-    """Print both tables: means over prompts and seeds, and the spread of each score over seeds."""
+    """Print both tables: means over prompts and seeds, and the spread of each score over seeds; keep them in docs/planning.json."""
     every = cases()
+    figures: dict[str, Any] = {}
     tops = [ceiling(c, parse(c["prompt"])) for c in every]
-    for title, make in (("from the prompt alone", lambda c: parse(c["prompt"])), ("given the ground-truth rooms, links and areas", truth)):
+    kinds = (
+        ("prompt", "from the prompt alone", lambda c: parse(c["prompt"])),
+        ("truth", "given the ground-truth rooms, links and areas", truth),
+    )
+    for key, title, make in kinds:
         table, spent = np.empty((seeds, len(every), len(NAMES))), []
         for j, case in enumerate(every):
             program = make(case)
@@ -65,9 +71,16 @@ def main(seeds: int) -> None:
                 if not found.success and make is not truth:
                     print(f"  {case['id']} seed {seed}: P {found.presence:.3f} A {found.adjacency:.3f} C {found.constraints:.3f}")
         print(f"{seeds * len(every)} plans, {title}; {1e3 * np.mean(spent):.0f} CPU ms each")
+        figures[key] = {
+            "plans": table[..., 0].size,
+            "successes": int(table[:, :, NAMES.index("success")].sum()),
+            "cpu_s": float(np.mean(spent)),
+        }
         for k, name in enumerate(NAMES):
             each = table[:, :, k].mean(axis=1)
+            figures[key][name] = [round(float(v), 4) for v in (each.mean(), each.min(), each.max())]
             print(
                 f"  {name:12s} {each.mean():.4f}   seeds {each.min():.4f} to {each.max():.4f}; prompts from {table[:, :, k].mean(axis=0).min():.3f}"
             )
     print(f"S_constraint of exact default areas, prompt alone: {np.mean(tops):.4f}")
+    record.keep("scores", seeds, figures | {"ceiling": round(float(np.mean(tops)), 4)})

@@ -6,6 +6,7 @@ import time
 
 import numpy as np
 
+from benchmarks.planning import record
 from pipeline.floorplan import FloorProgram, complete
 from pipeline.floorplan.program import RoomReq, RoomType
 from pipeline.floorplan.solver import search
@@ -26,7 +27,8 @@ def home(count: int) -> FloorProgram:
 
 
 def main(seeds: int) -> None:
-    """Print times and effort per number of rooms."""
+    """Print times and effort per number of rooms; keep them in docs/planning.json."""
+    figures = []
     search(home(5), 0)  # compiles
     print(
         f"CPU ms, program to plan, {seeds} seeds\nrooms  bar   mean    p50    p99    max  p99/mean   runs  proposals/room (least)  slicings  proposals/room"
@@ -43,3 +45,6 @@ def main(seeds: int) -> None:
             f" {np.mean([e.runs for e in efforts]):6.1f}  {np.mean([e.proposals for e in efforts]) / count:8.0f} ({min(e.proposals for e in efforts) / count:.0f})"
             f" {np.mean([e.slicings for e in efforts]):16.1f} {np.mean([e.sliced for e in efforts]) / count:10.0f}"
         )
+        figures.append({"rooms": count, "bar_ms": BARS[count], "mean_ms": round(mean, 1), "p99_ms": round(tail, 1)})
+        figures[-1] |= {"proposals": round(min(e.proposals for e in efforts) / count), "runs": min(e.runs for e in efforts)}
+    record.keep("times", seeds, figures)

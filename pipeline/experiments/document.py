@@ -15,12 +15,12 @@ from pipeline.entities.home import Home
 from pipeline.errors import SfgenError
 from pipeline.execution import map_shards
 from pipeline.experiments.dataset import RejectCount
-from pipeline.experiments.knobs import knob_picture
+from pipeline.experiments.knobs import knob_picture, monotone
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.rows import homes_of
 from pipeline.manifest import write_bytes
-from pipeline.report import calibration, sections
+from pipeline.report import calibration, planning, sections
 from pipeline.report.page import Picture, Section, render
 from pipeline.report.plots import Curve, lines
 from schemas.objects import OBJECTS
@@ -53,6 +53,7 @@ def write_report(
             figures["dataset"], _json(root / "metrics" / "sampling.json") | _json(root / "metrics" / "timing.json"), views
         ),
         sections.plan_section(figures["plan"]),
+        *_planning(root),
         *_knobs(root, folder),
         sections.quantity_section(figures["quantity"], rates["quantity"]),
         sections.articulation_section(figures["articulation"], figures["ablation"]),
@@ -72,6 +73,13 @@ def _calibration(folder: Path, found: Mapping[str, Any]) -> Section:
         write_bytes(folder / "plots" / f"{name}.png", png)
         pictures.append(Picture(f"plots/{name}.png", name.replace("_", ", ")))
     return calibration.calibration_section(found, pictures)
+
+
+def _planning(root: Path) -> list[Section]:
+    """Return the chapter of the bars of floor plans, from the records that the checkout carries."""
+    kept, failures, knobs = (_json(root / "docs" / name) for name in ("planning.json", "failures.json", "knobs.json"))
+    made = planning.planning_section(kept, failures, knobs, monotone)
+    return [made] if made else []
 
 
 def _knobs(root: Path, folder: Path) -> list[Section]:

@@ -1,0 +1,110 @@
+"""The bars of the floor plans: what was measured beside the paper's and the peers' figures, each with the command that measures it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from pipeline.report.page import Section, TableView
+
+Json = Mapping[str, Any]
+HEADER = ("", "the paper", "best peer", "bar", "ours", "measured by", "commit")
+KNOBS = "python -m benchmarks.plan knobs"
+
+
+def planning_section(planning: Json, failures: Json, knobs: Json, falls: Callable[[Json], bool]) -> Section | None:
+    """Return the table of the bars from the records that the checkout carries; None where there is none.
+
+    `planning`, `failures`, `knobs` are docs/planning.json, failures.json and knobs.json, empty where they are missing; `falls` tells
+    whether a knob's own term falls as it is turned.
+    """
+    rows = [*_scores(planning.get("scores")), *_times(planning.get("times"))]
+    rows += [*_failures(failures), *_diversity(planning.get("diversity")), *_knobs(knobs, falls)]
+    if not rows:
+        return None
+    text = (
+        "Measured apart from the run that made this page, for it takes long; each row names its command and the commit that was measured. "
+        "Peers: Infinigen's twelve-term solver given the ground-truth graphs with its area weight at 100 (S_constraint), its default and its "
+        "fewest-rooms setting, and ProcTHOR's plan stage (CPU seconds), measured on 2 cores; failures as its issue 419 counts them."
+    )
+    return Section("Floor plans against their bars", [text], [TableView("What is asked, and what was measured", HEADER, rows)])
+
+
+def _row(what: str, paper: str, peer: str, bar: str, ours: str, told: Json) -> list[str]:
+    return [what, paper, peer, bar, ours, told["command"], told["commit"]]
+
+
+def _scores(told: Json | None) -> list[list[str]]:
+    if not told:
+        return []
+    found = told["figures"]
+    prompt, truth, ceiling = found["prompt"], found["truth"], found["ceiling"]
+    seeds = f"{prompt['plans']} plans"
+    return [
+        _row(f"strict success, {seeds}", "14 of 20", "-", "all", f"{prompt['successes']} of {prompt['plans']}", told),
+        _row(
+            "S_node, S_edge from the prompt", "0.989, 0.954", "-", "0.995, 0.995", f"{_mean(prompt, 'node')}, {_mean(prompt, 'edge')}", told
+        ),
+        _row("S_node, S_edge given the truth", "-", "1.0, -", "0.995, 0.995", f"{_mean(truth, 'node')}, {_mean(truth, 'edge')}", told),
+        _row("S_constraint given rooms and areas", "0.923", "0.961", "0.975", _mean(truth, "constraint"), told),
+        _row(
+            "S_constraint from the prompt", "-", "-", f"{ceiling - 0.01:.3f}: 0.01 below exact defaults", _mean(prompt, "constraint"), told
+        ),
+    ]
+
+
+def _mean(scores: Json, name: str) -> str:
+    mean, low, high = scores[name]
+    return f"{mean:.3f}" if low == high else f"{mean:.3f} (seeds {low:.3f}-{high:.3f})"
+
+
+def _times(told: Json | None) -> list[list[str]]:
+    peers = {5: "9.2 s, 0.10 s", 8: "17-59 s, 0.32 s", 12: "17-59 s, -"}
+    if not told:
+        return []
+    return [
+        _row(
+            f"CPU ms, {r['rooms']} rooms: mean, p99",
+            "272 s (wall)",
+            peers.get(r["rooms"], "-"),
+            f"{r['bar_ms']}, 5 means",
+            f"{r['mean_ms']:.0f}, {r['p99_ms']:.0f}; {r['runs']} runs, {r['proposals']} proposals a room at least",
+            told,
+        )
+        for r in told["figures"]
+    ]
+
+
+def _failures(told: Json) -> list[list[str]]:
+    names = {"prior": "programs of the prior", "trees": "programs of an independent generator"}
+    rows = []
+    for source, runs in told.get("sources", {}).items():
+        count = sum(r["count"] for r in runs)
+        failed = sum(len(r["failures"]) for r in runs)
+        commits = ", ".join(dict.fromkeys(r["commit"] for r in runs))
+        row = {"command": told["command"], "commit": commits}
+        spent = f"{1e3 * sum(r['cpu_s'] for r in runs) / max(count, 1):.0f} CPU ms each"
+        peer = "about 80 % of single rooms crash"
+        rows.append(_row(f"failures, {names.get(source, source)}", "-", peer, "0 of 10,000", f"{failed} of {count:,}; {spent}", row))
+    return rows
+
+
+def _diversity(told: Json | None) -> list[list[str]]:
+    if not told:
+        return []
+    asked = "at most 0.6, at least 10"
+    return [
+        _row(f"diversity, {r['program']}: IoU, wall graphs", "-", "-", asked, f"{r['iou']:.2f}, {r['graphs']}", told)
+        for r in told["figures"]
+    ]
+
+
+def _knobs(knobs: Json, falls: Callable[[Json], bool]) -> list[list[str]]:
+    terms: Mapping[str, Json] = knobs.get("terms", {})
+    if not terms:
+        return []
+    good = [name for name, found in terms.items() if falls(found)]
+    left: Sequence[str] = [name for name in terms if name not in good]
+    ours = f"{len(good)} of {len(terms)}" + (f"; not {', '.join(left)}" if left else "")
+    told = {"command": f"{KNOBS} --count {knobs['seeds']}", "commit": knobs.get("commit", "-")}
+    return [_row("knobs that move their term monotonically", "Fig. 3, one", "one", "12 of 12", ours, told)]
