@@ -20,6 +20,7 @@ from pipeline.usd.mujoco import write_mujoco_overlay
 from schemas.assets import ASSET_JOINTS, ASSETS
 
 PART = 32  # assets that one worker writes at a time
+WORTH = 200  # assets: a worker takes longer to start than to write fewer
 LIBRARY = "../../assets"  # as seen from usd/shard-00000/
 
 
@@ -41,7 +42,8 @@ def files_of(home: Home, assets: Mapping[str, Asset], preview: int) -> dict[str,
 def write_assets(library: Library, folder: Path, asset_ids: Sequence[str], workers: int = 1) -> None:
     """Write those assets as USD with a thumbnail each, and beside them their rows of assets and asset_joints."""
     parts = [(n, tuple(asset_ids[start : start + PART])) for n, start in enumerate(range(0, len(asset_ids), PART))]
-    for _ in map_shards(partial(_write_part, library.unread(), folder), parts, workers=min(workers, len(parts))):
+    workers = min(workers, len(asset_ids) // WORTH)
+    for _ in map_shards(partial(_write_part, library.unread(), folder), parts, workers=workers):
         pass
     kept = set(asset_ids)
     tables.write(folder / "assets.parquet", ASSETS, [{**library.rows[a], "file": f"{a}/{a}.usda"} for a in asset_ids])
