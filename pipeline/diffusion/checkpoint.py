@@ -19,7 +19,7 @@ from pipeline.errors import ContentError
 from pipeline.manifest import canonical, write_bytes
 from pipeline.params import build
 
-FORMAT = "sfgen-denoiser-2"
+FORMAT = "sfgen-denoiser-3"
 REMEDY = "run `make run`, or `dvc repro train`, which makes it"
 
 
@@ -28,7 +28,8 @@ class Header:
     """What travels with the weights: layout types in order, slots, levels, the model's settings.
 
     Rooms of the layout types `few` get `few_slots` instead of `slots` (see `slots_for`). `held` lists, per layout type, the classes
-    that its training rooms hold, by their place in `norm.classes`; nothing else is sampled there. An empty list: anything.
+    that its training rooms hold, by their place in `norm.classes`, each with how often one room holds it; nothing else is sampled there,
+    and nothing more often. An empty list: anything.
     """
 
     norm: Normalisation
@@ -38,7 +39,7 @@ class Header:
     model: ModelSettings
     few: tuple[str, ...] = ()
     few_slots: int = 12
-    held: tuple[tuple[int, ...], ...] = ()
+    held: tuple[tuple[tuple[int, int], ...], ...] = ()
 
     def slots_for(self, layout: str, count: int | None) -> int:
         """Return how many slots a room gets: few where these hold the asked count, or what such rooms hold, with two to spare."""
@@ -69,7 +70,7 @@ def load_weights(path: Path) -> tuple[Denoiser, Header]:
             build(ModelSettings, value["model"], "train.model"),
             tuple(value["few"]),
             value["few_slots"],
-            tuple(map(tuple, value["held"])),
+            tuple(tuple((int(k), int(n)) for k, n in held) for held in value["held"]),
         )
         net = build_net(header)
         net.load_state_dict(tensors)

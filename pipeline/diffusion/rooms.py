@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pipeline.diffusion.codec import CONTINUOUS, LATENT, class_indices, continuous_rows
 from pipeline.diffusion.context import Gap, RoomContext
 from pipeline.diffusion.floor import Floor, floor_tokens
+from pipeline.diffusion.repeats import bound
 
 Row = Mapping[str, Any]
 SWEEPS = 4  # boxes per object
@@ -166,12 +167,17 @@ def stacked_rows(examples: Sequence[Example]) -> NDArray[np.float64]:
     return np.concatenate([e.continuous for e in examples] or [np.zeros((0, CONTINUOUS))])
 
 
-def held_classes(sets: Sets, layouts: tuple[str, ...]) -> tuple[tuple[int, ...], ...]:
-    """Return, per layout type, the classes that training rooms of it hold; none for a type without rooms."""
-    held: dict[int, set[int]] = {}
+def held_classes(sets: Sets, layouts: tuple[str, ...]) -> tuple[tuple[tuple[int, int], ...], ...]:
+    """Return, per layout type, the classes that training rooms of it hold and how often (see `repeats.bound`); none for a type without rooms."""
+    held: dict[int, list[Counter[int]]] = {}
     for example in sets.train:
-        held.setdefault(example.layout, set()).update(example.classes.tolist())
-    return tuple(tuple(sorted(held.get(i, ()))) for i in range(len(layouts)))
+        held.setdefault(example.layout, []).append(Counter(example.classes.tolist()))
+    found = []
+    for i in range(len(layouts)):
+        rooms = held.get(i, [])
+        classes = sorted(set().union(*rooms))
+        found.append(tuple((k, bound([room[k] for room in rooms if k in room], len(rooms))) for k in classes))
+    return tuple(found)
 
 
 def small_types(sets: Sets, layouts: tuple[str, ...], slots: int) -> tuple[str, ...]:

@@ -112,13 +112,13 @@ class Sampler:
         counts = torch.tensor([-1 if r.n_target is None else min(r.n_target, slots) for r in rooms], device=device)
         demands = [room.demands for room in rooms]
         code = self.net.floor_code(told)
-        allowed = self._allowed(rooms).to(device)
+        most = self._most(rooms).to(device)
         guide = Guide(told, counts, self.library, openable_classes(self.header.norm.classes).to(device), self.settings)
         schedule, ones = linear(self.header.timesteps), torch.ones(len(rooms), device=device)
         thousandth = 1000 / self.header.timesteps
 
         def expect(x: Tensor, alpha: float, sigma: float) -> Tensor:
-            x0, _ = self.net.expected(x, alpha * ones, sigma * ones, told, code, allowed)
+            x0, _ = self.net.expected(x, alpha * ones, sigma * ones, told, code, most)
             return impose(x0, demands, self.header.norm.classes)
 
         def steer(x0: Tensor, level: float) -> Tensor:
@@ -133,16 +133,20 @@ class Sampler:
         s = self.settings
         return ddim(expect, steer, noise, schedule, levels(schedule.timesteps, s.steps_coarse, s.steps_middle, s.steps_fine))
 
-    def _allowed(self, rooms: Sequence[RoomContext]) -> Tensor:
-        """Return which classes, or emptiness, (B, C + 1) a slot of each room may take: what its type holds, and what is demanded."""
+    def _most(self, rooms: Sequence[RoomContext]) -> Tensor:
+        """Return how often each room may take each class (B, C): as often as rooms of its type hold it, or as is demanded."""
         names = self.header.norm.classes
-        allowed = torch.zeros(len(rooms), len(names) + 1, dtype=torch.bool)
-        allowed[:, -1] = True
-        for row, room in zip(allowed, rooms, strict=True):
+        most = torch.zeros(len(rooms), len(names), dtype=torch.long)
+        for row, room in zip(most, rooms, strict=True):
             held = self.header.held[self.header.layouts.index(room.layout_type)] if self.header.held else ()
-            asked = [k for d in room.demands for k, name in enumerate(names) if name in d.categories]
-            row[[*held, *asked] if held else slice(None)] = True
-        return allowed
+            if not held:
+                row[:] = self.header.slots
+            for k, count in held:
+                row[k] = count
+            for demand in room.demands:
+                asked = [k for k, name in enumerate(names) if name in demand.categories]
+                row[asked] = row[asked].clamp_min(max(demand.least, 1) if demand.most is None else demand.most)
+        return most
 
     def _told(self, rooms: Sequence[RoomContext]) -> RoomBatch:
         """Encode the rooms' floors, types and (where told) counts."""
