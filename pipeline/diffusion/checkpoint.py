@@ -14,6 +14,7 @@ from torch import Tensor
 
 from pipeline.diffusion.codec import Normalisation
 from pipeline.diffusion.denoiser import Denoiser
+from pipeline.diffusion.repeats import Held
 from pipeline.diffusion.settings import ModelSettings
 from pipeline.errors import ContentError
 from pipeline.manifest import canonical, write_bytes
@@ -28,8 +29,8 @@ class Header:
     """What travels with the weights: layout types in order, slots, levels, the model's settings.
 
     Rooms of the layout types `few` get `few_slots` instead of `slots` (see `slots_for`). `held` lists, per layout type, the classes
-    that its training rooms hold, by their place in `norm.classes`, each with how often one room holds it; nothing else is sampled there,
-    and nothing more often. An empty list: anything.
+    that its training rooms hold, by their place in `norm.classes`, each and by kind, with how many of them one room holds; nothing else is
+    sampled there, and nothing more often. An empty list: anything.
     """
 
     norm: Normalisation
@@ -39,7 +40,7 @@ class Header:
     model: ModelSettings
     few: tuple[str, ...] = ()
     few_slots: int = 12
-    held: tuple[tuple[tuple[int, int], ...], ...] = ()
+    held: tuple[Held, ...] = ()
 
     def slots_for(self, layout: str, count: int | None) -> int:
         """Return how many slots a room gets: few where these hold the asked count, or what such rooms hold, with two to spare."""
@@ -70,7 +71,7 @@ def load_weights(path: Path) -> tuple[Denoiser, Header]:
             build(ModelSettings, value["model"], "train.model"),
             tuple(value["few"]),
             value["few_slots"],
-            tuple(tuple((int(k), int(n)) for k, n in held) for held in value["held"]),
+            tuple(tuple((tuple(group), count) for group, count in held) for held in value["held"]),
         )
         net = build_net(header)
         net.load_state_dict(tensors)

@@ -34,7 +34,7 @@ from pipeline.diffusion.relations import (
     pair_relations,
     wall_relations,
 )
-from pipeline.diffusion.repeats import bounded
+from pipeline.diffusion.repeats import Bounds
 from pipeline.diffusion.settings import ModelSettings
 
 FLOOR_FEATURES = 5 + len(KINDS)
@@ -151,9 +151,9 @@ class Denoiser(nn.Module):
         return torch.cat([goes[:, :, 0], plain[..., :4], goes[:, :, 1], plain[..., 4:]], -1), logits
 
     def expected(
-        self, x: Tensor, alpha: Tensor, sigma: Tensor, rooms: RoomBatch, code: FloorCode | None = None, most: Tensor | None = None
+        self, x: Tensor, alpha: Tensor, sigma: Tensor, rooms: RoomBatch, code: FloorCode | None = None, bounds: Bounds | None = None
     ) -> tuple[Tensor, Tensor]:
-        """Return the expected clean slots x0 (B, N, D), and the class logits. A room takes each class at `most` (B, C) times, 0: never.
+        """Return the expected clean slots x0 (B, N, D), and the class logits. `bounds` says how often a room may take what.
 
         The net says where a slot would stand if it held something; an empty slot's channels are unit noise as data, of
         which alpha * x is the mean given x. The expectation weighs the two by the chance that the slot is empty: without
@@ -161,9 +161,7 @@ class Denoiser(nn.Module):
         """
         a, s, seen = alpha[:, None, None], sigma[:, None, None], x[..., :CONTINUOUS]
         raw, logits = self(x, alpha, rooms, code)
-        if most is not None:
-            logits = torch.cat([logits[..., :-1].masked_fill(most[:, None] < 1, -torch.inf), logits[..., -1:]], -1)
-        chance = logits.softmax(-1) if most is None else bounded(logits.double().softmax(-1), most).to(logits.dtype)
+        chance = logits.softmax(-1) if bounds is None else bounds.applied(logits)
         held = from_target(self.settings.target, raw, seen, a, s)
         continuous = a * seen + (1 - chance[..., -1:]) * (held - a * seen)
         return torch.cat([continuous, self.codec.class_block(chance)], -1), logits

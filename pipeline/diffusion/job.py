@@ -76,6 +76,8 @@ def load(root: Path, settings: TrainSettings) -> tuple[Sets, Header]:
             "data/tables has no furnished room of split train", "raise corpus.houses in params.yaml, or check the rejects table"
         )
     norm = Normalisation.of(stacked_rows(sets.train), words.names)
+    supers = [words.categories[name].super for name in words.names]
+    kinds = [[k for k, kind in enumerate(supers) if kind == wanted] for wanted in sorted(set(supers))]
     return sets, Header(
         norm,
         words.layout_types,
@@ -84,7 +86,7 @@ def load(root: Path, settings: TrainSettings) -> tuple[Sets, Header]:
         settings.model,
         small_types(sets, words.layout_types, settings.few_slots) if settings.few_share else (),
         settings.few_slots if settings.few_share else settings.slots,
-        held_classes(sets, words.layout_types),
+        held_classes(sets, words.layout_types, kinds),
     )
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pipeline.diffusion.codec import CONTINUOUS, LATENT, class_indices, continuous_rows
 from pipeline.diffusion.context import Gap, RoomContext
 from pipeline.diffusion.floor import Floor, floor_tokens
-from pipeline.diffusion.repeats import bound
+from pipeline.diffusion.repeats import Held, bound
 
 Row = Mapping[str, Any]
 SWEEPS = 4  # boxes per object
@@ -167,17 +167,21 @@ def stacked_rows(examples: Sequence[Example]) -> NDArray[np.float64]:
     return np.concatenate([e.continuous for e in examples] or [np.zeros((0, CONTINUOUS))])
 
 
-def held_classes(sets: Sets, layouts: tuple[str, ...]) -> tuple[tuple[tuple[int, int], ...], ...]:
-    """Return, per layout type, the classes that training rooms of it hold and how often (see `repeats.bound`); none for a type without rooms."""
-    held: dict[int, list[Counter[int]]] = {}
+def held_classes(sets: Sets, layouts: tuple[str, ...], kinds: Sequence[Sequence[int]]) -> tuple[Held, ...]:
+    """Return, per layout type, the classes that training rooms of it hold, and how many of each and of each kind (see `repeats.bound`).
+
+    `kinds` are groups of classes. A type without rooms holds nothing.
+    """
+    rooms: dict[int, list[Counter[int]]] = {}
     for example in sets.train:
-        held.setdefault(example.layout, []).append(Counter(example.classes.tolist()))
-    found = []
-    for i in range(len(layouts)):
-        rooms = held.get(i, [])
-        classes = sorted(set().union(*rooms))
-        found.append(tuple((k, bound([room[k] for room in rooms if k in room], len(rooms))) for k in classes))
-    return tuple(found)
+        rooms.setdefault(example.layout, []).append(Counter(example.classes.tolist()))
+    return tuple(_held(rooms.get(i, []), kinds) for i in range(len(layouts)))
+
+
+def _held(rooms: Sequence[Counter[int]], kinds: Sequence[Sequence[int]]) -> Held:
+    classes = sorted(set().union(*rooms))
+    groups = sorted({(k,) for k in classes} | {tuple(k for k in kind if k in classes) for kind in kinds} - {()})
+    return tuple((group, bound([n for room in rooms if (n := sum(room[k] for k in group))], len(rooms))) for group in groups)
 
 
 def small_types(sets: Sets, layouts: tuple[str, ...], slots: int) -> tuple[str, ...]:

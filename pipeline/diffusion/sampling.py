@@ -19,6 +19,7 @@ from pipeline.diffusion.demands import impose
 from pipeline.diffusion.denoiser import Denoiser
 from pipeline.diffusion.floor import floor_tokens
 from pipeline.diffusion.guidance import Guide, shift
+from pipeline.diffusion.repeats import Bounds
 from pipeline.diffusion.schedule import Schedule, at, levels, linear
 from pipeline.diffusion.settings import SampleSettings
 from pipeline.errors import ContentError
@@ -112,13 +113,13 @@ class Sampler:
         counts = torch.tensor([-1 if r.n_target is None else min(r.n_target, slots) for r in rooms], device=device)
         demands = [room.demands for room in rooms]
         code = self.net.floor_code(told)
-        most = self._most(rooms).to(device)
+        bounds = self._bounds(rooms, device)
         guide = Guide(told, counts, self.library, openable_classes(self.header.norm.classes).to(device), self.settings)
         schedule, ones = linear(self.header.timesteps), torch.ones(len(rooms), device=device)
         thousandth = 1000 / self.header.timesteps
 
         def expect(x: Tensor, alpha: float, sigma: float) -> Tensor:
-            x0, _ = self.net.expected(x, alpha * ones, sigma * ones, told, code, most)
+            x0, _ = self.net.expected(x, alpha * ones, sigma * ones, told, code, bounds)
             return impose(x0, demands, self.header.norm.classes)
 
         def steer(x0: Tensor, level: float) -> Tensor:
@@ -133,20 +134,15 @@ class Sampler:
         s = self.settings
         return ddim(expect, steer, noise, schedule, levels(schedule.timesteps, s.steps_coarse, s.steps_middle, s.steps_fine))
 
-    def _most(self, rooms: Sequence[RoomContext]) -> Tensor:
-        """Return how often each room may take each class (B, C): as often as rooms of its type hold it, or as is demanded."""
-        names = self.header.norm.classes
-        most = torch.zeros(len(rooms), len(names), dtype=torch.long)
-        for row, room in zip(most, rooms, strict=True):
-            held = self.header.held[self.header.layouts.index(room.layout_type)] if self.header.held else ()
-            if not held:
-                row[:] = self.header.slots
-            for k, count in held:
-                row[k] = count
-            for demand in room.demands:
-                asked = [k for k, name in enumerate(names) if name in demand.categories]
-                row[asked] = row[asked].clamp_min(max(demand.least, 1) if demand.most is None else demand.most)
-        return most
+    def _bounds(self, rooms: Sequence[RoomContext], device: torch.device) -> Bounds:
+        """Return how often each room may take what: as often as rooms of its type hold it, or as is demanded."""
+        order = {name: k for k, name in enumerate(self.header.norm.classes)}
+        held = [self.header.held[self.header.layouts.index(r.layout_type)] if self.header.held else () for r in rooms]
+        asked = [
+            [([order[c] for c in d.categories if c in order], max(d.least, 1) if d.most is None else d.most) for d in room.demands]
+            for room in rooms
+        ]
+        return Bounds.of(held, asked, len(order), device)
 
     def _told(self, rooms: Sequence[RoomContext]) -> RoomBatch:
         """Encode the rooms' floors, types and (where told) counts."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.diffusion.context import Proposal, RoomContext
+from pipeline.diffusion.context import Demand, Proposal, RoomContext
 from pipeline.diffusion.sampling import Sampler
 from pipeline.entities.home import Placement
 from pipeline.homes.request import RoomJob
@@ -32,10 +32,22 @@ def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxono
 
     Draws are keyed by (seed, home, room, attempt) alone, so a room does not depend on which rooms share its batch.
     """
-    contexts = [RoomContext.of(job.plan, job.room_id, job.layout_type, job.count, job.demands) for job in jobs]
+    contexts = [RoomContext.of(job.plan, job.room_id, job.layout_type, job.count, demands(job, taxonomy)) for job in jobs]
     keys = [(job.index, job.number, job.attempt) for job in jobs]
     proposals = sampler.sample_rooms(contexts, keys)
     return [retrieve(job, context, found, index, taxonomy) for job, context, found in zip(jobs, contexts, proposals, strict=True)]
+
+
+def demands(job: RoomJob, taxonomy: Taxonomy) -> tuple[Demand, ...]:
+    """Return what a room is to hold: what is wished for, and of each group of its type's essentials one thing.
+
+    A stated number of objects may be too small for them; and what is wished for of a group, none of it too, stands.
+    """
+    if job.count is not None:
+        return job.demands
+    wished = {c for demand in job.demands for c in demand.categories}
+    needed = taxonomy.essentials.get(job.layout_type, ())
+    return (*job.demands, *(Demand(group, 1) for group in needed if not wished.intersection(group)))
 
 
 def retrieve(job: RoomJob, context: RoomContext, proposals: Sequence[Proposal], index: AssetIndex, taxonomy: Taxonomy) -> Draft:

@@ -27,4 +27,4 @@ def merged_boxes(boxes: NDArray[np.float64], most: int) -> NDArray[np.float64]:
 
 def volume(boxes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the volumes (N,) of boxes (N, 2, 3) [m3]."""
-    return np.prod(boxes[:, 1] - boxes[:, 0], axis=1)
+    return np.asarray(np.prod(boxes[:, 1] - boxes[:, 0], axis=1))

@@ -132,7 +132,7 @@ def test_rooms_hold_what_rooms_of_their_type_held_and_what_is_asked_for(weights,
     s = sampler(weights)
     rooms = [make_context(i, n_target=5) for i in range(6)]
     keys = [(i, 0, 0) for i in range(6)]
-    few = replace(s, header=replace(s.header, held=(((0, 9), (2, 9)),) * len(LAYOUTS)))
+    few = replace(s, header=replace(s.header, held=((((0,), 9), ((2,), 9)),) * len(LAYOUTS)))
     free = {p.category for room in s.sample_rooms(rooms, keys) for p in room}
     assert not free <= {norm.classes[0], norm.classes[2]}  # else the next line says nothing
     assert {p.category for room in few.sample_rooms(rooms, keys) for p in room} <= {norm.classes[0], norm.classes[2]}
@@ -143,6 +143,6 @@ def test_rooms_hold_what_rooms_of_their_type_held_and_what_is_asked_for(weights,
 
 def test_what_rooms_hold_travels_with_the_weights(weights, tmp_path):
     s = sampler(weights)
-    header = replace(s.header, held=(((0, 1), (3, 2)), ()))
+    header = replace(s.header, held=((((0,), 1), ((3, 4), 2)), ()))
     save_weights(tmp_path / "d.safetensors", header, dict(s.net.state_dict()))
     assert sampler(tmp_path / "d.safetensors").header == header
