@@ -13,7 +13,7 @@ from pipeline.floorplan.language.places import close, level, storey, wing, zone
 from pipeline.floorplan.language.pointing import point
 from pipeline.floorplan.language.pronouns import cast, determiner, every, pronoun
 from pipeline.floorplan.language.quantities import attach, belongs
-from pipeline.floorplan.language.relating import objects, relate
+from pipeline.floorplan.language.relating import SINGULAR, objects, relate
 from pipeline.floorplan.language.ways import entered
 
 ELSEWHERE = {
@@ -45,7 +45,7 @@ class Clause:
         self.waiting: tuple[Element, Group] | None = None  # a cue in front of its subject: "next to the kitchen lies ..."
         self.negative: Element | None = None
         self.way: Fact | None = None  # the last way that was said
-        self.verb = self.relative = False
+        self.verb = self.relative = self.single = False
         self.only: Element | None = None
         self.factor: Element | None = None
         self.owner = ""
@@ -135,7 +135,7 @@ class Clause:
             or before.kind == "colon"
         ):
             self.run = []
-            self.verb = False
+            self.verb = self.single = False
         elif self.objects and {i for x in self.run for i in x.ids} == set(self.objects):
             self.run = []  # what was given to somebody is no part of a new list
         self.run.append(e)
@@ -235,11 +235,12 @@ class Clause:
         self.owner, self.owning = e.value, ""
         return k + 1
 
-    def _verb(self, k: int, _: Element) -> int:
+    def _verb(self, k: int, e: Element) -> int:
         before = next((x for x in reversed(self.sentence[:k]) if x.kind not in {"word", "ignored", "flag"}), None)
         if before is not None and before.kind in {"and", "comma"} and self.subject and self.objects:
             self.run = []  # "the bedroom has a bath and is ...": the subject goes on
         self.verb = True
+        self.single = e.text in SINGULAR
         return k + 1
 
     def _relative(self, k: int, e: Element) -> int:

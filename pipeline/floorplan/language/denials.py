@@ -19,7 +19,18 @@ GOING = {"door", "leads", "by", "thru", "in"}
 
 def denied(marks: Sequence[Mark]) -> list[Mark]:
     """Return the marks with each negation in front of what it denies."""
-    return _passages(_turned(_neither(list(marks))))
+    return _passages(_turned(_neither(_but(list(marks)))))
+
+
+def _but(marks: list[Mark]) -> list[Mark]:
+    """Read "every bedroom but the guest room has ..." as all except that one."""
+    made = list(marks)
+    for k in range(2, len(made) - 1):
+        whole = made[k - 1].kind == "room" and made[k - 2].value in {"each", "all"}
+        room = room_at(made, k + 1) if made[k].kind == "but" and whole else None
+        if room is not None and room + 1 < len(made) and made[room + 1].kind in {"cue", "verb"}:
+            made[k] = replace(made[k], kind="cue", value="except")
+    return made
 
 
 def _neither(marks: list[Mark]) -> list[Mark]:

@@ -66,4 +66,4 @@ def owned(language: str, owner: str) -> Iterator[tuple[str, bool]]:
                 bare = owner.removeprefix("the ")
                 yield from ((f"{bare}{end} {form}", many) for end in ("", "'s", "'"))
     for article in ("la", "el") if language == "es" else ():  # "junto a la de los niños"
-        yield from ((f"{article} de {whose}{owner}".replace(" de el ", " del "), False) for whose in articles[1:5])
+        yield from ((f"{article} de {whose}{owner}".replace(" de el ", " del "), False) for whose in articles[:5])

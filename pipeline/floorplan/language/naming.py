@@ -97,6 +97,8 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
     if e.number is not None and not role and "another" not in e.det and count > len(same) and any(r.whole for r in same):
         state.say("beyond", tuple(r.id for r in same), (), e, float(count))
         return same
+    if slots and e.type == "bathroom" and count == 1 and _had(sentence, k) and not any(r.id in x.ids for r in slots for x in sentence[:k]):
+        return []  # "three baths. Two of the bedrooms have an en suite": of those that were counted
     if slots and _predicative(sentence, k):
         return [_close(slots[0], role, e.text)]
     if "another" not in e.det:
@@ -119,6 +121,17 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
     for room in made:
         room.extra, room.span = "another" in e.det, (e.first, e.last)
     return made
+
+
+def _had(sentence: list[Element], k: int) -> bool:
+    """Whether a bedroom has the room of the phrase at k."""
+    before = [e for e in sentence[:k] if e.kind in {"np", "cue", "comma", "and", "pron"}][-2:]
+    return (
+        len(before) > 1
+        and before[1].value == "has"
+        and before[1].kind == "cue"
+        and (before[0].type == "bedroom" or before[0].kind == "pron")
+    )
 
 
 def _contrasted(sentence: list[Element], k: int) -> bool:

@@ -50,7 +50,9 @@ def _target(sentence: list[Element], k: int) -> int | None:
     for j in range(k, len(sentence)):
         e = sentence[j]
         if e.kind == "np":
-            return j
+            return None if e.number is not None and any(x.kind == "colon" for x in sentence[k:j]) else j
+        if e.kind == "colon" and all(x.kind in {"verb", "word"} for x in sentence[k:j]):
+            continue  # "not needed: balcony, garage"
         if e.kind == "cue" and e.value == "has":
             continue
         if e.kind not in {"verb", "adj", "det", "owner", "size", "word", "relative"}:
@@ -94,6 +96,7 @@ def _list(sentence: list[Element], j: int) -> None:
     """Mark a list under one negation: "no balcony, garage or cellar"."""
     sentence[j].banned = True
     joined = ""
+    titled = next((x.kind for x in reversed(sentence[:j]) if x.kind in {"colon", "neg", "used"}), "") == "colon"
     for i in range(j + 1, len(sentence)):
         e = sentence[i]
         if e.kind in {"comma", "and", "or"}:
@@ -101,7 +104,7 @@ def _list(sentence: list[Element], j: int) -> None:
         elif e.kind == "np" and joined:
             bare = e.number is None and not e.amounts and not e.definite and not e.det & {"own", "another"}
             free = bare and (joined in {"or", "comma"} or not e.det & {"indefinite"}) and not e.adjectives & {"open", "combined"}
-            if joined == "comma":
+            if joined == "comma" and not titled:
                 free = free and _closes(sentence, i + 1)
             own = i + 1 < len(sentence) and sentence[i + 1].kind in {"cue", "verb", "neg"} and joined != "or"
             if not free or own:

@@ -32,10 +32,17 @@ def merge(clause: Clause, k: int, e: Element) -> None:
             joined = True
         else:
             break
+    if len(dict.fromkeys(listed)) < 2 and e.said and k > 1 and clause.sentence[k - 1].kind == "and" and _behind(clause, e):
+        listed += [i for i in clause.sentence[k - 2].ids if clause.sentence[k - 2].type in SOCIAL]  # "cocina y salón abiertos"
     if len(dict.fromkeys(listed)) > 1 and e.type in SOCIAL:
         clause.state.say("merge", tuple(listed), (), e)
     elif e.type == "kitchen":
         clause.state.say("open_kitchen", tuple(e.ids), (), e)
+
+
+def _behind(clause: Clause, e: Element) -> bool:
+    """Whether an adjective stands behind its room."""
+    return e.mark is not None and e.last > e.mark.last and clause.state.heard.lexicon.language == "es"
 
 
 def merge_after(clause: Clause, k: int, e: Element) -> None:

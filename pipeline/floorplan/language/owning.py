@@ -12,6 +12,7 @@ from pipeline.floorplan.language.places import storey
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
 
+FINITE = {"has", "have", "gets", "get", "contains", "tiene", "tienen", "cuenta con", "dispone de", "hat", "haben", "bekommt"}
 HOSTS = {
     "living_room",
     "family_room",
@@ -43,7 +44,8 @@ def has(clause: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one branc
         return k + 1
     ahead = _next_phrase(sentence, k + 1)
     own = ahead is not None and "own" in sentence[ahead].det and clause.run[-1:] and clause.run[-1].type == "bedroom"
-    if clause.run and sentence[k - 1].kind == "comma" and not clause.verb and not own:
+    finite = e.text in FINITE and len(clause.run) == 1  # "the largest bedroom, of 18 m2, has one of the baths"
+    if clause.run and sentence[k - 1].kind == "comma" and not clause.verb and not own and not finite:
         return k + 1
     owners = tuple(i for i in (clause.run[-1].ids if clause.run else clause.subject) if not i.startswith("*"))
     near = sentence[k - 1]

@@ -16,7 +16,16 @@ FAR = 9  # marks
 
 def housed(marks: Sequence[Mark]) -> list[Mark]:
     """Return the marks with the rooms of people named as theirs."""
-    return _counted(_each(_whose(list(marks))))
+    return _partial(_counted(_having(_for(_each(_whose(list(marks)))))))
+
+
+def _partial(marks: list[Mark]) -> list[Mark]:
+    """Read Spanish "uno de los baños" as one of them."""
+    made = list(marks)
+    for k in range(1, len(made)):
+        if made[k].value == "partitive" and made[k - 1].kind == "fill" and made[k - 1].text in {"uno", "una"}:
+            made[k - 1] = replace(made[k - 1], kind="num", value="1.0", number=1.0)
+    return made
 
 
 def _bedroom(mark: Mark) -> bool:
@@ -66,6 +75,72 @@ def _each(marks: list[Mark]) -> list[Mark]:
     return made
 
 
+def _for(marks: list[Mark]) -> list[Mark]:
+    """Read "a small room for the baby" as the baby's."""
+    made = list(marks)
+    for k in range(len(made) - 1, -1, -1):
+        if made[k].kind != "owner":
+            continue
+        j = k - 1
+        while j > 0 and (made[j].kind in {"det", "adj"} or made[j].text in POSSESSIVE):
+            j -= 1
+        link = j
+        j -= 1
+        while j > 0 and made[j].kind in {"post", "size", "adj", "amount"}:
+            j -= 1
+        if j >= 0 and made[link].text in FOR and made[j].kind == "room" and made[j].value == "bedroom":
+            made[j : k + 1] = [_of(made[j], made[k]), *made[j + 1 : link]]
+    return made
+
+
+def _having(marks: list[Mark]) -> list[Mark]:
+    """Read "the grandparents have a bedroom with ...; the parents, a bedroom" as theirs."""
+    made: list[Mark] = []
+    k = 0
+    while k < len(marks):
+        mark, before = marks[k], next((m for m in reversed(made) if m.kind != "det" and m.text not in POSSESSIVE), None)
+        made.append(mark)
+        k += 1
+        if mark.kind != "owner" or (
+            before is not None and (before.text in FOR or before.kind not in ENDS | {"comma", "join", "colon", "line", "but"})
+        ):
+            continue
+        j = k
+        while j < len(marks) and (marks[j].kind in {"comma", "verb", "adverb"} or (marks[j].kind, marks[j].value) == ("cue", "has")):
+            j += 1
+        one = j < len(marks) and ((marks[j].kind, marks[j].value) == ("det", "indefinite") or marks[j].number == 1.0)
+        room = j + 1
+        while room < len(marks) and marks[room].kind in {"adj", "size"}:
+            room += 1
+        if j > k and one and room < len(marks) and (marks[room].kind, marks[room].value) == ("room", "bedroom"):
+            made.pop()
+            while made and made[-1].kind == "det":
+                made.pop()
+            made += [*marks[j:room], _of(marks[room], mark)]
+            k = room + 1
+    return made
+
+
+FOR = {"para", "for", "fuer", "de", "del", "von"}
+POSSESSIVE = {
+    "el",
+    "mi",
+    "mis",
+    "su",
+    "sus",
+    "my",
+    "our",
+    "his",
+    "her",
+    "their",
+    "nuestro",
+    "nuestra",
+    "nuestros",
+    "mein",
+    "meine",
+    "unser",
+    "unsere",
+}
 BEING = {"son", "seran", "are", "sind"}
 
 

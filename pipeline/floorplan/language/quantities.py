@@ -9,6 +9,7 @@ from pipeline.floorplan.language.phrases import Element
 
 LISTED = 1.3  # the same behind a list of three rooms and more
 NAMED = {"doors", "corridors", "ceiling", "walls", "inner_walls", "outer_walls"}  # what a length may measure besides rooms
+EACH = 1.6  # an area of so many usual areas a room, behind the rooms that a home is told by, is the home's
 HUGE = 5.0  # the same behind a room of a home that has no area yet
 WHOLE = 1.6  # an area of so many usual areas of the room in front of it, set off by a comma, is the home's
 
@@ -33,6 +34,9 @@ def belongs(state: Reading, sentence: list[Element], e: Element, mark: Mark) -> 
     if len(measured) == 1 and rooms.index(e) and mark.number > HUGE * usual:
         return True  # "1BR 1BA 550 sf, galley kitchen"
     total = k + 1 < len(sentence) and sentence[k + 1].kind == "flag" and sentence[k + 1].value == "total"
+    each = mark.number / len(e.ids)  # "un piso de tres dormitorios de unos 95 metros cuadrados"
+    if k and sentence[k - 1].kind == "home" and len(e.ids) > 1 and not sentence[k - 1].amounts and each > EACH * usual / len(e.ids):
+        return True
     huge = home_before(sentence, k) and mark.number > HUGE * usual
     return total or (len(measured) == 1 and huge) or (listed and len(measured) == 1 and last and mark.number > 2.5 * usual)
 

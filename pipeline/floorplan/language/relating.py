@@ -20,6 +20,8 @@ MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two
 THROUGH = {"through", "via", "durch", "ueber", "por", "traves", "经", "过", "通"}
 CLOSED = {"balcony", "garage", "bathroom", "wc", "closet", "storage", "utility", "bedroom"}
 CONNECTS = {"connect", "connects", "connecting", "links", "linking", "joins", "joining", "une", "conecta", "comunica", "verbindet"}
+FINITE = {"abren", "dan", "salen", "open", "lead", "connect", "conectan", "comunican", "desembocan", "llevan", "conducen", "give", "parten"}
+SINGULAR = {"is", "lies", "sits", "stands", "opens", "esta", "este", "es", "sea", "queda", "ist", "liegt", "se encuentra"}
 WIDE = {"leads", "between", "chain", "avoid", "except"}
 
 
@@ -235,7 +237,14 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one b
         return tuple(last.ids)
     if e.value == "avoid" and clause.objects:
         return clause.subject
-    verbal = clause.verb or e.value in {"leads", "away", "apart"} or any(x.det & {"both", "all"} for x in clause.run)
+    if clause.single and len(clause.run) > 1 and {x.type for x in clause.run[:-1]} and not last.plural:
+        return tuple(last.ids)  # "there is a living room, and the kitchen is open to it"
+    verbal = (
+        clause.verb
+        or e.value in {"leads", "away", "apart"}
+        or e.text.removeprefix("se ").split()[0] in FINITE
+        or any(x.det & {"both", "all"} for x in clause.run)
+    )
     if not _coordinate(clause):  # "study downstairs, all bedrooms upstairs, garage connected to ...": commas part statements
         return tuple(last.ids)
     if verbal or e.value == "wall":
@@ -321,9 +330,13 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
         elif e.kind == "every" and not group:
             clause.state.understood(e.first, e.last)
             return ("*",), index + 1
-        elif (e.kind == "cue" and e.value in {"in", "leads"} and joined and cue in WIDE) or (
-            group and (e.value == "has" or e.kind == "to") and cue == "leads" and CONNECTS & set(sentence[k - 1].text.split())
-        ):
+        elif (
+            e.kind == "cue"
+            and e.value in {"in", "leads"}
+            and joined
+            and cue in WIDE
+            and not (joined == "comma" and (clause.relative or clause.negative is not None))
+        ) or (group and (e.value == "has" or e.kind == "to") and cue == "leads" and CONNECTS & set(sentence[k - 1].text.split())):
             joined = joined or "and"  # "connects the kitchen with the garage"
         elif e.kind in {"comma", "and", "or"}:
             if not group and e.kind == "comma":
@@ -358,10 +371,13 @@ def _continues(clause: Clause, index: int, cue: str, joined: str, first: Element
         return False  # "a kitchen open to the living room and a terrace": nothing stands open to these
     ahead = next((x for x in sentence[index + 1 :] if x.kind not in {"det", "amount", "adj", "flag", "word"}), None)
     starts = ahead is not None and (
-        ahead.kind in {"verb", "cmp", "neg", "relative"} or (ahead.kind == "cue" and ahead.value != "has" and cue != "avoid")
+        ahead.kind in {"verb", "cmp", "neg", "but", "relative"} or (ahead.kind == "cue" and ahead.value != "has" and cue != "avoid")
     )
     if starts and not (ahead is not None and ahead.kind == "relative"):
         return False
+    many = any(clause.stock.get(i).type in HALLS for i in (clause.latest or clause.subject) if not i.startswith("*"))
+    if clause.relative and cue == "leads" and joined == "comma" and e.introduces and first.definite and not many:
+        return False  # "a living room that opens to the kitchen, one bedroom and one bath"
     if (
         cue in {"leads", "chain"}
         and joined == "comma"

@@ -9,6 +9,7 @@ from pipeline.floorplan.language.marks import Mark, Words
 
 FEET, METRES = 0.3048, 1.0
 LARGEST = 80.0  # a side-by-side product above this is no room in square metres: then the figures are feet
+LETTERS = {"b"}
 HALVES = {"medio", "half", "halbes", "半"}
 JOINS = {"comma", "join", "slash", "fill", "det", "bullet", "hyphen"}
 TOGETHER = {"living_room", "dining_room", "kitchen"}
@@ -19,7 +20,56 @@ SHIFTED = {"first floor": "1", "first storey": "1", "second floor": "2", "second
 def widen(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with shorthand written out."""
     made = _studies(_floors(_paired(_activities(list(marks))), heard), heard)
-    return _summed(_both(_partial(_half_baths(_counts(made))), heard), heard)
+    return _bedrooms(_titled(_summed(_both(_partial(_half_baths(_counts(made))), heard), heard)))
+
+
+AREA = {
+    "superficie",
+    "area",
+    "flaeche",
+    "wohnflaeche",
+    "gesamtflaeche",
+    "nutzflaeche",
+    "grundflaeche",
+    "size",
+    "groesse",
+    "面 积",
+    "建 筑 面 积",
+}
+EVERY = ("habitaciones", "cuartos", "recamaras", "piezas")
+
+
+def _titled(marks: list[Mark]) -> list[Mark]:
+    """Read the line "Superficie: 170 m2" of a table as the whole home's."""
+    made = list(marks)
+    for k in range(2, len(made)):
+        if made[k].kind != "amount" or made[k].value != "area":
+            continue
+        j = k - 1
+        while j >= 0 and made[j].kind in {"colon", "fill", "word", "unit", "flag", "bound"}:
+            j -= 1
+        title = made[j + 1 : k]
+        alone = j < 0 or made[j].kind in {"line", "stop", "comma", "bullet"}
+        ends = k + 1 >= len(made) or made[k + 1].kind in {"line", "stop", "comma", "bullet"}
+        if alone and ends and any(m.text in AREA for m in title) and any(m.kind == "colon" for m in title):
+            made[k] = replace(made[k], total=True)
+    return made
+
+
+def _bedrooms(marks: list[Mark]) -> list[Mark]:
+    """Read "todas las habitaciones" as the bedrooms where so many of them were counted by that word."""
+    made = list(marks)
+    for k, mark in enumerate(marks):
+        word = mark.text.rsplit(" ", 1)[-1]
+        counted = any(
+            m.kind == "room" and m.value == "bedroom" and m.text == word and i and marks[i - 1].kind == "num"
+            for i, m in enumerate(marks[:k])
+        )
+        if mark.kind == "every" and word in EVERY and counted:
+            made[k : k + 1] = [replace(mark, kind="room", value="bedroom", plural=True)]
+            made.insert(k, Mark("det", "all", 0.0, True, mark.first, mark.first, "todas las"))
+            return _bedrooms(made)
+    return made
 
 
 def _summed(marks: list[Mark], heard: Words) -> list[Mark]:
@@ -288,10 +338,16 @@ def _pisos(marks: list[Mark]) -> list[Mark]:
 
 
 def _counts(marks: list[Mark]) -> list[Mark]:
-    """Read "2LDK" as two bedrooms, living, dining and kitchen in one; without a number it is these three."""
+    """Read "2LDK" as two bedrooms, living, dining and kitchen in one, without a number as these three; "3b2b" as bedrooms and bathrooms."""
     made: list[Mark] = []
-    for mark in marks:
-        if mark.kind == "room" and mark.value.endswith("/count") and "+" in mark.value:
+    for k, mark in enumerate(marks):
+        if mark.text in LETTERS and mark.kind == "word" and made and made[-1].kind == "num":
+            baths = any(m.kind == "room" and m.value == "bedroom" and m.last - m.first == 1 and k - i < 5 for i, m in enumerate(made))
+            ahead = next((m for m in marks[k + 1 : k + 4] if m.kind not in {"slash", "comma", "hyphen", "times"}), None)
+            beds = ahead is not None and ahead.kind == "num"
+            kind = "bathroom" if baths else ("bedroom" if beds else "")
+            made.append(replace(mark, kind="room", value=kind, plural=True) if kind else mark)
+        elif mark.kind == "room" and mark.value.endswith("/count") and "+" in mark.value:
             counted = bool(made) and made[-1].kind == "num"
             made.append(replace(mark, value=("bedroom+" if counted else "") + mark.value.removesuffix("/count")))
         else:

@@ -14,7 +14,18 @@ from pipeline.floorplan.language.text import Token, bare, fold
 SHORTEST, LONG = 4, 8  # one error from SHORTEST letters on, two from LONG on
 ONE, USUAL = 1.2, 0.9  # how far a word with one error is at most, and with a usual one
 LONGEST = 30  # no word of a home is longer
-TINY = {"cue", "det", "neg", "join", "verb", "fill", "num"}  # what a word of two letters may be where words are run together
+TINY = {
+    "cue",
+    "det",
+    "neg",
+    "join",
+    "verb",
+    "fill",
+    "num",
+    "bound",
+    "relative",
+    "pron",
+}  # what a word of two letters may be where words are run together
 ROWS = ("qwertzuiop", "asdfghjkl", "yxcvbnm", "qwertyuiop", "zxcvbnm")
 NEIGHBOURS = frozenset(p for r in ROWS for a, b in itertools.pairwise(r) for p in ((a, b), (b, a)))
 
@@ -200,7 +211,7 @@ def _far(word: str, target: str) -> float:
     slip = _slip(word, target) or _dropped(word, target)
     if (short < SHORTEST and not swap and len(word) == len(target)) or (short <= SHORTEST and not slip):
         return 9.0
-    return 0.7 if slip and len(word) >= SHORTEST else 1.0
+    return (0.7 if slip and len(word) >= SHORTEST else 1.0) + (0.1 if word[0] != target[0] else 0.0)
 
 
 def _dropped(word: str, target: str) -> bool:

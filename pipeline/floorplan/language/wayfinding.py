@@ -43,7 +43,7 @@ def _into(mark: Mark) -> bool:
 
 def room_at(marks: Sequence[Mark], k: int) -> int | None:
     """Return the place of the room that a phrase beginning at k names."""
-    while k < len(marks) and marks[k].kind in {"det", "adj", "size", "num", "ord", "adverb"}:
+    while k < len(marks) and (marks[k].kind in {"det", "adj", "size", "num", "ord", "adverb"} or marks[k].text == "el"):
         k += 1
     return k if k < len(marks) and marks[k].kind in {"room", "suite"} else None
 
