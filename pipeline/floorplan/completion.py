@@ -10,6 +10,7 @@ from pipeline.floorplan.furniture import allot, spread
 from pipeline.floorplan.program import Entrance, FloorProgram, RoomReq, Shell
 
 UPSTAIRS = {"bedroom", "bathroom", "playroom"}
+BESIDE = {"bathroom", "wc", "closet", "balcony", "storage", "utility", "hallway", "office"}  # lie on the storey of what they are joined to
 HUBLESS = {"living_room", "family_room", "studio_room", "hallway", "entry"}
 
 
@@ -88,9 +89,12 @@ def _storeys(program: FloorProgram) -> tuple[RoomReq, ...]:
     if program.storeys == 1:
         return tuple(r.model_copy(update={"level": 0}) for r in program.rooms)
     rooms = []
+    stated = [k for k in program.links if k.stated]
     for room in program.rooms:
         top = program.storeys - 1
-        level = room.level if room.level is not None else (1 if room.type in UPSTAIRS else 0)
+        beside = {r.level for k in stated if room.id in {k.a, k.b} for r in program.rooms if r.id in {k.a, k.b} and r.level is not None}
+        usual = beside.pop() if len(beside) == 1 and room.type in BESIDE else (1 if room.type in UPSTAIRS else 0)
+        level = room.level if room.level is not None else usual
         rooms.append(room.model_copy(update={"level": 0 if room.type == "staircase" else min(level, top)}))
     if not any(r.level == 0 and r.type != "staircase" for r in rooms):  # nobody lives on the stairs alone: all move down
         rooms = [r.model_copy(update={"level": max((r.level or 0) - 1, 0)}) for r in rooms]

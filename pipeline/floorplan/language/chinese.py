@@ -23,7 +23,7 @@ def _besides(marks: list[Mark]) -> list[Mark]:
     made: list[Mark] = []
     for k, mark in enumerate(marks):
         j = k + 1
-        while j < len(marks) and marks[j].kind in {"adj", "size", "shared"}:
+        while j < len(marks) and (marks[j].kind in {"adj", "size", "shared"} or (marks[j].kind, marks[j].value) == ("det", "own")):
             j += 1
         behind = (
             (mark.kind, mark.value) == ("pron", "one")
@@ -33,6 +33,9 @@ def _besides(marks: list[Mark]) -> list[Mark]:
         )
         if behind:  # "公共卫生间一个"
             made += [replace(mark, kind="num", value="1.0", number=1.0), replace(mark, kind="clf", first=mark.last)]
+            continue
+        if (mark.kind, mark.value) == ("pron", "one") and j < len(marks) and marks[j].kind in HEADS and marks[j - 1].value == "own":
+            made.append(replace(mark, kind="num", value="1.0", number=1.0))  # "一个独立卫生间"
             continue
         one = (mark.kind, mark.value) == ("pron", "one") and bool(made) and made[-1].kind == "det" and made[-1].text in BESIDES
         if one and j < len(marks) and marks[j].kind in HEADS:
@@ -56,6 +59,10 @@ def _verbs(marks: list[Mark]) -> list[Mark]:
             made.append(replace(mark, kind="verb"))
         elif mark.text in AMONG and k and ahead is not None and ahead.kind == marks[k - 1].kind == "room" and _alike(marks[k - 1], ahead):
             made.append(replace(mark, kind="colon"))
+        elif (
+            mark.kind == "room" and ahead is not None and (ahead.kind, ahead.value) == ("det", "all") and made and made[-1].value == "other"
+        ):
+            made.append(replace(mark, plural=True))  # "其他卧室都在二楼"
         else:
             made.append(mark)
     return made

@@ -53,6 +53,7 @@ class Clause:
         first = next((e for e in sentence if e.kind in {"np", "level"}), None)
         self.forward = first is not None and first.kind == "level"
         self.level: int | None = None
+        self.left_out: Group = ()  # "except the guest room, each has ..."
         self.wing: tuple[Element, list[str]] | None = None  # words for a wing in front of its rooms
 
     def read(self) -> None:
@@ -75,7 +76,7 @@ class Clause:
 
     # one method per kind of element; each returns where reading goes on
 
-    def _np(self, k: int, e: Element) -> int:
+    def _np(self, k: int, e: Element) -> int:  # noqa: PLR0912 - one branch per case: a grammar
         if e.banned:
             self._ban(e)
             return k + 1
@@ -104,6 +105,9 @@ class Clause:
             ids = tuple(fresh(self.state, e, storey(self, k), self.owner))
         else:
             ids = tuple(name(self.state, self.sentence, k, storey(self, k)))
+        if self.left_out and e.det & {"each", "all"} and set(ids) > set(self.left_out):
+            ids = tuple(i for i in ids if i not in self.left_out)
+            e.ids = list(ids)
         self._own(e, ids)
         self._measure(e, ids)
         self.push(k, e, ids)

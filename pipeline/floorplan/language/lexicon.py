@@ -225,7 +225,7 @@ def _spellings(phrase: str, language: str) -> Iterable[tuple[str, ...]]:
 
 
 SOUNDS = {
-    "厨": "橱除",
+    "厨": "橱",
     "厅": "听厛庭",
     "室": "式事是市",
     "卫": "位喂味",

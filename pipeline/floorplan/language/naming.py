@@ -61,11 +61,15 @@ def _backward(sentence: list[Element], k: int, level: int | None) -> int | None:
     """Return the storey of a phrase: of the level named before it, or behind it where sentences name levels behind."""
     if level is not None:
         return level
+    parted = False
     for j, e in enumerate(sentence[k + 1 :], k + 1):
         if e.kind == "level":
             return None if heads(sentence, j) else int(e.value)
+        parted = parted or e.kind == "comma"
         if e.kind in {"np", "and", "comma"}:
             continue
+        if e.kind == "verb" and parted:  # "four bedrooms, the guest room is downstairs"
+            break
         if e.kind in {"cue", "colon"}:
             break
     return None
@@ -333,10 +337,12 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
     return []
 
 
-def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one branch per case: a grammar
+def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911, PLR0912 - one branch per case: a grammar
     """Return the rooms that a phrase without role points at, where there are such rooms."""
     e, stock = sentence[k], state.inventory
     same = [r for r in stock.of(e.type) if not (r.extra and r.span is not None and r.span[0] > e.first)]
+    if not e.plural and not e.number and e.type in {"bathroom", "bedroom"}:  # "... a bath; further a guest bath"
+        same = [r for r in same if not (r.role in ROLES and r.span is not None and r.span[0] > e.last)]
     if not same:  # "..., another bath" comes later
         return [stock.add(e.type, "", e.text, level)]
     if level is not None:
@@ -375,7 +381,7 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
 
 def _repeated_bare(sentence: list[Element], k: int) -> bool:
     """Whether a list names the same kind of room again: "bedroom, bedroom, bath"."""
-    if sentence[k].type in ALONE:
+    if sentence[k].type in ALONE or (k + 1 < len(sentence) and sentence[k + 1].kind == "verb"):
         return False
     for j in range(k - 1, -1, -1):
         e = sentence[j]

@@ -36,13 +36,15 @@ def measures(clause: Clause, e: Element) -> None:
     e.amounts = []
 
 
-def has(clause: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one branch per case: a grammar
+def has(clause: Clause, k: int, e: Element) -> int:  # noqa: PLR0911, PLR0912 - one branch per case: a grammar
     """Read "X with its own bathroom", "the living room has a terrace": rooms that hang on the one named before."""
     sentence, stock = clause.sentence, clause.stock
     before = next((x for x in reversed(sentence[:k]) if x.kind in {"np", "home", "pron", "every", "det", "level"}), None)
-    if before is None or before.kind in {"home", "level"} or not (clause.run or clause.subject):
+    if before is None or before.kind == "home" or not (clause.run or clause.subject):
         return k + 1
     ahead = _next_phrase(sentence, k + 1)
+    if before.kind == "level" and (clause.forward or not clause.run or ahead is None or "own" not in sentence[ahead].det):
+        return k + 1
     own = ahead is not None and "own" in sentence[ahead].det and clause.run[-1:] and clause.run[-1].type == "bedroom"
     finite = e.text in FINITE and len(clause.run) == 1  # "the largest bedroom, of 18 m2, has one of the baths"
     if clause.run and sentence[k - 1].kind == "comma" and not clause.verb and not own and not finite:

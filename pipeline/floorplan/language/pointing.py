@@ -19,7 +19,7 @@ def point(state: Reading, before: list[Element], e: Element, but: Group) -> Grou
     if e.value == "pair":  # "in between"
         if not here and len(state.topic) == 2:
             return state.topic
-        twins: Group = next((g for g in reversed(heard) if len(g) == 2), ())
+        twins: Group = next((g for g in reversed(heard) if len(g) == 2 and not all(map(state.inventory.owned, g))), ())
         return twins or tuple(dict.fromkeys(i for g in reversed(heard) for i in g if i not in but))[:2]
     if e.value == "both":
         pair: Group = next((g for g in reversed(heard) if len(g) == 2), ())

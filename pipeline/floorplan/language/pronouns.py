@@ -25,6 +25,8 @@ def pronoun(clause: Clause, k: int, e: Element) -> int:
     if not group and e.value == "one" and ahead is not None and ahead.kind == "owner" and clause.run:
         kind = clause.stock.get(clause.run[-1].ids[0]).type  # "a bathroom for the parents and one for the kids"
         group = (clause.stock.add(kind, "", e.text, None).id,)
+    if e.value in {"group", "both"} and set(group) > set(clause.left_out):
+        group = tuple(i for i in group if i not in clause.left_out)
     e.ids = list(group)
     if group:
         clause.state.understood(e.first, e.last)

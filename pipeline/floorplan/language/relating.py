@@ -41,10 +41,12 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     clause.relative = clause.relative or e.text.startswith("que ")
     if e.value == "between" and (after := door_between(clause, k, e)):
         return after
-    ahead = clause.sentence[k + 1] if k + 1 < len(clause.sentence) else None
-    first = k == 0 or clause.sentence[k - 1].kind in {"comma", "and"}
-    left = () if ahead is not None and ahead.value == "pair" and first else _left(clause, k, e)  # "dazwischen liegt das Bad"
-    group, j = objects(clause, k + 1, e.value, left)
+    if e.value == "from" and e.text.split()[-1] in THERE and (there := _there(clause, k)):
+        state.understood(e.first, e.last)
+        clause.subject = clause.latest = there
+        clause.run, clause.objects = [], ()
+        return k + 1
+    left, group, j = _both_sides(clause, k, e)
     if not group:
         return _alone(clause, k, e)
     apart = k > 0 and clause.sentence[k - 1].kind == "and"  # "a bath, and in the bedroom ..."
@@ -102,6 +104,36 @@ def _again(clause: Clause, k: int, e: Element) -> int:
         clause.state.say(said.what, said.a, group, e)
         clause.latest, clause.objects, clause.run, clause.verb = group, group, [], False
     return max(j, k + 1)
+
+
+def _elliptic(clause: Clause, j: int) -> bool:
+    """Whether a sentence of cues without a verb goes on with another one: what it speaks of was named before."""
+    rest = [x.kind for x in clause.sentence[j : j + 2]]
+    return rest == ["comma", "cue"] and not any(x.kind == "verb" for x in clause.sentence)
+
+
+def _both_sides(clause: Clause, k: int, e: Element) -> tuple[Group, Group, int]:
+    """Return who stands in front of a cue, who behind it, and where reading goes on."""
+    ahead = clause.sentence[k + 1] if k + 1 < len(clause.sentence) else None
+    first = k == 0 or clause.sentence[k - 1].kind in {"comma", "and"}
+    left = () if ahead is not None and ahead.value == "pair" and first else _left(clause, k, e)  # "dazwischen liegt das Bad"
+    wide = len(left) > 2 and ahead is not None and ahead.kind == "np"
+    group, j = objects(clause, k + 1, e.value, () if wide else left)
+    if not group and e.value == "between" and left and first:  # "两间卧室中间是客厅"
+        left = ()
+        group, j = objects(clause, k + 1, e.value, ())
+    if group and not left and k == 0 and _elliptic(clause, j):  # "The dining room ...; open to the kitchen, with a door to the hall"
+        left = clause.state.topic
+    return tuple(i for i in left if i not in group), group, j  # "all rooms round a hall: kitchen, bath, all off the hall"
+
+
+THERE = {"dort", "there", "ahi", "alli", "那 里", "里"}
+
+
+def _there(clause: Clause, k: int) -> Group:
+    """Return the room that "from there" means: the one that was spoken of last."""
+    past = clause.objects or (clause.latest if k else ()) or (clause.state.past[-1] if clause.state.past else ())
+    return past if len(past) == 1 and not past[0].startswith(("*", "<")) else clause.state.topic
 
 
 def _alone(clause: Clause, k: int, e: Element) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from pipeline.floorplan.language.households import settled
 from pipeline.floorplan.language.marks import Mark, Words
 
 ALONE = {"eine", "einen", "eines", "einer", "uno", "una", "another", "otra", "otro"}
@@ -25,6 +26,7 @@ FUNCTIONS = {
 }
 ENTRIES = {"windfang", "vorraum", "vestibuel", "garderobe"}  # in front of a "Diele", which then is the hall behind
 BESIDE = {"room", "suite"}
+SOCIAL = {"living_room", "dining_room", "kitchen", "family_room"}
 PARTS = {"det", "num", "clf", "adj", "size", "fill", "adverb", "verb", "relative", "bound"}  # what may stand in a phrase
 
 
@@ -35,7 +37,22 @@ def resolved(marks: Sequence[Mark], heard: Words) -> list[Mark]:
         made = _vestibule(_room_of(made))
     elif heard.lexicon.language == "zh":
         made = _room_with(made)
-    return _between(_standing(_doubling(_persons(made, heard))))
+    return _between(_standing(_doubling(settled(_persons(_neither(made), heard), heard))))
+
+
+def _neither(marks: list[Mark]) -> list[Mark]:
+    """Read "weder Bad noch WC", "ni el baño ni el aseo" as one negation of both."""
+    made = list(marks)
+    first: int | None = None
+    for k, mark in enumerate(made):
+        if mark.kind in {"stop", "line"}:
+            first = None
+        elif mark.kind == "neg" and first is None and mark.text.split()[0] in {"weder", "ni", "neither"}:
+            first = k
+        elif mark.kind == "neg" and first is not None and mark.text.split()[0] in {"noch", "ni", "nor"}:
+            named = any(m.kind == "room" for m in made[max(first, k - 4) : k])
+            made[k] = replace(mark, kind="join", value="or") if named else mark
+    return made
 
 
 def _vestibule(marks: list[Mark]) -> list[Mark]:
@@ -63,8 +80,15 @@ def _room_of(marks: list[Mark]) -> list[Mark]:
 
 
 def _room_with(marks: list[Mark]) -> list[Mark]:
-    """Read Chinese "一个带卫生间的房间" as a bedroom with a bathroom."""
+    """Read Chinese "一个带卫生间的房间" as a bedroom with a bathroom, "客厅和餐厅是一个大开间" as open, "在它们中间" as in between."""
     made = list(marks)
+    for k in range(1, len(made)):
+        clause = max((j for j in range(k) if made[j].kind in ENDS - {"join"}), default=-1) + 1
+        social = sum(m.kind == "room" and m.value in SOCIAL for m in made[clause:k])
+        if made[k].kind == "home" and made[k].value and social > 1:
+            made[k] = replace(made[k], kind="flag", value="open_plan")
+        if (made[k].kind, made[k].value) == ("cue", "between") and made[k - 1].kind == "pron" and made[k - 1].value in {"group", "both"}:
+            made[k - 1 : k + 1] = [made[k], replace(made[k - 1], value="pair")]
     for k in range(3, len(made)):
         room = made[k].kind == "unit" and made[k].value == "rooms" and made[k - 1].text == "的"
         start = (
@@ -84,7 +108,11 @@ def _persons(marks: list[Mark], heard: Words) -> list[Mark]:
     if not count or place is None:
         return marks
     j = place + 1
-    while j < len(marks) and j - place < 9 and (marks[j].kind in PARTS | {"amount"} or marks[j].value == "has" or marks[j].text == "的"):
+    while (
+        j < len(marks)
+        and j - place < 9
+        and (marks[j].kind in PARTS | {"amount"} or marks[j].value in {"has", "one"} or marks[j].text == "的")
+    ):
         j += 1
     room = marks[j] if j < len(marks) else None
     if room is None or not ((room.kind == "room" and room.value == "bedroom") or (room.kind == "unit" and room.value == "rooms")):
@@ -180,7 +208,7 @@ def _between(marks: list[Mark]) -> list[Mark]:
             continue
         ahead = marks[k + 1].kind if k + 1 < len(marks) else "stop"
         behind = k > 0 and marks[k - 1].kind in BESIDE and ahead in ENDS and mark.text != "之 间"
-        first = ahead == "verb" and (k == 0 or marks[k - 1].kind in ENDS)
+        first = (ahead == "verb" or (ahead == "bound" and marks[k + 1].text in {"是", "为"})) and (k == 0 or marks[k - 1].kind in ENDS)
         if not (mark.text in IN_BETWEEN and (behind or first)):
             continue
         made.append(Mark("pron", "pair", 0.0, False, mark.last, mark.last, "pair"))

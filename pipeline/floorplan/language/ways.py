@@ -17,15 +17,22 @@ THEN = {"then", "dann", "luego", "despues"}
 def excepted(clause: Clause, k: int, e: Element) -> int:
     """Read "all rooms but the pantry open off the hall": those that are left out, and who goes on."""
     group, j = clause.after(k + 1, "except", ())
-    if group:
-        clause.state.say("except", group, (), e)
-        clause.run, clause.latest = [x for x in clause.sentence[k:j] if x.kind == "np"][-1:], group
-        every = next((x for x in clause.sentence[:k] if x.kind == "every"), None)
-        if every is not None and not any(x.kind == "cue" for x in clause.sentence[:k]):  # "all rooms but the pantry open off the hall"
-            clause.run, clause.latest = [every], ("*",)
-        each = next((x for x in clause.sentence[:k] if x.kind == "np" and x.det & {"each", "all"}), None)
-        if each is not None and clause.sentence[k - 1] is each and (rest := [i for i in each.ids if i not in group]):
-            each.ids, clause.run, clause.latest, clause.subject = rest, [each], tuple(rest), tuple(rest)
+    if not group:
+        return max(j, k + 1)
+    clause.state.say("except", group, (), e)
+    clause.left_out = group
+    left = tuple(i for i in clause.run[-1].ids if i not in group) if clause.run and set(group) < set(clause.run[-1].ids) else ()
+    if left and "*" not in left:  # "all but the guest room have a bath"
+        clause.run[-1].ids = list(left)
+        clause.run, clause.latest, clause.subject = clause.run[-1:], left, left
+        return max(j, k + 1)
+    clause.run, clause.latest = [x for x in clause.sentence[k:j] if x.kind == "np"][-1:], group
+    every = next((x for x in clause.sentence[:k] if x.kind == "every"), None)
+    if every is not None and not any(x.kind == "cue" for x in clause.sentence[:k]):  # "all rooms but the pantry open off the hall"
+        clause.run, clause.latest = [every], ("*",)
+    each = next((x for x in clause.sentence[:k] if x.kind == "np" and x.det & {"each", "all"}), None)
+    if each is not None and clause.sentence[k - 1] is each and (rest := [i for i in each.ids if i not in group]):
+        each.ids, clause.run, clause.latest, clause.subject = rest, [each], tuple(rest), tuple(rest)
     return max(j, k + 1)
 
 
