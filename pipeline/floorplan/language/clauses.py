@@ -7,13 +7,14 @@ from dataclasses import replace
 from pipeline.floorplan.language.comparing import compare, factor, superlative
 from pipeline.floorplan.language.facts import ROLES, SOCIAL, Fact, Group, Reading
 from pipeline.floorplan.language.naming import fresh, name
+from pipeline.floorplan.language.objects import objects
 from pipeline.floorplan.language.openness import merge, merge_after, no_door, windows, written_as_one
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import close, level, storey, wing, zone
 from pipeline.floorplan.language.pointing import point
 from pipeline.floorplan.language.pronouns import cast, determiner, every, pronoun
 from pipeline.floorplan.language.quantities import attach, belongs
-from pipeline.floorplan.language.relating import SINGULAR, objects, relate
+from pipeline.floorplan.language.relating import SINGULAR, relate
 from pipeline.floorplan.language.ways import entered
 
 ELSEWHERE = {

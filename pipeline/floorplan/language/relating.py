@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 
 from pipeline.floorplan.language.facts import HALLS, SOCIAL, Group
 from pipeline.floorplan.language.lexicon import ONLY
-from pipeline.floorplan.language.naming import name
-from pipeline.floorplan.language.owning import has, measures
+from pipeline.floorplan.language.objects import objects
+from pipeline.floorplan.language.owning import has
 from pipeline.floorplan.language.phrases import Element
-from pipeline.floorplan.language.places import zone
 from pipeline.floorplan.language.ways import by_way_of, door_between, enter, excepted, through
 
 if TYPE_CHECKING:
@@ -18,11 +17,8 @@ if TYPE_CHECKING:
 
 MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two rooms at the end: "kitchen and bath adjacent"
 THROUGH = {"through", "via", "durch", "ueber", "por", "traves", "经", "过", "通"}
-CLOSED = {"balcony", "garage", "bathroom", "wc", "closet", "storage", "utility", "bedroom"}
-CONNECTS = {"connect", "connects", "connecting", "links", "linking", "joins", "joining", "une", "conecta", "comunica", "verbindet"}
 FINITE = {"abren", "dan", "salen", "open", "lead", "connect", "conectan", "comunican", "desembocan", "llevan", "conducen", "give", "parten"}
 SINGULAR = {"is", "lies", "sits", "stands", "opens", "esta", "este", "es", "sea", "queda", "ist", "liegt", "se encuentra"}
-WIDE = {"leads", "between", "chain", "avoid", "except"}
 
 
 def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, PLR0912 - one answer per kind of cue
@@ -309,120 +305,3 @@ def _ids(phrases: Iterable[Element]) -> Group:
 
 def _place(clause: Clause, e: Element) -> int:
     return next((i for i, x in enumerate(clause.sentence) if x is e), 0)
-
-
-def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:  # noqa: C901, PLR0912 - one branch per kind of element: a grammar
-    """Return the rooms named after a cue, and where reading goes on."""
-    group: list[str] = []
-    sentence = clause.sentence
-    index = end = k
-    joined = ""
-    first: Element | None = None
-    while index < len(sentence):
-        e = sentence[index]
-        if e.kind == "np":
-            comma = any(x.kind == "comma" for x in sentence[index - 3 : index])
-            clausal = cue == "cmp" and joined and ((comma and bool(e.amounts)) or "equal" in e.adjectives)
-            pair = cue == "between" and joined == "and" and len(group) == 1
-            if (
-                e.banned
-                or (group and (not joined or clausal))
-                or (group and first is not None and not pair and not _continues(clause, index, cue, joined, first))
-            ):
-                break
-            private = {clause.stock.get(i).type for i in left if not i.startswith("*")} == {"bedroom"}
-            if private and cue == "leads" and joined == "comma" and e.type in SOCIAL:
-                break  # a bedroom leads to its bath, and the list of rooms goes on
-            ids = name(clause.state, sentence, index, clause.level if clause.forward else None)
-            clause.state.understood(e.first, e.last)
-            measures(clause, e)
-            if e.adjectives & {"largest"} and cue != "cmp":
-                clause.state.say("largest", tuple(ids), tuple(r.id for r in clause.stock.of(e.type)), e)
-            group += [i for i in ids if i not in group and i not in left]
-            first, joined, end = first or e, "", index + 1
-        elif (
-            e.kind in {"pron", "det"}
-            and not group
-            and e.value in {"it", "both", "group", "one", "rest", "some", "each", "all", "self", "pair"}
-        ):
-            if e.kind == "det" and any(x.kind == "np" for x in sentence[index + 1 : index + 2]):
-                index += 1
-                continue
-            if e.value == "self":
-                clause.state.say("itself", left, (), e)
-                return (), index + 1
-            found = clause.point(e, index, left)
-            clause.state.understood(e.first, e.last)
-            return tuple(i for i in found if i not in left), index + 1
-        elif e.kind == "owner" and not group and not any(x.kind in {"np", "word"} for x in sentence[index + 1 : index + 2]):
-            return _theirs(clause, e, left), index + 1
-        elif e.kind == "zone" and not group:
-            zone(clause, index, e)
-            return tuple(e.ids), index + 1
-        elif e.kind == "every" and not group:
-            clause.state.understood(e.first, e.last)
-            return ("*",), index + 1
-        elif (
-            e.kind == "cue"
-            and e.value in {"in", "leads"}
-            and joined
-            and cue in WIDE
-            and not (joined == "comma" and (clause.relative or clause.negative is not None))
-        ) or (group and (e.value == "has" or e.kind == "to") and cue == "leads" and CONNECTS & set(sentence[k - 1].text.split())):
-            joined = joined or "and"  # "connects the kitchen with the garage"
-        elif e.kind in {"comma", "and", "or"}:
-            if not group and e.kind == "comma":
-                break
-            joined = "and" if e.kind in {"and", "or"} else (joined or "comma")
-        elif (
-            e.kind in {"det", "size", "adj", "verb", "word", "owner", "open", "to", "relative"}
-            and not (e.kind == "to" and group and not joined)
-            and not (e.kind in {"verb", "open"} and group)
-        ) or (e.kind == "colon" and not group and cue == "leads"):
-            pass
-        elif e.kind == "amount" and group and sentence[index - 1].kind == "np":
-            break
-        else:
-            break
-        index += 1
-    return tuple(group), end
-
-
-def _theirs(clause: Clause, owner: Element, left: Group) -> Group:
-    """Return the bedroom of those who are named alone: "next to the parents'", "junto al de los padres"."""
-    found = [r.id for r in clause.stock.of("bedroom") if r.role == owner.value and r.id not in left]
-    clause.state.understood(owner.first, owner.last)
-    owner.ids = found or [clause.stock.add("bedroom", owner.value, owner.text, None).id]
-    return tuple(owner.ids)
-
-
-def _continues(clause: Clause, index: int, cue: str, joined: str, first: Element) -> bool:  # noqa: PLR0911 - one answer per case: a grammar
-    """Whether a list after a cue goes on with the phrase at index, or a new statement begins there."""
-    e, sentence = clause.sentence[index], clause.sentence
-    if cue == "open" and e.type in CLOSED and not e.definite:
-        return False  # "a kitchen open to the living room and a terrace": nothing stands open to these
-    ahead = next((x for x in sentence[index + 1 :] if x.kind not in {"det", "amount", "adj", "flag", "word"}), None)
-    starts = ahead is not None and (
-        ahead.kind in {"verb", "cmp", "neg", "but", "relative"} or (ahead.kind == "cue" and ahead.value != "has" and cue != "avoid")
-    )
-    if starts and not (ahead is not None and ahead.kind == "relative"):
-        return False
-    many = any(clause.stock.get(i).type in HALLS for i in (clause.latest or clause.subject) if not i.startswith("*"))
-    if clause.relative and cue == "leads" and joined == "comma" and e.introduces and first.definite and not many:
-        return False  # "a living room that opens to the kitchen, one bedroom and one bath"
-    if (
-        cue in {"leads", "chain"}
-        and joined == "comma"
-        and e.number is not None
-        and first.number is None
-        and not any(x.kind == "and" for x in sentence[index:])
-    ):
-        return False
-    if cue in WIDE:
-        return not (cue == "between" and joined == "comma")
-    if joined == "comma":
-        return False
-    new = bool(e.det & {"indefinite", "another"}) or e.number is not None
-    if cue in {"door", "near", "open", "wall", "from", "ensuite", "cmp", "via"} and new and not e.definite:
-        return bool(first.det & {"indefinite"}) and cue == "near"
-    return not (e.definite != first.definite and not e.definite and cue != "open")
