@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pipeline.floorplan.language.facts import SOCIAL, Group
+from pipeline.floorplan.language.facts import HALLS, SOCIAL, Group
 from pipeline.floorplan.language.naming import name
 from pipeline.floorplan.language.owning import measures
 from pipeline.floorplan.language.phrases import Element
