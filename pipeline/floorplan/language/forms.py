@@ -1,16 +1,8 @@
-"""The forms of a phrase of a lexicon: plurals, and the names of rooms by who they are for."""
+"""The forms of a phrase of a lexicon: its plurals."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-
-OWNED = {  # how the bedroom of somebody is called: patterns, and what stands in front of the people
-    "en": (("room|rooms", "bedroom|bedrooms"), ("", "the ", "a ", "an ", "my ", "our ", "his ", "her ", "their ")),
-    "es": (
-        ("habitación|habitaciones", "dormitorio|dormitorios", "cuarto|cuartos", "recámara|recámaras", "alcoba|alcobas"),
-        ("", "la ", "el ", "los ", "las ", "mi ", "mis ", "su ", "sus ", "un ", "una ", "nuestra ", "nuestro "),
-    ),
-}
 
 
 def _plurals(language: str, phrase: str) -> Iterator[str]:
@@ -50,20 +42,3 @@ def forms(language: str, phrase: str) -> Iterator[tuple[str, bool]]:
     yield single, False
     for form in many or _plurals(language, single):
         yield form, form != single
-
-
-def owned(language: str, owner: str) -> Iterator[tuple[str, bool]]:
-    """Return (phrase, whether it is a plural) of the bedrooms of somebody: "nanny's room", "room for the nanny"; "habitación de la niñera"."""
-    heads, articles = OWNED.get(language, ((), ()))
-    for head in heads:
-        for form, many in zip(head.split("|"), (False, True), strict=True):
-            for article in articles:
-                if language == "en":
-                    yield f"{form} for {article}{owner}", many
-                else:
-                    yield from ((f"{form} {link} {article}{owner}".replace(" de el ", " del "), many) for link in ("de", "para"))
-            if language == "en":
-                bare = owner.removeprefix("the ")
-                yield from ((f"{bare}{end} {form}", many) for end in ("", "'s", "'"))
-    for article in ("la", "el") if language == "es" else ():  # "junto a la de los niños"
-        yield from ((f"{article} de {whose}{owner}".replace(" de el ", " del "), False) for whose in articles[:5])

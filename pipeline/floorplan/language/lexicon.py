@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from pipeline.errors import ContentError
 from pipeline.floorplan.furniture import lexicon as furniture
-from pipeline.floorplan.language.forms import forms, owned
+from pipeline.floorplan.language.forms import forms
 from pipeline.floorplan.language.german import numerals as german_numerals
 from pipeline.floorplan.language.meaning import Meaning
 from pipeline.floorplan.language.text import bare, fold, words
@@ -162,9 +162,6 @@ def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0
         for p in split(phrases):
             for form, many in forms(e.language, p):
                 yield form, Meaning("room", key, plural=many)
-    for role, phrases in e.owners.items():
-        for p in split(phrases):
-            yield from ((form, Meaning("room", f"bedroom/{role}", plural=many)) for form, many in owned(e.language, p))
     for p in split(e.kitchen_diner):
         yield p, Meaning("room", "kitchen/diner")
     for key, phrases in e.suites.items():

@@ -16,7 +16,7 @@ FAR = 9  # marks
 
 def housed(marks: Sequence[Mark]) -> list[Mark]:
     """Return the marks with the rooms of people named as theirs."""
-    return _partial(_counted(_having(_for(_each(_whose(list(marks)))))))
+    return _partial(_counted(_having(_theirs(_for(_each(_whose(list(marks))))))))
 
 
 def _partial(marks: list[Mark]) -> list[Mark]:
@@ -34,7 +34,8 @@ def _bedroom(mark: Mark) -> bool:
 
 def _of(mark: Mark, owner: Mark) -> Mark:
     """Return a bedroom of somebody."""
-    return replace(mark, kind="room", value=f"bedroom/{owner.value}", number=0.0)
+    first, last = min(mark.first, owner.first), max(mark.last, owner.last)
+    return replace(mark, kind="room", value=f"bedroom/{owner.value}", number=0.0, first=first, last=last)
 
 
 def _whose(marks: list[Mark]) -> list[Mark]:
@@ -79,17 +80,39 @@ def _for(marks: list[Mark]) -> list[Mark]:
     """Read "a small room for the baby" as the baby's."""
     made = list(marks)
     for k in range(len(made) - 1, -1, -1):
-        if made[k].kind != "owner":
+        if k >= len(made) or made[k].kind != "owner":
             continue
-        j = k - 1
-        while j > 0 and (made[j].kind in {"det", "adj"} or made[j].text in POSSESSIVE):
-            j -= 1
-        link = j
-        j -= 1
+        link = _link(made, k)
+        j = link - 1
         while j > 0 and made[j].kind in {"post", "size", "adj", "amount"}:
             j -= 1
-        if j >= 0 and made[link].text in FOR and made[j].kind == "room" and made[j].value == "bedroom":
+        if link > 0 and made[j].kind == "room" and made[j].value == "bedroom":
             made[j : k + 1] = [_of(made[j], made[k]), *made[j + 1 : link]]
+    return made
+
+
+def _link(marks: Sequence[Mark], k: int) -> int:
+    """Return the place of the "for" in front of the people at k; -1 where there is none."""
+    j = k - 1
+    while j > 0 and (marks[j].kind in {"det", "adj"} or marks[j].text in POSSESSIVE) and marks[j].text.split()[0] not in FOR:
+        j -= 1
+    return j if j >= 0 and marks[j].text and marks[j].text.split()[0] in FOR else -1
+
+
+def _theirs(marks: list[Mark]) -> list[Mark]:
+    """Read "the nanny's room", and in Spanish "la de los niños" by itself."""
+    made = list(marks)
+    for k in range(len(made) - 1, -1, -1):
+        article = k > 0 and made[k - 1].text in {"la", "el", "al"} and not (k > 1 and made[k - 2].kind in {"room", "post"})
+        if k < len(made) and made[k].kind == "adj" and made[k].text.startswith(("de ", "para ")) and article:
+            made[k] = _of(made[k], made[k])  # "menos el de invitados"
+        if k >= len(made) or made[k].kind != "owner":
+            continue
+        link = _link(made, k)
+        if k + 1 < len(made) and _bedroom(made[k + 1]) and (made[k + 1].kind == "room" or made[k + 1].text == "room"):
+            made[k : k + 2] = [_of(made[k + 1], made[k])]
+        elif link > 0 and made[link - 1].text in {"la", "el", "al"} and not (link > 1 and made[link - 2].kind in {"room", "post"}):
+            made[link : k + 1] = [_of(replace(made[k], first=made[link].first), made[k])]
     return made
 
 
