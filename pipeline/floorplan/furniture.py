@@ -22,7 +22,7 @@ SLACK = 1.1  # areas may turn out this much larger than their target
 @functools.cache
 def lexicon() -> Mapping[str, Any]:
     """Read the words, groups and natural rooms of furniture."""
-    found: dict[str, Any] = yaml.load(LEXICON.read_text(encoding="utf-8"), Loader=LOADER)  # noqa: S506 - a safe loader
+    found: dict[str, Any] = LOADER(LEXICON.read_text(encoding="utf-8")).get_single_data()
     return found
 
 
