@@ -23,7 +23,10 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--start", type=int, default=0, help="failures: number of the first program")
     parser.add_argument("--jobs", type=int, default=2, help="failures: processes")
     parser.add_argument("--source", choices=("prior", "trees"), action="append", help="failures: programs of these only")
+    from benchmarks.planning import record
+
     chosen = parser.parse_args(arguments)
+    record.commit()  # of the code that is loaded now, whatever becomes of the files meanwhile
     failed = 0
     for what in chosen.what or COUNTS:
         count = chosen.count or COUNTS[what]

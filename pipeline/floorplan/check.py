@@ -67,6 +67,20 @@ def names(program: FloorProgram) -> None:
             raise ImpossibleError(f"no room is called {selector!r}", f"rooms are {', '.join(r.id for r in program.rooms)}")
 
 
+def storeys(program: FloorProgram) -> None:
+    """Raise ImpossibleError when a storey has no room, or a stated link would join rooms of two storeys; levels are filled in."""
+    for level in range(program.storeys):
+        if not any(r.level == level and r.type != "staircase" for r in program.rooms):
+            message = f"{program.storeys} storeys are asked for, and level {level} has no room"
+            raise ImpossibleError(message, "name a room for each storey, or ask for fewer storeys", cited(program, "storeys"))
+    for k in program.links:
+        ones, others = program.select(k.a), program.select(k.b)
+        meet = any(a.level == b.level or "staircase" in {a.type, b.type} for a in ones for b in others)
+        if k.stated and ones and others and not meet:
+            words = cited(program, f"links.{k.a}-{k.b}", f"links.{k.b}-{k.a}", f"rooms.{k.a}", f"rooms.{k.b}")
+            raise ImpossibleError(f"{k.a} and {k.b} are to be joined and lie on different storeys", "put both on one storey", words)
+
+
 def _shell(program: FloorProgram) -> None:
     shell = program.shell
     if shell.outer_wall < shell.inner_wall:

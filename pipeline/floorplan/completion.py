@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pipeline.floorplan.areas import with_areas
-from pipeline.floorplan.check import names, reach
+from pipeline.floorplan.check import names, reach, storeys
 from pipeline.floorplan.connect import connect, is_forbidden, resolve
 from pipeline.floorplan.distance import distances, nearness
 from pipeline.floorplan.furniture import allot, spread
@@ -21,6 +21,7 @@ def complete(program: FloorProgram) -> FloorProgram:
     program = program.model_copy(update={"rooms": _storeys(program)})
     program = program.model_copy(update={"rooms": _add_circulation(program)})
     names(program)
+    storeys(program)
     program = _join(program)
     program = program.model_copy(update={"entrance": _entrance(program)})
     return allot(with_areas(spread(program)))

@@ -94,10 +94,19 @@ def _options(program: FloorProgram, groups: Sequence[frozenset[str]], root: str,
     usual = [made for g in waiting for made in _hosted(program, fronts[g][0], main, links)]
     yield from usual
     if not usual:
-        front, at_root = fronts[waiting[0]][0], next(r for r in program.rooms if r.id == root)
-        yield Link(a=root, b=front.id, kind="open" if "staircase" in {front.type, at_root.type} else "door")
+        yield from _unusual(program, fronts[waiting[0]][:1], frozenset({root}))
+        yield from (made for g in waiting for made in _unusual(program, fronts[g], main))
     if wide:
         yield from (made for g in waiting for front in fronts[g][1:] for made in _hosted(program, front, main, links))
+
+
+def _unusual(program: FloorProgram, fronts: Sequence[RoomReq], main: frozenset[str]) -> Iterator[Link]:
+    """Yield the links by which any of some rooms may hang on any room of `main` on its storey, on what one walks through first."""
+    hosts = sorted((r for r in program.rooms if r.id in main), key=lambda r: (not DEFAULTS[r.type].through, _order(r)))
+    for front in fronts:
+        for host in hosts:
+            if _meet(host, front):
+                yield Link(a=host.id, b=front.id, kind="open" if "staircase" in {front.type, host.type} else "door")
 
 
 def _groups(program: FloorProgram, links: Sequence[Link]) -> list[frozenset[str]]:

@@ -23,6 +23,7 @@ CUT_TRIES = ((1.0, 0.7), (0.7, 0.7))  # where the outline's corners are to be cu
 LEAF_GAP = 0.03  # leaf tip to other leaves' sweeps [m]
 ANGLE = 1.5  # how far leaves open [rad]
 ENTRANCE_WIDTH, GATE_WIDTH, BALCONY_WIDTH = 0.9, 2.4, 0.85
+KEPT_FREE = frozenset({"balcony", "wc", "staircase"})  # leaves open away from these
 SILL, WINDOW_HEIGHT = 0.9, 1.3
 BATH_SILL, BATH_WINDOW = 1.4, 0.8
 LINTEL, LEAST_WINDOW = 0.1, 0.6  # between openings and ceilings; height of a window under a low one [m]
@@ -129,8 +130,7 @@ def place(
         width = max(width, program.accessibility.min_door)
         roomy = min(requests[far].area.target or 0, requests[near].area.target or 0) >= 9.0
         widths = ([0.9] if roomy and width < 0.9 else []) + [width]
-        outdoor = requests[far].type in {"balcony", "wc"}
-        sides = (near, far) if outdoor else (far, near)
+        sides = (near, far) if requests[far].type in KEPT_FREE else (far, near)
         if not any(_door(site, between, "door", w, side, DOOR_HEIGHT, rng) for side in sides for w in widths):
             return None
     for room in program.rooms:

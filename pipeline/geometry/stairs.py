@@ -2,7 +2,7 @@
 
 A staircase is one room with a shaft through all its storeys. Where each storey has exactly one opening to it, a landing lies before each
 opening, and steps of equal rise and equal share of the shaft's wall wind from landing to landing, the longer way round. A staircase that
-several rooms of a storey open to, or whose outline is not convex, stays without steps: a flight would stand in somebody's way.
+several rooms of a storey open to, that a leaf turns into, or whose outline is not convex, stays without steps: they would stand in the way.
 """
 
 from __future__ import annotations
@@ -55,6 +55,8 @@ def _storey(plan: Plan, room: Room, level: int) -> list[Step]:
     storeys = list(plan.levels_of(room))
     mouths = [[o for o in plan.openings if room.room_id in o.rooms and o.level == k and o.kind != "window"] for k in storeys]
     shape = shapely.Polygon(room.polygon)
+    if any(o.swing and o.swing.room_id == room.room_id for m in mouths for o in m):
+        return []
     if len(storeys) < 2 or any(len(m) != 1 for m in mouths) or shape.convex_hull.area > shape.area + 1e-6:
         return []
     well = _Well(room.polygon)

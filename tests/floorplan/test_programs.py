@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from pipeline import params, taxonomy
 from pipeline.errors import ContentError, RefusedError
-from pipeline.floorplan import complete, describe, json_schema, parse, prior
+from pipeline.floorplan import complete, describe, json_schema, parse, prior, solve
 from pipeline.floorplan.check import check, reach
 from pipeline.floorplan.defaults import DEFAULTS
 from pipeline.floorplan.priors import TYPES, PriorSettings
@@ -167,3 +167,22 @@ def test_area_relations_are_met_by_targets():
 def test_contradictions_are_refused(made, words):
     with pytest.raises(RefusedError, match=words):
         check(complete(made))
+
+
+@pytest.mark.parametrize("lower", ["studio_room", "office", "gym", "garage", "bedroom"])
+def test_storeys_are_joined_by_the_staircase_alone(lower):
+    made = complete(FloorProgram(storeys=2, rooms=(room("a", lower, level=0), room("b", "bathroom", level=1)), only=True))
+    level = {r.id: r.level for r in made.rooms if r.type != "staircase"}
+    assert all(level[k.a] == level[k.b] for k in made.links if {k.a, k.b} <= set(level))
+    assert len(solve(made, 0).rooms) == len(made.rooms)
+
+
+def test_a_storey_without_a_room_is_refused():
+    with pytest.raises(RefusedError, match="level 1 has no room"):
+        complete(FloorProgram(storeys=2, rooms=(room("a", "studio_room"), room("b", "bathroom", level=0)), only=True))
+
+
+def test_a_stated_link_between_storeys_is_refused():
+    rooms = (room("kitchen", "kitchen", level=0), room("bed", "bedroom", level=1))
+    with pytest.raises(RefusedError, match="different storeys"):
+        complete(FloorProgram(storeys=2, rooms=rooms, links=(Link(a="kitchen", b="bed", stated=True),)))
