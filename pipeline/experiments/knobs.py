@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import multiprocessing
+from collections.abc import Collection, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from functools import cache
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.execution import single_thread
 from pipeline.floorplan import FloorProgram, complete
 from pipeline.floorplan.energy import TERMS
 from pipeline.floorplan.program import Link, RoomReq, Style
@@ -22,6 +26,7 @@ DEEP = ("entry", "living_room", "dining_room", "kitchen", "hallway", "bedroom", 
 GROUND, UPPER = ("entry", "living_room", "kitchen", "wc"), ("bedroom", "bedroom", "bathroom")
 
 
+@cache
 def subjects() -> dict[str, FloorProgram]:
     """Return the program on which each knob is measured: one in which what it weighs is in tension with the rest.
 
@@ -39,15 +44,23 @@ def _rooms(types: tuple[str, ...], level: int | None = None) -> tuple[RoomReq, .
     return tuple(RoomReq.model_validate({"id": f"r{level or 0}_{i}", "type": k, "level": level}) for i, k in enumerate(types))
 
 
-def knob_table(seeds: int) -> dict[str, Any]:
-    """Return {values, seeds, terms: {knob: {mean, error, step, ends}}}.
+def knob_table(seeds: int, jobs: int = 1, names: Collection[str] = TERMS) -> dict[str, Any]:
+    """Return {values, seeds, terms: {knob: {mean, error, step, ends}}} of the knobs `names`; `jobs` processes share the work.
 
     `mean` and its standard `error` (7,) of the knob's own term, unweighted, over plans as they are returned; `step` (6, 2) differences of
-    neighbouring values, seed by seed, with their standard errors; `ends` (2,) the same from the first value to the last.
+    neighbouring values, seed by seed, with their standard errors; `ends` (2,) the same from the first value to the last. A seed draws the same
+    random numbers whatever the knob's value.
     """
+    work = [(name, value, seed) for name in TERMS if name in names for value in VALUES for seed in range(seeds)]
+    if jobs > 1:
+        # spawned, not forked: a child must not inherit the threads of libraries that are already at work
+        with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"), initializer=single_thread) as pool:
+            measured = list(pool.map(_measure, work, chunksize=16))
+    else:
+        measured = [_measure(one) for one in work]
     terms: dict[str, Any] = {}
-    for (name, program), knob in zip(subjects().items(), range(len(TERMS)), strict=True):
-        found = np.array([_measure(program, name, value, knob, seeds) for value in VALUES])
+    for k, name in enumerate(n for n in TERMS if n in names):
+        found = np.array(measured).reshape(-1, len(VALUES), seeds)[k]
         mean, error = _mean(found.T)
         steps = [_mean((after - before)[:, None]) for before, after in pairwise(found)]
         ends = _mean((found[-1] - found[0])[:, None])
@@ -60,9 +73,12 @@ def knob_table(seeds: int) -> dict[str, Any]:
     return {"values": list(VALUES), "seeds": seeds, "terms": terms}
 
 
-def _measure(program: FloorProgram, name: str, value: int, knob: int, seeds: int) -> NDArray[np.float64]:
+def _measure(one: tuple[str, int, int]) -> float:
+    """Return the knob's own term of one plan: of the knob `name`, turned to `value`, from `seed`."""
+    name, value, seed = one
+    program = subjects()[name]
     turned = program.model_copy(update={"style": program.style.model_copy(update={name: value})})
-    return np.array([search(turned, seed).terms[knob] for seed in range(seeds)])
+    return float(search(turned, seed).terms[TERMS.index(name)])
 
 
 def _mean(samples: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
