@@ -92,16 +92,16 @@ def propose(grid: Labels, n: int, fixed: Ints, draws: Floats, k: int, touched: I
 def score(grid: Labels, spec: Spec, weights: Floats, penalty: float) -> tuple[float, float, Floats]:
     """Return (energy with the penalty, hard violation, the twelve terms) of a grid."""
     fixed = np.zeros(spec.target.size + 1, np.int64)
-    _, soft, hard, values, _, _ = run(grid, spec, weights, fixed, np.zeros((0, DRAWS)), 1.0, 1.0, penalty)
+    _, soft, hard, values, _, _ = run(grid, spec, weights, fixed, np.zeros((0, DRAWS)), 1.0, 1.0, penalty, 1)
     return soft + (penalty * hard if penalty else 0.0), hard, values
 
 
 def run(
-    start: Labels, spec: Spec, weights: Floats, fixed: Ints, draws: Floats, hot: float, cold: float, penalty: float
+    start: Labels, spec: Spec, weights: Floats, fixed: Ints, draws: Floats, hot: float, cold: float, penalty: float, most: int
 ) -> tuple[Labels, float, float, Floats, int, int]:
-    """Anneal from `start` with one proposal per row of `draws`; see `anneal`. Scratch space is made here."""
+    """Anneal from `start` with at most one proposal per row of `draws`; see `anneal`. Scratch space is made here."""
     out = empty(spec.target.size, start.shape[0] - 2, start.shape[1] - 2)
-    return anneal(start, spec, tree(spec.link, spec.root), out, weights, fixed, draws, hot, cold, penalty)
+    return anneal(start, spec, tree(spec.link, spec.root), out, weights, fixed, draws, hot, cold, penalty, most)
 
 
 @compiled
@@ -134,8 +134,9 @@ def anneal(  # noqa: PLR0912 - compiled
     hot: float,
     cold: float,
     penalty: float,
+    most: int,
 ) -> tuple[Labels, float, float, Floats, int, int]:
-    """Anneal from `start`; return the best plan: grid, energy, hard violation (0: all hold), terms, moves accepted and evaluated.
+    """Anneal from `start` until `most` proposals are evaluated or the draws are spent; return the best plan: grid, energy, hard violation (0: all hold), terms, moves accepted and evaluated.
 
     The violation's weight grows from a quarter of `penalty` to all of it; the best state is the one of least (violation, energy).
     """
@@ -157,9 +158,10 @@ def anneal(  # noqa: PLR0912 - compiled
     best_soft, best_hard = soft, hard
     best_values = values.copy()
     accepted, evaluated = 0, 0
-    steps = draws.shape[0]
-    for k in range(steps):
-        done = k / steps
+    for k in range(draws.shape[0]):
+        if evaluated == most:
+            break
+        done = evaluated / most
         heat = hot * (cold / hot) ** done
         weight = penalty * (0.25 + 0.75 * done)
         if not propose(trial, n, fixed, draws, k, touched):
@@ -167,12 +169,12 @@ def anneal(  # noqa: PLR0912 - compiled
         evaluated += 1
         measure(trial, n, out)
         # the draw says how much worse the proposal may be; most fall at the first, cheap look
-        most = np.inf if hard == np.inf else soft + weight * hard - heat * np.log(draws[k, 7] + 1e-300)
+        bound = np.inf if hard == np.inf else soft + weight * hard - heat * np.log(draws[k, 7] + 1e-300)
         new_hard, new_soft, united = np.inf, np.inf, together(out, spec.near)
         for look in range(2):
             new_hard = terms(trial, out, spec, edges, values, areas, shape, touched, look == 1)
             new_soft = _weighted(values, weights) + united
-            if new_hard == np.inf or new_soft + weight * new_hard > most:
+            if new_hard == np.inf or new_soft + weight * new_hard > bound:
                 new_hard = np.inf
                 break
         if new_hard < np.inf:

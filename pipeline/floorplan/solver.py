@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -11,16 +10,16 @@ from numpy.typing import NDArray
 from pipeline import seeds
 from pipeline.entities.plan import Plan
 from pipeline.errors import RefusedError
-from pipeline.floorplan import anneal, slicing
+from pipeline.floorplan import anneal
 from pipeline.floorplan.check import check
 from pipeline.floorplan.completion import complete
-from pipeline.floorplan.energy import TERMS, area, tree, useful_area
+from pipeline.floorplan.energy import TERMS, area, useful_area
 from pipeline.floorplan.grid import Labels
-from pipeline.floorplan.layout import Wishes
 from pipeline.floorplan.program import FloorProgram, RoomReq
 from pipeline.floorplan.realisation import build
-from pipeline.floorplan.stairwell import rectangle, stamp
+from pipeline.floorplan.stairwell import rectangle
 from pipeline.floorplan.storeys import Storey, founded, storey
+from pipeline.floorplan.trees import Effort, Outline, Trees
 
 TRIES = 24  # whole attempts before a program is refused
 LENGTHS = (1, 1, 2, 2, 4, 4, 4, 4, 8)  # how much longer attempts search
@@ -30,22 +29,9 @@ SLOT = 3  # cells of outside between two rooms that one can leave free
 EASED_ASPECT = 2.2  # of the outline then
 STARTS, MOST_STARTS = 4, 9  # slicing trees per attempt: usual, and while all of them lack something
 RUNS = 2  # annealing runs per storey and attempt, from the best of these
-SLICES = 700  # slicing proposals per room and start
-PROPOSALS, LONGEST = 180, 3  # annealing proposals per room and run; how much longer runs get
+PROPOSALS, LONGEST = 80, 3  # annealing proposals that are evaluated per room and run; how much longer runs get
+DRAWN = 2.5  # how many are drawn at most for one that is evaluated: some change nothing
 HOT, COLD, PENALTY = 1.2, 0.01, 40.0
-LEAST_CUT = 4  # cells
-SLICE_HOT, SLICE_COLD = 6.0, 0.05
-
-
-@dataclass
-class Effort:
-    """What a search took: whole attempts, slicing searches and their proposals, annealing runs and their evaluated proposals."""
-
-    attempts: int = 0
-    slicings: int = 0
-    sliced: int = 0
-    runs: int = 0
-    proposals: int = 0
 
 
 class Solution(NamedTuple):
@@ -85,14 +71,6 @@ def search(program: FloorProgram, seed: int, keys: tuple[int, ...] = ()) -> Solu
         f"no floor plan found in {TRIES} attempts for {len(program.rooms)} rooms in {program.total_area.target:.0f} m2",
         "ask for fewer links to one room, a larger total area, or drop a separation",
     )
-
-
-class Outline(NamedTuple):
-    """The building's rectangle [cells] that all storeys share, and how many of its corners are cut out."""
-
-    width: int
-    height: int
-    cuts: int
 
 
 def _attempt(program: FloorProgram, rng: np.random.Generator, attempt: int, effort: Effort) -> tuple[Plan, NDArray[np.float64]] | None:
@@ -170,8 +148,9 @@ def _storey_grid(
 ) -> tuple[Labels, NDArray[np.float64]] | None:
     """Return a grid without violations: the best of several annealing runs, each from one of the best slicing trees; and its terms."""
     starts: list[tuple[float, Labels]] = []
+    trees = Trees(request, program, outline)
     for trial in range(MOST_STARTS):
-        cells, cost = _slice(request, program, outline, rng, length, effort)
+        cells, cost = trees.grow(rng, length, effort)
         if np.isfinite(cost):
             soft, hard, _ = anneal.score(cells, request.spec, request.weights, 0.0)
             starts.append((soft + PENALTY * min(hard, 10.0 if request.spec.stair_room >= 0 else np.inf), cells))
@@ -183,66 +162,12 @@ def _storey_grid(
     if request.spec.stair_room >= 0:
         fixed[request.spec.stair_room] = 1
     best: tuple[Labels, NDArray[np.float64]] | None = None
-    least = np.inf
+    least, most = np.inf, PROPOSALS * n * min(length, LONGEST)
     for _, cells in sorted(starts, key=lambda s: s[0])[:RUNS]:
-        draws = rng.random((PROPOSALS * n * min(length, LONGEST), anneal.DRAWS))
-        grid, soft, hard, terms, _, evaluated = anneal.run(cells, request.spec, request.weights, fixed, draws, HOT, COLD, PENALTY)
+        draws = rng.random((int(DRAWN * most), anneal.DRAWS))
+        grid, soft, hard, terms, _, evaluated = anneal.run(cells, request.spec, request.weights, fixed, draws, HOT, COLD, PENALTY, most)
         effort.runs += 1
         effort.proposals += evaluated
         if hard <= 1e-9 and soft < least:
             best, least = (grid, terms), soft
     return best
-
-
-def _slice(
-    request: Storey, program: FloorProgram, outline: Outline, rng: np.random.Generator, length: int, effort: Effort
-) -> tuple[Labels, float]:
-    """Anneal one slicing tree in the outline; return its bordered grid and cost (infinite when a cut-out is misplaced)."""
-    n, spec, width, height = len(request.rooms), request.spec, outline.width, outline.height
-    spare = width * height - request.gross.sum()
-    # a storey that is clearly smaller than the outline leaves a corner free
-    voids = max(outline.cuts, int(spare > 0.1 * width * height))
-    empty = np.full(voids, max(spare, 1.0) / max(voids, 1))
-    gross = np.concatenate([request.gross, empty])
-    m = n + voids
-    order = rng.permutation(m)
-    expr = np.empty(2 * m - 1, np.int64)
-    expr[0] = order[0]
-    for k in range(1, m):
-        expr[2 * k - 1] = order[k]
-        expr[2 * k] = slicing.V if k % 2 else slicing.H
-    draws = rng.random((SLICES * m * length, slicing.DRAWS))
-    square = np.where(spec.square > 0, 0.6, 0.08) * 2.0**program.style.squareness
-    low = np.concatenate([request.gross_low, empty * 0.7])
-    high = np.concatenate([request.gross_high, empty * 1.3])
-    flexible = request.weights[1] * 4.0 / n * spec.heed * (request.gross_high > request.gross_low)
-    pairs = np.argwhere(np.triu((spec.need > 0) | (spec.ban > 0) | (spec.apart > 0), 1))
-    one, other = pairs.T
-    wishes = Wishes(
-        np.column_stack([pairs, spec.need[one, other], spec.ban[one, other]]), spec.apart[one, other], spec.outside, spec.corner, spec.strict,
-        square, spec.stair, spec.stair_room, spec.flight, spec.between, spec.habitable, spec.useful, tree(spec.link, spec.root), spec.near,
-        gross, flexible, request.weights,
-    )  # fmt: skip
-    effort.slicings += 1
-    effort.sliced += draws.shape[0]
-    rects, cost = slicing.search(expr, draws, SLICE_HOT, SLICE_COLD, width, height, n, gross, low, high, wishes)
-    grid = np.full((height + 2, width + 2), n, np.int16)
-    for i, (x0, y0, x1, y1) in enumerate(rects.tolist()):
-        grid[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = min(i, n)
-    cut = rects[n:]
-    corners = [
-        (x0 == 0) != (x1 == width) and (y0 == 0) != (y1 == height) and min(x1 - x0, y1 - y0) >= LEAST_CUT for x0, y0, x1, y1 in cut.tolist()
-    ]
-    if not all(corners) or (voids == 2 and not _same_side(cut)):
-        return grid, np.inf
-    if spec.stair_room >= 0:
-        stamp(grid, spec.stair_room, tuple(spec.stair.tolist()), n)
-    return grid, float(cost)
-
-
-def _same_side(cut: NDArray[np.int64]) -> bool:
-    """Whether two cut-outs lie in different corners of one side, with building between them."""
-    (ax0, ay0, ax1, ay1), (bx0, by0, bx1, by1) = cut.tolist()
-    across = max(ax0, bx0) - min(ax1, bx1) >= LEAST_CUT and (ay0 == 0) == (by0 == 0)
-    along = max(ay0, by0) - min(ay1, by1) >= LEAST_CUT and (ax0 == 0) == (bx0 == 0)
-    return bool(across or along)

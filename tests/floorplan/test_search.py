@@ -6,8 +6,8 @@ import pytest
 from pipeline.floorplan import anneal, grid, layout, slicing
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.program import FloorProgram, RoomReq
-from pipeline.floorplan.solver import Effort, Outline, _slice
 from pipeline.floorplan.storeys import storey
+from pipeline.floorplan.trees import Effort, Outline, Trees
 
 
 def program():
@@ -58,7 +58,7 @@ def start(seed):
     request = storey(program(), 0)
     rng = np.random.default_rng(seed)
     side = int(np.ceil(np.sqrt(request.gross.sum())))
-    return request, _slice(request, program(), Outline(side, side, 0), rng, 1, Effort())[0], rng
+    return request, Trees(request, program(), Outline(side, side, 0)).grow(rng, 1, Effort())[0], rng
 
 
 def test_annealing_keeps_the_outline_and_whole_rooms_and_is_repeatable():
@@ -67,7 +67,7 @@ def test_annealing_keeps_the_outline_and_whole_rooms_and_is_repeatable():
         n = len(request.rooms)
         draws = rng.random((2000, anneal.DRAWS))
         fixed = np.zeros(n + 1, np.int64)
-        found = [anneal.run(cells, request.spec, request.weights, fixed, draws, 1.2, 0.01, 40.0) for _ in range(2)]
+        found = [anneal.run(cells, request.spec, request.weights, fixed, draws, 1.2, 0.01, 40.0, 2000) for _ in range(2)]
         np.testing.assert_array_equal(found[0][0], found[1][0])
         best = found[0][0]
         assert ((best == n) == (cells == n)).all()
@@ -84,7 +84,9 @@ def test_annealing_never_returns_worse_than_its_start_and_longer_is_better():
         n = len(request.rooms)
         fixed = np.zeros(n + 1, np.int64)
         first, hard0, _ = anneal.score(cells, request.spec, request.weights, 0.0)
-        _, soft, hard, _, _, _ = anneal.run(cells, request.spec, request.weights, fixed, rng.random((1000, anneal.DRAWS)), 1.2, 0.01, 40.0)
+        _, soft, hard, _, _, _ = anneal.run(
+            cells, request.spec, request.weights, fixed, rng.random((1000, anneal.DRAWS)), 1.2, 0.01, 40.0, 1000
+        )
         assert (hard, soft) <= (hard0, first)
         gains.append(first + 40 * hard0 - soft - 40 * hard)
     assert np.mean(gains) > 0
@@ -111,7 +113,7 @@ def test_the_kept_state_is_what_its_grid_says():
         request, cells, rng = start(seed)
         draws = rng.random((800, anneal.DRAWS))
         best, soft, hard, values, _, evaluated = anneal.run(
-            cells, request.spec, request.weights, np.zeros(len(request.rooms) + 1, np.int64), draws, 1.2, 0.01, 40.0
+            cells, request.spec, request.weights, np.zeros(len(request.rooms) + 1, np.int64), draws, 1.2, 0.01, 40.0, 800
         )
         again, violation, terms = anneal.score(best, request.spec, request.weights, 0.0)
         np.testing.assert_allclose(values, terms, atol=1e-9)
