@@ -33,7 +33,7 @@ TERMS = (
     "stair_fit",
     "stair_snug",
 )
-WEIGHTS = (2.0, 24.0, 1.6, 40.0, 1.6, 2.0, 1.0, 0.12, 4.0, 0.5, 2.0, 1.0)
+WEIGHTS = (5.0, 24.0, 1.6, 40.0, 2.4, 2.0, 1.0, 0.5, 10.0, 0.5, 12.0, 8.0)
 TONGUE = 0.76  # m between inner faces: no part of a room is narrower
 TOGETHER = 4.0  # weight of what belongs together, beside the twelve
 SPLIT = 4.5  # m2 charged when a room falls apart at a neck; the legacy solver charges 45 in its units of 0.25 m2 x 0.4

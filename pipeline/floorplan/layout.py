@@ -13,6 +13,8 @@ from pipeline.geometry.compiled import compiled
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
+LONG = 1.8  # ratio of sides from which a room that should be square is penalised as a corridor
+
 
 @compiled
 def contact(rect: Ints, a: int, b: int) -> int:
@@ -47,7 +49,8 @@ class Wishes(NamedTuple):
     far: Floats  # (k,) their row of `apart`
     outside: Ints
     corner: Ints
-    least: Ints
+    least: Ints  # hard, and
+    wide: Ints  # wanted least width [cells]
     square: Floats
     stair: Ints
     stair_room: int
@@ -60,6 +63,7 @@ class Wishes(NamedTuple):
     wanted: Floats  # (m,) areas up to wall centre lines [cells], and
     heed: Floats  # (n,) what missing them costs, for rooms whose area is flexible
     weights: Floats  # (12,) of the terms of `energy`
+    unit: float  # side of a cell [m]
 
 
 @compiled
@@ -125,6 +129,7 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
     """
     pairs, far = wishes.pairs, wishes.far
     outside, corner, least, square, heed, wanted = wishes.outside, wishes.corner, wishes.least, wishes.square, wishes.heed, wishes.wanted
+    wide, narrow = wishes.wide, wishes.weights[9] * wishes.unit * wishes.unit
     total = 0.0
     diagonal = (width * width + height * height) ** 0.5
     m = rect.shape[0]
@@ -134,26 +139,28 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
         along = min(rect[a, 3], rect[b, 3]) - max(rect[a, 1], rect[b, 1])
         run = max(across, along) if min(across, along) == 0 else 0
         if run < need:
-            total += 6.0 + 5.0 * (need - run) / need + 12.0 * (max(0, -across) + max(0, -along)) / diagonal
+            total += 11.0 + 8.0 * (need - run) / need + 18.0 * (max(0, -across) + max(0, -along)) / diagonal
         elif pairs[k, 3] > 0 and run > 0:
-            total += 5.0 + 0.2 * run
+            total += 8.0 + 0.4 * run
         if far[k] > 0.0:
             dx = 0.5 * (rect[a, 0] + rect[a, 2] - rect[b, 0] - rect[b, 2])
             dy = 0.5 * (rect[a, 1] + rect[a, 3] - rect[b, 1] - rect[b, 3])
             off = (dx * dx + dy * dy) ** 0.5 / diagonal
             if off < far[k]:
-                total += 3.0 + 30.0 * (far[k] - off)
+                total += 6.0 + 50.0 * (far[k] - off)
     if total > most:
         return float(total)
     for a in range(n):
         w, h = rect[a, 2] - rect[a, 0], rect[a, 3] - rect[a, 1]
         short, long = min(w, h), max(w, h)
         if short < least[a]:
-            total += 4.0 + 6.0 * (least[a] - short) / least[a]
+            total += 6.0 + 8.0 * (least[a] - short) / least[a]
         ratio = long / short
         total += square[a] * (ratio - 1.0)
-        if ratio > 2.0 and square[a] > 0.2:
-            total += 2.0 * (ratio - 2.0)
+        if ratio > LONG and square[a] > 0.2:
+            total += 5.0 * (ratio - LONG)
+        if short < wide[a]:  # term min_width charges its whole area at once: here as far as it is too narrow, a slope to walk down
+            total += 2.0 * narrow * w * h * (wide[a] - short) / wide[a]
         off = w * h / gross[a]
         total += 3.0 * (max(off, 1.0 / off) - 1.0)
         if heed[a] > 0.0:
@@ -168,9 +175,9 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
             for v in range(n, m):
                 best = max(best, contact(rect, a, v))
             if best < outside[a]:
-                total += 6.0 + 6.0 * (outside[a] - best) / outside[a]
+                total += 8.0 + 7.0 * (outside[a] - best) / outside[a]
         if corner[a] > 0 and _corners(rect, a, width, height, n) == 0:
-            total += 9.0
+            total += 12.0
     if total > most:
         return float(total)
     for k in range(wishes.between.shape[0]):
@@ -180,7 +187,7 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
             middle = rect[a, axis] + rect[a, axis + 2]
             ahead += 0.25 * (rect[b, axis] + rect[b, axis + 2] - middle) * (rect[c, axis] + rect[c, axis + 2] - middle)
         if ahead > 0.0:
-            total += 3.0 + 10.0 * ahead**0.5 / diagonal
+            total += 6.0 + 20.0 * ahead**0.5 / diagonal
     for v in range(n, m):
         sides = 0
         if (rect[v, 0] == 0) != (rect[v, 2] == width):

@@ -16,8 +16,8 @@ from pipeline.floorplan.program import FloorProgram
 from pipeline.floorplan.stairwell import stamp
 from pipeline.floorplan.storeys import Storey
 
-SLICES = 700  # slicing proposals per room and tree
-SLICE_HOT, SLICE_COLD = 6.0, 0.05
+SLICES = 1000  # slicing proposals per room and tree
+SLICE_HOT, SLICE_COLD = 8.0, 0.05
 LEAST_CUT = 4  # cells
 
 
@@ -60,8 +60,8 @@ class Trees:
         one, other = pairs.T
         self.wishes = Wishes(
             np.column_stack([pairs, spec.need[one, other], spec.ban[one, other]]), spec.apart[one, other], spec.outside, spec.corner, spec.strict,
-            square, spec.stair, spec.stair_room, spec.flight, spec.between, spec.habitable, spec.useful, tree(spec.link, spec.root), spec.near,
-            self.gross, flexible, request.weights,
+            spec.least, square, spec.stair, spec.stair_room, spec.flight, spec.between, spec.habitable, spec.useful, tree(spec.link, spec.root), spec.near,
+            self.gross, flexible, request.weights, spec.unit,
         )  # fmt: skip
 
     def grow(self, rng: np.random.Generator, length: int, effort: Effort) -> tuple[Labels, float]:
