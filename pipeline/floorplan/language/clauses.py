@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from pipeline.floorplan.language.comparing import compare, factor, superlative
 from pipeline.floorplan.language.facts import ROLES, SOCIAL, Fact, Group, Reading
-from pipeline.floorplan.language.naming import fresh, name
+from pipeline.floorplan.language.naming import backward, fresh, name
 from pipeline.floorplan.language.objects import objects
 from pipeline.floorplan.language.openness import merge, merge_after, no_door, windows, written_as_one
 from pipeline.floorplan.language.phrases import Element
@@ -103,7 +103,8 @@ class Clause:
             and ("own" in e.det or (self.owning and self.run and not e.det))
             and e.type in {"bedroom", "bathroom", "kitchen"}
         ):
-            ids = tuple(fresh(self.state, e, storey(self, k), self.owner))
+            level = storey(self, k)
+            ids = tuple(fresh(self.state, e, backward(self.sentence, k, None) if level is None else level, self.owner))
         else:
             ids = tuple(name(self.state, self.sentence, k, storey(self, k)))
         if self.left_out and e.det & {"each", "all"} and set(ids) > set(self.left_out):
@@ -166,7 +167,7 @@ class Clause:
         if room.type == "bedroom" and "own" in e.det:
             room.role = room.role or self.owner
             self.owning = room.id
-        elif self.owning and room.type == "bathroom" and not room.role and not self.stock.owned(room.id):
+        elif self.waiting is None and self.owning and room.type == "bathroom" and not room.role and not self.stock.owned(room.id):
             self.give(ids, (self.owning,), e)
         elif self.owning and room.type == "kitchen":
             room.role = self.stock.get(self.owning).role
@@ -281,6 +282,11 @@ class Clause:
     def _but(self, k: int, _: Element) -> int:
         self.negative = None  # "not open, but next to the dining room"
         return k + 1
+
+    def _no_bath(self, k: int, e: Element) -> int:
+        rooms = tuple(name(self.state, self.sentence, k + 1, storey(self, k + 1)))
+        self.state.say("no_ensuite", ("*bathroom",), rooms, e)
+        return k + 2
 
     def _adj(self, k: int, e: Element) -> int:
         before = self.sentence[k - 1] if k else None

@@ -9,7 +9,7 @@ from pipeline.floorplan.language.marks import Mark, Words
 from pipeline.floorplan.language.phrases import Element
 
 HALLS = {"hallway", "entry"}
-GROUPS = {"door", "leads", "open", "near", "wall", "ban", "avoid", "away", "no_through"}
+GROUPS = {"no_ensuite", "door", "leads", "open", "near", "wall", "ban", "avoid", "away", "no_through"}
 SOCIAL = {"kitchen", "dining_room", "living_room", "family_room"}
 PERSONAL = {"bathroom", "wc", "closet", "balcony", "office", "storage", "sunroom"}
 ROLES = {"primary", "guest", "child"}  # said by an adjective

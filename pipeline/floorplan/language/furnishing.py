@@ -17,6 +17,7 @@ from pipeline.floorplan.language.vocabulary import (
     COMMAS,
     FIGURES,
     HAN_DIGITS,
+    LEADING,
     MOST,
     NUMBERS,
     ROOMS,
@@ -313,7 +314,9 @@ class Scan:
         after = self.words[k + length].text if k + length < len(self.words) else ""
         before = [w.text for w in self.words[max(0, k - 2) : k]]
         return (
-            after in ROOMS or (after != "" and after in "间房室" and "\u3400" <= self.words[k].text <= "\u9fff") or before == ["walk", "in"]
+            after in ROOMS | LEADING
+            or (after != "" and after in "间房室" and "\u3400" <= self.words[k].text <= "\u9fff")
+            or before == ["walk", "in"]
         )
 
     def _look(self, k: int) -> int:

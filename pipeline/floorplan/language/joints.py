@@ -305,7 +305,7 @@ def _apart(draft: Draft, state: Reading) -> None:  # noqa: C901, PLR0912 - one b
         draft.relate("separation", a, b, WINGS, Fact("away", (a,), (b,), 0.0, e.first, e.last))
     for fact in state.facts:
         if fact.what == "no_ensuite":
-            for bed in stock.of("bedroom"):
+            for bed in (r for r in stock.of("bedroom") if not fact.b or r.id in fact.b):
                 for bath in stock.of("bathroom"):
                     draft.forbid("connected", bath.id, bed.id, None, fact.first, fact.last)
         if fact.what == "no_through":

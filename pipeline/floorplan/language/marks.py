@@ -284,7 +284,8 @@ def _amount(marks: Sequence[Mark], k: int, lex: Lexicon) -> tuple[Mark, int] | N
         return None
     if i + 1 < len(marks) and marks[i].value == "total" and lex.bounds.get(marks[i + 1].text) in {"or_less", "or_more", "most", "least"}:
         total, i = True, i + 1  # "50 m2 in total at most"
-    behind = lex.bounds.get(marks[i].text, "about") if i < len(marks) else "about"
+    compared = unit.value == "share" and i < len(marks) and marks[i].kind in {"cmp", "adj", "size"}  # "30 % larger than"
+    behind = lex.bounds.get(marks[i].text, "about") if i < len(marks) and not compared else "about"
     added = i + 1 < len(marks) and marks[i].text == "+" and marks[i + 1].kind in {"room", "suite", "det", "adj", "size", "pron"}
     if behind != "about" and not added and not (i + 1 < len(marks) and marks[i + 1].kind == "num"):
         bound, i = ("least" if behind in {"or_more", "least"} else "most"), i + 1

@@ -40,7 +40,7 @@ def introduce(state: Reading, sentences: list[list[Element]]) -> None:
                     and _whole(sentence, k) == whole
                 ):
                     _few(state, e)
-                    made = _count_all(state, e) if whole else _introduced(state, sentence, k, _backward(sentence, k, level))
+                    made = _count_all(state, e) if whole else _introduced(state, sentence, k, backward(sentence, k, level))
                     e.ids = [r.id for r in made]
 
 
@@ -57,7 +57,7 @@ def _first_level(sentence: list[Element]) -> int | None:
     return int(first.value) if first is not None and first.kind == "level" else None
 
 
-def _backward(sentence: list[Element], k: int, level: int | None) -> int | None:
+def backward(sentence: list[Element], k: int, level: int | None) -> int | None:
     """Return the storey of a phrase: of the level named before it, or behind it where sentences name levels behind."""
     if level is not None:
         return level
@@ -254,7 +254,7 @@ def fresh(state: Reading, e: Element, level: int | None, owner: str) -> list[str
     """Return a room that somebody has of their own: one that was only counted, or a new one."""
     role = e.role if e.role in ROLES else ""
     theirs = [r for r in state.inventory.of(e.type) if r.role == owner and e.type == "bedroom"]
-    slots = theirs or [r for r in state.inventory.of(e.type) if r.open_slot and not r.role]
+    slots = theirs or [r for r in state.inventory.of(e.type) if r.open_slot and not r.role and (level is None or r.level in {None, level})]
     room = _close(slots[0], role, e.text) if slots else state.inventory.add(e.type, role, e.text, level)
     e.ids = [room.id]
     return e.ids
@@ -364,7 +364,12 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
             loose = [r for r in same if r.open_slot]
             return last if len(last) == number else (loose if len(loose) >= number else same)[:number]
         return same
-    if not e.det and e.type == "bathroom" and state.heard.lexicon.language != "zh" and all(stock.owned(r.id) for r in same):
+    if (
+        not e.det
+        and e.type == "bathroom"
+        and state.heard.lexicon.language != "zh"
+        and all(stock.owned(r.id) or r.role == "ensuite" for r in same)
+    ):
         return [stock.add(e.type, "", e.text, level)]  # "a master with en suite, ..., bathroom"
     if not e.det and (_repeated_bare(sentence, k) or (e.type == "storage" and all(e.text != r.surface for r in same))):
         return [stock.add(e.type, "", e.text, level)]

@@ -13,6 +13,9 @@ def ban(sentence: list[Element]) -> None:  # noqa: C901, PLR0912 - one branch pe
     for k, e in enumerate(sentence):
         if e.kind == "neg":
             j = _target(sentence, k + 1)
+            if j is not None and _placed(sentence, j):
+                e.kind, sentence[j].kind, sentence[j + 1].kind = "used", "flag", "no_bath"
+                continue
             if j is None:
                 _any(sentence, k)
                 if k + 1 == len(sentence) or sentence[k + 1].kind in {"comma", "close", "but"}:
@@ -81,6 +84,13 @@ def _behind(sentence: list[Element], k: int) -> None:
             return
         if e.kind not in {"verb", "colon", "det", "word"}:
             return
+
+
+def _placed(sentence: list[Element], j: int) -> bool:
+    """Whether what is ruled out is a bathroom of one bedroom: "no bath in the master"."""
+    rest = sentence[j + 1 : j + 3]
+    bath = sentence[j].type == "bathroom" and not sentence[j].definite
+    return bath and len(rest) == 2 and rest[0].value in {"in", "has"} and rest[0].kind == "cue" and rest[1].type == "bedroom"
 
 
 def _related(sentence: list[Element], j: int) -> bool:

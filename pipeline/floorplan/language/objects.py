@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from pipeline.floorplan.language.facts import HALLS, SOCIAL, Group
 from pipeline.floorplan.language.naming import name
-from pipeline.floorplan.language.owning import measures
+from pipeline.floorplan.language.owning import FINITE, measures
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import zone
 
@@ -18,7 +18,7 @@ CONNECTS = {"connect", "connects", "connecting", "links", "linking", "joins", "j
 WIDE = {"leads", "between", "chain", "avoid", "except"}
 
 
-def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:  # noqa: C901, PLR0912 - one branch per kind of element: a grammar
+def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:  # noqa: C901, PLR0912, PLR0915 - one branch per kind of element: a grammar
     """Return the rooms named after a cue, and where reading goes on."""
     group: list[str] = []
     sentence = clause.sentence
@@ -77,6 +77,9 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
             and not (joined == "comma" and (clause.relative or clause.negative is not None))
         ) or (group and (e.value == "has" or e.kind == "to") and cue == "leads" and CONNECTS & set(sentence[k - 1].text.split())):
             joined = joined or "and"  # "connects the kitchen with the garage"
+        elif e.kind == "flag" and not group and any(x.kind == "np" for x in sentence[index + 1 : index + 3]):
+            clause.state.understood(e.first, e.last)  # "next to a step-free bathroom"
+            clause.state.flags.setdefault(e.value, e)
         elif e.kind in {"comma", "and", "or"}:
             if not group and e.kind == "comma":
                 break
@@ -110,7 +113,8 @@ def _continues(clause: Clause, index: int, cue: str, joined: str, first: Element
         return False  # "a kitchen open to the living room and a terrace": nothing stands open to these
     ahead = next((x for x in sentence[index + 1 :] if x.kind not in {"det", "amount", "adj", "flag", "word"}), None)
     starts = ahead is not None and (
-        ahead.kind in {"verb", "cmp", "neg", "but", "relative"} or (ahead.kind == "cue" and ahead.value != "has" and cue != "avoid")
+        ahead.kind in {"verb", "cmp", "neg", "but", "relative", "factor"}
+        or (ahead.kind == "cue" and (ahead.value != "has" or ahead.text in FINITE) and cue != "avoid")
     )
     if starts and not (ahead is not None and ahead.kind == "relative"):
         return False

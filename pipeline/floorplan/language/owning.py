@@ -12,7 +12,28 @@ from pipeline.floorplan.language.places import storey
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
 
-FINITE = {"has", "have", "gets", "get", "contains", "tiene", "tienen", "cuenta con", "dispone de", "hat", "haben", "bekommt"}
+FINITE = {
+    "has",
+    "have",
+    "gets",
+    "get",
+    "contains",
+    "needs",
+    "need",
+    "requires",
+    "must have",
+    "should have",
+    "necesita",
+    "necesitan",
+    "debe tener",
+    "tiene",
+    "tienen",
+    "cuenta con",
+    "dispone de",
+    "hat",
+    "haben",
+    "bekommt",
+}
 HOSTS = {
     "living_room",
     "family_room",
@@ -36,12 +57,15 @@ def measures(clause: Clause, e: Element) -> None:
     e.amounts = []
 
 
-def has(clause: Clause, k: int, e: Element) -> int:  # noqa: PLR0911, PLR0912 - one branch per case: a grammar
+def has(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, PLR0912 - one branch per case: a grammar
     """Read "X with its own bathroom", "the living room has a terrace": rooms that hang on the one named before."""
     sentence, stock = clause.sentence, clause.stock
     before = next((x for x in reversed(sentence[:k]) if x.kind in {"np", "home", "pron", "every", "det", "level"}), None)
     if before is None or before.kind == "home" or not (clause.run or clause.subject):
         return k + 1
+    whole = before.kind == "pron" and before.ids and all(not i.startswith("*") and stock.get(i).whole for i in before.ids)
+    if whole and clause.state.homes:
+        return k + 1  # "a one-bedroom flat. It needs a study": the flat
     ahead = _next_phrase(sentence, k + 1)
     if before.kind == "level" and (clause.forward or not clause.run or ahead is None or "own" not in sentence[ahead].det):
         return k + 1

@@ -8,6 +8,7 @@ from pipeline.floorplan.language.facts import Group
 from pipeline.floorplan.language.owning import one_each
 from pipeline.floorplan.language.phrases import Element
 
+ONE_THAT = {"in", "ensuite", "near", "door"}  # what tells the second of "one bathroom for guests and one inside the master"
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
 
@@ -17,14 +18,25 @@ def pronoun(clause: Clause, k: int, e: Element) -> int:
     ahead = next((x for x in clause.sentence[k + 1 :] if x.kind not in {"det", "verb"}), None)
     if e.value == "rest" and ahead is not None and ahead.kind in {"level", "colon"}:
         return every(clause, k, e)
+    if e.text == "which" and k and clause.sentence[k - 1].kind == "comma" and clause.latest and not clause.latest[0].startswith("*"):
+        clause.subject, clause.objects = clause.latest, ()  # "from the hall, which also gives access to ..."
+        clause.run = [Element("np", "", e.first, e.last, e.text, ids=list(clause.latest))]
+        return k + 1
+    told = ahead is not None and (ahead.kind in {"owner", "level"} or (ahead.kind == "cue" and ahead.value in ONE_THAT))
+    joined = k > 0 and clause.sentence[k - 1].kind in {"and", "comma"}
+    like = clause.run[-1] if clause.run else None
+    if e.value == "one" and told and joined and like is not None and like.kind == "np" and (like.number == 1.0 or "indefinite" in like.det):
+        room = clause.stock.add(clause.stock.get(like.ids[0]).type, "", e.text, None)
+        e.ids, clause.latest = [room.id], (room.id,)  # "one bathroom for guests and one inside the master"
+        clause.run = clause.run if ahead is not None and ahead.kind == "level" else []
+        clause.subject = (room.id,)
+        clause.state.understood(e.first, e.last)
+        return k + 1
     group = clause.point(e, k, clause.subject if e.value == "it" and (clause.objects or clause.run) else ())
     spoken = [i for g in (clause.subject, *reversed(clause.state.past)) for i in g if not i.startswith("*")]
     bed = next((i for i in spoken if clause.stock.get(i).type == "bedroom"), None)
     if e.value == "rest" and bed is not None and (count := _others(clause, e)):
         group = _made(clause, bed, count)
-    if not group and e.value == "one" and ahead is not None and ahead.kind == "owner" and clause.run:
-        kind = clause.stock.get(clause.run[-1].ids[0]).type  # "a bathroom for the parents and one for the kids"
-        group = (clause.stock.add(kind, "", e.text, None).id,)
     if e.value in {"group", "both"} and set(group) > set(clause.left_out):
         group = tuple(i for i in group if i not in clause.left_out)
     e.ids = list(group)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from pipeline.floorplan.language.facts import HALLS, SOCIAL, Group
 from pipeline.floorplan.language.lexicon import ONLY
-from pipeline.floorplan.language.objects import objects
+from pipeline.floorplan.language.objects import CLOSED, objects
 from pipeline.floorplan.language.owning import has
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.ways import by_way_of, door_between, enter, excepted, through
@@ -193,6 +193,9 @@ def _inverted(clause: Clause, k: int, j: int) -> bool:
 
 def _emit(clause: Clause, e: Element, left: Group, group: Group) -> None:
     state, cue = clause.state, "door" if e.value in {"from", "chain", "in"} else e.value
+    kinds = {clause.stock.get(i).type for i in left if not i.startswith("*")}
+    if cue == "open" and e.text == "open to" and not clause.verb and kinds & CLOSED:
+        cue = "leads"  # "the bedroom and the toilet open to a hallway"
     if cue == "apart":  # a kitchen apart from the living room has a door; a bedroom apart from it lies away
         kinds = {clause.stock.get(i).type for i in (*left, *group) if not i.startswith("*")}
         cue = "not_open" if kinds <= SOCIAL else "away"

@@ -19,6 +19,7 @@ SHIFTED = {"first floor": "1", "first storey": "1", "second floor": "2", "second
 
 def widen(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with shorthand written out."""
+    marks = _premises(_percent(marks))
     made = _studies(_floors(_paired(_activities(list(marks))), heard), heard)
     return _bedrooms(_titled(_summed(_both(_partial(_half_baths(_counts(made))), heard), heard)))
 
@@ -70,6 +71,29 @@ def _bedrooms(marks: list[Mark]) -> list[Mark]:
             made.insert(k, Mark("det", "all", 0.0, True, mark.first, mark.first, "todas las"))
             return _bedrooms(made)
     return made
+
+
+def _percent(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "30 % larger than" as 1.3 times as large as."""
+    made = list(marks)
+    for k in range(len(marks) - 1):
+        share, ahead = marks[k], marks[k + 1]
+        if share.kind == "amount" and share.value == "share" and ahead.kind == "cmp" and ahead.value in {"larger", "smaller"}:
+            number = 1.0 + share.number if ahead.value == "larger" else 1.0 / max(1.0 - share.number, 0.1)
+            made[k] = Mark("factor", "", number, False, share.first, share.last, share.text)
+    return made
+
+
+def _premises(marks: list[Mark]) -> list[Mark]:
+    """Read "Small office: reception, two meeting rooms" as premises, not as one of the rooms."""
+    k = next((i for i, m in enumerate(marks) if m.kind in {"room", "home"}), -1)
+    if k < 0 or marks[k].value != "office" or k + 1 >= len(marks) or marks[k].plural or any(m.kind == "home" for m in marks):
+        return marks
+    listed = marks[k + 1].kind == "colon" or (
+        (marks[k + 1].kind, marks[k + 1].value) == ("cue", "has") and any(m.value == "meeting_room" for m in marks[k:])
+    )
+    several = sum(m.kind == "room" for m in marks) > 2
+    return [*marks[:k], replace(marks[k], kind="home", value=""), *marks[k + 1 :]] if listed and several else marks
 
 
 def _summed(marks: list[Mark], heard: Words) -> list[Mark]:

@@ -30,6 +30,7 @@ NUMBERS = {
     "ochenta": 80, "noventa": 90,
 }  # fmt: skip
 FIGURES = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
+LEADING = frozenset({"through", "leading", "opening", "durch", "por"})  # behind a closet that one walks through
 MOST = 1e6  # of any amount
 HAN_DIGITS = {c: k for k, c in enumerate("零一二三四五六七八九")} | {"两": 2, "俩": 2}
 ROOMS = frozenset({"room", "rooms", "area", "corner", "niche", "nook", "zone", "space", "raum", "ecke", "bereich"})

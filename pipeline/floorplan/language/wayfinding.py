@@ -20,7 +20,7 @@ def ways(marks: Sequence[Mark]) -> list[Mark]:
     """Return the marks with each way said by a cue."""
     made: list[Mark] = []
     for sentence in _sentences(marks):
-        made += _again(_entering(_going(_access(sentence))))
+        made += _again(_through(_entering(_going(_access(sentence)))))
     return made
 
 
@@ -91,6 +91,22 @@ def _entering(marks: list[Mark]) -> list[Mark]:
         room = room_at(made, k + 1)
         if room is not None and room + 1 < len(made) and _into(made[room + 1]) and room_at(made, room + 2) is not None:
             made[room + 1] = replace(made[room + 1], kind="cue", value="leads")
+    return made
+
+
+def _through(marks: list[Mark]) -> list[Mark]:
+    """Read "connects to the kitchen through the utility room" as by way of it."""
+    made = list(marks)
+    for k in range(2, len(marks) - 1):
+        way = any(m.kind == "cue" and m.value in {"leads", "door"} for m in marks[max(0, k - 5) : k])
+        if (
+            way
+            and marks[k].kind == "fill"
+            and marks[k].text == "through"
+            and marks[k - 1].kind == "room"
+            and room_at(marks, k + 1) is not None
+        ):
+            made[k] = replace(marks[k], kind="cue", value="by")
     return made
 
 
