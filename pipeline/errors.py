@@ -30,6 +30,7 @@ class UsageError(SfgenError):
 
 
 class RefusedError(SfgenError):
-    """A well-formed request that cannot be met (exit code 3)."""
+    """A well-formed request that cannot be met (exit code 3). `code` names the kind of refusal to programs."""
 
     exit_code = 3
+    code: ClassVar[str] = "refused"

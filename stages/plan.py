@@ -12,7 +12,7 @@ from pipeline.entities.plan import Plan
 from pipeline.errors import RefusedError, UsageError
 from pipeline.experiments.prompt_file import read_prompts
 from pipeline.experiments.prompts import measured, report
-from pipeline.floorplan import FloorProgram, plan_json, refusal_json, request, solve
+from pipeline.floorplan import FloorProgram, plan_json, refusal_json, request, solve, warm
 from pipeline.floorplan.assumptions import assumptions
 from pipeline.floorplan.characters import terminal
 from pipeline.floorplan.document import document_schema
@@ -37,8 +37,11 @@ def main(
     png_path: Path | None = None,
 ) -> None:
     """Plan the prompt, or read the plan in `source`, and show it. A refusal is written to the JSON file too, then raised."""
-    for path in (svg_path, png_path, json_path):
+    targets = (json_path, svg_path, png_path)
+    for path in targets:
         _check_target(path)
+    if [str(path) for path in targets].count(STDOUT) > 1:
+        raise UsageError("two things are to be written to the terminal", f"give {STDOUT} once, and names of files for the rest")
     repairs: list[dict[str, str]] = []
     assumed: list[dict[str, str]] = []
     try:
@@ -54,12 +57,12 @@ def main(
         raise
     _write_json(json_path, plan_json(plan, program, repairs, assumed))
     if svg_path is not None:
-        write_bytes(svg_path, svg(plan).encode())
+        _write(svg_path, svg(plan).encode())
     if png_path is not None:
-        write_bytes(png_path, png(plan))
+        _write(png_path, png(plan))
     if json_path is None and svg_path is None and png_path is None:
         sys.stdout.write(show(plan, program, assumed))
-    if str(json_path) != STDOUT:
+    if STDOUT not in {str(path) for path in targets}:
         sys.stdout.write("".join(f"repaired: {r['where']}: {r['text']}\n" for r in repairs))
 
 
@@ -71,7 +74,9 @@ def schema(_root: Path) -> None:
 def score(_root: Path, *, prompts: Path, seeds: int = 5, json_path: Path | None = None) -> None:
     """Plan every prompt of a file with several seeds; print scores where there is ground truth, failures and seconds everywhere."""
     _check_target(json_path)
-    found = measured(read_prompts(prompts), seeds)
+    cases = read_prompts(prompts)
+    warm()  # no prompt pays for what is compiled once
+    found = measured(cases, seeds)
     _write_json(json_path, found)
     if str(json_path) != STDOUT:
         sys.stdout.write(report(found))
@@ -97,6 +102,14 @@ def _check_target(path: Path | None) -> None:
         raise UsageError(f"{path} is a folder", "name a file")
     if not path.absolute().parent.is_dir():
         raise UsageError(f"the folder {path.parent} does not exist", "make it first")
+
+
+def _write(path: Path, data: bytes) -> None:
+    if str(path) == STDOUT:
+        sys.stdout.flush()
+        sys.stdout.buffer.write(data)
+    else:
+        write_bytes(path, data)
 
 
 def _write_json(path: Path | None, document: object) -> None:

@@ -20,6 +20,8 @@ PRIVATE = {"bathroom", "wc", "closet", "balcony", "storage", "office", "sunroom"
 class ImpossibleError(RefusedError):
     """A request that contradicts itself; `clashes` are the words of the prompt that do."""
 
+    code = "impossible"
+
     def __init__(self, message: str, remedy: str, clashes: Iterable[Evidence] = ()) -> None:
         self.clashes = tuple(dict.fromkeys(clashes))
         words = sorted({c.text for c in self.clashes})

@@ -87,9 +87,9 @@ class ClashDocument(_Strict):
 
 
 class RefusedDocument(_Strict):
-    """Why there is no plan."""
+    """Why there is no plan: `impossible` (the words or the program exclude it), `own_plan`, `unsound` (a plan of the user's own), `refused` (else)."""
 
-    code: str
+    code: Literal["impossible", "own_plan", "unsound", "refused"]
     message: str
     clashes: list[ClashDocument] = []
 
@@ -171,7 +171,7 @@ def _rounded(points: np.ndarray[Any, np.dtype[np.float64]]) -> list[list[float]]
 def refusal_json(error: RefusedError) -> dict[str, Any]:
     """Return the document that stands for a plan that was refused."""
     clashes = [{"text": c.text, "start": c.start, "end": c.end} for c in getattr(error, "clashes", ())]
-    refused = {"code": getattr(error, "code", "refused"), "message": str(error), "clashes": clashes}
+    refused = {"code": error.code, "message": str(error), "clashes": clashes}
     empty = dict.fromkeys(("entrance", "inner_wall", "outer_wall", "storey_height", "program"))
     return {"version": VERSION, "rooms": [], "openings": [], **empty, "repairs": [], "assumed": [], "refused": refused}
 

@@ -2,6 +2,7 @@
 
 import json
 import xml.etree.ElementTree as ET
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from pipeline.errors import ContentError, RefusedError, UsageError
 from pipeline.floorplan import parse, plan_from_json, plan_json, prior, refusal_json, solve
 from pipeline.floorplan.characters import terminal
+from pipeline.floorplan.document import PlanDocument
 from pipeline.floorplan.draw import image, svg
 from pipeline.floorplan.program import FloorProgram
 from stages.plan import main
@@ -116,3 +118,23 @@ def test_two_storeys_are_drawn():
     stairs = next(r for r in plan_json(plan)["rooms"] if r["type"] == "staircase")
     assert stairs["levels"] == [0, 1]
     assert plan_json(solve(prior(np.random.default_rng(0)), 0))["rooms"][0]["levels"] == [0]
+
+
+def test_a_file_may_be_the_terminal(tmp_path, capsysbinary, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    main(tmp_path, prompt="a studio", svg_path=Path("-"))
+    ET.fromstring(capsysbinary.readouterr().out)
+    main(tmp_path, prompt="a studio", png_path=Path("-"))
+    assert capsysbinary.readouterr().out.startswith(b"\x89PNG")
+    main(tmp_path, prompt="a studio", json_path=Path("-"), svg_path=Path("a.svg"))
+    assert json.loads(capsysbinary.readouterr().out)["refused"] is None
+    with pytest.raises(UsageError, match="two things"):
+        main(tmp_path, prompt="a studio", json_path=Path("-"), svg_path=Path("-"))
+    assert [p.name for p in tmp_path.iterdir()] == ["a.svg"]
+
+
+@pytest.mark.parametrize(("prompt", "code"), [("12 rooms in 20 m2", "impossible"), ("Квартира с двумя спальнями", "refused")])
+def test_refusals_have_codes(tmp_path, capsys, prompt, code):
+    with pytest.raises(RefusedError):
+        main(tmp_path, prompt=prompt, json_path=Path("-"))
+    assert PlanDocument.model_validate_json(capsys.readouterr().out).refused.code == code
