@@ -6,14 +6,13 @@ import json
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from textwrap import fill
 
 from pipeline.entities.plan import Plan
 from pipeline.errors import RefusedError, UsageError
 from pipeline.experiments.prompt_file import read_prompts
 from pipeline.experiments.prompts import measured, report
 from pipeline.floorplan import FloorProgram, plan_json, refusal_json, request, solve, warm
-from pipeline.floorplan.assumptions import assumptions
+from pipeline.floorplan.assumptions import assumptions, shown
 from pipeline.floorplan.characters import terminal
 from pipeline.floorplan.document import document_schema
 from pipeline.floorplan.draw import png, svg
@@ -22,7 +21,6 @@ from pipeline.homes.soundness import require_sound
 from pipeline.manifest import write_bytes, write_json
 
 STDOUT = "-"
-COLUMNS = 80  # of the terminal
 
 
 def main(
@@ -84,12 +82,7 @@ def score(_root: Path, *, prompts: Path, seeds: int = 5, json_path: Path | None 
 
 def show(plan: Plan, program: FloorProgram, assumed: Sequence[Mapping[str, str]] = ()) -> str:
     """Return the plan in characters, with what was assumed and the words that were not understood."""
-    text = terminal(plan)
-    if assumed:
-        text += "assumed, for nobody said it:\n"
-        for each in assumed:
-            line = f"{each['field']:9s} {each['text']}"
-            text += fill(line, COLUMNS, initial_indent="  ", subsequent_indent=" " * 12, break_on_hyphens=False) + "\n"
+    text = terminal(plan) + shown(assumed)
     if program.unparsed:
         text += "not understood: " + ", ".join(s.text for s in program.unparsed) + "\n"
     return text

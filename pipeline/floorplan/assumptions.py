@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from textwrap import fill
 
 from pipeline.floorplan.areas import usual_area
 from pipeline.floorplan.program import FloorProgram
 
+COLUMNS = 80  # of the terminal
 NEAR = 0.015  # factors on usual areas that differ by less are one
 SIGNS = {"open": "=", "portal": "=", "wall": "|"}
 
@@ -25,6 +27,15 @@ def assumptions(program: FloorProgram) -> list[dict[str, str]]:
         "shell": _shell(program),
     }
     return [{"field": field, "text": text} for field, text in found.items() if text]
+
+
+def shown(assumed: Sequence[Mapping[str, str]]) -> str:
+    """Return what was assumed as paragraphs for a terminal."""
+    text = "assumed, for nobody said it:\n" if assumed else ""
+    for each in assumed:
+        line = f"{each['field']:9s} {each['text']}"
+        text += fill(line, COLUMNS, initial_indent="  ", subsequent_indent=" " * 12, break_on_hyphens=False) + "\n"
+    return text
 
 
 def _rooms(program: FloorProgram) -> str:
