@@ -20,6 +20,7 @@ from pipeline.floorplan.furniture import lexicon as furniture
 from pipeline.floorplan.language.forms import forms
 from pipeline.floorplan.language.german import numerals as german_numerals
 from pipeline.floorplan.language.meaning import Meaning
+from pipeline.floorplan.language.spanish import canonical, conjugated, present
 from pipeline.floorplan.language.text import bare, fold, words
 from pipeline.floorplan.program import RoomType, Style
 
@@ -84,6 +85,7 @@ class _Entries(BaseModel):
     flags: dict[str, str] = {}
     joiners: dict[str, str]
     verbs: str = ""
+    conjugated: dict[str, str] = {}
     relatives: str = ""
     adverbs: str = ""
     classifiers: str = ""
@@ -116,6 +118,7 @@ class Lexicon:
     range_from: frozenset[str] = frozenset()
     range_to: frozenset[str] = frozenset()
     bounds: Mapping[str, str] = field(default_factory=dict)
+    tenses: Mapping[str, str] = field(default_factory=dict)  # forms of verbs -> the form that the phrases are made of
 
     def find(self, texts: list[str], start: int) -> tuple[int, Meaning, bool] | None:
         """Return (end, meaning, whether "only" was skipped) of the longest phrase at a word, adverbs inside it skipped."""
@@ -185,6 +188,9 @@ def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0
     yield from keyed("factor", e.factors)
     yield from keyed("via", e.passages)
     yield from keyed("cue", e.cues)
+    for key, phrases in e.conjugated.items():
+        kind, _, value = key.partition(" ")
+        yield from ((form, Meaning(kind, value)) for p in split(phrases) if kind != "known" for form in conjugated(p))
     yield from flat("reciprocal", e.reciprocal)
     yield from keyed("num", e.numerals)
     if e.language == "de":
@@ -296,12 +302,14 @@ def lexicon(language: Language) -> Lexicon:
             Style.model_validate(look.knobs)
     except (OSError, yaml.YAMLError, ValidationError) as error:
         raise ContentError(f"{path.name}: {str(error).splitlines()[0]}", "restore the file from the repository") from error
-    made = Lexicon(language)
+    infinitives = sorted({p.split()[0] for phrases in entries.conjugated.values() for p in split(phrases)})
+    made = Lexicon(language, tenses=canonical(infinitives))
+    made.vocabulary.update(made.tenses, (fold(w) for verb in infinitives for w in (verb, *present(verb))))
     targets: set[str] = set()
     others: dict[str, float] = {}
     for phrase, meaning in _meanings(entries):
         for spelt in _spellings(phrase, language):
-            _insert(made.trie, spelt, meaning)
+            _insert(made.trie, _told(spelt, made), meaning)
             made.vocabulary.update(spelt)
             if meaning.kind in REPAIRED or (meaning.kind == "cue" and meaning.value in CUES):
                 targets.update(w for w in spelt if w.isalpha() and len(w) >= 4)
@@ -325,7 +333,7 @@ def lexicon(language: Language) -> Lexicon:
         for phrase in split(phrases):
             first, second = phrase.split("...")
             for a in _spellings(first.strip(), language):
-                frames += [(a, b, cue) for b in _spellings(second.strip(), language)]
+                frames += [(_told(a, made), _told(b, made), cue) for b in _spellings(second.strip(), language)]
     frames.sort(key=lambda f: -len(f[0]) - len(f[1]))
     made.frames = {word: tuple(f for f in frames if f[0][0] == word) for word in {f[0][0] for f in frames}}
     made.vocabulary.update(w for a, b, _ in frames for w in (*a, *b))
@@ -334,6 +342,11 @@ def lexicon(language: Language) -> Lexicon:
     others = dict.fromkeys(_things(language), FARTHER[True]) | others
     made.others = {w: far for w, far in others.items() if w not in made.targets and w.isalpha()}
     return made
+
+
+def _told(phrase: tuple[str, ...], lex: Lexicon) -> tuple[str, ...]:
+    """Return a phrase with its verbs in the one form that they are read in."""
+    return tuple(lex.tenses.get(w, w) for w in phrase)
 
 
 def _insert(trie: dict[str, Any], key: tuple[str, ...], meaning: Meaning) -> None:
