@@ -81,7 +81,21 @@ def segment(heard: Words) -> list[Mark]:
                 made.append(mark)
         else:
             i += 1
-    return _slim(_halves(_numbers(made, heard)))
+    return _slim(_halves(_numbers(_articles(made, heard), heard)))
+
+
+def _articles(marks: list[Mark], heard: Words) -> list[Mark]:
+    """Tell the Spanish article "el" from the pronoun "él" that accents set apart: in front of a name it is the article."""
+    if heard.lexicon.language != "es":
+        return marks
+    made = list(marks)
+    for k, mark in enumerate(marks[:-1]):
+        if mark.text == "el" and mark.kind == "pron" and heard.tokens[mark.first].text == "el" and marks[k + 1].kind in NAMES:
+            made[k] = replace(mark, kind="det", value="definite")
+    return made
+
+
+NAMES = {"room", "suite", "home", "adj", "size", "num", "ord", "fill", "owner", "word", "zone", "unit"}  # behind an article
 
 
 def _mark(heard: Words, i: int) -> Mark:  # noqa: PLR0911 - one branch per case: a grammar

@@ -129,3 +129,26 @@ def _meanings(node):
             yield from _meanings(value)
         else:
             yield value
+
+
+@pytest.mark.parametrize(
+    ("infinitive", "forms"),
+    [
+        ("abrir", "abra abrirá abrirían abriera"),
+        ("tener", "tenga tendrá tuviera tenían"),
+        ("cruzar", "cruce cruzará cruzaban"),
+        ("llegar", "llegue llegarán llegara"),
+        ("conducir", "conduzca conducirá condujera"),
+        ("dar", "dará diese den"),
+    ],
+)
+def test_spanish_verbs_are_read_in_every_tense(infinitive, forms):
+    known = canonical([infinitive])
+    shown = {fold(p) for p in present(infinitive)}
+    assert {known[fold(f)] for f in forms.split()} <= shown
+
+
+@pytest.mark.parametrize("cue", ["da al", "dan al", "dará al", "diera al", "se abrirá al", "se abriría al", "tendrá puerta al", "comunicará con el"])
+def test_a_spanish_way_is_said_in_any_tense(cue):
+    program = parse(f"El baño {cue} pasillo. Un dormitorio, salón y cocina.")
+    assert {("bath", "hall"), ("hall", "bath")} & {(k.a, k.b) for k in program.links if k.stated}
