@@ -143,7 +143,7 @@ class Lexicon:
 ONLY = frozenset({"only", "nur", "solo", "solamente", "只", "仅", "ausschliesslich", "unicamente"})
 
 
-def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0912 - one loop per section
+def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0912, PLR0915 - one loop per section
     """Return every phrase with its meaning, the sections that win first."""
 
     def flat(kind: str, entry: str) -> Iterator[tuple[str, Meaning]]:

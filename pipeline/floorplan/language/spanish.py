@@ -60,7 +60,7 @@ def tenses(infinitive: str) -> Iterator[tuple[str, str]]:
     made = [wish + ("e" if kind == "ar" else "a")]
     made += [(future or infinitive) + end for end in ("á", "ía")]
     made += [stem + end for end in (("aba", "ara", "ase") if kind == "ar" else ("ía",))]
-    made += [] if kind == "ar" else [(past or stem) + end for end in ("iera", "iese")]
+    made += [] if kind == "ar" else [(past or stem) + end.removeprefix("i" if past.endswith("j") else "-") for end in ("iera", "iese")]
     for form in made:
         yield form, one
         yield form + "n", many

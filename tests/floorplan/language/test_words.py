@@ -5,6 +5,8 @@ import yaml
 
 from pipeline.floorplan.language.lexicon import FOLDER, LANGUAGES, lexicon
 from pipeline.floorplan.language.marks import listen, measured, segment
+from pipeline.floorplan.language.parser import parse
+from pipeline.floorplan.language.spanish import canonical, present
 from pipeline.floorplan.language.spelling import distance, resolve, slipped
 from pipeline.floorplan.language.text import clean, fold, tokenize
 
@@ -86,7 +88,7 @@ def test_common_words_stay_as_they_are(language):
     words = [fold(w.strip()) for w in raw["common"].split(",")]
     assert len(words) > 200
     heard = listen(" ".join(words), language)
-    assert heard.texts == words
+    assert heard.texts == [lexicon(language).tenses.get(w, w) for w in words]  # verbs in the one tense that is read
 
 
 @pytest.mark.parametrize("word", ["house", "couch", "both", "tall", "without", "xylophone", "flibbertigibbet"])
@@ -148,7 +150,9 @@ def test_spanish_verbs_are_read_in_every_tense(infinitive, forms):
     assert {known[fold(f)] for f in forms.split()} <= shown
 
 
-@pytest.mark.parametrize("cue", ["da al", "dan al", "dará al", "diera al", "se abrirá al", "se abriría al", "tendrá puerta al", "comunicará con el"])
+@pytest.mark.parametrize(
+    "cue", ["da al", "dan al", "dará al", "diera al", "se abrirá al", "se abriría al", "tendrá puerta al", "comunicará con el"]
+)
 def test_a_spanish_way_is_said_in_any_tense(cue):
     program = parse(f"El baño {cue} pasillo. Un dormitorio, salón y cocina.")
     assert {("bath", "hall"), ("hall", "bath")} & {(k.a, k.b) for k in program.links if k.stated}
