@@ -28,6 +28,8 @@ SORTS = {
     "family_room",
     "playroom",
 }  # types of many names
+QUIET = {"on", "around", "along", "by", "al", "ins", "进 入", "进", "in", "off"}  # prepositions that mean something else as well
+RELATIONS = {"door", "leads", "open", "near", "wall", "away", "apart", "between", "avoid", "ensuite"}
 ROLES = {"primary", "guest", "child", "elder", "staff", "carer", "shared"}
 
 
@@ -92,9 +94,10 @@ def _named(parsed: list[list[Element]], draft: Draft, state: Reading) -> list[di
 
 
 def _rest(state: Reading, draft: Draft, marks: list[Mark]) -> Iterable[tuple[int, int, str]]:
-    """Words that are in no vocabulary, and rooms that nothing was made of."""
+    """Words that are in no vocabulary, rooms that nothing was made of, and relations that joined nothing."""
     for mark in marks:
-        if mark.kind == "word" and not state.used & set(range(mark.first, mark.last)):
+        lost = mark.kind in {"word", "cmp", "factor"} or (mark.kind == "cue" and mark.value in RELATIONS and mark.text not in QUIET)
+        if lost and not state.used & set(range(mark.first, mark.last)):
             start, end = draft.tokens[mark.first].start, draft.tokens[mark.last - 1].end
             yield start, end, draft.prompt[start:end]
 

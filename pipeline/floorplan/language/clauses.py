@@ -338,7 +338,10 @@ class Clause:
 
     def _outside(self, k: int, e: Element) -> int:
         self.state.understood(e.first, e.last)
-        self.state.outside = (self.owning or next((i for i in self.latest), ""), e)
+        here = [
+            i for i in (*self.latest, *self.subject) if not i.startswith("*") and self.stock.get(i).type not in {"bathroom", "wc", "closet"}
+        ]
+        self.state.outside = (self.owning or next(iter(here), ""), e)
         return k + 1
 
     def _via(self, k: int, e: Element) -> int:

@@ -217,11 +217,16 @@ def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0
     yield from flat("adverb", e.adverbs)
 
 
+CONTRACTED = {"de": "del", "a": "al"}
+
+
 def _spellings(phrase: str, language: str) -> Iterable[tuple[str, ...]]:
     """Return the words of a phrase, also as they look when umlauts are dropped."""
     usual = words(phrase)
     if language == "en" and "n't" in phrase:
         return (usual, words(phrase.replace("n't", "nt")))
+    if language == "es" and usual and usual[-1] in CONTRACTED and len(usual) > 1:  # "la mitad de" and "la mitad del"
+        return {usual, (*usual[:-1], CONTRACTED[usual[-1]]), words(bare(phrase)), (*words(bare(phrase))[:-1], CONTRACTED[usual[-1]])}
     if phrase.isascii() or language == "zh":
         return (usual,)
     return {usual, words(bare(phrase))}

@@ -35,9 +35,14 @@ def ban(sentence: list[Element]) -> None:  # noqa: C901, PLR0912 - one branch pe
             elif phrase.adjectives & {"open", "combined"} and phrase.type in SOCIAL:
                 e.kind = "used"  # "no open kitchen" is a closed one
                 phrase.adjectives = (phrase.adjectives - {"open", "combined"}) | {"closed"}
+            elif phrase.type == "hallway" and (phrase.said or phrase.size != 1.0):
+                e.kind = phrase.kind = "used"  # "no narrow corridors" allows others
             elif not phrase.definite:
                 e.kind = "used"
                 _list(sentence, j)
+        elif e.kind == "needless" and (j := _target(sentence, k + 1)) is not None and not _told(sentence, k):
+            e.kind = "used"  # "no es necesario un balcón"
+            _list(sentence, j)
         elif e.kind == "needless":
             for j in range(k - 1, -1, -1):
                 if sentence[j].kind == "np":
@@ -84,6 +89,11 @@ def _behind(sentence: list[Element], k: int) -> None:
             return
         if e.kind not in {"verb", "colon", "det", "word"}:
             return
+
+
+def _told(sentence: list[Element], k: int) -> bool:
+    """Whether a room stands in front of k in its clause."""
+    return any(x.kind == "np" for x in sentence[max((i for i in range(k) if sentence[i].kind in {"comma", "but"}), default=0) : k])
 
 
 def _placed(sentence: list[Element], j: int) -> bool:

@@ -25,6 +25,7 @@ from pipeline.floorplan.language.reading import read
 from pipeline.floorplan.language.revising import revise
 from pipeline.floorplan.language.shorthand import crossed, dealt, shared_unit, widen
 from pipeline.floorplan.language.standins import resolved
+from pipeline.floorplan.language.tables import plain_areas
 from pipeline.floorplan.language.text import tokenize
 from pipeline.floorplan.program import FloorProgram
 
@@ -52,7 +53,7 @@ def understand(prompt: str) -> FloorProgram:
 def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     """Return what a prompt says of rooms, and no more; `plain` is it without its wishes for furniture, all else in its place."""
     heard = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
-    amounts = dealt(measured(shared_unit(crossed(segment(heard), heard)), heard))
+    amounts = dealt(measured(shared_unit(crossed(plain_areas(segment(heard)), heard)), heard))
     revised = revise(widen(amounts, heard), heard)
     marks = reorder(written_out(noted(resolved(housed(denied(revised.marks)), heard), heard), heard), heard)
     parsed = sentences(marks, heard)

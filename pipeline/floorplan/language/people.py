@@ -172,7 +172,9 @@ def _counted(marks: list[Mark]) -> list[Mark]:
     made = list(marks)
     for k in range(1, len(made)):
         last = k + 1 >= len(made) or made[k + 1].kind in ENDS | {"comma", "join", "colon"}
-        if made[k].kind != "num" or not last or made[k - 1].text not in BEING:
+        row = k > 1 and made[k - 1].kind == "comma" and made[k - 2].kind == "room" and made[k - 2].plural and k + 1 < len(made)
+        row = row and made[k + 1].kind == "comma" and made[max(0, k - 3)].kind == "det"
+        if made[k].kind != "num" or not last or (made[k - 1].text not in BEING and not row):
             continue
         j = k - 2
         while j >= 0 and (made[j].kind in {"relative", "comma", "pron", "adverb"} or made[j].text in {"que", "which"}):

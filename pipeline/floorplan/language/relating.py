@@ -34,7 +34,7 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
         return through(clause, k, e)
     if e.value == "again":
         return _again(clause, k, e)
-    clause.relative = clause.relative or e.text.startswith("que ")
+    clause.relative = clause.relative or e.text.startswith(("que ", "al que ", "a la que ", "por el que ", "desde el que "))
     if e.value == "between" and (after := door_between(clause, k, e)):
         return after
     if e.value == "from" and e.text.split()[-1] in THERE and (there := _there(clause, k)):
@@ -136,7 +136,8 @@ def _alone(clause: Clause, k: int, e: Element) -> int:
     """Read a cue that nothing follows: "next to each other", "kitchen and bath adjacent"."""
     ahead = clause.sentence[k + 1] if k + 1 < len(clause.sentence) else None
     mutual = ahead is not None and ahead.kind == "reciprocal"
-    ends = ahead is None or ahead.kind in {"comma", "but", "close"}
+    rest = next((x for x in clause.sentence[k + 1 :] if x.kind != "det" and (x.kind, x.value) != ("flag", "doors")), None)
+    ends = rest is None or rest.kind in {"comma", "but", "close"}  # "cocina y salón comunicados por una puerta corredera"
     rooms = _ids(clause.run)
     listed_alone = ends and e.value in MUTUAL and len(rooms) > 1 and "*" not in rooms and _coordinate(clause)
     if mutual or listed_alone or (e.value == "wall" and (clause.run or clause.subject)):

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from pipeline.floorplan.language.marks import Mark, Words
+from pipeline.floorplan.language.tables import titled
 
 FEET, METRES = 0.3048, 1.0
 LARGEST = 80.0  # a side-by-side product above this is no room in square metres: then the figures are feet
@@ -21,40 +22,10 @@ def widen(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with shorthand written out."""
     marks = _premises(_percent(marks))
     made = _studies(_floors(_paired(_activities(list(marks))), heard), heard)
-    return _bedrooms(_titled(_summed(_both(_partial(_half_baths(_counts(made))), heard), heard)))
+    return _bedrooms(titled(_summed(_both(_partial(_half_baths(_counts(made))), heard), heard)))
 
 
-AREA = {
-    "superficie",
-    "area",
-    "flaeche",
-    "wohnflaeche",
-    "gesamtflaeche",
-    "nutzflaeche",
-    "grundflaeche",
-    "size",
-    "groesse",
-    "面 积",
-    "建 筑 面 积",
-}
 EVERY = ("habitaciones", "cuartos", "recamaras", "piezas")
-
-
-def _titled(marks: list[Mark]) -> list[Mark]:
-    """Read the line "Superficie: 170 m2" of a table as the whole home's."""
-    made = list(marks)
-    for k in range(2, len(made)):
-        if made[k].kind != "amount" or made[k].value != "area":
-            continue
-        j = k - 1
-        while j >= 0 and made[j].kind in {"colon", "fill", "word", "unit", "flag", "bound"}:
-            j -= 1
-        title = made[j + 1 : k]
-        alone = j < 0 or made[j].kind in {"line", "stop", "comma", "bullet"}
-        ends = k + 1 >= len(made) or made[k + 1].kind in {"line", "stop", "comma", "bullet"}
-        if alone and ends and any(m.text in AREA for m in title) and any(m.kind == "colon" for m in title):
-            made[k] = replace(made[k], total=True)
-    return made
 
 
 def _bedrooms(marks: list[Mark]) -> list[Mark]:
@@ -350,10 +321,10 @@ def _studies(marks: list[Mark], heard: Words) -> list[Mark]:
 
 
 def _pisos(marks: list[Mark]) -> list[Mark]:
-    """Read Spanish "dos pisos" as storeys; "un piso" is a flat."""
+    """Read Spanish "dos pisos", "dos plantas" as storeys; "un piso" is a flat."""
     made: list[Mark] = []
     for mark in marks:
-        if mark.kind == "home" and mark.text == "pisos" and made and made[-1].kind == "num":
+        if mark.kind == "home" and mark.text in {"pisos", "plantas"} and made and made[-1].kind == "num":
             number = made.pop()
             made.append(replace(number, kind="amount", value="storeys", last=mark.last))
         else:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pipeline.floorplan.language.marks import Mark
 
 ENDS = {"stop", "line"}
+SEEN = {"ve", "vea", "ver", "verse", "vean", "see", "seen", "sehen", "sieht", "sichtbar"}
 ACCESS = {"door", "doors", "access", "puerta", "acceso", "salida", "tuer", "zugang", "ausgang", "exit", "entrance", "entrada"}
 INTO = {"to", "into", "onto", "in", "al", "a", "ins", "in den", "in die", "in das", "zum", "zur"}
 TOWARDS = {"to", "into", "onto", "al", "a"}  # behind an "and" that takes up the way before it
@@ -20,7 +21,7 @@ def ways(marks: Sequence[Mark]) -> list[Mark]:
     """Return the marks with each way said by a cue."""
     made: list[Mark] = []
     for sentence in _sentences(marks):
-        made += _again(_through(_entering(_going(_access(sentence)))))
+        made += _again(_through(_entering(_going(_access(_unseen(sentence))))))
     return made
 
 
@@ -46,6 +47,22 @@ def room_at(marks: Sequence[Mark], k: int) -> int | None:
     while k < len(marks) and (marks[k].kind in {"det", "adj", "size", "num", "ord", "adverb"} or marks[k].text == "el"):
         k += 1
     return k if k < len(marks) and marks[k].kind in {"room", "suite"} else None
+
+
+def _unseen(marks: list[Mark]) -> list[Mark]:
+    """Take what is only seen for no way: "que desde la entrada se vea el salón"; and read "tanto con A como con B" as both."""
+    made = list(marks)
+    if any(m.text in SEEN for m in marks):
+        made = [replace(m, kind="word") if (m.kind, m.value) == ("cue", "from") else m for m in made]
+    for k, mark in enumerate(made):
+        if "tanto" in mark.text.split() and (both := next((j for j in range(k + 2, len(made)) if made[j].text == "como"), 0)):
+            made[both] = replace(made[both], kind="join", value="and", text="y")
+            made[k] = replace(mark, text=mark.text.replace(" tanto", ""))
+            del made[both + 1 : both + 1 + (made[both + 1].text in {"con", "a", "en", "al"})]
+            return made
+        if (mark.text, mark.kind) == ("por", "det") and not any(m.kind == "room" for m in made[k + 1 : k + 4]):
+            made[k] = replace(mark, kind="fill", value="")
+    return made
 
 
 def _access(marks: list[Mark]) -> list[Mark]:
