@@ -21,6 +21,7 @@ def rearrange(marks: list[Mark]) -> list[Mark]:
 def _besides(marks: list[Mark]) -> list[Mark]:
     """Read "另外一个公共卫生间" as one more; "另外一间有阳台" is the other."""
     made: list[Mark] = []
+    marks = _rest(marks)
     for k, mark in enumerate(marks):
         j = k + 1
         while j < len(marks) and (marks[j].kind in {"adj", "size", "shared"} or (marks[j].kind, marks[j].value) == ("det", "own")):
@@ -37,12 +38,41 @@ def _besides(marks: list[Mark]) -> list[Mark]:
         if (mark.kind, mark.value) == ("pron", "one") and j < len(marks) and marks[j].kind in HEADS and marks[j - 1].value == "own":
             made.append(replace(mark, kind="num", value="1.0", number=1.0))  # "一个独立卫生间"
             continue
+        if (mark.kind, mark.value) == ("pron", "one") and _described(marks, k + 1):
+            made.append(replace(mark, kind="num", value="1.0", number=1.0))  # "一个有窗的卫生间"
+            continue
         one = (mark.kind, mark.value) == ("pron", "one") and bool(made) and made[-1].kind == "det" and made[-1].text in BESIDES
         if one and j < len(marks) and marks[j].kind in HEADS:
             made[-1] = replace(made[-1], value="another")
         else:
             made.append(mark)
     return made
+
+
+def _rest(marks: list[Mark]) -> list[Mark]:
+    """Read "另外两间共用一个卫生间" as said of the other two."""
+    made = list(marks)
+    for k in range(len(made) - 3, -1, -1):
+        kinds = [m.kind for m in made[k : k + 4]]
+        other = (made[k].kind, made[k].value) == ("det", "other")
+        said = kinds[3:] in (["cue"], ["verb"], ["flag"]) or [m.value for m in made[k + 3 : k + 4]] == ["shared"]
+        if other and kinds[1:3] == ["num", "clf"] and said:
+            text, last = " ".join(m.text for m in made[k : k + 3]), made[k + 2].last
+            made[k : k + 3] = [
+                replace(made[k], kind="pron", value="rest", text=text, last=last),
+                Mark("verb", "", 0.0, False, last, last, ""),
+            ]
+    return made
+
+
+def _described(marks: list[Mark], k: int) -> bool:
+    """Whether what is said of a head stands at k, in front of 的 and the head."""
+    if k + 1 < len(marks) and marks[k].text == OF and marks[k + 1].kind in HEADS:
+        return True  # what stood between was furniture
+    if k >= len(marks) or marks[k].kind != "cue":
+        return False
+    of = next((j for j in range(k, min(k + 6, len(marks))) if marks[j].text == OF), 0)
+    return bool(of) and of + 1 < len(marks) and marks[of + 1].kind in HEADS and not any(m.kind in CLOSERS for m in marks[k:of])
 
 
 BESIDES = {"另 外", "另"}
@@ -150,13 +180,17 @@ def _measured(marks: list[Mark]) -> list[Mark]:
     for k, mark in enumerate(marks):
         before = made[-1] if made else None
         after = marks[k + 1] if k + 1 < len(marks) else None
+        had = before is not None and before.value == "daylight" and any(m.value == "has" for m in made[-3:])
         if (
             mark.text == OF
             and before is not None
             and after is not None
+            and not had
             and (before.kind in {"amount", "adj", "size", "bound", "flag", "look"} or (before.kind == "room" and after.kind == "home"))
         ):
             continue
+        if mark.text in {"上", "里", "内"} and before is not None and before.kind in HEADS and after is not None and after.text == OF:
+            continue  # "走廊上的卫生间"
         made.append(mark)
     return made
 
@@ -167,7 +201,8 @@ def _possessed(marks: list[Mark]) -> list[Mark]:
     k = 0
     while k < len(made):
         mark = made[k]
-        if mark.text == OF and mark.kind in {"fill", "of"} and k and made[k - 1].kind in HEADS:
+        attribute = k and (made[k - 1].kind in HEADS or (made[k - 1].kind, made[k - 1].value) == ("flag", "daylight"))
+        if mark.text == OF and mark.kind in {"fill", "of"} and attribute:
             head = k + 1
             while head < len(made) and made[head].kind in {"num", "clf", "adj", "size", "det"}:
                 head += 1
@@ -185,7 +220,8 @@ def _possessed(marks: list[Mark]) -> list[Mark]:
                     k = head
                     continue
                 cue = replace(mark, kind="cue", value="door")
-                made[k - 1 : head + 1] = [*made[k + 1 : head + 1], cue, made[k - 1]]
+                shared = [m for m in made[max(0, k - 2) : k - 1] if (m.kind, m.value) == ("adj", "shared")]  # "共用走廊上的卫生间"
+                made[k - 1 - len(shared) : head + 1] = [*shared, *made[k + 1 : head + 1], cue, made[k - 1]]
                 k = head
                 continue
         k += 1

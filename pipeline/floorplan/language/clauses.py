@@ -13,7 +13,7 @@ from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import close, level, storey, wing, zone
 from pipeline.floorplan.language.pointing import point
 from pipeline.floorplan.language.pronouns import cast, determiner, every, pronoun
-from pipeline.floorplan.language.quantities import attach, belongs
+from pipeline.floorplan.language.quantities import attach, belongs, share
 from pipeline.floorplan.language.relating import SINGULAR, relate
 from pipeline.floorplan.language.ways import entered
 
@@ -225,8 +225,8 @@ class Clause:
             social = tuple(i for x in self.run for i in x.ids if not i.startswith("*") and self.stock.get(i).type in SOCIAL)
             if len(social) > 1 and not negative:
                 self.state.say("merge", social, (), e)
-            else:
-                merge_after(self, k + 1, e)
+                return share(self.state, self.sentence, k, social)
+            merge_after(self, k + 1, e)
         return k + 1
 
     def negated(self, k: int) -> bool:

@@ -107,13 +107,22 @@ def _given(marks: list[Mark]) -> list[Mark]:
             relative, j = marks[j : end + 1], end + 1
         room = mark.kind == "owner" and j < len(marks) and bool(phrase) and _is_room(marks[j], mark.value)
         each = any(m.text in EACH or m.value == "each" for m in phrase) or (j + 1 < len(marks) and marks[j + 1].value == "each")
+        every = k > 0 and (marks[k - 1].kind, marks[k - 1].value) == ("det", "each")
         fresh = any(m.kind in {"num", "clf"} or _one(m) or m.value in {"indefinite", "each"} or m.text in EACH for m in phrase)
-        if not room or not fresh or (any(m.value == "own" for m in phrase) and not each):
+        if not room or not (fresh or every) or (any(m.value == "own" for m in phrase) and not (each or every)):
             made.append(mark)
             k += 1
             continue
-        number = _count(marks, k) if each else next((m.number for m in phrase if m.kind == "num"), 1.0)
-        while made and (made[-1].kind in {"num", "clf"} or (made[-1].kind, made[-1].value) in {("det", "both"), ("det", "definite")}):
+        number = (
+            max((_count(marks, i) for i in range(k + 1) if marks[i].value == mark.value), default=0.0)
+            if each or every
+            else next((m.number for m in phrase if m.kind == "num"), 1.0)
+        )
+        while made and (
+            made[-1].kind in {"num", "clf"}
+            or made[-1].value == "each"
+            or (made[-1].kind, made[-1].value) in {("det", "both"), ("det", "definite")}
+        ):
             made.pop()
         made.append(Mark("num", "", number or 1.0, False, mark.first, mark.first, ""))
         made += [*(m for m in phrase if m.kind in {"adj", "size"}), *relative]

@@ -16,7 +16,7 @@ ROLES = {"primary", "guest", "child", "elder", "staff", "carer", "shared", "ensu
 
 def heads(sentence: list[Element], k: int) -> bool:
     """Whether the level at k opens a new part of a sentence: "living room, kitchen, and upstairs two bedrooms"."""
-    before, after = sentence[k - 1].kind if k else "", next((x for x in sentence[k + 1 :] if x.kind != "det"), None)
+    before, after = sentence[k - 1].kind if k else "", next((x for x in sentence[k + 1 :] if x.kind not in {"det", "flag"}), None)
     return before in {"comma", "and"} and after is not None and after.kind in {"np", "colon"}
 
 
@@ -337,7 +337,7 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
     return []
 
 
-def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911, PLR0912 - one branch per case: a grammar
+def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: C901, PLR0911, PLR0912 - one branch per case: a grammar
     """Return the rooms that a phrase without role points at, where there are such rooms."""
     e, stock = sentence[k], state.inventory
     same = [r for r in stock.of(e.type) if not (r.extra and r.span is not None and r.span[0] > e.first)]
@@ -351,6 +351,8 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
             return [stock.add(e.type, "", e.text, level)]
         same = here or same
     many = e.plural or bool(e.det & {"all", "both", "each"}) or (e.number or 0) > 1
+    if not many and len(same) > 1 and e.adjectives & {"largest", "smallest"}:
+        return same[:1] if "largest" in e.adjectives else same[-1:]
     if many:
         number = int(e.number or 0)
         if number > len(same) and all(not r.whole for r in same) and e.definite:
@@ -386,7 +388,9 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
 
 def _repeated_bare(sentence: list[Element], k: int) -> bool:
     """Whether a list names the same kind of room again: "bedroom, bedroom, bath"."""
-    if sentence[k].type in ALONE or (k + 1 < len(sentence) and sentence[k + 1].kind == "verb"):
+    ahead = sentence[k + 1] if k + 1 < len(sentence) else None
+    han = sentence[k].text[:1] >= "\u3400"  # "一间书房,书房远离卧室"
+    if sentence[k].type in ALONE or (ahead is not None and (ahead.kind in {"verb", "neg"} or (han and ahead.kind == "cue"))):
         return False
     for j in range(k - 1, -1, -1):
         e = sentence[j]

@@ -126,6 +126,9 @@ def _german(marks: list[Mark], heard: Words) -> list[Mark]:
         ):
             made[k + 1] = replace(made[k + 1], plural=mark.text == "die")
     for k in range(len(made)):
+        ends = k + 1 >= len(made) or made[k + 1].kind in ENDS | {"join"}
+        if made[k].text == "sein" and made[k].kind == "det" and ends:
+            made[k] = replace(made[k], kind="verb", value="")  # "sollen verbunden sein"
         _final(made, k)
     return _articles(made)
 
@@ -155,6 +158,8 @@ def _final(made: list[Mark], k: int) -> None:
     start = k - 1
     while start and made[start - 1].kind in {"det", "num", "adj", "size", "ord", "clf"}:
         start -= 1
+    if start and made[start - 1].kind == "cue" and made[start - 1].value != "has":
+        return  # "eine Wand mit dem Wohnzimmer haben"
     made.insert(start, made.pop(k))
 
 

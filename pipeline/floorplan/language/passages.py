@@ -12,6 +12,7 @@ ENDS = {"stop", "line"}
 BY = {"durch", "ueber", "von", "aus", "por", "desde", "through", "via", "from"}  # in front of a relative pronoun
 ARTICLES = {"das", "die", "den", "dem", "der", "el", "la", "los", "las"}
 BRANCH = {"abgeht", "abgehen", "abzweigt", "abzweigen"}  # at the end of a German clause
+LYING = {"liegen", "liegt", "grenzen", "anschliessen", "haengen", "haengt", "angeordnet", "aufgereiht"}
 REACH = {"erreicht", "erreichen", "betritt", "betreten", "gelangt", "kommt"}
 ONE = {("det", "indefinite"), ("pron", "one"), ("det", "other"), ("det", "another"), ("pron", "rest"), ("fill", "")}
 WHOSE = {"whose", "cuyo", "cuya", "dessen", "deren"}
@@ -89,10 +90,11 @@ def _relative(marks: Sequence[Mark]) -> list[Mark]:
 
 def _branching(marks: Sequence[Mark], k: int) -> int:
     """Return the place of the verb in "ein Flur, von dem alle Zimmer abgehen", k being that of "von dem"; 0 for any other clause."""
-    if k < 2 or marks[k].text not in {"von der", "von dem"} or marks[k - 1].kind != "comma" or marks[k - 2].kind != "room":
+    beside = marks[k].text == "woran" or (marks[k].text == "an" and k + 1 < len(marks) and marks[k + 1].text in ARTICLES)
+    if k < 2 or not (beside or marks[k].text in {"von der", "von dem"}) or marks[k - 1].kind != "comma" or marks[k - 2].kind != "room":
         return 0
     for j in range(k + 1, len(marks)):
-        if marks[j].text in BRANCH:
+        if marks[j].text in (LYING if beside else BRANCH):
             return j
         if marks[j].kind in ENDS:
             break

@@ -20,6 +20,8 @@ def point(state: Reading, before: list[Element], e: Element, but: Group) -> Grou
         if not here and len(state.topic) == 2:
             return state.topic
         twins: Group = next((g for g in reversed(heard) if len(g) == 2 and not all(map(state.inventory.owned, g))), ())
+        if any(x.kind == "zone" for x in before) or (not twins and sum(not set(g) <= set(but) for g in here) > 2):
+            return ()
         return twins or tuple(dict.fromkeys(i for g in reversed(heard) for i in g if i not in but))[:2]
     if e.value == "both":
         pair: Group = next((g for g in reversed(heard) if len(g) == 2), ())

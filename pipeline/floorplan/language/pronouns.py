@@ -87,6 +87,11 @@ def determiner(clause: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - on
         clause.run = [Element("np", "", e.first, e.last, e.text, ids=list(clause.latest))]
         return k + 1
     ahead = clause.sentence[k + 1].kind if k + 1 < len(clause.sentence) else ""
+    if e.value == "all" and not clause.run and clause.objects and k and clause.sentence[k - 1].kind == "comma" and ahead == "cue":
+        both = tuple(dict.fromkeys((*clause.subject, *clause.objects)))  # "卫生间和厕所分开,都从走廊进"
+        clause.subject = clause.latest = both
+        clause.run = [Element("np", "", e.first, e.last, e.text, ids=list(both))]
+        return k + 1
     if e.value == "other" and ahead in {"verb", "amount"}:  # "one bedroom of 16 m2, the other of 10"
         return pronoun(clause, k, Element("pron", "rest", e.first, e.last, e.text))
     if e.value in {"both", "each", "all"} and ahead != "np":

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from pipeline.floorplan.defaults import DEFAULTS
 from pipeline.floorplan.language.facts import Group, Reading
 from pipeline.floorplan.language.marks import Mark
@@ -39,6 +41,19 @@ def belongs(state: Reading, sentence: list[Element], e: Element, mark: Mark) -> 
         return True
     huge = home_before(sentence, k) and mark.number > HUGE * usual
     return total or (len(measured) == 1 and huge) or (listed and len(measured) == 1 and last and mark.number > 2.5 * usual)
+
+
+def share(state: Reading, sentence: list[Element], k: int, rooms: Group) -> int:
+    """Deal the area of one open space, said beside the words for it at k, out to its rooms; return where reading goes on."""
+    ahead, before = sentence[k + 1 : k + 2], sentence[k - 1 : k]
+    near = [x for x in (*ahead, *before) if x.kind == "amount" and x.value == "area" and x.mark is not None]
+    if not near or near[0].mark is None:
+        return k + 1
+    mark, usual = near[0].mark, [DEFAULTS[state.inventory.get(i).type].area for i in rooms]
+    state.amounts = [(m, ids) for m, ids in state.amounts if m is not mark]
+    state.understood(mark.first, mark.last)
+    state.amounts.append((replace(mark, parts=tuple(round(mark.number * u / sum(usual), 2) for u in usual)), rooms))
+    return k + 1 + (near[0] in ahead)
 
 
 def home_before(sentence: list[Element], k: int) -> bool:

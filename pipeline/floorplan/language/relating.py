@@ -134,7 +134,10 @@ def _there(clause: Clause, k: int) -> Group:
 
 def _alone(clause: Clause, k: int, e: Element) -> int:
     """Read a cue that nothing follows: "next to each other", "kitchen and bath adjacent"."""
-    ahead = clause.sentence[k + 1] if k + 1 < len(clause.sentence) else None
+    j = k + 1
+    while j < len(clause.sentence) and clause.sentence[j].kind == "verb":
+        j += 1
+    ahead = clause.sentence[j] if j < len(clause.sentence) else None
     mutual = ahead is not None and ahead.kind == "reciprocal"
     rest = next((x for x in clause.sentence[k + 1 :] if x.kind != "det" and (x.kind, x.value) != ("flag", "doors")), None)
     ends = rest is None or rest.kind in {"comma", "but", "close"}  # "cocina y salón comunicados por una puerta corredera"
@@ -199,6 +202,8 @@ def _emit(clause: Clause, e: Element, left: Group, group: Group) -> None:
         cue = "leads"  # "the bedroom and the toilet open to a hallway"
     if cue == "apart":  # a kitchen apart from the living room has a door; a bedroom apart from it lies away
         kinds = {clause.stock.get(i).type for i in (*left, *group) if not i.startswith("*")}
+        if kinds <= {"bathroom", "wc"}:
+            return  # two rooms instead of one
         cue = "not_open" if kinds <= SOCIAL else "away"
     if clause.negative is not None:
         left, clause.negative = _none(clause, left), None

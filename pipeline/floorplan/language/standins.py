@@ -37,7 +37,7 @@ def resolved(marks: Sequence[Mark], heard: Words) -> list[Mark]:
         made = _vestibule(_room_of(made))
     elif heard.lexicon.language == "zh":
         made = _room_with(made)
-    return _between(_standing(_doubling(settled(_persons(_neither(made), heard), heard))))
+    return _between(_sized(_superlative(_parted(_standing(_doubling(settled(_persons(_neither(made), heard), heard)))))))
 
 
 def _neither(marks: list[Mark]) -> list[Mark]:
@@ -53,6 +53,67 @@ def _neither(marks: list[Mark]) -> list[Mark]:
             named = any(m.kind == "room" for m in made[max(first, k - 4) : k])
             made[k] = replace(mark, kind="join", value="or") if named else mark
     return made
+
+
+def _superlative(marks: list[Mark]) -> list[Mark]:
+    """Read "the largest bedroom is twice the size of the smallest" with the room that is left unsaid."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        made.append(mark)
+        ahead = marks[k + 1].kind if k + 1 < len(marks) else "stop"
+        if mark.kind != "adj" or mark.value not in {"largest", "smallest"} or ahead not in ENDS | {"verb"}:
+            continue
+        start = max((i for i in range(k) if marks[i].kind in {"stop", "line"}), default=-1) + 1
+        said = [
+            i
+            for i in range(start, k)
+            if marks[i].kind == "adj" and marks[i].value in {"largest", "smallest"} and marks[i].value != mark.value
+        ]
+        room = next((m for i in said for m in marks[i + 1 : i + 3] if m.kind == "room"), None)
+        if room is not None:
+            made.append(replace(room, first=mark.last, last=mark.last))
+    return made
+
+
+def _sized(marks: list[Mark]) -> list[Mark]:
+    """Read "two bedrooms: the larger of 16, the smaller of 10 m2" as an area for each."""
+    said = [
+        (k, j)
+        for k, m in enumerate(marks)
+        if m.kind == "size" or (m.kind == "adj" and m.value in {"largest", "smaller", "smallest"})
+        for j in (k + 1 + (k + 1 < len(marks) and marks[k + 1].kind in {"fill", "bound", "cue", "verb"}),)
+        if j < len(marks) and marks[j].kind == "amount" and marks[j].value == "area"
+    ]
+    if len(said) != 2:
+        return marks
+    (a, first), (_, second) = said
+    place = next((i for i in range(a - 1, -1, -1) if marks[i].kind == "room"), None)
+    counted = place is not None and any(m.kind == "num" and m.number == 2 for m in marks[max(0, place - 3) : place])
+    if place is None or not counted or any(m.kind in {"room", "stop"} for m in marks[place + 1 : second]):
+        return marks
+    amount = replace(marks[first], parts=(marks[first].number, marks[second].number), last=marks[second].last)
+    return [*marks[: place + 1], amount, *marks[second + 1 :]]
+
+
+SLIDING = {"flag", "adj", "det", "word", "size"}
+
+
+def _parted(marks: list[Mark]) -> list[Mark]:
+    """Read "joined by a sliding door" and "instead of a bathtub" without the words that name no room."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        j = k + 1
+        while j < len(marks) and marks[j].kind in SLIDING - {"flag"}:
+            j += 1
+        door = j < len(marks) and (marks[j].kind, marks[j].value) == ("flag", "doors")
+        instead = mark.kind == "neg" and mark.text.split()[0] in INSTEAD and (j >= len(marks) or marks[j].kind not in BESIDE)
+        by = mark.kind == "cue" and mark.value == "door" and mark.text in BY and door
+        made.append(replace(mark, kind="fill") if instead or by else mark)
+    return made
+
+
+INSTEAD = {"statt", "anstatt", "anstelle"}
+BY = {"durch", "ueber", "mit", "by", "through", "via", "por", "用"}
 
 
 def _vestibule(marks: list[Mark]) -> list[Mark]:
@@ -190,11 +251,15 @@ def _standing(marks: list[Mark]) -> list[Mark]:
         article = (mark.kind, mark.value) == ("det", "indefinite") and mark.text in ALONE
         further = (mark.kind, mark.value) in {("det", "another"), ("det", "other")}
         j = k + 1
-        while j < len(made) and (made[j].kind == "adverb" or (made[j].kind, made[j].value) == ("flag", "only")):
+        while j < len(made) and (made[j].kind in {"adverb", "clf", "fill"} or (made[j].kind, made[j].value) == ("flag", "only")):
             j += 1
         said = j < len(made) and made[j].kind in {"cue", "verb", "level"} and (made[j].kind != "cue" or article or made[j].value != "has")
-        counted = next((m for i, m in enumerate(made[:k]) if m.kind == "num" and m.number > 1 and _next(made, i + 1) is not None), None)
-        if (article or further) and said and counted is not None and made[k - 1].kind in ENDS and (article or made[j].kind != "verb"):
+        counts = (m for i, m in enumerate(made[:k]) if m.kind == "num" and m.number > 1 and _next(made, i + 1) is not None)
+        counted = next(counts, None)
+        several = mark.kind == "num" and counted is not None and 0 < mark.number < counted.number and mark.number == int(mark.number)
+        if several and said and made[k - 1].kind in ENDS - {"colon"}:
+            made[k] = replace(mark, kind="pron", value="one")
+        elif (article or further) and said and counted is not None and made[k - 1].kind in ENDS and (article or made[j].kind != "verb"):
             made[k] = replace(mark, kind="pron", value="one", number=1.0)
     return made
 

@@ -21,6 +21,10 @@ def excepted(clause: Clause, k: int, e: Element) -> int:
         return max(j, k + 1)
     clause.state.say("except", group, (), e)
     clause.left_out = group
+    if [x.kind for x in clause.sentence[j : j + 2]] == ["comma", "relative"]:  # "... except the closet, which ..."
+        clause.subject = clause.latest = group
+        clause.run = [x for x in clause.sentence[k:j] if x.kind == "np"][-1:]
+        return max(j, k + 1)
     left = tuple(i for i in clause.run[-1].ids if i not in group) if clause.run and set(group) < set(clause.run[-1].ids) else ()
     if left and "*" not in left:  # "all but the guest room have a bath"
         clause.run[-1].ids = list(left)
