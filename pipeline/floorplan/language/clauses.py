@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from pipeline.floorplan.language.comparing import compare, factor, superlative
 from pipeline.floorplan.language.facts import ROLES, SOCIAL, Fact, Group, Reading
-from pipeline.floorplan.language.naming import backward, fresh, name
+from pipeline.floorplan.language.introductions import backward
+from pipeline.floorplan.language.naming import fresh, name
 from pipeline.floorplan.language.objects import objects
 from pipeline.floorplan.language.openness import merge, merge_after, no_door, windows, written_as_one
 from pipeline.floorplan.language.phrases import Element

@@ -2,154 +2,16 @@
 
 from __future__ import annotations
 
-from pipeline.floorplan.check import ImpossibleError
 from pipeline.floorplan.language.facts import Reading
 from pipeline.floorplan.language.inventory import Named
 from pipeline.floorplan.language.phrases import Element
-from pipeline.floorplan.language.text import spread
-from pipeline.floorplan.program import MAX_ROOMS, Evidence
 
 ALONE = {"living_room", "kitchen", "dining_room", "hallway", "entry", "utility", "garage", "staircase", "family_room", "studio_room"}
 PLURAL_NAMES = {"staircase", "closet", "storage"}  # their plural often means one
 ROLES = {"primary", "guest", "child", "elder", "staff", "carer", "shared", "ensuite"}
 
 
-def heads(sentence: list[Element], k: int) -> bool:
-    """Whether the level at k opens a new part of a sentence: "living room, kitchen, and upstairs two bedrooms"."""
-    before, after = sentence[k - 1].kind if k else "", next((x for x in sentence[k + 1 :] if x.kind not in {"det", "flag"}), None)
-    return before in {"comma", "and"} and after is not None and after.kind in {"np", "colon"}
-
-
-def introduce(state: Reading, sentences: list[list[Element]]) -> None:
-    """Make the rooms that numbers and indefinite articles introduce: whole counts first, so that later words may tell them apart."""
-    for whole in (True, False):
-        for sentence in sentences:
-            level = _first_level(sentence)
-            suites = False  # "a suite: ... a bedroom": the suite's own
-            for k, e in enumerate(sentence):
-                if e.kind == "level":
-                    level = int(e.value) if not (level is None and k) or heads(sentence, k) else level
-                if e.suite and e.kind == "np":
-                    suites = True
-                if (
-                    e.kind == "np"
-                    and e.introduces
-                    and not e.ids
-                    and not e.suite
-                    and not (suites and e.type == "bedroom" and e.number is None)
-                    and _whole(sentence, k) == whole
-                ):
-                    _few(state, e)
-                    made = _count_all(state, e) if whole else _introduced(state, sentence, k, backward(sentence, k, level))
-                    e.ids = [r.id for r in made]
-
-
-def _few(state: Reading, e: Element) -> None:
-    """Refuse more rooms than a program holds, with the words."""
-    if (e.number or 0) > MAX_ROOMS:
-        start, end = spread(state.heard.tokens[max(e.first - 1, 0) : e.last])
-        words = [Evidence(start=start, end=end, text=state.heard.prompt[start:end], field="rooms")]
-        raise ImpossibleError(f"{e.number:g} {e.type.replace('_', ' ')}s are asked for", f"ask for {MAX_ROOMS} rooms at most", words)
-
-
-def _first_level(sentence: list[Element]) -> int | None:
-    first = next((e for e in sentence if e.kind in {"np", "level"}), None)
-    return int(first.value) if first is not None and first.kind == "level" else None
-
-
-def backward(sentence: list[Element], k: int, level: int | None) -> int | None:
-    """Return the storey of a phrase: of the level named before it, or behind it where sentences name levels behind."""
-    if level is not None:
-        return level
-    parted = False
-    for j, e in enumerate(sentence[k + 1 :], k + 1):
-        if e.kind == "level":
-            return None if heads(sentence, j) else int(e.value)
-        parted = parted or e.kind == "comma"
-        if e.kind in {"np", "and", "comma"}:
-            continue
-        if e.kind == "verb" and parted:  # "four bedrooms, the guest room is downstairs"
-            break
-        if e.kind in {"cue", "colon"}:
-            break
-    return None
-
-
-def _whole(sentence: list[Element], k: int) -> bool:
-    """Whether the number of a phrase is the count of all such rooms: "a two-bedroom flat", "three baths in total"."""
-    e = sentence[k]
-    if e.compound and not e.role:
-        return True
-    return any(x.kind == "flag" and x.value == "total" for x in sentence[k + 1 : k + 2]) and e.number is not None and not e.amounts
-
-
-def _count_all(state: Reading, e: Element) -> list[Named]:
-    stock = state.inventory
-    while len(stock.of(e.type)) < int(e.number or 1):
-        room = stock.add(e.type, "", e.text, None, open_slot=True)
-        room.whole, room.span = True, (e.first, e.last)
-    return stock.of(e.type)[: int(e.number or 1)]
-
-
-def _introduced(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one branch per case: a grammar
-    """Return the rooms of a phrase with a number or an indefinite article."""
-    e, stock = sentence[k], state.inventory
-    count = int(e.number or (2 if e.plural and e.type not in PLURAL_NAMES else 1))
-    same = stock.of(e.type)
-    slots = [r for r in same if r.open_slot and (level is None or r.level in {None, level}) and not r.role]
-    role = e.role if e.role in ROLES else ""
-    if e.number is not None and not role and "another" not in e.det and count > len(same) and any(r.whole for r in same):
-        state.say("beyond", tuple(r.id for r in same), (), e, float(count))
-        return same
-    if slots and e.type == "bathroom" and count == 1 and _had(sentence, k) and not any(r.id in x.ids for r in slots for x in sentence[:k]):
-        return []  # "three baths. Two of the bedrooms have an en suite": of those that were counted
-    if slots and _predicative(sentence, k):
-        return [_close(slots[0], role, e.text)]
-    if "another" not in e.det:
-        if role and role != "ensuite":
-            here = [r for r in same if r.role == role]
-            if here and len(here) == count:
-                return here
-            wide = [r for r in slots if r.whole or _listed(sentence, k, r)]
-            if len(wide) >= count and e.type != "bathroom":
-                return [_close(r, role, e.text) for r in wide[:count]]
-        elif not role and slots and not _contrasted(sentence, k):
-            if len(slots) == count == len(same) and count > 1:
-                return slots
-            known = all(r.whole for r in slots) or (e.number is not None and count < len(slots) and len(slots) > 1)
-            if known and count <= len(slots) and not _conjoined(sentence, k):
-                return [_close(r, "", e.text, level) for r in slots[:count]]
-        if count == 1 and e.number is None and not role and e.type in ALONE and same and not _repeated(sentence, k):
-            return same[:1]
-    made = [stock.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
-    for room in made:
-        room.extra, room.span = "another" in e.det, (e.first, e.last)
-    return made
-
-
-def _had(sentence: list[Element], k: int) -> bool:
-    """Whether a bedroom has the room of the phrase at k."""
-    before = [e for e in sentence[:k] if e.kind in {"np", "cue", "comma", "and", "pron"}][-2:]
-    return (
-        len(before) > 1
-        and before[1].value == "has"
-        and before[1].kind == "cue"
-        and (before[0].type == "bedroom" or before[0].kind == "pron")
-    )
-
-
-def _contrasted(sentence: list[Element], k: int) -> bool:
-    """Whether a count is told apart from the one in front by an adjective: "3 hab dobles, 1 hab individual"."""
-    before = next((e for e in reversed(sentence[:k]) if e.kind == "np" and e.type == sentence[k].type), None)
-    return before is not None and bool(before.said) and bool(sentence[k].said) and not before.said & sentence[k].said
-
-
-def _predicative(sentence: list[Element], k: int) -> bool:
-    """Whether a phrase says what one of several is: "four bedrooms, one of which is a guest room"."""
-    return k > 1 and sentence[k - 1].kind == "verb" and sentence[k - 2].kind == "pron" and sentence[k - 2].value == "one"
-
-
-def _listed(sentence: list[Element], k: int, room: Named) -> bool:
+def listed(sentence: list[Element], k: int, room: Named) -> bool:
     """Whether a phrase spells out a count in front of a colon or a bracket: "three bedrooms: a master, two for the kids"."""
     for j in range(k - 1, -1, -1):
         e = sentence[j]
@@ -158,7 +20,7 @@ def _listed(sentence: list[Element], k: int, room: Named) -> bool:
     return False
 
 
-def _conjoined(sentence: list[Element], k: int) -> bool:
+def conjoined(sentence: list[Element], k: int) -> bool:
     """Whether the same kind of room was counted in the same list, so that this one comes on top."""
     kind = sentence[k].type
     for e in reversed(sentence[:k]):
@@ -169,11 +31,13 @@ def _conjoined(sentence: list[Element], k: int) -> bool:
     return False
 
 
-def _repeated(sentence: list[Element], k: int) -> bool:
+def repeated(sentence: list[Element], k: int) -> bool:
+    """Whether a room of the type was named earlier in the sentence."""
     return any(e.kind == "np" and e.type == sentence[k].type for e in sentence[:k])
 
 
-def _close(room: Named, role: str, surface: str, level: int | None = None) -> Named:
+def close(room: Named, role: str, surface: str, level: int | None = None) -> Named:
+    """Take a room that was only counted: its role, name and storey are known now."""
     room.open_slot = False
     room.role = room.role or role
     room.surface = surface
@@ -217,7 +81,7 @@ def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -
         while len(same) < max(total, e.part):
             free.append(stock.add(e.type, "", e.text, level, open_slot=True))
             same = stock.of(e.type)
-        return [_close(r, role, e.text) for r in free[: e.part]]
+        return [close(r, role, e.text) for r in free[: e.part]]
     if "another" in e.det and not e.definite:
         return [stock.add(e.type, role, e.text, level, open_slot=(e.number or 1) > 1) for _ in range(int(e.number or 1))]
     if e.index:
@@ -247,7 +111,7 @@ def _others(state: Reading, sentence: list[Element], k: int, role: str, level: i
         rest = [r for r in rest if r.open_slot or r.id not in last]
         while len(rest) < e.number:
             rest.append(stock.add(e.type, role, e.text, level))
-    return (rest if many else [_close(r, "", e.text) for r in rest[:1]]) or [stock.add(e.type, role, e.text, level)]
+    return (rest if many else [close(r, "", e.text) for r in rest[:1]]) or [stock.add(e.type, role, e.text, level)]
 
 
 def fresh(state: Reading, e: Element, level: int | None, owner: str) -> list[str]:
@@ -255,7 +119,7 @@ def fresh(state: Reading, e: Element, level: int | None, owner: str) -> list[str
     role = e.role if e.role in ROLES else ""
     theirs = [r for r in state.inventory.of(e.type) if r.role == owner and e.type == "bedroom"]
     slots = theirs or [r for r in state.inventory.of(e.type) if r.open_slot and not r.role and (level is None or r.level in {None, level})]
-    room = _close(slots[0], role, e.text) if slots else state.inventory.add(e.type, role, e.text, level)
+    room = close(slots[0], role, e.text) if slots else state.inventory.add(e.type, role, e.text, level)
     e.ids = [room.id]
     return e.ids
 
@@ -266,8 +130,8 @@ def _suites(state: Reading, sentence: list[Element], k: int, role: str, level: i
     same = [r for r in stock.of("bedroom") if r.role == role] if role else []
     if same and not e.introduces:
         return same
-    slots = [r for r in stock.of("bedroom") if r.open_slot and not r.role and (r.whole or e.definite or _listed(sentence, k, r))]
-    made = [_close(r, role, e.text) for r in slots[:count]]
+    slots = [r for r in stock.of("bedroom") if r.open_slot and not r.role and (r.whole or e.definite or listed(sentence, k, r))]
+    made = [close(r, role, e.text) for r in slots[:count]]
     return made + [stock.add("bedroom", role, e.text, level) for _ in range(count - len(made))]
 
 
@@ -288,7 +152,7 @@ def _ordinal(state: Reading, e: Element, role: str, level: int | None) -> list[N
     if len(same) >= e.ordinal:
         rest = same if e.ordinal == 1 else [r for r in same if r.role != "primary"]
         loose = [r for r in rest if r.open_slot] or rest[-1:]
-        return [_close(loose[0], role, e.text)] if loose else same[:1]
+        return [close(loose[0], role, e.text)] if loose else same[:1]
     if any(r.whole for r in same):
         state.say("beyond", tuple(r.id for r in same), (), e, float(e.ordinal))
         return same[-1:]
@@ -311,29 +175,29 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
         slots = [r for r in same if r.open_slot and not r.role]
         plain = [r for r in same if not r.role and not state.inventory.owned(r.id)]
         if slots:
-            return [_close(slots[0], role, e.text)]
+            return [close(slots[0], role, e.text)]
         bare = state.heard.lexicon.language == "zh" and not e.det and e.number is None  # no articles there
-        return [_close(plain[0], role, e.text)] if (e.definite or bare) and len(plain) == 1 else []
+        return [close(plain[0], role, e.text)] if (e.definite or bare) and len(plain) == 1 else []
     if e.type != "bedroom":
         plain = [r for r in same if not r.role]
-        return [_close(plain[0], role, e.text)] if plain and e.definite and not _repeated(sentence, k) else []
+        return [close(plain[0], role, e.text)] if plain and e.definite and not repeated(sentence, k) else []
     slots = [
         r
         for r in same
         if r.open_slot
         and not r.role
-        and (e.definite or r.whole or _listed(sentence, k, r) or not _conjoined(sentence, k))
+        and (e.definite or r.whole or listed(sentence, k, r) or not conjoined(sentence, k))
         and not (r.extra and r.span is not None and r.span[0] > e.first)  # "the main bedroom ...; two more bedrooms"
         and ((e.definite and level is None) or r.level is None or r.level == level)  # counted on another storey: others
     ]
     if many and slots:
         count = int(e.number or len(slots))
-        return [_close(r, role, e.text) for r in slots[:count]]
+        return [close(r, role, e.text) for r in slots[:count]]
     if slots:
-        return [_close(slots[0], role, e.text)]
+        return [close(slots[0], role, e.text)]
     plain = [r for r in same if not r.role and not (r.extra and r.span is not None and r.span[0] > e.first)]
     if len(plain) == 1 and len(same) == 1 and e.definite and not many:
-        return [_close(plain[0], role, e.text)]
+        return [close(plain[0], role, e.text)]
     return []
 
 
@@ -377,7 +241,7 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
         return [stock.add(e.type, "", e.text, level)]
     if len(same) > 1:
         if e.number == 1 and (loose := [r for r in same if r.open_slot and not r.role]):
-            return [_close(loose[0], "", e.text)]  # "one bedroom ..., the other ..."
+            return [close(loose[0], "", e.text)]  # "one bedroom ..., the other ..."
         word = e.text.rsplit(maxsplit=1)[-1]
         same = [r for r in same if word in r.surface.split()] or same
         recent = [r for r in same if any(r.id in x.ids for x in sentence[:k])]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pipeline.floorplan.language.naming import heads
+from pipeline.floorplan.language.introductions import heads
 from pipeline.floorplan.language.phrases import Element
 
 if TYPE_CHECKING:

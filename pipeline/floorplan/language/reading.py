@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from pipeline.floorplan.language.clauses import Clause
 from pipeline.floorplan.language.facts import Reading
+from pipeline.floorplan.language.introductions import introduce
 from pipeline.floorplan.language.marks import Words
-from pipeline.floorplan.language.naming import introduce
 from pipeline.floorplan.language.negation import ban
 from pipeline.floorplan.language.phrases import Element
 

@@ -1,0 +1,146 @@
+"""The rooms that numbers and articles introduce, and which storey is meant where they stand."""
+
+from __future__ import annotations
+
+from pipeline.floorplan.check import ImpossibleError
+from pipeline.floorplan.language.facts import Reading
+from pipeline.floorplan.language.inventory import Named
+from pipeline.floorplan.language.naming import ALONE, PLURAL_NAMES, ROLES, close, conjoined, listed, repeated
+from pipeline.floorplan.language.phrases import Element
+from pipeline.floorplan.language.text import spread
+from pipeline.floorplan.program import MAX_ROOMS, Evidence
+
+
+def heads(sentence: list[Element], k: int) -> bool:
+    """Whether the level at k opens a new part of a sentence: "living room, kitchen, and upstairs two bedrooms"."""
+    before, after = sentence[k - 1].kind if k else "", next((x for x in sentence[k + 1 :] if x.kind not in {"det", "flag"}), None)
+    return before in {"comma", "and"} and after is not None and after.kind in {"np", "colon"}
+
+
+def introduce(state: Reading, sentences: list[list[Element]]) -> None:
+    """Make the rooms that numbers and indefinite articles introduce: whole counts first, so that later words may tell them apart."""
+    for whole in (True, False):
+        for sentence in sentences:
+            level = _first_level(sentence)
+            suites = False  # "a suite: ... a bedroom": the suite's own
+            for k, e in enumerate(sentence):
+                if e.kind == "level":
+                    level = int(e.value) if not (level is None and k) or heads(sentence, k) else level
+                if e.suite and e.kind == "np":
+                    suites = True
+                if (
+                    e.kind == "np"
+                    and e.introduces
+                    and not e.ids
+                    and not e.suite
+                    and not (suites and e.type == "bedroom" and e.number is None)
+                    and _whole(sentence, k) == whole
+                ):
+                    _few(state, e)
+                    made = _count_all(state, e) if whole else _introduced(state, sentence, k, backward(sentence, k, level))
+                    e.ids = [r.id for r in made]
+
+
+def _few(state: Reading, e: Element) -> None:
+    """Refuse more rooms than a program holds, with the words."""
+    if (e.number or 0) > MAX_ROOMS:
+        start, end = spread(state.heard.tokens[max(e.first - 1, 0) : e.last])
+        words = [Evidence(start=start, end=end, text=state.heard.prompt[start:end], field="rooms")]
+        raise ImpossibleError(f"{e.number:g} {e.type.replace('_', ' ')}s are asked for", f"ask for {MAX_ROOMS} rooms at most", words)
+
+
+def _first_level(sentence: list[Element]) -> int | None:
+    first = next((e for e in sentence if e.kind in {"np", "level"}), None)
+    return int(first.value) if first is not None and first.kind == "level" else None
+
+
+def backward(sentence: list[Element], k: int, level: int | None) -> int | None:
+    """Return the storey of a phrase: of the level named before it, or behind it where sentences name levels behind."""
+    if level is not None:
+        return level
+    parted = False
+    for j, e in enumerate(sentence[k + 1 :], k + 1):
+        if e.kind == "level":
+            return None if heads(sentence, j) else int(e.value)
+        parted = parted or e.kind == "comma"
+        if e.kind in {"np", "and", "comma"}:
+            continue
+        if e.kind == "verb" and parted:  # "four bedrooms, the guest room is downstairs"
+            break
+        if e.kind in {"cue", "colon"}:
+            break
+    return None
+
+
+def _whole(sentence: list[Element], k: int) -> bool:
+    """Whether the number of a phrase is the count of all such rooms: "a two-bedroom flat", "three baths in total"."""
+    e = sentence[k]
+    if e.compound and not e.role:
+        return True
+    return any(x.kind == "flag" and x.value == "total" for x in sentence[k + 1 : k + 2]) and e.number is not None and not e.amounts
+
+
+def _count_all(state: Reading, e: Element) -> list[Named]:
+    stock = state.inventory
+    while len(stock.of(e.type)) < int(e.number or 1):
+        room = stock.add(e.type, "", e.text, None, open_slot=True)
+        room.whole, room.span = True, (e.first, e.last)
+    return stock.of(e.type)[: int(e.number or 1)]
+
+
+def _introduced(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one branch per case: a grammar
+    """Return the rooms of a phrase with a number or an indefinite article."""
+    e, stock = sentence[k], state.inventory
+    count = int(e.number or (2 if e.plural and e.type not in PLURAL_NAMES else 1))
+    same = stock.of(e.type)
+    slots = [r for r in same if r.open_slot and (level is None or r.level in {None, level}) and not r.role]
+    role = e.role if e.role in ROLES else ""
+    if e.number is not None and not role and "another" not in e.det and count > len(same) and any(r.whole for r in same):
+        state.say("beyond", tuple(r.id for r in same), (), e, float(count))
+        return same
+    if slots and e.type == "bathroom" and count == 1 and _had(sentence, k) and not any(r.id in x.ids for r in slots for x in sentence[:k]):
+        return []  # "three baths. Two of the bedrooms have an en suite": of those that were counted
+    if slots and _predicative(sentence, k):
+        return [close(slots[0], role, e.text)]
+    if "another" not in e.det:
+        if role and role != "ensuite":
+            here = [r for r in same if r.role == role]
+            if here and len(here) == count:
+                return here
+            wide = [r for r in slots if r.whole or listed(sentence, k, r)]
+            if len(wide) >= count and e.type != "bathroom":
+                return [close(r, role, e.text) for r in wide[:count]]
+        elif not role and slots and not _contrasted(sentence, k):
+            if len(slots) == count == len(same) and count > 1:
+                return slots
+            known = all(r.whole for r in slots) or (e.number is not None and count < len(slots) and len(slots) > 1)
+            if known and count <= len(slots) and not conjoined(sentence, k):
+                return [close(r, "", e.text, level) for r in slots[:count]]
+        if count == 1 and e.number is None and not role and e.type in ALONE and same and not repeated(sentence, k):
+            return same[:1]
+    made = [stock.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
+    for room in made:
+        room.extra, room.span = "another" in e.det, (e.first, e.last)
+    return made
+
+
+def _had(sentence: list[Element], k: int) -> bool:
+    """Whether a bedroom has the room of the phrase at k."""
+    before = [e for e in sentence[:k] if e.kind in {"np", "cue", "comma", "and", "pron"}][-2:]
+    return (
+        len(before) > 1
+        and before[1].value == "has"
+        and before[1].kind == "cue"
+        and (before[0].type == "bedroom" or before[0].kind == "pron")
+    )
+
+
+def _contrasted(sentence: list[Element], k: int) -> bool:
+    """Whether a count is told apart from the one in front by an adjective: "3 hab dobles, 1 hab individual"."""
+    before = next((e for e in reversed(sentence[:k]) if e.kind == "np" and e.type == sentence[k].type), None)
+    return before is not None and bool(before.said) and bool(sentence[k].said) and not before.said & sentence[k].said
+
+
+def _predicative(sentence: list[Element], k: int) -> bool:
+    """Whether a phrase says what one of several is: "four bedrooms, one of which is a guest room"."""
+    return k > 1 and sentence[k - 1].kind == "verb" and sentence[k - 2].kind == "pron" and sentence[k - 2].value == "one"
