@@ -1,7 +1,7 @@
 """Failures to find a plan: programs of the prior, and programs read off plans of an independent generator.
 
 A refusal, a crash and whatever the audit finds are failures alike. Nothing stops the run: each is printed with its seed and reason.
-A run of LEAST programs or more is kept in docs/failures.json as it goes, so that one that was stopped goes on with `--start`.
+A run of LEAST programs or more is kept in docs/failures.json as it goes; one that was stopped goes on with `--start`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from pipeline.floorplan import FloorProgram, complete, prior, solve
 
 SOURCES: dict[str, Callable[[np.random.Generator], FloorProgram]] = {"prior": prior, "trees": trees.program}
 RECORD = "failures.json"
-COMMAND = "python -m benchmarks.plan failures --count 10000"
+COMMAND = "python -m benchmarks.plan failures"
 LEAST = 1000  # programs of a run that is kept
 CHUNK = 250  # programs between two lines of progress
 Json = dict[str, Any]
@@ -35,6 +35,8 @@ def main(count: int, start: int = 0, sources: tuple[str, ...] = tuple(SOURCES), 
     failed = 0
     for source in sources:
         spent: list[float] = []
+        known = record.read(RECORD)
+        follows = any(r["start"] + r["count"] == start for r in known.get("sources", {}).get(source, ()))
         run: Json = {"start": start, "count": 0, "cpu_s": 0.0, "slowest_s": 0.0, "commit": commit, "failures": []}
         for number, (seconds, bad) in enumerate(attempts(source, start, count, jobs), start):
             spent.append(seconds)
@@ -44,8 +46,8 @@ def main(count: int, start: int = 0, sources: tuple[str, ...] = tuple(SOURCES), 
             run |= {"count": len(spent), "cpu_s": round(sum(spent), 1), "slowest_s": round(max(spent), 2)}
             if len(spent) % CHUNK == 0 or len(spent) == count:
                 print(f"... {source}: {number + 1}, {len(run['failures'])} failed", file=sys.stderr, flush=True)
-                if start + count >= LEAST:
-                    record.write(RECORD, kept(record.read(RECORD), source, run))
+                if count >= LEAST or follows:
+                    record.write(RECORD, kept(known, source, run))
         print(f"{source}: {len(run['failures'])} of {count} failed; CPU ms mean {1e3 * np.mean(spent):.0f}", end="")
         print(f", p50 {1e3 * np.median(spent):.0f}, p99 {1e3 * np.percentile(spent, 99):.0f}, max {1e3 * max(spent):.0f}", flush=True)
         failed += len(run["failures"])
@@ -64,7 +66,9 @@ def kept(known: Mapping[str, Any], source: str, run: Json) -> Json:
             "failures": [*last["failures"], *run["failures"]],
         }
         runs.pop()
-    return {"command": COMMAND, "sources": {**known.get("sources", {}), source: [*runs, run]}}
+    sources = {**known.get("sources", {}), source: [*runs, run]}
+    most = max(sum(r["count"] for r in found) for found in sources.values())
+    return {"command": f"{COMMAND} --count {most}", "sources": sources}
 
 
 def attempts(source: str, start: int, count: int, jobs: int) -> Iterator[Attempt]:

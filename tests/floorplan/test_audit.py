@@ -197,3 +197,30 @@ def test_a_stopped_count_of_failures_goes_on_where_it_was_stopped():
 
 def test_processes_give_what_one_gives():
     assert [bad for _, bad in failures.attempts("trees", 0, 3, 2)] == [bad for _, bad in failures.attempts("trees", 0, 3, 1)]
+
+
+def test_small_samples_leave_the_record_alone_and_long_ones_grow_it(monkeypatch, tmp_path):
+    monkeypatch.setattr(failures.record, "DOCS", tmp_path)
+    monkeypatch.setattr(failures, "LEAST", 4)
+    monkeypatch.setattr(failures, "CHUNK", 2)
+    monkeypatch.setattr(
+        failures,
+        "attempts",
+        lambda source, start, count, jobs: iter([(0.1, ["fault: x"] if k == 5 else []) for k in range(start, start + count)]),
+    )
+
+    def runs():
+        found = failures.record.read(failures.RECORD).get("sources", {}).get("trees", [])
+        return [(r["start"], r["count"], [f["seed"] for f in r["failures"]]) for r in found]
+
+    for start, count, after in (
+        (0, 3, []),
+        (0, 4, [(0, 4, [])]),
+        (0, 3, [(0, 4, [])]),
+        (4, 3, [(0, 7, [5])]),
+        (7, 5, [(0, 12, [5])]),
+        (3, 3, [(0, 12, [5])]),
+    ):
+        failures.main(count, start, ("trees",))
+        assert runs() == after
+    assert failures.record.read(failures.RECORD)["command"].endswith("--count 12")
