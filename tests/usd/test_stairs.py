@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from pxr import Usd, UsdGeom, UsdPhysics
@@ -9,7 +11,9 @@ from pxr import Usd, UsdGeom, UsdPhysics
 from pipeline.entities.home import Home
 from pipeline.floorplan import complete, solve
 from pipeline.floorplan.program import FloorProgram, RoomReq
+from pipeline.geometry.stairs import steps
 from pipeline.usd.home import write_home
+from pipeline.usd.mujoco import write_mujoco_overlay
 
 
 @pytest.fixture(scope="module")
@@ -42,3 +46,22 @@ def test_steps_collide_and_reach_the_upper_floor(house):
     tops = sorted(heights(stage, p.GetPath())[1] for p in solids if p.GetName().startswith(("step", "landing")))
     assert tops[-1] == plan.storey_height
     assert max(np.diff([0.0, *tops])) <= 0.2 + 1e-6
+
+
+def test_a_box_comes_to_rest_on_every_step(house):
+    mujoco = pytest.importorskip("mujoco")
+    pytest.importorskip("mujoco._usd")
+    plan, stage = house
+    path = Path(stage.GetRootLayer().realPath)
+    spec = mujoco.MjSpec.from_file(str(write_mujoco_overlay(path)))
+    flight = [s for s in steps(plan, 0) if s.kind == "step"]
+    for i, step in enumerate(flight):
+        body = spec.worldbody.add_body(name=f"box_{i}", pos=[*step.polygon.mean(axis=0), step.top + 0.08])
+        body.add_freejoint()
+        body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.03, 0.03, 0.03], mass=0.2)
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    for _ in range(1000):
+        mujoco.mj_step(model, data)
+    rest = [data.body(f"box_{i}").xpos[2] - 0.03 for i in range(len(flight))]
+    assert rest == pytest.approx([s.top for s in flight], abs=2e-3)
