@@ -9,7 +9,7 @@ from pipeline.floorplan.language.marks import Mark
 SECOND = {"次卧", "次卧室", "侧卧"}  # the bedroom beside the main one
 HEADS = {"room", "suite"}
 CLOSERS = {"comma", "stop", "line", "join", "close"}
-PLACED = {"near", "away", "apart", "wall", "open", "door", "between"}  # what is said of a room in front of it: "远离卧室的书房"
+PLACED = {"near", "away", "apart", "wall", "open", "door", "between", "leads"}  # what is said of a room in front of it: "远离卧室的书房"
 OF = "的"
 
 
@@ -71,11 +71,16 @@ def _described(marks: list[Mark], k: int) -> bool:
         return True  # what stood between was furniture
     if k >= len(marks) or marks[k].kind != "cue":
         return False
-    of = next((j for j in range(k, min(k + 6, len(marks))) if marks[j].text == OF), 0)
-    return bool(of) and of + 1 < len(marks) and marks[of + 1].kind in HEADS and not any(m.kind in CLOSERS for m in marks[k:of])
+    of = next((j for j in range(k, min(k + 8, len(marks))) if marks[j].text == OF), 0)
+    head = of + 1
+    while of and head < len(marks) and marks[head].kind in {"adj", "size"}:
+        head += 1
+    parted = any(m.kind in CLOSERS - {"join"} for m in marks[k:of])
+    return bool(of) and head < len(marks) and marks[head].kind in HEADS and not parted
 
 
 BESIDES = {"另 外", "另"}
+WHOLE = {"房", "卧"}  # behind a number: all bedrooms of the home, "三房"
 COPULAS = {"是", "为", "要"}
 AMONG = {"里", "中", "里面", "当中", "其中", "之中"}
 
@@ -123,7 +128,7 @@ def _counted(marks: list[Mark]) -> list[Mark]:
                 ]
                 if number.number > 2:
                     made[-2] = replace(number, number=1.0)
-        elif mark.kind == "room" and mark.value == "bedroom/count":
+        elif mark.kind == "room" and (mark.value == "bedroom/count" or (mark.text in WHOLE and len(made) > 1 and made[-2].kind == "num")):
             made[-1] = replace(mark, value="bedroom")
             if not (k + 1 < len(marks) and marks[k + 1].kind == "home"):
                 made.append(Mark("home", "", 0.0, False, mark.first, mark.first, ""))
@@ -211,7 +216,8 @@ def _possessed(marks: list[Mark]) -> list[Mark]:
                 clause = [m for m in made[max(0, (has or 0)) : k] if m.kind in {"comma", "stop"}]
                 said = _placed(made, k) if has is None else None
                 if said is not None:
-                    made[said : head + 1] = [*made[k + 1 : head + 1], *made[said:k]]
+                    relative = Mark("relative", "", 0.0, False, mark.first, mark.first, OF)
+                    made[said : head + 1] = [*made[k + 1 : head + 1], relative, *made[said:k]]
                     k = head
                     continue
                 starts = has is not None and (has == 0 or made[has - 1].kind not in {"room", "suite", "pron", "home"}) and not clause

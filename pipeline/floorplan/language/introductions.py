@@ -77,7 +77,8 @@ def _whole(sentence: list[Element], k: int) -> bool:
     e = sentence[k]
     if e.compound and not e.role:
         return True
-    return any(x.kind == "flag" and x.value == "total" for x in sentence[k + 1 : k + 2]) and e.number is not None and not e.amounts
+    near = [*sentence[k + 1 : k + 2], *(sentence[max(0, k - 1) : k] if e.type == "bedroom" and not e.role else [])]
+    return any(x.kind == "flag" and x.value == "total" for x in near) and e.number is not None and not e.amounts
 
 
 def _count_all(state: Reading, e: Element) -> list[Named]:

@@ -7,6 +7,8 @@ reads meanings only: a language is this data and, where word order or inflection
 from __future__ import annotations
 
 import functools
+import itertools
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -96,9 +98,17 @@ class _Entries(BaseModel):
     common: str = ""
 
 
+CHOICES = re.compile(r"\[([^\]]*)\]|([^\[]+)")
+
+
 def split(text: str) -> Iterator[str]:
-    """Return the phrases of a comma-separated entry."""
-    return (p for p in (q.strip() for q in text.split(",")) if p)
+    """Return the phrases of a comma-separated entry; "[a b][c d]" stands for ac, ad, bc and bd."""
+    for phrase in (p for p in (q.strip() for q in text.split(",")) if p):
+        if "[" in phrase:
+            parts = [m.group(1).split() if m.group(1) else [m.group(2)] for m in CHOICES.finditer(phrase)]
+            yield from map("".join, itertools.product(*parts))
+        else:
+            yield phrase
 
 
 @dataclass

@@ -188,6 +188,7 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
         and not r.role
         and (e.definite or r.whole or listed(sentence, k, r) or not conjoined(sentence, k))
         and not (r.extra and r.span is not None and r.span[0] > e.first)  # "the main bedroom ...; two more bedrooms"
+        and not (role == "primary" and r.surface[:1] in {"次", "侧"})
         and ((e.definite and level is None) or r.level is None or r.level == level)  # counted on another storey: others
     ]
     if many and slots:
@@ -239,6 +240,8 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
         return [stock.add(e.type, "", e.text, level)]  # "a master with en suite, ..., bathroom"
     if not e.det and (_repeated_bare(sentence, k) or (e.type == "storage" and all(e.text != r.surface for r in same))):
         return [stock.add(e.type, "", e.text, level)]
+    if len(same) > 1 and state.heard.lexicon.language == "zh" and not e.det and e.number is None and all(r.open_slot for r in same):
+        return same  # no plural there: "两间卧室 ... 卧室都朝走廊"
     if len(same) > 1:
         if e.number == 1 and (loose := [r for r in same if r.open_slot and not r.role]):
             return [close(loose[0], "", e.text)]  # "one bedroom ..., the other ..."
@@ -260,7 +263,8 @@ def _repeated_bare(sentence: list[Element], k: int) -> bool:
         e = sentence[j]
         if e.kind == "np":
             if e.type == sentence[k].type:
-                return not j or sentence[j - 1].kind not in {"cue", "enter", "det"}
+                spoken = k + 1 < len(sentence) and sentence[k + 1].kind in {"cue", "verb", "neg", "flag", "cmp"}  # Chinese has no articles
+                return not (spoken and sentence[k - 1].kind == "comma") and (not j or sentence[j - 1].kind not in {"cue", "enter", "det"})
         elif e.kind not in {"comma", "and", "amount", "open", "close"}:
             return False
     return False

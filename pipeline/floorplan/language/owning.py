@@ -78,7 +78,7 @@ def has(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, PLR0
     if not clause.run and near.kind == "np" and near.ids and set(near.ids) <= set(clause.objects) and e.text in {"with", "con", "mit"}:
         owners = tuple(near.ids)  # "the living room leads to a hall with two bedrooms"
     if clause.run and len(clause.run) > 1 and (clause.verb or e.text in {"have", "both have"}):
-        listed = tuple(i for x in clause.run for i in x.ids if not i.startswith("*"))
+        listed = tuple(dict.fromkeys(i for x in clause.run for i in x.ids if not i.startswith("*")))
         owners = listed if not any(x.part for x in clause.run) and {stock.get(i).type for i in listed} == {"bedroom"} else owners
     if not owners:
         return k + 1

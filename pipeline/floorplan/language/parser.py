@@ -12,10 +12,12 @@ from pipeline.floorplan.check import check
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.language.assembly import assemble
 from pipeline.floorplan.language.attaching import attach
+from pipeline.floorplan.language.bearings import located
 from pipeline.floorplan.language.denials import denied
 from pipeline.floorplan.language.detection import detect
 from pipeline.floorplan.language.marks import listen, measured, segment
 from pipeline.floorplan.language.masking import read_furniture
+from pipeline.floorplan.language.measures import compared
 from pipeline.floorplan.language.notation import noted
 from pipeline.floorplan.language.order import reorder
 from pipeline.floorplan.language.passages import written_out
@@ -26,6 +28,7 @@ from pipeline.floorplan.language.revising import revise
 from pipeline.floorplan.language.shorthand import crossed, dealt, shared_unit, widen
 from pipeline.floorplan.language.standins import resolved
 from pipeline.floorplan.language.tables import plain_areas
+from pipeline.floorplan.language.tallies import loosened, tallied
 from pipeline.floorplan.language.text import tokenize
 from pipeline.floorplan.program import FloorProgram
 
@@ -53,9 +56,10 @@ def understand(prompt: str) -> FloorProgram:
 def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     """Return what a prompt says of rooms, and no more; `plain` is it without its wishes for furniture, all else in its place."""
     heard = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
-    amounts = dealt(measured(shared_unit(crossed(plain_areas(segment(heard)), heard)), heard))
+    amounts = dealt(measured(shared_unit(crossed(plain_areas(loosened(segment(heard), heard)), heard)), heard))
     revised = revise(widen(amounts, heard), heard)
-    marks = reorder(written_out(noted(resolved(housed(denied(revised.marks)), heard), heard), heard), heard)
+    said = located(compared(tallied(revised.marks, heard), heard), heard)
+    marks = reorder(written_out(noted(resolved(housed(denied(said)), heard), heard), heard), heard)
     parsed = sentences(marks, heard)
     spoken = {e.kind for s in parsed for e in s}
     if not spoken & {"np", "home"} and not any(e.kind == "amount" and e.value == "rooms" for s in parsed for e in s):

@@ -249,7 +249,7 @@ def _mutual(clause: Clause, e: Element) -> None:
         clause.state.say("merge" if e.value == "open" else e.value, rooms, (), e)
 
 
-def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one branch per case: a grammar
+def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911, PLR0912 - one branch per case: a grammar
     """Return the subject of a cue: the phrase in front, the list in front of a verb, or what the clause is about."""
     before = clause.sentence[k - 1] if k else None
     if not clause.run:
@@ -257,7 +257,7 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one b
         passed = before is not None and before.kind == "np" and cue is not None and bool(THROUGH & set(cue.text.split()))
         if passed and clause.objects and e.value in {"door", "leads"} and e.text.split()[0] not in THROUGH:
             return clause.objects  # "the garage is connected by way of the utility room to the kitchen"
-        if clause.relative and clause.objects and clause.state.heard.lexicon.language in {"en", "es"}:
+        if clause.relative and clause.objects and clause.state.heard.lexicon.language in {"en", "es", "zh"}:
             return clause.objects  # "away from the parents' bedroom, which is next to ..."
         chained = before is not None and before.kind == "np" and cue is not None and cue.value == e.value == "near"
         return clause.objects if chained and clause.objects and not clause.relative else clause.subject  # "X next to Y next to Z"
@@ -268,6 +268,8 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911 - one b
         and set(clause.objects) == {i for x in clause.run for i in x.ids}
     ):
         return clause.subject  # "a guest room with its own bath, away from ..."
+    if before is not None and before.kind == "open":
+        return tuple(clause.run[-1].ids)  # "a garage (joined to the hall)"
     apart = before is not None and before.kind == "comma" and len(clause.run) > 1
     last = clause.run[-1]
     if clause.relative or (apart and not clause.verb):

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 HAN = "\u3400-\u9fff"
 WORD = re.compile(
-    rf"\d+(?:[.,]\d{{3}})+(?![\d])|\d+(?:[.,]\d+)?|[{HAN}]|m²|ft²|m2(?!\d)|ft2(?!\d)|[^\W\d_{HAN}]+(?:'(?:s|t|ve|d|ll|re|m)\b)?'?|w/o\b|->|=>|→|[<>]=|1½|½|[%.,;:!?()/&~+=*•|–—\-×。、;:!?()\n\[\]]",
+    rf"\d+(?:[.,]\d{{3}})+(?![\d])|\d+(?:[.,]\d+)?|[{HAN}]|m²|ft²|m2(?!\d)|ft2(?!\d)|[^\W\d_{HAN}]+(?:'(?:s|t|ve|d|ll|re|m)\b)?'?|w/o\b|->|=>|→|[<>]=|[<>](?=\s*\d|$)|[≤≥]|1½|½|[%.,;:!?()/&~+=*•|–—\-×。、;:!?()\n\[\]]",
     re.IGNORECASE,
 )
 ALIKE = str.maketrans(
@@ -113,6 +113,8 @@ def bare(word: str) -> str:
 
 def words(phrase: str) -> tuple[str, ...]:
     """Return the folded words of a phrase of a lexicon."""
+    if all("\u3400" <= c <= "\u9fff" for c in phrase):
+        return tuple(phrase.translate(ALIKE))
     plain = phrase.replace("-", " ")
     if plain.replace(" ", "").isalpha() and not any("\u3400" <= c <= "\u9fff" for c in plain):
         return tuple(fold(w) for w in plain.split())

@@ -43,6 +43,13 @@ def excepted(clause: Clause, k: int, e: Element) -> int:
 def through(clause: Clause, k: int, e: Element) -> int:
     """Read "you pass through the dining room to reach the kitchen", and what must not be so."""
     first, j = clause.after(k + 1, "door", ())
+    ends = j >= len(clause.sentence) or clause.sentence[j].kind in {"comma", "but"}
+    left = tuple(i for i in (clause.run[-1].ids if clause.run else clause.subject) if i not in first)
+    if first and ends and left and clause.negative is None and e.value == "thru":  # "浴室得穿过衣帽间才能到"
+        clause.state.say("door", left, first, e)
+        clause.latest = clause.objects = first
+        clause.run = []
+        return j
     if not first or j >= len(clause.sentence):
         return k + 1
     while j < len(clause.sentence) and clause.sentence[j].kind in {"verb", "comma"}:

@@ -1,0 +1,273 @@
+"""How Chinese counts: "卧室x3", "卧室数量为2", "卧室要三间", "客厅、厨房各一间", "有两间带卫生间", "大的15平，小的9平", "顶层"."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import replace
+
+from pipeline.floorplan.language.marks import Mark, Words
+
+ENDS = {"comma", "stop", "line", "close", "join", "open", "but"}
+HARD = {"comma", "stop", "line", "open", "colon", "but"}  # where a clause begins
+SOFT = {"verb", "adverb", "bound", "fill", "det", "colon", "times", "flag"}  # between a room and how many there are
+HEADS = {"room", "suite"}
+DETAIL = {"adj", "size", "amount", "clf"}
+ODD = {"多", "余", "来", "几"}  # "80多平"
+QUANTITY = {"数量", "个数", "间数", "数"}
+WISHED = {"要", "需要", "想要", "得有", "要有", "有", "共", "共有", "一共", "一共有", "总共", "总共有", "是", "为", "就", "只要", "只有", "只", "设", "设有", "安排", "x", "*", "都", "的"}  # fmt: skip
+TOPS = {"顶层", "顶楼", "最上层", "最高层", "最上面一层", "最上面", "最顶层"}
+MIDDLES = {"中间层", "中间一层", "中层"}
+EARLIER = {"原来", "原先", "以前", "之前", "目前", "现有", "本来", "原本", "最初", "一开始"}
+
+
+def plain(mark: Mark) -> str:
+    """Return the characters of a mark."""
+    return mark.text.replace(" ", "")
+
+
+def loosened(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Read "80多平" as about 80, and leave out the home as it was: "原来是三室一厅，现在想改成两室两厅"."""
+    if heard.lexicon.language != "zh":
+        return list(marks)
+    kinds = ["num", "unit"]
+    made = [
+        m
+        for k, m in enumerate(marks)
+        if not (plain(m) in ODD and 0 < k < len(marks) - 1 and [marks[k - 1].kind, marks[k + 1].kind] == kinds)
+    ]
+    return _denied(_renewed(made))
+
+
+def _homes(marks: Sequence[Mark]) -> int:
+    """Return how many counts of rooms stand one behind the other: two in "三室一厅"."""
+    return sum(a.kind == "num" and b.kind in HEADS and b.last - b.first <= 2 for a, b in itertools.pairwise(marks))
+
+
+def _renewed(marks: list[Mark]) -> list[Mark]:
+    start = next((k for k, m in enumerate(marks) if plain(m) in EARLIER), None)
+    if start is None:
+        return marks
+    cut = next((k for k in range(start, len(marks)) if marks[k].kind in {"comma", "stop"} and _homes(marks[start:k])), None)
+    if cut is None:
+        return marks
+    end = next((k for k in range(cut, len(marks)) if marks[k].kind in {"stop", "line"} and k > cut), len(marks))
+    fixed = next((k for k in range(cut, end) if marks[k].kind == "fix"), None)
+    if fixed is None or not _homes(marks[fixed:end]) or (_homes(marks[start:cut]) < 2 and _homes(marks[fixed:end]) < 2):
+        return marks
+    kept = [m for m in marks[start:cut] if m.kind not in {"num", "room", "home"}]
+    return [*marks[:start], *(replace(m, kind="fill") for m in kept), *marks[cut:fixed], *marks[fixed + 1 :]]
+
+
+def _denied(marks: list[Mark]) -> list[Mark]:
+    """Leave out "不是三居室" beside "四居室": another count of what is wanted."""
+    for k in range(len(marks) - 3):
+        lead = marks[k].kind == "neg" and plain(marks[k]) in {"不", "不是"}
+        j = k + 1 + (lead and plain(marks[k + 1]) == "是")
+        counted = lead and j + 1 < len(marks) and marks[j].kind == "num" and marks[j + 1].kind in HEADS
+        if counted and (j > k + 1 or plain(marks[k]) == "不是"):
+            others = [m for i, m in enumerate(marks) if m.kind in HEADS and m.value == marks[j + 1].value and not k <= i <= j + 1]
+            if others:
+                return [*marks[:k], *(replace(m, kind="fill") for m in marks[k:j]), *marks[j + 2 :]]
+    return marks
+
+
+def tallied(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Return the marks with every number in front of what it counts."""
+    if heard.lexicon.language != "zh":
+        return list(marks)
+    made = _storeys(_bedrooms(_sizes(list(marks))))
+    return _headless(_partly(_apiece(_behind(_figures(made)))))
+
+
+def _headless(marks: list[Mark]) -> list[Mark]:
+    """Read "主卧有自己的卫生间，另外再来一个公用的" as one more bathroom."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        made.append(mark)
+        end = k + 1 + (k + 1 < len(marks) and plain(marks[k + 1]) == "的")
+        alone = end >= len(marks) or marks[end].kind in ENDS
+        one = any(_one(m) or m.kind == "num" for m in marks[max(0, k - 2) : k])
+        bath = next((m for m in reversed(marks[:k]) if m.kind == "room" and m.value.startswith("bathroom")), None)
+        if (mark.kind, mark.value) == ("adj", "shared") and alone and one and bath is not None:
+            made.append(replace(bath, value="bathroom/shared", first=mark.last, last=mark.last))
+    return made
+
+
+def _figures(marks: list[Mark]) -> list[Mark]:
+    """Read "卧室x3", "卧室数量2" and a bare "卧室3、卫生间2" as counts."""
+    rooms = [m.value for m in marks if m.kind in HEADS]
+    made: list[Mark] = []
+    k = 0
+    while k < len(marks):
+        mark = marks[k]
+        if mark.kind != "room":
+            made.append(mark)
+            k += 1
+            continue
+        j, said = k + 1, False
+        while j < len(marks) and (
+            plain(marks[j]) in {"x", "*", "的", "为", "是"} or marks[j].kind in {"times", "word", "colon"} or plain(marks[j]) in QUANTITY
+        ):
+            said = (
+                said
+                or marks[j].kind == "times"
+                or plain(marks[j]) in {"x", "*"}
+                or "".join(plain(m) for m in marks[k + 1 : j + 1]).strip("的为是:") in QUANTITY
+            )
+            j += 1
+        number = marks[j] if j < len(marks) and marks[j].kind == "num" and marks[j].number == int(marks[j].number) else None
+        after = j + 1 + (j + 1 < len(marks) and marks[j + 1].kind == "clf")
+        ends = after >= len(marks) or marks[after].kind in ENDS
+        bare = number is not None and j == k + 1 and number.value == "figure" and rooms.count(mark.value) == 1 and 1 < number.number <= 9
+        free = not made or made[-1].kind not in {"num", "clf", "ord"}
+        if number is not None and ends and free and (said or (bare and _figured(marks))):
+            made += [replace(number, value=""), mark]
+            k = after
+        else:
+            made.append(mark)
+            k += 1
+    return made
+
+
+def _figured(marks: Sequence[Mark]) -> bool:
+    """Whether figures stand behind two rooms and more: "卧室3，卫生间2"."""
+    return sum(a.kind == "room" and b.kind == "num" and b.value == "figure" for a, b in itertools.pairwise(marks)) > 1
+
+
+def _one(mark: Mark) -> bool:
+    return (mark.kind, mark.value) == ("pron", "one") and plain(mark) in {"一个", "一间", "一套", "一处"}
+
+
+def _behind(marks: list[Mark]) -> list[Mark]:
+    """Read "卧室要三间", "卫生间一共两个", "卧室两间" with the number in front."""
+    made = list(marks)
+    k = 0
+    while k < len(made):
+        if made[k].kind not in HEADS or (k and made[k - 1].kind in {"num", "clf", "ord"}) or (k and _one(made[k - 1])):
+            k += 1
+            continue
+        j = k + 1
+        while j < len(made) and j - k < 5 and (plain(made[j]) in WISHED or (j > k + 1 and made[j].kind == "adverb")):
+            j += 1
+        number = made[j] if j < len(made) and (made[j].kind == "num" or _one(made[j])) else None
+        counted = number is not None and (_one(number) or (j + 1 < len(made) and made[j + 1].kind == "clf"))
+        after = j + 1 + (number is not None and number.kind == "num" and counted)
+        parted = after >= len(made) or made[after].kind in ENDS or made[after].kind == "amount" or plain(made[after]) in {"就", "吧"}
+        whole = j == k + 1 or number is None or number.number != 1.0 or _one(number) or plain(made[j - 1]) not in {"是", "为"}
+        has = any(m.kind == "cue" and m.value == "has" for m in made[k + 1 : j]) and k and made[k - 1].kind not in HARD | {"join"}
+        if counted and parted and whole and not has and number is not None:
+            moved = replace(number, kind="num", value="", number=number.number if number.kind == "num" else 1.0)
+            tail = made[j + 1 : after]
+            rest = [m for m in made[k + 1 : j] if m.kind == "flag"]
+            start = k
+            while start and made[start - 1].kind in {"adj", "size"}:
+                start -= 1
+            made[start:after] = [moved, *tail, *made[start:k], made[k], *rest]
+            k += 1
+        k += 1
+    return made
+
+
+def _apiece(marks: list[Mark]) -> list[Mark]:
+    """Read "客厅、厨房各一个" as one of each, "卧室、书房各两间" as two of each."""
+    made = list(marks)
+    for k, mark in enumerate(made):
+        if (mark.kind, mark.value) != ("det", "each") or plain(mark) not in {"各", "各要", "各有", "各需"} or k + 1 >= len(made):
+            continue
+        j = k + 1 + (made[k + 1].kind in {"verb", "bound"})
+        number = made[j] if j < len(made) and (made[j].kind == "num" or _one(made[j])) else None
+        after = j + 1 + (j + 1 < len(made) and made[j + 1].kind == "clf")
+        if number is None or not (after >= len(made) or made[after].kind in ENDS) or not k or made[k - 1].kind not in HEADS | {"amount"}:
+            continue
+        count = number.number if number.kind == "num" else 1.0
+        front = made[:k]
+        i = k - 1
+        while i >= 0 and front[i].kind in HEADS | DETAIL | {"join", "num"}:
+            i -= 1
+        if count > 1:
+            for p in range(k - 1, i, -1):
+                if front[p].kind in HEADS and not any(m.kind == "num" for m in front[max(i + 1, p - 2) : p]):
+                    front.insert(p, replace(number, kind="num", value="", number=count))
+        return [*front, *_apiece(made[after:])]
+    return made
+
+
+def _partly(marks: list[Mark]) -> list[Mark]:
+    """Read "有两间带卫生间" and "剩下两间共用" as some of the rooms that were counted."""
+    made: list[Mark] = []
+    k = 0
+    while k < len(marks):
+        mark = marks[k]
+        pair = mark.kind == "num" and k + 1 < len(marks) and marks[k + 1].kind == "clf" and marks[k + 1].value != "one"
+        ahead = marks[k + 2] if k + 2 < len(marks) else None
+        goes = ahead is not None and (ahead.kind in {"cue", "verb", "adverb"} or (ahead.kind, ahead.value) == ("adj", "shared"))
+        back = next((m for m in reversed(made) if m.kind not in {"adverb", "verb", "fill"} and m.value != "has"), None)
+        told = any(m.kind == "num" and m.number >= mark.number and n.kind in {"clf", "room"} for m, n in itertools.pairwise(made))
+        if pair and goes and told and back is not None and mark.number > 1:
+            rest = bool(made) and (made[-1].kind, made[-1].value) == ("det", "other")
+            while made and made[-1].value == "has" and made[-1].kind == "cue":
+                made.pop()
+            if rest:
+                made.pop()
+            made.append(replace(mark, kind="pron", value="rest" if rest else "one", last=marks[k + 1].last))
+            k += 2
+        else:
+            made.append(mark)
+            k += 1
+    return made
+
+
+def _sizes(marks: list[Mark]) -> list[Mark]:
+    """Read "其中大的15平，小的9平" as one of them and another."""
+    made = list(marks)
+    for k in range(1, len(made) - 1):
+        nominal = (
+            made[k].kind == "size" and plain(made[k]).endswith("的") and made[k - 1].kind in {"comma", "pron", "colon", "open", "join"}
+        )
+        verb = made[k + 1].kind in {"verb", "bound"} and k + 2 < len(made)
+        if nominal and (made[k + 1 + verb].kind == "amount"):
+            made[k] = replace(made[k], kind="pron", value="one", number=1.0)
+            if (made[k - 1].kind, made[k - 1].value) == ("pron", "some"):
+                made[k - 1] = replace(made[k - 1], kind="fill", value="")
+    return made
+
+
+def _bedrooms(marks: list[Mark]) -> list[Mark]:
+    """Read "三个房间、一个客厅" as bedrooms: rooms in a list with the one where one lives."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        made.append(mark)
+        if mark.kind != "amount" or mark.value != "rooms" or (k + 1 < len(marks) and marks[k + 1].kind not in {"join", "comma", "cue"}):
+            continue
+        end = next((j for j in range(k + 1, len(marks)) if marks[j].kind in {"stop", "line", "colon"}), len(marks))
+        counted = any(
+            a.kind in {"num", "clf"} and b.value.startswith("living_room") for a, b in zip(marks[k:end], marks[k + 1 : end], strict=False)
+        )
+        counted = counted or any(
+            _one(a) and b.value.startswith("living_room") for a, b in zip(marks[k:end], marks[k + 1 : end], strict=False)
+        )
+        listed = any(plain(m) in {"分别", "包括"} for m in marks[k + 1 : k + 4])
+        beds = any(m.kind in HEADS and m.value.startswith("bedroom") for m in marks)
+        if counted and not listed and not beds:
+            made[-1:] = [replace(mark, kind="num", value="", number=mark.number), replace(mark, kind="room", value="bedroom", number=0.0)]
+    return made
+
+
+def _storeys(marks: list[Mark]) -> list[Mark]:
+    """Read "顶层" as the highest storey of the home, and "三层：" in a row of storeys as the third."""
+    whole = next((int(m.number) for m in marks if m.kind == "amount" and m.value == "storeys" and m.number > 1), 0)
+    named = [int(m.value) for m in marks if m.kind == "level" and plain(m) not in TOPS]
+    top = max(whole - 1, 1, *(n + (n == max(named)) for n in named)) if named and not whole else max(whole - 1, 1)
+    made = list(marks)
+    for k, mark in enumerate(marks):
+        if mark.kind == "level" and plain(mark) in TOPS:
+            made[k] = replace(mark, value=str(min(top, 2)))
+        elif mark.kind == "amount" and mark.value == "storeys" and 1 < mark.number <= 3 and plain(mark) in {"三层", "3层", "三楼", "3楼"}:
+            begins = not k or marks[k - 1].kind in HARD
+            goes = k + 1 < len(marks) and (
+                marks[k + 1].kind in {"colon", "verb", "fill", "room", "bound", "num"} or marks[k + 1].value == "has"
+            )
+            if named and begins and goes and not (k + 1 < len(marks) and marks[k + 1].kind == "home"):
+                made[k] = replace(mark, kind="level", value=str(int(mark.number) - 1), number=0.0)
+    return made

@@ -1,0 +1,73 @@
+"""Chinese said in many ways: counts behind their rooms, sides and doors, sizes against each other. Two ways of saying the same state the same."""
+
+from collections import Counter
+
+import pytest
+
+from pipeline.floorplan.language.parser import understand
+
+
+def stated(prompt):
+    """Return rooms by type and role, links by type, prohibitions and relations."""
+    program = understand(prompt)
+    kinds = {r.id: r.type for r in program.rooms}
+    rooms = Counter((r.type, r.role, r.level) for r in program.rooms)
+    links = Counter((*sorted((kinds[k.a], kinds[k.b])), k.kind) for k in program.links)
+    forbids = Counter((f.what, *sorted((kinds.get(f.a, f.a), kinds.get(f.b or "", f.b or "")))) for f in program.forbids)
+    relations = Counter((r.kind, kinds.get(r.a, r.a), kinds.get(r.b or "", r.b), round(r.value, 2)) for r in program.relations)
+    return rooms, links, forbids, relations, program.storeys, program.total_area
+
+
+@pytest.mark.parametrize(
+    ("said", "plain"),
+    [
+        ("卧室x3，卫生间x2，厨房x1", "三间卧室，两个卫生间，一间厨房"),
+        ("卧室数量：3，卫生间数量为2，厨房1间", "三间卧室，两个卫生间，一间厨房"),
+        ("卧室要三间，卫生间需要两个，厨房一间", "三间卧室，两个卫生间，一间厨房"),
+        ("厨房、餐厅各一间，卧室、书房各两间", "一间厨房，一间餐厅，两间卧室，两间书房"),
+        ("三个房间，一个客厅，一个卫生间", "三间卧室，一个客厅，一个卫生间"),
+        ("原来是三室一厅，现在想改成两室两厅", "两室两厅"),
+        ("我要四居室，不是三居室", "我要四居室"),
+        ("80多平的公寓，两间卧室", "约80平的公寓，两间卧室"),
+        ("一楼客厅，二楼厨房，顶层两间卧室，一共三层", "一楼客厅，二楼厨房，三楼两间卧室，一共三层"),
+    ],
+)
+def test_counts_in_other_places(said, plain):
+    assert stated(said) == stated(plain)
+
+
+@pytest.mark.parametrize(
+    ("said", "plain"),
+    [
+        ("走廊左边是厨房，右边是两间卧室，尽头是客厅。", "走廊通向厨房。走廊通向两间卧室。走廊通向客厅。"),
+        ("厨房，走廊。卫生间的门朝走廊开。", "厨房，走廊。卫生间与走廊相连。"),
+        ("两间卧室，走廊。所有卧室都从走廊进出。", "两间卧室，走廊。两间卧室都与走廊相连。"),
+        ("书房只有经过客厅才能到达。", "书房只能从客厅进入。"),
+        ("客厅。餐厅，与客厅之间没有隔断。", "客厅。餐厅，与客厅打通。"),
+        ("玄关，通往卫生间的走廊。", "玄关，走廊。走廊通向卫生间。"),
+    ],
+)
+def test_ways_by_sides_doors_and_going(said, plain):
+    assert stated(said)[:3] == stated(plain)[:3]
+
+
+@pytest.mark.parametrize(
+    ("said", "larger", "smaller", "factor"),
+    [
+        ("厨房比客厅小", "living_room", "kitchen", 1.0),
+        ("厨房没有客厅大", "living_room", "kitchen", 1.0),
+        ("厨房不能比客厅大", "living_room", "kitchen", 1.0),
+        ("客厅要比厨房大一倍", "living_room", "kitchen", 2.0),
+        ("客厅的面积比厨房大50%", "living_room", "kitchen", 1.5),
+        ("客厅面积大于厨房", "living_room", "kitchen", 1.0),
+        ("客厅最大，其次是厨房", "living_room", "kitchen", 1.0),
+    ],
+)
+def test_sizes_against_each_other(said, larger, smaller, factor):
+    program = understand(f"{said}。还有一间卧室。")
+    kinds = {r.id: r.type for r in program.rooms}
+    assert (larger, smaller, factor) in [(kinds[r.a], kinds[r.b], r.value) for r in program.relations if r.kind == "area_order"]
+
+
+def test_by_how_much_is_not_dropped_in_silence():
+    assert "5平米" in [s.text for s in understand("次卧比主卧小5平米，客厅20平米。").unparsed]
