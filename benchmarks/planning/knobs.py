@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import json
 import os
-from pathlib import Path
 
+from benchmarks.planning.record import DOCS, commit
 from pipeline.experiments.knobs import VALUES, knob_picture, knob_table, monotone
 
-DOCS = Path(__file__).resolve().parents[2] / "docs"
 MOST_JOBS = 8
 
 
 def main(seeds: int) -> None:
     """Print the means of each term over its knob's values, keep and draw them."""
-    table = knob_table(seeds, min(os.cpu_count() or 1, MOST_JOBS))
+    table = {"command": f"python -m benchmarks.plan knobs --count {seeds}", "commit": commit()}
+    table |= knob_table(seeds, min(os.cpu_count() or 1, MOST_JOBS))
     print(
         f"means over {seeds} seeds of each knob's own term\n{'knob':14s}"
         + "".join(f"{f'2^{v}':>9s}" for v in VALUES)

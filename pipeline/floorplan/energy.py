@@ -35,7 +35,7 @@ TERMS = (
 )
 WEIGHTS = (5.0, 24.0, 1.6, 40.0, 2.4, 2.0, 1.0, 0.5, 10.0, 0.5, 12.0, 8.0)
 TONGUE = 0.76  # m between inner faces: no part of a room is narrower
-TOGETHER = 4.0  # weight of what belongs together, beside the twelve
+TOGETHER = 12.0  # weight of what belongs together, beside the twelve
 SPLIT = 4.5  # m2 charged when a room falls apart at a neck; the legacy solver charges 45 in its units of 0.25 m2 x 0.4
 
 

@@ -119,3 +119,41 @@ def test_the_kept_state_is_what_its_grid_says():
         np.testing.assert_allclose(values, terms, atol=1e-9)
         assert (soft, hard) == pytest.approx((again, violation))
         assert 300 < evaluated <= 800
+
+
+def rectangles(rng, request, side):
+    """Return the rectangles of a random slicing tree of the rooms."""
+    m = request.gross.size
+    while True:
+        expr = [0]
+        for k in range(1, m):
+            expr += [k, slicing.V if rng.random() < 0.5 else slicing.H]
+        rect, order = np.zeros((m, 4), np.int64), np.array(expr)
+        if slicing.lay_out(order, request.gross, side, side, rect, np.zeros((2 * m - 1, 7), np.int64), np.zeros(2 * m - 1)):
+            return rect
+
+
+def test_a_layout_that_is_given_up_is_as_bad_as_that_and_its_score_agrees_with_the_plain_form():
+    request, rng = storey(program(), 0), np.random.default_rng(6)
+    n, side = len(request.rooms), int(np.ceil(np.sqrt(request.gross.sum())))
+    wishes = Trees(request, program(), Outline(side, side, 0)).wishes
+    for _ in range(40):
+        rect = rectangles(rng, request, side)
+        whole = layout.cost(rect, side, side, n, request.gross, wishes, np.inf)
+        assert whole == pytest.approx(layout.cost.py_func(rect, side, side, n, request.gross, wishes, np.inf))
+        for share in (0.2, 0.6, 0.99):
+            assert share * whole < layout.cost(rect, side, side, n, request.gross, wishes, share * whole) <= whole + 1e-9
+        assert layout.cost(rect, side, side, n, request.gross, wishes, whole) == whole
+
+
+def test_lines_of_a_layout_are_those_of_its_grid():
+    request, rng = storey(program(), 0), np.random.default_rng(7)
+    n, side = len(request.rooms), int(np.ceil(np.sqrt(request.gross.sum())))
+    for _ in range(20):
+        rect = rectangles(rng, request, side)
+        cells = np.full((side + 2, side + 2), n, np.int16)
+        for i, (x0, y0, x1, y1) in enumerate(rect.tolist()):
+            cells[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = i
+        out = grid.empty(n, side, side)
+        grid.measure(cells, n, out)
+        assert layout.aligned(rect) == out.columns.sum() + out.rows.sum()

@@ -9,7 +9,8 @@ import shapely
 from pipeline.errors import RefusedError
 from pipeline.floorplan import complete, plan_json, prior, solve, solver
 from pipeline.floorplan.openings import leaf_sweep
-from pipeline.floorplan.program import Accessibility, FloorProgram, Footprint, Forbid, Link, Range, Relation, RoomReq
+from pipeline.floorplan.program import Accessibility, FloorProgram, Footprint, Forbid, Link, Range, Relation, RoomReq, Zone
+from pipeline.floorplan.storeys import storey
 
 SEEDS = 24
 
@@ -253,3 +254,30 @@ def test_slots_that_one_can_only_fill_are_seen():
     assert not solver._slotted(wide)
     assert not solver._slotted(wide.T)
     assert not solver._slotted(np.array([[2, 2, 2], [2, 0, 2], [2, 2, 2]]))
+
+
+def spread(plan, pairs):
+    centre = {r.room_id: r.polygon.mean(axis=0) for r in plan.rooms}
+    return float(np.mean([np.linalg.norm(centre[a] - centre[b]) for a, b in pairs]))
+
+
+def test_members_of_a_zone_draw_together():
+    kinds = ("living_room", "kitchen", "hallway", "bedroom", "bedroom", "bedroom", "bathroom", "office")
+    rooms = tuple(RoomReq(id=f"r{i}", type=k) for i, k in enumerate(kinds))
+    pairs = [("r1", "r3"), ("r1", "r7"), ("r3", "r7")]
+    loose = complete(FloorProgram(rooms=rooms, only=True))
+    zoned = loose.model_copy(update={"zones": (Zone(name="rest", members=("r1", "r3", "r7")),)})
+    far, near = ([spread(solve(p, seed), pairs) for seed in range(12)] for p in (loose, zoned))
+    assert np.mean(near) < 0.95 * np.mean(far)
+
+
+def test_a_room_between_two_others_lies_between_them_in_every_attempt():
+    kinds = ("living_room", "kitchen", "dining_room", "bedroom", "bathroom")
+    rooms = tuple(RoomReq(id=f"r{i}", type=k) for i, k in enumerate(kinds))
+    links = (Link(a="r2", b="r0"), Link(a="r2", b="r1"))
+    program = complete(FloorProgram(rooms=rooms, links=links, relations=(Relation(kind="between", a="r2", b="r0", c="r1"),), only=True))
+    for ease in range(4):
+        assert storey(program, 0, None, ease).spec.between.tolist() == [[2, 0, 1]]
+    plan = solve(program, 0)
+    middle, one, other = (np.asarray(shapely.Polygon(plan.room(i).polygon).centroid.coords[0]) for i in ("r2", "r0", "r1"))
+    assert (one - middle) @ (other - middle) < 0.05
