@@ -114,7 +114,7 @@ class Clause:
         self._own(e, ids)
         self._measure(e, ids)
         self.push(k, e, ids)
-        if "open" in e.adjectives or "combined" in e.adjectives:
+        if e.adjectives & {"open", "combined"} and "closed_plan" not in self.state.flags:
             merge(self, k, e)
         elif e.type in SOCIAL and (j := written_as_one(self, k, e)):
             self.state.say("merge", (*ids, *name(self.state, self.sentence, j, storey(self, k))), (), e)
@@ -222,9 +222,14 @@ class Clause:
             self.only = e
             if self.state.facts and self.state.facts[-1].what in {"door", "leads"} and k and self.sentence[k - 1].kind == "np":
                 self.state.say("only", self.state.facts[-1].a, (), e)
+        elif e.value == "row" and len(self.run) > 1:
+            self.state.say("door", tuple(i for x in self.run for i in x.ids), (), e)
+        elif e.value == "open_plan" and negative:
+            self.state.flags["closed_plan"] = e
+            self.negative = None
         elif e.value == "open_plan":
             social = tuple(i for x in self.run for i in x.ids if not i.startswith("*") and self.stock.get(i).type in SOCIAL)
-            if len(social) > 1 and not negative:
+            if len(social) > 1:
                 self.state.say("merge", social, (), e)
                 return share(self.state, self.sentence, k, social)
             merge_after(self, k + 1, e)
@@ -288,6 +293,11 @@ class Clause:
         rooms = tuple(name(self.state, self.sentence, k + 1, storey(self, k + 1)))
         self.state.say("no_ensuite", ("*bathroom",), rooms, e)
         return k + 2
+
+    def _no_own(self, k: int, e: Element) -> int:
+        rooms = tuple(i for i in (self.subject or self.latest) if not i.startswith("*") and self.stock.get(i).type == "bedroom")
+        self.state.say("no_ensuite", ("*bathroom",), rooms, e)
+        return k + 1
 
     def _adj(self, k: int, e: Element) -> int:
         before = self.sentence[k - 1] if k else None

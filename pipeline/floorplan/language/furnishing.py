@@ -313,6 +313,8 @@ class Scan:
         """Whether a thing's name is part of a room's: "tv room", "walk-in wardrobe"."""
         after = self.words[k + length].text if k + length < len(self.words) else ""
         before = [w.text for w in self.words[max(0, k - 2) : k]]
+        if self.words[k].text in {"bed", "beds"} and FIGURES.fullmatch(after):
+            return True  # "bed 2 11 sqm"
         return (
             after in ROOMS | LEADING
             or (after != "" and after in "间房室" and "\u3400" <= self.words[k].text <= "\u9fff")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pipeline.floorplan.check import ImpossibleError
 from pipeline.floorplan.language.facts import Reading
 from pipeline.floorplan.language.inventory import Named
-from pipeline.floorplan.language.naming import ALONE, PLURAL_NAMES, ROLES, close, conjoined, listed, repeated
+from pipeline.floorplan.language.naming import ALONE, PLURAL_NAMES, ROLES, close, conjoined, is_landing, listed, repeated
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.text import spread
 from pipeline.floorplan.program import MAX_ROOMS, Evidence
@@ -117,7 +117,8 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
             known = all(r.whole for r in slots) or (e.number is not None and count < len(slots) and len(slots) > 1)
             if known and count <= len(slots) and not conjoined(sentence, k):
                 return [close(r, "", e.text, level) for r in slots[:count]]
-        if count == 1 and e.number is None and not role and e.type in ALONE and same and not repeated(sentence, k):
+        apart = e.role == "landing" and not any(is_landing(r) for r in same)
+        if count == 1 and e.number is None and not role and e.type in ALONE and same and not repeated(sentence, k) and not apart:
             return same[:1]
     made = [stock.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
     for room in made:

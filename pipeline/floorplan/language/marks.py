@@ -192,6 +192,7 @@ def _halves(marks: Sequence[Mark]) -> list[Mark]:
         kinds = [m.kind for m in ahead]
         spoken = kinds == ["join", "det", "room"] and ahead[2].value == "wc" and ahead[2].text.startswith("half")
         figure = mark.number % 1 == 0.5 and kinds[:1] == ["room"] and ahead[0].value.startswith("bathroom")
+        mark = replace(mark, kind="num") if figure and mark.kind == "factor" and mark.number > 1 else mark  # "one and a half baths"
         if mark.kind == "num" and (spoken or figure):
             room = ahead[2 if spoken else 0]
             whole = replace(mark, number=float(int(mark.number)))

@@ -63,7 +63,7 @@ def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> 
 
 def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911, PLR0912 - one answer per kind of phrase
     e, stock = sentence[k], state.inventory
-    same = stock.of(e.type)
+    same = [r for r in stock.of(e.type) if e.role == "landing" or not is_landing(r)]
     role = e.role if e.role in ROLES else ""
     if e.suite:
         return _suites(state, sentence, k, role, level)
@@ -161,6 +161,16 @@ def _ordinal(state: Reading, e: Element, role: str, level: int | None) -> list[N
     return [stock.add(e.type, role, e.text, level)]
 
 
+def _counted_later(sentence: list[Element], k: int, room: Named) -> bool:
+    """Whether a room is one of a number that comes later in the list that the phrase at k stands in."""
+    for e in sentence[k + 1 :]:
+        if e.kind not in {"np", "comma", "and", "det"}:
+            return False
+        if room.id in e.ids and e.number is not None:
+            return True
+    return False
+
+
 def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: int | None) -> list[Named]:  # noqa: PLR0911 - one branch per case: a grammar
     """Return the rooms of a role; one that was only counted may take it."""
     e, stock = sentence[k], state.inventory
@@ -189,6 +199,9 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
         and (e.definite or r.whole or listed(sentence, k, r) or not conjoined(sentence, k))
         and not (r.extra and r.span is not None and r.span[0] > e.first)  # "the main bedroom ...; two more bedrooms"
         and not (role == "primary" and r.surface[:1] in {"次", "侧"})
+        and (
+            e.definite or r.whole or state.heard.lexicon.language == "zh" or not _counted_later(sentence, k, r)
+        )  # "maid's room, two bedrooms"
         and ((e.definite and level is None) or r.level is None or r.level == level)  # counted on another storey: others
     ]
     if many and slots:
@@ -202,10 +215,19 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
     return []
 
 
+LANDINGS = {"landing", "rellano", "descansillo", "galerie", "treppenabsatz"}
+
+
+def is_landing(room: Named) -> bool:
+    """Whether a hallway is the one at the head of the stairs: "the hall" is another."""
+    return room.type == "hallway" and bool(LANDINGS & set(room.surface.split()))
+
+
 def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: C901, PLR0911, PLR0912 - one branch per case: a grammar
     """Return the rooms that a phrase without role points at, where there are such rooms."""
     e, stock = sentence[k], state.inventory
     same = [r for r in stock.of(e.type) if not (r.extra and r.span is not None and r.span[0] > e.first)]
+    same = [r for r in same if e.role == "landing" or not is_landing(r)]
     if not e.plural and not e.number and e.type in {"bathroom", "bedroom"}:  # "... a bath; further a guest bath"
         same = [r for r in same if not (r.role in ROLES and r.span is not None and r.span[0] > e.last)]
     if not same:  # "..., another bath" comes later

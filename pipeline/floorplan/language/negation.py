@@ -35,6 +35,8 @@ def ban(sentence: list[Element]) -> None:  # noqa: C901, PLR0912 - one branch pe
             elif phrase.adjectives & {"open", "combined"} and phrase.type in SOCIAL:
                 e.kind = "used"  # "no open kitchen" is a closed one
                 phrase.adjectives = (phrase.adjectives - {"open", "combined"}) | {"closed"}
+            elif phrase.type == "bathroom" and "own" in phrase.det:
+                e.kind, phrase.kind = "used", "no_own"
             elif phrase.type == "hallway" and (phrase.said or phrase.size != 1.0):
                 e.kind = phrase.kind = "used"  # "no narrow corridors" allows others
             elif not phrase.definite:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from pipeline.floorplan.language.facts import HALLS, SOCIAL, Group
 from pipeline.floorplan.language.naming import name
+from pipeline.floorplan.language.openness import written_as_one
 from pipeline.floorplan.language.owning import FINITE, measures
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import zone
@@ -46,6 +47,8 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
             if e.adjectives & {"largest"} and cue != "cmp":
                 clause.state.say("largest", tuple(ids), tuple(r.id for r in clause.stock.of(e.type)), e)
             group += [i for i in ids if i not in group and i not in left]
+            if e.type in SOCIAL and (j := written_as_one(clause, index, e)):  # "around a kitchen-living room"
+                clause.state.say("merge", (*ids, *name(clause.state, sentence, j, None)), (), e)
             first, joined, end = first or e, "", index + 1
         elif (
             e.kind in {"pron", "det"}

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from pipeline.floorplan.language.marks import Mark
+from pipeline.floorplan.language.wayfinding import room_at
 
 ENDS = {"stop", "line"}
 WHOSE = {"whose", "cuya", "cuyo", "cuyas", "cuyos", "dessen", "deren"}
@@ -16,7 +17,40 @@ FAR = 9  # marks
 
 def housed(marks: Sequence[Mark]) -> list[Mark]:
     """Return the marks with the rooms of people named as theirs."""
-    return _partial(_counted(_having(_theirs(_for(_each(_whose(list(marks))))))))
+    return _nounless(_partial(_counted(_having(_theirs(_for(_each(_whose(list(marks)))))))))
+
+
+def _nounless(marks: list[Mark]) -> list[Mark]:
+    """Read "four bedrooms, of which the biggest has ..." with its noun, and "the two larger ones" behind the smaller ones as the other two."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        ahead = marks[k + 1] if k + 1 < len(marks) else None
+        equal = (
+            (mark.kind, mark.value) == ("cmp", "alike")
+            and room_at(marks, k + 1) is not None
+            and k > 0
+            and marks[k - 1].kind in {"num", "det"}
+        )
+        made.append(replace(mark, kind="adj", value="equal") if equal else mark)  # "three equally large bedrooms"
+        room = next((m for m in reversed(made) if m.kind == "room"), None)
+        if room is None or ahead is None:
+            continue
+        alone = ahead.kind in {"cue", "verb", "comma"} or ahead.text in {"one", "ones"}
+        article = len(made) > 1 and (made[-2].kind == "det" or made[-2].text == "el" or mark.text.startswith(("the ", "el ", "la ")))
+        if mark.kind == "adj" and mark.value in {"largest", "smallest"} and alone and article and room.plural:
+            while len(made) > 1 and made[-2].kind in {"pron", "det"}:
+                del made[-2]
+            made.append(replace(room, value=room.value.partition("/")[0], plural=False, first=mark.last, last=mark.last))
+        elif (
+            mark.text in {"ones", "one"}
+            and len(made) > 2
+            and made[-2].value in {"smaller", "1.35", "0.75", "1.3", "larger"}
+            and room.plural
+        ):
+            number = next((m.number for m in made[-3:-1] if m.kind == "num"), 2.0)
+            del made[-3 if made[-3].kind == "num" else -2 :]
+            made.append(Mark("pron", "rest", number, False, mark.first, mark.last, "the other two" if number == 2.0 else "the others"))
+    return made
 
 
 def _partial(marks: list[Mark]) -> list[Mark]:

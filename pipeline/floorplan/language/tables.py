@@ -43,19 +43,34 @@ ENDS = {"comma", "stop", "line", "join", "close", "open", "slash", "bullet"}
 SMALLEST = 3.0  # [m2] a figure behind a room that may be its area
 INDEXED = {"bedroom", "bathroom"}  # "bedroom 2" is a name, from MOST_NAMES on it is an area
 MOST_NAMES = 5.0
+OF = {"de", "of", "mit", "von"}
+DASHES = {"-", "–", "—", "•", "*"}
+
+
+def _of_item(marks: Sequence[Mark], k: int) -> bool:
+    """Whether the comma at k parts a room from its area in an item of a list: "- open kitchen, approx. 35 m2 - storage"."""
+    if marks[k].kind != "comma" or marks[k].text != "," or sum(m.kind in {"comma", "bullet"} and m.text in DASHES for m in marks) < 2:
+        return False
+    j = k + 1
+    while j < len(marks) and marks[j].kind in {"bound", "num", "unit", "fill"}:
+        j += 1
+    ends = j >= len(marks) or marks[j].kind in {"line", "stop"} or marks[j].text in DASHES
+    return ends and j > k + 1 and marks[j - 1].kind == "unit" and marks[j - 1].value == "area" and marks[k - 1].kind == "room"
 
 
 def plain_areas(marks: Sequence[Mark]) -> list[Mark]:
     """Read "bedrooms 14 and 11 m2, living room 22, kitchen 9" and "dormitorios de 12 metros, un salón de 25": areas all of them."""
-    made = [replace(m, value="area") if _metres(marks, k) else m for k, m in enumerate(marks)]
+    made = [replace(m, value="area") if _metres(marks, k) else m for k, m in enumerate(marks) if not _of_item(marks, k)]
     units = [k for k in range(1, len(made)) if made[k].kind == "unit" and made[k].value == "area" and made[k - 1].kind == "num"]
-    if not any(_of_room(made, k - 1) for k in units):
+    if not units:
         return made
-    unit = made[units[0]]
+    unit, told = made[units[0]], any(_of_room(made, k - 1) for k in units)
     for k in range(len(made) - 1, 0, -1):
         ends = k + 1 >= len(made) or made[k + 1].kind in ENDS
         room = _of_room(made, k)
         if not ends or room is None or made[k].kind != "num" or made[k].value != "figure" or made[k].number < SMALLEST:
+            continue
+        if not told and made[k - 1].text not in OF:
             continue
         if room.value.partition("/")[0] not in INDEXED or made[k].number >= MOST_NAMES or made[k - 1].kind != "room":
             made.insert(k + 1, replace(unit, first=made[k].last, last=made[k].last))
@@ -77,6 +92,6 @@ def _of_room(marks: Sequence[Mark], k: int) -> Mark | None:
         marks[j].kind in {"num", "bound", "post", "size"} or (marks[j].kind in {"join", "comma"} and marks[j - 1].kind == "num")
     ):
         j -= 1
-    if j > 0 and (marks[j].value == "has" or marks[j].text in {"de", "of", "mit", "von"} or marks[j].kind == "colon"):
+    if j > 0 and (marks[j].value == "has" or marks[j].text in OF or marks[j].kind == "colon"):
         j -= 1
     return marks[j] if j >= 0 and marks[j].kind == "room" else None

@@ -12,7 +12,7 @@ SEEN = {"ve", "vea", "ver", "verse", "vean", "see", "seen", "sehen", "sieht", "s
 ACCESS = {"door", "doors", "access", "puerta", "acceso", "salida", "tuer", "zugang", "ausgang", "exit", "entrance", "entrada"}
 INTO = {"to", "into", "onto", "in", "al", "a", "ins", "in den", "in die", "in das", "zum", "zur"}
 TOWARDS = {"to", "into", "onto", "al", "a"}  # behind an "and" that takes up the way before it
-LIGHT = {"fill", "verb", "adverb", "comma", "word", "det"}  # between a starting point and the verb of going
+LIGHT = {"fill", "verb", "adverb", "comma", "word", "det", "join"}  # between a starting point and the verb of going
 WAYS = {"leads", "door", "from_to", "thru", "again"}
 LONG = 7  # marks between a starting point and where one comes from there
 
@@ -55,6 +55,8 @@ def _unseen(marks: list[Mark]) -> list[Mark]:
     if any(m.text in SEEN for m in marks):
         made = [replace(m, kind="word") if (m.kind, m.value) == ("cue", "from") else m for m in made]
     for k, mark in enumerate(made):
+        if mark.text in {"entrada", "entrance"} and mark.kind == "room" and k and _beside(made, k):
+            made[k] = replace(mark, kind="word")  # "un aseo junto a la entrada": near the door, no room of its own
         if "tanto" in mark.text.split() and (both := next((j for j in range(k + 2, len(made)) if made[j].text == "como"), 0)):
             made[both] = replace(made[both], kind="join", value="and", text="y")
             made[k] = replace(mark, text=mark.text.replace(" tanto", ""))
@@ -63,6 +65,12 @@ def _unseen(marks: list[Mark]) -> list[Mark]:
         if (mark.text, mark.kind) == ("por", "det") and not any(m.kind == "room" for m in made[k + 1 : k + 4]):
             made[k] = replace(mark, kind="fill", value="")
     return made
+
+
+def _beside(marks: list[Mark], k: int) -> bool:
+    """Whether the entrance at k is only where something lies, and nowhere a room that is listed."""
+    near = next((m for m in reversed(marks[:k]) if m.kind != "det" and m.text != "el"), None)
+    return near is not None and (near.kind, near.value) == ("cue", "near")
 
 
 def _access(marks: list[Mark]) -> list[Mark]:
@@ -91,11 +99,22 @@ def _going(marks: list[Mark]) -> list[Mark]:
         if start is None:
             continue
         j = start + 1
-        while j < min(len(made) - 1, start + LONG) and (made[j].kind in LIGHT or made[j].value == "only") and not _into(made[j]):
+        while (
+            j < min(len(made) - 1, start + LONG)
+            and (made[j].kind in LIGHT or made[j].value in {"only", "one", "1.0"})
+            and not (_into(made[j]) and room_at(made, j + 1) is not None)
+        ):
             j += 1
-        going = made[j].kind == "enter" or (made[j].kind, made[j].value) == ("flag", "reachable") or _into(made[j])
+        going = (
+            (made[j].kind, made[j].value) == ("cue", "leads")
+            or made[j].kind == "enter"
+            or (made[j].kind, made[j].value) == ("flag", "reachable")
+            or _into(made[j])
+        )
         if j < len(made) and going and room_at(made, j + 1) is not None:
             made[j] = replace(made[j], kind="cue", value="leads")
+            del made[start + 1 : j]  # "one should be able to"
+            return _going(made) if any((m.kind, m.value) == ("cue", "from") for m in made[j:]) else made
     return made
 
 
