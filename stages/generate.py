@@ -19,6 +19,7 @@ from pipeline.homes.request import Request
 from pipeline.homes.soundness import require_sound
 from pipeline.manifest import digest
 from pipeline.shards import Header, commit_library, commit_shard, gather, open_or_create, require_prompt
+from stages.runner import announce_compiling
 
 
 def main(root: Path, *, out: Path, prompt: str = "", seed: int = 0, source: Path | None = None, house: str | None = None) -> None:
@@ -31,6 +32,7 @@ def main(root: Path, *, out: Path, prompt: str = "", seed: int = 0, source: Path
     factory = open_factory(root, seed)
     told = digest([wish.prompt, wish.program, wish.plan])
     header = Header(seed, 1, factory.shard_size, factory.licence, {**factory.digests, "prompts": told})
+    announce_compiling()
     (outcome,) = factory.make([wish])  # before the folder is touched: a request may yet be refused
     used = sorted({p.asset_id for p in outcome.home.placements})
     with open_or_create(out, header) as dataset:

@@ -7,7 +7,6 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from pipeline.entities.plan import Plan
 from pipeline.errors import RefusedError, UsageError
 from pipeline.experiments.prompt_file import read_prompts
 from pipeline.experiments.prompts import measured, report
@@ -19,6 +18,7 @@ from pipeline.floorplan.draw import png, svg
 from pipeline.floorplan.own import program_of, read_own
 from pipeline.homes.soundness import require_sound
 from pipeline.manifest import write_bytes, write_json
+from stages.runner import announce_compiling
 
 STDOUT = "-"
 
@@ -45,6 +45,7 @@ def main(
     try:
         if source is None:
             program = request(prompt)
+            announce_compiling()
             plan, assumed = solve(program, seed), assumptions(program)
         else:
             own = read_own(source, house)
@@ -59,7 +60,9 @@ def main(
     if png_path is not None:
         _write(png_path, png(plan))
     if json_path is None and svg_path is None and png_path is None:
-        sys.stdout.write(show(plan, program, assumed))
+        sys.stdout.write(terminal(plan) + notes(program, assumed))
+    else:
+        sys.stderr.write(notes(program, assumed))
     if STDOUT not in {str(path) for path in targets}:
         sys.stdout.write("".join(f"repaired: {r['where']}: {r['text']}\n" for r in repairs))
 
@@ -73,6 +76,7 @@ def score(_root: Path, *, prompts: Path, seeds: int = 5, json_path: Path | None 
     """Plan every prompt of a file with several seeds; print scores where there is ground truth, failures and seconds everywhere."""
     _check_target(json_path)
     cases = read_prompts(prompts)
+    announce_compiling()
     warm()  # no prompt pays for what is compiled once
     found = measured(cases, seeds)
     _write_json(json_path, found)
@@ -80,12 +84,10 @@ def score(_root: Path, *, prompts: Path, seeds: int = 5, json_path: Path | None 
         sys.stdout.write(report(found))
 
 
-def show(plan: Plan, program: FloorProgram, assumed: Sequence[Mapping[str, str]] = ()) -> str:
-    """Return the plan in characters, with what was assumed and the words that were not understood."""
-    text = terminal(plan) + shown(assumed)
-    if program.unparsed:
-        text += "not understood: " + ", ".join(s.text for s in program.unparsed) + "\n"
-    return text
+def notes(program: FloorProgram, assumed: Sequence[Mapping[str, str]] = ()) -> str:
+    """Return what was assumed, and the words that were not understood."""
+    lost = ", ".join(s.text for s in program.unparsed)
+    return shown(assumed) + (f"not understood: {lost}\n" if lost else "")
 
 
 def _check_target(path: Path | None) -> None:

@@ -12,6 +12,14 @@ from pipeline.errors import SfgenError
 ROOT = Path(__file__).resolve().parents[1]
 
 
+def announce_compiling() -> None:
+    """Say on stderr why the first plan on a machine takes long."""
+    from pipeline.geometry.compiled import is_cold  # numba takes a second to load; most commands do without it
+
+    if is_cold():
+        sys.stderr.write("sfgen: compiling the planner, once on this machine: half a minute\n")
+
+
 def run(main: Callable[[Path], object]) -> None:
     """Call `main` with the checkout's folder and end the process.
 

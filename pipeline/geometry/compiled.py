@@ -31,6 +31,11 @@ if not CONFIG.CACHE_DIR:
     CONFIG.CACHE_DIR = str(ROOT / "__pycache__" / "numba" / source_digest(ROOT))
 
 
+def is_cold() -> bool:
+    """Whether nothing has been compiled on this machine yet: the first call of what is will take half a minute."""
+    return not any(Path(CONFIG.CACHE_DIR).rglob("*.nbi"))
+
+
 def compiled(function: F) -> F:
     """Compile `function` on its first call. The plain form stays at `.py_func`: the oracle of the tests.
 

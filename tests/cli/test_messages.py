@@ -239,6 +239,15 @@ def test_prompts_are_scored(sfgen, tmp_path):
     assert "seconds" in out
 
 
+def test_what_was_assumed_and_what_was_not_understood_is_told_beside_a_file_too(sfgen):
+    code, out, err = sfgen("plan", "one bedroom, sauna", "--json", "-")
+    assert code == 0
+    document = json.loads(out)
+    assert [each["text"] for each in document["assumed"]]
+    assert "living_room" in err
+    assert "not understood: sauna" in err
+
+
 def test_the_schema_is_printed(sfgen):
     code, out, _ = sfgen("plan", "--schema")
     assert code == 0

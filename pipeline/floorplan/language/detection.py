@@ -10,7 +10,7 @@ from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, lex
 from pipeline.floorplan.language.spelling import resolve
 from pipeline.floorplan.language.text import HAN, Token, fold, tokenize
 
-READ = "English, German, Spanish and Chinese"
+READ = "English, German, Spanish or Chinese"
 ENOUGH = 0.5  # share of words that must be known
 REPAIR = 0.8  # what a mistyped word counts of a known one
 OTHERS = frozenset(  # words of languages that are not read, and that look like none of the four
