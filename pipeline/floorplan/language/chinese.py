@@ -94,13 +94,20 @@ def _verbs(marks: list[Mark]) -> list[Mark]:
             made.append(replace(mark, kind="verb"))
         elif mark.text in AMONG and k and ahead is not None and ahead.kind == marks[k - 1].kind == "room" and _alike(marks[k - 1], ahead):
             made.append(replace(mark, kind="colon"))
-        elif (
-            mark.kind == "room" and ahead is not None and (ahead.kind, ahead.value) == ("det", "all") and made and made[-1].value == "other"
-        ):
-            made.append(replace(mark, plural=True))  # "其他卧室都在二楼"
+        elif mark.kind == "room" and made and (made[-1].kind, made[-1].value) == ("det", "other"):
+            made.append(replace(mark, plural=True))  # "其他卧室"
+        elif mark.kind == "room" and ahead is not None and (ahead.kind, ahead.value) == ("det", "all") and _several(marks, k):
+            made.append(replace(mark, plural=True))  # "三间卧室 ... 卧室都在楼上"
         else:
             made.append(mark)
     return made
+
+
+def _several(marks: list[Mark], k: int) -> bool:
+    """Whether more rooms than one of the kind at k are counted somewhere, and none stands in front of it in a list."""
+    listed = k > 0 and marks[k - 1].kind in {"join", "num", "clf", "fill"}
+    rooms = [i for i, m in enumerate(marks) if m.kind == "room" and _alike(m, marks[k])]
+    return not listed and any(m.kind == "num" and m.number > 1 for i in rooms for m in marks[max(0, i - 2) : i])
 
 
 def _alike(a: Mark, b: Mark) -> bool:
@@ -140,8 +147,9 @@ def _counted(marks: list[Mark]) -> list[Mark]:
 
 
 def _summed(marks: list[Mark], k: int) -> bool:
-    """Whether counts of rooms run up to the amount at k: "两房一厅 80平"."""
-    kinds = [m.kind for m in marks[max(0, k - 4) : k]]
+    """Whether counts of rooms run up to the amount at k: "两房一厅 80平", "两房一厅,55平。"."""
+    end = k - (k > 0 and marks[k - 1].kind == "comma" and (k + 1 >= len(marks) or marks[k + 1].kind in {"comma", "stop", "line"}))
+    kinds = [m.kind for m in marks[max(0, end - 4) : end]]
     return kinds[-4:] == ["num", "room", "num", "room"]
 
 

@@ -24,7 +24,7 @@ PUNCTUATION = {
     "|": "comma",
     "*": "bullet",
 }
-ARROWS = {"->", "=>", "→"}
+ARROWS = {"<->", "->", "=>", "→"}
 FOREIGN = STRONG | {"num", "adj", "cue"}  # what a word of another language may mean in a mixed prompt
 USUAL_HEIGHT = 15.0  # a length from here on, said of a room or a home, is an area ("60 metros")
 

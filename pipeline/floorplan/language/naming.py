@@ -8,6 +8,7 @@ from pipeline.floorplan.language.phrases import Element
 
 ALONE = {"living_room", "kitchen", "dining_room", "hallway", "entry", "utility", "garage", "staircase", "family_room", "studio_room"}
 PLURAL_NAMES = {"staircase", "closet", "storage"}  # their plural often means one
+THEIRS = {"child", "guest", "elder", "staff", "carer"}  # who has a room of another name than just a bedroom
 ROLES = {"primary", "guest", "child", "elder", "staff", "carer", "shared", "ensuite"}
 
 
@@ -230,6 +231,10 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
     same = [r for r in same if e.role == "landing" or not is_landing(r)]
     if not e.plural and not e.number and e.type in {"bathroom", "bedroom"}:  # "... a bath; further a guest bath"
         same = [r for r in same if not (r.role in ROLES and r.span is not None and r.span[0] > e.last)]
+    if e.type == "bedroom" and not (
+        e.plural or e.number or e.det & {"all", "both", "each", "other"}
+    ):  # "das Kinderzimmer ..., das Schlafzimmer ..."
+        same = [r for r in same if r.role not in THEIRS or e.text.rsplit(maxsplit=1)[-1] in r.surface.split()]
     if not same:  # "..., another bath" comes later
         return [stock.add(e.type, "", e.text, level)]
     if level is not None:

@@ -199,11 +199,13 @@ def _paired(marks: Sequence[Mark]) -> list[Mark]:
     """Read "kitchen-bedroom: door", "kitchen - living: open" as a way between the two."""
     made = list(marks)
     for k in range(len(made) - 2):
-        way = {"flag": "door", "adj": "open"}.get(made[k + 2].kind, "") if made[k + 1].kind == "colon" else ""
+        if made[k + 1].kind in {"flag", "adj"} and k > 1 and made[k - 1].text == "<->":  # "kitchen <-> living room open"
+            made.insert(k + 1, Mark("colon", "", 0.0, False, made[k].last, made[k].last, ":"))
+        way = {"flag": "door", "adj": "open"}.get(made[k + 2].kind, "") if made[k + 1].kind == "colon" and k + 2 < len(made) else ""
         ends = k + 3 >= len(made) or made[k + 3].kind in CLOSERS
         if not way or not ends or made[k].kind != "room" or made[k + 2].value not in {"doors", "open"}:
             continue
-        j = k - 1 - (k > 1 and made[k - 1].kind in {"comma", "slash", "dash"})
+        j = k - 1 - (k > 1 and (made[k - 1].kind in {"comma", "slash", "dash"} or made[k - 1].text == "<->"))
         if j >= 0 and made[j].kind == "room" and (j == 0 or made[j - 1].kind in CLOSERS):
             cue = replace(made[k + 2], kind="cue", value=way)
             made[j + 1 : k + 3] = [cue, made[k], *([replace(made[k + 1], kind="fill")] * (k + 1 - j - 1))]

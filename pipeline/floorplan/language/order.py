@@ -37,7 +37,9 @@ def _frames(marks: list[Mark], heard: Words) -> list[Mark]:
         found = _frame(made, k, heard)
         if found is not None:
             cue, after_first, second, after_second = found
-            first = replace(made[k], kind="cue", value=cue, last=made[after_first - 1].last, number=0.0)
+            first = replace(
+                made[k], kind="cmp" if cue in {"larger", "smaller"} else "cue", value=cue, last=made[after_first - 1].last, number=0.0
+            )
             only = any(m.text in {"nur", "solo", "只", "只能", "only", "ausschliesslich"} for m in made[max(0, k - 2) : k])
             first.only = first.only or only
             tail = [m for m in made[second:after_second] if m.kind in ENDS]

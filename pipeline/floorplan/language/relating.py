@@ -134,14 +134,11 @@ def _there(clause: Clause, k: int) -> Group:
 
 def _alone(clause: Clause, k: int, e: Element) -> int:
     """Read a cue that nothing follows: "next to each other", "kitchen and bath adjacent"."""
-    j = k + 1
-    while j < len(clause.sentence) and clause.sentence[j].kind == "verb":
-        j += 1
-    ahead = clause.sentence[j] if j < len(clause.sentence) else None
+    ahead = clause.sentence[k + 1] if k + 1 < len(clause.sentence) else None
     mutual = ahead is not None and ahead.kind == "reciprocal"
-    rest = next((x for x in clause.sentence[k + 1 :] if x.kind != "det" and (x.kind, x.value) != ("flag", "doors")), None)
+    rest = next((x for x in clause.sentence[k + 1 :] if x.kind not in {"det", "verb"} and (x.kind, x.value) != ("flag", "doors")), None)
     ends = rest is None or rest.kind in {"comma", "but", "close"}  # "cocina y salón comunicados por una puerta corredera"
-    rooms = _ids(clause.run)
+    rooms = _ids(clause.run) or clause.subject
     listed_alone = ends and e.value in MUTUAL and len(rooms) > 1 and "*" not in rooms and _coordinate(clause)
     if mutual or listed_alone or (e.value == "wall" and (clause.run or clause.subject)):
         _mutual(clause, e)
@@ -247,9 +244,10 @@ def _mutual(clause: Clause, e: Element) -> None:
             clause.state.say("away", rooms[:1], rooms[1:], e)
     else:
         clause.state.say("merge" if e.value == "open" else e.value, rooms, (), e)
+        clause.subject = clause.latest = rooms
 
 
-def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911, PLR0912 - one branch per case: a grammar
+def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: C901, PLR0911, PLR0912 - one branch per case: a grammar
     """Return the subject of a cue: the phrase in front, the list in front of a verb, or what the clause is about."""
     before = clause.sentence[k - 1] if k else None
     if not clause.run:
@@ -286,6 +284,9 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: PLR0911, PLR091
     )
     if not _coordinate(clause):  # "study downstairs, all bedrooms upstairs, garage connected to ...": commas part statements
         return tuple(last.ids)
+    heads = [x for x in clause.run if x.first == last.first and x.last == last.last]
+    if len(heads) == len(clause.run) > 1 and e.value in {"door", "leads", "near"}:
+        return tuple(clause.run[0].ids)  # "a living-dining-kitchen with access to the terrace": one room to whoever goes there
     if verbal or e.value == "wall":
         return _ids(clause.run)
     if e.value != "door":

@@ -37,7 +37,8 @@ def resolved(marks: Sequence[Mark], heard: Words) -> list[Mark]:
         made = _vestibule(_room_of(made))
     elif heard.lexicon.language == "zh":
         made = _room_with(made)
-    return _between(_sized(_superlative(_parted(_standing(_doubling(settled(_persons(_neither(made), heard), heard)))))))
+    made = _standing(_doubling(settled(_persons(_neither(made), heard), heard)))
+    return _between(_storeyed(_windowed(_sized(_superlative(_parted(made))))))
 
 
 def _neither(marks: list[Mark]) -> list[Mark]:
@@ -53,6 +54,46 @@ def _neither(marks: list[Mark]) -> list[Mark]:
             named = any(m.kind == "room" for m in made[max(first, k - 4) : k])
             made[k] = replace(mark, kind="join", value="or") if named else mark
     return made
+
+
+def _windowed(marks: list[Mark]) -> list[Mark]:
+    """Read "不要没有窗户的卫生间" as "the bathroom has a window"."""
+    made = list(marks)
+    for k in range(len(made) - 4):
+        twice = made[k].kind == made[k + 1].kind == "neg" and made[k + 2].value == "daylight" and made[k + 3].text == "的"
+        if twice and made[k + 4].kind == "room":
+            has = replace(made[k + 1], kind="cue", value="has", text="有")
+            return [*made[:k], made[k + 4], has, made[k + 2], *_windowed(made[k + 5 :])]
+    return made
+
+
+def _storeyed(marks: list[Mark]) -> list[Mark]:
+    """Read "ein Bad pro Etage" as one on each storey."""
+    place = next((k for k, m in enumerate(marks) if (m.kind, m.value) == ("flag", "per_level")), None)
+    if place is None:
+        return marks
+    made = [m for k, m in enumerate(marks) if k != place]
+    near = [*range(place - 1, max(-1, place - 5), -1), *range(place, min(place + 4, len(made)))]
+    room = next((k for k in near if made[k].kind == "room"), None)
+    if room is None:
+        return marks
+    start = room
+    while start and made[start - 1].kind in {"num", "det", "adj", "size", "clf", "pron"}:
+        start -= 1
+    count = next((m.number for m in made[start:room] if m.kind == "num"), 1.0)
+    flag = marks[place]
+    end = replace(flag, kind="stop", value="")
+    each: list[Mark] = []
+    for storey in range(_storeys(marks)):
+        number = Mark("num", "", count, False, made[room].first, made[room].first, "")
+        each += [replace(flag, kind="level", value=str(storey)), number, replace(made[room], plural=count > 1), end]
+    return [*made[:start], *([end] if start else []), *each, *made[room + 1 :]]
+
+
+def _storeys(marks: Sequence[Mark]) -> int:
+    """Return how many storeys are spoken of, two at least."""
+    said = max([int(m.number) for m in marks if m.kind == "amount" and m.value == "storeys"], default=0)
+    return min(max(said, len({m.value for m in marks if m.kind == "level"}), 2), 3)
 
 
 def _superlative(marks: list[Mark]) -> list[Mark]:
@@ -89,7 +130,7 @@ def _sized(marks: list[Mark]) -> list[Mark]:
     (a, first), (_, second) = said
     place = next((i for i in range(a - 1, -1, -1) if marks[i].kind == "room"), None)
     counted = place is not None and any(m.kind == "num" and m.number == 2 for m in marks[max(0, place - 3) : place])
-    if place is None or not counted or any(m.kind in {"room", "stop"} for m in marks[place + 1 : second]):
+    if place is None or not counted or any(m.kind == "room" for m in marks[place + 1 : second]):
         return marks
     amount = replace(marks[first], parts=(marks[first].number, marks[second].number), last=marks[second].last)
     return [*marks[: place + 1], amount, *marks[second + 1 :]]
