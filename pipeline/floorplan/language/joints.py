@@ -39,7 +39,7 @@ def join(draft: Draft, state: Reading) -> None:
         if any(i.startswith(("*", "<")) for i in fact.a + fact.b):
             continue
         if fact.what in KINDS:
-            _linked(draft, stock, fact)
+            _linked(draft, stock, fact, facts)
         else:
             _related(draft, stock, fact, facts)
     _ordered(draft)
@@ -146,7 +146,7 @@ def _merged(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
                 draft.links[min(made.id, room.id), max(made.id, room.id)]["stated"] = False
 
 
-def _linked(draft: Draft, stock: Inventory, fact: Fact) -> None:
+def _linked(draft: Draft, stock: Inventory, fact: Fact, facts: list[Fact]) -> None:
     owned = stock.belongings
     for a, b in pairs(fact.a, fact.b):
         if fact.what == "door" and len(fact.b) > 1 and draft.linked(a) & set(fact.b) and len(fact.a) > 1:
@@ -166,6 +166,8 @@ def _linked(draft: Draft, stock: Inventory, fact: Fact) -> None:
             and len(fact.b) == 1
         ):
             kind = "door"
+        if fact.what == "near" and any(f.what == "not_connected" and {a, b} <= {*f.a, *f.b} for f in facts):
+            kind = "wall"  # "the library adjoins the bedroom but has no door to it"
         stairs = "staircase" in {stock.get(a).type, stock.get(b).type}
         draft.link(a, b, "open" if stairs and fact.what != "wall" else kind, fact)
 

@@ -92,6 +92,19 @@ def _articles(marks: list[Mark], heard: Words) -> list[Mark]:
     for k, mark in enumerate(marks[:-1]):
         if mark.text == "el" and mark.kind == "pron" and heard.tokens[mark.first].text == "el" and marks[k + 1].kind in NAMES:
             made[k] = replace(mark, kind="det", value="definite")
+    return _pointed(made, heard)
+
+
+def _pointed(marks: list[Mark], heard: Words) -> list[Mark]:
+    """Cut "desde él" and "desde el que" from the longer "desde el": the one is a pronoun, the other a relative clause."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        made.append(mark)
+        ahead = marks[k + 1] if k + 1 < len(marks) else None
+        accent = heard.tokens[mark.last - 1].text == "él"
+        if mark.kind == "cue" and mark.text.endswith(" el") and (accent or ahead is None or ahead.kind in {"stop", "comma", "cue", "enter"}):
+            made[-1] = replace(mark, last=mark.last - 1, text=mark.text.removesuffix(" el"))
+            made.append(Mark("pron", "it", 0.0, False, mark.last - 1, mark.last, "el"))
     return made
 
 
@@ -191,6 +204,7 @@ def _halves(marks: Sequence[Mark]) -> list[Mark]:
         mark, ahead = marks[k], marks[k + 1 : k + 4]
         kinds = [m.kind for m in ahead]
         spoken = kinds == ["join", "det", "room"] and ahead[2].value == "wc" and ahead[2].text.startswith("half")
+        spoken = spoken or (kinds[::2] == ["join", "room"] and ahead[1].text in {"medio", "half"} and ahead[2].value == "bathroom")
         figure = mark.number % 1 == 0.5 and kinds[:1] == ["room"] and ahead[0].value.startswith("bathroom")
         mark = replace(mark, kind="num") if figure and mark.kind == "factor" and mark.number > 1 else mark  # "one and a half baths"
         if mark.kind == "num" and (spoken or figure):

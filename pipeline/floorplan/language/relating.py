@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two rooms at the end: "kitchen and bath adjacent"
 THROUGH = {"through", "via", "durch", "ueber", "por", "traves", "经", "过", "通"}
 FINITE = {"abren", "dan", "salen", "open", "lead", "connect", "conectan", "comunican", "desembocan", "llevan", "conducen", "give", "parten"}
+WITH = {"con", "with", "mit"}
 SINGULAR = {"is", "lies", "sits", "stands", "opens", "esta", "este", "es", "sea", "queda", "ist", "liegt", "se encuentra"}
 
 
@@ -274,6 +275,8 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: C901, PLR0911, 
         return tuple(last.ids)
     if e.value == "avoid" and clause.objects:
         return clause.subject
+    if e.text.split()[0] in WITH and e.value in {"door", "leads"} and not last.plural:
+        return tuple(last.ids)  # "a kitchen and a living room with access to the terrace"
     if clause.single and len(clause.run) > 1 and {x.type for x in clause.run[:-1]} and not last.plural:
         return tuple(last.ids)  # "there is a living room, and the kitchen is open to it"
     verbal = (

@@ -1,0 +1,181 @@
+"""What is left unsaid between words: "one for the parents and another for the boy", "..., not with the living room", "from the hall starts a corridor"."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from pipeline.floorplan.language.marks import Mark, Words
+
+ENDS = {"stop", "line"}
+CLOSERS = {"stop", "line", "comma", "join", "close", "but"}
+ONES = {"uno", "una", "otro", "otra", "one", "another", "otro mas", "otra mas", "uno mas", "una mas"}
+FOR = {"para", "de", "del", "for"}
+LIGHT = {"det", "fill", "adverb"}
+TOWARDS = {"a", "al", "con", "hacia", "to", "with", "from", "por", "en", "onto", "into"}
+LEAVING = {"sale", "salen", "parte", "parten", "arranca", "arrancan", "nace", "nacen", "cuelga", "cuelgan", "surge"}
+WAYS = {"door", "leads", "open", "near"}
+SIDES = {"al otro", "al otro lado"}
+
+
+def unsaid(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Return the marks with what is understood put in."""
+    made = _denied_again(_persons(_floors(list(marks))))
+    if heard.lexicon.language == "es":
+        made = _premises(_corridor(_leaving(_of_which(made))))
+    return _heads(made)
+
+
+def _floors(marks: list[Mark]) -> list[Mark]:
+    """Read "planta 1", "1ª planta:", "planta baja y 2ª" as storeys."""
+    made: list[Mark] = []
+    k = 0
+    while k < len(marks):
+        trio = marks[k : k + 3]
+        texts = [m.text for m in trio]
+        figure = next((m for m in trio if m.kind == "num" and m.value == "figure" and m.number in {0.0, 1.0, 2.0}), None)
+        step = 0
+        if figure is not None and texts[:1] == ["planta"] and trio[1:2] == [figure]:
+            step = 3 if texts[2:] in (["a"], ["o"]) else 2
+        elif figure is not None and trio[:1] == [figure] and texts[1:] in (["a", "planta"], ["a", "altura"], ["o", "piso"], ["a", "planta:"]):
+            step = 3
+        ahead = marks[k + step].kind if k + step < len(marks) else "stop"
+        if step and figure is not None and ahead not in {"unit", "amount"}:
+            made.append(Mark("level", str(int(figure.number)), first=marks[k].first, last=marks[k + step - 1].last, text=texts[0]))
+            k += step
+        else:
+            made.append(marks[k])
+            k += 1
+    return made
+
+
+def _said_of(marks: Sequence[Mark], k: int) -> tuple[str, float, int] | None:
+    """Return (role, number, end) of "for the parents", "for each of the three boys", "de matrimonio" at k."""
+    if k >= len(marks) or marks[k].text.split()[0] not in FOR | {"de invitados"}:
+        return (marks[k].value, 1.0, k + 1) if k < len(marks) and marks[k].kind == "adj" and marks[k].value in {"guest", "child", "primary"} else None
+    number, each, j = 1.0, False, k + 1
+    while j < len(marks) and (marks[j].kind in LIGHT | {"num", "pron"}):
+        each = each or marks[j].value == "each"
+        number = marks[j].number if marks[j].kind == "num" and marks[j].number > 1 else number
+        j += 1
+    if j < len(marks) and (marks[j].kind == "owner" or (marks[j].kind == "adj" and marks[j].value in {"guest", "child", "primary"})):
+        return marks[j].value, number if each else 1.0, j + 1
+    return None
+
+
+def _persons(marks: list[Mark]) -> list[Mark]:
+    """Read "two bedrooms, one for the parents and another for the boy", "a room for us, another for each of the three boys and one more for guests"."""
+    made: list[Mark] = []
+    k = 0
+    while k < len(marks):
+        mark = marks[k]
+        room = next((m for m in reversed(made) if m.kind in {"room", *ENDS}), None)
+        said = _said_of(marks, k + 1) if mark.text in ONES and mark.kind in {"det", "fill", "pron", "num", "join"} else None
+        before = made[-1].kind if made else "stop"
+        if said is None or room is None or room.value.partition("/")[0] != "bedroom" or before not in {"comma", "join", "open", "colon", "stop"}:
+            made.append(mark)
+            k += 1
+            continue
+        role, number, end = said
+        last = marks[end - 1].last
+        counted = room.plural and not mark.text.endswith("mas")
+        if number > 1:
+            made.append(Mark("num", "", number, False, mark.first, mark.last, mark.text))
+        else:
+            made.append(Mark("det", "definite" if counted else "indefinite", 0.0, False, mark.first, mark.last, mark.text))
+        made.append(replace(room, value=f"bedroom/{role}", plural=number > 1, first=mark.last, last=last, number=0.0))
+        k = end
+    return made
+
+
+def _denied_again(marks: list[Mark]) -> list[Mark]:
+    """Read "the kitchen is open to the dining room, not to the living room": the way before it is what is denied."""
+    made = list(marks)
+    way: Mark | None = None
+    for k, mark in enumerate(marks):
+        if mark.kind in ENDS:
+            way = None
+        elif mark.kind == "cue" and mark.value in WAYS:
+            way = mark
+        if mark.kind != "neg" or way is None or not k or marks[k - 1].kind not in {"comma", "but", "join"}:
+            continue
+        j = k + 1
+        while j < len(marks) and marks[j].kind == "adverb":
+            j += 1
+        room = next((i for i in range(j + 1, min(j + 4, len(marks))) if marks[i].kind == "room"), None)
+        light = room is not None and all(m.kind in {"det", "adj"} for m in marks[j + 1 : room])
+        ends = room is not None and (room + 1 >= len(marks) or marks[room + 1].kind in CLOSERS)
+        if light and ends and marks[j].text in TOWARDS:
+            made[j] = replace(way, first=marks[j].first, last=marks[j].last, only=False)
+    return made
+
+
+def _of_which(marks: list[Mark]) -> list[Mark]:
+    """Read "cinco habitaciones, de las que dos tienen baño" as two of them; "mitad de ellas" stays."""
+    made: list[Mark] = []
+    k = 0
+    while k < len(marks):
+        trio = marks[k : k + 3]
+        if (
+            len(trio) == 3
+            and trio[0].value == "partitive"
+            and trio[1].text == "que"
+            and (trio[2].kind == "num" or trio[2].text in {"uno", "una"})
+        ):
+            number = trio[2].number or 1.0
+            made.append(Mark("pron", "one", number, False, trio[0].first, trio[2].last, "de las que"))
+            k += 3
+        else:
+            made.append(marks[k])
+            k += 1
+    return made
+
+
+def _leaving(marks: list[Mark]) -> list[Mark]:
+    """Read "del salón parte un pasillo": from the living room one comes to a corridor."""
+    made = list(marks)
+    for k, mark in enumerate(marks):
+        begins = k == 0 or marks[k - 1].kind in {"stop", "line", "comma", "join", "colon"}
+        start = k + 1 + (mark.text == "de" and k + 1 < len(marks) and marks[k + 1].kind == "det")
+        if not begins or mark.text not in {"de", "del"} or start + 1 >= len(marks) or marks[start].kind != "room":
+            continue
+        verb = marks[start + 1]
+        if set(verb.text.split()) & LEAVING:
+            made[k] = replace(mark, kind="cue", value="from", text="desde")
+            made[start + 1] = replace(verb, kind="fill", value="")
+    return made
+
+
+def _corridor(marks: list[Mark]) -> list[Mark]:
+    """Read "el pasillo de los dormitorios" as the corridor that leads to them."""
+    made = list(marks)
+    for k in range(1, len(marks) - 2):
+        of = marks[k].value == "partitive" or (marks[k].text == "de" and marks[k + 1].kind in {"det", "room"})
+        room = k + 1 + (marks[k + 1].kind == "det")
+        if of and marks[k - 1].value == "hallway" and room < len(marks) and marks[room].value.startswith("bedroom") and marks[room].plural:
+            made[k] = replace(marks[k], kind="cue", value="leads", text="que lleva a")
+    return made
+
+
+def _premises(marks: list[Mark]) -> list[Mark]:
+    """Read "Oficina de 120 m²: dos salas de reuniones, cuatro despachos" as premises, not as one more office."""
+    made = list(marks)
+    work = sum(m.kind == "room" and m.value in {"office", "meeting_room"} for m in marks) > 1
+    if work and marks[0].text in {"oficina", "oficinas"} and marks[0].kind == "room" and len(marks) > 1 and marks[1].kind in {"amount", "colon", "cue"}:
+        made[0] = replace(marks[0], kind="home", value="")
+    return made
+
+
+def _heads(marks: list[Mark]) -> list[Mark]:
+    """Read "los dormitorios de los padres y de los niños" as one of each."""
+    made = list(marks)
+    for k in range(len(marks) - 2, 0, -1):
+        head = marks[k]
+        if head.kind != "room" or not head.plural or not head.value.startswith("bedroom/") or marks[k + 1].kind != "join" or (k and marks[k - 1].kind == "num"):
+            continue
+        said = _said_of(marks, k + 2)
+        if said is not None and marks[k + 2].kind in {"fill", "adj", "bound", "det", "word"}:
+            role, _, end = said
+            made[k : k + 2] = [replace(head, plural=False), marks[k + 1]]
+            made[k + 2 : end] = [replace(head, value=f"bedroom/{role}", plural=False, first=marks[k + 2].first, last=marks[end - 1].last)]
+    return made
