@@ -31,6 +31,7 @@ Language = Literal["en", "de", "es", "zh"]
 LANGUAGES: tuple[Language, ...] = get_args(Language)
 Phrases = Mapping[str | int | float, str]
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the one in C is eight times as fast
+VERB = re.compile(r"\w+[aeií]r(se)?")  # a Spanish infinitive
 STRONG = frozenset({"room", "suite", "home"})
 
 
@@ -317,7 +318,7 @@ def lexicon(language: Language) -> Lexicon:
             Style.model_validate(look.knobs)
     except (OSError, yaml.YAMLError, ValidationError) as error:
         raise ContentError(f"{path.name}: {str(error).splitlines()[0]}", "restore the file from the repository") from error
-    infinitives = sorted({p.split()[0] for phrases in entries.conjugated.values() for p in split(phrases)})
+    infinitives = sorted({p.split()[0] for phrases in entries.conjugated.values() for p in split(phrases) if VERB.fullmatch(p.split()[0])})
     made = Lexicon(language, tenses=canonical(infinitives))
     made.vocabulary.update(made.tenses, (fold(w) for verb in infinitives for w in (verb, *present(verb))))
     targets: set[str] = set()

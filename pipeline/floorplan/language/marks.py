@@ -102,7 +102,11 @@ def _pointed(marks: list[Mark], heard: Words) -> list[Mark]:
         made.append(mark)
         ahead = marks[k + 1] if k + 1 < len(marks) else None
         accent = heard.tokens[mark.last - 1].text == "él"
-        if mark.kind == "cue" and mark.text.endswith(" el") and (accent or ahead is None or ahead.kind in {"stop", "comma", "cue", "enter"}):
+        if (
+            mark.kind == "cue"
+            and mark.text.endswith(" el")
+            and (accent or ahead is None or ahead.kind in {"stop", "comma", "cue", "enter"})
+        ):
             made[-1] = replace(mark, last=mark.last - 1, text=mark.text.removesuffix(" el"))
             made.append(Mark("pron", "it", 0.0, False, mark.last - 1, mark.last, "el"))
     return made

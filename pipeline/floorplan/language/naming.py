@@ -109,7 +109,8 @@ def _others(state: Reading, sentence: list[Element], k: int, role: str, level: i
     rest = [r for r in same if r.open_slot] or [r for r in same if r.id not in last] or same[-1:]
     many = e.plural or (e.number or 0) > 1
     if e.number is not None and e.type == "bedroom":
-        rest = [r for r in rest if r.open_slot or r.id not in last]
+        told = last | {g[0] for g in state.past if len(g) == 1}
+        rest = [r for r in rest if r.open_slot or r.id not in told]
         while len(rest) < e.number:
             rest.append(stock.add(e.type, role, e.text, level))
     return (rest if many else [close(r, "", e.text) for r in rest[:1]]) or [stock.add(e.type, role, e.text, level)]

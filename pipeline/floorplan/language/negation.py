@@ -46,6 +46,11 @@ def ban(sentence: list[Element]) -> None:  # noqa: C901, PLR0912 - one branch pe
             e.kind = "used"  # "no es necesario un balcón"
             _list(sentence, j)
         elif e.kind == "needless":
+            start = next((j + 1 for j in range(k - 1, -1, -1) if sentence[j].kind in {"comma", "and", "but"}), 0)
+            ahead = _target(sentence, k + 1)
+            if ahead is not None and not any(x.kind == "np" for x in sentence[start:k]):  # "y nos sobra el salón"
+                _list(sentence, ahead)
+                continue
             for j in range(k - 1, -1, -1):
                 if sentence[j].kind == "np":
                     sentence[j].banned = True

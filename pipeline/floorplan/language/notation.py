@@ -252,6 +252,11 @@ def _numbered(marks: Sequence[Mark]) -> list[Mark]:
         ahead = marks[k + 1].kind if k + 1 < len(marks) else "stop"
         counted = next((m for m in reversed(made) if m.kind == "room" and m.plural), None)
         named = len(made) > 1 and made[-2].kind == "det" and made[-2].value == "definite"
-        if mark.kind == "ord" and named and counted is not None and ahead in {"verb", "factor", "cmp", "comma", "stop", "line", "cue"}:
+        if (
+            mark.kind == "ord"
+            and named
+            and counted is not None
+            and ahead in {"verb", "factor", "cmp", "comma", "stop", "line", "cue", "amount"}
+        ):
             made.append(replace(counted, plural=False, first=mark.last, last=mark.last))
     return made

@@ -148,6 +148,9 @@ def _belongs(clause: Clause, k: int, e: Element, owners: Group) -> int:
             both = bool(after) and after[0].kind in {"det", "pron"} and after[0].value in {"both", "all"} and "own" not in x.det
             both = both and not any(y.kind in {"cue", "verb", "np"} for y in after[1:])
             public = (both and len(owners) > 1) or x.role in {"shared", "guest"} or (x.number or 1) > len(owners) or x.definite
+            public = public or (len(owners) > 2 and 1 < (x.number or 1) < len(owners))  # "three bedrooms with two baths"
+            if given and not own and _placed(sentence, j):
+                break  # "with a closet and a bath that one enters by the closet"
             if public or (joined == "comma" and not own and not _list_ends(sentence, j)):
                 break
             if (joined and "another" in x.det) or (joined == "and" and not own and x.number is not None):
@@ -175,6 +178,12 @@ def _belongs(clause: Clause, k: int, e: Element, owners: Group) -> int:
         clause.run = [Element("np", "", e.first, e.last, "", ids=list(given), type=stock.get(given[0]).type)]
         clause.verb = False
     return end
+
+
+def _placed(sentence: list[Element], j: int) -> bool:
+    """Whether it is said of the room at j where it hangs."""
+    ahead = next((x for x in sentence[j + 1 :] if x.kind not in {"amount", "relative", "flag", "word"}), None)
+    return ahead is not None and ahead.kind == "cue" and ahead.value in {"door", "from"}
 
 
 def _list_ends(sentence: list[Element], j: int) -> bool:

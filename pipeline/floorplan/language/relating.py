@@ -47,6 +47,8 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     if not group:
         return _alone(clause, k, e)
     apart = k > 0 and clause.sentence[k - 1].kind == "and"  # "a bath, and in the bedroom ..."
+    if e.value == "in" and not left and (held := _holding(clause, e, group, j)):
+        return held
     if e.value == "in" and (apart or not _inside(clause, left, group)):
         clause.latest, clause.run = group, [x for x in clause.sentence[k:j] if x.kind == "np"][-1:]
         return j
@@ -147,6 +149,44 @@ def _alone(clause: Clause, k: int, e: Element) -> int:
     if e.value == "between":
         clause.state.understood(e.first, e.last)
     return k + 1
+
+
+def _holding(clause: Clause, e: Element, group: Group, j: int) -> int:
+    """Read "in the corridor are three bedrooms and a bath", "in the main bedroom there is a closet": what is named next hangs on it; 0 for none."""
+    verb = next((i for i in range(j, min(j + 6, len(clause.sentence))) if clause.sentence[i].kind == "verb"), None)
+    if len(group) != 1 or verb is None or any(x.kind in {"np", "cue", "neg"} for x in clause.sentence[j:verb]):
+        return 0
+    ahead = next((x for x in clause.sentence[verb + 1 :] if x.kind not in {"det", "adj", "size", "verb", "word", "flag"}), None)
+    host = clause.stock.get(group[0]).type if group[0][0] not in "*<" else ""
+    usual = {"hallway": BEHIND_HALLS, "entry": BEHIND_HALLS, "bedroom": {"bathroom", "closet", "balcony", "wc"}}
+    if ahead is None or ahead.kind != "np" or ahead.banned or ahead.type not in usual.get(host, {"balcony", "storage", "utility"}):
+        return 0
+    for x in clause.sentence[j:verb]:
+        measured = x.kind == "amount" and x.mark is not None
+        if measured and x.mark is not None:
+            clause.state.amounts.append((x.mark, group))
+            clause.state.understood(x.first, x.last)
+    things, end = clause.after(verb + 1, "leads", group)
+    if things:
+        clause.state.say("own" if host == "bedroom" and len(things) == 1 else "door", things, group * len(things), e)
+        clause.latest, clause.subject, clause.objects, clause.run, clause.verb = things, group, things, [], False
+    return end if things else 0
+
+
+BEHIND_HALLS = {
+    "bedroom",
+    "bathroom",
+    "wc",
+    "kitchen",
+    "living_room",
+    "dining_room",
+    "closet",
+    "storage",
+    "office",
+    "utility",
+    "library",
+    "playroom",
+}
 
 
 def _inside(clause: Clause, left: Group, group: Group) -> bool:

@@ -80,6 +80,15 @@ def canonical(infinitives: Iterable[str]) -> dict[str, str]:
 def conjugated(phrase: str) -> Iterator[str]:
     """Return "dar a" as "dar a", "da a", "da al", "se da a", "dan al" ...: the forms that are left, "a" and "de" with their article too."""
     verb, _, rest = phrase.partition(" ")
+    if not verb.endswith(("ar", "er", "ir", "ír")):  # "conectado con": of one or many, of both genders
+        head = next((w for w in phrase.split() if w.endswith("o") and len(w) > 4), "")
+        alike = [head[:-1] + end for end in ("o", "a", "os", "as")] if head else [""]
+        for form in alike:
+            said = phrase.replace(head, form, 1) if head else phrase
+            yield from (said, said + "l") if said.split(" ")[-1] in {"a", "de"} else (said,)
+        if head == "" and verb.endswith("e"):
+            yield from conjugated(phrase.replace(verb, verb + "s", 1))
+        return
     ends = [rest, rest + "l"] if rest.split(" ")[-1] in {"a", "de"} else [rest]
     for form in (verb, *present(verb)):
         for end in ends:

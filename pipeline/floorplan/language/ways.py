@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from pipeline.floorplan.language.facts import HALLS, Group
@@ -30,6 +31,9 @@ def excepted(clause: Clause, k: int, e: Element) -> int:
         clause.run[-1].ids = list(left)
         clause.run, clause.latest, clause.subject = clause.run[-1:], left, left
         return max(j, k + 1)
+    said = clause.state.facts[-2] if len(clause.state.facts) > 1 else None
+    if said is not None and said.what in {"door", "leads", "own"} and set(group) < set(said.a):  # "all open onto the hall but the main one"
+        clause.state.facts[-2] = replace(said, a=tuple(i for i in said.a if i not in group))
     clause.run, clause.latest = [x for x in clause.sentence[k:j] if x.kind == "np"][-1:], group
     every = next((x for x in clause.sentence[:k] if x.kind == "every"), None)
     if every is not None and not any(x.kind == "cue" for x in clause.sentence[:k]):  # "all rooms but the pantry open off the hall"
