@@ -70,6 +70,8 @@ def _target(sentence: list[Element], k: int) -> int | None:
             continue  # "not needed: balcony, garage"
         if e.kind == "cue" and e.value == "has":
             continue
+        if e.kind == "word" and e.value == "from":
+            return None  # "is not to be seen from the living room"
         if e.kind not in {"verb", "adj", "det", "owner", "size", "word", "relative"}:
             return None
     return None
