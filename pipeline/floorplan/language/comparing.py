@@ -13,7 +13,6 @@ if TYPE_CHECKING:
 
 def factor(clause: Clause, k: int, e: Element) -> int:
     """Note a factor; "twice the living room" compares at once."""
-    clause.state.understood(e.first, e.last)
     clause.factor = e
     ahead = next((x for x in clause.sentence[k + 1 :] if x.kind not in {"relative", "det"}), None)
     if ahead is not None and ahead.kind == "np":
@@ -23,7 +22,6 @@ def factor(clause: Clause, k: int, e: Element) -> int:
 
 def compare(clause: Clause, k: int, e: Element) -> int:
     """Read "at least 1.5 times as large as the largest bedroom"."""
-    clause.state.understood(e.first, e.last)
     left = listed(clause) or clause.subject or clause.latest
     if e.value == "alike":
         rooms = tuple(i for x in clause.run for i in x.ids) if len(clause.latest) < 2 else clause.latest
@@ -39,6 +37,9 @@ def compare(clause: Clause, k: int, e: Element) -> int:
         behind = clause.sentence[j] if j < len(clause.sentence) else None
         if behind is not None and behind.kind == "factor":
             value, j = behind.number or 1.0, j + 1
+    if left and right:
+        clause.state.understood(e.first, e.last)
+        clause.state.understood(*((clause.factor.first, clause.factor.last) if clause.factor else (e.first, e.last)))
     clause.factor = None
     a, b = (right, left) if e.value == "smaller" else (left, right)
     if value < 1.0:  # "half the size of"

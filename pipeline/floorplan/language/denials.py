@@ -66,7 +66,7 @@ def _turned(marks: list[Mark]) -> list[Mark]:
         j = k - 1
         while j >= 0 and marks[j].kind in LIGHT and (marks[j].kind != "cue" or marks[j].value == "has"):
             j -= 1
-        spoken = any(m.kind in {"verb", "word", "fill"} for m in marks[j + 1 : k])
+        spoken = any(m.kind in {"verb", "word", "fill", "cue"} for m in marks[j + 1 : k])
         if j >= 0 and marks[j].kind == "neg" and spoken:
             made[k] = replace(mark, bound=TURNED[mark.bound])
             gone.add(j)

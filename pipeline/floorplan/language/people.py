@@ -122,6 +122,8 @@ def _for(marks: list[Mark]) -> list[Mark]:
             j -= 1
         if link > 0 and made[j].kind == "room" and made[j].value == "bedroom":
             made[j : k + 1] = [_of(made[j], made[k]), *made[j + 1 : link]]
+        elif link > 0 and made[j].kind == "amount" and made[j].value == "rooms":  # "two rooms for the boys"
+            made[j : k + 1] = [replace(made[j], kind="num", value=""), replace(_of(made[j], made[k]), plural=True)]
     return made
 
 
@@ -137,7 +139,7 @@ def _theirs(marks: list[Mark]) -> list[Mark]:
     """Read "the nanny's room", and in Spanish "la de los niños" by itself."""
     made = list(marks)
     for k in range(len(made) - 1, -1, -1):
-        article = k > 0 and made[k - 1].text in {"la", "el", "al"} and not (k > 1 and made[k - 2].kind in {"room", "post"})
+        article = k > 0 and made[k - 1].text.split(" ")[-1] in {"la", "el", "al"} and not (k > 1 and made[k - 2].kind in {"room", "post"})
         if k < len(made) and made[k].kind == "adj" and made[k].text.startswith(("de ", "para ")) and article:
             made[k] = _of(made[k], made[k])  # "menos el de invitados"
         if k >= len(made) or made[k].kind != "owner":

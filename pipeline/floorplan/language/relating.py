@@ -146,8 +146,6 @@ def _alone(clause: Clause, k: int, e: Element) -> int:
     if mutual or listed_alone or (e.value == "wall" and (clause.run or clause.subject)):
         _mutual(clause, e)
         return k + 1 + mutual
-    if e.value == "between":
-        clause.state.understood(e.first, e.last)
     return k + 1
 
 
