@@ -29,7 +29,7 @@ def located(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks of a Chinese prompt with ways put plainly: room, cue, room."""
     if heard.lexicon.language != "zh":
         return [replace(m, kind="verb") if (m.kind, m.value) == ("cue", "side") else m for m in marks]
-    return _mutual(_entered(_unwalled(_doors(_sided(_listed(_between(list(marks))))))))
+    return _mutual(_entered(_unwalled(_doors(_sided(_joining(_listed(_between(list(marks)))))))))
 
 
 def _between(marks: list[Mark]) -> list[Mark]:
@@ -50,6 +50,15 @@ def _between(marks: list[Mark]) -> list[Mark]:
         cue = replace(made[k], kind="cue", value="between")
         made[start : head + 1] = [*made[k + 1 + parted : head + 1], relative, cue, *made[start:k]]
     return made
+
+
+def _joining(marks: list[Mark]) -> list[Mark]:
+    """Read "走廊连着三间卧室和卫生间" as leading to all of them."""
+    hall = [k > 0 and marks[k - 1].kind == "room" and _kind(marks[k - 1]) in HALLS for k in range(len(marks))]
+    return [
+        replace(m, value="leads") if h and (m.kind, m.value) == ("cue", "door") and plain(m).startswith(("连", "接", "衔")) else m
+        for m, h in zip(marks, hall, strict=True)
+    ]
 
 
 def _listed(marks: list[Mark]) -> list[Mark]:
@@ -199,7 +208,8 @@ def _entered(marks: list[Mark]) -> list[Mark]:
         if not goes or not _spoken(made, k):
             k += 1
             continue
-        only = any(plain(m) in {"只", "只能", "仅", "只有", "仅能", "必须"} for m in made[max(0, k - 2) : k])
+        must = {"得", "要", "必须", "需要", "需"} if any(w in plain(made[k]) for w in ("穿", "经过")) else {"必须"}
+        only = any(plain(m) in {"只", "只能", "仅", "只有", "仅能"} | must for m in made[max(0, k - 2) : k])
         cue = replace(made[k], kind="cue", value="door", last=made[k + width - 1].last, only=only or made[k].only, text="从")
         made[k : tail + 1] = [cue, *made[k + width : j]]
         k += 1

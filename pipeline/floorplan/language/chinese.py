@@ -119,7 +119,7 @@ def _counted(marks: list[Mark]) -> list[Mark]:
     made: list[Mark] = []
     for k, mark in enumerate(marks):
         counted = any(m.kind in {"num", "ord"} for m in made[-3:])
-        if mark.kind == "room" and mark.text.replace(" ", "") in SECOND and not counted:
+        if (mark.kind, mark.value) == ("room", "bedroom") and mark.text.replace(" ", "") in SECOND and not counted:
             made.append(Mark("ord", "2", 2.0, False, mark.first, mark.first, ""))
         made.append(mark)
         if mark.kind == "room" and mark.value == "living_room/halls":
@@ -159,7 +159,7 @@ def _between(marks: list[Mark]) -> list[Mark]:
     k = -1
     while (k := k + 1) < len(made):
         mark = made[k]
-        if mark.kind == "cue" and mark.value == "between":
+        if mark.kind == "cue" and mark.value == "between" and not (k and made[k - 1].kind == "relative"):
             clause = max((j for j in range(k) if made[j].kind in {"comma", "stop", "line", "colon"}), default=-1) + 1
             names = [j for j in range(max(clause, k - 6), k) if made[j].kind in HEADS]
             several = bool(names) and any(m.kind == "num" and m.number > 1 for m in made[max(0, names[-1] - 2) : names[-1]])

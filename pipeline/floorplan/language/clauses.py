@@ -307,7 +307,7 @@ class Clause:
             self.state.say("area_equal", self.latest, (), e, 0.15)
         social = tuple(i for x in self.run for i in x.ids if x.type in SOCIAL)
         alone = len(social) == sum(len(x.ids) for x in self.run)
-        joined = before is not None and (before.kind in {"np", "reciprocal"} or (before.kind == "verb" and alone))
+        joined = before is not None and (before.kind in {"np", "reciprocal", "open"} or (before.kind == "verb" and alone))
         if e.value in {"open", "combined"} and len(social) > 1 and joined and not self.negated(k):
             self.state.say("merge", social, (), e)  # "living and dining room open"
         elif e.value == "open" and self.negative is not None and len(social) == 1 and self.stock.get(social[0]).type == "kitchen":

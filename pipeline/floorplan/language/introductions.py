@@ -89,7 +89,7 @@ def _count_all(state: Reading, e: Element) -> list[Named]:
     return stock.of(e.type)[: int(e.number or 1)]
 
 
-def _introduced(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one branch per case: a grammar
+def _introduced(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: C901, PLR0911, PLR0912 - one branch per case: a grammar
     """Return the rooms of a phrase with a number or an indefinite article."""
     e, stock = sentence[k], state.inventory
     count = int(e.number or (2 if e.plural and e.type not in PLURAL_NAMES else 1))
@@ -103,6 +103,10 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
         return []  # "three baths. Two of the bedrooms have an en suite": of those that were counted
     if slots and _predicative(sentence, k):
         return [close(slots[0], role, e.text)]
+    if "another" in e.det and role and e.type == "bedroom":  # "三间卧室：大儿子一间，小女儿一间": the second of theirs
+        told = [r for r in slots if listed(sentence, k, r) or (r.whole and state.heard.lexicon.language == "zh")]
+        if len(told) >= count:
+            return [close(r, role, e.text) for r in told[:count]]
     if "another" not in e.det:
         if role and role != "ensuite":
             here = [r for r in same if r.role == role]

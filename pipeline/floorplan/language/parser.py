@@ -16,6 +16,7 @@ from pipeline.floorplan.language.bearings import located
 from pipeline.floorplan.language.denials import denied
 from pipeline.floorplan.language.detection import detect
 from pipeline.floorplan.language.elision import unsaid
+from pipeline.floorplan.language.families import homed
 from pipeline.floorplan.language.marks import listen, measured, segment
 from pipeline.floorplan.language.masking import read_furniture
 from pipeline.floorplan.language.measures import compared
@@ -59,7 +60,7 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     heard = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
     amounts = dealt(measured(shared_unit(crossed(plain_areas(loosened(segment(heard), heard)), heard)), heard))
     revised = revise(widen(amounts, heard), heard)
-    said = located(compared(tallied(revised.marks, heard), heard), heard)
+    said = located(compared(tallied(homed(revised.marks, heard), heard), heard), heard)
     marks = reorder(written_out(noted(resolved(housed(unsaid(denied(said), heard)), heard), heard), heard), heard)
     parsed = sentences(marks, heard)
     spoken = {e.kind for s in parsed for e in s}

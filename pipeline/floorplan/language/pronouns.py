@@ -86,7 +86,9 @@ def determiner(clause: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - on
         clause.run, clause.subject = clause.run[-1:], tuple(clause.run[-1].ids)  # "..., 所有卧室都从走廊进出"
         return k + 1
     if e.value == "all" and len(clause.run) > 1 and not any(x.kind == "np" for x in clause.sentence[k + 1 : k + 2]):
-        clause.subject = clause.latest = tuple(i for x in clause.run for i in x.ids)  # "kitchen, two bedrooms, bath - all off the hall"
+        clause.subject = clause.latest = tuple(
+            dict.fromkeys(i for x in clause.run for i in x.ids)
+        )  # "kitchen, two bedrooms, bath - all off the hall"
         clause.run = [Element("np", "", e.first, e.last, e.text, ids=list(clause.latest))]
         return k + 1
     ahead = clause.sentence[k + 1].kind if k + 1 < len(clause.sentence) else ""

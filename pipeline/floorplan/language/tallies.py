@@ -76,7 +76,9 @@ def tallied(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with every number in front of what it counts."""
     if heard.lexicon.language != "zh":
         return list(marks)
-    made = _storeys(_bedrooms(_sizes(list(marks))))
+    made = _storeys(
+        _bedrooms(_sizes(_bracketed(_besides([replace(m, kind="adj", value="plain") if m.kind == "long" else m for m in marks]))))
+    )
     return _headless(_partly(_apiece(_behind(_figures(made)))))
 
 
@@ -91,6 +93,38 @@ def _headless(marks: list[Mark]) -> list[Mark]:
         bath = next((m for m in reversed(marks[:k]) if m.kind == "room" and m.value.startswith("bathroom")), None)
         if (mark.kind, mark.value) == ("adj", "shared") and alone and one and bath is not None:
             made.append(replace(bath, value="bathroom/shared", first=mark.last, last=mark.last))
+    return made
+
+
+def _besides(marks: list[Mark]) -> list[Mark]:
+    """Read "另外再来一间书房" as one more."""
+    made = list(marks)
+    for k, mark in enumerate(marks):
+        if (mark.kind, mark.value) != ("det", "other") or plain(mark) not in {"另外", "另", "此外"}:
+            continue
+        j = k + 1
+        while (
+            j < len(marks)
+            and j - k < 5
+            and (marks[j].kind in {"adverb", "verb"} or plain(marks[j]) in {"来", "要", "加", "有", "配", "设", "给"})
+        ):
+            j += 1
+        if j > k + 1 and j < len(marks) and (_one(marks[j]) or marks[j].kind == "num"):
+            made[k] = replace(mark, kind="fill", value="")
+            number = marks[j] if marks[j].kind == "num" else replace(marks[j], kind="num", value="", number=1.0)
+            made[j] = replace(number, value="")
+            made[j - 1] = replace(made[j - 1], kind="det", value="another")
+    return made
+
+
+def _bracketed(marks: list[Mark]) -> list[Mark]:
+    """Read "厨房（封闭式）" as "封闭式厨房"."""
+    made = list(marks)
+    for k in range(len(made) - 3, 0, -1):
+        kinds = [m.kind for m in made[k : k + 3]]
+        alone = k < 3 or made[k - 2].kind != "join" or plain(made[k - 2]) in {"&", ","}
+        if kinds == ["open", "adj", "close"] and made[k - 1].kind == "room" and alone:
+            made[k - 1 : k + 3] = [made[k + 1], made[k - 1]]
     return made
 
 
