@@ -146,6 +146,8 @@ def _alone(clause: Clause, k: int, e: Element) -> int:
     if mutual or listed_alone or (e.value == "wall" and (clause.run or clause.subject)):
         _mutual(clause, e)
         return k + 1 + mutual
+    if e.value == "between" and rest is None and e.text == "in between":
+        clause.state.understood(e.first, e.last)  # "... as a buffer in between" points back at what was said
     return k + 1
 
 
