@@ -10,7 +10,7 @@ from pipeline.floorplan.language.marks import Mark, Words
 
 HEADINGS = {"ground": "0", "lower": "0", "baja": "0", "upper": "1", "top": "1", "alta": "1"}  # in front of a colon
 ATTIC = {"dg", "dachgeschoss"}
-BESIDE = {"nebeneinander", "beieinander", "side by side"}
+BESIDE = {"nebeneinander", "beieinander", "aneinander", "side by side"}
 COUNTED = {"first": "1", "second": "2"}  # the same where a prompt has a ground floor
 CLOSERS = {"comma", "stop", "line", "close", "join"}
 SOCIAL = {"kitchen", "dining_room", "living_room", "family_room"}

@@ -104,7 +104,7 @@ def _matches(marks: list[Mark], k: int, wanted: tuple[str, ...]) -> int | None:
             need = need[len(have) :]
         elif have[: len(need)] == need and set(have[len(need) :]) <= ARTICLES:  # "in die Küche übergeht"
             need = []
-        elif len(need) == len(wanted) or marks[k].kind not in {"adverb", "flag"}:
+        elif len(need) == len(wanted) or marks[k].kind not in {"adverb", "flag", "comma"}:
             return None
         k += 1
     return None if need else k

@@ -108,6 +108,8 @@ def _pronoun(marks: Sequence[Mark], k: int) -> int:
         return 3
     if len(texts) > 1 and texts[0] == "al" and texts[1] == "que":
         return 2
+    if texts[0] in {"von dem", "von der", "aus dem"} and k and marks[k - 1].kind == "comma":  # "ein Flur, von dem aus man ins Bad kommt"
+        return next((n for n in (2, 3) if len(texts) > n - 1 and texts[n - 1] == "man"), 0)
     if len(texts) > 2 and texts[0] in BY and texts[1] in ARTICLES and texts[2] == "man":
         return 3
     return 2 if len(texts) > 1 and texts[0] in BY and texts[1] == "which" else 0

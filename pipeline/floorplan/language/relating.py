@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two rooms at the end: "kitchen and bath adjacent"
 THROUGH = {"through", "via", "durch", "ueber", "por", "traves", "经", "过", "通"}
+AT = {"am", "an der", "an dem", "liegt am", "liegen am", "liegen an"}  # where a room lies
 FINITE = {"abren", "dan", "salen", "open", "lead", "connect", "conectan", "comunican", "desembocan", "llevan", "conducen", "give", "parten"}
 WITH = {"con", "with", "mit"}
 SINGULAR = {"is", "lies", "sits", "stands", "opens", "esta", "este", "es", "sea", "queda", "ist", "liegt", "se encuentra"}
@@ -249,6 +250,8 @@ def _emit(clause: Clause, e: Element, left: Group, group: Group) -> None:
         what = (
             "avoid"
             if through
+            else "ban"
+            if cue == "door" and e.text in AT
             else {"near": "ban", "wall": "ban", "away": "near", "open": "not_open", "avoid": "avoid"}.get(cue, "not_connected")
         )
         state.say(what, left, group, e)

@@ -147,9 +147,44 @@ def _parted(marks: list[Mark]) -> list[Mark]:
         while j < len(marks) and marks[j].kind in SLIDING - {"flag"}:
             j += 1
         door = j < len(marks) and (marks[j].kind, marks[j].value) == ("flag", "doors")
+        ends = door and (j + 1 >= len(marks) or marks[j + 1].kind in ENDS | {"verb"})
+        shared = (
+            (mark.kind, mark.value) == ("cue", "has")
+            and ends
+            and [m.kind for m in made[-4:] if m.kind != "det"][-3:] == ["room", "join", "room"]
+        )
+        if shared:  # "office and kitchen have a connecting door"
+            made.append(replace(mark, value="door", text="verbunden"))
+            continue
+        entry = j < len(marks) and marks[j].kind == "cue" and marks[j].value == "door" and marks[j].text.split()[0] not in PREPOSITIONS
+        if (mark.kind, mark.value) == ("cue", "has") and entry and j > k + 1:
+            made.append(replace(mark, kind="fill"))  # "with a direct way to the kitchen"
+            continue
+        subject = mark.kind == "cue" and mark.value == "door" and mark.text.split()[0] in WAYS
+        if (
+            subject
+            and not any(m.kind in BESIDE for m in _clause(made))
+            and any(m.kind == "cue" for m in _clause(marks[k + 1 :], after=True))
+        ):
+            made.append(replace(mark, kind="fill"))  # "the way into the office is through the kitchen"
+            continue
         instead = mark.kind == "neg" and mark.text.split()[0] in INSTEAD and (j >= len(marks) or marks[j].kind not in BESIDE)
         by = mark.kind == "cue" and mark.value == "door" and mark.text in BY and door
         made.append(replace(mark, kind="fill") if instead or by else mark)
+    return made
+
+
+WAYS = {"zugang", "zutritt", "tuer", "tuere", "durchgang", "access", "acceso", "entrada"}
+PREPOSITIONS = {"durch", "ueber", "am", "an", "hinter", "off", "through", "via", "por", "en"}
+
+
+def _clause(marks: Sequence[Mark], *, after: bool = False) -> list[Mark]:
+    """Return the marks up to the nearest end of a clause: the last ones, or the first."""
+    made: list[Mark] = []
+    for mark in marks if after else reversed(marks):
+        if mark.kind in ENDS - {"join"}:
+            break
+        made.append(mark)
     return made
 
 
