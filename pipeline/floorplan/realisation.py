@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from shapely import Polygon
 
 from pipeline.entities.plan import Plan, Room
 from pipeline.floorplan import lines, trace
@@ -16,6 +17,7 @@ from pipeline.floorplan.storeys import EDGE, UNIT, Storey
 
 SHARES = (1.0, 0.4, 0.0)  # how much of their freedom the walls' lines use; less when openings then find no place
 HALL_TRUST = 0.02  # how much the lines care for the area of an unstated hallway, beside that of a room
+NARROW = 0.8  # no room is narrower anywhere [m]
 STOREY_HEIGHT, CEILING = 3.0, 0.3  # floor to floor at least, thickness of what lies between [m]
 
 
@@ -30,7 +32,7 @@ def build(program: FloorProgram, storeys: list[tuple[Storey, Labels]], rng: np.r
         runs: list[Run] = []
         for request, grid in storeys:
             _realise(program, request, grid, share, rooms, runs, flights)
-        if not _within(program, storeys, rooms):
+        if not _within(program, storeys, rooms) or any(_is_narrow(r) for r in rooms):
             continue
         openings = place(program, rooms, runs, depth, rng)
         if openings is not None:
@@ -61,7 +63,8 @@ def _realise(
     sides = [flights if flights and r.type == "staircase" else _inner_sides(grid, corners[i], n) for i, r in enumerate(request.rooms)]
     found = lines.find(grid, UNIT)
     tight = np.array([r.type == "hallway" or r.min_width is not None for r in request.rooms])
-    slack = np.where(tight, (spec.strict * UNIT - request.clear) / 2, lines.FARTHEST)
+    spare = np.array([_across(c) for c in corners]) - NARROW - spec.half.inner - spec.half.outer
+    slack = np.where(tight, (spec.strict * UNIT - request.clear) / 2, np.minimum(lines.FARTHEST, spare / 2))
     trust = np.where(np.array([r.type in {"hallway", "entry"} and not r.area.stated for r in request.rooms]), HALL_TRUST, 1.0)
     held = np.zeros(found.at.size, dtype=bool)
     for i in (i for i, r in enumerate(request.rooms) if r.type == "staircase"):
@@ -74,6 +77,21 @@ def _realise(
         polygon = np.round(at[lines.corner_lines(found, corners[i])] + trace.insets(corners[i], sides[i], spec.half), 3)
         rooms.append(Room(room.id, room.type, polygon, request.level, program.shell.ceiling, room.role))
     runs += _runs(request, trace.walls(grid, n), rooms, found, at)
+
+
+def _across(corners: trace.Corners) -> float:
+    """Return the width of a rectangular outline [m]; any width of another: no line of it moves far enough to matter."""
+    (x0, y0), (x1, y1) = np.min(corners, axis=0), np.max(corners, axis=0)
+    return float(min(x1 - x0, y1 - y0)) * UNIT if len(corners) == 4 else np.inf
+
+
+def _is_narrow(room: Room) -> bool:
+    """Whether a room is narrower than `NARROW` somewhere."""
+    if len(room.polygon) == 4:
+        return bool(np.ptp(room.polygon, axis=0).min() < NARROW)
+    whole, worn = Polygon(room.polygon), NARROW / 2 - 1e-6
+    opened = whole.buffer(-worn, join_style="mitre").buffer(worn, join_style="mitre")
+    return bool(opened.geom_type != "Polygon" or opened.area < whole.area - 1e-3)
 
 
 def _within(program: FloorProgram, storeys: list[tuple[Storey, Labels]], rooms: list[Room]) -> bool:
