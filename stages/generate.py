@@ -9,7 +9,7 @@ from pathlib import Path
 from pipeline.entities.home import Home
 from pipeline.execution import single_thread
 from pipeline.floorplan import FloorProgram, describe, plan_json, request
-from pipeline.floorplan.assumptions import assumptions
+from pipeline.floorplan.assumptions import assumptions, notes
 from pipeline.floorplan.draw import svg
 from pipeline.floorplan.own import program_of, read_own
 from pipeline.floorplan.wishes import with_wishes
@@ -42,6 +42,8 @@ def main(root: Path, *, out: Path, prompt: str = "", seed: int = 0, source: Path
             commit_shard(dataset, 0, gather(0, [(outcome.rows, {**outcome.files, **drawings(outcome.home, program, repairs, assumed)})]))
     styles = {p.asset_id: str(factory.library.rows[p.asset_id]["style"]) for p in outcome.home.placements}
     sys.stdout.write(report(deliveries(FloorProgram.model_validate_json(outcome.home.program), outcome.rows, styles)))
+    if source is None:
+        sys.stderr.write(notes(program, assumptions(program)))
     for repair in repairs:
         sys.stdout.write(f"repaired: {repair['where']}: {repair['text']}\n")
     for file in sorted(p for p in out.glob("*/shard-00000/*") if p.is_file()):

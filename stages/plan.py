@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from pipeline.errors import RefusedError, UsageError
 from pipeline.experiments.prompt_file import read_prompts
 from pipeline.experiments.prompts import measured, report
-from pipeline.floorplan import FloorProgram, plan_json, refusal_json, request, solve, warm
-from pipeline.floorplan.assumptions import assumptions, shown
+from pipeline.floorplan import plan_json, refusal_json, request, solve, warm
+from pipeline.floorplan.assumptions import assumptions, notes
 from pipeline.floorplan.characters import terminal
 from pipeline.floorplan.document import document_schema
 from pipeline.floorplan.draw import png, svg
@@ -82,12 +81,6 @@ def score(_root: Path, *, prompts: Path, seeds: int = 5, json_path: Path | None 
     _write_json(json_path, found)
     if str(json_path) != STDOUT:
         sys.stdout.write(report(found))
-
-
-def notes(program: FloorProgram, assumed: Sequence[Mapping[str, str]] = ()) -> str:
-    """Return what was assumed, and the words that were not understood."""
-    lost = ", ".join(s.text for s in program.unparsed)
-    return shown(assumed) + (f"not understood: {lost}\n" if lost else "")
 
 
 def _check_target(path: Path | None) -> None:

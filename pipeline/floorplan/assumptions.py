@@ -38,6 +38,12 @@ def shown(assumed: Sequence[Mapping[str, str]]) -> str:
     return text
 
 
+def notes(program: FloorProgram, assumed: Sequence[Mapping[str, str]]) -> str:
+    """Return what was assumed, and the words that were not understood."""
+    lost = ", ".join(s.text for s in program.unparsed)
+    return shown(assumed) + (f"not understood: {lost}\n" if lost else "")
+
+
 def _rooms(program: FloorProgram) -> str:
     return ", ".join(f"{r.id} ({r.type})" for r in program.rooms if not r.stated)
 

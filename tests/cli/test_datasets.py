@@ -134,7 +134,10 @@ def test_generate_makes_a_dataset_of_one_with_what_it_uses(factory, capsys):
     assert factory.asked == [(0, "a studio")]
     assert factory.used == ["asset_0", "asset_1"]
     assert [h.scene_id for h in sfgen.load("home")] == ["s7_00000000"]
-    assert "home/usd/shard-00000/s7_00000000.usdc" in capsys.readouterr().out
+    said = capsys.readouterr()
+    assert "home/usd/shard-00000/s7_00000000.usdc" in said.out
+    assert "studio_room" not in said.err  # it was asked for
+    assert "bath (bathroom)" in said.err  # that was assumed
     assert run("verify", "--quick", "home") == 0
     assert run("generate", "a studio", "--out", "home", "--seed", 7) == 0
     assert run("generate", "a two-bedroom apartment", "--out", "home", "--seed", 7) == 2
