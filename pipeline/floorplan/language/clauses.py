@@ -6,15 +6,16 @@ from dataclasses import replace
 
 from pipeline.floorplan.language.comparing import compare, factor, superlative
 from pipeline.floorplan.language.facts import ROLES, SOCIAL, Fact, Group, Reading
+from pipeline.floorplan.language.flagging import flag
 from pipeline.floorplan.language.introductions import backward
 from pipeline.floorplan.language.naming import fresh, name
 from pipeline.floorplan.language.objects import objects
-from pipeline.floorplan.language.openness import merge, merge_after, no_door, windows, written_as_one
+from pipeline.floorplan.language.openness import merge, no_door, written_as_one
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import close, level, storey, wing, zone
 from pipeline.floorplan.language.pointing import point
 from pipeline.floorplan.language.pronouns import cast, determiner, every, pronoun
-from pipeline.floorplan.language.quantities import attach, belongs, share
+from pipeline.floorplan.language.quantities import attach, belongs
 from pipeline.floorplan.language.relating import SINGULAR, relate
 from pipeline.floorplan.language.ways import entered
 
@@ -27,8 +28,14 @@ ELSEWHERE = {
     "cmp": compare,
     "pron": pronoun,
     "det": determiner,
+    "flag": flag,
     "every": every,
 }  # what other modules read, by kind of element
+
+
+def _known(fact: Fact) -> bool:
+    """Whether a fact is about rooms, not about zones or all of them."""
+    return not any(i.startswith(("*", "<")) for i in (*fact.a, *fact.b))
 
 
 DENIED = {"door": "not_connected", "leads": "not_connected", "open": "not_open", "near": "ban", "wall": "ban"}  # what "does not" means
@@ -204,37 +211,6 @@ class Clause:
             attach(self.state, self.sentence, k, e.mark, self.latest)
         return k + 1
 
-    def _flag(self, k: int, e: Element) -> int:
-        self.state.understood(e.first, e.last)
-        self.state.flags.setdefault(e.value, e)
-        negative = self.negated(k)
-        if e.value == "daylight":
-            return windows(self, k, e, negative)
-        if e.value == "ends" and len(self.latest) == 2 and k and self.sentence[k - 1].kind in {"np", "verb", "det", "word", "cue", "home"}:
-            self.state.say("away", self.latest[:1], self.latest[1:], e)
-        elif e.value == "too" and self.state.facts and k + 1 < len(self.sentence) and self.sentence[k + 1].kind == "np":
-            last = self.state.facts[-1]  # "..., ebenso das Bad"
-            self.state.say(last.what, tuple(name(self.state, self.sentence, k + 1, storey(self, k + 1))), last.b, e)
-        elif e.value == "too" and self.run and self.state.facts:
-            last = self.state.facts[-1]
-            self.state.say(last.what, self.latest, last.b, e)
-        elif e.value == "only":
-            self.only = e
-            if self.state.facts and self.state.facts[-1].what in {"door", "leads"} and k and self.sentence[k - 1].kind == "np":
-                self.state.say("only", self.state.facts[-1].a, (), e)
-        elif e.value == "row" and len(self.run) > 1:
-            self.state.say("door", tuple(i for x in self.run for i in x.ids), (), e)
-        elif e.value == "open_plan" and negative:
-            self.state.flags["closed_plan"] = e
-            self.negative = None
-        elif e.value == "open_plan":
-            social = tuple(i for x in self.run for i in x.ids if not i.startswith("*") and self.stock.get(i).type in SOCIAL)
-            if len(social) > 1:
-                self.state.say("merge", social, (), e)
-                return share(self.state, self.sentence, k, social)
-            merge_after(self, k + 1, e)
-        return k + 1
-
     def negated(self, k: int) -> bool:
         """Whether a negation stands just in front of the element at k."""
         return any(x.kind == "neg" for x in self.sentence[max(0, k - 3) : k])
@@ -261,10 +237,16 @@ class Clause:
         return k + 1
 
     def _neg(self, k: int, e: Element) -> int:
+        ahead = self.sentence[k + 1] if k + 1 < len(self.sentence) else None
+        if ahead is not None and ahead.kind == "to" and self.way is not None and self.way.what in DENIED and _known(self.way):
+            group, j = self.after(k + 2, "leads", self.way.a)  # "has access to the terrace but not to the living room"
+            if group:
+                self.state.say(DENIED[self.way.what], self.way.a, group, e)
+                return j
         ends = k + 1 >= len(self.sentence) or self.sentence[k + 1].kind in {"comma", "but", "close"}
         said = self.state.facts[-1] if self.state.facts else None
         rooms = tuple(i for x in self.run for i in x.ids if not i.startswith("*"))
-        if ends and said is not None and rooms and said.what in DENIED and not set(rooms) & {*said.a, *said.b}:
+        if ends and said is not None and rooms and said.what in DENIED and not set(rooms) & {*said.a, *said.b} and _known(said):
             of = said.b if {self.stock.get(i).type for i in said.b} != {self.stock.get(i).type for i in rooms} else said.a
             self.state.say(DENIED[said.what], rooms, of, e)  # "the bedrooms open onto the hall, the kitchen however does not"
             return k + 1

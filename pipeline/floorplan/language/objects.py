@@ -109,6 +109,13 @@ def _theirs(clause: Clause, owner: Element, left: Group) -> Group:
     return tuple(owner.ids)
 
 
+def _denies(sentence: list[Element], but: Element) -> bool:
+    """Whether "however does not" ends the sentence: what stands in front of it is its subject."""
+    k = next(i for i, x in enumerate(sentence) if x is but)
+    rest = [x.kind for x in sentence[k + 1 :] if x.kind not in {"verb", "word"}]
+    return rest[:1] == ["neg"] and rest[1:2] in ([], ["comma"])
+
+
 def _continues(clause: Clause, index: int, cue: str, joined: str, first: Element) -> bool:  # noqa: PLR0911 - one answer per case: a grammar
     """Whether a list after a cue goes on with the phrase at index, or a new statement begins there."""
     e, sentence = clause.sentence[index], clause.sentence
@@ -116,8 +123,9 @@ def _continues(clause: Clause, index: int, cue: str, joined: str, first: Element
         return False  # "a kitchen open to the living room and a terrace": nothing stands open to these
     ahead = next((x for x in sentence[index + 1 :] if x.kind not in {"det", "amount", "adj", "flag", "word"}), None)
     starts = ahead is not None and (
-        ahead.kind in {"verb", "cmp", "neg", "but", "relative", "factor"}
-        or (ahead.kind == "cue" and (ahead.value != "has" or ahead.text in FINITE) and cue != "avoid")
+        ahead.kind in {"verb", "cmp", "neg", "relative", "factor"}
+        or (ahead.kind == "but" and _denies(sentence, ahead))
+        or (ahead.kind == "cue" and ahead.value != "except" and (ahead.value != "has" or ahead.text in FINITE) and cue != "avoid")
     )
     if starts and not (ahead is not None and ahead.kind == "relative"):
         return False

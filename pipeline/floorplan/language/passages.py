@@ -57,7 +57,10 @@ def _rather(marks: Sequence[Mark]) -> list[Mark]:
     made = list(marks)
     for k, mark in enumerate(marks):
         start = max((i for i in range(k) if marks[i].kind in ENDS), default=-1) + 1
-        compared = any(m.kind in {"cmp", "factor", "size"} for m in marks[start:k])
+        ahead = marks[k + 1] if k + 1 < len(marks) else None
+        named = ahead is not None and ((ahead.kind, ahead.value) == ("det", "definite") or ahead.kind in {"num", "amount", "pron"})
+        compared = named and any(m.kind == "size" for m in marks[start:k])
+        compared = compared or any(m.kind in {"cmp", "factor"} for m in marks[start:k])
         if mark.kind == "fill" and mark.text == "than" and not compared and any(m.kind == "room" for m in marks[start:k]):
             made[k] = replace(mark, kind="neg")
     return made

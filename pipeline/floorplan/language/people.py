@@ -42,11 +42,14 @@ def _nounless(marks: list[Mark]) -> list[Mark]:
                 del made[-2]
             made.append(replace(room, value=room.value.partition("/")[0], plural=False, first=mark.last, last=mark.last))
         elif (
-            mark.text in {"ones", "one"}
-            and len(made) > 2
-            and made[-2].value in {"smaller", "1.35", "0.75", "1.3", "larger"}
-            and room.plural
+            mark.kind == "ord"
+            and ahead.kind in {"open", "amount", "colon"}
+            and (many := next((m for m in made if m.kind == "room" and m.plural), None))
         ):
+            made.append(
+                replace(many, value=many.value.partition("/")[0], plural=False, first=mark.last, last=mark.last)
+            )  # "second (12 m2)"
+        elif mark.text == "ones" and len(made) > 2 and made[-2].value in COMPARED and any(m.kind == "room" and m.plural for m in made):
             number = next((m.number for m in made[-3:-1] if m.kind == "num"), 2.0)
             del made[-3 if made[-3].kind == "num" else -2 :]
             made.append(Mark("pron", "rest", number, False, mark.first, mark.last, "the other two" if number == 2.0 else "the others"))
@@ -180,6 +183,7 @@ def _having(marks: list[Mark]) -> list[Mark]:
     return made
 
 
+COMPARED = {"smaller", "larger", "1.35", "1.3", "0.75"}
 FOR = {"para", "for", "fuer", "de", "del", "von"}
 POSSESSIVE = {
     "el",

@@ -82,6 +82,9 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     if not left and e.text.endswith("有"):  # beside something that is no room
         return k + 1
     first = not any(x.kind in {"np", "pron", "level"} for x in clause.sentence[:k])
+    home = any(x.kind == "home" for x in clause.sentence[:k])
+    if e.text.startswith("entered") and home and not left:
+        return enter(clause, e, group, j)  # "the flat is entered through the kitchen"
     if e.value == "leads" and not left and first and all(clause.stock.get(i).type in HALLS for i in group if i[0] not in "*<"):
         return enter(clause, e, group, j)  # "se entra a un vestíbulo ..."
     if not left or _inverted(clause, k, j):
@@ -94,6 +97,17 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     clause.only = None
     clause.subject, clause.latest, clause.objects, clause.run, clause.verb, clause.relative = left, group, group, [], False, False
     return j
+
+
+def _by_door(clause: Clause, e: Element) -> bool:
+    """Whether a door is what parts two rooms."""
+    k = _place(clause, e)
+    for x in clause.sentence[k + 1 :]:
+        if x.kind == "flag":
+            return x.value == "doors"
+        if x.kind in {"comma", "verb", "and"}:
+            return False
+    return False
 
 
 def _again(clause: Clause, k: int, e: Element) -> int:
@@ -144,6 +158,8 @@ def _alone(clause: Clause, k: int, e: Element) -> int:
     ends = rest is None or rest.kind in {"comma", "but", "close"}  # "cocina y salón comunicados por una puerta corredera"
     rooms = _ids(clause.run) or clause.subject
     listed_alone = ends and e.value in MUTUAL and len(rooms) > 1 and "*" not in rooms and _coordinate(clause)
+    if e.text == "by" and not mutual:
+        return k + 1
     if mutual or listed_alone or (e.value == "wall" and (clause.run or clause.subject)):
         _mutual(clause, e)
         return k + 1 + mutual
@@ -239,6 +255,9 @@ def _emit(clause: Clause, e: Element, left: Group, group: Group) -> None:
     kinds = {clause.stock.get(i).type for i in left if not i.startswith("*")}
     if cue == "open" and e.text == "open to" and not clause.verb and kinds & CLOSED:
         cue = "leads"  # "the bedroom and the toilet open to a hallway"
+    if cue == "apart" and _by_door(clause, e):
+        cue = "door"  # "separated from the living area by a door"
+        left = clause.objects if clause.objects and clause.stock.get(clause.objects[0]).type in HALLS else left
     if cue == "apart":  # a kitchen apart from the living room has a door; a bedroom apart from it lies away
         kinds = {clause.stock.get(i).type for i in (*left, *group) if not i.startswith("*")}
         if kinds <= {"bathroom", "wc"}:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from pipeline.floorplan.language.marks import Mark, Words
-from pipeline.floorplan.language.tables import titled
+from pipeline.floorplan.language.tables import summed, titled
 
 FEET, METRES = 0.3048, 1.0
 LARGEST = 80.0  # a side-by-side product above this is no room in square metres: then the figures are feet
@@ -20,7 +20,7 @@ SHIFTED = {"first floor": "1", "first storey": "1", "second floor": "2", "second
 
 def widen(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with shorthand written out."""
-    marks = _premises(_percent(marks))
+    marks = _premises(_percent(summed(marks)))
     made = _studies(_floors(_paired(_activities(list(marks))), heard), heard)
     return _bedrooms(titled(_summed(_both(_partial(_half_baths(_counts(made))), heard), heard)))
 
@@ -124,7 +124,8 @@ def _both(marks: list[Mark], heard: Words) -> list[Mark]:
         while j < len(made) and made[j].kind in {"det", "adj", "fill"}:
             j += 1
         if mark.kind == "det" and mark.value == "both" and j < len(made) and made[j].kind == "room" and not made[j].plural:
-            made[k] = replace(mark, kind="fill" if heard.lexicon.language == "en" else "pron")
+            english = replace(mark, value="definite") if mark.text.endswith("the") else replace(mark, kind="fill")
+            made[k] = english if heard.lexicon.language == "en" else replace(mark, kind="pron")
     return made
 
 

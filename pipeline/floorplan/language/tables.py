@@ -22,6 +22,28 @@ AREA = {
 }
 
 
+def summed(marks: Sequence[Mark]) -> list[Mark]:
+    """Read "ground floor 70 m2: ... upper floor 60 m2: ..." as a home of 130."""
+    places = [k for k in range(1, len(marks)) if marks[k].kind == "amount" and marks[k].value == "area" and _heading(marks, k)]
+    if len(places) < 2 or len({marks[k - 1].value or marks[k - 2].value for k in places}) < len(places):
+        return list(marks)
+    total = replace(marks[places[0]], number=sum(marks[k].number for k in places), total=True)
+    return [total if k == places[0] else m for k, m in enumerate(marks) if k == places[0] or k not in places]
+
+
+def _heading(marks: Sequence[Mark], k: int) -> bool:
+    """Whether the amount at k belongs to a storey in front of a list."""
+    level = next((m for m in reversed(marks[:k]) if m.kind not in {"open", "bound", "comma", "dash", "colon"}), None)
+    after = marks[k + 1] if k + 1 < len(marks) else None
+    return (
+        level is not None
+        and level is marks[k - 1 if marks[k - 1].kind == "level" else k - 2]
+        and level.kind == "level"
+        and after is not None
+        and after.kind in {"colon", "close", "comma", "line", "cue"}
+    )
+
+
 def titled(marks: list[Mark]) -> list[Mark]:
     """Read the line "Superficie: 170 m2" of a table as the whole home's."""
     made = list(marks)
@@ -92,6 +114,7 @@ def _of_room(marks: Sequence[Mark], k: int) -> Mark | None:
         marks[j].kind in {"num", "bound", "post", "size"} or (marks[j].kind in {"join", "comma"} and marks[j - 1].kind == "num")
     ):
         j -= 1
+    j -= j > 0 and marks[j].kind == "open"
     if j > 0 and (marks[j].value == "has" or marks[j].text in OF or marks[j].kind == "colon"):
         j -= 1
     return marks[j] if j >= 0 and marks[j].kind == "room" else None

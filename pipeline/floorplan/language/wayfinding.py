@@ -122,6 +122,11 @@ def _entering(marks: list[Mark]) -> list[Mark]:
     """Read "se pasa por un vestíbulo al salón", "you come in through the porch to the hall": the second room lies behind the first."""
     made = list(marks)
     for k, mark in enumerate(marks):
+        which = k > 0 and (marks[k - 1].text in {"which", "that"} or marks[k - 1].kind == "relative")
+        if mark.kind == "enter" and which and k + 1 < len(marks) and marks[k + 1].kind == "cue":
+            made[k] = replace(mark, kind="verb")  # "the kitchen, which you enter from the dining room"
+            made[k + 1] = replace(marks[k + 1], value="door")
+            continue
         if mark.kind != "enter" or mark.text.split()[-1] not in {"por", "through", "via", "durch", "by", "ueber"}:
             continue
         room = room_at(made, k + 1)
