@@ -29,7 +29,38 @@ def located(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks of a Chinese prompt with ways put plainly: room, cue, room."""
     if heard.lexicon.language != "zh":
         return [replace(m, kind="verb") if (m.kind, m.value) == ("cue", "side") else m for m in marks]
-    return _mutual(_entered(_unwalled(_doors(_sided(_joining(_listed(_between(list(marks)))))))))
+    return _mutual(_entered(_added(_parted(_unwalled(_doors(_sided(_joining(_listed(_between(list(marks)))))))))))
+
+
+def _added(marks: list[Mark]) -> list[Mark]:
+    """Read "除了客厅之外，还有一间客房" as both; without a "besides" 除了 leaves out."""
+    made = list(marks)
+    for k, mark in enumerate(made):
+        if (mark.kind, mark.value) != ("cue", "except"):
+            continue
+        comma = next((j for j in range(k + 1, len(made)) if made[j].kind in {"comma", "stop"}), None)
+        if comma is None or made[comma].kind == "stop":
+            continue
+        near = [m for m in made[comma + 1 : comma + 4] if m.kind not in HEADS]
+        if any(plain(m).startswith(("还", "另", "再")) or (m.kind, m.value) == ("det", "another") for m in near):
+            made[k] = replace(mark, kind="fill", value="")
+    return made
+
+
+def _parted(marks: list[Mark]) -> list[Mark]:
+    """Read "餐厅和客厅用一扇双开门隔开" as a door between the two."""
+    made = list(marks)
+    for k in range(len(made) - 1, 0, -1):
+        if plain(made[k]) not in {"隔开", "分隔", "分开", "隔断", "相隔", "隔"}:
+            continue
+        start = max((i for i in range(k) if made[i].kind in ENDS), default=-1) + 1
+        door = any(m.kind == "flag" and m.value == "doors" for m in made[start:k])
+        rooms = [i for i in range(start, k) if made[i].kind in HEADS]
+        if door and len(rooms) == 2 and not any(m.kind == "neg" for m in made[start:k]):
+            tail = made[k + 1 :]
+            made = [*made[: rooms[0] + 1], replace(made[k], kind="cue", value="door"), made[rooms[1]], *tail]
+            return _parted(made)
+    return made
 
 
 def _between(marks: list[Mark]) -> list[Mark]:
@@ -204,7 +235,7 @@ def _entered(marks: list[Mark]) -> list[Mark]:
             and (made[tail].kind in {"adverb", "verb", "flag"} or plain(made[tail]) in {"里", "内", "才", "那边", "处"})
         ):
             tail += 1
-        goes = rooms == 1 and tail < len(made) and _goes(made[tail]) and (tail + 1 >= len(made) or made[tail + 1].kind in ENDS)
+        goes = rooms > 0 and tail < len(made) and _goes(made[tail]) and (tail + 1 >= len(made) or made[tail + 1].kind in ENDS)
         if not goes or not _spoken(made, k):
             k += 1
             continue

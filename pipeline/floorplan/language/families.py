@@ -19,6 +19,7 @@ FOR = {"给", "归", "让", "供", "为", "由", "留给", "分给", "归属"}
 LIVES = {"住", "睡", "用", "使用", "住的", "居住", "来住", "用的"}
 KEPT = {"留", "预留", "留出", "腾", "准备", "安排", "要", "再", "另", "还", "外加", "其中"}
 HIS = {"他", "她", "他们", "她们", "他俩", "她俩"}
+PARENTS = {"爸妈", "父母", "爸爸妈妈"}  # of who speaks, where they have a bedroom of their own
 ROOM = {"bedroom", "bedroom/count"}
 
 
@@ -26,7 +27,9 @@ def homed(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with the bedrooms of people named as theirs."""
     if heard.lexicon.language != "zh" or not any(m.kind == "owner" or m.value.startswith("bedroom/") for m in marks):
         return list(marks)
-    return _pronoun(_living(_kept(_given(_sole(list(marks))))))
+    mine = any(m.kind == "room" and m.value == "bedroom/primary" and plain(m).startswith("我") for m in marks)
+    named = [replace(m, value="elder") if mine and m.kind == "owner" and plain(m) in PARENTS else m for m in marks]
+    return _pronoun(_living(_kept(_given(_sole(named)))))
 
 
 def _room(mark: Mark) -> bool:

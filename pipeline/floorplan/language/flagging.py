@@ -10,6 +10,7 @@ from pipeline.floorplan.language.openness import merge_after, windows
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import storey
 from pipeline.floorplan.language.quantities import share
+from pipeline.floorplan.language.relating import listed
 
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
@@ -29,7 +30,7 @@ def flag(clause: Clause, k: int, e: Element) -> int:
         clause.state.say(last.what, tuple(name(clause.state, clause.sentence, k + 1, storey(clause, k + 1))), last.b, e)
     elif e.value == "too" and clause.run and clause.state.facts:
         last = clause.state.facts[-1]
-        clause.state.say(last.what, clause.latest, last.b, e)
+        clause.state.say(last.what, listed(clause), last.b, e)
     elif e.value == "only":
         clause.only = e
         if clause.state.facts and clause.state.facts[-1].what in {"door", "leads"} and k and clause.sentence[k - 1].kind == "np":

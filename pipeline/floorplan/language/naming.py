@@ -151,6 +151,10 @@ def _indexed(state: Reading, e: Element, role: str, level: int | None) -> Named:
 def _ordinal(state: Reading, e: Element, role: str, level: int | None) -> list[Named]:
     stock = state.inventory
     same = stock.of(e.type)
+    if e.text[:1] in {"次", "侧"} and same:  # "次卧": a bedroom beside the main one, which nobody else has
+        here = [r for r in same if r.surface == e.text and not r.open_slot] or [r for r in same if r.open_slot and not r.role]
+        if here or all(r.role for r in same):
+            return [close(here[0], role, e.text)] if here else [stock.add(e.type, role, e.text, level)]
     if len(same) >= e.ordinal:
         rest = same if e.ordinal == 1 else [r for r in same if r.role != "primary"]
         loose = [r for r in rest if r.open_slot] or rest[-1:]
@@ -292,7 +296,9 @@ def _repeated_bare(sentence: list[Element], k: int) -> bool:
         if e.kind == "np":
             if e.type == sentence[k].type:
                 spoken = k + 1 < len(sentence) and sentence[k + 1].kind in {"cue", "verb", "neg", "flag", "cmp"}  # Chinese has no articles
-                return not (spoken and sentence[k - 1].kind == "comma") and (not j or sentence[j - 1].kind not in {"cue", "enter", "det"})
+                return not (spoken and sentence[k - 1].kind == "comma") and (
+                    not j or sentence[j - 1].kind not in {"cue", "enter", "det", "cmp"}
+                )
         elif e.kind not in {"comma", "and", "amount", "open", "close"}:
             return False
     return False

@@ -71,7 +71,11 @@ def has(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, PLR0
         return k + 1
     own = ahead is not None and "own" in sentence[ahead].det and clause.run[-1:] and clause.run[-1].type == "bedroom"
     finite = e.text in FINITE and len(clause.run) == 1  # "the largest bedroom, of 18 m2, has one of the baths"
-    if clause.run and sentence[k - 1].kind == "comma" and not clause.verb and not own and not finite:
+    opened = next((x.kind for x in reversed(sentence[:k]) if x.kind in {"open", "close"}), "") == "open"  # "主卧(16㎡,带卫生间)"
+    single = (
+        clause.state.heard.lexicon.language == "zh" and len(clause.run) == 1 and clause.run[0].number is None and not clause.run[0].suite
+    )  # "客厅朝南,带阳台"
+    if clause.run and not (opened or single) and sentence[k - 1].kind == "comma" and not clause.verb and not own and not finite:
         return k + 1
     owners = tuple(i for i in (clause.run[-1].ids if clause.run else clause.subject) if not i.startswith("*"))
     near = sentence[k - 1]

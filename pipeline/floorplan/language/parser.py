@@ -26,11 +26,12 @@ from pipeline.floorplan.language.passages import written_out
 from pipeline.floorplan.language.people import housed
 from pipeline.floorplan.language.phrases import sentences
 from pipeline.floorplan.language.reading import read
+from pipeline.floorplan.language.retractions import loosened
 from pipeline.floorplan.language.revising import revise
 from pipeline.floorplan.language.shorthand import crossed, dealt, shared_unit, widen
 from pipeline.floorplan.language.standins import resolved
 from pipeline.floorplan.language.tables import plain_areas
-from pipeline.floorplan.language.tallies import loosened, tallied
+from pipeline.floorplan.language.tallies import tallied
 from pipeline.floorplan.language.text import tokenize
 from pipeline.floorplan.program import FloorProgram
 

@@ -13,63 +13,16 @@ HARD = {"comma", "stop", "line", "open", "colon", "but"}  # where a clause begin
 SOFT = {"verb", "adverb", "bound", "fill", "det", "colon", "times", "flag"}  # between a room and how many there are
 HEADS = {"room", "suite"}
 DETAIL = {"adj", "size", "amount", "clf"}
-ODD = {"多", "余", "来", "几"}  # "80多平"
 QUANTITY = {"数量", "个数", "间数", "数"}
-WISHED = {"要", "需要", "想要", "得有", "要有", "有", "共", "共有", "一共", "一共有", "总共", "总共有", "是", "为", "就", "只要", "只有", "只", "设", "设有", "安排", "x", "*", "都", "的"}  # fmt: skip
+WISHED = {"要", "需要", "想要", "得有", "要有", "有", "共", "共有", "一共", "一共有", "总共", "总共有", "是", "为", "就", "只要", "只有", "只", "设", "设有", "安排", "x", "*", "都", "的", "至少", "最少", "起码", "最多", "还是", "仍是", "还", "保留", "得", "必须", "必须有", "至少要", "至少有", "至少需要"}  # fmt: skip
+BECOMES = {"做成", "设计成", "采用", "做", "改成", "弄成", "设计为", "用"}
 TOPS = {"顶层", "顶楼", "最上层", "最高层", "最上面一层", "最上面", "最顶层"}
 MIDDLES = {"中间层", "中间一层", "中层"}
-EARLIER = {"原来", "原先", "以前", "之前", "目前", "现有", "本来", "原本", "最初", "一开始"}
 
 
 def plain(mark: Mark) -> str:
     """Return the characters of a mark."""
     return mark.text.replace(" ", "")
-
-
-def loosened(marks: Sequence[Mark], heard: Words) -> list[Mark]:
-    """Read "80多平" as about 80, and leave out the home as it was: "原来是三室一厅，现在想改成两室两厅"."""
-    if heard.lexicon.language != "zh":
-        return list(marks)
-    kinds = ["num", "unit"]
-    made = [
-        m
-        for k, m in enumerate(marks)
-        if not (plain(m) in ODD and 0 < k < len(marks) - 1 and [marks[k - 1].kind, marks[k + 1].kind] == kinds)
-    ]
-    return _denied(_renewed(made))
-
-
-def _homes(marks: Sequence[Mark]) -> int:
-    """Return how many counts of rooms stand one behind the other: two in "三室一厅"."""
-    return sum(a.kind == "num" and b.kind in HEADS and b.last - b.first <= 2 for a, b in itertools.pairwise(marks))
-
-
-def _renewed(marks: list[Mark]) -> list[Mark]:
-    start = next((k for k, m in enumerate(marks) if plain(m) in EARLIER), None)
-    if start is None:
-        return marks
-    cut = next((k for k in range(start, len(marks)) if marks[k].kind in {"comma", "stop"} and _homes(marks[start:k])), None)
-    if cut is None:
-        return marks
-    end = next((k for k in range(cut, len(marks)) if marks[k].kind in {"stop", "line"} and k > cut), len(marks))
-    fixed = next((k for k in range(cut, end) if marks[k].kind == "fix"), None)
-    if fixed is None or not _homes(marks[fixed:end]) or (_homes(marks[start:cut]) < 2 and _homes(marks[fixed:end]) < 2):
-        return marks
-    kept = [m for m in marks[start:cut] if m.kind not in {"num", "room", "home"}]
-    return [*marks[:start], *(replace(m, kind="fill") for m in kept), *marks[cut:fixed], *marks[fixed + 1 :]]
-
-
-def _denied(marks: list[Mark]) -> list[Mark]:
-    """Leave out "不是三居室" beside "四居室": another count of what is wanted."""
-    for k in range(len(marks) - 3):
-        lead = marks[k].kind == "neg" and plain(marks[k]) in {"不", "不是"}
-        j = k + 1 + (lead and plain(marks[k + 1]) == "是")
-        counted = lead and j + 1 < len(marks) and marks[j].kind == "num" and marks[j + 1].kind in HEADS
-        if counted and (j > k + 1 or plain(marks[k]) == "不是"):
-            others = [m for i, m in enumerate(marks) if m.kind in HEADS and m.value == marks[j + 1].value and not k <= i <= j + 1]
-            if others:
-                return [*marks[:k], *(replace(m, kind="fill") for m in marks[k:j]), *marks[j + 2 :]]
-    return marks
 
 
 def tallied(marks: Sequence[Mark], heard: Words) -> list[Mark]:
@@ -79,7 +32,29 @@ def tallied(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     made = _storeys(
         _bedrooms(_sizes(_bracketed(_besides([replace(m, kind="adj", value="plain") if m.kind == "long" else m for m in marks]))))
     )
-    return _headless(_partly(_apiece(_behind(_figures(made)))))
+    return _headless(_partly(_apiece(_behind(_summed(_figures(made))))))
+
+
+def _summed(marks: list[Mark]) -> list[Mark]:
+    """Read "所有卧室都带卫生间，一共三间" as three bedrooms with a bathroom."""
+    for k in range(1, len(marks) - 2):
+        total = marks[k].kind == "flag" and marks[k].value == "total" and marks[k - 1].kind in {"comma", "stop", "open"}
+        if (
+            not total
+            or marks[k + 1].kind != "num"
+            or marks[k + 2].kind != "clf"
+            or not (k + 3 >= len(marks) or marks[k + 3].kind in ENDS | {"close"})
+        ):
+            continue
+        start = max((i for i in range(k - 1) if marks[i].kind in {"stop", "line"}), default=-1) + 1
+        head = next((i for i in range(start, k) if marks[i].kind in HEADS), None)
+        if head is None or any(m.kind == "num" for m in marks[max(start, head - 2) : head]):
+            continue
+        lead = [m for m in marks[start:head] if (m.kind, m.value) not in {("det", "all"), ("det", "each")} and plain(m) != "的"]
+        counted = [replace(marks[k + 1], value=""), marks[k + 2], marks[head]]
+        every = [replace(marks[head], kind="det", value="all", text="都")] if any(m.kind == "cue" for m in marks[head + 1 : k]) else []
+        return [*marks[:start], *lead, *counted, *every, *marks[head + 1 : k - 1], *marks[k + 3 :]]
+    return marks
 
 
 def _headless(marks: list[Mark]) -> list[Mark]:
@@ -89,9 +64,9 @@ def _headless(marks: list[Mark]) -> list[Mark]:
         made.append(mark)
         end = k + 1 + (k + 1 < len(marks) and plain(marks[k + 1]) == "的")
         alone = end >= len(marks) or marks[end].kind in ENDS
-        one = any(_one(m) or m.kind == "num" for m in marks[max(0, k - 2) : k])
+        single = any(one(m) or m.kind == "num" for m in marks[max(0, k - 2) : k])
         bath = next((m for m in reversed(marks[:k]) if m.kind == "room" and m.value.startswith("bathroom")), None)
-        if (mark.kind, mark.value) == ("adj", "shared") and alone and one and bath is not None:
+        if (mark.kind, mark.value) == ("adj", "shared") and alone and single and bath is not None:
             made.append(replace(bath, value="bathroom/shared", first=mark.last, last=mark.last))
     return made
 
@@ -102,6 +77,9 @@ def _besides(marks: list[Mark]) -> list[Mark]:
     for k, mark in enumerate(marks):
         if (mark.kind, mark.value) != ("det", "other") or plain(mark) not in {"另外", "另", "此外"}:
             continue
+        if k + 1 < len(marks) and (marks[k + 1].kind, marks[k + 1].value) == ("det", "another"):
+            made[k] = replace(mark, kind="fill", value="")
+            continue
         j = k + 1
         while (
             j < len(marks)
@@ -109,7 +87,7 @@ def _besides(marks: list[Mark]) -> list[Mark]:
             and (marks[j].kind in {"adverb", "verb"} or plain(marks[j]) in {"来", "要", "加", "有", "配", "设", "给"})
         ):
             j += 1
-        if j > k + 1 and j < len(marks) and (_one(marks[j]) or marks[j].kind == "num"):
+        if j > k + 1 and j < len(marks) and (one(marks[j]) or marks[j].kind == "num"):
             made[k] = replace(mark, kind="fill", value="")
             number = marks[j] if marks[j].kind == "num" else replace(marks[j], kind="num", value="", number=1.0)
             made[j] = replace(number, value="")
@@ -118,8 +96,18 @@ def _besides(marks: list[Mark]) -> list[Mark]:
 
 
 def _bracketed(marks: list[Mark]) -> list[Mark]:
-    """Read "厨房（封闭式）" as "封闭式厨房"."""
+    """Read "厨房（封闭式）" and "厨房做成开放式的" as "封闭式厨房" and "开放式厨房"."""
     made = list(marks)
+    for k in range(len(made) - 1, -1, -1):
+        if made[k].value != "kitchen" or made[k].kind != "room" or (k and plain(made[k - 1]) in {"和", "与", "跟", "&", "+", "对", "向"}):
+            continue
+        j = k + 1
+        while j < len(made) and j - k < 4 and (made[j].kind in {"verb", "adverb", "bound", "det"} or plain(made[j]) in BECOMES):
+            j += 1
+        after = j + 1 + (j + 1 < len(made) and plain(made[j + 1]) == "的")
+        ends = after >= len(made) or made[after].kind in ENDS - {"join", "open"}
+        if j < len(made) and (made[j].kind, made[j].value) in {("adj", "open"), ("adj", "closed")} and ends:
+            made[k:after] = [made[j], made[k]]
     for k in range(len(made) - 3, 0, -1):
         kinds = [m.kind for m in made[k : k + 3]]
         alone = k < 3 or made[k - 2].kind != "join" or plain(made[k - 2]) in {"&", ","}
@@ -169,8 +157,9 @@ def _figured(marks: Sequence[Mark]) -> bool:
     return sum(a.kind == "room" and b.kind == "num" and b.value == "figure" for a, b in itertools.pairwise(marks)) > 1
 
 
-def _one(mark: Mark) -> bool:
-    return (mark.kind, mark.value) == ("pron", "one") and plain(mark) in {"一个", "一间", "一套", "一处"}
+def one(mark: Mark) -> bool:
+    """Whether a mark is "一间" or its like."""
+    return (mark.kind, mark.value) == ("pron", "one") and plain(mark) in {"一个", "一间", "一套", "一处", "其中一间", "其中一个"}
 
 
 def _behind(marks: list[Mark]) -> list[Mark]:
@@ -178,17 +167,17 @@ def _behind(marks: list[Mark]) -> list[Mark]:
     made = list(marks)
     k = 0
     while k < len(made):
-        if made[k].kind not in HEADS or (k and made[k - 1].kind in {"num", "clf", "ord"}) or (k and _one(made[k - 1])):
+        if made[k].kind not in HEADS or (k and made[k - 1].kind in {"num", "clf", "ord"}) or (k and one(made[k - 1])):
             k += 1
             continue
         j = k + 1
         while j < len(made) and j - k < 5 and (plain(made[j]) in WISHED or (j > k + 1 and made[j].kind == "adverb")):
             j += 1
-        number = made[j] if j < len(made) and (made[j].kind == "num" or _one(made[j])) else None
-        counted = number is not None and (_one(number) or (j + 1 < len(made) and made[j + 1].kind == "clf"))
+        number = made[j] if j < len(made) and (made[j].kind == "num" or one(made[j])) else None
+        counted = number is not None and (one(number) or (j + 1 < len(made) and made[j + 1].kind == "clf"))
         after = j + 1 + (number is not None and number.kind == "num" and counted)
         parted = after >= len(made) or made[after].kind in ENDS or made[after].kind == "amount" or plain(made[after]) in {"就", "吧"}
-        whole = j == k + 1 or number is None or number.number != 1.0 or _one(number) or plain(made[j - 1]) not in {"是", "为"}
+        whole = j == k + 1 or number is None or number.number != 1.0 or one(number) or plain(made[j - 1]) not in {"是", "为"}
         has = any(m.kind == "cue" and m.value == "has" for m in made[k + 1 : j]) and k and made[k - 1].kind not in HARD | {"join"}
         if counted and parted and whole and not has and number is not None:
             moved = replace(number, kind="num", value="", number=number.number if number.kind == "num" else 1.0)
@@ -210,7 +199,7 @@ def _apiece(marks: list[Mark]) -> list[Mark]:
         if (mark.kind, mark.value) != ("det", "each") or plain(mark) not in {"各", "各要", "各有", "各需"} or k + 1 >= len(made):
             continue
         j = k + 1 + (made[k + 1].kind in {"verb", "bound"})
-        number = made[j] if j < len(made) and (made[j].kind == "num" or _one(made[j])) else None
+        number = made[j] if j < len(made) and (made[j].kind == "num" or one(made[j])) else None
         after = j + 1 + (j + 1 < len(made) and made[j + 1].kind == "clf")
         if number is None or not (after >= len(made) or made[after].kind in ENDS) or not k or made[k - 1].kind not in HEADS | {"amount"}:
             continue
@@ -272,20 +261,33 @@ def _bedrooms(marks: list[Mark]) -> list[Mark]:
     made: list[Mark] = []
     for k, mark in enumerate(marks):
         made.append(mark)
-        if mark.kind != "amount" or mark.value != "rooms" or (k + 1 < len(marks) and marks[k + 1].kind not in {"join", "comma", "cue"}):
+        if (
+            mark.kind != "amount"
+            or mark.value != "rooms"
+            or (k + 1 < len(marks) and marks[k + 1].kind not in {"join", "comma", "cue", "colon"})
+        ):
             continue
-        end = next((j for j in range(k + 1, len(marks)) if marks[j].kind in {"stop", "line", "colon"}), len(marks))
+        end = next((j for j in range(k + 2, len(marks)) if marks[j].kind in {"stop", "line", "colon"}), len(marks))
         counted = any(
             a.kind in {"num", "clf"} and b.value.startswith("living_room") for a, b in zip(marks[k:end], marks[k + 1 : end], strict=False)
         )
+        if k + 1 < len(marks) and marks[k + 1].kind == "colon" and _people(marks[k + 2 : end]):
+            made[-1:] = [replace(mark, kind="num", value="", number=mark.number), replace(mark, kind="room", value="bedroom", number=0.0)]
+            continue
         counted = counted or any(
-            _one(a) and b.value.startswith("living_room") for a, b in zip(marks[k:end], marks[k + 1 : end], strict=False)
+            one(a) and b.value.startswith("living_room") for a, b in zip(marks[k:end], marks[k + 1 : end], strict=False)
         )
         listed = any(plain(m) in {"分别", "包括"} for m in marks[k + 1 : k + 4])
         beds = any(m.kind in HEADS and m.value.startswith("bedroom") for m in marks)
         if counted and not listed and not beds:
             made[-1:] = [replace(mark, kind="num", value="", number=mark.number), replace(mark, kind="room", value="bedroom", number=0.0)]
     return made
+
+
+def _people(marks: Sequence[Mark]) -> bool:
+    """Whether all rooms named first are bedrooms: "五间房：爷爷奶奶一间，爸爸妈妈一间"."""
+    rooms = [m.value.partition("/")[0] for m in marks if m.kind in HEADS]
+    return len(rooms) > 1 and set(rooms[:2]) == {"bedroom"}
 
 
 def _storeys(marks: list[Mark]) -> list[Mark]:

@@ -114,7 +114,7 @@ def _going(marks: list[Mark]) -> list[Mark]:
         if j < len(made) and going and room_at(made, j + 1) is not None:
             made[j] = replace(made[j], kind="cue", value="leads")
             del made[start + 1 : j]  # "one should be able to"
-            return _going(made) if any((m.kind, m.value) == ("cue", "from") for m in made[j:]) else made
+            return [*made[: start + 2], *_going(made[start + 2 :])]
     return made
 
 

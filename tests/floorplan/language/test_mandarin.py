@@ -29,6 +29,10 @@ def stated(prompt):
         ("原来是三室一厅，现在想改成两室两厅", "两室两厅"),
         ("我要四居室，不是三居室", "我要四居室"),
         ("80多平的公寓，两间卧室", "约80平的公寓，两间卧室"),
+        ("所有卧室都朝南，一共三间", "三间卧室都朝南"),
+        ("四室的房子，其中一间改成书房", "三室的房子，一间书房"),
+        ("不要两个卫生间了，一个就够。两间卧室", "一个卫生间。两间卧室"),
+        ("父母一间，姐弟俩一人一间，给客人留一间", "一间父母房，两间儿童房，一间客房"),
         ("一楼客厅，二楼厨房，顶层两间卧室，一共三层", "一楼客厅，二楼厨房，三楼两间卧室，一共三层"),
     ],
 )
@@ -44,6 +48,9 @@ def test_counts_in_other_places(said, plain):
         ("两间卧室，走廊。所有卧室都从走廊进出。", "两间卧室，走廊。两间卧室都与走廊相连。"),
         ("书房只有经过客厅才能到达。", "书房只能从客厅进入。"),
         ("客厅。餐厅，与客厅之间没有隔断。", "客厅。餐厅，与客厅打通。"),
+        ("餐厅和客厅用一扇双开门隔开。", "餐厅与客厅之间有门。"),
+        ("两间卧室都开向客厅，厨房和书房也是。", "两间卧室都开向客厅。厨房开向客厅。书房开向客厅。"),
+        ("从厨房可以去储藏室，从储藏室可以去车库，从车库可以去花园。", "厨房通储藏室。储藏室通车库。"),
         ("玄关，通往卫生间的走廊。", "玄关，走廊。走廊通向卫生间。"),
     ],
 )
@@ -71,3 +78,15 @@ def test_sizes_against_each_other(said, larger, smaller, factor):
 
 def test_by_how_much_is_not_dropped_in_silence():
     assert "5平米" in [s.text for s in understand("次卧比主卧小5平米，客厅20平米。").unparsed]
+
+
+def test_besides_adds_and_without_it_leaves_out():
+    assert stated("除了客厅之外，还有一间客房") == stated("客厅，还有一间客房")
+
+
+@pytest.mark.parametrize("prompt", ["两间卧室，可以没有阳台。", "两间卧室，阳台可有可无。"])
+def test_what_may_be_or_not_is_neither_built_nor_ruled_out_but_told(prompt):
+    program = understand(prompt)
+    assert [r.type for r in program.rooms] == ["bedroom"] * 2
+    assert not program.forbids
+    assert any("阳台" in s.text for s in program.unparsed)
