@@ -17,7 +17,7 @@ from pipeline.floorplan.language.pointing import point
 from pipeline.floorplan.language.pronouns import cast, determiner, every, pronoun
 from pipeline.floorplan.language.quantities import attach, belongs
 from pipeline.floorplan.language.relating import SINGULAR, relate
-from pipeline.floorplan.language.ways import entered
+from pipeline.floorplan.language.ways import entered, listing
 
 ELSEWHERE = {
     "level": level,
@@ -257,6 +257,8 @@ class Clause:
         ahead = self.sentence[k + 1].kind if k + 1 < len(self.sentence) else ""
         if self.negative is not self.sentence[k - 1] and ahead not in {"cue", "cmp", "or", "neg"}:
             self.negative = None
+        if self.waiting and listing(self, k):
+            return k + 1  # "on both sides of the corridor lie two bedrooms, the kitchen and the bath"
         if self.waiting and self.subject and self.waiting[0].value != "from" and (self.verb or self.waiting[0].value == "between"):
             self._complete()
         return k + 1

@@ -22,7 +22,7 @@ from pipeline.floorplan.furniture import lexicon as furniture
 from pipeline.floorplan.language.forms import forms
 from pipeline.floorplan.language.german import numerals as german_numerals
 from pipeline.floorplan.language.meaning import Meaning
-from pipeline.floorplan.language.spanish import canonical, conjugated, present
+from pipeline.floorplan.language.spanish import canonical, conjugated, further, present
 from pipeline.floorplan.language.text import bare, fold, words
 from pipeline.floorplan.program import RoomType, Style
 
@@ -320,7 +320,7 @@ def lexicon(language: Language) -> Lexicon:
         raise ContentError(f"{path.name}: {str(error).splitlines()[0]}", "restore the file from the repository") from error
     infinitives = sorted({p.split()[0] for phrases in entries.conjugated.values() for p in split(phrases) if VERB.fullmatch(p.split()[0])})
     made = Lexicon(language, tenses=canonical(infinitives))
-    made.vocabulary.update(made.tenses, (fold(w) for verb in infinitives for w in (verb, *present(verb))))
+    made.vocabulary.update(made.tenses, (fold(w) for verb in infinitives for w in (verb, *present(verb), *further(verb))))
     targets: set[str] = set()
     others: dict[str, float] = {}
     for phrase, meaning in _meanings(entries):

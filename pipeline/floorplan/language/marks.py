@@ -65,7 +65,7 @@ def listen(prompt: str, language: Language) -> Words:
     tokens = tokenize(prompt)
     written = [fold(t.text) for t in tokens]
     tokens, texts = repair(tokens, completed(written, lex.vocabulary) if language == "de" else written, lex)
-    texts = [lex.tenses.get(t, t) for t in texts]
+    texts = [lex.tenses.get(t, "entra" if t == "entre" and k and texts[k - 1] == "se" else t) for k, t in enumerate(texts)]
     return Words(prompt, tokens, texts, lex)
 
 

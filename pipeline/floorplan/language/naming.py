@@ -106,7 +106,7 @@ def _others(state: Reading, sentence: list[Element], k: int, role: str, level: i
     e, stock = sentence[k], state.inventory
     same = stock.of(e.type)
     last = {i for g in state.past[-1:] for i in g} | {i for x in sentence[:k] for i in x.ids} | set(state.topic)
-    rest = [r for r in same if r.open_slot] or [r for r in same if r.id not in last] or same[-1:]
+    rest = [r for r in same if r.open_slot] or [r for r in same if r.id not in last] or ([] if len(same) == 1 else same[-1:])
     many = e.plural or (e.number or 0) > 1
     if e.number is not None and e.type == "bedroom":
         told = last | {g[0] for g in state.past if len(g) == 1}

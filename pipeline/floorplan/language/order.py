@@ -176,7 +176,7 @@ def _spanish(marks: list[Mark]) -> list[Mark]:
         if behind and (mark.kind == "adj" or (mark.text == "individual" and before is not None and before.value.startswith("bedroom"))):
             made.append(replace(mark, kind="post", value=mark.value if mark.kind == "adj" else "plain"))
         elif behind and mark.kind == "det" and mark.value in {"own", "another"}:
-            made.append(replace(mark, kind="post", value="own"))
+            made.append(replace(mark, kind="post"))
         elif behind and mark.text == "mas" and before is not None and before.kind == "room":
             made.append(replace(mark, kind="post", value="another"))
         elif behind and mark.kind == "size":

@@ -31,7 +31,7 @@ ODD = {  # of the third person, singular and plural: present | other tenses
 SOFT = {"c": "qu", "g": "gu", "z": "c"}  # in front of an e
 TWOFOLD = {
     "entre", "sobre", "de", "este", "esta", "fuera", "cuente", "pase", "parte", "come", "cocine", "sala", "salas", "una", "unas", "hacia", "hacian", "media",
-    "aparte", "via", "ira", "sirva", "sede", "lave", "vela",
+    "aparte", "via", "sirva", "sede", "lave", "vela",
 }  # fmt: skip # other words too
 
 
@@ -75,6 +75,16 @@ def canonical(infinitives: Iterable[str]) -> dict[str, str]:
             if word not in TWOFOLD and word != fold(shown):
                 made.setdefault(word, fold(shown))
     return made
+
+
+def further(infinitive: str) -> Iterator[str]:
+    """Return the gerund, the participles and the forms of "we" and "I", which are only known not to be errors."""
+    stem, kind = infinitive[:-2], infinitive[-2:]
+    yield stem + ("ando" if kind == "ar" else "iendo")
+    yield from (stem + ("ad" if kind == "ar" else "id") + end for end in ("o", "a", "os", "as"))
+    yield from (present(infinitive)[0][:-1] + "o", stem + {"ar": "amos", "er": "emos", "ir": "imos"}.get(kind, "imos"))
+    yield from (infinitive + end for end in ("emos", "íamos", "se", "lo", "la", "los", "las"))
+    yield stem + ("ábamos" if kind == "ar" else "íamos")
 
 
 def conjugated(phrase: str) -> Iterator[str]:

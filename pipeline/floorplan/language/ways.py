@@ -134,3 +134,12 @@ def entered(clause: Clause, j: int, e: Element, group: Group) -> int:
     clause.subject = clause.latest = further
     clause.objects, clause.run, clause.waiting = further, [], None
     return end
+
+
+def listing(clause: Clause, k: int) -> bool:
+    """Whether behind the comma at k a list of what hangs on a hall goes on: "on both sides of the corridor lie two bedrooms, a bath and ..."."""
+    assert clause.waiting is not None
+    rest = clause.sentence[k + 1 :]
+    hall = all(clause.stock.get(i).type in HALLS for i in clause.waiting[1] if i[0] not in "*<")
+    plain = all(x.kind in {"np", "det", "size", "adj", "amount", "comma", "and"} and not x.banned for x in rest)
+    return hall and plain and clause.waiting[0].value in {"door", "leads"} and any(x.kind == "and" for x in rest)
