@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from pipeline.floorplan.language.gapping import regained
 from pipeline.floorplan.language.marks import Mark, Words
 
 ENDS = {"stop", "line"}
@@ -30,7 +31,7 @@ def unsaid(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     made = _denied_again(_persons(_floors(made)))
     if heard.lexicon.language == "es":
         made = _premises(_corridor(_leaving(_of_which(_phrases(made)))))
-    return _heads(made)
+    return regained(_heads(made), heard)
 
 
 def _floors(marks: list[Mark]) -> list[Mark]:

@@ -188,7 +188,7 @@ def _related(draft: Draft, stock: Inventory, fact: Fact, facts: list[Fact]) -> N
                     for i in (f.a if f.what in {"door", "own", "near"} and a in f.b else f.b if f.what == "leads" and a in f.a else ())
                 }
                 ways = [f for f, g in itertools.pairwise(facts) if g is fact and f.what in {"door", "leads"} and a in f.a]
-                doors = max(len(ways[-1].b) if ways else 1, 1)  # "only from the two children's rooms"
+                doors = max(len(ways[-1].b) if ways and len(fact.a) == 1 else 1, 1)  # "only from the two children's rooms"
                 draft.relate("degree", a, None, doors + len(behind - set(fact.a)), fact)
     elif what == "largest" and fact.a:
         draft.relate("largest", fact.a[0], stock.get(fact.a[0]).type, 1.0, fact)

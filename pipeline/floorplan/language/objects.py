@@ -32,8 +32,12 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
             comma = any(x.kind == "comma" for x in sentence[index - 3 : index])
             clausal = cue == "cmp" and joined and ((comma and bool(e.amounts)) or "equal" in e.adjectives)
             pair = cue == "between" and joined == "and" and len(group) == 1
+            again = e.ids or (
+                first is not None and e.definite and not e.plural and (e.type, e.text, e.role) == (first.type, first.text, first.role)
+            )
             if (
                 e.banned
+                or (group and joined and again and first is not None and not first.plural and first.type == e.type)  # "A by B, and B by C"
                 or (group and (not joined or clausal))
                 or (group and first is not None and not pair and not _continues(clause, index, cue, joined, first))
             ):

@@ -33,7 +33,11 @@ def pronoun(clause: Clause, k: int, e: Element) -> int:
         clause.state.understood(e.first, e.last)
         return k + 1
     whole = e.value == "group" and e.text.split()[0] in {"todos", "todas", "all", "alle"} and len(clause.run) > 1
-    group = tuple(i for x in clause.run for i in x.ids) if whole else clause.point(e, k, clause.subject if e.value == "it" and (clause.objects or clause.run) else ())
+    group = (
+        tuple(i for x in clause.run for i in x.ids)
+        if whole
+        else clause.point(e, k, clause.subject if e.value == "it" and (clause.objects or clause.run) else ())
+    )
     spoken = [i for g in (clause.subject, *reversed(clause.state.past)) for i in g if not i.startswith("*")]
     bed = next((i for i in spoken if clause.stock.get(i).type == "bedroom"), None)
     if e.value == "rest" and bed is not None and (count := _others(clause, e)):

@@ -21,10 +21,20 @@ def read(heard: Words, sentences: list[list[Element]]) -> Reading:
         ban(sentence)
     _studio(state, sentences)
     sentences = [_parted(sentence) for sentence in sentences]
+    for sentence in sentences:
+        _compared(sentence)
     introduce(state, sentences)
     for sentence in sentences:
         Clause(state, sentence).read()
     return state
+
+
+def _compared(sentence: list[Element]) -> None:
+    """Let "twice a bedroom" and "as large as a bedroom" mean one that is there, not a new one."""
+    for k, e in enumerate(sentence):
+        before = next((x for x in reversed(sentence[:k]) if x.kind not in {"relative", "det", "word"}), None)
+        if e.kind == "np" and "indefinite" in e.det and e.number is None and before is not None and before.kind in {"factor", "cmp"}:
+            e.det = (e.det - {"indefinite"}) | {"definite"}
 
 
 def _parted(sentence: list[Element]) -> list[Element]:

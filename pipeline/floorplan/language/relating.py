@@ -327,6 +327,7 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: C901, PLR0911, 
         and before.kind in {"comma", "and"}
         and clause.objects
         and set(clause.objects) == {i for x in clause.run for i in x.ids}
+        and not _named_again(clause, k)
     ):
         return clause.subject  # "a guest room with its own bath, away from ..."
     if before is not None and before.kind == "open":
@@ -363,6 +364,13 @@ def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: C901, PLR0911, 
             break
         tail.insert(0, a)
     return _ids(tail)
+
+
+def _named_again(clause: Clause, k: int) -> bool:
+    """Whether what was said of last is named once more: "A adjoins B, and B, of 16 m², adjoins C"."""
+    place = _place(clause, clause.run[-1])
+    cue = max((i for i, x in enumerate(clause.sentence[:k]) if x.kind == "cue"), default=0)
+    return any(x.kind in {"and", "comma"} for x in clause.sentence[cue + 1 : place])
 
 
 def listed(clause: Clause) -> Group:
