@@ -5,7 +5,7 @@ python -m benchmarks.plan times --count 200         CPU ms for 5, 8 and 12 rooms
 python -m benchmarks.plan failures --count 10000    programs of the prior, and of an independent generator; 1,000 and more are kept in
                                                     docs/failures.json; one that was stopped goes on with --start
 python -m benchmarks.plan diversity --count 100     one program, many seeds
-python -m benchmarks.plan knobs --count 40          every knob against its own term
+python -m benchmarks.plan knobs --count 120         every knob against its own term; tables over 100 seeds and more are kept in docs/knobs.json
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.plan", description="Floor plans, measured.")
     parser.add_argument("what", nargs="*", choices=[*COUNTS, []], help="default: all")
     parser.add_argument("--count", type=int, help="seeds or programs")
-    parser.add_argument("--start", type=int, default=0, help="failures: number of the first program")
+    parser.add_argument("--start", type=int, default=0, help="failures, knobs: number of the first program or seed")
     parser.add_argument("--jobs", type=int, default=2, help="failures: processes")
     parser.add_argument("--source", choices=("prior", "trees"), action="append", help="failures: programs of these only")
     from benchmarks.planning import record
@@ -41,7 +41,10 @@ def run(what: str, count: int, chosen: argparse.Namespace) -> int:
 
     if what == "failures":
         return failures.main(count, chosen.start, tuple(chosen.source or failures.SOURCES), chosen.jobs)
-    {"scores": scores, "times": times, "diversity": diversity, "knobs": knobs}[what].main(count)
+    if what == "knobs":
+        knobs.main(count, chosen.start)
+    else:
+        {"scores": scores, "times": times, "diversity": diversity}[what].main(count)
     return 0
 
 

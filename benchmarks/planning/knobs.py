@@ -9,12 +9,13 @@ from benchmarks.planning.record import DOCS, commit
 from pipeline.experiments.knobs import VALUES, knob_picture, knob_table, monotone
 
 MOST_JOBS = 8
+LEAST = 100  # seeds of a table that is kept
 
 
-def main(seeds: int) -> None:
-    """Print the means of each term over its knob's values, keep and draw them."""
-    table = {"command": f"python -m benchmarks.plan knobs --count {seeds}", "commit": commit()}
-    table |= knob_table(seeds, min(os.cpu_count() or 1, MOST_JOBS))
+def main(seeds: int, first: int = 0) -> None:
+    """Print the means of each term over its knob's values; those over LEAST seeds and more are kept and drawn."""
+    command = f"python -m benchmarks.plan knobs --count {seeds}" + (f" --start {first}" if first else "")
+    table = {"command": command, "commit": commit()} | knob_table(seeds, min(os.cpu_count() or 1, MOST_JOBS), first=first)
     print(
         f"means over {seeds} seeds of each knob's own term\n{'knob':14s}"
         + "".join(f"{f'2^{v}':>9s}" for v in VALUES)
@@ -23,5 +24,7 @@ def main(seeds: int) -> None:
     for name, found in table["terms"].items():
         row = "".join(f"{m:9.4f}" for m in found["mean"])
         print(f"{name:14s}{row} {found['ends'][0] / max(found['ends'][1], 1e-12):15.1f}  {'yes' if monotone(found) else 'NO'}")
+    if seeds < LEAST:
+        return
     (DOCS / "knobs.json").write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
     (DOCS / "images" / "knobs.png").write_bytes(knob_picture(table))

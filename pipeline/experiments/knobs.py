@@ -44,14 +44,14 @@ def _rooms(types: tuple[str, ...], level: int | None = None) -> tuple[RoomReq, .
     return tuple(RoomReq.model_validate({"id": f"r{level or 0}_{i}", "type": k, "level": level}) for i, k in enumerate(types))
 
 
-def knob_table(seeds: int, jobs: int = 1, names: Collection[str] = TERMS) -> dict[str, Any]:
-    """Return {values, seeds, terms: {knob: {mean, error, step, ends}}} of the knobs `names`; `jobs` processes share the work.
+def knob_table(seeds: int, jobs: int = 1, names: Collection[str] = TERMS, first: int = 0) -> dict[str, Any]:
+    """Return {values, seeds, terms: {knob: {mean, error, step, ends}}} of the knobs `names` on seeds from `first` on; `jobs` processes share the work.
 
     `mean` and its standard `error` (7,) of the knob's own term, unweighted, over plans as they are returned; `step` (6, 2) differences of
     neighbouring values, seed by seed, with their standard errors; `ends` (2,) the same from the first value to the last. A seed draws the same
     random numbers whatever the knob's value.
     """
-    work = [(name, value, seed) for name in TERMS if name in names for value in VALUES for seed in range(seeds)]
+    work = [(name, value, seed) for name in TERMS if name in names for value in VALUES for seed in range(first, first + seeds)]
     if jobs > 1:
         # spawned, not forked: a child must not inherit the threads of libraries that are already at work
         with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"), initializer=single_thread) as pool:
