@@ -17,7 +17,7 @@ from pipeline.floorplan.storeys import EDGE, UNIT, Storey
 
 SHARES = (1.0, 0.4, 0.0)  # how much of their freedom the walls' lines use; less when openings then find no place
 HALL_TRUST = 0.02  # how much the lines care for the area of an unstated hallway, beside that of a room
-NARROW = 0.8  # no room is narrower anywhere [m]
+NARROW = 0.81  # no room is narrower anywhere [m]
 STOREY_HEIGHT, CEILING = 3.0, 0.3  # floor to floor at least, thickness of what lies between [m]
 
 

@@ -23,6 +23,7 @@ LOOSE, STRIP, EASED = 0.02, 0.2, 0.4
 SMALL, BUSY = 7.0, 3  # rooms of less area [m2] or so many links give up their outside wall first
 HALL_HEED = 0.25  # how much an unstated hallway's usual area counts beside that of a room
 FLIGHTS = (2.85, 2.1)  # what two flights side by side take, with their landings [m]: 16 risers of 0.18 m, treads of 0.27 m
+SOFTER = (1.0, 0.3, 0.1, 0.03)  # factors on the weights of all terms then: what must be comes before what should
 EASED_HALL = 1.95  # how much larger than its target an unstated hallway may be then
 EASED_WIDTH = 1.2  # least width of rooms then [m]
 STATED = 0.10  # how far a stated target may be missed
@@ -152,7 +153,7 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
     for i, r in enumerate(rooms):
         if r.type in {"hallway", "entry"} and not r.area.stated:
             gross_low[i], gross_high[i] = gross[i] * 0.75, gross[i] * (1.9 if ease else 1.3)
-    return Storey(level, rooms, spec, weights_of(program), gross, gross_low, gross_high, clear)
+    return Storey(level, rooms, spec, weights_of(program) * SOFTER[min(ease, len(SOFTER) - 1)], gross, gross_low, gross_high, clear)
 
 
 def founded(program: FloorProgram) -> FloorProgram:
