@@ -81,7 +81,7 @@ def no_door(clause: Clause) -> None:
         if none is not None and (wall := next((e for e in part[none:][1:6] if (e.kind, e.value) == ("flag", "partition")), None)):
             _no_wall(clause, first + 1, last, wall)
             return
-        door = next((e for e in part[none:][1:4] if e.kind == "flag" and e.value == "doors"), None) if none is not None else None
+        door = next((e for e in part[none:][1:4] if _a_door(e)), None) if none is not None else None
         rooms = [k for k in range(first + 1, last) if clause.sentence[k].kind == "np"]
         if door is None and none is not None and len(rooms) == 2:  # "the bathroom door must not open into the kitchen"
             door = next((e for e in clause.sentence[rooms[0] + 1 : first + 1 + none] if e.kind == "flag" and e.value == "doors"), None)
@@ -91,6 +91,11 @@ def no_door(clause: Clause) -> None:
         clause.state.say("not_connected", a, b, door)
         clause.sentence[first + 1 : last] = []
         return
+
+
+def _a_door(e: Element) -> bool:
+    """Whether a door is spoken of, by itself or with its "to"."""
+    return (e.kind == "flag" and e.value == "doors") or (e.kind == "cue" and e.text.split()[0] in {"tuer", "tuere", "verbindung"})
 
 
 def _no_wall(clause: Clause, first: int, last: int, wall: Element) -> None:

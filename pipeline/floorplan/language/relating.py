@@ -87,6 +87,10 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
         return enter(clause, e, group, j)  # "the flat is entered through the kitchen"
     if e.value == "leads" and not left and first and all(clause.stock.get(i).type in HALLS for i in group if i[0] not in "*<"):
         return enter(clause, e, group, j)  # "se entra a un vestíbulo ..."
+    door = k > 0 and (clause.sentence[k - 1].kind, clause.sentence[k - 1].value) == ("flag", "doors")
+    if not left and door and e.value == "leads" and len(group) == 2:  # "a door connects the office and the kitchen"
+        state.say("door", group[:1], group[1:], e)
+        return j
     if not left or _inverted(clause, k, j):
         clause.waiting = (e, group)
         clause.subject, clause.latest, clause.run, clause.verb = (), group, [], False

@@ -144,6 +144,10 @@ def _parted(marks: list[Mark]) -> list[Mark]:
     made: list[Mark] = []
     for k, mark in enumerate(marks):
         j = k + 1
+        if mark.kind == "bound" and mark.text == "nicht ueber":  # no amount follows: "not by way of the kitchen"
+            middle = mark.first + 1
+            made += [replace(mark, kind="neg", value="", last=middle, text="nicht"), replace(mark, kind="cue", value="door", first=middle, text="ueber")]
+            continue
         while j < len(marks) and marks[j].kind in SLIDING - {"flag"}:
             j += 1
         door = j < len(marks) and (marks[j].kind, marks[j].value) == ("flag", "doors")
