@@ -59,7 +59,7 @@ class Clause:
         self.factor: Element | None = None
         self.owner = ""
         self.owning = ""
-        first = next((e for e in sentence if e.kind in {"np", "level"}), None)
+        first = next((e for e in sentence if e.kind in {"np", "level", "zone", "every"}), None)
         self.forward = first is not None and first.kind == "level"
         self.level: int | None = None
         self.left_out: Group = ()  # "except the guest room, each has ..."
@@ -358,6 +358,8 @@ class Clause:
             bath = Element("np", "", cue.first, cue.last, cue.text, type="bathroom", role="ensuite")
             rooms = tuple(fresh(self.state, bath, None, ""))
             self.give(rooms, group, cue)
+        elif rooms and cue.value == "ensuite":
+            self.give(rooms, group, cue)  # "dem Schlafzimmer ist ein Bad zugeordnet"
         elif rooms:
             if self.negative:
                 self.state.say("ban" if cue.value in {"near", "wall"} else "not_connected", rooms, group, cue)

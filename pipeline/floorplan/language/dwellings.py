@@ -8,12 +8,13 @@ from pipeline.floorplan.language.lexicon import STRONG, Language
 from pipeline.floorplan.language.marks import listen, segment
 
 
-def named(prompt: str) -> tuple[Language | None, frozenset[int]]:
-    """Return the language of a prompt (None where it is none that is read), and the places where words for rooms and homes begin."""
+def named(prompt: str) -> tuple[Language | None, frozenset[int], frozenset[int]]:
+    """Return the language of a prompt (None where it is none that is read), where words for rooms and homes begin, and which are not their first."""
     try:
         language = detect(prompt)
     except RefusedError:
-        return None, frozenset()
+        return None, frozenset(), frozenset()
     heard = listen(prompt, language)
-    rooms = (m for m in segment(heard) if m.kind in STRONG)
-    return language, frozenset(heard.tokens[k].start for m in rooms for k in range(m.first, m.last))
+    rooms = [m for m in segment(heard) if m.kind in STRONG]
+    starts, inner = ([heard.tokens[k].start for m in rooms for k in range(m.first + skip, m.last)] for skip in (0, 1))
+    return language, frozenset(starts), frozenset(inner)

@@ -54,7 +54,7 @@ class Scan:
     def __init__(self, prompt: str) -> None:
         self.prompt = prompt
         self.claims: list[Claim] = []
-        self.language, self.rooms = named(prompt)
+        self.language, self.rooms, self.inner = named(prompt)
         self.words = mended(words(prompt), self.language)
         stems, storeys = [w.stem for w in self.words], set(lexicon()["storeys"])
         self.there = [
@@ -74,6 +74,8 @@ class Scan:
         """Whether word k names a room, and the prompt's language does not call that furniture so: "Büro" is no "buró"."""
         if self.language is None or self.words[k].start not in self.rooms:
             return False
+        if self.language != "zh" and self.words[k].start in self.inner:
+            return True  # "a walk-in wardrobe"
         forms = lexicon()["names"][name].get(self.language, ())
         return not any(words(form.removeprefix("@"))[0].stem == self.words[k].stem for form in forms)
 

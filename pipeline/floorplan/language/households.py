@@ -19,7 +19,7 @@ def settled(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with bedrooms in the place of people who have one."""
     made = _couple(list(marks)) if heard.lexicon.language == "de" else list(marks)
     if any(m.kind == "owner" for m in made):
-        made = _theirs(_bathed(_given(_named(made))))
+        made = _theirs(_bathed(_given(_named(_left_out(made)))))
     return _completed(made)
 
 
@@ -67,6 +67,22 @@ def _person(marks: Sequence[Mark], k: int) -> int:
     while k < len(marks) and k - start < 3 and (marks[k].text in OF or marks[k].kind in {"det", "fill"}):
         k += 1
     return k if start < k < len(marks) and marks[k].kind == "owner" and marks[start].text in OF else 0
+
+
+def _left_out(marks: list[Mark]) -> list[Mark]:
+    """Read "a bedroom for us, two for the kids" as two bedrooms of the kids."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        made.append(mark)
+        person = next((m for m in marks[k + 1 : k + 4] if m.kind not in {"det", "fill", "clf"}), None)
+        counted = mark.kind == "num" and mark.number > 1 and person is not None and person.kind == "owner" and marks[k + 1].kind == "fill"
+        place = next((i for i in range(k - 1, -1, -1) if marks[i].kind == "room"), None) if counted else None
+        if place is None or person is None or not marks[place].value.startswith("bedroom") or marks[k - 1].kind not in ENDS | {"join"}:
+            continue
+        one = not marks[place].plural and not any(m.kind == "num" and m.number > 1 for m in marks[max(0, place - 3) : place])
+        if one:
+            made.append(replace(_bedroom(person, person.value, plural=True), first=mark.last, last=mark.last, text="zimmer"))
+    return made
 
 
 def _one(mark: Mark) -> bool:

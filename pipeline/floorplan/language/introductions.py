@@ -50,7 +50,7 @@ def _few(state: Reading, e: Element) -> None:
 
 
 def _first_level(sentence: list[Element]) -> int | None:
-    first = next((e for e in sentence if e.kind in {"np", "level"}), None)
+    first = next((e for e in sentence if e.kind in {"np", "level", "zone", "every"}), None)
     return int(first.value) if first is not None and first.kind == "level" else None
 
 

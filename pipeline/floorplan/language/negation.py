@@ -135,13 +135,24 @@ def _list(sentence: list[Element], j: int) -> None:
             free = bare and (joined in {"or", "comma"} or not e.det & {"indefinite"}) and not e.adjectives & {"open", "combined"}
             if joined == "comma" and not titled:
                 free = free and _closes(sentence, i + 1)
-            own = i + 1 < len(sentence) and sentence[i + 1].kind in {"cue", "verb", "neg"} and joined != "or"
+            own = (
+                i + 1 < len(sentence)
+                and sentence[i + 1].kind in {"cue", "verb", "neg"}
+                and joined != "or"
+                and not _of_home(sentence, i + 1)
+            )
             if not free or own:
                 return
             e.banned = True
             joined = ""
         elif e.kind != "det":
             return
+
+
+def _of_home(sentence: list[Element], i: int) -> bool:
+    """Whether the home has what follows: "a house without garage and cellar, with two bedrooms"."""
+    thing = next((x for x in sentence[i + 1 :] if x.kind == "np"), None)
+    return sentence[i].value == "has" and thing is not None and thing.type in {"bedroom", "living_room", "kitchen"}
 
 
 def _closes(sentence: list[Element], i: int) -> bool:

@@ -18,7 +18,30 @@ if TYPE_CHECKING:
 MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two rooms at the end: "kitchen and bath adjacent"
 THROUGH = {"through", "via", "durch", "ueber", "por", "traves", "经", "过", "通"}
 AT = {"am", "an der", "an dem", "liegt am", "liegen am", "liegen an"}  # where a room lies
-FINITE = {"abren", "dan", "salen", "open", "lead", "connect", "conectan", "comunican", "desembocan", "llevan", "conducen", "give", "parten"}
+FINITE = {
+    "gehen",
+    "liegen",
+    "fuehren",
+    "grenzen",
+    "muenden",
+    "haengen",
+    "zweigen",
+    "oeffnen",
+    "schliessen",
+    "abren",
+    "dan",
+    "salen",
+    "open",
+    "lead",
+    "connect",
+    "conectan",
+    "comunican",
+    "desembocan",
+    "llevan",
+    "conducen",
+    "give",
+    "parten",
+}
 WITH = {"con", "with", "mit"}
 SINGULAR = {"is", "lies", "sits", "stands", "opens", "esta", "este", "es", "sea", "queda", "ist", "liegt", "se encuentra"}
 

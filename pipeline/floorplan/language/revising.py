@@ -295,4 +295,6 @@ def _pointed(marks: Sequence[Mark], k: int) -> bool:
 
 def _ahead(marks: Sequence[Mark], k: int) -> bool:
     """Whether something is said of both rooms, as of "a kitchen or a bathroom must not lie beside it"."""
-    return k < len(marks) and marks[k].kind in {"neg", "cmp"}
+    while k < len(marks) and marks[k].kind in {"verb", "flag"}:
+        k += 1
+    return k < len(marks) and marks[k].kind in {"neg", "needless", "cmp"}

@@ -33,8 +33,11 @@ PARTS = {"det", "num", "clf", "adj", "size", "fill", "adverb", "verb", "relative
 def resolved(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with the rooms that are meant put in."""
     made = list(marks)
+    for k in range(len(made) - 2):  # "in addition to the two bedrooms": they are counted there
+        beyond = made[k].text.startswith("zusaetzlich zu") and (made[k + 1].kind, made[k + 1].value) == ("det", "both")
+        made[k + 1] = replace(made[k + 1], kind="num", value="", number=2.0) if beyond else made[k + 1]
     if heard.lexicon.language == "de":
-        made = _vestibule(_room_of(made))
+        made = _vestibule(_room_of(_besides(made)))
     elif heard.lexicon.language == "zh":
         made = _room_with(made)
     made = _standing(_doubling(settled(_persons(_neither(made), heard), heard)))
@@ -146,7 +149,10 @@ def _parted(marks: list[Mark]) -> list[Mark]:
         j = k + 1
         if mark.kind == "bound" and mark.text == "nicht ueber":  # no amount follows: "not by way of the kitchen"
             middle = mark.first + 1
-            made += [replace(mark, kind="neg", value="", last=middle, text="nicht"), replace(mark, kind="cue", value="door", first=middle, text="ueber")]
+            made += [
+                replace(mark, kind="neg", value="", last=middle, text="nicht"),
+                replace(mark, kind="cue", value="door", first=middle, text="ueber"),
+            ]
             continue
         while j < len(marks) and marks[j].kind in SLIDING - {"flag"}:
             j += 1
@@ -189,6 +195,24 @@ def _clause(marks: Sequence[Mark], *, after: bool = False) -> list[Mark]:
         if mark.kind in ENDS - {"join"}:
             break
         made.append(mark)
+    return made
+
+
+WANTED = {"brauchen", "brauche", "moechten", "wuenschen", "benoetigen", "haetten", "gibt es", "brauchen wir", "wir brauchen", "brauche ich"}
+
+
+def _besides(marks: list[Mark]) -> list[Mark]:
+    """Read "neben Küche und Bad brauchen wir zwei Schlafzimmer" as a list: nothing is said to lie beside anything."""
+    made = list(marks)
+    for k, mark in enumerate(marks):
+        if mark.text != "neben" or mark.kind != "cue" or (k and marks[k - 1].kind not in {"stop", "line"}):
+            continue
+        j = k + 1
+        while j < len(marks) and marks[j].kind in {"room", "comma", "join", "num", "adj", "size"}:
+            j += 1
+        rooms = sum(m.kind == "room" for m in marks[k:j])
+        if rooms > 1 and j < len(marks) and marks[j].text in WANTED:
+            made[k], made[j] = replace(mark, kind="fill"), replace(marks[j], kind="comma", value="")
     return made
 
 
