@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from pipeline.floorplan.language.phrases import Element
-from pipeline.floorplan.language.relating import listed
+from pipeline.floorplan.language.subjects import listed
 
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause

@@ -10,7 +10,7 @@ from pipeline.floorplan.language.openness import merge_after, windows
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import storey
 from pipeline.floorplan.language.quantities import share
-from pipeline.floorplan.language.relating import listed
+from pipeline.floorplan.language.subjects import listed
 
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from pipeline.floorplan.language.facts import HALLS, SOCIAL, Group
@@ -10,39 +9,14 @@ from pipeline.floorplan.language.lexicon import ONLY
 from pipeline.floorplan.language.objects import CLOSED, objects
 from pipeline.floorplan.language.owning import has
 from pipeline.floorplan.language.phrases import Element
+from pipeline.floorplan.language.subjects import THROUGH, _place, coordinate, ids_of, subject_of
 from pipeline.floorplan.language.ways import by_way_of, door_between, enter, excepted, through
 
 if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
 
 MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two rooms at the end: "kitchen and bath adjacent"
-THROUGH = {"through", "via", "durch", "ueber", "por", "traves", "经", "过", "通"}
 AT = {"am", "an der", "an dem", "liegt am", "liegen am", "liegen an"}  # where a room lies
-FINITE = {
-    "gehen",
-    "liegen",
-    "fuehren",
-    "grenzen",
-    "muenden",
-    "haengen",
-    "zweigen",
-    "oeffnen",
-    "schliessen",
-    "abren",
-    "dan",
-    "salen",
-    "open",
-    "lead",
-    "connect",
-    "conectan",
-    "comunican",
-    "desembocan",
-    "llevan",
-    "conducen",
-    "give",
-    "parten",
-}
-WITH = {"con", "with", "mit"}
 SINGULAR = {"is", "lies", "sits", "stands", "opens", "esta", "este", "es", "sea", "queda", "ist", "liegt", "se encuentra"}
 
 
@@ -80,13 +54,7 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
         return j
     state.understood(e.first, e.last)
     if e.value == "from_to":
-        clause.subject = left
-        state.say("leads", left, group, e)
-        further, j = objects(clause, j + 1, "leads", left) if j < len(clause.sentence) and clause.sentence[j].kind == "to" else ((), j)
-        if further:
-            state.say("leads", left, further, e)
-        clause.latest, clause.run = further or group, []
-        return j
+        return _from_to(clause, e, left, group, j)
     only = (
         e.only
         or e.text.split(" ")[0] in ONLY
@@ -126,6 +94,17 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     return j
 
 
+def _from_to(clause: Clause, e: Element, left: Group, group: Group, j: int) -> int:
+    """Read "the hall goes from the kitchen to the bathroom"."""
+    clause.subject = left
+    clause.state.say("leads", left, group, e)
+    further, j = objects(clause, j + 1, "leads", left) if j < len(clause.sentence) and clause.sentence[j].kind == "to" else ((), j)
+    if further:
+        clause.state.say("leads", left, further, e)
+    clause.latest, clause.run = further or group, []
+    return j
+
+
 def _by_door(clause: Clause, e: Element) -> bool:
     """Whether a door is what parts two rooms."""
     k = _place(clause, e)
@@ -157,7 +136,7 @@ def _both_sides(clause: Clause, k: int, e: Element) -> tuple[Group, Group, int]:
     """Return who stands in front of a cue, who behind it, and where reading goes on."""
     ahead = clause.sentence[k + 1] if k + 1 < len(clause.sentence) else None
     first = k == 0 or clause.sentence[k - 1].kind in {"comma", "and"}
-    left = () if ahead is not None and ahead.value == "pair" and first else _left(clause, k, e)  # "dazwischen liegt das Bad"
+    left = () if ahead is not None and ahead.value == "pair" and first else subject_of(clause, k, e)  # "dazwischen liegt das Bad"
     wide = len(left) > 2 and ahead is not None and ahead.kind == "np"
     group, j = objects(clause, k + 1, e.value, () if wide else left)
     if not group and e.value == "between" and left and first:  # "两间卧室中间是客厅"
@@ -183,8 +162,8 @@ def _alone(clause: Clause, k: int, e: Element) -> int:
     mutual = ahead is not None and ahead.kind == "reciprocal"
     rest = next((x for x in clause.sentence[k + 1 :] if x.kind not in {"det", "verb"} and (x.kind, x.value) != ("flag", "doors")), None)
     ends = rest is None or rest.kind in {"comma", "but", "close"}  # "cocina y salón comunicados por una puerta corredera"
-    rooms = _ids(clause.run) or clause.subject
-    listed_alone = ends and e.value in MUTUAL and len(rooms) > 1 and "*" not in rooms and _coordinate(clause)
+    rooms = ids_of(clause.run) or clause.subject
+    listed_alone = ends and e.value in MUTUAL and len(rooms) > 1 and "*" not in rooms and coordinate(clause)
     if e.text == "by" and not mutual:
         return k + 1
     if mutual or listed_alone or (e.value == "wall" and (clause.run or clause.subject)):
@@ -335,85 +314,3 @@ def _mutual(clause: Clause, e: Element) -> None:
     else:
         clause.state.say("merge" if e.value == "open" else e.value, rooms, (), e)
         clause.subject = clause.latest = rooms
-
-
-def _left(clause: Clause, k: int, e: Element) -> Group:  # noqa: C901, PLR0911, PLR0912 - one branch per case: a grammar
-    """Return the subject of a cue: the phrase in front, the list in front of a verb, or what the clause is about."""
-    before = clause.sentence[k - 1] if k else None
-    if not clause.run:
-        cue = next((x for x in reversed(clause.sentence[:k]) if x.kind == "cue"), None)
-        passed = before is not None and before.kind == "np" and cue is not None and bool(THROUGH & set(cue.text.split()))
-        if passed and clause.objects and e.value in {"door", "leads"} and e.text.split()[0] not in THROUGH:
-            return clause.objects  # "the garage is connected by way of the utility room to the kitchen"
-        if clause.relative and clause.objects and clause.state.heard.lexicon.language in {"en", "es", "zh"}:
-            return clause.objects  # "away from the parents' bedroom, which is next to ..."
-        chained = before is not None and before.kind == "np" and cue is not None and cue.value == e.value == "near"
-        return clause.objects if chained and clause.objects and not clause.relative else clause.subject  # "X next to Y next to Z"
-    if (
-        before is not None
-        and before.kind in {"comma", "and"}
-        and clause.objects
-        and set(clause.objects) == {i for x in clause.run for i in x.ids}
-        and not _named_again(clause, k)
-    ):
-        return clause.subject  # "a guest room with its own bath, away from ..."
-    if before is not None and before.kind == "open":
-        return tuple(clause.run[-1].ids)  # "a garage (joined to the hall)"
-    apart = before is not None and before.kind == "comma" and len(clause.run) > 1
-    last = clause.run[-1]
-    if clause.relative or (apart and not clause.verb):
-        return tuple(last.ids)
-    if e.value == "avoid" and clause.objects:
-        return clause.subject
-    if e.text.split()[0] in WITH and e.value in {"door", "leads"} and not last.plural:
-        return tuple(last.ids)  # "a kitchen and a living room with access to the terrace"
-    if clause.single and len(clause.run) > 1 and {x.type for x in clause.run[:-1]} and not last.plural:
-        return tuple(last.ids)  # "there is a living room, and the kitchen is open to it"
-    verbal = (
-        clause.verb
-        or e.value in {"leads", "away", "apart"}
-        or e.text.removeprefix("se ").split()[0] in FINITE
-        or any(x.det & {"both", "all"} for x in clause.run)
-    )
-    if not _coordinate(clause):  # "study downstairs, all bedrooms upstairs, garage connected to ...": commas part statements
-        return tuple(last.ids)
-    heads = [x for x in clause.run if x.first == last.first and x.last == last.last]
-    if len(heads) == len(clause.run) > 1 and e.value in {"door", "leads", "near"}:
-        return tuple(clause.run[0].ids)  # "a living-dining-kitchen with access to the terrace": one room to whoever goes there
-    if verbal or e.value == "wall":
-        return _ids(clause.run)
-    if e.value != "door":
-        return tuple(last.ids)
-    tail = [last]
-    for a, b in zip(reversed(clause.run[:-1]), reversed(clause.run[1:]), strict=True):
-        between = clause.sentence[_place(clause, a) + 1 : _place(clause, b)]
-        if any(x.kind == "comma" for x in between) or not any(x.kind == "and" for x in between):
-            break
-        tail.insert(0, a)
-    return _ids(tail)
-
-
-def _named_again(clause: Clause, k: int) -> bool:
-    """Whether what was said of last is named once more: "A adjoins B, and B, of 16 m², adjoins C"."""
-    place = _place(clause, clause.run[-1])
-    cue = max((i for i, x in enumerate(clause.sentence[:k]) if x.kind == "cue"), default=0)
-    return any(x.kind in {"and", "comma"} for x in clause.sentence[cue + 1 : place])
-
-
-def listed(clause: Clause) -> Group:
-    """Return the rooms in front of a comparison: the last phrase, with those that an "and" joins to it."""
-    return _ids(clause.run if _coordinate(clause) else clause.run[-1:])
-
-
-def _coordinate(clause: Clause) -> bool:
-    """Whether the last two phrases in front of a cue are joined by more than a comma; one alone is."""
-    ends = [_place(clause, x) for x in clause.run[-2:]]
-    return len(ends) < 2 or any(x.kind in {"and", "or"} for x in clause.sentence[ends[0] : ends[1]])
-
-
-def _ids(phrases: Iterable[Element]) -> Group:
-    return tuple(dict.fromkeys(i for x in phrases for i in x.ids))
-
-
-def _place(clause: Clause, e: Element) -> int:
-    return next((i for i, x in enumerate(clause.sentence) if x is e), 0)
