@@ -29,7 +29,7 @@ def located(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks of a Chinese prompt with ways put plainly: room, cue, room."""
     if heard.lexicon.language != "zh":
         return [replace(m, kind="verb") if (m.kind, m.value) == ("cue", "side") else m for m in marks]
-    return _mutual(_entered(_added(_parted(_unwalled(_doors(_sided(_joining(_listed(_between(list(marks)))))))))))
+    return _mutual(_entered(_added(_parted(_unwalled(_doors(_sided(_owned(_joining(_listed(_between(list(marks))))))))))))
 
 
 def _added(marks: list[Mark]) -> list[Mark]:
@@ -83,9 +83,35 @@ def _between(marks: list[Mark]) -> list[Mark]:
     return made
 
 
+def _owned(marks: list[Mark]) -> list[Mark]:
+    """Read "其中一个归主卧专用" as the bathroom of the main bedroom."""
+    made = list(marks)
+    for k in range(len(made) - 2, 0, -1):
+        lead = (
+            plain(made[k]) in {"归", "供", "给", "留给", "由", "为", "是"}
+            and made[k + 1].kind == "room"
+            and made[k + 1].value.startswith("bedroom")
+        )
+        end = k + 2
+        while end < len(made) and (
+            plain(made[end]) in {"专用", "使用", "用", "独用", "独享", "所有", "自用", "的", "单独", "专属", "独立"}
+        ):
+            end += 1
+        if lead and end > k + 2 and (end >= len(made) or made[end].kind in ENDS):
+            made[k:end] = [replace(made[k], kind="cue", value="ensuite"), made[k + 1]]
+    return made
+
+
+def _topic(marks: Sequence[Mark], k: int) -> Mark | None:
+    """Return the room that the clause in front of the comma at k - 1 begins with."""
+    start = max((i for i in range(k - 1) if marks[i].kind in ENDS), default=-1) + 1
+    return next((m for m in marks[start : k - 1] if m.kind in HEADS), None)
+
+
 def _joining(marks: list[Mark]) -> list[Mark]:
     """Read "走廊连着三间卧室和卫生间" as leading to all of them."""
-    hall = [k > 0 and marks[k - 1].kind == "room" and _kind(marks[k - 1]) in HALLS for k in range(len(marks))]
+    spoken = [_topic(marks, k) if k and marks[k - 1].kind == "comma" else marks[k - 1] if k else None for k in range(len(marks))]
+    hall = [m is not None and m.kind == "room" and _kind(m) in HALLS for m in spoken]
     return [
         replace(m, value="leads") if h and (m.kind, m.value) == ("cue", "door") and plain(m).startswith(("连", "接", "衔")) else m
         for m, h in zip(marks, hall, strict=True)
@@ -173,6 +199,10 @@ def _doors(marks: list[Mark]) -> list[Mark]:
     k = 0
     while k < len(made):
         door = made[k].kind == "flag" and made[k].value == "doors" and plain(made[k]) in {"门", "房门", "的门"}
+        topic = _topic(made, k) if door and k and made[k - 1].kind == "comma" and plain(made[k]) == "门" else None
+        if topic is not None and k + 1 < len(made) and plain(made[k + 1]) in FACING:  # "厨房要有门，门朝餐厅"
+            made.insert(k, replace(topic, first=made[k].first, last=made[k].first, number=0.0))
+            k += 1
         place = _back(made, k) if door else None
         j = k + 1
         while place is not None and j < len(made) and j - k < 4 and made[j].kind in BETWEEN and plain(made[j]) not in FACING:

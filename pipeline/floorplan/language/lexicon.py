@@ -244,25 +244,10 @@ def _spellings(phrase: str, language: str) -> Iterable[tuple[str, ...]]:
 
 
 SOUNDS = {
-    "厨": "橱",
-    "厅": "听厛庭",
-    "室": "式事是市",
-    "卫": "位喂味",
-    "间": "见建件",
-    "房": "防放",
-    "阳": "羊洋杨",
-    "卧": "握",
-    "书": "输叔",
-    "廊": "郎朗",
-    "客": "克课",
-    "餐": "参",
-    "浴": "玉",
-    "玄": "悬",
-    "台": "太",
-    "库": "裤",
-    "衣": "一依",
-    "储": "除",
-}
+    "厨": "橱处初出", "厅": "听厛庭亭停挺廷", "室": "式事是市试世视士适", "卫": "位喂味为未胃", "间": "见建件肩尖简", "房": "防放方芳仿坊", "阳": "羊洋杨样",
+    "卧": "握我沃窝", "书": "输叔舒树属", "廊": "郎朗浪狼栏", "走": "奏", "客": "克课可刻", "餐": "参残惨灿", "浴": "玉育遇域", "玄": "悬旋选炫", "关": "官观管",
+    "台": "太抬胎", "库": "裤苦酷", "衣": "一依医以", "帽": "冒貌", "储": "除处楚出", "藏": "臧仓", "物": "屋务", "洗": "西喜系", "生": "声升", "健": "建件", "身": "深伸",
+}  # fmt: skip
 
 
 def _misheard(e: _Entries) -> Iterator[tuple[str, Meaning]]:
@@ -270,6 +255,10 @@ def _misheard(e: _Entries) -> Iterator[tuple[str, Meaning]]:
     for phrase, meaning in _meanings(e):
         for k, char in enumerate(phrase if meaning.kind == "room" and 1 < len(phrase) < 4 else ""):
             yield from ((phrase[:k] + wrong + phrase[k + 1 :], meaning) for wrong in SOUNDS.get(char, ""))
+            if k and len(phrase) == 3:  # two exchanged: "卫间生"
+                yield phrase[: k - 1] + char + phrase[k - 1] + phrase[k + 1 :], meaning
+            if k + 1 < len(phrase):  # one twice: "客客厅"
+                yield phrase[:k] + char + phrase[k:], meaning
 
 
 REPAIRED = {"room", "suite", "home", "num", "unit", "level", "zone"}  # kinds whose words are worth a repair

@@ -28,7 +28,7 @@ def loosened(marks: Sequence[Mark], heard: Words) -> list[Mark]:
         if not (plain(m) in ODD and 0 < k < len(marks) - 1 and [marks[k - 1].kind, marks[k + 1].kind] == kinds)
     ]
     made = [m for k, m in enumerate(made) if not _bullet(made, k)]
-    return _denied(_renewed(_turned(_optional(_fewer(made)))))
+    return _denied(_renewed(_turned(_optional(_fewer(_bathless(_unsized(made)))))))
 
 
 def _homes(marks: Sequence[Mark]) -> int:
@@ -80,6 +80,43 @@ def _fewer(marks: list[Mark]) -> list[Mark]:
             number = replace(marks[few], kind="num", value="", number=marks[few].number or 1.0)
             return [*marks[:k], number, *marks[k + 2 : room + 1], *_fewer(marks[end:])]
     return marks
+
+
+def _unsized(marks: list[Mark]) -> list[Mark]:
+    """Read "厨房不需要很大" as said of its size, which rules no kitchen out; the words stand as not understood."""
+    made = list(marks)
+    for k, mark in enumerate(made):
+        if mark.kind not in {"neg", "needless"}:
+            continue
+        j = k + 1
+        while j < len(made) and (made[j].kind == "adverb" or plain(made[j]) in {"太", "特别", "那么", "多", "必", "要", "得"}):
+            j += 1
+        size = j < len(made) and (made[j].kind == "size" or plain(made[j]) in {"大", "小", "宽敞", "豪华"})
+        after = j + 1
+        while after < len(made) and plain(made[after]) in {"的", "了", "点", "一点", "面积", "就行"}:
+            after += 1
+        if size and (after >= len(made) or made[after].kind in ENDS):
+            made[k : j + 1] = [replace(m, kind="word", value="", number=0.0) for m in made[k : j + 1]]
+    return made
+
+
+def _bathless(marks: list[Mark]) -> list[Mark]:
+    """Read "客房不需要卫生间" as said of that room alone, where another bathroom is spoken of."""
+    made = list(marks)
+    baths = [k for k, m in enumerate(made) if m.kind == "room" and m.value.startswith(("bathroom", "wc"))]
+    for k in baths:
+        j = k - 1
+        while j > 0 and (made[j].kind == "det" or one(made[j])):
+            j -= 1
+        host = j - 1
+        while host > 0 and made[host].kind in {"verb", "adverb", "fill"}:
+            host -= 1
+        ends = k + 1 >= len(made) or made[k + 1].kind in ENDS
+        bed = host >= 0 and made[host].kind == "room" and made[host].value.startswith("bedroom")
+        if made[j].kind in {"neg", "needless"} and bed and ends and len(baths) > 1:
+            made[j] = replace(made[j], kind="word", value="")
+            made[k] = replace(made[k], kind="word", value="")
+    return made
 
 
 def _optional(marks: list[Mark]) -> list[Mark]:

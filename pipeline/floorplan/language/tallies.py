@@ -32,6 +32,7 @@ def tallied(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     made = _storeys(
         _bedrooms(_sizes(_bracketed(_besides([replace(m, kind="adj", value="plain") if m.kind == "long" else m for m in marks]))))
     )
+    made = [m for k, m in enumerate(made) if not _alone(made, k)]
     return _headless(_partly(_apiece(_behind(_summed(_figures(made))))))
 
 
@@ -57,6 +58,14 @@ def _summed(marks: list[Mark]) -> list[Mark]:
     return marks
 
 
+def _alone(marks: Sequence[Mark], k: int) -> bool:
+    """Whether the mark at k is of "单独一间" behind a room: it is one by itself."""
+    said = [plain(m) for m in marks[max(0, k - 1) : k + 2]]
+    first = k if (marks[k].kind, marks[k].value) == ("det", "own") else k - 1
+    pair = 0 < first < len(marks) - 1 and plain(marks[first]) in {"单独", "独立", "另外", "自成"} and one(marks[first + 1]) and bool(said)
+    return pair and marks[first - 1].kind in HEADS and (first + 2 >= len(marks) or marks[first + 2].kind in ENDS)
+
+
 def _headless(marks: list[Mark]) -> list[Mark]:
     """Read "主卧有自己的卫生间，另外再来一个公用的" as one more bathroom."""
     made: list[Mark] = []
@@ -66,7 +75,19 @@ def _headless(marks: list[Mark]) -> list[Mark]:
         alone = end >= len(marks) or marks[end].kind in ENDS
         single = any(one(m) or m.kind == "num" for m in marks[max(0, k - 2) : k])
         bath = next((m for m in reversed(marks[:k]) if m.kind == "room" and m.value.startswith("bathroom")), None)
-        if (mark.kind, mark.value) == ("adj", "shared") and alone and single and bath is not None:
+        owner = next((m for m in reversed(marks[max(0, k - 2) : k]) if m.kind not in {"det", "verb"} and m.value != "has"), None)
+        has = any(m.value in {"has", "another"} or plain(m) == "有" for m in marks[max(0, k - 2) : k])
+        bedroom = owner is not None and owner.kind == "room" and owner.value.startswith("bedroom")
+        if one(mark) and alone and has and bedroom and bath is not None:  # "孩子们共用一个卫生间，主卧另有一个"
+            made.pop()
+            while made[-1] is not owner:
+                made.pop()
+            made += [
+                replace(mark, kind="cue", value="has"),
+                replace(mark, kind="det", value="own"),
+                replace(bath, value="bathroom", first=mark.last, last=mark.last),
+            ]
+        elif (mark.kind, mark.value) == ("adj", "shared") and alone and single and bath is not None:
             made.append(replace(bath, value="bathroom/shared", first=mark.last, last=mark.last))
     return made
 
@@ -224,7 +245,11 @@ def _partly(marks: list[Mark]) -> list[Mark]:
         mark = marks[k]
         pair = mark.kind == "num" and k + 1 < len(marks) and marks[k + 1].kind == "clf" and marks[k + 1].value != "one"
         ahead = marks[k + 2] if k + 2 < len(marks) else None
-        goes = ahead is not None and (ahead.kind in {"cue", "verb", "adverb"} or (ahead.kind, ahead.value) == ("adj", "shared"))
+        goes = ahead is not None and (
+            ahead.kind in {"cue", "verb", "adverb"}
+            or (ahead.kind, ahead.value) == ("det", "all")
+            or (ahead.kind, ahead.value) == ("adj", "shared")
+        )
         back = next((m for m in reversed(made) if m.kind not in {"adverb", "verb", "fill"} and m.value != "has"), None)
         told = any(m.kind == "num" and m.number >= mark.number and n.kind in {"clf", "room"} for m, n in itertools.pairwise(made))
         if pair and goes and told and back is not None and mark.number > 1:

@@ -48,6 +48,7 @@ def test_counts_in_other_places(said, plain):
         ("两间卧室，走廊。所有卧室都从走廊进出。", "两间卧室，走廊。两间卧室都与走廊相连。"),
         ("书房只有经过客厅才能到达。", "书房只能从客厅进入。"),
         ("客厅。餐厅，与客厅之间没有隔断。", "客厅。餐厅，与客厅打通。"),
+        ("厨房要有门，门朝餐厅。", "厨房。厨房与餐厅之间有门。"),
         ("餐厅和客厅用一扇双开门隔开。", "餐厅与客厅之间有门。"),
         ("两间卧室都开向客厅，厨房和书房也是。", "两间卧室都开向客厅。厨房开向客厅。书房开向客厅。"),
         ("从厨房可以去储藏室，从储藏室可以去车库，从车库可以去花园。", "厨房通储藏室。储藏室通车库。"),
@@ -90,3 +91,17 @@ def test_what_may_be_or_not_is_neither_built_nor_ruled_out_but_told(prompt):
     assert [r.type for r in program.rooms] == ["bedroom"] * 2
     assert not program.forbids
     assert any("阳台" in s.text for s in program.unparsed)
+
+
+@pytest.mark.parametrize("word", ["卫间生", "客客厅", "走栏", "玄官", "卫升间", "储屋间"])
+def test_slips_of_the_pen_are_healed(word):
+    program = understand(f"两间卧室，一间书房，{word}。")
+    assert len(program.rooms) == 4
+    assert not program.unparsed
+
+
+@pytest.mark.parametrize("prompt", ["厨房不需要很大，两间卧室。", "主卧有卫生间，客房不需要卫生间，公共卫生间一个，厨房。"])
+def test_what_is_not_needed_of_a_room_does_not_rule_it_out(prompt):
+    program = understand(prompt)
+    assert not [f for f in program.forbids if f.what == "room_type"]
+    assert program.unparsed
