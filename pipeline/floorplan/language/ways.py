@@ -17,6 +17,11 @@ THEN = {"then", "dann", "luego", "despues"}
 
 def excepted(clause: Clause, k: int, e: Element) -> int:
     """Read "all rooms but the pantry open off the hall": those that are left out, and who goes on."""
+    ahead = clause.sentence[k + 1] if k + 1 < len(clause.sentence) else None
+    if ahead is not None and ahead.kind == "to" and clause.way is not None:  # "has access to the terrace but not to the living room"
+        denied, j = clause.after(k + 2, "leads", clause.way.a)
+        clause.state.say("not_connected", clause.way.a, denied, e)
+        return max(j, k + 1)
     group, j = clause.after(k + 1, "except", ())
     if not group:
         return max(j, k + 1)
