@@ -268,7 +268,10 @@ def _suites(draft: Draft, stock: Inventory, facts: list[Fact]) -> None:
             if any(stock.get(i).type == "bathroom" for i in reach):
                 continue
             loose = [r for r in stock.of("bathroom") if not draft.linked(r.id) and r.role in {"ensuite", "primary"}]
-            slots = [r for r in stock.of("bathroom") if r.open_slot and not draft.linked(r.id)]
+            level = stock.get(bed).level
+            slots = [
+                r for r in stock.of("bathroom") if r.open_slot and not draft.linked(r.id) and (level is None or r.level in {None, level})
+            ]
             bath = (loose or slots or [stock.add("bathroom", "", "en suite", stock.get(bed).level)])[0]
             bath.open_slot = False
             _give(draft, stock, bath.id, bed, fact)

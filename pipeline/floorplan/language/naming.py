@@ -251,7 +251,7 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
     if not many and len(same) > 1 and e.adjectives & {"largest", "smallest"}:
         return same[:1] if "largest" in e.adjectives else same[-1:]
     if many:
-        number = int(e.number or 0)
+        number = int(e.number or (2 if "both" in e.det and e.type == "bedroom" else 0))
         if number > len(same) and all(not r.whole for r in same) and e.definite:
             while len(stock.of(e.type)) < number:
                 stock.add(e.type, "", e.text, level, open_slot=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pipeline.floorplan.language.facts import SOCIAL
 from pipeline.floorplan.language.phrases import Element
 
+REMOVES = {"quitar", "quita", "eliminar", "elimina", "suprimir", "leave out", "get rid of", "drop", "scrap", "skip", "omit"}
 BEFORE_CUE = {"near", "door", "open", "wall", "away", "apart", "leads", "between"}
 
 
@@ -39,7 +40,7 @@ def ban(sentence: list[Element]) -> None:  # noqa: C901, PLR0912 - one branch pe
                 e.kind, phrase.kind = "used", "no_own"
             elif phrase.type == "hallway" and (phrase.said or phrase.size != 1.0):
                 e.kind = phrase.kind = "used"  # "no narrow corridors" allows others
-            elif not phrase.definite:
+            elif not phrase.definite or e.text in REMOVES:
                 e.kind = "used"
                 _list(sentence, j)
         elif e.kind == "needless" and (j := _target(sentence, k + 1)) is not None and not _told(sentence, k):

@@ -84,6 +84,8 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
             and not (joined == "comma" and (clause.relative or clause.negative is not None))
         ) or (group and (e.value == "has" or e.kind == "to") and cue == "leads" and CONNECTS & set(sentence[k - 1].text.split())):
             joined = joined or "and"  # "connects the kitchen with the garage"
+        elif e.kind == "wing" and cue == "leads" and group:
+            clause.state.understood(e.first, e.last)
         elif e.kind == "flag" and not group and any(x.kind == "np" for x in sentence[index + 1 : index + 3]):
             clause.state.understood(e.first, e.last)  # "next to a step-free bathroom"
             clause.state.flags.setdefault(e.value, e)

@@ -105,7 +105,8 @@ def has(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, PLR0
         return ahead + 1
     if thing.type == "balcony" and kind in {"bathroom", "hallway"}:
         return k + 1  # "两室一厨一卫带阳台": the home has it
-    if kind == "hallway" and thing.type == "bedroom" and not thing.definite:  # "a corridor with two bedrooms and a bathroom"
+    sides = any(x.kind == "wing" for x in sentence[ahead:])  # "a corridor with the kitchen on one side and the bedrooms on the other"
+    if kind == "hallway" and (sides or (thing.type == "bedroom" and not thing.definite)):  # "a corridor with two bedrooms and a bathroom"
         group, j = clause.after(ahead, "leads", owners)
         clause.state.say("door", group, owners, e)
         clause.latest, clause.run = group, [thing]

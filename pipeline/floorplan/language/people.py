@@ -17,7 +17,44 @@ FAR = 9  # marks
 
 def housed(marks: Sequence[Mark]) -> list[Mark]:
     """Return the marks with the rooms of people named as theirs."""
-    return _nounless(_partial(_counted(_having(_theirs(_for(_each(_whose(list(marks)))))))))
+    return _one_for(_nounless(_partial(_counted(_having(_theirs(_for(_each(_whose(_bracketed(list(marks)))))))))))
+
+
+def _bracketed(marks: list[Mark]) -> list[Mark]:
+    """Read "the bedrooms (3) open onto the hall" with the number in front."""
+    made = list(marks)
+    for k in range(len(made) - 4, -1, -1):
+        room, opened, number, closed = made[k : k + 4]
+        if (
+            room.kind == "room"
+            and room.plural
+            and (opened.kind, number.kind, closed.kind) == ("open", "num", "close")
+            and number.number >= 2
+        ):
+            start = k - (k > 0 and made[k - 1].kind == "det")
+            made[start : k + 4] = [number, room]
+    return made
+
+
+def _one_for(marks: list[Mark]) -> list[Mark]:
+    """Read "two baths, one for the master bedroom" as one that belongs to it."""
+    made = list(marks)
+    for k in range(1, len(made) - 2):
+        one = (
+            made[k].text in {"uno", "una", "one"}
+            and made[k].kind in {"fill", "num", "pron"}
+            and made[k - 1].kind in {"comma", "colon", "open", "join"}
+        )
+        room = room_at(made, k + 2) if one and made[k + 1].text in {"para", "for"} else None
+        if room is not None and made[room].value.startswith("bedroom"):
+            made[k] = replace(made[k], kind="pron", value="one", number=1.0)
+            made[k + 1] = replace(made[k + 1], kind="cue", value="ensuite")
+            for j in range(room + 1, len(made) - 1):  # "... y otro accesible desde el pasillo"
+                if made[j].kind == "det" and made[j].value in {"other", "another"} and made[j + 1].kind == "cue":
+                    made[j] = replace(made[j], kind="pron", value="rest")
+        elif one and made[k].kind == "fill" and made[k + 1].kind in {"cue", "level"}:
+            made[k] = replace(made[k], kind="pron", value="one", number=1.0)
+    return made
 
 
 def _nounless(marks: list[Mark]) -> list[Mark]:

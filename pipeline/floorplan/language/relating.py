@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pipeline.floorplan.language.facts import HALLS, SOCIAL, Group
+from pipeline.floorplan.language.facts import HALLS, SOCIAL, Fact, Group
 from pipeline.floorplan.language.lexicon import ONLY
 from pipeline.floorplan.language.objects import CLOSED, objects
 from pipeline.floorplan.language.owning import has
@@ -216,8 +216,8 @@ def _inside(clause: Clause, left: Group, group: Group) -> bool:
     """Whether "X in Y" means that X opens off Y, as a cupboard in the hall does."""
     kinds = {clause.stock.get(i).type for i in left if not i.startswith("*")}
     hosts = {clause.stock.get(i).type for i in group if not i.startswith("*")}
-    if kinds == {"balcony"} and len(hosts) == 1:
-        return True
+    if (kinds == {"balcony"} and len(hosts) == 1) or (kinds and hosts and hosts <= HALLS):
+        return True  # "three bedrooms in the hallway" open off it
     return (
         bool(kinds)
         and kinds <= {"storage", "closet", "wc", "bathroom", "balcony", "utility"}
@@ -280,6 +280,8 @@ def _emit(clause: Clause, e: Element, left: Group, group: Group) -> None:
             else {"near": "ban", "wall": "ban", "away": "near", "open": "not_open", "avoid": "avoid"}.get(cue, "not_connected")
         )
         state.say(what, left, group, e)
+        if cue in {"leads", "door"} and what == "not_connected":
+            clause.way = Fact(cue, left, group)  # "not to the living room but to the hall"
     elif cue == "ensuite":
         state.say("own", left, group, e)
         clause.stock.belongings.update(left)

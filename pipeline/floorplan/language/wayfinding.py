@@ -159,6 +159,7 @@ def _again(marks: list[Mark]) -> list[Mark]:
         if mark.kind == "cue":
             way, had = way or mark.value in WAYS, mark.value == "has" if mark.value in WAYS | {"has"} else had
         joined = k > 0 and marks[k - 1].kind in {"join", "comma"} and marks[k - 1].value != "to"
-        if way and had and joined and mark.text in TOWARDS and _into(mark) and room_at(marks, k + 1) is not None:
+        turned = k > 0 and marks[k - 1].kind == "but"  # "not to the living room but to the hall"
+        if way and ((had and joined) or turned) and mark.text in TOWARDS and _into(mark) and room_at(marks, k + 1) is not None:
             made[k] = replace(mark, kind="cue", value="again")
     return made
