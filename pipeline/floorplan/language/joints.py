@@ -155,7 +155,7 @@ def _linked(draft: Draft, stock: Inventory, fact: Fact, facts: list[Fact]) -> No
         inner = next((i for i in (a, b) if i in owned), None)
         if inner and halls and len(fact.a) + len(fact.b) > 2:
             continue  # "two baths on the corridor, one en suite"
-        kind = KINDS[fact.what]
+        kind = "wall" if fact.what == "near" and {a, b} & owned else KINDS[fact.what]  # somebody's own bath has no second door
         if fact.what == "near" and (
             stock.get(a).type == stock.get(b).type or {stock.get(a).type, stock.get(b).type} <= {"bedroom", "office"}
         ):

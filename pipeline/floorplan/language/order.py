@@ -19,12 +19,39 @@ FARTHEST = 14  # marks between the two parts of a frame
 
 def reorder(marks: list[Mark], heard: Words) -> list[Mark]:
     """Return the marks in the order that the grammar reads."""
-    framed = _frames(marks, heard)
+    framed = _frames(_reached(marks) if heard.lexicon.language == "de" else marks, heard)
     if heard.lexicon.language == "de":
         return _german(framed, heard)
     rules: dict[str, Callable[[list[Mark]], list[Mark]]] = {"es": _spanish, "zh": chinese}
     rule = rules.get(heard.lexicon.language)
     return rule(framed) if rule else framed
+
+
+REACHED = {"erreichbar", "zugaenglich", "erreichen", "betreten", "begehbar", "betretbar", "erschlossen"}
+
+
+def _reached(marks: list[Mark]) -> list[Mark]:
+    """Read "vom Flur aus sind Bad, Büro und Küche zu erreichen" as "vom Flur aus erreicht man Bad, Büro und Küche"."""
+    made = list(marks)
+    for k in range(len(made) - 3):
+        start = k == 0 or made[k - 1].kind in {"stop", "line"}
+        room = next((j for j in range(k + 1, min(k + 4, len(made))) if made[j].kind in HEADS), None)
+        if (
+            not start
+            or made[k].kind not in {"cue", "fill"}
+            or _plain(made[k].text.split()[0]) not in {"von", "ueber", "durch"}
+            or room is None
+        ):
+            continue
+        verb = next((j for j in range(room + 1, min(room + 3, len(made))) if made[j].kind == "verb"), None)
+        end = next((j for j in range(room, len(made)) if made[j].kind in {"stop", "line"}), len(made))
+        tail = next((j for j in range(room, end) if made[j].text in REACHED), None)
+        if verb is None or tail is None or not any(m.kind == "comma" for m in made[verb:tail]):
+            continue
+        made[k] = replace(made[k], kind="cue", value="from")
+        made[verb] = replace(made[verb], kind="cue", value="leads", text="erreicht man")
+        made[tail] = replace(made[tail], kind="fill")
+    return made
 
 
 def _frames(marks: list[Mark], heard: Words) -> list[Mark]:

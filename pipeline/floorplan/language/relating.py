@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from pipeline.floorplan.language.clauses import Clause
 
 MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two rooms at the end: "kitchen and bath adjacent"
+TOWARDS = {"zu", "zum", "zur", "in", "ins", "auf", "an", "nach", "to", "into", "onto", "al"}  # something follows, though no room
 AT = {"am", "an der", "an dem", "liegt am", "liegen am", "liegen an"}  # where a room lies
 SINGULAR = {"is", "lies", "sits", "stands", "opens", "esta", "este", "es", "sea", "queda", "ist", "liegt", "se encuentra"}
 
@@ -163,7 +164,9 @@ def _alone(clause: Clause, k: int, e: Element) -> int:
     rest = next((x for x in clause.sentence[k + 1 :] if x.kind not in {"det", "verb"} and (x.kind, x.value) != ("flag", "doors")), None)
     ends = rest is None or rest.kind in {"comma", "but", "close"}  # "cocina y salón comunicados por una puerta corredera"
     rooms = ids_of(clause.run) or clause.subject
-    listed_alone = ends and e.value in MUTUAL and len(rooms) > 1 and "*" not in rooms and coordinate(clause)
+    listed_alone = (
+        ends and e.value in MUTUAL and e.text.split()[-1] not in TOWARDS and len(rooms) > 1 and "*" not in rooms and coordinate(clause)
+    )
     if e.text == "by" and not mutual:
         return k + 1
     if mutual or listed_alone or (e.value == "wall" and (clause.run or clause.subject)):

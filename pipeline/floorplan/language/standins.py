@@ -54,7 +54,8 @@ def _neither(marks: list[Mark]) -> list[Mark]:
         elif mark.kind == "neg" and first is None and mark.text.split()[0] in {"weder", "ni", "neither"}:
             first = k
         elif mark.kind == "neg" and first is not None and mark.text.split()[0] in {"noch", "ni", "nor"}:
-            named = any(m.kind == "room" for m in made[max(first, k - 4) : k])
+            ahead = next((m.kind for m in made[k + 1 :] if m.kind not in {"adverb", "flag", "det"}), "")
+            named = ahead != "cue" and any(m.kind == "room" for m in made[max(first, k - 4) : k])
             made[k] = replace(mark, kind="join", value="or") if named else mark
     return made
 
