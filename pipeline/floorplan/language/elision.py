@@ -146,7 +146,7 @@ def _of_which(marks: list[Mark]) -> list[Mark]:
     return made
 
 
-def _phrases(marks: list[Mark]) -> list[Mark]:
+def _phrases(marks: list[Mark]) -> list[Mark]:  # noqa: PLR0912 - one branch per turn of speech
     """Read "uno dentro del dormitorio" as one of them, "el nuestro" as our bedroom, "también" in front of a verb as nothing, a door that parts two rooms as a way."""
     made: list[Mark] = []
     for k, mark in enumerate(marks):
@@ -155,6 +155,22 @@ def _phrases(marks: list[Mark]) -> list[Mark]:
             made.append(replace(mark, kind="det", value="indefinite"))
         elif mark.text in OURS and made and made[-1].kind in {"det", "pron"} and ahead.kind not in {"room", "adj", "size"}:
             made.append(replace(mark, kind="room", value="bedroom/primary"))
+        elif mark.kind == "join" and mark.text == "ni" and ahead.kind == "cue":
+            made.append(replace(mark, kind="neg", value=""))
+        elif mark.kind == "join" and mark.text == "tambien" and ahead.kind in ENDS | {"comma"} and made and made[-1].kind == "room":
+            made.append(replace(mark, kind="flag", value="too"))
+        elif mark.kind == "join" and mark.value == "and" and ahead.kind == "relative" and ahead.text == "que":
+            made.append(replace(mark, kind="but", value=""))  # "..., y que la cocina ...": a new statement
+        elif (
+            mark.text in {"de", "del"}
+            and ahead.value in {"hallway", "entry", "definite"}
+            and made
+            and made[-1].value in {"bathroom", "wc"}
+            and _hall(marks, k)
+        ):
+            if made[-1].value == "bathroom" and not made[-1].plural:
+                made[-1] = replace(made[-1], value="bathroom/shared")
+            made.append(replace(mark, kind="cue", value="door", text="en el"))
         elif (
             mark.kind == "join"
             and mark.text in {"tambien", "ademas"}
@@ -176,6 +192,12 @@ def _phrases(marks: list[Mark]) -> list[Mark]:
 
 OURS = {"nuestro", "nuestra", "mio", "mia"}
 PARTED = {"separan", "separa", "separados", "separadas", "separado", "separada", "dividen", "divididos"}
+
+
+def _hall(marks: Sequence[Mark], k: int) -> bool:
+    """Whether a hall follows "el baño del" at k."""
+    j = k + 1 + (k + 1 < len(marks) and marks[k + 1].kind == "det")
+    return j < len(marks) and marks[j].value == "hallway"
 
 
 def _to_home(made: Sequence[Mark]) -> bool:
@@ -213,6 +235,11 @@ def _leaving(marks: list[Mark]) -> list[Mark]:
     """Read "del salón parte un pasillo": from the living room one comes to a corridor."""
     made = list(marks)
     for k, mark in enumerate(marks):
+        of_which = k + 3 < len(marks) and mark.text in {"del", "de la", "desde el", "desde la"} and marks[k + 1].text == "que"
+        if of_which and set(marks[k + 2].text.split()) & LEAVING:  # "un salón del que cuelgan la cocina y el baño"
+            made[k] = replace(mark, kind="fill", value="")
+            made[k + 2] = replace(marks[k + 2], kind="cue", value="leads", text="da a")
+            continue
         begins = k == 0 or marks[k - 1].kind in {"stop", "line", "comma", "join", "colon"}
         start = k + 1 + (mark.text == "de" and k + 1 < len(marks) and marks[k + 1].kind == "det")
         if not begins or mark.text not in {"de", "del"} or start + 1 >= len(marks) or marks[start].kind != "room":

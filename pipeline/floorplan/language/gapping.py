@@ -21,8 +21,8 @@ def regained(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with each verb and room in its place."""
     made = _doorways(list(marks))
     if heard.lexicon.language == "es":
-        made = _most(_rather(_another(_gapped(_onto(_towards(made))))))
-    return _measured(made)
+        made = _most(_another(_gapped(_onto(_towards(made)))))
+    return _measured(_rather(made, heard))
 
 
 def _doorways(marks: list[Mark]) -> list[Mark]:
@@ -52,8 +52,8 @@ def _towards(marks: list[Mark]) -> list[Mark]:
         j = k + 1
         while j < len(marks) and j - k < 4 and (marks[j].kind in {"wing", "fill", "adverb"} or marks[j].text in {"al", "otro", "un"}):
             j += 1
-        with_it = j < len(marks) and marks[j].text == "con" and j > k + 1
-        if marks[k].text in PASSING and marks[k].kind == "cue" and with_it:
+        with_it = j < len(marks) and marks[j].text == "con"
+        if marks[k].text.rsplit(" ", 1)[-1] in PASSING and marks[k].kind == "cue" and with_it:
             made.append(replace(marks[k], value="door", text=marks[k].text + " con", last=marks[j].last))
             k = j + 1
         else:
@@ -72,6 +72,9 @@ def _gapped(marks: list[Mark]) -> list[Mark]:
         elif mark.kind == "cue" and mark.value in {"door", "near", "leads", "open"} and mark.text.endswith(" con"):
             way = mark
         if way is None or mark.text != "con" or (mark.kind, mark.value) != ("cue", "has") or room_at(marks, k + 1) is None:
+            continue
+        if marks[k - 1].kind == "join":  # "comunica con el salón y con el pasillo"
+            made[k] = replace(mark, value="again")
             continue
         j = k - 1
         while j > 0 and marks[j].kind in {"comma", "amount", "adj", "size"}:
@@ -120,19 +123,39 @@ def _another(marks: list[Mark]) -> list[Mark]:
         ends = k + 1 >= len(marks) or marks[k + 1].kind in CLOSERS
         said = k > 0 and (marks[k - 1].kind == "verb" or marks[k - 1].value == "has")
         last = next((m for m in reversed(made[:-1]) if m.kind == "room"), None)
-        if (mark.kind, mark.value) == ("det", "another") and ends and said and last is not None and not last.value.startswith("bedroom"):
+        start = max((i for i in range(k) if marks[i].kind in ENDS), default=-1) + 1
+        place = next((i for i in range(start, k) if marks[i].kind == "room"), None)
+        first = marks[place] if place is not None else None
+        single = place is not None and place > 0 and not marks[place].plural and marks[place - 1].value == "indefinite"
+        placed = k + 1 < len(marks) and marks[k + 1].kind == "cue" and marks[k + 1].value in {"door", "near", "in", "from"}
+        if (
+            (mark.kind, mark.value) == ("det", "another")
+            and placed
+            and single
+            and first is not None
+            and marks[k - 1].kind in {"join", "comma"}
+        ):
+            made.append(replace(first, plural=False, first=mark.last, last=mark.last))  # "a bath by the kitchen and another in the bedroom"
+        elif (mark.kind, mark.value) == ("det", "another") and ends and said and last is not None and not last.value.startswith("bedroom"):
             made.append(replace(last, plural=False, first=mark.last, last=mark.last))
     return made
 
 
-def _rather(marks: list[Mark]) -> list[Mark]:
+def _rather(marks: list[Mark], heard: Words) -> list[Mark]:
     """Read "prefiero un salón que dos salas" as the first of the two."""
     made = list(marks)
     for k, mark in enumerate(marks):
         begin = max((i for i in range(k) if marks[i].kind in ENDS), default=-1) + 1
-        rather = any("prefier" in m.text or m.text == "mejor" for m in marks[begin:k])
+        said = heard.texts[marks[begin].first : mark.first] if begin < k else []
+        rather = bool({"prefiere", "prefiero", "preferimos", "mejor", "rather", "prefer", "lieber"} & set(said))
         room = room_at(marks, k + 1)
-        if mark.text == "que" and rather and room is not None and any(m.kind == "room" for m in marks[begin:k]) and room > k + 1:
+        if (
+            mark.text in {"que", "than", "als"}
+            and rather
+            and room is not None
+            and any(m.kind == "room" and m.value == marks[room].value for m in marks[begin:k])
+            and room > k + 1
+        ):
             end = room + 1
             while end < len(marks) and marks[end].kind in LOOKS:
                 end += 1

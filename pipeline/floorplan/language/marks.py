@@ -65,8 +65,11 @@ def listen(prompt: str, language: Language) -> Words:
     tokens = tokenize(prompt)
     written = [fold(t.text) for t in tokens]
     tokens, texts = repair(tokens, completed(written, lex.vocabulary) if language == "de" else written, lex)
-    texts = [lex.tenses.get(t, "entra" if t == "entre" and k and texts[k - 1] == "se" else t) for k, t in enumerate(texts)]
+    texts = [lex.tenses.get(t, OURSELVES.get(t, t) if k and texts[k - 1] == "se" else t) for k, t in enumerate(texts)]
     return Words(prompt, tokens, texts, lex)
+
+
+OURSELVES = {"entre": "entra", "pase": "pasa", "parta": "parte"}  # behind Spanish "se"; alone they are other words
 
 
 def segment(heard: Words) -> list[Mark]:

@@ -8,7 +8,18 @@ from dataclasses import replace
 
 from pipeline.floorplan.language.marks import Mark, Words
 
-HEADINGS = {"ground": "0", "lower": "0", "baja": "0", "upper": "1", "top": "1", "alta": "1"}  # in front of a colon
+HEADINGS = {
+    "ground": "0",
+    "lower": "0",
+    "baja": "0",
+    "bajo": "0",
+    "inferior": "0",
+    "superior": "1",
+    "primera": "1",
+    "upper": "1",
+    "top": "1",
+    "alta": "1",
+}  # in front of a colon
 ATTIC = {"dg", "dachgeschoss"}
 BESIDE = {"nebeneinander", "beieinander", "aneinander", "side by side"}
 COUNTED = {"first": "1", "second": "2"}  # the same where a prompt has a ground floor

@@ -26,6 +26,7 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
     index = end = k
     joined = ""
     first: Element | None = None
+    last: Element | None = None
     while index < len(sentence):
         e = sentence[index]
         if e.kind == "np":
@@ -53,7 +54,7 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
             group += [i for i in ids if i not in group and i not in left]
             if e.type in SOCIAL and (j := written_as_one(clause, index, e)):  # "around a kitchen-living room"
                 clause.state.say("merge", (*ids, *name(clause.state, sentence, j, None)), (), e)
-            first, joined, end = first or e, "", index + 1
+            first, last, joined, end = first or e, e, "", index + 1
         elif (
             e.kind in {"pron", "det"}
             and not group
@@ -99,6 +100,10 @@ def objects(clause: Clause, k: int, cue: str, left: Group) -> tuple[Group, int]:
             and not (e.kind in {"verb", "open"} and group)
         ) or (e.kind == "colon" and not group and cue == "leads"):
             pass
+        elif e.kind == "open" and group and [x.kind for x in sentence[index + 1 : index + 3]] == ["amount", "close"] and last is not None:
+            last.amounts += [x.mark for x in sentence[index + 1 : index + 2] if x.mark is not None]  # "the kitchen (9 m2), the bath (5 m2)"
+            measures(clause, last)
+            index += 2
         elif e.kind == "amount" and group and sentence[index - 1].kind == "np":
             break
         else:

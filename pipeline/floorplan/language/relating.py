@@ -21,7 +21,7 @@ AT = {"am", "an der", "an dem", "liegt am", "liegen am", "liegen an"}  # where a
 SINGULAR = {"is", "lies", "sits", "stands", "opens", "esta", "este", "es", "sea", "queda", "ist", "liegt", "se encuentra"}
 
 
-def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, PLR0912 - one answer per kind of cue
+def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, PLR0912, PLR0915 - one answer per kind of cue
     """Read one cue; return where to go on."""
     state = clause.state
     if e.value == "has":
@@ -83,6 +83,8 @@ def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, P
     if not left and door and e.value == "leads" and len(group) == 2:  # "a door connects the office and the kitchen"
         state.say("door", group[:1], group[1:], e)
         return j
+    if not left and clause.negative is not None and clause.waiting is not None and clause.waiting[0].value == "from":
+        left, clause.waiting = clause.waiting[1], None  # "from the kitchen no door may lead into the bedroom"
     if not left or _inverted(clause, k, j):
         clause.waiting = (e, group)
         clause.subject, clause.latest, clause.run, clause.verb = (), group, [], False

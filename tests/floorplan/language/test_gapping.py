@@ -51,3 +51,21 @@ def test_a_preference_names_no_room():
 
 def test_a_unit_may_stand_before_its_figure():
     assert parse("dormitorios 3, baños 2, cocina 1, m2 110").total_area.target == 110
+
+
+@pytest.mark.parametrize("verb", ["conecte", "comunique", "conecta", "comunicará"])
+def test_a_way_goes_on_behind_its_preposition(verb):
+    program = parse(f"Un recibidor que {verb} con el salón y con el pasillo. Un dormitorio, un baño y una cocina.")
+    assert joined(program, ("entry", "living_room"), ("entry", "hallway"))
+
+
+@pytest.mark.parametrize("place", ["dentro del dormitorio", "junto al salón", "al lado del dormitorio"])
+def test_another_one_elsewhere_is_a_second_room(place):
+    program = parse(f"Un baño junto a la cocina y otro {place}. Cocina, salón y un dormitorio.")
+    assert sum(r.type == "bathroom" for r in program.rooms) == 2
+
+
+def test_the_bath_of_the_corridor_is_not_the_bedroom_s():
+    program = parse("Un dormitorio con baño propio y dos más. Los niños usan el baño del pasillo. Cocina y salón.")
+    assert sum(r.type == "bathroom" for r in program.rooms) == 2
+    assert joined(program, ("bathroom", "hallway"))
