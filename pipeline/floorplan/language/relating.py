@@ -21,7 +21,7 @@ AT = {"am", "an der", "an dem", "liegt am", "liegen am", "liegen an"}  # where a
 SINGULAR = {"is", "lies", "sits", "stands", "opens", "esta", "este", "es", "sea", "queda", "ist", "liegt", "se encuentra"}
 
 
-def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, PLR0912, PLR0915 - one answer per kind of cue
+def relate(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, PLR0912 - one answer per kind of cue
     """Read one cue; return where to go on."""
     state = clause.state
     if e.value == "has":
