@@ -15,6 +15,7 @@ from pipeline.floorplan.language.attaching import attach
 from pipeline.floorplan.language.bearings import located
 from pipeline.floorplan.language.denials import denied
 from pipeline.floorplan.language.detection import detect
+from pipeline.floorplan.language.doorways import phrased
 from pipeline.floorplan.language.elision import unsaid
 from pipeline.floorplan.language.families import homed
 from pipeline.floorplan.language.marks import listen, measured, segment
@@ -62,7 +63,7 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     amounts = dealt(measured(shared_unit(crossed(plain_areas(loosened(segment(heard), heard)), heard)), heard))
     revised = revise(widen(amounts, heard), heard)
     said = located(compared(tallied(homed(revised.marks, heard), heard), heard), heard)
-    marks = reorder(written_out(noted(resolved(housed(unsaid(denied(said), heard)), heard), heard), heard), heard)
+    marks = reorder(written_out(noted(resolved(housed(unsaid(denied(phrased(said, heard)), heard)), heard), heard), heard), heard)
     parsed = sentences(marks, heard)
     spoken = {e.kind for s in parsed for e in s}
     if not spoken & {"np", "home"} and not any(e.kind == "amount" and e.value == "rooms" for s in parsed for e in s):

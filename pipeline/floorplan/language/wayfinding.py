@@ -111,7 +111,7 @@ def _going(marks: list[Mark]) -> list[Mark]:
             or (made[j].kind, made[j].value) == ("flag", "reachable")
             or _into(made[j])
         )
-        if j < len(made) and going and room_at(made, j + 1) is not None:
+        if going and room_at(made, j + 1) is not None:
             made[j] = replace(made[j], kind="cue", value="leads")
             del made[start + 1 : j]  # "one should be able to"
             return [*made[: start + 2], *_going(made[start + 2 :])]

@@ -1,0 +1,77 @@
+"""Ways to say the same, as tables (`ways/*.yaml`): each phrasing with each choice of rooms, and what its program must state."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from benchmarks.language import faults
+from pipeline.floorplan import parse
+
+FOLDER = Path(__file__).parent / "ways"
+LANGUAGES = sorted(p.stem for p in FOLDER.glob("*.yaml"))
+CONTRACTED = {" a el ": " al ", " de el ": " del "}  # Spanish
+
+
+def _typed(value: Any, types: Mapping[str, str]) -> Any:
+    """Put the types of rooms for the letters of a table."""
+    if isinstance(value, str):
+        return types.get(value, value)
+    if isinstance(value, Mapping):
+        return {types.get(k, k): _typed(v, types) for k, v in value.items()}
+    return [_typed(v, types) for v in value] if isinstance(value, list) else value
+
+
+def cases(language: str) -> Iterator[tuple[str, dict[str, Any], str]]:
+    """Return (meaning, case for `benchmarks.language.faults`, reason why it is known to fail) for every way and choice."""
+    table = yaml.safe_load((FOLDER / f"{language}.yaml").read_text(encoding="utf-8"))
+    for entry in table["meanings"]:
+        for way in entry["ways"]:
+            told = way if isinstance(way, Mapping) else {"way": way}
+            for chosen in entry["choices"]:
+                types = dict(zip("abcde", chosen, strict=False))
+                bare = entry.get("fill", {})
+                names = {k: bare.get(t, table["rooms"].get(t, t)) for k, t in types.items()}
+                names |= {k.upper(): f"{table.get('article', '')}{n}" for k, n in names.items()}
+                prompt = told["way"].format(**names) if types else told["way"]
+                for apart, joined in CONTRACTED.items() if language == "es" else ():
+                    prompt = prompt.replace(apart, joined)
+                wanted = _typed(told.get("gives", entry["gives"]), types)
+                wanted.setdefault("rooms", {t: 1 for k, t in types.items() if "{" + k in told["way"] or "{" + k.upper() in told["way"]})
+                yield entry["meaning"], {"prompt": prompt[0].upper() + prompt[1:], **wanted}, told.get("known", "")
+
+
+def wrong(case: Mapping[str, Any]) -> list[str]:
+    """Return what the program of a case states wrongly, common walls and distances among it."""
+    found = faults(case)
+    if found or not (case.get("walls") or case.get("away")):
+        return found
+    program = parse(case["prompt"])
+    kinds = {r.id: r.type for r in program.rooms}
+    walls = [{kinds[k.a], kinds[k.b]} for k in program.links if k.kind == "wall"]
+    far = [{kinds.get(r.a, r.a), kinds.get(r.b or "", r.b)} for r in program.relations if r.kind == "separation"]
+    found += [f"no wall {pair}" for pair in case.get("walls", ()) if set(pair) not in walls]
+    return found + [f"not far {pair}" for pair in case.get("away", ()) if set(pair) not in far]
+
+
+def share(language: str) -> tuple[list[tuple[str, str, list[str]]], int, Sequence[str]]:
+    """Return what fails, how many cases there are, and the ways that are marked as known but pass."""
+    failed, count, mended = [], 0, []
+    for meaning, case, known in cases(language):
+        count += 1
+        found = wrong(case)
+        if found and not known:
+            failed.append((meaning, case["prompt"], found))
+        if known and not found:
+            mended.append(case["prompt"])
+    return failed, count, mended
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_way_gives_what_its_table_says(language: str) -> None:
+    failed, _, _ = share(language)
+    assert not failed, "\n".join(f"{m}: {p}: {w}" for m, p, w in failed)
