@@ -11,7 +11,6 @@ from pipeline.floorplan.language.wayfinding import room_at
 ENDS = {"stop", "line"}
 CLOSERS = {"stop", "line", "comma", "join", "close", "but"}
 FACING = {"dan", "da", "dar", "salen", "sale", "salir", "abren", "abre", "abrir", "desembocan", "conducen", "llevan", "comunican", "asoman"}
-SIDES = {"a ambos lados de", "a los lados de", "a los dos lados de", "a lo largo de", "alrededor de", "en torno a"}
 PASSING = {"comunica", "comunican", "conecta", "conectan", "enlaza", "enlazan"}
 TOWARDS = {"a", "al", "hacia", "con", "en", "to", "into", "onto", "towards", "desde"}
 LOOKS = {"adj", "size", "look", "post"}

@@ -11,8 +11,6 @@ from pipeline.floorplan.language.marks import Words
 from pipeline.floorplan.language.negation import ban
 from pipeline.floorplan.language.phrases import Element
 
-STYLED = {"look"}
-
 
 def read(heard: Words, sentences: list[list[Element]]) -> Reading:
     """Read all sentences: what is ruled out, what is introduced, then what is said of it."""
