@@ -163,6 +163,7 @@ def _ordered(marks: list[Mark]) -> list[Mark]:
 BETWEEN_THEM = (
     ("have", "a", "connecting", "door"),
     ("have", "a", "door", "between", "them"),
+    ("have", "a", "door", "in", "between"),
     ("with", "a", "door", "between", "them"),
     ("with", "a", "connecting", "door"),
     ("with", "a", "door", "in", "between"),
@@ -181,8 +182,8 @@ OPEN_BETWEEN = (
     ("merge",),
     ("merge", "into", "one", "space"),
     ("merge", "into", "one"),
-    ("with", "an", "opening", "between", "them"),
-    ("with", "a", "wide", "opening", "between", "them"),
+    ("with", "an", "opening", "in", "between"),
+    ("with", "a", "wide", "opening", "in", "between"),
 )
 APART = (("far", "apart"), ("well", "apart"), ("apart",), ("at", "opposite", "ends"), ("at", "opposite", "ends", "of", "the", "house"))
 

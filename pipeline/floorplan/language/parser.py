@@ -34,6 +34,7 @@ from pipeline.floorplan.language.standins import resolved
 from pipeline.floorplan.language.tables import plain_areas
 from pipeline.floorplan.language.tallies import tallied
 from pipeline.floorplan.language.text import tokenize
+from pipeline.floorplan.language.wordings import worded
 from pipeline.floorplan.program import FloorProgram
 
 LONGEST = 20_000  # characters
@@ -63,7 +64,9 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     amounts = dealt(measured(shared_unit(crossed(plain_areas(loosened(segment(heard), heard)), heard)), heard))
     revised = revise(widen(amounts, heard), heard)
     said = located(compared(tallied(homed(revised.marks, heard), heard), heard), heard)
-    marks = reorder(written_out(noted(resolved(housed(unsaid(denied(phrased(said, heard)), heard)), heard), heard), heard), heard)
+    marks = reorder(
+        written_out(noted(resolved(housed(unsaid(denied(phrased(worded(said, heard), heard)), heard)), heard), heard), heard), heard
+    )
     parsed = sentences(marks, heard)
     spoken = {e.kind for s in parsed for e in s}
     if not spoken & {"np", "home"} and not any(e.kind == "amount" and e.value == "rooms" for s in parsed for e in s):

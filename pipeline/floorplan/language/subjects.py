@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 WITH = {"con", "with", "mit"}
 THROUGH = {"through", "via", "durch", "ueber", "por", "traves", "经", "过", "通"}
 FINITE = {
+    "come",
+    "branch",
+    "hang",
     "gehen",
     "liegen",
     "fuehren",
