@@ -70,7 +70,7 @@ class Spec(NamedTuple):
     heed: Floats  # (n,) how much the wanted area counts
     flight: Ints  # (3,) index of the staircase or -1, longer and shorter side of what its flights take [cells]
     between: Ints  # (k, 3) room a lies between b and c: seen from its centroid, theirs lie in opposite halves
-    near: Floats  # (k, 3) rooms a, b that belong together (a hub and what hangs on it, members of a zone), and how much
+    near: Floats  # (k, 3) rooms a, b that belong together (members of a zone), and how much
 
 
 def tree(link: Ints, root: int) -> Ints:
@@ -240,7 +240,7 @@ def stair_snug(both: float, stair: float, own: float) -> float:
 
 @compiled
 def together(out: Measures, near: Floats) -> float:
-    """Return what hubs and zones ask for, weighted: distances of centroids / diagonal, meant over each hub's and each zone's pairs."""
+    """Return what zones ask for, weighted: distances of centroids / diagonal, meant over each zone's pairs."""
     total = 0.0
     for k in range(near.shape[0]):
         a, b = int(near[k, 0]), int(near[k, 1])

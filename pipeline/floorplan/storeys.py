@@ -290,13 +290,8 @@ def _between(program: FloorProgram, index: dict[str, int]) -> NDArray[np.int64]:
 
 
 def _near(program: FloorProgram, index: dict[str, int]) -> NDArray[np.float64]:
-    """Return rows (a, b, share) of rooms that belong together: members of a zone, a hub and what hangs on it; shares of each sum to 1."""
+    """Return rows (a, b, share) of rooms that belong together: members of a zone; shares of each sum to 1."""
     groups = [list(combinations(sorted({index[r.id] for m in z.members for r in program.select(m)}), 2)) for z in program.zones]
-    for relation in program.relations:
-        if relation.kind == "hub":
-            for hub in program.select(relation.a):
-                ends = {k.b if k.a == hub.id else k.a for k in program.links if hub.id in {k.a, k.b} and k.kind != "wall"}
-                groups.append([(index[hub.id], index[i]) for i in sorted(ends) if i in index])
     found = [(a, b, 1.0 / len(group)) for group in groups for a, b in group]
     return np.array(found, np.float64).reshape(-1, 3)
 
