@@ -69,10 +69,10 @@ def connect(program: FloorProgram) -> tuple[Link, ...]:
 
 
 def _complete(
-    program: FloorProgram, links: tuple[Link, ...], root: str, distant: Sequence[Distance], seen: set[frozenset[tuple[str, str]]]
+    program: FloorProgram, links: tuple[Link, ...], root: str, distant: Sequence[Distance], seen: set[frozenset[tuple[str, str, bool]]]
 ) -> tuple[Link, ...] | None:
     """Return the first completion that keeps rooms far enough apart. Links only bring rooms nearer: a set that fails is left at once."""
-    key = frozenset((k.a, k.b) for k in links)
+    key = frozenset((k.a, k.b, k.kind == "wall") for k in links)
     if key in seen or len(seen) >= BUDGET or nearness(distant, links):
         return None
     seen.add(key)

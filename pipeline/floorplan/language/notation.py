@@ -6,6 +6,7 @@ import itertools
 from collections.abc import Sequence
 from dataclasses import replace
 
+from pipeline.floorplan.language.jottings import jotted
 from pipeline.floorplan.language.marks import Mark, Words
 
 HEADINGS = {
@@ -31,7 +32,7 @@ LETTERS = {"k": "kitchen", "d": "hallway", "b": "bathroom", "t": "balcony"}  # "
 
 def noted(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with shorthand of lists and notes written out."""
-    made = _doors(_headed(_summed(_lettered(marks, heard))), heard)
+    made = jotted(_doors(_headed(_summed(_lettered(marks, heard))), heard), heard)
     made = _bare(_limited(_indexed(made)))
     made = _numbered(_singles(_together(_paired(_more(_one_with(_other(made)))))))
     return _beside(_largest(_no_two(made)))

@@ -127,6 +127,14 @@ def _denies(sentence: list[Element], but: Element) -> bool:
     return rest[:1] == ["neg"] and rest[1:2] in ([], ["comma"])
 
 
+def _ends_list(sentence: list[Element], k: int) -> bool:
+    """Whether what stands from k on is the end of a list of known rooms: "..., the kitchen and the bath"."""
+    rest = sentence[k:]
+    rooms = [x for x in rest if x.kind == "np"]
+    plain = all(x.kind in {"np", "det", "adj", "size", "comma", "and"} for x in rest)
+    return plain and all(x.definite and not x.banned for x in rooms) and len(rooms) > 1 and any(x.kind == "and" for x in rest)
+
+
 def _continues(clause: Clause, index: int, cue: str, joined: str, first: Element) -> bool:  # noqa: PLR0911 - one answer per case: a grammar
     """Whether a list after a cue goes on with the phrase at index, or a new statement begins there."""
     e, sentence = clause.sentence[index], clause.sentence
@@ -154,7 +162,7 @@ def _continues(clause: Clause, index: int, cue: str, joined: str, first: Element
     if cue in WIDE:
         return not (cue == "between" and joined == "comma")
     if joined == "comma":
-        return False
+        return cue == "door" and first.definite and e.definite and _ends_list(sentence, index)
     new = bool(e.det & {"indefinite", "another"}) or e.number is not None
     if cue in {"door", "near", "open", "wall", "from", "ensuite", "cmp", "via"} and new and not e.definite:
         return bool(first.det & {"indefinite"}) and cue == "near"

@@ -14,6 +14,8 @@ ENDS = {"stop", "line", "colon", "comma"}
 ARTICLES = {"der", "die", "das", "den", "dem", "einer", "einem", "eine", "einen", "ein"}
 MELTED = {"ins": "in", "im": "in", "zum": "zu", "zur": "zu", "vom": "von", "durchs": "durch"}  # prepositions with their article
 HEADS = {"room", "suite"}
+PLAIN_ARTICLES = {"der", "dem"}  # frames that begin with no preposition end at a verb
+LISTED = {"room", "det", "adj", "size", "num", "clf", "comma", "join"}
 FARTHEST = 14  # marks between the two parts of a frame
 
 
@@ -85,8 +87,11 @@ def _frame(marks: list[Mark], k: int, heard: Words) -> tuple[str, int, int, int]
             continue
         named = False
         for j in range(start, min(len(marks), start + FARTHEST)):
-            if (marks[j].kind in ENDS and not (marks[j].kind == "comma" and cue.startswith("thru"))) or (
-                marks[j].kind == "cue" and marks[j].value not in {"has", "in", "door"} and _matches(marks, j, second) is None
+            list_ends = marks[j].kind in ENDS and not (marks[j].kind == "comma" and (cue.startswith("thru") or _listing(marks, start, j)))
+            if (
+                list_ends
+                or (first[0] in PLAIN_ARTICLES and marks[j].kind == "verb")
+                or (marks[j].kind == "cue" and marks[j].value not in {"has", "in", "door"} and _matches(marks, j, second) is None)
             ):
                 break
             if named and cue == "open" and _matches(marks, j, first) is not None and _matches(marks, j, second) is None:
@@ -96,6 +101,15 @@ def _frame(marks: list[Mark], k: int, heard: Words) -> tuple[str, int, int, int]
                 return cue, start, j, end
             named = named or marks[j].kind in {"room", "suite", "pron", "every", "zone"}
     return None
+
+
+def _listing(marks: list[Mark], start: int, k: int) -> bool:
+    """Whether the comma at k stands in a list of rooms that began at start: "mit dem Flur, der Küche und dem Bad verbunden"."""
+    inside = all(m.kind in LISTED for m in marks[start:k]) and marks[k - 1].kind == "room"
+    j = k
+    while j < len(marks) and marks[j].kind in LISTED:
+        j += 1
+    return inside and any(m.kind == "join" for m in marks[k:j])
 
 
 def _goes_on(marks: list[Mark], end: int, second: tuple[str, ...]) -> bool:

@@ -18,6 +18,7 @@ from pipeline.floorplan.language.detection import detect
 from pipeline.floorplan.language.doorways import phrased
 from pipeline.floorplan.language.elision import unsaid
 from pipeline.floorplan.language.families import homed
+from pipeline.floorplan.language.limits import supplied
 from pipeline.floorplan.language.marks import listen, measured, segment
 from pipeline.floorplan.language.masking import read_furniture
 from pipeline.floorplan.language.measures import compared
@@ -61,7 +62,7 @@ def understand(prompt: str) -> FloorProgram:
 def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     """Return what a prompt says of rooms, and no more; `plain` is it without its wishes for furniture, all else in its place."""
     heard = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
-    amounts = dealt(measured(shared_unit(crossed(plain_areas(loosened(segment(heard), heard)), heard)), heard))
+    amounts = dealt(measured(shared_unit(crossed(plain_areas(supplied(loosened(segment(heard), heard), heard)), heard)), heard))
     revised = revise(widen(amounts, heard), heard)
     said = located(compared(tallied(homed(revised.marks, heard), heard), heard), heard)
     marks = reorder(

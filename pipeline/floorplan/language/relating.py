@@ -108,6 +108,18 @@ def _from_to(clause: Clause, e: Element, left: Group, group: Group, j: int) -> i
     return j
 
 
+COUNTERS = {"theke", "tresen", "kochinsel", "bar", "kuecheninsel", "halbwand"}
+
+
+def _by_counter(clause: Clause) -> bool:
+    """Whether rooms are parted by furniture alone."""
+    return any(COUNTERS & set(x.text.split()) for x in clause.sentence)
+
+
+def _social(clause: Clause, left: Group, group: Group) -> bool:
+    return {clause.stock.get(i).type for i in (*left, *group) if i[0] not in "*<"} <= SOCIAL
+
+
 def _by_door(clause: Clause, e: Element) -> bool:
     """Whether a door is what parts two rooms."""
     k = _place(clause, e)
@@ -141,7 +153,8 @@ def _both_sides(clause: Clause, k: int, e: Element) -> tuple[Group, Group, int]:
     first = k == 0 or clause.sentence[k - 1].kind in {"comma", "and"}
     left = () if ahead is not None and ahead.value == "pair" and first else subject_of(clause, k, e)  # "dazwischen liegt das Bad"
     wide = len(left) > 2 and ahead is not None and ahead.kind == "np"
-    group, j = objects(clause, k + 1, e.value, () if wide else left)
+    cue = "leads" if e.value == "door" and DOORS & set(e.text.split()) else e.value
+    group, j = objects(clause, k + 1, cue, () if wide else left)
     if not group and e.value == "between" and left and first:  # "两间卧室中间是客厅"
         left = ()
         group, j = objects(clause, k + 1, e.value, ())
@@ -150,6 +163,16 @@ def _both_sides(clause: Clause, k: int, e: Element) -> tuple[Group, Group, int]:
     return tuple(i for i in left if i not in group), group, j  # "all rooms round a hall: kitchen, bath, all off the hall"
 
 
+DOORS = {
+    "tueren",
+    "schiebetueren",
+    "durchgaenge",
+    "zugaenge",
+    "verbindungen",
+    "ausgaenge",
+    "verbindungstueren",
+    "erschliesst",
+}  # to many rooms
 THERE = {"dort", "there", "ahi", "alli", "那 里", "里"}
 
 
@@ -269,6 +292,8 @@ def _emit(clause: Clause, e: Element, left: Group, group: Group) -> None:
     if cue == "apart" and _by_door(clause, e):
         cue = "door"  # "separated from the living area by a door"
         left = clause.objects if clause.objects and clause.stock.get(clause.objects[0]).type in HALLS else left
+    if cue == "apart" and (clause.negative is not None or _by_counter(clause)) and _social(clause, left, group):
+        clause.negative, cue = None, "open"  # "only a counter parts the kitchen from the living room"
     if cue == "apart":  # a kitchen apart from the living room has a door; a bedroom apart from it lies away
         kinds = {clause.stock.get(i).type for i in (*left, *group) if not i.startswith("*")}
         if kinds <= {"bathroom", "wc"}:

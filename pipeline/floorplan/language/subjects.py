@@ -39,7 +39,11 @@ FINITE = {
     "conducen",
     "give",
     "parten",
+    "erreicht",
+    "gruppieren",
+    "betritt",
 }
+HAVING = {"haben", "have", "tienen", "cuentan"}
 
 
 def subject_of(clause: Clause, k: int, e: Element) -> Group:  # noqa: C901, PLR0911, PLR0912 - one branch per case: a grammar
@@ -78,6 +82,7 @@ def subject_of(clause: Clause, k: int, e: Element) -> Group:  # noqa: C901, PLR0
         clause.verb
         or e.value in {"leads", "away", "apart"}
         or e.text.removeprefix("se ").split()[0] in FINITE
+        or any(x.text in FINITE | HAVING for x in clause.sentence[_place(clause, last) + 1 : k])
         or any(x.det & {"both", "all"} for x in clause.run)
     )
     if not coordinate(clause):  # "study downstairs, all bedrooms upstairs, garage connected to ...": commas part statements

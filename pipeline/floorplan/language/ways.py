@@ -63,7 +63,7 @@ def through(clause: Clause, k: int, e: Element) -> int:
         return k + 1
     while j < len(clause.sentence) and clause.sentence[j].kind in {"verb", "comma"}:
         j += 1
-    second, j = clause.after(j, "door", first)
+    second, j = clause.after(j, "leads" if e.value == "thru" else "door", first)
     if not second:
         return max(j, k + 1)
     things, hosts = (second, first) if e.value == "thru" else (first, second)

@@ -1,0 +1,142 @@
+"""Figures whose unit or limit stands elsewhere: "12, but no more than 16 m²", "14+ m²", "more than 90 m² it must not be", "hall 5, bath 7 (m²)"."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from pipeline.floorplan.language.marks import Mark, Words
+
+CLOSERS = {"comma", "stop", "line", "close", "join", "open"}
+OVER = {"least", "or_more"}
+
+
+def supplied(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Return the marks, figures and units still apart, with each unit and limit in its place."""
+    made = _headed(_tabled(_dealt(_spread(_plus(list(marks), heard), heard))), heard)
+    return _turned(_with(made), heard) if heard.lexicon.language == "de" else made
+
+
+def _bound(heard: Words, value: str, like: Mark) -> Mark:
+    """Return a mark of a limit in front of the figure `like`."""
+    text = next(t for t, v in heard.lexicon.bounds.items() if v == value)
+    return Mark("bound", value, 0.0, False, like.first, like.first, text)
+
+
+def _area(mark: Mark) -> bool:
+    return (mark.kind, mark.value) == ("unit", "area")
+
+
+def _plus(marks: list[Mark], heard: Words) -> list[Mark]:
+    """Read "14+ m²" as at least 14 m²."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        if mark.text == "+" and made and made[-1].kind == "num" and k + 1 < len(marks) and _area(marks[k + 1]):
+            made.insert(len(made) - 1, _bound(heard, "least", made[-1]))
+        else:
+            made.append(mark)
+    return made
+
+
+def _spread(marks: list[Mark], heard: Words) -> list[Mark]:
+    """Read "at least 12, but no more than 16 m²" as two limits in the same unit."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        made.append(mark)
+        if mark.kind != "num" or k < 1 or heard.lexicon.bounds.get(marks[k - 1].text) not in {"least", "most"}:
+            continue
+        j = k + 1
+        while j < len(marks) and marks[j].kind in {"comma", "but", "join"}:
+            j += 1
+        bound = j < len(marks) and heard.lexicon.bounds.get(marks[j].text) in {"least", "most"}
+        if j > k + 1 and bound and j + 2 < len(marks) and marks[j + 1].kind == "num" and _area(marks[j + 2]):
+            made.append(replace(marks[j + 2], first=mark.last, last=mark.last))
+    return made
+
+
+def _dealt(marks: list[Mark]) -> list[Mark]:
+    """Read "kitchen and bath with 12 and 6 m²", "(12 bzw. 6 m²)" as an area each."""
+    for k in range(len(marks) - 3):
+        number, join, second, unit = marks[k : k + 4]
+        if number.kind != "num" or join.kind != "join" or second.kind != "num" or not _area(unit) or number.value != "figure":
+            continue
+        j = k - 1
+        while j >= 0 and marks[j].kind in {"cue", "open", "verb", "colon", "fill", "word"} and k - j < 4:
+            j -= 1
+        rooms = [i for i in range(max(0, j - 4), j + 1) if marks[i].kind == "room"]
+        if len(rooms) < 2 or rooms[-1] != j or j == k - 1 or not any(m.kind == "join" for m in marks[rooms[-2] : j]):
+            continue
+        if any(m.kind == "num" or m.plural for m in marks[rooms[-2] : j + 1]) or (rooms[-2] and marks[rooms[-2] - 1].kind == "num"):
+            continue
+        first = [number, replace(unit, first=number.last, last=number.last)]
+        closed = k + 4 < len(marks) and marks[k + 4].kind == "close" and any(m.kind == "open" for m in marks[j:k])
+        front = [*marks[: rooms[-2] + 1], *first, *marks[rooms[-2] + 1 : j + 1], second, unit]
+        return [*front, *_dealt(marks[k + 4 + closed :])]
+    return marks
+
+
+def _tabled(marks: list[Mark]) -> list[Mark]:
+    """Read "hall 5, bath 7 (all in m²)", "areas in m²: hall 5, bath 7" as areas."""
+    lone = [
+        k
+        for k, m in enumerate(marks)
+        if _area(m)
+        and (k == 0 or marks[k - 1].kind not in {"num", "dash", "join", "hyphen"})
+        and m.first < m.last
+        and not (k + 1 < len(marks) and marks[k + 1].kind == "num")
+    ]
+    figures = [
+        k
+        for k in range(1, len(marks))
+        if marks[k].kind == "num" and marks[k].value == "figure" and marks[k - 1].kind in {"room", "colon"}
+        if any(m.kind == "room" for m in marks[max(0, k - 2) : k]) and (k + 1 >= len(marks) or marks[k + 1].kind in CLOSERS)
+    ]
+    if len(lone) != 1 or len(figures) < 2:
+        return marks
+    unit = marks[lone[0]]
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        if k == lone[0]:
+            made.append(replace(mark, kind="fill", value=""))
+        else:
+            made.append(mark)
+            if k in figures:
+                made.append(replace(unit, first=mark.last, last=mark.last))
+    return made
+
+
+def _headed(marks: list[Mark], heard: Words) -> list[Mark]:
+    """Read "minimum size kitchen: 14 m²" with the limit in front of the figure."""
+    made = list(marks)
+    for k in range(len(made) - 4):
+        bound = heard.lexicon.bounds.get(made[k].text) in {"least", "most"} and made[k + 1].kind == "room"
+        if bound and made[k + 2].kind == "colon" and made[k + 3].kind == "num" and _area(made[k + 4]):
+            made[k : k + 3] = [made[k + 1], replace(made[k], first=made[k + 2].last, last=made[k + 2].last)]
+    return made
+
+
+def _turned(marks: list[Mark], heard: Words) -> list[Mark]:
+    """Read "mehr als 90 m² dürfen es nicht sein" and "überschreitet 90 m² nicht" as a limit from above."""
+    made = list(marks)
+    for k in range(len(made) - 3):
+        side = heard.lexicon.bounds.get(made[k].text)
+        if side not in OVER | {"most", "or_less"} or made[k + 1].kind != "num" or not _area(made[k + 2]):
+            continue
+        end = next((j for j in range(k + 3, min(k + 8, len(made))) if made[j].kind not in {"verb", "pron", "adverb", "fill", "word"}), 0)
+        behind = end + 1
+        while end and behind < len(made) and made[behind].kind == "verb":
+            behind += 1
+        if end and made[end].text == "nicht" and (behind >= len(made) or made[behind].kind in CLOSERS):
+            made[k] = replace(_bound(heard, "most" if side in OVER else "least", made[k + 1]), first=made[k].first, last=made[k].last)
+            return [*made[:end], *_turned(made[end + 1 :], heard)]
+    return made
+
+
+def _with(marks: list[Mark]) -> list[Mark]:
+    """Read "m. Bad" as "mit Bad": a metre needs a figure."""
+    return [
+        replace(m, kind="cue", value="has", number=0.0, text="mit")
+        if m.kind == "unit" and m.text == "m" and k and marks[k - 1].kind in {"room", "home"}
+        else m
+        for k, m in enumerate(marks)
+    ]
