@@ -251,7 +251,7 @@ LEADING = {"fuehrt", "fuehren", "oeffnet", "oeffnen", "oeffnet sich", "oeffnen s
 def _leading(marks: list[Mark]) -> list[Mark]:
     """Read "der Flur führt nicht ins Bad", "öffnet sich nicht zum Bad" as no way there."""
     made: list[Mark] = []
-    for k, mark in enumerate(marks):
+    for mark in marks:
         made.append(mark)
         verb = next((j for j in range(len(made) - 2, max(-1, len(made) - 6), -1) if made[j].text in LEADING), None)
         there = _head(mark) in {"in", "ins", "zu", "zum", "zur", "auf"} and mark.kind in {"cue", "det", "fill", "word"}

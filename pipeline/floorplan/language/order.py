@@ -14,7 +14,8 @@ ENDS = {"stop", "line", "colon", "comma"}
 ARTICLES = {"der", "die", "das", "den", "dem", "einer", "einem", "eine", "einen", "ein"}
 MELTED = {"ins": "in", "im": "in", "zum": "zu", "zur": "zu", "vom": "von", "durchs": "durch"}  # prepositions with their article
 HEADS = {"room", "suite"}
-PLAIN_ARTICLES = {"der", "dem"}  # frames that begin with no preposition end at a verb
+PLAIN_ARTICLES = {"der", "dem"}  # frames that begin with no preposition end at one
+OTHERWISE = {"sind", "an", "ans", "mit", "von", "vom"}
 LISTED = {"room", "det", "adj", "size", "num", "clf", "comma", "join"}
 FARTHEST = 14  # marks between the two parts of a frame
 
@@ -90,7 +91,7 @@ def _frame(marks: list[Mark], k: int, heard: Words) -> tuple[str, int, int, int]
             list_ends = marks[j].kind in ENDS and not (marks[j].kind == "comma" and (cue.startswith("thru") or _listing(marks, start, j)))
             if (
                 list_ends
-                or (first[0] in PLAIN_ARTICLES and marks[j].kind == "verb")
+                or (first[0] in PLAIN_ARTICLES and marks[j].text.split(" ", 1)[0] in OTHERWISE)
                 or (marks[j].kind == "cue" and marks[j].value not in {"has", "in", "door"} and _matches(marks, j, second) is None)
             ):
                 break

@@ -105,6 +105,8 @@ def _going(marks: list[Mark]) -> list[Mark]:
             and not (_into(made[j]) and room_at(made, j + 1) is not None)
         ):
             j += 1
+        if j >= len(made):
+            continue
         going = (
             (made[j].kind, made[j].value) == ("cue", "leads")
             or made[j].kind == "enter"
