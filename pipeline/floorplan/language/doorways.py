@@ -160,7 +160,7 @@ def _ordered(marks: list[Mark]) -> list[Mark]:
     return marks
 
 
-BETWEEN_THEM = (
+BETWEEN_THEM: tuple[tuple[str, ...], ...] = (
     ("have", "a", "connecting", "door"),
     ("have", "a", "door", "between", "them"),
     ("have", "a", "door", "in", "between"),
@@ -185,20 +185,33 @@ OPEN_BETWEEN = (
     ("with", "an", "opening", "in", "between"),
     ("with", "a", "wide", "opening", "in", "between"),
 )
+BETWEEN_THEM += (
+    ("se", "comunican"),
+    ("se", "comunican", "por", "una", "puerta"),
+    ("se", "comunica"),
+    ("se", "comunica", "por", "una", "puerta"),
+)
+NEAR = (("juntos",), ("juntas",), ("uno", "al", "lado", "del", "otro"), ("una", "al", "lado", "de", "la", "otra"))
 APART = (("far", "apart"), ("well", "apart"), ("apart",), ("at", "opposite", "ends"), ("at", "opposite", "ends", "of", "the", "house"))
 
 
 def _ended(marks: list[Mark]) -> list[Mark]:
     """Read "A and B, with a door between them", "A and B without a wall between them", "keep A and B apart"."""
     for k in range(1, len(marks)):
-        for listed, cue, text in ((BETWEEN_THEM, "door", "connected"), (OPEN_BETWEEN, "open", "open"), (APART, "away", "far from")):
+        for listed, cue, text in (
+            (BETWEEN_THEM, "door", "connected"),
+            (OPEN_BETWEEN, "open", "open"),
+            (NEAR, "near", "junto a"),
+            (APART, "away", "far from"),
+        ):
             for words in listed:
                 end = _spells(marks, k, words)
                 if not end or (end < len(marks) and marks[end].kind not in ENDS | {"comma", "but", "close"}):
                     continue
                 j = k
-                while j and marks[j - 1].kind in {"comma", "verb", "fill", "word"}:
+                while j and marks[j - 1].kind in {"comma", "verb", "fill", "word", "neg"}:
                     j -= 1
+                none = [m for m in marks[j:k] if m.kind == "neg"]
                 if not j or marks[j - 1].kind != "room" or not any(m.text in {"and", "y", "e"} for m in marks[max(0, j - 4) : j]):
                     continue
                 at = marks[k]
@@ -207,7 +220,7 @@ def _ended(marks: list[Mark]) -> list[Mark]:
                     Mark("reciprocal", "", 0.0, False, at.last, at.last, "each other"),
                 ]
                 verb = Mark("verb", "", 0.0, False, at.first, at.first, "are")
-                return [*(m for m in marks[:j] if m.text != "keep"), verb, *said, *marks[end:]]
+                return [*(m for m in marks[:j] if m.text != "keep"), *none, verb, *said, *marks[end:]]
     return marks
 
 

@@ -1,4 +1,4 @@
-"""English ways that say a relation round about: "with doors to ...", "from the hall there is access to ...", "access to X is from Y"."""
+"""Ways that say a relation round about: "with doors to ...", "from the hall there is access to ...", "access to X is from Y"."""
 
 from __future__ import annotations
 
@@ -32,10 +32,11 @@ REACHED = {
 
 def worded(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with what is said round about said by a cue."""
-    if heard.lexicon.language != "en":
+    if heard.lexicon.language not in {"en", "es"}:
         return list(marks)
     made: list[Mark] = []
-    rules = (_each, _doors, _from, _which, _access, _you, _there, _wide, _but, _baths, _per, _whole)
+    english = (_each, _doors, _from, _which, _access, _you, _there, _wide, _but, _baths, _per, _whole)
+    rules = english if heard.lexicon.language == "en" else (_doors, _one_goes, _baths, _per, _told)
     for sentence in sentences_of(marks):
         said = sentence
         for rule in rules:
@@ -51,7 +52,7 @@ def _listed(marks: Sequence[Mark], k: int) -> tuple[int, int]:
     while j:
         end, count = j, count + 1
         k = j
-        while k < len(marks) and (marks[k].kind in {"comma", "join"} or marks[k].text in {"to", "into"}) and k - j < 3:
+        while k < len(marks) and (marks[k].kind in {"comma", "join"} or marks[k].text in {"to", "into", "a", "al"}) and k - j < 3:
             k += 1
         j = phrase(marks, k) if k > j else 0
     return end, count
@@ -90,11 +91,16 @@ def _doors(marks: list[Mark]) -> list[Mark]:
                     continue
                 j -= 1
             j += 1
-        elif mark.kind == "cue" and mark.value == "door" and mark.text.split()[-1] == "to" and k:
+        elif mark.kind == "cue" and mark.value == "door" and mark.text.split()[-1] in {"to", "a", "al", "con", "la"} and k:
             end, count = _listed(marks, k + 1)
             ended = end >= len(marks) or marks[end].kind in ENDS | {"comma", "close", "but"}
             if count > 2 and ended and any(m.kind == "join" for m in marks[k:end]):
-                return [*marks[:k], _leads(mark, mark), *(m for m in marks[k + 1 : end] if m.text not in {"to", "into"}), *marks[end:]]
+                return [
+                    *marks[:k],
+                    _leads(mark, mark),
+                    *(m for m in marks[k + 1 : end] if m.text not in {"to", "into", "a", "al"} or m.kind == "room"),
+                    *marks[end:],
+                ]
             continue
         else:
             continue
@@ -183,6 +189,32 @@ def _you(marks: list[Mark]) -> list[Mark]:
     return marks
 
 
+def _one_goes(marks: list[Mark]) -> list[Mark]:
+    """Read "se accede a la cocina y al baño desde el pasillo" as both reached from the hall."""
+    for k, mark in enumerate(marks[:2]):
+        going = mark.text.startswith("se ") and ((mark.kind, mark.value) == ("cue", "leads") or mark.kind == "enter")
+        end, count = _listed(marks, k + 1) if going else (0, 0)
+        if count and end < len(marks) and marks[end].text.split()[0] == "desde" and phrase(marks, end + 1):
+            verb = Mark("verb", "", 0.0, False, mark.last, mark.last, "estan")
+            cue = Mark("cue", "door", 0.0, False, marks[end].first, marks[end].last, "accesible desde")
+            return [*marks[:k], *(m for m in marks[k + 1 : end] if m.text not in {"a", "al"}), verb, cue, *marks[end + 1 :]]
+    return marks
+
+
+def _told(marks: list[Mark]) -> list[Mark]:
+    """Read "a la cocina, el baño y el salón se accede desde el pasillo" as said of all three."""
+    start = int(bool(marks) and marks[0].text in {"a", "al"})
+    end, count = _listed(marks, start)
+    if count > 2 and end < len(marks) and marks[end - 1].kind == "room":
+        j = end + ((marks[end].kind, marks[end].value) == ("cue", "has"))
+        way = j < len(marks) and ((marks[j].kind == "cue" and marks[j].value == "door") or marks[j].text.startswith("se entra"))
+        if way and phrase(marks, j + 1) and any(m.kind == "join" for m in marks[start:end]):
+            verb = Mark("verb", "", 0.0, False, marks[end].first, marks[end].first, "estan")
+            cue = replace(marks[j], kind="cue", value="door", text="accesible desde")
+            return [*(m for m in marks[start:end] if m.text not in {"a", "al"}), verb, cue, *marks[j + 1 :]]
+    return marks
+
+
 def _there(marks: list[Mark]) -> list[Mark]:
     """Read "..., and from there the kitchen", "and from the hall the kitchen" behind a way."""
     for k in range(2, len(marks) - 1):
@@ -262,7 +294,7 @@ def _baths(marks: list[Mark]) -> list[Mark]:
             and j
             and marks[j - 1].kind in {"comma", "open", "dash"}
         )
-        if every and beds and (ensuite or before.value in {"has", "own"}):
+        if every and beds and (ensuite or before.value in {"has", "own"}) and marks[k].text != "baños":
             return [*marks[:j], replace(marks[j], kind="det", value="each", text="each"), has, own, bath, *marks[k + 1 :]]
         named = marks[j].kind == "room" and marks[j].value == "bedroom" and j and marks[j - 1].value in {"all", "each", "both"}
         if ensuite and named and before.kind == "verb":
@@ -279,8 +311,9 @@ def _per(marks: list[Mark]) -> list[Mark]:
     """Read "three bathrooms, one for each bedroom", "one per bedroom" as each with its own."""
     for k in range(2, len(marks) - 2):
         one = (marks[k].number == 1.0 or marks[k].text == "one") and marks[k - 1].kind in {"comma", "open"}
-        j = k + 1 + (marks[k + 1].text == "for")
-        each = j + 1 < len(marks) and marks[j].value == "each" and marks[j + 1].value == "bedroom"
+        one = one or (marks[k].text in {"uno", "una"} and marks[k - 1].kind in {"comma", "open"})
+        j = k + 1 + (marks[k + 1].text in {"for", "para"})
+        each = j + 1 < len(marks) and (marks[j].value == "each" or marks[j].text == "por") and marks[j + 1].value == "bedroom"
         bath = next((m for m in reversed(marks[:k]) if m.kind == "room"), None)
         if one and each and bath is not None and _bath(bath):
             made = [
