@@ -1,7 +1,7 @@
 """How exactly prompts are read: the share of prompts whose program states what they say, per file, language and half.
 
 `python -m benchmarks.language [--file sentences] [--half held|tuned] [--language en] [--faults] [--typos]`. Ground truth:
-`languages.yaml`, `sentences.yaml`, `speech.yaml` and `fourth.yaml` in `manifests/prompts`. With --typos: the share of programs that one typing error leaves as
+`languages.yaml`, `sentences.yaml`, `speech.yaml`, `fourth.yaml` and `fifth.yaml` in `manifests/prompts`. With --typos: the share of programs that one typing error leaves as
 they were (`benchmarks/slips.py`).
 """
 
@@ -23,7 +23,7 @@ from pipeline.floorplan import FloorProgram, parse
 from pipeline.floorplan.program import Furniture, Range
 
 PROMPTS = Path(__file__).resolve().parents[1] / "manifests" / "prompts"
-FILES = ("languages", "sentences", "speech", "fourth")
+FILES = ("languages", "sentences", "speech", "fourth", "fifth")
 CLOSE = 0.12  # relative error of an area that is still "about" it
 
 

@@ -152,7 +152,7 @@ def _both_sides(clause: Clause, k: int, e: Element) -> tuple[Group, Group, int]:
     ahead = clause.sentence[k + 1] if k + 1 < len(clause.sentence) else None
     first = k == 0 or clause.sentence[k - 1].kind in {"comma", "and"}
     left = () if ahead is not None and ahead.value == "pair" and first else subject_of(clause, k, e)  # "dazwischen liegt das Bad"
-    wide = len(left) > 2 and ahead is not None and ahead.kind == "np"
+    wide = ahead is not None and ahead.kind == "np" and (len(left) > 2 or (len(left) > 1 and ahead.definite))
     cue = "leads" if e.value == "door" and DOORS & set(e.text.split()) else e.value
     group, j = objects(clause, k + 1, cue, () if wide else left)
     if not group and e.value == "between" and left and first:  # "两间卧室中间是客厅"

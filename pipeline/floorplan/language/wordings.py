@@ -35,8 +35,8 @@ def worded(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     if heard.lexicon.language not in {"en", "es"}:
         return list(marks)
     made: list[Mark] = []
-    english = (_each, _doors, _from, _which, _access, _you, _there, _wide, _but, _baths, _per, _whole)
-    rules = english if heard.lexicon.language == "en" else (_doors, _one_goes, _baths, _per, _told)
+    english = (_each, _doors, _from, _which, _access, _you, _there, _wide, _but, _baths, _per, _whole, _sized)
+    rules = english if heard.lexicon.language == "en" else (_doors, _one_goes, _baths, _per, _told, _sized)
     for sentence in sentences_of(marks):
         said = sentence
         for rule in rules:
@@ -348,4 +348,19 @@ def _whole(marks: list[Mark]) -> list[Mark]:
             owner = next((m for m in reversed(marks[:flag]) if m.kind in {"room", "home", "comma"}), None)
             if owner is not None and owner.kind == "room":
                 made[flag] = replace(marks[flag], kind="fill", value="")
+    return made
+
+
+SIZED = {"mide", "miden", "tiene", "ocupa", "measures", "has", "covers", "is"}
+
+
+def _sized(marks: list[Mark]) -> list[Mark]:
+    """Read "the house has three bedrooms ... and measures 140 to 150 m2" as the area of the house."""
+    made = list(marks)
+    named = [m.kind for m in marks if m.kind in {"room", "suite", "home"}]
+    for k in range(2, len(marks)):
+        ends = k + 1 >= len(marks) or marks[k + 1].kind in ENDS
+        own = marks[k - 1].text in SIZED and marks[k - 2].kind in {"join", "comma"}
+        if marks[k].kind == "amount" and marks[k].value == "area" and ends and own and named[:1] == ["home"] and len(named) > 1:
+            made[k] = replace(marks[k], total=True)
     return made
