@@ -13,7 +13,20 @@ JOIN = {"connect", "connects", "link", "links", "join", "joins", "connecting", "
 JOIN |= {"conecta", "conectar", "comunica", "comunicar", "une", "unir", "enlaza", "conecte", "junta", "fusiona", "unificar", "separates"}
 OPENERS = {"merge", "merging", "combine", "fusiona", "junta", "unificar"}
 WITH = {"and", "to", "with", "from", "y", "con", "a", "al", "e", "into", "&"}
-GAPS = {"opening", "openings", "transition", "connection", "passage", "apertura", "abertura", "conexion", "transicion", "hueco", "link"}
+GAPS = {
+    "opening",
+    "openings",
+    "transition",
+    "connection",
+    "passage",
+    "access",
+    "apertura",
+    "abertura",
+    "conexion",
+    "transicion",
+    "hueco",
+    "link",
+}
 WIDE = {"wide", "large", "big", "open", "broad", "generous", "amplia", "gran", "abierta", "ancha", "amplio", "abierto", "full width"}
 SHARED = {"shared", "common", "comun", "compartida", "compartido"}
 WALLS = {"wall", "walls", "pared", "muro", "tabique"}
@@ -90,7 +103,7 @@ def joined(marks: Sequence[Mark], k: int, end: int, found: tuple[int, int, int],
 def _noun(marks: Sequence[Mark], k: int) -> tuple[str, int] | None:
     """Return what a door, an opening or a common wall that stands at k does, and where it ends."""
     j, wide, shared = k, False, False
-    while j < len(marks) and marks[j].kind in LIGHT and marks[j].text not in GAPS | WALLS and j - k < 4:
+    while j < len(marks) and (marks[j].kind in LIGHT or marks[j].value == "wide") and marks[j].text not in GAPS | WALLS and j - k < 4:
         wide = wide or marks[j].text in WIDE
         shared = shared or marks[j].text in SHARED
         j += 1
@@ -108,7 +121,20 @@ def _noun(marks: Sequence[Mark], k: int) -> tuple[str, int] | None:
 def _subject(marks: list[Mark]) -> list[Mark]:
     """Read "a door connects A and B", "a door leads from A into B", "a wide opening between A and B"."""
     for k in range(len(marks)):
-        begins = k == 0 or marks[k - 1].kind in {"comma", "join", "colon", "neg", "verb", "fill", "word", "needless", "but", "cue", "pron"}
+        begins = k == 0 or marks[k - 1].kind in {
+            "comma",
+            "join",
+            "colon",
+            "neg",
+            "verb",
+            "fill",
+            "word",
+            "needless",
+            "but",
+            "cue",
+            "pron",
+            "adverb",
+        }
         noun = _noun(marks, k) if begins and marks[k].kind not in {"verb", "word"} else None
         if noun is None or (k and marks[k - 1].kind == "cue" and marks[k - 1].value not in {"has", "in"}):
             continue
@@ -117,7 +143,7 @@ def _subject(marks: list[Mark]) -> list[Mark]:
             continue
         start = k
         none = False
-        while start and marks[start - 1].kind in {"neg", "verb", "fill", "word", "pron", "needless"}:
+        while start and marks[start - 1].kind in {"neg", "verb", "fill", "word", "pron", "needless", "adverb"}:
             start -= 1
             none = none or marks[start].kind == "neg"
         lead = marks[j].text.split()[-1]
@@ -167,6 +193,8 @@ BETWEEN_THEM: tuple[tuple[str, ...], ...] = (
     ("with", "a", "door", "between", "them"),
     ("with", "a", "connecting", "door"),
     ("with", "a", "door", "in", "between"),
+    *((*verb, "by", "a", "door") for verb in (("connected",), ("joined",), ("linked",))),
+    ("connect",),
     ("con", "una", "puerta", "entre", "ellos"),
     ("con", "una", "puerta", "entre", "ellas"),
     ("con", "puerta", "entre", "ambos"),

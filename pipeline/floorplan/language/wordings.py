@@ -76,7 +76,7 @@ def _each(marks: list[Mark]) -> list[Mark]:
     return made
 
 
-def _doors(marks: list[Mark]) -> list[Mark]:
+def _doors(marks: list[Mark]) -> list[Mark]:  # noqa: PLR0912 - one branch per case: a grammar
     """Read "with doors to A, B and C", "has three doors: to A, to B and to C", "connects to A, B and C" as leading to all of them."""
     for k, mark in enumerate(marks):
         j = k
@@ -114,7 +114,10 @@ def _doors(marks: list[Mark]) -> list[Mark]:
             continue
         said = [m for m in marks[start:end] if m.text not in {"to", "into"}]
         close = end < len(marks) and mark.kind == "open" and marks[end].kind == "close"
-        return [*marks[:k], _leads(mark, marks[j]), *said, *marks[end + close :]]
+        cue = _leads(mark, marks[j])
+        if mark.kind == "ignored" or mark.text in {"with", "w"}:
+            cue = replace(cue, text="with doors to")  # of the room in front of it alone
+        return [*marks[:k], cue, *said, *marks[end + close :]]
     return marks
 
 
@@ -240,8 +243,9 @@ def _wide(marks: list[Mark]) -> list[Mark]:
     """Read "with a wide opening to B", "has an open connection to B" as open to it, an open-plan kitchen as one that is open."""
     made = list(marks)
     for k in range(1, len(marks)):
-        plan = (marks[k].kind, marks[k].value) == ("flag", "open_plan") and marks[k].text in {"open plan", "openplan"}
-        if plan and marks[k - 1].value == "has" and k + 1 < len(marks) and marks[k + 1].value == "kitchen":
+        plan = (marks[k].kind, marks[k].value) == ("flag", "open_plan") and marks[k].text.replace(" - ", " ") in {"open plan", "openplan"}
+        had = marks[k - 1].value == "has" or (marks[k - 1].kind == "slash" and k > 1 and marks[k - 2].value == "has")
+        if plan and had and k + 1 < len(marks) and marks[k + 1].value == "kitchen":
             made[k] = replace(marks[k], kind="adj", value="open")
         words = marks[k].text.split()
         if not words or words[0] not in GAPS:
@@ -255,6 +259,9 @@ def _wide(marks: list[Mark]) -> list[Mark]:
     return made
 
 
+DROPPED = {"minus", "never mind", "forget", "forget about", "don't include", "do not include"}
+
+
 def _but(marks: list[Mark]) -> list[Mark]:
     """Read "but not next to B" as not next to it, "keep A from touching B", "with C between them"."""
     made = list(marks)
@@ -264,6 +271,13 @@ def _but(marks: list[Mark]) -> list[Mark]:
             made[k] = replace(marks[k], kind="neg", value="")
         if (marks[k].kind, marks[k].value) == ("cue", "from") and ahead.kind == "cue" and ahead.value == "wall":
             made[k] = replace(marks[k], kind="neg", value="", text="not")
+        if marks[k].kind == "neg" and ahead.text == "separated from":
+            made[k] = replace(marks[k], kind="fill", value="")
+            made[k + 1] = replace(ahead, value="open", text="opened up to")
+        if marks[k].text in DROPPED and (ahead.kind, ahead.value) == ("det", "definite"):
+            made[k + 1] = replace(ahead, kind="fill", value="")
+        if marks[k].kind == "room" and ahead.kind == "colon" and k + 2 < len(marks) and marks[k + 2].text == "0":
+            return [*made[:k], Mark("neg", "", 0.0, False, ahead.first, ahead.first, "no"), marks[k], *marks[k + 3 :]]
         if (marks[k].kind, marks[k].value) == ("cue", "between") and ahead.text in {"them", "the two", "these two"}:
             made[k] = replace(marks[k], text="in between")
             del made[k + 1]
@@ -279,6 +293,9 @@ def _baths(marks: list[Mark]) -> list[Mark]:
     """Read "..., all en suite", "all bedrooms are en suite", "two with ensuite", "one of which is en suite"."""
     for k in range(1, len(marks)):
         mark, before = marks[k], marks[k - 1]
+        if mark.text in {"ensuite to", "en suite to"} and (before.kind in {"comma", "join"} or before.value == "indefinite"):
+            room = Mark("room", "bathroom/ensuite", 0.0, False, mark.first, mark.first + 1, "ensuite")
+            return [*marks[:k], room, replace(mark, first=mark.first + 1, text="belongs to"), *marks[k + 1 :]]
         if not _bath(mark):
             continue
         ensuite = mark.value == "bathroom/ensuite"
