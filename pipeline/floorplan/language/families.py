@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from pipeline.floorplan.language.marks import Mark, Words
+from pipeline.floorplan.language.owners import bedroom_of, nobodys
 from pipeline.floorplan.language.tallies import ENDS, plain
 
 JOINED = {"和", "与", "跟", "&", "及"}
@@ -32,10 +33,6 @@ def homed(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     return _pronoun(_living(_kept(_given(_sole(named)))))
 
 
-def _room(mark: Mark) -> bool:
-    return (mark.kind == "room" and mark.value in ROOM) or (mark.kind == "unit" and mark.value == "rooms")
-
-
 def _one(mark: Mark) -> bool:
     return (mark.kind, mark.value) == ("pron", "one") and plain(mark) in {"一间", "一个", "一套"}
 
@@ -49,10 +46,6 @@ def _sole(marks: list[Mark]) -> list[Mark]:
         else:
             made.append(mark)
     return made
-
-
-def _bedroom(owner: Mark) -> Mark:
-    return replace(owner, kind="room", value=f"bedroom/{owner.value}", number=0.0)
 
 
 def _group(marks: Sequence[Mark], k: int) -> int:
@@ -101,7 +94,7 @@ def _given(marks: list[Mark]) -> list[Mark]:
         room = of + 1 if described else after
         while room < len(marks) and marks[room].kind in {"adj", "size", "amount", "look"} and not described:
             room += 1
-        named = room < len(marks) and _room(marks[room])
+        named = room < len(marks) and nobodys(marks[room], "count")
         bare = plain(number) != "一个" and (room >= len(marks) or marks[room].kind in ENDS or plain(marks[room]) in {"的", "吧"})
         if not (named or (bare and not described)):
             made += marks[k:end]
@@ -121,7 +114,7 @@ def _given(marks: list[Mark]) -> list[Mark]:
             made += [Mark("det", "another", 0.0, False, owner.first, owner.first, "")] if told and plain(owner) not in told else []
             made.append(Mark("num", "", heads * count if each else count, False, owner.first, owner.first, ""))
             made += [*marks[after : room if named else after]] if i == 0 and (described or named) else []
-            made.append(_bedroom(owner))
+            made.append(bedroom_of(owner, owner.value))
         k = room + 1 if named else room
     return made
 
@@ -157,9 +150,9 @@ def _kept(marks: list[Mark]) -> list[Mark]:
             continue
         counted = made[j].kind == "clf" and j > 0 and made[j - 1].kind == "num"
         if _one(made[j]) or (made[j].kind, made[j].value) == ("det", "another"):
-            made[j:end] = [replace(made[j], kind="num", value="", number=1.0), _bedroom(made[k])]
+            made[j:end] = [replace(made[j], kind="num", value="", number=1.0), bedroom_of(made[k], made[k].value)]
         elif counted:
-            made[j:end] = [made[j], _bedroom(made[k])]
+            made[j:end] = [made[j], bedroom_of(made[k], made[k].value)]
         elif made[j].kind == "room" and made[j].value == "bedroom":
             made[j:end] = [replace(made[j], value=f"bedroom/{made[k].value}")]
     return made
@@ -195,7 +188,7 @@ def _pronoun(marks: list[Mark]) -> list[Mark]:
         elif mark.kind == "room" and mark.value.startswith("bedroom/"):
             role = mark.value.partition("/")[2]
         of = k + 1 < len(made) and plain(made[k + 1]) == "的"
-        if plain(mark) in HIS and role and k + 1 + of < len(made) and _room(made[k + 1 + of]):
+        if plain(mark) in HIS and role and k + 1 + of < len(made) and nobodys(made[k + 1 + of], "count"):
             made[k : k + 2 + of] = [replace(made[k + 1 + of], kind="room", value=f"bedroom/{role}", number=0.0, first=mark.first)]
         k += 1
     return made

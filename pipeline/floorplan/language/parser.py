@@ -12,7 +12,9 @@ from pipeline.floorplan.check import check
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.language.assembly import assemble
 from pipeline.floorplan.language.attaching import attach
+from pipeline.floorplan.language.baths import one_for
 from pipeline.floorplan.language.bearings import located
+from pipeline.floorplan.language.counts import counted
 from pipeline.floorplan.language.denials import denied
 from pipeline.floorplan.language.detection import detect
 from pipeline.floorplan.language.doorways import phrased
@@ -65,9 +67,8 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     amounts = dealt(measured(shared_unit(crossed(plain_areas(supplied(loosened(segment(heard), heard), heard)), heard)), heard))
     revised = revise(widen(amounts, heard), heard)
     said = located(compared(tallied(homed(revised.marks, heard), heard), heard), heard)
-    marks = reorder(
-        written_out(noted(resolved(housed(unsaid(denied(phrased(worded(said, heard), heard)), heard)), heard), heard), heard), heard
-    )
+    people = one_for(counted(housed(unsaid(denied(phrased(worded(said, heard), heard)), heard))))
+    marks = reorder(written_out(noted(resolved(people, heard), heard), heard), heard)
     parsed = sentences(marks, heard)
     spoken = {e.kind for s in parsed for e in s}
     if not spoken & {"np", "home"} and not any(e.kind == "amount" and e.value == "rooms" for s in parsed for e in s):

@@ -1,21 +1,15 @@
-"""Words that stand for rooms: "one" and "another" by themselves, "in between", people who each get a room, a room that serves as another."""
+"""Words that stand for rooms: "one" and "another" by themselves, "in between", a room that serves as another."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.floorplan.language.households import settled
 from pipeline.floorplan.language.marks import Mark, Words
+from pipeline.floorplan.language.people import PARTS, settled
 
 ALONE = {"eine", "einen", "eines", "einer", "uno", "una", "another", "otra", "otro"}
 ENDS = {"stop", "line", "comma", "close", "join", "colon"}
-PERSONS = {
-    "student", "students", "studenten", "person", "persons", "people", "personen", "leute", "mitbewohner", "bewohner", "friends", "freunde",
-    "flatmates", "roommates", "sharers", "residents", "estudiante", "estudiantes", "persona", "personas", "amigos", "companeros",
-}  # fmt: skip
-HAN_PERSONS = ("学生", "人", "室友", "同学", "朋友", "租客", "员工")
-EACH_PERSON = {"每人", "每个人", "每位", "每名", "人均", "每个学生"}
 FUNCTIONS = {
     "office": "working",
     "library": "working",
@@ -27,7 +21,6 @@ FUNCTIONS = {
 ENTRIES = {"windfang", "vorraum", "vestibuel", "garderobe"}  # in front of a "Diele", which then is the hall behind
 BESIDE = {"room", "suite"}
 SOCIAL = {"living_room", "dining_room", "kitchen", "family_room"}
-PARTS = {"det", "num", "clf", "adj", "size", "fill", "adverb", "verb", "relative", "bound"}  # what may stand in a phrase
 
 
 def resolved(marks: Sequence[Mark], heard: Words) -> list[Mark]:
@@ -40,7 +33,7 @@ def resolved(marks: Sequence[Mark], heard: Words) -> list[Mark]:
         made = _vestibule(_room_of(_besides(made)))
     elif heard.lexicon.language == "zh":
         made = _room_with(made)
-    made = _standing(_doubling(settled(_persons(_neither(made), heard), heard)))
+    made = _standing(_doubling(settled(_neither(made), heard)))
     return _between(_storeyed(_windowed(_sized(_superlative(_parted(made))))))
 
 
@@ -265,56 +258,6 @@ def _room_with(marks: list[Mark]) -> list[Mark]:
             if start and (made[start - 1].kind, made[start - 1].value) == ("pron", "one"):
                 made[start - 1] = replace(made[start - 1], kind="num", value="1.0", number=1.0)
     return made
-
-
-def _persons(marks: list[Mark], heard: Words) -> list[Mark]:
-    """Read "four students, each with a room of their own" as four bedrooms."""
-    count = _headcount(marks, heard)
-    place = next((k for k, m in enumerate(marks) if _each(m)), None)
-    if not count or place is None:
-        return marks
-    j = place + 1
-    while (
-        j < len(marks)
-        and j - place < 9
-        and (marks[j].kind in PARTS | {"amount"} or marks[j].value in {"has", "one"} or marks[j].text == "的")
-    ):
-        j += 1
-    room = marks[j] if j < len(marks) else None
-    if room is None or not ((room.kind == "room" and room.value == "bedroom") or (room.kind == "unit" and room.value == "rooms")):
-        return marks
-    number = Mark("num", "", float(count), False, marks[place].first, marks[place].last, marks[place].text)
-    amounts = [m for m in marks[place:j] if m.kind == "amount"]
-    behind = marks[j + 1 :]
-    if (
-        behind
-        and behind[0].kind == "join"
-        and any(m.kind == "room" and m.value in {"bathroom", "wc"} for m in behind[1:4])
-        and behind[1].kind != "num"
-    ):
-        shared = behind[1].value == "indefinite" or any(m.value == "shared" for m in behind[1:4])
-        if not shared:  # "each with their own bedroom and bathroom"
-            behind = [replace(behind[0], kind="cue", value="has", text="with"), replace(number, kind="det", value="own"), *behind[1:]]
-    return [*marks[:place], number, replace(room, kind="room", value="bedroom", number=0.0, plural=True), *amounts, *behind]
-
-
-def _each(mark: Mark) -> bool:
-    return (mark.kind, mark.value) == ("det", "each") or mark.text.replace(" ", "") in EACH_PERSON or mark.text in {"cada uno", "cada una"}
-
-
-def _headcount(marks: Sequence[Mark], heard: Words) -> int:
-    """Return how many people are spoken of; 0 where nobody says."""
-    for k, mark in enumerate(marks):
-        words = mark.text.split()
-        named = bool(PERSONS & set(words)) or mark.text.replace(" ", "").endswith(HAN_PERSONS)
-        if mark.kind == "room" or not named:
-            continue
-        before = [m.number for m in marks[max(0, k - 2) : k] if m.kind == "num"]
-        inside = [m.number for w in words if (m := heard.lexicon.trie.get(w, {}).get("")) is not None and m.kind == "num"]
-        number = (before or inside or [0.0])[-1]
-        if 1 < number <= 9:
-            return int(number)
-    return 0
 
 
 def _doubling(marks: list[Mark]) -> list[Mark]:
