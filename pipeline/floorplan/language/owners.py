@@ -8,26 +8,10 @@ from dataclasses import replace
 from pipeline.floorplan.language.marks import Mark
 
 FOR = {"para", "for", "fuer", "de", "del", "von"}
-OF = {"der", "des", "von", "de", "del", "for", "fuer", "para"}
+OF = FOR | {"der", "des"}
 POSSESSIVE = {
-    "el",
-    "mi",
-    "mis",
-    "su",
-    "sus",
-    "my",
-    "our",
-    "his",
-    "her",
-    "their",
-    "nuestro",
-    "nuestra",
-    "nuestros",
-    "mein",
-    "meine",
-    "unser",
-    "unsere",
-}
+    "el", "mi", "mis", "su", "sus", "my", "our", "his", "her", "their", "nuestro", "nuestra", "nuestros", "mein", "meine", "unser", "unsere",
+}  # fmt: skip
 WHOSE = {"whose", "cuya", "cuyo", "cuyas", "cuyos", "dessen", "deren"}
 
 
@@ -48,14 +32,18 @@ def joined(mark: Mark, owner: Mark) -> Mark:
 
 def heads(marks: Sequence[Mark], k: int) -> float:
     """Return how many people stand at k: "the two kids"; 0 where nobody says."""
-    for m in reversed(marks[max(0, k - 3) : k]):
-        if m.kind == "num" and m.number > 1:
-            return m.number
-        if (m.kind, m.value) == ("det", "both"):
-            return 2.0
-        if m.kind not in {"det", "clf", "fill"}:
+    place = heads_at(marks, k)
+    return 0.0 if place is None else marks[place].number or 2.0
+
+
+def heads_at(marks: Sequence[Mark], k: int) -> int | None:
+    """Return the place of the number, or of "both", in front of the people at k."""
+    for i in range(k - 1, max(-1, k - 4), -1):
+        if (marks[i].kind == "num" and marks[i].number > 1) or (marks[i].kind, marks[i].value) == ("det", "both"):
+            return i
+        if marks[i].kind not in {"det", "clf", "fill"}:
             break
-    return 0.0
+    return None
 
 
 def whose(marks: list[Mark]) -> list[Mark]:

@@ -12,6 +12,7 @@ from pipeline.floorplan.language.owners import (
     POSSESSIVE,
     bedroom_of,
     heads,
+    heads_at,
     joined,
     meant_for,
     named,
@@ -21,9 +22,10 @@ from pipeline.floorplan.language.owners import (
     whose,
 )
 
-EACH = {"each", "apiece", "cada uno", "cada una", "je", "jeweils", "jeder", "jedes", "cada"}
-APIECE = {"每 人", "每 个 人", "每 位", "je ein", "je eine", "je einen"}
-EACH_PERSON = {"每人", "每个人", "每位", "每名", "人均", "每个学生"}
+EACH = {
+    "each", "apiece", "cadauno", "cadauna", "cada", "je", "jeweils", "jeder", "jedes", "jeein", "jeeine", "jeeinen",
+    "每人", "每个人", "每位", "每名", "人均", "每个学生",
+}  # fmt: skip
 LIGHT = {"comma", "verb", "fill", "adverb", "det", "cue", "pron", "word", "num"}  # between people and the room that each of them gets
 FAR = 9  # marks
 LINKING = {"verb", "adverb", "fill"}  # between people and what they get
@@ -57,21 +59,20 @@ def _each(marks: list[Mark]) -> list[Mark]:
     for k, mark in enumerate(made):
         if mark.kind != "owner":
             continue
-        near = [m for m in reversed(made[max(0, k - 3) : k]) if (m.kind == "num" and m.number > 1) or (m.kind, m.value) == ("det", "both")]
-        count = near[0].number or 2.0 if near else 0.0
-        if not count:
+        place = heads_at(made, k)
+        if place is None:
             continue
+        count = made[place].number or 2.0
         number = Mark("num", "", count, False, made[k - 1].first, mark.last, mark.text)
         j = k + 1
         while j < min(len(made), k + FAR) and made[j].kind in LIGHT and not nobodys(made[j]):
             j += 1
         if j < len(made) and nobodys(made[j]):  # people, then the room
-            behind = j + 1 < len(made) and made[j + 1].text in EACH
-            if behind or any(m.text in EACH for m in made[k + 1 : j]):
-                start = max(i for i in range(k) if made[i] is near[0])
-                return [*made[:start], number, replace(joined(made[j], mark), plural=True), *_each(made[j + 1 + behind :])]
+            behind = j + 1 < len(made) and _apiece(made[j + 1])
+            if behind or any(map(_apiece, made[k + 1 : j])):
+                return [*made[:place], number, replace(joined(made[j], mark), plural=True), *_each(made[j + 1 + behind :])]
         room = next((i for i in range(k - 1, max(-1, k - FAR), -1) if nobodys(made[i])), None)
-        if room is not None and any(m.text in EACH or m.value == "each" for m in made[room:k]):  # the room, then the people
+        if room is not None and any(map(_apiece, made[room:k])):  # the room, then the people
             start = room - (room > 0 and (made[room - 1].kind == "num" or made[room - 1].value == "indefinite"))
             return [*made[:start], number, replace(joined(made[room], mark), plural=True), *_each(made[k + 1 :])]
     return made
@@ -86,7 +87,7 @@ def _having(marks: list[Mark]) -> list[Mark]:
         made.append(mark)
         k += 1
         if mark.kind != "owner" or (
-            before is not None and (before.text in FOR or before.kind not in {"stop", "line"} | {"comma", "join", "colon", "line", "but"})
+            before is not None and (before.text in FOR or before.kind not in {"stop", "line", "comma", "join", "colon", "but"})
         ):
             continue
         j = k
@@ -144,20 +145,20 @@ def _given(marks: list[Mark]) -> list[Mark]:
         while (
             j < len(marks)
             and j - k < 4
-            and ((marks[j].kind in LINKING and marks[j].text not in APIECE) or (marks[j].value == "has" and marks[j].text != "with"))
+            and ((marks[j].kind in LINKING and not _apiece(marks[j])) or (marks[j].value == "has" and marks[j].text != "with"))
         ):
             j += 1
         start = j
-        while j < len(marks) and (marks[j].kind in PHRASE or marks[j].text in APIECE or _one(marks[j])):
+        while j < len(marks) and (marks[j].kind in PHRASE or _apiece(marks[j]) or _one(marks[j])):
             j += 1
         phrase, relative = marks[start:j], marks[j:j]
         end = next((i for i in range(j, min(j + 6, len(marks))) if marks[i].text == "的"), 0)
         if end and marks[j].value == "has":  # "给老人一间带卫生间的卧室"
             relative, j = marks[j : end + 1], end + 1
         room = mark.kind == "owner" and j < len(marks) and bool(phrase) and nobodys(marks[j], mark.value)
-        each = any(m.text in APIECE or m.value == "each" for m in phrase) or (j + 1 < len(marks) and marks[j + 1].value == "each")
+        each = any(map(_apiece, phrase)) or (j + 1 < len(marks) and marks[j + 1].value == "each")
         every = k > 0 and (marks[k - 1].kind, marks[k - 1].value) == ("det", "each")
-        fresh = any(m.kind in {"num", "clf"} or _one(m) or m.value in {"indefinite", "each"} or m.text in APIECE for m in phrase)
+        fresh = any(m.kind in {"num", "clf"} or _one(m) or m.value == "indefinite" or _apiece(m) for m in phrase)
         if not room or not (fresh or every) or (any(m.value == "own" for m in phrase) and not (each or every)):
             made.append(mark)
             k += 1
@@ -213,7 +214,8 @@ def _persons(marks: list[Mark], heard: Words) -> list[Mark]:
 
 
 def _apiece(mark: Mark) -> bool:
-    return (mark.kind, mark.value) == ("det", "each") or mark.text.replace(" ", "") in EACH_PERSON or mark.text in {"cada uno", "cada una"}
+    """Whether a mark says that each of several people gets something."""
+    return mark.value == "each" or mark.text.replace(" ", "") in EACH
 
 
 def _headcount(marks: Sequence[Mark], heard: Words) -> int:
