@@ -82,11 +82,11 @@ def _persons(marks: list[Mark]) -> list[Mark]:
     k = 0
     while k < len(marks):
         mark = marks[k]
-        room = next((m for m in reversed(made) if m.kind in {"room", *ENDS}), None)
         if mark.kind in {"room", *ENDS}:
             counted = mark.plural and mark.kind == "room"
         more = mark.text in ONES and k + 1 < len(marks) and marks[k + 1].text in {"mas", "more"}
         said = _said_of(marks, k + 1 + more) if mark.text in ONES and mark.kind in {"det", "fill", "pron", "num", "join"} else None
+        room = next((m for m in reversed(made) if m.kind in {"room", *ENDS}), None) if said is not None else None
         before = made[-1].kind if made else "stop"
         bed = room is not None and room.value.partition("/")[0] == "bedroom"
         if said is None or room is None or not bed or before not in {"comma", "join", "open", "colon", "stop"}:

@@ -56,12 +56,14 @@ def _rather(marks: Sequence[Mark]) -> list[Mark]:
     """Read "rather two bathrooms than a dining room": what stands behind "than" where nothing is compared is not wanted."""
     made = list(marks)
     for k, mark in enumerate(marks):
+        if (mark.kind, mark.text) != ("fill", "than"):
+            continue
         start = max((i for i in range(k) if marks[i].kind in ENDS), default=-1) + 1
         ahead = marks[k + 1] if k + 1 < len(marks) else None
         named = ahead is not None and ((ahead.kind, ahead.value) == ("det", "definite") or ahead.kind in {"num", "amount", "pron"})
         compared = named and any(m.kind == "size" for m in marks[start:k])
         compared = compared or any(m.kind in {"cmp", "factor"} for m in marks[start:k])
-        if mark.kind == "fill" and mark.text == "than" and not compared and any(m.kind == "room" for m in marks[start:k]):
+        if not compared and any(m.kind == "room" for m in marks[start:k]):
             made[k] = replace(mark, kind="neg")
     return made
 
@@ -137,10 +139,12 @@ def _elliptic(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Read "..., and from the dining room to the hall", "and the dining room onto the hall" behind a way that was said with its verb."""
     made = list(marks)
     for k in range(1, len(made)):
+        if made[k - 1].kind not in {"join", "comma"} or "or" in made[k - 1].value:
+            continue
         start = max((i for i in range(k) if made[i].kind in ENDS), default=-1) + 1
         said = any(m.kind == "cue" and m.value in {"leads", "thru", "thru_to", "door"} for m in made[start:k])
         whence = (made[k].kind == "cue" and made[k].value == "from") or (heard.lexicon.language == "es" and made[k].text in {"del", "de"})
-        if not said or made[k - 1].kind not in {"join", "comma"} or "or" in made[k - 1].value:
+        if not said:
             continue
         j = _room_at(made, k + 1 if whence else k)
         if j is None or j + 2 >= len(made) or made[j + 1].text not in INTO or _room_at(made, j + 2) is None:

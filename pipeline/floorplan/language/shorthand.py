@@ -33,11 +33,13 @@ def _bedrooms(marks: list[Mark]) -> list[Mark]:
     made = list(marks)
     for k, mark in enumerate(marks):
         word = mark.text.rsplit(" ", 1)[-1]
+        if mark.kind != "every" or word not in EVERY:
+            continue
         counted = any(
             m.kind == "room" and m.value == "bedroom" and m.text == word and i and marks[i - 1].kind == "num"
             for i, m in enumerate(marks[:k])
         )
-        if mark.kind == "every" and word in EVERY and counted:
+        if counted:
             made[k : k + 1] = [replace(mark, kind="room", value="bedroom", plural=True)]
             made.insert(k, Mark("det", "all", 0.0, True, mark.first, mark.first, "todas las"))
             return _bedrooms(made)

@@ -303,11 +303,11 @@ def _standing(marks: list[Mark]) -> list[Mark]:
             j += 1
         said = j < len(made) and made[j].kind in {"cue", "verb", "level"} and (made[j].kind != "cue" or article or made[j].value != "has")
         counts = (m for i, m in enumerate(made[:k]) if m.kind == "num" and m.number > 1 and _next(made, i + 1) is not None)
-        counted = next(counts, None)
+        counted = next(counts, None) if said else None
         several = mark.kind == "num" and counted is not None and 0 < mark.number < counted.number and mark.number == int(mark.number)
-        if several and said and made[k - 1].kind in ENDS - {"colon"}:
+        if several and made[k - 1].kind in ENDS - {"colon"}:
             made[k] = replace(mark, kind="pron", value="one")
-        elif (article or further) and said and counted is not None and made[k - 1].kind in ENDS and (article or made[j].kind != "verb"):
+        elif (article or further) and counted is not None and made[k - 1].kind in ENDS and (article or made[j].kind != "verb"):
             made[k] = replace(mark, kind="pron", value="one", number=1.0)
     return made
 
