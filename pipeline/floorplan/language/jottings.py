@@ -17,6 +17,8 @@ def jotted(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     made = _another(_counted(_roman(_arrows(list(marks)))))
     if heard.lexicon.language == "de":
         made = _above(_amid(_open_between(_leading(_belonging(_of_the(made))))))
+    if heard.lexicon.language == "zh":
+        made = _wide(_each(_numbered(made)))
     return _with(_but_one(_bathless(_all_ensuite(made))))
 
 
@@ -65,7 +67,7 @@ def _counted(marks: list[Mark]) -> list[Mark]:
         mark, ahead = marks[k], marks[k + 1 : k + 5]
         kinds = [m.kind for m in ahead]
         bracket = kinds[:3] == ["open", "num", "close"] or (kinds[:2] == ["open", "factor"] and kinds[2:3] == ["close"])
-        bracket = bracket or (kinds[:4] == ["open", "num", "times", "close"])
+        bracket = bracket or kinds[:4] in (["open", "num", "times", "close"], ["open", "num", "clf", "close"])
         equal = kinds[:2] in (["comma", "num"], ["hyphen", "num"], ["dash", "num"]) and ahead[0].text == "="
         told = k > 1 and marks[k - 1].kind == "det" and marks[k - 2].text in {"anzahl", "zahl"} and kinds[:2] == ["colon", "num"]
         equal = equal or told
@@ -82,6 +84,8 @@ def _counted(marks: list[Mark]) -> list[Mark]:
 
 
 ROMAN = {"i": 1.0, "ii": 2.0, "iii": 3.0, "iv": 4.0}
+HAN = {"一": 1.0, "二": 2.0, "三": 3.0, "四": 4.0, "五": 5.0, "甲": 1.0, "乙": 2.0, "丙": 3.0}
+BEHIND = CLOSERS | {"amount", "colon"}  # behind "卧室一"
 
 
 def _roman(marks: list[Mark]) -> list[Mark]:
@@ -90,6 +94,47 @@ def _roman(marks: list[Mark]) -> list[Mark]:
     if not {"i", "ii"} <= {marks[k].text for k in places}:
         return marks
     return [replace(m, kind="num", value="figure", number=ROMAN[m.text]) if k in places else m for k, m in enumerate(marks)]
+
+
+def _numbered(marks: list[Mark]) -> list[Mark]:
+    """Read "卧室一14㎡，卧室二11㎡" as the first and the second."""
+    places = [
+        k
+        for k in range(1, len(marks))
+        if marks[k - 1].kind == "room" and marks[k].text in HAN and (k + 1 == len(marks) or marks[k + 1].kind in BEHIND)
+    ]
+    if not {1.0, 2.0} <= {HAN[marks[k].text] for k in places}:
+        return marks
+    return [replace(m, kind="num", value="figure", number=HAN[m.text]) if k in places else m for k, m in enumerate(marks)]
+
+
+def _each(marks: list[Mark]) -> list[Mark]:
+    """Read "三间卧室，各有一个卫生间" and "每间一个卫生间" as said of those in front."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        has = (mark.kind, mark.value) == ("cue", "has") and _head(mark) in {"各", "均", "都", "皆"}
+        if has and len(made) > 1 and made[-1].kind == "comma" and made[-2].kind == "room" and made[-2].value == "bedroom":
+            made.pop()
+        made.append(mark)
+        every = mark.value in {"each", "group"} and mark.kind in {"det", "pron"} and k + 2 < len(marks) and marks[k + 1].number == 1
+        thing = next((m for m in marks[k + 2 : k + 4] if m.kind != "clf"), None) if every else None
+        if thing is not None and thing.kind == "room" and thing.value == "bathroom":
+            made.append(Mark("cue", "has", 0.0, False, mark.last, mark.last, "带"))
+    return made
+
+
+def _wide(marks: list[Mark]) -> list[Mark]:
+    """Read "厨房和客厅之间是敞开的" as one open room."""
+    made = list(marks)
+    for k, mark in enumerate(marks):
+        j = k + 1
+        while j < len(marks) and marks[j].kind in {"verb", "adverb"}:
+            j += 1
+        if (mark.kind, mark.value) == ("cue", "between") and j < len(marks) and (marks[j].kind, marks[j].value) == ("adj", "open"):
+            behind = marks[j + 1].kind if j + 1 < len(marks) and marks[j + 1].text != "的" else "stop"
+            if behind in CLOSERS:
+                made[k], made[j] = replace(mark, kind="fill", value=""), replace(marks[j], kind="flag", value="open_plan")
+    return made
 
 
 def _thing(marks: Sequence[Mark], k: int) -> int:
@@ -178,7 +223,7 @@ def _bathless(marks: list[Mark]) -> list[Mark]:
         j = k + 1
         while j < len(marks) and marks[j].kind == "det":
             j += 1
-        without = marks[k].kind == "neg" and _head(marks[k]) in {"ohne", "without", "sin", "不带"}
+        without = marks[k].kind == "neg" and (_head(marks[k]) in {"ohne", "without", "sin"} or marks[k].text == "不 带")
         if one and without and j < len(marks) and marks[j].kind == "room" and marks[j].value == "bathroom":
             k = j + 1
         else:

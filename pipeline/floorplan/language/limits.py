@@ -8,6 +8,7 @@ from dataclasses import replace
 from pipeline.floorplan.language.marks import Mark, Words
 
 CLOSERS = {"comma", "stop", "line", "close", "join", "open"}
+DEALING = {"cue", "open", "verb", "colon", "fill", "word", "bound", "adverb"}  # between rooms and their areas
 OVER = {"least", "or_more"}
 
 
@@ -33,6 +34,13 @@ def _plus(marks: list[Mark], heard: Words) -> list[Mark]:
     for k, mark in enumerate(marks):
         if mark.text == "+" and made and made[-1].kind == "num" and k + 1 < len(marks) and _area(marks[k + 1]):
             made.insert(len(made) - 1, _bound(heard, "least", made[-1]))
+        elif (
+            mark.text == "+"
+            and len(made) > 1
+            and _area(made[-1])
+            and (k + 1 >= len(marks) or marks[k + 1].kind in {"stop", "line", "comma"})
+        ):
+            made.insert(len(made) - 2, _bound(heard, "least", made[-2]))
         else:
             made.append(mark)
     return made
@@ -61,7 +69,7 @@ def _dealt(marks: list[Mark]) -> list[Mark]:
         if number.kind != "num" or join.kind != "join" or second.kind != "num" or not _area(unit) or number.value != "figure":
             continue
         j = k - 1
-        while j >= 0 and marks[j].kind in {"cue", "open", "verb", "colon", "fill", "word"} and k - j < 4:
+        while j >= 0 and marks[j].kind in DEALING and k - j < 5:
             j -= 1
         rooms = [i for i in range(max(0, j - 4), j + 1) if marks[i].kind == "room"]
         if len(rooms) < 2 or rooms[-1] != j or j == k - 1 or not any(m.kind == "join" for m in marks[rooms[-2] : j]):

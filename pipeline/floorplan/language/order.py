@@ -110,7 +110,7 @@ def _listing(marks: list[Mark], start: int, k: int) -> bool:
     j = k
     while j < len(marks) and marks[j].kind in LISTED:
         j += 1
-    return inside and any(m.kind == "join" for m in marks[k:j])
+    return inside and (marks[k].text == "、" or any(m.kind == "join" for m in marks[k:j]))
 
 
 def _goes_on(marks: list[Mark], end: int, second: tuple[str, ...]) -> bool:

@@ -153,7 +153,8 @@ def _both_sides(clause: Clause, k: int, e: Element) -> tuple[Group, Group, int]:
     first = k == 0 or clause.sentence[k - 1].kind in {"comma", "and"}
     left = () if ahead is not None and ahead.value == "pair" and first else subject_of(clause, k, e)  # "dazwischen liegt das Bad"
     wide = ahead is not None and ahead.kind == "np" and (len(left) > 2 or (len(left) > 1 and ahead.definite))
-    cue = "leads" if e.value == "door" and DOORS & set(e.text.split()) else e.value
+    to_many = bool(DOORS & set(e.text.split())) or e.text in {"与", "和", "跟", "同"}
+    cue = "leads" if e.value == "door" and to_many else e.value
     group, j = objects(clause, k + 1, cue, () if wide else left)
     if not group and e.value == "between" and left and first:  # "两间卧室中间是客厅"
         left = ()
