@@ -14,9 +14,9 @@ LIGHT = {"det", "adj", "size", "num", "fill", "adverb"}
 
 def jotted(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with such notes written out."""
-    made = _another(_counted(_roman(_arrows(list(marks)))))
+    made = _another(_onto_open(_counted(_roman(_arrows(list(marks))))))
     if heard.lexicon.language == "de":
-        made = _above(_amid(_open_between(_leading(_belonging(_of_the(made))))))
+        made = _beside(_above(_amid(_open_between(_leading(_belonging(_of_the(made)))))))
     if heard.lexicon.language == "zh":
         made = _wide(_each(_numbered(made)))
     return _with(_but_one(_bathless(_all_ensuite(made))))
@@ -348,4 +348,34 @@ def _above(marks: list[Mark]) -> list[Mark]:
                 made[k] = replace(
                     last, value=str(int(last.value) + step), first=mark.first, last=mark.last, text="oben" if step > 0 else "unten"
                 )
+    return made
+
+
+SOCIAL = {"living_room", "dining_room", "kitchen", "family_room"}
+
+
+def _onto_open(marks: list[Mark]) -> list[Mark]:
+    """Read "the living room connects to an open kitchen", "客厅连开放厨房" as open to it."""
+    made = list(marks)
+    for k in range(1, len(made) - 2):
+        j = k + 1 + (made[k + 1].kind == "det")
+        way = made[k].kind == "cue" and made[k].value in {"door", "leads"} and made[k - 1].kind == "room"
+        wide = j + 1 < len(made) and (made[j].kind, made[j].value) == ("adj", "open") and made[j + 1].kind == "room"
+        if way and wide and {made[k - 1].value, made[j + 1].value} <= SOCIAL:
+            made[k] = replace(made[k], value="open")
+    return made
+
+
+def _beside(marks: list[Mark]) -> list[Mark]:
+    """Read "ein Besprechungsraum, ein Büro daneben" as an office next to the meeting room."""
+    made: list[Mark] = []
+    for k, mark in enumerate(marks):
+        rooms = [m for m in made if m.kind == "room"]
+        ends = k + 1 >= len(marks) or marks[k + 1].kind in CLOSERS
+        if mark.text == "daneben" and ends and len(rooms) > 1 and made[-1].kind == "room" and not rooms[-2].plural:
+            host = replace(rooms[-2], first=mark.last, last=mark.last)
+            definite = Mark("det", "definite", 0.0, False, mark.last, mark.last, "dem")
+            made += [replace(mark, kind="cue", value="near"), definite, host]
+        else:
+            made.append(mark)
     return made
