@@ -221,34 +221,38 @@ BETWEEN_THEM += (
 )
 NEAR = (("juntos",), ("juntas",), ("uno", "al", "lado", "del", "otro"), ("una", "al", "lado", "de", "la", "otra"))
 APART = (("far", "apart"), ("well", "apart"), ("apart",), ("at", "opposite", "ends"), ("at", "opposite", "ends", "of", "the", "house"))
+# By their first word: what is said of two rooms that were just named, with the cue that it amounts to and the cue's words.
+TOLD_OF_BOTH: dict[str, list[tuple[tuple[str, ...], str, str]]] = {}
+for _listed, _cue, _text in (
+    (BETWEEN_THEM, "door", "connected"),
+    (OPEN_BETWEEN, "open", "open"),
+    (NEAR, "near", "junto a"),
+    (APART, "away", "far from"),
+):
+    for _words in _listed:
+        TOLD_OF_BOTH.setdefault(_words[0], []).append((_words, _cue, _text))
 
 
 def _ended(marks: list[Mark]) -> list[Mark]:
     """Read "A and B, with a door between them", "A and B without a wall between them", "keep A and B apart"."""
     for k in range(1, len(marks)):
-        for listed, cue, text in (
-            (BETWEEN_THEM, "door", "connected"),
-            (OPEN_BETWEEN, "open", "open"),
-            (NEAR, "near", "junto a"),
-            (APART, "away", "far from"),
-        ):
-            for words in listed:
-                end = _spells(marks, k, words)
-                if not end or (end < len(marks) and marks[end].kind not in ENDS | {"comma", "but", "close"}):
-                    continue
-                j = k
-                while j and marks[j - 1].kind in {"comma", "verb", "fill", "word", "neg"}:
-                    j -= 1
-                none = [m for m in marks[j:k] if m.kind == "neg"]
-                if not j or marks[j - 1].kind != "room" or not any(m.text in {"and", "y", "e"} for m in marks[max(0, j - 4) : j]):
-                    continue
-                at = marks[k]
-                said = [
-                    Mark("cue", cue, 0.0, False, at.first, marks[end - 1].last, text),
-                    Mark("reciprocal", "", 0.0, False, at.last, at.last, "each other"),
-                ]
-                verb = Mark("verb", "", 0.0, False, at.first, at.first, "are")
-                return [*(m for m in marks[:j] if m.text != "keep"), *none, verb, *said, *marks[end:]]
+        for words, cue, text in TOLD_OF_BOTH.get(marks[k].text.partition(" ")[0], ()):
+            end = _spells(marks, k, words)
+            if not end or (end < len(marks) and marks[end].kind not in ENDS | {"comma", "but", "close"}):
+                continue
+            j = k
+            while j and marks[j - 1].kind in {"comma", "verb", "fill", "word", "neg"}:
+                j -= 1
+            none = [m for m in marks[j:k] if m.kind == "neg"]
+            if not j or marks[j - 1].kind != "room" or not any(m.text in {"and", "y", "e"} for m in marks[max(0, j - 4) : j]):
+                continue
+            at = marks[k]
+            said = [
+                Mark("cue", cue, 0.0, False, at.first, marks[end - 1].last, text),
+                Mark("reciprocal", "", 0.0, False, at.last, at.last, "each other"),
+            ]
+            verb = Mark("verb", "", 0.0, False, at.first, at.first, "are")
+            return [*(m for m in marks[:j] if m.text != "keep"), *none, verb, *said, *marks[end:]]
     return marks
 
 
