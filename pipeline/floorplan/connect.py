@@ -209,9 +209,17 @@ def is_forbidden(program: FloorProgram, a: RoomReq, b: RoomReq) -> bool:
     """Whether no opening may join two rooms."""
     for f in program.forbids:
         if f.what in {"adjacent", "connected"} and f.b:
-            ones, others = program.select(f.a), program.select(f.b)
-            if (a in ones and b in others) or (b in ones and a in others):
+            if _covers(program, f.a, a) and _covers(program, f.b, b):
                 return True
-        if f.what == "through" and f.avoid and b in program.select(f.a) and a in program.select(f.avoid):
+            if _covers(program, f.a, b) and _covers(program, f.b, a):
+                return True
+        if f.what == "through" and f.avoid and _covers(program, f.a, b) and _covers(program, f.avoid, a):
             return True
     return False
+
+
+def _covers(program: FloorProgram, selector: str, room: RoomReq) -> bool:
+    """Whether `program.select(selector)` has this room; most selectors are told by its id and type alone."""
+    if selector == room.id:
+        return True
+    return (selector == room.type or bool(program.zones)) and any(r.id == room.id for r in program.select(selector))
