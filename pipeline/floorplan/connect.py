@@ -199,7 +199,7 @@ def _has(program: FloorProgram, host: RoomReq, kind: str, links: Sequence[Link])
 def _is_full(program: FloorProgram, room: RoomReq, links: Sequence[Link]) -> bool:
     """Whether a `degree` relation or the type leaves no room for another opening."""
     load = sum(room.id in {k.a, k.b} for k in links if k.kind in OPENABLE)
-    asked = [r.value for r in program.relations if r.kind == "degree" and room in program.select(r.a)]
+    asked = [r.value for r in program.relations if r.kind == "degree" and _covers(program, r.a, room)]
     if asked:
         return load >= min(asked)
     return load >= 1 and not DEFAULTS[room.type].through and room.type in {"bathroom", "wc", "balcony", "storage", "closet"}

@@ -62,8 +62,7 @@ def shortcoming(
     if unmet:
         return *unmet, True
     there = {p.category for p in placements}
-    # A stated number of objects may be too small for what the room type would have.
-    for group in taxonomy.essentials.get(job.layout_type, ()) if job.count is None else ():
+    for group in job.essentials(taxonomy):
         if not there.intersection(group):
             return "lacks_essential", f"none of {', '.join(group[:3])}", False
     if len(placements) < KEPT * len(draft.placements):

@@ -41,13 +41,10 @@ def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxono
 def demands(job: RoomJob, taxonomy: Taxonomy) -> tuple[Demand, ...]:
     """Return what a room is to hold: what is wished for, and of each group of its type's essentials one thing.
 
-    A stated number of objects may be too small for them; and what is wished for of a group, none of it too, stands.
+    What is wished for of a group, none of it too, stands.
     """
-    if job.count is not None:
-        return job.demands
     wished = {c for demand in job.demands for c in demand.categories}
-    needed = taxonomy.essentials.get(job.layout_type, ())
-    return (*job.demands, *(Demand(group, 1) for group in needed if not wished.intersection(group)))
+    return (*job.demands, *(Demand(group, 1) for group in job.essentials(taxonomy) if not wished.intersection(group)))
 
 
 def retrieve(job: RoomJob, context: RoomContext, proposals: Sequence[Proposal], index: AssetIndex, taxonomy: Taxonomy) -> Draft:

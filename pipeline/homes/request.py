@@ -49,6 +49,10 @@ class RoomJob:
         """What is wished for by category, as the sampler takes it."""
         return tuple(Demand(members(c.category), c.min, c.max) for c in self.furniture.counts)
 
+    def essentials(self, taxonomy: Taxonomy) -> tuple[tuple[str, ...], ...]:
+        """Return the groups of categories of which the room needs one thing each; a stated number of objects may be too small for them."""
+        return taxonomy.essentials.get(self.layout_type, ()) if self.count is None else ()
+
     @property
     def bounds(self) -> tuple[int | None, int | None]:
         """Least and most number of objects; a job that states a count alone means it exactly."""

@@ -1,12 +1,13 @@
-from types import SimpleNamespace
-
 from pipeline import taxonomy
 from pipeline.diffusion.context import Demand
+from pipeline.floorplan.program import Furniture
 from pipeline.homes.furnish import demands
+from pipeline.homes.request import RoomJob
 
 
 def job(layout_type, count=None, wishes=()):
-    return SimpleNamespace(layout_type=layout_type, count=count, demands=tuple(wishes))
+    counts = [{"category": c, "min": d.least, "max": d.most} for d in wishes for c in d.categories]
+    return RoomJob(None, "room", layout_type, 0, 0, count=count, furniture=Furniture.model_validate({"counts": counts}))
 
 
 def test_a_room_is_to_hold_what_makes_it_that_room():

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.floorplan.language.marks import Mark
+from pipeline.floorplan.language.marks import ENDS, Mark
 from pipeline.floorplan.language.wayfinding import room_at
 
-ENDS = {"stop", "line"}
 BEING = {"son", "seran", "are", "sind"}
 COMPARED = {"smaller", "larger", "1.35", "1.3", "0.75"}
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.floorplan.language.marks import Mark
+from pipeline.floorplan.language.marks import ENDS, Mark
 from pipeline.floorplan.language.wayfinding import room_at
 
-ENDS = {"stop", "line"}
 NEITHER = {"neither", "ni", "weder", "ninguno de", "ninguna de"}
 NOR = {"nor", "ni", "noch", "or", "o"}
 LIGHT = {"verb", "fill", "adverb", "word", "det", "pron", "cue", "flag"}  # between a negation and the bound that it turns

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.floorplan.language.marks import Mark, Words
+from pipeline.floorplan.language.marks import ENDS, Mark, Words, sentences_of
 
-ENDS = {"stop", "line"}
 LEADING = {"det", "adj", "size", "num", "ord"}
 JOIN = {"connect", "connects", "link", "links", "join", "joins", "connecting", "linking", "joining", "merge", "merging", "combine"}
 JOIN |= {"conecta", "conectar", "comunica", "comunicar", "une", "unir", "enlaza", "conecte", "junta", "fusiona", "unificar", "separates"}
@@ -41,18 +40,6 @@ def phrased(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     for sentence in sentences_of(marks):
         made += _noted(_ordered(_subject(_ended(sentence))))
     return made
-
-
-def sentences_of(marks: Sequence[Mark]) -> Iterator[list[Mark]]:
-    """Yield the marks of each sentence, its end with it."""
-    found: list[Mark] = []
-    for mark in marks:
-        found.append(mark)
-        if mark.kind in ENDS:
-            yield found
-            found = []
-    if found:
-        yield found
 
 
 def phrase(marks: Sequence[Mark], k: int) -> int:

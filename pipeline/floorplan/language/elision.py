@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from pipeline.floorplan.language.gapping import regained
-from pipeline.floorplan.language.marks import Mark, Words
+from pipeline.floorplan.language.marks import ENDS, Mark, Words
 
-ENDS = {"stop", "line"}
 CLOSERS = {"stop", "line", "comma", "join", "close", "but"}
 ONES = {"uno", "una", "otro", "otra", "one", "another", "otro mas", "otra mas"}
 FOR = {"para", "de", "del", "for"}

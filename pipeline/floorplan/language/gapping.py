@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.floorplan.language.marks import Mark, Words
+from pipeline.floorplan.language.marks import ENDS, Mark, Words
 from pipeline.floorplan.language.wayfinding import room_at
 
-ENDS = {"stop", "line"}
 CLOSERS = {"stop", "line", "comma", "join", "close", "but"}
 FACING = {"dan", "da", "dar", "salen", "sale", "salir", "abren", "abre", "abrir", "desembocan", "conducen", "llevan", "comunican", "asoman"}
 PASSING = {"comunica", "comunican", "conecta", "conectan", "enlaza", "enlazan"}

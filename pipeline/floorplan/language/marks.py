@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from pipeline.floorplan.language.german import completed
@@ -24,6 +24,7 @@ PUNCTUATION = {
     "|": "comma",
     "*": "bullet",
 }
+ENDS = {"stop", "line"}  # kinds of marks that end a sentence
 ARROWS = {"<->", "->", "=>", "→"}
 FOREIGN = STRONG | {"num", "adj", "cue"}  # what a word of another language may mean in a mixed prompt
 USUAL_HEIGHT = 15.0  # a length from here on, said of a room or a home, is an area ("60 metros")
@@ -57,6 +58,18 @@ class Words:
     tokens: list[Token]
     texts: list[str]
     lexicon: Lexicon
+
+
+def sentences_of(marks: Sequence[Mark]) -> Iterator[list[Mark]]:
+    """Yield the marks of each sentence, its end with it."""
+    found: list[Mark] = []
+    for mark in marks:
+        found.append(mark)
+        if mark.kind in ENDS:
+            yield found
+            found = []
+    if found:
+        yield found
 
 
 def listen(prompt: str, language: Language) -> Words:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.floorplan.language.marks import Mark, Words
+from pipeline.floorplan.language.marks import ENDS, Mark, Words
 from pipeline.floorplan.language.wayfinding import ways
 
-ENDS = {"stop", "line"}
 BY = {"durch", "ueber", "von", "aus", "por", "desde", "through", "via", "from"}  # in front of a relative pronoun
 ARTICLES = {"das", "die", "den", "dem", "der", "el", "la", "los", "las"}
 BRANCH = {"abgeht", "abgehen", "abzweigt", "abzweigen"}  # at the end of a German clause

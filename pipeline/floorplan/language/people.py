@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.floorplan.language.baths import bathed, completed
+from pipeline.floorplan.language.baths import ENDS, bathed, completed
 from pipeline.floorplan.language.marks import Mark, Words
 from pipeline.floorplan.language.owners import (
     FOR,
@@ -30,7 +30,6 @@ LIGHT = {"comma", "verb", "fill", "adverb", "det", "cue", "pron", "word", "num"}
 FAR = 9  # marks
 LINKING = {"verb", "adverb", "fill"}  # between people and what they get
 PHRASE = {"det", "num", "clf", "adj", "size", "bound", "amount"}
-ENDS = {"stop", "line", "comma", "close", "colon"}
 PARTS = {"det", "num", "clf", "adj", "size", "fill", "adverb", "verb", "relative", "bound"}  # what may stand in a phrase
 PERSONS = {
     "student", "students", "studenten", "person", "persons", "people", "personen", "leute", "mitbewohner", "bewohner", "friends", "freunde",

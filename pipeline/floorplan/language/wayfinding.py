@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.floorplan.language.marks import Mark
+from pipeline.floorplan.language.marks import Mark, sentences_of
 
-ENDS = {"stop", "line"}
 SEEN = {"ve", "vea", "ver", "verse", "vean", "see", "seen", "sehen", "sieht", "sichtbar"}
 ACCESS = {"door", "doors", "access", "puerta", "acceso", "salida", "tuer", "zugang", "ausgang", "exit", "entrance", "entrada"}
 INTO = {"to", "into", "onto", "in", "al", "a", "ins", "in den", "in die", "in das", "zum", "zur"}
@@ -20,21 +19,9 @@ LONG = 7  # marks between a starting point and where one comes from there
 def ways(marks: Sequence[Mark]) -> list[Mark]:
     """Return the marks with each way said by a cue."""
     made: list[Mark] = []
-    for sentence in _sentences(marks):
+    for sentence in sentences_of(marks):
         made += _again(_through(_entering(_going(_access(_unseen(sentence))))))
     return made
-
-
-def _sentences(marks: Sequence[Mark]) -> Iterator[list[Mark]]:
-    """Yield the marks of each sentence, its end with it."""
-    found: list[Mark] = []
-    for mark in marks:
-        found.append(mark)
-        if mark.kind in ENDS:
-            yield found
-            found = []
-    if found:
-        yield found
 
 
 def _into(mark: Mark) -> bool:

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.floorplan.language.doorways import ENDS, phrase, sentences_of
-from pipeline.floorplan.language.marks import Mark, Words
+from pipeline.floorplan.language.doorways import phrase
+from pipeline.floorplan.language.marks import ENDS, Mark, Words, sentences_of
 
 INTO = {"to", "into", "onto", "leading to", "leading into", "opening to", "opening into", "opening onto"}
 ACCESS = {"door", "doors", "access", "doorway", "doorways"}
 BY = {"from", "through", "via", "only via", "only from", "only through", "by way of", "exclusively from", "from only"}
-SKIPPED = {"verb", "fill", "word", "adverb", "comma", "det", "flag"}
 REACHED = {
     "reached",
     "accessed",
