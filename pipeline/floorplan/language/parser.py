@@ -12,30 +12,22 @@ from pipeline.floorplan.check import check
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.language.assembly import assemble
 from pipeline.floorplan.language.attaching import attach
-from pipeline.floorplan.language.baths import one_for
-from pipeline.floorplan.language.bearings import located
-from pipeline.floorplan.language.counts import counted
 from pipeline.floorplan.language.denials import denied
 from pipeline.floorplan.language.detection import detect
 from pipeline.floorplan.language.doorways import phrased
-from pipeline.floorplan.language.elision import unsaid
-from pipeline.floorplan.language.families import homed
 from pipeline.floorplan.language.limits import supplied
 from pipeline.floorplan.language.marks import listen, measured, segment
 from pipeline.floorplan.language.masking import read_furniture
-from pipeline.floorplan.language.measures import compared
 from pipeline.floorplan.language.notation import noted
 from pipeline.floorplan.language.order import reorder
 from pipeline.floorplan.language.passages import written_out
 from pipeline.floorplan.language.people import housed
 from pipeline.floorplan.language.phrases import sentences
 from pipeline.floorplan.language.reading import read
-from pipeline.floorplan.language.retractions import loosened
 from pipeline.floorplan.language.revising import revise
 from pipeline.floorplan.language.shorthand import crossed, dealt, shared_unit, widen
 from pipeline.floorplan.language.standins import resolved
 from pipeline.floorplan.language.tables import plain_areas
-from pipeline.floorplan.language.tallies import tallied
 from pipeline.floorplan.language.text import tokenize
 from pipeline.floorplan.language.wordings import worded
 from pipeline.floorplan.program import FloorProgram
@@ -64,10 +56,9 @@ def understand(prompt: str) -> FloorProgram:
 def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     """Return what a prompt says of rooms, and no more; `plain` is it without its wishes for furniture, all else in its place."""
     heard = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
-    amounts = dealt(measured(shared_unit(crossed(plain_areas(supplied(loosened(segment(heard), heard), heard)), heard)), heard))
+    amounts = dealt(measured(shared_unit(crossed(plain_areas(supplied(segment(heard), heard)), heard)), heard))
     revised = revise(widen(amounts, heard), heard)
-    said = located(compared(tallied(homed(revised.marks, heard), heard), heard), heard)
-    people = one_for(counted(housed(unsaid(denied(phrased(worded(said, heard), heard)), heard))))
+    people = housed(denied(phrased(worded(revised.marks, heard), heard)))
     marks = reorder(written_out(noted(resolved(people, heard), heard), heard), heard)
     parsed = sentences(marks, heard)
     spoken = {e.kind for s in parsed for e in s}

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.floorplan.language.baths import ENDS, bathed, completed
 from pipeline.floorplan.language.marks import Mark, Words
 from pipeline.floorplan.language.owners import (
     FOR,
@@ -22,6 +21,7 @@ from pipeline.floorplan.language.owners import (
     whose,
 )
 
+ENDS = {"stop", "line", "comma", "close", "colon"}
 EACH = {
     "each", "apiece", "cadauno", "cadauna", "cada", "je", "jeweils", "jeder", "jedes", "jeein", "jeeine", "jeeinen",
     "每人", "每个人", "每位", "每名", "人均", "每个学生",
@@ -48,8 +48,8 @@ def settled(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     made = _persons(list(marks), heard)
     made = _couple(made) if heard.lexicon.language == "de" else made
     if any(m.kind == "owner" for m in made):
-        made = spoken_of(bathed(_given(named(_left_out(made)))))
-    return completed(made)
+        made = spoken_of(_given(named(_left_out(made))))
+    return made
 
 
 def _each(marks: list[Mark]) -> list[Mark]:
