@@ -93,6 +93,7 @@ class _Entries(BaseModel):
     adverbs: str = ""
     classifiers: str = ""
     endings: str = ""
+    signs: dict[str, str] = {}
     abbreviations: str = ""
     fillers: str = ""
     ignored: str = ""
@@ -129,6 +130,7 @@ class Lexicon:
     range_from: frozenset[str] = frozenset()
     range_to: frozenset[str] = frozenset()
     bounds: Mapping[str, str] = field(default_factory=dict)
+    signs: Mapping[str, frozenset[str]] = field(default_factory=dict)  # words -> the closed classes that frames know them by
     tenses: Mapping[str, str] = field(default_factory=dict)  # forms of verbs -> the form that the phrases are made of
 
     def find(self, texts: list[str], start: int) -> tuple[int, Meaning, bool] | None:
@@ -333,6 +335,12 @@ def lexicon(language: Language) -> Lexicon:
     made.range_from = frozenset(fold(w) for w in split(entries.range.get("from", "")))
     made.range_to = frozenset(fold(w) for w in split(entries.range.get("to", "")))
     made.bounds = {" ".join(words(p)): key for key, phrases in entries.bounds.items() for p in split(phrases)}
+    signs: dict[str, set[str]] = {}
+    for sign, phrases in entries.signs.items():
+        for p in split(phrases):
+            for spelt in _spellings(p, language):
+                signs.setdefault(" ".join(_told(spelt, made)), set()).add(sign)
+    made.signs = {text: frozenset(named) for text, named in signs.items()}
     frames = []
     for cue, phrases in entries.frames.items():
         for phrase in split(phrases):

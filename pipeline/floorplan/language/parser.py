@@ -12,24 +12,18 @@ from pipeline.floorplan.check import check
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.language.assembly import assemble
 from pipeline.floorplan.language.attaching import attach
-from pipeline.floorplan.language.denials import denied
 from pipeline.floorplan.language.detection import detect
-from pipeline.floorplan.language.doorways import phrased
+from pipeline.floorplan.language.frames import framed
 from pipeline.floorplan.language.limits import supplied
 from pipeline.floorplan.language.marks import listen, measured, segment
 from pipeline.floorplan.language.masking import read_furniture
-from pipeline.floorplan.language.notation import noted
 from pipeline.floorplan.language.order import reorder
-from pipeline.floorplan.language.passages import written_out
-from pipeline.floorplan.language.people import housed
 from pipeline.floorplan.language.phrases import sentences
 from pipeline.floorplan.language.reading import read
 from pipeline.floorplan.language.revising import revise
 from pipeline.floorplan.language.shorthand import crossed, dealt, shared_unit, widen
-from pipeline.floorplan.language.standins import resolved
 from pipeline.floorplan.language.tables import plain_areas
 from pipeline.floorplan.language.text import tokenize
-from pipeline.floorplan.language.wordings import worded
 from pipeline.floorplan.program import FloorProgram
 
 LONGEST = 20_000  # characters
@@ -58,8 +52,7 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     heard = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
     amounts = dealt(measured(shared_unit(crossed(plain_areas(supplied(segment(heard), heard)), heard)), heard))
     revised = revise(widen(amounts, heard), heard)
-    people = housed(denied(phrased(worded(revised.marks, heard), heard)))
-    marks = reorder(written_out(noted(resolved(people, heard), heard), heard), heard)
+    marks = reorder(framed(revised.marks, heard), heard)
     parsed = sentences(marks, heard)
     spoken = {e.kind for s in parsed for e in s}
     if not spoken & {"np", "home"} and not any(e.kind == "amount" and e.value == "rooms" for s in parsed for e in s):

@@ -1,0 +1,226 @@
+"""Frames: patterns over concepts that say in one way what languages say in many; `manifests/lexicon/frames.yaml` holds them.
+
+A frame is `pattern => reading`. Atoms of a pattern: `A` ... `D` a noun phrase (`A:bedroom` of that type), `L` a list of two or more, `X`, `Y` a list of one or more,
+`^` and `$` the ends of a clause, else a kind of mark (`flag`), a kind with its value (`cue/has`), or a sign, a closed class of words that a lexicon lists under
+`signs`; `a|b` either, `a?` it or nothing, `n=a` with a name. Words that mean nothing may stand between atoms. A reading is made of the phrases, of what has a name
+(`n>kind/value`: as another kind of mark, `n>flip`: with its bound turned round, `n>total`: as the home's, `n>bedroom`: as the bedroom of those people, `n>@o`: as
+the bedroom of `o`) and of marks to be read in place of the words; what stood
+between them is consumed. No frame belongs to a language: word order and words do.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import yaml
+
+from pipeline.errors import ContentError
+from pipeline.floorplan.language.marks import ENDS, Mark, Words, sentences_of
+
+FILE = Path(__file__).resolve().parents[3] / "manifests" / "lexicon" / "frames.yaml"
+PHRASES, LISTS = frozenset("ABCD"), frozenset("LXY")
+LEADING = {"det", "num", "ord", "adj", "size", "clf", "times"}  # in front of a head
+HEADS = {"room", "suite"}
+SKIPPED = {"fill", "adverb", "word", "look", "hyphen"}  # between atoms, where no atom names it
+CLOSERS = ENDS | {"comma", "close", "but", "open", "colon", "bullet", "dash"}
+SEPARATORS = {"comma", "join", "slash"}
+TOWARDS = {"into", "single", "det/indefinite", "det/another"}  # in front of each room of a list: "one to the hall, one to the kitchen"
+MOST_SKIPPED = 3
+Slots = dict[str, tuple[int, int]]
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A pattern and its reading. `needs`: for each atom that must stand there, what it may be."""
+
+    text: str
+    atoms: tuple[Atom, ...]
+    reading: tuple[str, ...]
+    needs: tuple[frozenset[str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Atom:
+    """What may stand at one place of a pattern: `names` of marks, or noun phrases (of `types`, where there are any) that fill `slot`."""
+
+    names: frozenset[str]
+    optional: bool
+    slot: str
+    types: frozenset[str]
+
+
+@functools.cache
+def frames() -> tuple[Frame, ...]:
+    """Return all frames in the order in which they are tried. Raises ContentError for one that is none."""
+    rows = yaml.safe_load(FILE.read_text(encoding="utf-8"))
+    return tuple(_frame(row) for group in rows.values() for row in group)
+
+
+def _frame(row: str) -> Frame:
+    pattern, arrow, reading = row.partition("=>")
+    atoms = tuple(map(_atom, pattern.split()))
+    slots = {a.slot for a in atoms}
+    if not arrow or {w for w in reading.split() if w in PHRASES | LISTS} - slots:
+        raise ContentError(f"{FILE.name}: no frame: {row!r}", "write PATTERN => READING with the slots of the pattern")
+    needs = tuple(a.names for a in atoms if not (a.optional or a.names & {"^", "$"} or a.slot in PHRASES | LISTS))
+    return Frame(row, atoms, tuple(reading.split()), needs)
+
+
+def _atom(text: str) -> Atom:
+    slot, _, names = text.removesuffix("?").rpartition("=")
+    head, _, types = names.partition(":")
+    slot = head if head in PHRASES | LISTS else slot
+    return Atom(frozenset(names.split("|")), text.endswith("?"), slot, frozenset(types.split(",")) if types else frozenset())
+
+
+def framed(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Return the marks with every frame that fits read."""
+    signs = heard.lexicon.signs
+    made: list[Mark] = []
+    for sentence in sentences_of(marks):
+        said = sentence
+        names = [_names(m, signs) for m in said]
+        for frame in frames():
+            here = frozenset().union(*names)
+            if all(need & here for need in frame.needs):
+                said, changed = _applied(frame, said, names)
+                names = [_names(m, signs) for m in said] if changed else names
+        made += said
+    return made
+
+
+def _names(mark: Mark, signs: Mapping[str, frozenset[str]]) -> frozenset[str]:
+    """Return all that an atom may call a mark."""
+    own = {mark.kind, f"{mark.kind}/{mark.value}"}
+    if mark.kind == "room":
+        own.add("room/" + mark.value.partition("/")[0])
+    if mark.kind == "amount" and mark.value == "rooms":
+        own |= signs.get(mark.text.rsplit(" ", 1)[-1], frozenset())  # "3 ZKB"
+    if mark.kind == "amount" and mark.bound in {"least", "most"}:
+        own.add("bounded")
+    if mark.kind == "num":
+        own.add({0.0: "zero", 2.0: "two"}.get(mark.number, "num"))
+        own |= {"many"} if mark.number > 1 else set()
+    if mark.number == 1.0 and mark.kind in {"num", "pron", "ord"}:
+        own.add("single")
+    return signs.get(mark.text, frozenset()) | own
+
+
+def _applied(frame: Frame, marks: list[Mark], names: Sequence[frozenset[str]]) -> tuple[list[Mark], bool]:
+    """Return a sentence with a frame read wherever it fits, and whether it did."""
+    made: list[Mark] = []
+    k = 0
+    reader = _Reader(marks, names, frame.atoms)
+    while k < len(marks):
+        found = next(reader.fits(0, k, {}), None)
+        if found is None or found[0] <= k:
+            made.append(marks[k])
+            k += 1
+        else:
+            end, slots = found
+            made += _read(frame, marks, k, end, slots)
+            k = end
+    return (made, True) if len(made) != len(marks) or any(a is not b for a, b in zip(made, marks, strict=True)) else (marks, False)
+
+
+@dataclass(frozen=True, slots=True)
+class _Reader:
+    marks: Sequence[Mark]
+    names: Sequence[frozenset[str]]
+    atoms: Sequence[Atom]
+
+    def fits(self, i: int, k: int, slots: Slots) -> Iterator[tuple[int, Slots]]:
+        """Yield where the atoms from i on may end when they begin at mark k, with the places of the phrases."""
+        if i == len(self.atoms):
+            yield k, slots
+            return
+        atom = self.atoms[i]
+        for start in range(k, min(k + (MOST_SKIPPED if i else 0), len(self.marks)) + 1):
+            if start > k and self.marks[start - 1].kind not in SKIPPED:
+                break
+            for end in self._one(atom, start):
+                yield from self.fits(i + 1, end, {**slots, atom.slot: (start, end)} if atom.slot else slots)
+        if atom.optional:
+            yield from self.fits(i + 1, k, slots)
+
+    def _one(self, atom: Atom, k: int) -> Iterator[int]:
+        """Yield where one atom ends that begins at mark k."""
+        if "^" in atom.names and (k == 0 or self.marks[k - 1].kind in CLOSERS):
+            yield k
+        if "$" in atom.names and (k >= len(self.marks) or self.marks[k].kind in CLOSERS):
+            yield k
+        if k >= len(self.marks):
+            return
+        if atom.names & self.names[k]:
+            yield k + 1
+        if atom.slot in PHRASES and (end := phrase(self.marks, k)):
+            if not atom.types or self._type(k, end) in atom.types:
+                yield end
+        elif atom.slot in LISTS:
+            yield from reversed(listed(self.marks, k, self.names)[atom.slot == "L" :])
+
+    def _type(self, k: int, end: int) -> str:
+        """Return the type of the room that a phrase names."""
+        head = next(m for m in self.marks[k:end] if m.kind in HEADS)
+        return "bedroom" if head.kind == "suite" else head.value.partition("/")[0]
+
+
+def phrase(marks: Sequence[Mark], k: int) -> int:
+    """Return where the noun phrase ends that begins at mark k; 0 where none does."""
+    while k < len(marks) and (marks[k].kind in LEADING or (marks[k].kind == "amount" and marks[k].value == "area")):
+        k += 1
+    if k >= len(marks) or marks[k].kind not in HEADS:
+        return 0
+    k += 1
+    while k < len(marks) and (
+        marks[k].kind in {"post", "clf"} or (marks[k].kind, marks[k].value) in {("num", "figure"), ("amount", "area"), ("det", "own")}
+    ):
+        k += 1
+    return k
+
+
+def listed(marks: Sequence[Mark], k: int, names: Sequence[frozenset[str]]) -> list[int]:
+    """Return the ends of the lists of one, two, three ... noun phrases that begin at mark k."""
+    ends: list[int] = []
+    while end := phrase(marks, k):
+        ends.append(end)
+        k = end
+        while k < len(marks) and k - end < 4 and (marks[k].kind in SEPARATORS or (k > end and names[k] & TOWARDS and not phrase(marks, k))):
+            k += 1
+        if k == end:
+            break
+    return ends
+
+
+def _read(frame: Frame, marks: Sequence[Mark], start: int, end: int, slots: Slots) -> Iterator[Mark]:
+    """Yield the reading of a frame that fits marks[start:end]."""
+    inside = {i for first, last in slots.values() for i in range(first, last)}
+    words = [marks[i] for i in range(start, end) if i not in inside] or list(marks[start:end])
+    first, last = words[0].first, words[-1].last
+    for atom in frame.reading:
+        slot, _, change = atom.partition(">")
+        if slot in slots:
+            a, b = slots[slot]
+            kept = marks[a:b] if b - a == 1 else [m for m in marks[a:b] if m.kind in {*LEADING, *HEADS, *SEPARATORS, "post", "amount"}]
+            said = marks[slots[change[1:]][0]].value if change.startswith("@") else ""
+            yield from (replace(m, value=f"bedroom/{said}") if said else _changed(m, change) for m in kept)
+        elif not slot.islower() or "/" in slot or len(slot) > 1:
+            what, _, text = atom.partition(":")
+            kind, _, value = what.partition("/")
+            value, _, number = value.partition("=")
+            yield Mark(kind, value, float(number or 0.0), False, first, last, text.replace("_", " ") or value or kind)
+
+
+def _changed(mark: Mark, change: str) -> Mark:
+    """Return a mark read as something else."""
+    if change == "flip":
+        return replace(mark, bound="most" if mark.bound == "least" else "least")
+    if change == "total":
+        return replace(mark, total=True)
+    if change == "bedroom":
+        return replace(mark, kind="room", value=f"bedroom/{mark.value}", number=0.0)
+    kind, _, value = change.partition("/")
+    return replace(mark, kind=kind, value=value) if change else mark
