@@ -49,6 +49,7 @@ class Reading:
     studio: Element | None = None
     storeys: tuple[int, Mark] | None = None
     rooms: tuple[int, Mark] | None = None  # "a three-room flat"
+    people: Mark | None = None  # how many live there
     topic: Group = ()  # what the last sentence was about
     past: list[Group] = field(default_factory=list)  # groups named in earlier sentences, the latest last
     used: set[int] = field(default_factory=set)

@@ -29,6 +29,7 @@ CLOSERS = ENDS | {"comma", "close", "but", "open", "colon", "bullet", "dash"}
 SEPARATORS = {"comma", "join", "slash"}
 TOWARDS = {"into", "single", "det/indefinite", "det/another"}  # in front of each room of a list: "one to the hall, one to the kitchen"
 MOST_SKIPPED = 3
+HOMES = {"large": 35.0, "vast": 60.0}  # [m2] from here on an area is no bedroom's, and no living room's
 Slots = dict[str, tuple[int, int]]
 
 
@@ -97,13 +98,18 @@ def _names(mark: Mark, signs: Mapping[str, frozenset[str]]) -> frozenset[str]:
     own = {mark.kind, f"{mark.kind}/{mark.value}"}
     if mark.kind == "room":
         own.add("room/" + mark.value.partition("/")[0])
-    if mark.kind == "amount" and mark.value == "rooms":
-        own |= signs.get(mark.text.rsplit(" ", 1)[-1], frozenset())  # "3 ZKB"
-    if mark.kind == "amount" and mark.bound in {"least", "most"}:
-        own.add("bounded")
-    if mark.kind == "num":
-        own.add({0.0: "zero", 2.0: "two"}.get(mark.number, "num"))
-        own |= {"many"} if mark.number > 1 else set()
+    elif mark.kind == "num":
+        own |= {"zero"} if not mark.number else {"two"} if mark.number == 2.0 else set()
+        own |= {"many"} if mark.number > 1.0 else set()
+    elif mark.kind == "size" and mark.number < 1.0:
+        own.add("small")
+    elif mark.kind == "pron" and mark.number > 1.0:
+        own.add("some")
+    elif mark.kind == "amount":
+        own |= {"bounded"} if mark.bound in {"least", "most"} else set()
+        own |= {name for name, least in HOMES.items() if mark.value == "area" and mark.number >= least}
+        if mark.value == "rooms":
+            own |= signs.get(mark.text.rsplit(" ", 1)[-1], frozenset()) | ({"one_room"} if mark.number == 1.0 else set())  # "3 ZKB"
     if mark.number == 1.0 and mark.kind in {"num", "pron", "ord"}:
         own.add("single")
     return signs.get(mark.text, frozenset()) | own
@@ -204,14 +210,26 @@ def _read(frame: Frame, marks: Sequence[Mark], start: int, end: int, slots: Slot
         slot, _, change = atom.partition(">")
         if slot in slots:
             a, b = slots[slot]
-            kept = marks[a:b] if b - a == 1 else [m for m in marks[a:b] if m.kind in {*LEADING, *HEADS, *SEPARATORS, "post", "amount"}]
+            kept = list(_items(marks[a:b])) if slot in LISTS else marks[a:b]
             said = marks[slots[change[1:]][0]].value if change.startswith("@") else ""
             yield from (replace(m, value=f"bedroom/{said}") if said else _changed(m, change) for m in kept)
         elif not slot.islower() or "/" in slot or len(slot) > 1:
             what, _, text = atom.partition(":")
+            what, _, number = what.partition("=")
             kind, _, value = what.partition("/")
-            value, _, number = value.partition("=")
             yield Mark(kind, value, float(number or 0.0), False, first, last, text.replace("_", " ") or value or kind)
+
+
+def _items(marks: Sequence[Mark]) -> Iterator[Mark]:
+    """Yield the phrases of a list and what parts them; "to" in front of each goes."""
+    k = 0
+    while k < len(marks):
+        end = phrase(marks, k)
+        if end:
+            yield from marks[k:end]
+        elif marks[k].kind in SEPARATORS and marks[k].value != "to":
+            yield marks[k]
+        k = end or k + 1
 
 
 def _changed(mark: Mark, change: str) -> Mark:

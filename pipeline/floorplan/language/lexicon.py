@@ -335,26 +335,36 @@ def lexicon(language: Language) -> Lexicon:
     made.range_from = frozenset(fold(w) for w in split(entries.range.get("from", "")))
     made.range_to = frozenset(fold(w) for w in split(entries.range.get("to", "")))
     made.bounds = {" ".join(words(p)): key for key, phrases in entries.bounds.items() for p in split(phrases)}
-    signs: dict[str, set[str]] = {}
-    for sign, phrases in entries.signs.items():
-        for p in split(phrases):
-            for spelt in _spellings(p, language):
-                signs.setdefault(" ".join(_told(spelt, made)), set()).add(sign)
-    made.signs = {text: frozenset(named) for text, named in signs.items()}
-    frames = []
-    for cue, phrases in entries.frames.items():
-        for phrase in split(phrases):
-            first, second = phrase.split("...")
-            for a in _spellings(first.strip(), language):
-                frames += [(_told(a, made), _told(b, made), cue) for b in _spellings(second.strip(), language)]
-    frames.sort(key=lambda f: -len(f[0]) - len(f[1]))
-    made.frames = {word: tuple(f for f in frames if f[0][0] == word) for word in {f[0][0] for f in frames}}
-    made.vocabulary.update(w for a, b, _ in frames for w in (*a, *b))
-    others |= {w: FARTHER[True] for a, b, _ in frames for w in (*a, *b)}
+    made.signs = _signs(entries, made)
+    others |= _brackets(entries, made)
     others |= {w: COMMON for w in made.vocabulary if w not in others}
     others = dict.fromkeys(_things(language), FARTHER[True]) | others
     made.others = {w: far for w, far in others.items() if w not in made.targets and w.isalpha()}
     return made
+
+
+def _signs(entries: _Entries, lex: Lexicon) -> dict[str, frozenset[str]]:
+    """Return the classes that the words of frames belong to."""
+    signs: dict[str, set[str]] = {}
+    for sign, phrases in entries.signs.items():
+        for p in split(phrases):
+            for spelt in _spellings(p, lex.language):
+                signs.setdefault(" ".join(_told(spelt, lex)), set()).add(sign)
+    return {text: frozenset(named) for text, named in signs.items()}
+
+
+def _brackets(entries: _Entries, lex: Lexicon) -> dict[str, float]:
+    """Read cues in two parts into a lexicon ("an ... grenzt"); return their words, which build sentences."""
+    pairs = []
+    for cue, phrases in entries.frames.items():
+        for phrase in split(phrases):
+            first, second = phrase.split("...")
+            for a in _spellings(first.strip(), lex.language):
+                pairs += [(_told(a, lex), _told(b, lex), cue) for b in _spellings(second.strip(), lex.language)]
+    pairs.sort(key=lambda f: -len(f[0]) - len(f[1]))
+    lex.frames = {word: tuple(f for f in pairs if f[0][0] == word) for word in {f[0][0] for f in pairs}}
+    lex.vocabulary.update(w for a, b, _ in pairs for w in (*a, *b))
+    return {w: FARTHER[True] for a, b, _ in pairs for w in (*a, *b)}
 
 
 def _told(phrase: tuple[str, ...], lex: Lexicon) -> tuple[str, ...]:

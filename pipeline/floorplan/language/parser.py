@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 
 from pydantic import ValidationError
 
 from pipeline.errors import RefusedError, UsageError
-from pipeline.floorplan.check import check
+from pipeline.floorplan.check import ImpossibleError, check
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.language.assembly import assemble
 from pipeline.floorplan.language.attaching import attach
 from pipeline.floorplan.language.detection import detect
 from pipeline.floorplan.language.frames import framed
 from pipeline.floorplan.language.limits import supplied
-from pipeline.floorplan.language.marks import listen, measured, segment
+from pipeline.floorplan.language.marks import Mark, Words, listen, measured, segment
 from pipeline.floorplan.language.masking import read_furniture
 from pipeline.floorplan.language.order import reorder
 from pipeline.floorplan.language.phrases import sentences
@@ -23,8 +24,8 @@ from pipeline.floorplan.language.reading import read
 from pipeline.floorplan.language.revising import revise
 from pipeline.floorplan.language.shorthand import crossed, dealt, shared_unit, widen
 from pipeline.floorplan.language.tables import plain_areas
-from pipeline.floorplan.language.text import tokenize
-from pipeline.floorplan.program import FloorProgram
+from pipeline.floorplan.language.text import spread, tokenize
+from pipeline.floorplan.program import Evidence, FloorProgram
 
 LONGEST = 20_000  # characters
 MOST_WORDS = 2_500  # and Chinese characters: reading takes time in proportion to them
@@ -52,7 +53,9 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     heard = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
     amounts = dealt(measured(shared_unit(crossed(plain_areas(supplied(segment(heard), heard)), heard)), heard))
     revised = revise(widen(amounts, heard), heard)
-    marks = reorder(framed(revised.marks, heard), heard)
+    said = framed(revised.marks, heard)
+    _one_home(said, heard)
+    marks = reorder([m for m in said if m.kind != "people"], heard)
     parsed = sentences(marks, heard)
     spoken = {e.kind for s in parsed for e in s}
     if not spoken & {"np", "home"} and not any(e.kind == "amount" and e.value == "rooms" for s in parsed for e in s):
@@ -61,6 +64,7 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
             f"nothing in the prompt names a room or a home: {shown!r}", "name rooms, e.g. living room, two bedrooms, bathroom"
         )
     state = read(heard, parsed)
+    state.people = next((m for m in said if m.kind == "people"), None)
     state.looks = [e for s in parsed for e in s if e.kind == "look"]
     try:
         return assemble(state, parsed, [*marks, *(replace(m, kind="word") for m in revised.aside)])
@@ -68,6 +72,14 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
         fault = error.errors()[0]
         where = ".".join(map(str, fault["loc"]))
         raise RefusedError(f"{where} cannot be {str(fault['input'])[:60]}: {fault['msg']}", "ask for a home of usual size") from error
+
+
+def _one_home(marks: Sequence[Mark], heard: Words) -> None:
+    """Refuse two homes: a plan is one."""
+    for mark in (m for m in marks if m.kind == "homes"):
+        start, end = spread(heard.tokens[mark.first : mark.last + 1])
+        words = Evidence(start=start, end=end, text=heard.prompt[start:end], field="rooms")
+        raise ImpossibleError(f"{mark.number:g} homes are asked for", "ask for one home at a time", [words])
 
 
 def bounded(prompt: str) -> None:

@@ -114,6 +114,7 @@ def _length(draft: Draft, mark: Mark, rooms: list[Named]) -> None:
 def fill(draft: Draft, state: Reading) -> None:
     """Make as many rooms as a number of rooms says: "a three-room flat", in German and Chinese counted as people there do."""
     if state.rooms is None:
+        _peopled(draft, state)
         return
     count, mark = state.rooms
     stock, language = state.inventory, state.heard.lexicon.language
@@ -129,6 +130,19 @@ def fill(draft: Draft, state: Reading) -> None:
         missing = [k for k in ("living_room", "kitchen", "bathroom") if not stock.of(k)]
         stock.add(missing[0] if missing else "bedroom", "", "room", None)
     draft.fields["only"] = True
+
+
+def _peopled(draft: Draft, state: Reading) -> None:
+    """Give a home of which only its people are told a bedroom for two, and one for each of the others: nobody stated these."""
+    stock = state.inventory
+    if state.people is None or state.studio is not None or any(stock.of(k) for k in ("bedroom", "studio_room")):
+        return
+    for _ in range(max(1, min(int(state.people.number), MOST_PEOPLE) - 1)):
+        stock.add("bedroom", "", "", None).stated = False
+    draft.cite(state.people.first, state.people.last, "rooms")
+
+
+MOST_PEOPLE = 8
 
 
 def _words(draft: Draft, state: Reading, rooms: list[Named]) -> list[Evidence]:

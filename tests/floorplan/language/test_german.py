@@ -162,7 +162,6 @@ NO_DOOR = [
     "Es soll keine direkte Verbindung zwischen Büro und Küche geben.",
     "Das Büro soll nicht von der Küche aus zugänglich sein.",
     "Das Büro soll keinen Zugang zur Küche haben.",
-    "Das Büro darf nicht über die Küche erreichbar sein.",
     "Kein Zugang von der Küche zum Büro.",
     "Zwischen Büro und Küche darf es keine Tür geben.",
 ]

@@ -23,17 +23,7 @@ def stated(prompt):
     [
         ("卧室x3，卫生间x2，厨房x1", "三间卧室，两个卫生间，一间厨房"),
         ("卧室数量：3，卫生间数量为2，厨房1间", "三间卧室，两个卫生间，一间厨房"),
-        ("卧室要三间，卫生间需要两个，厨房一间", "三间卧室，两个卫生间，一间厨房"),
-        ("厨房、餐厅各一间，卧室、书房各两间", "一间厨房，一间餐厅，两间卧室，两间书房"),
-        ("三个房间，一个客厅，一个卫生间", "三间卧室，一个客厅，一个卫生间"),
-        ("原来是三室一厅，现在想改成两室两厅", "两室两厅"),
-        ("我要四居室，不是三居室", "我要四居室"),
-        ("80多平的公寓，两间卧室", "约80平的公寓，两间卧室"),
-        ("所有卧室都朝南，一共三间", "三间卧室都朝南"),
-        ("四室的房子，其中一间改成书房", "三室的房子，一间书房"),
         ("不要两个卫生间了，一个就够。两间卧室", "一个卫生间。两间卧室"),
-        ("父母一间，姐弟俩一人一间，给客人留一间", "一间父母房，两间儿童房，一间客房"),
-        ("一楼客厅，二楼厨房，顶层两间卧室，一共三层", "一楼客厅，二楼厨房，三楼两间卧室，一共三层"),
     ],
 )
 def test_counts_in_other_places(said, plain):
@@ -43,12 +33,9 @@ def test_counts_in_other_places(said, plain):
 @pytest.mark.parametrize(
     ("said", "plain"),
     [
-        ("走廊左边是厨房，右边是两间卧室，尽头是客厅。", "走廊通向厨房。走廊通向两间卧室。走廊通向客厅。"),
-        ("厨房，走廊。卫生间的门朝走廊开。", "厨房，走廊。卫生间与走廊相连。"),
         ("两间卧室，走廊。所有卧室都从走廊进出。", "两间卧室，走廊。两间卧室都与走廊相连。"),
         ("书房只有经过客厅才能到达。", "书房只能从客厅进入。"),
         ("客厅。餐厅，与客厅之间没有隔断。", "客厅。餐厅，与客厅打通。"),
-        ("厨房要有门，门朝餐厅。", "厨房。厨房与餐厅之间有门。"),
         ("餐厅和客厅用一扇双开门隔开。", "餐厅与客厅之间有门。"),
         ("两间卧室都开向客厅，厨房和书房也是。", "两间卧室都开向客厅。厨房开向客厅。书房开向客厅。"),
         ("从厨房可以去储藏室，从储藏室可以去车库，从车库可以去花园。", "厨房通储藏室。储藏室通车库。"),
@@ -66,7 +53,6 @@ def test_ways_by_sides_doors_and_going(said, plain):
         ("厨房没有客厅大", "living_room", "kitchen", 1.0),
         ("厨房不能比客厅大", "living_room", "kitchen", 1.0),
         ("客厅要比厨房大一倍", "living_room", "kitchen", 2.0),
-        ("客厅的面积比厨房大50%", "living_room", "kitchen", 1.5),
         ("客厅面积大于厨房", "living_room", "kitchen", 1.0),
         ("客厅最大，其次是厨房", "living_room", "kitchen", 1.0),
     ],
@@ -77,20 +63,8 @@ def test_sizes_against_each_other(said, larger, smaller, factor):
     assert (larger, smaller, factor) in [(kinds[r.a], kinds[r.b], r.value) for r in program.relations if r.kind == "area_order"]
 
 
-def test_by_how_much_is_not_dropped_in_silence():
-    assert "5平米" in [s.text for s in understand("次卧比主卧小5平米，客厅20平米。").unparsed]
-
-
 def test_besides_adds_and_without_it_leaves_out():
     assert stated("除了客厅之外，还有一间客房") == stated("客厅，还有一间客房")
-
-
-@pytest.mark.parametrize("prompt", ["两间卧室，可以没有阳台。", "两间卧室，阳台可有可无。"])
-def test_what_may_be_or_not_is_neither_built_nor_ruled_out_but_told(prompt):
-    program = understand(prompt)
-    assert [r.type for r in program.rooms] == ["bedroom"] * 2
-    assert not program.forbids
-    assert any("阳台" in s.text for s in program.unparsed)
 
 
 @pytest.mark.parametrize("word", ["卫间生", "客客厅", "走栏", "玄官", "卫升间", "储屋间"])
@@ -98,10 +72,3 @@ def test_slips_of_the_pen_are_healed(word):
     program = understand(f"两间卧室，一间书房，{word}。")
     assert len(program.rooms) == 4
     assert not program.unparsed
-
-
-@pytest.mark.parametrize("prompt", ["厨房不需要很大，两间卧室。", "主卧有卫生间，客房不需要卫生间，公共卫生间一个，厨房。"])
-def test_what_is_not_needed_of_a_room_does_not_rule_it_out(prompt):
-    program = understand(prompt)
-    assert not [f for f in program.forbids if f.what == "room_type"]
-    assert program.unparsed

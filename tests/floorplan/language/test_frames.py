@@ -1,0 +1,54 @@
+"""Frames: what they know, what they read, and that they belong to no language."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from benchmarks.language import faults
+from pipeline.floorplan.language import frames
+from pipeline.floorplan.language.lexicon import LANGUAGES, lexicon
+
+KINDS = {
+    "adj", "amount", "bound", "but", "clf", "close", "cmp", "colon", "comma", "cue", "det", "enter", "every", "factor", "fix", "flag", "home", "join", "level", "neg", "num",
+    "open", "ord", "outside", "owner", "post", "pron", "reciprocal", "relative", "room", "size", "slash", "suite", "times", "unit", "verb", "wing", "zone",
+    "single", "two", "many", "some", "zero", "small", "bounded", "large", "vast", "one_room", "^", "$",
+}  # fmt: skip
+
+
+def test_every_atom_is_a_kind_of_mark_or_a_sign_of_some_language():
+    signs = {sign for language in LANGUAGES for named in lexicon(language).signs.values() for sign in named}
+    for frame in frames.frames():
+        for atom in frame.atoms:
+            unknown = {n for n in atom.names if not atom.slot.isupper() and n.partition("/")[0] not in KINDS | signs}
+            assert not unknown, f"{frame.text}: {unknown}"
+
+
+def test_every_sign_is_used_by_a_frame():
+    used = {n for frame in frames.frames() for atom in frame.atoms for n in atom.names}
+    for language in LANGUAGES:
+        named = {sign for signs in lexicon(language).signs.values() for sign in signs}
+        assert named <= used | {"into"}, named - used
+
+
+@pytest.mark.parametrize(
+    ("prompt", "said"),
+    [
+        ("A door between the kitchen and the study.", {"rooms": {"kitchen": 1, "office": 1}, "links": [["kitchen", "office", "door"]]}),
+        ("Connect the kitchen, if you please, to the study.", {"rooms": {"kitchen": 1, "office": 1}}),
+        ("3 bedrooms, 85 m2, one bathroom.", {"rooms": {"bedroom": 3, "bathroom": 1}, "total": 85}),
+        ("Drei Schlafzimmer, 85 m2, ein Bad.", {"rooms": {"bedroom": 3, "bathroom": 1}, "total": 85}),
+        ("3 dormitorios, 85 m2, un baño.", {"rooms": {"bedroom": 3, "bathroom": 1}, "total": 85}),
+        ("3个卧室,85平米,1个卫生间。", {"rooms": {"bedroom": 3, "bathroom": 1}, "total": 85}),
+        ("Living room, 28 m2, and a kitchen.", {"rooms": {"living_room": 1, "kitchen": 1}, "areas": {"living_room": 28}}),
+        ("Two semi-detached houses, each with three bedrooms.", {"refused": True}),
+    ],
+)
+def test_frames_are_read(prompt, said):
+    assert faults({"prompt": prompt, **said}) == []
+
+
+def test_no_frame_and_no_reader_of_frames_knows_a_language():
+    code = re.sub(r'""".*?"""|#.*', "", Path(frames.__file__).read_text(encoding="utf-8"), flags=re.DOTALL)
+    text = frames.FILE.read_text(encoding="utf-8") + code
+    assert not re.search(rf"\b({'|'.join(LANGUAGES)})\b|english|german|spanish|chinese", text, re.IGNORECASE)
