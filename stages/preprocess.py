@@ -1,6 +1,6 @@
 """DVC stage `preprocess`: 3D-FRONT, 3D-FUTURE and PartNet folders to tables and assets. Nothing here knows which copies they are.
 
-Reads data/raw/ (or the user's copies), writes data/tables/*.parquet and data/assets/*.safetensors.
+Reads data/raw/ (or the user's copies), writes data/tables/*.parquet, data/tables/relations.json (how things stand to each other) and data/assets/*.safetensors.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ from tqdm import tqdm
 
 from pipeline import params, taxonomy
 from pipeline.errors import ContentError
+from pipeline.relations import files, learning
+from pipeline.relations.split import rooms_of
 from pipeline.sources import batch, inventory
 from pipeline.sources.batch import Found, HouseTask, LibraryRows, LibraryTask
 from pipeline.sources.front_hints import hints
@@ -49,6 +51,7 @@ def main(root: Path) -> None:
     summary = write_houses(out, read, library, peers or front)
     library.assets += add_mirrored(root / "data" / "assets", library.assets, summary.assets)
     write_library(out, library, summary)
+    files.save(out / "relations.json", learning.fit(rooms_of(out, "train")))
     sys.stdout.writelines(f"{line}\n" for line in summary.lines())
 
 

@@ -9,6 +9,7 @@ from pipeline import params, tables
 from pipeline.entities.files import load_asset
 from pipeline.errors import ContentError
 from pipeline.manifest import sha256_file
+from pipeline.relations import files
 from pipeline.sources.settings import PreprocessSettings
 from schemas.assets import ASSET_JOINTS, ASSET_PARTS, ASSETS
 from schemas.objects import OBJECTS
@@ -143,3 +144,8 @@ def test_settings_are_strict(tmp_path):
     write_params(tmp_path, filters={"min_insidee": 0.5})
     with pytest.raises(ContentError, match="min_inside"):
         params.section(PreprocessSettings, params.read(tmp_path / "params.yaml"), "preprocess")
+
+
+def test_relations_are_written_beside_the_tables(made):
+    known = files.load(made / "data/tables/relations.json")
+    assert not known.pairs  # six houses are too few to know anything

@@ -1,0 +1,95 @@
+"""A furnished room as plain data: what relations are learnt from and metrics judge, whoever made it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline import taxonomy
+
+Floats = NDArray[np.float64]
+
+
+class Thing(NamedTuple):
+    """A box that stands somewhere: centre (x, y) and bottom z [m], yaw [rad], size (w, d, h) [m] in its own frame."""
+
+    category: str
+    x: float
+    y: float
+    yaw: float
+    size: tuple[float, float, float]
+    z: float = 0.0
+
+
+class Gap(NamedTuple):
+    """An opening of the room: kind (door, window, ...) and clear width as a segment (2, 2) [m]."""
+
+    kind: str
+    segment: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Arrangement:
+    """A room and its N things. `polygon` (n, 2): inner wall faces, counter-clockwise; position (N, 3), yaw (N,), size (N, 3) [m, rad]."""
+
+    name: str
+    layout_type: str
+    polygon: Floats
+    categories: tuple[str, ...]
+    position: Floats
+    yaw: Floats
+    size: Floats
+    openings: tuple[Gap, ...] = ()
+
+    def thing(self, index: int) -> Thing:
+        """Return one of the things."""
+        (x, y, z), (w, d, h) = self.position[index], self.size[index]
+        return Thing(self.categories[index], float(x), float(y), float(self.yaw[index]), (float(w), float(d), float(h)), float(z))
+
+    @property
+    def area(self) -> float:
+        """Area of the polygon [m2]."""
+        x, y = self.polygon.T
+        return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+def arranged(
+    name: str, layout_type: str, polygon: Any, things: Iterable[tuple[str, Any, float, Any]], openings: Iterable[Gap] = ()
+) -> Arrangement:
+    """Return the arrangement of things (category, position (3,), yaw, size (3,))."""
+    listed = list(things)
+    position = np.array([p for _, p, _, _ in listed], float).reshape(-1, 3)
+    size = np.array([s for _, _, _, s in listed], float).reshape(-1, 3)
+    yaw = np.array([y for _, _, y, _ in listed], float)
+    return Arrangement(
+        name, layout_type, np.asarray(polygon, float), tuple(c for c, _, _, _ in listed), position, yaw, size, tuple(openings)
+    )
+
+
+def from_rows(
+    rooms: Iterable[Mapping[str, Any]], objects: Iterable[Mapping[str, Any]], openings: Iterable[Mapping[str, Any]] = ()
+) -> list[Arrangement]:
+    """Return the rooms of table rows, in their order, things in theirs.
+
+    Small things on furniture are left out: they follow what they lie on. A coffee table on a rug is furniture all the same.
+    """
+    small = taxonomy.load().small
+    inside: dict[tuple[str, str], list[tuple[str, Any, float, Any]]] = {}
+    for row in objects:
+        if not (row["support"] and row["category"] in small):
+            thing = (row["category"], row["position"], row["yaw"], row["size"])
+            inside.setdefault((row["scene_id"], row["room_id"]), []).append(thing)
+    holes: dict[tuple[str, str], list[Gap]] = {}
+    for row in openings:
+        for room in row["rooms"]:
+            holes.setdefault((row["scene_id"], room), []).append(Gap(row["kind"], np.asarray(row["segment"], float)))
+    made = []
+    for row in rooms:
+        key = row["scene_id"], row["room_id"]
+        name = f"{key[0]}/{key[1]}"
+        made.append(arranged(name, row["layout_type"], row["polygon"], inside.get(key, ()), holes.get(key, ())))
+    return made

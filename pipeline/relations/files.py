@@ -1,0 +1,68 @@
+"""Relations as JSON: small, stable, readable."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from pipeline.errors import ContentError
+from pipeline.manifest import write_bytes
+from pipeline.relations.known import PairRelation, Relations, WallRelation, relations
+from pipeline.relations.modes import Mode, Span
+
+VERSION = 1
+DIGITS = 4
+
+
+def to_json(known: Relations) -> dict[str, Any]:
+    """Return relations as plain lists and numbers."""
+    pairs = [
+        [p.anchor, p.member, p.cases, round(p.share, DIGITS), round(p.chance, DIGITS), [_mode_json(m) for m in p.modes]]
+        for p in known.pairs.values()
+    ]
+    walls = [
+        [w.category, w.side, w.cases, round(w.share, DIGITS), round(w.chance, DIGITS), list(w.gap), list(w.turn)]
+        for found in known.walls.values()
+        for w in found
+    ]
+    return {"version": VERSION, "pairs": pairs, "walls": walls}
+
+
+def of_json(found: Any) -> Relations:
+    """Return the relations that `to_json` wrote. Raises ContentError for anything else."""
+    try:
+        if found["version"] != VERSION:
+            raise ContentError(f"relations of version {found['version']}, not {VERSION}", "run `dvc repro preprocess`")
+        pairs = [PairRelation(a, m, tuple(_mode(r) for r in modes), n, share, chance) for a, m, n, share, chance, modes in found["pairs"]]
+        walls = [WallRelation(c, s, Span(*gap), Span(*turn), n, share, chance) for c, s, n, share, chance, gap, turn in found["walls"]]
+    except (KeyError, TypeError, ValueError) as error:
+        raise ContentError(f"no relations ({type(error).__name__}: {error})", "run `dvc repro preprocess`") from error
+    return relations(pairs, walls)
+
+
+def save(path: Path, known: Relations) -> None:
+    """Write relations, a line for each pair and wall."""
+    made = to_json(known)
+    lines = {key: ",\n".join(f"  {json.dumps(row)}" for row in made[key]) for key in ("pairs", "walls")}
+    parts = [f'"version": {VERSION}', *(f'"{key}": [\n{text}\n]' for key, text in lines.items())]
+    write_bytes(path, ("{" + ",\n".join(parts) + "}\n").encode())
+
+
+def load(path: Path) -> Relations:
+    """Read relations. Raises ContentError when the file is missing or holds something else."""
+    try:
+        return of_json(json.loads(path.read_text(encoding="utf-8")))
+    except FileNotFoundError as error:
+        raise ContentError(f"{path} is missing", "run `dvc repro preprocess`, which learns it from the tables") from error
+    except ValueError as error:
+        raise ContentError(f"{path} is not JSON ({error})", "delete it and run `dvc repro preprocess`") from error
+
+
+def _mode_json(mode: Mode) -> list[Any]:
+    return [mode.side, round(mode.weight, DIGITS), list(mode.outwards), list(mode.along), list(mode.turn)]
+
+
+def _mode(row: list[Any]) -> Mode:
+    side, weight, *spans = row
+    return Mode(side, *(Span(*span) for span in spans), weight)

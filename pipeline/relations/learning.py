@@ -1,0 +1,173 @@
+"""Relations from furnished rooms: every ordered pair of categories that often share a room, and every category's walls."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.relations import walls
+from pipeline.relations.arrangement import Arrangement
+from pipeline.relations.clusters import entropy, split
+from pipeline.relations.frames import ALONG, NORMAL, OVER, SIDES, Boxes, Frames, measured, relate, wrapped
+from pipeline.relations.known import PairRelation, Relations, relations
+from pipeline.relations.modes import Mode, Span, held
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+LEAST_CASES = 30  # members that must share a room with an anchor
+MOST_CASES = 3000  # members that are looked at, spread over the rooms: more say no more
+LEAST_MODE = 0.03  # share of the members, and
+LEAST_IN_MODE = 8  # number of them that make a mode
+LEAST_STRENGTH = 0.3  # relations weaker than this are not kept
+TAILS = (5.0, 50.0, 95.0)  # percentiles of a span
+
+
+@dataclass(frozen=True, slots=True)
+class _Things:
+    """All things of all rooms: box, class, room (T,); the rooms' middles (T, 2)."""
+
+    boxes: Boxes
+    kind: Indices
+    room: Indices
+    middle: Floats
+    names: tuple[str, ...]
+
+
+def fit(rooms: Sequence[Arrangement]) -> Relations:
+    """Learn the relations of furnished rooms."""
+    things = _gathered(rooms)
+    pairs = (_relation(things, *case) for case in _pairs(things))
+    return relations([pair for pair in pairs if pair is not None and pair.strength >= LEAST_STRENGTH], walls.fit(rooms))
+
+
+def _gathered(rooms: Sequence[Arrangement]) -> _Things:
+    names = tuple(sorted({name for room in rooms for name in room.categories}))
+    code = {name: k for k, name in enumerate(names)}
+    filled = [room for room in rooms if room.categories]
+    counts = [len(room.categories) for room in filled]
+    middles = [(room.polygon.min(0) + room.polygon.max(0)) / 2 for room in filled]
+    parts = [np.concatenate([getattr(room, name) for room in filled] or [np.zeros(0)]) for name in ("position", "yaw", "size")]
+    kind = np.array([code[name] for room in filled for name in room.categories], np.intp)
+    middle = np.repeat(np.reshape(middles, (-1, 2)), counts, axis=0)
+    return _Things(Boxes(*parts), kind, np.repeat(np.arange(len(filled)), counts), middle, names)
+
+
+def _pairs(things: _Things) -> Iterator[tuple[Indices, Indices]]:
+    """Yield the indices of anchors and members (P,) of each ordered pair of categories with enough cases, in a fixed order."""
+    starts = np.searchsorted(things.room, np.arange(things.room.max() + 2)) if len(things.room) else np.zeros(1, int)
+    counts = np.diff(starts)
+    many = counts[things.room] if len(things.room) else counts
+    member = np.repeat(np.arange(len(things.kind)), many)
+    within = np.arange(len(member)) - np.repeat(np.cumsum(many) - many, many)
+    anchor = starts[things.room[member]] + within
+    other = anchor != member
+    anchor, member = anchor[other], member[other]
+    code = things.kind[anchor] * len(things.names) + things.kind[member]
+    order = np.argsort(code, kind="stable")
+    bounds = np.flatnonzero(np.diff(code[order], prepend=-1))
+    for chosen in np.split(order, bounds[1:]):
+        members = np.unique(member[chosen])
+        if len(members) >= LEAST_CASES:
+            looked = members[np.linspace(0, len(members) - 1, min(len(members), MOST_CASES)).astype(int)]
+            own = chosen[np.isin(member[chosen], looked)]
+            yield anchor[own], member[own]
+
+
+def _relation(things: _Things, anchor: Indices, member: Indices) -> PairRelation | None:
+    own = _nearest(things, anchor, member, (1, 1))
+    modes = _modes(own)
+    if not modes:
+        return None
+    chances = [held(modes, _nearest(things, anchor, member, mirror)).mean() for mirror in ((-1, 1), (1, -1), (-1, -1))]
+    names = things.names
+    share, chance = float(held(modes, own).mean()), float(np.mean(chances))
+    return PairRelation(names[things.kind[anchor[0]]], names[things.kind[member[0]]], modes, len(own.turn), share, chance)
+
+
+def _nearest(things: _Things, anchor: Indices, member: Indices, mirror: tuple[int, int]) -> Frames:
+    """Return each member in the frame of the anchor that is nearest; the members mirrored about the middle of their rooms."""
+    frames = relate(things.boxes[anchor], _mirrored(things, member, mirror))
+    order = np.lexsort((frames.distance(), member))
+    return frames[order[np.flatnonzero(np.diff(member[order], prepend=-1))]]
+
+
+def _mirrored(things: _Things, member: Indices, mirror: tuple[int, int]) -> Boxes:
+    """Mirror things: a mirror image of a thing about a line of its own is itself, so its yaw is that of its front's image."""
+    boxes, middle = things.boxes[member], things.middle[member]
+    position = boxes.position.copy()
+    position[:, :2] = middle + np.array(mirror) * (position[:, :2] - middle)
+    yaw = np.arctan2(mirror[0] * np.sin(boxes.yaw), mirror[1] * np.cos(boxes.yaw))
+    return Boxes(position, yaw, boxes.size)
+
+
+def _modes(frames: Frames) -> tuple[Mode, ...]:
+    """Return the modes of members in their anchors' frames, likeliest first."""
+    count = len(frames.turn)
+    least = max(LEAST_IN_MODE, int(np.ceil(LEAST_MODE * count)))
+    sides, quarters = frames.sides(), np.mod(np.rint(frames.turn / (np.pi / 2)).astype(int), 4)
+    found = []
+    for side in range(len(SIDES)):
+        for quarter in range(4):
+            group = np.flatnonzero((sides == side) & (quarters == quarter))
+            if len(group) >= least:
+                found += [_mode(frames[leaf], side, count) for leaf in _leaves(frames, group, side, least)]
+    return tuple(sorted(found, key=lambda mode: -mode.weight))
+
+
+def _leaves(frames: Frames, group: Indices, side: int, least: int) -> Iterator[Indices]:
+    """Split the members on one side, by their places along it and outwards, until no place has a valley."""
+    waiting = [group]
+    while waiting:
+        leaf = waiting.pop()
+        for direction, references in _directions(side):
+            values = [measured(frames[leaf], direction, r) * _unit(frames, leaf, direction, r) for r in references]
+            parts = split(values[int(np.argmin([entropy(v) for v in values]))], least)
+            if len(parts) > 1:
+                waiting += [leaf[part] for part in parts]
+                break
+        else:
+            yield leaf
+
+
+def _directions(side: int) -> Iterable[tuple[Floats, tuple[str, ...]]]:
+    """Yield the two directions of a side, and what a place in each may be measured from."""
+    yield ALONG[side], ("middle", "low", "high", "share")
+    yield NORMAL[side], ("middle", "low", "high") if side == OVER else ("outside",)
+
+
+def _unit(frames: Frames, leaf: Indices, direction: Floats, reference: str) -> float:
+    """Return how many metres a unit is, typically: shares become comparable with metres."""
+    return float(np.median(frames.anchor[leaf] @ np.abs(direction))) if reference == "share" else 1.0
+
+
+def _mode(frames: Frames, side: int, count: int) -> Mode:
+    spans = []
+    for direction, references in _directions(side):
+        options = [_span(r, measured(frames, direction, r), _unit(frames, np.arange(len(frames.turn)), direction, r)) for r in references]
+        spans.append(min(options, key=lambda o: o[0])[1])
+    turns = [_turn("anchor", frames.turn), _turn("facing", frames.facing)]
+    return Mode(
+        SIDES[side],
+        spans[1],
+        spans[0],
+        min(turns, key=lambda t: t.high - t.low - (0.02 if t.reference == "anchor" else 0)),
+        len(frames.turn) / count,
+    )
+
+
+def _span(reference: str, values: Floats, unit: float) -> tuple[float, Span]:
+    """Return how wide a span is [m], and the span; a reference of fewer parts wins where it is hardly wider."""
+    low, middle, high = np.percentile(values, TAILS)
+    handicap = {"middle": 0.0, "outside": 0.0, "share": 0.02}.get(reference, 0.005)
+    return float((high - low) * unit + handicap), Span(reference, *(round(float(v), 4) for v in (low, middle, high)))
+
+
+def _turn(reference: str, values: Floats) -> Span:
+    """Return the span of angles: percentiles around their mean direction."""
+    mean = float(np.arctan2(np.sin(values).mean(), np.cos(values).mean()))
+    low, middle, high = mean + np.percentile(wrapped(values - mean), TAILS)
+    return Span(reference, *(round(float(v), 4) for v in (low, middle, high)))

@@ -1,0 +1,31 @@
+"""The rooms of one split, as the training tables hold them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pyarrow.compute as pc
+
+from pipeline import tables
+from pipeline.relations.arrangement import Arrangement, from_rows
+from schemas.objects import OBJECTS
+from schemas.openings import OPENINGS
+from schemas.rooms import ROOMS
+from schemas.scenes import SCENES
+
+COLUMNS = {
+    ROOMS.name: ["scene_id", "room_id", "layout_type", "polygon"],
+    OBJECTS.name: ["scene_id", "room_id", "category", "position", "yaw", "size", "support"],
+    OPENINGS.name: ["scene_id", "kind", "rooms", "segment"],
+}
+
+
+def rooms_of(folder: Path, split: str) -> list[Arrangement]:
+    """Return the rooms of a split from the tables in a folder, in their order. Raises ContentError for a table that cannot be read."""
+    scenes = tables.read_arrow(folder / f"{SCENES.name}.parquet", SCENES)
+    known = scenes.filter(pc.equal(scenes["split"], split))["scene_id"]
+    rows = {}
+    for table in (ROOMS, OBJECTS, OPENINGS):
+        found = tables.read_arrow(folder / f"{table.name}.parquet", table).select(COLUMNS[table.name])
+        rows[table.name] = found.filter(pc.is_in(found["scene_id"], known)).to_pylist()
+    return from_rows(rows[ROOMS.name], rows[OBJECTS.name], rows[OPENINGS.name])

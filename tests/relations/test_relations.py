@@ -1,0 +1,137 @@
+"""Relations from rooms in which they are known: found where they are, absent where only the walls are shared, exact both ways."""
+
+import json
+
+import numpy as np
+import pytest
+
+from pipeline.errors import ContentError
+from pipeline.relations import files, learning
+from pipeline.relations.arrangement import Thing, from_rows
+from tests.relations.making import bedroom, bedrooms
+
+
+@pytest.fixture(scope="module")
+def known():
+    return learning.fit(bedrooms(np.random.default_rng(0), 120))
+
+
+BED = Thing("double_bed", 3.0, 2.0, 0.7, (2.0, 2.1, 0.5))
+
+
+def local(anchor, pose):
+    c, s = np.cos(anchor.yaw), np.sin(anchor.yaw)
+    dx, dy = pose.x - anchor.x, pose.y - anchor.y
+    return c * dx + s * dy, c * dy - s * dx
+
+
+def test_nightstands_stand_left_and_right_of_a_bed_flush_with_its_head(known):
+    pair = known.pair("double_bed", "nightstand")
+    assert {mode.side for mode in pair.modes} == {"left", "right"}
+    assert all(mode.along.reference == "high" for mode in pair.modes)
+    assert all(abs(mode.along.high - mode.along.low) < 0.01 for mode in pair.modes)
+    assert all(mode.outwards.low >= 0.02 and mode.outwards.high <= 0.09 for mode in pair.modes)
+    assert pair.share == 1
+    assert pair.strength > 0.7
+
+
+def test_what_only_shares_the_walls_has_no_relation(known):
+    assert known.pair("double_bed", "plant") is None
+    assert known.pair("plant", "nightstand") is None
+
+
+def test_a_tv_stand_looks_at_the_bed_whatever_the_room_is_deep(known):
+    mode = known.pair("double_bed", "tv_stand").modes[0]
+    assert mode.side == "front"
+    assert mode.along.reference == "middle"
+    assert abs(mode.along.low) < 0.11
+    assert mode.outwards.high - mode.outwards.low > 1
+    assert np.cos(mode.turn.middle) == pytest.approx(-1)
+
+
+def test_backs_are_at_the_wall(known):
+    for name in ("double_bed", "nightstand", "tv_stand", "plant"):
+        wall = known.walls[name][0]
+        assert wall.side == "back"
+        assert wall.share == pytest.approx(1, abs=0.1)
+        assert abs(wall.gap.middle) < 0.04
+
+
+def test_poses_know_the_sizes(known):
+    size = (0.6, 0.3, 0.5)
+    poses = known.poses(BED, "nightstand", size)
+    places = sorted(local(BED, pose) for pose in poses)
+    assert places[0][0] == pytest.approx(-(1.0 + 0.055 + 0.3), abs=0.03)
+    assert places[1][0] == pytest.approx(1.0 + 0.055 + 0.3, abs=0.03)
+    assert all(y == pytest.approx(1.05 - 0.15, abs=0.01) for _, y in places)
+    for pose in poses:
+        found = known.nearest(BED, Thing("nightstand", pose.x, pose.y, pose.yaw, size))
+        assert found.metres == pytest.approx(0, abs=1e-3)
+        assert found.radians == pytest.approx(0, abs=1e-3)
+        assert found.holds
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_what_is_off_is_told_how_far_and_where_it_would_hold(known, seed):
+    rng = np.random.default_rng(seed)
+    size = (0.4, 0.4, 0.5)
+    pose = known.poses(BED, "nightstand", size)[0]
+    shift = rng.uniform(-0.3, 0.3, 2)
+    off = Thing("nightstand", pose.x + shift[0], pose.y + shift[1], pose.yaw + rng.uniform(-0.4, 0.4), size)
+    found = known.nearest(BED, off)
+    assert 0 < found.metres <= np.hypot(*shift) + 0.2
+    exact = known.nearest(BED, Thing("nightstand", *found.pose[:3], size))
+    assert exact.metres == pytest.approx(0, abs=2e-3)
+    assert exact.radians == pytest.approx(0, abs=2e-3)
+    assert not found.holds or np.hypot(*shift) < 0.1
+
+
+def test_a_pose_that_holds_is_left_where_it_is(known):
+    room = bedroom(np.random.default_rng(5), turned=0.3)
+    things = [room.thing(k) for k in range(len(room.categories))]
+    k, found = known.best(things[1], [things[0], *things[3:]])
+    assert k == 0
+    if found.metres == found.radians == 0:
+        assert np.allclose(found.pose[:2], [things[1].x, things[1].y], atol=1e-6)
+
+
+def test_relations_do_not_depend_on_where_the_rooms_lie(known):
+    rng = np.random.default_rng(0)
+    rooms = [bedroom(rng, turned=rng.integers(4) * np.pi / 2 + 0.6) for _ in range(120)]
+    turned = learning.fit(rooms)
+    for key in (("double_bed", "nightstand"), ("double_bed", "tv_stand")):
+        assert turned.pairs[key].modes[0].side == known.pairs[key].modes[0].side
+        assert np.allclose(turned.pairs[key].modes[0].outwards[1:], known.pairs[key].modes[0].outwards[1:], atol=2e-3)
+
+
+def test_the_same_rooms_give_the_same_relations_and_json_keeps_them(known, tmp_path):
+    again = learning.fit(bedrooms(np.random.default_rng(0), 120))
+    assert files.to_json(again) == files.to_json(known)
+    files.save(tmp_path / "relations.json", known)
+    back = files.load(tmp_path / "relations.json")
+    assert files.to_json(back) == files.to_json(known)
+    assert back.pairs.keys() == known.pairs.keys()
+    assert back.walls.keys() == known.walls.keys()
+
+
+def test_files_that_hold_no_relations_are_refused(tmp_path):
+    with pytest.raises(ContentError, match="missing"):
+        files.load(tmp_path / "relations.json")
+    for text in ("", "[]", "{}", json.dumps({"version": 99}), json.dumps({"version": 1, "pairs": [["a"]], "walls": []})):
+        (tmp_path / "relations.json").write_text(text)
+        with pytest.raises(ContentError):
+            files.load(tmp_path / "relations.json")
+
+
+def test_no_rooms_know_nothing():
+    assert not learning.fit([]).pairs
+    assert not learning.fit(bedrooms(np.random.default_rng(0), 3)).pairs
+
+
+def test_small_things_on_furniture_are_left_out_and_tables_on_rugs_are_not():
+    square = [[0, 0], [4, 0], [4, 4], [0, 4]]
+    rooms = [{"scene_id": "s", "room_id": "r", "layout_type": "living_room", "polygon": square}]
+    base = {"scene_id": "s", "room_id": "r", "position": [1, 1, 0], "yaw": 0.0, "size": [1, 1, 1]}
+    kinds = (("rug", ""), ("coffee_table", "rug_0"), ("cup", "coffee_table_0"))
+    found = from_rows(rooms, [base | {"category": c, "support": s} for c, s in kinds])
+    assert found[0].categories == ("rug", "coffee_table")
