@@ -64,5 +64,5 @@ def _mode_json(mode: Mode) -> list[Any]:
 
 
 def _mode(row: list[Any]) -> Mode:
-    side, weight, *spans = row
-    return Mode(side, *(Span(*span) for span in spans), weight)
+    side, weight, outwards, along, turn = row
+    return Mode(side, Span(*outwards), Span(*along), Span(*turn), weight)
