@@ -13,7 +13,10 @@ OpeningKind = Literal["door", "open", "portal", "window", "entrance"]
 
 @dataclass(frozen=True, slots=True)
 class Room:
-    """A room. `polygon` (n, 2) [m]: inner wall faces, counter-clockwise, not closed, no collinear vertex."""
+    """A room. `polygon` (n, 2) [m]: inner wall faces, counter-clockwise, not closed, no collinear vertex.
+
+    `functions` are what it serves as besides what its type says, as far as somebody has said it.
+    """
 
     room_id: str
     type: str
@@ -22,6 +25,7 @@ class Room:
     height: float = 2.7
     role: str = ""
     name: str = ""
+    functions: tuple[str, ...] = ()
 
     @property
     def area(self) -> float:

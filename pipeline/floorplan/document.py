@@ -31,6 +31,7 @@ class RoomDocument(_Strict):
     id: str
     type: str
     role: str = ""
+    functions: tuple[str, ...] = ()
     level: Annotated[int, Field(ge=0, description="storey, from 0")] = 0
     levels: list[int] = []
     height: Annotated[float, Field(gt=0.0, description="floor to ceiling [m]")] = 2.7
@@ -131,6 +132,7 @@ def plan_json(
                 "id": r.room_id,
                 "type": r.type,
                 "role": r.role,
+                "functions": list(r.functions),
                 "level": r.level,
                 "levels": list(range(r.level, top + 1)) if r.room_id in stairs else [r.level],
                 "height": round(r.height, MM),
@@ -193,7 +195,9 @@ def plan_from_json(document: object) -> Plan:
     unknown = ({read.entrance} | {name for o in read.openings for name in o.rooms}) - names
     if unknown:
         raise ContentError(f"plan document names the unknown room {min(unknown)!r}", f"rooms are {', '.join(sorted(names))}")
-    rooms = tuple(Room(r.id, r.type, np.array(r.polygon, dtype=float), r.level, r.height, r.role) for r in read.rooms)
+    rooms = tuple(
+        Room(r.id, r.type, np.array(r.polygon, dtype=float), r.level, r.height, r.role, functions=r.functions) for r in read.rooms
+    )
     openings = tuple(
         Opening(
             o.id,

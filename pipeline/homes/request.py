@@ -68,8 +68,10 @@ class RoomJob:
 def layout_type(room: Room, plan: Plan, taxonomy: Taxonomy) -> str | None:
     """Return the room type that the layout model knows this room as, or None when it stays empty.
 
-    A living room of a home without a dining room is where one dines, if it is large enough for a table.
+    A living room is where one dines if somebody said so; else in a home without a dining room, if it is large enough for a table.
     """
+    if "dining" in room.functions and room.type in {"living_room", "family_room"}:
+        return "living_dining_room"
     if room.type in taxonomy.layout_types:
         return room.type
     known = taxonomy.plan_rooms.get(room.type)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
@@ -14,8 +16,9 @@ from pipeline.entities.plan import Opening, Room
 from pipeline.sources import front_openings
 from pipeline.sources.front_file import HouseFile, RoomRecord, deferred, parse_house
 from pipeline.sources.front_floor import Floor, outline
+from pipeline.sources.front_holes import MESHES, Hole, from_furniture, from_mesh
 from pipeline.sources.front_objects import Model, Placed, overlapping, placed
-from pipeline.sources.front_poses import yaw_and_tilt
+from pipeline.sources.front_poses import to_ours, yaw_and_tilt
 from pipeline.sources.front_rows import ReadRoom, object_row, opening_row, room_row, scene_row
 from pipeline.sources.front_supports import floating, supports
 from pipeline.sources.front_walkable import HEIGHT, STEP, walkable
@@ -32,6 +35,7 @@ MAX_OBJECTS, MAX_TRIANGLES = 500, 20_000  # of one room
 MAX_EXTENT = 100.0  # [m] of a house
 WALLS = frozenset({"WallInner", "WallOuter"})
 AREA_TOLERANCE = 0.15  # of the room's size in the file, up to which floors of it differ by their strips under doors
+SWITCH = 1.1  # [m] above the floor: walls are cut here to see where they stand
 INNER_WALL, OUTER_WALL = 0.12, 0.24  # [m] 3D-FRONT's usual thicknesses, where no reveal tells
 
 
@@ -231,44 +235,53 @@ def openings_of(
 ) -> tuple[list[Opening], tuple[float, float]]:
     """Return the openings, and the thickness of inner and outer walls as the reveals show it."""
     outlines = [front_openings.Outline(room.room_id, room.polygon) for room in rooms]
-    holes = _holes(house, rejects)
-    if len(holes) > MAX_HOLES:
-        raise SourceError("too_large", house.uid, f"{len(holes)} doors, windows and holes")
-    narrow = [h for h in holes if h.width < front_openings.MIN_WIDTH]
-    holes = front_openings.merge(h for h in holes if h.width >= front_openings.MIN_WIDTH)
-    between, odd = front_openings.jambs(narrow, holes)
-    holes = front_openings.merge([*holes, *between])
-    rejects += [_unresolved(house, h) for h in odd if not front_openings.covered(h.centre, holes)]
-    found: list[Opening] = []
-    depths: dict[int, list[float]] = {1: [], 2: []}
-    for hole in holes:
-        opening = front_openings.resolve(hole, outlines, f"opening_{len(found)}", limits.wall_reach)
-        if opening is None:
-            rejects.append(_unresolved(house, hole))
-            continue
-        found.append(opening)
-        if 0.05 <= hole.depth <= 0.5:
-            depths[len(opening.rooms)].append(hole.depth)
+    evidence = _evidence(house, rejects)
+    if len(evidence) > MAX_HOLES:
+        raise SourceError("too_large", house.uid, f"{len(evidence)} doors, windows and holes")
     height = float(np.median([room.height for room in rooms]))
-    found += front_openings.touching(outlines, height, found)
+    found, depths, rest = front_openings.openings(evidence, outlines, height, limits.wall_reach, functools.cache(lambda: _faces(house)))
+    rejects += [_unresolved(house, hole) for hole in rest]
     inner = round(float(np.median(depths[2])), 4) if depths[2] else INNER_WALL
     outer = round(float(np.median(depths[1])), 4) if depths[1] else OUTER_WALL
     return found, (inner, outer)
 
 
-def _unresolved(house: HouseFile, hole: front_openings.Hole) -> Row:
-    at = ", ".join(f"{v:.2f}" for v in hole.centre)
-    return reject("opening", house.uid, "opening_unresolved", f"{hole.evidence} at ({at}), {hole.width:.2f} m wide")
-
-
-def _holes(house: HouseFile, rejects: list[Row]) -> list[front_openings.Hole]:
-    holes: list[front_openings.Hole] = []
+def _faces(house: HouseFile) -> shapely.Geometry:
+    """Return where the inner walls' faces stand, in plan: those that are cut at the height of a switch."""
+    lines = []
     for mesh in house.meshes.values():
-        evidence = front_openings.MESHES.get(mesh.type)
-        if evidence is None:
+        if mesh.type != "WallInner":
             continue
         try:
-            hole = front_openings.from_mesh(evidence, mesh.vertices())
+            corners = to_ours(mesh.triangles())
+        except SourceError:
+            continue  # a broken wall: the others tell
+        for triangle in corners[(corners[..., 2].min(axis=1) < SWITCH) & (corners[..., 2].max(axis=1) > SWITCH)]:
+            flat = triangle[np.lexsort((triangle[:, 1], triangle[:, 0]))][:, :2]
+            lines.append(flat[[0, -1]])
+    return shapely.union_all(shapely.linestrings(np.array(lines))) if lines else shapely.MultiLineString()
+
+
+def _unresolved(house: HouseFile, hole: Hole) -> Row:
+    what = "threshold" if hole.flat else f"leaf of a {hole.evidence}" if hole.origin == "record" else hole.evidence
+    at = ", ".join(f"{v:.2f}" for v in hole.centre)
+    return reject("opening", house.uid, "opening_unresolved", f"{what} at ({at}), {hole.width:.2f} m wide")
+
+
+def _evidence(house: HouseFile, rejects: list[Row]) -> list[Hole]:
+    """Return what meshes and records say of doors and windows; a mesh of which only the corners can be read gives its extent."""
+    holes: list[Hole] = []
+    for mesh in house.meshes.values():
+        if mesh.type not in MESHES:
+            continue
+        evidence, origin = MESHES[mesh.type]
+        try:
+            vertices = mesh.vertices()
+            try:
+                triangles = mesh.triangles()
+            except SourceError:
+                triangles = None
+            hole = from_mesh(evidence, vertices, triangles, origin)
         except SourceError as error:
             rejects.append(reject("opening", f"{house.uid}/{mesh.uid}", "opening_unresolved", error.detail))
             continue
@@ -280,7 +293,7 @@ def _holes(house: HouseFile, rejects: list[Row]) -> list[front_openings.Hole]:
             if record is None or record.valid:
                 continue
             yaw, _ = yaw_and_tilt(child.rotation)
-            hole = front_openings.from_furniture(record.title, child.position, yaw, record.box)
+            hole = from_furniture(record.title, child.position, yaw, record.box)
             if hole:
                 holes.append(hole)
     return holes

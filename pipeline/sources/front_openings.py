@@ -1,57 +1,33 @@
 """Doors and windows of a 3D-FRONT house from geometry: the file's own lists do not say which rooms they join.
 
-Evidence: meshes of type Door, Window, BayWindow, Hole and Pocket (the reveals in the wall), and built-in furniture
-titled "door/..." or "window/..." (the leaf). Which rooms an opening joins is read off the floor outlines: on each side
-of the wall, the first outline met within `reach` of the opening's centre.
+What the evidence gives (`front_holes`, `front_reveals`) is put between rooms: on each side of the wall, the first outline met
+within `reach` of the opening's centre.
 """
 
 from __future__ import annotations
 
 import itertools
-import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry import LineString, Polygon
 
 from pipeline.entities.plan import Opening, OpeningKind
-from pipeline.sources.front_poses import to_ours
+from pipeline.sources.front_holes import DOOR_HEIGHT, MIN_PANE, MIN_WIDTH, Floats, Hole
+from pipeline.sources.front_reveals import SAME, bays, gathered
 
-Floats = NDArray[np.float64]
-Evidence = Literal["door", "window", "hole"]
-
-MESHES: dict[str, Evidence] = {"Door": "door", "Window": "window", "BayWindow": "window", "Hole": "hole", "Pocket": "hole"}
-MIN_WIDTH = 0.35  # [m] a narrower reveal is a pipe's hole or one jamb of several
-DOOR_WIDTH, DOOR_HEIGHT = 0.9, 2.1  # [m] of a leaf whose size is not in the file
-WINDOW_WIDTH, WINDOW_HEIGHT = 1.5, 1.4  # [m] the same
-JAMB_HEIGHT = 1.5  # [m] a lower reveal is no jamb of a door
-JAMBS_APART = (0.5, 2.5)  # [m] widths of what two jambs may enclose
 DOORWAY = 1.2  # [m] floors that meet on no more than this meet under a doorway
 USUAL_DEPTH = 0.3  # [m] of the thickest usual wall; an opening that is deeper, a bay, reaches as much farther
 WINDOW_SILL = 0.3  # [m] a hole that starts above this is a window
 OPEN_WIDTH = 1.8  # [m] a hole without a leaf that is wider is an open front
 LEAST_FRONT = 0.6  # [m] rooms that meet on less are not open to each other
+WALL_NEAR = 0.16  # [m] from where floors meet to the faces of the wall between them
 TOUCHING = 0.03  # [m] rooms nearer than this have no wall between them
-SAME = 0.35  # [m] two pieces of evidence this near, of one direction, are one opening
 STEP = 0.04  # [m] of the walk from an opening's centre to the rooms
-
-
-@dataclass(frozen=True, slots=True)
-class Hole:
-    """Evidence of an opening: `centre` (2,), unit `along` (2,) the wall, `width`, `sill`, `top`, wall `depth` [m]."""
-
-    evidence: Evidence
-    centre: Floats
-    along: Floats
-    width: float
-    sill: float
-    top: float
-    depth: float
-    leaf: bool = False
+LEAST_DOOR = 0.5  # [m] a default width is not cut down to less
+IN_ROOM = 0.15  # [m] a leaf that stands deeper in a room than this is open, and no sign of a door where it stands
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,123 +38,15 @@ class Outline:
     polygon: Polygon
 
 
-def from_mesh(evidence: Evidence, vertices: Floats) -> Hole | None:
-    """Return the hole of a reveal mesh (V, 3) in the file's frame, or None where it has no extent in plan.
-
-    One that is narrower than MIN_WIDTH is a jamb at most, see `jambs`. The wall runs along the longer side of the smallest rectangle around it, unless that rectangle is nearly square.
-    """
-    points = to_ours(vertices)
-    if len(points) < 3:
-        return None
-    around = shapely.MultiPoint(points[:, :2]).minimum_rotated_rectangle
-    frame = np.asarray(around.exterior.coords if isinstance(around, Polygon) else [])
-    if len(frame) < 5:  # the points are on one line: a flat leaf
-        low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
-        if np.ptp(points[:, 0]) and np.ptp(points[:, 1]) and np.corrcoef(points[:, 0], points[:, 1])[0, 1] < 0:
-            low[1], high[1] = high[1], low[1]
-        sides = np.array([high - low, [0.0, 0.0]])
-        centre = (low + high) / 2
-    else:
-        sides = np.array([frame[1] - frame[0], frame[2] - frame[1]])
-        centre = frame[:4].mean(axis=0)
-    lengths = np.hypot(sides[:, 0], sides[:, 1])
-    long = int(np.argmax(lengths))
-    if lengths[long] < 1e-3:
-        return None
-    sill, top = float(points[:, 2].min()), float(points[:, 2].max())
-    return Hole(evidence, centre, sides[long] / lengths[long], float(lengths[long]), sill, top, float(lengths[1 - long]))
-
-
-def from_furniture(title: str, position: Floats, yaw: float, box: tuple[float, float, float] | None) -> Hole | None:
-    """Return the hole of a built-in door or window at `position` (3,) in the file's frame, or None for other titles."""
-    kind = title.split("/", 1)[0].strip()
-    if kind not in {"door", "window"}:
-        return None
-    point = to_ours(position)
-    usual = (DOOR_WIDTH, 0.0, DOOR_HEIGHT) if kind == "door" else (WINDOW_WIDTH, 0.0, WINDOW_HEIGHT)
-    width, _, height = box or usual
-    sill = float(max(point[2], 0.0))
-    along = np.array([math.cos(yaw), math.sin(yaw)])
-    evidence: Evidence = "door" if kind == "door" else "window"
-    return Hole(evidence, point[:2], along, max(width, MIN_WIDTH), sill, sill + height, 0.0, leaf=kind == "door")
-
-
-def merge(holes: Iterable[Hole]) -> list[Hole]:
-    """Join evidence of the same opening: reveals from both rooms, a leaf in its reveal. Reveals give the geometry."""
-    merged: list[Hole] = []
-    for hole in sorted(holes, key=lambda h: (h.depth == 0.0, -h.width, tuple(np.round(h.centre, 3)))):
-        for k, other in enumerate(merged):
-            apart = hole.centre - other.centre
-            across = abs(float(apart @ np.array([-other.along[1], other.along[0]])))
-            inside = abs(float(apart @ other.along)) < max(SAME, other.width / 2 - 0.1)
-            same_wall = abs(float(hole.along @ other.along)) > 0.9 or hole.depth == 0.0
-            if across < SAME and inside and same_wall and hole.sill < other.top and other.sill < hole.top:
-                merged[k] = _joined(other, hole)
-                break
-        else:
-            merged.append(hole)
-    return merged
-
-
-def _joined(first: Hole, second: Hole) -> Hole:
-    """Return both as one: where the first says nothing of its kind the second does; the depths of reveals are united."""
-    evidence = first.evidence if first.evidence != "hole" else second.evidence
-    made = replace(first, evidence=evidence, leaf=first.leaf or second.leaf)
-    if second.depth == 0.0:
-        return made
-    across = np.array([-first.along[1], first.along[0]])
-    shift = float((second.centre - first.centre) @ across)
-    low, high = min(-first.depth, 2 * shift - second.depth) / 2, max(first.depth, 2 * shift + second.depth) / 2
-    return replace(made, centre=first.centre + across * (low + high) / 2, depth=high - low)
-
-
-def jambs(narrow: Sequence[Hole], wide: Sequence[Hole]) -> tuple[list[Hole], list[Hole]]:
-    """Return (holes, rest): door jambs that face each other make a hole, where no wider reveal is there already.
-
-    Two narrow reveals of one kind and height are a pair when each is the other's nearest.
-    """
-    tall = [h for h in narrow if h.evidence != "window" and h.top - h.sill >= JAMB_HEIGHT and not covered(h.centre, wide)]
-    nearest = [min(((_gap(a, b), k) for k, b in enumerate(tall) if b is not a), default=(math.inf, i))[1] for i, a in enumerate(tall)]
-    made: list[Hole] = []
-    used: set[int] = set()
-    for i, k in enumerate(nearest):
-        a, b = tall[i], tall[k]
-        if i >= k or nearest[k] != i or not JAMBS_APART[0] <= _gap(a, b) <= JAMBS_APART[1]:
-            continue
-        along = (b.centre - a.centre) / _gap(a, b)
-        made.append(
-            Hole(a.evidence, (a.centre + b.centre) / 2, along, _gap(a, b), max(a.sill, b.sill), min(a.top, b.top), max(a.width, b.width))
-        )
-        used |= {id(a), id(b)}
-    return made, [h for h in narrow if id(h) not in used]
-
-
-def _gap(a: Hole, b: Hole) -> float:
-    """Return how far two jambs are apart in plan [m]; infinite where they are not of one kind and height."""
-    alike = a.evidence == b.evidence and abs(a.sill - b.sill) < 0.1 and abs(a.top - b.top) < 0.1
-    return float(np.hypot(*(a.centre - b.centre))) if alike else math.inf
-
-
-def covered(point: Floats, holes: Iterable[Hole]) -> bool:
-    """Return whether a point (2,) lies at one of the holes, give or take SAME."""
-    for hole in holes:
-        apart = point - hole.centre
-        along, across = abs(float(apart @ hole.along)), abs(float(apart @ np.array([-hole.along[1], hole.along[0]])))
-        if along < hole.width / 2 + SAME and across < hole.depth / 2 + SAME:
-            return True
-    return False
-
-
 def sides(hole: Hole, outlines: Sequence[Outline], reach: float) -> tuple[list[str], Floats]:
-    """Return the rooms that the hole joins (0 to 2, left side first) and its direction, squared to a room's wall.
+    """Return the rooms that the hole joins (0 to 2, left side first) and its direction.
 
     A leaf without reveal takes the direction of the nearest wall, for its own yaw may be a swing. A floor that reaches
     under a door lies on both sides of it at first: the room behind counts. A hole within one room joins nothing.
     """
     along = hole.along
-    if hole.depth == 0.0:
-        wall = _wall_direction(hole.centre, outlines, reach)
-        along = hole.along if wall is None else wall
+    if hole.origin == "record" and (wall := _wall(hole, outlines, reach)) is not None:
+        along = (wall[1] - wall[0]) / _length(wall)
     normal = np.array([-along[1], along[0]])
     steps = np.arange(STEP, reach + STEP / 2, STEP)
     left, right = ([_room_at(hole.centre + side * step * normal, outlines) for step in steps] for side in (1.0, -1.0))
@@ -198,17 +66,72 @@ def _room_at(point: Floats, outlines: Sequence[Outline]) -> str | None:
     return next((o.room_id for o in outlines if o.polygon.contains(place)), None)
 
 
-def _wall_direction(centre: Floats, outlines: Sequence[Outline], reach: float) -> Floats | None:
+def _wall(hole: Hole, outlines: Sequence[Outline], reach: float) -> Floats | None:
+    """Return the nearest wall (2, 2) within `reach` that is long enough for such an opening, None where there is none."""
+    least, centre = MIN_PANE if hole.evidence == "window" else MIN_WIDTH, hole.centre
     best: tuple[float, Floats] | None = None
     for outline in outlines:
-        ring = np.asarray(outline.polygon.exterior.coords)
-        for a, b in itertools.pairwise(ring):
+        for a, b in itertools.pairwise(np.asarray(outline.polygon.exterior.coords)):
             length = float(np.hypot(*(b - a)))
             t = min(1.0, max(0.0, float((centre - a) @ (b - a)) / length**2))
             gap = float(np.hypot(*(a + t * (b - a) - centre)))
-            if length > MIN_WIDTH and gap < reach and (best is None or gap < best[0]):
-                best = (gap, (b - a) / length)
+            if length > least and gap < reach and (best is None or gap < best[0]):
+                best = (gap, np.array([a, b]))
     return None if best is None else best[1]
+
+
+def openings(
+    evidence: Iterable[Hole], outlines: Sequence[Outline], height: float, reach: float, walls: Callable[[], shapely.Geometry]
+) -> tuple[list[Opening], dict[int, list[float]], list[Hole]]:
+    """Return the openings, how deep their reveals are by the number of rooms they join [m], and the evidence that is no opening.
+
+    `height` [m] is that of open fronts, `reach` [m] how far from an opening's middle its rooms begin; `walls` gives the walls' faces in plan.
+    """
+    known = gathered(_in_wall(h, outlines, reach) for h in evidence)
+    found: list[Opening] = []
+    depths: dict[int, list[float]] = {1: [], 2: []}
+    lost: list[Hole] = []
+
+    def take(holes: Iterable[Hole], left: list[Hole]) -> None:
+        for hole in holes:
+            opening = None if _ajar(hole, outlines) else resolve(hole, outlines, f"opening_{len(found)}", reach)
+            if opening is None:
+                left.append(hole)
+                continue
+            found.append(opening)
+            if 0.05 <= hole.depth <= 0.5:
+                depths[len(opening.rooms)].append(hole.depth)
+
+    take(known.holes, lost)
+    panes = [h for h in lost if h.evidence == "window"]
+    rest = [h for h in lost if h.evidence != "window"]
+    around = bays(panes)
+    take(around, rest)
+    rest += [p for p in panes if not any(_holds(bay, p) for bay in around)]
+    return [*found, *touching(outlines, height, found, walls)], depths, [*rest, *known.rest]
+
+
+def _in_wall(hole: Hole, outlines: Sequence[Outline], reach: float) -> Hole:
+    """Return a record without a size in the direction of the nearest wall, no wider than it."""
+    wall = None if hole.origin != "record" or hole.sized else _wall(hole, outlines, reach)
+    if wall is None:
+        return hole
+    turned = replace(hole, along=(wall[1] - wall[0]) / _length(wall))
+    low, high = (float((end - hole.centre) @ turned.along) for end in wall)
+    low, high = max(low, -hole.width / 2), min(high, hole.width / 2)
+    return turned.between(low, high) if high - low >= LEAST_DOOR or hole.evidence == "window" else turned
+
+
+def _ajar(hole: Hole, outlines: Sequence[Outline]) -> bool:
+    """Whether it is a leaf that nothing but itself tells of, and that stands in a room."""
+    place = shapely.Point(hole.centre)
+    leaf = hole.origin == "record" and hole.evidence == "door"
+    return leaf and any(o.polygon.contains(place) and o.polygon.exterior.distance(place) > IN_ROOM for o in outlines)
+
+
+def _holds(bay: Hole, pane: Hole) -> bool:
+    apart = pane.centre - bay.centre
+    return bool(abs(apart @ bay.along) <= bay.width / 2 + SAME and abs(apart @ bay.across) <= bay.depth / 2 + SAME)
 
 
 def resolve(hole: Hole, outlines: Sequence[Outline], opening_id: str, reach: float) -> Opening | None:
@@ -229,15 +152,18 @@ def _kind(hole: Hole, rooms: int) -> OpeningKind:
         return "window"
     if rooms == 1:
         return "entrance"
-    if hole.evidence == "door" or hole.leaf:
+    if hole.evidence == "door":
         return "door"
     return "open" if hole.width > OPEN_WIDTH else "portal"
 
 
-def touching(outlines: Sequence[Outline], height: float, known: Sequence[Opening]) -> list[Opening]:
+def touching(
+    outlines: Sequence[Outline], height: float, known: Sequence[Opening], walls: Callable[[], shapely.Geometry] = shapely.MultiLineString
+) -> list[Opening]:
     """Return the opening of each pair of rooms whose floors meet without a wall: `open`, or `portal` on a doorway's width.
 
-    One that is `known` already, as a door whose threshold both floors share, is left out; ids go on from `known`.
+    Floors may meet in the middle of a wall: there is none where one of the `walls` (their faces in plan) stands, nor where an
+    opening is `known` already, for it has a wall around it. Ids go on from `known`.
     """
     found: list[Opening] = []
     for i, a in enumerate(outlines):
@@ -245,9 +171,10 @@ def touching(outlines: Sequence[Outline], height: float, known: Sequence[Opening
             if a.polygon.distance(b.polygon) > TOUCHING:
                 continue
             rooms = tuple(sorted((a.room_id, b.room_id)))
-            edges = [e for e in _shared(a.polygon, b.polygon) if not _is_known(e, rooms, known)]
+            edges = [e for e in _shared(a.polygon, b.polygon) if _length(e) >= LEAST_FRONT and not _is_known(e, rooms, known)]
+            edges = [e for e in edges if _walled(e, walls()) < 0.5] if edges else []
             longest = max(edges, key=_length, default=None)
-            if longest is None or _length(longest) < LEAST_FRONT:
+            if longest is None:
                 continue
             ends = np.round(longest[np.lexsort((longest[:, 1], longest[:, 0]))], 4)
             doorway = _length(longest) <= DOORWAY
@@ -265,12 +192,16 @@ def _shared(a: Polygon, b: Polygon) -> list[Floats]:
 
 
 def _is_known(edge: Floats, rooms: tuple[str, ...], known: Sequence[Opening]) -> bool:
-    """Return whether an opening between the same rooms takes up this edge (2, 2)."""
-    middle = shapely.Point(edge.mean(axis=0))
-    return any(
-        o.rooms == rooms and o.kind != "window" and o.width > _length(edge) - SAME and LineString(o.segment).distance(middle) < SAME
-        for o in known
-    )
+    """Return whether an opening between the same rooms lies on this edge (2, 2): then there is a wall, or it is open already."""
+    line = LineString(edge)
+    middles = (shapely.Point(o.segment.mean(axis=0)) for o in known if o.rooms == rooms and o.kind != "window")
+    return any(line.distance(middle) < SAME for middle in middles)
+
+
+def _walled(edge: Floats, walls: shapely.Geometry) -> float:
+    """Return the share of an edge (2, 2) along which a wall stands."""
+    line = LineString(edge)
+    return float(line.intersection(walls.buffer(WALL_NEAR, cap_style="flat")).length / line.length)
 
 
 def _length(edge: Floats) -> float:

@@ -65,7 +65,11 @@ REASONS: dict[str, Reason] = {
     ),
     "centimetres": Reason("model", "repaired", "the model is not in metres; scaled once, by 0.01 or 100, for all its placements"),
     # openings
-    "opening_unresolved": Reason("opening", "dropped", "door, window or hole that lies at no room"),
+    "opening_unresolved": Reason(
+        "opening",
+        "dropped",
+        "door, window or hole that lies at no room; a threshold without a door above it; a leaf drawn open, away from any door",
+    ),
     # models
     "missing_texture": Reason("model", "repaired", "a texture or material file is missing or unreadable; plain colour instead"),
     "colliders_capped": Reason("model", "repaired", "more pieces than `max_pieces`; the smallest have no collider"),

@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 from shapely.geometry import box
 
-from pipeline.sources import front_openings
-from pipeline.sources.front_openings import Outline, from_furniture, from_mesh, jambs, merge, resolve, touching
+from pipeline.sources.front_holes import MESHES, MIN_WIDTH, from_furniture, from_mesh
+from pipeline.sources.front_openings import Outline, resolve, touching
+from pipeline.sources.front_reveals import covered, jambs, merge
 from tests.sources import making
 from tests.sources.making import floor, slab
 from tests.sources.reading import read
@@ -43,7 +44,7 @@ def test_kinds(kind, low, high, want, rooms):
 
 def test_far_and_narrow_are_nothing():
     assert opening(reveal("door", (50, 0, 1), (50.12, 2.1, 2))) is None
-    assert reveal("door", (4, 0, 1), (4.12, 2.1, 1.2)).width < front_openings.MIN_WIDTH
+    assert reveal("door", (4, 0, 1), (4.12, 2.1, 1.2)).width < MIN_WIDTH
     assert from_mesh("door", np.zeros((6, 3))) is None
 
 
@@ -101,10 +102,12 @@ def test_floors_that_meet_under_a_door_are_that_door():
     assert made.width == pytest.approx(0.9, abs=0.07)
 
 
-def test_an_open_front_beside_a_door_is_there_too():
+def test_floors_that_touch_on_both_sides_of_a_door_are_not_open_to_each_other():
+    """A reveal has a wall around it, although the floors meet in the middle of it."""
     rooms = [Outline("left", box(0, -4, 4, 0)), Outline("right", box(4, -4, 6, 0))]
     door = resolve(reveal("door", (3.94, 0, 1), (4.06, 2.1, 1.9)), rooms, "o", 0.4)
-    assert [o.kind for o in touching(rooms, 2.7, [door])] == ["open"]
+    assert touching(rooms, 2.7, [door]) == []
+    assert [o.kind for o in touching(rooms, 2.7, [])] == ["open"]
 
 
 def test_jambs_by_themselves_make_a_door():
@@ -118,7 +121,7 @@ def test_jambs_by_themselves_make_a_door():
     assert door.depth == pytest.approx(0.12)
     whole = reveal("door", (4, 0, 1), (4.12, 2.1, 1.9))
     assert jambs([left, right], [whole])[0] == []
-    assert front_openings.covered(left.centre, [whole])
+    assert covered(left.centre, [whole])
     assert jambs([left], []) == ([], [left])
     low = reveal("door", (4, 0, 1.9), (4.12, 1.2, 1.901))
     assert jambs([left, low], [])[0] == []
@@ -151,7 +154,7 @@ def test_broken_mesh_is_told(tmp_path):
     made = read(tmp_path)
     assert made.reasons == {"opening_unresolved"}
     assert len(made.openings) == 3
-    assert front_openings.MESHES["Hole"] == "hole"
+    assert MESHES["Hole"] == ("hole", "hole")
 
 
 def test_a_hole_within_one_room_joins_nothing():

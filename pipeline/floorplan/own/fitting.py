@@ -10,10 +10,12 @@ import shapely
 
 from pipeline.entities.plan import Opening, Room, Swing
 from pipeline.floorplan.defaults import DOOR, DOOR_HEIGHT
-from pipeline.floorplan.own.sketch import Floats, Sketch, SketchOpening, refuse
+from pipeline.floorplan.own.sketch import Floats, OwnPlanError, Sketch, SketchOpening, refuse
 from pipeline.floorplan.own.walls import TOUCH, Stretch
 
 EDGE = 0.02  # [m] least wall beside an opening
+JAMBS = 0.15  # [m] that an opening as wide as its wall is narrowed by at most; an open front, and a house of a dataset, by more
+POST = 0.15  # [m] that an opening which meets another one is narrowed by at most; in a house of a dataset by half of it
 REACH = 0.25  # [m] beyond the wall's faces, from which an opening is still moved onto it
 SLIDE = 0.5  # [m] along the wall, by which an opening that sticks out at its end is moved
 SLANT = 0.94  # cosine: segments within 20 degrees of their wall
@@ -36,12 +38,17 @@ class Fitted:
 
 
 def fit(sketch: Sketch, rooms: Sequence[Room], walls: Sequence[Stretch]) -> list[Fitted]:
-    """Put every opening of the sketch into a wall. Raises RefusedError for one that has none."""
+    """Put every opening of the sketch into a wall. Raises RefusedError for one that has none; in a house of a dataset it is left out."""
     known = {r.room_id: r for r in rooms}
     placed: list[Fitted] = []
-    # those whose place is stated go first: the others take what is left
-    for wish in sorted(sketch.openings, key=lambda o: o.segment is None and o.at is None):
-        placed.append(_fit(sketch, wish, known, walls, placed))
+    # those whose place is stated go first: the others take what is left; in houses of datasets windows give way to doors
+    for wish in sorted(sketch.openings, key=lambda o: (o.segment is None and o.at is None, sketch.foreign and o.kind == "window")):
+        try:
+            placed.append(_fit(sketch, wish, known, walls, placed))
+        except OwnPlanError as error:
+            if not sketch.foreign:
+                raise
+            sketch.repair("left_out", wish.opening_id, f"left out: {error.why}")
     order = {o.opening_id: k for k, o in enumerate(sketch.openings)}
     return sorted(placed, key=lambda f: order[f.opening.opening_id])
 
@@ -65,7 +72,7 @@ def _fit(sketch: Sketch, wish: SketchOpening, rooms: dict[str, Room], walls: Seq
         width = {"window": 1.2, "entrance": 0.9, "portal": 1.2}.get(wish.kind, DOOR)
     if width < NARROWEST[wish.kind]:
         raise refuse(f"{name} is {width:.2f} m wide; a {wish.kind} has {NARROWEST[wish.kind]:g} m or more")
-    mine = [s for s in walls if _may(wish, s)]
+    mine = [s for s in walls if _may(wish, s) or (sketch.foreign and _may_as_well(wish, s))]
     if not mine and wish.rooms:
         between = " and ".join(wish.rooms)
         raise refuse(
@@ -81,9 +88,7 @@ def _fit(sketch: Sketch, wish: SketchOpening, rooms: dict[str, Room], walls: Seq
             f"{name} has no wall to stand in: {' and '.join(stretch.rooms)} touch",
             "leave walls between the rooms, or state `faces: centre`",
         )
-    for other in placed:
-        if other.stretch.level == stretch.level and _line(other).distance(_line(stretch, low, width)) < 1e-6:
-            raise refuse(f"{name} and {other.opening.opening_id} are in one place")
+    low, width = _beside(sketch, wish, stretch, (low, width), placed)
     kind = wish.kind
     if kind == "entrance" and len(stretch.rooms) == 2:
         kind = "door"
@@ -95,7 +100,7 @@ def _fit(sketch: Sketch, wish: SketchOpening, rooms: dict[str, Room], walls: Seq
         segment = segment[::-1].copy()
     if swing is not None and (swing.room_id not in stretch.rooms or kind not in {"door", "entrance"}):
         raise refuse(f"the leaf of {name} swings into {swing.room_id}, which it does not lead to")
-    rooms_said = wish.rooms or stretch.rooms
+    rooms_said = wish.rooms if len(wish.rooms) == len(stretch.rooms) else stretch.rooms
     return Fitted(Opening(name, kind, rooms_said, segment, height, sill, swing, stretch.level), stretch, low, low + width)
 
 
@@ -108,6 +113,34 @@ def _may(wish: SketchOpening, stretch: Stretch) -> bool:
     if len(wish.rooms) == 1:
         return stretch.rooms == wish.rooms
     return wish.kind not in {"open", "portal"} or len(stretch.rooms) == 2
+
+
+def _may_as_well(wish: SketchOpening, stretch: Stretch) -> bool:
+    """Whether an opening of a dataset's house, of which one room is known, may stand in a stretch: another room may lie behind a thick wall."""
+    return stretch.level == wish.level and len(wish.rooms) == 1 and wish.rooms[0] in stretch.rooms
+
+
+def _beside(
+    sketch: Sketch, wish: SketchOpening, stretch: Stretch, place: tuple[float, float], placed: Sequence[Fitted]
+) -> tuple[float, float]:
+    """Return from where and how wide [m] an opening is that adjoins others, as the panes of a bay do: narrowed for a post between them."""
+    low, width = place
+    most = width / 2 if sketch.foreign else POST
+    for other in placed:
+        if other.stretch.level != stretch.level or _line(other).distance(_line(stretch, low, width)) >= 1e-6:
+            continue
+        taken = sorted(float(v) for v in (other.opening.segment - stretch.start) @ stretch.along)
+        post = 2 * EDGE if other.stretch is stretch else 2 * EDGE + other.stretch.gap / 2
+        start, end = max(((low, taken[0] - post), (taken[1] + post, low + width)), key=lambda s: s[1] - s[0])
+        if end - start < max(NARROWEST[wish.kind], place[1] - most):
+            raise refuse(f"{wish.opening_id} and {other.opening.opening_id} are in one place")
+        sketch.repair(
+            "narrowed",
+            wish.opening_id,
+            f"it meets {other.opening.opening_id}: {width - end + start:.2f} m of it become the post between them",
+        )
+        low, width = start, end - start
+    return low, width
 
 
 def _anywhere(wish: SketchOpening, width: float, walls: Sequence[Stretch], placed: Sequence[Fitted]) -> tuple[Stretch, float]:
@@ -123,7 +156,7 @@ def _anywhere(wish: SketchOpening, width: float, walls: Sequence[Stretch], place
 
 
 def _there(sketch: Sketch, wish: SketchOpening, width: float, walls: Sequence[Stretch]) -> tuple[Stretch, float, float]:
-    """Return the nearest stretch to where the opening is stated, its place on it, and its width, which an open front may lose."""
+    """Return the nearest stretch to where the opening is stated, its place on it, and its width, less what its jambs need."""
     middle = wish.segment.mean(axis=0) if wish.segment is not None else wish.at
     assert middle is not None
     best: tuple[float, Stretch, float] | None = None
@@ -143,11 +176,15 @@ def _there(sketch: Sketch, wish: SketchOpening, width: float, walls: Sequence[St
         raise refuse(f"{wish.opening_id} at {at} lies on no wall{where}")
     _, stretch, low = best
     clear = stretch.length - 2 * EDGE
-    if wish.kind == "open" and clear < width <= clear + 2 * SLIDE:
-        sketch.repair("narrowed", wish.opening_id, f"{width:.2f} m wide between walls {clear:.2f} m apart: it takes all of these")
+    if width > clear + 1e-6:
+        spare = 2 * SLIDE if wish.kind == "open" else JAMBS
+        if clear < NARROWEST[wish.kind] or width - clear > (max(width / 2, spare) if sketch.foreign else spare):
+            raise refuse(f"{wish.opening_id} is {width:.2f} m wide and its wall {stretch.length:.2f} m")
+        jambs = "no wall is left for its jambs"
+        sketch.repair(
+            "narrowed", wish.opening_id, f"{width:.2f} m wide in a wall of {stretch.length:.2f} m, {jambs}: narrowed to {clear:.2f} m"
+        )
         low, width = EDGE, clear
-    if width > stretch.length - 2 * EDGE + 1e-6:
-        raise refuse(f"{wish.opening_id} is {width:.2f} m wide and its wall {stretch.length:.2f} m")
     moved = float(np.clip(low, EDGE, stretch.length - width - EDGE))
     slide = abs(moved - low)
     if slide > SLIDE:

@@ -10,10 +10,8 @@ from pipeline.errors import ContentError
 from pipeline.floorplan.own.sketch import Sketch, SketchOpening, SketchRoom, refuse
 from pipeline.sources.front_file import parse_house
 from pipeline.sources.front_house import openings_of, rooms_of
-from pipeline.sources.reasons import Row, SourceError
+from pipeline.sources.reasons import REASONS, Row, SourceError
 from pipeline.sources.settings import FrontFilters
-
-SHOWN = 6
 
 
 def is_front(document: object) -> bool:
@@ -42,9 +40,9 @@ def front_sketch(document: Mapping[str, Any], name: str) -> Sketch:
         inner,
         outer,
         units="m",
+        foreign=True,
     )
-    for row in rejects[:SHOWN]:
-        sketch.repair(row["reason"], row["where"], row["detail"] or "left out")
-    if len(rejects) > SHOWN:
-        sketch.repair("more", "plan", f"{len(rejects) - SHOWN} more parts of the house are left out")
+    for row in rejects:
+        effect = REASONS[row["reason"]].effect
+        sketch.repair(row["reason"], row["where"], f"{effect}: {row['detail']}" if row["detail"] else effect)
     return sketch

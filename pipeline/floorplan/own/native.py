@@ -33,6 +33,7 @@ class RoomIn(Loose):
     polygon: Annotated[list[Point], Field(max_length=100_000)]
     id: Text = ""
     role: Text = ""
+    functions: Annotated[list[Text], Field(max_length=10)] = []
     level: int = 0
     height: Length = 2.7
 
@@ -134,7 +135,7 @@ def native_sketch(document: object) -> Sketch:
     for room, name in zip(read.rooms, ids, strict=True):
         named[room.id or name] = name
     rooms = [
-        SketchRoom(name, r.type, np.array(r.polygon, float).reshape(-1, 2), r.level, r.height, r.role)
+        SketchRoom(name, r.type, np.array(r.polygon, float).reshape(-1, 2), r.level, r.height, r.role, tuple(r.functions))
         for name, r in zip(ids, read.rooms, strict=True)
     ]
     # the whole form states inner faces and metres; the short form is found out

@@ -46,7 +46,7 @@ def procthor_sketch(document: Mapping[str, Any]) -> Sketch:
     if tops and 1.8 <= max(tops) <= 8.0:
         for room in rooms:
             room.height = round(max(tops), 3)
-    sketch = Sketch(rooms, [], "centre", units="m")
+    sketch = Sketch(rooms, [], "centre", units="m", foreign=True)
     for number, record in enumerate(doors):
         frame = "frame" in str(record.get("assetId", "")).lower() and not record.get("openable", False)
         sketch.openings.append(_opening(record, "portal" if frame else "door", f"door_{number}", names, walls))

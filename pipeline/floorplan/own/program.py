@@ -17,6 +17,7 @@ def program_of(plan: Plan) -> FloorProgram:
                 "id": r.room_id,
                 "type": r.type,
                 "role": r.role,
+                "functions": r.functions,
                 "level": r.level,
                 "area": Range(target=round(r.area, 3), stated=True),
                 "stated": False,

@@ -17,6 +17,7 @@ from pipeline.floorplan.own.native import native_sketch
 from pipeline.floorplan.own.procthor import is_procthor, procthor_sketch
 from pipeline.floorplan.own.rings import apart, clean_rings, shrink, to_metres
 from pipeline.floorplan.own.sketch import Repair, Sketch, refuse
+from pipeline.floorplan.own.thresholds import cut_back, put_walls
 from pipeline.floorplan.own.types import resolve_types
 from pipeline.floorplan.own.walls import TOUCH, Stretch, stretches, touching_share
 from pipeline.sources.guarded import Folder, parse_json
@@ -106,9 +107,13 @@ def _built(sketch: Sketch) -> Plan:
     clean_rings(sketch)
     inner = _thickness(sketch, "inner_wall", INNER)
     outer = _thickness(sketch, "outer_wall", OUTER)
+    if sketch.foreign and sketch.faces == "inner":
+        cut_back(sketch, inner, outer)
     apart(sketch)
+    if sketch.foreign and sketch.faces == "inner":
+        put_walls(sketch, inner)
     _to_inner_faces(sketch, inner)
-    rooms = [Room(r.room_id, r.type, r.ring, r.level, round(r.height, 3), r.role) for r in sketch.rooms]
+    rooms = [Room(r.room_id, r.type, r.ring, r.level, round(r.height, 3), r.role, functions=r.functions) for r in sketch.rooms]
     levels = sorted({r.level for r in rooms})
     if levels != list(range(len(levels))):
         raise refuse(f"its storeys are {', '.join(map(str, levels))}; they count from 0 without gaps")
@@ -191,9 +196,9 @@ def _entrance(sketch: Sketch, rooms: list[Room], walls: list[Stretch], fitted: l
         best = min(mine, key=lambda f: (f not in marked, order.get(ground[f.opening.rooms[0]].type, 99)))
         _only_entrance(sketch, best, marked)
         return best.opening.rooms[0]
-    wanted = (
-        [sketch.entrance] if sketch.entrance else [r.room_id for kind in INTO for r in ground.values() if r.type == kind] or list(ground)
-    )
+    wanted = [sketch.entrance] if sketch.entrance else [r.room_id for kind in INTO for r in ground.values() if r.type == kind]
+    if sketch.foreign or not wanted:
+        wanted += [room for room in ground if room not in wanted]
     for room in wanted:
         made = put_door(_fresh("entrance", fitted), (room,), [s for s in walls if s.level == 0], fitted, 0.9)
         if made:
@@ -225,10 +230,24 @@ def _join(sketch: Sketch, rooms: list[Room], walls: list[Stretch], fitted: list[
             pairs.sort(key=lambda s: (_rank(kinds[next(iter(set(s.rooms) & reached))]), -round(s.length, 3)))
             made = next((f for s in pairs if (f := put_door(_fresh("door", fitted), s.rooms, [s], fitted))), None)
         if made is None:
+            if sketch.foreign and _leave(sketch, rooms, fitted, lost):
+                continue
             _explain(rooms, walls, lost)
             raise refuse(f"there is no way from {entrance} to {', '.join(lost)}", "add doors between them")
         fitted.append(made)
         sketch.repair("door", made.opening.opening_id, f"no door leads to {' or '.join(set(made.opening.rooms) - reached)}: one is put")
+
+
+def _leave(sketch: Sketch, rooms: list[Room], fitted: list[Fitted], lost: list[str]) -> bool:
+    """Leave rooms out that nothing leads to, stating it; not where they are the larger part of the home."""
+    area = {r.room_id: r.area for r in rooms}
+    if 2 * sum(area[r] for r in lost) > sum(area.values()):
+        return False
+    for room in lost:
+        sketch.repair("left_out", room, "left out: nothing leads to it")
+    rooms[:] = [r for r in rooms if r.room_id not in lost]
+    fitted[:] = [f for f in fitted if not set(f.opening.rooms) & set(lost)]
+    return True
 
 
 def _explain(rooms: list[Room], walls: list[Stretch], lost: list[str]) -> None:

@@ -142,7 +142,10 @@ def without_collinear(ring: Floats) -> Floats:
 
 
 def apart(sketch: Sketch) -> None:
-    """Trim rooms that overlap by less than SLIVER, stating it. Raises RefusedError for rooms that overlap by more."""
+    """Trim rooms that overlap by less than SLIVER, stating it. Raises RefusedError for rooms that overlap by more.
+
+    In a house of a dataset the later room gives way, however much it is, as long as one room is left of it.
+    """
     for a, b in itertools.combinations(sketch.rooms, 2):
         if not share_level(a, b):
             continue
@@ -152,7 +155,10 @@ def apart(sketch: Sketch) -> None:
             continue
         depth = 2 * common.area / max(common.length, 1e-9)
         rest = two.difference(one.buffer(SAME, join_style="mitre"))
-        if depth > SLIVER or not isinstance(rest, shapely.Polygon) or rest.interiors:
+        if sketch.foreign:
+            rest = max(shapely.get_parts(rest), key=lambda p: p.area, default=rest)
+        room = isinstance(rest, shapely.Polygon) and not rest.interiors and rest.area >= LEAST_AREA
+        if not room or (depth > SLIVER and not sketch.foreign):
             raise refuse(f"{a.room_id} and {b.room_id} overlap by {common.area:.3g} m2", "rooms of one storey must not overlap")
         b.ring = np.round(without_collinear(np.asarray(shapely.geometry.polygon.orient(rest, 1.0).exterior.coords)[:-1]), 3)
         sketch.repair("overlap", b.room_id, f"{100 * depth:.1f} cm of it lay in {a.room_id} and are cut off")

@@ -39,6 +39,7 @@ class SketchRoom:
     level: int = 0
     height: float = 2.7
     role: str = ""
+    functions: tuple[str, ...] = ()
 
 
 @dataclass(slots=True)
@@ -59,7 +60,10 @@ class SketchOpening:
 
 @dataclass(slots=True)
 class Sketch:
-    """A plan before it is checked. `inner_wall` and `outer_wall` [m] are None where the file does not say."""
+    """A plan before it is checked. `inner_wall` and `outer_wall` [m] are None where the file does not say.
+
+    `foreign`: it was not drawn for this but is a house of a dataset: what cannot stand in it is left out, and that is stated.
+    """
 
     rooms: list[SketchRoom]
     openings: list[SketchOpening]
@@ -70,6 +74,7 @@ class Sketch:
     outer_wall: float | None = None
     storey_height: float | None = None
     units: str = ""
+    foreign: bool = False
     repairs: list[Repair] = field(default_factory=list)
 
     def repair(self, code: str, where: str, text: str) -> None:
@@ -95,7 +100,11 @@ class OwnPlanError(RefusedError):
 
     code = "own_plan"
 
+    def __init__(self, why: str, remedy: str) -> None:
+        self.why = why
+        super().__init__(f"the plan cannot be built: {why}", remedy)
+
 
 def refuse(message: str, remedy: str = REMEDY) -> OwnPlanError:
     """Return the refusal of a plan that is well-formed and cannot be."""
-    return OwnPlanError(f"the plan cannot be built: {message}", remedy)
+    return OwnPlanError(message, remedy)

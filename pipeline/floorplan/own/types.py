@@ -7,16 +7,17 @@ import re
 import typing
 
 from pipeline.floorplan.own.sketch import Sketch, refuse
-from pipeline.floorplan.program import Role, RoomType
+from pipeline.floorplan.program import Role, RoomReq, RoomType
 
 TYPES: tuple[str, ...] = typing.get_args(RoomType)
 ROLES: tuple[str, ...] = typing.get_args(Role)
+FUNCTIONS: tuple[str, ...] = typing.get_args(typing.get_args(RoomReq.model_fields["functions"].annotation)[0])
 ALIASES = {
     # people
     "living": "living_room", "lounge": "living_room", "sitting_room": "living_room", "bed_room": "bedroom", "bath": "bathroom",
     "bath_room": "bathroom", "shower_room": "bathroom", "toilet": "wc", "powder_room": "wc", "restroom": "wc", "hall": "hallway",
     "corridor": "hallway", "landing": "hallway", "foyer": "entry", "entrance": "entry", "entrance_hall": "entry", "vestibule": "entry",
-    "study": "office", "home_office": "office", "studio": "studio_room", "stairs": "staircase", "stairwell": "staircase", "dining": "dining_room",
+    "study": "office", "living_dining_room": "living_room", "living_dining": "living_room", "home_office": "office", "studio": "studio_room", "stairs": "staircase", "stairwell": "staircase", "dining": "dining_room",
     "laundry": "utility", "laundry_room": "utility", "utility_room": "utility", "storage_room": "storage", "store": "storage",
     "pantry": "storage", "wardrobe": "closet", "dressing_room": "closet", "walk_in_closet": "closet", "terrace": "balcony", "loggia": "balcony",
     "patio": "balcony", "conservatory": "sunroom", "nursery": "bedroom", "kitchenette": "kitchen",
@@ -26,6 +27,7 @@ ALIASES = {
     "secondbathroom": "bathroom", "aisle": "hallway", "storageroom": "storage", "cloakroom": "closet", "laundryroom": "utility",
     "equipmentroom": "utility", "courtyard": "balcony", "auditorium": "media_room", "otherroom": "storage",
 }  # fmt: skip
+FUNCTIONS_OF = dict.fromkeys(("livingdiningroom", "livingdining"), ("living", "dining"))
 ROLE_OF = {
     "masterbedroom": "primary",
     "master_bedroom": "primary",
@@ -50,9 +52,11 @@ def resolve_types(sketch: Sketch) -> None:
             raise refuse(f"{room.room_id} has the unknown type {said[:40]!r}", hint)
         if not room.role:
             room.role = ROLE_OF.get(plain, ROLE_OF.get(kind, ""))
+        room.functions = tuple(f for f in room.functions if f in FUNCTIONS) or FUNCTIONS_OF.get(plain, ())
         if room.role not in ROLES:
             sketch.repair("role", room.room_id, f"the unknown role {room.role[:40]!r} is left out")
             room.role = ""
         if found != said:
             room.type = found
-            sketch.repair("type", room.room_id, f"the type {said[:40]!r} is taken as {found}")
+            also = f", with {' and '.join(room.functions)} in it" if room.functions else ""
+            sketch.repair("type", room.room_id, f"the type {said[:40]!r} is taken as {found}{also}")

@@ -15,7 +15,7 @@ from pipeline.floorplan.own.sketch import Floats
 THICKEST = 0.65  # [m] rooms that face each other across more have no common wall
 TOUCH = 0.03  # [m] rooms nearer than this touch: no wall lies between them
 PARALLEL = 0.999  # cosine: walls within 2.5 degrees of each other
-LEAST_RUN = 0.3  # [m]
+LEAST_RUN = 0.24  # [m] the narrowest window with its jambs
 
 
 @dataclass(frozen=True, slots=True)
