@@ -31,6 +31,7 @@ SECTIONS = (
     "dataset",
     "prior",
     "shard",
+    "baselines",
     "metrics",
 )
 

@@ -18,3 +18,4 @@ class MetricsSettings:
     gallery: int = 4  # homes that are path-traced
     gallery_samples: int = 48  # light paths per pixel
     gallery_width: int = 800  # px
+    baselines: bool = False  # train and compare the layout models of the peers as well (stage `baselines`)

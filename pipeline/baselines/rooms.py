@@ -1,0 +1,96 @@
+"""Rooms as the baselines see them: an outline and a set of boxes, in tensors; quarter turns of both."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from pipeline.diffusion.floor import KINDS, Floor
+from pipeline.diffusion.rooms import Example
+
+BOX = 8  # centre 3, size 3 [m], cos, sin of the yaw
+LATENT = 32
+
+
+@dataclass(frozen=True, slots=True)
+class Outlines:
+    """R rooms to furnish: `points` (R, P, 4), places on the walls [m] and inward normals; `layout` (R,) index of the room type.
+
+    As with the peers, a room is its outline: they are told neither of doors nor of windows.
+    """
+
+    points: Tensor
+    layout: Tensor
+
+    def __len__(self) -> int:
+        return len(self.layout)
+
+    def rows(self, index: Tensor) -> Outlines:
+        """Take some rooms."""
+        return Outlines(self.points[index], self.layout[index])
+
+    def turned(self, quarters: Tensor) -> Outlines:
+        """Turn each room (R,) by so many quarters."""
+        turns = quarter_turns(quarters).to(self.points)
+        return Outlines(torch.cat([self.points[..., k : k + 2] @ turns.mT for k in (0, 2)], -1), self.layout)
+
+
+@dataclass(frozen=True, slots=True)
+class Furniture:
+    """The slots of R rooms: `classes` (R, N), C for empty; `boxes` (R, N, 8) with the boxes' centres [m]; `latents` (R, N, 32)."""
+
+    classes: Tensor
+    boxes: Tensor
+    latents: Tensor
+
+    def rows(self, index: Tensor) -> Furniture:
+        """Take some rooms."""
+        return Furniture(*(getattr(self, f.name)[index] for f in fields(self)))
+
+    def turned(self, quarters: Tensor) -> Furniture:
+        """Turn each room (R,) by so many quarters."""
+        turns = quarter_turns(quarters).to(self.boxes)
+        place, axis = (self.boxes[..., k : k + 2] @ turns.mT for k in (0, 6))
+        return Furniture(self.classes, torch.cat([place, self.boxes[..., 2:6], axis], -1), self.latents)
+
+
+def quarter_turns(quarters: Tensor) -> Tensor:
+    """Return rotations (R, 2, 2) by so many quarters, exact."""
+    cos, sin = (torch.tensor(values, device=quarters.device)[quarters % 4] for values in ((1.0, 0.0, -1.0, 0.0), (0.0, 1.0, 0.0, -1.0)))
+    return torch.stack([torch.stack([cos, -sin], -1), torch.stack([sin, cos], -1)], -2)
+
+
+def outline(floor: Floor, count: int) -> NDArray[np.float32]:
+    """Return points (count, 4) evenly along the walls, with the normals into the room."""
+    walls = floor.mask & (floor.kind == KINDS.index("wall"))
+    start, stop, normal = floor.ends[walls, 0], floor.ends[walls, 1], floor.normal[walls]
+    length = np.linalg.norm(stop - start, axis=1)
+    reached = np.cumsum(length)
+    at = (np.arange(count) + 0.5) / count * reached[-1]
+    wall = np.minimum(np.searchsorted(reached, at, side="right"), len(length) - 1)
+    along = (at - reached[wall] + length[wall]) / np.maximum(length[wall], 1e-9)
+    points = start[wall] + along[:, None] * (stop - start)[wall]
+    return np.concatenate([points, normal[wall]], 1).astype(np.float32)
+
+
+def outlines(floors: Sequence[Floor], layouts: Sequence[int], count: int) -> Outlines:
+    """Stack rooms."""
+    return Outlines(torch.from_numpy(np.stack([outline(f, count) for f in floors])), torch.tensor(layouts))
+
+
+def furniture(examples: Sequence[Example], classes: int, slots: int) -> Furniture:
+    """Pad the objects of examples to `slots`; `classes` is C."""
+    held = torch.full((len(examples), slots), classes)
+    boxes, latents = torch.zeros(len(examples), slots, BOX), torch.zeros(len(examples), slots, LATENT)
+    for i, example in enumerate(examples):
+        n = len(example.classes)
+        held[i, :n] = torch.from_numpy(example.classes)
+        own = torch.from_numpy(example.continuous).float()
+        boxes[i, :n], latents[i, :n] = own[:, :BOX], own[:, BOX : BOX + LATENT]
+        boxes[i, :n, 2] += own[:, 5] / 2  # examples stand on their bottoms, the peers' boxes hang on their centres
+    return Furniture(held, boxes, latents)

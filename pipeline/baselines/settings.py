@@ -1,0 +1,35 @@
+"""The numbers of the baselines that stand in params.yaml (section `baselines`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(frozen=True, slots=True)
+class BaselineSettings:
+    """How the baselines are built, trained, sampled and compared."""
+
+    seconds: float = 240.0  # CPU seconds of training, the same for each
+    width: int = 128  # channels of the transformers
+    layers: int = 4
+    heads: int = 4
+    points: int = 64  # points of a room's outline
+    slots: int = 24  # most objects in a room
+    timesteps: int = 1000  # T
+    target: Literal["v", "eps"] = "v"  # what the denoiser predicts
+    batch: int = 64  # rooms per training step
+    learning_rate: float = 1e-3  # at the start; it falls to zero along a cosine while the seconds are spent
+    clip: float = 10.0  # gradient norm
+    ema: float = 0.995  # of the weights that are sampled from
+    iou_weight: float = 0.1  # DiffuScene: weight of the boxes' mean overlap in the loss
+    checkpoint_every: float = 60.0  # CPU seconds
+    rooms: int = 200  # rooms of the split that each baseline furnishes
+    count_rooms: int = 50  # rooms per asked number
+    counts: tuple[int, ...] = (5, 8, 12, 16)  # N_target
+    steps: int = 100  # levels at which the samplers stop, even in log signal-to-noise; T: all, as the peers and the print have it
+    sample_batch: int = 50  # rooms that are sampled together
+    quantity_scale: float = 200.0  # SceneFoundry: lambda gamma_1
+    articulation_scale: float = 20.0  # SceneFoundry: lambda gamma_2
+    quantity_below: int = 1001  # noise levels below which phi_quantity acts; T + 1: all, as printed
+    articulation_below: int = 1001  # the same for phi_articoll

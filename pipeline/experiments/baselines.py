@@ -1,0 +1,132 @@
+"""One table for all layout models: the same rooms, the same figures, whoever furnished them.
+
+Figures are of drafts, as boxes: nothing is retrieved, moved or repaired. What counts as articulated is a class that can
+come from PartNet, for made and real rooms alike, and its extended state is the paper's box.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from pipeline.diffusion.context import Proposal, RoomContext
+from pipeline.diffusion.rooms import context_of
+from pipeline.metrics import articulation, category, collision
+from pipeline.metrics.intervals import bootstrap, rate
+from pipeline.metrics.rows import Row
+
+Furnish = Callable[[Sequence[RoomContext]], list[list[Proposal]]]
+Json = dict[str, Any]
+FLOOR = 1.2  # [m2] that a thing takes: rooms below this times N are not asked for N things
+
+
+class Case(NamedTuple):
+    """A room of the split: its context, and what stands there in truth."""
+
+    context: RoomContext
+    real: list[Proposal]
+
+
+def cases_of(tables: Mapping[str, Sequence[Row]], split: str, layouts: Sequence[str], classes: Sequence[str], slots: int) -> list[Case]:
+    """Return the furnished rooms of a split, in the order of the tables, as the layout models are trained on them."""
+    scenes = {s["scene_id"]: s for s in tables["scenes"] if s["split"] == split}
+    known = set(classes)
+    openings: dict[str, list[Row]] = {}
+    objects: dict[tuple[str, str], list[Row]] = {}
+    for row in tables["openings"]:
+        openings.setdefault(row["scene_id"], []).append(row)
+    for row in tables["objects"]:
+        if row["scene_id"] in scenes and row["category"] in known:
+            objects.setdefault((row["scene_id"], row["room_id"]), []).append(row)
+    found = []
+    for room in tables["rooms"]:
+        own = objects.get((room["scene_id"], room["room_id"]), [])
+        if room["scene_id"] not in scenes or room["layout_type"] not in layouts or not 0 < len(own) <= slots:
+            continue
+        context = replace(
+            context_of(room, openings.get(room["scene_id"], [])), elevation=room["level"] * float(scenes[room["scene_id"]]["storey_height"])
+        )
+        found.append(Case(context, [_proposal(o) for o in own]))
+    return found
+
+
+def spread(cases: Sequence[Case], count: int) -> list[Case]:
+    """Return `count` cases, evenly spread over the list."""
+    taken = min(count, len(cases))
+    return [cases[i * len(cases) // taken] for i in range(taken)]
+
+
+def holds(case: Case, count: int) -> bool:
+    """Tell whether a room is large enough to be asked for so many things."""
+    x, y = case.context.polygon.T
+    return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2 >= FLOOR * count
+
+
+def compare(
+    rng: np.random.Generator, models: Mapping[str, Furnish], cases: Sequence[Case], opens: Mapping[str, bool], counts: Sequence[int]
+) -> Json:
+    """Return the figures of each model's drafts of the cases, and of the real rooms; numbers as they come, nothing asked for."""
+    real = [case.real for case in cases]
+    made = {"real": figures(rng, cases, real, real, opens, counts)}
+    for name, furnish in models.items():
+        start = time.process_time()
+        drafts = furnish([case.context for case in cases])
+        spent = time.process_time() - start
+        made[name] = figures(rng, cases, drafts, real, opens, counts) | {"cpu_seconds_per_room": round(spent / len(cases), 4)}
+    return made
+
+
+def figures(
+    rng: np.random.Generator,
+    cases: Sequence[Case],
+    drafts: Sequence[Sequence[Proposal]],
+    real: Sequence[Sequence[Proposal]],
+    opens: Mapping[str, bool],
+    counts: Sequence[int],
+) -> Json:
+    """Return objects a room, how far their number is from the real one, R_acoll, collisions, CKL, and how often the number is N by chance."""
+    rows, true = object_rows(drafts, opens), object_rows(real, opens)
+    return {
+        "rooms": len(drafts),
+        "objects": bootstrap(rng, [float(len(d)) for d in drafts]),
+        "r_acoll": articulation.acoll(rng, rows, "heuristic"),
+        "collision": collision.rates(rows)["bbox"],
+        "ckl": category.ckl(true, rows, sorted(opens)),
+        "chance": {str(n): success([d for case, d in zip(cases, drafts, strict=True) if holds(case, n)], n) for n in counts},
+    }
+
+
+def controlled(furnish: Furnish, cases: Sequence[Case], counts: Sequence[int], rooms: int) -> Json:
+    """Return SR(N) of a model that is asked for N things, in rooms that can hold them."""
+    found = {}
+    for n in counts:
+        asked = [replace(case.context, n_target=n) for case in spread([c for c in cases if holds(c, n)] or cases, rooms)]
+        found[str(n)] = success(furnish(asked), n)
+    return found
+
+
+def success(drafts: Sequence[Sequence[Proposal]], count: int) -> Json:
+    """Return the share of rooms with exactly `count` things."""
+    return dict(rate(sum(len(d) == count for d in drafts), len(drafts)))
+
+
+def object_rows(drafts: Sequence[Sequence[Proposal]], opens: Mapping[str, bool]) -> list[Row]:
+    """Return rows of an objects table, as far as the metrics read them; `opens` says which categories count as articulated."""
+    return [
+        {
+            "scene_id": str(number), "room_id": "", "category": p.category, "position": p.position.tolist(), "yaw": p.yaw,
+            "size": p.size.tolist(), "openable": opens[p.category],
+        }
+        for number, draft in enumerate(drafts)
+        for p in draft
+    ]  # fmt: skip
+
+
+def _proposal(row: Row) -> Proposal:
+    return Proposal(
+        row["category"], np.array(row["position"], float), float(row["yaw"]), np.array(row["size"], float), np.zeros(0, np.float32)
+    )

@@ -1,0 +1,41 @@
+import json
+
+from stages import baselines
+from tests.stages.test_train import make_root
+
+SMALL = (
+    "seconds: 0.2, width: 16, layers: 1, heads: 2, points: 8, batch: 4, steps: 6, rooms: 3, count_rooms: 2, counts: [3, 5], sample_batch: 2"
+)
+
+
+def write_params(root, *, on):
+    switch = "true" if on else "false"
+    text = f"seed: 0\nbaselines: {{{SMALL}}}\nmetrics: {{baselines: {switch}, split: val}}\npresets: {{quick: {{}}}}\n"
+    (root / "params.yaml").write_text(text)
+
+
+def test_switched_off_it_does_nothing(tmp_path):
+    write_params(tmp_path, on=False)
+    baselines.main(tmp_path)
+    assert json.loads((tmp_path / "metrics/baselines.json").read_text()) == {}
+    assert list((tmp_path / "models/baselines").iterdir()) == []
+
+
+def test_all_are_trained_for_the_same_time_and_furnish_the_same_rooms(tmp_path):
+    make_root(tmp_path)
+    write_params(tmp_path, on=True)
+    baselines.main(tmp_path)
+    found = json.loads((tmp_path / "metrics/baselines.json").read_text())
+    assert set(found["models"]) == {"real", "atiss", "diffuscene", "physcene", "scenefoundry"}
+    assert {row["rooms"] for row in found["models"].values()} == {3}
+    assert found["models"]["real"]["objects"]["mean"] == 2
+    assert found["models"]["real"]["ckl"]["real_to_generated"] == 0
+    assert set(found["quantity"]) == {"3", "5"}
+    assert all(0.2 <= row["cpu_seconds"] < 2 for row in found["trained"].values())
+    before = {p.name: p.read_bytes() for p in (tmp_path / "models/baselines").iterdir()}
+    assert set(before) == {"atiss.safetensors", "diffuscene.safetensors", "scenefoundry.safetensors"}
+    baselines.main(tmp_path)  # what is trained is not trained again
+    assert {p.name: p.read_bytes() for p in (tmp_path / "models/baselines").iterdir()} == before
+    again = json.loads((tmp_path / "metrics/baselines.json").read_text())
+    assert again["models"]["atiss"]["objects"] == found["models"]["atiss"]["objects"]
+    assert again["quantity"] == found["quantity"]
