@@ -85,7 +85,8 @@ def near(a: Boxes, b: Boxes) -> Tensor:
     """Tell (...) of which pairs the footprints could meet at all: their circles do."""
     with torch.no_grad():
         reach = torch.linalg.vector_norm(a.half[..., :2], dim=-1) + torch.linalg.vector_norm(b.half[..., :2], dim=-1)
-        return torch.linalg.vector_norm(a.centre[..., :2] - b.centre[..., :2], dim=-1) < reach
+        found: Tensor = torch.linalg.vector_norm(a.centre[..., :2] - b.centre[..., :2], dim=-1) < reach
+        return found
 
 
 def overlaps(boxes: Boxes, others: Boxes, pairs: Tensor) -> Tensor:

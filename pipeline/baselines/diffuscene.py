@@ -78,7 +78,8 @@ def denoising(net: Denoiser, levels: Levels, raw: Tensor, x0: Tensor, noise: Ten
     alpha, sigma = levels.alpha[t][:, None, None], levels.sigma[t][:, None, None]
     error = alpha * (raw - alpha * noise + sigma * x0) if net.settings.target == "v" else raw - noise
     boxes, classes, latents = (error**2).split([BOX, net.scaling.empty + 1 - BOX, net.scaling.channels - net.scaling.empty - 1], -1)
-    return boxes.mean() + classes.mean() + latents.mean()
+    total: Tensor = boxes.mean() + classes.mean() + latents.mean()
+    return total
 
 
 def upright_overlap(scaling: Scaling, x0: Tensor) -> Tensor:
