@@ -1,0 +1,105 @@
+"""Relation rates: how often things stand to each other as they do in furnished rooms, real beside made.
+
+Rates are shares of cases with 95 % Wilson intervals: the rules of `pipeline.metrics.rules`, and the strongest relations that
+the training tables show. Counts are means per room with bootstrap intervals.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from pipeline import taxonomy
+from pipeline.metrics.intervals import Rate, bootstrap, rate
+from pipeline.metrics.rules import CHAIRS, RULES, TABLES, Rule, backs, frames_of, of
+from pipeline.relations.arrangement import Arrangement, arranged
+from pipeline.relations.known import PairRelation, Relations
+from pipeline.relations.modes import held
+
+Json = dict[str, Any]
+Sets = Mapping[str, Sequence[Arrangement]]
+
+WANTS_A_WALL = 0.85  # share of training things with their backs at a wall from which on a category wants one
+STRONG = 0.5  # least strength of a learnt relation that is reported, and
+MOST = 24  # how many are
+
+
+def furniture(room: Arrangement) -> Arrangement:
+    """Return a room with the things that the layout model learns, and no others."""
+    names = set(taxonomy.load().names)
+    kept = [k for k, name in enumerate(room.categories) if name in names]
+    things = [(room.categories[k], room.position[k], room.yaw[k], room.size[k]) for k in kept]
+    return arranged(room.name, room.layout_type, room.polygon, things, room.openings)
+
+
+def compare(rng: np.random.Generator, sets: Sets, known: Relations) -> Json:
+    """Return every rate and count for each set of rooms, by name of the figure, then of the set; the first set is the real one."""
+    sets = {key: [furniture(room) for room in rooms] for key, rooms in sets.items()}
+    rules = RULES | {"back at the wall": backs(wanting(known))}
+    learnt = {f"{pair.member} at {pair.anchor}": holding(pair) for pair in notable(known)}
+    return {
+        "rates": {name: {key: counted(rooms, rule) for key, rooms in sets.items()} for name, rule in sorted(rules.items())},
+        "learnt": {name: {key: counted(rooms, rule) for key, rooms in sets.items()} for name, rule in learnt.items()},
+        "objects": {kind: {key: objects(rng, rooms, kind) for key, rooms in sets.items()} for kind in types(sets)},
+        "chairs": {key: chairs(rng, rooms) for key, rooms in sets.items()},
+    }
+
+
+def counted(rooms: Sequence[Arrangement], rule: Rule) -> Rate:
+    """Return how often a rule holds over all its cases."""
+    verdicts = [verdict for room in rooms for verdict in rule(room)]
+    return rate(sum(verdicts), len(verdicts))
+
+
+def wanting(known: Relations) -> frozenset[str]:
+    """Return the categories that want a wall at their backs: most of them had one, in the training rooms."""
+    return frozenset(
+        name
+        for name, found in known.walls.items()
+        for wall in found
+        if wall.side == "back" and wall.share >= WANTS_A_WALL and wall.gap.high < 0.2
+    )
+
+
+def notable(known: Relations) -> list[PairRelation]:
+    """Return the strongest relations among what the layout model learns, one for each pair of categories and three for each member."""
+    names = set(taxonomy.load().names)
+    found: dict[frozenset[str], PairRelation] = {}
+    taken: Counter[str] = Counter()
+    for pair in known.strongest(STRONG):
+        if {pair.anchor, pair.member} <= names and frozenset((pair.anchor, pair.member)) not in found and taken[pair.member] < 3:
+            found[frozenset((pair.anchor, pair.member))] = pair
+            taken[pair.member] += 1
+    return list(found.values())[:MOST]
+
+
+def holding(pair: PairRelation) -> Rule:
+    """Return the rule for members of a relation in rooms that have an anchor: one of its modes holds at the nearest."""
+
+    def rule(room: Arrangement) -> Iterator[bool]:
+        anchors, members = of(room, (pair.anchor,)), of(room, (pair.member,))
+        for k in members:
+            others = anchors[anchors != k]
+            if len(others):
+                frames = frames_of(room, others, np.array([k]))
+                yield bool(held(pair.modes, frames[np.array([frames.distance().argmin()])])[0])
+
+    return rule
+
+
+def types(sets: Sets) -> list[str]:
+    """Return the room types that the first set, the real rooms, has; "all" stands for every one."""
+    return ["all", *sorted({room.layout_type for room in next(iter(sets.values()))})]
+
+
+def objects(rng: np.random.Generator, rooms: Sequence[Arrangement], kind: str) -> Json:
+    """Return the mean number of objects in rooms of a type."""
+    return dict(bootstrap(rng, [len(room.categories) for room in rooms if kind in {"all", room.layout_type}]))
+
+
+def chairs(rng: np.random.Generator, rooms: Sequence[Arrangement]) -> Json:
+    """Return the mean number of chairs in rooms that have a dining table."""
+    return dict(bootstrap(rng, [len(of(room, CHAIRS)) for room in rooms if len(of(room, TABLES))]))

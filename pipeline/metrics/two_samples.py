@@ -1,0 +1,87 @@
+"""Two samples of rooms: whether a classifier tells them apart (SCA, .5 is best), and how far apart they are (FID, KID)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from pipeline.metrics.intervals import Mean, Rate, rate
+
+Floats = NDArray[np.float64]
+
+Fitted = Callable[[Floats, NDArray[np.intp], Floats], NDArray[np.intp]]  # features, kinds, features asked -> kinds
+
+FOLDS = 5
+TREES = 100
+SUBSETS = 200  # of KID
+SUBSET = 100  # rooms in each, if there are so many
+
+
+def forest_accuracy(seed: int, real: Floats, made: Floats, real_rooms: Sequence[str], made_rooms: Sequence[str]) -> Rate:
+    """Return the share of rooms that a random forest puts with their kind, balanced and cross-validated by room.
+
+    Rooms of one name, the real and the made furniture of one floor, are always in the same fold.
+    """
+    from sklearn.ensemble import RandomForestClassifier
+
+    def forest(x: Floats, y: NDArray[np.intp], asked: Floats) -> NDArray[np.intp]:
+        model = RandomForestClassifier(TREES, min_samples_leaf=2, class_weight="balanced", random_state=seed, n_jobs=1)
+        return np.asarray(model.fit(x, y).predict(asked))
+
+    return _accuracy(forest, seed, real, made, real_rooms, made_rooms)
+
+
+def linear_accuracy(seed: int, real: Floats, made: Floats, real_rooms: Sequence[str], made_rooms: Sequence[str]) -> Rate:
+    """Return the same for logistic regression on standardised features: a classifier on top of a frozen net."""
+    from sklearn.linear_model import LogisticRegression
+    from sklearn.pipeline import make_pipeline
+    from sklearn.preprocessing import StandardScaler
+
+    def linear(x: Floats, y: NDArray[np.intp], asked: Floats) -> NDArray[np.intp]:
+        model = make_pipeline(StandardScaler(), LogisticRegression(C=0.3, class_weight="balanced", max_iter=300))
+        return np.asarray(model.fit(x, y).predict(asked))
+
+    return _accuracy(linear, seed, real, made, real_rooms, made_rooms)
+
+
+def _accuracy(fitted: Fitted, seed: int, real: Floats, made: Floats, real_rooms: Sequence[str], made_rooms: Sequence[str]) -> Rate:
+    """Return the balanced share of right answers over folds of whole rooms."""
+    x, y = np.concatenate([real, made]), np.repeat([0, 1], [len(real), len(made)])
+    rooms = np.array([*real_rooms, *made_rooms])
+    names = np.unique(rooms)
+    fold_of = dict(zip(names.tolist(), np.random.default_rng(seed).permutation(len(names)) % FOLDS, strict=True))
+    fold = np.array([fold_of[name] for name in rooms.tolist()])
+    right = np.zeros(len(y), bool)
+    for k in range(FOLDS):
+        known, asked = fold != k, fold == k
+        if asked.any() and len(np.unique(y[known])) == 2:
+            right[asked] = fitted(x[known], y[known], x[asked]) == y[asked]
+    balanced = (right[y == 0].mean() + right[y == 1].mean()) / 2 if len(real) and len(made) else 0.0
+    return rate(round(float(balanced) * len(y)), len(y))
+
+
+def frechet(a: Floats, b: Floats) -> float:
+    """Return the squared Fréchet distance between two Gaussians fitted to features (N, D), (M, D) (Heusel et al. 2017)."""
+    cov_a, cov_b = np.cov(a, rowvar=False), np.cov(b, rowvar=False)
+    root = scipy.linalg.sqrtm(cov_a @ cov_b)
+    apart = a.mean(0) - b.mean(0)
+    return float(apart @ apart + np.trace(cov_a + cov_b - 2 * np.real(root)))
+
+
+def kernel_distance(rng: np.random.Generator, a: Floats, b: Floats) -> Mean:
+    """Return KID: the unbiased squared MMD under the kernel (x.y/D + 1)^3, its mean over subsets with their 95 % interval.
+
+    Binkowski et al. 2018. It may be negative, and its interval holds 0 where the samples are of one distribution.
+    """
+    size = min(SUBSET, len(a), len(b))
+    drawn = []
+    for _ in range(SUBSETS):
+        x, y = a[rng.choice(len(a), size, replace=False)], b[rng.choice(len(b), size, replace=False)]
+        xx, yy, xy = ((p @ q.T / p.shape[1] + 1) ** 3 for p, q in ((x, x), (y, y), (x, y)))
+        within = (xx.sum() - np.trace(xx) + yy.sum() - np.trace(yy)) / (size * (size - 1))
+        drawn.append(float(within - 2 * xy.mean()))
+    low, high = np.quantile(drawn, [0.025, 0.975])
+    return {"mean": round(float(np.mean(drawn)), 6), "low": round(float(low), 6), "high": round(float(high), 6), "n": SUBSETS}
