@@ -38,7 +38,7 @@ def furniture(room: Arrangement) -> Arrangement:
 def compare(rng: np.random.Generator, sets: Sets, known: Relations) -> Json:
     """Return every rate and count for each set of rooms, by name of the figure, then of the set; the first set is the real one."""
     sets = {key: [furniture(room) for room in rooms] for key, rooms in sets.items()}
-    rules = RULES | {"back at the wall": backs(wanting(known))}
+    rules = {**RULES, "back at the wall": backs(wanting(known))}
     learnt = {f"{pair.member} at {pair.anchor}": holding(pair) for pair in notable(known)}
     return {
         "rates": {name: {key: counted(rooms, rule) for key, rooms in sets.items()} for name, rule in sorted(rules.items())},

@@ -73,7 +73,8 @@ def any_of(
     """Yield for each member whether it holds at one of the anchors; nothing in rooms without an anchor."""
     a, m = of(room, anchors), of(room, members)
     if len(a) and len(m):
-        yield from holds(frames_of(room, a, m)).reshape(len(m), len(a)).any(1).tolist()
+        found = holds(frames_of(room, a, m)).reshape(len(m), len(a))
+        yield from (bool(row.any()) for row in found)
 
 
 def chair_at_table(room: Arrangement) -> Iterator[bool]:
@@ -126,8 +127,7 @@ def straight(room: Arrangement) -> Iterator[bool]:
     """Floor things: parallel to a wall, to 3 degrees. What has no front of its own to speak of counts as well."""
     edge = np.roll(room.polygon, -1, axis=0) - room.polygon
     ways = np.arctan2(edge[:, 1], edge[:, 0])
-    standing = np.flatnonzero(~np.isin(np.array(room.categories, object), HANGING)) if room.categories else []
-    for k in standing:
+    for k in (k for k, name in enumerate(room.categories) if name not in HANGING):
         off = np.mod(room.yaw[k] - ways + np.pi / 4, np.pi / 2) - np.pi / 4
         yield bool(np.abs(off).min() <= STRAIGHT)
 
