@@ -6,7 +6,6 @@ plots/loss.csv and DVCLive's folder dvclive/.
 
 from __future__ import annotations
 
-import math
 import os
 from functools import partial
 from pathlib import Path
@@ -17,11 +16,11 @@ from tqdm import tqdm
 
 from pipeline import params
 from pipeline.diffusion.checkpoint import save_checkpoint, save_weights
-from pipeline.diffusion.job import CHECKPOINT, Job, open_job
+from pipeline.diffusion.job import CHECKPOINT, WEIGHTS, Job, inventory_of, open_job
 from pipeline.diffusion.livelog import LiveLog
 from pipeline.diffusion.rooms import Sets
 from pipeline.diffusion.settings import TrainSettings
-from pipeline.diffusion.team import Team, gathered, team_size
+from pipeline.diffusion.team import Team, gathered
 from pipeline.diffusion.training import Trainer, train, validation
 from pipeline.manifest import write_json
 from stages.runner import run
@@ -30,11 +29,7 @@ from stages.runner import run
 def main(root: Path) -> None:
     """Train, or go on training, the denoiser of params.yaml."""
     settings, seed = settings_of(root)
-    size = (
-        1
-        if torch.cuda.is_available()
-        else settings.workers or team_size(math.gcd(settings.batch, settings.many_batch), os.cpu_count() or 1)
-    )
+    size = 1 if torch.cuda.is_available() else settings.workers or os.cpu_count() or 1
     job = open_job(root, settings, seed, Team(0, size))
     with gathered(size, partial(follow, root)):
         lead(root, job, settings)
@@ -50,7 +45,7 @@ def follow(root: Path, team: Team) -> None:
     """Train beside the first process: the same steps on other rooms of each batch."""
     settings, seed = settings_of(root)
     job = open_job(root, settings, seed, team)
-    for _ in train(job.trainer, job.rooms, job.objects, job.weights):
+    for _ in train(job.trainer, job.data):
         pass
 
 
@@ -62,19 +57,20 @@ def lead(root: Path, job: Job, settings: TrainSettings) -> None:
         save_checkpoint(root / CHECKPOINT, job.key, state.done, state.groups())
 
     def checked() -> dict[str, dict[str, float]]:
-        return validation(trainer, *job.checked)
+        return validation(trainer, job.checked)
 
     by_level: dict[str, dict[str, float]] = {}
     with LiveLog(root, resume=trainer.done) as log, tqdm(total=trainer.total, initial=trainer.done, desc="train", unit="step") as bar:
-        for step in train(trainer, job.rooms, job.objects, job.weights, save):
+        for step in train(trainer, job.data, save):
             bar.update()
             last = step.done == trainer.total
             if step.done % settings.validate_every == 0 or last:
                 by_level = checked()
             if step.done % 10 == 0 or last:
-                bar.set_postfix(geometry=f"{step.geometry:.3f}", classes=f"{step.classes:.3f}", refresh=False)
+                bar.set_postfix(geometry=f"{step.geometry:.3f}", shape=f"{step.shape:.3f}", refresh=False)
                 log.step(step, by_level)
-    save_weights(root / "models/denoiser.safetensors", job.header, dict(trainer.average.state_dict()))
+    inventory = inventory_of(job.sets.train, job.header, settings.inventory, trainer.seed)
+    save_weights(root / WEIGHTS, job.header, {"denoiser": trainer.average, "inventory": inventory})
     write_json(root / "metrics/train.json", report(job.sets, trainer, by_level or checked()))
 
 

@@ -1,25 +1,27 @@
-"""Batches of rooms as tensors, and the augmentation that maps a room onto its mirror images and rotations."""
+"""Batches of rooms as tensors, and the augmentation that maps a room onto its mirror image."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
 
-from pipeline.diffusion.codec import CONTINUOUS, POSITION, YAW, Codec
+from pipeline.diffusion.codec import CHANNELS, YAW, Codec
 from pipeline.diffusion.floor import KINDS, Floor
 from pipeline.diffusion.rooms import SWEEPS, Example
+
+BUCKETS = (4, 8, 12, 16, 24, 32)  # slots that the rooms of a batch are padded to
 
 
 @dataclass(frozen=True, slots=True)
 class RoomBatch:
     """B rooms as the denoiser is told about them; M floor tokens each (see `floor.Floor`).
 
-    `layout` (B,), `count` (B,) the number of objects or -1 for "not said", `height` (B,) of the ceiling [m].
+    `layout` (B,) type, `height` (B,) of the ceiling [m].
     """
 
     ends: Tensor
@@ -29,7 +31,6 @@ class RoomBatch:
     sill: Tensor
     mask: Tensor
     layout: Tensor
-    count: Tensor
     height: Tensor
 
     def __len__(self) -> int:
@@ -43,13 +44,13 @@ class RoomBatch:
         """Take some rooms."""
         return RoomBatch(*(getattr(self, f.name)[index] for f in fields(self)))
 
-    def told(self, count: Tensor) -> RoomBatch:
-        """Say other counts."""
-        return replace(self, count=count)
-
     def trimmed(self) -> RoomBatch:
-        """Drop token places that no room uses; real tokens first, in their order. For training, where shapes may vary."""
-        order = (~self.mask).to(torch.uint8).argsort(dim=1, stable=True)[:, : int(self.mask.sum(1).max())]
+        """Drop token places that no room uses. For training, where shapes may vary."""
+        return self.first(int(self.mask.sum(1).max()))
+
+    def first(self, tokens: int) -> RoomBatch:
+        """Drop all but the first token places of rooms that use no others; real tokens first, in their order."""
+        order = (~self.mask).to(torch.uint8).argsort(dim=1, stable=True)[:, :tokens]
         row = torch.arange(len(self), device=order.device)[:, None]
         taken = {name: getattr(self, name)[row, order] for name in ("ends", "normal", "kind", "hinge", "sill", "mask")}
         return replace(self, **taken)
@@ -62,59 +63,57 @@ class RoomBatch:
 
 @dataclass(frozen=True, slots=True)
 class Objects:
-    """The slots of B rooms: `classes` (B, N), C for empty; `continuous` (B, N, 40) normalised; `sweeps` (B, N, K, 2, 3) [m]."""
+    """The objects of B rooms: `classes` (B, N), C for padding; `channels` (B, N, 40) normalised; `sweeps` (B, N, K, 2, 3) [m]."""
 
     classes: Tensor
-    continuous: Tensor
+    channels: Tensor
     sweeps: Tensor
 
     def to(self, device: torch.device) -> Objects:
         """Move all tensors."""
-        return Objects(self.classes.to(device), self.continuous.to(device), self.sweeps.to(device))
+        return Objects(self.classes.to(device), self.channels.to(device), self.sweeps.to(device))
 
     def rows(self, index: Tensor) -> Objects:
         """Take some rooms."""
-        return Objects(self.classes[index], self.continuous[index], self.sweeps[index])
+        return Objects(self.classes[index], self.channels[index], self.sweeps[index])
 
     def first(self, slots: int) -> Objects:
         """Take the first slots; objects come first, so none is lost where a room has no more than that."""
-        return Objects(self.classes[:, :slots], self.continuous[:, :slots], self.sweeps[:, :slots])
+        return Objects(self.classes[:, :slots], self.channels[:, :slots], self.sweeps[:, :slots])
 
 
-def room_batch(floors: Sequence[Floor], layouts: Sequence[int], counts: Sequence[int], heights: Sequence[float]) -> RoomBatch:
+def bucket_of(held: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return how many slots rooms of so many objects are padded to."""
+    return np.array(BUCKETS)[np.searchsorted(BUCKETS, held)]
+
+
+def room_batch(floors: Sequence[Floor], layouts: Sequence[int], heights: Sequence[float]) -> RoomBatch:
     """Stack rooms."""
     ends, normal, kind, hinge, sill, mask = (
         torch.from_numpy(np.stack([getattr(f, name) for f in floors])) for name in ("ends", "normal", "kind", "hinge", "sill", "mask")
     )
-    said = torch.tensor(layouts), torch.tensor(counts), torch.tensor(heights, dtype=torch.float32)
+    said = torch.tensor(layouts), torch.tensor(heights, dtype=torch.float32)
     return RoomBatch(ends, normal, kind, hinge, sill, mask, *said)
 
 
 def stacked(examples: Sequence[Example], codec: Codec, slots: int) -> tuple[RoomBatch, Objects]:
-    """Pad examples to `slots` and stack them; a room's `count` is the number of its objects."""
+    """Pad examples to `slots` and stack them."""
     classes = torch.full((len(examples), slots), codec.classes)
-    continuous = torch.zeros(len(examples), slots, CONTINUOUS)
+    channels = torch.zeros(len(examples), slots, CHANNELS)
     sweeps = torch.full((len(examples), slots, SWEEPS, 2, 3), torch.nan)
     for i, example in enumerate(examples):
         n = len(example.classes)
         classes[i, :n] = torch.from_numpy(example.classes)
-        continuous[i, :n] = codec.normalised(torch.from_numpy(example.continuous).float())
+        channels[i, :n] = codec.normalised(torch.from_numpy(example.continuous).float(), classes[i, :n])
         sweeps[i, :n] = torch.from_numpy(example.sweeps)
-    rooms = room_batch(
-        [e.floor for e in examples], [e.layout for e in examples], [len(e.classes) for e in examples], [e.height for e in examples]
-    )
-    return rooms, Objects(classes, continuous, sweeps)
+    rooms = room_batch([e.floor for e in examples], [e.layout for e in examples], [e.height for e in examples])
+    return rooms, Objects(classes, channels, sweeps)
 
 
-def motions(rng: torch.Generator, count: int, tilt: float = 0.0) -> Tensor:
-    """Draw orthogonal matrices (count, 2, 2): the 8 symmetries of the square, then a rotation of up to `tilt` [rad]."""
-    quarter = torch.randint(4, (count,), generator=rng) * (math.pi / 2)
-    angle = quarter + tilt * (2 * torch.rand(count, generator=rng) - 1)
+def reflections(rng: torch.Generator, count: int) -> Tensor:
+    """Draw matrices (count, 2, 2): for half of the rooms their mirror image. Rotations would tell the net nothing: it turns with the room."""
     flip = 1.0 - 2.0 * torch.randint(2, (count,), generator=rng)
-    cos, sin = angle.cos(), angle.sin()
-    if tilt == 0:  # quarter turns are exact
-        cos, sin = cos.round(), sin.round()
-    return torch.stack([torch.stack([cos * flip, -sin], -1), torch.stack([sin * flip, cos], -1)], -2)
+    return torch.diag_embed(torch.stack([flip, torch.ones(count)], -1))
 
 
 def moved_rooms(rooms: RoomBatch, motion: Tensor) -> RoomBatch:
@@ -126,16 +125,15 @@ def moved_rooms(rooms: RoomBatch, motion: Tensor) -> RoomBatch:
     return replace(rooms, ends=ends, normal=rooms.normal @ motion.transpose(1, 2), hinge=hinge)
 
 
-def moved_objects(objects: Objects, motion: Tensor, codec: Codec) -> Objects:
+def moved_objects(objects: Objects, motion: Tensor) -> Objects:
     """Apply motions (B, 2, 2) to objects.
 
     A box is symmetric, so its size (w, d, h) stays; the front (sin yaw, -cos yaw) is moved as a vector, which for a
     mirror image gives the reflected yaw; what joints sweep is mirrored in the object's x. The shape latent is kept: the
     mirror image of a model is taken for the model.
     """
-    x = objects.continuous.clone()
-    scale = codec.scale[POSITION][:2]  # one scale for x and y, mean 0: the motion commutes with the normalisation
-    x[..., :2] = ((x[..., :2] * scale) @ motion.transpose(1, 2)) / scale
+    x = objects.channels.clone()
+    x[..., :2] = x[..., :2] @ motion.transpose(1, 2)  # x and y share one scale and have mean 0
     front = torch.stack([x[..., YAW.start + 1], -x[..., YAW.start]], -1) @ motion.transpose(1, 2)
     x[..., YAW] = torch.stack([-front[..., 1], front[..., 0]], -1)
     mirrored = (torch.linalg.det(motion) < 0)[:, None, None, None]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -10,42 +11,29 @@ from typing import Any
 import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
-from torch import Tensor
+from torch import Tensor, nn
 
 from pipeline.diffusion.codec import Normalisation
 from pipeline.diffusion.denoiser import Denoiser
-from pipeline.diffusion.repeats import Held
+from pipeline.diffusion.inventory import Inventory
 from pipeline.diffusion.settings import ModelSettings
 from pipeline.errors import ContentError
 from pipeline.manifest import canonical, write_bytes
 from pipeline.params import build
 
-FORMAT = "sfgen-denoiser-3"
+FORMAT = "sfgen-denoiser-4"
 REMEDY = "run `make run`, or `dvc repro train`, which makes it"
 
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """What travels with the weights: layout types in order, slots, levels, the model's settings.
-
-    Rooms of the layout types `few` get `few_slots` instead of `slots` (see `slots_for`). `held` lists, per layout type, the classes
-    that its training rooms hold, by their place in `norm.classes`, each and by kind, with how many of them one room holds; nothing else is
-    sampled there, and nothing more often. An empty list: anything.
-    """
+    """What travels with the weights: normalisation and classes, layout types in order, most objects of a room, the net's shape."""
 
     norm: Normalisation
     layouts: tuple[str, ...]
     slots: int
-    timesteps: int
     model: ModelSettings
-    few: tuple[str, ...] = ()
-    few_slots: int = 12
-    held: tuple[Held, ...] = ()
-
-    def slots_for(self, layout: str, count: int | None) -> int:
-        """Return how many slots a room gets: few where these hold the asked count, or what such rooms hold, with two to spare."""
-        fits = layout in self.few if count is None else count <= self.few_slots - 2
-        return min(self.few_slots, self.slots) if fits else self.slots
+    inventory_width: int
 
 
 def build_net(header: Header) -> Denoiser:
@@ -53,31 +41,41 @@ def build_net(header: Header) -> Denoiser:
     return Denoiser(header.norm, len(header.layouts), header.model)
 
 
-def save_weights(path: Path, header: Header, tensors: dict[str, Tensor]) -> None:
-    """Write the weights of a denoiser."""
+def build_inventory(header: Header) -> Inventory:
+    """Build the inventory model that a header describes."""
+    return Inventory(len(header.norm.classes), len(header.layouts), header.inventory_width)
+
+
+def save_weights(path: Path, header: Header, nets: Mapping[str, nn.Module]) -> None:
+    """Write the weights of a layout model: its `denoiser` and its `inventory`."""
     text = canonical({"format": FORMAT, **asdict(header)}).decode()
-    write_bytes(path, save({k: v.detach().cpu().contiguous() for k, v in sorted(tensors.items())}, {"denoiser": text}))
+    tensors = {f"{name}/{k}": v.detach().cpu().contiguous() for name, net in nets.items() for k, v in net.state_dict().items()}
+    write_bytes(path, save(dict(sorted(tensors.items())), {"layout": text}))
 
 
-def load_weights(path: Path) -> tuple[Denoiser, Header]:
-    """Read a denoiser. Raises ContentError when the file is missing, truncated or of another format."""
-    tensors, value = _read(path, "denoiser")
+def load_weights(path: Path) -> tuple[Denoiser, Inventory, Header]:
+    """Read a layout model. Raises ContentError when the file is missing, truncated, of another format, or holds what is no number."""
+    tensors, value = _read(path, "layout")
     try:
         header = Header(
             Normalisation.of_json(value["norm"]),
             tuple(value["layouts"]),
             value["slots"],
-            value["timesteps"],
             build(ModelSettings, value["model"], "train.model"),
-            tuple(value["few"]),
-            value["few_slots"],
-            tuple(tuple((tuple(group), count) for group, count in held) for held in value["held"]),
+            value["inventory_width"],
         )
-        net = build_net(header)
-        net.load_state_dict(tensors)
-    except (KeyError, RuntimeError) as error:
+        nets = {"denoiser": build_net(header), "inventory": build_inventory(header)}
+        for name, net in nets.items():
+            net.load_state_dict({k.removeprefix(f"{name}/"): v for k, v in tensors.items() if k.startswith(f"{name}/")})
+    except (KeyError, RuntimeError, TypeError) as error:
         raise ContentError(f"{path} does not hold a layout model ({FORMAT})", REMEDY) from error
-    return net.eval(), header
+    broken = sorted(k for k, v in tensors.items() if not bool(torch.isfinite(v).all()))
+    if broken:
+        raise ContentError(f"{path} holds values that are no numbers ({broken[0]} ...)", REMEDY)
+    denoiser, inventory = nets["denoiser"].eval(), nets["inventory"].eval()
+    assert isinstance(denoiser, Denoiser)
+    assert isinstance(inventory, Inventory)
+    return denoiser, inventory, header
 
 
 def save_checkpoint(path: Path, digest: str, step: int, groups: dict[str, dict[str, Tensor]]) -> None:

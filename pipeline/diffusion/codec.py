@@ -1,8 +1,9 @@
-"""Rooms as tensors and back: N slots of D = 40 + C + 1 channels.
+"""Rooms as tensors and back: N objects of D = 40 channels, their classes beside them.
 
-Channels: position 3 | size 3 | cos yaw, sin yaw | latent 32 | class C | empty. All but the class block are normalised to
-unit variance by constants that travel with the weights. x and y share one scale, so that a rotation of the room is a
-rotation of the channels.
+Channels: position 3 | size 3 | cos yaw, sin yaw | latent 32, normalised to unit variance by constants that travel with
+the weights. x and y share one scale, so that a rotation of the room is a rotation of the channels. The class of an object
+is known before its geometry (see `inventory`), so height, size and latent are measured against the mean and spread of
+their class: a nightstand's size is settled as early as a wardrobe's, and what stands beside it can be placed to fit.
 """
 
 from __future__ import annotations
@@ -20,89 +21,65 @@ from pipeline.diffusion.context import Proposal, RoomContext
 
 LATENT = 32
 POSITION, SIZE, YAW, SHAPE = slice(0, 3), slice(3, 6), slice(6, 8), slice(8, 8 + LATENT)
-CONTINUOUS = 8 + LATENT
-CLASS_SCALE = 2.0  # a one-hot's height: the class settles at higher noise than the last decimetres of the position
-EMPTY_SCALE = 1.5  # the empty channel's, which the quantity guidance must still be able to move at t < 100
+CHANNELS = 8 + LATENT
+LEAST_SPREAD = 0.03  # of a class's heights and sizes [m], and of its latents
+PRIOR = 3.0  # objects of all classes that count beside a class's own, so that a class with one model has a spread
 
 
 @dataclass(frozen=True, slots=True)
 class Normalisation:
-    """Means and scales of the continuous channels, (40,) each, and the class names in order."""
+    """Means and scales (C, 40) of the channels by class, and the class names in order. Position x, y and yaw are the same for all."""
 
-    mean: tuple[float, ...]
-    scale: tuple[float, ...]
+    mean: tuple[tuple[float, ...], ...]
+    scale: tuple[tuple[float, ...], ...]
     classes: tuple[str, ...]
 
-    @property
-    def channels(self) -> int:
-        """D."""
-        return CONTINUOUS + len(self.classes) + 1
-
     @classmethod
-    def of(cls, continuous: NDArray[np.float64], classes: tuple[str, ...]) -> Normalisation:
-        """Measure the constants on rows (n, 40) of metres, cos, sin and raw latents."""
-        mean, scale = continuous.mean(0), continuous.std(0)
-        mean[:2] = 0.0
-        scale[:2] = np.sqrt((continuous[:, :2] ** 2).mean())
-        mean[YAW], scale[YAW] = 0.0, 1.0
-        scale = np.maximum(scale, 0.05)
-        return cls(tuple(round(float(v), 6) for v in mean), tuple(round(float(v), 6) for v in scale), classes)
+    def of(cls, continuous: NDArray[np.float64], labels: NDArray[np.int64], classes: tuple[str, ...]) -> Normalisation:
+        """Measure the constants on rows (n, 40) of metres, cos, sin and raw latents, and their class indices (n,)."""
+        count, every, spread = len(classes), continuous.mean(0), continuous.var(0)
+        held = np.bincount(labels, minlength=count).astype(float)[:, None]
+        total, squares = np.zeros((count, CHANNELS)), np.zeros((count, CHANNELS))
+        np.add.at(total, labels, continuous)
+        mean = (total + PRIOR * every) / (held + PRIOR)
+        np.add.at(squares, labels, (continuous - mean[labels]) ** 2)
+        scale = np.sqrt((squares + np.minimum(PRIOR, 1.0) * spread / 4) / (held + np.minimum(PRIOR, 1.0)))
+        scale = np.maximum(scale, LEAST_SPREAD)
+        mean[:, :2], mean[:, YAW], scale[:, YAW] = 0.0, 0.0, 1.0
+        scale[:, :2] = np.sqrt((continuous[:, :2] ** 2).mean())
+        return cls(_rounded(mean), _rounded(scale), classes)
 
     @classmethod
     def of_json(cls, value: dict[str, Any]) -> Normalisation:
         """Read what `dataclasses.asdict` wrote."""
-        return cls(tuple(value["mean"]), tuple(value["scale"]), tuple(value["classes"]))
+        return cls(tuple(map(tuple, value["mean"])), tuple(map(tuple, value["scale"])), tuple(value["classes"]))
 
 
 class Codec:
-    """Normalisation as tensors on a device."""
+    """Normalisation as tensors on a device; tables have a last row for the class C, which is padding."""
 
     def __init__(self, norm: Normalisation, device: torch.device | None = None) -> None:
         self.norm = norm
         self.classes = len(norm.classes)
-        self.mean = torch.tensor(norm.mean, dtype=torch.float32, device=device)
-        self.scale = torch.tensor(norm.scale, dtype=torch.float32, device=device)
+        mean, scale = torch.tensor(norm.mean), torch.tensor(norm.scale)
+        self.mean = torch.cat([mean, mean.mean(0, keepdim=True)]).to(device)
+        self.scale = torch.cat([scale, scale.mean(0, keepdim=True)]).to(device)
+        self.reach = float(scale[0, 0])  # scale of x and y [m]
 
-    def normalised(self, continuous: Tensor) -> Tensor:
-        """Metres, radians' cos and sin, raw latents (..., 40) to unit variance."""
-        return (continuous - self.mean) / self.scale
+    def normalised(self, continuous: Tensor, classes: Tensor) -> Tensor:
+        """Metres, radians' cos and sin, raw latents (..., 40) of objects of `classes` (...) to unit variance."""
+        return (continuous - self.mean[classes]) / self.scale[classes]
 
-    def metric(self, continuous: Tensor) -> Tensor:
+    def metric(self, channels: Tensor, classes: Tensor) -> Tensor:
         """Undo `normalised`; also takes the first k <= 40 channels alone."""
-        k = continuous.shape[-1]
-        return continuous * self.scale[:k] + self.mean[:k]
+        k = channels.shape[-1]
+        return channels * self.scale[classes, :k] + self.mean[classes, :k]
 
-    def one_hot(self, classes: Tensor) -> Tensor:
-        """Class indices (..., N), C for empty, to the class block (..., N, C + 1)."""
-        return self.class_block(torch.nn.functional.one_hot(classes, self.classes + 1).float())
-
-    def class_block(self, probability: Tensor) -> Tensor:
-        """Class probabilities (..., C + 1) to the expected class block."""
-        return torch.cat([CLASS_SCALE * probability[..., :-1], EMPTY_SCALE * (probability[..., -1:] - 0.5)], -1)
-
-    def evidence(self, block: Tensor, alpha: Tensor, sigma: Tensor) -> Tensor:
-        """Return the log-likelihood (..., C + 1), up to a constant, of each class given the noisy class block alone.
-
-        For x = alpha e_c + sigma eps it is alpha x . e_c / sigma^2 - alpha^2 |e_c|^2 / (2 sigma^2). With it as a skip
-        connection the net has to learn only the prior of a slot given all the others, so that counts are right early.
-        """
-        middle = EMPTY_SCALE / 2 * block[..., -1:]
-        held = CLASS_SCALE * block[..., :-1] - middle - alpha * CLASS_SCALE**2 / 2
-        return torch.cat([held, middle], -1) * (alpha / sigma**2)
-
-    def occupied(self, x0: Tensor) -> Tensor:
-        """Which slots (..., N) hold an object: the empty channel lies below its middle."""
-        return x0[..., -1] < 0
-
-    def labels(self, x0: Tensor) -> Tensor:
-        """Most likely class (..., N) of each slot, were it occupied."""
-        return x0[..., CONTINUOUS:-1].argmax(-1)
-
-    def proposals(self, x0: Tensor, context: RoomContext) -> list[Proposal]:
-        """Decode one room (N, D) into its objects, in slot order."""
-        centre = context.centre
-        values = self.metric(x0[:, :CONTINUOUS]).double().cpu().numpy()
-        labels, occupied = self.labels(x0).tolist(), self.occupied(x0).tolist()
+    def proposals(self, x0: Tensor, classes: Tensor, context: RoomContext) -> list[Proposal]:
+        """Decode one room, x0 (N, 40) and `classes` (N,), into its objects, in slot order; class C is padding."""
+        held = classes < self.classes
+        x0, classes, centre = x0[held], classes[held], context.centre
+        values = self.metric(x0, classes).double().cpu().numpy()
         return [
             Proposal(
                 self.norm.classes[label],
@@ -111,8 +88,7 @@ class Codec:
                 np.maximum(row[SIZE], 0.02),
                 row[SHAPE].astype(np.float32),
             )
-            for row, label, there in zip(values, labels, occupied, strict=True)
-            if there
+            for row, label in zip(values, classes.tolist(), strict=True)
         ]
 
 
@@ -127,3 +103,7 @@ def class_indices(names: Sequence[str], classes: tuple[str, ...]) -> NDArray[np.
     """Return the class index of each category name."""
     order = {name: i for i, name in enumerate(classes)}
     return np.array([order[name] for name in names], np.int64)
+
+
+def _rounded(table: NDArray[np.float64]) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(round(float(v), 6) for v in row) for row in table)

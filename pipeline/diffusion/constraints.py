@@ -187,23 +187,3 @@ def _numbers(like: Tensor, first: int) -> Tensor:
 def _listed(chosen: Tensor, left: Tensor, right: Tensor) -> tuple[Tensor, Tensor, Tensor]:
     """Return the places of both things of each chosen pair, and its room; `chosen` (B, ...), to whose shape the places broadcast."""
     return left.expand_as(chosen)[chosen], right.expand_as(chosen)[chosen], torch.nonzero(chosen)[:, 0]
-
-
-def quantity_target(empty_logit: Tensor, count: Tensor) -> Tensor:
-    """Return the target vector T (B, N) of paper eq. num_control: 0 for the `count` (B,) most non-empty slots, 1 for the rest.
-
-    Ties go to the earlier slot.
-    """
-    order = empty_logit.argsort(dim=1, stable=True)
-    rank = torch.empty_like(order).scatter_(1, order, torch.arange(order.shape[1], device=order.device).expand_as(order))
-    return (rank >= count[:, None]).to(empty_logit.dtype)
-
-
-def quantity(empty_logit: Tensor, count: Tensor) -> Tensor:
-    """Return phi_quantity (B,): binary cross-entropy of the empty logits (B, N) against T, summed over slots.
-
-    The target is chosen anew at each call. Rooms with count < 0 have none, and cost nothing.
-    """
-    target = quantity_target(empty_logit.detach(), count)
-    loss = torch.nn.functional.binary_cross_entropy_with_logits(empty_logit, target, reduction="none").sum(1)
-    return torch.where(count >= 0, loss, torch.zeros_like(loss))

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 
 from pipeline import tables, taxonomy
-from pipeline.diffusion.batch import Objects, RoomBatch, stacked
+from pipeline.diffusion.batch import stacked
 from pipeline.diffusion.checkpoint import Header, load_checkpoint
 from pipeline.diffusion.codec import Codec, Normalisation
-from pipeline.diffusion.rooms import Sets, held_classes, layout_weights, sets_of, small_types, stacked_rows, sweeps_by_asset
-from pipeline.diffusion.settings import TrainSettings
+from pipeline.diffusion.inventory import Inventory, counts_of, fitted, room_features
+from pipeline.diffusion.rooms import Example, Sets, layout_weights, sets_of, stacked_classes, stacked_rows, sweeps_by_asset
+from pipeline.diffusion.settings import InventorySettings, TrainSettings
 from pipeline.diffusion.team import Team
-from pipeline.diffusion.training import Trainer
+from pipeline.diffusion.training import Rooms, Trainer
 from pipeline.errors import ContentError
 from pipeline.manifest import digest, sha256_file
 from schemas.assets import ASSET_JOINTS, LATENTS
@@ -29,16 +30,15 @@ from schemas.scenes import SCENES
 
 INPUTS = {"scenes": SCENES, "rooms": ROOMS, "openings": OPENINGS, "objects": OBJECTS}
 CHECKPOINT = "models/checkpoint/denoiser.safetensors"
+WEIGHTS = "models/denoiser.safetensors"
 
 
 class Job(NamedTuple):
-    """What one process trains: the state, the rooms with their weights, the rooms of the validation split."""
+    """What one process trains: the state, the rooms, the rooms of the validation split."""
 
     trainer: Trainer
-    rooms: RoomBatch
-    objects: Objects
-    weights: NDArray[np.float64]
-    checked: tuple[RoomBatch, Objects]
+    data: Rooms
+    checked: Rooms
     sets: Sets
     header: Header
     key: str
@@ -50,18 +50,21 @@ def open_job(root: Path, settings: TrainSettings, seed: int, team: Team) -> Job:
     torch.set_num_threads(threads)
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
     sets, header = load(root, settings)
-    codec = Codec(header.norm)
-    rooms, objects = stacked(sets.train, codec, settings.slots)
-    checked_rooms, checked_objects = stacked(sets.val or sets.train[:64], codec, settings.slots)
-    per_epoch = -(-len(sets.train) // settings.batch)
+    per_epoch = max(1, sum(len(e.classes) for e in sets.train) // settings.objects)
     total = settings.epochs * per_epoch if settings.epochs else settings.steps
     trainer = Trainer(seed, header, settings, total, per_epoch, device, team)
     key = digest([asdict(settings), asdict(header), seed, threads, team.size, device.type, inputs(root)])
     found = load_checkpoint(root / CHECKPOINT, key)
     if found:
         trainer.restore(*found)
-    checked = checked_rooms.to(device), checked_objects.to(device)
-    return Job(trainer, rooms.to(device), objects.to(device), layout_weights(sets.train), checked, sets, header, key)
+    return Job(trainer, rooms_of(sets.train, header, device), rooms_of(sets.val or sets.train[:64], header, device), sets, header, key)
+
+
+def rooms_of(examples: Sequence[Example], header: Header, device: torch.device) -> Rooms:
+    """Stack examples as they are trained on."""
+    rooms, objects = stacked(examples, Codec(header.norm), header.slots)
+    held = np.array([len(e.classes) for e in examples], np.int64)
+    return Rooms(rooms.to(device), objects.to(device), layout_weights(examples), held)
 
 
 def load(root: Path, settings: TrainSettings) -> tuple[Sets, Header]:
@@ -75,19 +78,16 @@ def load(root: Path, settings: TrainSettings) -> tuple[Sets, Header]:
         raise ContentError(
             "data/tables has no furnished room of split train", "raise corpus.houses in params.yaml, or check the rejects table"
         )
-    norm = Normalisation.of(stacked_rows(sets.train), words.names)
-    supers = [words.categories[name].super for name in words.names]
-    kinds = [[k for k, kind in enumerate(supers) if kind == wanted] for wanted in sorted(set(supers))]
-    return sets, Header(
-        norm,
-        words.layout_types,
-        settings.slots,
-        settings.timesteps,
-        settings.model,
-        small_types(sets, words.layout_types, settings.few_slots) if settings.few_share else (),
-        settings.few_slots if settings.few_share else settings.slots,
-        held_classes(sets, words.layout_types, kinds),
-    )
+    norm = Normalisation.of(stacked_rows(sets.train), stacked_classes(sets.train), words.names)
+    return sets, Header(norm, words.layout_types, settings.slots, settings.model, settings.inventory.width)
+
+
+def inventory_of(examples: Sequence[Example], header: Header, settings: InventorySettings, seed: int) -> Inventory:
+    """Fit the inventory model to what rooms hold."""
+    features = np.stack([room_features(e.floor, e.height) for e in examples])
+    layouts = np.array([e.layout for e in examples], np.int64)
+    counts = np.stack([counts_of(e.classes, len(header.norm.classes)) for e in examples])
+    return fitted(features, layouts, counts, len(header.layouts), settings, seed)
 
 
 def inputs(root: Path) -> dict[str, str]:

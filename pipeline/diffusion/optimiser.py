@@ -80,7 +80,7 @@ class Optimiser:
 
 def is_hidden(name: str, parameter: Tensor, width: int) -> bool:
     """Whether a parameter maps hidden channels to hidden channels: what Muon is for. Inputs, heads, biases and modulations are not."""
-    layer = name.startswith(("blocks.", "floor_keys.", "point."))
+    layer = bool({"blocks", "floor_keys", "point"}.intersection(name.split(".")))
     return layer and parameter.ndim == 2 and parameter.shape[0] % width == 0
 
 

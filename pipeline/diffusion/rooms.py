@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.diffusion.codec import CONTINUOUS, LATENT, class_indices, continuous_rows
+from pipeline.diffusion.codec import CHANNELS, LATENT, class_indices, continuous_rows
 from pipeline.diffusion.context import Gap, RoomContext
 from pipeline.diffusion.floor import Floor, floor_tokens
-from pipeline.diffusion.repeats import Held, bound
 
 Row = Mapping[str, Any]
 SWEEPS = 4  # boxes per object
@@ -164,29 +163,9 @@ def layout_weights(examples: Sequence[Example], power: float = 0.5) -> NDArray[n
 
 def stacked_rows(examples: Sequence[Example]) -> NDArray[np.float64]:
     """Return all objects' continuous rows (n, 40)."""
-    return np.concatenate([e.continuous for e in examples] or [np.zeros((0, CONTINUOUS))])
+    return np.concatenate([e.continuous for e in examples] or [np.zeros((0, CHANNELS))])
 
 
-def held_classes(sets: Sets, layouts: tuple[str, ...], kinds: Sequence[Sequence[int]]) -> tuple[Held, ...]:
-    """Return, per layout type, the classes that training rooms of it hold, and how many of each and of each kind (see `repeats.bound`).
-
-    `kinds` are groups of classes. A type without rooms holds nothing.
-    """
-    rooms: dict[int, list[Counter[int]]] = {}
-    for example in sets.train:
-        rooms.setdefault(example.layout, []).append(Counter(example.classes.tolist()))
-    return tuple(_held(rooms.get(i, []), kinds) for i in range(len(layouts)))
-
-
-def _held(rooms: Sequence[Counter[int]], kinds: Sequence[Sequence[int]]) -> Held:
-    classes = sorted(set().union(*rooms))
-    groups = sorted({(k,) for k in classes} | {tuple(k for k in kind if k in classes) for kind in kinds} - {()})
-    return tuple((group, bound([n for room in rooms if (n := sum(room[k] for k in group))], len(rooms))) for group in groups)
-
-
-def small_types(sets: Sets, layouts: tuple[str, ...], slots: int) -> tuple[str, ...]:
-    """Return the layout types of which 97 % of the rooms leave two of `slots` empty."""
-    held: dict[int, list[int]] = {}
-    for example in sets.train:
-        held.setdefault(example.layout, []).append(len(example.classes))
-    return tuple(name for i, name in enumerate(layouts) if i in held and float(np.quantile(held[i], 0.97)) <= slots - 2)
+def stacked_classes(examples: Sequence[Example]) -> NDArray[np.int64]:
+    """Return all objects' class indices (n,)."""
+    return np.concatenate([e.classes for e in examples] or [np.zeros(0, np.int64)])

@@ -17,7 +17,6 @@ from torch import Tensor, distributed
 
 from pipeline.errors import SfgenError
 
-LEAST = 8  # rows that make a process of its own worth while
 LEAVE = 30.0  # seconds that the others get to end when the first has
 
 
@@ -31,9 +30,7 @@ class Team:
     def share(self, batch: int) -> slice:
         """Return the rows of a batch that this member computes: equal shares, so that the mean of means is the mean."""
         if batch % self.size:
-            raise SfgenError(
-                f"a batch of {batch} cannot be shared by {self.size} processes", "give train.batch a multiple of train.workers"
-            )
+            raise SfgenError(f"a batch of {batch} cannot be shared by {self.size} processes", "set train.workers to 1")
         part = batch // self.size
         return slice(self.rank * part, (self.rank + 1) * part)
 
@@ -52,11 +49,6 @@ class Team:
 
 
 ALONE = Team()
-
-
-def team_size(batch: int, cores: int) -> int:
-    """Return how many processes share batches: as many as there are cores, while each gets the same and at least 8 rows."""
-    return next(size for size in range(max(1, min(cores, batch // LEAST)), 0, -1) if batch % size == 0)
 
 
 @contextmanager

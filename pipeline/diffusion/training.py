@@ -14,13 +14,15 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from pipeline import seeds
-from pipeline.diffusion.batch import Objects, RoomBatch, motions, moved_objects, moved_rooms
+from pipeline.diffusion.batch import BUCKETS, Objects, RoomBatch, bucket_of, moved_objects, moved_rooms, reflections
 from pipeline.diffusion.checkpoint import Header, build_net
-from pipeline.diffusion.loss import Levels, denoising_loss, draw
+from pipeline.diffusion.loss import Draw, denoising_loss, draw
 from pipeline.diffusion.optimiser import Optimiser
-from pipeline.diffusion.schedule import linear
 from pipeline.diffusion.settings import TrainSettings
 from pipeline.diffusion.team import ALONE, Team
+
+EARLY = 0.5  # weight of the loss of all passes but the last
+LEVELS = (-3.0, -1.0, 0.5, 2.0, 4.0, 6.0)  # lambda at which validation asks
 
 
 class Step(NamedTuple):
@@ -29,8 +31,16 @@ class Step(NamedTuple):
     done: int
     geometry: float
     shape: float
-    classes: float
     rate: float
+
+
+class Rooms(NamedTuple):
+    """What is trained on: rooms and their objects, `weights` (n,) by which they are drawn, `held` (n,) the number of their objects."""
+
+    rooms: RoomBatch
+    objects: Objects
+    weights: NDArray[np.float64]
+    held: NDArray[np.int64]
 
 
 class Trainer:
@@ -45,9 +55,7 @@ class Trainer:
         self.average = copy.deepcopy(self.net).eval().requires_grad_(False)
         self.seed, self.settings, self.total, self.per_epoch, self.device, self.done = seed, settings, total, per_epoch, device, 0
         self.team = team
-        self.levels = Levels.of(linear(settings.timesteps), device)
         self.optimiser = Optimiser(self.net, settings)
-        self.few = torch.tensor([name in header.few for name in header.layouts], device=device)
 
     def rate(self, step: int) -> float:
         """Learning rate at a step: a short warm-up, then a cosine or a straight line to zero, or halving every `decay_every` epochs."""
@@ -59,51 +67,48 @@ class Trainer:
             return s.learning_rate * warm * 0.5 * (1 + math.cos(math.pi * step / self.total))
         return s.learning_rate * warm * 0.5 ** (step // self.per_epoch // s.decay_every)
 
-    def small(self, rooms: RoomBatch) -> Tensor:
-        """Return which rooms (n,) are sampled with few slots: those of types that hold little, and that do hold little."""
-        return self.few[rooms.layout] & (rooms.count <= self.settings.few_slots - 2)
+    def chosen(self, rng: torch.Generator, data: Rooms) -> tuple[Tensor, int]:
+        """Draw the rows of a step's rooms by their weights, and the number of slots that they get.
 
-    def chosen(self, rng: torch.Generator, rooms: RoomBatch, weights: NDArray[np.float64]) -> tuple[Tensor, int]:
-        """Draw the rows of a step's rooms by `weights` (n,), and the number of slots that they get.
-
-        A step sees either rooms with few slots or rooms with all of them, as they will be sampled, and fewer of the latter,
-        so that both cost the same. Large rooms hold half of all objects; in mixed batches they would be a tenth.
+        The rooms of a step hold about as many objects each, so that little is padding and every step costs the same; a
+        bucket is drawn as often as makes every room's chance its weight, since a step holds fewer of the large ones.
         """
-        s, chances, small = self.settings, torch.from_numpy(weights), self.small(rooms).cpu()
-        few = bool(torch.rand(1, generator=rng) < s.few_share)
-        few = bool(small.any()) if few else not bool((~small).any())
-        chances = chances * ((rooms.count <= s.few_slots - 2).cpu() if few else ~small)
-        return torch.multinomial(
-            chances, s.batch if few else s.many_batch, replacement=True, generator=rng
-        ), s.few_slots if few else s.slots
+        slots = bucket_of(data.held)
+        share = np.array([data.weights[slots == size].sum() * size for size in BUCKETS])
+        size = BUCKETS[int(torch.multinomial(torch.from_numpy(share), 1, generator=rng))]
+        count = max(1, self.settings.objects // size // self.team.size) * self.team.size
+        chances = torch.from_numpy(np.where(slots == size, data.weights, 0.0))
+        return torch.multinomial(chances, count, replacement=True, generator=rng), size
 
-    def step(self, rooms: RoomBatch, objects: Objects, weights: NDArray[np.float64]) -> Step:
-        """Take one step on rooms drawn by `weights` (n,). All it draws comes from a generator keyed by (seed, step).
+    def step(self, data: Rooms) -> Step:
+        """Take one step. All it draws comes from a generator keyed by (seed, step).
 
-        Every member of a team draws the whole batch and computes its share of it, so that the number of members
+        Every process of a team draws the whole batch and computes its share of it, so that the number of processes
         changes nothing but the order of sums.
         """
         s = self.settings
         rng = torch.Generator().manual_seed(seeds.key(self.seed, "train-step", self.done) % 2**63)
-        rows, slots = self.chosen(rng, rooms, weights)
-        batch = len(rows)
-        motion = motions(rng, batch, s.tilt).to(self.device)
-        drawn = draw(rng, batch, slots, self.net.norm.channels, s.timesteps, s.low_noise, s.count_known)
-        own = self.team.share(batch)
-        rows, motion = rows[own].to(self.device), motion[own]
-        seen = moved_objects(objects.rows(rows).first(slots), motion, self.net.codec)
-        told = moved_rooms(rooms.rows(rows).trimmed(), motion)
-        loss = denoising_loss(self.net.train(), self.levels, told, seen, type(drawn)(*(v[own].to(self.device) for v in drawn)), s)
-        geometry, shape, classes = (term.mean() for term in loss)
+        rows, slots = self.chosen(rng, data)
+        reflection = reflections(rng, len(rows)).to(self.device)
+        drawn = draw(rng, len(rows), slots)
+        own = self.team.share(len(rows))
+        rows, reflection = rows[own].to(self.device), reflection[own]
+        objects = moved_objects(data.objects.rows(rows).first(slots), reflection)
+        rooms = moved_rooms(data.rooms.rows(rows).trimmed(), reflection)
+        losses = denoising_loss(self.net.train(), rooms, objects, Draw(*(v[own].to(self.device) for v in drawn)), s)
+        geometry, shape = (term.mean() for term in losses[-1])
+        total = geometry + s.latent_weight * shape
+        for early in losses[:-1]:
+            total = total + EARLY * (early.geometry.mean() + s.latent_weight * early.shape.mean())
         rate = self.rate(self.done)
-        (geometry + s.latent_weight * shape + s.class_weight * classes).backward()
-        terms = self.team.averaged(list(self.net.parameters()), torch.stack([geometry, shape, classes]).detach())
+        total.backward()
+        terms = self.team.averaged(list(self.net.parameters()), torch.stack([geometry, shape]).detach())
         torch.nn.utils.clip_grad_norm_(self.net.parameters(), s.clip)
         self.optimiser.step(rate)
         self._follow()
         self.done += 1
-        mean_geometry, mean_shape, mean_classes = terms.tolist()
-        return Step(self.done, mean_geometry, mean_shape, mean_classes, rate)
+        mean_geometry, mean_shape = terms.tolist()
+        return Step(self.done, mean_geometry, mean_shape, rate)
 
     def groups(self) -> dict[str, dict[str, Tensor]]:
         """Return everything that a checkpoint holds."""
@@ -123,36 +128,32 @@ class Trainer:
         torch._foreach_lerp_(list(self.average.parameters()), list(self.net.parameters()), 1 - decay)
 
 
-def train(
-    trainer: Trainer, rooms: RoomBatch, objects: Objects, weights: NDArray[np.float64], save: Callable[[Trainer], None] | None = None
-) -> Iterator[Step]:
+def train(trainer: Trainer, data: Rooms, save: Callable[[Trainer], None] | None = None) -> Iterator[Step]:
     """Train to the end, yielding each step; `save` is called every `checkpoint_every` steps and at the end."""
     while trainer.done < trainer.total:
-        yield trainer.step(rooms, objects, weights)
+        yield trainer.step(data)
         if save and (trainer.done % trainer.settings.checkpoint_every == 0 or trainer.done == trainer.total):
             save(trainer)
 
 
 @torch.no_grad()
-def validation(trainer: Trainer, rooms: RoomBatch, objects: Objects) -> dict[str, dict[str, float]]:
-    """Return the averaged net's mean loss terms at five noise levels, each room with the slots that it is sampled with.
+def validation(trainer: Trainer, data: Rooms) -> dict[str, dict[str, float]]:
+    """Return the averaged net's mean loss terms at six noise levels.
 
     The noise is keyed by (seed, level), and so the same at every call.
     """
     found: dict[str, dict[str, float]] = {}
-    settings, net, small = trainer.settings, trainer.average, trainer.small(rooms)
-    parts = [(slots, torch.nonzero(mask)[:, 0]) for slots, mask in ((settings.few_slots, small), (settings.slots, ~small))]
-    for t in (5, 50, 200, 400, 700):
-        level = max(1, round(t * settings.timesteps / 1000))
-        rng = torch.Generator().manual_seed(seeds.key(trainer.seed, "validate", t) % 2**63)
+    plain = replace(trainer.settings, constraint=False)  # validation measures denoising alone
+    slots = torch.from_numpy(bucket_of(data.held))
+    for level in LEVELS:
+        rng = torch.Generator().manual_seed(seeds.key(trainer.seed, "validate", round(10 * level) + 100) % 2**63)
         terms = []
-        for slots, rows in [(slots, rows) for slots, listed in parts for rows in listed.split(settings.batch) if len(rows)]:
-            drawn = draw(rng, len(rows), slots, net.norm.channels, settings.timesteps, 0.0, 1.0)
-            drawn = type(drawn)(*(v.to(trainer.device) for v in drawn))
-            drawn = drawn._replace(t=torch.full((len(rows),), level, device=trainer.device))
-            plain = replace(settings, constraint=False)  # validation measures denoising alone
-            seen = objects.rows(rows).first(slots)
-            terms.append(torch.stack(denoising_loss(net, trainer.levels, rooms.rows(rows), seen, drawn, plain)))
+        for size in sorted(set(slots.tolist())):
+            for rows in torch.nonzero(slots == size)[:, 0].split(max(1, trainer.settings.objects // size)):
+                drawn = draw(rng, len(rows), size)._replace(level=torch.full((len(rows),), level))
+                drawn = Draw(*(v.to(trainer.device) for v in drawn))
+                rooms, objects = data.rooms.rows(rows), data.objects.rows(rows).first(size)
+                terms.append(torch.stack(denoising_loss(trainer.average, rooms, objects, drawn, plain)[-1]))
         mean = torch.cat(terms, 1).mean(1).tolist()
-        found[f"t{t}"] = dict(zip(("geometry", "shape", "classes"), (round(v, 6) for v in mean), strict=True))
+        found[f"lambda {level:g}"] = dict(zip(("geometry", "shape"), (round(v, 6) for v in mean), strict=True))
     return found

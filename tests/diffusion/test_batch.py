@@ -1,6 +1,7 @@
+import numpy as np
 import torch
 
-from pipeline.diffusion.batch import Objects, motions, moved_objects, moved_rooms, stacked
+from pipeline.diffusion.batch import Objects, bucket_of, moved_objects, moved_rooms, reflections, stacked
 from pipeline.diffusion.codec import Codec
 from pipeline.diffusion.constraints import articulated_collision
 from pipeline.diffusion.denoiser import polygon_area
@@ -13,34 +14,46 @@ def batch(examples, norm):
     return (codec, *stacked(examples, codec, 24))
 
 
-def test_motions_are_the_eight_symmetries():
-    m = motions(torch.Generator().manual_seed(0), 400)
-    torch.testing.assert_close(m @ m.transpose(1, 2), torch.eye(2).expand(400, 2, 2))
-    assert len({tuple(v.flatten().tolist()) for v in m.round()}) == 8
+def turns(count, seed):
+    """Any orthogonal matrices: the net's training draws reflections alone, the maps must hold for all."""
+    angle = torch.rand(count, generator=torch.Generator().manual_seed(seed)) * 6.28
+    cos, sin = angle.cos(), angle.sin()
+    turn = torch.stack([torch.stack([cos, -sin], -1), torch.stack([sin, cos], -1)], -2)
+    return turn @ reflections(torch.Generator().manual_seed(seed), count)
+
+
+def test_half_of_the_reflections_reflect():
+    found = torch.linalg.det(reflections(torch.Generator().manual_seed(0), 400))
+    assert set(found.tolist()) == {-1.0, 1.0}
+    assert 150 < int((found < 0).sum()) < 250
+
+
+def test_rooms_are_padded_to_the_next_bucket():
+    assert bucket_of(np.array([1, 4, 5, 12, 13, 24])).tolist() == [4, 4, 8, 12, 16, 24]
 
 
 def test_a_motion_and_its_inverse_give_the_room_back(examples, norm):
-    codec, rooms, objects = batch(examples, norm)
-    m = motions(torch.Generator().manual_seed(1), len(rooms), 0.3)
+    _, rooms, objects = batch(examples, norm)
+    m = turns(len(rooms), 1)
     back = m.transpose(1, 2)
     again = moved_rooms(moved_rooms(rooms, m), back)
     torch.testing.assert_close(again.ends, rooms.ends, atol=1e-5, rtol=0)
     torch.testing.assert_close(again.normal, rooms.normal, atol=1e-5, rtol=0)
     assert torch.equal(again.hinge, rooms.hinge)
-    objects_again = moved_objects(moved_objects(objects, m, codec), back, codec)
-    torch.testing.assert_close(objects_again.continuous, objects.continuous, atol=1e-5, rtol=0)
+    objects_again = moved_objects(moved_objects(objects, m), back)
+    torch.testing.assert_close(objects_again.channels, objects.channels, atol=1e-5, rtol=0)
     torch.testing.assert_close(objects_again.sweeps, objects.sweeps, equal_nan=True)
 
 
 def test_a_moved_room_is_the_same_room(examples, norm):
     """Areas, collisions and the geometry of every pair do not change when a room is turned or mirrored."""
     codec, rooms, objects = batch(examples, norm)
-    m = motions(torch.Generator().manual_seed(2), len(rooms))
-    moved, shifted = moved_rooms(rooms, m), moved_objects(objects, m, codec)
+    m = turns(len(rooms), 2)
+    moved, shifted = moved_rooms(rooms, m), moved_objects(objects, m)
     torch.testing.assert_close(polygon_area(moved), polygon_area(rooms))
     assert (polygon_area(rooms) > 0).all()
     occupied = objects.classes < codec.classes
-    here, there = (boxes_of(codec.metric(o.continuous)) for o in (objects, shifted))
+    here, there = (boxes_of(codec.metric(o.channels, objects.classes)) for o in (objects, shifted))
     before = articulated_collision(here, occupied, objects.sweeps, rooms)
     after = articulated_collision(there, occupied, shifted.sweeps, moved)
     torch.testing.assert_close(before, after, atol=1e-4, rtol=1e-4)

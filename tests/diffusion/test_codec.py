@@ -1,44 +1,56 @@
 import math
+from dataclasses import asdict, replace
+from json import dumps, loads
 
 import numpy as np
 import torch
 
-from pipeline import seeds
-from pipeline.diffusion.codec import CONTINUOUS, YAW, Codec, Normalisation
-from pipeline.diffusion.rooms import stacked_rows
+from pipeline.diffusion.codec import CHANNELS, SIZE, YAW, Codec, Normalisation
+from pipeline.diffusion.rooms import stacked_classes, stacked_rows
 from tests.diffusion.small_world import CLASSES, make_context
 
 
+def rows_of(examples):
+    return torch.from_numpy(stacked_rows(examples)).float(), torch.from_numpy(stacked_classes(examples))
+
+
 def test_rows_survive_the_round_trip(examples, norm):
-    codec = Codec(norm)
-    rows = torch.from_numpy(stacked_rows(examples)).float()
-    torch.testing.assert_close(codec.metric(codec.normalised(rows)), rows, atol=1e-5, rtol=1e-5)
-    torch.testing.assert_close(codec.metric(codec.normalised(rows)[:, :8]), rows[:, :8], atol=1e-5, rtol=1e-5)
+    codec, (rows, classes) = Codec(norm), rows_of(examples)
+    x = codec.normalised(rows, classes)
+    torch.testing.assert_close(codec.metric(x, classes), rows, atol=1e-5, rtol=1e-5)
+    torch.testing.assert_close(codec.metric(x[:, :8], classes), rows[:, :8], atol=1e-5, rtol=1e-5)
 
 
-def test_channels_have_unit_variance(examples, norm):
-    x = Codec(norm).normalised(torch.from_numpy(stacked_rows(examples)).float())
+def test_sizes_are_measured_within_their_class(examples, norm):
+    """Beds are larger than nightstands; as channels both lie around 0 with a spread of about 1."""
+    codec, (rows, classes) = Codec(norm), rows_of(examples)
+    x = codec.normalised(rows, classes)
     torch.testing.assert_close((x[:, :2] ** 2).mean(), torch.tensor(1.0), atol=1e-3, rtol=0)
-    assert float(x[:, 2:6].std(0).max()) < 1.05
-    assert norm.scale[0] == norm.scale[1]
+    for label in range(len(CLASSES)):
+        mine = x[classes == label][:, SIZE]
+        assert mine.mean(0).abs().max() < 1.2  # few objects, and three of any class count beside them
+        assert mine.std(0).max() < 1.3
+
+
+def test_a_class_without_objects_has_finite_constants(examples):
+    rows, classes = stacked_rows(examples), stacked_classes(examples)
+    found = Normalisation.of(rows, classes, (*CLASSES, "unseen"))
+    assert np.isfinite(found.mean).all()
+    assert np.min(found.scale) > 0
 
 
 def test_the_constants_survive_json(norm):
-    from dataclasses import asdict
-    from json import dumps, loads
-
     assert Normalisation.of_json(loads(dumps(asdict(norm)))) == norm
 
 
 def test_proposals_are_what_was_encoded(examples, norm):
-    codec, context = Codec(norm), make_context(0)
-    example = examples[0]
+    codec, context, example = Codec(norm), make_context(0), examples[0]
     n = len(example.classes)
     classes = torch.full((24,), codec.classes)
-    classes[2 : 2 + n] = torch.from_numpy(example.classes)
-    x = torch.zeros(24, CONTINUOUS)
-    x[2 : 2 + n] = codec.normalised(torch.from_numpy(example.continuous).float())
-    found = codec.proposals(torch.cat([x, codec.one_hot(classes)], -1), context)
+    classes[:n] = torch.from_numpy(example.classes)
+    x = torch.zeros(24, CHANNELS)
+    x[:n] = codec.normalised(torch.from_numpy(example.continuous).float(), classes[:n])
+    found = codec.proposals(x, classes, context)
     assert [p.category for p in found] == [CLASSES[c] for c in example.classes]
     for proposal, row in zip(found, example.continuous, strict=True):
         np.testing.assert_allclose(proposal.position, row[:3] + np.array([*context.centre, 0]), atol=1e-4)
@@ -46,28 +58,9 @@ def test_proposals_are_what_was_encoded(examples, norm):
         assert math.isclose(math.cos(proposal.yaw - math.atan2(row[YAW][1], row[YAW][0])), 1, abs_tol=1e-6)
 
 
-def test_the_elevation_of_the_storey_is_added(examples, norm):
-    from dataclasses import replace
-
+def test_the_elevation_of_the_storey_is_added(norm):
     codec, context = Codec(norm), make_context(0)
-    x = torch.cat([torch.zeros(1, CONTINUOUS), codec.one_hot(torch.tensor([0]))], -1)
-    low, high = (codec.proposals(x, replace(context, elevation=z))[0].position for z in (0.0, 3.0))
+    low, high = (
+        codec.proposals(torch.zeros(1, CHANNELS), torch.tensor([0]), replace(context, elevation=z))[0].position for z in (0.0, 3.0)
+    )
     np.testing.assert_allclose(high - low, [0, 0, 3])
-
-
-def test_the_evidence_is_the_posterior_under_a_flat_prior(norm):
-    codec = Codec(norm)
-    rng = seeds.generator(1, "evidence")
-    ideal = codec.one_hot(torch.arange(codec.classes + 1))
-    for alpha in (0.3, 0.8, 0.98):
-        sigma = math.sqrt(1 - alpha**2)
-        x = alpha * ideal[2] + sigma * torch.from_numpy(rng.standard_normal(codec.classes + 1)).float()
-        wanted = torch.softmax(-((x - alpha * ideal) ** 2).sum(-1) / (2 * sigma**2), 0)
-        found = codec.evidence(x, torch.tensor(alpha), torch.tensor(sigma)).softmax(-1)
-        torch.testing.assert_close(found, wanted, atol=1e-5, rtol=1e-4)
-
-
-def test_a_slot_is_occupied_where_its_empty_channel_is_low(norm):
-    codec = Codec(norm)
-    block = codec.one_hot(torch.tensor([0, codec.classes]))
-    assert codec.occupied(block).tolist() == [True, False]

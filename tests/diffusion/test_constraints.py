@@ -8,7 +8,7 @@ from shapely.affinity import rotate, translate
 
 from pipeline import seeds
 from pipeline.diffusion.batch import room_batch
-from pipeline.diffusion.codec import EMPTY_SCALE, Codec
+from pipeline.diffusion.codec import Codec
 from pipeline.diffusion.constraints import (
     Prisms,
     articulated_collision,
@@ -17,12 +17,10 @@ from pipeline.diffusion.constraints import (
     heuristic_sweeps,
     outside,
     overlap,
-    quantity,
-    quantity_target,
     swept,
 )
 from pipeline.diffusion.floor import floor_tokens
-from pipeline.diffusion.guidance import articulation_descent, quantity_descent, size_shift
+from pipeline.diffusion.guidance import articulation_descent, size_shift
 from pipeline.diffusion.relations import Boxes, boxes_of
 from pipeline.diffusion.settings import SampleSettings
 from tests.diffusion.small_world import make_context
@@ -66,7 +64,7 @@ def test_things_above_each_other_do_not_overlap():
 
 def room(n_target=None):
     context = make_context(0, n_target=n_target)
-    return context, room_batch([floor_tokens(context)], [0], [-1], [2.7])
+    return context, room_batch([floor_tokens(context)], [0], [2.7])
 
 
 def body(rows):
@@ -97,7 +95,7 @@ def test_outside_knows_the_notch_of_an_l_shaped_room():
     from pipeline.diffusion.context import RoomContext
 
     polygon = np.array([[0, 0], [4, 0], [4, 2], [2, 2], [2, 4], [0, 4]], float)
-    rooms = room_batch([floor_tokens(RoomContext("bedroom", polygon))], [0], [-1], [2.7])
+    rooms = room_batch([floor_tokens(RoomContext("bedroom", polygon))], [0], [2.7])
     assert float(beyond_walls([-1, -1, 1.0, 1.0, 0.3], rooms)) == 0
     assert float(beyond_walls([1, 1, 1.0, 1.0, 0.3], rooms)) > 0
 
@@ -133,7 +131,7 @@ def test_the_penalty_is_the_sum_over_pairs():
     """Every pair counts once, whatever the order and the emptiness of slots, and rooms of a batch do not see each other."""
     rng = seeds.generator(3, "pairs")
     context, single = room()
-    rooms = room_batch([floor_tokens(context)] * 3, [0] * 3, [-1] * 3, [2.7] * 3)
+    rooms = room_batch([floor_tokens(context)] * 3, [0] * 3, [2.7] * 3)
     rows = rng.uniform([-2, -2, 0.3, 0.3, -3], [2, 2, 1.2, 1.2, 3], (3, 6, 5))
     occupied = torch.from_numpy(rng.random((3, 6)) < 0.7)
     sweeps = torch.full((3, 6, 2, 2, 3), torch.nan)
@@ -170,23 +168,23 @@ def test_descending_lowers_the_penalty_where_the_printed_sign_climbs(norm):
         metric[..., 3:6] = torch.from_numpy(rng.uniform(0.4, 1.0, (1, 5, 3)))
         yaw = torch.from_numpy(rng.uniform(-3, 3, (1, 5)))
         metric[..., 6], metric[..., 7] = yaw.cos(), yaw.sin()
-        occupied = torch.ones(1, 5, dtype=torch.bool)
+        occupied, classes = torch.ones(1, 5, dtype=torch.bool), torch.tensor([[0, 1, 2, 3, 4]])
         sweeps = torch.full((1, 5, 1, 2, 3), torch.nan)
         sweeps[0, 0, 0] = torch.tensor([[-0.3, -0.8, 0.1], [0.3, -0.2, 0.5]])
 
-        def phi(x, occupied=occupied, sweeps=sweeps):
-            return float(articulated_collision(boxes_of(codec.metric(x)), occupied, sweeps, rooms))
+        def phi(x, occupied=occupied, classes=classes, sweeps=sweeps):
+            return float(articulated_collision(boxes_of(codec.metric(x, classes)), occupied, sweeps, rooms))
 
-        x = codec.normalised(metric)
+        x = codec.normalised(metric, classes)
         start = phi(x)
-        step = articulation_descent(codec, x, occupied, sweeps, rooms, settings)
+        step = articulation_descent(codec, x, classes, sweeps, rooms, settings)
         climbed = x.clone()
         climbed[..., :8] -= 0.1 * step
         assert phi(climbed) >= start
         for _ in range(12):
             x = x.clone()
-            x[..., :8] += articulation_descent(codec, x, occupied, sweeps, rooms, settings)
-        assert torch.equal(x[..., 2:6], codec.normalised(metric)[..., 2:6])  # heights and sizes stay
+            x[..., :8] += articulation_descent(codec, x, classes, sweeps, rooms, settings)
+        assert torch.equal(x[..., 2:6], codec.normalised(metric, classes)[..., 2:6])  # heights and sizes stay
         fell += phi(x) < 0.35 * start + 1e-9
     assert fell >= 18
 
@@ -196,30 +194,9 @@ def test_a_step_is_never_longer_than_its_clip(norm):
     metric = torch.zeros(1, 3, 40)
     metric[..., :2] = 30.0  # far outside
     metric[..., 3:7] = 1.0
-    step = articulation_descent(codec, codec.normalised(metric), torch.ones(1, 3, dtype=torch.bool), None, rooms, SampleSettings(clip=0.15))
-    assert float((step[..., :2] * codec.scale[:2]).norm(dim=-1).max()) <= 0.15 + 1e-5
-
-
-def test_the_target_chooses_the_least_empty_slots():
-    logits = torch.tensor([[3.0, -1.0, 0.5, 0.4, 9.0]])
-    assert quantity_target(logits, torch.tensor([3])).tolist() == [[1, 0, 0, 0, 1]]
-    assert quantity_target(torch.zeros(1, 4), torch.tensor([2])).tolist() == [[0, 0, 1, 1]]  # ties: the earlier slot
-
-
-@pytest.mark.parametrize("count", [0, 5, 12, 24])
-def test_descending_the_quantity_gives_the_exact_count(count):
-    empty = 0.75 * torch.randn(6, 24, generator=torch.Generator().manual_seed(count))
-    counts = torch.full((6,), count)
-    penalty = [float(quantity(8 / EMPTY_SCALE * empty, counts).sum())]
-    for _ in range(10):
-        empty = empty + 0.3 * quantity_descent(empty, counts)
-        penalty.append(float(quantity(8 / EMPTY_SCALE * empty, counts).sum()))
-    assert penalty == sorted(penalty, reverse=True)
-    assert ((empty < 0).sum(1) == count).all()
-
-
-def test_no_count_no_guidance():
-    assert quantity_descent(torch.randn(3, 24), torch.tensor([-1, -1, -1])).abs().max() == 0
+    classes = torch.zeros(1, 3, dtype=torch.long)
+    step = articulation_descent(codec, codec.normalised(metric, classes), classes, None, rooms, SampleSettings(clip=0.15))
+    assert float((step[..., :2] * codec.reach).norm(dim=-1).max()) <= 0.15 + 1e-5
 
 
 def test_a_new_size_keeps_the_back_where_it_is(norm):
@@ -228,10 +205,11 @@ def test_a_new_size_keeps_the_back_where_it_is(norm):
     metric[..., 3:6] = torch.tensor([1.0, 0.6, 0.8])
     yaw = 0.7
     metric[..., 6], metric[..., 7] = math.cos(yaw), math.sin(yaw)
-    x = codec.normalised(metric)
+    classes = torch.tensor([[1]])
+    x = codec.normalised(metric, classes)
     moved = x.clone()
-    moved[..., :6] += size_shift(codec, x, torch.tensor([[[1.2, 0.5, 0.9]]]))
-    after = codec.metric(moved)
+    moved[..., :6] += size_shift(codec, x, classes, torch.tensor([[[1.2, 0.5, 0.9]]]))
+    after = codec.metric(moved, classes)
     front = torch.tensor([math.sin(yaw), -math.cos(yaw)])
     torch.testing.assert_close(after[0, 0, 3:6], torch.tensor([1.2, 0.5, 0.9]), atol=1e-5, rtol=0)
     torch.testing.assert_close(after[0, 0, :2] - front * 0.25, -front * 0.3, atol=1e-5, rtol=0)

@@ -99,8 +99,18 @@ def test_moments_come_back():
 
 
 def test_hidden_matrices_of_the_denoiser(norm):
-    made = build_net(Header(norm, LAYOUTS, 12, 1000, ModelSettings(32, 2, 4, 8)))
+    made = build_net(Header(norm, LAYOUTS, 12, ModelSettings(32, 2, 1, 4, 8), 16))
     chosen = {name for name, p in made.named_parameters() if is_hidden(name, p, 32)}
-    assert {"blocks.0.look.weight", "blocks.1.think.2.weight", "floor_keys.weight", "point.weight"} <= chosen
-    assert not {"slot.weight", "head.weight", "modulation.weight", "layout.weight", "pair_bias.weight"} & chosen
+    assert {"passes.0.blocks.0.look.weight", "passes.1.blocks.0.think.2.weight", "floor_keys.weight", "passes.1.point.weight"} <= chosen
+    assert (
+        not {
+            "slot.weight",
+            "kind.weight",
+            "passes.0.head.weight",
+            "passes.0.modulation.weight",
+            "layout.weight",
+            "passes.1.pair_bias.weight",
+        }
+        & chosen
+    )
     assert all(part.shape[0] == 32 for name, p in made.named_parameters() if name in chosen for part in squares(p, 32))

@@ -19,7 +19,7 @@ from schemas.scenes import SCENES
 from schemas.table import Table
 from stages import train
 
-SETTINGS = "model: {width: 16, layers: 1, heads: 2, relation: 4}, steps: %d, batch: 4, checkpoint_every: 2, validate_every: 4, threads: 1, workers: %d"
+SETTINGS = "model: {width: 16, passes: 2, layers: 1, heads: 2, relation: 4}, inventory: {width: 8, steps: 20}, steps: %d, objects: 16, checkpoint_every: 2, validate_every: 4, threads: 1, workers: %d"
 
 
 def blank(table: Table, **values):
@@ -90,9 +90,9 @@ def test_it_reports_what_it_learnt_from(root):
     report = json.loads((root / "metrics/train.json").read_text())
     assert report["rooms"] == {"train": 6, "val": 3, "test": 0}
     assert report["steps"] == 4
-    assert report["val"]["t50"]["geometry"] > 0
+    assert report["val"]["lambda 2"]["geometry"] > 0
     rows = (root / "plots/loss.csv").read_text().splitlines()
-    assert rows[0].startswith("step,loss")
+    assert rows[0].startswith("step,loss,shape")
     assert rows[-1].startswith("4,")
 
 

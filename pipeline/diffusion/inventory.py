@@ -1,0 +1,227 @@
+"""The inventory: which classes a room holds, and how many of each, drawn before anything is placed.
+
+p(counts | room) = product over classes of p(n_c | room, counts of the classes before, N where it is told): a small network
+over counts, exact where a diffusion over slots drifts (it loses the chairs of large rooms) and made to be conditioned:
+a told number N is met exactly, and so is what is asked of categories.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor, nn
+
+from pipeline import seeds
+from pipeline.diffusion.context import Demand
+from pipeline.diffusion.floor import KINDS, Floor
+from pipeline.diffusion.settings import InventorySettings
+
+MOST = 12  # of one class in one room; more are counted as this
+ROOM_FEATURES = 6 + 2 * (len(KINDS) - 1)
+DRAWS = 8  # inventories that are drawn for a room, of which the first that meets what is asked is taken
+UNTOLD = -1
+
+
+class Inventory(nn.Module):
+    """Logits of each class's count, given the room and the counts of the classes before it."""
+
+    def __init__(self, classes: int, layouts: int, width: int) -> None:
+        super().__init__()
+        self.classes = classes
+        self.layout = nn.Embedding(layouts, width)
+        self.room = nn.Sequential(nn.Linear(ROOM_FEATURES, width), nn.SiLU(), nn.Linear(width, width))
+        self.held = nn.Parameter(torch.zeros(classes, MOST + 1, width))  # what n of class c says to the classes after it
+        self.asked = nn.Embedding(classes, width)
+        self.left = nn.Linear(3, width)  # of a told number: how many are still to come
+        self.think = nn.Sequential(nn.Linear(width, 2 * width), nn.SiLU(), nn.Linear(2 * width, width), nn.SiLU())
+        self.out = nn.Linear(width, MOST + 1)
+        self.own = nn.Parameter(torch.zeros(classes, layouts, MOST + 1))  # how often rooms of a type hold so many, all else unknown
+        nn.init.normal_(self.held, std=0.1)
+        nn.init.zeros_(self.out.weight)
+        nn.init.zeros_(self.out.bias)
+
+    def about(self, features: Tensor, layout: Tensor) -> Tensor:
+        """Return what is known of rooms (B, d) from their features (B, F) and types (B,)."""
+        known: Tensor = self.room(features) + self.layout(layout)
+        return known
+
+    def logits(self, about: Tensor, before: Tensor, left: Tensor, layout: Tensor, which: slice) -> Tensor:
+        """Return logits (B, K, MOST + 1) of the classes `which`; `before` (B, K, d) sums what earlier counts say, `left` (B, K) is what a told number leaves."""
+        told = (left >= 0).float()
+        rest = left.clamp(0, 2 * MOST).float()
+        still = self.left(torch.stack([told, told * rest / 8, told * (rest == 0)], -1))
+        seen = nn.functional.layer_norm(about[:, None] + before + self.asked.weight[which] + still, about.shape[-1:])
+        answer: Tensor = self.out(self.think(seen)) + self.own[which, layout].transpose(0, 1)
+        return answer
+
+    def forward(self, features: Tensor, layout: Tensor, counts: Tensor, told: Tensor) -> Tensor:
+        """Return the log-likelihood (B,) of counts (B, C); `told` (B,) says whose total is told."""
+        clipped = counts.clamp_max(MOST)
+        says = self.held[torch.arange(self.classes), clipped]
+        before = says.cumsum(1) - says
+        passed = counts.cumsum(1) - counts
+        left = torch.where(told[:, None], counts.sum(1, keepdim=True) - passed, torch.full_like(passed, UNTOLD))
+        scores = self.logits(self.about(features, layout), before, left, layout, slice(None)).log_softmax(-1)
+        return scores.gather(-1, clipped[..., None])[..., 0].sum(1)
+
+
+@dataclass(frozen=True, slots=True)
+class Ask:
+    """What is asked of one room: the exact number of objects or None, bounds on groups of classes (classes, least, most or None), most objects."""
+
+    total: int | None
+    bounds: tuple[tuple[tuple[int, ...], int, int | None], ...] = ()
+    most: int = 24
+
+    @classmethod
+    def of(cls, total: int | None, demands: Sequence[Demand], classes: Sequence[str], most: int = 24) -> Ask:
+        """Read what a room context asks for, in class indices. A least number that a total cannot hold is cut by nobody: both are asked."""
+        order = {name: k for k, name in enumerate(classes)}
+        groups = ((tuple(sorted({order[c] for c in d.categories if c in order})), d.least, d.most) for d in demands)
+        return cls(total, tuple(group for group in groups if group[0]), most)
+
+    def met_by(self, counts: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Tell which inventories (K, C) meet it."""
+        good: NDArray[np.bool_] = counts.sum(1) <= self.most if self.total is None else counts.sum(1) == self.total
+        for members, least, most in self.bounds:
+            have = counts[:, list(members)].sum(1)
+            good &= (have >= least) & (have <= (np.inf if most is None else most))
+        return good
+
+
+def room_features(floor: Floor, height: float) -> NDArray[np.float32]:
+    """Return features (F,) of a room, the same however it is turned: area, extents, perimeter, openings by kind."""
+    walls = floor.ends[(floor.kind == 0) & floor.mask].astype(float)
+    a, b = walls[:, 0], walls[:, 1]
+    area = 0.5 * float(np.abs((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()))
+    extent = np.sort(a.max(0) - a.min(0)) if len(a) else np.zeros(2)
+    around = float(np.linalg.norm(b - a, axis=1).sum())
+    openings: list[float] = []
+    for kind in range(1, len(KINDS)):
+        of_kind = (floor.kind == kind) & floor.mask
+        ends = floor.ends[of_kind]
+        openings += [float(of_kind.sum()) / 2, float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=-1).sum()) / 3]
+    shape = [np.log(max(area, 0.5)) - 2, extent[0] / 3 - 1, extent[1] / 4 - 1, around / 12 - 1, len(walls) / 8 - 1, height - 2.7]
+    return np.array([*shape, *openings], np.float32)
+
+
+def counts_of(classes: NDArray[np.int64], number: int) -> NDArray[np.int64]:
+    """Return how many objects (C,) of each class there are."""
+    return np.bincount(classes, minlength=number)[:number]
+
+
+def fitted(
+    features: NDArray[np.float32], layouts: NDArray[np.int64], counts: NDArray[np.int64], types: int, settings: InventorySettings, seed: int
+) -> Inventory:
+    """Fit an inventory model to rooms: features (n, F), types (n,), counts (n, C). AdamW with a cosine to zero; every draw is keyed by `seed`."""
+    rng = torch.Generator().manual_seed(seeds.key(seed, "inventory") % 2**63)
+    with torch.random.fork_rng(devices=[]):
+        torch.manual_seed(seeds.key(seed, "inventory-init") % 2**63)
+        net = Inventory(counts.shape[1], types, settings.width)
+    x, kind, held = torch.from_numpy(features), torch.from_numpy(layouts), torch.from_numpy(counts)
+    with torch.no_grad():  # start at how often each type holds so many
+        for k in range(types):
+            rooms = held[kind == k].clamp_max(MOST)
+            share = torch.stack([(rooms == n).float().sum(0) for n in range(MOST + 1)], -1) + 0.02
+            net.own[:, k] = (share / share.sum(-1, keepdim=True)).log()
+    optimiser = torch.optim.AdamW(net.parameters(), weight_decay=1e-3)
+    for step in range(settings.steps):
+        for group in optimiser.param_groups:
+            group["lr"] = settings.learning_rate * min(1.0, (step + 1) / 50) * 0.5 * (1 + float(np.cos(np.pi * step / settings.steps)))
+        rows = torch.randint(len(x), (min(settings.batch, len(x)),), generator=rng)
+        told = torch.rand(len(rows), generator=rng) < settings.count_known
+        loss = -net(x[rows], kind[rows], held[rows], told).mean()
+        optimiser.zero_grad()
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(net.parameters(), 1.0)
+        optimiser.step()
+    return net.eval()
+
+
+@torch.no_grad()
+def draw_inventories(
+    net: Inventory, features: Tensor, layout: Tensor, asks: Sequence[Ask], uniform: NDArray[np.float64]
+) -> list[NDArray[np.int64]]:
+    """Draw one inventory (C,) for each of B rooms; `uniform` (B, DRAWS, C) in [0, 1) is all the randomness.
+
+    The last of a room's draws are held to what is asked while they are made: a bounded group is cut at its most and filled
+    at its last class, a told number is never passed. The first draw that meets everything is taken, free ones before held
+    ones, since these are true samples of the conditional. `amended` mends what none meets.
+    """
+    rooms, draws, classes = uniform.shape
+    about = net.about(features, layout).repeat_interleave(draws, 0)
+    kinds = layout.repeat_interleave(draws)
+    total = np.repeat([UNTOLD if a.total is None else a.total for a in asks], draws)
+    full = np.repeat([a.most for a in asks], draws)
+    held_to = np.tile(np.arange(draws) >= draws // 2, rooms)
+    counts = np.zeros((rooms * draws, classes), np.int64)
+    before = torch.zeros(rooms * draws, 1, about.shape[-1])
+    for c in range(classes):
+        left = np.where(total >= 0, np.maximum(total - counts.sum(1), 0), UNTOLD)
+        logits = net.logits(about, before, torch.from_numpy(left)[:, None], kinds, slice(c, c + 1))[:, 0]
+        chance = logits.softmax(-1).double().numpy()
+        least, most = _limits(asks, counts, c, draws)
+        most = np.minimum(most, np.where(total >= 0, left, (full - counts.sum(1)).clip(0)))
+        n = np.arange(MOST + 1)
+        allowed = (n >= np.minimum(least, most)[:, None]) & (n <= most[:, None])
+        chance = np.where(allowed | ~held_to[:, None], chance, 0.0)
+        lost = chance.sum(1) <= 1e-300
+        chance[lost] = np.where(allowed[lost], 1.0, 0.0)
+        ladder = np.cumsum(chance, 1)
+        picked = (ladder <= (uniform[:, :, c].reshape(-1) * ladder[:, -1])[:, None]).sum(1).clip(0, MOST)
+        counts[:, c] = picked
+        before = before + net.held[c, torch.from_numpy(picked)][:, None]
+    found = []
+    for i, ask in enumerate(asks):
+        mine = counts[i * draws : (i + 1) * draws]
+        met = np.flatnonzero(ask.met_by(mine) & (mine.sum(1) > 0))
+        usual: NDArray[np.float64] = net.own[:, layout[i]].softmax(-1).double().numpy() @ np.arange(MOST + 1, dtype=float)
+        found.append(mine[met[0]] if len(met) else amended(mine[-1], ask, usual))
+    return found
+
+
+def _limits(asks: Sequence[Ask], counts: NDArray[np.int64], c: int, draws: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the least and the most (B * DRAWS,) of class c that bounds on its groups leave, given the counts so far."""
+    least, most = np.zeros(len(counts), np.int64), np.full(len(counts), MOST)
+    for i, ask in enumerate(asks):
+        part = slice(i * draws, (i + 1) * draws)
+        for members, low, high in ask.bounds:
+            if c not in members:
+                continue
+            have = counts[part][:, list(members)].sum(1)
+            if c == members[-1]:
+                least[part] = np.maximum(least[part], (low - have).clip(0))
+            if high is not None:
+                most[part] = np.minimum(most[part], (high - have).clip(0))
+    return least, most
+
+
+def amended(counts: NDArray[np.int64], ask: Ask, usual: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return counts (C,) changed one object at a time until they meet what is asked; `usual` (C,) is how many of each a room of the type holds.
+
+    What is added is what rooms of the type hold most of beyond what is there; what goes is what there is most of beyond that.
+    """
+    counts = counts.copy()
+    bound = np.zeros(len(counts), bool)
+    for members, least, most in sorted(ask.bounds, key=lambda b: len(b[0])):
+        mine = list(members)
+        while counts[mine].sum() < least:
+            counts[mine[int(np.argmax((usual - counts)[mine]))]] += 1
+        while most is not None and counts[mine].sum() > most:
+            counts[mine[int(np.argmax(np.where(counts[mine] > 0, (counts - usual)[mine], -np.inf)))]] -= 1
+        bound[mine] = True
+    if ask.total is None and not counts.sum() and not bound.all():
+        counts[int(np.argmax(np.where(bound, -np.inf, usual)))] += 1
+    wanted = min(int(counts.sum()), ask.most) if ask.total is None else ask.total
+    while counts.sum() != wanted:
+        free = ~bound if (~bound).any() else np.ones_like(bound)
+        if counts.sum() < wanted:
+            counts[int(np.argmax(np.where(free, usual / (counts + 1.0), -np.inf)))] += 1
+        else:
+            spare = free & (counts > 0) if (free & (counts > 0)).any() else counts > 0
+            counts[int(np.argmax(np.where(spare, (counts + 1.0) / (usual + 0.1), -np.inf)))] -= 1
+    return counts

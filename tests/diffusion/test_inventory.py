@@ -1,0 +1,118 @@
+import numpy as np
+import pytest
+import torch
+
+from pipeline import seeds
+from pipeline.diffusion.context import Demand
+from pipeline.diffusion.inventory import (
+    DRAWS,
+    Ask,
+    Inventory,
+    amended,
+    counts_of,
+    draw_inventories,
+    fitted,
+    room_features,
+)
+from pipeline.diffusion.settings import InventorySettings
+from tests.diffusion.small_world import CLASSES, LAYOUTS, make_examples
+
+BED, NIGHTSTAND, TABLE, CHAIR = (CLASSES.index(c) for c in ("double_bed", "nightstand", "dining_table", "dining_chair"))
+
+
+@pytest.fixture(scope="module")
+def rooms():
+    made = make_examples(200)
+    features = np.stack([room_features(e.floor, e.height) for e in made])
+    return features, np.array([e.layout for e in made]), np.stack([counts_of(e.classes, len(CLASSES)) for e in made])
+
+
+@pytest.fixture(scope="module")
+def net(rooms):
+    torch.set_num_threads(1)
+    return fitted(*rooms, len(LAYOUTS), InventorySettings(width=16, steps=150, batch=64), 0)
+
+
+def drawn(net, rooms, asks, seed=0):
+    features, layouts, _ = rooms
+    n = len(asks)
+    uniform = seeds.generator(seed, "draws").random((n, DRAWS, len(CLASSES)))
+    return np.stack(draw_inventories(net, torch.from_numpy(features[:n]), torch.from_numpy(layouts[:n]), asks, uniform))
+
+
+def test_rooms_hold_what_rooms_of_their_type_hold(net, rooms):
+    found = drawn(net, rooms, [Ask(None)] * 200)
+    layouts, counts = rooms[1], rooms[2]
+    for layout in range(len(LAYOUTS)):
+        real, made = (c[layouts[:200] == layout].mean(0) for c in (counts, found))
+        np.testing.assert_allclose(made, real, atol=0.2)
+
+
+@pytest.mark.parametrize("total", [1, 3, 7, 24])
+def test_a_told_number_is_met_exactly(net, rooms, total):
+    assert (drawn(net, rooms, [Ask(total)] * 20).sum(1) == total).all()
+
+
+def test_demands_are_met_with_and_without_a_number(net, rooms):
+    asks = [
+        Ask.of(None, (Demand(("nightstand",), 3),), CLASSES),
+        Ask.of(9, (Demand(("dining_chair",), 5, 5),), CLASSES),
+        Ask.of(None, (Demand(("double_bed", "dining_table"), 2, 2), Demand(("nightstand",), 0, 0)), CLASSES),
+        Ask.of(4, (Demand(("wardrobe",), 1, 1), Demand(("double_bed",), 0, 0)), CLASSES),
+    ]
+    found = drawn(net, rooms, asks)
+    for ask, counts in zip(asks, found, strict=True):
+        assert ask.met_by(counts[None])[0]
+    assert found[1, CHAIR] == 5
+
+
+def test_free_draws_that_meet_a_wish_are_not_distorted(net, rooms):
+    """Every dining room of the small world holds four chairs: to ask for one chair at least changes nothing."""
+    wish = Ask.of(None, (Demand(("dining_chair", "double_bed"), 1),), CLASSES)
+    assert (drawn(net, rooms, [wish] * 60) == drawn(net, rooms, [Ask(None)] * 60)).all(1).mean() > 0.9
+
+
+def test_what_no_draw_meets_is_mended():
+    usual = np.array([1.0, 2.0, 0.0, 0.0, 0.0, 0.5])
+    ask = Ask(6, (((0,), 1, 1), ((2, 3), 2, None)))
+    found = amended(np.array([0, 0, 0, 0, 0, 9]), ask, usual)
+    assert ask.met_by(found[None])[0]
+    assert found[0] == 1
+
+
+def test_a_room_is_never_empty_unless_nothing_may_be_there():
+    assert amended(np.zeros(3, np.int64), Ask(None), np.array([0.2, 0.9, 0.1])).tolist() == [0, 1, 0]
+    nothing = Ask(None, (((0, 1, 2), 0, 0),))
+    assert amended(np.zeros(3, np.int64), nothing, np.array([0.2, 0.9, 0.1])).sum() == 0
+
+
+def test_a_wish_for_a_class_that_the_model_does_not_know_asks_nothing():
+    assert Ask.of(None, (Demand(("spaceship",), 1),), CLASSES).bounds == ()
+
+
+def test_the_likelihood_is_a_distribution_over_counts(rooms):
+    torch.manual_seed(0)
+    small = Inventory(2, len(LAYOUTS), 8)
+    with torch.no_grad():
+        for p in small.parameters():
+            p.normal_(0, 0.5)
+        counts = torch.cartesian_prod(torch.arange(13), torch.arange(13))
+        n = len(counts)
+        features, kinds = torch.from_numpy(rooms[0][:1]).expand(n, -1), torch.zeros(n, dtype=torch.long)
+        total = small(features, kinds, counts, torch.zeros(n, dtype=torch.bool)).exp().sum()
+    assert float(total) == pytest.approx(1, abs=1e-4)
+
+
+def test_features_do_not_change_when_the_room_is_turned():
+    from dataclasses import replace
+
+    floor = make_examples(1)[0].floor
+    turn = np.array([[0, -1], [1, 0]], np.float32)
+    turned = replace(floor, ends=floor.ends @ turn.T, normal=floor.normal @ turn.T)
+    np.testing.assert_allclose(room_features(turned, 2.7), room_features(floor, 2.7), atol=1e-5)
+
+
+def test_the_fit_is_the_same_every_time(rooms):
+    settings = InventorySettings(width=8, steps=5, batch=16)
+    one, two = (fitted(*rooms, len(LAYOUTS), settings, 3) for _ in range(2))
+    assert all(torch.equal(a, b) for a, b in zip(one.state_dict().values(), two.state_dict().values(), strict=True))
