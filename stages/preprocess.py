@@ -35,7 +35,8 @@ def main(root: Path) -> None:
     """Read the sources that section `preprocess` of params.yaml names."""
     settings = params.section(PreprocessSettings, params.read(root / "params.yaml"), "preprocess")
     workers = settings.workers or cores()
-    front = folder(root, "front", settings.front, () if settings.peers else (batch.HOUSES, batch.MODELS))
+    needed = () if settings.peers else (batch.HOUSES,) if settings.filters.keep_without_model else (batch.HOUSES, batch.MODELS)
+    front = folder(root, "front", settings.front, needed)
     inventory.require_listed(root, front, front_at)
     partnet = folder(root, "partnet", settings.partnet, ()) if settings.partnet else None
     objects = batch.partnet_objects(partnet) if partnet else []
@@ -73,7 +74,7 @@ def read_library(
     library = LibraryRows()
     houses = [] if settings.peers else batch.house_files(front)
     said = hints(progress(batch.each(batch.house_records, front, houses, workers), "records", len(houses)), taxonomy.load())
-    if (front / batch.MODELS).is_dir():  # `folder` has seen to it, but for the peers' rooms, which can do without
+    if (front / batch.MODELS).is_dir():  # `folder` has seen to it, but where rooms can do without
         infos, library.rejects = batch.future_models(front, said)
         task = LibraryTask(front, out, settings.models, settings.front_licence, cache, said)
         for made in progress(batch.each(batch.read_future, task, infos, workers), "models", len(infos)):
@@ -83,7 +84,7 @@ def read_library(
         task = LibraryTask(partnet, out, settings.models, settings.partnet_licence, cache, categories=categories)
         for made in progress(batch.each(batch.read_partnet, task, objects, workers), "articulated", len(objects)):
             library.add(made)
-    if not library.assets and not settings.peers:
+    if not library.assets and not settings.peers and not settings.filters.keep_without_model:
         raise ContentError(f"{front} gives no usable model", "check the folders in section preprocess of params.yaml")
     kept = {row["file"] for row in library.assets}
     for path in out.glob("*.safetensors"):

@@ -23,6 +23,7 @@ from pipeline.sources.front_file import Furniture
 from pipeline.sources.front_hints import Hint, records
 from pipeline.sources.front_house import HouseRows, read_house
 from pipeline.sources.front_objects import Model
+from pipeline.sources.front_shapes import filled
 from pipeline.sources.future import ModelInfo, read_model, read_model_info
 from pipeline.sources.guarded import Folder
 from pipeline.sources.household import candidates, oriented, read_household
@@ -158,7 +159,9 @@ def read_future(task: LibraryTask, info: ModelInfo) -> LibraryRows:
         _keep(made, task, asset, Scale(model.box.unit), words.materials.get(info.material.lower(), ""), info.material)
         made.rejects += model.rejects
         w, d, h = asset.size.tolist()
-        made.models[info.model_id] = Model(model.box, asset.category, asset.asset_id, (w, d, h), asset.openable)
+        made.models[info.model_id] = Model(
+            model.box, asset.category, asset.asset_id, (w, d, h), asset.openable, filled(asset.meshes(), asset.size)
+        )
 
     return _guarded(made, "model", info.model_id, work)
 
@@ -280,9 +283,15 @@ def _do(item: Any) -> Any:
 
 
 def numbered(parts: Iterable[HouseRows]) -> Iterator[HouseRows]:
-    """Yield the rows of all houses, their scenes numbered in order."""
+    """Yield the rows of all houses, their scenes numbered in order; one that was there before under another name only gives a reject."""
     count = 0
+    known: dict[str, str] = {}
     for part in parts:
+        first = known.setdefault(part.content, part.name) if part.content else part.name
+        if first != part.name:
+            of_house = [row for row in part.rejects if row["what"] == "house"]
+            yield HouseRows(part.name, rejects=[*of_house, reject("house", part.name, "duplicate_house", f"the same as {first}")])
+            continue
         for scene in part.scenes:
             scene["index"] = count
             count += 1

@@ -26,7 +26,7 @@ FARTHEST = 1e4  # [m] from the origin; no house lies beyond
 
 @dataclass(frozen=True, slots=True)
 class Furniture:
-    """A furniture record. `box` is the declared (w, d, h) [m] in our axis order, or None."""
+    """A furniture record. `box` is the declared (w, d, h) [m] in our axis order, `foot` how high it is placed [m], where that is known."""
 
     uid: str
     jid: str
@@ -34,6 +34,7 @@ class Furniture:
     category: str
     title: str
     box: tuple[float, float, float] | None
+    foot: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +94,10 @@ class RoomRecord:
 
 @dataclass(frozen=True, slots=True)
 class HouseFile:
-    """A house: records by uid (the first of each uid), rooms in file order, the rooms that an entry door names."""
+    """A house: records by uid (the first of each uid), rooms in file order, the rooms that an entry door names.
+
+    `uid` is the file's name, `identity` the uid that it states: copies under other names share it.
+    """
 
     uid: str
     furniture: Mapping[str, Furniture]
@@ -101,6 +105,7 @@ class HouseFile:
     rooms: tuple[RoomRecord, ...]
     entry_rooms: tuple[str, ...]
     rejects: tuple[Row, ...]
+    identity: str = ""
 
 
 def _listed(values: Any, where: str) -> Any:
@@ -154,7 +159,7 @@ def parse_house(tree: Any, name: str, arrays: Sequence[bytes] = ()) -> HouseFile
     furniture = _first_by_uid((furniture_record(r) for r in _records(tree, "furniture")), name, "furniture", rejects)
     meshes = _first_by_uid((_mesh(r, arrays) for r in _records(tree, "mesh")), name, "mesh", rejects)
     rooms = tuple(_room(r, name, furniture, rejects) for r in scene["room"] if isinstance(r, dict))
-    return HouseFile(name, furniture, meshes, rooms, _entry_rooms(tree), tuple(rejects))
+    return HouseFile(name, furniture, meshes, rooms, _entry_rooms(tree), tuple(rejects), uid)
 
 
 def declared_box(record: Mapping[str, Any]) -> tuple[float, float, float] | None:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import functools
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 import shapely
@@ -13,14 +13,15 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from pipeline.entities.plan import Opening, Room
+from pipeline.manifest import sha256
 from pipeline.sources import front_openings
 from pipeline.sources.front_file import HouseFile, RoomRecord, deferred, parse_house
+from pipeline.sources.front_filling import fill
 from pipeline.sources.front_floor import Floor, outline
 from pipeline.sources.front_holes import MESHES, Hole, from_furniture, from_mesh
-from pipeline.sources.front_objects import Model, Placed, overlapping, placed
+from pipeline.sources.front_objects import Model
 from pipeline.sources.front_poses import to_ours, yaw_and_tilt
 from pipeline.sources.front_rows import ReadRoom, object_row, opening_row, room_row, scene_row
-from pipeline.sources.front_supports import floating, supports
 from pipeline.sources.front_walkable import HEIGHT, STEP, walkable
 from pipeline.sources.guarded import MAX_JSON, Folder, parse_json
 from pipeline.sources.identity import slug
@@ -31,7 +32,7 @@ from pipeline.taxonomy import Taxonomy
 Floats = NDArray[np.float64]
 # Absurd counts: real houses have up to some 30 rooms, 60 openings, 60 objects in a room, 2,000 floor triangles.
 MAX_ROOMS, MAX_CHILDREN, MAX_HOLES = 300, 20_000, 1000
-MAX_OBJECTS, MAX_TRIANGLES = 500, 20_000  # of one room
+MAX_TRIANGLES = 20_000  # of one room
 MAX_EXTENT = 100.0  # [m] of a house
 WALLS = frozenset({"WallInner", "WallOuter"})
 AREA_TOLERANCE = 0.15  # of the room's size in the file, up to which floors of it differ by their strips under doors
@@ -41,13 +42,18 @@ INNER_WALL, OUTER_WALL = 0.12, 0.24  # [m] 3D-FRONT's usual thicknesses, where n
 
 @dataclass(slots=True)
 class HouseRows:
-    """What a house gives; all lists are empty but `rejects` when it is left out."""
+    """What a house gives; all lists are empty but `rejects` when it is left out. `name` is that of its file.
 
+    `content` is a digest of its rooms and furniture, wherever its file lies and whatever it is called; "" where nobody needs it.
+    """
+
+    name: str = ""
     scenes: list[Row] = field(default_factory=list)
     rooms: list[Row] = field(default_factory=list)
     openings: list[Row] = field(default_factory=list)
     objects: list[Row] = field(default_factory=list)
     rejects: list[Row] = field(default_factory=list)
+    content: str = ""
 
 
 def read_house(folder: Folder, file: str, models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, licence: str) -> HouseRows:
@@ -55,23 +61,37 @@ def read_house(folder: Folder, file: str, models: Mapping[str, Model], taxonomy:
     name = file.rsplit("/", 1)[-1].removesuffix(".json")
     try:
         text, arrays = deferred(folder.read(file, MAX_JSON))
-        return house_rows(parse_house(parse_json(text, file), name, arrays), models, taxonomy, limits, licence)
+        try:
+            tree = parse_json(text, file)
+        except SourceError:
+            parse_json(folder.read(file, MAX_JSON), file)  # says where in the file itself, whose arrays `deferred` took out
+            raise
+        return house_rows(parse_house(tree, name, arrays), models, taxonomy, limits, licence)
     except SourceError as error:
         return HouseRows(rejects=[reject("house", name, error.code, error.detail)])
 
 
 def house_rows(house: HouseFile, models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, licence: str) -> HouseRows:
     """Turn a house's records into rows."""
-    rows = HouseRows(rejects=list(house.rejects))
+    rows = HouseRows(house.uid, rejects=list(house.rejects))
     rooms = rooms_of(house, taxonomy, limits, rows.rejects)
     if not rooms:
         rows.rejects.append(reject("house", house.uid, "no_rooms"))
         return rows
-    _fill(house, rooms, models, taxonomy, limits, rows.rejects)
+    fill(house, rooms, models, taxonomy, limits, rows.rejects)
     if not any(room.objects for room in rooms):
         rows.rejects.append(reject("house", house.uid, "no_objects"))
         return rows
-    return rows_of(house, rooms, rows, taxonomy, limits, licence)
+    rows = rows_of(house, rooms, rows, taxonomy, limits, licence)
+    rows.content = _content(house.identity, rows)
+    return rows
+
+
+def _content(identity: str, rows: HouseRows) -> str:
+    """Return a digest of what a house is but for its file's name: the uid that it states, its floors and what stands on them."""
+    floors = sorted(json.dumps([r["type"], r["polygon"]]) for r in rows.rooms)
+    things = sorted(json.dumps([o["source_id"].rpartition("#")[2], o["position"], o["yaw"], o["size"]]) for o in rows.objects)
+    return sha256("\n".join([identity, *floors, *things]).encode())
 
 
 def rows_of(house: HouseFile, rooms: list[ReadRoom], rows: HouseRows, taxonomy: Taxonomy, limits: FrontFilters, licence: str) -> HouseRows:
@@ -89,7 +109,7 @@ def rows_of(house: HouseFile, rooms: list[ReadRoom], rows: HouseRows, taxonomy: 
         row["walkable_free"] = share
     rows.openings = [opening_row(scene_id, o) for o in openings]
     rows.objects = [
-        object_row(scene_id, room, k, f"{house.uid}/{room.record.instance}/{o.child.instance}")
+        object_row(scene_id, room, k, f"{house.uid}/{o.filed or room.record.instance}/{o.child.instance}")
         for room in rooms
         for k, o in enumerate(room.objects)
     ]
@@ -165,63 +185,6 @@ def _height(house: HouseFile, record: RoomRecord, default: float) -> float:
         if found and 1.8 < max(found) < 8.0:
             return round(max(found), 4)
     return default
-
-
-def _fill(
-    house: HouseFile, rooms: list[ReadRoom], models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]
-) -> None:
-    """Give each room its objects; every child that is left out gets a reason, dangling and built-in ones by the room."""
-    seen: set[tuple[Any, ...]] = set()
-    for room in rooms:
-        where = f"{house.uid}/{room.record.instance}"
-        candidates: list[Placed] = []
-        dangling = built_in = 0
-        for child in room.record.children:
-            record = house.furniture.get(child.ref)
-            if record is None:
-                dangling += child.ref not in house.meshes
-                continue
-            if record.valid is None:
-                built_in += not record.title.startswith(("door/", "window/"))
-                continue
-            name = f"{where}/{child.instance}"
-            pose = (child.replaced_by or record.jid, *np.round(child.position, 3).tolist(), *np.round(child.rotation, 3).tolist())
-            if record.valid and pose in seen:
-                rejects.append(reject("object", name, "duplicate", f"model {record.jid}"))
-                continue
-            seen.add(pose)
-            made = placed(child, record, models, room.polygon, taxonomy, limits)
-            if isinstance(made, Placed):
-                candidates.append(made)
-            else:
-                rejects.append(reject("object", name, *made))
-        for reason, count in (("dangling_ref", dangling), ("built_in", built_in)):
-            if count:
-                rejects.append(reject("room", where, reason, f"{count} of {len(room.record.children)} children"))
-        if len(candidates) > MAX_OBJECTS:
-            raise SourceError("too_large", where, f"{len(candidates)} objects in {where}")
-        dropped = overlapping(candidates, limits, taxonomy.small)
-        for i, made in enumerate(candidates):
-            name = f"{where}/{made.child.instance}"
-            if i in dropped:
-                j, share = dropped[i]
-                detail = f"{made.category} has {share:.0%} in {candidates[j].category} {candidates[j].child.instance}"
-                rejects.append(reject("object", name, "overlap", detail))
-                continue
-            rejects.extend(reject("object", name, reason, detail) for reason, detail in made.notes)
-            room.objects.append(made)
-        _support(room, taxonomy, where, rejects)
-
-
-def _support(room: ReadRoom, taxonomy: Taxonomy, where: str, rejects: list[Row]) -> None:
-    """Find what the room's objects stand on; small things whose support was left out are left out as well."""
-    held = supports(room.objects, taxonomy)
-    while any(lost := [floating(o, on, taxonomy) for o, on in zip(room.objects, held, strict=True)]):
-        names = [f"{where}/{o.child.instance}" for o, gone in zip(room.objects, lost, strict=True) if gone]
-        rejects.extend(reject("object", name, "no_support") for name in names)
-        room.objects = [o for o, gone in zip(room.objects, lost, strict=True) if not gone]
-        held = supports(room.objects, taxonomy)
-    room.supports = held
 
 
 def _walkable(rooms: list[ReadRoom], openings: list[Opening]) -> list[float]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from pipeline.entities.home import Placement
-from pipeline.sources.front_file import Child, Furniture
+from pipeline.sources.front_file import FARTHEST, Child, Furniture
 from pipeline.sources.front_hints import kinds_of
 from pipeline.sources.front_poses import Box, Pose, place, yaw_and_tilt
+from pipeline.sources.front_shapes import shared
 from pipeline.sources.future_scale import LONGEST, likeliest
 from pipeline.sources.settings import FrontFilters
 from pipeline.taxonomy import Taxonomy
@@ -23,23 +24,28 @@ Floats = NDArray[np.float64]
 SEATS = frozenset({"dining_chair", "lounge_chair", "dressing_chair", "chinese_chair", "barstool", "stool", "armchair"})
 TABLES = frozenset({"dining_table", "desk", "dressing_table", "coffee_table", "corner_side_table"})
 MIN_SIZE = 0.01  # [m]
+STANDING, TALL = 0.1, 1.0  # [m] a lamp whose foot is lower and that is higher hangs from no ceiling
 BELOW = 0.05  # [m] under the floor: rounding of the source
 
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """What a house needs to know of a model: its box, its category, and whether an asset was made of it."""
+    """What a house needs to know of a model: its box, its category, whether an asset was made of it, and what of its box it fills."""
 
     box: Box
     category: str
     asset_id: str
     asset_size: tuple[float, float, float]
     openable: bool = False
+    shape: bytes = b""
 
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """An accepted object: `scale` (3,) on the asset's size; `notes` are (reason, detail) of what was repaired."""
+    """An accepted object: `scale` (3,) on the asset's size; `notes` are (reason, detail) of what was repaired.
+
+    `shape` is what of its box it fills, see `front_shapes`; `filed` the room under which the file has it, where that is another.
+    """
 
     child: Child
     jid: str
@@ -49,6 +55,8 @@ class Placed:
     scale: Floats
     openable: bool
     notes: tuple[tuple[str, str], ...]
+    shape: bytes = b""
+    filed: str = ""
 
     def footprint(self) -> Polygon:
         """Return the box in plan."""
@@ -81,11 +89,10 @@ def placed(  # noqa: PLR0911 - one return per reason
     child: Child,
     record: Furniture,
     models: Mapping[str, Model],
-    floor: Polygon,
     taxonomy: Taxonomy,
     limits: FrontFilters,
 ) -> Placed | tuple[str, str]:
-    """Return the object, or (reason, detail) for leaving it out. `floor` is the room's polygon in our plan frame."""
+    """Return the object, whatever room it lies in, or (reason, detail) for leaving it out."""
     if record.valid is not True:
         return "invalid_flag", f"valid is {record.valid}, category {record.category!r}"
     jid = child.replaced_by or record.jid
@@ -95,6 +102,8 @@ def placed(  # noqa: PLR0911 - one return per reason
         return "unknown_category", f"category {record.category!r}, title {record.title!r}"
     if model is None and not (limits.keep_without_model and record.box):
         return "missing_model", f"no asset of model {jid}"
+    if np.abs(child.position).max() > FARTHEST:
+        return "bad_number", f"stands {np.abs(child.position).max():.3g} m from the origin"
     magnitude = np.abs(child.scale)
     if magnitude.min() < 1e-5 or magnitude.max() > limits.max_scale:
         return "bad_scale", f"scale {child.scale.tolist()}"
@@ -105,15 +114,20 @@ def placed(  # noqa: PLR0911 - one return per reason
     if pose.size.max() > LONGEST or pose.size.min() < MIN_SIZE:
         return "bad_size", f"size {np.round(pose.size, 3).tolist()}"
     asset_id = "" if model is None else mirrored_id(model.asset_id) if pose.mirrored else model.asset_id
-    made = Placed(child, jid, category, asset_id, pose, scale, bool(model and model.openable), notes)
+    made = Placed(child, jid, category, asset_id, pose, scale, bool(model and model.openable), notes, model.shape if model else b"")
     low, top = made.span
+    if taxonomy.categories[category].mount == "ceiling" and low < STANDING and top - low > TALL:
+        note = ("category_inferred", f"floor_lamp, for a {category} of {top - low:.2f} m that stands on the floor")
+        made = replace(made, category="floor_lamp", notes=(*notes, note))
     if low < -BELOW or top > limits.max_top:
         return "bad_height", f"from {low:.2f} to {top:.2f} m"
-    footprint = made.footprint()
-    inside = float(footprint.intersection(floor).area / footprint.area)
-    if inside < limits.min_inside:
-        return "outside_room", f"{inside:.0%} of the footprint inside"
     return made
+
+
+def inside(made: Placed, floor: Polygon) -> float:
+    """Return the share of an object's footprint that lies on a floor, in whole per cent: what is said of it is what counts."""
+    footprint = made.footprint()
+    return round(float(footprint.intersection(floor).area / footprint.area), 2)
 
 
 def _pose(child: Child, record: Furniture, model: Model | None, yaw: float) -> tuple[Pose, Floats, tuple[tuple[str, str], ...]]:
@@ -142,15 +156,25 @@ def shared_volume(a: Placed, b: Placed) -> float:
     return area * height / float(min(np.prod(a.pose.size), np.prod(b.pose.size)))
 
 
-def overlapping(objects: list[Placed], limits: FrontFilters, small: Collection[str] = ()) -> dict[int, tuple[int, float]]:
+def shared_shape(a: Placed, b: Placed) -> float:
+    """Return what `shared_volume` does for the shapes in the boxes, as far as the models tell: the lower of the two figures."""
+    boxes = shared_volume(a, b)
+    if not (a.shape or b.shape) or boxes == 0.0:
+        return boxes
+    first, second = sorted((a, b), key=lambda o: float(np.prod(o.pose.size)))
+    return min(boxes, shared((first.pose, first.shape), (second.pose, second.shape)))
+
+
+def overlapping(objects: list[Placed], limits: FrontFilters, taxonomy: Taxonomy) -> dict[int, tuple[int, float]]:
     """Return {index of the object to drop: (index of what it is in, share)}.
 
     Rule: largest box first, an object is dropped when it shares more than `max_overlap` of the smaller one's volume
-    with one that was kept; a seat at a table may share up to `max_overlap_tucked`, for its box reaches under the top.
-    Things of the `small` categories lie in furniture's boxes by right.
+    with one that was kept; a seat at a table may share up to `max_overlap_tucked`, for its box reaches under the top. What counts is
+    the models' shapes, where they are known. Lamps come last: they evict nobody. Small things lie in furniture's boxes by right.
     """
-    large = [i for i, o in enumerate(objects) if o.category not in small]
-    order = sorted(large, key=lambda i: (-float(np.prod(objects[i].pose.size)), i))
+    large = [i for i, o in enumerate(objects) if o.category not in taxonomy.small]
+    lamps = {c.name for c in taxonomy.categories.values() if c.super == "lighting"}
+    order = sorted(large, key=lambda i: (objects[i].category in lamps, -float(np.prod(objects[i].pose.size)), i))
     shapes = [o.footprint() for o in objects]
     tree = shapely.STRtree(shapes) if shapes else None
     near: dict[int, list[int]] = {}
@@ -163,10 +187,12 @@ def overlapping(objects: list[Placed], limits: FrontFilters, small: Collection[s
         for j in near.get(i, ()):
             if j not in kept:
                 continue
-            share = shared_volume(objects[i], objects[j])
             pair = {objects[i].category, objects[j].category}
             tucked = bool(pair & SEATS) and bool(pair & TABLES)
-            if share > (limits.max_overlap_tucked if tucked else limits.max_overlap):
+            most = limits.max_overlap_tucked if tucked else limits.max_overlap
+            share = round(shared_volume(objects[i], objects[j]), 2)
+            share = round(shared_shape(objects[i], objects[j]), 2) if share > most else share
+            if share > most:
                 dropped[i] = (j, share)
                 break
         else:

@@ -141,7 +141,7 @@ def resolve(hole: Hole, outlines: Sequence[Outline], opening_id: str, reach: flo
         return None
     kind = _kind(hole, len(rooms))
     half = along * hole.width / 2
-    ends = np.round(np.array([hole.centre - half, hole.centre + half]), 4)
+    ends = np.round(np.array([hole.centre - half, hole.centre + half]), 4) + 0.0
     ends = ends[np.lexsort((ends[:, 1], ends[:, 0]))]
     sill = round(max(hole.sill, 0.0), 4) if kind == "window" else 0.0
     return Opening(opening_id, kind, tuple(sorted(rooms)), ends, round(hole.top - sill, 4), sill)

@@ -121,7 +121,7 @@ def scene_row(
         "scene_id": scene_id,
         "index": 0,
         "seed": 0,
-        "split": split_of(house.uid),
+        "split": split_of(house.identity or house.uid),
         "prompt": "",
         "program": "",
         "storeys": 1,

@@ -130,7 +130,8 @@ def identified(info: ModelInfo, hint: Hint, extent: Floats, taxonomy: Taxonomy) 
         category = hint.category()
         if category is None:
             size = extent * unit_factor(extent, declared, None)
-            category = likeliest(size, taxonomy.of_kind(info.category, info.super_category, hint.kind()))
+            members = taxonomy.of_kind(info.category, info.super_category, hint.kind())
+            category = likeliest(size, [m for m in members if taxonomy.categories[m].mount in hint.mounts()] or members)
         if category is None:
             named = f"category {info.category!r}, super-category {info.super_category!r}"
             raise SourceError("unknown_category", info.model_id, named)

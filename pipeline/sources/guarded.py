@@ -103,8 +103,8 @@ def read_json(folder: Folder, relative: str, limit: int = MAX_JSON) -> Any:
     return parse_json(folder.read(relative, limit), relative)
 
 
-def parse_json(data: bytes, where: str) -> Any:
-    """Parse JSON bytes as `read_json` does."""
+def parse_json(data: bytes, where: str, lines: int = 0, characters: int = 0) -> Any:
+    """Parse JSON bytes as `read_json` does; `lines` and `characters` of the file come before them, for messages to count in it."""
     head = data[:64].lstrip(b"\xef\xbb\xbf \t\r\n")
     if not head:
         raise SourceError("not_json", where, "is empty")
@@ -124,5 +124,8 @@ def parse_json(data: bytes, where: str) -> Any:
         return json.loads(text, parse_constant=constant)
     except RecursionError as error:
         raise SourceError("not_json", where, "is nested too deeply") from error
+    except json.JSONDecodeError as error:
+        place = f"line {lines + error.lineno}, column {error.colno}, character {characters + error.pos}"
+        raise SourceError("not_json", where, f"cannot be parsed ({error.msg[:60]}: {place})") from error
     except ValueError as error:
         raise SourceError("not_json", where, f"cannot be parsed ({str(error)[:80]})") from error

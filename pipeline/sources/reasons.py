@@ -26,6 +26,9 @@ REASONS: dict[str, Reason] = {
     "no_rooms": Reason("house", "dropped", "no usable room is left"),
     "no_objects": Reason("house", "dropped", "no usable object is left in any room"),
     "uid_mismatch": Reason("house", "repaired", "the uid in the file is not the file's name; the name is used"),
+    "duplicate_house": Reason(
+        "house", "dropped", "the same uid, floors and furniture as those of a house before it, in a file of another name"
+    ),
     "duplicate_record": Reason("house", "repaired", "several furniture or mesh records share a uid; the first is used"),
     # rooms
     "no_floor": Reason("room", "dropped", "no floor mesh with an area (the pseudo-room OtherRoom, most often)"),
@@ -45,7 +48,9 @@ REASONS: dict[str, Reason] = {
     "unknown_category": Reason("object, model", "dropped", "no category of the taxonomy for it"),
     "no_model_info": Reason("model", "dropped", "the model's folder has no entry in model_info.json, and no house says what it is"),
     "category_inferred": Reason(
-        "model", "repaired", "model_info.json names no category; the houses' records do, or the size within its super-category decides"
+        "object, model",
+        "repaired",
+        "model_info.json names no category, or one that cannot be where it stands; the houses' records do, or the size within its super-category decides",
     ),
     "unknown_name": Reason("model", "repaired", "a style or material that the taxonomy does not list; left empty"),
     "missing_model": Reason("object", "dropped", "its model is not among the assets (missing, or rejected itself)"),
@@ -57,6 +62,8 @@ REASONS: dict[str, Reason] = {
     "tilted": Reason("object", "dropped", "turned about another axis than the vertical, or upside down"),
     "bad_height": Reason("object", "dropped", "reaches below the floor or above `max_top`"),
     "outside_room": Reason("object", "dropped", "less than `min_inside` of its footprint lies in the room"),
+    "other_room": Reason("object", "repaired", "filed under another room than the one in which it lies; it is in the latter"),
+    "not_placed": Reason("object", "dropped", "a valid furniture record that no room of the file refers to"),
     "duplicate": Reason("object, model", "dropped", "the same model at the same pose was read before"),
     "overlap": Reason("object", "dropped", "shares more than `max_overlap` of its volume with a larger object"),
     "no_support": Reason("object", "dropped", "a small thing whose support was left out: it would hang in the air"),

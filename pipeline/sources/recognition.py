@@ -103,7 +103,11 @@ def _front(root: Path) -> Source | None:
             halves |= ({HOUSES: folder} if has_houses else {}) | ({MODELS: folder} if has_models else {})
     if (root / "model_info.json").is_file():
         halves[MODELS] = root.parent
-    elif any(HOUSE_NAME.match(p.name) for p in root.glob("*.json")):
+    elif HOUSES not in halves and (other := next((f for f in (root, *_below(root, 1)) if f.name != HOUSES and _holds_houses(f)), None)):
+        raise ContentError(
+            f"{other} holds houses of 3D-FRONT under another name", f"call the folder {HOUSES}, or link it so, with {MODELS} beside it"
+        )
+    elif root.name == HOUSES and _holds_houses(root):
         halves[HOUSES] = root.parent
     if halves:
         (name, folder), lacking = next(iter(halves.items())), (MODELS if HOUSES in halves else HOUSES)
@@ -111,12 +115,19 @@ def _front(root: Path) -> Source | None:
             raise ContentError(
                 f"{HOUSES} lies in {halves[HOUSES]}, {MODELS} in {halves[MODELS]}", "put both into one folder, by a link if need be"
             )
-        raise ContentError(f"{folder} holds {name} but no {lacking}", f"put {lacking} beside it: objects cannot be read without both")
+        remedy = f"put {lacking} beside it: objects cannot be read without both"
+        if lacking == MODELS:
+            remedy += "; for rooms with boxes alone name the folder in preprocess.front of params.yaml and set preprocess.filters.keep_without_model"
+        raise ContentError(f"{folder} holds {name} but no {lacking}", remedy)
     return None
 
 
 def _has_houses(folder: Path) -> bool:
     return folder.is_dir() and any(folder.glob("*.json"))
+
+
+def _holds_houses(folder: Path) -> bool:
+    return any(HOUSE_NAME.match(p.name) for p in folder.glob("*.json"))
 
 
 def _is_object(folder: Path) -> bool:

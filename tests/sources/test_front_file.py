@@ -99,6 +99,20 @@ def test_same_room_id_in_two_houses_is_two_rooms(tmp_path):
     assert [s["index"] for s in made.scenes] == [0, 1]
 
 
+def test_a_broken_file_is_named_where_it_breaks(tmp_path):
+    """Characters count in the file, whose arrays are taken out before it is parsed."""
+    making.write_library(tmp_path / "front")
+    text = json.dumps(making.two_rooms(), indent=1).replace('"scene":', '"scene";', 1)
+    making.write_house(tmp_path / "front", text, "house-a")
+    (row,) = [r for r in read(tmp_path).rejects if r["what"] == "house"]
+    at = text.index('"scene";') + len('"scene"')
+    line = text[:at].count("\n") + 1
+    assert (
+        row["detail"]
+        == f"cannot be parsed (Expecting ':' delimiter: line {line}, column {at - text.rindex(chr(10), 0, at)}, character {at})"
+    )
+
+
 def test_deferred_arrays_are_the_arrays():
     """Taking the meshes' numbers out before parsing changes nothing of what is read, whatever stands between them."""
     tree = making.two_rooms()

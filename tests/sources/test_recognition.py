@@ -63,6 +63,14 @@ def test_half_a_source_or_none_is_said(tmp_path, files, path, said):
     assert said in str(error.value)
 
 
+@pytest.mark.parametrize("path", [".", "my houses"])
+def test_a_folder_of_houses_is_named_as_it_is(tmp_path, path):
+    make(tmp_path, HOUSE.replace("3D-FRONT", "my houses"), INFO)
+    with pytest.raises(ContentError) as error:
+        recognised(tmp_path / path)
+    assert f"{tmp_path / 'my houses'} holds houses of 3D-FRONT under another name" in str(error.value)
+
+
 def test_a_neighbour_is_not_taken_for_the_folder_that_was_named(tmp_path):
     front(tmp_path)
     (tmp_path / "empty").mkdir()

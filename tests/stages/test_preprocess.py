@@ -149,3 +149,13 @@ def test_settings_are_strict(tmp_path):
 def test_relations_are_written_beside_the_tables(made):
     known = files.load(made / "data/tables/relations.json")
     assert not known.pairs  # six houses are too few to know anything
+
+
+def test_objects_without_models_need_no_folder_of_models(tmp_path):
+    making.write_house(tmp_path / "data/raw/3d-front", making.two_rooms(variant="nested"))
+    write_params(tmp_path, partnet=None)
+    with pytest.raises(ContentError, match="3D-FUTURE-model is missing"):
+        main(tmp_path)
+    write_params(tmp_path, partnet=None, filters={"keep_without_model": True})
+    main(tmp_path)
+    assert [o["category"] for o in read_all(tmp_path)["objects"]] == ["double_bed", "nightstand", "pendant_lamp"]

@@ -61,28 +61,32 @@ def read_own(path: Path, house: str | None = None) -> OwnPlan:
         raise UsageError(f"{path} is {'not a file' if path.exists() else 'missing'}", "give a JSON file with a plan")
     try:
         data = Folder.at(path.parent).read(path.name, MAX_BYTES)
-        if path.suffix == ".jsonl":
-            data = _line(data, house, path)
-        elif house is not None:
+        if house is not None and path.suffix != ".jsonl":
             raise UsageError(f"--house is given, and {path} holds one plan", "leave it out, or give a .jsonl file of houses")
-        document = parse_json(data, path.name)
+        document = _line(data, house, path) if path.suffix == ".jsonl" else parse_json(data, path.name)
     except SourceError as error:
         raise ContentError(f"{path}: {error.detail}", "give a JSON file with a plan; docs/floorplan.md shows one") from error
     return read_own_json(document, path.stem)
 
 
-def _line(data: bytes, house: str | None, path: Path) -> bytes:
-    lines = [line for line in data.splitlines() if line.strip()]
+def _line(data: bytes, house: str | None, path: Path) -> Any:
+    """Return the house on a line of its own, parsed; messages count lines and characters in the file."""
+    lines, start = [], 0
+    for number, line in enumerate(data.splitlines(keepends=True)):
+        if line.strip():
+            lines.append((line, number, start))
+        start += len(line.decode("utf-8", "replace"))
     if house is None:
         raise UsageError(f"{path} holds {len(lines)} houses", "choose one with --house, a line from 0 or an id")
     if house.isdecimal() and int(house) < len(lines):
-        return lines[int(house)]
-    for line in lines:
+        line, number, start = lines[int(house)]
+        return parse_json(line, path.name, number, start)
+    for line, number, start in lines:
         if house.encode() not in line:
             continue
-        found = parse_json(line, path.name)
+        found = parse_json(line, path.name, number, start)
         if isinstance(found, dict) and house in {found.get("id"), found.get("uid"), found.get("name")}:
-            return line
+            return found
     raise UsageError(f"{path} has no house {house[:60]!r}", f"choose a line from 0 to {len(lines) - 1}")
 
 

@@ -258,6 +258,17 @@ def test_one_house_of_many(tmp_path):
             read_own(path, wrong)
 
 
+def test_a_broken_line_of_many_is_named_where_it_is_in_the_file(tmp_path):
+    good = json.dumps({"id": "first", **home()})
+    bad = good.replace('"rooms":', '"rooms";', 1)
+    path = tmp_path / "houses.jsonl"
+    path.write_text(f"{good}\n\n{bad}\n")
+    at = path.read_text().index('"rooms";') + len('"rooms"')
+    with pytest.raises(ContentError, match=f"line 3, column {at - len(good) - 1}, character {at}"):
+        read_own(path, "1")
+    assert read_own(path, "first").plan.entrance == "living"
+
+
 def test_outside_walls_meet_between_rooms_that_are_far_apart():
     own = read(
         lambda d: (
