@@ -1,12 +1,13 @@
 """DVC stage `baselines`: the peers' layout models and the paper's, trained for the same CPU time on the same rooms, in one table.
 
 Does nothing unless `metrics.baselines` of params.yaml is true. Reads data/tables/ and data/latents/, writes
-models/baselines/ (resumable) and metrics/baselines.json.
+models/baselines/ (weights and drafts; a run that was cut off goes on) and metrics/baselines.json.
 """
 
 from __future__ import annotations
 
-import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -20,9 +21,10 @@ from pipeline.baselines.furnish import BASELINES, Baselines
 from pipeline.baselines.job import NETS, Job, open_job, run_digest, trainer
 from pipeline.baselines.settings import BaselineSettings
 from pipeline.baselines.training import Trainer, train
-from pipeline.experiments.baselines import cases_of, compare, controlled, spread
+from pipeline.diffusion.context import RoomContext
+from pipeline.experiments.baselines import Drafts, asked, cases_of, drafted, figures, spread, success
 from pipeline.experiments.settings import MetricsSettings
-from pipeline.manifest import write_json
+from pipeline.manifest import digest, write_json
 from stages.runner import run
 
 
@@ -40,7 +42,7 @@ def main(root: Path) -> None:
     trained = {name: trained_net(folder, name, job, settings, tree["seed"]) for name in NETS}
     nets = {name: each.average for name, each in trained.items()}
     made = Baselines(nets, job.scaling, settings, job.layouts, job.opens, tree["seed"])
-    found = compared(made, job, settings, metrics.split)
+    found = compared(folder, made, trained, job, metrics.split)
     write_json(
         root / "metrics" / "baselines.json",
         found | {"trained": {name: report(each) for name, each in trained.items()}, "train_rooms": len(job.outlines)},
@@ -62,16 +64,28 @@ def trained_net(folder: Path, name: str, job: Job, settings: BaselineSettings, s
     return made
 
 
-def compared(made: Baselines, job: Job, settings: BaselineSettings, split: str) -> dict[str, Any]:
-    """Return the table over the rooms of the split."""
-    cases = cases_of(job.tables, split, job.layouts, job.scaling.classes, settings.slots)
-    models = {name: partial(made.furnish, name) for name in BASELINES}
-    opens = dict(zip(job.scaling.classes, job.opens.tolist(), strict=True))
+def compared(folder: Path, made: Baselines, trained: Mapping[str, Trainer], job: Job, split: str) -> dict[str, Any]:
+    """Furnish the rooms of the split with every baseline, and return their figures beside those of the real rooms."""
+    settings, classes = made.settings, job.scaling.classes
+    cases = cases_of(job.tables, split, job.layouts, classes, settings.slots)
+    shown = spread(cases, settings.rooms)
+
+    def drafts(name: str, label: str, rooms: Sequence[RoomContext]) -> Drafts:
+        net = trained[BASELINES[name]]
+        key = digest([asdict(settings), run_digest(net.name, job, settings, made.seed), net.done, [str(r) for r in rooms]])
+        return drafted(folder / f"{label}.json", key, partial(made.furnish, name), rooms)
+
+    found = {name: drafts(name, name, [case.context for case in shown]) for name in BASELINES}
+    counted = {n: drafts("scenefoundry", f"scenefoundry_{n}", asked(cases, n, settings.count_rooms)) for n in settings.counts}
+    real, opens = [case.real for case in shown], dict(zip(classes, job.opens.tolist(), strict=True))
     rng = seeds.generator(made.seed, "baselines-bootstrap")
-    return {
-        "models": compare(rng, models, spread(cases, settings.rooms), opens, settings.counts),
-        "quantity": controlled(models["scenefoundry"], cases, settings.counts, settings.count_rooms),
+    models = {
+        name: figures(rng, shown, rooms, real, opens, settings.counts)
+        for name, rooms in ({"real": real} | {name: each.rooms for name, each in found.items()}).items()
     }
+    for name, each in found.items():
+        models[name]["cpu_seconds_per_room"] = round(each.seconds / len(shown), 4)
+    return {"models": models, "quantity": {str(n): success(each.rooms, n) for n, each in counted.items()}}
 
 
 def report(state: Trainer) -> dict[str, Any]:
@@ -80,7 +94,6 @@ def report(state: Trainer) -> dict[str, Any]:
         "parameters": sum(p.numel() for p in state.net.parameters()),
         "steps": state.done,
         "cpu_seconds": round(state.spent, 1),
-        "machine": platform.machine(),
     }
 
 

@@ -10,7 +10,7 @@ from typing import Literal
 class BaselineSettings:
     """How the baselines are built, trained, sampled and compared."""
 
-    seconds: float = 240.0  # CPU seconds of training, the same for each
+    seconds: float = 120.0  # CPU seconds of training, the same for each
     width: int = 128  # channels of the transformers
     layers: int = 4
     heads: int = 4
@@ -24,12 +24,12 @@ class BaselineSettings:
     ema: float = 0.995  # of the weights that are sampled from
     iou_weight: float = 0.1  # DiffuScene: weight of the boxes' mean overlap in the loss
     checkpoint_every: float = 60.0  # CPU seconds
-    rooms: int = 200  # rooms of the split that each baseline furnishes
-    count_rooms: int = 50  # rooms per asked number
+    rooms: int = 150  # rooms of the split that each baseline furnishes
+    count_rooms: int = 40  # rooms per asked number
     counts: tuple[int, ...] = (5, 8, 12, 16)  # N_target
     steps: int = 100  # levels at which the samplers stop, even in log signal-to-noise; T: all, as the peers and the print have it
     sample_batch: int = 50  # rooms that are sampled together
     quantity_scale: float = 200.0  # SceneFoundry: lambda gamma_1
-    articulation_scale: float = 20.0  # SceneFoundry: lambda gamma_2
+    articulation_scale: float = 2.0  # SceneFoundry: lambda gamma_2
     quantity_below: int = 1001  # noise levels below which phi_quantity acts; T + 1: all, as printed
     articulation_below: int = 1001  # the same for phi_articoll

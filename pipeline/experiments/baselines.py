@@ -6,15 +6,18 @@ come from PartNet, for made and real rooms alike, and its extended state is the 
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from pipeline.diffusion.context import Proposal, RoomContext
 from pipeline.diffusion.rooms import context_of
+from pipeline.manifest import write_json
 from pipeline.metrics import articulation, category, collision
 from pipeline.metrics.intervals import bootstrap, rate
 from pipeline.metrics.rows import Row
@@ -22,6 +25,13 @@ from pipeline.metrics.rows import Row
 Furnish = Callable[[Sequence[RoomContext]], list[list[Proposal]]]
 Json = dict[str, Any]
 FLOOR = 1.2  # [m2] that a thing takes: rooms below this times N are not asked for N things
+
+
+class Drafts(NamedTuple):
+    """What a model made of a list of rooms, and the CPU seconds that it took."""
+
+    rooms: list[list[Proposal]]
+    seconds: float
 
 
 class Case(NamedTuple):
@@ -66,18 +76,18 @@ def holds(case: Case, count: int) -> bool:
     return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2 >= FLOOR * count
 
 
-def compare(
-    rng: np.random.Generator, models: Mapping[str, Furnish], cases: Sequence[Case], opens: Mapping[str, bool], counts: Sequence[int]
-) -> Json:
-    """Return the figures of each model's drafts of the cases, and of the real rooms; numbers as they come, nothing asked for."""
-    real = [case.real for case in cases]
-    made = {"real": figures(rng, cases, real, real, opens, counts)}
-    for name, furnish in models.items():
-        start = time.process_time()
-        drafts = furnish([case.context for case in cases])
-        spent = time.process_time() - start
-        made[name] = figures(rng, cases, drafts, real, opens, counts) | {"cpu_seconds_per_room": round(spent / len(cases), 4)}
-    return made
+def drafted(path: Path, key: str, furnish: Furnish, rooms: Sequence[RoomContext]) -> Drafts:
+    """Furnish rooms, or take what stands at `path` if it is of the same key: a comparison that was cut off goes on."""
+    if path.is_file():
+        found = json.loads(path.read_text(encoding="utf-8"))
+        if found["key"] == key:
+            return Drafts([[_thing(row) for row in room] for room in found["rooms"]], found["seconds"])
+    start = time.process_time()
+    made = furnish(rooms)
+    seconds = time.process_time() - start
+    listed = [[[p.category, *p.position.tolist(), p.yaw, *p.size.tolist()] for p in room] for room in made]
+    write_json(path, {"key": key, "seconds": seconds, "rooms": listed})
+    return Drafts(made, seconds)
 
 
 def figures(
@@ -100,13 +110,9 @@ def figures(
     }
 
 
-def controlled(furnish: Furnish, cases: Sequence[Case], counts: Sequence[int], rooms: int) -> Json:
-    """Return SR(N) of a model that is asked for N things, in rooms that can hold them."""
-    found = {}
-    for n in counts:
-        asked = [replace(case.context, n_target=n) for case in spread([c for c in cases if holds(c, n)] or cases, rooms)]
-        found[str(n)] = success(furnish(asked), n)
-    return found
+def asked(cases: Sequence[Case], count: int, rooms: int) -> list[RoomContext]:
+    """Return rooms that are asked for `count` things: `rooms` of those that can hold so many."""
+    return [replace(case.context, n_target=count) for case in spread([c for c in cases if holds(c, count)] or cases, rooms)]
 
 
 def success(drafts: Sequence[Sequence[Proposal]], count: int) -> Json:
@@ -124,6 +130,11 @@ def object_rows(drafts: Sequence[Sequence[Proposal]], opens: Mapping[str, bool])
         for number, draft in enumerate(drafts)
         for p in draft
     ]  # fmt: skip
+
+
+def _thing(row: Sequence[Any]) -> Proposal:
+    category, x, y, z, yaw, *size = row
+    return Proposal(category, np.array([x, y, z]), yaw, np.array(size), np.zeros(0, np.float32))
 
 
 def _proposal(row: Row) -> Proposal:

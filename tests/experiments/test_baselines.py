@@ -3,9 +3,13 @@ import pytest
 
 from pipeline import seeds
 from pipeline.diffusion.context import Proposal, RoomContext
-from pipeline.experiments.baselines import Case, compare, controlled, holds
+from pipeline.experiments.baselines import Case, asked, drafted, figures, holds, success
 
 OPENS = {"nightstand": True, "chair": False}
+
+
+def judged(cases, drafts):
+    return figures(seeds.generator(0, "t"), cases, drafts, [case.real for case in cases], OPENS, [2, 3])
 
 
 def square(side):
@@ -22,20 +26,15 @@ def cases():
 
 
 def test_a_copy_of_the_truth_has_the_truths_figures(cases):
-    found = compare(seeds.generator(0, "t"), {"copy": lambda rooms: [c.real for c in cases[: len(rooms)]]}, cases, OPENS, [2, 3])
-    assert found["copy"]["ckl"] == found["real"]["ckl"]
-    assert found["copy"]["ckl"]["real_to_generated"] == 0
-    assert found["real"]["r_acoll"]["objects"]["rate"] == 0
-    assert found["real"]["chance"]["2"]["rate"] == 1
-    assert found["real"]["chance"]["3"]["rate"] == 0
-    assert "cpu_seconds_per_room" in found["copy"]
+    found = judged(cases, [case.real for case in cases])
+    assert found["ckl"]["real_to_generated"] == 0
+    assert found["r_acoll"]["objects"]["rate"] == 0
+    assert found["chance"]["2"]["rate"] == 1
+    assert found["chance"]["3"]["rate"] == 0
 
 
 def test_harm_is_seen(cases):
-    def bad(rooms):
-        return [[thing("nightstand", 1), thing("nightstand", 1.1), thing("chair", 1, 0.45)] for _ in rooms]
-
-    found = compare(seeds.generator(0, "t"), {"bad": bad}, cases, OPENS, [2])["bad"]
+    found = judged(cases, [[thing("nightstand", 1), thing("nightstand", 1.1), thing("chair", 1, 0.45)]] * 3)
     assert found["r_acoll"]["objects"]["rate"] == 1
     assert found["collision"]["col_obj"]["rate"] > 0.6
     assert found["objects"]["mean"] == 3
@@ -44,22 +43,32 @@ def test_harm_is_seen(cases):
 
 
 def test_a_way_that_is_blocked_only_when_opened_counts(cases):
-    def near(rooms):
-        return [[thing("nightstand", 1), thing("chair", 1, 0.45)] for _ in rooms]  # 5 cm before a front that opens by 17
-
-    found = compare(seeds.generator(0, "t"), {"near": near}, cases, OPENS, [2])["near"]
+    found = judged(cases, [[thing("nightstand", 1), thing("chair", 1, 0.45)]] * 3)  # 5 cm before a front that opens by 17
     assert found["r_acoll"]["objects"]["rate"] == 1
     assert found["collision"]["col_obj"]["rate"] == 0
 
 
 def test_numbers_are_asked_of_rooms_that_can_hold_them(cases):
-    asked = []
+    assert [holds(c, 7) for c in cases] == [False, True, True]
+    assert [r.n_target for r in asked(cases, 7, 10)] == [7, 7]
+    assert [r.n_target for r in asked(cases, 100, 10)] == [100] * 3  # none can: all are asked
+    assert len(asked(cases, 2, 2)) == 2
+    assert success([[thing("chair", 1)] * n for n in (2, 3, 2, 0)], 2)["rate"] == 0.5
+
+
+def test_drafts_are_kept_until_what_they_hang_on_changes(cases, tmp_path):
+    made = []
 
     def furnish(rooms):
-        asked.append([r.n_target for r in rooms])
-        return [[thing("chair", k) for k in range(r.n_target)] for r in rooms]
+        made.append(len(rooms))
+        return [case.real for case in cases]
 
-    found = controlled(furnish, cases, [2, 7], 10)
-    assert asked == [[2, 2, 2], [7, 7]]
-    assert found["7"] | {"low": 0} == {"rate": 1.0, "low": 0, "high": 1.0, "successes": 2, "n": 2}
-    assert [holds(c, 7) for c in cases] == [False, True, True]
+    path, rooms = tmp_path / "drafts.json", [case.context for case in cases]
+    first, again = drafted(path, "a", furnish, rooms), drafted(path, "a", furnish, rooms)
+    assert made == [3]
+    assert again.seconds == first.seconds
+    for one, other in zip(first.rooms, again.rooms, strict=True):
+        for p, q in zip(one, other, strict=True):
+            assert (p.category, p.yaw, *p.position, *p.size) == (q.category, q.yaw, *q.position, *q.size)
+    drafted(path, "b", furnish, rooms)
+    assert made == [3, 3]
