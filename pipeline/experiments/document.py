@@ -20,7 +20,7 @@ from pipeline.experiments.settings import MetricsSettings
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.rows import homes_of
 from pipeline.manifest import write_bytes
-from pipeline.report import calibration, planning, sections
+from pipeline.report import baselines, calibration, planning, sections
 from pipeline.report.page import Picture, Section, render
 from pipeline.report.plots import Curve, lines
 from schemas.objects import OBJECTS
@@ -59,6 +59,7 @@ def write_report(
         sections.articulation_section(figures["articulation"], figures["ablation"]),
         sections.walkable_section(figures["walkable"], rates["walkable"]),
         sections.category_section(figures["category"]),
+        *_baselines(root),
         sections.training_section(_json(root / "metrics" / "encode.json"), _json(root / "metrics" / "train.json"), loss),
         sections.reject_section([_told(r) for r in rejects]),
     ]
@@ -79,6 +80,12 @@ def _planning(root: Path) -> list[Section]:
     """Return the chapter of the bars of floor plans, from the records that the checkout carries."""
     kept, failures, knobs = (_json(root / "docs" / name) for name in ("planning.json", "failures.json", "knobs.json"))
     made = planning.planning_section(kept, failures, knobs, monotone)
+    return [made] if made else []
+
+
+def _baselines(root: Path) -> list[Section]:
+    """Return the chapter of the baselines, where they were run."""
+    made = baselines.baselines_section(_json(root / "metrics" / "baselines.json"))
     return [made] if made else []
 
 

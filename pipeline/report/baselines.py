@@ -1,0 +1,47 @@
+"""The chapter of the layout models side by side: the peers' and the paper's, in this code."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pipeline.report.page import Section, TableView
+from pipeline.report.sections import share
+
+Json = Mapping[str, Any]
+NAMES = {
+    "real": "real rooms",
+    "atiss": "ATISS-type",
+    "diffuscene": "DiffuScene-type",
+    "physcene": "PhyScene-type",
+    "scenefoundry": "SceneFoundry as printed",
+}
+TEXT = (
+    "Small models, each trained for the CPU seconds of the last table on the same rooms: the table compares methods at that price, and is no "
+    "figure of the papers. Drafts, as boxes; nothing is retrieved, moved or repaired. The number of objects is asked of SceneFoundry alone; "
+    "for the others SR(N) is chance."
+)  # fmt: skip
+
+
+def baselines_section(found: Json) -> Section | None:
+    """Return the tables of metrics/baselines.json; None where the baselines were not run."""
+    if not found:
+        return None
+    models, counts = found["models"], list(found["quantity"])
+    rows = [
+        [
+            NAMES[name], share(row["objects"]), share(row["r_acoll"]["rooms"]), share(row["collision"]["col_obj"]),
+            f"{row['ckl']['real_to_generated']:.3f}", *(share(row["chance"][n]) for n in counts), f"{row.get('cpu_seconds_per_room', 0):.3f}",
+        ]
+        for name, row in models.items()
+    ]  # fmt: skip
+    rows.append(["SceneFoundry, asked for N", *["-"] * 4, *(share(found["quantity"][n]) for n in counts), "-"])
+    header = ("", "objects a room", "R_acoll, boxes + depth/3", "Col_obj, boxes", "CKL", *(f"SR({n})" for n in counts), "CPU s a room")
+    cost = [
+        [NAMES[name], f"{row['parameters']:,}", str(row["steps"]), f"{row['cpu_seconds']:.0f}"] for name, row in found["trained"].items()
+    ]
+    tables = [
+        TableView(f"{models['real']['rooms']} rooms of the held-out split, with 95 % intervals", header, rows),
+        TableView(f"Training, on {found['train_rooms']:,} rooms", ("", "parameters", "steps", "CPU s"), cost),
+    ]
+    return Section("Layout models of the peers and of the paper", [TEXT], tables)

@@ -1,0 +1,23 @@
+from pipeline import seeds
+from pipeline.experiments.baselines import figures, success
+from pipeline.report.baselines import NAMES, baselines_section
+from pipeline.report.page import render
+
+
+def test_what_was_not_run_has_no_chapter():
+    assert baselines_section({}) is None
+
+
+def test_the_chapter_shows_every_model_and_its_price():
+    row = figures(seeds.generator(0, "t"), [], [], [], {"bed": False}, [5])
+    made = {
+        "models": dict.fromkeys(NAMES, row),
+        "quantity": {"5": success([[None] * 5, []], 5)},
+        "trained": {name: {"parameters": 1234567, "steps": 900, "cpu_seconds": 120.4} for name in ("atiss", "diffuscene", "scenefoundry")},
+        "train_rooms": 31000,
+    }
+    page = render("t", "", [baselines_section(made)])
+    assert all(name in page for name in NAMES.values())
+    assert "1,234,567" in page
+    assert "0.500" in page
+    assert "31,000" in page
