@@ -22,9 +22,11 @@ from pipeline.baselines.job import NETS, Job, open_job, run_digest, trainer
 from pipeline.baselines.settings import BaselineSettings
 from pipeline.baselines.training import Trainer, train
 from pipeline.diffusion.context import RoomContext
-from pipeline.experiments.baselines import Drafts, asked, cases_of, drafted, figures, spread, success
+from pipeline.experiments.baselines import Drafts, asked, cases_of, drafted, figures, liveable, spread, success
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.manifest import digest, write_json
+from pipeline.relations import files
+from pipeline.relations.known import Relations
 from stages.runner import run
 
 
@@ -42,7 +44,7 @@ def main(root: Path) -> None:
     trained = {name: trained_net(folder, name, job, settings, tree["seed"]) for name in NETS}
     nets = {name: each.average for name, each in trained.items()}
     made = Baselines(nets, job.scaling, settings, job.layouts, job.opens, tree["seed"])
-    found = compared(folder, made, trained, job, metrics.split)
+    found = compared(folder, made, trained, job, files.load(root / "data/tables/relations.json"), metrics.split)
     write_json(
         root / "metrics" / "baselines.json",
         found | {"trained": {name: report(each) for name, each in trained.items()}, "train_rooms": len(job.outlines)},
@@ -64,7 +66,7 @@ def trained_net(folder: Path, name: str, job: Job, settings: BaselineSettings, s
     return made
 
 
-def compared(folder: Path, made: Baselines, trained: Mapping[str, Trainer], job: Job, split: str) -> dict[str, Any]:
+def compared(folder: Path, made: Baselines, trained: Mapping[str, Trainer], job: Job, known: Relations, split: str) -> dict[str, Any]:
     """Furnish the rooms of the split with every baseline, and return their figures beside those of the real rooms."""
     settings, classes = made.settings, job.scaling.classes
     cases = cases_of(job.tables, split, job.layouts, classes, settings.slots)
@@ -79,10 +81,9 @@ def compared(folder: Path, made: Baselines, trained: Mapping[str, Trainer], job:
     counted = {n: drafts("scenefoundry", f"scenefoundry_{n}", asked(cases, n, settings.count_rooms)) for n in settings.counts}
     real, opens = [case.real for case in shown], dict(zip(classes, job.opens.tolist(), strict=True))
     rng = seeds.generator(made.seed, "baselines-bootstrap")
-    models = {
-        name: figures(rng, shown, rooms, real, opens, settings.counts)
-        for name, rooms in ({"real": real} | {name: each.rooms for name, each in found.items()}).items()
-    }
+    made_by = {"real": real} | {name: each.rooms for name, each in found.items()}
+    lived = liveable(rng, made.seed, shown, made_by, known)
+    models = {name: figures(rng, shown, rooms, real, opens, settings.counts) | lived[name] for name, rooms in made_by.items()}
     for name, each in found.items():
         models[name]["cpu_seconds_per_room"] = round(each.seconds / len(shown), 4)
     return {"models": models, "quantity": {str(n): success(each.rooms, n) for n, each in counted.items()}}

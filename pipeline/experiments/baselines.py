@@ -18,9 +18,13 @@ import numpy as np
 from pipeline.diffusion.context import Proposal, RoomContext
 from pipeline.diffusion.rooms import context_of
 from pipeline.manifest import write_json
-from pipeline.metrics import articulation, category, collision
+from pipeline.metrics import articulation, category, collision, relations
 from pipeline.metrics.intervals import bootstrap, rate
+from pipeline.metrics.layout_features import features
 from pipeline.metrics.rows import Row
+from pipeline.metrics.two_samples import forest_accuracy
+from pipeline.relations.arrangement import Arrangement, Gap, arranged
+from pipeline.relations.known import Relations
 
 Furnish = Callable[[Sequence[RoomContext]], list[list[Proposal]]]
 Json = dict[str, Any]
@@ -35,10 +39,11 @@ class Drafts(NamedTuple):
 
 
 class Case(NamedTuple):
-    """A room of the split: its context, and what stands there in truth."""
+    """A room of the split: its context, what stands there in truth, its name."""
 
     context: RoomContext
     real: list[Proposal]
+    name: str
 
 
 def cases_of(tables: Mapping[str, Sequence[Row]], split: str, layouts: Sequence[str], classes: Sequence[str], slots: int) -> list[Case]:
@@ -60,7 +65,7 @@ def cases_of(tables: Mapping[str, Sequence[Row]], split: str, layouts: Sequence[
         context = replace(
             context_of(room, openings.get(room["scene_id"], [])), elevation=room["level"] * float(scenes[room["scene_id"]]["storey_height"])
         )
-        found.append(Case(context, [_proposal(o) for o in own]))
+        found.append(Case(context, [_proposal(o) for o in own], f"{room['scene_id']}/{room['room_id']}"))
     return found
 
 
@@ -108,6 +113,31 @@ def figures(
         "ckl": category.ckl(true, rows, sorted(opens)),
         "chance": {str(n): success([d for case, d in zip(cases, drafts, strict=True) if holds(case, n)], n) for n in counts},
     }
+
+
+def liveable(
+    rng: np.random.Generator, seed: int, cases: Sequence[Case], drafts: Mapping[str, Sequence[Sequence[Proposal]]], known: Relations
+) -> dict[str, Json]:
+    """Return, by model, the relation rates, and how well a forest tells its rooms from the real ones (.5 is best); `drafts` holds "real"."""
+    sets = {
+        name: [relations.furniture(arrangement(case, draft)) for case, draft in zip(cases, made, strict=True)]
+        for name, made in drafts.items()
+    }
+    rates = relations.compare(rng, sets, known)["rates"]
+    names = [case.name for case in cases]
+    real = features(sets["real"])
+    return {
+        name: {"relations": {rule: of[name] for rule, of in rates.items()}}
+        | ({} if name == "real" else {"sca": forest_accuracy(seed, real, features(rooms), names, names)})
+        for name, rooms in sets.items()
+    }
+
+
+def arrangement(case: Case, draft: Sequence[Proposal]) -> Arrangement:
+    """Return a draft as the room metrics read it."""
+    things = [(p.category, p.position, p.yaw, p.size) for p in draft]
+    context = case.context
+    return arranged(case.name, context.layout_type, context.polygon, things, [Gap(g.kind, g.segment) for g in context.gaps])
 
 
 def asked(cases: Sequence[Case], count: int, rooms: int) -> list[RoomContext]:

@@ -37,11 +37,15 @@ def baselines_section(found: Json) -> Section | None:
     ]  # fmt: skip
     rows.append(["SceneFoundry, asked for N", *["-"] * 4, *(share(found["quantity"][n]) for n in counts), "-"])
     header = ("", "objects a room", "R_acoll, boxes + depth/3", "Col_obj, boxes", "CKL", *(f"SR({n})" for n in counts), "CPU s a room")
+    rules = sorted(models["real"]["relations"])
+    kept = [[rule, *(share(row["relations"][rule]) for row in models.values())] for rule in rules if models["real"]["relations"][rule]["n"]]
+    kept.append(["SCA of a forest on layout features (.5 is best)", *(share(row.get("sca")) for row in models.values())])
     cost = [
         [NAMES[name], f"{row['parameters']:,}", str(row["steps"]), f"{row['cpu_seconds']:.0f}"] for name, row in found["trained"].items()
     ]
     tables = [
         TableView(f"{models['real']['rooms']} rooms of the held-out split, with 95 % intervals", header, rows),
+        TableView("Relations: share of cases where they hold", ("", *(NAMES[name] for name in models)), kept),
         TableView(f"Training, on {found['train_rooms']:,} rooms", ("", "parameters", "steps", "CPU s"), cost),
     ]
     return Section("Layout models of the peers and of the paper", [TEXT], tables)

@@ -1,5 +1,6 @@
 from pipeline import seeds
 from pipeline.experiments.baselines import figures, success
+from pipeline.metrics.intervals import rate
 from pipeline.report.baselines import NAMES, baselines_section
 from pipeline.report.page import render
 
@@ -10,6 +11,7 @@ def test_what_was_not_run_has_no_chapter():
 
 def test_the_chapter_shows_every_model_and_its_price():
     row = figures(seeds.generator(0, "t"), [], [], [], {"bed": False}, [5])
+    row |= {"relations": {"chair at its table": rate(3, 4), "never asked": rate(0, 0)}, "sca": rate(7, 10)}
     made = {
         "models": dict.fromkeys(NAMES, row),
         "quantity": {"5": success([[None] * 5, []], 5)},
@@ -21,3 +23,6 @@ def test_the_chapter_shows_every_model_and_its_price():
     assert "1,234,567" in page
     assert "0.500" in page
     assert "31,000" in page
+    assert "0.750" in page
+    assert "0.700" in page
+    assert "never asked" not in page

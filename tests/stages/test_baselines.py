@@ -1,5 +1,7 @@
 import json
 
+from pipeline.relations import files, learning
+from pipeline.relations.split import rooms_of
 from stages import baselines
 from tests.stages.test_train import make_root
 
@@ -23,6 +25,7 @@ def test_switched_off_it_does_nothing(tmp_path):
 
 def test_all_are_trained_for_the_same_time_and_furnish_the_same_rooms(tmp_path):
     make_root(tmp_path)
+    files.save(tmp_path / "data/tables/relations.json", learning.fit(rooms_of(tmp_path / "data/tables", "train")))
     write_params(tmp_path, on=True)
     baselines.main(tmp_path)
     found = json.loads((tmp_path / "metrics/baselines.json").read_text())
@@ -31,6 +34,8 @@ def test_all_are_trained_for_the_same_time_and_furnish_the_same_rooms(tmp_path):
     assert found["models"]["real"]["objects"]["mean"] == 2
     assert found["models"]["real"]["ckl"]["real_to_generated"] == 0
     assert set(found["quantity"]) == {"3", "5"}
+    assert found["models"]["real"]["relations"]["nightstand at the bed"]["n"] == 3
+    assert 0 <= found["models"]["atiss"]["sca"]["rate"] <= 1
     assert all(0.2 <= row["cpu_seconds"] < 2 for row in found["trained"].values())
     before = {p.name: p.read_bytes() for p in (tmp_path / "models/baselines").iterdir()}
     assert {n for n in before if n.endswith(".safetensors")} == {"atiss.safetensors", "diffuscene.safetensors", "scenefoundry.safetensors"}
