@@ -1,6 +1,7 @@
-"""Post-optimisation: walkable area (algorithm 2 of the paper), then what is left of collisions is separated."""
+"""Post-optimisation: walkable area (algorithm 2 of the paper), relations made exact, and what is left of collisions separated."""
 
 from pipeline.arrange.laying import Laying
+from pipeline.arrange.lore import Lore
 from pipeline.arrange.room import Arranged, post_optimise
 from pipeline.arrange.separate import Reject, Separated, separate
 from pipeline.arrange.settings import PostoptSettings, SeparateSettings, ThingsSettings, WalkableSettings
@@ -11,6 +12,7 @@ __all__ = [
     "Arranged",
     "Controlled",
     "Laying",
+    "Lore",
     "PostoptSettings",
     "Reject",
     "SeparateSettings",

@@ -1,126 +1,150 @@
-"""What already stands in a room, and whether one more can join it."""
+"""What already stands in a room, whether a group can join it, and whether the floor still hangs together."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.item import Item, turned
-from pipeline.arrange.search import free_poses
+from pipeline.arrange.groups import Group
+from pipeline.arrange.item import Item
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
+from pipeline.arrange.world import composed, free_poses, make_world, put
 from pipeline.geometry.freefloor import Walk
-from pipeline.geometry.prisms import Prisms, stacked
+from pipeline.geometry.prisms import Prisms
 from pipeline.geometry.standing import stand_pose
 
 Floats = NDArray[np.float64]
 
 SPREAD = 0.12  # when a pose cuts the floor, poses nearer to it than this are not tried [m]; more after every try
-TRIES = 24  # poses whose floor is looked at per object
+TRIES = 24  # poses whose floor is looked at per group
 UNIT = np.ones(3)
 FINE, ALOOF, CUT = "fine", "aloof", "cut"
 
 
 class Crowd:
-    """The settled objects of a room. Grows; nothing is taken out."""
+    """The objects of a room, of which those of `there` (N,) stand at `poses` (N, 4)."""
 
-    def __init__(self, site: Site, settings: SeparateSettings) -> None:
-        self.site = site
-        self.settings = settings
-        self.usable: list[Item] = []
-        self.bodies = stacked([])
-        self.keeps = site.swung
-        self.accesses = stacked([])
-        bare = site.walk(self.bodies)
-        label, self.doors = site.gate(bare)
-        self.enters = self._enters(bare, label)
+    def __init__(self, site: Site, items: list[Item], settings: SeparateSettings) -> None:
+        self.site, self.items, self.settings = site, items, settings
+        self.world = make_world([item.shape for item in items], site.swung, site.polygon, site.ceiling)
+        self.poses = np.array([item.wished for item in items]).reshape(-1, 4)
+        self.there = np.zeros(len(items), np.bool_)
+        self.aloof: set[int] = set()
+        label, self.doors = site.gate(site.bare)
+        self.enters = self._enters(site.bare, label)
 
-    def settle(self, item: Item, poses: Floats, costs: Floats) -> tuple[Item | None, str]:
-        """Add the item at the cheapest of its poses that is free and leaves the floor in one piece; (None, CUT) if there is none.
+    def stand(self, group: Group, pose: Floats) -> None:
+        """Let a group stand with its first member at a pose."""
+        for i, offset in zip(group.members, group.offsets, strict=True):
+            composed(pose, offset, self.poses[i])
+            put(self.world, i, self.poses[i])
+            self.there[i] = True
 
-        A pose at which nobody can stand before the item's own handles is taken when there is no better one.
+    def leave(self, group: Group) -> None:
+        """Take a group out."""
+        self.there[group.members] = False
+
+    def outline(self, i: int) -> Floats:
+        """Return the corners (4, 2) of the box of an object that stands [m]."""
+        w, d = self.items[i].half
+        x, y, _, yaw = self.poses[i]
+        c, s = np.cos(yaw), np.sin(yaw)
+        corners: Floats = np.array([[-w, -d], [w, -d], [w, d], [-w, d]]) @ np.array([[c, s], [-s, c]]) + (x, y)
+        return corners
+
+    def nearest(self, group: Group, poses: Floats, costs: Floats) -> tuple[Floats, float] | None:
+        """Return the cheapest free pose of a group and its cost, whatever becomes of the floor; poses come cheapest first."""
+        totals, _ = self._totals(group, poses, costs, 0)
+        k = int(np.argmin(np.round(totals, 9))) if len(totals) else 0
+        return (poses[k], float(totals[k])) if len(totals) and np.isfinite(totals[k]) else None
+
+    def settle(self, group: Group, poses: Floats, costs: Floats) -> str:
+        """Let a group stand at the cheapest of its poses that is free and leaves the floor in one piece; CUT if there is none.
+
+        A pose at which nobody can stand before the group's own handles is taken when there is no better one: ALOOF.
         """
         start, tries = 0, 0
-        failed: list[Floats] = []
-        aloof: Item | None = None
+        failed: list[list[float]] = []
+        aloof: Floats | None = None
         while start < len(poses) and tries < TRIES:
-            totals, start = self._totals(item, poses, costs, start)
+            totals, start = self._totals(group, poses, costs, start)
             for k in np.argsort(np.round(totals, 9), kind="stable")[: int(np.isfinite(totals).sum())]:
                 apart = SPREAD * (1.0 + 0.15 * tries)
-                if any(np.linalg.norm(poses[k, :2] - f[:2]) < apart and turned(f[3], poses[k, 3]) < 0.3 for f in failed):
+                x, y, _, yaw = poses[k].tolist()
+                if any(math.hypot(x - f[0], y - f[1]) < apart and abs(math.remainder(yaw - f[2], math.tau)) < 0.3 for f in failed):
                     continue
-                moved = item.at(poses[k])
-                verdict = self._verdict(moved)
+                self.stand(group, poses[k])
+                verdict = self.verdict(group.members)
                 if verdict == FINE:
-                    self.add(moved)
-                    self.usable.append(moved)
-                    return moved, FINE
-                if verdict == ALOOF:
-                    aloof = aloof or moved
-                failed.append(poses[k])
+                    return FINE
+                self.leave(group)
+                if verdict == ALOOF and aloof is None:
+                    aloof = poses[k]
+                failed.append([x, y, yaw])
                 tries += 1
                 if tries >= TRIES:
                     break
         if aloof is None:
-            return None, CUT
-        self.add(aloof)
-        return aloof, ALOOF
+            return CUT
+        self.stand(group, aloof)
+        self.aloof.update(group.members)
+        return ALOOF
 
-    def add(self, item: Item) -> None:
-        """Add an item where it stands."""
-        p = item.placement
-        self.bodies = stacked([self.bodies, item.shape.body.placed(p.position, p.yaw, UNIT)])
-        self.keeps = stacked([self.keeps, item.shape.keep.placed(p.position, p.yaw, UNIT)])
-        self.accesses = stacked([self.accesses, item.shape.access.placed(p.position, p.yaw, UNIT)])
+    def verdict(self, newcomers: NDArray[np.int64]) -> str:
+        """Judge the floor: the doors must stay joined, and before what opens there must be a robot's place.
 
-    def _totals(self, item: Item, poses: Floats, costs: Floats, start: int) -> tuple[Floats, int]:
-        shape = item.shape
-        return free_poses(
-            poses,
-            costs,
-            start,
-            self.settings.candidates,
-            shape.outline,
-            (_own(shape.body), _own(shape.keep), _own(shape.access)),
-            (_others(self.bodies), _others(self.keeps), _others(self.accesses), self.site.polygon),
-            self.site.ceiling,
-            self.settings.touch,
-            self.settings.access_cost,
-        )
-
-    def _verdict(self, item: Item) -> str:
-        """Judge the floor with the item: the doors must stay joined, and what opens must still have a robot's place.
-
-        `ALOOF`: only the item itself cannot be stood at. That is better than no item.
+        `ALOOF`: only `newcomers` cannot be stood at. That is better than nothing there.
         """
-        p = item.placement
-        body = item.shape.body.placed(p.position, p.yaw, UNIT)
-        low, high = self.site.elevation + self.site.step, self.site.elevation + self.site.height
-        if not len(body) or body.z[:, 0].min() >= high or body.z[:, 1].max() <= low:
-            return FINE
-        walked = self.site.walk(stacked([self.bodies, body]))
+        walked = self.site.walk(self._bodies())
         label, doors = self.site.gate(walked)
         if doors < self.doors or (self.enters and not self._enters(walked, label)):
             return CUT
-        if not all(self._usable(one, walked, label) for one in self.usable):
+        new = set(newcomers.tolist())
+        others = [i for i in np.flatnonzero(self.there).tolist() if i not in new and i not in self.aloof]
+        if not all(self._usable(i, walked, label) for i in others):
             return CUT
-        return FINE if self._usable(item, walked, label) else ALOOF
+        return FINE if all(self._usable(i, walked, label) for i in new) else ALOOF
+
+    def _totals(self, group: Group, poses: Floats, costs: Floats, start: int) -> tuple[Floats, int]:
+        settings = self.settings
+        return free_poses(
+            self.world,
+            group.members,
+            group.offsets,
+            poses,
+            costs,
+            start,
+            settings.candidates,
+            self.there,
+            settings.touch,
+            settings.access_cost,
+        )
+
+    def _bodies(self) -> Prisms:
+        """Return the bodies of what stands."""
+        start = self.world.start
+        rows = np.concatenate([np.arange(start[i, 0], start[i, 1]) for i in np.flatnonzero(self.there)] or [np.zeros(0, np.int64)])
+        return Prisms(self.world.at[rows], self.world.count[rows], self.world.at_z[rows], rows)
 
     def _enters(self, walked: Walk, label: int) -> bool:
         """Whether the robot gets from the doors into the room itself."""
-        return bool((walked.labels[self.site.floor.room >= 0] == label).any()) and label > 0
+        return label > 0 and bool((walked.labels[self.site.floor.room >= 0] == label).any())
 
-    def _usable(self, item: Item, walked: Walk, label: int) -> bool:
-        """Whether a robot can stand at one of the item's handles, if it has any."""
-        p, site = item.placement, self.site
-        c, s = np.cos(p.yaw), np.sin(p.yaw)
+    def _usable(self, i: int, walked: Walk, label: int) -> bool:
+        """Whether a robot can stand at one of an item's handles, if it has any."""
+        site, pose = self.site, self.poses[i]
+        grips = self.items[i].shape.grips
+        c, s = np.cos(pose[3]), np.sin(pose[3])
         T = np.array([[c, s], [-s, c]])
         ceiling = site.elevation + site.height
-        return not item.shape.grips or any(
+        return not grips or any(
             stand_pose(
-                grip.point @ T + p.position[:2],
+                grip.point @ T + pose[:2],
                 grip.heading @ T,
-                grip.swept.placed(p.position, p.yaw, UNIT),
+                grip.swept.placed(pose[:3], float(pose[3]), UNIT),
                 ceiling,
                 walked,
                 label,
@@ -129,13 +153,5 @@ class Crowd:
                 cone=site.cone,
             )
             is not None
-            for grip in item.shape.grips
+            for grip in grips
         )
-
-
-def _own(prisms: Prisms) -> tuple[Floats, NDArray[np.int64], Floats]:
-    return np.ascontiguousarray(prisms.corners), prisms.count, np.ascontiguousarray(prisms.z)
-
-
-def _others(prisms: Prisms) -> tuple[Floats, NDArray[np.int64], Floats, Floats]:
-    return np.ascontiguousarray(prisms.corners), prisms.count, np.ascontiguousarray(prisms.z), prisms.boxes()

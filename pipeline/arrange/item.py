@@ -1,4 +1,4 @@
-"""One object while it is being arranged: its placement, what it takes of the room, what is expected of it."""
+"""One object while it is being arranged: its placement, what it takes of the room, what is known of its category."""
 
 from __future__ import annotations
 
@@ -9,45 +9,45 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrange.lore import Habit, Lore
 from pipeline.arrange.shapes import Shape, shape
-from pipeline.arrange.traits import Trait, mount, trait
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Item:
-    """An object: `wished` (x, y, z, yaw) is where the layout model wants it, whatever becomes of `placement`."""
+    """An object: `wished` (x, y, z, yaw) is where the layout model wants it, `half` (2,) are its half extents in plan [m]."""
 
     placement: Placement
     shape: Shape
-    trait: Trait
-    mount: str
+    habit: Habit
     wished: Floats
+    half: Floats
 
     @property
-    def half(self) -> Floats:
-        """Half extents (2,) in plan [m]."""
-        return self.placement.size[:2] / 2
+    def mount(self) -> str:
+        """Where it is fixed."""
+        return self.habit.mount
 
     @property
-    def pose(self) -> Floats:
-        """Where it stands (x, y, z, yaw)."""
-        return np.array([*self.placement.position, self.placement.yaw])
+    def area(self) -> float:
+        """The area of its box in plan [m2]; what hangs takes none."""
+        return 4.0 * float(self.half[0] * self.half[1]) if self.habit.mount == "floor" else 0.0
 
-    def at(self, pose: Floats) -> Item:
-        """Return the item at another pose."""
-        return replace(self, placement=replace(self.placement, position=pose[:3].copy(), yaw=float(pose[3])))
+    def at(self, pose: Floats) -> Placement:
+        """Return its placement at a pose."""
+        return replace(self.placement, position=np.round(pose[:3], 4) + 0.0, yaw=wrapped(float(pose[3])))
 
 
-def make_item(placement: Placement, assets: Mapping[str, Asset], access_depth: float) -> Item:
+def make_item(placement: Placement, assets: Mapping[str, Asset], lore: Lore, access_depth: float) -> Item:
     """Prepare a placement."""
-    asset = assets[placement.asset_id]
     wished = np.array([*placement.position, placement.yaw])
-    kind = trait(placement.category)
-    return Item(placement, shape(asset, placement.scale, access_depth, kind.access), kind, mount(placement.category), wished)
+    habit = lore.habit(placement.category)
+    made = shape(assets[placement.asset_id], placement.scale, access_depth, habit.access)
+    return Item(placement, made, habit, wished, np.asarray(placement.size[:2]) / 2)
 
 
 def wrapped(yaw: float) -> float:

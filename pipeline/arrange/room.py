@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from pipeline.arrange.lore import Lore
 from pipeline.arrange.separate import Reject, Separated, Smaller, separate
 from pipeline.arrange.settings import PostoptSettings
 from pipeline.arrange.site import Site
@@ -19,8 +20,8 @@ PASSES = 4  # times that sizes are controlled again after objects have moved
 class Arranged:
     """A finished room.
 
-    `ratio_sampled` is the controlled ratio of what the layout model placed, `ratio` that of `placements`; `exchanges`
-    counts the replacements of algorithm 2. `failed`: a count that was to be kept is not, or the target is not reached.
+    `ratio_sampled` is the controlled ratio of what the layout model placed, `ratio` that of `placements`, both 1 where none is asked for;
+    `exchanges` counts the replacements of algorithm 2. `failed`: a count that was to be kept is not, or the target is not reached.
     """
 
     placements: tuple[Placement, ...]
@@ -36,6 +37,7 @@ def post_optimise(
     site: Site,
     placements: Sequence[Placement],
     assets: Mapping[str, Asset],
+    lore: Lore,
     settings: PostoptSettings,
     smaller: Smaller,
     *,
@@ -49,7 +51,7 @@ def post_optimise(
     """
     area = site.area
     ratio = free_ratio(site, assets) if settings.walkable.ratio == "free" else paper_ratio(area, site.elevation)
-    sampled = ratio(placements)
+    sampled = ratio(placements) if target is not None else 1.0
     current: Sequence[Placement] = placements
     rejects: list[Reject] = []
     exchanges = 0
@@ -62,11 +64,13 @@ def post_optimise(
                 break
             exchanges += len(controlled.exchanges)
             current = controlled.placements
-        result = separate(site, current, assets, settings.separate, smaller, keep_count=keep_count)
+        result = separate(site, current, assets, lore, settings.separate, smaller, keep_count=keep_count)
         rejects += result.rejects
         current = result.placements
+        if target is None:
+            break
         reached = ratio(current)
-        if target is None or reached >= target:
+        if reached >= target:
             break
     kept = {p.object_id: p for p in current}
     moved = tuple(_distance(p, kept[p.object_id]) for p in placements if p.object_id in kept)

@@ -1,7 +1,8 @@
-"""Separation: every object gets the nearest pose at which nothing touches, doors open and the floor hangs together.
+"""Separation: relations are made exact, then every group gets the nearest pose at which nothing touches and the floor hangs together.
 
-Objects are placed one after the other, those that others lean on first, each at the cheapest of its candidate poses that
-is free; whoever finds none is tried first in the next round, then as a smaller asset, then left out with a reason.
+All objects are first taken to where they would stand exactly. Whoever is free there stays; the others move, a group as one
+where that goes, else its anchor and then each member to another place at it. The floor is looked at once, at the end; a room that fails
+is started over with an eye on the floor at every step, those first that found no place, later as smaller assets, or not at all.
 """
 
 from __future__ import annotations
@@ -13,11 +14,15 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.candidates import candidates
-from pipeline.arrange.crowd import ALOOF, Crowd
+from pipeline.arrange.crowd import FINE, Crowd
+from pipeline.arrange.exact import exact_poses
 from pipeline.arrange.item import Item, make_item
+from pipeline.arrange.lore import Lore
+from pipeline.arrange.runs import lay_runs
 from pipeline.arrange.settings import SeparateSettings
+from pipeline.arrange.settling import Draft, settle_all
 from pipeline.arrange.site import Site
+from pipeline.arrange.walls import edges
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 
@@ -68,77 +73,77 @@ def separate(
     site: Site,
     placements: Sequence[Placement],
     assets: Mapping[str, Asset],
+    lore: Lore,
     settings: SeparateSettings | None = None,
     smaller: Smaller | None = None,
     *,
     keep_count: bool = False,
 ) -> Separated:
-    """Separate the objects of one room.
+    """Separate the objects of one room; `lore` is what the training tables know of relations.
 
     `smaller` finds smaller assets for what does not fit; with `keep_count` a room that loses an object has failed.
     """
     settings = settings or SeparateSettings()
-    asked = [make_item(p, assets, settings.access_depth) for p in placements]
+    asked = [make_item(p, assets, lore, settings.access_depth) for p in placements]
     items = list(asked)
-    order = sorted(range(len(items)), key=lambda i: (*_rank(items[i]), i))
     losses = [0] * len(items)
-    best: dict[int, Item] = {}
+    first: list[int] = []
+    best: dict[int, Placement] = {}
     least: tuple[float, float] | None = None
     for number in range(max(1, settings.rounds)):
-        placed, aloof = _place(site, items, order, settings)
-        score = _score(placed, aloof, items)
-        if least is None or score < least:
-            best, least = placed, score
-        lost = [i for i in order if i not in placed]
-        if not lost and (not aloof or number >= ALOOF_ROUNDS):
+        crowd, sound = _arranged(site, items, first, lore, settings, careful=number > 0)
+        there = {i: items[i].at(crowd.poses[i]) for i in np.flatnonzero(crowd.there).tolist()}
+        lost = [i for i in range(len(items)) if i not in there]
+        score = _score(there, crowd.aloof, items)
+        if (sound or number == settings.rounds - 1) and (least is None or score < least):
+            best, least = there, score
+        if sound and not lost and (not crowd.aloof or number >= ALOOF_ROUNDS):
             break
-        for i in lost:
+        for i in lost if number else ():
             losses[i] += 1
             # To be the first and still find no place is to be too large.
             if losses[i] > 1 and smaller is not None:
-                items[i] = _exchanged(items[i], assets, settings, smaller) or items[i]
-        first = [i for i in order if i not in placed or i in aloof]
-        order = first + [i for i in order if i not in first]
+                items[i] = _exchanged(items[i], assets, lore, settings, smaller) or items[i]
+        first = [*lost, *(i for i in crowd.aloof if i not in lost), *(i for i in first if i not in lost and i not in crowd.aloof)]
+    return _separated(asked, best, keep_count=keep_count)
+
+
+def _arranged(
+    site: Site, items: list[Item], first: Sequence[int], lore: Lore, settings: SeparateSettings, *, careful: bool
+) -> tuple[Crowd, bool]:
+    """Arrange a room once; return who stands where, and whether the floor is sound. `careful`: it is looked at for each group."""
+    walls = edges(site)
+    runs, laid = lay_runs(items, walls, site)
+    poses, bonds = exact_poses(items, site, walls, lore, settings, laid)
+    crowd = Crowd(site, items, settings)
+    settle_all(crowd, Draft(poses, bonds, runs, walls, lore), first, careful=careful)
+    if careful:
+        return crowd, True
+    verdict = crowd.verdict(np.flatnonzero(crowd.there))
+    return crowd, verdict == FINE
+
+
+def _separated(asked: Sequence[Item], best: Mapping[int, Placement], *, keep_count: bool) -> Separated:
     rejects: list[Reject] = []
     for i, item in enumerate(asked):
         what = item.placement
         if i not in best:
             rejects.append(Reject(what.object_id, "unplaceable", f"no free place for {what.category}"))
-        elif best[i].placement.asset_id != what.asset_id:
-            rejects.append(Reject(what.object_id, "shrunk_to_fit", f"{what.asset_id} gave way to {best[i].placement.asset_id}"))
+        elif best[i].asset_id != what.asset_id:
+            rejects.append(Reject(what.object_id, "shrunk_to_fit", f"{what.asset_id} gave way to {best[i].asset_id}"))
     kept = sorted(best)
-    moved = tuple(float(np.linalg.norm(best[i].placement.position[:2] - asked[i].wished[:2])) for i in kept)
-    return Separated(tuple(best[i].placement for i in kept), tuple(rejects), moved, keep_count and len(kept) < len(asked))
+    moved = tuple(float(np.linalg.norm(best[i].position[:2] - asked[i].wished[:2])) for i in kept)
+    return Separated(tuple(best[i] for i in kept), tuple(rejects), moved, keep_count and len(kept) < len(asked))
 
 
-def _rank(item: Item) -> tuple[int, float]:
-    """Order of placing: by what leans on what, large before small, what opens before what does not."""
-    area = float(item.placement.size[0] * item.placement.size[1])
-    return item.trait.order, -area * (1.5 if item.shape.opens else 1.0)
-
-
-def _score(placed: Mapping[int, Item], aloof: Collection[int], items: Sequence[Item]) -> tuple[float, float]:
+def _score(placed: Mapping[int, Placement], aloof: Collection[int], items: Sequence[Item]) -> tuple[float, float]:
     """Return (what is left out or out of reach, total displacement): less is better. Beds weigh more than plants."""
     lost = sum(1.0 + float(np.prod(items[i].placement.size[:2])) for i in range(len(items)) if i not in placed)
-    moved = sum(float(np.linalg.norm(item.placement.position[:2] - item.wished[:2])) for item in placed.values())
+    moved = sum(float(np.linalg.norm(p.position[:2] - items[i].wished[:2])) for i, p in placed.items())
     return round(lost + 0.5 * len(aloof), 6), round(moved, 6)
 
 
-def _place(site: Site, items: Sequence[Item], order: Sequence[int], settings: SeparateSettings) -> tuple[dict[int, Item], set[int]]:
-    """Place the items in the given order; what finds no pose is missing. Also return those whose handles nobody reaches."""
-    crowd = Crowd(site, settings)
-    placed: dict[int, Item] = {}
-    aloof: set[int] = set()
-    for i in order:
-        found, verdict = crowd.settle(items[i], *candidates(items[i], site, list(placed.values()), settings))
-        if found is not None:
-            placed[i] = found
-        if verdict == ALOOF:
-            aloof.add(i)
-    return placed, aloof
-
-
-def _exchanged(item: Item, assets: Mapping[str, Asset], settings: SeparateSettings, smaller: Smaller) -> Item | None:
+def _exchanged(item: Item, assets: Mapping[str, Asset], lore: Lore, settings: SeparateSettings, smaller: Smaller) -> Item | None:
     """Return the item as a smaller asset of its category, by at least a tenth, wished where it was; None if there is none."""
     now = item.placement
     match = smaller(now.asset_id, 0.9 * float(now.size[0] * now.size[1]))
@@ -146,4 +151,4 @@ def _exchanged(item: Item, assets: Mapping[str, Asset], settings: SeparateSettin
         return None
     size = assets[match.asset_id].size * match.scale
     now = replace(now, asset_id=match.asset_id, size=size, scale=match.scale, retrieval_distance=match.distance)
-    return replace(make_item(now, assets, settings.access_depth), wished=item.wished)
+    return replace(make_item(now, assets, lore, settings.access_depth), wished=item.wished)

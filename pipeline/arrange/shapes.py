@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Joint
 from pipeline.geometry.convex import hull
+from pipeline.geometry.kept import kept
 from pipeline.geometry.kinematics import OPENERS, facing, handle_point
 from pipeline.geometry.prisms import Prisms, Sweep, prism, solid, stacked
 
@@ -47,7 +48,23 @@ class Shape:
 
 
 def shape(asset: Asset, scale: Floats, access_depth: float, access: str = "") -> Shape:
-    """Return the shape of an asset at a scale.
+    """Return the shape of an asset at a scale; it is kept while the process lives, where nothing is scaled."""
+    if np.any(scale != 1.0):
+        return make_shape(asset, scale, access_depth, access)
+    own = _unscaled(asset)
+    key = (access_depth, access)
+    if key not in own:
+        own[key] = make_shape(asset, scale, access_depth, access)
+    return own[key]
+
+
+@kept
+def _unscaled(_: Asset) -> dict[tuple[float, str], Shape]:
+    return {}
+
+
+def make_shape(asset: Asset, scale: Floats, access_depth: float, access: str) -> Shape:
+    """Compute the shape of an asset at a scale.
 
     `access_depth` [m] is the place kept free beyond opened parts; what does not open gets half of it where people come
     to it: before its front ("front") or at both its sides ("sides").

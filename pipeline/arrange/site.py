@@ -49,6 +49,7 @@ class Site:
     doors: Floats
     holes: tuple[tuple[Hole, ...], ...]
     floor: Floor
+    bare: Walk
     radius: float
     step: float
     height: float
@@ -71,12 +72,15 @@ class Site:
         """Take one room out of a plan.
 
         The numbers are the robot's radius, climb, height and reach [m], the half angle [deg] of the cone before a handle
-        in which it stands, and the raster's cell [m].
+        in which it stands, and the raster's cell [m]; `bare` is the empty floor.
         """
         room = plan.room(room_id)
         openings = [o for o in plan.openings if room_id in o.rooms and o.level == room.level]
         elevation = plan.elevation(room_id)
         own = {o.opening_id for o in openings}
+        # Beyond each opening lies floor on which the robot can stand whole: one passes through, not up to the wall.
+        # Wide openings must be free in the middle, seen from both of their rooms: so both agree on where to pass.
+        floor = bare_floor([room], openings, 2 * radius + cell, cell, PASS_WIDTH)
         swung = stacked([leaf_sweep(leaf, elevation).prisms for leaf in leaves(plan) if leaf.opening_id in own])
         return cls(
             room_id,
@@ -86,9 +90,8 @@ class Site:
             swung,
             np.array([o.segment.mean(0) for o in openings if o.kind in PASSABLE]).reshape(-1, 2),
             _holes(room.polygon, openings),
-            # Beyond each opening lies floor on which the robot can stand whole: one passes through, not up to the wall.
-            # Wide openings must be free in the middle, seen from both of their rooms: so both agree on where to pass.
-            bare_floor([room], openings, 2 * radius + cell, cell, PASS_WIDTH),
+            floor,
+            walk(floor, stacked([]), radius, (elevation + step, elevation + height)),
             radius,
             step,
             height,

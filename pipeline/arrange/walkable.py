@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pipeline import taxonomy
 from pipeline.arrange.separate import Smaller
 from pipeline.arrange.settings import WalkableSettings
 from pipeline.arrange.site import Site
-from pipeline.arrange.traits import mount
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 from pipeline.geometry.prisms import solid, stacked
@@ -107,13 +107,18 @@ def _area(placement: Placement) -> float:
     return float(placement.size[0] * placement.size[1])
 
 
+def _mount(placement: Placement) -> str:
+    known = taxonomy.load().categories.get(placement.category)
+    return known.mount if known is not None else "floor"
+
+
 def _stands(placement: Placement, elevation: float) -> bool:
-    return mount(placement.category) != "ceiling" and float(placement.position[2]) - elevation < 0.1
+    return _mount(placement) != "ceiling" and float(placement.position[2]) - elevation < 0.1
 
 
 def _by_area(placements: Sequence[Placement]) -> list[int]:
     """Return the indices of valid objects, the largest first; ties in their order."""
-    valid = [i for i, p in enumerate(placements) if mount(p.category) == "floor"]
+    valid = [i for i, p in enumerate(placements) if _mount(p) == "floor"]
     return sorted(valid, key=lambda i: -round(_area(placements[i]), 9))
 
 

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.plan import Opening, Room
-from pipeline.geometry.occupancy import Mask, Raster, components, covered, standing
+from pipeline.geometry.compiled import compiled
+from pipeline.geometry.occupancy import Mask, Raster, components, covered, fill_all, standing
 from pipeline.geometry.prisms import Prisms
 
 Floats = NDArray[np.float64]
@@ -37,17 +38,7 @@ class Walk:
     def label_near(self, point: Floats, within: float) -> int:
         """Return the label of the standing place nearest to `point` (2,) [m], 0 when none is `within` [m]."""
         raster = self.floor.raster
-        reach = int(np.ceil(within / raster.cell)) + 1
-        i, j = raster.index(point[None])[0]
-        i0, j0 = max(0, i - reach), max(0, j - reach)
-        window = self.labels[i0 : i + reach + 1, j0 : j + reach + 1]
-        x, y = np.nonzero(window)
-        if not len(x):
-            return 0
-        centres = raster.origin + (np.stack([x + i0, y + j0], 1) + 0.5) * raster.cell
-        squares = ((centres - point) ** 2).sum(1)
-        best = int(np.argmin(squares))
-        return int(window[x[best], y[best]]) if squares[best] <= within**2 else 0
+        return int(_label_near(self.labels, (point - raster.origin) / raster.cell, within / raster.cell))
 
     def largest_label(self, where: Mask) -> int:
         """Return the label with most cells in a mask, 0 when there is none."""
@@ -85,6 +76,18 @@ def bare_floor(rooms: Sequence[Room], openings: Sequence[Opening], depth: float,
     return Floor(raster, room, free)
 
 
+@compiled
+def _label_near(labels: NDArray[np.int32], point: Floats, within: float) -> int:
+    """Return the label other than 0 whose cell's centre is nearest to a point (2,), 0 when none is `within`; all in cells."""
+    best, found = within * within, 0
+    for i in range(max(0, int(point[0] - within - 1)), min(labels.shape[0], int(point[0] + within + 2))):
+        for j in range(max(0, int(point[1] - within - 1)), min(labels.shape[1], int(point[1] + within + 2))):
+            square = (i + 0.5 - point[0]) ** 2 + (j + 0.5 - point[1]) ** 2
+            if labels[i, j] and (square < best or (found == 0 and square <= best)):
+                best, found = square, labels[i, j]
+    return found
+
+
 def passage(opening: Opening, depth: float, widest: float = np.inf) -> Floats:
     """Return the rectangle (4, 2) that an opening cuts, `depth` [m] to both sides of its segment, at most `widest` [m]."""
     a, b = opening.segment
@@ -99,6 +102,6 @@ def walk(floor: Floor, obstacles: Prisms, radius: float, heights: tuple[float, f
     """Take obstacles off the floor that reach into `heights` (low, high) [m, world]; find where the robot can stand."""
     free = floor.free.copy()
     hit = np.flatnonzero((obstacles.z[:, 0] < heights[1]) & (obstacles.z[:, 1] > heights[0]))
-    floor.raster.fill(free, [obstacles.polygon(int(i)) for i in hit], value=False)
+    fill_all(free, np.ascontiguousarray(obstacles.corners), obstacles.count, hit, floor.raster.origin, floor.raster.cell, False)
     labels, _ = components(standing(free, radius / floor.raster.cell))
     return Walk(floor, labels, radius / floor.raster.cell)

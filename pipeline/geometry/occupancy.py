@@ -80,13 +80,43 @@ def fill(mask: Mask, polygon: Floats, value: bool) -> None:
                 mask[i, j] = value
 
 
+@compiled
+def fill_all(
+    mask: Mask, corners: Floats, count: NDArray[np.int64], which: NDArray[np.int64], origin: Floats, cell: float, value: bool
+) -> None:
+    """Set the cells whose centre lies in any of the polygons `which` of a batch (P, V, 2) [m], of whose corners `count` (P,) are used."""
+    for k in which:
+        fill(mask, (corners[k, : count[k]] - origin) / cell, value)
+
+
+@compiled
 def standing(free: Mask, radius_cells: float) -> Mask:
-    """Return the cells at which the centre of a disc of that radius can stand: all of it is free floor."""
-    if not free.any():
-        return free.copy()
-    distance = ndimage.distance_transform_edt(np.pad(free, 1))[1:-1, 1:-1]
-    # The distance is to the centre of the nearest blocked cell, whose edge is half a cell nearer.
-    found: Mask = distance - 0.5 >= radius_cells - 1e-9
+    """Return the cells at which the centre of a disc of that radius can stand: all of it is free floor.
+
+    No blocked cell, nor one beyond the raster, has its centre nearer than the radius and half a cell.
+    """
+    rows, columns = free.shape
+    least = (radius_cells + 0.5 - 1e-9) ** 2
+    reach = int(np.ceil(radius_cells + 0.5))
+    apart = np.empty((rows, columns))  # to the nearest blocked cell of the same row, squared
+    for i in range(rows):
+        last = -1
+        for j in range(columns):
+            last = last if free[i, j] else j
+            apart[i, j] = (j - last) ** 2
+        last = columns
+        for j in range(columns - 1, -1, -1):
+            last = last if free[i, j] else j
+            apart[i, j] = min(apart[i, j], (last - j) ** 2)
+    found = np.zeros((rows, columns), np.bool_)
+    for i in range(rows):
+        for j in range(columns):
+            stands = apart[i, j] >= least and min(i + 1, rows - i) ** 2 >= least
+            for k in range(max(0, i - reach), min(rows, i + reach + 1)):
+                if not stands:
+                    break
+                stands = (k - i) ** 2 + apart[k, j] >= least
+            found[i, j] = stands
     return found
 
 

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from pipeline import floorplan, params, seeds, tables, taxonomy
-from pipeline.arrange import PostoptSettings
+from pipeline.arrange import Lore, PostoptSettings
 from pipeline.diffusion.sampling import Sampler
 from pipeline.diffusion.settings import SampleSettings
 from pipeline.entities.home import Home, Placement
@@ -39,6 +39,7 @@ from pipeline.homes.rows import Row, home_rows, reject_row
 from pipeline.homes.settings import ShardSettings
 from pipeline.homes.things import placeable, small_things
 from pipeline.manifest import digest, sha256_file
+from pipeline.relations import files as relation_files
 from pipeline.retrieval.index import AssetIndex
 from pipeline.retrieval.settings import RetrievalSettings
 from pipeline.shards import code_digest, scene_id
@@ -91,7 +92,7 @@ class _Work:
 
 @dataclass(frozen=True)
 class Factory:
-    """Everything that making homes needs, loaded once per process. `seconds` sums CPU seconds by part."""
+    """Everything that making homes needs, loaded once per process. `lore` is what the training tables know of relations; `seconds` sums CPU seconds by part."""
 
     seed: int
     sampler: Sampler
@@ -102,6 +103,7 @@ class Factory:
     verify: VerifySettings
     prior: PriorSettings
     digests: Mapping[str, str]
+    lore: Lore
     seconds: dict[str, float] = field(default_factory=dict)
 
     @property
@@ -235,7 +237,7 @@ class Factory:
         work.pending.remove(job)
         work.tries += 1
         with self.timed("postopt"):
-            result = finish(draft, self.library, self.index, self.postopt, self.verify.robot, taxonomy.load())
+            result = finish(draft, self.library, self.index, self.lore, self.postopt, self.verify.robot, taxonomy.load())
         before = work.results.get(job.room_id)
         work.rejects.extend(reject_row(scene_id(self.seed, job.index), job.room_id, job.attempt, r) for r in result.rejects)
         if before is None or result.rank() > before.rank():
@@ -348,6 +350,7 @@ def told_count(wish: Furniture, rng: np.random.Generator) -> int | None:
 def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
     """Load models, tables and settings of the checkout at `root`. Raises ContentError for what is missing or broken."""
     data, weights = root / "data", root / "models" / "denoiser.safetensors"
+    relations = data / "tables" / "relations.json"
     if not weights.is_file():
         raise ContentError(f"there are no trained weights ({weights} is missing)", f"type `make run` in {root}")
     library = Library.read(data / "tables", data / "assets")
@@ -367,8 +370,10 @@ def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
             "code": code_digest(root),
             "library": library.digest(),
             "params": digest({name: tree[name] for name in names}),
+            "relations": sha256_file(relations),
             "weights": sha256_file(weights),
         },
+        Lore(relation_files.load(relations)),
     )
 
 

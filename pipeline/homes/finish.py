@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from pipeline.arrange import PostoptSettings, Site, post_optimise
+from pipeline.arrange import Lore, PostoptSettings, Site, post_optimise
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 from pipeline.floorplan.furniture import members
@@ -88,14 +88,20 @@ def _unmet(job: RoomJob, placements: tuple[Placement, ...], openers: frozenset[s
 
 
 def finish(
-    draft: Draft, assets: Mapping[str, Asset], index: AssetIndex, settings: PostoptSettings, robot: Robot, taxonomy: Taxonomy
+    draft: Draft,
+    assets: Mapping[str, Asset],
+    index: AssetIndex,
+    lore: Lore,
+    settings: PostoptSettings,
+    robot: Robot,
+    taxonomy: Taxonomy,
 ) -> RoomResult:
     """Take one draft through algorithm 2 (where a share of free floor is asked for) and separation."""
     job, placements = draft.job, draft.placements
     site = Site.of(job.plan, job.room_id, radius=robot.radius + MARGIN, step=robot.step, height=robot.height)
     rejects: list[Reject] = [("object", "no_asset", category) for category in draft.lost]
     smaller = index.favouring(job.furniture.style).smaller
-    arranged = post_optimise(site, placements, assets, settings, smaller, target=job.walkable, keep_count=job.bounds[0] is not None)
+    arranged = post_optimise(site, placements, assets, lore, settings, smaller, target=job.walkable, keep_count=job.bounds[0] is not None)
     placements = tuple(rounded(p) for p in arranged.placements)
     rejects += [("object", r.reason, f"{r.object_id}: {r.detail}") for r in arranged.rejects]
     free = arranged.ratio

@@ -1,0 +1,164 @@
+"""Which relations of the training tables a draft nearly holds, and the poses at which it would hold them exactly.
+
+A member is bound to the one anchor, larger than itself, whose learnt modes it is nearest to: so the bonds of a room are
+trees, with a bed, a sofa, a table at each root. The modes are those of `pipeline.relations`, as rows of numbers.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.arrange.item import Item
+from pipeline.arrange.lore import SIDES, Lore
+from pipeline.geometry.compiled import compiled
+
+Floats = NDArray[np.float64]
+
+REACH, TURN = 0.4, math.radians(30)  # how far from a mode a relation is nearly held [m, rad]
+OVER = float(SIDES.index("over"))
+FLAT = [0, 1, 3]  # x, y, yaw of a pose
+LEVER = 0.5  # metres that a radian counts
+TIGHT = 0.5  # of a mode's spans, this share about their middles is where poses are put
+SQUARE = math.radians(15)  # a turn against the anchor is made a quarter turn when it is this near to one
+ADJOINS = 0.7  # a member moves with its anchor when the gap between them is no wider [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Bond:
+    """A member's tie to its anchor (its index): the exact pose (x, y, yaw) in the anchor's frame; `rigid`: it moves when the anchor does."""
+
+    anchor: int
+    local: Floats
+    rigid: bool
+    over: bool
+
+
+def find_bond(i: int, items: Sequence[Item], poses: Floats, lore: Lore) -> Bond | None:
+    """Return the bond of item `i` at its wished pose to one of those that are larger, at their `poses` (N, 4) or where they were wished."""
+    item = items[i]
+    best: tuple[float, Bond] | None = None
+    for j, other in enumerate(items):
+        if other.mount != "floor" or (other.area, -j) <= (item.area, -i):
+            continue
+        found = lore.modes(other.placement.category, item.placement.category)
+        if found is None:
+            continue
+        table, strength = found
+        if item.mount == "wall":  # walls place what hangs on them, but for what is placed over furniture
+            table = table[table[:, 0] == OVER]
+        frames = (poses[j], other.wished)
+        near = min((nearest(table, at[FLAT], other.half, item.wished[FLAT], item.half) for at in frames), key=_off)
+        if near[0] > REACH or near[1] > TURN:
+            continue
+        score = strength - _off(near)
+        if best is None or score > best[0]:
+            best = score, _bond(j, near, other, item)
+    return best[1] if best else None
+
+
+def _off(near: Floats) -> float:
+    return round(float(near[0] + LEVER * near[1]), 6)
+
+
+def _bond(anchor: int, near: Floats, other: Item, item: Item) -> Bond:
+    over, local = bool(near[5] == OVER), near[2:5].copy()
+    same_wall = not item.habit.must or math.cos(local[2]) > 0.7  # a TV stand opposite stays at its own wall
+    return Bond(anchor, local, over or (same_wall and _gap(local, other, item) <= ADJOINS), over)
+
+
+def at_anchor(pose: Floats, local: Floats) -> Floats:
+    """Return the pose (x, y, yaw) of what stands at `local` (x, y, yaw) in the frame of an anchor at (x, y, z, yaw)."""
+    c, s = math.cos(pose[3]), math.sin(pose[3])
+    return np.array(
+        [pose[0] + c * local[0] - s * local[1], pose[1] + s * local[0] + c * local[1], math.remainder(pose[3] + local[2], math.tau)]
+    )
+
+
+def mode_poses(anchor: Item, at: Floats, item: Item, wished: Floats, lore: Lore) -> Floats:
+    """Return the poses (K, 3) x, y, yaw of an item in each mode at an anchor that stands at (x, y, z, yaw): those nearest to `wished`."""
+    found = lore.modes(anchor.placement.category, item.placement.category)
+    if found is None:
+        return np.zeros((0, 3))
+    table = found[0]
+    near = np.array([nearest(table[k : k + 1], at[FLAT], anchor.half, wished[FLAT], item.half)[2:5] for k in range(len(table))])
+    return np.array([at_anchor(at, local) for local in near]).reshape(-1, 3)
+
+
+def _gap(local: Floats, anchor: Item, member: Item) -> float:
+    """Return the gap between the boxes of a member and its anchor [m]."""
+    c, s = abs(math.cos(local[2])), abs(math.sin(local[2]))
+    w, d = member.half
+    return float(max(abs(local[0]) - anchor.half[0] - c * w - s * d, abs(local[1]) - anchor.half[1] - s * w - c * d))
+
+
+@compiled
+def _base(reference: float, own: float, other: float) -> tuple[float, float]:
+    """Return (zero [m], unit [m]) of a reference for an anchor and a member of these lengths."""
+    if reference == 3.0:
+        return 0.0, own
+    if reference == 4.0:
+        return (own + other) / 2, 1.0
+    sign = -1.0 if reference == 1.0 else 1.0 if reference == 2.0 else 0.0
+    return sign * (own - other) / 2, 1.0
+
+
+@compiled
+def _beyond(value: float, low: float, high: float) -> float:
+    return min(value - low, 0.0) + max(value - high, 0.0)
+
+
+@compiled
+def nearest(table: Floats, anchor: Floats, half: Floats, member: Floats, own: Floats) -> Floats:
+    """Return (metres, radians off, x, y, yaw in the anchor's frame, side) of the nearest mode: what `Relations.nearest` says, tightened.
+
+    `anchor` and `member` are (x, y, yaw), `half` and `own` their half extents (2,) in plan.
+    """
+    c, s = math.cos(anchor[2]), math.sin(anchor[2])
+    dx, dy = member[0] - anchor[0], member[1] - anchor[1]
+    px, py = c * dx + s * dy, c * dy - s * dx
+    turn = (member[2] - anchor[2] + math.pi) % (2 * math.pi) - math.pi
+    best = np.full(6, np.inf)
+    for k in range(table.shape[0]):
+        row = table[k]
+        side = row[0]
+        nx = 1.0 if side == 1.0 else -1.0 if side == 3.0 else 0.0
+        ny = -1.0 if side == 0.0 else 1.0 if side in (2.0, 4.0) else 0.0
+        ax, ay = abs(ny), abs(nx)
+        looks = math.atan2(-px, py) if row[9] > 0.0 else 0.0
+        off = (turn - looks - row[11] + math.pi) % (2 * math.pi) - math.pi
+        radians = abs(_beyond(off, row[10], row[12]))
+        # distances with the turn as it is
+        w = abs(math.cos(turn)) * own[0] + abs(math.sin(turn)) * own[1]
+        d = abs(math.sin(turn)) * own[0] + abs(math.cos(turn)) * own[1]
+        out_own, out_other = 2 * (abs(nx) * half[0] + abs(ny) * half[1]), 2 * (abs(nx) * w + abs(ny) * d)
+        side_own, side_other = 2 * (ax * half[0] + ay * half[1]), 2 * (ax * w + ay * d)
+        zero, unit = _base(row[1], out_own, out_other)
+        out_off = _beyond((px * nx + py * ny - zero) / unit, row[2], row[4]) * unit
+        zero, unit = _base(row[5], side_own, side_other)
+        side_off = _beyond((px * ax + py * ay - zero) / unit, row[6], row[8]) * unit
+        metres = math.sqrt(out_off * out_off + side_off * side_off)
+        if metres + LEVER * radians >= best[0] + LEVER * best[1]:
+            continue
+        yaw = looks + row[11] + min(max(off, TIGHT * row[10]), TIGHT * row[12])
+        quarter = round(yaw / (math.pi / 2)) * (math.pi / 2)
+        if abs(yaw - quarter) <= SQUARE:
+            yaw = quarter
+        w = abs(math.cos(yaw)) * own[0] + abs(math.sin(yaw)) * own[1]
+        d = abs(math.sin(yaw)) * own[0] + abs(math.cos(yaw)) * own[1]
+        out_other, side_other = 2 * (abs(nx) * w + abs(ny) * d), 2 * (ax * w + ay * d)
+        zero, unit = _base(row[1], out_own, out_other)
+        out = zero + unit * min(
+            max((px * nx + py * ny - zero) / unit, row[3] + TIGHT * (row[2] - row[3])), row[3] + TIGHT * (row[4] - row[3])
+        )
+        zero, unit = _base(row[5], side_own, side_other)
+        along = zero + unit * min(
+            max((px * ax + py * ay - zero) / unit, row[7] + TIGHT * (row[6] - row[7])), row[7] + TIGHT * (row[8] - row[7])
+        )
+        best[0], best[1] = metres, radians
+        best[2], best[3], best[4], best[5] = out * nx + along * ax, out * ny + along * ay, yaw, side
+    return best

@@ -1,0 +1,94 @@
+"""Where the objects of a draft would stand if what it nearly holds were exact: at their anchors, at walls, square to them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.arrange.bonds import Bond, at_anchor, find_bond
+from pipeline.arrange.item import Item, turned
+from pipeline.arrange.lore import Lore
+from pipeline.arrange.settings import SeparateSettings
+from pipeline.arrange.site import Site
+from pipeline.arrange.walls import FAR, Edge, at_wall, square
+
+Floats = NDArray[np.float64]
+
+LOOSE = 0.3  # a wall may take a bound object this far from the place at its anchor [m]
+HUNG = (0.9, 1.4, 1.6)  # least height of what hangs on walls, and the usual ones [m above the floor]
+ON_TOP = 0.4  # what is drafted this near to the top of what it is bound over stands on it [m]
+
+
+def exact_poses(
+    items: Sequence[Item], site: Site, walls: Sequence[Edge], lore: Lore, settings: SeparateSettings, fixed: dict[int, Floats]
+) -> tuple[Floats, list[Bond | None]]:
+    """Return the exact pose (N, 4) of each object and its bond; `fixed` are poses that stand already, of kitchen units.
+
+    Larger objects come first: what is bound to them goes where they went.
+    """
+    poses = np.array([item.wished for item in items]).reshape(-1, 4)
+    bonds: list[Bond | None] = [None] * len(items)
+    for i in sorted(range(len(items)), key=lambda i: (-items[i].area, i)):
+        if i in fixed:
+            poses[i] = fixed[i]
+            continue
+        bonds[i] = find_bond(i, items, poses, lore)
+        bound = bonds[i]
+        found = None if bound is None else _bound(items[i], bound, items, poses, walls, settings)
+        if found is None:
+            bonds[i] = None
+            found = _alone(items[i], site, walls, settings)
+        poses[i] = found
+    return poses, bonds
+
+
+def _bound(
+    item: Item, bond: Bond, items: Sequence[Item], poses: Floats, walls: Sequence[Edge], settings: SeparateSettings
+) -> Floats | None:
+    """Return the pose at the anchor, the back at the wall where it belongs to one; None where wall and anchor do not agree."""
+    x, y, yaw = at_anchor(poses[bond.anchor], bond.local)
+    pose = np.array([x, y, item.wished[2], yaw])
+    if bond.over:
+        anchor = items[bond.anchor].placement
+        top = float(poses[bond.anchor, 2] + anchor.size[2]) + 0.001
+        if item.mount == "wall" and abs(top - item.wished[2]) < ON_TOP:
+            pose[2] = top
+        return pose
+    if item.mount == "floor" and item.habit.must:
+        return at_wall(item, pose, walls, LOOSE, settings.turn_cost)
+    return pose
+
+
+def _alone(item: Item, site: Site, walls: Sequence[Edge], settings: SeparateSettings) -> Floats:
+    """Return the pose of an object that is bound to none: at the nearest wall if it belongs to one, else square to the walls if nearly so."""
+    pose = item.wished.copy()
+    pose[2] = height(item, site, float(pose[2]))
+    if item.habit.wants:
+        reach = FAR if item.habit.must else settings.wall_reach
+        found = at_wall(item, pose, walls, 10.0 if item.mount == "wall" else reach, settings.turn_cost)
+        if found is not None:
+            return found
+    large = item.habit.kind in {"bed", "table", "cabinet", "sofa"} and item.area > 0.5
+    pose[3] = square(float(pose[3]), walls, math.pi if large or item.habit.must else math.radians(settings.snap_angle))
+    return pose
+
+
+def height(item: Item, site: Site, wished: float) -> float:
+    """Return z: on the floor, under the ceiling, or for what hangs on walls within reach of them."""
+    tall = float(item.placement.size[2])
+    if item.mount == "floor":
+        return site.elevation
+    if item.mount == "ceiling":
+        return site.ceiling - tall
+    low = site.elevation + HUNG[0]
+    return float(np.clip(wished, low, max(low, site.ceiling - tall - 0.02)))
+
+
+def moved(poses: Floats, items: Sequence[Item]) -> Floats:
+    """Return how far (N,) each pose is from the wished one, turning included [m]."""
+    wished = np.array([item.wished for item in items]).reshape(-1, 4)
+    turns = np.array([float(turned(p[3], w[3])) for p, w in zip(poses, wished, strict=True)])
+    return np.linalg.norm(poses[:, :2] - wished[:, :2], axis=1) + 0.3 * turns

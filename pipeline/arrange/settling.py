@@ -1,0 +1,148 @@
+"""The groups of a room find their places: first those that are free where they belong, then the rest, the largest first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.arrange.bonds import Bond, at_anchor
+from pipeline.arrange.candidates import ALONE, at_anchor_poses, everywhere, hides, near_by
+from pipeline.arrange.crowd import CUT, FINE, Crowd
+from pipeline.arrange.groups import Group, group_of, groups
+from pipeline.arrange.item import wrapped
+from pipeline.arrange.lore import Lore
+from pipeline.arrange.walls import Edge
+from pipeline.arrange.world import FREE, conflicts
+
+Floats = NDArray[np.float64]
+
+SHIFT = 0.5  # a group goes no farther as one before it is tried without its members [m]
+OPENS = 1.5  # what opens is placed as if it were so many times as large
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """The exact `poses` (N, 4) of a room's objects, their `bonds`, the kitchen `runs`, the room's walls, what is known of relations."""
+
+    poses: Floats
+    bonds: Sequence[Bond | None]
+    runs: Sequence[Sequence[int]]
+    walls: Sequence[Edge]
+    lore: Lore
+
+
+def settle_all(crowd: Crowd, draft: Draft, first: Sequence[int], *, careful: bool) -> None:
+    """Find a place for every group, those that hold one of `first` before the others; who finds none is not in the crowd.
+
+    `careful`: the floor must hang together with each group that is added.
+    """
+    pairs, alone = conflicts(crowd.world, draft.poses, crowd.settings.touch)
+    whole = groups(crowd.items, draft.poses, draft.bonds, draft.runs)
+    made, strays = _consistent(whole, pairs)
+    at_fault = (alone != FREE) | np.array([hides(i, p, draft.walls) for i, p in zip(crowd.items, draft.poses, strict=True)], np.bool_)
+    member = np.full(len(crowd.items), -1)
+    for number, group in enumerate(made):
+        member[group.members] = number
+    clash = pairs & (member[:, None] != member[None]) & (member >= 0)[:, None] & (member >= 0)[None]
+    order = sorted(range(len(made)), key=lambda k: _rank(crowd, made[k], draft, first))
+    free = [k for k in order if not (at_fault[made[k].members].any() or clash[made[k].members].any())]
+    for k in free:
+        crowd.stand(made[k], draft.poses[made[k].first])
+    if careful and free and crowd.verdict(np.flatnonzero(crowd.there)) != FINE:
+        for k in free:
+            crowd.leave(made[k])
+        free = []
+    order = [k for k in order if k not in set(free)]
+    for k in order:
+        strays += _settle_group(crowd, draft, made[k], careful=careful)
+    for i in sorted(strays, key=lambda i: (-crowd.items[i].area, i)):
+        _settle_one(crowd, draft, i, careful=careful)
+
+
+def _rank(crowd: Crowd, group: Group, draft: Draft, first: Sequence[int]) -> tuple[int, int, int, float, int]:
+    """Order of placing: who found nothing before, kitchen runs, what leans on none, large before small, what opens before what does not."""
+    lead = crowd.items[group.first]
+    waits = draft.bonds[group.first] is not None
+    again = min((first.index(i) for i in group.members.tolist() if i in first), default=len(first))
+    area = sum(crowd.items[i].area for i in group.members.tolist())
+    run = group.first in {run[0] for run in draft.runs}
+    return again, 0 if run else 1, int(waits), -area * (OPENS if lead.shape.opens else 1.0), group.first
+
+
+def _consistent(whole: Sequence[Group], pairs: NDArray[np.bool_]) -> tuple[list[Group], list[int]]:
+    """Take out of each group who is in another of its members; return the groups, and who was taken out."""
+    made, strays = [], []
+    for group in whole:
+        kept = group
+        for i in group.members[1:].tolist():
+            before = kept.members[: list(kept.members).index(i)]
+            if pairs[i, before].any():
+                kept = kept.less(i)
+                strays.append(i)
+        made.append(kept)
+    return made, strays
+
+
+def _settle_group(crowd: Crowd, draft: Draft, group: Group, *, careful: bool) -> list[int]:
+    """Place a group as one near its target; else its anchor alone. Return the members that are then still to be placed."""
+    first = group.first
+    if len(group.members) == 1:
+        _settle_one(crowd, draft, first, careful=careful)
+        return []
+    poses, costs = _near(crowd, draft, first)
+    close = costs <= SHIFT
+    if _put(crowd, group, poses[close], costs[close], careful=careful):
+        return []
+    _settle_one(crowd, draft, first, careful=careful)
+    return [int(i) for i in group.members[1:]]
+
+
+def _settle_one(crowd: Crowd, draft: Draft, i: int, *, careful: bool) -> None:
+    """Place one object: near its target or elsewhere at its anchor, else all over the room."""
+    alone = group_of([i], draft.poses)
+    poses, costs = _near(crowd, draft, i)
+    if not _put(crowd, alone, poses, costs, careful=careful):
+        poses, costs = everywhere(crowd.items[i], _target(crowd, draft, i), draft.walls, crowd.site, crowd.settings)
+        _put(crowd, alone, poses, costs, careful=careful)
+
+
+def _put(crowd: Crowd, group: Group, poses: Floats, costs: Floats, *, careful: bool) -> bool:
+    if careful:
+        return crowd.settle(group, poses, costs) != CUT
+    found = crowd.nearest(group, poses, costs)
+    if found is not None:
+        crowd.stand(group, found[0])
+    return found is not None
+
+
+def _target(crowd: Crowd, draft: Draft, i: int) -> Floats:
+    """Return the exact pose of an object; where its anchor has moved, it goes along."""
+    bond = draft.bonds[i]
+    if bond is None or not crowd.there[bond.anchor]:
+        return draft.poses[i]
+    now, then = crowd.poses[bond.anchor], draft.poses[bond.anchor]
+    if np.allclose(now, then, atol=1e-3):
+        return draft.poses[i]
+    x, y, yaw = at_anchor(now, bond.local)
+    return np.array([x, y, draft.poses[i, 2], wrapped(float(yaw))])
+
+
+def _near(crowd: Crowd, draft: Draft, i: int) -> tuple[Floats, Floats]:
+    """Return poses near the target of an object, and at its anchor if it has one, the cheapest first."""
+    item, target = crowd.items[i], _target(crowd, draft, i)
+    there = np.flatnonzero(crowd.there)
+    neighbours = np.array([crowd.outline(k) for k in there]).reshape(-1, 4, 2)
+    poses, costs = near_by(item, target, draft.walls, neighbours, crowd.site, crowd.settings)
+    bond = draft.bonds[i]
+    if bond is None or bond.over or not crowd.there[bond.anchor]:
+        return poses, costs
+    anchor = crowd.items[bond.anchor]
+    beside, cost = at_anchor_poses(item, target, anchor, crowd.poses[bond.anchor], draft.lore, crowd.settings)
+    if not len(beside):
+        return poses, costs
+    poses, costs = np.concatenate([beside, poses]), np.concatenate([cost, np.where(costs > 0.05, costs + ALONE, costs)])
+    order = np.argsort(np.round(costs, 9), kind="stable")
+    return np.ascontiguousarray(poses[order]), costs[order]

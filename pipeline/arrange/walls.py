@@ -1,0 +1,100 @@
+"""Standing at walls: the edges of a room, and poses with the back to them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.arrange.item import Item, turned, wrapped
+from pipeline.arrange.site import Hole, Site
+
+Floats = NDArray[np.float64]
+
+OVERHANG = 0.05  # an object may stand this far before an opening at no cost [m]
+BEFORE_WINDOW = 0.6  # cost of hiding a window behind something high [m]
+BEFORE_HOLE = 0.8  # cost of leaning on a wall that is not there [m]
+ABOVE_SILL = 0.4  # what rises no more than this above a window's sill may stand before it [m]
+FAR = 1.0  # what belongs to a wall is put to one that is no farther; what would rather, within the wall_reach of the settings [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """A wall: it starts at `start` (2,) and goes along the unit vector `along` (2,); the room lies on `inward` (2,)."""
+
+    start: Floats
+    along: Floats
+    inward: Floats
+    length: float
+    yaw: float  # of an object that has its back to it [rad]
+    holes: tuple[Hole, ...]
+
+    def pose(self, s: float, off: float, z: float) -> Floats:
+        """Return the pose of an object whose middle is `s` along the wall and `off` before it [m]."""
+        x, y = self.start + s * self.along + off * self.inward
+        return np.array([x, y, z, self.yaw])
+
+
+def edges(site: Site) -> list[Edge]:
+    """Return the walls of a room."""
+    found = []
+    for a, b, holes in zip(site.polygon, np.roll(site.polygon, -1, axis=0), site.holes, strict=True):
+        length = math.hypot(*(b - a))
+        t = (b - a) / max(length, 1e-9)
+        found.append(Edge(a, t, np.array([-t[1], t[0]]), length, wrapped(math.atan2(-t[1], -t[0])), holes))
+    return found
+
+
+def hides_window(item: Item, hole: Hole) -> bool:
+    """Whether an object is too high to stand before a window."""
+    return hole.window and item.mount == "floor" and float(item.placement.size[2]) > hole.sill + ABOVE_SILL
+
+
+def hole_cost(item: Item, s: Floats, holes: Sequence[Hole]) -> Floats:
+    """Return what standing before openings costs at places `s` (S,) along a wall: there is none to lean on. What hangs needs one."""
+    cost = np.zeros(len(s))
+    w = float(item.half[0])
+    for hole in holes:
+        before = np.minimum(s + w, hole.end) - np.maximum(s - w, hole.start) > OVERHANG
+        if item.mount == "wall":
+            cost[before] = np.inf
+        elif not hole.window:
+            cost[before] += BEFORE_HOLE
+        elif hides_window(item, hole) and item.habit.kind != "bed":
+            cost[before] += BEFORE_WINDOW
+    return cost
+
+
+def at_wall(item: Item, pose: Floats, walls: Sequence[Edge], reach: float, turn_cost: float) -> Floats | None:
+    """Return the nearest pose (x, y, z, yaw) with the back to a wall, in the gap that is usual; None where none is within `reach` [m].
+
+    Turning counts `turn_cost` metres per radian.
+    """
+    w, d = item.half
+    low, usual, high = item.habit.gap
+    best: tuple[float, Floats] | None = None
+    for edge in walls:
+        if edge.length < 2 * w:
+            continue
+        s, off = float((pose[:2] - edge.start) @ edge.along), float((pose[:2] - edge.start) @ edge.inward)
+        gap = off - d
+        turn = float(turned(edge.yaw, float(pose[3])))
+        if turn > math.radians(100) or gap > reach + FAR:
+            continue
+        stop = min(max(s, w + low), edge.length - w - low)
+        moved = math.hypot(stop - s, gap - usual)
+        cost = moved + turn_cost * turn + float(hole_cost(item, np.array([stop]), edge.holes)[0])
+        if cost < (best[0] if best else reach):
+            best = cost, edge.pose(stop, d + (gap if low <= gap <= high else usual), float(pose[2]))
+    return best[1] if best else None
+
+
+def square(yaw: float, walls: Sequence[Edge], within: float) -> float:
+    """Return a yaw turned to the nearest direction of a wall where that is `within` [rad], else the same."""
+    squares = (np.array([edge.yaw for edge in walls])[:, None] + np.arange(4) * math.pi / 2).ravel()
+    distance = turned(squares, yaw)
+    best = int(np.argmin(np.round(distance, 6)))
+    return wrapped(float(squares[best])) if distance[best] <= within else wrapped(yaw)

@@ -1,0 +1,268 @@
+"""All objects of a room as arrays: their prisms at rest and placed. What the compiled search works on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.arrange.shapes import Shape
+from pipeline.geometry.compiled import compiled
+from pipeline.geometry.contact import depth
+from pipeline.geometry.polygons import excess
+from pipeline.geometry.prisms import Prisms, stacked
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+SOFT = 0.1  # a body may reach this far into an access place at no cost [m]
+SOFT_WALL = 0.15  # and a wall this far [m]
+FREE, WALL, DOOR = -1, -2, -3  # what blocks an object, beside another's index
+
+
+class World(NamedTuple):
+    """N objects of P prisms. `start` (N, 4): bodies from start[i, 0], keeps from start[i, 1], access places from start[i, 2] to start[i, 3].
+
+    `corners` (P, V, 2), `count` (P,), `z` (P, 2) and `shell` (N, S, 2), `shell_count` (N,) (the body's hull in plan) are in the object's frame;
+    `at`, `at_z`, `flat` (P, 4) and `box` (N, 4) are where it was placed last [m].
+    The room: `door`, `door_count`, `door_z`, `door_flat` are what its doors sweep; `polygon` (n, 2), `ceiling` (1,) [m].
+    """
+
+    start: Ints
+    corners: Floats
+    count: Ints
+    z: Floats
+    shell: Floats
+    shell_count: Ints
+    at: Floats
+    at_z: Floats
+    flat: Floats
+    box: Floats
+    door: Floats
+    door_count: Ints
+    door_z: Floats
+    door_flat: Floats
+    polygon: Floats
+    ceiling: Floats
+
+
+def make_world(shapes: Sequence[Shape], swung: Prisms, polygon: Floats, ceiling: float) -> World:
+    """Gather the shapes of a room's objects, nothing placed yet."""
+    groups = [part for s in shapes for part in (s.body, s.keep, s.access)]
+    sizes = np.array([len(g) for g in groups], np.int64).reshape(-1, 3)
+    ends = np.cumsum(sizes.ravel()).reshape(-1, 3)
+    start = np.column_stack([ends[:, 0] - sizes[:, 0], ends]) if len(shapes) else np.zeros((0, 4), np.int64)
+    every = stacked(groups)
+    most = max((len(s.outline) for s in shapes), default=1)
+    shell = np.zeros((len(shapes), most, 2))
+    for i, s in enumerate(shapes):
+        shell[i, : len(s.outline)] = s.outline
+    corners = np.ascontiguousarray(every.corners)
+    return World(
+        start,
+        corners,
+        every.count,
+        np.ascontiguousarray(every.z),
+        shell,
+        np.array([len(s.outline) for s in shapes], np.int64),
+        np.zeros_like(corners),
+        np.zeros((len(every), 2)),
+        np.zeros((len(every), 4)),
+        np.zeros((len(shapes), 4)),
+        np.ascontiguousarray(swung.corners),
+        swung.count,
+        np.ascontiguousarray(swung.z),
+        swung.boxes(),
+        polygon,
+        np.array([ceiling]),
+    )
+
+
+@compiled
+def put(world: World, i: int, pose: Floats) -> None:
+    """Place object `i` at (x, y, z, yaw)."""
+    c, s = math.cos(pose[3]), math.sin(pose[3])
+    left, low, right, high = np.inf, np.inf, -np.inf, -np.inf
+    for k in range(world.start[i, 0], world.start[i, 3]):
+        x0, y0, x1, y1 = np.inf, np.inf, -np.inf, -np.inf
+        for v in range(world.count[k]):
+            x = c * world.corners[k, v, 0] - s * world.corners[k, v, 1] + pose[0]
+            y = s * world.corners[k, v, 0] + c * world.corners[k, v, 1] + pose[1]
+            world.at[k, v, 0], world.at[k, v, 1] = x, y
+            x0, y0, x1, y1 = min(x0, x), min(y0, y), max(x1, x), max(y1, y)
+        world.flat[k, 0], world.flat[k, 1], world.flat[k, 2], world.flat[k, 3] = x0, y0, x1, y1
+        world.at_z[k, 0], world.at_z[k, 1] = world.z[k, 0] + pose[2], world.z[k, 1] + pose[2]
+        left, low, right, high = min(left, x0), min(low, y0), max(right, x1), max(high, y1)
+    world.box[i, 0], world.box[i, 1], world.box[i, 2], world.box[i, 3] = left, low, right, high
+
+
+@compiled
+def leaves_room(world: World, i: int, pose: Floats, tolerance: float) -> bool:
+    """Tell whether the outline of object `i` would be beyond the walls at a pose."""
+    c, s = math.cos(pose[3]), math.sin(pose[3])
+    n = world.shell_count[i]
+    shell = np.empty((n, 2))
+    for v in range(n):
+        shell[v, 0] = c * world.shell[i, v, 0] - s * world.shell[i, v, 1] + pose[0]
+        shell[v, 1] = s * world.shell[i, v, 0] + c * world.shell[i, v, 1] + pose[1]
+    return bool(excess(shell, world.polygon) > tolerance)
+
+
+@compiled
+def meet(world: World, a0: int, a1: int, b0: int, b1: int, tolerance: float) -> bool:
+    """Tell whether any of the placed prisms a0 .. a1 - 1 is in one of b0 .. b1 - 1 by more than `tolerance` [m]."""
+    flat, at_z = world.flat, world.at_z
+    for i in range(a0, a1):
+        for j in range(b0, b1):
+            if min(flat[i, 2], flat[j, 2]) - max(flat[i, 0], flat[j, 0]) <= tolerance:
+                continue
+            if min(flat[i, 3], flat[j, 3]) - max(flat[i, 1], flat[j, 1]) <= tolerance:
+                continue
+            if min(at_z[i, 1], at_z[j, 1]) - max(at_z[i, 0], at_z[j, 0]) <= tolerance:
+                continue
+            if depth(world.at[i, : world.count[i]], at_z[i], world.at[j, : world.count[j]], at_z[j]) > tolerance:
+                return True
+    return False
+
+
+@compiled
+def meets_door(world: World, a0: int, a1: int, tolerance: float) -> bool:
+    """Tell whether any of the placed prisms a0 .. a1 - 1 is where a door of the room swings."""
+    flat, at_z = world.flat, world.at_z
+    for j in range(world.door_count.shape[0]):
+        for i in range(a0, a1):
+            if min(flat[i, 2], world.door_flat[j, 2]) - max(flat[i, 0], world.door_flat[j, 0]) <= tolerance:
+                continue
+            if min(flat[i, 3], world.door_flat[j, 3]) - max(flat[i, 1], world.door_flat[j, 1]) <= tolerance:
+                continue
+            if depth(world.at[i, : world.count[i]], at_z[i], world.door[j, : world.door_count[j]], world.door_z[j]) > tolerance:
+                return True
+    return False
+
+
+@compiled
+def collide(world: World, i: int, j: int, tolerance: float) -> bool:
+    """Tell whether two placed objects break a hard rule: a body in the other's body or where its parts move."""
+    a, b, box = world.start[i], world.start[j], world.box
+    if (
+        min(box[i, 2], box[j, 2]) - max(box[i, 0], box[j, 0]) <= tolerance
+        or min(box[i, 3], box[j, 3]) - max(box[i, 1], box[j, 1]) <= tolerance
+    ):
+        return False
+    if meet(world, a[0], a[1], b[0], b[2], tolerance):  # bodies and keeps lie one behind the other
+        return True
+    return meet(world, a[1], a[2], b[0], b[1], tolerance)
+
+
+@compiled
+def blocker(world: World, i: int, others: NDArray[np.bool_], tolerance: float) -> int:
+    """Return what is in the way of placed object `i`, whose outline is within the walls: WALL, DOOR, the first of `others`, or FREE."""
+    a = world.start[i]
+    for k in range(a[0], a[1]):
+        if world.at_z[k, 1] > world.ceiling[0] + tolerance:
+            return WALL
+    for k in range(a[1], a[2]):
+        if excess(world.at[k, : world.count[k]], world.polygon) > tolerance:
+            return WALL
+    if meets_door(world, a[0], a[1], tolerance):
+        return DOOR
+    for j in range(others.shape[0]):
+        if others[j] and j != i and collide(world, i, j, tolerance):
+            return j
+    return FREE
+
+
+@compiled
+def hindrance(world: World, i: int, others: NDArray[np.bool_]) -> int:
+    """Return how many soft rules placed object `i` breaks: own access places taken or in a wall, another's taken."""
+    a = world.start[i]
+    broken = 0
+    for k in range(a[2], a[3]):
+        taken = excess(world.at[k, : world.count[k]], world.polygon) > SOFT_WALL
+        for j in range(others.shape[0]):
+            if taken:
+                break
+            taken = others[j] and j != i and meet(world, k, k + 1, world.start[j, 0], world.start[j, 1], SOFT)
+        broken += taken
+    for j in range(others.shape[0]):
+        if others[j] and j != i and meet(world, a[0], a[1], world.start[j, 2], world.start[j, 3], SOFT):
+            broken += 1
+            break
+    return broken
+
+
+@compiled
+def conflicts(world: World, poses: Floats, tolerance: float) -> tuple[NDArray[np.bool_], Ints]:
+    """Place all N objects; return which pairs (N, N) break a hard rule, and of each (N,) whether WALL or DOOR is in its way, else FREE."""
+    n = poses.shape[0]
+    pairs = np.zeros((n, n), np.bool_)
+    alone = np.full(n, FREE)
+    nobody = np.zeros(n, np.bool_)
+    for i in range(n):
+        put(world, i, poses[i])
+        alone[i] = WALL if leaves_room(world, i, poses[i], tolerance) else blocker(world, i, nobody, tolerance)
+    for i in range(n):
+        for j in range(i):
+            pairs[i, j] = collide(world, i, j, tolerance)
+            pairs[j, i] = pairs[i, j]
+    return pairs, alone
+
+
+@compiled
+def composed(pose: Floats, offset: Floats, out: Floats) -> None:
+    """Write the pose of a member at `offset` (x, y, z, yaw) in the frame of one at `pose`, rounded as poses are."""
+    c, s = math.cos(pose[3]), math.sin(pose[3])
+    out[0] = round((pose[0] + c * offset[0] - s * offset[1]) * 1e4) / 1e4
+    out[1] = round((pose[1] + s * offset[0] + c * offset[1]) * 1e4) / 1e4
+    out[2] = round((pose[2] + offset[2]) * 1e4) / 1e4
+    out[3] = (pose[3] + offset[3] + math.pi) % (2 * math.pi) - math.pi
+
+
+@compiled
+def free_poses(
+    world: World,
+    members: Ints,
+    offsets: Floats,
+    poses: Floats,
+    costs: Floats,
+    first: int,
+    wanted: int,
+    others: NDArray[np.bool_],
+    tolerance: float,
+    access_cost: float,
+) -> tuple[Floats, int]:
+    """Return the cost (C,) of poses of a group from `first` on, inf where not free, until `wanted` are found; and where it stopped.
+
+    `members` (K,) move as one, at `offsets` (K, 4) from the group's pose; `others` (N,) are the objects that stand. Poses are
+    given in ascending order of `costs`, to which the soft rules add.
+    """
+    found = np.full(poses.shape[0], np.inf)
+    own = np.empty((members.shape[0], 4))
+    have = 0
+    for k in range(first, poses.shape[0]):
+        if have >= wanted:
+            return found, k
+        free = True
+        for m in range(members.shape[0]):
+            composed(poses[k], offsets[m], own[m])
+            if leaves_room(world, members[m], own[m], tolerance):
+                free = False
+                break
+        if not free:
+            continue
+        for m in range(members.shape[0]):
+            put(world, members[m], own[m])
+            if blocker(world, members[m], others, tolerance) != FREE:
+                free = False
+                break
+        if not free:
+            continue
+        broken = 0
+        for m in range(members.shape[0]):
+            broken += hindrance(world, members[m], others)
+        found[k] = costs[k] + access_cost * broken
+        have += 1
+    return found, poses.shape[0]
