@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.item import Item
-from pipeline.arrange.lore import SIDES, Lore
+from pipeline.arrange.lore import Lore
 from pipeline.geometry.compiled import compiled
+from pipeline.relations.frames import SIDES
 
 Floats = NDArray[np.float64]
 

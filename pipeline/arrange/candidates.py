@@ -20,8 +20,9 @@ from pipeline.arrange.walls import Edge, hides_window, hole_cost
 Floats = NDArray[np.float64]
 
 OFF_WALL = 1.0  # cost of standing free for what always belongs to a wall [m]; less for what seldom does
-BESIDE = 0.5  # a metre towards another place at the anchor costs this much [m]
-ALONE = 0.5  # cost of standing away from the anchor [m]
+BESIDE = 0.2  # a metre towards another place at the anchor costs this much [m]
+ASIDE = 2.0  # and a metre along the anchor's side, away from such a place [m]
+ALONE = 0.8  # cost of standing away from the anchor [m]
 RINGS = (0.02, 0.05, 0.08, 0.12, 0.16, 0.2, 0.25, 0.3, 0.4, 0.5, 0.65, 0.8, 1.0)  # radii of the poses tried near by [m]
 WAYS = 16
 GRID = 0.25  # of poses tried all over the room [m]
@@ -82,10 +83,10 @@ def at_anchor_poses(item: Item, target: Floats, anchor: Item, at: Floats, lore: 
     steps = out[:, None, None] * OUT[None, None, :, None] + along[:, None, None] * ALONG[None, :, None, None]
     spots = (local[:, None, None] + steps).reshape(-1, 2)
     points = at[:2] + np.column_stack([c * spots[:, 0] - s * spots[:, 1], s * spots[:, 0] + c * spots[:, 1]])
-    aside = np.tile(np.abs(ALONG[:, None]) + OUT[None], (len(modes), 1, 1)).ravel()
+    aside = np.tile(ASIDE * np.abs(ALONG[:, None]) + OUT[None], (len(modes), 1, 1)).ravel()
     yaws = np.repeat(modes[:, 2], len(ALONG) * len(OUT))
     away = np.repeat(np.linalg.norm(modes[:, :2] - target[:2], axis=1), len(ALONG) * len(OUT))
-    cost = BESIDE * (away + aside) + 0.5 * settings.turn_cost * turned(yaws, float(target[3]))
+    cost = BESIDE * away + aside + 0.5 * settings.turn_cost * turned(yaws, float(target[3]))
     order = np.argsort(np.round(cost, 9), kind="stable")
     return np.ascontiguousarray(_made(points, yaws, target[2])[order]), cost[order]
 

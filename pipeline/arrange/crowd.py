@@ -127,7 +127,7 @@ class Crowd:
         """Return the bodies of what stands."""
         start = self.world.start
         rows = np.concatenate([np.arange(start[i, 0], start[i, 1]) for i in np.flatnonzero(self.there)] or [np.zeros(0, np.int64)])
-        return Prisms(self.world.at[rows], self.world.count[rows], self.world.at_z[rows], rows)
+        return Prisms(self.world.at[rows], self.world.corner_count[rows], self.world.at_z[rows], rows)
 
     def _enters(self, walked: Walk, label: int) -> bool:
         """Whether the robot gets from the doors into the room itself."""

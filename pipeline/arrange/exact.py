@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import Bond, at_anchor, find_bond
-from pipeline.arrange.item import Item, turned
+from pipeline.arrange.item import Item
 from pipeline.arrange.lore import Lore
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
@@ -85,10 +85,3 @@ def height(item: Item, site: Site, wished: float) -> float:
         return site.ceiling - tall
     low = site.elevation + HUNG[0]
     return float(np.clip(wished, low, max(low, site.ceiling - tall - 0.02)))
-
-
-def moved(poses: Floats, items: Sequence[Item]) -> Floats:
-    """Return how far (N,) each pose is from the wished one, turning included [m]."""
-    wished = np.array([item.wished for item in items]).reshape(-1, 4)
-    turns = np.array([float(turned(p[3], w[3])) for p, w in zip(poses, wished, strict=True)])
-    return np.linalg.norm(poses[:, :2] - wished[:, :2], axis=1) + 0.3 * turns

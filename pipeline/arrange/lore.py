@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline import taxonomy
+from pipeline.relations.frames import REFERENCES, SIDES
 from pipeline.relations.known import PairRelation, Relations
 from pipeline.relations.modes import Mode, Span
 
@@ -18,8 +19,6 @@ MUST, WANT = 0.85, 0.4  # share of a category's training examples with their bac
 UNKNOWN = 0.6  # the share that is taken of a category that the training tables do not know: to the wall where it is drafted near one
 GAP = (0.004, 0.012, 0.035)  # and its gap to the wall [m]
 STRENGTH = 0.5  # relations that are weaker bind nobody
-SIDES = ("front", "right", "back", "left", "over")
-REFERENCES = ("middle", "low", "high", "share", "outside")
 
 Mount = Literal["floor", "wall", "ceiling"]
 

@@ -33,6 +33,11 @@ class Draft:
     walls: Sequence[Edge]
     lore: Lore
 
+    def pose(self, i: int) -> Floats:
+        """Return the exact pose of an object."""
+        found: Floats = self.poses[i]
+        return found
+
 
 def settle_all(crowd: Crowd, draft: Draft, first: Sequence[int], *, careful: bool) -> None:
     """Find a place for every group, those that hold one of `first` before the others; who finds none is not in the crowd.
@@ -122,10 +127,10 @@ def _target(crowd: Crowd, draft: Draft, i: int) -> Floats:
     """Return the exact pose of an object; where its anchor has moved, it goes along."""
     bond = draft.bonds[i]
     if bond is None or not crowd.there[bond.anchor]:
-        return draft.poses[i]
+        return draft.pose(i)
     now, then = crowd.poses[bond.anchor], draft.poses[bond.anchor]
     if np.allclose(now, then, atol=1e-3):
-        return draft.poses[i]
+        return draft.pose(i)
     x, y, yaw = at_anchor(now, bond.local)
     return np.array([x, y, draft.poses[i, 2], wrapped(float(yaw))])
 
@@ -133,7 +138,7 @@ def _target(crowd: Crowd, draft: Draft, i: int) -> Floats:
 def _near(crowd: Crowd, draft: Draft, i: int) -> tuple[Floats, Floats]:
     """Return poses near the target of an object, and at its anchor if it has one, the cheapest first."""
     item, target = crowd.items[i], _target(crowd, draft, i)
-    there = np.flatnonzero(crowd.there)
+    there = np.flatnonzero(crowd.there).tolist()
     neighbours = np.array([crowd.outline(k) for k in there]).reshape(-1, 4, 2)
     poses, costs = near_by(item, target, draft.walls, neighbours, crowd.site, crowd.settings)
     bond = draft.bonds[i]

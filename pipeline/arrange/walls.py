@@ -15,7 +15,7 @@ from pipeline.arrange.site import Hole, Site
 Floats = NDArray[np.float64]
 
 OVERHANG = 0.05  # an object may stand this far before an opening at no cost [m]
-BEFORE_WINDOW = 0.6  # cost of hiding a window behind something high [m]
+BEFORE_WINDOW = 1.5  # cost of hiding a window behind something high [m]
 BEFORE_HOLE = 0.8  # cost of leaning on a wall that is not there [m]
 ABOVE_SILL = 0.4  # what rises no more than this above a window's sill may stand before it [m]
 FAR = 1.0  # what belongs to a wall is put to one that is no farther; what would rather, within the wall_reach of the settings [m]

@@ -26,14 +26,14 @@ FREE, WALL, DOOR = -1, -2, -3  # what blocks an object, beside another's index
 class World(NamedTuple):
     """N objects of P prisms. `start` (N, 4): bodies from start[i, 0], keeps from start[i, 1], access places from start[i, 2] to start[i, 3].
 
-    `corners` (P, V, 2), `count` (P,), `z` (P, 2) and `shell` (N, S, 2), `shell_count` (N,) (the body's hull in plan) are in the object's frame;
+    `corners` (P, V, 2), `corner_count` (P,), `z` (P, 2) and `shell` (N, S, 2), `shell_count` (N,) (the body's hull in plan) are in the object's frame;
     `at`, `at_z`, `flat` (P, 4) and `box` (N, 4) are where it was placed last [m].
     The room: `door`, `door_count`, `door_z`, `door_flat` are what its doors sweep; `polygon` (n, 2), `ceiling` (1,) [m].
     """
 
     start: Ints
     corners: Floats
-    count: Ints
+    corner_count: Ints
     z: Floats
     shell: Floats
     shell_count: Ints
@@ -88,7 +88,7 @@ def put(world: World, i: int, pose: Floats) -> None:
     left, low, right, high = np.inf, np.inf, -np.inf, -np.inf
     for k in range(world.start[i, 0], world.start[i, 3]):
         x0, y0, x1, y1 = np.inf, np.inf, -np.inf, -np.inf
-        for v in range(world.count[k]):
+        for v in range(world.corner_count[k]):
             x = c * world.corners[k, v, 0] - s * world.corners[k, v, 1] + pose[0]
             y = s * world.corners[k, v, 0] + c * world.corners[k, v, 1] + pose[1]
             world.at[k, v, 0], world.at[k, v, 1] = x, y
@@ -123,7 +123,7 @@ def meet(world: World, a0: int, a1: int, b0: int, b1: int, tolerance: float) -> 
                 continue
             if min(at_z[i, 1], at_z[j, 1]) - max(at_z[i, 0], at_z[j, 0]) <= tolerance:
                 continue
-            if depth(world.at[i, : world.count[i]], at_z[i], world.at[j, : world.count[j]], at_z[j]) > tolerance:
+            if depth(world.at[i, : world.corner_count[i]], at_z[i], world.at[j, : world.corner_count[j]], at_z[j]) > tolerance:
                 return True
     return False
 
@@ -138,7 +138,7 @@ def meets_door(world: World, a0: int, a1: int, tolerance: float) -> bool:
                 continue
             if min(flat[i, 3], world.door_flat[j, 3]) - max(flat[i, 1], world.door_flat[j, 1]) <= tolerance:
                 continue
-            if depth(world.at[i, : world.count[i]], at_z[i], world.door[j, : world.door_count[j]], world.door_z[j]) > tolerance:
+            if depth(world.at[i, : world.corner_count[i]], at_z[i], world.door[j, : world.door_count[j]], world.door_z[j]) > tolerance:
                 return True
     return False
 
@@ -165,7 +165,7 @@ def blocker(world: World, i: int, others: NDArray[np.bool_], tolerance: float) -
         if world.at_z[k, 1] > world.ceiling[0] + tolerance:
             return WALL
     for k in range(a[1], a[2]):
-        if excess(world.at[k, : world.count[k]], world.polygon) > tolerance:
+        if excess(world.at[k, : world.corner_count[k]], world.polygon) > tolerance:
             return WALL
     if meets_door(world, a[0], a[1], tolerance):
         return DOOR
@@ -181,7 +181,7 @@ def hindrance(world: World, i: int, others: NDArray[np.bool_]) -> int:
     a = world.start[i]
     broken = 0
     for k in range(a[2], a[3]):
-        taken = excess(world.at[k, : world.count[k]], world.polygon) > SOFT_WALL
+        taken = excess(world.at[k, : world.corner_count[k]], world.polygon) > SOFT_WALL
         for j in range(others.shape[0]):
             if taken:
                 break

@@ -2,7 +2,10 @@
 
 import math
 
+import numpy as np
+
 from pipeline.arrange import Lore
+from pipeline.entities.home import Placement
 from pipeline.relations.known import PairRelation, WallRelation, relations
 from pipeline.relations.modes import Mode, Span
 
@@ -37,10 +40,18 @@ RELATIONS = relations(
         pair("multi_seat_sofa", "tv_stand", OPPOSITE),
     ],
     [
-        *(wall(name) for name in ("double_bed", "nightstand", "wardrobe", "cabinet", "tv_stand", "kitchen_cabinet", "sink_cabinet", "oven")),
+        *(
+            wall(name)
+            for name in ("double_bed", "nightstand", "wardrobe", "cabinet", "tv_stand", "kitchen_cabinet", "sink_cabinet", "oven")
+        ),
         wall("refrigerator"),
         wall("multi_seat_sofa", 0.6),
         wall("dining_table", 0.1),
     ],
 )
 LORE = Lore(RELATIONS)
+
+
+def drafted(asset, x, y, yaw=0.0, number=0, z=0.0):
+    """A placement of an asset."""
+    return Placement(f"{asset.asset_id}_{number}", "room", asset.category, asset.asset_id, np.array([x, y, z]), float(yaw), asset.size)

@@ -1,0 +1,116 @@
+"""Relations that a draft nearly holds are exact afterwards, and groups stay together when they have to move."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pipeline.arrange import Site, separate
+from pipeline.arrange.bonds import nearest
+from pipeline.entities.plan import Opening, Plan
+from pipeline.relations.arrangement import Thing
+from pipeline.verify import Policy, verify_home
+from tests.arrange.known import LORE, RELATIONS, drafted
+from tests.geometry.furniture import LIBRARY, block, home, one_room
+
+ASSETS = {
+    **LIBRARY,
+    "sofa": block("sofa", "multi_seat_sofa", (2.0, 0.9, 0.8)),
+    "low_table": block("low_table", "coffee_table", (1.0, 0.5, 0.4)),
+    "tv": block("tv", "tv_stand", (1.6, 0.4, 0.5)),
+}
+SEATS = ((-0.35, -0.55, math.pi), (0.35, -0.55, math.pi), (-0.35, 0.55, 0.0), (0.35, 0.55, 0.0))
+
+
+def room(width=5.0, depth=4.0):
+    return one_room(np.array([[0.0, 0.0], [width, 0.0], [width, depth], [0.0, depth]]))
+
+
+def arranged(placements, plan):
+    found = separate(Site.of(plan, "room"), placements, ASSETS, LORE)
+    assert verify_home(home(found.placements, plan), ASSETS).faults(Policy()) == ()
+    assert found.rejects == ()
+    return found.placements
+
+
+def local(member, anchor):
+    c, s = math.cos(anchor.yaw), math.sin(anchor.yaw)
+    dx, dy = member.position[:2] - anchor.position[:2]
+    return c * dx + s * dy, c * dy - s * dx
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5), st.floats(-3.1, 3.1), st.sampled_from(sorted(RELATIONS.pairs)))
+def test_the_compiled_search_finds_the_mode_that_relations_find(x, y, yaw, names):
+    anchor = Thing(names[0], 0.3, -0.2, 0.7, (1.8, 0.9, 0.7))
+    member = Thing(names[1], x, y, yaw, (0.5, 0.4, 0.7))
+    told = RELATIONS.nearest(anchor, member)
+    table, _ = LORE.modes(*names)
+    metres, radians, *_ = nearest(table, np.array([0.3, -0.2, 0.7]), np.array([0.9, 0.45]), np.array([x, y, yaw]), np.array([0.25, 0.2]))
+    assert metres + 0.5 * radians == pytest.approx(told.metres + 0.5 * told.radians, abs=1e-6)
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.integers(0, 10**6))
+def test_a_nearly_right_dining_set_is_made_exact(seed):
+    rng = np.random.default_rng(seed)
+    wished = [drafted(ASSETS["table"], 2.5, 2.0, rng.normal(0, 0.1))]
+    wished += [
+        drafted(ASSETS["chair"], *(np.array([2.5 + x, 2.0 + y]) + rng.normal(0, 0.08, 2)), turn + rng.normal(0, 0.1), number=k + 1)
+        for k, (x, y, turn) in enumerate(SEATS)
+    ]
+    table, *chairs = arranged(wished, room())
+    assert table.yaw % (math.pi / 2) == pytest.approx(0.0, abs=1e-3)
+    for chair in chairs:
+        x, y = local(chair, table)
+        assert abs(y) - 0.4 - 0.25 < 0.1
+        assert abs(x) == pytest.approx(0.35, abs=0.05)
+        assert math.cos(chair.yaw - table.yaw) == pytest.approx(-np.sign(-y) if y < 0 else 1.0, abs=1e-3)
+
+
+def test_a_dining_set_gives_way_as_one():
+    wished = [drafted(ASSETS["table"], 2.5, 2.0)]
+    wished += [drafted(ASSETS["chair"], 2.5 + x, 2.0 + y, turn, number=k + 1) for k, (x, y, turn) in enumerate(SEATS)]
+    before = arranged(wished, room(5.0, 4.6))
+    offsets = [local(chair, before[0]) for chair in before[1:]]
+    # A bed stands where two of the chairs would be: the table moves, and all its chairs with it.
+    table, *rest = arranged([*wished, drafted(ASSETS["bed"], 2.5, 3.6, number=9)], room(5.0, 4.6))
+    assert abs(table.position[1] - 2.0) > 0.05
+    for chair, offset in zip(rest[:-1], offsets, strict=True):
+        assert local(chair, table) == pytest.approx(offset, abs=1e-3)
+
+
+def test_the_television_stands_opposite_the_sofa_and_the_table_before_it():
+    wished = [
+        drafted(ASSETS["sofa"], 2.4, 3.4, 0.1),
+        drafted(ASSETS["tv"], 2.6, 0.35, math.pi - 0.15, number=1),
+        drafted(ASSETS["low_table"], 2.3, 2.3, 0.2, number=2),
+    ]
+    sofa, tv, low = arranged(wished, room())
+    assert abs(math.remainder(tv.yaw - sofa.yaw - math.pi, math.tau)) < 1e-3
+    assert abs(local(tv, sofa)[0]) < 0.1
+    assert local(low, sofa)[1] == pytest.approx(-(0.45 + 0.25 + 0.45), abs=0.1)
+    assert low.yaw == sofa.yaw
+
+
+def test_a_second_nightstand_on_one_side_goes_to_the_other():
+    wished = [
+        drafted(ASSETS["bed"], 2.4, 3.0),
+        drafted(ASSETS["nightstand"], 1.3, 3.75, number=1),
+        drafted(ASSETS["nightstand"], 1.2, 3.6, number=2),
+    ]
+    bed, *stands = arranged(wished, room())
+    assert sorted(round(local(s, bed)[0]) for s in stands) == [-1, 1]
+    for stand in stands:
+        assert local(stand, bed)[1] == pytest.approx(0.8, abs=0.01)
+
+
+def test_a_wardrobe_does_not_hide_a_window():
+    bare = room()
+    plan = Plan(bare.rooms, (*bare.openings, Opening("pane", "window", ("room",), np.array([[2.0, 4.12], [3.2, 4.12]]), 1.3, 0.9)), "room")
+    (wardrobe,) = arranged([drafted(ASSETS["cupboard"], 2.4, 3.7)], plan)
+    assert wardrobe.position[1] < 3.4 or not 1.75 < wardrobe.position[0] < 3.45
+    (low,) = arranged([drafted(ASSETS["chest"], 2.4, 3.7)], plan)
+    assert low.position[:2] == pytest.approx([2.4, 3.74], abs=0.02)

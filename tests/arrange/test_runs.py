@@ -1,0 +1,73 @@
+"""Kitchens come out as runs, whatever their units were drafted like."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pipeline.arrange import Site, separate
+from pipeline.verify import Policy, verify_home
+from tests.arrange.known import LORE, drafted
+from tests.geometry.furniture import block, home, one_room
+
+ASSETS = {
+    "base": block("base", "kitchen_cabinet", (0.8, 0.58, 0.9)),
+    "sink": block("sink", "sink_cabinet", (0.9, 0.6, 0.92)),
+    "cooker": block("cooker", "oven", (0.6, 0.62, 0.9)),
+    "fridge": block("fridge", "refrigerator", (0.7, 0.7, 1.8)),
+    "hung": block("hung", "wall_cabinet", (0.8, 0.35, 0.7)),
+}
+UNITS = ("sink", "cooker", "base", "fridge")
+
+
+def room():
+    return one_room(np.array([[0.0, 0.0], [4.5, 0.0], [4.5, 3.0], [0.0, 3.0]]))
+
+
+def arranged(placements):
+    found = separate(Site.of(room(), "room"), placements, ASSETS, LORE)
+    assert verify_home(home(found.placements, room()), ASSETS).faults(Policy()) == ()
+    assert found.rejects == ()
+    return {p.asset_id: p for p in found.placements}
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.integers(0, 10**6), st.permutations(UNITS))
+def test_a_rough_draft_becomes_one_run(seed, names):
+    rng = np.random.default_rng(seed)
+    wished = [
+        drafted(ASSETS[name], 0.8 + 0.8 * k + rng.normal(0, 0.1), 2.6 + rng.normal(0, 0.1), rng.normal(0, 0.15), number=k)
+        for k, name in enumerate(names)
+    ]
+    found = arranged(wished)
+    units = sorted(found.values(), key=lambda p: p.position[0])
+    order = [p.asset_id for p in units]
+    assert order[0] == "fridge" or order[-1] == "fridge"
+    assert abs(order.index("sink") - order.index("cooker")) == 2
+    for left, right in pairwise(units):
+        assert right.position[0] - left.position[0] - (left.size[0] + right.size[0]) / 2 == pytest.approx(0.002, abs=0.0005)
+    fronts = [p.position[1] - p.size[1] / 2 for p in units if p.asset_id != "fridge"]
+    assert max(fronts) - min(fronts) < 0.001
+    assert {p.yaw for p in units} == {0.0}
+
+
+def test_wall_units_hang_flush_over_the_base_and_not_over_the_refrigerator():
+    wished = [drafted(ASSETS[name], 0.9 + 0.8 * k, 2.65, number=k) for k, name in enumerate(("fridge", "sink", "base", "cooker"))]
+    wished += [drafted(ASSETS["hung"], 1.2, 2.8, 0.1, z=1.5, number=4), drafted(ASSETS["hung"], 2.3, 2.75, -0.1, z=1.38, number=5)]
+    found = separate(Site.of(room(), "room"), wished, ASSETS, LORE).placements
+    assert verify_home(home(found, room()), ASSETS).faults(Policy()) == ()
+    left, right = sorted((p for p in found if p.asset_id == "hung"), key=lambda p: p.position[0])
+    assert right.position[0] - left.position[0] == pytest.approx(0.802, abs=0.001)
+    assert left.position[2] == right.position[2] == pytest.approx(1.44, abs=0.02)
+    fridge = next(p for p in found if p.asset_id == "fridge")
+    assert left.position[0] - 0.4 >= fridge.position[0] + 0.35
+
+
+def test_a_run_keeps_clear_of_the_door():
+    door = next(o for o in room().openings if o.kind == "entrance")
+    x, y = door.segment.mean(0)
+    wished = [drafted(ASSETS[name], x + 0.5 * k, y + 0.3, math.pi, number=k) for k, name in enumerate(UNITS)]
+    assert len(arranged(wished)) == len(UNITS)
