@@ -43,7 +43,7 @@ class Found(Protocol):
         """Factor (3,) on the asset's own size."""
 
 
-ALOOF_ROUNDS = 2  # rounds that are spent on objects whose only fault is that their handles are out of reach
+ALOOF_ROUNDS = 3  # rounds that are spent on objects whose only fault is that their handles are out of reach
 Smaller = Callable[[str, float], Found | None]  # (asset_id, area [m2]) -> the closest asset with a smaller footprint
 
 
@@ -91,7 +91,7 @@ def separate(
     best: dict[int, Placement] = {}
     least: tuple[float, float] | None = None
     for number in range(max(1, settings.rounds)):
-        crowd, sound = _arranged(site, items, first, lore, settings, careful=number > 0)
+        crowd, sound = _arranged(site, items, first, lore, settings, number)
         there = {i: items[i].at(crowd.poses[i]) for i in np.flatnonzero(crowd.there).tolist()}
         lost = [i for i in range(len(items)) if i not in there]
         score = _score(there, crowd.aloof, items)
@@ -109,15 +109,15 @@ def separate(
 
 
 def _arranged(
-    site: Site, items: list[Item], first: Sequence[int], lore: Lore, settings: SeparateSettings, *, careful: bool
+    site: Site, items: list[Item], first: Sequence[int], lore: Lore, settings: SeparateSettings, number: int
 ) -> tuple[Crowd, bool]:
-    """Arrange a room once; return who stands where, and whether the floor is sound. `careful`: it is looked at for each group."""
+    """Arrange a room once; return who stands where, and whether the floor is sound: after round 0 it is looked at for each group."""
     walls = edges(site)
     runs, laid = lay_runs(items, walls, site)
     poses, bonds = exact_poses(items, site, walls, lore, settings, laid)
     crowd = Crowd(site, items, settings)
-    settle_all(crowd, Draft(poses, bonds, runs, walls, lore), first, careful=careful)
-    if careful:
+    settle_all(crowd, Draft(poses, bonds, runs, walls, lore), first, careful=number > 0, bulk=number <= 1)
+    if number > 0:
         return crowd, True
     verdict = crowd.verdict(np.flatnonzero(crowd.there))
     return crowd, verdict == FINE

@@ -39,10 +39,10 @@ class Draft:
         return found
 
 
-def settle_all(crowd: Crowd, draft: Draft, first: Sequence[int], *, careful: bool) -> None:
+def settle_all(crowd: Crowd, draft: Draft, first: Sequence[int], *, careful: bool, bulk: bool) -> None:
     """Find a place for every group, those that hold one of `first` before the others; who finds none is not in the crowd.
 
-    `careful`: the floor must hang together with each group that is added.
+    `careful`: the floor must hang together with each group that is added. `bulk`: those that are free where they belong come first, all at once.
     """
     pairs, alone = conflicts(crowd.world, draft.poses, crowd.settings.touch)
     whole = groups(crowd.items, draft.poses, draft.bonds, draft.runs)
@@ -53,7 +53,7 @@ def settle_all(crowd: Crowd, draft: Draft, first: Sequence[int], *, careful: boo
         member[group.members] = number
     clash = pairs & (member[:, None] != member[None]) & (member >= 0)[:, None] & (member >= 0)[None]
     order = sorted(range(len(made)), key=lambda k: _rank(crowd, made[k], draft, first))
-    free = [k for k in order if not (at_fault[made[k].members].any() or clash[made[k].members].any())]
+    free = [k for k in order if bulk and not (at_fault[made[k].members].any() or clash[made[k].members].any())]
     for k in free:
         crowd.stand(made[k], draft.poses[made[k].first])
     if careful and free and crowd.verdict(np.flatnonzero(crowd.there)) != FINE:
