@@ -39,8 +39,8 @@ class Bond:
     over: bool
 
 
-def find_bond(i: int, items: Sequence[Item], poses: Floats, lore: Lore) -> Bond | None:
-    """Return the bond of item `i` at its wished pose to one of those that are larger, at their `poses` (N, 4) or where they were wished."""
+def find_bond(i: int, items: Sequence[Item], wished: Floats, poses: Floats, lore: Lore) -> Bond | None:
+    """Return the bond of item `i`, wished at a pose (4,), to one of those that are larger, at their `poses` (N, 4) or where they were wished."""
     item = items[i]
     best: tuple[float, Bond] | None = None
     for j, other in enumerate(items):
@@ -53,7 +53,7 @@ def find_bond(i: int, items: Sequence[Item], poses: Floats, lore: Lore) -> Bond 
         if item.mount == "wall":  # walls place what hangs on them, but for what is placed over furniture
             table = table[table[:, 0] == OVER]
         frames = (poses[j], other.wished)
-        near = min((nearest(table, at[FLAT], other.half, item.wished[FLAT], item.half) for at in frames), key=_off)
+        near = min((nearest(table, at[FLAT], other.half, wished[FLAT], item.half) for at in frames), key=_off)
         if near[0] > REACH or near[1] > TURN:
             continue
         score = strength - _off(near)

@@ -35,13 +35,12 @@ def exact_poses(
         if i in fixed:
             poses[i] = fixed[i]
             continue
-        bonds[i] = find_bond(i, items, poses, lore)
-        bound = bonds[i]
-        found = None if bound is None else _bound(items[i], bound, items, poses, walls, settings)
-        if found is None:
-            bonds[i] = None
-            found = _alone(items[i], site, walls, settings)
-        poses[i] = found
+        for wished in (items[i].wished, _alone(items[i], site, walls, settings)):  # who has come to a wall may find its anchor there
+            bond = find_bond(i, items, wished, poses, lore)
+            found = None if bond is None else _bound(items[i], bond, items, poses, walls, settings)
+            bonds[i], poses[i] = (bond, found) if found is not None else (None, wished)
+            if found is not None:
+                break
     return poses, bonds
 
 
