@@ -9,7 +9,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: run test check deps bench clean help
+.PHONY: run test check deps bench weights clean help
 
 PRESET ?=
 TORCH_INDEX ?=
@@ -48,6 +48,11 @@ deps: $(DEV) ## write the code that each stage runs into dvc.yaml
 
 bench: $(READY) ## every benchmark in benchmarks/
 	python benchmarks/run.py
+
+weights: $(READY) ## train the released weights anew, into weights/: hours; a killed run goes on
+	python .ci/scratch.py build/release release
+	cd build/release && dvc repro train
+	cp build/release/models/vae.safetensors build/release/models/denoiser.safetensors weights/
 
 clean: ## scratch clones and caches; what DVC made stays
 	rm -rf build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

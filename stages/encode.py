@@ -22,18 +22,19 @@ from pipeline.latents.ranking import self_ranking
 from pipeline.latents.settings import EncodeSettings
 from pipeline.latents.surface import surface_points, triangles
 from pipeline.latents.training import encode, seeded, train
-from pipeline.latents.vae import chamfer
-from pipeline.latents.weights import save_vae
+from pipeline.latents.vae import PointVae, chamfer, kl_to_standard_normal
+from pipeline.latents.weights import load_vae, save_vae
 from pipeline.manifest import write_json
 from schemas.assets import ASSETS, LATENTS
 from stages.runner import run
 
 Row = dict[str, Any]
+RELEASED = "weights/vae.safetensors"
 COMPARED = 64  # shapes whose two samples are compared
 
 
 def main(root: Path) -> None:
-    """Train on the assets of split train, encode all, and measure how well shapes are told apart."""
+    """Train on the assets of split train, or take the released encoder; encode all, and measure how well shapes are told apart."""
     tree = params.read(root / "params.yaml")
     settings, seed = params.section(EncodeSettings, tree, "encode"), int(tree["seed"])
     torch.set_num_threads(settings.threads or os.cpu_count() or 1)
@@ -47,8 +48,11 @@ def main(root: Path) -> None:
     first, second = clouds(root / "data/assets", [shapes[k] for k in order], settings.points, seed)
     learnt = [i for i, k in enumerate(order) if shapes[k]["split"] == "train"] or list(range(len(order)))
     net, untrained = seeded(seed, settings), seeded(seed, settings)
-    bar = tqdm(train(seed, net, first[learnt], settings, device), total=settings.steps, desc="encode", unit="step")
-    last = [(step.chamfer, step.kl) for step in bar][-50:]
+    if settings.start == "released":
+        net = released(root / RELEASED, settings)
+    else:
+        for _ in tqdm(train(seed, net, first[learnt], settings, device), total=settings.steps, desc="encode", unit="step"):
+            pass
     save_vae(root / "models/vae.safetensors", net, settings)
     means = encode(net, first, device).numpy()
     at = {k: i for i, k in enumerate(order)}
@@ -61,8 +65,7 @@ def main(root: Path) -> None:
     report = {
         "shapes": len(order),
         "assets": len(rows),
-        "chamfer": round(float(np.mean([c for c, _ in last])), 6),
-        "kl": round(float(np.mean([k for _, k in last])), 6),
+        **rebuilt(net.cpu(), first),
         "chamfer_two_samples": round(two_samples(first, second), 6),
     }
     for name, model in (("trained", net), ("untrained", untrained)):
@@ -84,6 +87,27 @@ def clouds(folder: Path, rows: list[Row], points: int, seed: int) -> tuple[torch
             rng = seeds.generator(seed, "surface", row["source"], row["source_id"], number)
             sample.append(surface_points(rng, corners, points))
     return torch.from_numpy(np.stack(samples[0])), torch.from_numpy(np.stack(samples[1]))
+
+
+def released(path: Path, settings: EncodeSettings) -> PointVae:
+    """Read the released encoder. Raises ContentError when its shape is not the one that is asked for."""
+    net, made = load_vae(path)
+    shape = ("width", "latent", "decoded_points")
+    if any(getattr(made, name) != getattr(settings, name) for name in shape):
+        have = ", ".join(f"{name} {getattr(made, name)}" for name in shape)
+        raise ContentError(
+            f"{path} holds an encoder of another shape ({have})", "set encode.start: scratch in params.yaml, or these numbers"
+        )
+    return net
+
+
+@torch.no_grad()
+def rebuilt(net: PointVae, clouds: torch.Tensor) -> dict[str, float]:
+    """Return the mean Chamfer distance between shapes and what the decoder makes of their means, and the mean KL, over shapes spread evenly."""
+    part = clouds[torch.linspace(0, len(clouds) - 1, min(len(clouds), COMPARED)).long()]
+    mean, logvar = net.encoder(part)
+    distance, kl = chamfer(part, net.decoder(mean)), kl_to_standard_normal(mean, logvar)
+    return {"chamfer": round(float(distance.mean()), 6), "kl": round(float(kl.mean()), 6)}
 
 
 def two_samples(first: torch.Tensor, second: torch.Tensor) -> float:

@@ -16,7 +16,8 @@ from tqdm import tqdm
 
 from pipeline import params
 from pipeline.diffusion.checkpoint import save_checkpoint, save_weights
-from pipeline.diffusion.job import CHECKPOINT, WEIGHTS, Job, inventory_of, open_job
+from pipeline.diffusion.inventory import fit
+from pipeline.diffusion.job import CHECKPOINT, WEIGHTS, Job, holdings, open_job
 from pipeline.diffusion.livelog import LiveLog
 from pipeline.diffusion.rooms import Sets
 from pipeline.diffusion.settings import TrainSettings
@@ -69,7 +70,7 @@ def lead(root: Path, job: Job, settings: TrainSettings) -> None:
             if step.done % 10 == 0 or last:
                 bar.set_postfix(geometry=f"{step.geometry:.3f}", shape=f"{step.shape:.3f}", refresh=False)
                 log.step(step, by_level)
-    inventory = inventory_of(job.sets.train, job.header, settings.inventory, trainer.seed)
+    inventory = fit(job.inventory, holdings(job.sets.train, job.header), trainer.settings.inventory, trainer.seed)
     save_weights(root / WEIGHTS, job.header, {"denoiser": trainer.average, "inventory": inventory})
     write_json(root / "metrics/train.json", report(job.sets, trainer, by_level or checked()))
 

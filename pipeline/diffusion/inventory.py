@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -114,27 +115,39 @@ def counts_of(classes: NDArray[np.int64], number: int) -> NDArray[np.int64]:
     return np.bincount(classes, minlength=number)[:number]
 
 
-def fitted(
-    features: NDArray[np.float32], layouts: NDArray[np.int64], counts: NDArray[np.int64], types: int, settings: InventorySettings, seed: int
-) -> Inventory:
-    """Fit an inventory model to rooms: features (n, F), types (n,), counts (n, C). AdamW with a cosine to zero; every draw is keyed by `seed`."""
-    rng = torch.Generator().manual_seed(seeds.key(seed, "inventory") % 2**63)
+class Holdings(NamedTuple):
+    """What n rooms hold: features (n, F), types (n,), counts (n, C)."""
+
+    features: NDArray[np.float32]
+    layouts: NDArray[np.int64]
+    counts: NDArray[np.int64]
+
+
+def begun(held: Holdings, types: int, width: int, seed: int) -> Inventory:
+    """Return an inventory model that knows how often each room type holds how many of a class, and nothing else yet."""
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(seeds.key(seed, "inventory-init") % 2**63)
-        net = Inventory(counts.shape[1], types, settings.width)
-    x, kind, held = torch.from_numpy(features), torch.from_numpy(layouts), torch.from_numpy(counts)
-    with torch.no_grad():  # start at how often each type holds so many
+        net = Inventory(held.counts.shape[1], types, width)
+    counts, layouts = torch.from_numpy(held.counts), torch.from_numpy(held.layouts)
+    with torch.no_grad():
         for k in range(types):
-            rooms = held[kind == k].clamp_max(MOST)
+            rooms = counts[layouts == k].clamp_max(MOST)
             share = torch.stack([(rooms == n).float().sum(0) for n in range(MOST + 1)], -1) + 0.02
             net.own[:, k] = (share / share.sum(-1, keepdim=True)).log()
+    return net
+
+
+def fit(net: Inventory, held: Holdings, settings: InventorySettings, seed: int) -> Inventory:
+    """Train an inventory model in place on what rooms hold: AdamW, a cosine to zero. Every draw is keyed by `seed`."""
+    rng = torch.Generator().manual_seed(seeds.key(seed, "inventory") % 2**63)
+    features, layouts, counts = (torch.from_numpy(part) for part in held)
     optimiser = torch.optim.AdamW(net.parameters(), weight_decay=1e-3)
     for step in range(settings.steps):
         for group in optimiser.param_groups:
             group["lr"] = settings.learning_rate * min(1.0, (step + 1) / 50) * 0.5 * (1 + float(np.cos(np.pi * step / settings.steps)))
-        rows = torch.randint(len(x), (min(settings.batch, len(x)),), generator=rng)
+        rows = torch.randint(len(features), (min(settings.batch, len(features)),), generator=rng)
         told = torch.rand(len(rows), generator=rng) < settings.count_known
-        loss = -net(x[rows], kind[rows], held[rows], told).mean()
+        loss = -net(features[rows], layouts[rows], counts[rows], told).mean()
         optimiser.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(net.parameters(), 1.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,11 +13,12 @@ import torch
 
 from pipeline import tables, taxonomy
 from pipeline.diffusion.batch import stacked
-from pipeline.diffusion.checkpoint import Header, load_checkpoint
+from pipeline.diffusion.checkpoint import Header, load_checkpoint, load_weights
 from pipeline.diffusion.codec import Codec, Normalisation
-from pipeline.diffusion.inventory import Inventory, counts_of, fitted, room_features
+from pipeline.diffusion.denoiser import Denoiser
+from pipeline.diffusion.inventory import Holdings, Inventory, begun, counts_of, room_features
 from pipeline.diffusion.rooms import Example, Sets, layout_weights, sets_of, stacked_classes, stacked_rows, sweeps_by_asset
-from pipeline.diffusion.settings import InventorySettings, TrainSettings
+from pipeline.diffusion.settings import TrainSettings
 from pipeline.diffusion.team import Team
 from pipeline.diffusion.training import Rooms, Trainer
 from pipeline.errors import ContentError
@@ -31,33 +32,64 @@ from schemas.scenes import SCENES
 INPUTS = {"scenes": SCENES, "rooms": ROOMS, "openings": OPENINGS, "objects": OBJECTS}
 CHECKPOINT = "models/checkpoint/denoiser.safetensors"
 WEIGHTS = "models/denoiser.safetensors"
+RELEASED = "weights/denoiser.safetensors"
 
 
 class Job(NamedTuple):
-    """What one process trains: the state, the rooms, the rooms of the validation split."""
+    """What one process trains: the state, the rooms, the rooms of the validation split; the inventory model as it begins."""
 
     trainer: Trainer
     data: Rooms
     checked: Rooms
     sets: Sets
     header: Header
+    inventory: Inventory
     key: str
 
 
 def open_job(root: Path, settings: TrainSettings, seed: int, team: Team) -> Job:
-    """Read the data and take up the checkpoint of the same data and settings, if there is one."""
+    """Read the data and take up the checkpoint of the same data and settings, if there is one; else start, from the released weights where asked."""
     threads = settings.threads or os.cpu_count() or 1
     torch.set_num_threads(threads)
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
     sets, header = load(root, settings)
+    start: Denoiser | None = None
+    if settings.start == "released":
+        start, inventory, header = released(root / RELEASED, header)
+        tune = settings.tune
+        tuned = replace(settings.inventory, steps=tune.inventory_steps, learning_rate=tune.learning_rate)
+        settings = replace(settings, steps=tune.steps, epochs=0, learning_rate=tune.learning_rate, inventory=tuned)
+    else:
+        inventory = begun(holdings(sets.train, header), len(header.layouts), settings.inventory.width, seed)
     per_epoch = max(1, sum(len(e.classes) for e in sets.train) // settings.objects)
     total = settings.epochs * per_epoch if settings.epochs else settings.steps
-    trainer = Trainer(seed, header, settings, total, per_epoch, device, team)
-    key = digest([asdict(settings), asdict(header), seed, threads, team.size, device.type, inputs(root)])
+    trainer = Trainer(seed, header, settings, total, per_epoch, device, team, start)
+    key = digest([asdict(settings), asdict(header), seed, threads, team.size, device.type, inputs(root, settings)])
     found = load_checkpoint(root / CHECKPOINT, key)
     if found:
         trainer.restore(*found)
-    return Job(trainer, rooms_of(sets.train, header, device), rooms_of(sets.val or sets.train[:64], header, device), sets, header, key)
+    data, checked = (rooms_of(part, header, device) for part in (sets.train, sets.val or sets.train[:64]))
+    return Job(trainer, data, checked, sets, header, inventory, key)
+
+
+def released(path: Path, wanted: Header) -> tuple[Denoiser, Inventory, Header]:
+    """Read the released weights. Raises ContentError when their vocabulary or shape is not that of the data and params.yaml.
+
+    Their normalisation is kept: with another the same numbers would mean other rooms.
+    """
+    net, inventory, header = load_weights(path)
+    for name in ("layouts", "slots", "model", "inventory_width"):
+        if getattr(header, name) != getattr(wanted, name):
+            raise ContentError(
+                f"{path} was trained with other {name} ({getattr(header, name)}) than params.yaml and the taxonomy say ({getattr(wanted, name)})",
+                "set train.start: scratch in params.yaml, or these numbers",
+            )
+    if header.norm.classes != wanted.norm.classes:
+        odd = sorted(set(header.norm.classes) ^ set(wanted.norm.classes)) or ["their order"]
+        raise ContentError(
+            f"{path} knows other categories than the taxonomy: {', '.join(odd[:5])}", "set train.start: scratch in params.yaml"
+        )
+    return net, inventory, header
 
 
 def rooms_of(examples: Sequence[Example], header: Header, device: torch.device) -> Rooms:
@@ -82,15 +114,15 @@ def load(root: Path, settings: TrainSettings) -> tuple[Sets, Header]:
     return sets, Header(norm, words.layout_types, settings.slots, settings.model, settings.inventory.width)
 
 
-def inventory_of(examples: Sequence[Example], header: Header, settings: InventorySettings, seed: int) -> Inventory:
-    """Fit the inventory model to what rooms hold."""
+def holdings(examples: Sequence[Example], header: Header) -> Holdings:
+    """Return what rooms hold, as the inventory model learns it."""
     features = np.stack([room_features(e.floor, e.height) for e in examples])
     layouts = np.array([e.layout for e in examples], np.int64)
-    counts = np.stack([counts_of(e.classes, len(header.norm.classes)) for e in examples])
-    return fitted(features, layouts, counts, len(header.layouts), settings, seed)
+    return Holdings(features, layouts, np.stack([counts_of(e.classes, len(header.norm.classes)) for e in examples]))
 
 
-def inputs(root: Path) -> dict[str, str]:
+def inputs(root: Path, settings: TrainSettings) -> dict[str, str]:
     """Return the digests of the files that training depends on."""
     names = [f"data/tables/{n}.parquet" for n in (*INPUTS, "asset_joints")] + ["data/latents/latents.parquet"]
+    names += [RELEASED] if settings.start == "released" else []
     return {name: sha256_file(root / name) for name in names}

@@ -31,9 +31,20 @@ class InventorySettings:
 
 
 @dataclass(frozen=True, slots=True)
-class TrainSettings:
-    """How the denoiser is trained (section `train` of params.yaml)."""
+class TuneSettings:
+    """How far the released weights go on training on the data at hand."""
 
+    steps: int = 200
+    learning_rate: float = 5e-4
+    inventory_steps: int = 200
+
+
+@dataclass(frozen=True, slots=True)
+class TrainSettings:
+    """How the layout model is trained (section `train` of params.yaml)."""
+
+    start: Literal["released", "scratch"] = "scratch"  # released: from the weights in weights/, by `tune`
+    tune: TuneSettings = field(default_factory=TuneSettings)
     model: ModelSettings = field(default_factory=ModelSettings)
     inventory: InventorySettings = field(default_factory=InventorySettings)
     slots: int = 24  # most objects in a room; rooms with more are left out

@@ -16,6 +16,7 @@ from torch import Tensor
 from pipeline import seeds
 from pipeline.diffusion.batch import BUCKETS, Objects, RoomBatch, bucket_of, moved_objects, moved_rooms, reflections
 from pipeline.diffusion.checkpoint import Header, build_net
+from pipeline.diffusion.denoiser import Denoiser
 from pipeline.diffusion.loss import Draw, denoising_loss, draw
 from pipeline.diffusion.optimiser import Optimiser
 from pipeline.diffusion.settings import TrainSettings
@@ -47,11 +48,19 @@ class Trainer:
     """Owns the state of a training run: weights, their moving average, the optimiser's moments, the step."""
 
     def __init__(
-        self, seed: int, header: Header, settings: TrainSettings, total: int, per_epoch: int, device: torch.device, team: Team = ALONE
+        self,
+        seed: int,
+        header: Header,
+        settings: TrainSettings,
+        total: int,
+        per_epoch: int,
+        device: torch.device,
+        team: Team = ALONE,
+        start: Denoiser | None = None,
     ) -> None:
         with torch.random.fork_rng(devices=[]):
             torch.manual_seed(seeds.key(seed, "denoiser-init") % 2**63)
-            self.net = build_net(header).to(device)
+            self.net = (start or build_net(header)).to(device)
         self.average = copy.deepcopy(self.net).eval().requires_grad_(False)
         self.seed, self.settings, self.total, self.per_epoch, self.device, self.done = seed, settings, total, per_epoch, device, 0
         self.team = team

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 
 @dataclass(frozen=True, slots=True)
 class EncodeSettings:
     """How the point-cloud VAE is trained and used (section `encode` of params.yaml)."""
 
+    start: Literal["released", "scratch"] = "scratch"  # released: the encoder in weights/ as it is
     points: int = 2048  # points of a surface sample
     train_points: int = 512  # random subset of it that one training step sees
     decoded_points: int = 384  # points that the decoder makes

@@ -7,11 +7,13 @@ from pipeline.diffusion.context import Demand
 from pipeline.diffusion.inventory import (
     DRAWS,
     Ask,
+    Holdings,
     Inventory,
     amended,
+    begun,
     counts_of,
     draw_inventories,
-    fitted,
+    fit,
     room_features,
 )
 from pipeline.diffusion.settings import InventorySettings
@@ -24,13 +26,13 @@ BED, NIGHTSTAND, TABLE, CHAIR = (CLASSES.index(c) for c in ("double_bed", "night
 def rooms():
     made = make_examples(200)
     features = np.stack([room_features(e.floor, e.height) for e in made])
-    return features, np.array([e.layout for e in made]), np.stack([counts_of(e.classes, len(CLASSES)) for e in made])
+    return Holdings(features, np.array([e.layout for e in made]), np.stack([counts_of(e.classes, len(CLASSES)) for e in made]))
 
 
 @pytest.fixture(scope="module")
 def net(rooms):
     torch.set_num_threads(1)
-    return fitted(*rooms, len(LAYOUTS), InventorySettings(width=16, steps=150, batch=64), 0)
+    return fit(begun(rooms, len(LAYOUTS), 16, 0), rooms, InventorySettings(16, steps=150, batch=64), 0)
 
 
 def drawn(net, rooms, asks, seed=0):
@@ -113,6 +115,6 @@ def test_features_do_not_change_when_the_room_is_turned():
 
 
 def test_the_fit_is_the_same_every_time(rooms):
-    settings = InventorySettings(width=8, steps=5, batch=16)
-    one, two = (fitted(*rooms, len(LAYOUTS), settings, 3) for _ in range(2))
+    settings = InventorySettings(8, steps=5, batch=16)
+    one, two = (fit(begun(rooms, len(LAYOUTS), 8, 3), rooms, settings, 3) for _ in range(2))
     assert all(torch.equal(a, b) for a, b in zip(one.state_dict().values(), two.state_dict().values(), strict=True))

@@ -13,7 +13,7 @@ STAGES = ("corpus", "preprocess", "encode", "train", "sample", "postopt", "metri
 SMALL = {
     "corpus": {"houses": 14, "models": 0.25},
     "preprocess": {"workers": 1},
-    "encode": {"steps": 3, "points": 256, "train_points": 128, "decoded_points": 64, "width": 16, "threads": 1},
+    "encode": {"start": "scratch", "steps": 3, "points": 256, "train_points": 128, "decoded_points": 64, "width": 16, "threads": 1},
     "train": {
         "steps": 5,
         "objects": 64,

@@ -88,3 +88,17 @@ def test_an_unknown_key_is_named(tmp_path):
     with pytest.raises(ContentError, match=r"encode\.stepz"):
         encode.main(tmp_path)
     assert params.read(tmp_path / "params.yaml")["seed"] == 0
+
+
+def test_the_released_encoder_is_taken_as_it_is(root, tmp_path):
+    make_root(tmp_path)
+    (tmp_path / "weights").mkdir()
+    (tmp_path / "weights/vae.safetensors").write_bytes((root / "models/vae.safetensors").read_bytes())
+    tree = (tmp_path / "params.yaml").read_text()
+    (tmp_path / "params.yaml").write_text(tree.replace("encode: {", "encode: {start: released, "))
+    encode.main(tmp_path)
+    latents = "data/latents/latents.parquet"
+    assert tables.read(tmp_path / latents, LATENTS) == tables.read(root / latents, LATENTS)
+    (tmp_path / "params.yaml").write_text(tree.replace("encode: {", "encode: {start: released, ").replace("width: 16", "width: 24"))
+    with pytest.raises(ContentError, match="another shape"):
+        encode.main(tmp_path)

@@ -74,8 +74,8 @@ def make_root(root, steps=4, houses=9, workers=1):
     write_params(root, steps, workers)
 
 
-def write_params(root, steps, workers):
-    (root / "params.yaml").write_text(f"seed: 0\ntrain: {{{SETTINGS % (steps, workers)}}}\npresets: {{quick: {{}}}}\n")
+def write_params(root, steps, workers, more=""):
+    (root / "params.yaml").write_text(f"seed: 0\ntrain: {{{SETTINGS % (steps, workers)}{more}}}\npresets: {{quick: {{}}}}\n")
 
 
 @pytest.fixture(scope="module")
@@ -156,4 +156,48 @@ def test_no_room_to_learn_from_is_said(tmp_path):
     make_root(tmp_path, houses=9)
     tables.write(tmp_path / "data/tables/objects.parquet", OBJECTS, [])
     with pytest.raises(ContentError, match="no furnished room"):
+        train.main(tmp_path)
+
+
+RELEASED = ", start: released, tune: {steps: 3, learning_rate: 0.001, inventory_steps: 3}"
+
+
+def released_root(folder, root):
+    make_root(folder, houses=12)
+    (folder / "weights").mkdir()
+    (folder / "weights/denoiser.safetensors").write_bytes((root / "models/denoiser.safetensors").read_bytes())
+    write_params(folder, 4, 1, RELEASED)
+
+
+def test_released_weights_go_on_on_other_data(root, tmp_path):
+    released_root(tmp_path, root)
+    train.main(tmp_path)
+    assert json.loads((tmp_path / "metrics/train.json").read_text())["steps"] == 3
+    before, after = (load_file(folder / "models/denoiser.safetensors") for folder in (root, tmp_path))
+    moved = {name: float((before[name] - after[name]).abs().max()) for name in before}
+    assert max(v for k, v in moved.items() if k.startswith("denoiser/")) > 0
+    assert max(v for k, v in moved.items() if k.startswith("inventory/")) > 0
+    assert max(moved.values()) < 0.1  # a few small steps from where they were, not a new start
+    (read,) = (Sampler.load(tmp_path / "models/denoiser.safetensors", SampleSettings(batch=1), 0).header,)
+    assert read.norm == Sampler.load(root / "models/denoiser.safetensors", SampleSettings(batch=1), 0).header.norm
+
+
+@pytest.mark.parametrize("change", [", slots: 20", ", inventory: {width: 9, steps: 20}"])
+def test_released_weights_of_another_shape_are_refused_with_the_remedy(root, tmp_path, change):
+    released_root(tmp_path, root)
+    text = (
+        (tmp_path / "params.yaml").read_text().replace(", inventory: {width: 8, steps: 20}", "")
+        if "inventory" in change
+        else (tmp_path / "params.yaml").read_text()
+    )
+    (tmp_path / "params.yaml").write_text(text.replace(RELEASED, RELEASED + change))
+    with pytest.raises(ContentError, match="other") as refused:
+        train.main(tmp_path)
+    assert "scratch" in str(refused.value.remedy)
+
+
+def test_released_weights_that_are_missing_are_named(root, tmp_path):
+    released_root(tmp_path, root)
+    (tmp_path / "weights/denoiser.safetensors").unlink()
+    with pytest.raises(ContentError, match=r"weights/denoiser\.safetensors"):
         train.main(tmp_path)
