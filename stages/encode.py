@@ -18,11 +18,12 @@ from tqdm import tqdm
 from pipeline import params, seeds, tables
 from pipeline.entities.files import load_asset
 from pipeline.errors import ContentError
+from pipeline.latents.fidelity import rebuilt, two_samples
 from pipeline.latents.ranking import self_ranking
 from pipeline.latents.settings import EncodeSettings
 from pipeline.latents.surface import surface_points, triangles
 from pipeline.latents.training import encode, seeded, train
-from pipeline.latents.vae import PointVae, chamfer, kl_to_standard_normal
+from pipeline.latents.vae import PointVae, chamfer
 from pipeline.latents.weights import load_vae, save_vae
 from pipeline.manifest import write_json
 from schemas.assets import ASSETS, LATENTS
@@ -30,7 +31,6 @@ from stages.runner import run
 
 Row = dict[str, Any]
 RELEASED = "weights/vae.safetensors"
-COMPARED = 64  # shapes whose two samples are compared
 
 
 def main(root: Path) -> None:
@@ -99,21 +99,6 @@ def released(path: Path, settings: EncodeSettings) -> PointVae:
             f"{path} holds an encoder of another shape ({have})", "set encode.start: scratch in params.yaml, or these numbers"
         )
     return net
-
-
-@torch.no_grad()
-def rebuilt(net: PointVae, clouds: torch.Tensor) -> dict[str, float]:
-    """Return the mean Chamfer distance between shapes and what the decoder makes of their means, and the mean KL, over shapes spread evenly."""
-    part = clouds[torch.linspace(0, len(clouds) - 1, min(len(clouds), COMPARED)).long()]
-    mean, logvar = net.encoder(part)
-    distance, kl = chamfer(part, net.decoder(mean)), kl_to_standard_normal(mean, logvar)
-    return {"chamfer": round(float(distance.mean()), 6), "kl": round(float(kl.mean()), 6)}
-
-
-def two_samples(first: torch.Tensor, second: torch.Tensor) -> float:
-    """Return the mean Chamfer distance between two samples of one shape, over shapes spread evenly: what no net can be better than."""
-    rows = torch.linspace(0, len(first) - 1, min(len(first), COMPARED)).long()
-    return float(torch.cat([chamfer(first[part], second[part]) for part in rows.split(8)]).mean())
 
 
 def twins(first: torch.Tensor, second: torch.Tensor) -> tuple[Callable[[int, int], float], Callable[[int], float]]:
