@@ -27,6 +27,8 @@ WALL_NEAR = 0.16  # [m] from where floors meet to the faces of the wall between 
 TOUCHING = 0.03  # [m] rooms nearer than this have no wall between them
 STEP = 0.04  # [m] of the walk from an opening's centre to the rooms
 LEAST_DOOR = 0.5  # [m] a default width is not cut down to less
+LOWEST = 1.2  # [m] a door or hole that is lower is none
+LEAF_DEPTH, ASLANT = 0.1, 0.95  # [m] of a leaf, and the cosine from which it stands along its wall
 IN_ROOM = 0.15  # [m] a leaf that stands deeper in a room than this is open, and no sign of a door where it stands
 
 
@@ -112,7 +114,13 @@ def openings(
 
 
 def _in_wall(hole: Hole, outlines: Sequence[Outline], reach: float) -> Hole:
-    """Return a record without a size in the direction of the nearest wall, no wider than it."""
+    """Return evidence as the walls let it be read.
+
+    A record without a size takes the direction of the nearest wall and is no wider than it; a mesh of type Door that stands in a
+    room, or aslant in its wall, is a leaf that is drawn open, and tells no more than a record does.
+    """
+    if hole.evidence == "door" and hole.origin == "reveal" and not hole.flat and _is_leaf(hole, outlines, reach):
+        return replace(hole, origin="record", depth=0.0)
     wall = None if hole.origin != "record" or hole.sized else _wall(hole, outlines, reach)
     if wall is None:
         return hole
@@ -122,11 +130,22 @@ def _in_wall(hole: Hole, outlines: Sequence[Outline], reach: float) -> Hole:
     return turned.between(low, high) if high - low >= LEAST_DOOR or hole.evidence == "window" else turned
 
 
+def _is_leaf(hole: Hole, outlines: Sequence[Outline], reach: float) -> bool:
+    """Whether a door's mesh is no reveal: it stands in a room, or is thin and aslant to the nearest wall."""
+    wall = _wall(hole, outlines, reach) if hole.depth < LEAF_DEPTH else None
+    aslant = wall is not None and abs(float(hole.along @ (wall[1] - wall[0]))) < ASLANT * _length(wall)
+    return aslant or _in_room(hole, outlines)
+
+
+def _in_room(hole: Hole, outlines: Sequence[Outline]) -> bool:
+    """Whether the middle of a hole lies in a room and not in its wall, nor on a threshold as deep as the hole."""
+    place = shapely.Point(hole.centre)
+    return any(o.polygon.contains(place) and o.polygon.exterior.distance(place) > IN_ROOM + hole.depth / 2 for o in outlines)
+
+
 def _ajar(hole: Hole, outlines: Sequence[Outline]) -> bool:
     """Whether it is a leaf that nothing but itself tells of, and that stands in a room."""
-    place = shapely.Point(hole.centre)
-    leaf = hole.origin == "record" and hole.evidence == "door"
-    return leaf and any(o.polygon.contains(place) and o.polygon.exterior.distance(place) > IN_ROOM for o in outlines)
+    return hole.origin == "record" and hole.evidence == "door" and _in_room(hole, outlines)
 
 
 def _holds(bay: Hole, pane: Hole) -> bool:
@@ -135,11 +154,13 @@ def _holds(bay: Hole, pane: Hole) -> bool:
 
 
 def resolve(hole: Hole, outlines: Sequence[Outline], opening_id: str, reach: float) -> Opening | None:
-    """Return the opening, or None where no room lies at it."""
+    """Return the opening, or None where no room lies at it, or nobody could pass it upright."""
     rooms, along = sides(hole, outlines, reach + max(0.0, hole.depth - USUAL_DEPTH) / 2)
     if not rooms:
         return None
     kind = _kind(hole, len(rooms))
+    if kind != "window" and hole.top - max(hole.sill, 0.0) < LOWEST:
+        return None
     half = along * hole.width / 2
     ends = np.round(np.array([hole.centre - half, hole.centre + half]), 4) + 0.0
     ends = ends[np.lexsort((ends[:, 1], ends[:, 0]))]

@@ -61,11 +61,12 @@ def _gap(hole: Hole, group: Sequence[Hole]) -> float:
     apart = hole.centre - first.centre
     across, along = abs(float(apart @ first.across)), abs(float(apart @ first.along))
     slack = FLAT if hole.flat or first.flat else 0.0
-    stacked = hole.sill < first.top + slack and first.sill < hole.top + slack
+    # how high a record's origin lies says nothing of a leaf or pane that stands in a reveal
+    stacked = hole.origin == "record" or (hole.sill < first.top + slack and first.sill < hole.top + slack)
     same_wall = hole.origin == "record" or hole.flat or abs(float(hole.along @ first.along)) > 0.9
     if across < SAME and along < max(SAME, first.width / 2 - 0.1) and same_wall and stacked:
         return math.hypot(across, along)
-    if hole.origin == "record" and hole.evidence == "door" and first.origin != "record" and first.evidence != "window" and stacked:
+    if hole.origin == "record" and hole.evidence == "door" and first.origin != "record" and first.evidence != "window":
         ends = LineString([first.centre - first.width / 2 * first.along, first.centre + first.width / 2 * first.along])
         if ends.distance(Point(hole.centre)) < min(AJAR * first.width, FARTHEST_LEAF):
             return math.hypot(across, along)

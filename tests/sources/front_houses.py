@@ -56,6 +56,7 @@ class Ways:
     balcony: bool = False  # behind a sliding door as wide as itself
     wide: bool = False  # openings from corner to corner
     panes: bool = False  # two windows that adjoin
+    swung: float = 0.0  # leaves are meshes of type Door, open by so many rad
     litter: bool = False
     turn: int = 0
     types: dict = field(default_factory=dict)
@@ -231,7 +232,9 @@ def draw(spec, number, ways, meshes, furniture, children):
         add(meshes, mine, kind if spec.kind == "window" else ways.threshold[number % len(ways.threshold)], [quad(*spec.box(a, b), z0)])
     if ways.casing and spec.kind in {"door", "entrance"}:
         casing(spec, ways, meshes, mine)
-    if spec.kind not in {"open", "portal"}:
+    if ways.swung and spec.kind in {"door", "entrance"} and b - a < 1.0:
+        slab_leaf(spec, ways, meshes, mine)
+    elif spec.kind not in {"open", "portal"}:
         leaf(spec, number, ways, furniture, mine)
 
 
@@ -250,6 +253,17 @@ def casing(spec, ways, meshes, mine):
         x0, z0, x1, z1 = spec.box(spec.a - FRAME, spec.b + FRAME, 0.01)
         made = [upright(x0, z0, x1, z0, 0, spec.top + FRAME), upright(x0, z1, x1, z1, 0, spec.top + FRAME)]
     add(meshes, mine, "Pocket", made)
+
+
+def slab_leaf(spec, ways, meshes, mine):
+    """Add a leaf as a mesh, turned about its jamb into the room beyond the wall, or inwards at the entrance."""
+    x0, z0, x1, z1 = spec.box(spec.a, spec.b)
+    c, s = np.cos(ways.swung), np.sin(ways.swung)
+    hinge, way, out = ((x0, z1), (c, s), (-s, c)) if spec.along_x else ((x1, z0), (s, c), (c, -s))
+    far = [h + (spec.b - spec.a) * w for h, w in zip(hinge, way, strict=True)]
+    back = [0.04 * o for o in out]
+    made = [upright(*hinge, *far, 0, spec.top), upright(*np.subtract(hinge, back), *np.subtract(far, back), 0, spec.top)]
+    add(meshes, mine, "Door", made)
 
 
 def leaf(spec, number, ways, furniture, mine):
@@ -314,5 +328,7 @@ HOUSES = {
     "bay_window": Ways(bay="floor", panes=True),
     "bay_outside": Ways(bay="out", litter=True, turn=3),
     "balcony": Ways(balcony=True, floors="half", litter=True, types={"KidsRoom": "SecondBedroom"}),
+    "open_leaves": Ways(reveal="hole", swung=1.4),
+    "half_open": Ways(reveal="hole", swung=0.7, casing=False, threshold=("Hole",), turn=3),
     "all_of_it": Ways(wide=True, bay="floor", balcony=True, floors="full", ajar=0.45, litter=True, reveal="twice", turn=1),
 }

@@ -43,6 +43,6 @@ def front_sketch(document: Mapping[str, Any], name: str) -> Sketch:
         foreign=True,
     )
     for row in rejects:
-        effect = REASONS[row["reason"]].effect
-        sketch.repair(row["reason"], row["where"], f"{effect}: {row['detail']}" if row["detail"] else effect)
+        reason = REASONS[row["reason"]]
+        sketch.repair(row["reason"], row["where"], f"{reason.effect}: {reason.doc}" + (f" ({row['detail']})" if row["detail"] else ""))
     return sketch
