@@ -37,8 +37,15 @@ def gathered(evidence: Iterable[Hole]) -> Gathered:
     between, odd = jambs(narrow, merge(wide))
     holes = merge([*wide, *between])
     flat = [h for h in holes if h.flat]
-    upright = [h for h in holes if not h.flat]
+    upright = [replace(h, evidence="door") if h.evidence == "hole" and any(_ends(h, n) for n in narrow) else h for h in holes if not h.flat]
     return Gathered(_apart(upright), [h for h in (*flat, *odd) if not covered(h.centre, upright)])
+
+
+def _ends(hole: Hole, jamb: Hole) -> bool:
+    """Whether a jamb of a door ends a hole, which then is that door's."""
+    apart = jamb.centre - hole.centre
+    beside, across = abs(abs(float(apart @ hole.along)) - hole.width / 2), abs(float(apart @ hole.across))
+    return jamb.evidence == "door" and not jamb.flat and beside < ADJOIN and across < hole.depth / 2 + ADJOIN
 
 
 def merge(holes: Iterable[Hole]) -> list[Hole]:

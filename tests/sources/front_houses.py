@@ -251,7 +251,8 @@ def casing(spec, ways, meshes, mine):
         made += [upright(x0, z0, x0, z1, bottom, top), upright(x1, z0, x1, z1, bottom, top), quad(x0, z0, x1, z1, top)]
     if not ways.inner:  # the outlines alone
         x0, z0, x1, z1 = spec.box(spec.a - FRAME, spec.b + FRAME, 0.01)
-        made = [upright(x0, z0, x1, z0, 0, spec.top + FRAME), upright(x0, z1, x1, z1, 0, spec.top + FRAME)]
+        faces = [(x0, z0, x1, z0), (x0, z1, x1, z1)] if spec.along_x else [(x0, z0, x0, z1), (x1, z0, x1, z1)]
+        made = [upright(*face, 0, spec.top + FRAME) for face in faces]
     add(meshes, mine, "Pocket", made)
 
 
@@ -320,6 +321,7 @@ HOUSES = {
     "ajar": Ways(ajar=0.42, turn=2),
     "wide_ajar": Ways(ajar=0.6, sized=True, casing=False, reveal="twice"),
     "jambs": Ways(reveal="jambs", casing=False, turn=3),
+    "framed_jambs": Ways(dialect="0.4", reveal="jambs", floors="half", turn=1),
     "holes": Ways(reveal="hole", threshold=("Hole", "Door"), ajar=0.4),
     "under_doors": Ways(floors="half", threshold=("Hole",), turn=1),
     "thresholds": Ways(floors="full", ajar=0.4),
