@@ -16,6 +16,7 @@ Mask = NDArray[np.bool_]
 
 CELLS = (24, 24, 8)  # across the box: width, depth, height
 DENSITY = 1.5  # points per cell along a triangle's sides
+AT_ONCE = 500_000  # points, some 40 MB
 MOST = 72  # of these along one side; a side crosses 24 cells or, slantwise, 34
 
 
@@ -32,9 +33,11 @@ def filled(meshes: Iterable[Mesh], size: Floats) -> bytes:
         sides = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1, initial=0.0)
         steps = np.clip(np.ceil(DENSITY * sides), 1, MOST).astype(int)
         for count in np.unique(steps):
-            points = np.einsum("pk,tkc->tpc", _lattice(int(count)), triangles[steps == count]).reshape(-1, 3)
-            x, y, z = np.clip(np.floor(points).astype(int), 0, cells - 1).T
-            mask[x, y, z] = True
+            lattice, alike = _lattice(int(count)), triangles[steps == count]
+            for start in range(0, len(alike), part := max(1, AT_ONCE // len(lattice))):
+                points = np.einsum("pk,tkc->tpc", lattice, alike[start : start + part]).reshape(-1, 3)
+                x, y, z = np.clip(np.floor(points).astype(int), 0, cells - 1).T
+                mask[x, y, z] = True
     below = np.logical_or.accumulate(mask, axis=2)
     above = np.logical_or.accumulate(mask[:, :, ::-1], axis=2)[:, :, ::-1]
     return np.packbits(below & above).tobytes()
