@@ -95,13 +95,12 @@ def main(count: int) -> None:
         print(f"{count} houses of {mean / 1e6:.2f} MB")
         said = hints((batch.house_records(front, f) for f in sources), taxonomy.load())
         infos, _ = batch.future_models(front, said)
-        cache = Path(place) / "cache"
         library = LibraryRows()
-        task = LibraryTask(front, Path(place) / "assets", settings.models, settings.front_licence, cache, said)
+        task = LibraryTask(front, Path(place) / "assets", settings.models, settings.front_licence, said)
         measured("3D-FUTURE models", partial(batch.read_future, task), infos, library.add)
         if settings.partnet:
             partnet = ROOT / settings.partnet
-            task = LibraryTask(partnet, Path(place) / "assets", settings.models, settings.partnet_licence, cache)
+            task = LibraryTask(partnet, Path(place) / "assets", settings.models, settings.partnet_licence)
             measured("PartNet objects", partial(batch.read_partnet, task), batch.partnet_objects(partnet)[:40])
         measured("records of houses", partial(batch.house_records, Path(place)), files)
         house = HouseTask(Path(place), library.models, settings.filters, settings.front_licence)

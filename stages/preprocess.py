@@ -17,7 +17,7 @@ from pipeline import params, taxonomy
 from pipeline.errors import ContentError
 from pipeline.relations import files, learning
 from pipeline.relations.split import rooms_of
-from pipeline.sources import batch, inventory
+from pipeline.sources import batch, inventory, proportions
 from pipeline.sources.batch import Found, HouseTask, LibraryRows, LibraryTask
 from pipeline.sources.front_hints import hints
 from pipeline.sources.front_house import HouseRows
@@ -70,18 +70,19 @@ def read_library(
     root: Path, front: Path, partnet: Path | None, objects: Sequence[Found], settings: PreprocessSettings, workers: int
 ) -> LibraryRows:
     """Read all models, those of `partnet` being `objects`, write their assets, and remove assets of earlier runs."""
-    out, cache = root / "data" / "assets", root / ".cache" / "coacd"
+    out = root / "data" / "assets"
     library = LibraryRows()
     houses = [] if settings.peers else batch.house_files(front)
     said = hints(progress(batch.each(batch.house_records, front, houses, workers), "records", len(houses)), taxonomy.load())
     if (front / batch.MODELS).is_dir():  # `folder` has seen to it, but where rooms can do without
         infos, library.rejects = batch.future_models(front, said)
-        task = LibraryTask(front, out, settings.models, settings.front_licence, cache, said)
+        task = LibraryTask(front, out, settings.models, settings.front_licence, said)
         for made in progress(batch.each(batch.read_future, task, infos, workers), "models", len(infos)):
             library.add(made)
     if partnet:
         categories = named_categories(Folder.at(partnet))
-        task = LibraryTask(partnet, out, settings.models, settings.partnet_licence, cache, categories=categories)
+        spreads = proportions.spreads(batch.each(proportions.drawn, partnet, [found.path for found in objects], workers))
+        task = LibraryTask(partnet, out, settings.models, settings.partnet_licence, categories=categories, spreads=spreads)
         for made in progress(batch.each(batch.read_partnet, task, objects, workers), "articulated", len(objects)):
             library.add(made)
     if not library.assets and not settings.peers and not settings.filters.keep_without_model:
@@ -104,8 +105,9 @@ def folder(root: Path, key: str, path: str, parts: Iterable[str]) -> Path:
 
 
 def progress(results: Iterable[Any], name: str, total: int) -> Iterable[Any]:
-    """Show a progress bar on long work."""
-    bar: Iterable[Any] = tqdm(results, name, total, unit="", mininterval=1.0, disable=None)
+    """Show how far long work is and how long it will take: a bar on a terminal, a line every half minute elsewhere."""
+    seen = sys.stderr.isatty()
+    bar: Iterable[Any] = tqdm(results, name, total, unit="", mininterval=1.0 if seen else 30.0, delay=0.0 if seen else 30.0)
     return bar
 
 

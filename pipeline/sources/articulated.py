@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Joint, Mesh, PartBox
 from pipeline.geometry.waiting import ordered
-from pipeline.sources import metric_scale
-from pipeline.sources.category_signs import Signs, signs
-from pipeline.sources.colliders import Decompose, Solids, link, matter_volume, solids
+from pipeline.sources.colliders import POCKET, Solids, bodies_solids, link, matter_volume, solids
 from pipeline.sources.densities import density
-from pipeline.sources.inertials import Inertial, flaw, joined
-from pipeline.sources.metric_scale import UNITS, Fit
+from pipeline.sources.fitting import fitted
+from pipeline.sources.inertials import Inertial, inertia_flaw, joined, mass_flaw
+from pipeline.sources.metric_scale import Fit
+from pipeline.sources.proportions import Proportions
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
 from pipeline.sources.shape import ArticulatedShape, ShapeBody, ShapeJoint, ShapePart
@@ -28,22 +28,25 @@ SHORT = {"gapartnet": "ga", "partnet-mobility": "pm", "urdf": "ur"}
 
 def assets(
     shape: ArticulatedShape, stem: str, categories: Sequence[str], taxonomy: Taxonomy, limits: ModelLimits, licence: str,
-    decompose: Decompose | None = None,
+    own: Proportions | None = None,
 ) -> Iterator[tuple[Asset, Fit, list[Row]]]:  # fmt: skip
     """Yield (asset, how it was scaled, reject rows) for each of the `categories` that the shape fits, best first.
 
-    The assets' ids are made of `stem`. Raises SourceError `unknown_category` or `no_metric_fit` where there is none.
+    The assets' ids are made of `stem`; `own` are the proportions of the objects of its model category. Raises SourceError `unknown_category` or `no_metric_fit` where there is none.
     """
     if not categories:
         raise SourceError("unknown_category", shape.source_id, f"model_cat {shape.model_cat!r}")
+    base = solids("base", shape.bodies[0].collisions, limits, None).pieces
+    shape, fits = fitted(shape, base, categories, limits, own)
     low, high = shape.bounds()
     extent = high - low
-    bodies = _unique(shape.bodies)
-    matter = [solids(body.name, body.collisions, limits, decompose) for body in bodies]
-    fits = _fits(shape, extent, signs(shape, matter[0].pieces), categories, limits)
     if not fits:
         what = shape.model_cat or "none of the categories"
         raise SourceError("no_metric_fit", shape.source_id, f"{what} of proportions {np.round(extent, 3).tolist()}")
+    bodies = _unique(shape.bodies)
+    # What fits nothing has cost no cut so far.
+    tolerance = None if limits.cut == "none" else POCKET * float(np.linalg.norm(extent))
+    matter = bodies_solids([(body.name, body.collisions) for body in bodies], limits, tolerance)
     middle = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
     for number, fit in enumerate(fits):
         kind = taxonomy.categories[fit.category].super
@@ -62,32 +65,25 @@ def assets(
         yield ordered(asset), fit, _rejects(shape, matter, weighed) if number == 0 else []  # what befell the folder is told once
 
 
-def _fits(shape: ArticulatedShape, extent: Floats, found: Signs, categories: Sequence[str], limits: ModelLimits) -> tuple[Fit, ...]:
-    """Return the fits of the categories; a file by itself is taken to be to scale where that makes it furniture."""
-    keep, margin = limits.fit_keep, limits.fit_margin
-    if shape.source == "urdf":
-        for unit in UNITS:
-            fits = (metric_scale.metric(extent, c, found, unit) for c in categories)
-            kept = metric_scale.best(fits, rms=metric_scale.METRIC, keep=keep, margin=margin)
-            if kept:
-                return kept
-    return metric_scale.best((metric_scale.fit(extent, c, found) for c in categories), rms=limits.fit_rms, keep=keep, margin=margin)
-
-
-def _stated(body: ShapeBody, matter: Solids, middle: Floats, fit: Fit, kind: str) -> tuple[Inertial | None, list[tuple[str, str]]]:
-    """Return the inertial that the source states of a body [m, kg], None where it states none or a wrong one, and a note which."""
+def _stated(
+    body: ShapeBody, matter: Solids, middle: Floats, fit: Fit, kind: str
+) -> tuple[Inertial | float | None, list[tuple[str, str]]]:  # fmt: skip
+    """Return what the source states of a body [m, kg] and a note of it: an inertial, the mass alone where the rest is a placeholder, or None."""
     pieces = [i for i in body.inertials if i is not None]
     if not pieces:
         return None, []
     points = (body.points() - middle) * fit.scale
     stated = joined(pieces).scaled(middle, fit.scale)
-    why = flaw(stated, points.min(axis=0), points.max(axis=0), matter_volume(matter, kind))
+    why = mass_flaw(stated.mass, matter_volume(matter, kind))
     if fit.fitted:
         why = "is of another size"
     elif len(pieces) < len(body.inertials):
         why = f"is of {len(pieces)} of its {len(body.inertials)} links"
     if why:
         return None, [("inertial_refused", f"{body.name}: {why}")]
+    placeholder = inertia_flaw(stated, points.min(axis=0), points.max(axis=0))
+    if placeholder:
+        return stated.mass, [("mass_used", f"{body.name}: {stated.mass:.4g} kg, its inertia {placeholder}")]
     return stated, [("inertial_used", f"{body.name}: {stated.mass:.4g} kg")]
 
 

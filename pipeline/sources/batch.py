@@ -18,7 +18,6 @@ from pipeline.entities.files import save_asset
 from pipeline.errors import ContentError
 from pipeline.manifest import sha256
 from pipeline.sources import articulated
-from pipeline.sources.decomposition import decompose
 from pipeline.sources.front_file import Furniture
 from pipeline.sources.front_hints import Hint, records
 from pipeline.sources.front_house import HouseRows, read_house
@@ -31,6 +30,7 @@ from pipeline.sources.identity import split_of
 from pipeline.sources.library_rows import Scale, asset_row, joint_rows, part_rows
 from pipeline.sources.masses import held
 from pipeline.sources.partnet import URDFS, read_shape
+from pipeline.sources.proportions import Proportions
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import FrontFilters, ModelLimits
 
@@ -62,23 +62,19 @@ class LibraryRows:
 
 @dataclass(frozen=True, slots=True)
 class LibraryTask:
-    """What every model task needs: where assets go, limits, licence, the cache of convex pieces.
+    """What every model task needs: where assets go, limits, licence.
 
-    `hints`: what houses say of models; `categories`: by id, those that the user named.
+    `hints`: what houses say of models; `categories`: by id, those that the user named; `spreads`: by model category, what
+    its objects' proportions are.
     """
 
     source: Path
     out: Path
     limits: ModelLimits
     licence: str
-    cache: Path
     hints: Mapping[str, Hint] = field(default_factory=dict)
     categories: Mapping[str, str] = field(default_factory=dict)
-
-    def pieces(self, *, articulated: bool) -> Callable[..., Any] | None:
-        """Return the decomposition that the limits ask for, None for none."""
-        wanted = self.limits.coacd == "all" or (articulated and self.limits.coacd == "articulated")
-        return functools.partial(decompose, cache=self.cache) if wanted else None
+    spreads: Mapping[str, Proportions] = field(default_factory=dict)
 
 
 def future_models(source: Path, hints: Mapping[str, Hint]) -> tuple[list[ModelInfo], list[Row]]:
@@ -154,7 +150,7 @@ def read_future(task: LibraryTask, info: ModelInfo) -> LibraryRows:
     def work() -> None:
         models = Folder.at(task.source).sub(MODELS)
         words, hint = taxonomy.load(), task.hints.get(info.model_id)
-        model = read_model(models, info, words, task.limits, task.licence, hint, task.pieces(articulated=False))
+        model = read_model(models, info, words, task.limits, task.licence, hint, cut=task.limits.cut == "all")
         asset = model.asset
         _keep(made, task, asset, Scale(model.box.unit), words.materials.get(info.material.lower(), ""), info.material)
         made.rejects += model.rejects
@@ -180,9 +176,8 @@ def read_partnet(task: LibraryTask, found: Found) -> LibraryRows:
             models = sorted({name for kind in kinds.categories.values() for name in kind.partnet})
             shape = read_shape(root.sub(found.path), found.source_id, task.limits.max_texture, models, named)
             categories = kinds.from_partnet(shape.model_cat) or ((shape.model_cat,) if shape.model_cat in kinds.categories else ())
-        for asset, fit, rejects in articulated.assets(
-            shape, found.stem, categories, kinds, task.limits, task.licence, task.pieces(articulated=True)
-        ):
+        own = task.spreads.get(shape.model_cat)
+        for asset, fit, rejects in articulated.assets(shape, found.stem, categories, kinds, task.limits, task.licence, own):
             _keep(made, task, asset, Scale(fit.scale, fit.category if fit.fitted else "file", fit.rms))
             made.rejects += rejects
 

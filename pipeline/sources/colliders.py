@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import Link, Mesh
+from pipeline.sources.cutting import cut
 from pipeline.sources.densities import BOARD, BOXES, HOLLOW, MINIMUM
 from pipeline.sources.inertials import Inertial
 from pipeline.sources.merging import merged
 from pipeline.sources.settings import ModelLimits
-from pipeline.sources.solids import Part, dissected, mass_properties, parts
+from pipeline.sources.solids import Part, convex, dissected, mass_properties
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Decompose = Callable[[Floats, Ints], list[tuple[Floats, Ints]] | None]
+Dissected = tuple[Part, Floats, Ints]
+# The work that an object may cost, in counts: the same object gives the same colliders however busy the machine is.
 WORTH = 1e-3  # share of the largest hull below which cutting a part into pieces changes nothing that a robot feels
+PIECES = 24  # of one part
+CUTS = 120  # pieces of all parts of an object that are cut
+LOOKS = 80  # parts of an object that are looked at for pockets
+POCKET = 0.01  # share of an object's diagonal: the depth of a pocket that may be filled
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,30 +40,57 @@ class Solids:
         return Solids(tuple(p.scaled(shift, factor) for p in self.parts), tuple(p.scaled(shift, factor) for p in self.pieces), self.notes)
 
 
-def solids(name: str, meshes: Iterable[tuple[Floats, Ints]], limits: ModelLimits, decompose: Decompose | None) -> Solids:
-    """Take meshes (vertices (V, 3), faces (F, 3)) apart.
+def solids(name: str, meshes: Iterable[tuple[Floats, Ints]], limits: ModelLimits, tolerance: float | None) -> Solids:
+    """Take the meshes (vertices (V, 3), faces (F, 3)) of one link apart; see `bodies_solids`."""
+    return bodies_solids([(name, meshes)], limits, tolerance)[0]
 
-    A connected part that fills `convex_fill` of its hull is a convex piece. Any other is cut by `decompose`, or, where
-    that is None or fails, stands as its hull. Neighbouring pieces are merged where that fills next to nothing. Beyond
-    `max_pieces` the smallest are left out.
+
+def bodies_solids(
+    bodies: Iterable[tuple[str, Iterable[tuple[Floats, Ints]]]], limits: ModelLimits, tolerance: float | None
+) -> list[Solids]:
+    """Take (name, meshes) of each link of an object apart.
+
+    A connected part that fills `convex_fill` of its hull is a convex piece. Any other is one as well where its hull holds
+    no pocket deeper than `tolerance` [the meshes' unit], and is cut otherwise, the largest first, as long as the object has
+    CUTS pieces left; what comes after stands as its hull, and so do all of them where `tolerance` is None. Neighbouring
+    pieces are merged where that fills next to nothing. Beyond `max_pieces` of a link the smallest are left out.
     """
-    notes: list[tuple[str, str]] = []
-    found = [entry for vertices, faces in meshes for entry in dissected(vertices, faces)]
-    largest = max((part.hull_volume for part, _, _ in found), default=0.0)
-    pieces: list[Part] = []
-    hollow = 0
-    for part, points, triangles in found:
-        if part.fill >= limits.convex_fill:
-            pieces.append(part)
+    found = [(name, [entry for vertices, faces in meshes for entry in dissected(vertices, faces)]) for name, meshes in bodies]
+    cuts = {} if tolerance is None else _cuts([parts for _, parts in found], limits, tolerance)
+    return [
+        _solids(name, parts, {k: c for (owner, k), c in cuts.items() if owner == body}, limits) for body, (name, parts) in enumerate(found)
+    ]
+
+
+def _cuts(bodies: Sequence[Sequence[Dissected]], limits: ModelLimits, tolerance: float) -> dict[tuple[int, int], list[Part]]:
+    """Return the convex pieces of the parts (body, part) that were looked at: the largest that are not convex."""
+    hollow = []
+    for body, parts in enumerate(bodies):
+        largest = max((part.hull_volume for part, _, _ in parts), default=0.0)
+        hollow += [
+            (-round(part.hull_volume, 12), body, k)
+            for k, (part, _, _) in enumerate(parts)
+            if part.fill < limits.convex_fill and part.hull_volume >= WORTH * largest
+        ]
+    made: dict[tuple[int, int], list[Part]] = {}
+    left = CUTS
+    for _, body, k in sorted(hollow)[:LOOKS]:
+        part, points, triangles = bodies[body][k]
+        if np.ptp(points, axis=0).max() < 2 * tolerance:
+            made[body, k] = [part]
             continue
-        cut = decompose(points, triangles) if decompose is not None and part.hull_volume >= WORTH * largest else None
-        if cut is None:
-            hollow += 1
-            pieces.append(part)
-        else:
-            pieces += [p for piece in cut for p in parts(*piece)]
-    if hollow:
-        notes.append(("hull_collider", f"{name}: {hollow} of {len(found)} parts"))
+        pieces = cut(points, triangles, tolerance, min(PIECES, left)).pieces
+        made[body, k] = [part] if len(pieces) == 1 else [p for piece in pieces if (p := convex(piece, part.volume / len(pieces)))]
+        left = max(left - len(pieces), 1)
+    return made
+
+
+def _solids(name: str, found: Sequence[Dissected], cuts: Mapping[int, list[Part]], limits: ModelLimits) -> Solids:
+    notes: list[tuple[str, str]] = []
+    pieces = [p for k, (part, _, _) in enumerate(found) for p in cuts.get(k, [part])]
+    hulls = sum(part.fill < limits.convex_fill and k not in cuts for k, (part, _, _) in enumerate(found))
+    if hulls:
+        notes.append(("hull_collider", f"{name}: {hulls} of {len(found)} parts"))
     pieces = list(merged(pieces))
     if len(pieces) > limits.max_pieces:
         notes.append(("colliders_capped", f"{name}: {len(pieces)} pieces, the largest {limits.max_pieces} kept"))
@@ -65,15 +98,19 @@ def solids(name: str, meshes: Iterable[tuple[Floats, Ints]], limits: ModelLimits
     return Solids(tuple(part for part, _, _ in found), tuple(pieces), tuple(notes))
 
 
-def link(name: str, visuals: Iterable[Mesh], matter: Solids, density: float, kind: str = "", stated: Inertial | None = None) -> Link:
+def link(
+    name: str, visuals: Iterable[Mesh], matter: Solids, density: float, kind: str = "", stated: Inertial | float | None = None
+) -> Link:
     """Return the link [m, kg] of visual meshes and solids; `kind` is the super-category.
 
-    It weighs what is `stated`, else what its matter does at one `density` [kg/m3].
+    It weighs what is `stated`, a mass alone or with its inertia, else what its matter does at one `density` [kg/m3].
     """
-    if stated is not None:
+    if isinstance(stated, Inertial):
         mass, com, inertia = stated.mass, stated.centre, stated.inertia
     else:
         mass, com, inertia = mass_properties([(_hollowed(p, kind), density) for p in matter.parts])
+        if stated is not None and mass > 0:
+            mass, inertia = stated, inertia * (stated / mass)
     if 0 < mass < MINIMUM:
         inertia = inertia * (MINIMUM / mass)
     least = 1e-6 * np.eye(3)  # engines refuse inertias of thin parts that round to zero

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Mesh
-from pipeline.sources.colliders import Decompose, Ints, link, solids
+from pipeline.sources.colliders import POCKET, Ints, link, solids
 from pipeline.sources.densities import density
 from pipeline.sources.front_hints import Hint
 from pipeline.sources.front_objects import MIN_SIZE
@@ -77,11 +77,12 @@ def read_model(
     limits: ModelLimits,
     licence: str,
     hint: Hint | None = None,
-    decompose: Decompose | None = None,
+    *,
+    cut: bool = False,
 ) -> FutureModel:
     """Read the model of `info` from its folder in `models`; `hint` is what scene records say of it.
 
-    The mesh is turned into our frame, (x, y, z) -> (x, -z, y), scaled to metres, and its box set bottom-centred at the
+    With `cut` parts that are not convex are cut. The mesh is turned into our frame, (x, y, z) -> (x, -z, y), scaled to metres, and its box set bottom-centred at the
     origin. Raises SourceError for what cannot be an asset.
     """
     folder = models.sub(info.model_id)
@@ -105,7 +106,7 @@ def read_model(
             visuals.append(mesh)
             collisions.append((points, group.faces))
     kind = taxonomy.categories[category].super
-    matter = solids("base", collisions, limits, decompose)
+    matter = solids("base", collisions, limits, POCKET * float(np.linalg.norm(size)) if cut else None)
     base = link("base", visuals, matter, density(kind, info.material, category), kind)
     if not base.visuals or not base.colliders:
         raise SourceError("not_obj", info.model_id, "has no face with an area")

@@ -46,20 +46,28 @@ def joined(pieces: Sequence[Inertial]) -> Inertial:
     return Inertial(mass, centre, inertia)
 
 
-def flaw(stated: Inertial, low: Floats, high: Floats, volume: float) -> str:
-    """Return what is wrong with the inertial of a body [m] whose box runs from `low` to `high` (3,), "" for nothing.
+def mass_flaw(mass: float, volume: float) -> str:
+    """Return what is wrong with the mass [kg] of a body of `volume` [m3] of matter, "" for nothing."""
+    if not np.isfinite(mass):
+        return "is not finite, or no number"
+    if mass <= 0:
+        return f"has a mass of {mass:g} kg"
+    density = mass / max(volume, 1e-12)
+    return "" if LIGHTEST <= density <= DENSEST else f"means {density:.4g} kg/m3"
 
-    `volume` [m3] is that of its matter. Moments must be positive, none larger than the other two together, and no larger
-    than those of the same mass in the corners of the box.
+
+def inertia_flaw(stated: Inertial, low: Floats, high: Floats) -> str:
+    """Return what is wrong with centre and moments of a body [m] whose box runs from `low` to `high` (3,), "" for nothing.
+
+    Moments must be positive, none larger than the other two together, and no larger than those of the same mass in the
+    corners of the box.
     """
-    if not (np.isfinite(stated.mass) and np.isfinite(stated.centre).all() and np.isfinite(stated.inertia).all()):
+    if not (np.isfinite(stated.centre).all() and np.isfinite(stated.inertia).all()):
         return "is not finite, or no number"
     moments = np.linalg.eigvalsh(stated.inertia)
     span = float(np.linalg.norm(high - low))
     outside = (stated.centre < low - AWAY * span).any() or (stated.centre > high + AWAY * span).any()
-    density = stated.mass / max(volume, 1e-12)
     checks = (
-        (stated.mass <= 0, f"has a mass of {stated.mass:g} kg"),
         (moments[0] <= 0, f"has a moment of {moments[0]:.3g} kg m2"),
         (moments[2] > ROUNDED * (moments[0] + moments[1]), f"has moments {np.round(moments, 6).tolist()}, one larger than the other two"),
         (
@@ -67,6 +75,5 @@ def flaw(stated: Inertial, low: Floats, high: Floats, volume: float) -> str:
             f"has a moment of {moments[2]:.3g} kg m2, {stated.mass:g} kg within {span:.2f} m",
         ),
         (outside, "has its centre outside of the body"),
-        (not LIGHTEST <= density <= DENSEST, f"means {density:.4g} kg/m3"),
     )
     return next((what for wrong, what in checks if wrong), "")

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from pipeline.entities.asset import JointType
 from pipeline.geometry.kinematics import joint_motion
 from pipeline.sources.mobility_v2 import Mobility
-from pipeline.sources.shape import Note, ShapeBody, ShapeJoint, ShapePart, apply, below
+from pipeline.sources.part_classes import words_of
+from pipeline.sources.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, ShapePart, apply, below
 from pipeline.sources.urdf import UrdfJoint
 
 Floats = NDArray[np.float64]
@@ -21,10 +22,25 @@ SMALLEST = {"revolute": 1e-3, "prismatic": 1e-4}  # ranges [rad, units] below wh
 WORDS = {"revolute": ("hinge",), "prismatic": ("slider", "slider+")}  # mobility_v2.json's for a joint that moves so
 MOVING = frozenset({"revolute", "prismatic", "continuous"})
 CLOSED = 0.8  # a door or drawer is drawn open when at its other limit the object's box is smaller than this
+FOLDED = 0.93  # the same for handles that are pulled out and whatever else can be put away
+STEPS = 41  # positions of a hinge that are tried, and again between the neighbours of the best
 STROKE = 0.08  # share of the object's diagonal up to which what slides and turns is a knob or cap that turns
 TURNED = frozenset({"hinge_knob", "hinge_handle", "hinge_lid", "hinge_door"})
 TURNING_WORDS = ("knob", "cap", "dial", "switch", "screw", "lever", "valve", "wheel", "seat", "chair")
 Limits = tuple[JointType, float, float]
+
+
+def _directions(count: int) -> Floats:
+    """Return unit vectors (count + 26, 3): evenly spread, and those towards the faces, edges and corners of a cube."""
+    k = np.arange(count) + 0.5
+    polar, turn = np.arccos(1 - 2 * k / count), np.pi * (1 + 5**0.5) * k
+    even = np.stack([np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1)
+    cube = np.stack(np.meshgrid(*[(-1.0, 0.0, 1.0)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    cube = cube[np.abs(cube).sum(axis=1) > 0]
+    return np.concatenate([even, cube / np.linalg.norm(cube, axis=1)[:, None]])
+
+
+DIRECTIONS = _directions(100)
 
 
 def limits(joint: UrdfJoint, known: Mobility | None, notes: list[Note]) -> Limits | None:
@@ -83,7 +99,18 @@ def rested(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapeP
 
 
 def closed(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapePart], notes: list[Note]) -> None:
-    """Close, in place, doors and drawers that are drawn open: the object's box is much smaller at their other limit."""
+    """Close, in place, doors, drawers and lids that are drawn open: the object's box is much smaller at their other limit.
+
+    A lid closes where the box is smallest, which need be no limit; it opens from there the way that it was drawn.
+    """
+    for number in range(len(joints)):
+        if joints[number].part_class == "hinge_lid" and math.isfinite(joints[number].upper):
+            q = _smallest(bodies, joints, number, CLOSED)
+            if q:
+                notes.append(("joint", "joint_rest_shifted", f"{joints[number].name}: drawn open, closed by {q:.4f}"))
+                _shift(bodies, joints, parts, number, q)
+                shut = joints[number]
+                joints[number] = opening(replace(shut, lower=0.0) if q < 0 else replace(shut, upper=0.0))
     boxes = [_box(body) for body in bodies]
     for number, joint in enumerate(joints):
         if joint.part_class not in {"hinge_door", "slider_drawer"} or not math.isfinite(joint.upper):
@@ -96,6 +123,50 @@ def closed(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapeP
             _shift(bodies, joints, parts, number, best[0])
             joints[number] = opening(joints[number])
             boxes = [_box(body) for body in bodies]
+
+
+def folded(shape: ArticulatedShape) -> ArticulatedShape | None:
+    """Return the shape with every joint where the object's box is smallest, None where that is how it is drawn."""
+    bodies, joints, parts, notes = list(shape.bodies), list(shape.joints), list(shape.parts), list(shape.notes)
+    for number, joint in enumerate(shape.joints):
+        if not math.isfinite(joint.upper):
+            continue
+        q = _smallest(bodies, joints, number, FOLDED)
+        if q:
+            notes.append(("joint", "joint_rest_shifted", f"{joint.name}: drawn spread out, folded by {q:.4f}"))
+            _shift(bodies, joints, parts, number, q)
+            joints[number] = opening(joints[number])
+    if len(notes) == len(shape.notes):
+        return None
+    return replace(shape, bodies=tuple(bodies), joints=tuple(joints), parts=tuple(parts), notes=tuple(notes))
+
+
+def _smallest(bodies: Sequence[ShapeBody], joints: Sequence[ShapeJoint], number: int, share: float) -> float:
+    """Return the position of a joint at which the object's box is smallest, 0 where it is not below `share` of that at 0."""
+    joint = joints[number]
+    moved = below(joints, joint.child)
+    still = [_outline(body) for k, body in enumerate(bodies) if k not in moved]
+    rest = np.concatenate(still) if still else np.zeros((0, 3))
+    mine = np.concatenate([_outline(bodies[k]) for k in sorted(moved)])
+
+    def volume(q: float) -> float:
+        return float(np.prod(np.ptp(np.concatenate([rest, apply(joint_motion(joint, q), mine)]), axis=0)))
+
+    ends = (joint.lower, joint.upper)
+    tried = np.linspace(*ends, STEPS) if joint.type == "revolute" else np.array(ends)
+    best = min(tried.tolist(), key=volume)
+    if joint.type == "revolute":
+        step = (ends[1] - ends[0]) / (STEPS - 1)
+        best = min(np.clip(best + np.linspace(-step, step, STEPS), *ends).tolist(), key=volume)
+    end = min(ends, key=volume)
+    best = end if volume(end) <= 1.02 * volume(best) else best
+    return best if abs(best) > 1e-6 and volume(best) < share * volume(0.0) else 0.0
+
+
+def _outline(body: ShapeBody) -> Floats:
+    """Return the points (N, 3) of a body that lie furthest in one of many directions: the corners of what is angular."""
+    points = body.points()
+    return points[np.unique(np.argmax(points @ DIRECTIONS.T, axis=0))] if len(points) else points
 
 
 def opening(joint: ShapeJoint) -> ShapeJoint:
@@ -139,9 +210,10 @@ def _screw(first: ShapeJoint, second: ShapeJoint, word: str, span: float) -> Sha
     for joint in (second, first):
         if not joint.inferred:
             return turn if joint.part_class in TURNED else slide
-    if any(w in word.lower() for w in TURNING_WORDS):
+    words = words_of(word)
+    if any(w in words for w in TURNING_WORDS):
         return turn
-    if "drawer" in word.lower() or "button" in word.lower():
+    if "drawer" in words or "button" in words:
         return slide
     return turn if slide.upper - slide.lower <= STROKE * span else slide
 

@@ -18,12 +18,14 @@ from pipeline.sources.solids import MAX_HULL, Part, combined, cross
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+Ints = NDArray[np.int64]
 
 GAIN = 0.02  # share of a merged piece that may be filled without having been matter
 NEAR = 1e-3  # share of the link's diagonal within which boxes count as touching
 POCKET = 0.008  # the same for the depth of a slab's pockets: 8 mm of a door of 1 m
 SLAB = 0.06  # the same for the thickness of a slab
 MOST = 1500  # pieces; beyond that a link is left as it is, for pairs grow with the square
+ALL = 40  # pieces of a slab up to which what lies between any two is looked at
 SAMPLES = (8, 40)  # a side, of the grids on which a slab's pockets are looked for
 
 
@@ -73,6 +75,22 @@ class _State:
             box = np.array([np.minimum(box[0], self.boxes[k, 0]), np.maximum(box[1], self.boxes[k, 1])])
         return held
 
+    def offers(self, i: int, others: Sequence[int]) -> list[tuple[float, int, int]]:
+        """Return the offers of piece i to pieces that touch it: bounds for all at once, hulls for the few that pass."""
+        if not others:
+            return []
+        js = np.asarray(others)
+        common = np.minimum(self.boxes[i, 1], self.boxes[js, 1]) - np.maximum(self.boxes[i, 0], self.boxes[js, 0])
+        matter = np.array([self.matter[j] for j in others])
+        least = np.maximum(np.maximum(matter, self.matter[i]), matter + self.matter[i] - np.maximum(common, 0.0).prod(axis=1))
+        hulls = [self.pieces[j].hull for j in others]
+        starts = np.cumsum([0, *(len(h) for h in hulls[:-1])])
+        normals, offsets = self.planes[i]
+        above = np.maximum(np.concatenate(hulls) @ normals.T - offsets, 0.0).sum(axis=1) / 6
+        grown = self.pieces[i].hull_volume + np.maximum.reduceat(above, starts)
+        passed = js[(least > 0) & (grown <= least / (1 - GAIN) * (1 + 1e-9))]
+        return [entry for j in passed.tolist() if (entry := self.offer(min(i, j), max(i, j)))]
+
     def offer(self, i: int, j: int) -> tuple[float, int, int] | None:
         """Return (share that the common hull fills, i, j), or None where it is more than GAIN."""
         least = self.union((i, j))
@@ -112,16 +130,17 @@ def _pairs(state: _State) -> None:
     boxes = state.boxes
     touching = (boxes[:, None, 0] <= boxes[None, :, 1] + near).all(axis=2)
     first, second = np.nonzero(np.triu(touching & touching.T, 1))
-    heap = [entry for i, j in zip(first.tolist(), second.tolist(), strict=True) if (entry := state.offer(i, j))]
+    neighbours = np.split(second, np.searchsorted(first, np.arange(1, len(boxes))))
+    heap = [entry for i, js in enumerate(neighbours) for entry in state.offers(i, js.tolist())]
     heapq.heapify(heap)
     while heap:
         _, i, j = heapq.heappop(heap)
         if not (state.alive[i] and state.alive[j]):
             continue
         new = state.merge((i, j), state.union((i, j)))
-        for k in np.flatnonzero(state.touching(*state.boxes[new])[:new]).tolist():
-            if state.alive[k] and (entry := state.offer(k, new)):
-                heapq.heappush(heap, entry)
+        near_it = np.flatnonzero(state.touching(*state.boxes[new])[:new] & np.array(state.alive)[:new])
+        for entry in state.offers(new, near_it.tolist()):
+            heapq.heappush(heap, entry)
 
 
 def _slabs(state: _State, axis: int) -> None:
@@ -155,7 +174,7 @@ def _connected(state: _State, among: Bools, seed: int) -> tuple[int, ...]:
 def _shallow(state: _State, members: Sequence[int], axis: int, pocket: float) -> bool:
     """Whether no point in the pieces' common hull is further than `pocket` from them, seen on a grid, coarse then fine."""
     centres = np.array([state.pieces[k].centre for k in members])
-    first, second = np.triu_indices(len(centres), 1)
+    first, second = _between(centres)
     if _away(state, members, (centres[first] + centres[second]) / 2) > pocket:  # what lies between two of them is in the hull
         return False
     found = _hull([state.pieces[k] for k in members])
@@ -173,6 +192,15 @@ def _shallow(state: _State, members: Sequence[int], axis: int, pocket: float) ->
         if len(points) and _away(state, members, points) > pocket:
             return False
     return True
+
+
+def _between(centres: Floats) -> tuple[Ints, Ints]:
+    """Return pairs of pieces: all of a few, of many each with the next along every axis, lest they grow with the square."""
+    if len(centres) <= ALL:
+        first, second = np.triu_indices(len(centres), 1)
+        return first, second
+    order = [np.argsort(centres[:, axis], kind="stable") for axis in range(3)]
+    return np.concatenate([o[:-1] for o in order]), np.concatenate([o[1:] for o in order])
 
 
 def _away(state: _State, members: Sequence[int], points: Floats) -> float:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
+from pathlib import PurePosixPath
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +20,7 @@ from pipeline.sources.urdf import Shape
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+PACKAGE = re.compile(r"^(?:package|model)://", re.IGNORECASE)
 MAX_TOTAL = 1_500_000  # triangles of all files of an object together, counted once per use
 
 
@@ -30,6 +33,22 @@ class MeshFiles:
         # By mesh file and name, where a file brings its own.
         self.materials: dict[str, dict[str, GltfMaterial] | dict[str, MtlMaterial]] = {}
         self.total = 0
+        self._places: dict[str, str] = {}
+
+    def place(self, mesh: str) -> str:
+        """Return the path of a mesh from `base` on.
+
+        package://name/rest is looked up as name/rest and as rest beside the URDF, then in the folders above it, as far up
+        as the source goes. Raises SourceError `unsafe_path` for one that leads out of the source.
+        """
+        if not PACKAGE.match(mesh):
+            return mesh
+        if mesh not in self._places:
+            full = PACKAGE.sub("", mesh).replace("\\", "/").lstrip("/")
+            tails = (full, full.partition("/")[2] or full)
+            ways = ("../" * up + tail for up in range(len(PurePosixPath(self.base).parts) + 1) for tail in tails)
+            self._places[mesh] = next((way for way in ways if self.folder.has(way, self.base)), tails[1])
+        return self._places[mesh]
 
     def geometry(self, shape: Shape, T: Floats) -> list[tuple[ObjGroup, ObjFile, Floats]]:
         """Return the groups of a shape of a link at T (4, 4), with their file and its vertices there.
@@ -61,15 +80,16 @@ class MeshFiles:
                 self.files[path] = None
         return self.files[path]
 
-    def _load(self, path: str) -> ObjFile:
+    def _load(self, mesh: str) -> ObjFile:
+        path = self.place(mesh)
         suffix = path.lower().rsplit(".", 1)[-1]
         if suffix == "obj":
             return parse_obj(self.folder.read(path, MAX_OBJ, self.base), path)
         if suffix == "glb":
-            file, self.materials[path] = parse_glb(self.folder.read(path, MAX_GLB, self.base), path)
+            file, self.materials[mesh] = parse_glb(self.folder.read(path, MAX_GLB, self.base), path)
             return file
         if suffix == "dae":
-            file, self.materials[path] = parse_dae(self.folder.read(path, MAX_DAE, self.base), path)
+            file, self.materials[mesh] = parse_dae(self.folder.read(path, MAX_DAE, self.base), path)
             return file
         if suffix == "stl":
             return _plain(*parse_stl(self.folder.read(path, MAX_STL, self.base), path))

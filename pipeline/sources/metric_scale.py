@@ -18,11 +18,16 @@ from numpy.typing import NDArray
 
 from pipeline.sources.calibration import sizes
 from pipeline.sources.category_signs import Signs, log_likelihood
+from pipeline.sources.proportions import Proportions
 
 Floats = NDArray[np.float64]
 COMMON = 30  # models that every category counts beside its own, so that none is ruled out for being rare
 UNITS = (1.0, 0.01, 0.001)  # metres per unit of files that are to scale: metres, centimetres, millimetres
-METRIC = 3.0  # rms of standard deviations within which a shape passes for one that is in metres already
+METRIC = 2.5  # rms of standard deviations within which a shape passes for one that is in metres already
+WIDE = 0.35  # spread of the logarithm that is added where nothing but our estimates of usual products is known
+AGREE = 2.5  # spreads within which two of three sides must agree on a scale
+ODD = math.log(15)  # by how much the third may be off: a laptop that stays open is as much higher than a closed one
+TALLEST = 2.75  # [m] that such a shape may be: rooms are 2.6 to 2.8 m high, and a chest of 3.2 m was drawn to be scaled
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,10 +60,41 @@ def fit(extent: Floats, category: str, found: Signs | None = None) -> Fit | None
 
 def metric(extent: Floats, category: str, found: Signs | None = None, unit: float = 1.0) -> Fit | None:
     """Return the fit of an object that is to scale already, of `unit` metres per unit, or None where it is no such thing."""
-    if sizes().get(category) is None or extent.min() <= 0:
+    if sizes().get(category) is None or extent.min() <= 0 or extent[2] * unit > TALLEST:
         return None
     made = _at(extent, category, unit, found, fitted=False)
     return made if made.rms <= METRIC else None
+
+
+def wide(extent: Floats, category: str, found: Signs | None = None, own: Proportions | None = None) -> Fit | None:
+    """Return the fit of an object that is built unlike its category's usual products, or None where it is nothing of the kind.
+
+    Two of its three sides must agree on a scale, and decide it; the third may be odd (the sum of log(1 + z^2), Cauchy's
+    likelihood, has its least value near what most say). How much a side says is its spread: the category's own, from its
+    objects (`own`) and with how far these are from our estimate, or WIDE.
+    """
+    known = sizes().get(category)
+    if known is None or extent.min() <= 0:
+        return None
+    location, spread = known.logarithmic()
+    if own is not None:
+        away = location - own.middle
+        spread = np.sqrt(spread**2 + own.spread**2 + (away - np.median(away)) ** 2)
+    else:
+        spread = np.sqrt(spread**2 + WIDE**2)
+    asked = location - np.log(extent)  # the log of the scale that each side asks for
+    tried = np.array([*asked, (asked / spread**2).sum() / (1 / spread**2).sum()])
+    z = (asked[None] - tried[:, None]) / spread
+    cost = np.log1p(z**2).sum(axis=1).round(9)
+    k = int(np.argmin(cost))
+    off = np.sort(np.abs(z[k]))
+    if off[1] > AGREE or float(np.abs(asked - tried[k]).max()) > ODD:
+        return None
+    scale = round(math.exp(float(tried[k])), 6)
+    likelihood = -float(cost[k] + np.log(spread).sum()) + math.log(known.count + COMMON)
+    if found is not None:
+        likelihood += log_likelihood(found, category, scale)
+    return Fit(category, scale, float(np.sqrt((z[k] ** 2).mean())), likelihood, fitted=True)
 
 
 def _at(extent: Floats, category: str, scale: float, found: Signs | None, *, fitted: bool) -> Fit:

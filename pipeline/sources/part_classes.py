@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -35,6 +36,7 @@ WORDS = (
     ("rack", "other", "slider_drawer"),
     ("screen", "hinge_lid", "other"),
 )
+_WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 SMALL = 0.15  # share of the object's largest extent up to which a moving part is a button or a knob
 LINE = 1.6  # a handle this much longer than wide is a line, else it is round
 
@@ -115,10 +117,18 @@ def text_field(tree: Any, key: str) -> str:
     return value if isinstance(value, str) else ""
 
 
+def words_of(name: str) -> list[str]:
+    """Return the words of a name such as "slider_lid-2" or "topDrawers", in lower case and the singular.
+
+    Whole words only: there is a "lid" in "slide", "slider" and "solid".
+    """
+    return [word.lower().removesuffix("s") for word in _WORD.findall(name)]
+
+
 def named_class(kind: str, name: str) -> str:
     """Return the part class that a semantic name tells of what a joint of `kind` moves, "" where it tells none."""
-    lower = name.lower()
-    return next(((sliding if kind == "prismatic" else turning) for word, turning, sliding in WORDS if word in lower), "")
+    found = words_of(name)
+    return next(((sliding if kind == "prismatic" else turning) for word, turning, sliding in WORDS if word in found), "")
 
 
 def shaped_class(kind: str, axis: Floats, low: Floats, high: Floats, whole: Floats) -> str:
@@ -147,7 +157,7 @@ def fixed_class(link: str, visual: str, annotated: Mapping[str, Annotation], ext
     """
     if not moves and link in annotated and annotated[link].part_class in FIXED_PARTS:
         return annotated[link].part_class
-    if link in annotated or not visual.lower().startswith(("handle", "knob")):
+    if link in annotated or words_of(visual)[:1] not in (["handle"], ["knob"]):
         return ""
     long, wide, _ = sorted(extent.tolist(), reverse=True)
     return "line_fixed_handle" if long > LINE * wide else "round_fixed_handle"

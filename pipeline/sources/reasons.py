@@ -81,13 +81,23 @@ REASONS: dict[str, Reason] = {
     "missing_texture": Reason("model", "repaired", "a texture or material file is missing or unreadable; plain colour instead"),
     "colliders_capped": Reason("model", "repaired", "more pieces than `max_pieces`; the smallest have no collider"),
     "hull_collider": Reason(
-        "model", "repaired", "parts that are not convex and that CoACD did not cut (see `coacd`) collide as their convex hulls"
+        "model",
+        "repaired",
+        "parts that are not convex and that were not cut (see `cut`, or an object of very many parts) collide as their convex hulls",
     ),
     "looks_differ": Reason("model", "repaired", "the URDF for looks does not have the annotated one's bodies in its places; not used"),
     "looks_from_colliders": Reason("model", "repaired", "a body without visual meshes that can be read shows its collision meshes"),
     "base_made": Reason("model", "repaired", "a door without a frame: a post along its hinge is made to be its base"),
     "part_box_refused": Reason("model", "repaired", "the annotated box of a part is no box; that of its geometry is used"),
     "inertial_used": Reason("model", "repaired", "a body weighs what the URDF says of it, not what its volume does at a usual density"),
+    "mass_used": Reason(
+        "model", "repaired", "a body weighs what the URDF says; its inertia there is a placeholder, that of its volume is used"
+    ),
+    "refitted": Reason(
+        "model",
+        "repaired",
+        "drawn open, lying, along its depth or of unusual proportions: folded, turned or scaled as its category is built",
+    ),
     "inertial_refused": Reason(
         "model",
         "repaired",
@@ -108,7 +118,7 @@ REASONS: dict[str, Reason] = {
     "joint_no_range": Reason("joint", "repaired", "limits are missing or leave no range: taken as fixed"),
     "joint_limits_found": Reason("joint", "repaired", "limits are missing or leave no range: those of mobility_v2.json are used"),
     "joint_flipped_limits": Reason("joint", "repaired", "lower above upper: exchanged"),
-    "joint_rest_shifted": Reason("joint", "repaired", "0 is not within the limits, or a door is drawn open: another limit is the rest"),
+    "joint_rest_shifted": Reason("joint", "repaired", "0 is not within the limits, or a door or lid is drawn open: it is closed at rest"),
     "joint_mimic": Reason("joint", "repaired", "a joint that the URDF lets follow another one: it moves by itself"),
     "joint_moves_nothing": Reason("joint", "repaired", "a joint to a body without geometry: left out"),
     "screw_collapsed": Reason("joint", "repaired", "two joints through an empty helper link: the one by which the part is used is kept"),

@@ -132,7 +132,7 @@ class ShapeReader:
 
     def _material(self, shape: Shape, file: ObjFile, group: ObjGroup) -> int:
         own = self.files.materials.get(shape.mesh, {}).get(group.material)
-        base = PurePosixPath(self.base, shape.mesh.replace("\\", "/")).parent.as_posix() if shape.mesh else ""
+        base = PurePosixPath(self.base, self.files.place(shape.mesh).replace("\\", "/")).parent.as_posix() if shape.mesh else ""
         base = "" if base == "." else base
         if isinstance(own, MtlMaterial):
             return self.palette.entry(own, base)

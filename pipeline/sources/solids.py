@@ -76,6 +76,17 @@ def combined(pieces: Sequence[Part]) -> Part:
     return Part(corners, faces, volume, matter / volume, matter, sum(p.area for p in pieces), centre, inertia)
 
 
+def convex(points: Floats, matter: float) -> Part | None:
+    """Return the hull of points (N, 3) as a part that holds `matter` [m3] at most; None where they span nothing."""
+    made = hull(points)
+    if made is None or made[2] <= 0:
+        return None
+    corners, faces, volume = made
+    _, centre, inertia = _hull_moments(corners, faces)
+    held = min(matter, volume)
+    return Part(corners, faces, volume, held / volume, held, surface(corners, faces), centre, inertia)
+
+
 def components(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]:
     """Return the connected parts as (vertices, faces), degenerate faces left out, vertices at the same place welded.
 

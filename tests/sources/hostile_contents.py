@@ -70,7 +70,7 @@ URDFS = {  # content of a URDF -> reason
     "absurd_limit": (making.partnet_urdf((0, 0, 0)).replace('upper="1.57"', 'upper="1e400"'), "bad_number"),
     "nan_axis": (making.partnet_urdf((0, 0, 0)).replace("0 -1 0", "nan 0 0"), "bad_number"),
     "loop": (making.partnet_urdf((0, 0, 0)).replace('<parent link="base"/>', '<parent link="link_0"/>'), "not_urdf"),
-    "package": (making.partnet_urdf((0, 0, 0)).replace("textured_objs/back.obj", "package://x/back.obj"), "unsafe_path"),
+    "package": (making.partnet_urdf((0, 0, 0)).replace("textured_objs/back.obj", "package://../../secret.obj"), "unsafe_path"),
     "file_scheme": (making.partnet_urdf((0, 0, 0)).replace("textured_objs/back.obj", "file:///etc/passwd"), "unsafe_path"),
     "http": (making.partnet_urdf((0, 0, 0)).replace("textured_objs/back.obj", "http://localhost/x.obj"), "unsafe_path"),
     "absolute": (making.partnet_urdf((0, 0, 0)).replace("textured_objs/back.obj", "/etc/passwd"), "unsafe_path"),

@@ -5,7 +5,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from pipeline import taxonomy
-from pipeline.sources import batch
+from pipeline.sources import batch, proportions
 from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
 from pipeline.sources.front_hints import hints
 from pipeline.sources.front_house import HouseRows
@@ -24,12 +24,13 @@ def read(root, *, front="front", partnet="partnet", filters=None, limits=None):
     if (root / front / batch.MODELS).is_dir():
         said = hints((batch.house_records(root / front, file) for file in batch.house_files(root / front)), taxonomy.load())
         infos, library.rejects = batch.future_models(root / front, said)
-        task = LibraryTask(root / front, root / "assets", made_limits, "CC0-1.0", root / "cache", said)
+        task = LibraryTask(root / front, root / "assets", made_limits, "CC0-1.0", said)
         for entry in infos:
             library.add(batch.read_future(task, entry))
     if (root / partnet).is_dir():
         categories = named_categories(Folder.at(root / partnet))
-        task = LibraryTask(root / partnet, root / "assets", made_limits, "CC0-1.0", root / "cache", categories=categories)
+        spreads = proportions.spreads(proportions.drawn(root / partnet, found.path) for found in batch.partnet_objects(root / partnet))
+        task = LibraryTask(root / partnet, root / "assets", made_limits, "CC0-1.0", categories=categories, spreads=spreads)
         for name in batch.partnet_objects(root / partnet):
             library.add(batch.read_partnet(task, name))
     if (root / front / batch.HOUSES).is_dir():

@@ -168,6 +168,35 @@ def test_meshes_beside_the_urdfs_folder(tmp_path):
     assert read(tmp_path).reasons == {"unsafe_path"}
 
 
+@pytest.mark.parametrize("mesh", ["package://store/meshes/box.obj", "package://meshes/box.obj", "package://other_name/meshes/box.obj"])
+@pytest.mark.parametrize("file", ["store/urdf/cabinet.urdf", "store/cabinet.urdf"])
+def test_a_package_is_looked_up_beside_the_file_and_above(tmp_path, mesh, file):
+    """package://<name>/... as ROS writes it, the name that of the package's folder or of one that is not there."""
+    meshes = tmp_path / "partnet" / "store" / "meshes"
+    meshes.mkdir(parents=True)
+    (meshes / "box.obj").write_text(making.box_obj((0.9, 0.6, 0.85), mtl="box.mtl"))
+    (meshes / "box.mtl").write_text("newmtl plain\nKd 1 0 0\n")
+    text = f'<robot name="r"><link name="a"><visual><geometry><mesh filename="{mesh}"/></geometry></visual></link></robot>'
+    write(tmp_path, text, file)
+    asset, made = only(tmp_path)
+    assert made.rejects == []
+    assert asset.materials[0].base_color == (1.0, 0.0, 0.0)
+
+
+def test_a_package_that_leaves_the_folder_is_refused(tmp_path):
+    text = '<robot name="r"><link name="a"><visual><geometry><mesh filename="package://../../../secret.obj"/></geometry></visual></link></robot>'
+    write(tmp_path, text, "store/urdf/cabinet.urdf")
+    assert read(tmp_path).reasons == {"unsafe_path"}
+
+
+def test_a_chest_as_high_as_a_room_is_not_to_scale(tmp_path):
+    """Drawn 3.2 m high, to be placed at .4 of that."""
+    write(tmp_path, cupboard(unit=3.2 / 0.85), "chest/chest.urdf")
+    asset, made = only(tmp_path)
+    assert asset.size[2] < 2.0
+    assert made.assets[0]["scale_from"] != "file"
+
+
 def test_meshes_of_a_kind_that_is_not_read_show_their_colliders(tmp_path):
     text = cupboard().replace("<visual", '<visual name="x"')
     for kind in ("visual",):

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from pipeline.entities.files import load_asset
-from pipeline.sources.inertials import Inertial, flaw, joined
+from pipeline.sources.inertials import Inertial, inertia_flaw, joined, mass_flaw
 from tests.sources import test_household as household
 from tests.sources.reading import read
 
@@ -44,6 +44,10 @@ def test_scaling_keeps_the_mass(factor):
     made = box(4, (1, 2, 3), (1, 1, 1)).scaled(np.array([0.5, 0, 0]), factor)
     assert np.allclose(made.inertia, box(4, np.array([1, 2, 3]) * factor).inertia)
     assert np.allclose(made.centre, np.array([0.5, 1, 1]) * factor)
+
+
+def flaw(stated, low, high, volume):
+    return mass_flaw(stated.mass, volume) or inertia_flaw(stated, low, high)
 
 
 LOW, HIGH, VOLUME = np.array([-0.5, -0.25, 0.0]), np.array([0.5, 0.25, 1.0]), 0.05
@@ -109,6 +113,28 @@ def test_units_of_the_file_are_those_of_its_inertial(tmp_path):
     asset, made = household.only(tmp_path)
     assert made.reasons == {"inertial_used"}
     assert asset.links[0].inertia == pytest.approx(np.diag([2.0, 3.0, 4.0]), abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    "inertial",
+    [
+        weighed(35, (1e-3, 1e-3, 1e-3)).replace('xyz="0.3 0 0.4"', 'xyz="9 0 0"'),
+        weighed(35, (1000, 1000, 1000)),
+        weighed(35, (0, 0, 0)),
+        '<inertial><mass value="35"/></inertial>',
+    ],
+)
+def test_a_mass_beside_a_placeholder_stays(inertial, tmp_path):
+    """Its inertia is that of its volume, brought to the stated mass."""
+    household.write(tmp_path, cupboard(inertial))
+    asset, made = household.only(tmp_path)
+    assert made.reasons == {"mass_used"}
+    household.write(tmp_path, household.cupboard())
+    plain = household.only(tmp_path)[0].links[0]
+    base = asset.links[0]
+    assert base.mass == 35
+    assert np.allclose(base.com, plain.com)
+    assert np.allclose(base.inertia, plain.inertia * 35 / plain.mass, atol=2e-5)
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from pipeline.sources.peers_reader import PeersTask, read_peers
 from pipeline.sources.peers_writer import grouped, write_kind
 from pipeline.sources.reasons import REASONS, SourceError, reject
 from pipeline.sources.settings import FrontFilters
-from tests.sources import making
+from tests.sources import making, mobility
 from tests.sources.making import BED, CHAIR, LAMP, STAND, TABLE, chair_record, child, floor, slab
 from tests.sources.reading import read
 
@@ -200,6 +200,11 @@ def no_metric_fit(tmp):
 PARTS = ("back", "left", "right", "door", "drawer", "handle")
 
 
+def made_object(tmp, category, links):
+    mobility.write(tmp / "partnet", "1", category, links)
+    return read(tmp)
+
+
 def no_base(tmp):
     urdf = making.partnet_urdf((0, 0, 0)).replace(making.link_xml("link_2", ["back", "left", "right"]), '<link name="link_2"/>')
     making.write_partnet(tmp / "partnet", urdf=urdf)
@@ -307,6 +312,8 @@ CASES = {
         f'<link name="a"/><link name="b"><visual>{CASE}</visual></link><joint name="j" type="revolute"><parent link="a"/><child link="b"/>'
         '<axis xyz="0 0 1"/><limit lower="0" upper="1"/></joint>',
     ),
+    "mass_used": lambda t: household(t, f'<link name="a"><inertial><mass value="40"/></inertial><visual>{CASE}</visual></link>'),
+    "refitted": lambda t: made_object(t, "Toaster", mobility.toaster(np.random.default_rng(0))),
     "inertial_used": lambda t: household(t, f'<link name="a">{INERTIAL}<visual>{CASE}</visual></link>'),
     "inertial_refused": lambda t: household(t, f'<link name="a">{INERTIAL.replace("40", "-40")}<visual>{CASE}</visual></link>'),
     "angle_snapped": lambda t: household(t, f'<link name="a"><visual><origin rpy="0 0 1.565"/>{CASE}</visual></link>'),

@@ -1,16 +1,16 @@
-import functools
-
 import numpy as np
 import pytest
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pipeline.sources import colliders
 from pipeline.sources.colliders import link, solids
+from pipeline.sources.cutting import cut
 from pipeline.sources.densities import MINIMUM
 from pipeline.sources.merging import merged
 from pipeline.sources.settings import ModelLimits
-from pipeline.sources.solids import MAX_HULL, components, hull, mass_properties, parts, signed_volume
+from pipeline.sources.solids import MAX_HULL, components, convex, hull, mass_properties, parts, signed_volume
 
 
 def box(size, at=(0, 0, 0)):
@@ -99,39 +99,71 @@ def test_scaling_a_part_is_taking_the_scaled_mesh_apart():
         assert np.allclose([a.hull_volume, a.volume, a.fill], [b.hull_volume, b.volume, b.fill])
 
 
-def test_cut_pieces_replace_the_mesh_and_are_cached(tmp_path):
-    """CoACD's answer for a U of three boards as one closed solid: convex pieces that cover it, read back from the cache."""
+def bowl():
+    mesh = trimesh.creation.icosphere(3)
+    mesh.update_faces(mesh.triangles_center[:, 2] < 0.3)
+    return np.asarray(mesh.vertices, float), np.asarray(mesh.faces)
+
+
+def test_cut_pieces_replace_the_mesh():
+    """A U of three boards as one closed solid: pieces that cover it and leave its inside free."""
     from shapely.geometry import Polygon
 
-    from pipeline.sources.decomposition import decompose
-
     u = trimesh.creation.extrude_polygon(Polygon([(0, 0), (1, 0), (1, 1), (0.9, 1), (0.9, 0.1), (0.1, 0.1), (0.1, 1), (0, 1)]), 0.4)
-    mesh = (np.asarray(u.vertices), np.asarray(u.faces))
-    made = solids("u", [mesh], ModelLimits(), lambda v, f: decompose(v, f, tmp_path))
-    assert len(made.pieces) >= 3
+    made = solids("u", [(np.asarray(u.vertices), np.asarray(u.faces))], ModelLimits(), 0.015)
+    assert 3 <= len(made.pieces) <= 6
     assert made.notes == ()
     assert sum(p.hull_volume for p in made.pieces) == pytest.approx(u.volume, rel=0.1)
-    assert len(list(tmp_path.iterdir())) == 1
-    assert len(solids("u", [mesh], ModelLimits(), lambda v, f: decompose(v, f, tmp_path)).pieces) == len(made.pieces)
+    air = np.random.default_rng(0).uniform((0.17, 0.17, 0), (0.83, 1, 0.4), (1000, 3))
+    assert not inside(air, made.pieces).any()
 
 
-def test_a_failed_cut_leaves_the_hull_and_is_not_tried_again(tmp_path, monkeypatch):
-    """Native code that dies, or is not there, costs the pieces, never the model."""
-    from pipeline.sources import decomposition
+def test_a_surface_is_covered_and_no_pocket_filled():
+    v, f = bowl()
+    made = cut(v, f, 0.05, 24)
+    pieces = [p for points in made.pieces if (p := convex(points, 1.0))]
+    assert len(pieces) <= 24
+    assert made.depth < 0.15
+    middles = v[f].mean(axis=1)
+    reach = np.min([_outside(middles, p) for p in pieces], axis=0)
+    assert reach.max() < 0.05  # of a bowl of radius 1
+    air = np.random.default_rng(0).normal(size=(500, 3)) * 0.1
+    assert not inside(air, pieces).any()
 
-    ring = trimesh.creation.annulus(0.3, 0.5, 0.2)
-    mesh = (np.asarray(ring.vertices), np.asarray(ring.faces))
-    cut = functools.partial(decomposition.decompose, cache=tmp_path)
-    with monkeypatch.context() as patch:
-        patch.setattr(decomposition, "available", lambda: False)
-        assert [r for r, _ in solids("b", [mesh], ModelLimits(), cut).notes] == ["hull_collider"]
-        assert not list(tmp_path.iterdir())
-    with monkeypatch.context() as patch:
-        patch.setattr(decomposition, "_PROGRAM", "import os; os.abort()")
-        assert [r for r, _ in solids("b", [mesh], ModelLimits(), cut).notes] == ["hull_collider"]
-        patch.setattr(decomposition, "_PROGRAM", "raise AssertionError")
-        assert len(solids("b", [mesh], ModelLimits(), cut).pieces) == 1
-    assert len(list(tmp_path.iterdir())) == 1
+
+def _outside(points, part):
+    """Return by how much points (N, 3) lie outside of a convex part, 0 within."""
+    a = part.hull[part.faces[:, 0]]
+    normals = np.cross(part.hull[part.faces[:, 1]] - a, part.hull[part.faces[:, 2]] - a)
+    lengths = np.maximum(np.linalg.norm(normals, axis=1), 1e-12)
+    return np.maximum(((normals @ points.T - (normals * a).sum(1)[:, None]) / lengths[:, None]).max(axis=0), 0.0)
+
+
+@pytest.mark.parametrize("broken", ["open", "doubled", "turned"])
+def test_what_is_nearly_convex_stays_one_piece(broken):
+    v, f = box((1, 0.4, 0.2))
+    faces = {"open": f[1:], "doubled": np.concatenate([f, f[:, ::-1]]), "turned": np.where(np.arange(12)[:, None] % 2, f, f[:, ::-1])}[
+        broken
+    ]
+    assert len(solids("b", [(v, faces)], ModelLimits(), 0.25).pieces) == 1
+
+
+def test_a_bound_on_the_work_of_an_object(monkeypatch):
+    """However many bowls an object has, they are cut into so many pieces, and what comes after stands as its hull."""
+    v, f = bowl()
+    many = [(v * 0.1 + (k, 0, 0), f) for k in range(6)]
+    monkeypatch.setattr(colliders, "CUTS", 20)
+    monkeypatch.setattr(colliders, "LOOKS", 4)
+    made = solids("b", many, ModelLimits(), 0.005)
+    assert [reason for reason, _ in made.notes] == ["hull_collider"]
+    assert len(made.pieces) <= 20 + 6
+
+
+def test_merging_is_the_same_in_any_company():
+    """Boards far away change nothing, though bounds are taken for many pairs at once."""
+    boards = [p for k in range(4) for p in parts(*box((0.3, 0.4, 0.02), (0.3 * k, 0, 0)))]
+    far = [p for k in range(3) for p in parts(*box((0.1, 0.1, 0.1), (0.2 * k, 0.9, 0)))]
+    assert len(merged(boards + far)) == 1 + 3
 
 
 def drawer(w=0.5, d=0.45, h=0.15, t=0.012):
