@@ -17,6 +17,7 @@ Ints = NDArray[np.int64]
 WELD = 1e-5  # share of the mesh's diagonal within which vertices are one
 MAX_HULL = 64  # vertices; PhysX takes no more in one convex piece
 SHEET = 0.001  # [m] half thickness given to a flat part
+CLOSED = 4  # faces of a closed surface at least; two that are one drawn from both sides are none
 SHELL = 0.008  # [m] thickness of an open surface, when its mass is estimated
 COVER = 0.98  # share of a hull's surface that faces which do not close must cover to pass for it
 MAX_COVER = 20_000  # faces for which that is looked at
@@ -150,6 +151,7 @@ def _whole(faces: Ints, label: Ints) -> NDArray[np.bool_]:
     open_labels = np.zeros(int(kind.max(initial=-1)) + 1, bool)
     open_labels[owner[there != back]] = True
     open_labels[owner[1:][repeated]] = True
+    open_labels[np.bincount(kind) < CLOSED] = True
     return ~open_labels[kind]
 
 

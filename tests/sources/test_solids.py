@@ -11,6 +11,7 @@ from pipeline.sources.densities import MINIMUM
 from pipeline.sources.merging import merged
 from pipeline.sources.settings import ModelLimits
 from pipeline.sources.solids import MAX_HULL, components, convex, hull, mass_properties, parts, signed_volume
+from tests.sources import mobility
 
 
 def box(size, at=(0, 0, 0)):
@@ -244,3 +245,10 @@ def test_a_block_of_a_cabinet_weighs_as_a_box_of_boards():
     assert link("b", (), block, 600.0, "cabinet").mass == pytest.approx(600 * 7 * 0.018)
     board = solids("b", [box((1, 0.5, 0.02))], ModelLimits(), None)
     assert link("b", (), board, 600.0, "cabinet").mass == pytest.approx(6)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_board_with_holes_drawn_from_both_sides_is_one_part(seed):
+    """At a hole a face and its own back share an edge with nobody else: the two are no closed part."""
+    mesh = mobility.dirty(mobility.board((0, 0, 0), (1, 0.4, 0.6), 12, 0.01), np.random.default_rng(seed))
+    assert len(components(*mesh)) == 1
