@@ -28,6 +28,8 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
+STRICT_HELP = "Refuse words that are not understood, instead of leaving them out and saying so."
+Strict = Annotated[bool, typer.Option("--strict", help=STRICT_HELP)]
 Seed = Annotated[int, typer.Option(min=0, max=2**31 - 1, help=SEED_HELP)]
 
 
@@ -38,6 +40,7 @@ def generate(
     seed: Seed = 0,
     plan: Annotated[Path | None, typer.Option(help="Furnish this plan of your own: JSON, 3D-FRONT or ProcTHOR.")] = None,
     house: Annotated[str | None, typer.Option(help="With --plan FILE.jsonl: which house, a line from 0 or an id.")] = None,
+    strict: Strict = False,
 ) -> None:
     """Make one home from words, or in a plan of your own: USD, tables, plan and preview.
 
@@ -49,7 +52,7 @@ def generate(
     if not prompt and not plan:
         raise Complaint("the prompt is empty; give PROMPT, or --plan FILE", 2)
     root = factory_root()
-    stage("generate").main(root, prompt=prompt, out=out, seed=seed, source=plan, house=house)
+    stage("generate").main(root, prompt=prompt, out=out, seed=seed, source=plan, house=house, strict=strict)
 
 
 @app.command()
@@ -84,6 +87,7 @@ def plan(
     prompts: Annotated[Path | None, typer.Option(help="With --score: a prompt a line, or YAML with ground truth.")] = None,
     seeds: Annotated[int, typer.Option(min=1, max=1000, help="With --score: plans of each prompt.")] = 5,
     score: Annotated[bool, typer.Option("--score", help="Plan every prompt of --prompts and print scores and seconds.")] = False,
+    strict: Strict = False,
     schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of plan and program.")] = False,
 ) -> None:
     """Turn words into a floor plan and show it; or check and show a plan of your own.
@@ -107,7 +111,7 @@ def plan(
     elif prompts:
         made.score(root, prompts=prompts, seeds=seeds, json_path=json)
     else:
-        made.main(root, prompt=prompt, seed=seed, source=source, house=house, json_path=json, svg_path=svg, png_path=png)
+        made.main(root, prompt=prompt, seed=seed, source=source, house=house, json_path=json, svg_path=svg, png_path=png, strict=strict)
 
 
 @app.command()

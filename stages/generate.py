@@ -22,12 +22,14 @@ from pipeline.shards import Header, commit_library, commit_shard, gather, open_o
 from stages.runner import announce_compiling
 
 
-def main(root: Path, *, out: Path, prompt: str = "", seed: int = 0, source: Path | None = None, house: str | None = None) -> None:
+def main(
+    root: Path, *, out: Path, prompt: str = "", seed: int = 0, source: Path | None = None, house: str | None = None, strict: bool = False
+) -> None:
     """Make the home that `prompt` asks for, or the one of the plan in `source`, in the folder `out`.
 
     A language model reads the prompt where one is configured.
     """
-    program, wish, repairs = asked_in_words(prompt) if source is None else asked_by_plan(root, source, house, prompt)
+    program, wish, repairs = asked_in_words(prompt, strict=strict) if source is None else asked_by_plan(root, source, house, prompt)
     single_thread()
     factory = open_factory(root, seed)
     told = digest([wish.prompt, wish.program, wish.plan])
@@ -50,10 +52,10 @@ def main(root: Path, *, out: Path, prompt: str = "", seed: int = 0, source: Path
         sys.stdout.write(f"{file}\n")
 
 
-def asked_in_words(prompt: str) -> tuple[FloorProgram, Request, list[dict[str, str]]]:
+def asked_in_words(prompt: str, *, strict: bool = False) -> tuple[FloorProgram, Request, list[dict[str, str]]]:
     """Return the program and the request of a prompt."""
     asked = require_prompt(prompt)
-    program = request(asked)
+    program = request(asked, strict=strict)
     return program, Request(0, asked, program.model_dump_json(exclude_defaults=True)), []
 
 

@@ -32,6 +32,7 @@ def main(
     json_path: Path | None = None,
     svg_path: Path | None = None,
     png_path: Path | None = None,
+    strict: bool = False,
 ) -> None:
     """Plan the prompt, or read the plan in `source`, and show it. A refusal is written to the JSON file too, then raised."""
     targets = (json_path, svg_path, png_path)
@@ -43,7 +44,7 @@ def main(
     assumed: list[dict[str, str]] = []
     try:
         if source is None:
-            program = request(prompt)
+            program = request(prompt, strict=strict)
             announce_compiling()
             plan, assumed = solve(program, seed), assumptions(program)
         else:

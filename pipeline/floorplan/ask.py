@@ -5,18 +5,31 @@ from __future__ import annotations
 import logging
 
 from pipeline.errors import RefusedError, UsageError
-from pipeline.floorplan.check import check
+from pipeline.floorplan.check import ImpossibleError, check
 from pipeline.floorplan.completion import complete
 from pipeline.floorplan.language import parse
 from pipeline.floorplan.language.llm import Server, UnansweredError, ask, configured
 from pipeline.floorplan.language.parser import bounded
-from pipeline.floorplan.program import FloorProgram
+from pipeline.floorplan.program import Evidence, FloorProgram
 
 LOG = logging.getLogger(__name__)
 
 
-def request(prompt: str, server: Server | None = None) -> FloorProgram:
+def request(prompt: str, server: Server | None = None, *, strict: bool = False) -> FloorProgram:
     """Return the completed program of a prompt: by the language model that `server` or the environment names, else built in.
+
+    With `strict`, a prompt of which words were not understood is refused with them.
+    """
+    program = _read(prompt, server)
+    if strict and program.unparsed:
+        lost = ", ".join(f"'{s.text}'" for s in program.unparsed)
+        words = [Evidence(start=s.start, end=s.end, text=s.text, field="unparsed") for s in program.unparsed]
+        raise ImpossibleError(f"not understood: {lost}", "say it in other words, or leave out --strict", words)
+    return program
+
+
+def _read(prompt: str, server: Server | None) -> FloorProgram:
+    """Return the completed program of a prompt.
 
     What the model answers is checked like everything else; when it gives no usable program, a warning says so and the built-in
     parser takes over. Raises UsageError and RefusedError as `parse` does.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from pipeline.floorplan.check import ImpossibleError
@@ -30,6 +30,22 @@ SORTS = {
 }  # types of many names
 QUIET = {"on", "around", "along", "by", "al", "ins", "进 入", "进", "in", "off"}  # prepositions that mean something else as well
 RELATIONS = {"door", "leads", "open", "near", "wall", "away", "apart", "between", "avoid", "ensuite"}
+SAYING = {
+    "word",
+    "cmp",
+    "factor",
+    "amount",
+    "num",
+    "ord",
+    "owner",
+    "level",
+    "room",
+    "suite",
+    "enter",
+    "outside",
+    "except",
+    "pron",
+}  # kinds of marks that never stand idle
 ROLES = {"primary", "guest", "child", "elder", "staff", "carer", "shared"}
 
 
@@ -48,6 +64,7 @@ def assemble(state: Reading, parsed: list[list[Element]], marks: list[Mark]) -> 
     sizes.attach(draft, state)
     dwelling.read_whole(draft, state)
     dwelling.read_style(draft, state)
+    evidence = [*_named(parsed, draft, state), *draft.evidence]
     return FloorProgram.model_validate(
         {
             **draft.fields,
@@ -57,8 +74,8 @@ def assemble(state: Reading, parsed: list[list[Element]], marks: list[Mark]) -> 
             "relations": draft.relations,
             "zones": draft.zones,
             "language": state.heard.lexicon.language,
-            "evidence": [*_named(parsed, draft, state), *draft.evidence],
-            "unparsed": [{"start": s, "end": e, "text": t} for s, e, t in _rest(state, draft, marks)],
+            "evidence": evidence,
+            "unparsed": [{"start": s, "end": e, "text": t} for s, e, t in _rest(state, evidence, marks)],
         }
     )
 
@@ -93,13 +110,30 @@ def _named(parsed: list[list[Element]], draft: Draft, state: Reading) -> list[di
     return found
 
 
-def _rest(state: Reading, draft: Draft, marks: list[Mark]) -> Iterable[tuple[int, int, str]]:
-    """Words that are in no vocabulary, rooms that nothing was made of, and relations that joined nothing."""
-    for mark in marks:
-        lost = mark.kind in {"word", "cmp", "factor"} or (mark.kind == "cue" and mark.value in RELATIONS and mark.text not in QUIET)
-        if lost and not state.used & set(range(mark.first, mark.last)):
-            start, end = draft.tokens[mark.first].start, draft.tokens[mark.last - 1].end
-            yield start, end, draft.prompt[start:end]
+def _rest(state: Reading, evidence: Iterable[Mapping[str, Any]], marks: Sequence[Mark]) -> Iterator[tuple[int, int, str]]:
+    """Yield what nothing was made of: words that are in no vocabulary, and words that say something and stand in no evidence."""
+    tokens, prompt = state.heard.tokens, state.heard.prompt
+    cited = {k for e in evidence for k, t in enumerate(tokens) if e["start"] <= t.start and t.end <= e["end"]} | state.used
+    for k, mark in enumerate(marks):
+        if mark.last > mark.first and not cited & set(range(mark.first, mark.last)) and _says(marks, k, cited):
+            start, end = tokens[mark.first].start, tokens[mark.last - 1].end
+            yield start, end, prompt[start:end]
+
+
+def _says(marks: Sequence[Mark], k: int, cited: set[int]) -> bool:
+    """Whether the mark at k says something by itself: what stands in front of a room that was read does not."""
+    mark = marks[k]
+    if mark.kind == "cue":
+        return mark.value in RELATIONS and mark.text not in QUIET
+    pointing = mark.kind == "det" and mark.value in {"each", "other", "own", "another"}
+    if not (mark.kind in SAYING or pointing) or (mark.kind == "pron" and mark.value in {"it", "one"}):
+        return False
+    ahead = k + 1
+    while ahead < len(marks) and marks[ahead].kind in {"num", "ord", "adj", "size", "det", "clf", "times", "amount", "fill", "look"}:
+        ahead += 1
+    head = marks[ahead] if ahead < len(marks) else mark
+    described = head.kind == "home" or (head.kind in {"room", "suite"} and bool(cited & set(range(head.first, head.last))))
+    return not (mark.kind in {"ord", "det"} and described)
 
 
 def _beyond(draft: Draft, state: Reading) -> None:

@@ -94,6 +94,8 @@ def combined(claims: Sequence[Claim], prompt: str, where: str) -> Furniture:
             fields["style"] = claim.name
         elif claim.kind == "openable":
             fields["openable"] = max(fields.get("openable", 0), claim.least)
+        elif claim.value > 1.0:
+            _clash(f"{claim.value:.0%} of {where} are to be free", [claim], claim, prompt)
         else:
             fields["walkable"] = max(fields.get("walkable", 0.0), claim.value)
     return Furniture.model_validate({**fields, "counts": tuple(counts.values())})

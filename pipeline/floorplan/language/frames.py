@@ -217,7 +217,8 @@ def _read(frame: Frame, marks: Sequence[Mark], start: int, end: int, slots: Slot
             what, _, text = atom.partition(":")
             what, _, number = what.partition("=")
             kind, _, value = what.partition("/")
-            yield Mark(kind, value, float(number or 0.0), False, first, last, text.replace("_", " ") or value or kind)
+            plain = " ".join(m.text for m in marks[start:end]) if kind == "pron" else value or kind  # "the other two" keeps its number
+            yield Mark(kind, value, float(number or 0.0), False, first, last, text.replace("_", " ") or plain)
 
 
 def _items(marks: Sequence[Mark]) -> Iterator[Mark]:
@@ -241,4 +242,5 @@ def _changed(mark: Mark, change: str) -> Mark:
     if change == "bedroom":
         return replace(mark, kind="room", value=f"bedroom/{mark.value}", number=0.0)
     kind, _, value = change.partition("/")
-    return replace(mark, kind=kind, value=value) if change else mark
+    number = max(mark.number, 1.0) if kind == "num" else mark.number
+    return replace(mark, kind=kind, value=value, number=number) if change else mark

@@ -234,7 +234,7 @@ class Scan:
                     if tail < len(self.words) and self.words[tail].text == extra_word:
                         tail += 1
                         break
-                return self._put("walkable", k, tail, value=min(value / 100, 1.0))
+                return self._put("walkable", k, tail, value=value / 100)
         return 0
 
     def _free_first(self, k: int) -> int:
@@ -246,7 +246,7 @@ class Scan:
                 return 0
             length, value = self.number(j)
             if value is not None and (percent := self.phrase(j + length, "percent")[0]):
-                return self._put("walkable", k, j + length + percent, value=min(value / 100, 1.0))
+                return self._put("walkable", k, j + length + percent, value=value / 100)
         return 0
 
     def _things(self, k: int) -> int:

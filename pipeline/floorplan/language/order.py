@@ -6,7 +6,6 @@ import functools
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from pipeline.floorplan.language.chinese import rearrange as chinese
 from pipeline.floorplan.language.lexicon import Language, lexicon
 from pipeline.floorplan.language.marks import Mark, Words
 
@@ -25,7 +24,7 @@ def reorder(marks: list[Mark], heard: Words) -> list[Mark]:
     framed = _frames(_reached(marks) if heard.lexicon.language == "de" else marks, heard)
     if heard.lexicon.language == "de":
         return _german(framed, heard)
-    rules: dict[str, Callable[[list[Mark]], list[Mark]]] = {"es": _spanish, "zh": chinese}
+    rules: dict[str, Callable[[list[Mark]], list[Mark]]] = {"es": _spanish}
     rule = rules.get(heard.lexicon.language)
     return rule(framed) if rule else framed
 

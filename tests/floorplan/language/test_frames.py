@@ -6,11 +6,13 @@ from pathlib import Path
 import pytest
 
 from benchmarks.language import faults
+from pipeline.floorplan import parse, request
+from pipeline.floorplan.check import ImpossibleError
 from pipeline.floorplan.language import frames
 from pipeline.floorplan.language.lexicon import LANGUAGES, lexicon
 
 KINDS = {
-    "adj", "amount", "bound", "but", "clf", "close", "cmp", "colon", "comma", "cue", "det", "enter", "every", "factor", "fix", "flag", "home", "join", "level", "neg", "num",
+    "adj", "amount", "bound", "but", "clf", "close", "cmp", "colon", "comma", "cue", "det", "enter", "every", "factor", "fix", "flag", "home", "join", "level", "look", "neg", "num",
     "open", "ord", "outside", "owner", "post", "pron", "reciprocal", "relative", "room", "size", "slash", "suite", "times", "unit", "verb", "wing", "zone",
     "single", "two", "many", "some", "zero", "small", "bounded", "large", "vast", "one_room", "^", "$",
 }  # fmt: skip
@@ -52,3 +54,30 @@ def test_no_frame_and_no_reader_of_frames_knows_a_language():
     code = re.sub(r'""".*?"""|#.*', "", Path(frames.__file__).read_text(encoding="utf-8"), flags=re.DOTALL)
     text = frames.FILE.read_text(encoding="utf-8") + code
     assert not re.search(rf"\b({'|'.join(LANGUAGES)})\b|english|german|spanish|chinese", text, re.IGNORECASE)
+
+
+def test_strict_refuses_words_that_are_not_understood():
+    prompt = "Two bedrooms and a flumox."
+    assert [s.text for s in request(prompt).unparsed] == ["flumox"]
+    with pytest.raises(ImpossibleError, match="flumox"):
+        request(prompt, strict=True)
+
+
+@pytest.mark.parametrize(
+    ("prompt", "count"),
+    [
+        ("a house for a family of four", 3),
+        ("ein Haus für eine vierköpfige Familie", 3),
+        ("una casa para una familia de cuatro", 3),
+        ("适合一家四口住的房子", 3),
+        ("a flat for a couple", 1),
+        ("a flat with two bedrooms for a family of five", 2),
+    ],
+)
+def test_people_have_bedrooms_unless_bedrooms_are_told(prompt, count):
+    assert sum(r.type == "bedroom" for r in parse(prompt).rooms) == count
+
+
+def test_more_than_all_of_a_floor_cannot_be_free():
+    with pytest.raises(ImpossibleError):
+        parse("A living room, 300% free floor.")
