@@ -35,7 +35,6 @@ SAYING = {
     "cmp",
     "factor",
     "amount",
-    "num",
     "ord",
     "owner",
     "level",
