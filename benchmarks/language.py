@@ -1,7 +1,7 @@
 """How exactly prompts are read: the share of prompts whose program states what they say, per file, language and half.
 
 `python -m benchmarks.language [--file sentences] [--half held|tuned] [--language en] [--faults] [--typos]`. Ground truth:
-`languages.yaml`, `sentences.yaml`, `speech.yaml`, `fourth.yaml` and `fifth.yaml` in `manifests/prompts`. With --typos: the share of programs that one typing error leaves as
+`languages.yaml`, `sentences.yaml`, `speech.yaml`, `fourth.yaml`, `fifth.yaml` and `everyday.yaml` in `manifests/prompts`. With --typos: the share of programs that one typing error leaves as
 they were (`benchmarks/slips.py`).
 """
 
@@ -23,7 +23,7 @@ from pipeline.floorplan import FloorProgram, parse
 from pipeline.floorplan.program import Furniture, Range
 
 PROMPTS = Path(__file__).resolve().parents[1] / "manifests" / "prompts"
-FILES = ("languages", "sentences", "speech", "fourth", "fifth")
+FILES = ("languages", "sentences", "speech", "fourth", "fifth", "everyday")
 CLOSE = 0.12  # relative error of an area that is still "about" it
 
 
@@ -56,6 +56,10 @@ def _rooms(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
     wanted: Counter[str] = Counter(case["rooms"])
     if made != wanted:
         yield f"rooms: more {dict(made - wanted)}, fewer {dict(wanted - made)}"
+    there = Counter(r.type for r in program.rooms)
+    for kind, count in case.get("has", {}).items():
+        if there[kind] < count:
+            yield f"{there[kind]} {kind}"
     for role, count in case.get("roles", {}).items():
         here = sum(r.role == role and r.type == "bedroom" for r in program.rooms)
         if here != count:

@@ -1,4 +1,4 @@
-"""Which of the four languages a prompt is written in; any other is refused."""
+"""Which of the languages that have a lexicon a prompt is written in; any other is refused."""
 
 from __future__ import annotations
 
@@ -10,27 +10,10 @@ from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, lex
 from pipeline.floorplan.language.spelling import resolve
 from pipeline.floorplan.language.text import HAN, Token, fold, tokenize
 
-READ = "English, German, Spanish or Chinese"
 ENOUGH = 0.5  # share of words that must be known
 REPAIR = 0.8  # what a mistyped word counts of a known one
-OTHERS = frozenset(  # words of languages that are not read, and that look like none of the four
+OTHERS = frozenset(  # words of languages that are not read, and that look like none of those that are
     [
-        "avec",
-        "deux",
-        "trois",
-        "quatre",
-        "une",
-        "des",
-        "les",
-        "et",
-        "chambre",
-        "chambres",
-        "cuisine",
-        "salle",
-        "bain",
-        "appartement",
-        "maison",
-        "sejour",
         "tre",
         "quattro",
         "camera",
@@ -104,27 +87,38 @@ ROOMS_WEIGHT = 2.0
 
 @functools.lru_cache(maxsize=16)
 def detect(prompt: str) -> Language:
-    """Return the language of a prompt. Raises RefusedError where too few of its words belong to any of the four."""
+    """Return the language of a prompt. Raises RefusedError where too few of its words belong to any that is read."""
     tokens = tokenize(prompt)
     texts = [fold(t.text) for t in tokens if any(c.isalpha() for c in t.text)][:MOST]
     if not texts:
-        raise RefusedError(_shown(prompt, "no words in the prompt"), f"say in {READ} which rooms you want")
+        raise RefusedError(_shown(prompt, "no words in the prompt"), f"say in {_read()} which rooms you want")
     han = sum("\u3400" <= t[0] <= "\u9fff" for t in texts)
     foreign = _foreign(tokens)
     if han and han >= 0.3 * len(texts) and not foreign:
-        return "zh"
-    scores = {language: _score(language, texts, repaired=False) for language in LANGUAGES if language != "zh"}
+        return next(language for language in LANGUAGES if _han(language))
+    scores = {language: _score(language, texts, repaired=False) for language in LANGUAGES if not _han(language)}
     best = max(scores, key=lambda x: scores[x][0])
     if scores[best][1] < SURE * len(texts):  # typing errors, or another language
         texts = texts[:REPAIRED]
-        scores = {language: _score(language, texts, repaired=True) for language in LANGUAGES if language != "zh"}
+        scores = {language: _score(language, texts, repaired=True) for language in LANGUAGES if not _han(language)}
         best = max(scores, key=lambda x: scores[x][0])
     exact, close = scores[best][1], scores[best][2]
     others = sum(t in OTHERS for t in texts)
     share = (exact + REPAIR * close + min(han, 2)) / len(texts)
     if foreign > 0.3 * len(texts) or share < ENOUGH or (others > 1 and others >= 0.15 * len(texts)):
-        raise RefusedError(_shown(prompt, "the prompt is in no language that is read here"), f"write it in {READ}")
+        raise RefusedError(_shown(prompt, "the prompt is in no language that is read here"), f"write it in {_read()}")
     return best
+
+
+def _han(language: Language) -> bool:
+    """Whether a language is written in Chinese characters."""
+    return "characters" in lexicon(language).traits
+
+
+def _read() -> str:
+    """Return the names of the languages that are read."""
+    *most, last = sorted(lexicon(language).name for language in LANGUAGES)
+    return f"{', '.join(most)} or {last}"
 
 
 def _shown(prompt: str, why: str) -> str:
@@ -133,7 +127,7 @@ def _shown(prompt: str, why: str) -> str:
 
 
 def _foreign(tokens: list[Token]) -> int:
-    """Count words in a script that none of the four languages uses."""
+    """Count words in a script that no language that is read uses."""
     return sum(t.text[0].isalpha() and not re.match(rf"[a-zà-ÿœß{HAN}]", t.text) for t in tokens)
 
 

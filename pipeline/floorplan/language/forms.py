@@ -1,44 +1,42 @@
-"""The forms of a phrase of a lexicon: its plurals."""
+"""The forms of a phrase of a lexicon: its plurals, by the rule that the lexicon states."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
-
-def _plurals(language: str, phrase: str) -> Iterator[str]:
-    head, _, last = phrase.rpartition(" ")
-    made = []
-    if language == "en":
-        if last.endswith("y") and last[-2:-1] not in "aeiou":
-            made = [last[:-1] + "ies"]
-        elif last.endswith(("s", "ch", "sh", "x")):
-            made = [last + "es"]
-        else:
-            made = [last + "s"]
-    elif language == "es":
-        parts = [
-            p if p in {"de", "del", "la", "el", "los", "las", "en", "a", "y", "para", "estar"} else _spanish(p) for p in phrase.split()
-        ]
-        first = phrase.split()
-        yield " ".join(parts)
-        if len(first) > 2 and first[1] in {"de", "del", "para", "en"}:
-            yield " ".join([_spanish(first[0]), *first[1:]])
-        return
-    for form in made:
-        yield f"{head} {form}".strip()
+from pydantic import BaseModel, ConfigDict
 
 
-def _spanish(word: str) -> str:
-    if word.endswith("ón"):
-        return word[:-2] + "ones"
-    if word.endswith("z"):
-        return word[:-1] + "ces"
-    return word + ("s" if word[-1] in "aeiouáéó" else "es")
+class Plurals(BaseModel):
+    """How a language makes plurals: `ends` tries patterns in turn on the last word, or (`every`) on every word but those of `fixed`."""
+
+    model_config = ConfigDict(extra="forbid")
+    ends: dict[str, str] = {}
+    every: bool = False
+    fixed: str = ""  # words that stay, e.g. prepositions
+    heads: str = ""  # behind these the first word alone may change as well
+
+    def of(self, phrase: str) -> Iterator[str]:
+        """Yield the plurals of a phrase."""
+        if not self.ends:
+            return
+        head, _, last = phrase.rpartition(" ")
+        if not self.every:
+            yield f"{head} {self._word(last)}".strip()
+            return
+        parts, fixed, heads = phrase.split(), set(self.fixed.split()), set(self.heads.split())
+        yield " ".join(p if p in fixed else self._word(p) for p in parts)
+        if len(parts) > 2 and parts[1] in heads:
+            yield " ".join([self._word(parts[0]), *parts[1:]])
+
+    def _word(self, word: str) -> str:
+        return next((re.sub(end, made, word) for end, made in self.ends.items() if re.search(end, word)), word)
 
 
-def forms(language: str, phrase: str) -> Iterator[tuple[str, bool]]:
+def forms(rule: Plurals, phrase: str) -> Iterator[tuple[str, bool]]:
     """Return (form, whether it is a plural) of an entry "singular|plural|plural"."""
     single, *many = phrase.split("|")
     yield single, False
-    for form in many or _plurals(language, single):
+    for form in many or rule.of(single):
         yield form, form != single

@@ -12,14 +12,14 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any, get_args
 
 import yaml
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from pipeline.errors import ContentError
 from pipeline.floorplan.furniture import lexicon as furniture
-from pipeline.floorplan.language.forms import forms
+from pipeline.floorplan.language.forms import Plurals, forms
 from pipeline.floorplan.language.german import numerals as german_numerals
 from pipeline.floorplan.language.meaning import Meaning
 from pipeline.floorplan.language.spanish import canonical, conjugated, further, present
@@ -27,8 +27,8 @@ from pipeline.floorplan.language.text import bare, fold, words
 from pipeline.floorplan.program import RoomType, Style
 
 FOLDER = Path(__file__).resolve().parents[3] / "manifests" / "lexicon"
-Language = Literal["en", "de", "es", "zh"]
-LANGUAGES: tuple[Language, ...] = get_args(Language)
+Language = str  # the name of a file there
+LANGUAGES: tuple[Language, ...] = tuple(sorted(p.stem for p in FOLDER.glob("??.yaml")))
 Phrases = Mapping[str | int | float, str]
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the one in C is eight times as fast
 VERB = re.compile(r"\w+[aeií]r(se)?")  # a Spanish infinitive
@@ -49,6 +49,9 @@ class _Entries(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
     language: Language
+    name: str  # in English
+    traits: frozenset[str] = frozenset()  # how it is written, where rules differ
+    plurals: Plurals = Plurals()
     rooms: dict[str, str]
     suites: dict[str, str] = {}
     homes: dict[str, str]
@@ -118,6 +121,8 @@ class Lexicon:
     """Phrases of one language as a trie over folded words, and the words that typing errors are repaired towards."""
 
     language: Language
+    name: str = ""
+    traits: frozenset[str] = frozenset()
     trie: dict[str, Any] = field(default_factory=dict)
     vocabulary: set[str] = field(default_factory=set)
     targets: tuple[str, ...] = ()
@@ -176,17 +181,17 @@ def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0
     yield from keyed("activity", e.activities)
     for key, phrases in e.rooms.items():
         for p in split(phrases):
-            for form, many in forms(e.language, p):
+            for form, many in forms(e.plurals, p):
                 yield form, Meaning("room", key, plural=many)
     for p in split(e.kitchen_diner):
         yield p, Meaning("room", "kitchen/diner")
     for key, phrases in e.suites.items():
         for p in split(phrases):
-            for form, many in forms(e.language, p):
+            for form, many in forms(e.plurals, p):
                 yield form, Meaning("suite", key, plural=many)
     for key, phrases in e.homes.items():
         for p in split(phrases):
-            for form, _ in forms(e.language, p):
+            for form, _ in forms(e.plurals, p):
                 yield form, Meaning("home", key)
     yield from keyed("flag", e.flags)
     yield from keyed("owner", e.owners)
@@ -288,11 +293,11 @@ COMMON = 0.15  # words that are only known not to be errors
 FARTHER = {True: 0.05, False: 0.1}  # words that build sentences, and those that mean nothing
 
 
-def _things(language: Language) -> set[str]:
+def _things(language: Language, rule: Plurals) -> set[str]:
     """Return the words for furniture, which a typing error may as well be made in."""
     names: Iterable[Mapping[str, Iterable[str]]] = furniture()["names"].values()
     listed = (phrase.removeprefix("@") for named in names for phrase in named.get(language, ()))
-    return {w for phrase in listed for form, _ in forms(language, phrase) for w in words(form) if len(w) > 3}
+    return {w for phrase in listed for form, _ in forms(rule, phrase) for w in words(form) if len(w) > 3}
 
 
 @functools.cache
@@ -310,7 +315,7 @@ def lexicon(language: Language) -> Lexicon:
     except (OSError, yaml.YAMLError, ValidationError) as error:
         raise ContentError(f"{path.name}: {str(error).splitlines()[0]}", "restore the file from the repository") from error
     infinitives = sorted({p.split()[0] for phrases in entries.conjugated.values() for p in split(phrases) if VERB.fullmatch(p.split()[0])})
-    made = Lexicon(language, tenses=canonical(infinitives))
+    made = Lexicon(language, entries.name, entries.traits, tenses=canonical(infinitives))
     made.vocabulary.update(made.tenses, (fold(w) for verb in infinitives for w in (verb, *present(verb), *further(verb))))
     targets: set[str] = set()
     others: dict[str, float] = {}
@@ -338,7 +343,7 @@ def lexicon(language: Language) -> Lexicon:
     made.signs = _signs(entries, made)
     others |= _brackets(entries, made)
     others |= {w: COMMON for w in made.vocabulary if w not in others}
-    others = dict.fromkeys(_things(language), FARTHER[True]) | others
+    others = dict.fromkeys(_things(language, entries.plurals), FARTHER[True]) | others
     made.others = {w: far for w, far in others.items() if w not in made.targets and w.isalpha()}
     return made
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from pipeline.floorplan.language.lexicon import Language, lexicon
@@ -24,9 +24,7 @@ def reorder(marks: list[Mark], heard: Words) -> list[Mark]:
     framed = _frames(_reached(marks) if heard.lexicon.language == "de" else marks, heard)
     if heard.lexicon.language == "de":
         return _german(framed, heard)
-    rules: dict[str, Callable[[list[Mark]], list[Mark]]] = {"es": _spanish}
-    rule = rules.get(heard.lexicon.language)
-    return rule(framed) if rule else framed
+    return _behind(framed) if "adjectives_behind" in heard.lexicon.traits else framed
 
 
 REACHED = {"erreichbar", "zugaenglich", "erreichen", "betreten", "begehbar", "betretbar", "erschlossen"}
@@ -206,7 +204,7 @@ def _final(made: list[Mark], k: int) -> None:
     made.insert(start, made.pop(k))
 
 
-def _spanish(marks: list[Mark]) -> list[Mark]:
+def _behind(marks: list[Mark]) -> list[Mark]:
     """Read adjectives behind their noun: "dormitorio principal", "cocina abierta", "baño propio"."""
     made: list[Mark] = []
     for mark in marks:

@@ -83,7 +83,7 @@ def test_contradictions_name_the_words_that_clash(prompt, words):
 @pytest.mark.parametrize(
     "prompt",
     [
-        "Un appartement avec deux chambres, une cuisine et un salon",
+        "Un appartamento con due camere, una cucina e un soggiorno",
         "Kaksi makuuhuonetta, keittiö ja kylpyhuone",
         "Tre camere da letto, cucina e bagno",
         "Um apartamento com dois quartos, cozinha e banheiro",
@@ -287,7 +287,7 @@ def test_doors_that_must_not_be(prompt):
 @pytest.mark.parametrize(
     "prompt",
     [
-        "Je voudrais un appartement avec deux chambres et une cuisine", "Двухкомнатная квартира с кухней", "寝室が二つあるアパートをお願いします、キッチンとバスルーム",
+        "Vorrei un appartamento con due camere e una cucina", "Двухкомнатная квартира с кухней", "寝室が二つあるアパートをお願いします、キッチンとバスルーム",
         "tlhIngan Hol vIjatlh qachwIj", "🏠🛏️🛁🍳", "\u202e\u2066\u0007\u0000", "شقة بغرفتي نوم", "방 두 개 아파트", "asdf qwer zxcv uiop hjkl",
     ],
 )  # fmt: skip

@@ -1,0 +1,35 @@
+"""French is a file of data, `manifests/lexicon/fr.yaml`: plurals, adjectives behind their noun and all ways to say a thing, without a line of code of its own."""
+
+import pytest
+
+from benchmarks.language import faults
+from pipeline.floorplan import parse
+
+SAID = [
+    ("Un appartement de 70 m² avec deux chambres, une salle de bain et une cuisine ouverte sur le salon.",
+     {"rooms": {"bedroom": 2, "bathroom": 1, "kitchen": 1, "living_room": 1}, "links": [["kitchen", "living_room", "open"]], "total": 70}),
+    ("Trois chambres, 85 m2, une salle de bain.", {"rooms": {"bedroom": 3, "bathroom": 1}, "total": 85}),
+    ("Une maison à deux étages : en bas la cuisine, le salon et les toilettes, en haut trois chambres et une salle de bain.",
+     {"rooms": {"kitchen": 1, "living_room": 1, "wc": 1, "bedroom": 3, "bathroom": 1}, "storeys": 2, "levels": [["kitchen", 0, 1], ["bedroom", 1, 3], ["bathroom", 1, 1]]}),
+    ("La cuisine est à côté de la salle à manger. Pas de garage.", {"rooms": {"kitchen": 1, "dining_room": 1}, "absent": ["garage"]}),
+    ("Chambre parentale avec sa propre salle de bain, deux chambres d'enfants.",
+     {"rooms": {"bedroom": 3, "bathroom": 1}, "roles": {"primary": 1, "child": 2}, "links": [["bathroom", "bedroom", "door"]]}),
+    ("Une porte entre la cuisine et le bureau.", {"rooms": {"kitchen": 1, "office": 1}, "links": [["kitchen", "office", "door"]]}),
+    ("Le couloir dessert la cuisine, la salle de bain et le salon.",
+     {"rooms": {"hallway": 1, "kitchen": 1, "bathroom": 1, "living_room": 1},
+      "links": [["hallway", "kitchen", "*"], ["bathroom", "hallway", "*"], ["hallway", "living_room", "*"]]}),
+    ("La cuisine doit faire au moins 12 m². Une chambre, un salon de 25 m².",
+     {"rooms": {"kitchen": 1, "bedroom": 1, "living_room": 1}, "areas": {"kitchen": [12, None], "living_room": 25}}),
+    ("Le bureau ne doit pas être à côté de la cuisine.", {"rooms": {"office": 1, "kitchen": 1}, "apart": [["office", "kitchen"]]}),
+    ("Studio de 30 m² avec salle d'eau et balcon.", {"rooms": {"studio_room": 1, "bathroom": 1, "balcony": 1}, "total": 30}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("prompt", "said"), SAID, ids=[p[:40] for p, _ in SAID])
+def test_french_is_read(prompt, said):
+    assert faults({"prompt": prompt, **said}) == []
+    assert parse(prompt).language == "fr"
+
+
+def test_a_french_family_has_bedrooms():
+    assert sum(r.type == "bedroom" for r in parse("Une maison pour une famille de quatre personnes.").rooms) == 3
