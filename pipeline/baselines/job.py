@@ -86,7 +86,18 @@ def trainer(name: str, job: Job, settings: BaselineSettings, seed: int) -> Train
 
 def run_digest(name: str, job: Job, settings: BaselineSettings, seed: int) -> str:
     """Return the digest of what a training run hangs on; what only sampling or the comparison reads is no part of it."""
-    later = ("checkpoint_every", "rooms", "count_rooms", "counts", "sample_batch", "steps", "quantity_below", "articulation_below")
+    later = (
+        "checkpoint_every",
+        "rooms",
+        "count_rooms",
+        "counts",
+        "sample_batch",
+        "steps",
+        "quantity_below",
+        "articulation_below",
+        "quantity_scale",
+        "articulation_scale",
+    )
     return digest([name, {k: v for k, v in asdict(settings).items() if k not in later}, job.key, seed])
 
 

@@ -6,12 +6,12 @@ Where the print and its words disagree, the words are followed:
 - eq. num_control compares logits of "empty" with T, which "specifies which slots should be non-empty". Here the target of
   an empty logit is 1 - T.
 Not printed, and so settings: gamma_1, gamma_2 and lambda (`quantity_scale` is lambda gamma_1, `articulation_scale` is lambda
-gamma_2). Which slots T marks is not said: here those that are least empty at that step.
+gamma_2; eq. 1 has a pair of its own, since what steers well at the last levels swamps the noise at the first). Which slots T marks is not said: here those that are least empty at that step.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import torch
 from torch import Tensor
@@ -92,7 +92,8 @@ def loss(net: Denoiser, levels: Levels, rooms: Outlines, things: Furniture, open
     raw = net(x, t, net.floor(rooms))
     alpha, sigma = levels.alpha[t][:, None, None], levels.sigma[t][:, None, None]
     expected = clean(net.settings.target, raw.detach(), x, alpha, sigma).clamp(-1, 1)
-    counts = (things.classes < len(net.scaling.classes)).sum(1)
-    shift = levels.variance[t][:, None, None] * Constraints(net.scaling, net.settings, counts, opens).descent(expected)
+    counts, s = (things.classes < len(net.scaling.classes)).sum(1), net.settings
+    learnt = replace(s, quantity_scale=s.train_quantity_scale, articulation_scale=s.train_articulation_scale)
+    shift = levels.variance[t][:, None, None] * Constraints(net.scaling, learnt, counts, opens).descent(expected)
     guided = noise - shift
     return denoising(net, levels, raw, (x - sigma * guided) / alpha, guided, t)

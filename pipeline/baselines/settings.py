@@ -30,6 +30,8 @@ class BaselineSettings:
     steps: int = 100  # levels at which the samplers stop, even in log signal-to-noise; T: all, as the peers and the print have it
     sample_batch: int = 50  # rooms that are sampled together
     quantity_scale: float = 200.0  # SceneFoundry: lambda gamma_1
-    articulation_scale: float = 2.0  # SceneFoundry: lambda gamma_2
+    articulation_scale: float = 20.0  # SceneFoundry: lambda gamma_2
+    train_quantity_scale: float = 200.0  # the same in eq. 1
+    train_articulation_scale: float = 2.0
     quantity_below: int = 1001  # noise levels below which phi_quantity acts; T + 1: all, as printed
     articulation_below: int = 1001  # the same for phi_articoll

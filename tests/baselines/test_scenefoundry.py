@@ -162,9 +162,9 @@ def test_without_penalty_eq_1_is_plain_denoising_and_with_it_the_target_moves_do
     torch.manual_seed(1)
     net = Denoiser(scaling, len(LAYOUTS), replace(settings, iou_weight=0.0))
     plain = diffuscene.loss(net, levels, *world, torch.Generator().manual_seed(2)).detach()
-    net.settings = replace(net.settings, quantity_scale=0.0, articulation_scale=0.0)
+    net.settings = replace(net.settings, train_quantity_scale=0.0, train_articulation_scale=0.0)
     torch.testing.assert_close(loss(net, levels, *world, OPENS, torch.Generator().manual_seed(2)), plain)
-    net.settings = replace(net.settings, quantity_scale=500.0)
+    net.settings = replace(net.settings, train_quantity_scale=500.0)
     assert abs(float(loss(net, levels, *world, OPENS, torch.Generator().manual_seed(2)).detach() - plain)) > 1e-3
 
 
