@@ -17,7 +17,8 @@ PATH = Path(__file__).resolve().parent.parent / "manifests" / "taxonomy.yaml"
 class Category:
     """One object category. `future` are 3D-FUTURE's names (normalised), `partnet` the model_cat it can come from.
 
-    The layout model learns the categories with `layout`; the others are small things that lie on or in furniture.
+    The layout model learns the categories with `layout`; the others are small things that lie on or in furniture. What is `fixed`
+    belongs to the floor.
     """
 
     name: str
@@ -27,11 +28,12 @@ class Category:
     mount: Literal["floor", "wall", "ceiling"]
     size: tuple[float, float, float] | None
     layout: bool = True
+    fixed: bool = False
 
     @property
     def loose(self) -> bool:
-        """Whether it lies where it was put and can be taken away: a body of its own in simulators."""
-        return not self.layout and self.mount == "floor"
+        """Whether it lies where it was put and can be taken away: a body of its own in simulators. Not so a rug, under furniture."""
+        return not self.layout and self.mount == "floor" and not self.fixed
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +102,7 @@ def load() -> Taxonomy:
             entry.get("mount", "floor"),
             tuple(entry["size"]) if "size" in entry else None,
             entry.get("layout", True),
+            entry.get("fixed", False),
         )
         for name, entry in raw["categories"].items()
     }

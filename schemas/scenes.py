@@ -21,7 +21,11 @@ SCENES = Table(
         Column("entrance", pa.string(), "room that one enters from outside; empty when unknown"),
         Column("area", pa.float64(), "sum of the rooms' areas", "m2"),
         Column("rooms", pa.int32(), "number of rooms"),
-        Column("objects", pa.int32(), "pieces of furniture; small things (objects with a support) are not counted, but in training tables"),
+        Column(
+            "objects",
+            pa.int32(),
+            "pieces of furniture; small things (categories that the layout model does not learn) are not counted, but in training tables",
+        ),
         Column("openable", pa.int32(), "pieces of furniture with a door, drawer or lid that opens"),
         Column("joints", pa.int32(), "number of joints, room doors included"),
         Column("joints_clear", pa.int32(), "joints that move through their whole range without touching anything"),

@@ -1,8 +1,10 @@
 """Post-optimisation: walkable area (algorithm 2 of the paper), relations made exact, and what is left of collisions separated."""
 
+from pipeline.arrange.hanging import Hanging, Window
 from pipeline.arrange.laying import Laying
 from pipeline.arrange.lore import Lore
 from pipeline.arrange.room import Arranged, post_optimise
+from pipeline.arrange.rugs import lay_rug
 from pipeline.arrange.separate import Reject, Separated, separate
 from pipeline.arrange.settings import PostoptSettings, SeparateSettings, ThingsSettings, WalkableSettings
 from pipeline.arrange.site import Site
@@ -11,6 +13,7 @@ from pipeline.arrange.walkable import Controlled, control_walkable, free_ratio, 
 __all__ = [
     "Arranged",
     "Controlled",
+    "Hanging",
     "Laying",
     "Lore",
     "PostoptSettings",
@@ -20,8 +23,10 @@ __all__ = [
     "Site",
     "ThingsSettings",
     "WalkableSettings",
+    "Window",
     "control_walkable",
     "free_ratio",
+    "lay_rug",
     "paper_ratio",
     "post_optimise",
     "separate",

@@ -20,6 +20,7 @@ from pipeline.geometry.prisms import Prisms, prism, solid, stacked
 
 Floats = NDArray[np.float64]
 UNIT = np.ones(3)
+BACKED = 0.3  # share of a surface's depth, from its back, that is for what lies there
 WOBBLE = 0.1  # spread of the yaw of what has a front [rad]
 
 
@@ -80,16 +81,24 @@ class Laying:
         self.laid_sweeps = Groups.of([])
         self._taken: dict[int, list[Floats]] = {}
 
-    def lay(self, rng: np.random.Generator, asset: Asset, support: int, *, facing: bool) -> tuple[Floats, float] | None:
+    def fix(self, placements: Sequence[Placement]) -> None:
+        """Take in things that hang or stand already, and bear nothing."""
+        made = [solid(self.assets[p.asset_id]).rest.placed(p.position, p.yaw, p.scale) for p in placements]
+        self.laid = self.laid.plus(made)
+
+    def lay(
+        self, rng: np.random.Generator, asset: Asset, support: int, *, facing: bool, centred: bool = False, backed: bool = False
+    ) -> tuple[Floats, float] | None:
         """Find a place for an asset on furniture `support` (index); return position (3,) [m] and yaw [rad], None if there is none.
 
-        `facing`: it looks where its support looks. Open surfaces are preferred to what lies behind doors and in drawers.
+        `facing`: it looks where its support looks; `centred`: the middles of surfaces, the highest first, are tried before others;
+        `backed`: it lies towards their backs. Open surfaces are preferred to what lies behind doors and in drawers.
         """
         placement = self.furniture[support]
         found = surfaces(self.assets[placement.asset_id])
         turn = float(rng.normal(0, WOBBLE) if facing else rng.uniform(-math.pi, math.pi))
-        tops = self._candidates(rng, found, placement.scale, asset.size, turn)
-        for top, x, y in tops:
+        tops = self._candidates(rng, found, placement.scale, asset.size, turn, backed=backed)
+        for top, x, y in (self._middles(found, placement.scale, asset.size, turn) + tops) if centred else tops:
             z = float(found.tops[top, 4] * placement.scale[2])
             if self._boxed(support, asset.size, (x, y, z), turn):
                 continue
@@ -103,7 +112,7 @@ class Laying:
         return None
 
     def _candidates(
-        self, rng: np.random.Generator, found: Surfaces, scale: Floats, size: Floats, turn: float
+        self, rng: np.random.Generator, found: Surfaces, scale: Floats, size: Floats, turn: float, *, backed: bool
     ) -> list[tuple[int, float, float]]:
         """Draw (surface, x, y) at which the thing lies wholly on a surface, object frame of the support."""
         if not len(found):
@@ -117,7 +126,18 @@ class Laying:
             return []
         which = rng.choice(len(weight), self.settings.tries, p=weight / weight.sum())
         spots = rng.uniform(first[which], last[which])
+        if backed:
+            spots[:, 1] = last[which, 1] - BACKED * (last[which, 1] - spots[:, 1])
         return [(int(k), float(x), float(y)) for k, (x, y) in zip(which, spots, strict=True)]
+
+    @staticmethod
+    def _middles(found: Surfaces, scale: Floats, size: Floats, turn: float) -> list[tuple[int, float, float]]:
+        """Return (surface, x, y) of the middles of the open surfaces that are wide enough, the highest first."""
+        low, high = _reach(size, turn)
+        extent = (found.tops[:, 2:4] - found.tops[:, :2]) * scale[:2]
+        middle = (found.tops[:, 2:4] + found.tops[:, :2]) * scale[:2] / 2
+        fits = np.flatnonzero((extent >= high - low).all(1) & ~found.hidden)
+        return [(int(k), float(middle[k, 0]), float(middle[k, 1])) for k in fits[np.argsort(-found.tops[fits, 4], kind="stable")]]
 
     def _boxed(self, support: int, size: Floats, at: tuple[float, float, float], turn: float) -> bool:
         """Tell whether a thing's box meets that of another thing on the same furniture."""

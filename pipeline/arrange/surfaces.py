@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline import taxonomy
 from pipeline.entities.asset import Asset, Link
 from pipeline.geometry.convex import hull
 from pipeline.geometry.kept import kept
@@ -19,6 +20,8 @@ FLAT = 1e-3  # vertices within this height of a piece's highest lie on its top [
 LEAST = 0.07  # narrowest top that anything stands on [m]
 SHARES = (1.0, 0.96, 0.9, 0.8, 0.7, 0.6)  # what share of a top's bounds is tried: all of a board, two thirds of a disc
 LOWEST, HIGHEST = 0.03, 1.75  # tops within these heights above the furniture's foot are used [m]
+SOFT = 0.03  # the same for what is upholstered, whose cushions swell a little [m]
+UPHOLSTERED = frozenset({"sofa", "bed", "chair", "stool"})  # super-categories
 SEEN = 0.004  # a top is there to see if the visual meshes come this near to it [m]
 GRID = 5  # points per side at which that is looked at
 ABOVE = 0.35  # a top with so much air above it is open [m]
@@ -51,6 +54,9 @@ def make_surfaces(asset: Asset) -> Surfaces:
     drawers = {j.child for j in asset.joints if j.part_class == DRAWER and j.parent == 0 and abs(float(j.axis[2])) < 0.1}
     rest = solid(asset).rest
     flat = rest.boxes()
+    known = taxonomy.load().categories.get(asset.category)
+    swell = SOFT if known is not None and known.super in UPHOLSTERED else FLAT
+    seen = max(swell, SEEN)
     tops, links, hidden = [], [], []
     for number in (0, *sorted(drawers)):
         link = asset.links[number]
@@ -60,11 +66,11 @@ def make_surfaces(asset: Asset) -> Surfaces:
             low, high = vertices.min(0), vertices.max(0)
             if not LOWEST < high[2] < HIGHEST or (high - low)[:2].min() < LEAST:
                 continue
-            top = level_top(vertices)
+            top = level_top(vertices, swell)
             if top is None:
                 continue
-            level = _level(link) if level is None else level
-            access = _access(rest, flat, top, float(asset.size[1]), inside=number != 0) if _seen(level, top) else ""
+            level = _level(link, seen) if level is None else level
+            access = _access(rest, flat, top, float(asset.size[1]), inside=number != 0) if _seen(level, top, seen) else ""
             if access:
                 tops.append(top)
                 links.append(number)
@@ -72,10 +78,10 @@ def make_surfaces(asset: Asset) -> Surfaces:
     return Surfaces(np.array(tops).reshape(-1, 5), np.array(links, np.int64), np.array(hidden, np.bool_))
 
 
-def level_top(vertices: Floats) -> tuple[float, float, float, float, float] | None:
-    """Return the largest of some rectangles, square to the axes, on the level top of a convex piece (V, 3); None if it is narrow."""
+def level_top(vertices: Floats, flat: float = FLAT) -> tuple[float, float, float, float, float] | None:
+    """Return the largest of some rectangles, square to the axes, on the level top of a convex piece (V, 3), level to `flat` [m]; None if it is narrow."""
     z = float(vertices[:, 2].max()) if len(vertices) else 0.0
-    upper = vertices[vertices[:, 2] > z - FLAT, :2]
+    upper = vertices[vertices[:, 2] > z - flat, :2]
     outline = hull(np.ascontiguousarray(np.round(upper, 6))) if len(upper) > 2 else upper
     if len(outline) < 3:
         return None
@@ -93,18 +99,18 @@ def level_top(vertices: Floats) -> tuple[float, float, float, float, float] | No
     return None
 
 
-def _level(link: Link) -> Floats:
-    """Return the level triangles (T, 3, 3) of a link's visuals, counter-clockwise seen from above: files wind them either way."""
+def _level(link: Link, seen: float) -> Floats:
+    """Return the level triangles (T, 3, 3), to 2 `seen` [m], of a link's visuals, counter-clockwise seen from above: files wind them either way."""
     corners = np.concatenate([np.asarray(m.vertices, np.float64)[m.faces] for m in link.visuals] or [np.zeros((0, 3, 3))])
     if len(corners):
-        corners = corners[np.ptp(corners[:, :, 2], axis=1) < 2 * SEEN]
+        corners = corners[np.ptp(corners[:, :, 2], axis=1) < 2 * seen]
     turn = _cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return np.concatenate([corners[turn > 1e-12], corners[turn < -1e-12][:, ::-1]])
 
 
-def _seen(level: Floats, top: Sequence[float]) -> bool:
-    """Tell whether a surface is there to see all over a top: a hull may span what is open."""
-    near = level[(np.abs(level[:, :, 2] - top[4]) < SEEN).all(1)]
+def _seen(level: Floats, top: Sequence[float], seen: float) -> bool:
+    """Tell whether a surface within `seen` [m] of it is there to see all over a top: a hull may span what is open."""
+    near = level[(np.abs(level[:, :, 2] - top[4]) < seen).all(1)]
     if not len(near):
         return False
     x, y = (np.linspace(top[k], top[k + 2], GRID + 2)[1:-1] for k in (0, 1))

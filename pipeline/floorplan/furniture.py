@@ -34,6 +34,18 @@ def members(selector: str) -> tuple[str, ...]:
     return (selector,) if selector in taxonomy.load().names else ()
 
 
+def meant(things: Things, kind: str) -> tuple[str, ...]:
+    """Return the categories that meet a wish in a room of type `kind`: a table wished for in a dining room is no coffee table.
+
+    Where a group is bounded from above alone, all its members count.
+    """
+    if not things.min:
+        return members(things.category)
+    by_room: Mapping[str, list[str]] = lexicon()["meant"].get(things.category, {})
+    found = next((names for kinds, names in by_room.items() if kind in kinds.split()), by_room.get("*"))
+    return tuple(found) if found else members(things.category)
+
+
 def furnished(kind: str) -> bool:
     """Whether rooms of a type are furnished at all."""
     known = taxonomy.load()

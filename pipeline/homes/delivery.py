@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from pipeline import taxonomy
-from pipeline.floorplan.furniture import members, plain
+from pipeline.floorplan.furniture import meant, plain
 from pipeline.floorplan.program import FloorProgram, Furniture, RoomReq
 
 
@@ -65,7 +65,7 @@ def _room(
     if wish.least is not None or wish.most is not None:
         found.append(_counted(room.id, "pieces", wish.least or 0, wish.most, len(objects)))
     for things in wish.counts:
-        have = sum(o["category"] in members(things.category) for o in objects)
+        have = sum(o["category"] in meant(things, room.type) for o in objects)
         found.append(_counted(room.id, plain(things.category), things.min, things.max, have))
     if wish.openable is not None:
         found.append(_counted(room.id, "that open", wish.openable, None, int(row["openable"])))

@@ -8,7 +8,7 @@ from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
 from pipeline.floorplan.program import FloorProgram
 from pipeline.homes.factory import Factory, HomeDraft
-from pipeline.homes.furnish import Draft
+from pipeline.homes.furnish import Draft, taste_of
 from pipeline.homes.request import Request
 from pipeline.homes.rows import Row, homes_of, object_row, opening_row, reject_row, room_row, scene_row
 from pipeline.shards import scene_id
@@ -53,6 +53,14 @@ def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], fact
         home = homes[request.index]
         program = FloorProgram.model_validate_json(home.program)
         jobs = factory.jobs(home.plan, request.index, 0, {room.id: room.furniture for room in program.rooms})
-        drafts = tuple(Draft(job, home.in_room(job.room_id), tuple(lost.get(f"{home.scene_id}/{job.room_id}#0", ()))) for job in jobs)
+        drafts = tuple(
+            Draft(
+                job,
+                home.in_room(job.room_id),
+                tuple(lost.get(f"{home.scene_id}/{job.room_id}#0", ())),
+                taste_of(job, factory.seed, factory.index, factory.library),
+            )
+            for job in jobs
+        )
         made.append(HomeDraft(request, home.prompt, home.program, home.plan, drafts))
     return made

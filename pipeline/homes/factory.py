@@ -25,7 +25,7 @@ from pipeline.diffusion.settings import SampleSettings
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Plan
 from pipeline.errors import ContentError, RefusedError
-from pipeline.floorplan.furniture import members, needed, plain
+from pipeline.floorplan.furniture import meant, needed, plain
 from pipeline.floorplan.language import parse
 from pipeline.floorplan.priors import PriorSettings
 from pipeline.floorplan.program import Furniture
@@ -171,12 +171,12 @@ class Factory:
             if kind is None:
                 continue
             wish = wishes.get(room.room_id, Furniture())
-            self._possible(room.room_id, wish)
+            self._possible(room.room_id, room.type, wish)
             draw = seeds.generator(self.seed, "pieces", index, number, attempt)
             found.append(RoomJob(plan, room.room_id, kind, index, number, 100 * attempt, told_count(wish, draw), wish.walkable, wish))
         return found
 
-    def _possible(self, room_id: str, wish: Furniture) -> None:
+    def _possible(self, room_id: str, kind: str, wish: Furniture) -> None:
         """Raise RefusedError for wishes that the layout model or the library cannot meet."""
         most = max(wish.least or 0, needed(wish))
         if most > self.sampler.slots:
@@ -185,13 +185,13 @@ class Factory:
                 "ask for fewer, or train with more train.slots",
             )
         for things in wish.counts:
-            if things.min and not any(self.index.shelves.get(name) is not None for name in members(things.category)):
+            if things.min and not any(self.index.shelves.get(name) is not None for name in meant(things, kind)):
                 raise RefusedError(f"the library has no {plain(things.category)} for {room_id}", "ask for something else")
 
     def draft(self, jobs: Sequence[RoomJob]) -> list[Draft]:
         """Furnish a batch of rooms: diffusion and retrieval, nothing moved yet."""
         with self.timed("sample"):
-            return furnish(jobs, self.sampler, self.index, taxonomy.load())
+            return furnish(jobs, self.sampler, self.index, taxonomy.load(), self.library)
 
     def first_drafts(self, requests: Sequence[Request]) -> list[HomeDraft]:
         """Return the first attempt at each home: what the stage `sample` writes."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pipeline.arrange import Lore, PostoptSettings, Site, post_optimise
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
-from pipeline.floorplan.furniture import members
+from pipeline.floorplan.furniture import meant
 from pipeline.homes.furnish import Draft
 from pipeline.homes.guilt import Guilt
 from pipeline.homes.request import RoomJob
@@ -76,7 +76,7 @@ def _unmet(job: RoomJob, placements: tuple[Placement, ...], openers: frozenset[s
     if len(placements) < (least or 0) or (most is not None and len(placements) > most):
         return "count_missed", f"{len(placements)} objects, asked for {_asked(least or 0, most)}"
     for wish in job.furniture.counts:
-        have = sum(p.category in members(wish.category) for p in placements)
+        have = sum(p.category in meant(wish, job.room.type) for p in placements)
         if have < wish.min or (wish.max is not None and have > wish.max):
             return "category_missed", f"{have} {wish.category}, asked for {_asked(wish.min, wish.max)}"
     opening = sum(p.asset_id in openers for p in placements)
@@ -100,7 +100,7 @@ def finish(
     job, placements = draft.job, draft.placements
     site = Site.of(job.plan, job.room_id, radius=robot.radius + MARGIN, step=robot.step, height=robot.height)
     rejects: list[Reject] = [("object", "no_asset", category) for category in draft.lost]
-    smaller = index.favouring(job.furniture.style).smaller
+    smaller = index.favouring(draft.taste.style, wished=draft.taste.wished).smaller
     arranged = post_optimise(site, placements, assets, lore, settings, smaller, target=job.walkable, keep_count=job.bounds[0] is not None)
     placements = tuple(rounded(p) for p in arranged.placements)
     rejects += [("object", r.reason, f"{r.object_id}: {r.detail}") for r in arranged.rejects]

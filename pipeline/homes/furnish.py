@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline import seeds
 from pipeline.diffusion.context import Demand, Proposal, RoomContext
 from pipeline.diffusion.sampling import Sampler
+from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 from pipeline.homes.request import RoomJob
 from pipeline.homes.rounding import rounded
 from pipeline.retrieval.anchor import anchored
+from pipeline.retrieval.finish import finish_of
 from pipeline.retrieval.index import AssetIndex, Match
+from pipeline.retrieval.taste import FinishOf, Taste, draw_finishes, draw_style, tasteful
 from pipeline.taxonomy import Taxonomy
 
 
@@ -25,17 +28,29 @@ class Draft:
     job: RoomJob
     placements: tuple[Placement, ...]
     lost: tuple[str, ...] = ()
+    taste: Taste = field(default_factory=Taste)
 
 
-def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxonomy: Taxonomy) -> list[Draft]:
-    """Return what the layout model places in each room.
+def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxonomy: Taxonomy, assets: Mapping[str, Asset]) -> list[Draft]:
+    """Return what the layout model places in each room, as `assets` of the library.
 
     Draws are keyed by (seed, home, room, attempt) alone, so a room does not depend on which rooms share its batch.
     """
     contexts = [RoomContext.of(job.plan, job.room_id, job.layout_type, job.count, demands(job, taxonomy)) for job in jobs]
     keys = [(job.index, job.number, job.attempt) for job in jobs]
     proposals = sampler.sample_rooms(contexts, keys)
-    return [retrieve(job, context, found, index, taxonomy) for job, context, found in zip(jobs, contexts, proposals, strict=True)]
+    return [
+        retrieve(job, context, found, index, taxonomy, assets, taste_of(job, sampler.seed, index, assets))
+        for job, context, found in zip(jobs, contexts, proposals, strict=True)
+    ]
+
+
+def taste_of(job: RoomJob, seed: int, index: AssetIndex, assets: Mapping[str, Asset]) -> Taste:
+    """Draw the taste of a room: the style is its home's, or the one that is wished for; the finishes are its own. Tries share it."""
+    wish = job.furniture.style or ""
+    style = wish or draw_style(seeds.generator(seed, "style", job.index), index)
+    finishes = draw_finishes(seeds.generator(seed, "finish", job.index, job.number), index, style, lambda a: finish_of(assets[a]))
+    return Taste(style, bool(wish), finishes)
 
 
 def demands(job: RoomJob, taxonomy: Taxonomy) -> tuple[Demand, ...]:
@@ -47,16 +62,22 @@ def demands(job: RoomJob, taxonomy: Taxonomy) -> tuple[Demand, ...]:
     return (*job.demands, *(Demand(group, 1) for group in job.essentials(taxonomy) if not wished.intersection(group)))
 
 
-def retrieve(job: RoomJob, context: RoomContext, proposals: Sequence[Proposal], index: AssetIndex, taxonomy: Taxonomy) -> Draft:
-    """Replace each proposal by the nearest asset, standing on the floor, hanging from the ceiling, or at its wall.
+def retrieve(
+    job: RoomJob,
+    context: RoomContext,
+    proposals: Sequence[Proposal],
+    index: AssetIndex,
+    taxonomy: Taxonomy,
+    assets: Mapping[str, Asset],
+    taste: Taste,
+) -> Draft:
+    """Replace each proposal by the nearest asset that suits the taste, standing on the floor, hanging from the ceiling, or at its wall.
 
     Object ids carry the room's id and the slot, so they are unique in the home.
     """
     if not proposals:
-        return Draft(job, ())
-    categories = [p.category for p in proposals]
-    sizes = np.array([p.size for p in proposals])
-    matches = _matches(job, index.favouring(job.furniture.style), categories, sizes, np.array([p.latent for p in proposals]))
+        return Draft(job, (), taste=taste)
+    matches = _matches(job, index, taste, proposals, lambda a: finish_of(assets[a]))
     placements: list[Placement] = []
     lost: list[str] = []
     for number, (proposal, match) in enumerate(zip(proposals, matches, strict=True)):
@@ -78,17 +99,17 @@ def retrieve(job: RoomJob, context: RoomContext, proposals: Sequence[Proposal], 
             match.distance,
         )
         placements.append(rounded(placement))
-    return Draft(job, tuple(placements), tuple(lost))
+    return Draft(job, tuple(placements), tuple(lost), taste)
 
 
-def _matches(
-    job: RoomJob, index: AssetIndex, categories: Sequence[str], sizes: NDArray[np.float64], latents: NDArray[np.float32]
-) -> list[Match | None]:
-    """Return the nearest assets; where more shall open, the objects that lose least by it get assets that do."""
-    matches = index.match(categories, sizes, latents)
+def _matches(job: RoomJob, index: AssetIndex, taste: Taste, proposals: Sequence[Proposal], finish: FinishOf) -> list[Match | None]:
+    """Return the assets; where more shall open, the objects that lose least by it get assets that do."""
+    categories = [p.category for p in proposals]
+    sizes, latents, positions = (np.array([getattr(p, name) for p in proposals]) for name in ("size", "latent", "position"))
+    matches = tasteful(index, taste, categories, sizes, latents, positions, finish)
     lacking = (job.furniture.openable or 0) - sum(m.openable for m in matches if m)
     if lacking > 0:
-        opening = index.openers().match(categories, sizes, latents)
+        opening = tasteful(index.openers(), taste, categories, sizes, latents, positions, finish)
         still = [k for k, (m, o) in enumerate(zip(matches, opening, strict=True)) if m and o and not m.openable]
         for k in sorted(still, key=lambda k: (_distance(opening[k]) - _distance(matches[k]), k))[:lacking]:
             matches[k] = opening[k]

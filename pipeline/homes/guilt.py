@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pipeline import taxonomy
 from pipeline.entities.home import Home, Placement
 from pipeline.verify import Certificate
 
@@ -22,18 +23,21 @@ class Guilt:
 def guilty_objects(home: Home, certificate: Certificate) -> dict[str, Guilt]:
     """Return what must go, by object_id.
 
-    Of two objects in each other the smaller goes, and what lies on another before what stands; of a blocked joint what blocks it, or its owner where a wall does or the owner
+    Of two objects in each other the smaller goes, and small things before furniture; of a blocked joint what blocks it, or its owner where a wall does or the owner
     is a small thing that lies on something else; of a room that cannot be entered the floor-standing object nearest to one of its doors.
     """
     placed = {p.object_id: p for p in home.placements}
     guilty: dict[str, Guilt] = {}
+    small = taxonomy.load().small
     for check in certificate.objects:
         if not check.inside:
             guilty[check.object_id] = Guilt(check.room_id, "outside_room", f"{check.outside:.3f} m beyond the walls")
         elif not check.supported:
             guilty[check.object_id] = Guilt(check.room_id, "unsupported", "floats, or sticks through the ceiling")
         for other in check.hits:
-            smaller = min((placed[check.object_id], placed[other]), key=lambda p: (not p.support, float(p.size.prod()), p.object_id))
+            smaller = min(
+                (placed[check.object_id], placed[other]), key=lambda p: (p.category not in small, float(p.size.prod()), p.object_id)
+            )
             guilty[smaller.object_id] = Guilt(smaller.room_id, "collision", f"{check.object_id} and {other} are in each other")
     for joint in certificate.joints:
         if joint.clear:
@@ -52,8 +56,8 @@ def guilty_objects(home: Home, certificate: Certificate) -> dict[str, Guilt]:
 
 def _nearest_to_door(home: Home, room_id: str) -> Placement | None:
     doors = [o.segment.mean(0) for o in home.plan.openings if room_id in o.rooms and o.kind != "window"]
-    floor = home.plan.elevation(room_id)
-    standing = [p for p in home.in_room(room_id) if p.position[2] < floor + 0.1 and not p.support]
+    floor, small = home.plan.elevation(room_id), taxonomy.load().small
+    standing = [p for p in home.in_room(room_id) if p.position[2] < floor + 0.1 and p.category not in small]
     if not doors or not standing:
         return None
     # Footprint corners and centre stand in for the outline: the order matters here, not the distance.

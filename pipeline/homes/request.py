@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from pipeline.diffusion.context import Demand
 from pipeline.entities.plan import Plan, Room
-from pipeline.floorplan.furniture import members
+from pipeline.floorplan.furniture import meant
 from pipeline.floorplan.program import Furniture
 from pipeline.taxonomy import Taxonomy
 
@@ -47,7 +47,8 @@ class RoomJob:
     @property
     def demands(self) -> tuple[Demand, ...]:
         """What is wished for by category, as the sampler takes it."""
-        return tuple(Demand(members(c.category), c.min, c.max) for c in self.furniture.counts)
+        kind = self.room.type
+        return tuple(Demand(meant(c, kind), c.min, c.max) for c in self.furniture.counts)
 
     def essentials(self, taxonomy: Taxonomy) -> tuple[tuple[str, ...], ...]:
         """Return the groups of categories of which the room needs one thing each; a stated number of objects may be too small for them."""

@@ -1,68 +1,226 @@
-"""Small things of a finished home: cups on tables, books on shelves, a laptop on the desk, now and then something in a drawer."""
+"""Small things of a finished home: rugs, curtains, pictures and mirrors, and what lies on and in its furniture."""
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from pipeline.arrange import Laying, ThingsSettings
-from pipeline.corpus.houses import rates
+from pipeline import taxonomy
+from pipeline.arrange import Hanging, Laying, ThingsSettings, Window, lay_rug
 from pipeline.entities.home import Home, Placement
+from pipeline.entities.plan import Room
+from pipeline.geometry.prisms import solid
+from pipeline.geometry.walls import Leaf, leaves
+from pipeline.homes import customs
 from pipeline.homes.library import Library
+from pipeline.homes.request import layout_type
 
-STYLE_WEIGHT = 3.0  # how much likelier a thing in the style of its support is taken than another
-# Things with a front, which look where their support looks.
-FACING = frozenset(
-    {"laptop", "keyboard", "printer", "toaster", "coffee_machine", "table_lamp", "storage_box", "book", "camera", "briefcase"}
-)
+Floats = NDArray[np.float64]
+
+STYLE_WEIGHT = 3.0  # how much likelier a thing in the style of what it belongs to is taken than another
+SPREAD = (0.25, 0.05)  # how far curtains and blinds reach beyond their window at either side [m]
+FULL, SHORT = 0.03, 0.12  # foot of a curtain above the floor; how far below the sill a short one ends [m]
+PLEATS = 0.6  # curtains hang so much flatter than they are made: a hand's breadth from the wall
+DRAWN = 0.4  # how far a blind is drawn up, as a share of its window
+IN_ROW = 0.06  # between pictures in a row [m]
+MOST_IN_ROW = 3
+STANDS_ON_RUGS = frozenset({"bed", "table", "chair", "stool", "sofa"})  # super-categories that may stand on a rug, wholly or in part
+UNDER_BED = (0.05, 0.25)  # how far the middle of a rug lies within a bed's foot, as a share of the bed's depth
+RUGS_TRIED = 3  # the largest of so many is laid
 
 
-def expected() -> Mapping[str, Mapping[str, float]]:
-    """Return by category of furniture how many of each small thing lie on or in one piece of it, as in the embedded corpus."""
-    found: Mapping[str, Mapping[str, float]] = rates.load()["things"]["furniture"]
-    return found
+def small_things(home: Home, library: Library, settings: ThingsSettings, rng: np.random.Generator, touch: float) -> tuple[Placement, ...]:
+    """Return small things for a home that is sound; what lies on furniture names its `support`.
+
+    They depend on the home and the generator alone. What finds no place is not missed: nobody has asked for it.
+    """
+    if settings.rate <= 0:
+        return ()
+    doors = leaves(home.plan)
+    return tuple(p for room in home.plan.rooms for p in _Dressing(home, room, library, settings, rng, touch, doors).things())
+
+
+class _Dressing:
+    """One room while it gets its small things; `found` are those that it has."""
+
+    def __init__(
+        self,
+        home: Home,
+        room: Room,
+        library: Library,
+        settings: ThingsSettings,
+        rng: np.random.Generator,
+        touch: float,
+        doors: Sequence[Leaf],
+    ) -> None:
+        self.home, self.room, self.library, self.settings, self.rng, self.touch, self.doors = (
+            home,
+            room,
+            library,
+            settings,
+            rng,
+            touch,
+            doors,
+        )
+        self.kind = layout_type(room, home.plan, taxonomy.load()) or ""
+        self.furniture = home.in_room(room.room_id)
+        self.floor = home.plan.elevation(room.room_id)
+        self.found: list[Placement] = []
+        self.count: Counter[str] = Counter()
+
+    def things(self) -> list[Placement]:
+        """Lay the rug, dress windows and walls, then lay things on and in the furniture."""
+        if not self.furniture:
+            return []
+        known = customs.load()
+        laying = Laying(self.room.polygon, self.furniture, self.library, self.settings, self.touch)
+        if self.kind in known.rugs and self.rng.random() < known.rugs[self.kind].share * self.settings.rate:
+            self._rug(known.rugs[self.kind])
+        if self.kind in known.windows or self.kind in known.walls:
+            hanging = self._hanging(laying)
+            self._windows(hanging, known.windows.get(self.kind, {}))
+            for category, expected in known.walls.get(self.kind, {}).items():
+                self._walls(hanging, category, expected, known.hanging[category])
+            laying.fix([p for p in self.found if p.position[2] > self.floor])
+        for number, support in enumerate(self.furniture):
+            self._load(laying, number, support, known)
+        return self.found
+
+    def _add(self, category: str, asset_id: str, position: Floats, yaw: float, scale: Floats | None = None, support: str = "") -> None:
+        factor = np.ones(3) if scale is None else np.round(scale, 5)
+        name = f"{self.room.room_id}_{category}_{self.count[category]}"
+        size = np.round(self.library[asset_id].size * factor, 4)
+        placed = np.round(position, 4) + 0.0
+        self.found.append(Placement(name, self.room.room_id, category, asset_id, placed, yaw, size, factor, support=support))
+        self.count[category] += 1
+
+    def _of(self, *categories: str) -> list[Placement]:
+        """Return the room's furniture of these categories, in the order of the categories."""
+        return [p for name in categories for p in self.furniture if p.category == name]
+
+    def _picked(self, category: str, style: str = "") -> str:
+        """Draw an asset of a category, rather one of that style; "" if the library has none."""
+        shelf = self.library.of(category)
+        if not shelf:
+            return ""
+        weights = np.array([STYLE_WEIGHT if style and self.library.rows[a]["style"] == style else 1.0 for a in shelf])
+        return shelf[int(self.rng.choice(len(shelf), p=weights / weights.sum()))]
+
+    def _drawn(self, expected: float) -> int:
+        return int(expected * self.settings.rate + self.rng.random())
+
+    # -- floor -------------------------------------------------------------------------------------------------------
+
+    def _rug(self, custom: customs.RugCustom) -> None:
+        drawn = {asset_id for _ in range(RUGS_TRIED) if (asset_id := self._picked(custom.category))}
+        supers = taxonomy.load().categories
+        clear = [
+            p
+            for p in self.furniture
+            if supers[p.category].mount == "floor" and (custom.category != "rug" or supers[p.category].super not in STANDS_ON_RUGS)
+        ]
+        polygon = np.ascontiguousarray(self.room.polygon, np.float64)
+        for asset_id in sorted(drawn, key=lambda a: (-float(np.prod(self.library[a].size[:2])), a)):
+            size = self.library[asset_id].size
+            laid = lay_rug(polygon, size, self._rug_places(custom, size), clear)
+            if laid is not None:
+                position, yaw, scale = laid
+                self._add(custom.category, asset_id, np.array([*position, self.floor]), yaw, scale)
+                return
+
+    def _rug_places(self, custom: customs.RugCustom, size: Floats) -> list[tuple[float, float, float]]:
+        """Return middles and directions (x, y, yaw) for a rug of `size`, the best first."""
+        places = [(float(p.position[0]), float(p.position[1]), p.yaw) for p in self._of(*custom.under)]
+        places += [self._ahead(p, -under * float(p.size[1])) for p in self._of(*custom.across) for under in UNDER_BED]
+        places += [self._ahead(p, float(size[1]) / 2 + 0.05) for p in self._of(*custom.before)]
+        if custom.middle:
+            low, high = self.room.polygon.min(0), self.room.polygon.max(0)
+            x, y = ((low + high) / 2).tolist()
+            places.append((x, y, math.pi / 2 if (high - low)[1] > (high - low)[0] else 0.0))
+        return places
+
+    @staticmethod
+    def _ahead(placement: Placement, away: float) -> tuple[float, float, float]:
+        """Return (x, y, yaw) of a point `away` [m] before the front of an object."""
+        out = float(placement.size[1]) / 2 + away
+        x, y = placement.position[:2] + out * np.array([math.sin(placement.yaw), -math.cos(placement.yaw)])
+        return float(x), float(y), placement.yaw
+
+    # -- walls -------------------------------------------------------------------------------------------------------
+
+    def _hanging(self, laying: Laying) -> Hanging:
+        """Return the room's walls with all that stands before them and all that moves there."""
+        own = [o for o in self.home.plan.openings if self.room.room_id in o.rooms and o.level == self.room.level]
+        mine = [leaf for leaf in self.doors if leaf.opening_id in {o.opening_id for o in own}]
+        swept = [np.concatenate([leaf.outline(a) for a in np.linspace(0.0, leaf.angle, 5)]) for leaf in mine]
+        doors = [[*w.min(0), self.floor + leaf.bottom, *w.max(0), self.floor + leaf.top] for w, leaf in zip(swept, mine, strict=True)]
+        boxes = np.concatenate([laying.sweeps.boxes, np.array(doors).reshape(-1, 6)])
+        boxes = boxes[np.isfinite(boxes).all(1)]
+        rest = laying.rest.prisms
+        corners = np.concatenate([rest.corners, boxes[:, [0, 1, 3, 1, 3, 4, *[0, 4] * 9]].reshape(-1, 12, 2)])
+        return Hanging(self.room.polygon, own, corners, np.concatenate([rest.z, boxes[:, [2, 5]]]) - self.floor, self.room.height)
+
+    def _windows(self, hanging: Hanging, shares: Mapping[str, float]) -> None:
+        mark = self.rng.random() / self.settings.rate
+        chosen = next((name for name, most in zip(shares, np.cumsum(list(shares.values())), strict=True) if mark < most), None)
+        if chosen is None:
+            return
+        kinds = [(name, self._picked(name)) for name in dict.fromkeys((chosen, "blind"))]
+        for window in hanging.windows:
+            for name, asset_id in kinds:
+                if asset_id and self._dressed(hanging, window, name, asset_id):
+                    break
+
+    def _dressed(self, hanging: Hanging, window: Window, category: str, asset_id: str) -> bool:
+        """Hang a curtain to the floor or to the sill, or a blind that is half drawn up, before a window if there is room for it."""
+        asset, long = self.library[asset_id], category == "curtain"
+        rest = solid(asset).rest
+        parts = np.concatenate([rest.boxes()[:, [0, 2]], rest.z], axis=1)
+        bottoms = (FULL, max(window.sill - SHORT, FULL)) if long else (window.sill + DRAWN * (window.head - window.sill),)
+        hung = hanging.before(window, asset.size, parts, SPREAD[not long], bottoms, PLEATS if long else 1.0)
+        if hung is not None:
+            place, yaw, scale = hung
+            self._add(category, asset_id, place + np.array([0.0, 0.0, self.floor]), yaw, scale)
+        return hung is not None
+
+    def _walls(self, hanging: Hanging, category: str, expected: float, custom: customs.WallCustom) -> None:
+        anchors = [p.footprint() for p in self._of(*(custom.over or custom.beside))]
+        for _ in range(self._drawn(expected)):
+            asset_id = self._picked(category)
+            if not asset_id:
+                return
+            size = self.library[asset_id].size
+            number = 1
+            while number < MOST_IN_ROW and self.rng.random() < custom.row:
+                number += 1
+            step = float(size[0]) + IN_ROW
+            whole = np.array([number * step - IN_ROW, size[1], size[2]])
+            hung = hanging.hang(self.rng, whole, custom.middle, anchors, beside=bool(custom.beside), tries=self.settings.tries)
+            if hung is not None:
+                place, yaw = hung
+                across = np.array([math.cos(yaw), math.sin(yaw), 0.0])
+                for k in range(number):
+                    self._add(category, asset_id, place + (k - (number - 1) / 2) * step * across + (0, 0, self.floor), yaw)
+
+    # -- furniture ---------------------------------------------------------------------------------------------------
+
+    def _load(self, laying: Laying, number: int, support: Placement, known: customs.Customs) -> None:
+        for category, expected in known.furniture.get(support.category, {}).items():
+            for _ in range(self._drawn(expected)):
+                asset_id = self._picked(category, self.library.rows[support.asset_id]["style"])
+                if not asset_id:
+                    break
+                facing, centred = category in known.facing, category in known.centred
+                backed = category in known.backed
+                place = laying.lay(self.rng, self.library[asset_id], number, facing=facing, centred=centred, backed=backed)
+                if place is not None:
+                    self._add(category, asset_id, *place, support=support.object_id)
 
 
 def placeable() -> frozenset[str]:
     """Return the categories of small things that homes may hold."""
-    return frozenset(name for wanted in expected().values() for name in wanted)
-
-
-def small_things(home: Home, library: Library, settings: ThingsSettings, rng: np.random.Generator, touch: float) -> tuple[Placement, ...]:
-    """Return small things for a home that is sound; each names its `support`. They depend on the home and the generator alone.
-
-    What finds no place in `settings.tries` tries is not missed: nobody has asked for it.
-    """
-    if settings.rate <= 0:
-        return ()
-    wanted = expected()
-    found: list[Placement] = []
-    for room in home.plan.rooms:
-        furniture = home.in_room(room.room_id)
-        if not any(p.category in wanted for p in furniture):
-            continue
-        laying = Laying(room.polygon, furniture, library, settings, touch)
-        count: Counter[str] = Counter()
-        for number, support in enumerate(furniture):
-            for category, mean in wanted.get(support.category, {}).items():
-                for _ in range(int(mean * settings.rate + rng.random())):
-                    asset_id = _picked(rng, library, category, library.rows[support.asset_id]["style"])
-                    place = laying.lay(rng, library[asset_id], number, facing=category in FACING) if asset_id else None
-                    if place is None:
-                        continue
-                    name = f"{room.room_id}_{category}_{count[category]}"
-                    size = np.round(library[asset_id].size, 4)
-                    found.append(Placement(name, room.room_id, category, asset_id, *place, size, support=support.object_id))
-                    count[category] += 1
-    return tuple(found)
-
-
-def _picked(rng: np.random.Generator, library: Library, category: str, style: str) -> str:
-    """Draw an asset of a category, rather one of that style; "" if the library has none."""
-    shelf = library.of(category)
-    if not shelf:
-        return ""
-    weights = np.array([STYLE_WEIGHT if style and library.rows[a]["style"] == style else 1.0 for a in shelf])
-    return shelf[int(rng.choice(len(shelf), p=weights / weights.sum()))]
+    return customs.load().categories()

@@ -48,10 +48,14 @@ class AssetIndex:
     settings: RetrievalSettings
     styles: tuple[str, ...] = ()
     style: str = ""
+    style_cost: float = 0.0
 
-    def favouring(self, style: str | None) -> AssetIndex:
-        """Return the index that prefers a style: assets of another are farther by `prefer_style`; what opens has often none, and stays."""
-        return replace(self, style=style or "")
+    def favouring(self, style: str | None, *, wished: bool = True) -> AssetIndex:
+        """Return the index that prefers a style: assets of another are farther, by `prefer_style` where it is wished, else `prefer_taste`.
+
+        What opens has often none, and stays.
+        """
+        return replace(self, style=style or "", style_cost=self.settings.prefer_style if wished else self.settings.prefer_taste)
 
     def openers(self) -> AssetIndex:
         """Return the index of the assets that open alone."""
@@ -115,7 +119,7 @@ class AssetIndex:
         """
         rows, distances = self.nearest(categories, sizes, latents)
         return [
-            None if row < 0 else self._match(int(row), float(d), sizes[p]) for p, (row, d) in enumerate(zip(rows, distances, strict=True))
+            None if row < 0 else self.matched(int(row), float(d), sizes[p]) for p, (row, d) in enumerate(zip(rows, distances, strict=True))
         ]
 
     def nearest(
@@ -152,7 +156,7 @@ class AssetIndex:
             total = np.where(openable[None], total, (total + s.prefer_offset) * s.prefer_openable)
         if self.style:
             other = np.array([self.styles[k] not in {"", self.style} for k in shelf])
-            total = total + s.prefer_style * other[None]
+            total = total + self.style_cost * other[None]
         return total
 
     def smaller(self, asset_id: str, max_area: float) -> Match | None:
@@ -201,7 +205,8 @@ class AssetIndex:
             raise ContentError(f"asset {asset_id!r} is not in the library", "run `dvc repro` so that library and samples agree")
         return at
 
-    def _match(self, row: int, distance: float, asked: NDArray[np.float64]) -> Match:
+    def matched(self, row: int, distance: float, asked: NDArray[np.float64]) -> Match:
+        """Return the asset of a row as what was `asked` for (3,) [m] gets it: static ones are stretched a little."""
         limit = 0.0 if self.articulated[row] else self.settings.stretch
         scale = np.clip(np.asarray(asked, float) / self.sizes[row], 1 - limit, 1 + limit)
         return Match(self.asset_ids[row], distance, scale, self.sizes[row] * scale, bool(self.openable[row]))

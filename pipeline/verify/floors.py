@@ -8,6 +8,7 @@ from pipeline import taxonomy
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Plan, Room
 from pipeline.geometry.freefloor import Walk, bare_floor, walk
+from pipeline.geometry.prisms import Prisms
 from pipeline.verify.bodies import Bodies
 from pipeline.verify.certificate import RoomCheck
 from pipeline.verify.settings import VerifySettings
@@ -16,14 +17,24 @@ NEAR_ENTRANCE = 1.0  # the robot must find a place this near to the entrance doo
 
 
 def walk_level(home: Home, level: int, made: Bodies, settings: VerifySettings) -> tuple[Walk, int]:
-    """Return the furnished floor of one storey, and the label of the part that one enters."""
+    """Return the furnished floor of one storey, and the label of the part that one enters.
+
+    Small things take no floor: what lies on furniture is above it, rugs are driven over, curtains give way.
+    """
     plan, robot = home.plan, settings.robot
     rooms = [r for r in plan.rooms if r.level == level]
     openings = [o for o in plan.openings if o.level == level]
     floor = bare_floor(rooms, openings, max(plan.inner_wall, plan.outer_wall) / 2 + settings.cell, settings.cell)
     base = level * plan.storey_height
-    walked = walk(floor, made.prisms, robot.radius, (base + robot.step, base + robot.height))
+    walked = walk(floor, _furniture(home, made), robot.radius, (base + robot.step, base + robot.height))
     return walked, _entered(plan, level, rooms, walked)
+
+
+def _furniture(home: Home, made: Bodies) -> Prisms:
+    """Return the prisms of all but small things."""
+    small, p = taxonomy.load().small, made.prisms
+    own = np.repeat([placement.category not in small for placement in home.placements], np.diff(made.start)).astype(bool)
+    return Prisms(p.corners[own], p.count[own], p.z[own], p.part[own])
 
 
 def _entered(plan: Plan, level: int, rooms: list[Room], walked: Walk) -> int:
@@ -41,13 +52,14 @@ def _entered(plan: Plan, level: int, rooms: list[Room], walked: Walk) -> int:
 def check_rooms(home: Home, walks: dict[int, tuple[Walk, int]]) -> dict[str, RoomCheck]:
     """Return the figures of every room."""
     found: dict[str, RoomCheck] = {}
+    small = taxonomy.load().small
     for level, (walked, label) in walks.items():
         rooms = [r for r in home.plan.rooms if r.level == level]
         shares = walked.shares(walked.covered(label), len(rooms))
         inside = walked.floor.room[walked.reached(label)]
         entered = np.bincount(inside[inside >= 0], minlength=len(rooms))
         for number, room in enumerate(rooms):
-            own = tuple(p for p in home.in_room(room.room_id) if not p.support)
+            own = tuple(p for p in home.in_room(room.room_id) if p.category not in small)
             found[room.room_id] = RoomCheck(
                 room.room_id,
                 room.area,

@@ -1,5 +1,8 @@
+import numpy as np
+
 from pipeline import taxonomy
 from pipeline.diffusion.context import Demand
+from pipeline.entities.plan import Plan, Room
 from pipeline.floorplan.program import Furniture
 from pipeline.homes.furnish import demands
 from pipeline.homes.request import RoomJob
@@ -7,7 +10,8 @@ from pipeline.homes.request import RoomJob
 
 def job(layout_type, count=None, wishes=()):
     counts = [{"category": c, "min": d.least, "max": d.most} for d in wishes for c in d.categories]
-    return RoomJob(None, "room", layout_type, 0, 0, count=count, furniture=Furniture.model_validate({"counts": counts}))
+    plan = Plan((Room("room", layout_type, np.array([[0, 0], [4, 0], [4, 3], [0, 3.0]])),), (), "room")
+    return RoomJob(plan, "room", layout_type, 0, 0, count=count, furniture=Furniture.model_validate({"counts": counts}))
 
 
 def test_a_room_is_to_hold_what_makes_it_that_room():

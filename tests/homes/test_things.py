@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from pipeline.geometry.polygons import boundary_distance
+from pipeline.homes import customs
 from pipeline.homes.request import Request
-from pipeline.homes.things import expected, placeable
+from pipeline.homes.things import placeable
 from pipeline.taxonomy import load
 from pipeline.verify import verify_home
 from tests.geometry import furniture
@@ -14,10 +16,21 @@ from tests.homes.conftest import assets, factory_of, library_of
 
 ASKED = [Request(0, "a one-bedroom flat of 60 m2 with a study"), Request(1)]
 
+FLAT = {
+    "rug": (2.0, 1.4, 0.015),
+    "bath_mat": (0.8, 0.5, 0.012),
+    "curtain": (2.1, 0.14, 2.4),
+    "blind": (1.4, 0.05, 0.8),
+    "picture": (0.7, 0.03, 0.6),
+    "mirror": (0.6, 0.03, 0.8),
+    "towel": (0.55, 0.08, 0.6),
+}
+
 
 @pytest.fixture(scope="module")
 def stocked(tmp_path_factory):
     small = [furniture.block("cup", "cup", (0.09, 0.09, 0.1)), furniture.block("book", "book", (0.16, 0.22, 0.03)), furniture.flip()]
+    small += [furniture.block(name, name, size) for name, size in FLAT.items()]
     made = factory_of(library_of(tmp_path_factory.mktemp("stocked"), [*assets(), *small, furniture.tray_chest()]))
     return replace(made, postopt=replace(made.postopt, things=replace(made.postopt.things, rate=4.0)))
 
@@ -37,7 +50,7 @@ def test_things_lie_on_furniture_of_their_room(stocked, outcomes):
         placed = {p.object_id: p for p in outcome.home.placements}
         for p in things(outcome):
             assert placed[p.support].room_id == p.room_id
-            assert p.category in expected()[placed[p.support].category]
+            assert p.category in customs.load().furniture[placed[p.support].category]
             assert np.array_equal(p.scale, np.ones(3))
             assert np.array_equal(p.position, np.round(p.position, 4))
         assert not verify_home(outcome.home, stocked.library, stocked.verify).faults(stocked.verify.policy)
@@ -49,7 +62,9 @@ def test_what_is_said_of_furniture_stays(stocked, outcomes):
     bare = replace(stocked, postopt=replace(stocked.postopt, things=replace(stocked.postopt.things, rate=0.0)))
     for without, outcome in zip(bare.make(ASKED, files=False), outcomes, strict=True):
         assert not things(without)
-        assert [p.object_id for p in without.home.placements] == [p.object_id for p in outcome.home.placements if not p.support]
+        assert [p.object_id for p in without.home.placements] == [
+            p.object_id for p in outcome.home.placements if p.category not in load().small
+        ]
         assert without.rows["rooms"] == outcome.rows["rooms"]
         same = ("objects", "openable", "reach", "walkable_paper", "walkable_free", "collisions", "attempts")
         assert [without.rows["scenes"][0][k] for k in same] == [outcome.rows["scenes"][0][k] for k in same]
@@ -60,8 +75,33 @@ def test_the_same_home_has_the_same_things(stocked, outcomes):
     assert alone.rows == outcomes[1].rows
 
 
-def test_only_what_can_be_taken_away_is_laid():
+def test_rugs_lie_flat_and_what_hangs_is_at_a_wall(outcomes):
+    found = [(o.home.plan, p) for o in outcomes for p in o.home.placements if p.category in FLAT]
+    assert {"rug", "curtain", "picture", "mirror"} <= {p.category for _, p in found}
+    for plan, p in found:
+        if p.category in {"rug", "bath_mat"}:
+            assert p.size[2] < 0.005
+            assert p.position[2] == plan.elevation(p.room_id)
+            continue
+        back = p.footprint()[2:]  # the corners behind, at the wall
+        polygon = plan.room(p.room_id).polygon
+        assert max(boundary_distance(float(x), float(y), polygon) for x, y in back) < 0.01
+        assert p.position[2] + p.size[2] < plan.elevation(p.room_id) + plan.room(p.room_id).height
+
+
+def test_curtains_hang_before_windows_and_nothing_else_does(outcomes):
+    for outcome in outcomes:
+        windows = [o.segment.mean(0) for o in outcome.home.plan.openings if o.kind == "window"]
+        for p in outcome.home.placements:
+            if p.category in FLAT and load().categories[p.category].mount == "wall":
+                near = min((float(np.linalg.norm(w - p.position[:2])) for w in windows), default=np.inf)
+                assert (near < 0.6) == (p.category in {"curtain", "blind"})
+
+
+def test_what_lies_on_furniture_can_be_taken_away():
     words = load()
-    assert all(words.categories[name].loose for name in placeable())
+    assert all(words.categories[name].loose for wanted in customs.load().furniture.values() for name in wanted)
+    assert not words.categories["rug"].loose
+    assert not any(words.categories[name].layout for name in placeable())
     assert not words.categories["curtain"].loose
     assert not words.categories["room_door"].loose

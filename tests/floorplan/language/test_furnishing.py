@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from pipeline import taxonomy
 from pipeline.errors import RefusedError
 from pipeline.floorplan import complete, parse
-from pipeline.floorplan.furniture import lexicon, members
+from pipeline.floorplan.furniture import lexicon, meant, members
 from pipeline.floorplan.language.attaching import Mention, attach
 from pipeline.floorplan.language.masking import read_furniture
 from pipeline.floorplan.program import FloorProgram, Furniture, RoomReq, Things
@@ -194,6 +194,20 @@ def test_the_lexicon_names_every_category_in_every_language():
     assert members("any_bed") == ("double_bed", "single_bed", "kids_bed")
     assert members("unicorn") == ()
     assert all(isinstance(form, str) for listed in data["words"].values() for form in listed)
+
+
+def test_a_word_for_a_group_means_what_belongs_into_the_room():
+    table = Things(category="any_table", min=1)
+    assert meant(table, "dining_room") == ("dining_table",)
+    assert meant(table, "office") == ("desk",)
+    assert "coffee_table" in meant(table, "living_room")
+    assert meant(table, "balcony") == members("any_table")
+    assert meant(Things(category="any_table", max=0), "dining_room") == members("any_table")  # no table at all
+    assert "lazy_sofa" not in meant(Things(category="any_sofa", min=1), "living_room")
+    assert meant(Things(category="dining_table", min=1), "living_room") == ("dining_table",)
+    for group, rooms in lexicon()["meant"].items():
+        wider = {"kitchen_cabinet", "wall_cabinet", "tall_unit"} if group == "any_cabinet" else set()
+        assert all(set(names) <= {*members(group), *wider} for names in rooms.values())
 
 
 PIECES = ["a bedroom with ", "two ", "no ", "nightstands", "sofa", ", ", "70 % free", "nordic", " and ", "at least ", "8-", "pieces", "卧室", "两个", "床头柜", "sin ", "muebles", ". ", "百分之", "in the kitchen", "\u202e", "—"]  # fmt: skip

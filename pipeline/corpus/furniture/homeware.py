@@ -1,0 +1,353 @@
+"""What people leave about: frames, candles, trays, bottles, jars, kettles, toys, herbs, televisions, coat hooks."""
+
+# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pipeline.corpus.furniture.bent import blades, curve, lean, tube, turns
+from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Color, Finish, Scheme, shade
+from pipeline.corpus.furniture.shape import Piece, Shape, pieces
+from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, pillow, revolve, ring, rod, slab
+from pipeline.corpus.furniture.storage import Size, pick
+from pipeline.corpus.furniture.tableware import glaze
+from pipeline.corpus.furniture.wall_decor import INKS, bordered
+
+SCREEN = Finish("screen", (0.008, 0.009, 0.011), 0.08, density=1200)
+SHELL = Finish("shell", (0.02, 0.02, 0.022), 0.35, density=1100)
+CLEAR = Finish("clear_glass", (0.80, 0.86, 0.86), 0.05, 0.0, 0.35, density=2500)
+WAX: tuple[Color, ...] = ((0.78, 0.74, 0.64), (0.55, 0.32, 0.24), (0.30, 0.36, 0.30), (0.68, 0.55, 0.52))
+FRUIT: tuple[Color, ...] = ((0.62, 0.05, 0.03), (0.70, 0.30, 0.02), (0.45, 0.52, 0.05), (0.72, 0.58, 0.05))
+CONTENTS: tuple[Color, ...] = ((0.62, 0.48, 0.28), (0.16, 0.07, 0.03), (0.74, 0.70, 0.60), (0.50, 0.26, 0.08), (0.30, 0.34, 0.12))
+
+
+def television(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a flat television on a foot in the middle, or on two feet."""
+    w, d, h = size
+    low = 0.06 * h
+    panel = box((-w / 2, w / 2), (-0.015, 0.02), (low, h), 0.003)
+    glass = box((-w / 2 + 0.008, w / 2 - 0.008), (-0.017, -0.015), (low + 0.016, h - 0.008))
+    belly = box((-0.3 * w, 0.3 * w), (0.02, 0.05), (low + 0.04, 0.6 * h), 0.01)
+    if form == "foot":
+        feet = [
+            box((-0.2 * w, 0.2 * w), (-d / 2, d / 2), (0.0, 0.012), 0.003),
+            box((-0.04 * w, 0.04 * w), (0.0, 0.035), (0.012, low + 0.05)),
+        ]
+    else:
+        feet = [box((s * 0.36 * w - 0.012, s * 0.36 * w + 0.012), (-d / 2, d / 2), (0.0, 0.012), 0.003) for s in (-1, 1)]
+        feet += [box((s * 0.36 * w - 0.01, s * 0.36 * w + 0.01), (-0.01, 0.015), (0.012, low)) for s in (-1, 1)]
+    return Shape(pieces("panel", [panel, belly], SHELL) + pieces("screen", glass, SCREEN) + pieces("feet", feet, SHELL))
+
+
+def photo_frame(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a framed photograph that leans back on a strut, upright or oblong."""
+    w, d, h = size
+    paper, ink = INKS[int(rng.integers(len(INKS)))]
+    art = Finish("photo", paper, 0.4, pattern=pick(rng, "art_hills art_circles art_blocks"), density=400, second=ink)  # type: ignore[arg-type]
+    frame = scheme.timber if rng.random() < 0.5 else scheme.handle
+    rim, front = 0.1 * w, -d / 2 + 0.006
+    face = bordered(w, h, rim, (front - 0.006, front + 0.006))
+    sheet = box((-w / 2 + rim, w / 2 - rim), (front - 0.001, front + 0.004), (rim, h - rim))
+    slope = 0.5 * d / h
+    leant = [lean([s], 0.0, slope)[0] for s in face]
+    strut = box((-0.1 * w, 0.1 * w), (d / 2 - 0.008, d / 2), (0.0, 0.75 * h))
+    strut = lean([strut], 0.0, -0.45 * d / h)[0]
+    return Shape(pieces("frame", leant, frame) + pieces("photo", lean([sheet], 0.0, slope), art) + pieces("strut", strut, SHELL))
+
+
+def candle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a pillar candle on a dish, one in a glass, or a thin one on a stick."""
+    w, _, h = size
+    r = w / 2
+    wax = Finish("wax", shade(rng, WAX[int(rng.integers(len(WAX)))], 0.08), 0.5, density=900)
+    wick = pieces("wick", rod((0, 0, 0.93 * h), (0, 0, h), 0.0015, n=6), SHELL)
+    if form == "stick":
+        foot = revolve([(r, 0.0), (0.9 * r, 0.04 * h), (0.2 * r, 0.09 * h), (0.16 * r, 0.42 * h)], 16)
+        cup = revolve([(0.16 * r, 0.42 * h), (0.4 * r, 0.5 * h)], 12)
+        return Shape(
+            pieces("stick", foot + cup, scheme.handle) + pieces("wax", slab(circle(0.24 * r, 12), (0.5 * h, 0.94 * h)), wax) + wick
+        )
+    if form == "glass":
+        body = slab(circle(0.86 * r, 16), (0.02 * h, 0.62 * h))
+        return Shape(pieces("wax", body, wax) + pieces("glass", ring((r, r), (0.87 * r, 0.87 * r), (0.0, 0.9 * h), 12), CLEAR) + wick)
+    dish = revolve([(0.8 * r, 0.0), (r, 0.05 * h), (0.95 * r, 0.08 * h)], 16)
+    return Shape(pieces("dish", dish, scheme.handle) + pieces("wax", slab(circle(0.74 * r, 16), (0.08 * h, 0.94 * h), 0.004), wax) + wick)
+
+
+def tray(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a tray with a rim: oblong with two grips, or round."""
+    w, d, h = size
+    finish = scheme.timber if rng.random() < 0.6 else scheme.front
+    if form == "round":
+        floor = slab(circle(0.49 * w, 24), (0.0, 0.25 * h))
+        return Shape(pieces("floor", floor, finish) + pieces("rim", ring((w / 2, w / 2), (0.48 * w, 0.48 * w), (0.25 * h, h), 16), finish))
+    t = 0.012
+    made = [box((-w / 2, w / 2), (-d / 2, d / 2), (0.0, 0.2 * h))]
+    made += [box((-w / 2, w / 2), (s * (d / 2 - t / 2) - t / 2, s * (d / 2 - t / 2) + t / 2), (0.2 * h, 0.7 * h)) for s in (-1, 1)]
+    x = w / 2 - t / 2
+    made += [box((s * x - t / 2, s * x + t / 2), (-d / 2 + t, d / 2 - t), (0.2 * h, 0.7 * h)) for s in (-1, 1)]
+    grips = [box((s * x - 0.006, s * x + 0.006), (-0.06, 0.06), (0.7 * h, h), 0.002) for s in (-1, 1)]
+    return Shape(pieces("tray", made, finish) + pieces("grips", grips, scheme.handle))
+
+
+def bottle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a bottle: of soap with a pump, of shampoo, of wine, of oil."""
+    w, _, h = size
+    r = w / 2
+    color = LACQUERS[pick(rng, "white sage blush ivory terracotta dusty_blue anthracite")]
+    label = Finish("label", (0.76, 0.74, 0.68), 0.7, density=900)
+    if form == "pump":
+        body = revolve([(0.96 * r, 0.0), (r, 0.02 * h), (r, 0.6 * h), (0.4 * r, 0.7 * h)], 14)
+        head = [rod((0, 0, 0.7 * h), (0, 0, 0.9 * h), 0.12 * r, n=8), slab(circle(0.34 * r, 10), (0.9 * h, h))]
+        spout = box((-0.9 * r, 0.0), (-0.1 * r, 0.1 * r), (0.93 * h, 0.98 * h))
+        soap = Finish("soap", shade(rng, color, 0.1), 0.3, density=900)
+        return Shape(pieces("body", body, soap) + pieces("pump", [*head, spout], scheme.handle))
+    if form == "shampoo":
+        finish = Finish("plastic", shade(rng, color, 0.1), 0.35, density=900)
+        body = slab(circle(r, 14, squash=0.62), (0.0, 0.86 * h), 0.008)
+        cap = slab(circle(0.6 * r, 12, squash=0.8), (0.86 * h, h), 0.003)
+        band = slab(circle(1.01 * r, 14, squash=0.64), (0.25 * h, 0.6 * h))
+        return Shape(pieces("body", body, finish) + pieces("cap", cap, SHELL) + pieces("label", band, label))
+    glass = Finish("dark_glass", (0.02, 0.05, 0.025) if form == "wine" else (0.30, 0.24, 0.05), 0.08, density=1400)
+    body = revolve([(0.95 * r, 0.0), (r, 0.02 * h), (r, 0.6 * h), (0.7 * r, 0.68 * h), (0.32 * r, 0.76 * h)], 14)
+    neck = slab(circle(0.32 * r, 12), (0.76 * h, h), 0.002)
+    band = slab(circle(1.01 * r, 14), (0.18 * h, 0.48 * h))
+    return Shape(pieces("body", body, glass) + pieces("neck", neck, glass) + pieces("label", band, label))
+
+
+def canister(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a jar for the kitchen: of glass with what it holds, or of pottery, with a lid."""
+    w, _, h = size
+    r = w / 2
+    lid = scheme.timber if rng.random() < 0.6 else scheme.handle
+    top = [slab(circle(0.96 * r, 16), (0.86 * h, 0.94 * h), 0.003), slab(circle(0.25 * r, 12), (0.94 * h, h), 0.002)]
+    if form == "glass":
+        food = Finish("food", shade(rng, CONTENTS[int(rng.integers(len(CONTENTS)))], 0.15), 0.9, pattern="speckle", density=700)
+        inside = slab(circle(0.9 * r, 16), (0.02 * h, 0.86 * h * float(rng.uniform(0.45, 0.9))))
+        jar = ring((r, r), (0.91 * r, 0.91 * r), (0.0, 0.86 * h), 12)
+        return Shape(pieces("food", inside, food) + pieces("jar", jar, CLEAR) + pieces("lid", top, lid))
+    body = revolve([(0.9 * r, 0.0), (r, 0.04 * h), (r, 0.82 * h), (0.92 * r, 0.86 * h)], 16)
+    return Shape(pieces("jar", body, glaze(rng)) + pieces("lid", top, lid))
+
+
+def kettle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a kettle with spout and handle: an electric one on its base, or one for the stove."""
+    w, d, h = size
+    r = 0.5 * min(d, 0.75 * w)
+    x = -w / 2 + r
+    steel = (
+        Finish("steel", (0.62, 0.62, 0.62), 0.25, 0.9, density=900)
+        if rng.random() < 0.6
+        else Finish("enamel", shade(rng, LACQUERS[pick(rng, "white sage navy barn_red mint")]), 0.3, density=900)
+    )
+    tall = 0.86 * h if form == "electric" else 0.7 * h
+    profile = [(r, 0.0), (r, 0.1 * h), (0.94 * r, 0.4 * h), (0.72 * r, tall)]
+    body = [s.moved((x, 0, 0)) for s in revolve(profile, 18)]
+    top = [
+        slab(circle(0.66 * r, 14, (x, 0.0)), (tall, tall + 0.02), 0.004),
+        slab(circle(0.16 * r, 10, (x, 0.0)), (tall + 0.02, tall + 0.04)),
+    ]
+    spout = rod((x - 0.75 * r, 0, 0.55 * tall), (-w / 2 - 0.01, 0, 0.86 * tall), 0.022, 0.012, 8)
+    if form == "electric":
+        grip = tube(
+            curve(
+                [
+                    (x + 0.7 * r, 0, 0.9 * tall),
+                    (w / 2 - 0.01, 0, 0.86 * tall),
+                    (w / 2 - 0.012, 0, 0.3 * tall),
+                    (x + 0.9 * r, 0, 0.16 * tall),
+                ],
+                2,
+            ),
+            0.011,
+            6,
+        )
+    else:
+        grip = tube(
+            curve([(x - 0.7 * r, 0, tall), (x - 0.5 * r, 0, h - 0.012), (x + 0.5 * r, 0, h - 0.012), (x + 0.7 * r, 0, tall)], 2), 0.009, 6
+        )
+    return Shape(pieces("body", [*body, spout], steel) + pieces("lid", top, SHELL) + pieces("grip", grip, SHELL))
+
+
+def cutting_board(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a board that lies with a knife on it, or a block of knives."""
+    w, d, h = size
+    timber = Finish("board", shade(rng, WOODS[pick(rng, "beech oak walnut bamboo")]), 0.5, pattern="grain", density=650)
+    board = box((-w / 2, w / 2), (-d / 2, d / 2), (0.0, 0.6 * h), 0.004)
+    steel = Finish("blade", (0.66, 0.66, 0.66), 0.2, 0.95, density=7800)
+    y = 0.2 * d
+    blade = box((-0.1 * w, 0.3 * w), (y - 0.018, y + 0.012), (0.6 * h, 0.6 * h + 0.002))
+    grip = box((-0.34 * w, -0.1 * w), (y - 0.011, y + 0.011), (0.6 * h, h), 0.003)
+    made = pieces("board", board, timber) + pieces("blade", blade, steel) + pieces("grip", grip, SHELL)
+    if form == "bread":
+        loaf = cushion((-0.34 * w, 0.2 * w), (-0.42 * d, -0.02 * d), (0.6 * h, 0.6 * h + 0.075), 0.032, 3)
+        made += pieces("bread", loaf, Finish("crust", shade(rng, (0.42, 0.20, 0.06)), 0.9, pattern="speckle", density=300))
+    return Shape(made)
+
+
+def fruit_bowl(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a bowl of fruit: wide and low, or on a foot."""
+    w, _, h = size
+    r = w / 2
+    finish = Finish("turned_wood", shade(rng, WOODS["walnut"]), 0.5, pattern="grain", density=650) if rng.random() < 0.5 else glaze(rng)
+    low = 0.0 if form == "low" else 0.3 * h
+    body = revolve([(0.4 * r, low), (0.75 * r, low + 0.14 * h), (r, low + 0.42 * h)], 18)
+    if form == "foot":
+        body += revolve([(0.55 * r, 0.0), (0.5 * r, 0.04 * h), (0.14 * r, 0.1 * h), (0.14 * r, low)], 14)
+    q = 0.3 * r
+    fruit: tuple[Piece, ...] = ()
+    for k, a in enumerate(turns(5, float(rng.uniform(0, 1)))):
+        x, y, z = (0.52 * r * math.cos(a), 0.52 * r * math.sin(a), low + 0.42 * h + 0.5 * q)
+        fruit += _fruit(rng, (x, y, z), q, k)
+    return Shape(pieces("bowl", body, finish) + fruit + _fruit(rng, (0.0, 0.0, h - q), q, 5))
+
+
+def _fruit(rng: np.random.Generator, at: tuple[float, float, float], r: float, number: int) -> tuple[Piece, ...]:
+    color = FRUIT[int(rng.integers(len(FRUIT)))]
+    rounds = [(0.3 * r, -r), (0.75 * r, -0.75 * r), (r, -0.1 * r), (0.8 * r, 0.7 * r), (0.3 * r, r)]
+    solids = [s.moved(at) for s in revolve(rounds, 10)]
+    return pieces(f"fruit_{number}", solids, Finish("fruit", shade(rng, color, 0.2), 0.4, density=800))
+
+
+def toy(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a toy: a bear that sits, a ball, a car, or a tower of blocks."""
+    w, d, h = size
+    bright = [Finish(f"paint_{n}", shade(rng, LACQUERS[n], 0.1), 0.35, density=300) for n in ("coral", "sky", "lemon", "mint")]
+    if form == "ball":
+        r = min(w, d, h) / 2
+        profile = [(0.38 * r, -0.92 * r), (0.8 * r, -0.6 * r), (r, 0.0), (0.8 * r, 0.6 * r), (0.38 * r, 0.92 * r)]
+        return Shape(pieces("ball", [s.moved((0, 0, 0.92 * r)) for s in revolve(profile, 16)], bright[int(rng.integers(4))]))
+    if form == "blocks":
+        b = h / 3
+        spots = [(-0.6 * b, 0.0, 0), (0.6 * b, 0.1 * b, 0), (0.0, 0.0, 1), (0.05 * b, 0.0, 2)]
+        return Shape(tuple(p for k, (x, y, level) in enumerate(spots) for p in pieces(
+            f"block_{k}", box((x - b / 2, x + b / 2), (y - b / 2, y + b / 2), (level * b, (level + 1) * b - 0.0005), 0.003), bright[k])))  # fmt: skip
+    if form == "car":
+        body = [
+            cushion((-w / 2, w / 2), (-0.4 * d, 0.4 * d), (0.16 * h, 0.6 * h), 0.02, 2),
+            cushion((-0.28 * w, 0.3 * w), (-0.34 * d, 0.34 * d), (0.6 * h, h), 0.02, 2),
+        ]
+        wheel = slab(circle(0.18 * h, 12), (-0.06 * d, 0.06 * d)).turned("x", math.pi / 2)
+        wheels = [wheel.moved((sx * 0.3 * w, sy * 0.42 * d, 0.18 * h)) for sx in (-1, 1) for sy in (-1, 1)]
+        return Shape(pieces("body", body, bright[int(rng.integers(4))]) + pieces("wheels", wheels, SHELL))
+    fur = Finish("fur", shade(rng, (0.36, 0.22, 0.10) if rng.random() < 0.6 else (0.66, 0.58, 0.48)), 0.95, pattern="boucle", density=80)
+    trunk = [
+        pillow((-0.26 * w, 0.26 * w), (-0.2 * d, 0.35 * d), (0.0, 0.58 * h), 3),
+        pillow((-0.24 * w, 0.24 * w), (-0.26 * d, 0.26 * d), (0.52 * h, 0.95 * h), 3),
+    ]
+    ears = [cushion((s * 0.17 * w - 0.07 * w, s * 0.17 * w + 0.07 * w), (-0.03 * d, 0.05 * d), (0.84 * h, h), 0.012, 2) for s in (-1, 1)]
+    arms = [
+        cushion((s * 0.32 * w - 0.1 * w, s * 0.32 * w + 0.1 * w), (-0.25 * d, 0.05 * d), (0.22 * h, 0.5 * h), 0.025, 2) for s in (-1, 1)
+    ]
+    legs = [cushion((s * 0.24 * w - 0.11 * w, s * 0.24 * w + 0.11 * w), (-0.5 * d, 0.0), (0.0, 0.2 * h), 0.02, 2) for s in (-1, 1)]
+    return Shape(pieces("bear", [*trunk, *ears, *arms, *legs], fur))
+
+
+def pen_cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a cup with pens in it, round or square."""
+    w, _, h = size
+    r, tall = w / 2, 0.55 * h
+    cup = [slab(circle(r, 14), (0.0, tall))] if form == "round" else [box((-r, r), (-r, r), (0.0, tall), 0.003)]
+    made = pieces("cup", cup, scheme.front if rng.random() < 0.5 else scheme.handle)
+    for k, a in enumerate(turns(4, float(rng.uniform(0, 1)))):
+        tip = (0.8 * r * math.cos(a), 0.8 * r * math.sin(a), h * float(rng.uniform(0.86, 1.0)))
+        pen = rod((0.4 * r * math.cos(a), 0.4 * r * math.sin(a), tall), tip, 0.0045, n=6)
+        made += pieces(
+            f"pen_{k}", pen, Finish("pen", shade(rng, LACQUERS[pick(rng, "black navy coral mustard emerald")]), 0.4, density=900)
+        )
+    return Shape(made)
+
+
+def alarm_clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build an alarm clock: a round one on two feet, or a box with figures."""
+    w, d, h = size
+    face = Finish("dial", (0.82, 0.81, 0.78), 0.5, pattern="dial", density=900, second=(0.03, 0.03, 0.03))
+    if form == "box":
+        case = box((-w / 2, w / 2), (-d / 2 + 0.002, d / 2), (0.0, h), 0.006)
+        figures = box((-0.42 * w, 0.42 * w), (-d / 2, -d / 2 + 0.002), (0.2 * h, 0.8 * h))
+        return Shape(
+            pieces("case", case, scheme.timber) + pieces("figures", figures, Finish("figures", (0.02, 0.10, 0.08), 0.2, density=900))
+        )
+    r = min(w, 0.86 * h) / 2
+    z = h - r
+    case = slab(circle(r, 20), (0.0, 0.7 * d)).turned("x", math.pi / 2).moved((0, 0.35 * d, z))
+    dial = slab(circle(0.88 * r, 20), (0.0, 0.004)).turned("x", math.pi / 2).moved((0, -0.35 * d, z))
+    feet = [rod((s * 0.6 * r, 0, 0.0), (s * 0.45 * r, 0, z - 0.8 * r), 0.006, n=6) for s in (-1, 1)]
+    return Shape(pieces("case", [case, *feet], scheme.handle) + pieces("dial", dial, face))
+
+
+def tissue_box(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a box of tissues, oblong or a cube, with one drawn out."""
+    w, d, h = size
+    x = w / 2 if form == "flat" else min(w, d) / 2
+    finish = (
+        scheme.timber
+        if rng.random() < 0.4
+        else Finish("card", shade(rng, LACQUERS[pick(rng, "white sage blush dusty_blue greige")]), 0.7, density=300)
+    )
+    body = box((-x, x), (-d / 2, d / 2), (0.0, 0.7 * h), 0.003)
+    sheet = blades(np.array([(0, 0, 0.69 * h), (0.004, 0, 0.69 * h)]), np.array([(-0.02, 0.006, h), (0.025, -0.006, 0.94 * h)]), 0.07)
+    return Shape(pieces("box", body, finish) + pieces("tissue", sheet, PAPER))
+
+
+def coat_hooks(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a board with hooks, a coat or a bag on some of them; the back is at the wall (+y)."""
+    w, d, h = size
+    back = d / 2
+    board = box((-w / 2, w / 2), (back - 0.018, back), (h - 0.1, h), 0.003)
+    count = max(4, round(w / 0.14))
+    xs = np.linspace(-w / 2 + 0.06, w / 2 - 0.06, count)
+    hooks: list[Solid] = []
+    for x in xs.tolist():
+        hooks += [
+            rod((x, back - 0.018, h - 0.05), (x, back - 0.07, h - 0.05), 0.006, n=6),
+            rod((x, back - 0.066, h - 0.055), (x, back - 0.07, h - 0.02), 0.007, n=6),
+        ]
+    made = pieces("board", board, scheme.timber) + pieces("hooks", hooks, scheme.handle)
+    if form == "bare":
+        return Shape(made)
+    for k in (1, count - 2):
+        x = float(xs[k])
+        cloth = Finish(
+            "coat",
+            shade(rng, FABRICS[pick(rng, "charcoal indigo_cloth taupe_cloth rust_cloth grey_cloth")], 0.1),
+            0.9,
+            pattern="weave",
+            density=200,
+        )
+        bag = cushion((x - 0.1, x + 0.1), (-d / 2, back - 0.02), (0.0, 0.55 * h), 0.03, 3)
+        strap = [box((x + s * 0.05 - 0.006, x + s * 0.05 + 0.006), (-0.005, 0.005), (0.5 * h, h - 0.06)) for s in (-1, 1)]
+        made += pieces(f"bag_{k}", [bag, *strap, box((x - 0.056, x + 0.056), (-0.005, 0.005), (h - 0.06, h - 0.045))], cloth)
+    return Shape(made)
+
+
+def potted_herb(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Build a small plant in a pot: a succulent's rosette, a tuft of herbs, or a trailing one."""
+    w, _, h = size
+    tall = {"succulent": 0.62, "herb": 0.45, "grass": 0.4}[form] * h
+    r = 0.36 * w
+    pot = glaze(rng) if rng.random() < 0.7 else CERAMIC
+    body = revolve([(0.74 * r, 0.0), (r, tall)], 14)
+    soil = slab(circle(0.86 * r, 12), (tall, tall + 0.002))
+    green = Finish("leaf", shade(rng, LEAF.color, 0.25), 0.6, pattern="leaf", density=300)
+    count, reach, rise = {"succulent": (14, 0.5, 0.6), "herb": (26, 0.5, 1.0), "grass": (22, 0.5, 1.0)}[form]
+    angle = np.arange(count) * 2.4
+    share = (np.arange(count) + 1) / count
+    out = (1 - 0.7 * share) * reach * w if form != "herb" else rng.uniform(0.1, 1.0, count) * reach * w
+    up = tall + (h - tall) * rise * (0.35 + 0.65 * share)
+    tips = np.column_stack([out * np.cos(angle), out * np.sin(angle), up])
+    if form == "herb":
+        roots = tips * (0.55, 0.55, 1.0) - (0.0, 0.0, 0.03)
+        stems = [rod((0.2 * x, 0.2 * y, tall), (x, y, z), 0.002, n=4) for x, y, z in roots[::3].tolist()]
+        return Shape(
+            pieces("pot", body, pot)
+            + pieces("soil", soil, SHELL)
+            + pieces("stems", stems, green)
+            + pieces("leaves", blades(roots, tips, 0.32 * w), green)
+        )
+    roots = np.column_stack([0.2 * r * np.cos(angle), 0.2 * r * np.sin(angle), np.full(count, tall)])
+    leaves = blades(roots, tips, 0.22 * w if form == "succulent" else 0.06 * w, thick=0.014 if form == "succulent" else 0.003)
+    return Shape(pieces("pot", body, pot) + pieces("soil", soil, SHELL) + pieces("leaves", leaves, green))

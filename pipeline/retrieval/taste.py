@@ -1,0 +1,117 @@
+"""One taste a home: a style is drawn for the home, finishes for each room, and sets are of one model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.retrieval.index import AssetIndex, Match
+
+Floats = NDArray[np.float64]
+STEP, MOST_STEPS = 30.0, 2.0  # how far off a finish has to be to count once [CIELAB]; it counts so many times at most
+
+FinishOf = Callable[[str], Floats]  # CIELAB (3,) of an asset, NaN where it has none
+
+# Categories whose finishes go together in a room, and those from which the room's is drawn, the first that the library has.
+TIMBER, KITCHEN, SOFT = "timber", "kitchen", "soft"
+SOURCES: Mapping[str, tuple[str, ...]] = {
+    TIMBER: ("sideboard", "cabinet", "tv_stand", "wardrobe", "desk", "dining_table"),
+    KITCHEN: ("kitchen_cabinet", "sink_cabinet"),
+    SOFT: ("multi_seat_sofa", "loveseat_sofa", "armchair"),
+}
+GROUPS: Mapping[str, str] = {
+    **dict.fromkeys(
+        ("nightstand", "wardrobe", "cabinet", "sideboard", "bookshelf", "shelf", "tv_stand", "wine_cabinet", "shoe_cabinet"), TIMBER
+    ),
+    **dict.fromkeys(("desk", "dressing_table", "dining_table", "coffee_table", "corner_side_table", "round_end_table"), TIMBER),
+    **dict.fromkeys(("kitchen_cabinet", "sink_cabinet", "wall_cabinet", "tall_unit"), KITCHEN),
+    **dict.fromkeys(("multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa", "chaise_longue_sofa", "armchair"), SOFT),
+}
+# Of these all that stand at one of those in a room, within so far of it [m], are one model.
+SETS: Mapping[str, tuple[tuple[str, ...], float]] = {
+    "dining_chair": (("dining_table",), 1.6),
+    "chinese_chair": (("dining_table",), 1.6),
+    "barstool": (("dining_table", "kitchen_cabinet"), 2.0),
+    "nightstand": (("double_bed", "single_bed", "kids_bed"), 2.2),
+    "corner_side_table": (("multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa"), 2.2),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Taste:
+    """What steers retrieval in a room: the home's `style` ("" for none), `wished` where somebody asked for it, and finishes by group."""
+
+    style: str = ""
+    wished: bool = False
+    finishes: Mapping[str, Floats] = field(default_factory=dict)
+
+
+def draw_style(rng: np.random.Generator, index: AssetIndex) -> str:
+    """Draw a home's style, by its share among the library's assets; "" where none has a style: then finishes alone go together."""
+    styles = sorted({s for s in index.styles if s})
+    if not styles:
+        return ""
+    count = np.array([index.styles.count(s) for s in styles], float)
+    return str(rng.choice(styles, p=count / count.sum()))
+
+
+def draw_finishes(rng: np.random.Generator, index: AssetIndex, style: str, finish_of: FinishOf) -> dict[str, Floats]:
+    """Draw a room's finish for each group: that of some asset of the style, of any asset where the style has none."""
+    found: dict[str, Floats] = {}
+    for group, categories in SOURCES.items():
+        mark = rng.random()
+        rows = [int(k) for name in categories for k in index.shelves.get(name, ())]
+        rows = [k for k in rows if style and index.styles[k] == style] or rows
+        if rows:
+            found[group] = finish_of(index.asset_ids[rows[int(mark * len(rows))]])
+    return found
+
+
+def sets(categories: Sequence[str], positions: Floats) -> list[list[int]]:
+    """Return the groups (indices, two or more each) of proposals at `positions` (P, 3) [m] that are to be one model."""
+    groups: dict[tuple[str, int], list[int]] = {}
+    for k, category in enumerate(categories):
+        partners, reach = SETS.get(category, ((), 0.0))
+        near = [(float(np.linalg.norm(positions[j, :2] - positions[k, :2])), j) for j, other in enumerate(categories) if other in partners]
+        if near and min(near)[0] <= reach:
+            groups.setdefault((category, min(near)[1]), []).append(k)
+    return [group for group in groups.values() if len(group) > 1]
+
+
+def tasteful(
+    index: AssetIndex,
+    taste: Taste,
+    categories: Sequence[str],
+    sizes: Floats,
+    latents: NDArray[np.float32] | Floats,
+    positions: Floats,
+    finish_of: FinishOf,
+) -> list[Match | None]:
+    """Return an asset for each of P asks, None where the library has nothing of that category: the nearest that suits the taste.
+
+    `sizes` (P, 3) [m], `latents` (P, 32), `positions` (P, 3) [m]. Sets ask for one thing, the mean of theirs. Of the `shortlist`
+    nearest assets, those of another style being farther, that is taken which is nearest with its finish counted in.
+    """
+    asked, shapes = np.array(sizes, float), np.array(latents, float)
+    for group in sets(categories, positions):
+        asked[group], shapes[group] = asked[group].mean(0), shapes[group].mean(0)
+    s, favoured = index.settings, index.favouring(taste.style, wished=taste.wished)
+    found: list[Match | None] = []
+    for k, category in enumerate(categories):
+        shelf = index.shelves.get(category)
+        if shelf is None:
+            found.append(None)
+            continue
+        far = favoured.distance(shelf, asked[k : k + 1], shapes[k : k + 1])[0]
+        best = np.argsort(far, kind="stable")[: s.shortlist]
+        finish = taste.finishes.get(GROUPS.get(category, ""))
+        off = np.zeros(len(best))
+        if finish is not None:
+            off = np.array([np.linalg.norm(finish_of(index.asset_ids[shelf[j]]) - finish) for j in best])
+        cost = far[best] + s.prefer_finish * np.minimum(np.nan_to_num(off) / STEP, MOST_STEPS)
+        j = int(best[cost.argmin()])
+        found.append(index.matched(int(shelf[j]), float(far[j]), asked[k]))
+    return found
