@@ -66,22 +66,21 @@ def _draped(x: tuple[float, float], d: float, top: float, drop: float, cloth: Fi
 def folded_towels(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a pile of folded towels, or three rolled ones."""
     w, d, h = size
+    made: tuple[Piece, ...] = ()
     if form == "rolled":
         r = min(w / 4, h / 3.6)
         spots = [(-r, r), (r, r), (0.0, r + 1.7 * r)]
-        made: tuple[Piece, ...] = ()
         for x, z in spots:
             roll = slab(circle(r, 16), (-d / 2, d / 2), 0.25 * r).turned("x", math.pi / 2).moved((x, 0, z))
             made += pieces("towel", roll, terry(rng, scheme))
         return Shape(made)
     count = max(2, round(h / 0.05))
-    made = ()
     for k in range(count):
         cloth = terry(rng, scheme)
         dx, dy = (float(v) for v in rng.uniform(-0.012, 0.012, 2))
-        z = (k * h / count, (k + 1) * h / count - 0.001)
+        span = (k * h / count, (k + 1) * h / count - 0.001)
         made += pieces(
-            "towel", cushion((-w / 2 + 0.012 + dx, w / 2 - 0.012 + dx), (-d / 2 + 0.012 + dy, d / 2 - 0.012 + dy), z, 0.02, 3), cloth
+            "towel", cushion((-w / 2 + 0.012 + dx, w / 2 - 0.012 + dx), (-d / 2 + 0.012 + dy, d / 2 - 0.012 + dy), span, 0.02, 3), cloth
         )
     return Shape(made)
 
