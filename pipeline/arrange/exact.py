@@ -37,7 +37,7 @@ def exact_poses(
             continue
         for wished in (items[i].wished, _alone(items[i], site, walls, settings)):  # who has come to a wall may find its anchor there
             bond = find_bond(i, items, wished, poses, lore)
-            found = None if bond is None else _bound(items[i], bond, items, poses, walls, settings)
+            found = None if bond is None else _bound(items[i], bond, items, poses, site, walls, settings)
             bonds[i], poses[i] = (bond, found) if found is not None else (None, wished)
             if found is not None:
                 break
@@ -45,11 +45,11 @@ def exact_poses(
 
 
 def _bound(
-    item: Item, bond: Bond, items: Sequence[Item], poses: Floats, walls: Sequence[Edge], settings: SeparateSettings
+    item: Item, bond: Bond, items: Sequence[Item], poses: Floats, site: Site, walls: Sequence[Edge], settings: SeparateSettings
 ) -> Floats | None:
     """Return the pose at the anchor, the back at the wall where it belongs to one; None where wall and anchor do not agree."""
     x, y, yaw = at_anchor(poses[bond.anchor], bond.local)
-    pose = np.array([x, y, item.wished[2], yaw])
+    pose = np.array([x, y, height(item, site, float(item.wished[2])), yaw])
     if bond.over:
         anchor = items[bond.anchor].placement
         top = float(poses[bond.anchor, 2] + anchor.size[2]) + 0.001

@@ -7,12 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.arrange import Site, separate
+from pipeline.arrange import Lore, Site, separate
 from pipeline.arrange.bonds import nearest
 from pipeline.entities.plan import Opening, Plan
 from pipeline.relations.arrangement import Thing
+from pipeline.relations.known import relations
 from pipeline.verify import Policy, verify_home
-from tests.arrange.known import LORE, RELATIONS, drafted
+from tests.arrange.known import LORE, RELATIONS, drafted, mode, pair
 from tests.geometry.furniture import LIBRARY, block, home, one_room
 
 ASSETS = {
@@ -114,3 +115,12 @@ def test_a_wardrobe_does_not_hide_a_window():
     assert wardrobe.position[1] < 3.4 or not 1.75 < wardrobe.position[0] < 3.45
     (low,) = arranged([drafted(ASSETS["chest"], 2.4, 3.7)], plan)
     assert low.position[:2] == pytest.approx([2.4, 3.74], abs=0.02)
+
+
+def test_a_lamp_over_a_table_hangs_from_the_ceiling():
+    """Whatever height it was drafted at: a bond says where in plan."""
+    lore = Lore(relations([pair("dining_table", "ceiling_lamp", mode("over", (0.0, 0.0, 0.0), ("middle", 0.0, 0.0, 0.0), 0.0))], []))
+    wished = [drafted(ASSETS["table"], 2.5, 2.0), drafted(ASSETS["lamp"], 2.6, 2.1, z=1.9, number=1)]
+    table, lamp = separate(Site.of(room(), "room"), wished, ASSETS, lore).placements
+    assert lamp.position[2] == pytest.approx(2.7 - 0.3)
+    assert abs(lamp.position[0] - table.position[0]) < 0.2
