@@ -64,7 +64,7 @@ def articulation_descent(codec: Codec, x0: Tensor, classes: Tensor, sweeps: Tens
     """Return the step (B, N, 8) down phi_articoll: position x, y and yaw move, size and height stay."""
     metric = codec.metric(x0[..., : YAW.stop], classes).detach().requires_grad_()
     with torch.enable_grad():
-        phi = articulated_collision(boxes_of(metric), classes < codec.classes, sweeps, rooms)
+        phi = articulated_collision(boxes_of(metric), classes < codec.classes, sweeps, rooms, s.slack)
         (gradient,) = torch.autograd.grad(phi.sum(), metric)
     step = torch.zeros_like(metric)
     move = -s.articulation_scale * gradient[..., :2]

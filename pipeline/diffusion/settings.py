@@ -73,13 +73,14 @@ class TrainSettings:
 class SampleSettings:
     """How rooms are sampled (section `sample` of params.yaml). Window limits are levels of T = 1000."""
 
-    evaluations: int = 20  # of the denoiser; 0: the paper's thousand levels, the reference
+    evaluations: int = 12  # of the denoiser; 0: the paper's thousand levels, the reference
     eta: float = 1.0  # noise of each step: 1 as in DDPM, 0 none (DDIM)
     batch: int = 16  # rooms per padded batch
     quantity: bool = True  # draw exactly as many objects as are asked for
     articulation: Articulation = "joints"  # what counts as extended state: joints' sweeps, the paper's heuristic, or no guidance
     articulation_scale: float = 0.5  # step along the descent of phi_articoll [m per m]
     articulation_below: float = 30.0
+    slack: float = 0.06  # what things may reach into each other at no cost [m]: furnished rooms do, and shapes are less than boxes
     turn_scale: float = 0.1  # step of the yaw, per step of the position
     clip: float = 0.15  # largest move in one guided step [m]
-    snap_below: float = 100.0  # from this level on objects take the size of the asset that they would retrieve
+    snap_below: float = 30.0  # from this level on objects take the size of the asset that they would retrieve

@@ -213,3 +213,12 @@ def test_a_new_size_keeps_the_back_where_it_is(norm):
     front = torch.tensor([math.sin(yaw), -math.cos(yaw)])
     torch.testing.assert_close(after[0, 0, 3:6], torch.tensor([1.2, 0.5, 0.9]), atol=1e-5, rtol=0)
     torch.testing.assert_close(after[0, 0, :2] - front * 0.25, -front * 0.3, atol=1e-5, rtol=0)
+
+
+def test_what_reaches_less_deep_than_the_slack_costs_nothing():
+    _, rooms = room()
+    there = torch.ones(1, 2, dtype=torch.bool)
+    for apart, free in ((0.95, True), (0.85, False)):
+        boxes = body([(0.0, 0.0, 1.0, 1.0, 0.0), (apart, 0.0, 1.0, 1.0, 0.0)])
+        assert float(articulated_collision(boxes, there, None, rooms)) > 0
+        assert (float(articulated_collision(boxes, there, None, rooms, slack=0.06)) == 0) == free
