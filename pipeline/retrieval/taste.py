@@ -30,13 +30,13 @@ GROUPS: Mapping[str, str] = {
     **dict.fromkeys(("kitchen_cabinet", "sink_cabinet", "wall_cabinet", "tall_unit"), KITCHEN),
     **dict.fromkeys(("multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa", "chaise_longue_sofa", "armchair"), SOFT),
 }
-# Of these all that stand at one of those in a room, within so far of it [m], are one model.
+# Of these all that are drafted nearest to one of those in a room, within so far of it [m], are one model: the arranger brings them to it.
 SETS: Mapping[str, tuple[tuple[str, ...], float]] = {
-    "dining_chair": (("dining_table",), 1.6),
-    "chinese_chair": (("dining_table",), 1.6),
+    "dining_chair": (("dining_table",), 2.5),
+    "chinese_chair": (("dining_table",), 2.5),
     "barstool": (("dining_table", "kitchen_cabinet"), 2.0),
-    "nightstand": (("double_bed", "single_bed", "kids_bed"), 2.2),
-    "corner_side_table": (("multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa"), 2.2),
+    "nightstand": (("double_bed", "single_bed", "kids_bed"), 3.5),
+    "corner_side_table": (("multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa"), 3.0),
 }
 
 

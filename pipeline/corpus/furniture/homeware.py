@@ -107,14 +107,15 @@ def bottle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
         return Shape(pieces("body", body, soap) + pieces("pump", [*head, spout], scheme.handle))
     if form == "shampoo":
         finish = Finish("plastic", shade(rng, color, 0.1), 0.35, density=900)
-        flask = slab(circle(r, 14, squash=0.62), (0.0, 0.86 * h), 0.008)
+        flask = [slab(circle(r, 14, squash=0.62), z) for z in ((0.0, 0.25 * h), (0.6 * h, 0.86 * h))]
         cap = slab(circle(0.6 * r, 12, squash=0.8), (0.86 * h, h), 0.003)
-        band = slab(circle(1.01 * r, 14, squash=0.64), (0.25 * h, 0.6 * h))
+        band = slab(circle(r, 14, squash=0.62), (0.25 * h, 0.6 * h))
         return Shape(pieces("body", flask, finish) + pieces("cap", cap, SHELL) + pieces("label", band, label))
     glass = Finish("dark_glass", (0.02, 0.05, 0.025) if form == "wine" else (0.30, 0.24, 0.05), 0.08, density=1400)
-    body = revolve([(0.95 * r, 0.0), (r, 0.02 * h), (r, 0.6 * h), (0.7 * r, 0.68 * h), (0.32 * r, 0.76 * h)], 14)
+    body = revolve([(0.95 * r, 0.0), (r, 0.02 * h), (r, 0.18 * h)], 14)
+    body += revolve([(r, 0.48 * h), (r, 0.6 * h), (0.7 * r, 0.68 * h), (0.32 * r, 0.76 * h)], 14)
     neck = slab(circle(0.32 * r, 12), (0.76 * h, h), 0.002)
-    band = slab(circle(1.01 * r, 14), (0.18 * h, 0.48 * h))
+    band = slab(circle(r, 14), (0.18 * h, 0.48 * h))
     return Shape(pieces("body", body, glass) + pieces("neck", neck, glass) + pieces("label", band, label))
 
 
