@@ -15,6 +15,7 @@ from pipeline.experiments import tables as paper
 from pipeline.experiments.dataset import dataset_figures, reject_counts
 from pipeline.experiments.document import write_report
 from pipeline.experiments.plans import plan_table, read_benchmark
+from pipeline.experiments.realism import beside, embeddings, realism_table
 from pipeline.experiments.rooms import spread, test_rooms
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.experiments.trials import Condition, Drafts, Trial, trial
@@ -23,6 +24,7 @@ from pipeline.homes.request import RoomJob
 from pipeline.homes.rows import Row
 from pipeline.manifest import write_bytes, write_json
 from pipeline.metrics.articulation import sweeps_of
+from pipeline.relations import files
 from schemas.objects import OBJECTS
 from schemas.openings import OPENINGS
 from schemas.rooms import ROOMS
@@ -55,12 +57,20 @@ def main(root: Path) -> None:
         "articulation": paper.articulation_table(rng, trials, sweeps_of(factory.library.joints), factory.library),
         "ablation": paper.ablation_table(rng, trials, settings.taus),
         "category": paper.category_table(trials, real, held_out, taxonomy.load().names),
+        "realism": realism(root, seed, settings, trials),
         "plan": plan,
     }
     write_json(root / "metrics" / "metrics.json", figures)
     for name, text in paper.curves(figures).items():
         write_bytes(root / "plots" / f"{name}.csv", text.encode())
     write_report(root, figures, reject_counts(root), factory, settings)
+
+
+def realism(root: Path, seed: int, settings: MetricsSettings, trials: Mapping[str, Trial]) -> dict[str, Any]:
+    """Put what was drafted for the split's floors, and what shipped, beside the rooms that stand there."""
+    drafted = {"unguided": trials[paper.ALL_PLAIN].drafted, "guided": trials[paper.ALL_GUIDED].drafted}
+    known = files.load(root / "data" / "tables" / "relations.json")
+    return realism_table(seed, beside(root, settings.split, drafted), known, embeddings(settings.inception))
 
 
 def measure(part: Callable[[], Any]) -> Any:

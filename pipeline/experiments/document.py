@@ -10,19 +10,21 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from pipeline import tables
+from pipeline import seeds, tables
 from pipeline.entities.home import Home
 from pipeline.errors import SfgenError
 from pipeline.execution import map_shards
+from pipeline.experiments import lineup
 from pipeline.experiments.dataset import RejectCount
 from pipeline.experiments.knobs import knob_picture, monotone
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.rows import homes_of
-from pipeline.manifest import write_bytes
+from pipeline.manifest import write_bytes, write_with
 from pipeline.report import baselines, calibration, planning, sections
 from pipeline.report.page import Picture, Section, render
 from pipeline.report.plots import Curve, lines
+from pipeline.report.realism import realism_section
 from schemas.objects import OBJECTS
 from schemas.openings import OPENINGS
 from schemas.rooms import ROOMS
@@ -60,12 +62,30 @@ def write_report(
         sections.walkable_section(figures["walkable"], rates["walkable"]),
         sections.category_section(figures["category"]),
         *_baselines(root),
+        realism_section(figures["realism"], lineups(root, folder, homes, factory, settings)),
         sections.training_section(_json(root / "metrics" / "encode.json"), _json(root / "metrics" / "train.json"), loss),
         sections.reject_section([_told(r) for r in rejects]),
     ]
     if found := _json(root / "metrics" / "calibration.json"):
         chapters.insert(-1, _calibration(folder, found))
     write_bytes(folder / "index.html", render("Homes for robots", LEAD, chapters).encode())
+
+
+def lineups(root: Path, folder: Path, homes: Sequence[Home], factory: Factory, settings: MetricsSettings) -> list[Picture]:
+    """Draw real rooms of the split and shipped ones beside each other, in two pictures: which is which, and the answer."""
+    rows = {t.name: tables.read(root / "data" / "tables" / f"{t.name}.parquet", t) for t in (SCENES, ROOMS, OPENINGS, OBJECTS)}
+    rows[SCENES.name] = [row for row in rows[SCENES.name] if row["split"] == settings.split]
+    shipped = [row for path in sorted((root / "data" / "shards" / ROOMS.name).glob("*.parquet")) for row in tables.read(path, ROOMS)]
+    types = {(row["scene_id"], row["room_id"]): row["layout_type"] for row in (*rows[ROOMS.name], *shipped)}
+    rng = seeds.generator(factory.seed, "lineup")
+    made = lineup.lineup(rng, lineup.by_type(homes_of(rows), types), lineup.by_type(homes, types), factory.library)
+    pictures = []
+    for name, caption, image in zip(
+        ("lineup", "lineup_told"), ("which five of each row are made?", "the answer"), made or (), strict=False
+    ):
+        write_with(folder / "plots" / f"{name}.png", image.save)
+        pictures.append(Picture(f"plots/{name}.png", caption))
+    return pictures
 
 
 def _calibration(folder: Path, found: Mapping[str, Any]) -> Section:

@@ -18,4 +18,5 @@ class MetricsSettings:
     gallery: int = 4  # homes that are path-traced
     gallery_samples: int = 48  # light paths per pixel
     gallery_width: int = 800  # px
+    inception: str = ""  # TorchScript file of Inception-v3, for FID, KID and SCA with its features beside our own net's; "": none
     baselines: bool = False  # train and compare the layout models of the peers as well (stage `baselines`)

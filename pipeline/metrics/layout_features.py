@@ -20,6 +20,7 @@ Floats = NDArray[np.float64]
 STEP = 0.08  # of gaps [m]
 LOW, HIGH = -3, 12  # steps: what is farther is far
 ABSENT = HIGH + 2.0
+GAPS = ("back", "side", "wall", "beside", "look")  # what is told for each kind of thing
 SKEWS = np.radians([1.0, 3.0, 8.0])
 
 
@@ -32,6 +33,11 @@ def features(rooms: Sequence[Arrangement]) -> Floats:
     """Return the features (R, F) of rooms."""
     names = taxonomy.load().names
     return np.stack([_row(room, names) for room in rooms]) if rooms else np.zeros((0, 0))
+
+
+def summaries(rooms: Sequence[Arrangement]) -> Floats:
+    """Return those of the features that are counts over the whole room (R, L): of kinds, gaps and skews."""
+    return features(rooms)[:, : -len(GAPS) * len(taxonomy.load().names)]
 
 
 def _row(room: Arrangement, names: Sequence[str]) -> Floats:

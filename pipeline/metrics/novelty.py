@@ -23,7 +23,7 @@ Json = dict[str, Any]
 
 ALONE = 1.0  # cost of a thing without a match, and the most that a match costs [m]
 NEAR = 0.05  # rooms of three things and more that are nearer are copies [m]
-LOOKED = 12  # training rooms that are looked at closely for each room: those with the most similar furniture
+LOOKED = 12  # training rooms that are looked at closely for each room: those with the most similar furniture, as far from the middle
 TURNS = tuple(np.array([[c, -s * m], [s, c * m]], float) for m in (1, -1) for c, s in ((1, 0), (0, 1), (-1, 0), (0, -1)))
 
 
@@ -34,8 +34,8 @@ def distances(rooms: Sequence[Arrangement], known: Sequence[Arrangement]) -> Flo
         own = [k for k, room in enumerate(rooms) if room.layout_type == kind]
         others = [room for room in known if room.layout_type == kind]
         if others:
-            counts, theirs = (_counts(group) for group in ([rooms[k] for k in own], others))
-            for k, row in zip(own, counts, strict=True):
+            ours, theirs = (_outlines(group) for group in ([rooms[k] for k in own], others))
+            for k, row in zip(own, ours, strict=True):
                 close = np.argsort(np.abs(theirs - row).sum(1), kind="stable")[:LOOKED]
                 made[k] = min(distance(rooms[k], others[j]) for j in close)
     return made
@@ -68,9 +68,20 @@ def novelty(made: Sequence[Arrangement], held_out: Sequence[Arrangement], train:
     }  # fmt: skip
 
 
-def _counts(rooms: Sequence[Arrangement]) -> Floats:
-    names = taxonomy.load().names
-    return np.array([[room.categories.count(name) for name in names] for room in rooms], float)
+def _outlines(rooms: Sequence[Arrangement]) -> Floats:
+    """Return for each room (R, 2 C) how many things of each kind it has, and how far they are from its middle on average [m].
+
+    Neither changes when a room is turned or mirrored: rooms that are near each other differ little in both.
+    """
+    names = {name: k for k, name in enumerate(taxonomy.load().names)}
+    made = np.zeros((len(rooms), 2 * len(names)))
+    for row, room in zip(made, rooms, strict=True):
+        kinds = np.array([names[name] for name in room.categories], int)
+        away = np.linalg.norm(room.position[:, :2] - (room.polygon.min(0) + room.polygon.max(0)) / 2, axis=1)
+        np.add.at(row, kinds, 1.0)
+        np.add.at(row, len(names) + kinds, away)
+        row[len(names) :] /= np.maximum(row[: len(names)], 1)
+    return made
 
 
 def _quantiles(values: Floats) -> Json:
@@ -81,4 +92,4 @@ def _quantiles(values: Floats) -> Json:
 
 
 def _copies(rooms: Sequence[Arrangement], found: Floats) -> int:
-    return sum(len(room.categories) >= 3 and value < NEAR for room, value in zip(rooms, found, strict=True))
+    return sum(len(room.categories) >= 3 and bool(value < NEAR) for room, value in zip(rooms, found, strict=True))

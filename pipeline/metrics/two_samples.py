@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from pipeline.metrics.intervals import Mean, Rate, rate
@@ -66,9 +65,13 @@ def _accuracy(fitted: Fitted, seed: int, real: Floats, made: Floats, real_rooms:
 def frechet(a: Floats, b: Floats) -> float:
     """Return the squared Fréchet distance between two Gaussians fitted to features (N, D), (M, D) (Heusel et al. 2017)."""
     cov_a, cov_b = np.cov(a, rowvar=False), np.cov(b, rowvar=False)
-    root = scipy.linalg.sqrtm(cov_a @ cov_b)
+    values, vectors = np.linalg.eigh(cov_a)
+    half = (
+        vectors * np.sqrt(np.maximum(values, 0))
+    ) @ vectors.T  # tr (AB)^1/2 = tr (A^1/2 B A^1/2)^1/2, which is symmetric: few rooms do no harm
+    shared = np.sqrt(np.maximum(np.linalg.eigvalsh(half @ cov_b @ half), 0)).sum()
     apart = a.mean(0) - b.mean(0)
-    return float(apart @ apart + np.trace(cov_a + cov_b - 2 * np.real(root)))
+    return float(apart @ apart + np.trace(cov_a + cov_b) - 2 * shared)
 
 
 def kernel_distance(rng: np.random.Generator, a: Floats, b: Floats) -> Mean:

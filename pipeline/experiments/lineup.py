@@ -1,0 +1,63 @@
+"""Real and made rooms side by side, from above: in an unlabelled order first, labelled in the next picture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from PIL import Image
+
+from pipeline.entities.asset import Asset
+from pipeline.entities.home import Home
+from pipeline.preview import contact_sheet, top_view
+
+TYPES = ("bedroom", "living_room", "living_dining_room", "dining_room", "kitchen", "bathroom", "kids_room", "study")
+EACH = 5  # rooms of each type and kind
+CELL = 190  # pixels
+Room = tuple[Home, str]  # a home, and the room of it that is shown
+
+
+def alone(home: Home, room_id: str) -> Home:
+    """Return the home that is left when one room is cut out of it."""
+    room = replace(home.plan.room(room_id), level=0)
+    lift = np.array([0.0, 0.0, home.plan.room(room_id).level * home.plan.storey_height])
+    openings = tuple(replace(o, level=0) for o in home.plan.openings if room_id in o.rooms)
+    placed = tuple(replace(p, position=p.position - lift) for p in home.in_room(room_id))
+    return replace(home, plan=replace(home.plan, rooms=(room,), openings=openings, entrance=room_id), placements=placed)
+
+
+def spread(rng: np.random.Generator, rooms: Sequence[Room]) -> list[Room]:
+    """Draw the rooms that are shown."""
+    return [rooms[k] for k in sorted(rng.permutation(len(rooms))[:EACH])]
+
+
+def lineup(
+    rng: np.random.Generator, real: Mapping[str, Sequence[Room]], made: Mapping[str, Sequence[Room]], assets: Mapping[str, Asset]
+) -> tuple[Image.Image, Image.Image] | None:
+    """Return the two pictures of rooms by type, a row for each type that both have; None where there is none."""
+    hidden: list[tuple[str, Image.Image]] = []
+    told: list[tuple[str, Image.Image]] = []
+    for kind in (kind for kind in TYPES if real.get(kind) and made.get(kind)):
+        row = [
+            (name, top_view(alone(*room), assets, CELL))
+            for name, rooms in (("real", real), ("made", made))
+            for room in spread(rng, rooms[kind])
+        ]
+        blank = Image.new("RGB", (CELL, CELL), (244, 244, 241))
+        row += [("", blank)] * (2 * EACH - len(row))
+        told += [(f"{name} {kind.replace('_', ' ')}" if name else "", picture) for name, picture in row]
+        hidden += [("", row[k][1]) for k in rng.permutation(len(row))]
+    if not told:
+        return None
+    return contact_sheet(hidden, 2 * EACH, CELL), contact_sheet(told, 2 * EACH, CELL)
+
+
+def by_type(homes: Iterable[Home], types: Mapping[tuple[str, str], str]) -> dict[str, list[Room]]:
+    """Return the furnished rooms of homes by their layout type; `types` by (scene_id, room_id)."""
+    found: dict[str, list[Room]] = {}
+    for home in homes:
+        for room in home.plan.rooms:
+            if home.in_room(room.room_id):
+                found.setdefault(types.get((home.scene_id, room.room_id), ""), []).append((home, room.room_id))
+    return found

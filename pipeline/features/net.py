@@ -1,0 +1,111 @@
+"""A small net of our own for plan views: from 64 x 64 pixels to 32 features.
+
+It was trained to tell what kind of room a plan view shows, how many things of each kind stand how far from walls and from
+each other (the layout features of `pipeline.metrics`), and how its furniture was disturbed (moved, turned, swapped): its
+features look at arrangement, which nets of photographs do not.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save
+from torch import Tensor, nn
+
+from pipeline.errors import ContentError
+from pipeline.manifest import digest, write_bytes
+
+FEATURES = 32
+CHANNELS = (16, 32, 64, 96)
+BATCH = 256
+
+
+class ViewNet(nn.Module):
+    """Four strided convolutions, mean and maximum over the plane, and a line to the features; three heads for training.
+
+    `centre` and `spread` (32,) are the features' mean and standard deviation over training rooms: what `embed` gives is standardised.
+    """
+
+    centre: Tensor
+    spread: Tensor
+
+    def __init__(self, rooms: int, states: int, layout: int) -> None:
+        super().__init__()
+        layers: list[nn.Module] = []
+        before = 3
+        for k, width in enumerate(CHANNELS):
+            kernel = 5 if k == 0 else 3
+            layers += [nn.Conv2d(before, width, kernel, 2, kernel // 2, bias=False), nn.BatchNorm2d(width), nn.ReLU()]
+            before = width
+        self.body = nn.Sequential(*layers)
+        self.line = nn.Linear(2 * before, FEATURES)
+        self.room, self.state, self.layout = (nn.Linear(FEATURES, count) for count in (rooms, states, layout))
+        self.register_buffer("centre", torch.zeros(FEATURES))
+        self.register_buffer("spread", torch.ones(FEATURES))
+
+    def features(self, views: Tensor) -> Tensor:
+        """Return the features (B, 32) of plan views (B, 64, 64, 3) in 8 bits."""
+        x = views.permute(0, 3, 1, 2).float() / 127.5 - 1
+        plane = self.body(x)
+        found: Tensor = self.line(torch.cat([plane.mean((2, 3)), plane.amax((2, 3))], 1))
+        return found
+
+    def forward(self, views: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """Return the logits of room kinds (B, R) and of states (B, S), and layout features (B, L)."""
+        found = self.features(views)
+        return self.room(found), self.state(found), self.layout(found)
+
+
+def embed(net: ViewNet, views: NDArray[np.uint8]) -> NDArray[np.float64]:
+    """Return the features (N, 32) of plan views (N, 64, 64, 3)."""
+    net.eval()
+    with torch.inference_mode():
+        parts = [(net.features(torch.from_numpy(views[k : k + BATCH])) - net.centre) / net.spread for k in range(0, len(views), BATCH)]
+    return np.asarray(torch.cat(parts).double().numpy()) if parts else np.zeros((0, FEATURES))
+
+
+def standardise(net: ViewNet, views: NDArray[np.uint8]) -> None:
+    """Let the net's features have mean 0 and standard deviation 1 over these views (N, 64, 64, 3)."""
+    found = torch.from_numpy(embed(net, views)).float()
+    net.centre += net.spread * found.mean(0)
+    net.spread *= found.std(0).clamp_min(1e-3)
+
+
+def header(rooms: Sequence[str], states: Sequence[str], categories: Sequence[str]) -> dict[str, str]:
+    """Return what weights must agree with: heads, and the vocabulary whose colours they know."""
+    return {"rooms": json.dumps(list(rooms)), "states": json.dumps(list(states)), "categories": digest(list(categories))}
+
+
+def store(path: Path, net: ViewNet, said: dict[str, str]) -> None:
+    """Write weights as safetensors."""
+    write_bytes(path, save({name: value.contiguous() for name, value in net.state_dict().items()}, said))
+
+
+def load(path: Path, said: dict[str, str]) -> ViewNet:
+    """Read weights. Raises ContentError where they are missing, broken, or made for another vocabulary or architecture."""
+    remedy = "make them with `python -m stages.features`"
+    if not path.is_file():
+        raise ContentError(f"{path} is missing", remedy)
+    try:
+        with safe_open(path, framework="pt") as handle:
+            found = handle.metadata() or {}
+            tensors = {name: handle.get_tensor(name) for name in handle.keys()}  # noqa: SIM118 - no mapping
+    except (OSError, SafetensorError) as error:
+        raise ContentError(f"{path} is no safetensors file ({error})", remedy) from error
+    odd = [key for key in said if found.get(key) != said[key]]
+    if odd:
+        raise ContentError(f"{path} was made for other {', '.join(odd)}", remedy)
+    try:
+        net = ViewNet(len(json.loads(said["rooms"])), len(json.loads(said["states"])), len(tensors["layout.bias"]))
+        net.load_state_dict(tensors)
+    except (RuntimeError, KeyError) as error:
+        raise ContentError(f"{path} does not fit the net ({str(error).splitlines()[0]})", remedy) from error
+    if not all(bool(torch.isfinite(value).all()) for value in tensors.values()):
+        raise ContentError(f"{path} holds numbers that are not finite", remedy)
+    return net

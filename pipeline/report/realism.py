@@ -1,0 +1,91 @@
+"""The chapter of the report that puts made rooms beside real ones."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pipeline.report.page import Picture, Section, TableView
+from pipeline.report.sections import share
+
+Json = Mapping[str, Any]
+
+TITLES = {"real": "real", "train": "real, of split train", "unguided": "drafts, unguided", "guided": "drafts, guided", "shipped": "shipped"}
+VOID = "Void for what it does not see: real rooms with things"
+
+
+def realism_section(table: Json, pictures: Sequence[Picture]) -> Section:
+    """Return relation rates, counts, classifiers, image metrics and novelty."""
+    found = table["relations"]
+    text = [
+        "Real: furnished rooms of the test split. Drafts: what the layout model draws on the same floors. Shipped: the rooms of the homes above, on floors of their own.",
+        "Harms are done to real rooms: a figure that does not see one of them (SCA of .8 and more, FID twice that of training rooms) is void for it.",
+        "Learnt relations are those that the training rooms show most clearly; no list of them is written by hand.",
+    ]
+    views = [view for name, figures in table["views"].items() for view in _views(name, figures)]
+    tables = [
+        _rates("Share of cases in which it holds", found["rates"]),
+        _rates("The strongest learnt relations: share of cases that stand in one of their modes", found["learnt"]),
+        _rates("Objects in a room; chairs in rooms with a dining table", {**found["objects"], "chairs": found["chairs"]}),
+        _forest(table["layout"]),
+        *views,
+        _novelty(table["novelty"]),
+    ]
+    return Section("Made rooms beside real ones", text, tables, pictures, wide=True)
+
+
+def _title(name: str) -> str:
+    return TITLES.get(name, name)
+
+
+def _rates(caption: str, figures: Json) -> TableView:
+    sets = list(next(iter(figures.values()), {}))
+    rows = [[name.replace("_", " "), *(_shown(row[key]) for key in sets), str(row["real"]["n"])] for name, row in figures.items()]
+    return TableView(caption, ("", *map(_title, sets), "real cases"), rows)
+
+
+def _shown(value: Json) -> str:
+    return share(value) if value["n"] else "-"
+
+
+def _forest(figures: Json) -> TableView:
+    rows = [[_title(name), share(value), str(value["n"])] for name, value in figures["made"].items()]
+    rows += [[f"harm: {name}", share(value), str(value["n"])] for name, value in figures["harm"].items()]
+    caption = "SCA of a random forest on layout features against real rooms: .5 is best."
+    return TableView(_warned(caption, figures), ("rooms", "accuracy", "rooms of both"), rows)
+
+
+def _views(name: str, figures: Json) -> list[TableView]:
+    rows = [
+        [
+            _title(key) if k == 0 else f"harm: {key}",
+            f"{v['fid']:.2f}",
+            f"{v['kid']['mean']:.4f} ({v['kid']['low']:.4f} to {v['kid']['high']:.4f})",
+            share(v["sca"]),
+        ]
+        for k, part in enumerate((figures["made"], figures["harm"]))
+        for key, v in part.items()
+    ]
+    caption = f"Plan views against those of real rooms, features of {name}."
+    return [TableView(_warned(caption, figures), ("rooms", "FID", "KID", "SCA"), rows)]
+
+
+def _warned(caption: str, figures: Json) -> str:
+    return f"{caption} {VOID} {', '.join(figures['blind_to'])}." if figures["blind_to"] else caption
+
+
+def _novelty(figures: Json) -> TableView:
+    rows = [
+        [
+            _title(name),
+            f"{v['made'].get('median', 0):.3f}",
+            f"{v['held_out'].get('median', 0):.3f}",
+            f"{v['statistic']:.3f}",
+            f"{v['p']:.3f}",
+            str(v["copies"]),
+            str(v["copies_held_out"]),
+        ]
+        for name, v in figures.items()
+    ]
+    header = ("rooms", "median", "of held-out rooms", "KS statistic", "p", "copies", "copies among held-out rooms")
+    return TableView("Distance to the nearest training room [m a thing]", header, rows)
