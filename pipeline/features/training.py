@@ -47,7 +47,7 @@ def train(
         for batch in batches:
             seen = _turned(rng, data[0][batch])
             room, state, found = net(seen)
-            loss = cross_entropy(room, data[1][batch]) + cross_entropy(state, data[2][batch]) + 3 * mse_loss(found, data[3][batch])
+            loss = cross_entropy(room, data[1][batch]) + 2 * cross_entropy(state, data[2][batch]) + 3 * mse_loss(found, data[3][batch])
             optimiser.zero_grad()
             loss.backward()
             optimiser.step()
