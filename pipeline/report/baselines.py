@@ -27,7 +27,7 @@ def baselines_section(found: Json) -> Section | None:
     """Return the tables of metrics/baselines.json; None where the baselines were not run."""
     if not found:
         return None
-    models, counts = found["models"], list(found["quantity"])
+    models, counts = {name: found["models"][name] for name in NAMES}, sorted(found["quantity"], key=int)
     rows = [
         [
             NAMES[name], share(row["objects"]), share(row["r_acoll"]["rooms"]), share(row["collision"]["col_obj"]),
