@@ -43,6 +43,7 @@ WALL_OFFERS, PAIR_OFFERS = WALL_MOVES + WALL_TURNS, PAIR_MOVES + PAIR_TURNS
 OWN_WAYS = (
     5  # directions that an object offers itself: noisy position, axis and front, estimated axis, and the way to the room's directions
 )
+MOST = 8.0  # of a clean channel, in standard deviations
 HIDDEN = -1e9  # score of what is not there
 Geometry = slice(0, 8)
 
@@ -184,14 +185,14 @@ class Denoiser(nn.Module):
             tokens, more = look(tokens, seen, self.codec.metric(guess, classes), rooms, keys, condition)
             answer = more if answer is None else answer.detach() + more
             answers.append(answer)
-            guess = (alpha * x[..., Geometry] - sigma * answer[..., Geometry]).detach()
+            guess = (alpha * x[..., Geometry] - sigma * answer[..., Geometry]).detach().clamp(-MOST, MOST)
         return tuple(answers)
 
     def expected(self, x: Tensor, classes: Tensor, level: Tensor, rooms: RoomBatch, code: FloorCode | None = None) -> Tensor:
-        """Return the expected clean channels x0 (B, N, 40)."""
+        """Return the expected clean channels x0 (B, N, 40), within what data can be: in rooms unlike any in training a step could else run away."""
         alpha, sigma = torch.sigmoid(level).sqrt()[:, None, None], torch.sigmoid(-level).sqrt()[:, None, None]
         answer: Tensor = self(x, classes, level, rooms, code)[-1]
-        return alpha * x - sigma * answer
+        return (alpha * x - sigma * answer).clamp(-MOST, MOST)
 
 
 def invariants(place: Tensor, axis: Tensor) -> Tensor:

@@ -43,10 +43,10 @@ class TuneSettings:
 class TrainSettings:
     """How the layout model is trained (section `train` of params.yaml)."""
 
-    start: Literal["released", "scratch"] = "scratch"  # released: from the weights in weights/, by `tune`
-    tune: TuneSettings = field(default_factory=TuneSettings)
     model: ModelSettings = field(default_factory=ModelSettings)
     inventory: InventorySettings = field(default_factory=InventorySettings)
+    start: Literal["released", "scratch"] = "scratch"  # released: from the weights in weights/, by `tune`
+    tune: TuneSettings = field(default_factory=TuneSettings)
     slots: int = 24  # most objects in a room; rooms with more are left out
     steps: int = 1500
     epochs: int = 0  # > 0: so many passes instead of `steps`

@@ -86,3 +86,12 @@ def test_every_pass_is_trained(net, noisy):
     sum((a**2).mean() for a in answers).backward()
     assert all(p.grad is not None for p in net.parameters())
     net.zero_grad()
+
+
+@torch.no_grad()
+def test_what_is_expected_stays_within_what_data_can_be(net, noisy):
+    rooms, classes, x, level = noisy
+    for far in (10.0, 1e4, 1e8):
+        x0 = net.expected(far * x, classes, level, rooms)
+        assert torch.isfinite(x0).all()
+        assert x0.abs().max() <= 8

@@ -15,6 +15,7 @@ SMALL = {
     "preprocess": {"workers": 1},
     "encode": {"start": "scratch", "steps": 3, "points": 256, "train_points": 128, "decoded_points": 64, "width": 16, "threads": 1},
     "train": {
+        "start": "scratch",
         "steps": 5,
         "objects": 64,
         "warmup": 2,
