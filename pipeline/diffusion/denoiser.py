@@ -185,14 +185,20 @@ class Denoiser(nn.Module):
             tokens, more = look(tokens, seen, self.codec.metric(guess, classes), rooms, keys, condition)
             answer = more if answer is None else answer.detach() + more
             answers.append(answer)
-            guess = (alpha * x[..., Geometry] - sigma * answer[..., Geometry]).detach().clamp(-MOST, MOST)
+            guess = bounded((alpha * x[..., Geometry] - sigma * answer[..., Geometry]).detach())
         return tuple(answers)
 
     def expected(self, x: Tensor, classes: Tensor, level: Tensor, rooms: RoomBatch, code: FloorCode | None = None) -> Tensor:
         """Return the expected clean channels x0 (B, N, 40), within what data can be: in rooms unlike any in training a step could else run away."""
         alpha, sigma = torch.sigmoid(level).sqrt()[:, None, None], torch.sigmoid(-level).sqrt()[:, None, None]
         answer: Tensor = self(x, classes, level, rooms, code)[-1]
-        return (alpha * x - sigma * answer).clamp(-MOST, MOST)
+        return bounded(alpha * x - sigma * answer)
+
+
+def bounded(x0: Tensor) -> Tensor:
+    """Cut clean channels (B, N, >= 8) at MOST; position and axis as vectors, so that the answer still turns with the room."""
+    place, axis = (v * (MOST / torch.linalg.vector_norm(v, dim=-1, keepdim=True).clamp_min(MOST)) for v in (x0[..., :2], x0[..., YAW]))
+    return torch.cat([place, x0[..., 2 : YAW.start].clamp(-MOST, MOST), axis, x0[..., YAW.stop :].clamp(-MOST, MOST)], -1)
 
 
 def invariants(place: Tensor, axis: Tensor) -> Tensor:

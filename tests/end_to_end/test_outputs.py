@@ -8,7 +8,7 @@ import checkout
 import pytest
 
 import sfgen
-from pipeline import tables
+from pipeline import tables, taxonomy
 from pipeline.entities.files import load_asset
 from pipeline.shards import TABLES, check
 from pipeline.usd import check_stage
@@ -75,9 +75,9 @@ def test_the_dataset_is_whole_and_loads(root):
         assert home.openings
         assert home.scene["collisions"] == 0
         assert home.scene["joints_clear"] == home.scene["joints"] == len(home.joints) > 0
-        small = [placed for placed in home.objects if placed.support]
+        small = [placed for placed in home.objects if placed.category in taxonomy.load().small]
         assert len(home.objects) - len(small) == home.scene["objects"]
-        assert {placed.support for placed in small} <= {placed.object_id for placed in home.objects}
+        assert {placed.support for placed in home.objects} <= {"", *(placed.object_id for placed in home.objects)}
 
 
 def test_stages_open_without_a_warning(root):
@@ -94,7 +94,7 @@ def test_a_home_simulates_and_nothing_flies_away(root, tmp_path):
     assert done.returncode == 0, done.stderr[-2000:]
     found = json.loads(done.stdout.splitlines()[-1])
     home = next(iter(sfgen.load(root / "data" / "shards")))
-    loose = sum(bool(placed.support) for placed in home.objects)  # each lies there with a free joint
+    loose = sum(taxonomy.load().categories[placed.category].loose for placed in home.objects)  # each lies there with a free joint
     assert found["joints"] == len(home.joints) + loose
     assert found["bodies"] > len(home.joints)
     assert found["moved"] < 0.05
