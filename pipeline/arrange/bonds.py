@@ -21,11 +21,13 @@ from pipeline.relations.frames import SIDES
 Floats = NDArray[np.float64]
 
 REACH, TURN = 0.4, math.radians(30)  # how far from a mode a relation is nearly held [m, rad]
+SURE, ADOPTED = 0.7, 3.0  # who of a relation this strong is astray belongs there all the same, from this far [m]
 OVER = float(SIDES.index("over"))
 FLAT = [0, 1, 3]  # x, y, yaw of a pose
 LEVER = 0.5  # metres that a radian counts
 TIGHT = 0.5  # of a mode's spans, this share about their middles is where poses are put
 SQUARE = math.radians(15)  # a turn against the anchor is made a quarter turn when it is this near to one
+KEPT, TURNED = 0.15, math.radians(15)  # off a mode by no more, a relation is kept [m, rad]
 ADJOINS = 0.7  # a member moves with its anchor when the gap between them is no wider [m]
 
 
@@ -42,10 +44,17 @@ class Bond:
 def find_bond(i: int, items: Sequence[Item], wished: Floats, poses: Floats, lore: Lore) -> Bond | None:
     """Return the bond of item `i`, wished at a pose (4,), to one of those that are larger, at their `poses` (N, 4) or where they were wished."""
     item = items[i]
+    larger = [j for j, other in enumerate(items) if other.mount == "floor" and (other.area, -j) > (item.area, -i)]
+    alike = [j for j in larger if items[j].placement.category == item.placement.category]
+    others = _best_bond(item, [j for j in larger if j not in alike], items, wished, poses, lore)
+    return others or _best_bond(item, alike, items, wished, poses, lore)  # chairs go with their table, not with each other
+
+
+def _best_bond(item: Item, anchors: Sequence[int], items: Sequence[Item], wished: Floats, poses: Floats, lore: Lore) -> Bond | None:
+    """Return the strongest and nearest bond of an item to one of some anchors."""
     best: tuple[float, Bond] | None = None
-    for j, other in enumerate(items):
-        if other.mount != "floor" or (other.area, -j) <= (item.area, -i):
-            continue
+    for j in anchors:
+        other = items[j]
         found = lore.modes(other.placement.category, item.placement.category)
         if found is None:
             continue
@@ -54,7 +63,7 @@ def find_bond(i: int, items: Sequence[Item], wished: Floats, poses: Floats, lore
             table = table[table[:, 0] == OVER]
         frames = (poses[j], other.wished)
         near = min((nearest(table, at[FLAT], other.half, wished[FLAT], item.half) for at in frames), key=_off)
-        if near[0] > REACH or near[1] > TURN:
+        if (near[0] > REACH or near[1] > TURN) and (strength < SURE or near[0] > ADOPTED):
             continue
         score = strength - _off(near)
         if best is None or score > best[0]:
@@ -163,3 +172,19 @@ def nearest(table: Floats, anchor: Floats, half: Floats, member: Floats, own: Fl
         best[0], best[1] = metres, radians
         best[2], best[3], best[4], best[5] = out * nx + along * ax, out * ny + along * ay, yaw, side
     return best
+
+
+def broken(bonds: Sequence[Bond | None], items: Sequence[Item], poses: Floats, there: NDArray[np.bool_], lore: Lore) -> list[int]:
+    """Return the objects that stand and have lost what they were bound to: the anchor is gone, or they are off every mode at it."""
+    lost = []
+    for i, bond in enumerate(bonds):
+        if bond is None or not there[i]:
+            continue
+        found = lore.modes(items[bond.anchor].placement.category, items[i].placement.category)
+        if not there[bond.anchor] or found is None:
+            lost.append(i)
+            continue
+        near = nearest(found[0], poses[bond.anchor][FLAT], items[bond.anchor].half, poses[i][FLAT], items[i].half)
+        if near[0] > KEPT or near[1] > TURNED:
+            lost.append(i)
+    return lost

@@ -29,7 +29,7 @@ GRID = 0.25  # of poses tried all over the room [m]
 STRIDE = 0.1  # of poses tried along walls [m]
 SEAM = 0.002  # between neighbours [m]
 ALONG = np.array([0.0, *(s * k for k in (0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8) for s in (1, -1))])
-OUT = np.array([0.0, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3])
+OUT = np.array([0.0, -0.06, -0.12, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3])
 
 
 def near_by(
@@ -83,7 +83,7 @@ def at_anchor_poses(item: Item, target: Floats, anchor: Item, at: Floats, lore: 
     steps = out[:, None, None] * OUT[None, None, :, None] + along[:, None, None] * ALONG[None, :, None, None]
     spots = (local[:, None, None] + steps).reshape(-1, 2)
     points = at[:2] + np.column_stack([c * spots[:, 0] - s * spots[:, 1], s * spots[:, 0] + c * spots[:, 1]])
-    aside = np.tile(ASIDE * np.abs(ALONG[:, None]) + OUT[None], (len(modes), 1, 1)).ravel()
+    aside = np.tile(ASIDE * np.abs(ALONG[:, None]) + np.abs(OUT[None]), (len(modes), 1, 1)).ravel()
     yaws = np.repeat(modes[:, 2], len(ALONG) * len(OUT))
     away = np.repeat(np.linalg.norm(modes[:, :2] - target[:2], axis=1), len(ALONG) * len(OUT))
     cost = BESIDE * away + aside + 0.5 * settings.turn_cost * turned(yaws, float(target[3]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,18 +22,18 @@ Floats = NDArray[np.float64]
 SPREAD = 0.12  # when a pose cuts the floor, poses nearer to it than this are not tried [m]; more after every try
 TRIES = 24  # poses whose floor is looked at per group
 UNIT = np.ones(3)
-FINE, ALOOF, CUT = "fine", "aloof", "cut"
+OUT_OF_REACH = (2.0, 0.7)  # cost of what a robot cannot open where it stands [m]; at its anchor: less than to leave it
 
 
 class Crowd:
-    """The objects of a room, of which those of `there` (N,) stand at `poses` (N, 4)."""
+    """The objects of a room, of which those of `there` (N,) stand at `poses` (N, 4); a relation holds those of `bound` where they are."""
 
-    def __init__(self, site: Site, items: list[Item], settings: SeparateSettings) -> None:
-        self.site, self.items, self.settings = site, items, settings
+    def __init__(self, site: Site, items: list[Item], settings: SeparateSettings, bound: Collection[int] = ()) -> None:
+        self.site, self.items, self.settings, self.bound = site, items, settings, frozenset(bound)
         self.world = make_world([item.shape for item in items], site.swung, site.polygon, site.ceiling)
         self.poses = np.array([item.wished for item in items]).reshape(-1, 4)
         self.there = np.zeros(len(items), np.bool_)
-        self.aloof: set[int] = set()
+        self.unreached: frozenset[int] = frozenset()
         label, self.doors = site.gate(site.bare)
         self.enters = self._enters(site.bare, label)
 
@@ -55,60 +56,61 @@ class Crowd:
         corners: Floats = np.array([[-w, -d], [w, -d], [w, d], [-w, d]]) @ np.array([[c, s], [-s, c]]) + (x, y)
         return corners
 
-    def nearest(self, group: Group, poses: Floats, costs: Floats) -> tuple[Floats, float] | None:
-        """Return the cheapest free pose of a group and its cost, whatever becomes of the floor; poses come cheapest first."""
-        totals, _ = self._totals(group, poses, costs, 0)
+    def nearest(self, group: Group, poses: Floats, costs: Floats, among: NDArray[np.bool_] | None = None) -> tuple[Floats, float] | None:
+        """Return the cheapest free pose of a group and its cost, whatever becomes of the floor; poses come cheapest first.
+
+        Free of what stands, or of the objects of `among` (N,), at which they were placed last.
+        """
+        totals, _ = self._totals(group, poses, costs, 0, self.there if among is None else among)
         k = int(np.argmin(np.round(totals, 9))) if len(totals) else 0
         return (poses[k], float(totals[k])) if len(totals) and np.isfinite(totals[k]) else None
 
-    def settle(self, group: Group, poses: Floats, costs: Floats) -> str:
-        """Let a group stand at the cheapest of its poses that is free and leaves the floor in one piece; CUT if there is none.
+    def settle(self, group: Group, poses: Floats, costs: Floats) -> bool:
+        """Let a group stand at the cheapest of its poses that is free and leaves the floor in one piece; tell whether there is one.
 
-        A pose at which nobody can stand before the group's own handles is taken when there is no better one: ALOOF.
+        What then has no handle within reach any more, the group itself or others, costs `OUT_OF_REACH` each.
         """
         start, tries = 0, 0
         failed: list[list[float]] = []
-        aloof: Floats | None = None
-        while start < len(poses) and tries < TRIES:
-            totals, start = self._totals(group, poses, costs, start)
+        best: tuple[float, Floats, frozenset[int]] | None = None
+        while start < len(poses) and tries < TRIES and (best is None or costs[start] < best[0]):
+            totals, start = self._totals(group, poses, costs, start, self.there)
             for k in np.argsort(np.round(totals, 9), kind="stable")[: int(np.isfinite(totals).sum())]:
+                if tries >= TRIES or (best is not None and totals[k] >= best[0]):
+                    break
                 apart = SPREAD * (1.0 + 0.15 * tries)
                 x, y, _, yaw = poses[k].tolist()
                 if any(math.hypot(x - f[0], y - f[1]) < apart and abs(math.remainder(yaw - f[2], math.tau)) < 0.3 for f in failed):
                     continue
                 self.stand(group, poses[k])
-                verdict = self.verdict(group.members)
-                if verdict == FINE:
-                    return FINE
+                found = self.out_of_reach()
                 self.leave(group)
-                if verdict == ALOOF and aloof is None:
-                    aloof = poses[k]
+                total = np.inf if found is None else float(totals[k]) + sum(OUT_OF_REACH[i in self.bound] for i in found - self.unreached)
+                if found is not None and (best is None or total < best[0]):
+                    best = total, poses[k], found
+                if found == self.unreached:
+                    break
                 failed.append([x, y, yaw])
                 tries += 1
-                if tries >= TRIES:
-                    break
-        if aloof is None:
-            return CUT
-        self.stand(group, aloof)
-        self.aloof.update(group.members)
-        return ALOOF
+        if best is None:
+            return False
+        self.stand(group, best[1])
+        self.unreached = best[2]
+        return True
 
-    def verdict(self, newcomers: NDArray[np.int64]) -> str:
-        """Judge the floor: the doors must stay joined, and before what opens there must be a robot's place.
+    def out_of_reach(self) -> frozenset[int] | None:
+        """Return the objects that stand and open, and have no handle within a robot's reach; None where the floor falls apart.
 
-        `ALOOF`: only `newcomers` cannot be stood at. That is better than nothing there.
+        It does when doors are no longer joined, or the robot does not get from them into the room.
         """
         walked = self.site.walk(self._bodies())
         label, doors = self.site.gate(walked)
         if doors < self.doors or (self.enters and not self._enters(walked, label)):
-            return CUT
-        new = set(newcomers.tolist())
-        others = [i for i in np.flatnonzero(self.there).tolist() if i not in new and i not in self.aloof]
-        if not all(self._usable(i, walked, label) for i in others):
-            return CUT
-        return FINE if all(self._usable(i, walked, label) for i in new) else ALOOF
+            return None
+        there = np.flatnonzero(self.there).tolist()
+        return frozenset(i for i in there if i in self.unreached or not self._usable(i, walked, label))
 
-    def _totals(self, group: Group, poses: Floats, costs: Floats, start: int) -> tuple[Floats, int]:
+    def _totals(self, group: Group, poses: Floats, costs: Floats, start: int, others: NDArray[np.bool_]) -> tuple[Floats, int]:
         settings = self.settings
         return free_poses(
             self.world,
@@ -118,7 +120,7 @@ class Crowd:
             costs,
             start,
             settings.candidates,
-            self.there,
+            others,
             settings.touch,
             settings.access_cost,
         )

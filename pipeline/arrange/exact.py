@@ -56,9 +56,16 @@ def _bound(
         if item.mount == "wall" and abs(top - item.wished[2]) < ON_TOP:
             pose[2] = top
         return pose
-    if item.mount == "floor" and item.habit.must:
-        return at_wall(item, pose, walls, LOOSE, settings.turn_cost)
-    return pose
+    if item.mount != "floor" or not item.habit.must:
+        return pose
+    found = at_wall(item, pose, walls, LOOSE, settings.turn_cost)
+    if not bond.rigid:
+        return found
+    if found is None:
+        return pose
+    back = np.array([-math.sin(found[3]), math.cos(found[3])])
+    depth = float((found[:2] - pose[:2]) @ back)
+    return np.array([*(pose[:2] + depth * back), pose[2], found[3]])  # beside its anchor, even where the wall ends: then the group moves
 
 
 def _alone(item: Item, site: Site, walls: Sequence[Edge], settings: SeparateSettings) -> Floats:

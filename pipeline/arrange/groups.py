@@ -28,11 +28,6 @@ class Group:
         """The anchor."""
         return int(self.members[0])
 
-    def less(self, member: int) -> Group:
-        """Return the group without one of its members, not the anchor."""
-        kept = self.members != member
-        return Group(self.members[kept], self.offsets[kept])
-
 
 def groups(items: Sequence[Item], poses: Floats, bonds: Sequence[Bond | None], runs: Sequence[Sequence[int]] = ()) -> list[Group]:
     """Return the groups of a room at their exact poses; `runs` are kitchen units that stand as one. Each object is in one group."""

@@ -7,14 +7,15 @@ is started over with an eye on the floor at every step, those first that found n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.crowd import FINE, Crowd
+from pipeline.arrange.bonds import Bond, broken
+from pipeline.arrange.crowd import Crowd
 from pipeline.arrange.exact import exact_poses
 from pipeline.arrange.item import Item, make_item
 from pipeline.arrange.lore import Lore
@@ -43,7 +44,8 @@ class Found(Protocol):
         """Factor (3,) on the asset's own size."""
 
 
-ALOOF_ROUNDS = 3  # rounds that are spent on objects whose only fault is that their handles are out of reach
+BROKEN, UNREACHED = 0.6, 0.3  # a broken relation, and what a robot cannot open, beside 1 for a lost object of no size
+HIDDEN_ROUNDS = 3  # rounds that are spent on what a robot cannot open and no relation holds there
 Smaller = Callable[[str, float], Found | None]  # (asset_id, area [m2]) -> the closest asset with a smaller footprint
 
 
@@ -91,36 +93,40 @@ def separate(
     best: dict[int, Placement] = {}
     least: tuple[float, float] | None = None
     for number in range(max(1, settings.rounds)):
-        crowd, sound = _arranged(site, items, first, lore, settings, number)
+        crowd, sound, bonds = _arranged(site, items, first, lore, settings, number)
+        apart = broken(bonds, items, crowd.poses, crowd.there, lore)
         there = {i: items[i].at(crowd.poses[i]) for i in np.flatnonzero(crowd.there).tolist()}
         lost = [i for i in range(len(items)) if i not in there]
-        score = _score(there, crowd.aloof, items)
+        score = _score(there, items, BROKEN * len(apart) + UNREACHED * len(crowd.unreached))
         if (sound or number == settings.rounds - 1) and (least is None or score < least):
             best, least = there, score
-        if sound and not lost and (not crowd.aloof or number >= ALOOF_ROUNDS):
+        hidden = [i for i in crowd.unreached if number == 0 or (bonds[i] is None and number < HIDDEN_ROUNDS)]
+        if sound and not (lost or apart or hidden):
             break
-        for i in lost if number else ():
-            losses[i] += 1
-            # To be the first and still find no place is to be too large.
-            if losses[i] > 1 and smaller is not None:
-                items[i] = _exchanged(items[i], assets, lore, settings, smaller) or items[i]
-        first = [*lost, *(i for i in crowd.aloof if i not in lost), *(i for i in first if i not in lost and i not in crowd.aloof)]
+        if number and smaller is not None:
+            for i in (*lost, *apart):
+                losses[i] += 1
+            # To be the first and still find no place, or none at the anchor, is to be too large.
+            crowded = [i for i in (*lost, *apart) if losses[i] > (i in lost)]
+            changed = _exchange(items, crowded, assets, lore, settings, smaller)
+            if not (lost or changed or hidden):
+                break
+        first = [*lost, *(i for i in hidden if number and i not in lost), *(i for i in first if i not in (*lost, *hidden))]
     return _separated(asked, best, keep_count=keep_count)
 
 
 def _arranged(
     site: Site, items: list[Item], first: Sequence[int], lore: Lore, settings: SeparateSettings, number: int
-) -> tuple[Crowd, bool]:
-    """Arrange a room once; return who stands where, and whether the floor is sound: after round 0 it is looked at for each group."""
+) -> tuple[Crowd, bool, list[Bond | None]]:
+    """Arrange a room once; return who stands where, whether the floor is sound (looked at for each group after round 0), the bonds."""
     walls = edges(site)
     runs, laid = lay_runs(items, walls, site)
     poses, bonds = exact_poses(items, site, walls, lore, settings, laid)
-    crowd = Crowd(site, items, settings)
+    crowd = Crowd(site, items, settings, [i for i, bond in enumerate(bonds) if bond is not None])
     settle_all(crowd, Draft(poses, bonds, runs, walls, lore), first, careful=number > 0, bulk=number <= 1)
-    if number > 0:
-        return crowd, True
-    verdict = crowd.verdict(np.flatnonzero(crowd.there))
-    return crowd, verdict == FINE
+    found = crowd.out_of_reach()
+    crowd.unreached = found or frozenset()
+    return crowd, number > 0 or found is not None, bonds
 
 
 def _separated(asked: Sequence[Item], best: Mapping[int, Placement], *, keep_count: bool) -> Separated:
@@ -136,11 +142,25 @@ def _separated(asked: Sequence[Item], best: Mapping[int, Placement], *, keep_cou
     return Separated(tuple(best[i] for i in kept), tuple(rejects), moved, keep_count and len(kept) < len(asked))
 
 
-def _score(placed: Mapping[int, Placement], aloof: Collection[int], items: Sequence[Item]) -> tuple[float, float]:
-    """Return (what is left out or out of reach, total displacement): less is better. Beds weigh more than plants."""
+def _score(placed: Mapping[int, Placement], items: Sequence[Item], faults: float) -> tuple[float, float]:
+    """Return (faults and what is left out, total displacement): less is better. Beds weigh more than plants."""
     lost = sum(1.0 + float(np.prod(items[i].placement.size[:2])) for i in range(len(items)) if i not in placed)
     moved = sum(float(np.linalg.norm(p.position[:2] - items[i].wished[:2])) for i, p in placed.items())
-    return round(lost + 0.5 * len(aloof), 6), round(moved, 6)
+    return round(lost + faults, 6), round(moved, 6)
+
+
+def _exchange(
+    items: list[Item], crowded: Sequence[int], assets: Mapping[str, Asset], lore: Lore, settings: SeparateSettings, smaller: Smaller
+) -> bool:
+    """Exchange objects for smaller assets, and with each all that are of one model with it; tell whether any was."""
+    changed = False
+    for name in sorted({items[i].placement.asset_id for i in crowded}):
+        alike = [i for i, item in enumerate(items) if item.placement.asset_id == name]
+        made = {i: _exchanged(items[i], assets, lore, settings, smaller) for i in alike}
+        for i, item in made.items():
+            items[i] = item or items[i]
+            changed |= item is not None
+    return changed
 
 
 def _exchanged(item: Item, assets: Mapping[str, Asset], lore: Lore, settings: SeparateSettings, smaller: Smaller) -> Item | None:

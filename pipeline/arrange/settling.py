@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import Bond, at_anchor
 from pipeline.arrange.candidates import ALONE, at_anchor_poses, everywhere, hides, near_by
-from pipeline.arrange.crowd import CUT, FINE, Crowd
+from pipeline.arrange.crowd import Crowd
 from pipeline.arrange.groups import Group, group_of, groups
 from pipeline.arrange.item import wrapped
 from pipeline.arrange.lore import Lore
 from pipeline.arrange.walls import Edge
-from pipeline.arrange.world import FREE, conflicts
+from pipeline.arrange.world import FREE, conflicts, put
 
 Floats = NDArray[np.float64]
 
@@ -46,7 +46,10 @@ def settle_all(crowd: Crowd, draft: Draft, first: Sequence[int], *, careful: boo
     """
     pairs, alone = conflicts(crowd.world, draft.poses, crowd.settings.touch)
     whole = groups(crowd.items, draft.poses, draft.bonds, draft.runs)
-    made, strays = _consistent(whole, pairs)
+    made, strays, poses = _fitted(crowd, draft, whole, pairs)
+    if not np.array_equal(poses, draft.poses):
+        draft = replace(draft, poses=poses)
+        pairs, alone = conflicts(crowd.world, poses, crowd.settings.touch)
     at_fault = (alone != FREE) | np.array([hides(i, p, draft.walls) for i, p in zip(crowd.items, draft.poses, strict=True)], np.bool_)
     member = np.full(len(crowd.items), -1)
     for number, group in enumerate(made):
@@ -56,7 +59,7 @@ def settle_all(crowd: Crowd, draft: Draft, first: Sequence[int], *, careful: boo
     free = [k for k in order if bulk and not (at_fault[made[k].members].any() or clash[made[k].members].any())]
     for k in free:
         crowd.stand(made[k], draft.poses[made[k].first])
-    if careful and free and crowd.verdict(np.flatnonzero(crowd.there)) != FINE:
+    if careful and free and crowd.out_of_reach() != frozenset():
         for k in free:
             crowd.leave(made[k])
         free = []
@@ -77,18 +80,37 @@ def _rank(crowd: Crowd, group: Group, draft: Draft, first: Sequence[int]) -> tup
     return again, 0 if run else 1, int(waits), -area * (OPENS if lead.shape.opens else 1.0), group.first
 
 
-def _consistent(whole: Sequence[Group], pairs: NDArray[np.bool_]) -> tuple[list[Group], list[int]]:
-    """Take out of each group who is in another of its members; return the groups, and who was taken out."""
-    made, strays = [], []
+def _fitted(crowd: Crowd, draft: Draft, whole: Sequence[Group], pairs: NDArray[np.bool_]) -> tuple[list[Group], list[int], Floats]:
+    """Move each member that is in another of its group to the next place at its anchor where it is not: a chair out from under the table.
+
+    Return the groups, the strays, who found none, and the poses (N, 4).
+    """
+    poses, made, strays = draft.poses.copy(), [], []
     for group in whole:
-        kept = group
+        kept = [group.first]
         for i in group.members[1:].tolist():
-            before = kept.members[: list(kept.members).index(i)]
-            if pairs[i, before].any():
-                kept = kept.less(i)
-                strays.append(i)
-        made.append(kept)
-    return made, strays
+            if pairs[i, kept].any():
+                place = _beside(crowd, draft, i, group, poses)
+                if place is None:
+                    strays.append(i)
+                    continue
+                poses[i] = place
+            kept.append(i)
+        made.append(group_of(kept, poses))
+    return made, strays, poses
+
+
+def _beside(crowd: Crowd, draft: Draft, i: int, group: Group, poses: Floats) -> Floats | None:
+    """Return the nearest pose of a member at its anchor that is free of the other members, and place it there."""
+    bond = draft.bonds[i]
+    if bond is None or bond.over:
+        return None
+    found, costs = at_anchor_poses(crowd.items[i], poses[i], crowd.items[bond.anchor], poses[bond.anchor], draft.lore, crowd.settings)
+    others = np.zeros(len(crowd.items), np.bool_)
+    others[group.members[group.members != i]] = True
+    best = crowd.nearest(group_of([i], poses), found, costs, others)
+    put(crowd.world, i, poses[i] if best is None else best[0])
+    return None if best is None else best[0]
 
 
 def _settle_group(crowd: Crowd, draft: Draft, group: Group, *, careful: bool) -> list[int]:
@@ -116,7 +138,7 @@ def _settle_one(crowd: Crowd, draft: Draft, i: int, *, careful: bool) -> None:
 
 def _put(crowd: Crowd, group: Group, poses: Floats, costs: Floats, *, careful: bool) -> bool:
     if careful:
-        return crowd.settle(group, poses, costs) != CUT
+        return crowd.settle(group, poses, costs)
     found = crowd.nearest(group, poses, costs)
     if found is not None:
         crowd.stand(group, found[0])

@@ -10,6 +10,9 @@ from pipeline.floorplan.furniture import meant
 from pipeline.floorplan.program import Furniture
 from pipeline.taxonomy import Taxonomy
 
+LIVING = frozenset({"living_room", "family_room"})
+TABLE = 18.0  # [m2] of a living room in which one dines, though nobody said so
+
 
 @dataclass(frozen=True, slots=True)
 class Request:
@@ -69,14 +72,11 @@ class RoomJob:
 def layout_type(room: Room, plan: Plan, taxonomy: Taxonomy) -> str | None:
     """Return the room type that the layout model knows this room as, or None when it stays empty.
 
-    A living room is where one dines if somebody said so; else in a home without a dining room, if it is large enough for a table.
+    A living room is where one dines if somebody said so; where a home has no other place for it, its largest is, if it has floor for a table.
     """
-    if "dining" in room.functions and room.type in {"living_room", "family_room"}:
-        return "living_dining_room"
-    if room.type in taxonomy.layout_types:
-        return room.type
-    known = taxonomy.plan_rooms.get(room.type)
-    dining = any(r.type == "dining_room" for r in plan.rooms)
-    if known == "living_room" and room.type in {"living_room", "family_room"} and not dining and room.area >= 18.0:
-        return "living_dining_room"
-    return known
+    if room.type in LIVING:
+        told = any(r.type == "dining_room" or "dining" in r.functions for r in plan.rooms)
+        largest = max((r for r in plan.rooms if r.type in LIVING), key=lambda r: r.area)
+        if "dining" in room.functions or (not told and room.room_id == largest.room_id and room.area >= TABLE):
+            return "living_dining_room"
+    return room.type if room.type in taxonomy.layout_types else taxonomy.plan_rooms.get(room.type)

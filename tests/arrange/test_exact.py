@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pipeline.arrange import Lore, Site, separate
-from pipeline.arrange.bonds import nearest
+from pipeline.arrange.bonds import broken, find_bond, nearest
+from pipeline.arrange.item import make_item
 from pipeline.entities.plan import Opening, Plan
 from pipeline.relations.arrangement import Thing
 from pipeline.relations.known import relations
@@ -124,3 +125,36 @@ def test_a_lamp_over_a_table_hangs_from_the_ceiling():
     table, lamp = separate(Site.of(room(), "room"), wished, ASSETS, lore).placements
     assert lamp.position[2] == pytest.approx(2.7 - 0.3)
     assert abs(lamp.position[0] - table.position[0]) < 0.2
+
+
+def test_a_bed_makes_way_for_the_nightstand_between_it_and_the_corner():
+    wished = [drafted(ASSETS["bed"], 1.2, 3.0), drafted(ASSETS["nightstand"], 0.3, 3.75, number=1)]  # 0.4 m from the wall to the bed
+    bed, stand = arranged(wished, room())
+    assert bed.position[0] == pytest.approx(0.8 + 0.5 + 0.08 + 0.01, abs=0.06)
+    assert local(stand, bed) == pytest.approx((-(0.8 + 0.25 + 0.08), 0.8), abs=0.06)
+
+
+def test_a_nightstand_that_strayed_comes_back_to_its_bed():
+    wished = [drafted(ASSETS["bed"], 2.4, 3.0), drafted(ASSETS["nightstand"], 0.25, 1.8, math.pi / 2, number=1)]
+    bed, stand = arranged(wished, room())
+    assert abs(local(stand, bed)[0]) == pytest.approx(0.8 + 0.25 + 0.08, abs=0.06)
+    assert stand.yaw == bed.yaw
+
+
+def test_chairs_go_with_their_table_and_not_with_each_other():
+    wished = [drafted(ASSETS["table"], 2.5, 2.0)]
+    wished += [drafted(ASSETS["chair"], 2.5 + x, 2.0 + y, turn, number=k + 1) for k, (x, y, turn) in enumerate(SEATS)]
+    items = [make_item(p, ASSETS, LORE, 0.5) for p in wished]
+    poses = np.array([item.wished for item in items])
+    assert [find_bond(k, items, items[k].wished, poses, LORE).anchor for k in range(1, len(items))] == [0] * len(SEATS)
+
+
+def test_a_relation_counts_as_broken_when_its_anchor_is_elsewhere_or_gone():
+    wished = [drafted(ASSETS["bed"], 2.4, 3.0), drafted(ASSETS["nightstand"], 1.27, 3.8, number=1)]
+    items = [make_item(p, ASSETS, LORE, 0.5) for p in wished]
+    poses = np.array([item.wished for item in items])
+    bonds = [find_bond(k, items, items[k].wished, poses, LORE) for k in range(2)]
+    both = np.ones(2, np.bool_)
+    assert broken(bonds, items, poses, both, LORE) == []
+    assert broken(bonds, items, poses + np.array([[0.5, 0, 0, 0], [0, 0, 0, 0]]), both, LORE) == [1]
+    assert broken(bonds, items, poses, np.array([False, True]), LORE) == [1]
