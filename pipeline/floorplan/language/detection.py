@@ -6,80 +6,12 @@ import functools
 import re
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, lexicon
+from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, lexicon, unread
 from pipeline.floorplan.language.spelling import resolve
 from pipeline.floorplan.language.text import HAN, Token, fold, tokenize
 
 ENOUGH = 0.5  # share of words that must be known
 REPAIR = 0.8  # what a mistyped word counts of a known one
-OTHERS = frozenset(  # words of languages that are not read, and that look like none of those that are
-    [
-        "tre",
-        "quattro",
-        "camera",
-        "camere",
-        "letto",
-        "bagno",
-        "bagni",
-        "cucina",
-        "soggiorno",
-        "appartamento",
-        "uma",
-        "dois",
-        "duas",
-        "quarto",
-        "quartos",
-        "cozinha",
-        "banheiro",
-        "banheiros",
-        "een",
-        "met",
-        "slaapkamer",
-        "slaapkamers",
-        "keuken",
-        "badkamer",
-        "woonkamer",
-        "och",
-        "sovrum",
-        "kok",
-        "badrum",
-        "vardagsrum",
-        "lagenhet",
-        "med",
-        "soverom",
-        "kjokken",
-        "baderom",
-        "og",
-        "stue",
-        "makuuhuone",
-        "makuuhuonetta",
-        "keittio",
-        "kylpyhuone",
-        "pokoje",
-        "pokoi",
-        "kuchnia",
-        "lazienka",
-        "mieszkanie",
-        "loznice",
-        "kuchyne",
-        "koupelna",
-        "byt",
-        "szoba",
-        "konyha",
-        "furdoszoba",
-        "lakas",
-        "yatak",
-        "odasi",
-        "mutfak",
-        "banyo",
-        "daire",
-        "ve",
-        "dormitoare",
-        "bucatarie",
-        "baie",
-        "cu",
-    ]
-)
 MOST = 400  # words that are looked at
 SURE, REPAIRED = 0.75, 80  # share of words that settles it; words that are repaired otherwise
 ROOMS_WEIGHT = 2.0
@@ -103,7 +35,7 @@ def detect(prompt: str) -> Language:
         scores = {language: _score(language, texts, repaired=True) for language in LANGUAGES if not _han(language)}
         best = max(scores, key=lambda x: scores[x][0])
     exact, close = scores[best][1], scores[best][2]
-    others = sum(t in OTHERS for t in texts)
+    others = sum(t in unread() for t in texts)
     share = (exact + REPAIR * close + min(han, 2)) / len(texts)
     if foreign > 0.3 * len(texts) or share < ENOUGH or (others > 1 and others >= 0.15 * len(texts)):
         raise RefusedError(_shown(prompt, "the prompt is in no language that is read here"), f"write it in {_read()}")

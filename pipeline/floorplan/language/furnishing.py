@@ -19,10 +19,10 @@ from pipeline.floorplan.language.vocabulary import (
     HAN_DIGITS,
     LEADING,
     MOST,
-    NUMBERS,
     ROOMS,
     STOPS,
     mended,
+    numbers,
     phrases,
     words,
 )
@@ -74,7 +74,7 @@ class Scan:
         """Whether word k names a room, and the prompt's language does not call that furniture so: "Büro" is no "buró"."""
         if self.language is None or self.words[k].start not in self.rooms:
             return False
-        if self.language != "zh" and self.words[k].start in self.inner:
+        if "characters" not in spoken(self.language).traits and self.words[k].start in self.inner:
             return True  # "a walk-in wardrobe"
         forms = lexicon()["names"][name].get(self.language, ())
         return not any(words(form.removeprefix("@"))[0].stem == self.words[k].stem for form in forms)
@@ -120,9 +120,9 @@ class Scan:
         text = self.words[k].text
         if FIGURES.fullmatch(text):
             return 1, min(float(text.replace(",", ".")), MOST)
-        if text in NUMBERS:
-            tens = NUMBERS[text]
-            ones = NUMBERS.get(self.words[k + 1].text, 0) if tens >= 20 and k + 1 < len(self.words) else 0
+        if text in numbers():
+            tens = numbers()[text]
+            ones = numbers().get(self.words[k + 1].text, 0) if tens >= 20 and k + 1 < len(self.words) else 0
             return (2, float(tens + ones)) if 0 < ones < 10 else (1, float(tens))
         return self._han(k)
 
@@ -191,7 +191,7 @@ class Scan:
     def _idle(self, k: int) -> bool:
         """Whether no wish begins at word k: it is no numeral and begins no phrase."""
         text = self.words[k].text
-        return not self.there[k] and text not in NUMBERS and text not in HAN_DIGITS and text not in "十百" and not text[0].isdigit()
+        return not self.there[k] and text not in numbers() and text not in HAN_DIGITS and text not in "十百" and not text[0].isdigit()
 
     def _put(self, kind: Kind, first: int, last: int, name: str = "", least: int = 0, most: int | None = None, value: float = 0.0) -> int:
         start, end = self.words[first].start, self.words[last - 1].end

@@ -19,10 +19,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from pipeline.errors import ContentError
 from pipeline.floorplan.furniture import lexicon as furniture
-from pipeline.floorplan.language.forms import Plurals, forms
-from pipeline.floorplan.language.german import numerals as german_numerals
-from pipeline.floorplan.language.meaning import Meaning
-from pipeline.floorplan.language.spanish import canonical, conjugated, further, present
+from pipeline.floorplan.language.inflection import INFINITIVE, Compounds, Plurals, Verbs, forms
 from pipeline.floorplan.language.text import bare, fold, words
 from pipeline.floorplan.program import RoomType, Style
 
@@ -31,8 +28,17 @@ Language = str  # the name of a file there
 LANGUAGES: tuple[Language, ...] = tuple(sorted(p.stem for p in FOLDER.glob("??.yaml")))
 Phrases = Mapping[str | int | float, str]
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the one in C is eight times as fast
-VERB = re.compile(r"\w+[aeií]r(se)?")  # a Spanish infinitive
 STRONG = frozenset({"room", "suite", "home"})
+
+
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """What a phrase means: its kind (section of the lexicon), a value within it, a number where there is one."""
+
+    kind: str
+    value: str = ""
+    number: float = 0.0
+    plural: bool = False
 
 
 class _Look(BaseModel):
@@ -52,6 +58,11 @@ class _Entries(BaseModel):
     name: str  # in English
     traits: frozenset[str] = frozenset()  # how it is written, where rules differ
     plurals: Plurals = Plurals()
+    compounds: Compounds = Compounds()
+    verbs_of: Verbs = Verbs()
+    spellings: dict[str, str] = {}  # other spellings of words
+    sounds: tuple[tuple[str, str], ...] = ()  # what is written, and how it sounds
+    homophones: dict[str, str] = {}  # characters that are written for one another
     rooms: dict[str, str]
     suites: dict[str, str] = {}
     homes: dict[str, str]
@@ -123,6 +134,8 @@ class Lexicon:
     language: Language
     name: str = ""
     traits: frozenset[str] = frozenset()
+    compounds: Compounds = field(default_factory=Compounds)
+    sounds: tuple[tuple[str, str], ...] = ()
     trie: dict[str, Any] = field(default_factory=dict)
     vocabulary: set[str] = field(default_factory=set)
     targets: tuple[str, ...] = ()
@@ -135,6 +148,7 @@ class Lexicon:
     range_from: frozenset[str] = frozenset()
     range_to: frozenset[str] = frozenset()
     bounds: Mapping[str, str] = field(default_factory=dict)
+    joins: frozenset[str] = frozenset()
     signs: Mapping[str, frozenset[str]] = field(default_factory=dict)  # words -> the closed classes that frames know them by
     tenses: Mapping[str, str] = field(default_factory=dict)  # forms of verbs -> the form that the phrases are made of
 
@@ -208,11 +222,11 @@ def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0
     yield from keyed("cue", e.cues)
     for key, phrases in e.conjugated.items():
         kind, _, value = key.partition(" ")
-        yield from ((form, Meaning(kind, value)) for p in split(phrases) if kind != "known" for form in conjugated(p))
+        yield from ((form, Meaning(kind, value)) for p in split(phrases) if kind != "known" for form in e.verbs_of.conjugated(p))
     yield from flat("reciprocal", e.reciprocal)
     yield from keyed("num", e.numerals)
-    if e.language == "de":
-        yield from german_numerals(e.numerals)
+    if e.compounds.tens:
+        yield from ((w, Meaning("num", str(n), float(n))) for w, n in e.compounds.numbers(e.numerals))
     yield from keyed("ord", e.ordinals)
     for key, phrases in e.units.items():
         quantity, factor = key.split()
@@ -235,33 +249,21 @@ def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0
     yield from flat("adverb", e.adverbs)
 
 
-CONTRACTED = {"de": "del", "a": "al"}
-
-
-def _spellings(phrase: str, language: str) -> Iterable[tuple[str, ...]]:
-    """Return the words of a phrase, also as they look when umlauts are dropped."""
+def _spellings(phrase: str, contracted: Mapping[str, str]) -> Iterable[tuple[str, ...]]:
+    """Return the words of a phrase, also as they look when umlauts and apostrophes are dropped, or its last word has an article in it."""
     usual = words(phrase)
-    if language == "en" and "n't" in phrase:
-        return (usual, words(phrase.replace("n't", "nt")))
-    if language == "es" and usual and usual[-1] in CONTRACTED and len(usual) > 1:  # "la mitad de" and "la mitad del"
-        return {usual, (*usual[:-1], CONTRACTED[usual[-1]]), words(bare(phrase)), (*words(bare(phrase))[:-1], CONTRACTED[usual[-1]])}
-    if phrase.isascii() or language == "zh":
-        return (usual,)
-    return {usual, words(bare(phrase))}
-
-
-SOUNDS = {
-    "厨": "橱处初出", "厅": "听厛庭亭停挺廷", "室": "式事是市试世视士适", "卫": "位喂味为未胃", "间": "见建件肩尖简", "房": "防放方芳仿坊", "阳": "羊洋杨样",
-    "卧": "握我沃窝", "书": "输叔舒树属", "廊": "郎朗浪狼栏", "走": "奏", "客": "克课可刻", "餐": "参残惨灿", "浴": "玉育遇域", "玄": "悬旋选炫", "关": "官观管",
-    "台": "太抬胎", "库": "裤苦酷", "衣": "一依医以", "帽": "冒貌", "储": "除处楚出", "藏": "臧仓", "物": "屋务", "洗": "西喜系", "生": "声升", "健": "建件", "身": "深伸",
-}  # fmt: skip
+    plain = words(bare(phrase)) if "n't" not in phrase else words(phrase.replace("n't", "nt"))
+    made = dict.fromkeys((usual, plain))
+    if len(usual) > 1 and usual[-1] in contracted:  # "la mitad de" and "la mitad del"
+        made |= dict.fromkeys((*p[:-1], contracted[p[-1]]) for p in (usual, plain))
+    return made
 
 
 def _misheard(e: _Entries) -> Iterator[tuple[str, Meaning]]:
-    """Return the Chinese names of rooms as they are written when one character is taken for another of the same sound."""
+    """Return the names of rooms as they are written when one character is taken for another of the same sound."""
     for phrase, meaning in _meanings(e):
         for k, char in enumerate(phrase if meaning.kind == "room" and 1 < len(phrase) < 4 else ""):
-            yield from ((phrase[:k] + wrong + phrase[k + 1 :], meaning) for wrong in SOUNDS.get(char, ""))
+            yield from ((phrase[:k] + wrong + phrase[k + 1 :], meaning) for wrong in e.homophones.get(char, ""))
             if k and len(phrase) == 3:  # two exchanged: "卫间生"
                 yield phrase[: k - 1] + char + phrase[k - 1] + phrase[k + 1 :], meaning
             if k + 1 < len(phrase):  # one twice: "客客厅"
@@ -314,20 +316,24 @@ def lexicon(language: Language) -> Lexicon:
             Style.model_validate(look.knobs)
     except (OSError, yaml.YAMLError, ValidationError) as error:
         raise ContentError(f"{path.name}: {str(error).splitlines()[0]}", "restore the file from the repository") from error
-    infinitives = sorted({p.split()[0] for phrases in entries.conjugated.values() for p in split(phrases) if VERB.fullmatch(p.split()[0])})
-    made = Lexicon(language, entries.name, entries.traits, tenses=canonical(infinitives))
-    made.vocabulary.update(made.tenses, (fold(w) for verb in infinitives for w in (verb, *present(verb), *further(verb))))
+    verbs = entries.verbs_of
+    infinitives = sorted(
+        {p.split()[0] for phrases in entries.conjugated.values() for p in split(phrases) if INFINITIVE.fullmatch(p.split()[0])}
+    )
+    made = Lexicon(language, entries.name, entries.traits, tenses=verbs.canonical(infinitives) | entries.spellings)
+    made.compounds, made.sounds = entries.compounds, entries.sounds
+    made.vocabulary.update(made.tenses, (fold(w) for verb in infinitives for w in (verb, *verbs.present(verb), *verbs.further(verb))))
     targets: set[str] = set()
     others: dict[str, float] = {}
     for phrase, meaning in _meanings(entries):
-        for spelt in _spellings(phrase, language):
+        for spelt in _spellings(phrase, verbs.contracted):
             _insert(made.trie, _told(spelt, made), meaning)
             made.vocabulary.update(spelt)
             if meaning.kind in REPAIRED or (meaning.kind == "cue" and meaning.value in CUES):
                 targets.update(w for w in spelt if w.isalpha() and len(w) >= 4)
             for w in spelt:
                 others[w] = min(FARTHER[meaning.kind in FUNCTION], others.get(w, 1.0))
-    for wrong, meaning in _misheard(entries) if language == "zh" else ():
+    for wrong, meaning in _misheard(entries) if entries.homophones else ():
         _insert(made.trie, words(wrong), meaning)
     made.vocabulary.update(w for p in split(entries.common) for w in words(p))
     blocked = {w for p in split(entries.fillers) if " " not in p for w in words(p)}
@@ -340,6 +346,7 @@ def lexicon(language: Language) -> Lexicon:
     made.range_from = frozenset(fold(w) for w in split(entries.range.get("from", "")))
     made.range_to = frozenset(fold(w) for w in split(entries.range.get("to", "")))
     made.bounds = {" ".join(words(p)): key for key, phrases in entries.bounds.items() for p in split(phrases)}
+    made.joins = frozenset((",", *(fold(w) for phrases in entries.joiners.values() for w in split(phrases))))
     made.signs = _signs(entries, made)
     others |= _brackets(entries, made)
     others |= {w: COMMON for w in made.vocabulary if w not in others}
@@ -348,12 +355,18 @@ def lexicon(language: Language) -> Lexicon:
     return made
 
 
+@functools.cache
+def unread() -> frozenset[str]:
+    """Return words of languages that are not read, and that look like none of those that are."""
+    return frozenset(split(LOADER((FOLDER / "others.yaml").read_text(encoding="utf-8")).get_single_data()["others"]))
+
+
 def _signs(entries: _Entries, lex: Lexicon) -> dict[str, frozenset[str]]:
     """Return the classes that the words of frames belong to."""
     signs: dict[str, set[str]] = {}
     for sign, phrases in entries.signs.items():
         for p in split(phrases):
-            for spelt in _spellings(p, lex.language):
+            for spelt in _spellings(p, entries.verbs_of.contracted):
                 signs.setdefault(" ".join(_told(spelt, lex)), set()).add(sign)
     return {text: frozenset(named) for text, named in signs.items()}
 
@@ -364,8 +377,8 @@ def _brackets(entries: _Entries, lex: Lexicon) -> dict[str, float]:
     for cue, phrases in entries.frames.items():
         for phrase in split(phrases):
             first, second = phrase.split("...")
-            for a in _spellings(first.strip(), lex.language):
-                pairs += [(_told(a, lex), _told(b, lex), cue) for b in _spellings(second.strip(), lex.language)]
+            for a in _spellings(first.strip(), {}):
+                pairs += [(_told(a, lex), _told(b, lex), cue) for b in _spellings(second.strip(), {})]
     pairs.sort(key=lambda f: -len(f[0]) - len(f[1]))
     lex.frames = {word: tuple(f for f in pairs if f[0][0] == word) for word in {f[0][0] for f in pairs}}
     lex.vocabulary.update(w for a, b, _ in pairs for w in (*a, *b))

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from pipeline.floorplan.language.german import completed
-from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, Lexicon, lexicon
-from pipeline.floorplan.language.meaning import Meaning
+from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, Lexicon, Meaning, lexicon
 from pipeline.floorplan.language.spelling import inflected, repair
 from pipeline.floorplan.language.text import Token, fold, tokenize
 
@@ -77,7 +75,7 @@ def listen(prompt: str, language: Language) -> Words:
     lex = lexicon(language)
     tokens = tokenize(prompt)
     written = [fold(t.text) for t in tokens]
-    tokens, texts = repair(tokens, completed(written, lex.vocabulary) if language == "de" else written, lex)
+    tokens, texts = repair(tokens, lex.compounds.completed(written, lex.vocabulary, lex.joins), lex)
     texts = [lex.tenses.get(t, OURSELVES.get(t, t) if k and texts[k - 1] == "se" else t) for k, t in enumerate(texts)]
     return Words(prompt, tokens, texts, lex)
 

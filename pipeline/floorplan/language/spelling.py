@@ -6,9 +6,7 @@ import functools
 import itertools
 from collections.abc import Sequence
 
-from pipeline.floorplan.language.german import split as compound
-from pipeline.floorplan.language.lexicon import FARTHER, Language, Lexicon, lexicon
-from pipeline.floorplan.language.meaning import Meaning
+from pipeline.floorplan.language.lexicon import FARTHER, Language, Lexicon, Meaning, lexicon
 from pipeline.floorplan.language.text import Token, bare, fold
 
 SHORTEST, LONG = 4, 8  # one error from SHORTEST letters on, two from LONG on
@@ -52,7 +50,7 @@ def resolve(word: str, language: Language, *, every: bool = False) -> tuple[str,
     lex = lexicon(language)
     if len(word) > LONGEST or len(word) < 3 or "\u3400" <= word[0] <= "\u9fff":
         return (word,)
-    if language == "es" and (alike := _alike(language).get(sound(word))):
+    if lex.sounds and (alike := _alike(language).get(sound(word, lex.sounds))):
         return (alike,)
     stem = _stem(word, lex)
     if stem:
@@ -78,25 +76,9 @@ def resolve(word: str, language: Language, *, every: bool = False) -> tuple[str,
     return (word,)
 
 
-SOUNDS = (
-    ("qu", "k"),
-    ("ce", "se"),
-    ("ci", "si"),
-    ("ch", "x"),
-    ("ll", "y"),
-    ("h", ""),
-    ("v", "b"),
-    ("z", "s"),
-    ("c", "k"),
-    ("x", "ch"),
-    ("ge", "je"),
-    ("gi", "ji"),
-)
-
-
-def sound(word: str) -> str:
-    """Return how a Spanish word sounds, near enough: "vaño" and "baño", "cosina" and "cocina" alike."""
-    for written, heard in SOUNDS:
+def sound(word: str, sounds: Sequence[tuple[str, str]]) -> str:
+    """Return how a word sounds, near enough: "vaño" and "baño", "cosina" and "cocina" alike."""
+    for written, heard in sounds:
         word = word.replace(written, heard)
     return word
 
@@ -107,7 +89,8 @@ def _alike(language: Language) -> dict[str, str]:
     lex = lexicon(language)
     made: dict[str, str] = {}
     for target in lex.targets:
-        made[sound(target)] = "" if sound(target) in made else target
+        heard = sound(target, lex.sounds)
+        made[heard] = "" if heard in made else target
     return made
 
 
@@ -134,7 +117,7 @@ def _stem(word: str, lex: Lexicon) -> str:
 def _split(word: str, lex: Lexicon) -> tuple[str, ...]:
     """Split "twobedroom", "openkitchen", "intothe" into known words."""
     targets = _strong(lex.language)
-    if lex.language == "de" and (parts := compound(word, lex.vocabulary, targets)):
+    if parts := lex.compounds.split(word, lex.vocabulary, targets):
         return parts
     for cut in range(len(word) - 2, 1, -1):
         a, b = word[:cut], word[cut:]

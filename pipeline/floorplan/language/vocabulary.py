@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from pipeline.floorplan.furniture import lexicon
-from pipeline.floorplan.language.lexicon import Language
+from pipeline.floorplan.language.lexicon import LANGUAGES, Language
 from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.spelling import resolve
 
@@ -18,17 +18,6 @@ WORD = re.compile(rf"\d+(?:[.,]\d+)?|[{HAN}]|[^\W\d_{HAN}]+(?:'[^\W\d_]+)?|[%.,;
 STOPS = frozenset(".;!?\n。;!?")
 COMMAS = STOPS | {",", "、"}
 ENDINGS = ("en", "es", "as", "os", "em", "e", "n", "s", "a", "o")
-NUMBERS = {
-    "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10, "eleven": 11, "twelve": 12,
-    "thirteen": 13, "fourteen": 14, "fifteen": 15, "sixteen": 16, "seventeen": 17, "eighteen": 18, "nineteen": 19, "twenty": 20, "thirty": 30,
-    "forty": 40, "fifty": 50, "sixty": 60, "seventy": 70, "eighty": 80, "ninety": 90, "pair": 2, "couple": 2, "dozen": 12,
-    "eins": 1, "zwei": 2, "drei": 3, "vier": 4, "funf": 5, "sechs": 6, "sieben": 7, "acht": 8, "neun": 9, "zehn": 10, "elf": 11, "zwolf": 12,
-    "dreizehn": 13, "vierzehn": 14, "funfzehn": 15, "sechzehn": 16, "zwanzig": 20, "dreissig": 30, "vierzig": 40, "funfzig": 50, "sechzig": 60,
-    "siebzig": 70, "achtzig": 80, "neunzig": 90,
-    "dos": 2, "tres": 3, "cuatro": 4, "cinco": 5, "seis": 6, "siete": 7, "ocho": 8, "nueve": 9, "diez": 10, "once": 11, "doce": 12, "trece": 13,
-    "catorce": 14, "quince": 15, "dieciseis": 16, "veinte": 20, "treinta": 30, "cuarenta": 40, "cincuenta": 50, "sesenta": 60, "setenta": 70,
-    "ochenta": 80, "noventa": 90,
-}  # fmt: skip
 FIGURES = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
 LEADING = frozenset({"through", "leading", "opening", "durch", "por"})  # behind a closet that one walks through
 MOST = 1e6  # of any amount
@@ -72,9 +61,8 @@ def words(text: str) -> list[Word]:
 
 def mended(found: Sequence[Word], language: Language | None) -> list[Word]:
     """Return the words with typing errors repaired, each in its place."""
-    if language in {None, "zh"}:
+    if language is None or "characters" in spoken(language).traits:
         return list(found)
-    assert language is not None
     known = spoken(language).vocabulary
     made: list[Word] = []
     for word in found:
@@ -88,6 +76,14 @@ def mended(found: Sequence[Word], language: Language | None) -> list[Word]:
 def stems() -> frozenset[str]:
     """Return the stems of all words that speak of furniture."""
     return frozenset(s for entries in phrases().values() for entry in entries for s in entry[0])
+
+
+@functools.cache
+def numbers() -> Mapping[str, int]:
+    """Return the number words of all languages; articles are none."""
+    articles = {fold(w) for kind in ("one", "article") for w in lexicon()["words"][kind]}
+    single = ((w, node[""]) for language in LANGUAGES for w, node in spoken(language).trie.items() if w.isascii() and "" in node)
+    return {w: int(m.number) for w, m in single if m.kind == "num" and w not in articles and m.number.is_integer()}
 
 
 @functools.cache

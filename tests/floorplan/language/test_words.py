@@ -3,10 +3,10 @@
 import pytest
 import yaml
 
+from pipeline.floorplan.language.inflection import Verbs
 from pipeline.floorplan.language.lexicon import FOLDER, LANGUAGES, lexicon
 from pipeline.floorplan.language.marks import listen, measured, segment
 from pipeline.floorplan.language.parser import parse
-from pipeline.floorplan.language.spanish import canonical, present
 from pipeline.floorplan.language.spelling import distance, resolve, slipped
 from pipeline.floorplan.language.text import clean, fold, tokenize
 
@@ -145,8 +145,9 @@ def _meanings(node):
     ],
 )
 def test_spanish_verbs_are_read_in_every_tense(infinitive, forms):
-    known = canonical([infinitive])
-    shown = {fold(p) for p in present(infinitive)}
+    verbs = Verbs.model_validate(yaml.safe_load((FOLDER / "es.yaml").read_text(encoding="utf-8"))["verbs_of"])
+    known = verbs.canonical([infinitive])
+    shown = {fold(p) for p in verbs.present(infinitive)}
     assert {known[fold(f)] for f in forms.split()} <= shown
 
 
