@@ -11,7 +11,7 @@ from pipeline.execution import single_thread
 from pipeline.floorplan import FloorProgram, describe, plan_json, request
 from pipeline.floorplan.assumptions import assumptions, notes
 from pipeline.floorplan.draw import svg
-from pipeline.floorplan.own import program_of, read_own
+from pipeline.floorplan.own import program_of, read_own, told
 from pipeline.floorplan.wishes import with_wishes
 from pipeline.homes.delivery import deliveries, report
 from pipeline.homes.factory import open_factory
@@ -32,8 +32,8 @@ def main(
     program, wish, repairs = asked_in_words(prompt, strict=strict) if source is None else asked_by_plan(root, source, house, prompt)
     single_thread()
     factory = open_factory(root, seed)
-    told = digest([wish.prompt, wish.program, wish.plan])
-    header = Header(seed, 1, factory.shard_size, factory.licence, {**factory.digests, "prompts": told})
+    asked = digest([wish.prompt, wish.program, wish.plan])
+    header = Header(seed, 1, factory.shard_size, factory.licence, {**factory.digests, "prompts": asked})
     announce_compiling()
     (outcome,) = factory.make([wish])  # before the folder is touched: a request may yet be refused
     used = sorted({p.asset_id for p in outcome.home.placements})
@@ -46,8 +46,7 @@ def main(
     sys.stdout.write(report(deliveries(FloorProgram.model_validate_json(outcome.home.program), outcome.rows, styles)))
     if source is None:
         sys.stderr.write(notes(program, assumptions(program)))
-    for repair in repairs:
-        sys.stdout.write(f"repaired: {repair['where']}: {repair['text']}\n")
+    sys.stdout.write(told(repairs))
     for file in sorted(p for p in out.glob("*/shard-00000/*") if p.is_file()):
         sys.stdout.write(f"{file}\n")
 
@@ -61,8 +60,7 @@ def asked_in_words(prompt: str, *, strict: bool = False) -> tuple[FloorProgram, 
 
 def asked_by_plan(root: Path, source: Path, house: str | None, prompt: str) -> tuple[FloorProgram, Request, list[dict[str, str]]]:
     """Return the program and the request of a plan of the user's own, and what was repaired in it; `prompt` wishes for furniture."""
-    own = read_own(source, house)
-    require_sound(root, own.plan)
+    own = require_sound(root, read_own(source, house))
     program = program_of(own.plan)
     if prompt:
         program = with_wishes(program, require_prompt(prompt))

@@ -14,7 +14,7 @@ from pipeline.floorplan.assumptions import assumptions, notes
 from pipeline.floorplan.characters import terminal
 from pipeline.floorplan.document import document_schema
 from pipeline.floorplan.draw import png, svg
-from pipeline.floorplan.own import program_of, read_own
+from pipeline.floorplan.own import program_of, read_own, told
 from pipeline.homes.soundness import require_sound
 from pipeline.manifest import write_bytes, write_json
 from stages.runner import announce_compiling
@@ -48,8 +48,7 @@ def main(
             announce_compiling()
             plan, assumed = solve(program, seed), assumptions(program)
         else:
-            own = read_own(source, house)
-            require_sound(root, own.plan)
+            own = require_sound(root, read_own(source, house))
             program, plan, repairs = program_of(own.plan), own.plan, own.repairs_json()
     except RefusedError as error:
         _write_json(json_path, refusal_json(error))
@@ -64,7 +63,7 @@ def main(
     else:
         sys.stderr.write(notes(program, assumed))
     if STDOUT not in {str(path) for path in targets}:
-        sys.stdout.write("".join(f"repaired: {r['where']}: {r['text']}\n" for r in repairs))
+        sys.stdout.write(told(repairs))
 
 
 def schema(_root: Path) -> None:

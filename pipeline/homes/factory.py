@@ -37,6 +37,7 @@ from pipeline.homes.library import Library
 from pipeline.homes.request import Request, RoomJob, layout_type
 from pipeline.homes.rows import Row, home_rows, reject_row
 from pipeline.homes.settings import ShardSettings
+from pipeline.homes.soundness import closed_rooms
 from pipeline.homes.things import placeable, small_things
 from pipeline.manifest import digest, sha256_file
 from pipeline.relations import files as relation_files
@@ -73,7 +74,7 @@ class Outcome:
 
 @dataclass
 class _Work:
-    """One home in the making. `tries` counts the tries of its rooms."""
+    """One home in the making. `tries` counts the tries of its rooms; `closed` are those that a plan of the user's own closes to the robot."""
 
     request: Request
     attempt: int
@@ -88,6 +89,7 @@ class _Work:
     tries: int = 0
     certificate: Certificate | None = None
     things: tuple[Placement, ...] = ()
+    closed: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -225,7 +227,8 @@ class Factory:
     def _started(self, request: Request, draft: HomeDraft | None, attempt: int = 0) -> _Work:
         if draft is None:
             prompt, program, plan, jobs = self.plan(request, attempt)
-            return _Work(request, attempt, prompt, program, plan, jobs, {job.room_id: job.attempt for job in jobs})
+            closed = closed_rooms(plan, self.verify) if request.plan else frozenset[str]()
+            return _Work(request, attempt, prompt, program, plan, jobs, {job.room_id: job.attempt for job in jobs}, closed=closed)
         jobs = [d.job for d in draft.drafts]
         last = {job.room_id: 0 for job in jobs}
         return _Work(request, 0, draft.prompt, draft.program, draft.plan, jobs, last, first={d.job.room_id: d for d in draft.drafts})
@@ -279,7 +282,7 @@ class Factory:
             laid, certificate, guilty = self._verdict(work, bare, laid)
             if guilty:
                 self._expel(work, guilty)  # things are laid anew on what is left
-            elif faults := certificate.faults(self.verify.policy):
+            elif faults := certificate.faults(self.verify.policy, work.closed):
                 self._replan(work, *faults[0])
             else:
                 work.things, work.certificate = laid, certificate
@@ -290,7 +293,7 @@ class Factory:
             home = replace(bare, placements=bare.placements + laid)
             with self.timed("verify"):
                 certificate = verify_home(home, self.library, self.verify)
-            guilty = guilty_objects(home, certificate)
+            guilty = guilty_objects(home, certificate, work.closed)
             small = {p.object_id for p in laid}
             furniture = {k: guilt for k, guilt in guilty.items() if k not in small}
             if furniture or not guilty:

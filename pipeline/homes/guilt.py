@@ -20,11 +20,12 @@ class Guilt:
     detail: str
 
 
-def guilty_objects(home: Home, certificate: Certificate) -> dict[str, Guilt]:
+def guilty_objects(home: Home, certificate: Certificate, closed: frozenset[str] = frozenset()) -> dict[str, Guilt]:
     """Return what must go, by object_id.
 
     Of two objects in each other the smaller goes, and small things before furniture; of a blocked joint what blocks it, or its owner where a wall does or the owner
-    is a small thing that lies on something else; of a room that cannot be entered the floor-standing object nearest to one of its doors.
+    is a small thing that lies on something else; of a room that cannot be entered the floor-standing object nearest to one of its doors,
+    unless the plan itself has `closed` it.
     """
     placed = {p.object_id: p for p in home.placements}
     guilty: dict[str, Guilt] = {}
@@ -48,7 +49,7 @@ def guilty_objects(home: Home, certificate: Certificate) -> dict[str, Guilt]:
             detail = f"{joint.object_id}/{joint.joint_id} stops at {joint.blocker}"
             guilty.setdefault(blamed.object_id, Guilt(blamed.room_id, "blocks_joint", detail))
     for room in certificate.rooms:
-        nearest = None if room.connected else _nearest_to_door(home, room.room_id)
+        nearest = None if room.connected or room.room_id in closed else _nearest_to_door(home, room.room_id)
         if nearest is not None:
             guilty.setdefault(nearest.object_id, Guilt(room.room_id, "blocks_way", f"no way into {room.room_id}"))
     return guilty

@@ -103,12 +103,14 @@ def closed(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapeP
 
     A lid closes where the box is smallest, which need be no limit; it opens from there the way that it was drawn.
     """
-    for number in range(len(joints)):
-        if joints[number].part_class == "hinge_lid" and math.isfinite(joints[number].upper):
-            q = _smallest(bodies, joints, number, CLOSED)
+    lids = [k for k, joint in enumerate(joints) if joint.part_class == "hinge_lid" and math.isfinite(joint.upper)]
+    if lids:
+        outlines = [_outline(body) for body in bodies]
+        for number in lids:
+            q = _smallest(outlines, joints, number, CLOSED)
             if q:
                 notes.append(("joint", "joint_rest_shifted", f"{joints[number].name}: drawn open, closed by {q:.4f}"))
-                _shift(bodies, joints, parts, number, q)
+                _shift(bodies, joints, parts, number, q, outlines)
                 shut = joints[number]
                 joints[number] = opening(replace(shut, lower=0.0) if q < 0 else replace(shut, upper=0.0))
     boxes = [_box(body) for body in bodies]
@@ -128,26 +130,27 @@ def closed(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapeP
 def folded(shape: ArticulatedShape) -> ArticulatedShape | None:
     """Return the shape with every joint where the object's box is smallest, None where that is how it is drawn."""
     bodies, joints, parts, notes = list(shape.bodies), list(shape.joints), list(shape.parts), list(shape.notes)
+    outlines = [_outline(body) for body in bodies]
     for number, joint in enumerate(shape.joints):
         if not math.isfinite(joint.upper):
             continue
-        q = _smallest(bodies, joints, number, FOLDED)
+        q = _smallest(outlines, joints, number, FOLDED)
         if q:
             notes.append(("joint", "joint_rest_shifted", f"{joint.name}: drawn spread out, folded by {q:.4f}"))
-            _shift(bodies, joints, parts, number, q)
+            _shift(bodies, joints, parts, number, q, outlines)
             joints[number] = opening(joints[number])
     if len(notes) == len(shape.notes):
         return None
     return replace(shape, bodies=tuple(bodies), joints=tuple(joints), parts=tuple(parts), notes=tuple(notes))
 
 
-def _smallest(bodies: Sequence[ShapeBody], joints: Sequence[ShapeJoint], number: int, share: float) -> float:
-    """Return the position of a joint at which the object's box is smallest, 0 where it is not below `share` of that at 0."""
+def _smallest(outlines: Sequence[Floats], joints: Sequence[ShapeJoint], number: int, share: float) -> float:
+    """Return the position of a joint at which the box around the bodies' outlines is smallest, 0 where it is not below `share` of that at 0."""
     joint = joints[number]
     moved = below(joints, joint.child)
-    still = [_outline(body) for k, body in enumerate(bodies) if k not in moved]
+    still = [outline for k, outline in enumerate(outlines) if k not in moved]
     rest = np.concatenate(still) if still else np.zeros((0, 3))
-    mine = np.concatenate([_outline(bodies[k]) for k in sorted(moved)])
+    mine = np.concatenate([outlines[k] for k in sorted(moved)])
 
     def volume(q: float) -> float:
         return float(np.prod(np.ptp(np.concatenate([rest, apply(joint_motion(joint, q), mine)]), axis=0)))
@@ -166,7 +169,10 @@ def _smallest(bodies: Sequence[ShapeBody], joints: Sequence[ShapeJoint], number:
 def _outline(body: ShapeBody) -> Floats:
     """Return the points (N, 3) of a body that lie furthest in one of many directions: the corners of what is angular."""
     points = body.points()
-    return points[np.unique(np.argmax(points @ DIRECTIONS.T, axis=0))] if len(points) else points
+    if not len(points):
+        return points
+    few = range(0, len(DIRECTIONS), 8)  # at a time: a mesh may have half a million points
+    return points[np.unique(np.concatenate([np.argmax(points @ DIRECTIONS[k : k + 8].T, axis=0) for k in few]))]
 
 
 def opening(joint: ShapeJoint) -> ShapeJoint:
@@ -218,12 +224,17 @@ def _screw(first: ShapeJoint, second: ShapeJoint, word: str, span: float) -> Sha
     return turn if slide.upper - slide.lower <= STROKE * span else slide
 
 
-def _shift(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapePart], number: int, rest: float) -> None:
+def _shift(
+    bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapePart], number: int, rest: float, outlines: list[Floats] | None = None
+) -> None:  # fmt: skip
+    """Move, in place, what hangs on a joint by `rest`; limits become relative to it."""
     joint = joints[number]
     T = joint_motion(joint, rest)
     moved = below(joints, joint.child)
     for body in moved:
         bodies[body] = bodies[body].moved(T)
+        if outlines is not None:
+            outlines[body] = apply(T, outlines[body])
     for k, other in enumerate(joints):
         if other.parent in moved:
             joints[k] = other.moved(T)

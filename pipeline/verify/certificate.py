@@ -120,8 +120,15 @@ class Certificate:
         total = sum(r.area for r in self.rooms)
         return sum(r.area * float(getattr(r, name)) for r in self.rooms) / total if total else 1.0
 
-    def faults(self, policy: Policy) -> tuple[tuple[str, str], ...]:
-        """Return what breaks the policy, as (reason code, detail); empty when the home may ship."""
+    def closed(self) -> frozenset[str]:
+        """Return the rooms that the robot does not get into."""
+        return frozenset(r.room_id for r in self.rooms if not r.connected)
+
+    def faults(self, policy: Policy, closed: frozenset[str] = frozenset()) -> tuple[tuple[str, str], ...]:
+        """Return what breaks the policy, as (reason code, detail); empty when the home may ship.
+
+        `closed` are rooms that the plan itself, given by somebody, closes to the robot: no fault of what stands in them.
+        """
         found: list[tuple[str, str]] = []
         if self.collisions > policy.collisions:
             found.append(("collision", ", ".join(o.object_id for o in self.objects if o.collides)))
@@ -130,8 +137,8 @@ class Certificate:
             found.append(("joint_blocked", ", ".join(stuck)))
         if self.reach < policy.reach - 1e-9:
             found.append(("out_of_reach", f"{self.reach:.3f} of the openable objects can be opened"))
-        if policy.connected and not all(r.connected for r in self.rooms):
-            found.append(("room_cut_off", ", ".join(r.room_id for r in self.rooms if not r.connected)))
+        if policy.connected and (lost := self.closed() - closed):
+            found.append(("room_cut_off", ", ".join(r.room_id for r in self.rooms if r.room_id in lost)))
         if policy.supported and not all(o.supported for o in self.objects):
             found.append(("unsupported", ", ".join(o.object_id for o in self.objects if not o.supported)))
         return tuple(found)

@@ -86,3 +86,20 @@ def test_a_plan_of_ones_own_is_furnished(factory):
     (home,) = factory.make([request], files=False)
     assert [r["polygon"] for r in home.rows["rooms"]] == [r.polygon.tolist() for r in own.plan.rooms]
     assert {"nightstand", "wardrobe"} <= {o["category"] for o in home.rows["objects"] if o["room_id"] == "bedroom"}
+
+
+def test_what_the_plan_itself_closes_to_the_robot_is_furnished(factory):
+    """A bath behind a door of 42 cm is no fault of what stands in it."""
+
+    def box(x0, y0, x1, y1):
+        return [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
+
+    rooms = [
+        {"id": "hall", "type": "hallway", "polygon": box(0, 0, 3, 3)},
+        {"id": "bath", "type": "bathroom", "polygon": box(3.1, 0, 5.5, 3)},
+    ]
+    own = read_own_json({"rooms": rooms, "doors": [{"rooms": ["hall", "bath"], "width": 0.42}], "entrance": "hall"})
+    request = Request(0, "", program_of(own.plan).model_dump_json(exclude_defaults=True), json.dumps(plan_json(own.plan)))
+    (home,) = factory.make([request], files=False)
+    assert {r["room_id"]: r["walkable_free"] > 0.05 for r in home.rows["rooms"]} == {"hall": True, "bath": False}
+    assert "toilet" in {o["category"] for o in home.rows["objects"] if o["room_id"] == "bath"}

@@ -57,6 +57,7 @@ class Ways:
     wide: bool = False  # openings from corner to corner
     panes: bool = False  # two windows that adjoin
     swung: float = 0.0  # leaves are meshes of type Door, open by so many rad
+    closet: float = 0.67  # m that the bathroom's door is wide
     litter: bool = False
     turn: int = 0
     types: dict = field(default_factory=dict)
@@ -78,7 +79,7 @@ def specs(ways):
     made = [
         Spec(("Hallway", "LivingDiningRoom"), south, 1.0, 3.0 if not ways.wide else 2.2, "portal" if ways.wide else "open", 2.3),
         Spec(("Hallway", "MasterBedroom"), north, 2.6, 3.37),
-        Spec(("Bathroom", "Hallway"), north, 4.8, 5.47),
+        Spec(("Bathroom", "Hallway"), north, 4.8, 4.8 + ways.closet),
         Spec(("Hallway", "KidsRoom"), north, 6.3, 7.07),
         Spec(("Hallway",), (-OUT, 4.12, 0, 5.32), 4.12 if ways.wide else 4.3, 5.32 if ways.wide else 5.17, "entrance", 2.05),
         Spec(("MasterBedroom",), (0, 9, 4, 9 + OUT), 1.0, 2.8, "window", 2.3, 0.6),

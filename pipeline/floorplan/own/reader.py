@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -49,6 +50,15 @@ class OwnPlan:
     def repairs_json(self) -> list[dict[str, str]]:
         """Return the repairs as plain data."""
         return [dataclasses.asdict(r) for r in self.repairs]
+
+    def and_found(self, findings: Iterable[Repair]) -> OwnPlan:
+        """Return it with what a judge has found besides."""
+        return OwnPlan(self.plan, (*self.repairs, *findings))
+
+
+def told(repairs: Iterable[Mapping[str, str]]) -> str:
+    """Return repairs and findings, as plain data, in lines for the terminal."""
+    return "".join(f"{'found' if r['code'] == 'closed' else 'repaired'}: {r['where']}: {r['text']}\n" for r in repairs)
 
 
 def read_own(path: Path, house: str | None = None) -> OwnPlan:

@@ -22,7 +22,7 @@ REMEDY = "see docs/floorplan.md for what a plan of your own must be"
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """Something of the file that was changed: a short `code`, the room or opening, and what was done, in words."""
+    """Something of the file that was changed, or (code "closed") found to be so: a short `code`, the room or opening, and what it is, in words."""
 
     code: str
     where: str

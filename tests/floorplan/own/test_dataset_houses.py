@@ -5,9 +5,9 @@ import pytest
 from pipeline import taxonomy
 from pipeline.floorplan import plan_json
 from pipeline.floorplan.document import PlanDocument
-from pipeline.floorplan.own import program_of, read_own_json
+from pipeline.floorplan.own import program_of, read_own_json, told
 from pipeline.homes.request import layout_type
-from pipeline.homes.soundness import check_sound
+from pipeline.homes.soundness import UnsoundError, check_sound, closed_rooms
 from pipeline.verify import VerifySettings
 from tests.floorplan.own import procthor_houses
 from tests.sources import front_houses
@@ -21,7 +21,7 @@ JAMBS = 0.05  # [m] that an opening from corner to corner loses
 def test_a_3d_front_house_is_a_plan(name):
     tree, truth = front_houses.house(name, front_houses.HOUSES[name])
     own = read_own_json(tree, name)
-    check_sound(own.plan, VerifySettings())
+    assert check_sound(own.plan, VerifySettings()) == ()
     PlanDocument.model_validate(plan_json(own.plan, program_of(own.plan), own.repairs_json()))
     types = {r.room_id: r.type for r in own.plan.rooms}
     left = [(o.kind, sorted(types[r] for r in o.rooms), o.width) for o in own.plan.openings]
@@ -64,12 +64,36 @@ def test_a_living_dining_room_is_one_whatever_else_is_there():
 def test_a_procthor_house_is_a_plan(seed):
     document = procthor_houses.house(seed)
     own = read_own_json(document, str(seed))
-    check_sound(own.plan, VerifySettings())
+    assert check_sound(own.plan, VerifySettings()) == ()
     doors = sum(o.kind != "window" for o in own.plan.openings)
     walls = sum(bool(w.get("empty")) for w in document["walls"]) // 2
     assert (len(own.plan.rooms), doors) == (len(document["rooms"]), len(document["doors"]) + walls)
     wide = sum(d["assetId"] == "Doorframe_1" for d in document["doors"])
     assert wide == 0 or any(r.code == "narrowed" for r in own.repairs) or wide == sum(o.kind == "portal" for o in own.plan.openings)
+
+
+@pytest.mark.parametrize("ways", [front_houses.Ways(closet=0.45), front_houses.Ways(closet=0.35, reveal="jambs", casing=False)])
+def test_a_closet_behind_a_narrow_door_is_closed_to_the_robot_and_the_house_is_a_plan(ways):
+    tree, _ = front_houses.house("x", ways)
+    own = read_own_json(tree, "x")
+    (found,) = check_sound(own.plan, VerifySettings())
+    assert (found.code, found.where) == ("closed", "r_bathroom_104")
+    assert f"is {ways.closet:.2f} m wide" in found.text
+    assert told(own.and_found([found]).repairs_json()).count("found: r_bathroom_104: a robot 0.50 m wide does not get into it") == 1
+    assert closed_rooms(own.plan, VerifySettings()) == {"r_bathroom_104"}
+
+
+def test_a_home_that_is_closed_for_the_larger_part_is_refused():
+    def box(x0, y0, x1, y1):
+        return [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
+
+    rooms = [
+        {"id": "hall", "type": "hallway", "polygon": box(0, 0, 2, 4)},
+        {"id": "room", "type": "living_room", "polygon": box(2.1, 0, 8, 4)},
+    ]
+    own = read_own_json({"rooms": rooms, "doors": [{"rooms": ["hall", "room"], "width": 0.4}], "entrance": "hall"})
+    with pytest.raises(UnsoundError, match=r"room: a robot 0.50 m wide does not get into it: \w+ is 0.40 m wide; that is more than half"):
+        check_sound(own.plan, VerifySettings())
 
 
 def test_a_room_that_nothing_leads_to_is_left_out_and_said():

@@ -1,0 +1,30 @@
+"""Where one dines: where somebody said so, else in the largest living room that has the floor for it."""
+
+import numpy as np
+import pytest
+
+from pipeline import taxonomy
+from pipeline.entities.plan import Plan, Room
+from pipeline.homes.request import layout_type
+
+
+def room(name, kind, area, functions=()):
+    return Room(name, kind, np.array([[0, 0], [area / 4, 0], [area / 4, 4], [0, 4.0]]), functions=functions)
+
+
+@pytest.mark.parametrize(
+    ("rooms", "expected"),
+    [
+        ([room("a", "living_room", 20)], ["living_dining_room"]),
+        ([room("a", "living_room", 17)], ["living_room"]),
+        ([room("a", "living_room", 17, ("dining",))], ["living_dining_room"]),
+        ([room("a", "living_room", 30), room("b", "dining_room", 10)], ["living_room", "dining_room"]),
+        ([room("a", "living_room", 30), room("b", "kitchen", 17, ("cooking", "dining"))], ["living_room", "kitchen"]),
+        ([room("a", "living_room", 20), room("b", "family_room", 24)], ["living_room", "living_dining_room"]),
+        ([room("a", "living_room", 30, ("dining",)), room("b", "dining_room", 10)], ["living_dining_room", "dining_room"]),
+        ([room("a", "garage", 20), room("b", "sunroom", 20)], [None, "living_room"]),
+    ],
+)
+def test_where_one_dines(rooms, expected):
+    plan = Plan(tuple(rooms), (), "a")
+    assert [layout_type(r, plan, taxonomy.load()) for r in rooms] == expected
