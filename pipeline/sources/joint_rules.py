@@ -172,7 +172,8 @@ def _outline(body: ShapeBody) -> Floats:
     if not len(points):
         return points
     few = range(0, len(DIRECTIONS), 8)  # at a time: a mesh may have half a million points
-    return points[np.unique(np.concatenate([np.argmax(points @ DIRECTIONS[k : k + 8].T, axis=0) for k in few]))]
+    furthest = np.unique(np.concatenate([np.argmax(points @ DIRECTIONS[k : k + 8].T, axis=0) for k in few]))
+    return np.asarray(points[furthest])
 
 
 def opening(joint: ShapeJoint) -> ShapeJoint:
