@@ -40,7 +40,8 @@ class Category:
 class Taxonomy:
     """Categories by name and the maps of room types.
 
-    `essentials` lists per layout type groups of categories; a room needs one of each group to serve as that room.
+    `essentials` lists per layout type groups of categories; a room needs one of each group to serve as that room;
+    `unwanted` per type of a plan's room what is not put there.
     `titles` maps kinds of 3D-FRONT's record titles to categories; `kinds` maps 3D-FUTURE's super-categories and the
     groups of those titles to the categories that they may be; `styles` and `materials` map lower case to the spelling.
     """
@@ -48,6 +49,7 @@ class Taxonomy:
     categories: Mapping[str, Category]
     layout_types: tuple[str, ...]
     essentials: Mapping[str, tuple[tuple[str, ...], ...]]
+    unwanted: Mapping[str, tuple[str, ...]]
     front_rooms: Mapping[str, str | None]
     plan_rooms: Mapping[str, str | None]
     titles: Mapping[str, str]
@@ -107,8 +109,18 @@ def load() -> Taxonomy:
         for name, entry in raw["categories"].items()
     }
     essentials = {kind: tuple(tuple(group) for group in groups) for kind, groups in raw["essentials"].items()}
+    unwanted = {kind: tuple(names) for kind, names in raw["unwanted"].items()}
     kinds = {name: tuple(members) for name, members in raw["kinds"].items()}
     styles, materials = ({n.lower(): n for n in raw[key]} for key in ("styles", "materials"))
     return Taxonomy(
-        categories, tuple(raw["layout_types"]), essentials, raw["front_rooms"], raw["plan_rooms"], raw["titles"], kinds, styles, materials
+        categories,
+        tuple(raw["layout_types"]),
+        essentials,
+        unwanted,
+        raw["front_rooms"],
+        raw["plan_rooms"],
+        raw["titles"],
+        kinds,
+        styles,
+        materials,
     )

@@ -13,7 +13,7 @@ from pipeline.arrange.item import Item
 from pipeline.arrange.lore import Lore
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
-from pipeline.arrange.walls import FAR, Edge, at_wall, square
+from pipeline.arrange.walls import FAR, Edge, at_wall, in_corner, square
 
 Floats = NDArray[np.float64]
 
@@ -76,7 +76,7 @@ def _alone(item: Item, site: Site, walls: Sequence[Edge], settings: SeparateSett
         reach = FAR if item.habit.must else settings.wall_reach
         found = at_wall(item, pose, walls, 10.0 if item.mount == "wall" else reach, settings.turn_cost)
         if found is not None:
-            return found
+            return in_corner(found, item, walls)
     large = item.habit.kind in {"bed", "table", "cabinet", "sofa"} and item.area > 0.5
     pose[3] = square(float(pose[3]), walls, math.pi if large or item.habit.must else math.radians(settings.snap_angle))
     return pose

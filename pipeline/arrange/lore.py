@@ -18,6 +18,8 @@ Floats = NDArray[np.float64]
 MUST, WANT = 0.85, 0.4  # share of a category's training examples with their backs at walls from which it must, or would rather, be so
 UNKNOWN = 0.6  # the share that is taken of a category that the training tables do not know: to the wall where it is drafted near one
 GAP = (0.004, 0.012, 0.035)  # and its gap to the wall [m]
+CORNERED = 0.25  # share of the training examples with a side at a wall, and
+SNUG = 0.1  # usual gap there [m], from which on a category belongs into corners when it is drafted near one
 STRENGTH = 0.5  # relations that are weaker bind nobody
 
 Mount = Literal["floor", "wall", "ceiling"]
@@ -28,6 +30,7 @@ class Habit:
     """What is known of a category by itself.
 
     `backed`: the share of the training examples whose back is at a wall, `gap` then least, usual and most to it [m].
+    `corner` is the usual gap of its side to the wall of a corner [m], None for what has no place there.
     `access` is where people come to it: before its front, or at both its sides. `kind` is its super-category.
     """
 
@@ -36,6 +39,7 @@ class Habit:
     gap: tuple[float, float, float]
     access: Literal["", "front", "sides"]
     kind: str
+    corner: float | None = None
 
     @property
     def must(self) -> bool:
@@ -86,7 +90,9 @@ def _habit(category: str, known: Relations) -> Habit:
         gap = (GAP[0], usual, max(usual, min(back.gap.high, 2 * GAP[2])))
     if mount == "wall":
         return Habit(mount, 1.0, gap, "", kind)
-    return Habit(mount, share, gap, "sides" if kind == "bed" else "front" if share >= WANT and kind != "other" else "", kind)
+    access: Literal["front", "sides", ""] = "sides" if kind == "bed" else "front" if share >= WANT and kind != "other" else ""
+    sides = [w.gap.middle for w in known.walls.get(category, ()) if w.side in {"left", "right"} and w.share >= CORNERED]
+    return Habit(mount, share, gap, access, kind, max(GAP[0], min(sides)) if sides and min(sides) <= SNUG else None)
 
 
 def _rows(pair: PairRelation) -> tuple[Floats, float]:

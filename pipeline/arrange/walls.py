@@ -18,6 +18,8 @@ OVERHANG = 0.05  # an object may stand this far before an opening at no cost [m]
 BEFORE_WINDOW = 1.5  # cost of hiding a window behind something high [m]
 BEFORE_HOLE = 0.8  # cost of leaning on a wall that is not there [m]
 ABOVE_SILL = 0.4  # what rises no more than this above a window's sill may stand before it [m]
+CORNER = 0.3  # a side this near to a wall is nearly in the corner [m]
+SQUARELY = 0.99  # cosine of the angle at which a side faces a wall
 FAR = 1.0  # what belongs to a wall is put to one that is no farther; what would rather, within the wall_reach of the settings [m]
 
 
@@ -90,6 +92,23 @@ def at_wall(item: Item, pose: Floats, walls: Sequence[Edge], reach: float, turn_
         if cost < (best[0] if best else reach):
             best = cost, edge.pose(stop, d + (gap if low <= gap <= high else usual), float(pose[2]))
     return best[1] if best else None
+
+
+def in_corner(pose: Floats, item: Item, walls: Sequence[Edge]) -> Floats:
+    """Return a pose moved along its wall into the corner, where its side is nearly there and things of its category stand in corners."""
+    if item.habit.corner is None:
+        return pose
+    ahead = np.array([math.cos(pose[3]), math.sin(pose[3])])
+    gaps = []
+    for edge in walls:
+        away = float(edge.inward @ ahead)
+        s, off = float((pose[:2] - edge.start) @ edge.along), float((pose[:2] - edge.start) @ edge.inward)
+        if abs(away) > SQUARELY and 0.0 < s < edge.length and abs(off - float(item.half[0])) < CORNER:
+            gaps.append((off - float(item.half[0]) - item.habit.corner, away))
+    if not gaps:
+        return pose
+    gap, away = min(gaps, key=lambda found: (round(abs(found[0]), 6), found[1]))
+    return np.array([*(pose[:2] - gap * away * ahead), pose[2], pose[3]])
 
 
 def square(yaw: float, walls: Sequence[Edge], within: float) -> float:

@@ -8,7 +8,7 @@ a told number N is met exactly, and so is what is asked of categories.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -23,7 +23,7 @@ from pipeline.diffusion.settings import InventorySettings
 
 MOST = 12  # of one class in one room; more are counted as this
 ROOM_FEATURES = 6 + 2 * (len(KINDS) - 1)
-DRAWS = 8  # inventories that are drawn for a room, of which the first that meets what is asked is taken
+DRAWS = 9  # inventories that are drawn for a room, of which the first that meets what is asked is taken
 UNTOLD = -1
 
 
@@ -84,6 +84,12 @@ class Ask:
         order = {name: k for k, name in enumerate(classes)}
         groups = ((tuple(sorted({order[c] for c in d.categories if c in order})), d.least, d.most) for d in demands)
         return cls(total, tuple(group for group in groups if group[0]), most)
+
+    def sized(self, usual: int) -> Ask:
+        """Return the same with the number `usual` told, where nobody told one and no more than single things, or none, are asked for."""
+        if self.total is not None or any(least > 1 or most not in {None, 0} for _, least, most in self.bounds):
+            return self
+        return replace(self, total=min(max(usual, 1, sum(least for _, least, _ in self.bounds)), self.most))
 
     def met_by(self, counts: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Tell which inventories (K, C) meet it."""
@@ -161,16 +167,34 @@ def draw_inventories(
 ) -> list[NDArray[np.int64]]:
     """Draw one inventory (C,) for each of B rooms; `uniform` (B, DRAWS, C) in [0, 1) is all the randomness.
 
-    The last of a room's draws are held to what is asked while they are made: a bounded group is cut at its most and filled
-    at its last class, a told number is never passed. The first draw that meets everything is taken, free ones before held
-    ones, since these are true samples of the conditional. `amended` mends what none meets.
+    The first draw is free. Where it lacks one thing of a kind, the room is drawn again with the number of the first draw told:
+    rooms then hold what they need and no more than rooms of their type do. `amended` mends what no draw meets.
+    """
+    about = net.about(features, layout)
+    first = _drawn(net, about, layout, [Ask(None, most=ask.most) for ask in asks], uniform[:, :1])
+    asks = [ask if ask.met_by(mine[None])[0] else ask.sized(int(mine.sum())) for ask, mine in zip(asks, first[:, 0], strict=True)]
+    again = _drawn(net, about, layout, asks, uniform[:, 1:])
+    found = []
+    for i, ask in enumerate(asks):
+        mine = np.concatenate([first[i], again[i]])
+        met = np.flatnonzero(ask.met_by(mine) & (mine.sum(1) > 0))
+        usual: NDArray[np.float64] = net.own[:, layout[i]].softmax(-1).double().numpy() @ np.arange(MOST + 1, dtype=float)
+        found.append(mine[met[0]] if len(met) else amended(mine[-1], ask, usual))
+    return found
+
+
+def _drawn(net: Inventory, about: Tensor, layout: Tensor, asks: Sequence[Ask], uniform: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Draw inventories (B, D, C) from `uniform` (B, D, C).
+
+    The later half of a room's draws are held to what is asked while they are made: a bounded group is cut at its most and
+    filled at its last class, a told number is never passed. Those before are true samples of what the net knows.
     """
     rooms, draws, classes = uniform.shape
-    about = net.about(features, layout).repeat_interleave(draws, 0)
+    about = about.repeat_interleave(draws, 0)
     kinds = layout.repeat_interleave(draws)
     total = np.repeat([UNTOLD if a.total is None else a.total for a in asks], draws)
     full = np.repeat([a.most for a in asks], draws)
-    held_to = np.tile(np.arange(draws) >= draws // 2, rooms)
+    held_to = np.tile(np.arange(draws) >= (draws + 1) // 2, rooms)
     counts = np.zeros((rooms * draws, classes), np.int64)
     before = torch.zeros(rooms * draws, 1, about.shape[-1])
     for c in range(classes):
@@ -188,13 +212,7 @@ def draw_inventories(
         picked = (ladder <= (uniform[:, :, c].reshape(-1) * ladder[:, -1])[:, None]).sum(1).clip(0, MOST)
         counts[:, c] = picked
         before = before + net.held[c, torch.from_numpy(picked)][:, None]
-    found = []
-    for i, ask in enumerate(asks):
-        mine = counts[i * draws : (i + 1) * draws]
-        met = np.flatnonzero(ask.met_by(mine) & (mine.sum(1) > 0))
-        usual: NDArray[np.float64] = net.own[:, layout[i]].softmax(-1).double().numpy() @ np.arange(MOST + 1, dtype=float)
-        found.append(mine[met[0]] if len(met) else amended(mine[-1], ask, usual))
-    return found
+    return counts.reshape(rooms, draws, classes)
 
 
 def _limits(asks: Sequence[Ask], counts: NDArray[np.int64], c: int, draws: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -230,8 +248,11 @@ def amended(counts: NDArray[np.int64], ask: Ask, usual: NDArray[np.float64]) -> 
     if ask.total is None and not counts.sum() and not bound.all():
         counts[int(np.argmax(np.where(bound, -np.inf, usual)))] += 1
     wanted = min(int(counts.sum()), ask.most) if ask.total is None else ask.total
+    barred = np.array([any(c in members and most == 0 for members, _, most in ask.bounds) for c in range(len(counts))])
+    if barred.all():
+        return np.zeros_like(counts)
     while counts.sum() != wanted:
-        free = ~bound if (~bound).any() else np.ones_like(bound)
+        free = ~bound if (~bound).any() else ~barred
         if counts.sum() < wanted:
             counts[int(np.argmax(np.where(free, usual / (counts + 1.0), -np.inf)))] += 1
         else:

@@ -107,15 +107,20 @@ Pairs = Mapping[str, tuple[Sequence[Arrangement], Sequence[Arrangement]]]
 
 
 def layout_figures(seed: int, pairs: Pairs, harmed: Pairs) -> Json:
-    """Return SCA of the forest for each pair of samples, and for each harm."""
+    """Return SCA of the forest for each pair of samples, the same where no body counts as in another, and for each harm."""
 
-    def told(pair: tuple[Sequence[Arrangement], Sequence[Arrangement]]) -> Any:
-        real, made = pair
-        return forest_accuracy(seed, features(real), features(made), [room.name for room in real], [room.name for room in made])
+    def told(pair: tuple[Sequence[Arrangement], Sequence[Arrangement]], *, solid: bool = False) -> Any:
+        real, made = (features(rooms, solid=solid) for rooms in pair)
+        return forest_accuracy(seed, real, made, *([room.name for room in rooms] for rooms in pair))
 
     harm = {name: told(pair) for name, pair in harmed.items()}
     blind = [name for name, found in harm.items() if found["rate"] < SEEN]
-    return {"made": {name: told(pair) for name, pair in pairs.items()}, "harm": harm, "blind_to": blind}
+    return {
+        "made": {name: told(pair) for name, pair in pairs.items()},
+        "solid": {name: told(pair, solid=True) for name, pair in pairs.items()},
+        "harm": harm,
+        "blind_to": blind,
+    }
 
 
 def view_figures(rng: np.random.Generator, seed: int, embed: Embed, pairs: Pairs, harmed: Pairs) -> Json:

@@ -56,10 +56,12 @@ def taste_of(job: RoomJob, seed: int, index: AssetIndex, assets: Mapping[str, As
 def demands(job: RoomJob, taxonomy: Taxonomy) -> tuple[Demand, ...]:
     """Return what a room is to hold: what is wished for, and of each group of its type's essentials one thing.
 
-    What is wished for of a group, none of it too, stands.
+    What is wished for of a group, none of it too, stands. What rooms of the plan's type do not want stays out, unless it is wished for.
     """
     wished = {c for demand in job.demands for c in demand.categories}
-    return (*job.demands, *(Demand(group, 1) for group in job.essentials(taxonomy) if not wished.intersection(group)))
+    groups = tuple(Demand(group, 1) for group in job.essentials(taxonomy) if not wished.intersection(group))
+    unwanted = tuple(c for c in job.unwanted(taxonomy) if c not in wished)
+    return (*job.demands, *groups, *([Demand(unwanted, 0, 0)] if unwanted else []))
 
 
 def retrieve(

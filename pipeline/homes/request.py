@@ -55,7 +55,12 @@ class RoomJob:
 
     def essentials(self, taxonomy: Taxonomy) -> tuple[tuple[str, ...], ...]:
         """Return the groups of categories of which the room needs one thing each; a stated number of objects may be too small for them."""
-        return taxonomy.essentials.get(self.layout_type, ()) if self.count is None else ()
+        groups = taxonomy.essentials.get(self.layout_type, ()) if self.count is None else ()
+        return tuple(group for group in groups if not set(group) <= set(self.unwanted(taxonomy)))
+
+    def unwanted(self, taxonomy: Taxonomy) -> tuple[str, ...]:
+        """Return what is not put into rooms of the plan's type, though rooms of the same layout type have it: no tub into a WC."""
+        return taxonomy.unwanted.get(self.room.type, ())
 
     @property
     def bounds(self) -> tuple[int | None, int | None]:

@@ -12,7 +12,8 @@ from pipeline.arrange.bonds import broken, find_bond, nearest
 from pipeline.arrange.item import make_item
 from pipeline.entities.plan import Opening, Plan
 from pipeline.relations.arrangement import Thing
-from pipeline.relations.known import relations
+from pipeline.relations.known import WallRelation, relations
+from pipeline.relations.modes import Span
 from pipeline.verify import Policy, verify_home
 from tests.arrange.known import LORE, RELATIONS, drafted, mode, pair
 from tests.geometry.furniture import LIBRARY, block, home, one_room
@@ -23,6 +24,7 @@ ASSETS = {
     "low_table": block("low_table", "coffee_table", (1.0, 0.5, 0.4)),
     "tv": block("tv", "tv_stand", (1.6, 0.4, 0.5)),
 }
+CABINET = block("wardrobe", "wardrobe", (1.0, 0.6, 2.0))
 SEATS = ((-0.35, -0.55, math.pi), (0.35, -0.55, math.pi), (-0.35, 0.55, 0.0), (0.35, 0.55, 0.0))
 
 
@@ -158,3 +160,18 @@ def test_a_relation_counts_as_broken_when_its_anchor_is_elsewhere_or_gone():
     assert broken(bonds, items, poses, both, LORE) == []
     assert broken(bonds, items, poses + np.array([[0.5, 0, 0, 0], [0, 0, 0, 0]]), both, LORE) == [1]
     assert broken(bonds, items, poses, np.array([False, True]), LORE) == [1]
+
+
+def test_what_belongs_into_corners_goes_into_the_corner_that_it_is_near():
+    sides = [
+        WallRelation("wardrobe", side, Span("outside", 0.0, 0.02, 0.05), Span("wall", 0.0, 0.0, 0.0), 100, 0.4, 0.0)
+        for side in ("left", "right")
+    ]
+    walls = [*(w for found in RELATIONS.walls.values() for w in found), *sides]
+    snug = Lore(relations(list(RELATIONS.pairs.values()), walls))
+    wished = [drafted(CABINET, 0.62, 3.7)]
+    plan = room()
+    (loose,) = separate(Site.of(plan, "room"), wished, {CABINET.asset_id: CABINET}, LORE).placements
+    (cornered,) = separate(Site.of(plan, "room"), wished, {CABINET.asset_id: CABINET}, snug).placements
+    assert loose.position[0] == pytest.approx(0.62, abs=1e-3)
+    assert cornered.position[0] == pytest.approx(0.5 + 0.02, abs=1e-3)

@@ -118,3 +118,20 @@ def test_the_fit_is_the_same_every_time(rooms):
     settings = InventorySettings(8, steps=5, batch=16)
     one, two = (fit(begun(rooms, len(LAYOUTS), 8, 3), rooms, settings, 3) for _ in range(2))
     assert all(torch.equal(a, b) for a, b in zip(one.state_dict().values(), two.state_dict().values(), strict=True))
+
+
+def test_what_a_room_needs_does_not_make_it_fuller(net, rooms):
+    """To ask for a thing that most rooms lack changes what they hold, not how much."""
+    wish = Ask.of(None, (Demand(("dining_chair",), 1), Demand(("wardrobe",), 1)), CLASSES)
+    asked, free = drawn(net, rooms, [wish] * 200), drawn(net, rooms, [Ask(None)] * 200)
+    assert (asked[:, CHAIR] > 0).all()
+    assert (free[:, CHAIR] == 0).mean() > 0.3
+    assert asked.sum(1).mean() == pytest.approx(free.sum(1).mean(), rel=0.02)
+
+
+def test_what_is_unwanted_stays_out_and_nothing_is_asked_of_the_rest(net, rooms):
+    none = Ask.of(None, (Demand(("dining_chair",), 0, 0),), CLASSES)
+    found = drawn(net, rooms, [none] * 60)
+    assert (found[:, CHAIR] == 0).all()
+    assert (found.sum(1) > 0).all()
+    assert amended(np.array([0, 0, 2]), Ask(3, (((0, 1, 2), 0, 0),)), np.ones(3)).sum() == 0

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 
 from pipeline import taxonomy
@@ -31,3 +33,13 @@ def test_a_wish_takes_the_place_of_an_essential():
     asked = demands(job("kitchen", wishes=[none]), taxonomy.load())
     assert [d for d in asked if "oven" in d.categories] == [none]
     assert any(d.least == 1 and "sink_cabinet" in d.categories for d in asked)
+
+
+def test_no_tub_stands_in_a_wc_unless_it_is_wished_for():
+    words = taxonomy.load()
+    bath, wc = (replace(job("bathroom", wishes=w), plan=Plan((replace(job("bathroom").room, type=kind),), (), "room"))
+                for kind, w in (("bathroom", ()), ("wc", ())))  # fmt: skip
+    assert Demand(("shower", "bathtub"), 1) in demands(bath, words)
+    assert Demand(("shower", "bathtub"), 0, 0) in demands(wc, words)
+    asked = demands(replace(wc, furniture=job("bathroom", wishes=[Demand(("shower",), 1)]).furniture), words)
+    assert Demand(("bathtub",), 0, 0) in asked

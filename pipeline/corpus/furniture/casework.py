@@ -92,8 +92,7 @@ def case(size: Sequence[float], columns: Sequence[Column], how: Case, *, reserve
         if i:
             base += pieces(f"divider_{i}", box((left - b, left), (y[0], y[1] - BACK), (z[0] + b, z[1])), how.body)
         outer = (left, right) if how.inset else (_half(left, b, first=i == 0), _half(right, -b, first=i == len(columns) - 1))
-        ends = (i == 0, i == len(columns) - 1)
-        fixed, moving = _column(f"c{i}", column, (left, right), outer, y, (z[0] + b, z[1]), face, how, ends)
+        fixed, moving = _column(f"c{i}", column, (left, right), outer, y, (z[0] + b, z[1]), face, how)
         base += fixed
         movers += moving
     base += feet(how.feet, x, (face + 0.01, d / 2), how.feet_height, how.feet_finish)
@@ -114,7 +113,6 @@ def _column(
     z: tuple[float, float],
     face: float,
     how: Case,
-    ends: tuple[bool, bool],
 ) -> tuple[list[Piece], list[Mover]]:
     """Fill one column between `x`, its fronts over `outer`."""
     b = how.board
@@ -135,7 +133,7 @@ def _column(
             bottom = low - (b if k == len(column.cells) - 1 else b / 2)
             rect = Rect(outer, (bottom, high + (b / 2 if k else 0)), face).shrunk(how.gap / 2)
         depth = (y[0] + (how.style.thickness + 0.002 if how.inset else 0.0), y[1] - BACK)
-        fixed, moving = _cell(f"{name}_{k}", cell, x, depth, (low, high), rect, how, ends)
+        fixed, moving = _cell(f"{name}_{k}", cell, x, depth, (low, high), rect, how)
         base += fixed
         movers += moving
         upper_edge = low - b
@@ -150,7 +148,6 @@ def _cell(
     z: tuple[float, float],
     rect: Rect,
     how: Case,
-    ends: tuple[bool, bool],
 ) -> tuple[list[Piece], list[Mover]]:
     """Fill one compartment over `x`, `y`, `z` with its shelves and its front over `rect`."""
     style = cell.panel or how.style
@@ -163,19 +160,17 @@ def _cell(
     for j in range(cell.shelves):
         level = floor + (z[1] - floor) * (j + 1) / (cell.shelves + 1)
         base += pieces(f"{name}_board_{j}", box(x, (y[0] + setback, y[1]), (level - 0.008, level + 0.008)), how.body)
-    wide, square = math.radians(105), math.radians(90)
-    sides: dict[str, tuple[Side, ...]] = {"left": ("left",), "right": ("right",), "flap": ("bottom",), "lift": ("top",)}
+    square = math.radians(90)  # no farther, so that a wardrobe can stand in a corner and a nightstand beside its bed
+    sides: dict[str, Side] = {"left": "left", "right": "right", "flap": "bottom", "lift": "top"}
     if cell.kind == "drawer":
         movers.append(drawer(f"{name}_drawer", rect, style, (x, z, y[1]), how.body))
     elif cell.kind == "pair":
         middle = (rect.x[0] + rect.x[1]) / 2
         halves = (Rect((rect.x[0], middle - how.gap / 2), rect.z, rect.y), Rect((middle + how.gap / 2, rect.x[1]), rect.z, rect.y))
-        for half, side, end in zip(halves, ("left", "right"), ends, strict=True):
-            movers.append(door(f"{name}_door_{side}", half, style, side, wide if end else square))  # type: ignore[arg-type]
+        for half, leaf in zip(halves, ("left", "right"), strict=True):
+            movers.append(door(f"{name}_door_{leaf}", half, style, leaf, square))  # type: ignore[arg-type]
     elif cell.kind in sides:
-        side = sides[cell.kind][0]
-        free = side in ("left", "right") and ends[0 if side == "left" else 1]
-        movers.append(door(f"{name}_door", rect, style, side, wide if free else square))
+        movers.append(door(f"{name}_door", rect, style, sides[cell.kind], square))
     elif cell.kind == "blank":
         base += pieces(f"{name}_blank", box(rect.x, (rect.y, rect.y + style.thickness), rect.z, 0.002), style.finish)
     if cell.inner:
