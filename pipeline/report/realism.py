@@ -51,7 +51,9 @@ def _shown(value: Json) -> str:
 def _forest(figures: Json) -> TableView:
     rows = [[_title(name), share(value), share(figures["solid"][name]), str(value["n"])] for name, value in figures["made"].items()]
     rows += [[f"harm: {name}", share(value), "", str(value["n"])] for name, value in figures["harm"].items()]
-    caption = "SCA of a random forest on layout features against real rooms: .5 is best. Solid: what is in another body counts as touching it."
+    caption = (
+        "SCA of a random forest on layout features against real rooms: .5 is best. Solid: what is in another body counts as touching it."
+    )
     return TableView(_warned(caption, figures), ("rooms", "accuracy", "solid", "rooms of both"), rows)
 
 
