@@ -16,7 +16,8 @@ from pipeline.usd.joints import convert_fixed, convert_joint
 from pipeline.usd.layer import apply, identifiers, label, prim, relationship
 from pipeline.usd.material import bind
 from pipeline.usd.mesh import convert_mesh
-from pipeline.usd.physics import convert_body, convert_collider, convert_filter, gravity_load, hide, volume
+from pipeline.usd.physics import convert_body, convert_collider, convert_filter, hide, volume
+from pipeline.usd.resistance import resistance
 
 RESERVED = ("joints", "materials")  # scopes beside the links
 MOVERS = {
@@ -68,7 +69,7 @@ def convert_asset(root: Sdf.PrimSpec, asset: Asset, materials: Sequence[Sdf.Path
         prims = dict(zip((joint.name for joint in asset.joints), joint_names(asset), strict=True))
         for index, joint in enumerate(asset.joints):
             ends = links[joint.parent].path, links[joint.child].path
-            made = convert_joint(scope, prims[joint.name], joint, *ends, gravity_load(asset, index))
+            made = convert_joint(scope, prims[joint.name], joint, *ends, resistance(asset, index))
             if joint.after:  # engines know no such order; whoever plans for a robot does
                 relationship(made, "sfgen:after", [scope.path.AppendChild(prims[name]) for name in joint.after])
         for i, spec in enumerate(links):

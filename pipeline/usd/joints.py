@@ -11,17 +11,10 @@ from pxr import Gf, Sdf
 from pipeline.entities.asset import Joint
 from pipeline.usd.layer import apply, attribute, label, prim, relationship
 from pipeline.usd.physics import quaternion
+from pipeline.usd.resistance import Resistance
 
-HINGE_DAMPING = 0.02  # [N m s / degree]: a door stops within a second or two
-SLIDE_DAMPING = 12.0  # [N s / m]: a drawer on its rails
 HINGE_STOP = (1e3, 10.0)  # stiffness and damping of the limits in Newton, whose own are so soft that a push goes 18 % past them
 SLIDE_STOP = (1e5, 1e3)
-# Inertia of the works behind knobs and buttons [kg m2, kg]: nothing beside a door's own, but it keeps feathers from racing.
-HINGE_ARMATURE, SLIDE_ARMATURE = 0.002, 0.05
-# A detent: where gravity would open a joint, and behind buttons, the drive pulls back to rest with at most CATCH x gravity's load
-# plus this much [N m, N]; its full force comes after DETENT of the range. More opens it, and the drive lets it go.
-CATCH, HINGE_CATCH, SLIDE_CATCH = 2.0, 1.0, 0.5
-HINGE_DETENT, SLIDE_DETENT = 0.02, 0.25
 AXES = {"X": (1, 0, 0), "Y": (0, 1, 0), "Z": (0, 0, 1)}
 
 
@@ -34,13 +27,10 @@ def convert_fixed(scope: Sdf.PrimSpec, root: Sdf.Path, base: Sdf.Path) -> Sdf.Pr
     return spec
 
 
-def convert_joint(scope: Sdf.PrimSpec, prim_name: str, joint: Joint, parent: Sdf.Path, child: Sdf.Path, load: float = 0.0) -> Sdf.PrimSpec:
-    """Write a joint between two links whose frames are the asset's frame; it stands at 0 when all is closed.
-
-    `load` is what gravity does at rest [N m or N], positive where it pulls open.
-    """
+def convert_joint(scope: Sdf.PrimSpec, prim_name: str, joint: Joint, parent: Sdf.Path, child: Sdf.Path, held: Resistance) -> Sdf.PrimSpec:
+    """Write a joint between two links whose frames are the asset's frame; it stands at 0 when all is closed."""
     hinge = joint.type != "prismatic"
-    spec = prim(scope, prim_name, "PhysicsRevoluteJoint" if hinge else "PhysicsPrismaticJoint")
+    spec = prim(scope, prim_name, "PhysicsRevoluteJoint" if hinge else "PhysicsPrismaticJoint", ["NewtonJointAPI"])
     relationship(spec, "physics:body0", [parent])
     relationship(spec, "physics:body1", [child])
     token, rotation = axis_frame(joint.axis)
@@ -52,29 +42,17 @@ def convert_joint(scope: Sdf.PrimSpec, prim_name: str, joint: Joint, parent: Sdf
         attribute(spec, "physics:upperLimit", "float", joint.upper * unit)
         for name, value in zip(("limitStiffness", "limitDamping"), HINGE_STOP if hinge else SLIDE_STOP, strict=True):
             attribute(spec, f"newton:{name}", "float", value)  # Newton reads them by name; PhysX does not know them
-    attribute(spec, "newton:armature", "float", HINGE_ARMATURE if hinge else SLIDE_ARMATURE)
+    attribute(spec, "newton:armature", "float", held.armature)  # this and friction: PhysX, Newton and MuJoCo
+    attribute(spec, "newton:friction", "float", held.friction)
     drive = "angular" if hinge else "linear"
     apply(spec, [f"PhysicsDriveAPI:{drive}"])
     attribute(spec, f"drive:{drive}:physics:type", "token", "force", uniform=True)
-    stiffness, force = detent(joint, load)
-    attribute(spec, f"drive:{drive}:physics:stiffness", "float", stiffness / unit)
-    if force:
-        attribute(spec, f"drive:{drive}:physics:maxForce", "float", force)
-        attribute(spec, f"drive:{drive}:physics:targetPosition", "float", 0.0)
-    attribute(spec, f"drive:{drive}:physics:damping", "float", HINGE_DAMPING if hinge else SLIDE_DAMPING)
+    attribute(spec, f"drive:{drive}:physics:stiffness", "float", held.stiffness / unit)
+    attribute(spec, f"drive:{drive}:physics:damping", "float", held.damping / unit)
+    attribute(spec, f"drive:{drive}:physics:targetPosition", "float", held.target * unit)
     attribute(spec, f"drive:{drive}:physics:targetVelocity", "float", 0.0)
     label(spec, "part", [joint.part_class])
     return spec
-
-
-def detent(joint: Joint, load: float) -> tuple[float, float]:
-    """Return stiffness [N m / rad or N / m] and largest force [N m or N] of the drive that keeps a joint at rest; (0, 0): none."""
-    held = load > 0 or joint.part_class == "slider_button"
-    if not held or not math.isfinite(joint.upper) or joint.upper <= 0:
-        return 0.0, 0.0
-    hinge = joint.type != "prismatic"
-    force = CATCH * max(0.0, load) + (HINGE_CATCH if hinge else SLIDE_CATCH)
-    return force / ((HINGE_DETENT if hinge else SLIDE_DETENT) * joint.upper), force
 
 
 def axis_frame(axis: NDArray[np.float64]) -> tuple[str, Gf.Quatf]:

@@ -21,6 +21,7 @@ VALUE_TYPES = {
         "float3": "Float3",
         "float2": "Float2",
         "float3[]": "Float3Array",
+        "double": "Double",
         "double3": "Double3",
         "double[]": "DoubleArray",
         "quatf": "Quatf",

@@ -34,12 +34,13 @@ def write_asset(asset: Asset, folder: Path) -> list[Path]:
 
     Nothing is flushed to disk here: the commit of the library does that for all files at once.
     """
+    payload = _payload(asset)
     written = [
-        save(_payload(asset), folder / f"{asset.asset_id}_payload.usdc"),
+        save(payload, folder / f"{asset.asset_id}_payload.usdc"),
         save(_interface(asset), folder / f"{asset.asset_id}.usda"),
     ]
     if asset.articulated:
-        written.append(save(asset_overlay(asset), folder / overlay_path(asset)))
+        written.append(save(asset_overlay(asset, payload), folder / overlay_path(asset)))
     for name, blob in sorted(asset.textures.items()):
         target = PurePosixPath(name)
         if target.is_absolute() or ".." in target.parts:

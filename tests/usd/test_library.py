@@ -11,8 +11,8 @@ from pipeline.entities.asset import Joint
 from pipeline.errors import ContentError
 from pipeline.usd import write_library
 from pipeline.usd.check import check_stage
-from pipeline.usd.joints import detent
 from pipeline.usd.physics import gravity_load
+from pipeline.usd.resistance import resistance
 
 
 @pytest.fixture(scope="module")
@@ -138,11 +138,16 @@ def test_gravity_does_not_open_what_hangs_or_looks_up(cabinet):
     def joint(kind, part, axis):
         return Joint("j", kind, 0, 1, np.array(axis, float), np.zeros(3), 0.0, 0.5, part)
 
-    stiffness, force = detent(joint("revolute", "hinge_door", (1, 0, 0)), 2.0)
-    assert force > 2.0
-    assert stiffness * 0.5 > force > stiffness * 0.001, "it is soft enough to be pulled open, and firm at rest"
-    assert detent(joint("revolute", "hinge_door", (1, 0, 0)), -2.0) == (0.0, 0.0)
-    assert detent(joint("prismatic", "slider_button", (0, 1, 0)), 0.0)[1] > 0, "buttons spring back"
+    def held(axis, kind="revolute", part="hinge_door"):
+        return resistance(replace(cabinet, joints=(joint(kind, part, axis), *cabinet.joints[1:])), 0)
+
+    pulls = gravity_load(replace(cabinet, joints=(joint("revolute", "hinge_door", (1, 0, 0)), *cabinet.joints[1:])), 0)
+    assert pulls != 0
+    open_, shut = (1, 0, 0) if pulls > 0 else (-1, 0, 0), (-1, 0, 0) if pulls > 0 else (1, 0, 0)
+    assert abs(pulls) < held(open_).friction < 1.5 * abs(pulls) + 0.1, "it holds, and a push overcomes it"
+    assert held(shut).friction <= 0.1
+    button = held((0, 1, 0), "prismatic", "slider_button")
+    assert button.stiffness * -button.target > 0, "buttons spring back"
     assert gravity_load(cabinet, 0) == pytest.approx(0.0)
     key = replace(cabinet, joints=(joint("prismatic", "slider_button", (0, 0, -1)), *cabinet.joints[1:]))
     assert gravity_load(key, 0) == pytest.approx(9.81 * cabinet.links[1].mass)

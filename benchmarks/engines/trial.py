@@ -1,0 +1,125 @@
+"""The trial that every engine gives a stage: everything at rest, each joint pushed open, shut and left, then all joints at once.
+
+An adaptor shows one engine as arrays in the order of the plan (see plan.py); what is done to it stands here once, so that
+engines differ in nothing else. It knows numpy alone, for each engine runs in a Python of its own.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+REST, OPEN, SHUT, LEFT = 5.0, 2.5, 2.0, 0.5  # [s] at rest; pushing; pushing back; left alone
+AFTER = 1.5  # [s] by which a joint waits for those that must be open before it
+SAMPLE = 0.25  # [s] between looks at what lies about
+AJAR = 0.05  # share of its range at which a joint counts as shut
+
+
+class Engine(Protocol):
+    """One engine with one stage; joints and loose bodies are those of the plan, in its order."""
+
+    dt: float
+
+    def reset(self) -> None:
+        """Put everything back where the stage has it."""
+
+    def step(self, force: Floats) -> None:
+        """Advance by `dt` under generalised forces (J,) [N m or N]."""
+
+    def positions(self) -> Floats:
+        """Return the joints' positions (J,) [rad or m]; nan for a joint that the engine does not have."""
+
+    def poses(self) -> Floats:
+        """Return the loose bodies' positions and quaternions (B, 7), x y z then x y z w."""
+
+
+def run(make: Any) -> None:
+    """Run the trial as `python ENGINE.py STAGE PLAN OUT`; `make` builds the adaptor from (stage, plan)."""
+    stage, plan_file, out = map(Path, sys.argv[1:4])
+    plan = json.loads(plan_file.read_text())
+    start = time.perf_counter()
+    engine = make(stage, plan)
+    engine.reset()
+    engine.step(np.zeros(len(plan["joints"])))
+    found = {"load": time.perf_counter() - start, **_trial(engine, plan)}
+    out.write_text(json.dumps(found))
+
+
+def _trial(engine: Engine, plan: dict[str, Any]) -> dict[str, Any]:
+    joints = plan["joints"]
+    push = np.array([j["push"] for j in joints])
+    upper = np.array([j["upper"] for j in joints])
+    rest, speed = _rest(engine, np.zeros(len(joints)))
+    drift = np.abs(engine.positions()) / np.maximum(upper, 1e-9)
+    opened, closed, left = (np.full(len(joints), np.nan) for _ in range(3))
+    for group in plan["groups"]:
+        members, before = np.array(group["joints"], int), np.array(group["before"], int)
+        reached, back, stays = _push(engine, push, members, before)
+        opened[members], closed[members], left[members] = reached[members], back[members], stays[members]
+    engine.reset()
+    together = np.zeros(len(joints))
+    for _ in range(round((OPEN + AFTER) / engine.dt)):
+        engine.step(push)
+        together = np.fmax(together, engine.positions())
+    wide, _ = _rest(engine, push, fresh=False)
+    return {
+        "steps_per_second": speed,
+        "drift": drift.tolist(),
+        "opened": (opened / upper).tolist(),
+        "closed": (closed / upper).tolist(),
+        "left": (left / upper).tolist(),
+        "together": (together / upper).tolist(),
+        "moved_shut": rest,
+        "moved_open": wide,
+    }
+
+
+def _push(engine: Engine, push: Floats, members: NDArray[np.int64], before: NDArray[np.int64]) -> tuple[Floats, Floats, Floats]:
+    """Return how far joints (J,) come under their push, how far from shut they are after the push back, and when left alone."""
+    engine.reset()
+    force = np.zeros(len(push))
+    reached = np.zeros(len(push))
+    if len(before):
+        force[before] = push[before]
+        for _ in range(round(AFTER / engine.dt)):
+            engine.step(force)
+    force[members] = push[members]
+    for _ in range(round(OPEN / engine.dt)):
+        engine.step(force)
+        reached = np.fmax(reached, engine.positions())
+    force[members] = -push[members]
+    for _ in range(round(SHUT / engine.dt)):
+        engine.step(force)
+    back = engine.positions()
+    force[members] = 0.0
+    for _ in range(round(LEFT / engine.dt)):
+        engine.step(force)
+    return reached, back, engine.positions()
+
+
+def _rest(engine: Engine, force: Floats, *, fresh: bool = True) -> tuple[list[list[float]], float]:
+    """Return how far each loose body moves [m] and turns [degrees] at most while it is watched, and steps per second."""
+    if fresh:
+        engine.reset()
+    first = engine.poses()
+    worst = np.zeros((len(first), 2))
+    steps, spent = 0, 0.0
+    for _ in range(round(REST / SAMPLE)):
+        start = time.process_time()
+        for _ in range(round(SAMPLE / engine.dt)):
+            engine.step(force)
+            steps += 1
+        spent += time.process_time() - start
+        now = engine.poses()
+        if len(now):
+            away = np.linalg.norm(now[:, :3] - first[:, :3], axis=1)
+            turned = 2 * np.degrees(np.arccos(np.clip(np.abs((now[:, 3:] * first[:, 3:]).sum(axis=1)), 0, 1)))
+            worst = np.fmax(worst, np.stack([away, turned], axis=1))
+    return worst.tolist(), steps / max(spent, 1e-9)

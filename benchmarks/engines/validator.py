@@ -1,0 +1,19 @@
+"""NVIDIA's USD validator (`usd-validation-nvidia`): what it finds, by rule, as `python validator.py STAGE PLAN OUT`."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections import Counter
+from pathlib import Path
+
+from usd_validation_nvidia import ValidationEngine
+
+if __name__ == "__main__":
+    found: Counter[str] = Counter()
+    examples: dict[str, str] = {}
+    for issue in ValidationEngine().validate(sys.argv[1]).issues():
+        rule = f"{getattr(issue.severity, 'name', issue.severity)} {issue.rule.__name__ if issue.rule else '-'}"
+        found[rule] += 1
+        examples.setdefault(rule, f"{issue.message} {issue.at}")
+    Path(sys.argv[3]).write_text(json.dumps({"issues": found, "examples": examples}))
