@@ -10,6 +10,7 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -31,6 +32,14 @@ app = typer.Typer(
 STRICT_HELP = "Refuse words that are not understood, instead of leaving them out and saying so."
 Strict = Annotated[bool, typer.Option("--strict", help=STRICT_HELP)]
 Seed = Annotated[int, typer.Option(min=0, max=2**31 - 1, help=SEED_HELP)]
+
+
+class Format(StrEnum):
+    """What `sfgen export` writes."""
+
+    mjcf = "mjcf"
+    urdf = "urdf"
+    glb = "glb"
 
 
 @app.command()
@@ -127,6 +136,24 @@ def peers(
     """
     root = factory_root()
     stage("peers").main(root, out=out, filtered=filtered)
+
+
+@app.command()
+def export(
+    dataset: Annotated[Path, typer.Argument(metavar="DATASET", help="Folder of a dataset.", show_default=False)],
+    to: Annotated[Format, typer.Option(help="MuJoCo's XML, a URDF per thing that moves, or a glTF file per home.", show_default=False)],
+    out: Annotated[Path, typer.Option(help="New or empty folder; a killed export goes on.", show_default=False)],
+    home: Annotated[list[str] | None, typer.Option(help="Only this home, by its scene_id; may be given again.")] = None,
+) -> None:
+    """Write homes in other formats than USD: the same joints, limits, masses and colliders.
+
+    \b
+    Example:
+      sfgen export data/shards --to mjcf --out exported/mjcf
+      sfgen export datasets/7 --to glb --home s7_00000003 --out exported/glb
+    """
+    root = factory_root()
+    stage("export").main(root, dataset=dataset, to=to.value, out=out, homes=home or ())
 
 
 @app.command()

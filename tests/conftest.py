@@ -17,3 +17,13 @@ def dataset_folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("datasets") / "made"
     made.fill(folder)
     return folder
+
+
+@pytest.fixture(scope="session")
+def furnished(tmp_path_factory):
+    """A dataset of one real home with its stage and library; nobody writes to it."""
+    from tests.export.furnished import fill
+
+    folder = tmp_path_factory.mktemp("datasets") / "furnished"
+    fill(folder)
+    return folder

@@ -15,7 +15,7 @@ from pipeline.errors import ContentError, RefusedError, UsageError
 from sfgen import cli
 
 ROOT = Path(__file__).parents[2]
-COMMANDS = ("generate", "shard", "plan", "peers", "verify", "doctor")
+COMMANDS = ("generate", "shard", "plan", "peers", "export", "verify", "doctor")
 
 
 @pytest.fixture
@@ -76,6 +76,8 @@ def test_version(sfgen):
         (["shard", "--count", "5", "--colour", "red"], "--colour"),
         (["shard", "5"], "--count"),
         (["generate"], "prompt"),
+        (["export", "d", "--to", "obj", "--out", "x"], "obj"),
+        (["export", "d", "--to", "glb"], "--out"),
         (["verify"], "DIR"),
         (["verify", "nowhere"], "nowhere is missing"),
         (["verify", __file__], "not a folder"),
@@ -104,6 +106,31 @@ def test_wrong_content_is_1(sfgen, dataset_folder, tmp_path):
     assert "rooms/shard-00001.parquet" in err
     (folder / "dataset.json").write_text("{")
     assert sfgen("verify", folder)[0] == 1
+
+
+def test_export_names_what_is_not_there(sfgen, furnished, tmp_path):
+    code, _, err = sfgen("export", "nowhere", "--to", "glb", "--out", "x")
+    assert code == 1
+    assert one_line(err)
+    assert "nowhere holds no dataset" in err
+    code, _, err = sfgen("export", furnished, "--to", "glb", "--out", "x", "--home", "s0_00000009")
+    assert code == 2
+    assert one_line(err)
+    assert "s0_00000009" in err
+    assert "s0_00000000" in err
+    (tmp_path / "x").mkdir()
+    (tmp_path / "x" / "mine.txt").write_text("")
+    code, _, err = sfgen("export", furnished, "--to", "glb", "--out", "x")
+    assert code == 2
+    assert one_line(err)
+    assert list((tmp_path / "x").iterdir()) == [tmp_path / "x" / "mine.txt"]
+
+
+def test_export_writes_what_was_asked_for(sfgen, furnished, tmp_path):
+    code, out, err = sfgen("export", furnished, "--to", "glb", "--out", "x", "--home", "s0_00000000")
+    assert (code, err) == (0, "")
+    assert "x/homes/s0_00000000.glb" in out
+    assert {p.name for p in (tmp_path / "x").rglob("*") if p.is_file()} == {"export.json", "s0_00000000.glb"}
 
 
 def test_verify_counts(sfgen, dataset_folder):

@@ -1,0 +1,143 @@
+"""Reads stages and assets through USD's schemas: whatever wrote them, what a simulator would see is what is exported.
+
+The overlays for MuJoCo are read where there are any: only they tell dry friction and stops.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+from pxr import Pcp, Sdf, Usd, UsdGeom, UsdPhysics
+
+from pipeline.errors import ContentError
+from pipeline.export.frames import inverse, world
+from pipeline.export.joints import read_joints
+from pipeline.export.model import Body, Floats, Inertia, Model, Placed, Scene
+from pipeline.export.pieces import read_pieces
+
+VARIANT = "MuJoCo"
+GROUPS = {"Rooms": "room", "Walls": "wall", "Windows": "window", "Doors": "door", "Objects": "object"}
+REMEDY = "run `sfgen verify` on the dataset; if it is whole, please report it"
+
+
+def overlay_of(stage: Path) -> Path:
+    """Return where the overlay for MuJoCo of a home's stage lies."""
+    return stage.with_name(f"{stage.stem}.mujoco.usda")
+
+
+def read_home(path: Path, scene_id: str, asset: Callable[[Path], Model]) -> Scene:
+    """Read a home; `asset` reads (or remembers) the model in an asset's interface file."""
+    stage = Usd.Stage.Open(str(overlay if (overlay := overlay_of(path)).is_file() else path))
+    cache = UsdGeom.XformCache()
+    models: dict[str, Model] = {}
+    placed = []
+    for prim, kind in _things(stage.GetDefaultPrim()):
+        source = _reference(prim)
+        if source:
+            model, matrix = asset(source), world(cache, prim)
+        else:
+            name = f"{kind}_{prim.GetName()}" if kind in {"room", "wall"} else prim.GetName()
+            model, matrix = read_model(prim, name, shared=False), world(cache, prim)
+        models[model.name] = model
+        rigid, scale = _split(matrix, prim)
+        if not model.still and np.abs(scale - 1).max() > 1e-6:
+            raise ContentError(f"{path}: {prim.GetPath()} moves and is scaled", REMEDY)
+        support = prim.GetRelationship("sfgen:support")
+        on = support.GetTargets()[0].name if support and support.GetTargets() else ""
+        placed.append(Placed(prim.GetName() if source else model.name, kind, model.name, rigid, scale, on))
+    return Scene(scene_id, models, tuple(placed))
+
+
+def read_asset(path: Path) -> Model:
+    """Read the model that an asset's interface file describes."""
+    stage = Usd.Stage.Open(str(path))
+    root = stage.GetDefaultPrim()
+    if root.GetVariantSets().HasVariantSet(VARIANT):
+        stage.SetEditTarget(stage.GetSessionLayer())
+        root.GetVariantSet(VARIANT).SetVariantSelection("Enabled")
+    return read_model(root, root.GetName(), shared=True)
+
+
+def read_model(root: Usd.Prim, name: str, *, shared: bool) -> Model:
+    """Read all bodies and joints under `root`; what belongs to no rigid body is one body "base" that stands still."""
+    cache = UsdGeom.XformCache()
+    prims = [p for p in Usd.PrimRange(root, Usd.TraverseInstanceProxies()) if p.HasAPI(UsdPhysics.RigidBodyAPI)]
+    paths = {p.GetPath() for p in prims}
+    bodies = [_body(p, root, cache, paths) for p in prims]
+    if root not in prims:
+        ground = _body(root, root, cache, paths)
+        bodies += [ground] if not bodies or ground.surfaces or ground.boxes or ground.hulls else []
+    index = {p.GetPath(): i for i, p in enumerate(prims)}
+    joints, grounded = read_joints(root, index, cache)
+    grounded |= {i for i, body in enumerate(bodies) if body.inertia is None}
+    _require_tree(len(bodies), [(j.parent, j.child) for j in joints], root)
+    pairs = {tuple(sorted((index[p.GetPath()], index[t]))) for p in prims for t in _filtered(p) if t in index}
+    return Model(name, shared, tuple(bodies), tuple(joints), frozenset(grounded), tuple(sorted(pairs)))  # type: ignore[arg-type]
+
+
+def _things(root: Usd.Prim) -> Iterator[tuple[Usd.Prim, str]]:
+    """Yield what a home is made of and its kind; lights and materials are none of it."""
+    for group, kind in GROUPS.items():
+        scope = root.GetChild(group)
+        if scope:
+            yield from ((prim, kind) for prim in scope.GetFilteredChildren(Usd.PrimIsActive & Usd.PrimIsDefined))
+
+
+def _reference(prim: Usd.Prim) -> Path | None:
+    """Return the asset file that a prim refers to, None where it is described in the home itself."""
+    for arc in Usd.PrimCompositionQuery.GetDirectReferences(prim).GetCompositionArcs():
+        layer = arc.GetTargetLayer()
+        if arc.GetArcType() == Pcp.ArcTypeReference and layer != prim.GetStage().GetRootLayer() and layer.defaultPrim:
+            return Path(layer.realPath)
+    return None
+
+
+def _body(prim: Usd.Prim, root: Usd.Prim, cache: UsdGeom.XformCache, others: set[Sdf.Path]) -> Body:
+    T_world_body = world(cache, prim)
+    T_model_body = inverse(world(cache, root)) @ T_world_body
+    if np.abs(T_model_body[:3, :3] @ T_model_body[:3, :3].T - np.eye(3)).max() > 1e-5:
+        raise ContentError(f"{prim.GetPath()} is a scaled body", REMEDY)
+    surfaces, boxes, hulls, handle = read_pieces(prim, T_world_body, cache, others - {prim.GetPath()})
+    name = prim.GetName() if prim != root else "base"
+    return Body(name, T_model_body, _inertia(prim), surfaces, boxes, hulls, handle)
+
+
+def _inertia(prim: Usd.Prim) -> Inertia | None:
+    if not prim.HasAPI(UsdPhysics.RigidBodyAPI):
+        return None
+    api = UsdPhysics.MassAPI(prim)
+    mass, moments, axes = api.GetMassAttr().Get(), api.GetDiagonalInertiaAttr().Get(), api.GetPrincipalAxesAttr().Get()
+    if not mass or not moments or min(moments) <= 0:
+        raise ContentError(f"{prim.GetPath()} has no mass or no inertia", REMEDY)
+    quaternion = np.array([axes.GetReal(), *axes.GetImaginary()], np.float64)
+    length = np.linalg.norm(quaternion)  # the schema's own value, "compute them", is 0
+    quaternion = quaternion / length if length > 0 else np.array([1.0, 0, 0, 0])
+    return Inertia(float(mass), np.array(api.GetCenterOfMassAttr().Get(), np.float64), np.array(moments, np.float64), quaternion)
+
+
+def _filtered(prim: Usd.Prim) -> list[Sdf.Path]:
+    return list(UsdPhysics.FilteredPairsAPI(prim).GetFilteredPairsRel().GetTargets()) if prim.HasAPI(UsdPhysics.FilteredPairsAPI) else []
+
+
+def _require_tree(count: int, edges: list[tuple[int, int]], root: Usd.Prim) -> None:
+    parents = {child: parent for parent, child in edges}
+    if len(parents) != len(edges):
+        raise ContentError(f"{root.GetPath()} has a body that two joints carry", REMEDY)
+    for body in range(count):
+        at, steps = body, 0
+        while (at := parents.get(at, -1)) >= 0:
+            steps += 1
+            if steps > count:
+                raise ContentError(f"{root.GetPath()} has joints in a ring", REMEDY)
+
+
+def _split(matrix: Floats, prim: Usd.Prim) -> tuple[Floats, Floats]:
+    """Split T_world_prim into a rigid transform and a scale (3,) along the prim's axes."""
+    scale = np.linalg.norm(matrix[:3, :3], axis=0)
+    rigid = matrix.copy()
+    rigid[:3, :3] /= scale
+    if np.abs(rigid[:3, :3] @ rigid[:3, :3].T - np.eye(3)).max() > 1e-5 or np.linalg.det(rigid[:3, :3]) < 0:
+        raise ContentError(f"{prim.GetPath()} is sheared or mirrored", REMEDY)
+    return rigid, np.where(np.abs(scale - 1) < 1e-9, 1.0, scale)

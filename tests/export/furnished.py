@@ -1,0 +1,39 @@
+"""A dataset of one real home: four rooms, cabinets that open, chairs, things that lie free; judged, written and committed."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from pipeline import taxonomy
+from pipeline.entities.home import Placement
+from pipeline.homes.exports import files_of
+from pipeline.homes.rows import home_rows
+from pipeline.shards import Header, commit_library, commit_shard, gather, open_or_create
+from pipeline.usd import write_library
+from pipeline.verify import verify_home
+from tests.geometry import furniture
+from tests.usd.conftest import make_home
+
+HEADER = Header(seed=0, count=1, shard_size=4, licence="CC0-1.0", digests={"params": "p" * 64})
+
+
+def made():
+    """The home and its assets; a book and a thing with a lid lie on a low cabinet."""
+    home, assets = make_home()
+    things = {name: furniture.LIBRARY[name] if name in furniture.LIBRARY else furniture.flip() for name in ("book", "flip")}
+
+    def put(name, x, y):
+        asset = things[name]
+        return Placement(f"{name}_0", "living", asset.category, name, np.array([x, y, 0.8]), 0.4, asset.size, support="cabinet_2")
+
+    home = replace(home, placements=(*home.placements, put("book", 1.2, 7.2), put("flip", 0.8, 7.2)))
+    return home, assets | things
+
+
+def fill(folder):
+    """Write the dataset."""
+    home, assets = made()
+    rows = home_rows(home, verify_home(home, assets), {}, assets, taxonomy.load(), 1, HEADER.licence)
+    with open_or_create(folder, HEADER) as dataset:
+        commit_library(dataset, lambda place: write_library(assets.values(), place))
+        commit_shard(dataset, 0, gather(0, [({**rows, "rejects": []}, files_of(home, assets, 0))]))

@@ -1,0 +1,94 @@
+"""Programs that share no code with us take the exported files: MuJoCo steps them, yourdfpy, SAPIEN and trimesh load them."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import sfgen
+from benchmarks.formats import steps
+from pipeline.export import ExportFolder, export_home
+
+
+@pytest.fixture(scope="module")
+def export(furnished, tmp_path_factory):
+    home = sfgen.load(furnished)[0]
+    place = tmp_path_factory.mktemp("engines")
+    return lambda form: export_home(ExportFolder(place / form, form, "d", "CC0-1.0"), home.usd, home.scene_id)
+
+
+def test_mujoco_steps_a_home_and_nothing_moves(export):
+    pytest.importorskip("mujoco")
+    _, turned, moved = steps(export("mjcf"), 1.0)
+    assert turned < 0.005
+    assert moved < 0.005
+
+
+def test_mujoco_loads_each_asset_alone(export):
+    mujoco = pytest.importorskip("mujoco")
+    assets = export("mjcf").parents[2] / "assets"
+    models = {path.parent.name: mujoco.MjModel.from_xml_path(str(path)) for path in assets.glob("*/*.xml")}
+    assert {name: model.njnt for name, model in models.items()} == {"book": 1, "cabinet_a": 3, "cabinet_b": 3, "chair_a": 0, "flip": 2}
+
+
+def test_a_scaled_chair_is_scaled(export):
+    mujoco = pytest.importorskip("mujoco")
+    model = mujoco.MjModel.from_xml_path(str(export("mjcf")))
+    sizes = {}
+    for name in ("chair_0", "chair_1"):
+        body = model.body(f"{name}/base").id
+        geoms = [g for g in range(model.ngeom) if model.geom_bodyid[g] == body and model.geom_type[g] == mujoco.mjtGeom.mjGEOM_BOX]
+        sizes[name] = model.geom_size[geoms]
+    assert np.allclose(sizes["chair_1"], sizes["chair_0"] * [1.1, 1.0, 0.95])
+
+
+def test_yourdfpy_loads_every_urdf(export):
+    yourdfpy = pytest.importorskip("yourdfpy")
+    home = export("urdf").parent
+    for path in [*home.glob("*.urdf"), *home.parents[1].glob("assets/*/*.urdf")]:
+        robot = yourdfpy.URDF.load(str(path), build_collision_scene_graph=True, load_collision_meshes=True)
+        assert robot.validate(), path
+        assert len(robot.scene.geometry) > 0
+
+
+def test_a_glb_is_well_formed_and_trimesh_reads_it(export):
+    trimesh = pytest.importorskip("trimesh")
+    path = export("glb")
+    scene = trimesh.load(path)
+    data = path.read_bytes()
+    assert data[:4] == b"glTF"
+    assert int.from_bytes(data[8:12], "little") == len(data)
+    document = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
+    low, high = scene.bounds
+    assert np.allclose([low[1], high[1]], [-0.1, 2.7], atol=0.2)  # Y up: from under the floor to above the ceiling
+    assert np.allclose([high[0] - low[0], high[2] - low[2]], [9 + 2 * 0.24, 7.5 + 2 * 0.24], atol=0.03)  # with the outer walls
+    meshes = {node["name"]: node.get("mesh") for node in document["nodes"]}
+    assert {"floor", "ceiling", "handle", "drawer_slide", "book_0"} <= meshes.keys()
+    named = [document["nodes"][i]["name"] for i in document["nodes"][document["scenes"][0]["nodes"][0]]["children"]]
+    assert named.count("cabinet_0") == 1
+    assert len(document["meshes"]) == len({mesh["name"] for mesh in document["meshes"]})  # what two cabinets share is there once
+    for accessor in document["accessors"]:
+        view = document["bufferViews"][accessor["bufferView"]]
+        size = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}[accessor["type"]] * 4
+        assert view["byteLength"] == accessor["count"] * size
+        assert view["byteOffset"] % 4 == 0
+    for mesh in document["meshes"]:
+        for part in mesh["primitives"]:
+            assert document["accessors"][part["indices"]]["count"] % 3 == 0
+
+
+def test_a_killed_export_goes_on_and_leaves_nothing_half_written(furnished, tmp_path):
+    out = tmp_path / "out"
+    arguments = [sys.executable, "-m", "sfgen.cli", "export", str(furnished), "--to", "urdf", "--out", str(out)]
+    with subprocess.Popen(arguments) as run:
+        while run.poll() is None and not list(out.glob("assets/cabinet_a")):
+            pass
+        run.kill()
+    assert not list(out.glob("homes/*/home.json"))
+    whole = {path.parent.name for path in out.glob("assets/[!.]*/*.urdf")}
+    assert "cabinet_a" in whole
+    assert whole == {path.name for path in out.glob("assets/[!.]*")}
+    assert subprocess.run(arguments, check=False).returncode == 0
+    assert len(list(out.glob("homes/*/home.json"))) == 1
