@@ -2,16 +2,18 @@
 
 `python -m benchmarks.language [--file sentences] [--half held|tuned] [--language en] [--faults] [--typos]`. Ground truth:
 `languages.yaml`, `sentences.yaml`, `speech.yaml`, `fourth.yaml`, `fifth.yaml` and `everyday.yaml` in `manifests/prompts`. With --typos: the share of programs that one typing error leaves as
-they were (`benchmarks/slips.py`).
+they were (`benchmarks/slips.py`). With `--engine llm [--replies FILE]`: read by the language model that SFGEN_LLM_* name; FILE (YAML, a list of
+{prompt, reply}) holds what it has answered before, is read instead of asking, and gets what is new.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,11 +21,14 @@ import yaml
 
 from benchmarks import slips
 from pipeline.errors import RefusedError
-from pipeline.floorplan import FloorProgram, parse
+from pipeline.floorplan import FloorProgram, complete, parse
+from pipeline.floorplan.check import check
+from pipeline.floorplan.language import llm
 from pipeline.floorplan.program import Furniture, Range
 
 PROMPTS = Path(__file__).resolve().parents[1] / "manifests" / "prompts"
 FILES = ("languages", "sentences", "speech", "fourth", "fifth", "everyday")
+Engine = Callable[[str], FloorProgram]  # prompt -> completed program
 CLOSE = 0.12  # relative error of an area that is still "about" it
 
 
@@ -33,10 +38,12 @@ def load(name: str = FILES[0]) -> list[dict[str, Any]]:
     return cases
 
 
-def faults(case: Mapping[str, Any]) -> list[str]:
+def faults(case: Mapping[str, Any], engine: Engine | None = None) -> list[str]:
     """Return what the program of a case states wrongly; empty when it is exact."""
     try:
-        program = parse(case["prompt"])
+        program = (engine or parse)(case["prompt"])
+    except llm.UnansweredError as error:
+        return [f"no program: {error}"]
     except RefusedError as error:
         return [] if case.get("refused") else [f"refused: {error}"]
     if case.get("refused"):
@@ -170,6 +177,21 @@ def _wishes(program: FloorProgram, kind: str) -> list[Furniture]:
     return [r.furniture for r in program.rooms if r.type == kind] if kind else [program.furniture]
 
 
+def recorded(replies: dict[str, Any], server: llm.Server | None) -> Engine:
+    """Return an engine that reads what a model has replied; what it has not been asked yet is asked, and its program kept as a reply."""
+
+    def read(prompt: str) -> FloorProgram:
+        if prompt not in replies:
+            if server is None:
+                raise llm.UnansweredError("no reply is recorded, and no server is configured")
+            replies[prompt] = json.loads(llm.ask(prompt, server).model_dump_json(exclude_defaults=True))
+        program = complete(llm.validated(json.dumps(replies[prompt], ensure_ascii=False), prompt))
+        check(program)
+        return program
+
+    return read
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the share of exact prompts and of exact facts."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -178,7 +200,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--language")
     parser.add_argument("--faults", action="store_true")
     parser.add_argument("--typos", action="store_true")
+    parser.add_argument("--engine", choices=("rules", "llm"), default="rules")
+    parser.add_argument("--replies", type=Path)
     asked = parser.parse_args(arguments)
+    known = yaml.safe_load(asked.replies.read_text(encoding="utf-8")) if asked.replies and asked.replies.exists() else []
+    replies = {row["prompt"]: row["reply"] for row in known}
+    engine = recorded(replies, llm.configured()) if asked.engine == "llm" else None
     if asked.typos:
         cases = [c for f in FILES if asked.file in (None, f) for c in load(f) if asked.language in (None, c["id"][:2])]
         return slips.main(cases, asked.faults)
@@ -190,7 +217,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if (asked.half and asked.half != key[2]) or (asked.language and asked.language != key[1]):
             continue
         start = time.process_time()
-        wrong = faults(case)
+        wrong = faults(case, engine)
         spent += time.process_time() - start
         count[key] += 1
         exact[key] += not wrong
@@ -198,6 +225,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print(f"{case['id']}: {case['prompt']}\n    " + "\n    ".join(wrong))
     for key in sorted(count):
         print(f"{' '.join(key)}: {exact[key]} of {count[key]} exact")
+    if asked.replies and len(replies) > len(known):
+        rows = [{"prompt": prompt, "reply": reply} for prompt, reply in replies.items()]
+        asked.replies.write_text(yaml.safe_dump(rows, allow_unicode=True, sort_keys=False), encoding="utf-8")
     print(f"{1000 * spent / max(sum(count.values()), 1):.1f} ms a prompt (CPU, completion and checks with it)")
     return 0
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
 
 from pipeline.execution import map_shards, track
-from pipeline.floorplan import parse
+from pipeline.floorplan import request
 from pipeline.homes.factory import open_factory
 from pipeline.homes.request import Request
 from pipeline.manifest import digest
@@ -29,14 +29,13 @@ def main(
 ) -> None:
     """Fill the folder `out` (by default datasets/<seed>) with `count` homes."""
     mix = read_mix(prompts) if prompts else Mix()
-    for asked in mix.prompts:
-        parse(asked)  # what cannot be understood is refused now, not after hours
+    programs = {asked: request(asked).model_dump_json(exclude_defaults=True) for asked in mix.prompts}  # refused now, not after hours
     factory = open_factory(root, seed)
-    header = Header(seed, count, factory.shard_size, factory.licence, {**factory.digests, "prompts": mix.digest()})
+    header = Header(seed, count, factory.shard_size, factory.licence, {**factory.digests, "prompts": digest([mix.digest(), programs])})
     with open_or_create(out or Path("datasets") / str(seed), header) as dataset:
         commit_library(dataset, factory.write_library)
         missing = dataset.missing()
-        jobs = ((n, (n, requests(mix, seed, header.indices(n)))) for n in missing)
+        jobs = ((n, (n, requests(mix, programs, seed, header.indices(n)))) for n in missing)
         done = map_shards(
             partial(make_shard, root, seed), jobs, digest=digest(header.to_json()), workers=min(workers, len(missing)), scheduler=scheduler
         )
@@ -46,9 +45,10 @@ def main(
         sys.stdout.write(f"{count} homes in {dataset.folder}\n")
 
 
-def requests(mix: Mix, seed: int, indices: range) -> tuple[Request, ...]:
-    """Return what each home is asked to be."""
-    return tuple(Request(index, mix.prompt(seed, index)) for index in indices)
+def requests(mix: Mix, programs: Mapping[str, str], seed: int, indices: range) -> tuple[Request, ...]:
+    """Return what each home is asked to be: its words, and the program that was read from them (none: one of the prior)."""
+    words = ((index, mix.prompt(seed, index)) for index in indices)
+    return tuple(Request(index, asked, programs.get(asked, "")) for index, asked in words)
 
 
 def make_shard(root: Path, seed: int, job: Job) -> ShardContent:

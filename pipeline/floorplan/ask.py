@@ -32,7 +32,8 @@ def _read(prompt: str, server: Server | None) -> FloorProgram:
     """Return the completed program of a prompt.
 
     What the model answers is checked like everything else; when it gives no usable program, a warning says so and the built-in
-    parser takes over. Raises UsageError and RefusedError as `parse` does.
+    parser takes over. A contradiction in the words is refused even where the model has settled it by itself. Raises UsageError and
+    RefusedError as `parse` does.
     """
     server = server or configured()
     if server is None:
@@ -48,4 +49,10 @@ def _read(prompt: str, server: Server | None) -> FloorProgram:
         # the model may have invented the contradiction: the words decide
         LOG.warning("the language model's program contradicts itself; the built-in parser takes over")
         return parse(prompt)
+    try:
+        parse(prompt)
+    except ImpossibleError:
+        raise
+    except RefusedError:
+        LOG.debug("only the language model has understood the prompt")
     return program

@@ -10,9 +10,13 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import pytest
+import yaml
 
-from pipeline.errors import UsageError
+from benchmarks.language import faults, recorded
+from pipeline.errors import RefusedError, UsageError
+from pipeline.floorplan import complete
 from pipeline.floorplan.ask import request
+from pipeline.floorplan.check import check
 from pipeline.floorplan.language import llm
 from pipeline.floorplan.language.llm import Server, UnansweredError, ask, configured
 
@@ -282,7 +286,7 @@ def test_furniture_is_part_of_the_answer(serve):
 def test_quotes_are_looked_up_in_the_prompt(serve):
     program = {
         "rooms": [{"id": "bed", "type": "bedroom"}, {"id": "bath", "type": "bathroom"}, {"id": "gym", "type": "gym"}],
-        "total_area": {"target": 61.0, "stated": True},
+        "total_area": {"target": 61.0},
         "evidence": [{"field": "rooms.bed", "text": "One  BEDROOM", "start": 900, "end": 3}, {"field": "rooms.x", "text": "not there"}, 7],
     }
     prompt = "One bedroom and a bath of 5 m2 please"
@@ -292,3 +296,49 @@ def test_quotes_are_looked_up_in_the_prompt(serve):
     assert {(e.field, e.source) for e in made.evidence} == {("rooms.bed", "llm"), ("rooms.bath", "rule")}
     assert {r.id: r.stated for r in made.rooms} == {"bed": True, "bath": True, "gym": False}  # nobody spoke of a gym
     assert not made.total_area.stated
+
+
+def test_the_schema_asks_for_nothing_that_the_words_decide():
+    shown = json.dumps(llm.schema())
+    assert all(f'"{name}"' not in shown for name in ("stated", "inferred", "start", "end", "source", "unparsed"))
+    assert shown in llm.instructions()
+
+
+def test_the_worked_examples_are_valid_and_quote_their_requests():
+    examples = yaml.safe_load(llm.EXAMPLES.read_text(encoding="utf-8"))
+    assert len(examples) == 6
+    for example in examples:
+        program = llm.validated(json.dumps(example["reply"], ensure_ascii=False), example["prompt"])
+        check(complete(program))
+        assert len(program.evidence) == len(example["reply"]["evidence"])
+        assert all(r.stated for r in program.rooms)
+
+
+@pytest.mark.parametrize("complaint", ["use max_completion_tokens", "'temperature' does not support 0"])
+def test_a_server_with_other_parameters_is_asked_by_them(serve, complaint):
+    http, server = serve(raw(json.dumps({"error": complaint}).encode(), 400), says(GOOD))
+    assert len(request(PROMPT, server).rooms) == 4
+    first, second = (asked for _, _, asked in http.seen)
+    assert "max_tokens" in first
+    assert "max_completion_tokens" in second
+    assert not {"max_tokens", "temperature", "seed"} & set(second)
+
+
+def test_a_server_that_knows_no_format_is_asked_without(serve):
+    http, server = serve(raw(b"", 400), raw(b"", 422), says(GOOD))
+    assert len(request(PROMPT, server).rooms) == 4
+    assert "response_format" not in http.seen[2][2]
+
+
+def test_a_contradiction_that_the_model_has_settled_is_refused(serve):
+    _, server = serve(says(json.dumps({"rooms": [{"id": "bed", "type": "bedroom", "count": 2}]})))
+    with pytest.raises(RefusedError):
+        request("A two-bedroom flat. The third bedroom is for guests.", server)
+
+
+def test_recorded_replies_are_scored_without_a_server():
+    prompt = "Two bedrooms and a bath"
+    engine = recorded({prompt: {"rooms": [{"id": "bed", "type": "bedroom", "count": 2}, {"id": "bath", "type": "bathroom"}]}}, None)
+    case = {"prompt": prompt, "rooms": ["bedroom", "bedroom", "bathroom"]}
+    assert faults(case, engine) == []
+    assert faults({**case, "prompt": "A kitchen"}, engine) != []
