@@ -30,6 +30,13 @@ from pipeline.sources.settings import PreprocessSettings
 from pipeline.sources.sink import write_houses, write_library
 from stages.runner import run
 
+ALIKE = ("bed", "chair", "sofa")  # super-categories whose members stand to other things as each other do; tables and cabinets do not
+
+
+def alike() -> dict[str, str]:
+    """Return the kind of each category whose relations may be learnt from others of its kind."""
+    return {name: entry.super for name, entry in taxonomy.load().categories.items() if entry.super in ALIKE}
+
 
 def main(root: Path) -> None:
     """Read the sources that section `preprocess` of params.yaml names."""
@@ -52,7 +59,10 @@ def main(root: Path) -> None:
     summary = write_houses(out, read, library, peers or front)
     library.assets += add_mirrored(root / "data" / "assets", library.assets, summary.assets)
     write_library(out, library, summary)
-    files.save(out / "relations.json", learning.fit(rooms_of(out, "train")))
+    files.save(
+        out / "relations.json",
+        learning.fit(rooms_of(out, "train"), alike()),
+    )
     sys.stdout.writelines(f"{line}\n" for line in summary.lines())
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,11 +38,35 @@ class _Things:
     names: tuple[str, ...]
 
 
-def fit(rooms: Sequence[Arrangement]) -> Relations:
-    """Learn the relations of furnished rooms."""
+class _Learnt(NamedTuple):
+    """What a relation is, but for the names: modes, cases, the share in a mode, that by chance."""
+
+    modes: tuple[Mode, ...]
+    cases: int
+    share: float
+    chance: float
+
+
+def fit(rooms: Sequence[Arrangement], kinds: Mapping[str, str] | None = None) -> Relations:
+    """Learn the relations of furnished rooms.
+
+    `kinds` names the kind of a category (bed, chair): a pair that shares too few rooms to be learnt by itself takes what its
+    anchor has with all members of the kind, else what all anchors of the kind have with the member.
+    """
     things = _gathered(rooms)
-    pairs = (_relation(things, *case) for case in _pairs(things))
-    return relations([pair for pair in pairs if pair is not None and pair.strength >= LEAST_STRENGTH], walls.fit(rooms))
+    anchor, member = _together(things)
+    learnt: dict[tuple[int, int], _Learnt | None] = {
+        pair: _relation(things, *case) for pair, case in _cases(anchor, member, things.kind, things.kind)
+    }
+    if kinds:
+        group = np.unique([kinds.get(name, name) for name in things.names], return_inverse=True)[1]
+        rare = {(a, m) for a, m in zip(things.kind[anchor].tolist(), things.kind[member].tolist(), strict=True)} - learnt.keys()
+        for anchors, members in ((np.arange(len(group)), group), (group, np.arange(len(group)))):
+            for pair, case in _cases(anchor, member, anchors[things.kind], members[things.kind]):
+                own = sorted((a, m) for a, m in rare if (anchors[a], members[m]) == pair and not learnt.get((a, m)))
+                learnt |= dict.fromkeys(own, _relation(things, *case) if own else None)
+    named = [PairRelation(things.names[a], things.names[m], *found) for (a, m), found in learnt.items() if found is not None]
+    return relations([pair for pair in named if pair.strength >= LEAST_STRENGTH], walls.fit(rooms))
 
 
 def _gathered(rooms: Sequence[Arrangement]) -> _Things:
@@ -56,8 +81,8 @@ def _gathered(rooms: Sequence[Arrangement]) -> _Things:
     return _Things(Boxes(*parts), kind, np.repeat(np.arange(len(filled)), counts), middle, names)
 
 
-def _pairs(things: _Things) -> Iterator[tuple[Indices, Indices]]:
-    """Yield the indices of anchors and members (P,) of each ordered pair of categories with enough cases, in a fixed order."""
+def _together(things: _Things) -> tuple[Indices, Indices]:
+    """Return anchors and members (P,): every ordered pair of things that share a room."""
     starts = np.searchsorted(things.room, np.arange(things.room.max() + 2)) if len(things.room) else np.zeros(1, int)
     counts = np.diff(starts)
     many = counts[things.room] if len(things.room) else counts
@@ -65,27 +90,35 @@ def _pairs(things: _Things) -> Iterator[tuple[Indices, Indices]]:
     within = np.arange(len(member)) - np.repeat(np.cumsum(many) - many, many)
     anchor = starts[things.room[member]] + within
     other = anchor != member
-    anchor, member = anchor[other], member[other]
-    code = things.kind[anchor] * len(things.names) + things.kind[member]
+    return anchor[other], member[other]
+
+
+def _cases(
+    anchor: Indices, member: Indices, anchors: Indices, members: Indices
+) -> Iterator[tuple[tuple[int, int], tuple[Indices, Indices]]]:
+    """Yield each ordered pair of classes with enough cases, and the indices of its anchors and members (P,), in a fixed order.
+
+    `anchors` and `members` (T,) are the classes of things as anchors and as members.
+    """
+    code = anchors[anchor] * (members.max(initial=0) + 1) + members[member]
     order = np.argsort(code, kind="stable")
     bounds = np.flatnonzero(np.diff(code[order], prepend=-1))
     for chosen in np.split(order, bounds[1:]):
-        members = np.unique(member[chosen])
-        if len(members) >= LEAST_CASES:
-            looked = members[np.linspace(0, len(members) - 1, min(len(members), MOST_CASES)).astype(int)]
-            own = chosen[np.isin(member[chosen], looked)]
-            yield anchor[own], member[own]
+        own = np.unique(member[chosen])
+        if len(own) >= LEAST_CASES:
+            looked = own[np.linspace(0, len(own) - 1, min(len(own), MOST_CASES)).astype(int)]
+            kept = chosen[np.isin(member[chosen], looked)]
+            pair = int(anchors[anchor[kept[0]]]), int(members[member[kept[0]]])
+            yield pair, (anchor[kept], member[kept])
 
 
-def _relation(things: _Things, anchor: Indices, member: Indices) -> PairRelation | None:
+def _relation(things: _Things, anchor: Indices, member: Indices) -> _Learnt | None:
     own = _nearest(things, anchor, member, (1, 1))
     modes = _modes(own)
     if not modes:
         return None
     chances = [held(modes, _nearest(things, anchor, member, mirror)).mean() for mirror in ((-1, 1), (1, -1), (-1, -1))]
-    names = things.names
-    share, chance = float(held(modes, own).mean()), float(np.mean(chances))
-    return PairRelation(names[things.kind[anchor[0]]], names[things.kind[member[0]]], modes, len(own.turn), share, chance)
+    return _Learnt(modes, len(own.turn), float(held(modes, own).mean()), float(np.mean(chances)))
 
 
 def _nearest(things: _Things, anchor: Indices, member: Indices, mirror: tuple[int, int]) -> Frames:

@@ -1,6 +1,7 @@
 """Relations from rooms in which they are known: found where they are, absent where only the walls are shared, exact both ways."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -135,3 +136,19 @@ def test_small_things_on_furniture_are_left_out_and_tables_on_rugs_are_not():
     kinds = (("rug", ""), ("coffee_table", "rug_0"), ("cup", "coffee_table_0"))
     found = from_rows(rooms, [base | {"category": c, "support": s} for c, s in kinds])
     assert found[0].categories == ("rug", "coffee_table")
+
+
+def test_what_is_too_rare_for_itself_is_learnt_from_its_kind():
+    rng = np.random.default_rng(1)
+    rooms = bedrooms(rng, 120)
+    rare = [
+        replace(room, categories=tuple("kids_bed" if name == "double_bed" else name for name in room.categories)) for room in rooms[:12]
+    ]
+    alone = learning.fit([*rooms[12:], *rare])
+    assert alone.pair("kids_bed", "nightstand") is None
+    kinds = learning.fit([*rooms[12:], *rare], {"double_bed": "bed", "kids_bed": "bed"})
+    own = kinds.pair("kids_bed", "nightstand")
+    assert own is not None
+    assert own.strength > 0.5
+    assert kinds.pair("double_bed", "nightstand") == alone.pair("double_bed", "nightstand")
+    assert learning.fit([*rooms[12:], *rare], {"double_bed": "bed"}).pair("kids_bed", "nightstand") is None
