@@ -30,13 +30,6 @@ from pipeline.sources.settings import PreprocessSettings
 from pipeline.sources.sink import write_houses, write_library
 from stages.runner import run
 
-ALIKE = ("bed", "chair", "sofa")  # super-categories whose members stand to other things as each other do; tables and cabinets do not
-
-
-def alike() -> dict[str, str]:
-    """Return the kind of each category whose relations may be learnt from others of its kind."""
-    return {name: entry.super for name, entry in taxonomy.load().categories.items() if entry.super in ALIKE}
-
 
 def main(root: Path) -> None:
     """Read the sources that section `preprocess` of params.yaml names."""
@@ -61,7 +54,7 @@ def main(root: Path) -> None:
     write_library(out, library, summary)
     files.save(
         out / "relations.json",
-        learning.fit(rooms_of(out, "train"), alike()),
+        learning.fit(rooms_of(out, "train"), learning.alike()),
     )
     sys.stdout.writelines(f"{line}\n" for line in summary.lines())
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline import taxonomy
 from pipeline.relations import walls
 from pipeline.relations.arrangement import Arrangement
 from pipeline.relations.clusters import entropy, split
@@ -24,6 +25,7 @@ MOST_CASES = 3000  # members that are looked at, spread over the rooms: more say
 LEAST_MODE = 0.03  # share of the members, and
 LEAST_IN_MODE = 8  # number of them that make a mode
 LEAST_STRENGTH = 0.3  # relations weaker than this are not kept
+ALIKE = ("bed", "chair", "sofa")  # super-categories whose members stand to other things as each other do; tables and cabinets do not
 TAILS = (5.0, 50.0, 95.0)  # percentiles of a span
 
 
@@ -36,6 +38,11 @@ class _Things:
     room: Indices
     middle: Floats
     names: tuple[str, ...]
+
+
+def alike() -> dict[str, str]:
+    """Return the kind of each category whose relations may be learnt from others of its kind."""
+    return {name: entry.super for name, entry in taxonomy.load().categories.items() if entry.super in ALIKE}
 
 
 class _Learnt(NamedTuple):
