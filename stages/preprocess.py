@@ -52,10 +52,7 @@ def main(root: Path) -> None:
     summary = write_houses(out, read, library, peers or front)
     library.assets += add_mirrored(root / "data" / "assets", library.assets, summary.assets)
     write_library(out, library, summary)
-    files.save(
-        out / "relations.json",
-        learning.fit(rooms_of(out, "train"), learning.alike()),
-    )
+    files.save(out / "relations.json", learning.fit(rooms_of(out, "train")))
     sys.stdout.writelines(f"{line}\n" for line in summary.lines())
 
 

@@ -57,10 +57,10 @@ class _Learnt(NamedTuple):
 def fit(rooms: Sequence[Arrangement], kinds: Mapping[str, str] | None = None) -> Relations:
     """Learn the relations of furnished rooms.
 
-    `kinds` names the kind of a category (bed, chair): a pair that shares too few rooms to be learnt by itself takes what its
+    `kinds` names the kind of a category, see `alike`, which is what stands for None: a pair that shares too few rooms to be learnt by itself takes what its
     anchor has with all members of the kind, else what all anchors of the kind have with the member.
     """
-    things = _gathered(rooms)
+    things, kinds = _gathered(rooms), alike() if kinds is None else kinds
     anchor, member = _together(things)
     learnt: dict[tuple[int, int], _Learnt | None] = {
         pair: _relation(things, *case) for pair, case in _cases(anchor, member, things.kind, things.kind)

@@ -144,9 +144,9 @@ def test_what_is_too_rare_for_itself_is_learnt_from_its_kind():
     rare = [
         replace(room, categories=tuple("kids_bed" if name == "double_bed" else name for name in room.categories)) for room in rooms[:12]
     ]
-    alone = learning.fit([*rooms[12:], *rare])
+    alone = learning.fit([*rooms[12:], *rare], {})
     assert alone.pair("kids_bed", "nightstand") is None
-    kinds = learning.fit([*rooms[12:], *rare], {"double_bed": "bed", "kids_bed": "bed"})
+    kinds = learning.fit([*rooms[12:], *rare])
     own = kinds.pair("kids_bed", "nightstand")
     assert own is not None
     assert own.strength > 0.5
