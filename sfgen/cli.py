@@ -22,7 +22,6 @@ SEED_HELP = "Every random choice follows from it."
 app = typer.Typer(
     name="sfgen",
     help="A factory for datasets of homes that robots can use.",
-    add_completion=False,
     no_args_is_help=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
@@ -31,6 +30,8 @@ app = typer.Typer(
 
 STRICT_HELP = "Refuse words that are not understood, instead of leaving them out and saying so."
 Strict = Annotated[bool, typer.Option("--strict", help=STRICT_HELP)]
+Quiet = Annotated[bool, typer.Option("--quiet", help="No progress on stderr.")]
+Machine = Annotated[bool, typer.Option("--json", help="For machines: progress as JSON lines on stderr, what came of it as one on stdout.")]
 Seed = Annotated[int, typer.Option(min=0, max=2**31 - 1, help=SEED_HELP)]
 
 
@@ -50,6 +51,8 @@ def generate(
     plan: Annotated[Path | None, typer.Option(help="Furnish this plan of your own: JSON, 3D-FRONT or ProcTHOR.")] = None,
     house: Annotated[str | None, typer.Option(help="With --plan FILE.jsonl: which house, a line from 0 or an id.")] = None,
     strict: Strict = False,
+    quiet: Quiet = False,
+    json: Machine = False,
 ) -> None:
     """Make one home from words, or in a plan of your own: USD, tables, plan and preview.
 
@@ -61,7 +64,9 @@ def generate(
     if not prompt and not plan:
         raise Complaint("the prompt is empty; give PROMPT, or --plan FILE", 2)
     root = factory_root()
-    stage("generate").main(root, prompt=prompt, out=out, seed=seed, source=plan, house=house, strict=strict)
+    stage("generate").main(
+        root, prompt=prompt, out=out, seed=seed, source=plan, house=house, strict=strict, voice=voice(quiet=quiet, json=json)
+    )
 
 
 @app.command()
@@ -69,19 +74,31 @@ def shard(
     count: Annotated[int, typer.Option(min=1, help="Number of homes.", show_default=False)],
     out: Annotated[Path | None, typer.Option(help="Folder of the dataset; a killed run resumes. [default: datasets/<seed>]")] = None,
     seed: Seed = 0,
-    workers: Annotated[int, typer.Option(min=1, help="Processes of a local Dask cluster, one thread each; 1 runs without Dask.")] = 1,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes, one thread each; 1 starts none. [default: the cores that may be used]")
+    ] = None,
     prompts: Annotated[Path | None, typer.Option(help="Text file, a prompt a line; or YAML list of {prompt, weight}.")] = None,
     scheduler: Annotated[str | None, typer.Option(help="A Dask scheduler, tcp://host:port or its file, instead of --workers.")] = None,
-) -> None:
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Stop at the first home that cannot be made, instead of leaving it empty.")
+    ] = False,
+    only: Annotated[
+        int | None, typer.Option(min=0, help="Make the home of this index alone and write nothing: shows what is wrong with it.")
+    ] = None,
+    quiet: Quiet = False,
+    json: Machine = False,
+) -> int:
     """Make a dataset of many homes; started again, it goes on where it was killed.
 
     \b
     Example:
-      sfgen shard --count 200 --out datasets/mine --seed 7 --workers 2
+      sfgen shard --count 200 --out datasets/mine --seed 7
       sfgen shard --count 1000 --prompts prompts.txt --scheduler tcp://10.0.0.1:8786
     """
     root = factory_root()
-    stage("shard").main(root, count=count, out=out, seed=seed, workers=workers, prompts=prompts, scheduler=scheduler)
+    options = {"out": out, "seed": seed, "workers": workers, "prompts": prompts, "scheduler": scheduler, "strict": strict, "only": only}
+    code: int = stage("shard").main(root, count=count, **options, voice=voice(quiet=quiet, json=json))
+    return code
 
 
 @app.command()
@@ -160,6 +177,8 @@ def export(
 def verify(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a dataset.", show_default=False)],
     quick: Annotated[bool, typer.Option("--quick", help="Leave out opening every stage with USD.")] = False,
+    quiet: Quiet = False,
+    json: Machine = False,
 ) -> None:
     """Check a dataset: every sha256, row, id, reference and stage; the first wrong thing is named.
 
@@ -168,7 +187,7 @@ def verify(
       sfgen verify data/shards
     """
     root = factory_root()
-    stage("verify").main(root, folder=folder, quick=quick)
+    stage("verify").main(root, folder=folder, quick=quick, voice=voice(quiet=quiet, json=json))
 
 
 @app.command()
@@ -177,6 +196,7 @@ def doctor(
         list[Path] | None,
         typer.Option(help="Folder of 3D-FRONT + 3D-FUTURE, or of PartNet objects, to train on from now on; may be given twice."),
     ] = None,
+    json: Machine = False,
 ) -> None:
     """Say what is installed, what is made, what is missing, and the command that makes it; or take real copies of the data into use.
 
@@ -190,7 +210,7 @@ def doctor(
     if use:
         stage("adopt").main(root, use)
     else:
-        stage("doctor").main(root)
+        stage("doctor").main(root, voice=voice(quiet=False, json=json))
 
 
 @app.callback(invoke_without_command=True)
@@ -201,6 +221,11 @@ def version(*, version: Annotated[bool, typer.Option("--version", help="Show the
 
         typer.echo(__version__)
         raise typer.Exit
+
+
+def voice(*, quiet: bool, json: bool) -> str:
+    """Return how a command speaks."""
+    return "json" if json else "quiet" if quiet else "plain"
 
 
 class Complaint(Exception):  # noqa: N818 - not an error of the program

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import multiprocessing
-import os
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -24,7 +23,7 @@ from pipeline.corpus.house_files import write_houses
 from pipeline.corpus.houses import mess
 from pipeline.corpus.partnet_writer import write_partnet
 from pipeline.corpus.settings import CorpusSettings
-from pipeline.execution import track
+from pipeline.execution import cores, track
 from stages import runner
 
 RAW = Path("data/raw")
@@ -38,7 +37,7 @@ def main(root: Path) -> None:
     """Make the corpus of params.yaml under data/raw: in a temporary folder, which takes its place when it is whole."""
     tree = params.read(root / "params.yaml")
     settings = params.section(CorpusSettings, tree, "corpus")
-    found = make(root / RAW, params.convert(int, tree.get("seed"), "seed"), settings, workers=os.cpu_count() or 1)
+    found = make(root / RAW, params.convert(int, tree.get("seed"), "seed"), settings, workers=cores())
     output.write(root, found)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.metadata
+import json
 import os
 import platform
 import shutil
@@ -12,6 +13,7 @@ from pathlib import Path
 
 from pipeline import params
 from pipeline.errors import ContentError
+from pipeline.execution import Voice, cores
 from pipeline.sources.recognition import front_at, partnet_at, peers_at
 from pipeline.sources.settings import PreprocessSettings
 from stages.runner import run
@@ -33,10 +35,16 @@ MADE = (
 )
 
 
-def main(root: Path) -> None:
-    """Print one line per thing; `-` marks what is missing."""
-    for line in [*machine(), *packages(), *sources(root), *made(root)]:
-        sys.stdout.write(f"{line}\n")
+def main(root: Path, *, voice: Voice = "plain") -> None:
+    """Print one line per thing; `-` marks what is missing. For machines, one JSON object."""
+    found = {"machine": machine(), "packages": packages(), "sources": sources(root), "made": made(root)}
+    if voice == "json":
+        told = {part: [{"ok": not line.startswith("-"), "text": line.lstrip("+- ")} for line in lines] for part, lines in found.items()}
+        sys.stdout.write(json.dumps(told) + "\n")
+        return
+    for lines in found.values():
+        for line in lines:
+            sys.stdout.write(f"{line}\n")
 
 
 def places(root: Path) -> None:
@@ -52,9 +60,8 @@ def places(root: Path) -> None:
 
 def machine() -> Iterator[str]:
     """Yield what this machine is."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
-    yield f"+ Python {platform.python_version()} on {platform.system()} {platform.machine()}, {cores} cores, {memory:.0f} GiB"
+    yield f"+ Python {platform.python_version()} on {platform.system()} {platform.machine()}, {cores()} cores, {memory:.0f} GiB"
     if not (shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")):
         yield "- a C compiler is missing; install gcc or clang"
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import asdict
 from pathlib import Path
 
 from pipeline.entities.home import Home
-from pipeline.execution import single_thread
+from pipeline.execution import Progress, Voice, single_thread
+from pipeline.execution.notes import listen
 from pipeline.floorplan import FloorProgram, describe, plan_json, request
 from pipeline.floorplan.assumptions import assumptions, notes
 from pipeline.floorplan.draw import svg
@@ -15,15 +17,24 @@ from pipeline.floorplan.own import program_of, read_own, told
 from pipeline.floorplan.wishes import with_wishes
 from pipeline.homes.delivery import deliveries, report
 from pipeline.homes.factory import open_factory
+from pipeline.homes.outcomes import Empty
 from pipeline.homes.request import Request
 from pipeline.homes.soundness import require_sound
+from pipeline.homes.warmth import warm_up
 from pipeline.manifest import digest
-from pipeline.shards import Header, commit_library, commit_shard, gather, open_or_create, require_prompt
-from stages.runner import announce_compiling
+from pipeline.shards import Header, add_part, commit_shard, extend_library, gather, open_or_create, require_prompt
 
 
 def main(
-    root: Path, *, out: Path, prompt: str = "", seed: int = 0, source: Path | None = None, house: str | None = None, strict: bool = False
+    root: Path,
+    *,
+    out: Path,
+    prompt: str = "",
+    seed: int = 0,
+    source: Path | None = None,
+    house: str | None = None,
+    strict: bool = False,
+    voice: Voice = "plain",
 ) -> None:
     """Make the home that `prompt` asks for, or the one of the plan in `source`, in the folder `out`.
 
@@ -31,23 +42,37 @@ def main(
     """
     program, wish, repairs = asked_in_words(prompt, strict=strict) if source is None else asked_by_plan(root, source, house, prompt)
     single_thread()
+    progress = Progress(1, "home", voice=voice)
+    progress.phase("reading the layout model and the library")
     factory = open_factory(root, seed)
     asked = digest([wish.prompt, wish.program, wish.plan])
     header = Header(seed, 1, factory.shard_size, factory.licence, {**factory.digests, "prompts": asked})
-    announce_compiling()
+    warm_up(progress)
+    listen(lambda note: progress.phase(note[0]))
     (outcome,) = factory.make([wish])  # before the folder is touched: a request may yet be refused
-    used = sorted({p.asset_id for p in outcome.home.placements})
+    listen(None)
+    if isinstance(outcome, Empty):
+        raise outcome.error
     with open_or_create(out, header) as dataset:
         if dataset.missing():
-            commit_library(dataset, lambda folder: factory.write_library(folder, used))
+            progress.phase("writing the assets")
+            extend_library(dataset, {p.asset_id for p in outcome.home.placements}, factory.shelf())
             assumed = assumptions(program) if source is None else []
-            commit_shard(dataset, 0, gather(0, [(outcome.rows, {**outcome.files, **drawings(outcome.home, program, repairs, assumed)})]))
+            files = {**outcome.files, **drawings(outcome.home, program, repairs, assumed)}
+            add_part(dataset, 0, gather(0, [(outcome.rows, files)]))
+            commit_shard(dataset, 0)
+    progress.close()
     styles = {p.asset_id: str(factory.library.rows[p.asset_id]["style"]) for p in outcome.home.placements}
-    sys.stdout.write(report(deliveries(FloorProgram.model_validate_json(outcome.home.program), outcome.rows, styles)))
+    delivered = deliveries(FloorProgram.model_validate_json(outcome.home.program), outcome.rows, styles)
+    written = [str(p) for p in sorted(out.glob("*/shard-00000/*")) if p.is_file()]
+    if voice == "json":
+        progress.summary(scene_id=outcome.home.scene_id, files=written, deliveries=[asdict(d) for d in delivered], repairs=repairs)
+        return
+    sys.stdout.write(report(delivered))
     if source is None:
         sys.stderr.write(notes(program, assumptions(program)))
     sys.stdout.write(told(repairs))
-    for file in sorted(p for p in out.glob("*/shard-00000/*") if p.is_file()):
+    for file in written:
         sys.stdout.write(f"{file}\n")
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from operator import itemgetter
@@ -10,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline import params, seeds, tables, taxonomy
-from pipeline.execution import map_shards, track
+from pipeline.execution import cores, map_jobs, track
 from pipeline.experiments import tables as paper
 from pipeline.experiments.dataset import dataset_figures, reject_counts
 from pipeline.experiments.document import write_report
@@ -40,7 +39,7 @@ def main(root: Path) -> None:
     settings, seed = params.section(MetricsSettings, tree, "metrics"), tree["seed"]
     parts: list[Callable[[], Any]] = [partial(run, root, seed, settings, family) for family in paper.families(settings)]
     parts.append(partial(plans, root, settings))
-    found = map_shards(measure, enumerate(parts), workers=min(os.cpu_count() or 1, len(parts)))
+    found = map_jobs(partial(measure, parts), range(len(parts)), workers=min(cores(), len(parts)))
     *families, plan = (made for _, made in sorted(track(found, len(parts), "metrics", unit="experiment"), key=itemgetter(0)))
     trials: dict[str, Trial] = {name: made for family in families for name, made in family.items()}
     factory = open_factory(root, seed)
@@ -73,9 +72,9 @@ def realism(root: Path, seed: int, settings: MetricsSettings, trials: Mapping[st
     return realism_table(seed, beside(root, settings.split, drafted), known, embeddings(settings.inception))
 
 
-def measure(part: Callable[[], Any]) -> Any:
+def measure(parts: Sequence[Callable[[], Any]], number: int) -> Any:
     """Do one part of the work: the step that workers run."""
-    return part()
+    return parts[number]()
 
 
 def run(root: Path, seed: int, settings: MetricsSettings, family: Sequence[Condition]) -> dict[str, Trial]:

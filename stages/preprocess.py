@@ -5,7 +5,6 @@ Reads data/raw/ (or the user's copies), writes data/tables/*.parquet, data/table
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -15,6 +14,7 @@ from tqdm import tqdm
 
 from pipeline import params, taxonomy
 from pipeline.errors import ContentError
+from pipeline.execution import cores
 from pipeline.relations import files, learning
 from pipeline.relations.split import rooms_of
 from pipeline.sources import batch, inventory, proportions
@@ -109,11 +109,6 @@ def progress(results: Iterable[Any], name: str, total: int) -> Iterable[Any]:
     seen = sys.stderr.isatty()
     bar: Iterable[Any] = tqdm(results, name, total, unit="", mininterval=1.0 if seen else 30.0, delay=0.0 if seen else 30.0)
     return bar
-
-
-def cores() -> int:
-    """Return the cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 if __name__ == "__main__":

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import os
 from functools import partial
 from pathlib import Path
 
 from pipeline import params, tables
-from pipeline.execution import map_shards, track
+from pipeline.execution import cores, map_jobs, track
 from pipeline.homes.drafts import draft_rows
-from pipeline.homes.factory import HomeDraft, open_factory
+from pipeline.homes.factory import open_factory
 from pipeline.homes.request import Request
 from pipeline.homes.settings import DatasetSettings, requests_of
+from pipeline.homes.work import HomeDraft
 from pipeline.manifest import write_json
 from schemas.objects import OBJECTS
 from schemas.openings import OPENINGS
@@ -27,10 +27,10 @@ def main(root: Path) -> None:
     settings = params.section(DatasetSettings, tree, "dataset")
     asked = requests_of(settings, root, tree["seed"])
     chunk = open_factory(root, tree["seed"]).chunk
-    jobs = [(number, asked[start : start + chunk]) for number, start in enumerate(range(0, len(asked), chunk))]
-    done = map_shards(partial(draft, root, tree["seed"]), jobs, workers=min(os.cpu_count() or 1, len(jobs)))
-    parts = dict(track(done, len(jobs), "sample", unit="chunk"))
-    rows = draft_rows([home for number, _ in jobs for home in parts[number][0]], tree["seed"], open_factory(root, tree["seed"]).library)
+    jobs = [asked[start : start + chunk] for start in range(0, len(asked), chunk)]
+    done = map_jobs(partial(draft, root, tree["seed"]), jobs, workers=min(cores(), len(jobs)))
+    parts = dict(track(done, len(asked), "sample", size=lambda pair: len(pair[0])))
+    rows = draft_rows([home for job in jobs for home in parts[job][0]], tree["seed"], open_factory(root, tree["seed"]).library)
     for table in (SCENES, ROOMS, OPENINGS, OBJECTS, REJECTS):
         tables.write(root / "data" / "samples" / f"{table.name}.parquet", table, rows[table.name])
     spent = {part: sum(seconds[part] for _, seconds in parts.values()) for part in ("plan", "sample")}

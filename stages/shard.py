@@ -1,20 +1,24 @@
-"""`sfgen shard`: a dataset of many homes, shard by shard, on as many workers as there are; resumes after a kill."""
+"""`sfgen shard`: a dataset of many homes, chunk by chunk, on as many workers as there are; resumes after a kill."""
 
 from __future__ import annotations
 
+import shlex
 import sys
-from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
 
-from pipeline.execution import map_shards, track
+from pipeline.errors import RefusedError, SfgenError, UsageError
+from pipeline.execution import Progress, Voice, cores
 from pipeline.floorplan import request
 from pipeline.homes.factory import open_factory
+from pipeline.homes.outcomes import Empty
+from pipeline.homes.production import Recipe, Tally, fill
 from pipeline.homes.request import Request
+from pipeline.homes.warmth import warm_up
 from pipeline.manifest import digest
-from pipeline.shards import Header, Mix, ShardContent, commit_library, commit_shard, gather, open_or_create, read_mix
+from pipeline.shards import Header, Mix, open_or_create, read_mix
 
-Job = tuple[int, tuple[Request, ...]]  # the shard's number, and what each of its homes is asked to be
+SHOWN = 5  # prompts that cannot be met which are named at the start
 
 
 def main(
@@ -23,41 +27,92 @@ def main(
     count: int,
     out: Path | None = None,
     seed: int = 0,
-    workers: int = 1,
+    workers: int | None = None,
     prompts: Path | None = None,
     scheduler: str | None = None,
-) -> None:
-    """Fill the folder `out` (by default datasets/<seed>) with `count` homes."""
+    strict: bool = False,
+    only: int | None = None,
+    voice: Voice = "plain",
+) -> int:
+    """Fill the folder `out` (by default datasets/<seed>) with `count` homes; returns the exit code: 1 when some could not be made."""
+    progress = Progress(count, "homes", voice=voice)
     mix = read_mix(prompts) if prompts else Mix()
-    programs = {asked: request(asked).model_dump_json(exclude_defaults=True) for asked in mix.prompts}  # refused now, not after hours
+    programs = read_early(mix, progress, strict=strict)
+    folder = out or Path("datasets") / str(seed)
+    if folder.exists() and not folder.is_dir():
+        raise UsageError(f"{folder} is not a folder", "give a folder that is new, empty, or holds this very dataset")
+    progress.say("reading the layout model and the library")
     factory = open_factory(root, seed)
+
+    def asked(index: int) -> Request:
+        words = mix.prompt(seed, index)
+        return Request(index, words, programs.get(words, ""))
+
+    if only is not None:
+        return try_one(root, seed, asked(only))
     header = Header(seed, count, factory.shard_size, factory.licence, {**factory.digests, "prompts": digest([mix.digest(), programs])})
-    with open_or_create(out or Path("datasets") / str(seed), header) as dataset:
-        commit_library(dataset, factory.write_library)
-        missing = dataset.missing()
-        jobs = ((n, (n, requests(mix, programs, seed, header.indices(n)))) for n in missing)
-        done = map_shards(
-            partial(make_shard, root, seed), jobs, digest=digest(header.to_json()), workers=min(workers, len(missing)), scheduler=scheduler
+    workers = workers or cores()
+    with open_or_create(folder, header) as dataset:
+        if dataset.missing():
+            warm_up(progress)
+        again = shlex.join(
+            ["sfgen", "shard", "--count", str(count), "--seed", str(seed), *(["--prompts", str(prompts)] if prompts else [])]
         )
-        total = sum(len(header.indices(n)) for n in missing)
-        for number, content in track(done, total, "homes", size=lambda pair: len(header.indices(pair[0]))):
-            commit_shard(dataset, number, content)
-        sys.stdout.write(f"{count} homes in {dataset.folder}\n")
+        tally = fill(
+            dataset,
+            Recipe(partial(open_factory, root, seed), shelve=scheduler is None),
+            asked,
+            workers=workers,
+            scheduler=scheduler,
+            strict=strict,
+            progress=progress,
+            again=f"{again} --only {{index}}",
+        )
+    progress.close()
+    return tell(tally, header, folder, progress, voice)
 
 
-def requests(mix: Mix, programs: Mapping[str, str], seed: int, indices: range) -> tuple[Request, ...]:
-    """Return what each home is asked to be: its words, and the program that was read from them (none: one of the prior)."""
-    words = ((index, mix.prompt(seed, index)) for index in indices)
-    return tuple(Request(index, asked, programs.get(asked, "")) for index, asked in words)
+def read_early(mix: Mix, progress: Progress, *, strict: bool) -> dict[str, str]:
+    """Return the programs that are read from the prompts, as JSON; those that ask for what cannot be are said now, not after hours, and have none.
+
+    Raises RefusedError for the first of them with `strict`, or when there are no others.
+    """
+    programs, errors = {}, []
+    for words in dict.fromkeys(mix.prompts):
+        try:
+            programs[words] = request(words).model_dump_json(exclude_defaults=True)
+        except RefusedError as error:
+            errors.append(error)
+    if errors and (strict or not programs):
+        raise errors[0]
+    for refusal in errors[:SHOWN]:
+        progress.say(f"the homes of a prompt will stay empty: {refusal}")
+    if len(errors) > SHOWN:
+        progress.say(f"and those of {len(errors) - SHOWN} other prompts")
+    return programs
 
 
-def make_shard(root: Path, seed: int, job: Job) -> ShardContent:
-    """Make one shard: the step that workers run, in batches of a chunk."""
-    number, asked = job
-    factory = open_factory(root, seed)
-    return gather(number, ((o.rows, o.files) for chunk in chunks(asked, factory.chunk) for o in factory.make(chunk)))
+def try_one(root: Path, seed: int, request: Request) -> int:
+    """Make one home of a dataset here and write nothing: shows what goes wrong with it."""
+    (outcome,) = open_factory(root, seed).make([request])
+    if isinstance(outcome, Empty):
+        raise outcome.error
+    sys.stdout.write(f"home {request.index} can be made: {len(outcome.home.plan.rooms)} rooms, {len(outcome.home.placements)} things\n")
+    return 0
 
 
-def chunks(asked: tuple[Request, ...], size: int) -> Iterator[tuple[Request, ...]]:
-    """Cut a shard's requests into the batches that are sampled together."""
-    return (asked[i : i + size] for i in range(0, len(asked), size))
+def tell(tally: Tally, header: Header, folder: Path, progress: Progress, voice: Voice) -> int:
+    """Say what the run came to; returns the exit code."""
+    lost = sum(map(len, tally.empty.values()))
+    if voice == "json":
+        figures = {"made": tally.homes, "resumed": tally.resumed, "retries": tally.retries, "cpu_seconds": tally.seconds}
+        progress.summary(dataset=str(folder), homes=header.count - lost, **figures, empty={k: len(v) for k, v in tally.empty.items()})
+        return 1 if lost else 0
+    spent = ", ".join(f"{part} {seconds:.1f}" for part, seconds in sorted(tally.seconds.items(), key=lambda pair: -pair[1]))
+    before = f", {tally.resumed} were there before" if tally.resumed else ""
+    if tally.homes:
+        progress.say(f"{tally.homes} made in {progress.seconds:.0f} s{before}, {tally.retries} rooms and homes tried again; CPU s: {spent}")
+    for line in tally.lines():
+        sys.stderr.write(f"sfgen: {line}\n")
+    sys.stdout.write(f"{header.count - lost} homes in {folder}\n")
+    return SfgenError.exit_code if lost else 0

@@ -4,25 +4,32 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 
-from pipeline.execution import track
+from pipeline.execution import Progress, Voice, track
 from pipeline.shards import TABLES, check, read_header
 from pipeline.shards.layout import table_path
 from pipeline.tables import read
 
 
-def main(_root: Path, *, folder: Path, quick: bool = False) -> None:
+def main(_root: Path, *, folder: Path, quick: bool = False, voice: Voice = "plain") -> None:
     """Check every digest, row and reference, then (unless `quick`) open every stage with USD."""
-    summary = check(folder)
+    files = Progress(0, "files", unit="shard", voice=voice)
+    summary = check(folder, files.at)
+    files.close()
     if not quick:
         from pipeline.usd import check_stage
 
-        for path in track(stages(folder), summary.homes, "stages", unit="stage"):
+        for path in track(stages(folder), summary.homes, "stages", unit="stage", voice=voice):
             check_stage(path)
+    if voice == "json":
+        files.summary(dataset=str(folder), **asdict(summary))
+        return
     rows = ", ".join(f"{count} {table}" for table, count in summary.rows.items() if table != "scenes")
     size = f"{summary.files} files, {summary.bytes / 1e6:.1f} MB"
-    sys.stdout.write(f"{folder} is whole: {summary.homes} homes in {summary.shards} shards ({rows}; {size})\n")
+    empty = f", {summary.empty} stay empty (see rejects)" if summary.empty else ""
+    sys.stdout.write(f"{folder} is whole: {summary.homes} homes in {summary.shards} shards{empty} ({rows}; {size})\n")
 
 
 def stages(folder: Path) -> Iterator[Path]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-Effect = Literal["quarantined", "dropped", "repaired", "tried again"]
+Effect = Literal["quarantined", "dropped", "repaired", "tried again", "left empty"]
 
 
 @dataclass(frozen=True, slots=True)

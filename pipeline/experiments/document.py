@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -13,7 +12,7 @@ from typing import Any
 from pipeline import seeds, tables
 from pipeline.entities.home import Home
 from pipeline.errors import SfgenError
-from pipeline.execution import map_shards
+from pipeline.execution import cores, map_jobs
 from pipeline.experiments import lineup
 from pipeline.experiments.dataset import RejectCount
 from pipeline.experiments.knobs import knob_picture, monotone
@@ -138,9 +137,8 @@ def path_traced(root: Path, folder: Path, homes: Sequence[Home], seed: int, sett
     library = open_factory(root, seed).library
     ranked = sorted(homes, key=lambda h: (-sum(library[p.asset_id].openable for p in h.placements) / max(1, len(h.plan.rooms)), h.index))
     chosen = ranked[: settings.gallery]
-    jobs = [(n, home) for n, home in enumerate(chosen)]
     try:
-        for _ in map_shards(partial(_trace, root, seed, folder, settings), jobs, workers=min(os.cpu_count() or 1, len(jobs))):
+        for _ in map_jobs(partial(_trace, root, seed, folder, settings), chosen, workers=min(cores(), len(chosen))):
             pass
     except SfgenError as error:
         return [], str(error)

@@ -7,10 +7,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
 from pipeline.floorplan.program import FloorProgram
-from pipeline.homes.factory import Factory, HomeDraft
+from pipeline.homes.factory import Factory
 from pipeline.homes.furnish import Draft, taste_of
 from pipeline.homes.request import Request
 from pipeline.homes.rows import Row, homes_of, object_row, opening_row, reject_row, room_row, scene_row
+from pipeline.homes.work import HomeDraft
 from pipeline.shards import scene_id
 
 NO_ASSET = "no_asset"
@@ -42,7 +43,7 @@ def draft_rows(drafts: Iterable[HomeDraft], seed: int, assets: Mapping[str, Asse
 
 
 def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], factory: Factory) -> list[HomeDraft]:
-    """Rebuild the first drafts of `requests` from their rows."""
+    """Rebuild the first drafts of those of `requests` that have rows."""
     homes = {home.index: home for home in homes_of(tables)}
     lost: dict[str, list[str]] = {}
     for row in tables["rejects"]:
@@ -50,6 +51,8 @@ def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], fact
             lost.setdefault(row["where"], []).append(row["detail"])
     made = []
     for request in requests:
+        if request.index not in homes:
+            continue
         home = homes[request.index]
         program = FloorProgram.model_validate_json(home.program)
         jobs = factory.jobs(home.plan, request.index, 0, {room.id: room.furniture for room in program.rooms})

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import functools
 import json
-import os
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -24,21 +23,25 @@ from pipeline.diffusion.sampling import Sampler
 from pipeline.diffusion.settings import SampleSettings
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Plan
-from pipeline.errors import ContentError, RefusedError
+from pipeline.errors import ContentError, RefusedError, SfgenError
+from pipeline.execution import tell
 from pipeline.floorplan.furniture import meant, needed, plain
 from pipeline.floorplan.language import parse
 from pipeline.floorplan.priors import PriorSettings
 from pipeline.floorplan.program import Furniture
-from pipeline.homes.exports import files_of, write_assets
-from pipeline.homes.finish import RoomResult, finish
+from pipeline.homes.exports import files_of
+from pipeline.homes.finish import finish
 from pipeline.homes.furnish import Draft, furnish
 from pipeline.homes.guilt import Guilt, guilty_objects
 from pipeline.homes.library import Library
+from pipeline.homes.outcomes import Empty, Outcome
 from pipeline.homes.request import Request, RoomJob, layout_type
-from pipeline.homes.rows import Row, home_rows, reject_row
+from pipeline.homes.rows import home_rows, reject_row
 from pipeline.homes.settings import ShardSettings
+from pipeline.homes.shelf import AssetShelf
 from pipeline.homes.soundness import closed_rooms
-from pipeline.homes.things import placeable, small_things
+from pipeline.homes.things import small_things
+from pipeline.homes.work import HomeDraft, Work
 from pipeline.manifest import digest, sha256_file
 from pipeline.relations import files as relation_files
 from pipeline.retrieval.index import AssetIndex
@@ -49,47 +52,6 @@ from schemas.assets import LATENTS
 
 WISHES = frozenset({"count_missed", "category_missed", "openable_missed", "walkable_missed"})  # reasons that a request cannot be met
 PLANS = 8  # plans of one attempt that the judge may find unsound
-
-
-@dataclass(frozen=True, slots=True)
-class HomeDraft:
-    """The first attempt at a home: its plan, and a draft of each room that is furnished."""
-
-    request: Request
-    prompt: str
-    program: str
-    plan: Plan
-    drafts: tuple[Draft, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """A home that ships. `rows` by table, `files` by `<family>/<name>`."""
-
-    home: Home
-    certificate: Certificate
-    rows: dict[str, list[Row]]
-    files: dict[str, bytes]
-
-
-@dataclass
-class _Work:
-    """One home in the making. `tries` counts the tries of its rooms; `closed` are those that a plan of the user's own closes to the robot."""
-
-    request: Request
-    attempt: int
-    prompt: str
-    program: str
-    plan: Plan
-    pending: list[RoomJob]
-    last: dict[str, int]  # attempt number that each room has reached
-    results: dict[str, RoomResult] = field(default_factory=dict)
-    first: dict[str, Draft] = field(default_factory=dict)
-    rejects: list[Row] = field(default_factory=list)
-    tries: int = 0
-    certificate: Certificate | None = None
-    things: tuple[Placement, ...] = ()
-    closed: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -196,23 +158,24 @@ class Factory:
             return furnish(jobs, self.sampler, self.index, taxonomy.load(), self.library)
 
     def first_drafts(self, requests: Sequence[Request]) -> list[HomeDraft]:
-        """Return the first attempt at each home: what the stage `sample` writes."""
-        planned = [self.plan(request, 0) for request in requests]
-        drafts = iter(self.draft([job for *_, jobs in planned for job in jobs]))
+        """Return the first attempt at each home that can be: what the stage `sample` writes."""
+        planned = []
+        for request in requests:
+            tell("planning", request.index)
+            with suppress(RefusedError):  # said where the home would be made
+                planned.append((request, self.plan(request, 0)))
+        drafts = iter(self.draft([job for _, (*_, jobs) in planned for job in jobs]))
         return [
             HomeDraft(request, prompt, program, plan, tuple(next(drafts) for _ in jobs))
-            for request, (prompt, program, plan, jobs) in zip(requests, planned, strict=True)
+            for request, (prompt, program, plan, jobs) in planned
         ]
 
     # -- making ------------------------------------------------------------------------------------------------------
 
-    def make(self, requests: Sequence[Request], first: Sequence[HomeDraft] | None = None, *, files: bool = True) -> list[Outcome]:
-        """Make a batch of homes. `first` are their first drafts, where a stage has made them already.
-
-        Raises RefusedError for a request that cannot be met, ContentError naming an index that failed too often.
-        """
+    def make(self, requests: Sequence[Request], first: Sequence[HomeDraft] | None = None, *, files: bool = True) -> list[Outcome | Empty]:
+        """Make a batch of homes, each an Outcome or, where it cannot be made, an Empty. `first` are first drafts that a stage has made already."""
         drafts = {d.request.index: d for d in first} if first is not None else {}
-        works = [self._started(request, drafts.get(request.index)) for request in requests]
+        works = [self._begun(request, drafts.get(request.index)) for request in requests]
         for work in works:
             self._judge(work)  # homes without a room to furnish are done here
         while pending := [(work, job) for work in works for job in work.pending]:
@@ -222,24 +185,33 @@ class Factory:
                 self._try(work, job, draft or next(made))
             for work in works:
                 self._judge(work)
-        return [self._outcome(work, files=files) for work in works]
+        return [work.empty or self._outcome(work, files=files) for work in works]
 
-    def _started(self, request: Request, draft: HomeDraft | None, attempt: int = 0) -> _Work:
+    def _begun(self, request: Request, draft: HomeDraft | None) -> Work:
+        tell("planning", request.index)
+        try:
+            return self._started(request, draft)
+        except RefusedError as error:
+            empty = Empty(request.index, "refused", error)
+            return Work(request, 0, request.prompt, "", Plan((), (), ""), [], {}, empty=empty)
+
+    def _started(self, request: Request, draft: HomeDraft | None, attempt: int = 0) -> Work:
         if draft is None:
             prompt, program, plan, jobs = self.plan(request, attempt)
             closed = closed_rooms(plan, self.verify) if request.plan else frozenset[str]()
-            return _Work(request, attempt, prompt, program, plan, jobs, {job.room_id: job.attempt for job in jobs}, closed=closed)
+            return Work(request, attempt, prompt, program, plan, jobs, {job.room_id: job.attempt for job in jobs}, closed=closed)
         jobs = [d.job for d in draft.drafts]
         last = {job.room_id: 0 for job in jobs}
-        return _Work(request, 0, draft.prompt, draft.program, draft.plan, jobs, last, first={d.job.room_id: d for d in draft.drafts})
+        return Work(request, 0, draft.prompt, draft.program, draft.plan, jobs, last, first={d.job.room_id: d for d in draft.drafts})
 
-    def _try(self, work: _Work, job: RoomJob, draft: Draft) -> None:
+    def _try(self, work: Work, job: RoomJob, draft: Draft) -> None:
         """Finish one draft of a room; keep the better of it and what was there; queue another try if it is needed."""
         if job not in work.pending:  # another room of the same round has led to a new plan
             return
+        tell("furnishing", work.request.index)
         work.pending.remove(job)
         work.tries += 1
-        with self.timed("postopt"):
+        with self._charged(work), self.timed("postopt"):
             result = finish(draft, self.library, self.index, self.lore, self.postopt, self.verify.robot, taxonomy.load())
         before = work.results.get(job.room_id)
         work.rejects.extend(reject_row(scene_id(self.seed, job.index), job.room_id, job.attempt, r) for r in result.rejects)
@@ -247,34 +219,51 @@ class Factory:
             work.results[job.room_id] = result
         self._retry(work, job, result.failure, result.detail)
 
-    def _retry(self, work: _Work, job: RoomJob, failure: str, detail: str) -> None:
+    def _retry(self, work: Work, job: RoomJob, failure: str, detail: str) -> None:
         """Note why a try of a room failed, and queue the next one; a wish that stays unmet needs another plan."""
-        if not failure:
+        if not failure or work.empty:
             return
         work.rejects.append(reject_row(scene_id(self.seed, job.index), job.room_id, job.attempt, ("room", failure, detail)))
-        if work.last[job.room_id] % 100 + 1 < self.shard.room_attempts:
+        if work.seconds > self.shard.home_seconds:
+            self._give_up(work, "deadline", ContentError(f"took more than {self.shard.home_seconds:.0f} s, last by {failure} ({detail})"))
+        elif work.last[job.room_id] % 100 + 1 < self.shard.room_attempts:
             work.last[job.room_id] += 1
             work.pending.append(replace(job, attempt=work.last[job.room_id]))
         elif work.results[job.room_id].binding:
             self._replan(work, failure, f"{job.room_id}: {detail}")
 
-    def _replan(self, work: _Work, failure: str, detail: str) -> None:
-        """Start a home again with another plan. Raises ContentError when it has had all its attempts."""
+    def _replan(self, work: Work, failure: str, detail: str) -> None:
+        """Start a home again with another plan; give it up when it has had all its attempts."""
         index = work.request.index
         if work.attempt + 1 >= self.shard.home_attempts:
             kind = RefusedError if failure in WISHES else ContentError
-            raise kind(
-                f"home {index} (seed {self.seed}) failed {self.shard.home_attempts} times, last by {failure} ({detail})",
-                "ask for fewer or smaller things, or larger rooms",
-            )
+            told = f"home {index} (seed {self.seed}) failed {self.shard.home_attempts} times, last by {failure} ({detail})"
+            self._give_up(work, "attempts_spent", kind(told, "ask for fewer or smaller things, or larger rooms"))
+            return
         work.rejects.append(reject_row(scene_id(self.seed, index), "", work.attempt, ("home", failure, detail)))
-        fresh = self._started(work.request, None, work.attempt + 1)
+        try:
+            with self._charged(work):
+                fresh = self._started(work.request, None, work.attempt + 1)
+        except RefusedError as error:
+            self._give_up(work, "refused", error)
+            return
         work.attempt, work.program, work.plan = fresh.attempt, fresh.program, fresh.plan
         work.pending, work.last, work.results, work.first = fresh.pending, fresh.last, {}, {}
 
-    def _judge(self, work: _Work) -> None:
+    def _give_up(self, work: Work, reason: str, error: SfgenError) -> None:
+        work.empty = Empty(work.request.index, reason, error, work.rejects)
+        work.pending = []
+
+    @contextmanager
+    def _charged(self, work: Work) -> Iterator[None]:
+        """Add the CPU seconds of the block to what the home has taken."""
+        start = time.process_time()
+        yield
+        work.seconds += time.process_time() - start
+
+    def _judge(self, work: Work) -> None:
         """Lay small things and verify the whole home; what is at fault goes, and a room that is then not good enough is tried again."""
-        while work.certificate is None and not work.pending:
+        while work.certificate is None and work.empty is None and not work.pending:
             bare = self._home(work)
             with self.timed("things"):
                 draw = seeds.generator(self.seed, "things", work.request.index, work.attempt)
@@ -287,7 +276,7 @@ class Factory:
             else:
                 work.things, work.certificate = laid, certificate
 
-    def _verdict(self, work: _Work, bare: Home, laid: tuple[Placement, ...]) -> tuple[tuple[Placement, ...], Certificate, dict[str, Guilt]]:
+    def _verdict(self, work: Work, bare: Home, laid: tuple[Placement, ...]) -> tuple[tuple[Placement, ...], Certificate, dict[str, Guilt]]:
         """Judge a home with its small things, leaving out those at fault; return the others, the certificate, the guilty furniture."""
         while True:
             home = replace(bare, placements=bare.placements + laid)
@@ -303,10 +292,12 @@ class Factory:
                 work.rejects.append(reject_row(home.scene_id, guilt.room_id, work.results[guilt.room_id].draft.job.attempt, reject))
             laid = tuple(p for p in laid if p.object_id not in guilty)
 
-    def _expel(self, work: _Work, guilty: Mapping[str, Guilt]) -> None:
+    def _expel(self, work: Work, guilty: Mapping[str, Guilt]) -> None:
         """Take the guilty objects out of their rooms, each with its reason."""
         where = scene_id(self.seed, work.request.index)
         for room_id in sorted({guilt.room_id for guilt in guilty.values()}):
+            if room_id not in work.results:  # a room before it has led to a new plan
+                break
             mine = {k: guilt for k, guilt in sorted(guilty.items()) if guilt.room_id == room_id}
             result = work.results[room_id] = work.results[room_id].without(mine, taxonomy.load())
             job = result.draft.job
@@ -316,13 +307,14 @@ class Factory:
             )
             self._retry(work, job, result.failure, result.detail)
 
-    def _home(self, work: _Work) -> Home:
+    def _home(self, work: Work) -> Home:
         placed = tuple(p for room in work.plan.rooms if room.room_id in work.results for p in work.results[room.room_id].placements)
         index = work.request.index
         return Home(scene_id(self.seed, index), self.seed, index, work.prompt, work.program, work.plan, placed + work.things)
 
-    def _outcome(self, work: _Work, *, files: bool) -> Outcome:
+    def _outcome(self, work: Work, *, files: bool) -> Outcome:
         assert work.certificate is not None
+        tell("exporting", work.request.index)
         home = self._home(work)
         exported: dict[str, bytes] = {}
         if files:
@@ -330,13 +322,12 @@ class Factory:
                 exported = files_of(home, self.library, self.shard.preview)
         rows = home_rows(home, work.certificate, work.results, self.library, taxonomy.load(), work.tries, self.licence)
         rows["rejects"] = work.rejects
+        tell("made", home.index)
         return Outcome(home, work.certificate, rows, exported)
 
-    def write_library(self, folder: Path, asset_ids: Sequence[str] | None = None) -> None:
-        """Write the asset library (all that homes may hold, or those that are named) with its tables and thumbnails, on all cores."""
-        known = {*taxonomy.load().names, *(placeable() if self.postopt.things.rate > 0 else ())}
-        chosen = asset_ids if asset_ids is not None else [a for a, row in self.library.rows.items() if row["category"] in known]
-        write_assets(self.library, folder, sorted(chosen), os.cpu_count() or 1)
+    def shelf(self) -> AssetShelf:
+        """Return the shelf of this machine from which datasets take their assets."""
+        return AssetShelf(self.library, self.digests["code"])
 
 
 def told_count(wish: Furniture, rng: np.random.Generator) -> int | None:

@@ -25,4 +25,11 @@ REASONS: dict[str, Reason] = {
     "joint_blocked": Reason("home", "tried again", "a joint does not move through its range"),
     "out_of_reach": Reason("home", "tried again", "fewer openable objects can be opened than the policy asks for"),
     "room_cut_off": Reason("home", "tried again", "a room cannot be reached from the entrance"),
+    "refused": Reason(
+        "index", "left empty", "the request cannot be met: it contradicts itself, or asks for what no plan or no library has"
+    ),
+    "attempts_spent": Reason("index", "left empty", "every plan that was tried failed; the detail names the last reason"),
+    "deadline": Reason("index", "left empty", "took longer than `shard.home_seconds`"),
+    "internal": Reason("index", "left empty", "an error that the factory does not know; please report it"),
+    "worker_lost": Reason("index", "left empty", "three workers died at it, or kept silent for longer than `shard.home_seconds`"),
 }

@@ -17,7 +17,8 @@ class ShardSettings:
     homes: int = 64  # homes per shard
     chunk: int = 16  # homes that are sampled together
     room_attempts: int = 5  # tries of one room before the best of them is taken
-    home_attempts: int = 8  # plans tried for one index before the run ends
+    home_attempts: int = 8  # plans tried for one index before it stays empty
+    home_seconds: float = 300.0  # CPU seconds that one home may take, and seconds that a worker may keep silent [s]
     licence: str = "CC0-1.0"  # of what is made; with research-only assets, name theirs
     preview: int = 768  # side of the top views [px]
 

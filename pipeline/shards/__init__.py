@@ -2,23 +2,28 @@
 
 from pipeline.shards.check import Summary, check
 from pipeline.shards.content import ShardContent, gather
-from pipeline.shards.dataset import Dataset, commit_library, commit_shard, committed, open_or_create
+from pipeline.shards.dataset import Dataset, add_part, commit_shard, committed, open_or_create
 from pipeline.shards.header import Header, code_digest, read_header
-from pipeline.shards.layout import TABLES, file_path, scene_id, shard_name
+from pipeline.shards.layout import EMPTY, TABLES, file_path, scene_id, shard_name
+from pipeline.shards.library import Shelf, assets_of, extend_library
 from pipeline.shards.mix import Mix, read_mix, require_prompt
 
 __all__ = [
+    "EMPTY",
     "TABLES",
     "Dataset",
     "Header",
     "Mix",
     "ShardContent",
+    "Shelf",
     "Summary",
+    "add_part",
+    "assets_of",
     "check",
     "code_digest",
-    "commit_library",
     "commit_shard",
     "committed",
+    "extend_library",
     "file_path",
     "gather",
     "open_or_create",

@@ -15,7 +15,8 @@ from pipeline.errors import ContentError, UsageError
 from pipeline.manifest import sha256_file
 from pipeline.shards.commits import Commit, read_commit
 from pipeline.shards.header import Header, read_header
-from pipeline.shards.layout import ASSETS, COMMITS, STAGING, TABLES, TEMPORARY, scene_id, shard_name, table_path
+from pipeline.shards.layout import ASSETS, COMMITS, PARTS, STAGING, TABLES, TEMPORARY, scene_id, shard_name, table_path
+from pipeline.shards.parts import indices_of
 
 ID = re.compile(r"[a-z][a-z0-9_]*")
 AGAIN = "run the command that made the dataset again: it resumes and makes what is missing"
@@ -27,9 +28,10 @@ IDS = (("scenes", "scene_id"), ("rooms", "room_id"), ("openings", "opening_id"),
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """What a dataset that passed holds."""
+    """What a dataset that passed holds; `empty` counts the homes that could not be made."""
 
     homes: int
+    empty: int
     shards: int
     files: int
     bytes: int
@@ -59,7 +61,7 @@ def check(folder: Path, progress: Callable[[int, int], object] = lambda _done, _
             rows[table] += count
         progress(number + 1, header.shards)
     sizes = [entry.bytes for commit in everything for entry in commit.files.values()]
-    return Summary(rows["scenes"], header.shards, len(sizes), sum(sizes), rows)
+    return Summary(rows["scenes"], header.count - rows["scenes"], header.shards, len(sizes), sum(sizes), rows)
 
 
 def _require_commit(folder: Path, name: str) -> Commit:
@@ -83,7 +85,7 @@ def _refuse_strangers(folder: Path, commits: list[Commit], header: Header) -> No
     for path in _files(folder):
         name = path.relative_to(folder).as_posix()
         first = PurePosixPath(name).parts[0]
-        if first == STAGING or path.name.startswith(TEMPORARY):
+        if first in {STAGING, PARTS} or path.name.startswith(TEMPORARY):
             raise ContentError(f"{folder / name} was left by a run that was killed", AGAIN)
         if first in families and name not in known:
             raise ContentError(f"{folder / name} belongs to no shard", "move it out of the dataset")
@@ -116,14 +118,25 @@ def _check_shard(folder: Path, header: Header, number: int, commit: Commit, asse
         read[table] = tables.read_arrow(folder / path, schema)
         if read[table].num_rows != commit.rows.get(table):
             raise ContentError(f"{folder / path} has {read[table].num_rows} rows, not {commit.rows.get(table)}", COPY)
-    wanted = [scene_id(header.seed, i) for i in header.indices(number)]
-    if read["scenes"]["scene_id"].to_pylist() != wanted or read["scenes"]["index"].to_pylist() != list(header.indices(number)):
-        raise ContentError(f"{folder / table_path('scenes', number)} does not hold the homes {wanted[0]} ... {wanted[-1]}", COPY)
+    _check_homes(read, header, number, folder)
     places = {table: folder / table_path(table, number) for table in TABLES}
     ids = {table: _ids(read[table], column, places[table]) for table, column in IDS}
     _check_references(read, ids, places, assets)
     _check_stages(read["scenes"], commit, places["scenes"])
     return {table: data.num_rows for table, data in read.items()}
+
+
+def _check_homes(read: dict[str, pa.Table], header: Header, number: int, folder: Path) -> None:
+    """Check that every index of the shard has its home, or a rejects row that says why it has none."""
+    indices = header.indices(number)
+    try:
+        made, empty = indices_of(read["scenes"], read["rejects"])
+    except ValueError as error:
+        raise ContentError(f"{folder / table_path('rejects', number)} names a home that cannot be", COPY) from error
+    named = [scene_id(header.seed, i) for i in made]
+    if list(made) != sorted(made) or sorted((*made, *empty)) != list(indices) or read["scenes"]["scene_id"].to_pylist() != named:
+        first, last = scene_id(header.seed, indices[0]), scene_id(header.seed, indices[-1])
+        raise ContentError(f"{folder / table_path('scenes', number)} does not hold the homes {first} ... {last}", COPY)
 
 
 def _ids(data: pa.Table, column: str, place: Path) -> set[tuple[str, str]]:

@@ -12,6 +12,7 @@ from typing import Any
 
 from pipeline.errors import ContentError
 from pipeline.manifest import sha256_file
+from pipeline.shards.disk import sync
 from pipeline.shards.layout import commit_path
 
 FLUSHES = 16  # files that are flushed at the same time
@@ -48,27 +49,37 @@ class Commit:
                 return path
         return None
 
+    def altered(self, folder: Path) -> str | None:
+        """Return the first file that is not what was written, None when all are well."""
+        return next((p for p, entry in self.files.items() if not (folder / p).is_file() or entry_of(folder / p) != entry), None)
 
-def record(staging: Path, name: str, rows: Mapping[str, int], only: str = "") -> Commit:
-    """Digest every file below `staging` (below its folder `only`), and flush it to disk with the folders around it.
+
+def record(staging: Path, name: str, rows: Mapping[str, int], *, flush: bool = True) -> Commit:
+    """Digest every file below `staging`, and (with `flush`) send it to disk with the folders around it.
 
     Many files are flushed at once: the disk then writes its journal once for all that wait, not once for each.
     """
     folders: list[Path] = []
     paths: list[Path] = []
-    for place, _, names in os.walk(staging / only if only else staging):
+    for place, _, names in os.walk(staging):
         folders.append(Path(place))
         paths += [Path(place) / file for file in names]
     with ThreadPoolExecutor(FLUSHES) as pool:
-        entries = list(pool.map(_entry, paths))
-        list(pool.map(_flush, folders))  # after their files
+        if flush:
+            list(pool.map(sync, paths))
+            list(pool.map(sync, folders))  # after their files
+        entries = list(pool.map(entry_of, paths))
     files = {path.relative_to(staging).as_posix(): entry for path, entry in zip(paths, entries, strict=True)}
     return Commit(name, dict(sorted(files.items())), rows)
 
 
 def read_commit(folder: Path, name: str) -> Commit | None:
+    """Read the commit file of a shard or of the library. Returns and raises as `read_file`."""
+    return read_file(folder / commit_path(name))
+
+
+def read_file(path: Path) -> Commit | None:
     """Read a commit file, or return None where there is none. Raises ContentError when it is broken."""
-    path = folder / commit_path(name)
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
         files = {k: Entry(str(v["sha256"]), int(v["bytes"])) for k, v in data["files"].items()}
@@ -80,14 +91,6 @@ def read_commit(folder: Path, name: str) -> Commit | None:
     return Commit(str(data["name"]), files, rows)
 
 
-def _entry(path: Path) -> Entry:
-    _flush(path)
+def entry_of(path: Path) -> Entry:
+    """Return the digest and the length of a file."""
     return Entry(sha256_file(path), path.stat().st_size)
-
-
-def _flush(path: Path) -> None:
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

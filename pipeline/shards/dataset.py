@@ -1,7 +1,7 @@
 """A dataset folder that is being filled: opened or created, locked, resumed; shards are written whole or not at all.
 
-One process writes; workers return a shard's content. So no two writers ever meet, workers need no shared disk, and
-what a killed run leaves behind is told apart by one question: is there a commit file?
+One process writes; workers return homes, which it puts aside as parts until a shard has all of its own. So no two writers
+ever meet, workers need no shared disk, and what a killed run leaves behind is told apart by one question: is there a commit file?
 """
 
 from __future__ import annotations
@@ -9,9 +9,9 @@ from __future__ import annotations
 import fcntl
 import os
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import pyarrow.parquet as pq
@@ -20,20 +20,28 @@ from pipeline.errors import ContentError, UsageError
 from pipeline.manifest import write_json
 from pipeline.shards.commits import Commit, read_commit, record
 from pipeline.shards.content import ShardContent
+from pipeline.shards.disk import link, sync
 from pipeline.shards.header import Header, read_header
-from pipeline.shards.layout import ASSETS, COMMITS, HEADER, STAGING, TABLES, TEMPORARY, commit_path, require_inside, shard_name, table_path
+from pipeline.shards.layout import ASSETS, COMMITS, HEADER, PARTS, STAGING, TABLES, TEMPORARY, commit_path, shard_name, table_path
+from pipeline.shards.parts import FILES, Part, join, read_parts, remove_parts, write_part
 
 
 @dataclass(frozen=True, slots=True)
 class Dataset:
-    """An open dataset: where it lies and what it is."""
+    """An open dataset: where it lies, what it is, and the parts of shards that are not whole yet."""
 
     folder: Path
     header: Header
+    parts: dict[int, list[Part]] = field(default_factory=dict)
 
     def missing(self) -> list[int]:
         """Return the numbers of the shards that are still to be made."""
         return [n for n in range(self.header.shards) if not committed(self, n)]
+
+    def todo(self, number: int) -> list[int]:
+        """Return the indices of a shard that is not committed which no part answers for."""
+        there = {i for part in self.parts.get(number, ()) for i in part.indices}
+        return [i for i in self.header.indices(number) if i not in there]
 
 
 @contextmanager
@@ -62,7 +70,11 @@ def open_or_create(folder: Path, header: Header, *, discard: bool = False) -> It
         _clean(dataset)
         if not (folder / HEADER).exists() or read_header(folder) != header:
             write_json(folder / HEADER, header.to_json())
-        yield dataset
+        try:
+            dataset.parts.update(read_parts(folder, {n: header.indices(n) for n in dataset.missing()}))
+            yield dataset
+        finally:
+            shutil.rmtree(folder / STAGING, ignore_errors=True)
 
 
 def committed(dataset: Dataset, number: int) -> bool:
@@ -71,67 +83,61 @@ def committed(dataset: Dataset, number: int) -> bool:
     return commit is not None and not commit.damaged(dataset.folder)
 
 
-def commit_shard(dataset: Dataset, number: int, content: ShardContent) -> Commit:
-    """Write shard `number` whole: stage, fsync, rename, commit file last. A committed shard is never rewritten.
+def add_part(dataset: Dataset, number: int, content: ShardContent) -> Part:
+    """Put homes of shard `number` aside until it is whole; they survive the end of this process.
 
-    Raises ContentError for a table or file that has no place in the shard, or a scene that is not its.
+    Raises ContentError for a table or file that has no place in the shard, and for homes that are not to be made.
+    """
+    part = write_part(dataset.folder, number, content)
+    if not set(part.indices) <= set(dataset.todo(number)):
+        shutil.rmtree(part.folder)
+        wanted = list(dataset.header.indices(number))
+        raise ContentError(f"{shard_name(number)} brings homes {part.indices}, not some of {wanted}", "one scenes row per index, in order")
+    dataset.parts[number] = sorted([*dataset.parts.get(number, ()), part], key=lambda p: p.indices)
+    return part
+
+
+def commit_shard(dataset: Dataset, number: int) -> Commit:
+    """Write shard `number` from its parts: stage, fsync, rename, commit file last. A committed shard is never rewritten.
+
+    Raises ContentError when a home is missing that no rejects row accounts for.
     """
     name = shard_name(number)
     if committed(dataset, number):
         raise ContentError(f"{name} of {dataset.folder} is committed already", "a committed shard is never rewritten")
-    _require_whole(dataset.header, number, content)
+    parts = dataset.parts.get(number, [])
+    there = [i for part in parts for i in part.indices]
+    if there != list(dataset.header.indices(number)):
+        raise ContentError(f"{name} brings homes {there}, not {list(dataset.header.indices(number))}", "one scenes row per index, in order")
     staging = dataset.folder / STAGING / name
     shutil.rmtree(staging, ignore_errors=True)
-    for table, schema in TABLES.items():
+    rows = {}
+    for table in TABLES:
+        data = join(parts, table)
+        rows[table] = data.num_rows
         path = staging / table_path(table, number)
         path.parent.mkdir(parents=True)
-        pq.write_table(schema.from_rows(content.rows.get(table, ())), path, compression="zstd", store_schema=True)
-    for file, data in content.files.items():
-        path = staging / file
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(data)
-    commit = record(staging, name, {t: len(content.rows.get(t, ())) for t in TABLES})
+        pq.write_table(data, path, compression="zstd", store_schema=True)
+    for part in parts:
+        for family in sorted((part.folder / FILES).glob("*")):
+            place = staging / family.name / name
+            place.mkdir(parents=True, exist_ok=True)
+            for file in sorted((family / name).iterdir()):
+                link(file, place / file.name)  # the part stays whole until the shard is
+    commit = record(staging, name, rows)
     _forget(dataset.folder, name)
     for family in sorted(staging.iterdir()):
         (dataset.folder / family.name).mkdir(exist_ok=True)
         for item in sorted(family.iterdir()):
             item.rename(dataset.folder / family.name / item.name)
-        _sync(dataset.folder / family.name)
-    _sync(dataset.folder)
+        sync(dataset.folder / family.name)
+    sync(dataset.folder)
     write_json(dataset.folder / commit_path(name), commit.to_json())
-    _sync(dataset.folder / COMMITS)
+    sync(dataset.folder / COMMITS)
     shutil.rmtree(staging)
+    remove_parts(dataset.folder, number)
+    dataset.parts.pop(number, None)
     return commit
-
-
-def commit_library(dataset: Dataset, write: Callable[[Path], object]) -> Commit:
-    """Let `write` fill the asset library, once: a library that is committed is left as it is. Done before any shard."""
-    there = read_commit(dataset.folder, ASSETS)
-    if there is not None and not there.damaged(dataset.folder):
-        return there
-    staging = dataset.folder / STAGING / ASSETS
-    shutil.rmtree(staging, ignore_errors=True)
-    staging.mkdir(parents=True)
-    write(staging)
-    commit = record(staging.parent, ASSETS, {}, only=ASSETS)
-    _forget(dataset.folder, ASSETS)
-    staging.rename(dataset.folder / ASSETS)
-    _sync(dataset.folder)
-    write_json(dataset.folder / commit_path(ASSETS), commit.to_json())
-    _sync(dataset.folder / COMMITS)
-    return commit
-
-
-def _require_whole(header: Header, number: int, content: ShardContent) -> None:
-    name = shard_name(number)
-    unknown = sorted(content.rows.keys() - TABLES.keys())
-    if unknown:
-        raise ContentError(f"{name} brings unknown tables {', '.join(unknown)}", f"tables are {', '.join(TABLES)}")
-    for file in content.files:
-        require_inside(file, name)
-    indices = [row["index"] for row in content.rows.get("scenes", ())]
-    if indices != list(header.indices(number)):
-        raise ContentError(f"{name} brings homes {indices}, not {list(header.indices(number))}", "one scenes row per index, in order")
 
 
 def _resumes(folder: Path, header: Header, *, discard: bool) -> bool:
@@ -156,13 +162,13 @@ def _resumes(folder: Path, header: Header, *, discard: bool) -> bool:
 
 
 def _clean(dataset: Dataset) -> None:
-    """Remove what a killed run left: staging, temporary files, shards without (or that do not fit) a commit."""
+    """Remove what a killed run left: staging, temporary files, shards without (or that do not fit) a commit. Parts are looked at later."""
     folder = dataset.folder
     shutil.rmtree(folder / STAGING, ignore_errors=True)
     for place in (folder, folder / COMMITS):
         for left in place.glob(f"{TEMPORARY}*"):
             left.unlink()
-    seen = {p.name.removesuffix(".parquet") for p in folder.glob("*/shard-*")}
+    seen = {p.name.removesuffix(".parquet") for p in folder.glob("*/shard-*") if p.parent.name != PARTS}
     for name in sorted(n for n in seen if "." not in n):
         commit = read_commit(folder, name)
         if commit is None or commit.damaged(folder):
@@ -170,12 +176,10 @@ def _clean(dataset: Dataset) -> None:
 
 
 def _forget(folder: Path, name: str) -> None:
-    """Remove a shard, or the library: its commit first, so that no commit ever vouches for files that are gone."""
+    """Remove a shard: its commit first, so that no commit ever vouches for files that are gone."""
     (folder / commit_path(name)).unlink(missing_ok=True)
-    if name == ASSETS:
-        shutil.rmtree(folder / ASSETS, ignore_errors=True)
     for item in sorted([*folder.glob(f"*/{name}"), *folder.glob(f"*/{name}.parquet")]):
-        if item.parent.name in {STAGING, ASSETS}:
+        if item.parent.name in {STAGING, PARTS, ASSETS}:
             continue
         if item.is_dir() and not item.is_symlink():
             shutil.rmtree(item)
@@ -186,7 +190,7 @@ def _forget(folder: Path, name: str) -> None:
 def _wipe(folder: Path) -> None:
     """Remove a whole dataset, its header first; files and folders that are no dataset's stay."""
     (folder / HEADER).unlink()
-    ours = {*TABLES, COMMITS, ASSETS, STAGING, *(p.parent.name for p in folder.glob("*/shard-*"))}
+    ours = {*TABLES, COMMITS, ASSETS, STAGING, PARTS, *(p.parent.name for p in folder.glob("*/shard-*"))}
     for name in sorted(ours):
         shutil.rmtree(folder / name, ignore_errors=True)
 
@@ -201,14 +205,5 @@ def _locked(folder: Path) -> Iterator[None]:
         except OSError as error:
             raise UsageError(f"another run is writing {folder}", "wait for it, or give another --out") from error
         yield
-    finally:
-        os.close(descriptor)
-
-
-def _sync(folder: Path) -> None:
-    """Flush a folder's entries to disk."""
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
     finally:
         os.close(descriptor)

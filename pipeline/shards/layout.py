@@ -1,4 +1,4 @@
-"""Where things lie in a dataset folder, and the two names that never last: staging and temporary files.
+"""Where things lie in a dataset folder, and the names that never last: parts, staging and temporary files.
 
 dataset.json                      what the dataset is
 scenes/shard-00000.parquet ...    one folder per table
@@ -6,6 +6,7 @@ usd/shard-00000/...               one folder per family of files: usd, plans, pr
 assets/...                        the asset library that every shard reads
 commits/shard-00000.json          digest of every file of the shard; written last, it makes the shard exist
 commits/assets.json               the same for the library
+.parts/shard-00000/00000016/      homes of a shard that is not whole yet, from index 16 on; gone when it is
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ HEADER = "dataset.json"
 COMMITS = "commits"
 ASSETS = "assets"
 STAGING = ".staging"
+PARTS = ".parts"
+EMPTY = "index"  # `what` of the rejects row of a home that could not be made: its index stays empty
 TEMPORARY = ".tmp-"  # how pipeline/manifest.py begins the names of files that are being written
 
 
@@ -36,6 +39,11 @@ def shard_name(number: int) -> str:
 def scene_id(seed: int, index: int) -> str:
     """Return the id of home `index` of a dataset made with `seed`; it is a valid USD name."""
     return f"s{seed}_{index:08d}"
+
+
+def index_of(scene: str) -> int:
+    """Return the index in a scene id."""
+    return int(scene.rpartition("_")[2])
 
 
 def table_path(table: str, number: int) -> str:

@@ -1,6 +1,8 @@
 """`sfgen shard` and `sfgen generate` with a factory of paper: what they ask for, write, resume and refuse."""
 
+import json
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -12,7 +14,8 @@ import made
 
 import sfgen
 from pipeline.entities.plan import Plan, Room
-from pipeline.errors import ContentError
+from pipeline.errors import ContentError, RefusedError
+from pipeline.homes.outcomes import Empty
 from pipeline.shards import scene_id
 from sfgen import cli
 
@@ -20,41 +23,51 @@ from sfgen import cli
 class Paper:
     """Stands for the factory: homes are made-up rows, and every request is kept."""
 
-    shard_size, chunk, licence = 4, 2, "CC0-1.0"
+    shard_size, chunk, licence = 4, 4, "CC0-1.0"
 
     def __init__(self, seed, weights="w"):
-        self.seed = seed
+        self.seed, self.seconds = seed, {}
+        self.shard = SimpleNamespace(home_seconds=300.0)
         self.digests = {"weights": weights}
         self.asked = []
         self.library = SimpleNamespace(rows={f"asset_{k}": {"style": ""} for k in range(2)})
 
-    def write_library(self, folder, asset_ids=None):
-        made.library(folder)
-        self.used = asset_ids
+    @contextmanager
+    def timed(self, part):
+        self.seconds[part] = 1.0
+        yield
 
-    def make(self, requests):
+    def shelf(self):
+        return made.Shelf(Path("shelf"))
+
+    def make(self, requests, first=None):
         assert len(requests) <= self.chunk
         self.asked += [(r.index, r.prompt) for r in requests]
-        homes = [made.home(r.index, self.seed) for r in requests]
+        if any("broken" in r.prompt for r in requests):
+            raise ZeroDivisionError("a bug")
+        return [self.one(r) for r in requests]
+
+    def one(self, request):
+        if "palace" in request.prompt:
+            return Empty(request.index, "refused", RefusedError("no palace", "ask for less"))
+        return self.home(request)
+
+    def home(self, r):
+        rows, files = made.home(r.index, self.seed)
         room = Room("studio", "studio_room", np.array([[0.0, 0.0], [6.0, 0.0], [6.0, 4.0], [0.0, 4.0]]))
         plan = Plan((room,), (), "studio")
         placed = [SimpleNamespace(asset_id="asset_1"), SimpleNamespace(asset_id="asset_0"), SimpleNamespace(asset_id="asset_1")]
-        return [
-            SimpleNamespace(
-                rows=rows,
-                files=files,
-                home=SimpleNamespace(scene_id=scene_id(self.seed, r.index), plan=plan, placements=placed, program=r.program or "{}"),
-            )
-            for r, (rows, files) in zip(requests, homes, strict=True)
-        ]
+        home = SimpleNamespace(scene_id=scene_id(self.seed, r.index), plan=plan, placements=placed, program=r.program or "{}")
+        return SimpleNamespace(rows=rows, files=files, home=home)
 
 
 @pytest.fixture
 def factory(monkeypatch, tmp_path):
-    """The factory of every command of a test; the commands run in an empty folder."""
+    """The factory of every command of a test; the commands run in an empty folder, in this process."""
     from stages import generate, shard
 
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(shard, "cores", lambda: 1)
     paper = Paper(3)
     monkeypatch.setattr(shard, "open_factory", lambda _root, seed: setattr(paper, "seed", seed) or paper)
     monkeypatch.setattr(generate, "open_factory", lambda _root, seed: setattr(paper, "seed", seed) or paper)
@@ -69,8 +82,8 @@ def test_shard_makes_a_dataset_in_the_working_directory(factory, capsys):
     assert run("shard", "--count", 10, "--seed", 3) == 0
     assert [h.index for h in sfgen.load("datasets/3")] == list(range(10))
     assert factory.asked == [(i, "") for i in range(10)]
-    assert factory.used is None
     assert "10 homes in datasets/3" in capsys.readouterr().out
+    assert sorted(p.name for p in Path("datasets/3/assets").iterdir()) == ["asset_0", "asset_1", "assets.parquet"]
     assert run("verify", "--quick", "datasets/3") == 0
 
 
@@ -78,7 +91,7 @@ def test_shard_resumes_and_does_nothing_twice(factory):
     assert run("shard", "--count", 8, "--out", "d", "--seed", 3) == 0
     before = made.snapshot("d")
     factory.asked.clear()
-    assert run("shard", "--count", 8, "--out", "d", "--seed", 3, "--workers", 2) == 0
+    assert run("shard", "--count", 8, "--out", "d", "--seed", 3) == 0
     assert factory.asked == []
     assert made.snapshot("d") == before
     assert run("shard", "--count", 10, "--out", "d", "--seed", 3) == 0
@@ -99,7 +112,8 @@ def test_shard_asks_for_what_the_file_says(factory, tmp_path):
         ({"p.txt": ""}, ["--prompts", "p.txt"], 2),
         ({"p.txt": "x" * 1_000_000}, ["--prompts", "p.txt"], 2),
         ({"p.yaml": "- {prompt: a studio, weight: -1}"}, ["--prompts", "p.yaml"], 1),
-        ({"p.txt": "a studio\nsing me a song\n"}, ["--prompts", "p.txt"], 3),
+        ({"p.txt": "a studio\nsing me a song\n"}, ["--prompts", "p.txt", "--strict"], 3),
+        ({"p.txt": "sing me a song\n"}, ["--prompts", "p.txt"], 3),
         ({}, ["--prompts", "p.txt"], 2),
         ({}, ["--prompts", "."], 2),
         ({}, ["--scheduler", "nowhere.json"], 2),
@@ -110,12 +124,102 @@ def test_shard_refuses_in_one_line_and_loses_nothing(factory, tmp_path, capsys, 
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
     assert run("shard", "--count", 5, *arguments) == code
-    err = capsys.readouterr().err
+    *before, err = capsys.readouterr().err.splitlines()
+    assert all(line.startswith("homes: ") for line in before)
     assert err.startswith("sfgen: ")
-    assert err.count("\n") == 1
     assert len(err) < 400
     assert {name: (tmp_path / name).read_text() for name in files} == files
     assert not list(tmp_path.rglob("shard-*"))
+
+
+HARD = "a studio\na palace on the moon with two bedrooms\na broken studio\n"
+
+
+def test_what_cannot_be_made_leaves_its_index_empty_and_the_run_goes_on(factory, tmp_path, capsys):
+    (tmp_path / "p.txt").write_text(HARD)
+    command = ("shard", "--count", 7, "--out", "d", "--seed", 3, "--prompts", "p.txt")
+    assert run(*command) == 1
+    said = capsys.readouterr()
+    lines = said.err.splitlines()
+    assert [line for line in lines if line.startswith("sfgen: ")] == [
+        f"sfgen: 2 homes stay empty: internal (s3_00000002: ZeroDivisionError: a bug (test_datasets.py:{broken_line()}, make))",
+        "sfgen: 2 homes stay empty: refused (s3_00000001: no palace; ask for less)",
+    ]
+    (named,) = [line for line in lines if "home 5 " in line]
+    assert "shard-00001, seed 3" in named
+    assert "sfgen shard --count 7 --seed 3 --prompts p.txt --only 5" in named
+    assert "3 homes in d" in said.out
+    assert [home.index for home in sfgen.load("d")] == [0, 3, 6]
+    assert [row["reason"] for row in sfgen.load("d").table("rejects").to_pylist() if row["what"] == "index"] == ["refused", "internal"] * 2
+    assert run("verify", "--quick", "d") == 0
+    assert "4 stay empty" in capsys.readouterr().out
+    before = made.snapshot("d")
+    factory.asked.clear()
+    assert run(*command) == 1  # neither repeated nor forgotten
+    assert "2 homes stay empty: refused" in capsys.readouterr().err
+    assert (factory.asked, made.snapshot("d")) == ([], before)
+    assert run(*command, "--strict") == 1
+
+
+def broken_line():
+    return 1 + Path(__file__).read_text().splitlines().index('            raise ZeroDivisionError("a bug")')
+
+
+def test_strict_stops_at_the_first(factory, tmp_path, capsys):
+    (tmp_path / "p.txt").write_text(HARD)
+    assert run("shard", "--count", 7, "--out", "d", "--prompts", "p.txt", "--strict") == 3
+    assert "no palace" in capsys.readouterr().err
+    assert not list(Path("d").glob("commits/shard-*"))
+
+
+def test_one_home_is_made_again_to_see_what_is_wrong(factory, tmp_path, capsys):
+    (tmp_path / "p.txt").write_text(HARD)
+    command = ("shard", "--count", 7, "--prompts", "p.txt", "--only")
+    assert run(*command, 3) == 0
+    assert "home 3 can be made" in capsys.readouterr().out
+    assert run(*command, 4) == 3
+    assert run(*command, 5) == 1
+    assert "ZeroDivisionError" in capsys.readouterr().err
+    assert not list(tmp_path.rglob("shard-*"))
+
+
+def test_machines_get_json_and_the_quiet_nothing(factory, tmp_path, capsys):
+    (tmp_path / "p.txt").write_text(HARD)
+    assert run("shard", "--count", 6, "--out", "d", "--seed", 3, "--prompts", "p.txt", "--json") == 1
+    said = capsys.readouterr()
+    assert all(json.loads(line)["event"] for line in said.err.splitlines())
+    told = json.loads(said.out)
+    assert (told["homes"], told["made"], told["empty"]) == (2, 2, {"refused": 2, "internal": 2})
+    assert run("verify", "d", "--quick", "--json") == 0
+    assert json.loads(capsys.readouterr().out)["empty"] == 4
+    assert run("shard", "--count", 4, "--out", "e", "--quiet") == 0
+    assert capsys.readouterr().err == ""
+    assert run("generate", "a studio", "--out", "home", "--json") == 0
+    said = capsys.readouterr()
+    assert json.loads(said.out)["scene_id"] == "s0_00000000"
+    assert json.loads(said.err.splitlines()[0])["text"] == "reading the layout model and the library"
+
+
+def test_a_full_disk_is_one_line_and_nothing_half_written_stays(factory, capsys, monkeypatch):
+    """Every write fails from the third homes on, as on a disk that is full."""
+    from pipeline.shards import parts
+
+    real, count = parts.write_json, iter(range(100))
+
+    def full(path, value):
+        if next(count) >= 1:
+            raise OSError(28, "No space left on device", str(path))
+        real(path, value)
+
+    monkeypatch.setattr(parts, "write_json", full)
+    assert run("shard", "--count", 8, "--out", "d", "--seed", 3) == 1
+    err = capsys.readouterr().err.splitlines()
+    assert err[-1].startswith("sfgen: No space left on device: ")
+    assert [line for line in err if line.startswith("sfgen: ")] == err[-1:]
+    assert not Path("d/.staging").exists()
+    monkeypatch.setattr(parts, "write_json", real)
+    assert run("shard", "--count", 8, "--out", "d", "--seed", 3) == 0
+    assert [i for i, _ in factory.asked] == [0, 1, 2, 3, 4, 5, 6, 7, 4, 5, 6, 7]
 
 
 def test_another_dataset_stays_as_it_is(factory, capsys):
@@ -132,7 +236,7 @@ def test_another_dataset_stays_as_it_is(factory, capsys):
 def test_generate_makes_a_dataset_of_one_with_what_it_uses(factory, capsys):
     assert run("generate", " a studio ", "--out", "home", "--seed", 7) == 0
     assert factory.asked == [(0, "a studio")]
-    assert factory.used == ["asset_0", "asset_1"]
+    assert sorted(p.name for p in Path("home/assets").iterdir()) == ["asset_0", "asset_1", "assets.parquet"]
     assert [h.scene_id for h in sfgen.load("home")] == ["s7_00000000"]
     said = capsys.readouterr()
     assert "home/usd/shard-00000/s7_00000000.usdc" in said.out

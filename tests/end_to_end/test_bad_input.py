@@ -44,6 +44,7 @@ def said(done, code, *words):
 def stage(capsys, monkeypatch):
     """Run a stage on a checkout as `python -m stages.<name>` does, in this process."""
     monkeypatch.setattr(os, "cpu_count", lambda: 1)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0})
     monkeypatch.delenv("SFGEN_DEBUG", raising=False)
 
     def run(root, name):
@@ -64,6 +65,7 @@ def command(capsys, monkeypatch, tmp_path):
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
     monkeypatch.setattr(os, "cpu_count", lambda: 1)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0})
     monkeypatch.delenv("SFGEN_DEBUG", raising=False)
 
     def run(root, *arguments):

@@ -15,11 +15,10 @@ from pipeline.shards import check
 HOMES = 24  # in shards of 4
 SHARDS = 6
 RUN = """
-import os, sys
-os.cpu_count = lambda: 1
+import sys
 from pathlib import Path
 from stages import shard
-shard.main(Path(sys.argv[1]), count=24, out=Path(sys.argv[2]), seed=5, prompts=Path(sys.argv[1]) / "tiny.txt")
+shard.main(Path(sys.argv[1]), count=24, out=Path(sys.argv[2]), seed=5, workers=1, prompts=Path(sys.argv[1]) / "tiny.txt")
 """
 # One furnished room a home, and half an hour less of looking for places.
 TINY = "A studio of 25 m2 with two pieces of furniture and a bathroom.\nA studio of 30 m2 and a bathroom.\n"
@@ -42,9 +41,11 @@ def commits(folder):
 
 
 def stamps(folder):
-    """Place and time of every file of a committed shard, and of the library."""
-    names = [c.stem for c in commits(folder)] + ["assets/"]
-    files = [p for p in folder.rglob("*") if p.is_file() and any(n in str(p.relative_to(folder)) for n in names)]
+    """Place and time of every file of a committed shard."""
+    names = [c.stem for c in commits(folder)]
+    files = [
+        p for p in folder.rglob("*") if p.is_file() and ".parts" not in p.parts and any(n in str(p.relative_to(folder)) for n in names)
+    ]
     return {p: (p.stat().st_mtime_ns, p.stat().st_ino) for p in files}
 
 

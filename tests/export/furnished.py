@@ -8,8 +8,8 @@ from pipeline import taxonomy
 from pipeline.entities.home import Placement
 from pipeline.homes.exports import files_of
 from pipeline.homes.rows import home_rows
-from pipeline.shards import Header, commit_library, commit_shard, gather, open_or_create
-from pipeline.usd import write_library
+from pipeline.shards import Header, add_part, commit_shard, extend_library, gather, open_or_create
+from pipeline.usd.library import write_asset
 from pipeline.verify import verify_home
 from tests.geometry import furniture
 from tests.usd.conftest import make_home
@@ -30,10 +30,25 @@ def made():
     return home, assets | things
 
 
+class Shelf:
+    """The assets in a folder of their own."""
+
+    def __init__(self, folder, assets):
+        self.folder, self.assets = folder, assets
+
+    def entry(self, asset_id):
+        write_asset(self.assets[asset_id], self.folder / asset_id)
+        return self.folder / asset_id
+
+    def tables(self, _asset_ids):
+        return {}
+
+
 def fill(folder):
     """Write the dataset."""
     home, assets = made()
     rows = home_rows(home, verify_home(home, assets), {}, assets, taxonomy.load(), 1, HEADER.licence)
     with open_or_create(folder, HEADER) as dataset:
-        commit_library(dataset, lambda place: write_library(assets.values(), place))
-        commit_shard(dataset, 0, gather(0, [({**rows, "rejects": []}, files_of(home, assets, 0))]))
+        extend_library(dataset, assets, Shelf(folder.parent / "shelf", assets))
+        add_part(dataset, 0, gather(0, [({**rows, "rejects": []}, files_of(home, assets, 0))]))
+        commit_shard(dataset, 0)

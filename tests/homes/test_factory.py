@@ -1,3 +1,4 @@
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -58,20 +59,32 @@ def test_a_stated_number_of_things_is_met_exactly(factory):
     assert asked == [(4, 4)]
 
 
-def test_what_can_never_fit_ends_the_run_naming_the_home(factory):
+def test_what_can_never_fit_stays_empty_naming_the_home_and_all_that_was_tried(factory):
     tight = replace(factory, shard=replace(factory.shard, room_attempts=1, home_attempts=2))
-    with pytest.raises(RefusedError, match=r"home 5 .*count_missed"):
-        tight.make([Request(5, "a bedroom of 9 m2 with 24 pieces of furniture and a bathroom")], files=False)
+    hard = "a bedroom of 9 m2 with 24 pieces of furniture and a bathroom"
+    (empty,) = tight.make([Request(5, hard)], files=False)
+    assert isinstance(empty.error, RefusedError)
+    assert re.search(r"home 5 .*count_missed", str(empty.error))
+    *tries, last = empty.rows(factory.seed)["rejects"]
+    assert (last["what"], last["where"], last["reason"]) == ("index", "s3_00000005", "attempts_spent")
+    assert {row["what"] for row in tries} >= {"room", "home"}
+    impatient = replace(tight, shard=replace(tight.shard, home_seconds=0.0))
+    assert [e.reason for e in impatient.make([Request(5, hard)], files=False)] == ["deadline"]
 
 
-def test_more_than_the_model_can_place_is_refused(factory):
-    with pytest.raises(RefusedError, match="at most 24"):
-        factory.make([Request(0, "a bedroom of 40 m2 with thirty pieces of furniture and a bathroom")], files=False)
-
-
-def test_contradictions_are_refused(factory):
-    with pytest.raises(RefusedError):
-        factory.make([Request(0, "an apartment with no bathroom and an en suite bathroom")], files=False)
+@pytest.mark.parametrize(
+    ("prompt", "word"),
+    [
+        ("a bedroom of 40 m2 with thirty pieces of furniture and a bathroom", "at most 24"),
+        ("an apartment with no bathroom and an en suite bathroom", "bathroom"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_costs_the_homes_beside_it_nothing(factory, outcomes, prompt, word):
+    empty, home = factory.make([Request(0, prompt), Request(1)], files=False)
+    assert (empty.reason, type(empty.error).exit_code) == ("refused", 3)
+    assert word in str(empty.error)
+    assert home.rows == outcomes[1].rows
+    assert [d.request.index for d in factory.first_drafts([Request(0, prompt), Request(1)])] == [1]
 
 
 def test_poses_are_rounded(outcomes):

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from pipeline.shards import TABLES, Header, ShardContent, commit_library, commit_shard, gather, open_or_create, scene_id
+from pipeline.shards import EMPTY, TABLES, Header, add_part, commit_shard, extend_library, gather, open_or_create, scene_id
+from schemas.assets import ASSETS
 
 HEADER = Header(seed=5, count=10, shard_size=4, licence="CC0-1.0", digests={"params": "p" * 64, "weights": "w" * 64})
 
@@ -70,32 +71,57 @@ def home(index, seed=5):
     return rows, {f"usd/{name}.usdc": hashlib.sha256(name.encode()).digest() * 20, f"previews/{name}.png": name.encode()}
 
 
-def shard(number, header=HEADER):
-    return gather(number, (home(i, header.seed) for i in header.indices(number)))
+def empty(index, seed=5, reason="refused"):
+    """What the factory hands over for a home that cannot be made."""
+    return {"rejects": [{"what": EMPTY, "where": scene_id(seed, index), "reason": reason, "detail": "it cannot be"}]}, {}
 
 
-def library(folder):
-    for i in range(2):
-        (folder / f"asset_{i}" / "textures").mkdir(parents=True)
-        (folder / f"asset_{i}" / f"asset_{i}.usda").write_text(f"#usda 1.0 {i}")
-        (folder / f"asset_{i}" / "textures" / "wood.png").write_bytes(bytes([i] * 100))
+def shard(number, header=HEADER, without=()):
+    return gather(number, (empty(i, header.seed) if i in without else home(i, header.seed) for i in header.indices(number)))
 
 
-def fill(folder, header=HEADER, nap=0.0, numbers=None):
-    """Make what is missing of a dataset; returns the numbers of the shards that were made."""
+class Shelf:
+    """Two assets in a folder of their own."""
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+
+    def entry(self, asset_id):
+        place = self.folder / asset_id
+        if not place.exists():
+            (place / "textures").mkdir(parents=True)
+            (place / f"{asset_id}.usda").write_text(f"#usda 1.0 {asset_id}")
+            (place / "textures" / "wood.png").write_bytes(asset_id.encode() * 10)
+        return place
+
+    def tables(self, asset_ids):
+        return {ASSETS: [{**{c.name: value(c, 0) for c in ASSETS.columns}, "asset_id": a} for a in asset_ids]}
+
+
+def used(content):
+    return {row["asset_id"] for row in content.rows.get("objects", ())}
+
+
+def fill(folder, header=HEADER, nap=0.0, numbers=None, size=2, without=()):
+    """Make what is missing of a dataset, in parts of `size` homes; returns the numbers of the shards that were made."""
     with open_or_create(Path(folder), header) as dataset:
-        commit_library(dataset, library)
+        shelf = Shelf(Path(folder).parent / "shelf")
+        extend_library(dataset, (), shelf)
         missing = [n for n in dataset.missing() if numbers is None or n in numbers]
         for number in missing:
-            content: ShardContent = shard(number, header)
-            time.sleep(nap)
-            commit_shard(dataset, number, content)
+            todo = dataset.todo(number)
+            for start in range(0, len(todo), size):
+                part = todo[start : start + size]
+                time.sleep(nap)
+                add_part(dataset, number, gather(number, (empty(i, header.seed) if i in without else home(i, header.seed) for i in part)))
+            extend_library(dataset, used(shard(number, header, without)), shelf)
+            commit_shard(dataset, number)
     return missing
 
 
 def snapshot(folder):
     """Every file of a folder: its bytes by its relative path."""
-    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in Path(folder).rglob("*") if p.is_file()}
+    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in sorted(Path(folder).rglob("*")) if p.is_file()}
 
 
 if __name__ == "__main__":

@@ -43,7 +43,15 @@ def test_every_file_is_watched(folder):
 
 
 @pytest.mark.parametrize(
-    "name", ["usd/shard-00000/extra.usdc", "scenes/shard-00003.parquet", "assets/asset_9/x", ".staging/x", "commits/.tmp-1-x"]
+    "name",
+    [
+        "usd/shard-00000/extra.usdc",
+        "scenes/shard-00003.parquet",
+        "assets/asset_9/x",
+        ".staging/x",
+        ".parts/shard-00000/x",
+        "commits/.tmp-1-x",
+    ],
 )
 def test_a_stranger_is_named(folder, name):
     (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -76,6 +84,8 @@ def rewritten(folder, table, number, change):
         ("rooms", lambda rows: rows.pop(), "rows, not"),
         ("scenes", lambda rows: rows[0].update(index=3), "does not hold the homes"),
         ("scenes", lambda rows: rows.reverse(), "does not hold the homes"),
+        ("rejects", lambda rows: rows[0].update(what="index", where="s5_00000004"), "does not hold the homes"),
+        ("rejects", lambda rows: rows[0].update(what="index", where="home four"), "names a home that cannot be"),
         ("rooms", lambda rows: rows[0].update(room_id="Room 0"), "not a valid id"),
         ("rooms", lambda rows: rows[1].update(room_id="room_0"), "stands twice"),
         ("objects", lambda rows: rows[0].update(room_id="room_7"), "'room_7' of s5_00000004 does not exist"),

@@ -4,12 +4,13 @@ import json
 import os
 import shutil
 from dataclasses import replace
+from pathlib import Path
 
 import made
 import pytest
 
 from pipeline.errors import ContentError, UsageError
-from pipeline.shards import Header, ShardContent, check, commit_library, commit_shard, committed, open_or_create, read_header
+from pipeline.shards import Header, ShardContent, add_part, check, commit_shard, committed, extend_library, open_or_create, read_header
 
 
 @pytest.fixture
@@ -86,8 +87,9 @@ def test_a_folder_that_dvc_owns_may_discard(folder):
     other = replace(made.HEADER, seed=6, count=4)
     with open_or_create(folder, other, discard=True) as dataset:
         assert dataset.missing() == [0]
-        commit_library(dataset, made.library)
-        commit_shard(dataset, 0, made.shard(0, other))
+        extend_library(dataset, made.used(made.shard(0, other)), made.Shelf(folder.parent / "shelf"))
+        add_part(dataset, 0, made.shard(0, other))
+        commit_shard(dataset, 0)
     assert check(folder).homes == 4
     assert (folder / "notes.txt").read_text() == "mine"
 
@@ -149,6 +151,55 @@ def test_a_shard_that_lost_a_file_is_made_again(folder, dataset_folder):
     assert made.snapshot(folder) == made.snapshot(dataset_folder)
 
 
+def test_parts_may_come_in_any_size_and_order(tmp_path):
+    made.fill(tmp_path / "a")
+    for size in (1, 3):
+        made.fill(tmp_path / f"b{size}", size=size)
+        assert made.snapshot(tmp_path / "a") == made.snapshot(tmp_path / f"b{size}")
+    with open_or_create(tmp_path / "c", made.HEADER) as dataset:
+        for indices in ((2, 3), (1,), (0,)):
+            add_part(dataset, 0, made.gather(0, map(made.home, indices)))
+        commit_shard(dataset, 0)
+    names = [n for n in made.snapshot(tmp_path / "c") if "shard-00000" in n]
+    assert {n: (tmp_path / "a" / n).read_bytes() for n in names} == {n: (tmp_path / "c" / n).read_bytes() for n in names}
+
+
+def test_homes_that_were_made_before_a_kill_are_kept(folder, dataset_folder):
+    with open_or_create(folder, made.HEADER) as dataset:
+        add_part(dataset, 1, made.gather(1, [made.home(4), made.home(5)]))
+        add_part(dataset, 1, made.gather(1, [made.home(7)]))
+    with pytest.raises(ContentError, match="shard-00000"):
+        check(folder)
+    with open_or_create(folder, made.HEADER) as dataset:
+        assert dataset.todo(1) == [6]
+        assert dataset.todo(0) == [0, 1, 2, 3]
+    torn = folder / ".parts" / "shard-00001" / "00000004" / "files" / "usd" / "shard-00001" / "s5_00000004.usdc"
+    torn.write_bytes(bytes(len(torn.read_bytes())))  # what a power cut leaves
+    with open_or_create(folder, made.HEADER) as dataset:
+        assert dataset.todo(1) == [4, 5, 6]
+    made.fill(folder)
+    assert made.snapshot(folder) == made.snapshot(dataset_folder)
+
+
+def test_an_index_may_stay_empty_with_its_reason(folder):
+    made.fill(folder, without={1, 4, 5, 6, 7})
+    summary = check(folder)
+    assert (summary.homes, summary.empty, summary.rows["scenes"]) == (5, 5, 5)
+    assert made.fill(folder, without=()) == []  # resumed, it is not tried again
+    with pytest.raises(ContentError, match="brings homes"), open_or_create(folder.parent / "other", made.HEADER) as dataset:
+        add_part(dataset, 0, made.gather(0, [made.home(0), made.empty(9)]))
+
+
+def test_the_library_holds_what_the_homes_use_and_shares_its_files(folder):
+    made.fill(folder, replace(made.HEADER, count=4), without={1, 2, 3})  # home 0 has one thing
+    assert sorted(p.name for p in (folder / "assets").iterdir()) == ["asset_0", "assets.parquet"]
+    made.fill(folder, replace(made.HEADER, count=8))
+    assert sorted(p.name for p in (folder / "assets").iterdir()) == ["asset_0", "asset_1", "assets.parquet"]
+    shared = Path("asset_1/textures/wood.png")
+    assert (folder / "assets" / shared).stat().st_ino == (folder.parent / "shelf" / shared).stat().st_ino
+    assert check(folder).homes == 5
+
+
 def test_a_library_that_lost_a_file_is_made_again(folder, dataset_folder):
     made.fill(folder)
     shutil.rmtree(folder / "assets" / "asset_1")
@@ -161,7 +212,7 @@ def test_a_committed_shard_is_never_rewritten(folder):
     with open_or_create(folder, made.HEADER) as dataset:
         assert committed(dataset, 0)
         with pytest.raises(ContentError, match="never rewritten"):
-            commit_shard(dataset, 0, made.shard(0))
+            commit_shard(dataset, 0)
 
 
 @pytest.mark.parametrize(
@@ -170,16 +221,23 @@ def test_a_committed_shard_is_never_rewritten(folder):
 def test_a_file_outside_the_shards_folders_is_refused(folder, path):
     content = made.shard(0)
     with open_or_create(folder, made.HEADER) as dataset, pytest.raises(ContentError, match="may not lie"):
-        commit_shard(dataset, 0, ShardContent(content.rows, {path: b""}))
+        add_part(dataset, 0, ShardContent(content.rows, {path: b""}))
     assert list(made.snapshot(folder)) == ["dataset.json"]
 
 
 def test_a_shard_must_bring_its_own_homes(folder):
     with open_or_create(folder, made.HEADER) as dataset:
         with pytest.raises(ContentError, match="brings homes"):
-            commit_shard(dataset, 1, ShardContent(made.shard(0).rows))
+            add_part(dataset, 1, ShardContent(made.shard(0).rows))
         with pytest.raises(ContentError, match="unknown tables"):
-            commit_shard(dataset, 0, ShardContent({"chairs": []}))
+            add_part(dataset, 0, ShardContent({"chairs": []}))
+        with pytest.raises(ContentError, match="brings no home"):
+            add_part(dataset, 0, ShardContent({}))
+        add_part(dataset, 0, made.gather(0, [made.home(2)]))
+        with pytest.raises(ContentError, match="brings homes"):
+            add_part(dataset, 0, made.gather(0, [made.home(2)]))
+        with pytest.raises(ContentError, match=r"brings homes \[2\]"):
+            commit_shard(dataset, 0)
 
 
 @pytest.mark.parametrize("numbers", [{"count": 0}, {"count": -5}, {"shard_size": 0}])

@@ -30,7 +30,9 @@ def commits(folder):
 def stamps(folder):
     """Place and time of every file of a committed shard."""
     names = {c.stem for c in commits(folder)}
-    files = [p for p in folder.rglob("*") if p.is_file() and any(n in str(p.relative_to(folder)) for n in names)]
+    files = [
+        p for p in folder.rglob("*") if p.is_file() and any(n in str(p.relative_to(folder)) for n in names) and ".parts" not in p.parts
+    ]
     return {p: (p.stat().st_mtime_ns, p.stat().st_ino) for p in files}
 
 

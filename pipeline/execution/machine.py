@@ -1,0 +1,57 @@
+"""What of this machine the process may use."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+THREADS = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+
+def cores(system: Path = Path("/")) -> int:
+    """Return the number of cores that this process may use: its affinity and the quota of its control groups, at least 1.
+
+    `system` is the root below which /proc and /sys lie.
+    """
+    here = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return max(1, min([here, *(int(quota) for quota in _quotas(system))]))
+
+
+def _quotas(system: Path) -> list[float]:
+    """Return the cores that each control group around this process allows (version 1 or 2 of the kernel's interface)."""
+    try:
+        lines = (system / "proc/self/cgroup").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return []
+    found = []
+    for line in lines:
+        number, controllers, name = line.split(":", 2)
+        if number != "0" and "cpu" not in controllers.split(","):
+            continue
+        mount = system / "sys/fs/cgroup" / ("" if number == "0" else "cpu")
+        place = mount / name.strip("/")
+        # inside a container the path may be the host's, of which only the mount itself is seen
+        for group in (place, *(p for p in place.parents if p.is_relative_to(mount))):
+            found += _quota(group)
+    return found
+
+
+def _quota(group: Path) -> list[float]:
+    """Return [cores] of one control group, [] where it sets no limit."""
+    for names in (("cpu.max",), ("cpu.cfs_quota_us", "cpu.cfs_period_us")):
+        try:
+            quota, period = " ".join((group / name).read_text(encoding="utf-8") for name in names).split()[:2]
+            return [int(quota) / int(period)] if int(quota) > 0 else []
+        except (OSError, ValueError):  # no such file, or "max"
+            continue
+    return []
+
+
+def single_thread() -> None:
+    """Make numeric libraries of this process use one thread, those that are loaded already and those that come."""
+    for name in THREADS:
+        os.environ[name] = "1"
+    torch = sys.modules.get("torch")
+    if torch is not None and torch.get_num_threads() != 1:
+        torch.set_num_threads(1)

@@ -1,0 +1,255 @@
+"""Fills a dataset: chunks of homes on workers, put aside as they come, joined to shards; what cannot be made is accounted for."""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+import tempfile
+import traceback
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from pipeline import tables
+from pipeline.errors import ContentError, SfgenError
+from pipeline.execution import Lost, Progress, map_jobs
+from pipeline.homes.factory import Factory
+from pipeline.homes.outcomes import Empty, Outcome
+from pipeline.homes.request import Request
+from pipeline.homes.work import HomeDraft
+from pipeline.shards import (
+    EMPTY,
+    TABLES,
+    Dataset,
+    ShardContent,
+    Shelf,
+    add_part,
+    assets_of,
+    commit_shard,
+    extend_library,
+    gather,
+    shard_name,
+)
+from pipeline.shards.commits import read_commit
+from pipeline.shards.layout import table_path
+
+LEAST = 4  # homes of a chunk: fewer fill the sampler's batches badly
+SPARE = 16 << 20  # bytes of disk below which an unknown error is taken for a full disk
+
+
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    """The unit of work: some consecutive homes of a shard."""
+
+    shard: int
+    requests: tuple[Request, ...]
+
+    def pieces(self) -> list[Chunk]:
+        """Return a chunk for each home."""
+        return [Chunk(self.shard, (request,)) for request in self.requests]
+
+    def __str__(self) -> str:
+        return f"homes {self.requests[0].index} to {self.requests[-1].index} of {shard_name(self.shard)}"
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """A chunk that is made: what it brings, the homes that could not be, CPU seconds by part, and rooms and homes that were tried again."""
+
+    content: ShardContent
+    empties: tuple[Empty, ...]
+    seconds: Mapping[str, float]
+    retries: int
+
+
+@dataclass(frozen=True, slots=True)
+class Recipe:
+    """What a worker needs to make chunks: how to open the factory, and the first drafts, where a stage has made them.
+
+    With `shelve` it also puts the assets on its machine's shelf, from which the dataset takes them.
+    """
+
+    opened: Callable[[], Factory]
+    drafts: Callable[[Factory, Sequence[Request]], list[HomeDraft]] | None = None
+    shelve: bool = True
+
+
+@dataclass
+class Tally:
+    """What a run came to. `empty` lists, by reason, every home of the dataset that stays empty, whichever run found that: (scene id, detail)."""
+
+    homes: int = 0
+    resumed: int = 0
+    retries: int = 0
+    seconds: dict[str, float] = field(default_factory=dict)
+    empty: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
+
+    def lines(self) -> list[str]:
+        """Return one line for each reason why homes stay empty."""
+        told = []
+        for reason, cases in sorted(self.empty.items()):
+            count = "1 home stays" if len(cases) == 1 else f"{len(cases)} homes stay"
+            told.append(f"{count} empty: {reason} ({'; '.join(f'{scene}: {detail}'[:200] for scene, detail in cases[:1])})")
+        return told
+
+
+def fill(
+    dataset: Dataset,
+    recipe: Recipe,
+    asked: Callable[[int], Request],
+    *,
+    workers: int = 1,
+    scheduler: str | None = None,
+    strict: bool = False,
+    progress: Progress,
+    again: str = "",
+) -> Tally:
+    """Make what is missing of a dataset; `asked` tells what each home shall be, `again` is the command that makes one home again.
+
+    A home that cannot be made leaves its index empty and the run goes on; with `strict` its error is raised.
+    """
+    factory = recipe.opened()
+    shelf, missing, tally = factory.shelf(), dataset.missing(), Tally()
+    extend_library(dataset, (), shelf)
+    todo = sum(len(dataset.todo(number)) for number in missing)
+    tally.resumed = dataset.header.count - todo
+    if strict:
+        for reason, cases in empties_of(dataset).items():
+            raise ContentError(f"{cases[0][0]} stays empty ({reason}: {cases[0][1]})", "leave --strict out")
+    for number in [n for n in missing if not dataset.todo(n)]:  # killed before its commit
+        missing.remove(number)
+        _finish(dataset, number, shelf)
+    workers = min(workers, -(-todo // LEAST))
+    size = max(LEAST, min(factory.chunk, -(-todo // max(1, workers))))
+    watch = _Watch(tally, progress)
+    done = map_jobs(
+        partial(make_chunk, recipe),
+        chunks(dataset, missing, asked, size),
+        workers=workers,
+        scheduler=scheduler,
+        split=Chunk.pieces,
+        note=watch.heard,
+        silence=factory.shard.home_seconds,
+    )
+    for chunk, answer in done:
+        batch = lost(chunk, answer, factory.seed) if isinstance(answer, Lost) else answer
+        for empty in batch.empties:
+            if strict:
+                raise empty.error
+            if empty.reason in {"internal", "worker_lost"}:
+                place = f"home {empty.index} ({shard_name(chunk.shard)}, seed {factory.seed})"
+                progress.say(f"{place} stays empty: {empty.error}{f'; again: {again.format(index=empty.index)}' if again else ''}")
+        add_part(dataset, chunk.shard, batch.content)
+        watch.counted(chunk, batch)
+        if not dataset.todo(chunk.shard):
+            _finish(dataset, chunk.shard, shelf)
+    tally.empty = empties_of(dataset)
+    return tally
+
+
+def chunks(dataset: Dataset, missing: Sequence[int], asked: Callable[[int], Request], size: int) -> Iterator[Chunk]:
+    """Yield what is still to be made, in order, in runs of at most `size` consecutive homes."""
+    for number in missing:
+        run: list[Request] = []
+        for index in dataset.todo(number):
+            if run and (len(run) == size or index != run[-1].index + 1):
+                yield Chunk(number, tuple(run))
+                run = []
+            run.append(asked(index))
+        if run:
+            yield Chunk(number, tuple(run))
+
+
+def make_chunk(recipe: Recipe, chunk: Chunk) -> Batch:
+    """Make one chunk: the step that workers run."""
+    factory = recipe.opened()
+    factory.seconds.clear()
+    first = recipe.drafts(factory, chunk.requests) if recipe.drafts else None
+    outcomes = attempt(factory, chunk.requests, first)
+    content = gather(
+        chunk.shard,
+        ((o.rows(factory.seed), {}) if isinstance(o, Empty) else (o.rows, o.files) for o in outcomes),
+    )
+    if recipe.shelve:
+        with factory.timed("library"):
+            shelf = factory.shelf()
+            for asset_id in sorted({row["asset_id"] for row in content.rows["objects"]}):
+                shelf.entry(asset_id)
+    retries = sum(row["what"] in {"room", "home"} for row in content.rows["rejects"])
+    return Batch(content, tuple(o for o in outcomes if isinstance(o, Empty)), dict(factory.seconds), retries)
+
+
+def attempt(factory: Factory, requests: Sequence[Request], first: Sequence[HomeDraft] | None) -> list[Outcome | Empty]:
+    """Make homes; an error that the factory does not know costs the one home that raises it, alone, again."""
+    try:
+        return factory.make(requests, first)
+    except (SfgenError, OSError, MemoryError):  # the checkout, the disk, the machine: no home is at fault
+        raise
+    except Exception as error:
+        if shutil.disk_usage(tempfile.gettempdir()).free < SPARE:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), tempfile.gettempdir()) from error
+        if len(requests) > 1:
+            mine = {d.request.index: [d] for d in first or ()}
+            return [o for r in requests for o in attempt(factory, [r], None if first is None else mine.get(r.index, []))]
+        frame = traceback.extract_tb(error.__traceback__)[-1]
+        told = f"{type(error).__name__}: {error} ({Path(frame.filename).name}:{frame.lineno}, {frame.name})"
+        return [Empty(requests[0].index, "internal", ContentError(told))]
+
+
+def lost(chunk: Chunk, answer: Lost, seed: int) -> Batch:
+    """Return what a chunk of one home comes to that its workers did not survive."""
+    (request,) = chunk.requests
+    how = "died at it" if answer.how == "died" else "kept silent"
+    empty = Empty(request.index, "worker_lost", ContentError(f"{answer.times} workers {how}", "give them more memory (fewer --workers)"))
+    return Batch(gather(chunk.shard, [(empty.rows(seed), {})]), (empty,), {}, 0)
+
+
+def empties_of(dataset: Dataset) -> dict[str, list[tuple[str, str]]]:
+    """Return the homes that stay empty, by reason: (scene id, detail)."""
+    found: dict[str, list[tuple[str, str]]] = {}
+    for number in range(dataset.header.shards):
+        commit = read_commit(dataset.folder, shard_name(number))
+        if commit and commit.rows["scenes"] == len(dataset.header.indices(number)):
+            continue
+        if commit:
+            rows = tables.read(dataset.folder / table_path("rejects", number), TABLES["rejects"])
+        else:
+            rows = [row for part in dataset.parts.get(number, ()) for row in part.rows("rejects").to_pylist()]
+        for row in rows:
+            if row["what"] == EMPTY:
+                found.setdefault(row["reason"], []).append((row["where"], row["detail"]))
+    return found
+
+
+def _finish(dataset: Dataset, number: int, shelf: Shelf) -> None:
+    extend_library(dataset, assets_of(dataset, number), shelf)
+    commit_shard(dataset, number)
+
+
+class _Watch:
+    """Counts homes: as they are told of while their chunk is at work, or else when it is done."""
+
+    def __init__(self, tally: Tally, progress: Progress) -> None:
+        self.tally, self.progress = tally, progress
+        self._told: set[int] = set()
+
+    def heard(self, note: tuple[Any, ...]) -> None:
+        what, index = note
+        if what == "made" and index not in self._told:
+            self._told.add(index)
+            self.progress.add()
+        else:
+            self.progress.state(f"{what} home {index}")
+
+    def counted(self, chunk: Chunk, batch: Batch) -> None:
+        indices = {request.index for request in chunk.requests}
+        self.progress.count(retries=batch.retries, empty=len(batch.empties))
+        self.progress.add(len(indices - self._told))
+        self._told -= indices
+        self.tally.homes += len(indices) - len(batch.empties)
+        self.tally.retries += batch.retries
+        for part, spent in batch.seconds.items():
+            self.tally.seconds[part] = self.tally.seconds.get(part, 0.0) + spent

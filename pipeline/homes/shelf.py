@@ -1,0 +1,83 @@
+"""Assets as USD, written once on a machine and linked into every dataset that uses them.
+
+An entry is a folder named after the asset and the digest of its file, beside a commit file that vouches for its bytes. What the
+bytes depend on besides (the code, the libraries that write) names the folder above; the oldest of those go when there is too much.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from pipeline.homes.library import Library
+from pipeline.manifest import digest, write_json
+from pipeline.shards.commits import read_file, record
+from pipeline.usd.library import write_asset
+from schemas.assets import ASSET_JOINTS, ASSETS
+from schemas.table import Table
+
+MOST = 2 << 30  # bytes of all versions together
+WRITERS = ("usd-core", "numpy", "pillow")  # packages that an asset's bytes pass through
+
+
+class AssetShelf:
+    """The shelf of a library; `code` is the digest of the code that writes assets."""
+
+    def __init__(self, library: Library, code: str, folder: Path | None = None) -> None:
+        self.library = library
+        self.folder = (folder or cache_folder()) / "assets" / digest([code, *map(version, WRITERS)])[:16]
+
+    def entry(self, asset_id: str) -> Path:
+        """Return the folder of an asset's files, after writing it where it is missing or broken."""
+        place = self.folder / f"{asset_id}-{self.library.rows[asset_id]['sha256'][:16]}"
+        seal = place.with_suffix(".json")
+        commit = read_file(seal) if seal.is_file() else None
+        if commit is None or commit.altered(place):
+            self._write(asset_id, place, seal)
+        return place
+
+    def tables(self, asset_ids: Sequence[str]) -> Mapping[Table, Iterable[Mapping[str, Any]]]:
+        """Return the rows of assets and asset_joints that describe these assets, files as they lie in a dataset."""
+        kept = set(asset_ids)
+        return {
+            ASSETS: [{**self.library.rows[a], "file": f"{a}/{a}.usda"} for a in asset_ids],
+            ASSET_JOINTS: [row for row in self.library.joints if row["asset_id"] in kept],
+        }
+
+    def _write(self, asset_id: str, place: Path, seal: Path) -> None:
+        """Write an asset under another name and exchange it with what is there: others may be reading, or writing the same."""
+        if not self.folder.exists():
+            self.folder.mkdir(parents=True)
+            make_room(self.folder)
+        with tempfile.TemporaryDirectory(prefix=".tmp-", dir=self.folder) as scratch:
+            made = Path(scratch) / "made"
+            write_asset(self.library[asset_id], made)
+            commit = record(made, asset_id, {}, flush=False)
+            for path in commit.files:
+                (made / path).chmod(0o444)  # datasets share the file: what edits it in one would change it in all
+            seal.unlink(missing_ok=True)
+            if place.exists():
+                place.rename(Path(scratch) / "old")
+            made.rename(place)
+            write_json(seal, commit.to_json())
+
+
+def cache_folder() -> Path:
+    """Return where this machine keeps what can be made again: SFGEN_CACHE, or `sfgen` in the user's cache folder."""
+    named = os.environ.get("SFGEN_CACHE")
+    return Path(named) if named else Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "sfgen"
+
+
+def make_room(newest: Path, most: int = MOST) -> None:
+    """Remove the oldest versions beside `newest` until all take `most` bytes or less."""
+    versions = sorted((p for p in newest.parent.iterdir() if p.is_dir()), key=lambda p: p.stat().st_mtime, reverse=True)
+    total = 0
+    for folder in (newest, *(p for p in versions if p != newest)):
+        total += sum(p.stat().st_size for p in folder.rglob("*") if p.is_file())
+        if total > most and folder != newest:
+            shutil.rmtree(folder, ignore_errors=True)

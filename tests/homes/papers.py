@@ -1,0 +1,75 @@
+"""A factory of paper that workers can open: its homes are made-up rows, and some of them kill, stop or trip who makes them."""
+
+import functools
+import os
+import signal
+import sys
+import time
+from contextlib import contextmanager
+from pathlib import Path
+from types import SimpleNamespace
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "shards"))
+import made
+
+from pipeline.execution import tell
+from pipeline.homes.request import Request
+
+HEADER = made.HEADER  # 10 homes in shards of 4
+
+
+def request(index):
+    return Request(index, f"home {index}")
+
+
+class Paper:
+    """`die` and `hang` name a home that takes every worker with it; `die_once` homes that take the first; `stumble` homes with a bug."""
+
+    chunk = 4
+
+    def __init__(self, folder, die=None, hang=None, die_once=(), stumble=(), nap=0.0):
+        self.folder, self.seed, self.seconds = Path(folder), HEADER.seed, {}
+        self.die, self.hang, self.die_once, self.stumble, self.nap = die, hang, die_once, stumble, nap
+        self.shard = SimpleNamespace(home_seconds=2.0)
+
+    def shelf(self):
+        return made.Shelf(self.folder / "shelf")
+
+    @contextmanager
+    def timed(self, part):
+        self.seconds[part] = 1.0
+        yield
+
+    def make(self, requests, first=None):
+        assert first is None
+        return [self.home(r.index) for r in requests]
+
+    def home(self, index):
+        tell("planning", index)
+        time.sleep(self.nap)
+        mark = self.folder / f"died-{index}"
+        if index == self.die or (index in self.die_once and not mark.exists()):
+            mark.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        if index == self.hang:
+            time.sleep(600)
+        if index in self.stumble:
+            raise ZeroDivisionError("a bug")
+        rows, files = made.home(index)
+        return SimpleNamespace(rows=rows, files=files)
+
+
+def open_paper(folder, **asked):
+    (Path(folder) / "shelf").mkdir(exist_ok=True)
+    return Paper(folder, **asked)
+
+
+if __name__ == "__main__":
+    from pipeline.execution import Progress
+    from pipeline.homes.production import Recipe, fill
+    from pipeline.shards import open_or_create
+
+    out = Path(sys.argv[1])
+    with open_or_create(out, HEADER) as dataset:
+        recipe = Recipe(functools.partial(open_paper, str(out.parent), nap=float(sys.argv[2])))
+        fill(dataset, recipe, request, workers=2, progress=Progress(10, "homes"))

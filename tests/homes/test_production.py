@@ -1,0 +1,86 @@
+"""A dataset is filled by workers: the same bytes whatever their number, and what kills or stops them costs one home."""
+
+import errno
+import functools
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+import papers
+
+from pipeline.execution import Progress
+from pipeline.homes.production import Recipe, fill
+from pipeline.shards import check, open_or_create
+
+ROOT = Path(__file__).parents[2]
+
+
+def filled(folder, workers=1, **asked):
+    """Fill a dataset with made-up homes; returns the tally."""
+    recipe = Recipe(functools.partial(papers.open_paper, str(folder.parent), **asked))
+    with open_or_create(folder, papers.HEADER) as dataset:
+        return fill(dataset, recipe, papers.request, workers=workers, progress=Progress(10, "homes", voice="quiet"), again="again {index}")
+
+
+def test_one_and_two_workers_and_a_resumed_run_give_the_same_bytes(tmp_path):
+    filled(tmp_path / "one")
+    tally = filled(tmp_path / "two", workers=2)
+    assert (tally.homes, tally.resumed, tally.empty) == (10, 0, {})
+    assert papers.made.snapshot(tmp_path / "one") == papers.made.snapshot(tmp_path / "two")
+    shutil.rmtree(tmp_path / "two" / "usd")
+    again = filled(tmp_path / "two", workers=2)
+    assert (again.homes, again.resumed) == (10, 0)
+    assert papers.made.snapshot(tmp_path / "one") == papers.made.snapshot(tmp_path / "two")
+
+
+def test_workers_that_are_killed_now_and_then_change_nothing(tmp_path):
+    filled(tmp_path / "whole")
+    tally = filled(tmp_path / "killed", workers=2, die_once=(1, 6))
+    assert (tally.homes, tally.empty) == (10, {})
+    assert (tmp_path / "died-1").exists()
+    assert (tmp_path / "died-6").exists()
+    assert papers.made.snapshot(tmp_path / "whole") == papers.made.snapshot(tmp_path / "killed")
+
+
+@pytest.mark.parametrize(("culprit", "word"), [("die", "3 workers died at it"), ("hang", "3 workers kept silent")])
+def test_the_home_that_costs_three_workers_is_recorded_and_the_rest_is_made(tmp_path, culprit, word):
+    tally = filled(tmp_path / "set", workers=2, **{culprit: 6})
+    assert (tally.homes, list(tally.empty)) == (9, ["worker_lost"])
+    ((scene, detail),) = tally.empty["worker_lost"]
+    assert scene == "s5_00000006"
+    assert word in detail
+    assert check(tmp_path / "set").empty == 1
+    assert filled(tmp_path / "set").empty == tally.empty  # another run neither repeats nor forgets it
+
+
+def test_an_unknown_error_costs_one_home_and_a_full_disk_the_run(tmp_path, monkeypatch):
+    tally = filled(tmp_path / "set", stumble=(3,))
+    assert (tally.homes, list(tally.empty)) == (9, ["internal"])
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: shutil._ntuple_diskusage(1, 1, 0))
+    with pytest.raises(OSError, match="No space") as caught:
+        filled(tmp_path / "full", stumble=(3,))
+    assert caught.value.errno == errno.ENOSPC
+
+
+def test_a_run_that_is_killed_keeps_the_chunks_that_were_done(tmp_path):
+    filled(tmp_path / "whole")
+    program = [sys.executable, str(Path(__file__).parent / "papers.py"), str(tmp_path / "cut"), "0.25"]
+    run = subprocess.Popen(program, env={**os.environ, "PYTHONPATH": str(ROOT)}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    end = time.monotonic() + 240
+    while not list((tmp_path / "cut").glob(".parts/*/*")):
+        assert time.monotonic() < end
+        assert run.poll() is None
+        time.sleep(0.01)
+    run.send_signal(signal.SIGKILL)
+    run.wait()
+    tally = filled(tmp_path / "cut", workers=1)
+    assert tally.resumed >= 4
+    assert tally.homes == 10 - tally.resumed
+    assert papers.made.snapshot(tmp_path / "cut") == papers.made.snapshot(tmp_path / "whole")
