@@ -42,19 +42,17 @@ def main(root: Path, *, voice: Voice = "plain") -> None:
         told = {part: [{"ok": not line.startswith("-"), "text": line.lstrip("+- ")} for line in lines] for part, lines in found.items()}
         sys.stdout.write(json.dumps(told) + "\n")
         return
-    for lines in found.values():
-        for line in lines:
-            sys.stdout.write(f"{line}\n")
+    sys.stdout.writelines(f"{line}\n" for lines in found.values() for line in lines)
 
 
 def places(root: Path) -> None:
     """Print where the dataset, the report and the pictures lie: how `make run` ends."""
-    for what, path in (
-        ("dataset", "data/shards"),
-        ("report", "report/index.html"),
-        ("pictures", "report"),
-        ("metrics", "metrics/metrics.json"),
-    ):
+    for what, path in {
+        "dataset": "data/shards",
+        "report": "report/index.html",
+        "pictures": "report",
+        "metrics": "metrics/metrics.json",
+    }.items():
         sys.stdout.write(f"{what + ':':9} {root / path}\n")
 
 
@@ -69,8 +67,7 @@ def machine() -> Iterator[str]:
 def packages() -> Iterator[str]:
     """Yield the versions of what the factory stands on."""
     for name in NEEDED:
-        version = installed(name)
-        yield f"+ {name} {version}" if version else f"- {name} is not installed; type `make run`"
+        yield f"+ {name} {version}" if (version := installed(name)) else f"- {name} is not installed; type `make run`"
     if installed("torch"):
         import torch
 
