@@ -21,7 +21,7 @@ from pipeline.relations.frames import SIDES
 Floats = NDArray[np.float64]
 
 REACH, TURN = 0.4, math.radians(30)  # how far from a mode a relation is nearly held [m, rad]
-SURE, ADOPTED = 0.7, 3.0  # who of a relation this strong is astray belongs there all the same, from this far [m]
+SURE, ADOPTED = 0.7, 4.0  # who of a relation this strong is astray belongs there all the same, from this far [m]
 OVER = float(SIDES.index("over"))
 FLAT = [0, 1, 3]  # x, y, yaw of a pose
 LEVER = 0.5  # metres that a radian counts

@@ -10,12 +10,12 @@ import shapely
 from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import mode_poses
-from pipeline.arrange.exact import height
+from pipeline.arrange.exact import ACROSS, height
 from pipeline.arrange.item import Item, turned, wrapped
 from pipeline.arrange.lore import Lore
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
-from pipeline.arrange.walls import Edge, hides_window, hole_cost
+from pipeline.arrange.walls import Edge, at_wall, hides_window, hole_cost
 
 Floats = NDArray[np.float64]
 
@@ -69,9 +69,19 @@ def everywhere(item: Item, target: Floats, walls: Sequence[Edge], site: Site, se
     return _sorted(item, _made(spread, turns, target[2]), cost, site)
 
 
-def at_anchor_poses(item: Item, target: Floats, anchor: Item, at: Floats, lore: Lore, settings: SeparateSettings) -> tuple[Floats, Floats]:
-    """Return poses of a member in every mode at its anchor, which stands at `at` (4,), and a little along and out of them."""
+def at_anchor_poses(
+    item: Item, target: Floats, anchor: Item, at: Floats, walls: Sequence[Edge], lore: Lore, settings: SeparateSettings
+) -> tuple[Floats, Floats]:
+    """Return poses of a member in every mode at its anchor, which stands at `at` (4,), and a little along and out of them.
+
+    What belongs to a wall, and stands across the room from its anchor, is at the wall behind the mode.
+    """
     modes = mode_poses(anchor, at, item, target, lore)
+    if item.habit.must:
+        across = [
+            at_wall(item, np.insert(m, 2, target[2]), walls, ACROSS, settings.turn_cost) if turned(m[2], at[3]) > 0.8 else m for m in modes
+        ]
+        modes = np.array([m[[0, 1, -1]] for m in across if m is not None]).reshape(-1, 3)
     if not len(modes):
         return np.zeros((0, 4)), np.zeros(0)
     c, s = math.cos(at[3]), math.sin(at[3])

@@ -18,6 +18,7 @@ from pipeline.arrange.walls import FAR, Edge, at_wall, in_corner, square
 Floats = NDArray[np.float64]
 
 LOOSE = 0.3  # a wall may take a bound object this far from the place at its anchor [m]
+ACROSS = 2.0  # and this far what stands across the room from its anchor: a TV stand goes to the wall behind it
 HUNG = (0.9, 1.4, 1.6)  # least height of what hangs on walls, and the usual ones [m above the floor]
 ON_TOP = 0.4  # what is drafted this near to the top of what it is bound over stands on it [m]
 
@@ -58,7 +59,7 @@ def _bound(
         return pose
     if item.mount != "floor" or not item.habit.must:
         return pose
-    found = at_wall(item, pose, walls, LOOSE, settings.turn_cost)
+    found = at_wall(item, pose, walls, LOOSE if bond.rigid else ACROSS, settings.turn_cost)
     if not bond.rigid:
         return found
     if found is None:

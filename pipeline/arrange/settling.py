@@ -105,7 +105,9 @@ def _beside(crowd: Crowd, draft: Draft, i: int, group: Group, poses: Floats) -> 
     bond = draft.bonds[i]
     if bond is None or bond.over:
         return None
-    found, costs = at_anchor_poses(crowd.items[i], poses[i], crowd.items[bond.anchor], poses[bond.anchor], draft.lore, crowd.settings)
+    found, costs = at_anchor_poses(
+        crowd.items[i], poses[i], crowd.items[bond.anchor], poses[bond.anchor], draft.walls, draft.lore, crowd.settings
+    )
     others = np.zeros(len(crowd.items), np.bool_)
     others[group.members[group.members != i]] = True
     best = crowd.nearest(group_of([i], poses), found, costs, others)
@@ -167,7 +169,7 @@ def _near(crowd: Crowd, draft: Draft, i: int) -> tuple[Floats, Floats]:
     if bond is None or bond.over or not crowd.there[bond.anchor]:
         return poses, costs
     anchor = crowd.items[bond.anchor]
-    beside, cost = at_anchor_poses(item, target, anchor, crowd.poses[bond.anchor], draft.lore, crowd.settings)
+    beside, cost = at_anchor_poses(item, target, anchor, crowd.poses[bond.anchor], draft.walls, draft.lore, crowd.settings)
     if not len(beside):
         return poses, costs
     poses, costs = np.concatenate([beside, poses]), np.concatenate([cost, np.where(costs > 0.05, costs + ALONE, costs)])

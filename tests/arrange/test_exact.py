@@ -175,3 +175,11 @@ def test_what_belongs_into_corners_goes_into_the_corner_that_it_is_near():
     (cornered,) = separate(Site.of(plan, "room"), wished, {CABINET.asset_id: CABINET}, snug).placements
     assert loose.position[0] == pytest.approx(0.62, abs=1e-3)
     assert cornered.position[0] == pytest.approx(0.5 + 0.02, abs=1e-3)
+
+
+def test_a_television_that_strayed_goes_to_the_wall_across_from_the_sofa():
+    wished = [drafted(ASSETS["sofa"], 1.6, 3.4), drafted(ASSETS["tv"], 4.7, 1.2, -math.pi / 2, number=1)]  # at the wall beside it
+    sofa, tv = arranged(wished, room(5.0, 4.0))
+    assert abs(local(tv, sofa)[0]) < 0.15
+    assert abs(math.remainder(tv.yaw - sofa.yaw - math.pi, math.tau)) < 1e-3
+    assert tv.position[1] == pytest.approx(0.2, abs=0.05)
