@@ -178,7 +178,7 @@ def test_what_belongs_into_corners_goes_into_the_corner_that_it_is_near():
 
 
 def test_a_television_that_strayed_goes_to_the_wall_across_from_the_sofa():
-    wished = [drafted(ASSETS["sofa"], 1.6, 3.4), drafted(ASSETS["tv"], 4.7, 1.2, -math.pi / 2, number=1)]  # at the wall beside it
+    wished = [drafted(ASSETS["sofa"], 3.2, 3.4), drafted(ASSETS["tv"], 4.7, 1.2, -math.pi / 2, number=1)]  # at the wall beside it
     sofa, tv = arranged(wished, room(5.0, 4.0))
     assert abs(local(tv, sofa)[0]) < 0.15
     assert abs(math.remainder(tv.yaw - sofa.yaw - math.pi, math.tau)) < 1e-3
