@@ -20,6 +20,7 @@ def homes(count: int) -> None:
     """Make homes from the prior, in batches as `sfgen shard` does, and print CPU seconds by part."""
     from pipeline import params
     from pipeline.homes.factory import load_factory
+    from pipeline.homes.outcomes import Outcome
     from pipeline.homes.request import Request
 
     factory = load_factory(ROOT, params.read(ROOT / "params.yaml"), 17)
@@ -28,7 +29,8 @@ def homes(count: int) -> None:
     start = time.perf_counter()
     made = []
     for first in range(0, count, factory.chunk):
-        made += factory.make([Request(i) for i in range(first, min(first + factory.chunk, count))])
+        outcomes = factory.make([Request(i) for i in range(first, min(first + factory.chunk, count))])
+        made += [outcome for outcome in outcomes if isinstance(outcome, Outcome)]
     wall = time.perf_counter() - start
     total = sum(factory.seconds.values())
     print(f"{count} homes, one process, {wall:.1f} s; CPU seconds per home:")

@@ -38,7 +38,11 @@ def start(folder: Path, homes: int, workers: int) -> subprocess.Popen[bytes]:
 def stamps(folder: Path) -> dict[str, tuple[int, int]]:
     """Time and place of every file of the committed shards."""
     names = [c.stem for c in folder.glob("commits/shard-*.json")]
-    files = [p for p in folder.rglob("*") if p.is_file() and any(n in p.relative_to(folder).as_posix() for n in names)]
+    files = [
+        p
+        for p in folder.rglob("*")
+        if p.is_file() and ".parts" not in p.parts and any(n in p.relative_to(folder).as_posix() for n in names)
+    ]
     return {p.relative_to(folder).as_posix(): (p.stat().st_mtime_ns, p.stat().st_ino) for p in files}
 
 

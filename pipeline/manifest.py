@@ -43,7 +43,12 @@ def write_bytes(path: Path, data: bytes, *, flush: bool = True) -> None:
 
 def write_json(path: Path, value: Any) -> None:
     """Write indented JSON with sorted keys, atomically."""
-    write_bytes(path, (json.dumps(value, sort_keys=True, indent=2, allow_nan=False, ensure_ascii=False) + "\n").encode())
+    write_bytes(path, text_of(value))
+
+
+def text_of(value: Any) -> bytes:
+    """Return the bytes that `write_json` writes."""
+    return (json.dumps(value, sort_keys=True, indent=2, allow_nan=False, ensure_ascii=False) + "\n").encode()
 
 
 def write_with(path: Path, writer: Callable[[Path], object]) -> None:

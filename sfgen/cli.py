@@ -96,6 +96,7 @@ def shard(
       sfgen shard --count 1000 --prompts prompts.txt --scheduler tcp://10.0.0.1:8786
     """
     root = factory_root()
+    begin("homes", voice(quiet=quiet, json=json))
     options = {"out": out, "seed": seed, "workers": workers, "prompts": prompts, "scheduler": scheduler, "strict": strict, "only": only}
     code: int = stage("shard").main(root, count=count, **options, voice=voice(quiet=quiet, json=json))
     return code
@@ -191,6 +192,27 @@ def verify(
 
 
 @app.command()
+def repair(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a dataset.", show_default=False)],
+    prompts: Annotated[Path | None, typer.Option(help="The file that it was made with, if it was.")] = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="As for shard.")] = None,
+    quiet: Quiet = False,
+    json: Machine = False,
+) -> int:
+    """Make again what is broken or missing of a dataset, byte for byte; needs the checkout that made it.
+
+    \b
+    Example:
+      sfgen repair datasets/7
+    """
+    root = factory_root()
+    how = voice(quiet=quiet, json=json)
+    begin("homes", how)
+    code: int = stage("shard").repair(root, folder=folder, prompts=prompts, workers=workers, voice=how)
+    return code
+
+
+@app.command()
 def doctor(
     use: Annotated[
         list[Path] | None,
@@ -226,6 +248,14 @@ def version(*, version: Annotated[bool, typer.Option("--version", help="Show the
 def voice(*, quiet: bool, json: bool) -> str:
     """Return how a command speaks."""
     return "json" if json else "quiet" if quiet else "plain"
+
+
+def begin(label: str, how: str) -> None:
+    """Say that a long command has begun, before what it needs is loaded."""
+    if how == "plain":
+        sys.stderr.write(f"{label}: starting\n")
+    elif how == "json":
+        sys.stderr.write('{"event": "said", "text": "starting"}\n')
 
 
 class Complaint(Exception):  # noqa: N818 - not an error of the program

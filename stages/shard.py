@@ -7,18 +7,15 @@ import sys
 from functools import partial
 from pathlib import Path
 
-from pipeline.errors import RefusedError, SfgenError, UsageError
+from pipeline.errors import SfgenError, UsageError
 from pipeline.execution import Progress, Voice, cores
-from pipeline.floorplan import request
 from pipeline.homes.factory import open_factory
+from pipeline.homes.order import read_order
 from pipeline.homes.outcomes import Empty
 from pipeline.homes.production import Recipe, Tally, fill
 from pipeline.homes.request import Request
 from pipeline.homes.warmth import warm_up
-from pipeline.manifest import digest
-from pipeline.shards import Header, Mix, open_or_create, read_mix
-
-SHOWN = 5  # prompts that cannot be met which are named at the start
+from pipeline.shards import Header, forget_altered, open_or_create, read_header
 
 
 def main(
@@ -36,21 +33,15 @@ def main(
 ) -> int:
     """Fill the folder `out` (by default datasets/<seed>) with `count` homes; returns the exit code: 1 when some could not be made."""
     progress = Progress(count, "homes", voice=voice)
-    mix = read_mix(prompts) if prompts else Mix()
-    programs = read_early(mix, progress, strict=strict)
+    order = read_order(prompts, seed, progress, strict=strict)
     folder = out or Path("datasets") / str(seed)
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"{folder} is not a folder", "give a folder that is new, empty, or holds this very dataset")
     progress.say("reading the layout model and the library")
     factory = open_factory(root, seed)
-
-    def asked(index: int) -> Request:
-        words = mix.prompt(seed, index)
-        return Request(index, words, programs.get(words, ""))
-
     if only is not None:
-        return try_one(root, seed, asked(only))
-    header = Header(seed, count, factory.shard_size, factory.licence, {**factory.digests, "prompts": digest([mix.digest(), programs])})
+        return try_one(root, seed, order.asked(only))
+    header = Header(seed, count, factory.shard_size, factory.licence, {**factory.digests, "prompts": order.digest()})
     workers = workers or cores()
     with open_or_create(folder, header) as dataset:
         if dataset.missing():
@@ -61,7 +52,7 @@ def main(
         tally = fill(
             dataset,
             Recipe(partial(open_factory, root, seed), shelve=scheduler is None),
-            asked,
+            order.asked,
             workers=workers,
             scheduler=scheduler,
             strict=strict,
@@ -72,24 +63,13 @@ def main(
     return tell(tally, header, folder, progress, voice)
 
 
-def read_early(mix: Mix, progress: Progress, *, strict: bool) -> dict[str, str]:
-    """Return the programs that are read from the prompts, as JSON; those that ask for what cannot be are said now, not after hours, and have none.
-
-    Raises RefusedError for the first of them with `strict`, or when there are no others.
-    """
-    programs, errors = {}, []
-    for words in dict.fromkeys(mix.prompts):
-        try:
-            programs[words] = request(words).model_dump_json(exclude_defaults=True)
-        except RefusedError as error:
-            errors.append(error)
-    if errors and (strict or not programs):
-        raise errors[0]
-    for refusal in errors[:SHOWN]:
-        progress.say(f"the homes of a prompt will stay empty: {refusal}")
-    if len(errors) > SHOWN:
-        progress.say(f"and those of {len(errors) - SHOWN} other prompts")
-    return programs
+def repair(root: Path, *, folder: Path, prompts: Path | None = None, workers: int | None = None, voice: Voice = "plain") -> int:
+    """Make again what is broken or missing of a dataset, by the checkout that made it; returns the exit code of `main`."""
+    header = read_header(folder)
+    with open_or_create(folder, header) as dataset:
+        for name in forget_altered(dataset):
+            Progress(0, "homes", voice=voice).say(f"{name} is made again")
+    return main(root, count=header.count, out=folder, seed=header.seed, workers=workers, prompts=prompts, voice=voice)
 
 
 def try_one(root: Path, seed: int, request: Request) -> int:

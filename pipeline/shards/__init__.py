@@ -2,7 +2,7 @@
 
 from pipeline.shards.check import Summary, check
 from pipeline.shards.content import ShardContent, gather
-from pipeline.shards.dataset import Dataset, add_part, commit_shard, committed, open_or_create
+from pipeline.shards.dataset import Dataset, add_part, commit_shard, committed, forget_altered, open_or_create
 from pipeline.shards.header import Header, code_digest, read_header
 from pipeline.shards.layout import EMPTY, TABLES, file_path, scene_id, shard_name
 from pipeline.shards.library import Shelf, assets_of, extend_library
@@ -25,6 +25,7 @@ __all__ = [
     "committed",
     "extend_library",
     "file_path",
+    "forget_altered",
     "gather",
     "open_or_create",
     "read_header",

@@ -17,10 +17,11 @@ from pipeline.shards.commits import Commit, read_commit
 from pipeline.shards.header import Header, read_header
 from pipeline.shards.layout import ASSETS, COMMITS, PARTS, STAGING, TABLES, TEMPORARY, scene_id, shard_name, table_path
 from pipeline.shards.parts import indices_of
+from pipeline.shards.seal import SEAL, check_seal
 
 ID = re.compile(r"[a-z][a-z0-9_]*")
 AGAIN = "run the command that made the dataset again: it resumes and makes what is missing"
-COPY = "copy the dataset again, or delete that file's commit in commits/ and run the command that made it"
+COPY = "copy the dataset again, or let `sfgen repair` make again what is broken"
 
 # (table, its id) and what its rows point to: (column, table that has the id)
 IDS = (("scenes", "scene_id"), ("rooms", "room_id"), ("openings", "opening_id"), ("objects", "object_id"))
@@ -48,6 +49,7 @@ def check(folder: Path, progress: Callable[[int, int], object] = lambda _done, _
         raise UsageError(f"{folder} is {'not a folder' if folder.exists() else 'missing'}", "give the folder of a dataset")
     header = read_header(folder)
     commits = [_require_commit(folder, shard_name(n)) for n in range(header.shards)]
+    check_seal(folder, header, COPY, AGAIN)
     library = read_commit(folder, ASSETS)
     everything = [*commits, *([library] if library else [])]
     _refuse_strangers(folder, everything, header)
@@ -80,7 +82,7 @@ def _require_commit(folder: Path, name: str) -> Commit:
 def _refuse_strangers(folder: Path, commits: list[Commit], header: Header) -> None:
     """Raise for a file in the dataset's folders that no commit vouches for; other files at the top are nobody's business."""
     known = {path for commit in commits for path in commit.files}
-    known |= {f"{COMMITS}/{name}.json" for name in (*map(shard_name, range(header.shards)), ASSETS)}
+    known |= {f"{COMMITS}/{name}.json" for name in (*map(shard_name, range(header.shards)), ASSETS, SEAL)}
     families = {ASSETS, *(PurePosixPath(path).parts[0] for path in known)}
     for path in _files(folder):
         name = path.relative_to(folder).as_posix()

@@ -24,6 +24,7 @@ from pipeline.shards.disk import link, sync
 from pipeline.shards.header import Header, read_header
 from pipeline.shards.layout import ASSETS, COMMITS, HEADER, PARTS, STAGING, TABLES, TEMPORARY, commit_path, shard_name, table_path
 from pipeline.shards.parts import FILES, Part, join, read_parts, remove_parts, write_part
+from pipeline.shards.seal import seal
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +74,8 @@ def open_or_create(folder: Path, header: Header, *, discard: bool = False) -> It
         try:
             dataset.parts.update(read_parts(folder, {n: header.indices(n) for n in dataset.missing()}))
             yield dataset
+            if not dataset.missing():
+                seal(folder, header)
         finally:
             shutil.rmtree(folder / STAGING, ignore_errors=True)
 
@@ -81,6 +84,21 @@ def committed(dataset: Dataset, number: int) -> bool:
     """Tell whether shard `number` is there, with every file of its commit at its full length."""
     commit = read_commit(dataset.folder, shard_name(number))
     return commit is not None and not commit.damaged(dataset.folder)
+
+
+def forget_altered(dataset: Dataset) -> list[str]:
+    """Remove shards and library of which a file is not what was written, so that they are made again; returns their names."""
+    names = [*map(shard_name, range(dataset.header.shards)), ASSETS]
+    broken = []
+    for name in names:
+        try:
+            commit = read_commit(dataset.folder, name)
+        except ContentError:
+            commit = Commit(name, {}, {})
+        if commit is not None and (not commit.files or commit.altered(dataset.folder)):
+            _forget(dataset.folder, name)
+            broken.append(name)
+    return broken
 
 
 def add_part(dataset: Dataset, number: int, content: ShardContent) -> Part:

@@ -15,7 +15,7 @@ from pipeline.errors import ContentError, RefusedError, UsageError
 from sfgen import cli
 
 ROOT = Path(__file__).parents[2]
-COMMANDS = ("generate", "shard", "plan", "peers", "export", "verify", "doctor")
+COMMANDS = ("generate", "shard", "plan", "peers", "export", "repair", "verify", "doctor")
 
 
 @pytest.fixture
