@@ -6,8 +6,7 @@ models/baselines/ (weights and drafts; a run that was cut off goes on) and metri
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -15,18 +14,17 @@ from typing import Any
 import torch
 from tqdm import tqdm
 
-from pipeline import params, seeds
-from pipeline.baselines import weights
+from pipeline import params
+from pipeline.baselines import ours, weights
 from pipeline.baselines.furnish import BASELINES, Baselines
 from pipeline.baselines.job import NETS, Job, open_job, run_digest, trainer
 from pipeline.baselines.settings import BaselineSettings
 from pipeline.baselines.training import Trainer, train
-from pipeline.diffusion.context import RoomContext
-from pipeline.experiments.baselines import Drafts, asked, cases_of, drafted, figures, liveable, spread, success
+from pipeline.diffusion.settings import SampleSettings, TrainSettings
+from pipeline.experiments.baselines import Maker, cases_of, compared
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.manifest import digest, write_json
 from pipeline.relations import files
-from pipeline.relations.known import Relations
 from stages.runner import run
 
 
@@ -44,11 +42,23 @@ def main(root: Path) -> None:
     trained = {name: trained_net(folder, name, job, settings, tree["seed"]) for name in NETS}
     nets = {name: each.average for name, each in trained.items()}
     made = Baselines(nets, job.scaling, settings, job.layouts, job.opens, tree["seed"])
-    found = compared(folder, made, trained, job, files.load(root / "data/tables/relations.json"), metrics.split)
-    write_json(
-        root / "metrics" / "baselines.json",
-        found | {"trained": {name: report(each) for name, each in trained.items()}, "train_rooms": len(job.outlines)},
+    makers = {
+        name: Maker(
+            digest([asdict(settings), run_digest(net, job, settings, tree["seed"]), trained[net].done]), partial(made.furnish, name)
+        )
+        for name, net in BASELINES.items()
+    }
+    layout = params.section(TrainSettings, tree, "train")
+    own = ours.trained(
+        root, folder, replace(layout, start="scratch"), params.section(SampleSettings, tree, "sample"), settings.seconds, tree["seed"]
     )
+    key = digest([own.cost, asdict(own.sampler.settings), tree["seed"]])
+    makers |= {"ours": Maker(key, partial(ours.unguided, own.sampler)), "ours_guided": Maker(key, partial(ours.guided, own.sampler))}
+    cases = cases_of(job.tables, metrics.split, job.layouts, job.scaling.classes, settings.slots)
+    opens = dict(zip(job.scaling.classes, job.opens.tolist(), strict=True))
+    found = compared(folder, makers, cases, opens, settings, tree["seed"], files.load(root / "data/tables/relations.json"))
+    cost = {name: report(each) for name, each in trained.items()} | {"ours": own.cost}
+    write_json(root / "metrics" / "baselines.json", found | {"trained": cost, "train_rooms": len(job.outlines)})
 
 
 def trained_net(folder: Path, name: str, job: Job, settings: BaselineSettings, seed: int) -> Trainer:
@@ -64,29 +74,6 @@ def trained_net(folder: Path, name: str, job: Job, settings: BaselineSettings, s
             bar.update(round(step.spent) - bar.n)
             bar.set_postfix(loss=f"{step.loss:.3f}", steps=step.done, refresh=False)
     return made
-
-
-def compared(folder: Path, made: Baselines, trained: Mapping[str, Trainer], job: Job, known: Relations, split: str) -> dict[str, Any]:
-    """Furnish the rooms of the split with every baseline, and return their figures beside those of the real rooms."""
-    settings, classes = made.settings, job.scaling.classes
-    cases = cases_of(job.tables, split, job.layouts, classes, settings.slots)
-    shown = spread(cases, settings.rooms)
-
-    def drafts(name: str, label: str, rooms: Sequence[RoomContext]) -> Drafts:
-        net = trained[BASELINES[name]]
-        key = digest([asdict(settings), run_digest(net.name, job, settings, made.seed), net.done, [str(r) for r in rooms]])
-        return drafted(folder / f"{label}.json", key, partial(made.furnish, name), rooms)
-
-    found = {name: drafts(name, name, [case.context for case in shown]) for name in BASELINES}
-    counted = {n: drafts("scenefoundry", f"scenefoundry_{n}", asked(cases, n, settings.count_rooms)) for n in settings.counts}
-    real, opens = [case.real for case in shown], dict(zip(classes, job.opens.tolist(), strict=True))
-    rng = seeds.generator(made.seed, "baselines-bootstrap")
-    made_by = {"real": real} | {name: each.rooms for name, each in found.items()}
-    lived = liveable(rng, made.seed, shown, made_by, known)
-    models = {name: figures(rng, shown, rooms, real, opens, settings.counts) | lived[name] for name, rooms in made_by.items()}
-    for name, each in found.items():
-        models[name]["cpu_seconds_per_room"] = round(each.seconds / len(shown), 4)
-    return {"models": models, "quantity": {str(n): success(each.rooms, n) for n, each in counted.items()}}
 
 
 def report(state: Trainer) -> dict[str, Any]:

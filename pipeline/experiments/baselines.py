@@ -15,9 +15,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from pipeline import seeds
+from pipeline.baselines.settings import BaselineSettings
 from pipeline.diffusion.context import Proposal, RoomContext
 from pipeline.diffusion.rooms import context_of
-from pipeline.manifest import write_json
+from pipeline.manifest import digest, write_json
 from pipeline.metrics import articulation, category, collision, relations
 from pipeline.metrics.intervals import bootstrap, rate
 from pipeline.metrics.layout_features import features
@@ -28,6 +30,7 @@ from pipeline.relations.known import Relations
 
 Furnish = Callable[[Sequence[RoomContext]], list[list[Proposal]]]
 Json = dict[str, Any]
+COUNTING = ("scenefoundry", "ours")  # the models that a number can be asked of
 FLOOR = 1.2  # [m2] that a thing takes: rooms below this times N are not asked for N things
 
 
@@ -44,6 +47,13 @@ class Case(NamedTuple):
     context: RoomContext
     real: list[Proposal]
     name: str
+
+
+class Maker(NamedTuple):
+    """A model that furnishes rooms; `key` changes with whatever changes what it makes."""
+
+    key: str
+    furnish: Furnish
 
 
 def cases_of(tables: Mapping[str, Sequence[Row]], split: str, layouts: Sequence[str], classes: Sequence[str], slots: int) -> list[Case]:
@@ -93,6 +103,36 @@ def drafted(path: Path, key: str, furnish: Furnish, rooms: Sequence[RoomContext]
     listed = [[[p.category, *p.position.tolist(), p.yaw, *p.size.tolist()] for p in room] for room in made]
     write_json(path, {"key": key, "seconds": seconds, "rooms": listed})
     return Drafts(made, seconds)
+
+
+def compared(
+    folder: Path,
+    makers: Mapping[str, Maker],
+    cases: Sequence[Case],
+    opens: Mapping[str, bool],
+    settings: BaselineSettings,
+    seed: int,
+    known: Relations,
+) -> Json:
+    """Furnish rooms with every model, and return their figures beside those of the real rooms; `opens` says which classes count as articulated."""
+    shown = spread(cases, settings.rooms)
+
+    def drafts(name: str, label: str, rooms: Sequence[RoomContext]) -> Drafts:
+        return drafted(folder / f"{label}.json", digest([makers[name].key, [str(r) for r in rooms]]), makers[name].furnish, rooms)
+
+    found = {name: drafts(name, name, [case.context for case in shown]) for name in makers}
+    counted = {name: {n: drafts(name, f"{name}_{n}", asked(cases, n, settings.count_rooms)) for n in settings.counts} for name in COUNTING}
+    real = [case.real for case in shown]
+    rng = seeds.generator(seed, "baselines-bootstrap")
+    made_by = {"real": real} | {name: each.rooms for name, each in found.items()}
+    lived = liveable(rng, seed, shown, made_by, known)
+    models = {name: figures(rng, shown, rooms, real, opens, settings.counts) | lived[name] for name, rooms in made_by.items()}
+    for name, each in found.items():
+        models[name]["cpu_seconds_per_room"] = round(each.seconds / len(shown), 4)
+    return {
+        "models": models,
+        "quantity": {name: {str(n): success(each.rooms, n) for n, each in made.items()} for name, made in counted.items()},
+    }
 
 
 def figures(

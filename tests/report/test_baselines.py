@@ -14,7 +14,7 @@ def test_the_chapter_shows_every_model_and_its_price():
     row |= {"relations": {"chair at its table": rate(3, 4), "never asked": rate(0, 0)}, "sca": rate(7, 10)}
     made = {
         "models": dict.fromkeys(sorted(NAMES), row),  # JSON's order
-        "quantity": {n: success([[None] * 5, []], 5) for n in ("12", "5")},
+        "quantity": {name: {n: success([[None] * 5, []], 5) for n in ("12", "5")} for name in ("scenefoundry", "ours")},
         "trained": {name: {"parameters": 1234567, "steps": 900, "cpu_seconds": 120.4} for name in ("atiss", "diffuscene", "scenefoundry")},
         "train_rooms": 31000,
     }

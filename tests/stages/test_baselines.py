@@ -12,7 +12,8 @@ SMALL = (
 
 def write_params(root, *, on):
     switch = "true" if on else "false"
-    text = f"seed: 0\nbaselines: {{{SMALL}}}\nmetrics: {{baselines: {switch}, split: val}}\npresets: {{quick: {{}}}}\n"
+    ours = "model: {width: 16, passes: 2, layers: 1, heads: 2, relation: 4}, inventory: {width: 8, steps: 2}, objects: 16"
+    text = f"seed: 0\ntrain: {{{ours}}}\nsample: {{evaluations: 2}}\nbaselines: {{{SMALL}}}\nmetrics: {{baselines: {switch}, split: val}}\npresets: {{quick: {{}}}}\n"
     (root / "params.yaml").write_text(text)
 
 
@@ -29,16 +30,23 @@ def test_all_are_trained_for_the_same_time_and_furnish_the_same_rooms(tmp_path):
     write_params(tmp_path, on=True)
     baselines.main(tmp_path)
     found = json.loads((tmp_path / "metrics/baselines.json").read_text())
-    assert set(found["models"]) == {"real", "atiss", "diffuscene", "physcene", "scenefoundry"}
+    assert set(found["models"]) == {"real", "atiss", "diffuscene", "physcene", "scenefoundry", "ours", "ours_guided"}
     assert {row["rooms"] for row in found["models"].values()} == {3}
     assert found["models"]["real"]["objects"]["mean"] == 2
     assert found["models"]["real"]["ckl"]["real_to_generated"] == 0
-    assert set(found["quantity"]) == {"3", "5"}
+    assert {name: set(made) for name, made in found["quantity"].items()} == {name: {"3", "5"} for name in ("scenefoundry", "ours")}
+    assert [made["rate"] for made in found["quantity"]["ours"].values()] == [1.0, 1.0]
     assert found["models"]["real"]["relations"]["nightstand at the bed"]["n"] == 3
     assert 0 <= found["models"]["atiss"]["sca"]["rate"] <= 1
-    assert all(0.2 <= row["cpu_seconds"] < 2 for row in found["trained"].values())
+    assert all(0.2 <= row["cpu_seconds"] < 2 for name, row in found["trained"].items() if name != "ours")
+    assert found["trained"]["ours"]["steps"] >= 12
     before = {p.name: p.read_bytes() for p in (tmp_path / "models/baselines").iterdir()}
-    assert {n for n in before if n.endswith(".safetensors")} == {"atiss.safetensors", "diffuscene.safetensors", "scenefoundry.safetensors"}
+    assert {n for n in before if n.endswith(".safetensors")} == {
+        "atiss.safetensors",
+        "diffuscene.safetensors",
+        "scenefoundry.safetensors",
+        "ours.safetensors",
+    }
     (tmp_path / "models/baselines/physcene.json").unlink()
     baselines.main(tmp_path)  # what is trained and drafted is not made again, and what is made again is the same
     again = json.loads((tmp_path / "models/baselines/physcene.json").read_text())

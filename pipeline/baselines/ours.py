@@ -1,0 +1,78 @@
+"""Our own layout model at the price of the baselines: trained for the same CPU seconds on the same rooms."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import NamedTuple
+
+import torch
+
+from pipeline.diffusion.checkpoint import save_weights
+from pipeline.diffusion.context import Proposal, RoomContext
+from pipeline.diffusion.inventory import begun, fit
+from pipeline.diffusion.job import holdings, inputs, load, rooms_of
+from pipeline.diffusion.sampling import Sampler
+from pipeline.diffusion.settings import SampleSettings, TrainSettings
+from pipeline.diffusion.training import Trainer, train
+from pipeline.manifest import digest, write_json
+
+PROBE = 12  # steps whose cost says how many the seconds hold
+CPU = torch.device("cpu")
+
+
+class Trained(NamedTuple):
+    """A layout model, and what it cost: parameters, steps of the denoiser, CPU seconds."""
+
+    sampler: Sampler
+    cost: dict[str, float]
+
+
+def trained(root: Path, folder: Path, settings: TrainSettings, sample: SampleSettings, seconds: float, seed: int) -> Trained:
+    """Train both nets from scratch for so many CPU seconds, reading not counted; the number of steps hangs on the machine.
+
+    What stands in `folder` is taken if it was trained on the same data by the same settings.
+    """
+    key, weights, note = (
+        digest([asdict(settings), inputs(root, settings), seconds, seed]),
+        folder / "ours.safetensors",
+        folder / "ours.cost.json",
+    )
+    if note.is_file() and (found := json.loads(note.read_text(encoding="utf-8")))["key"] == key:
+        return Trained(Sampler.load(weights, sample, seed), found["cost"])
+    sets, header = load(root, settings)
+    data, held = rooms_of(sets.train, header, CPU), holdings(sets.train, header)
+    start = time.process_time()
+    inventory = fit(begun(held, len(header.layouts), header.inventory_width, seed), held, settings.inventory, seed)
+    probe, before = Trainer(seed, header, settings, PROBE, 1, CPU), time.process_time()
+    list(train(probe, data))
+    per_step = (time.process_time() - before) / PROBE
+    total = max(PROBE, int((seconds - (time.process_time() - start)) / per_step))
+    trainer = Trainer(seed, header, replace(settings, steps=total), total, 1, CPU)
+    list(train(trainer, data))
+    nets = {"denoiser": trainer.average, "inventory": inventory}
+    cost = {
+        "parameters": sum(p.numel() for net in nets.values() for p in net.parameters()),
+        "steps": total,
+        "cpu_seconds": round(time.process_time() - start, 1),
+    }
+    save_weights(weights, header, nets)
+    write_json(note, {"key": key, "cost": cost})
+    return Trained(Sampler.load(weights, sample, seed), cost)
+
+
+def unguided(sampler: Sampler, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:
+    """Furnish rooms without guidance; a told number is drawn exactly."""
+    return _furnished(replace(sampler.unguided(), settings=replace(sampler.unguided().settings, quantity=True)), rooms)
+
+
+def guided(sampler: Sampler, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:
+    """Furnish rooms with the articulation guidance, which knows the paper's boxes alone: nothing is retrieved here."""
+    return _furnished(replace(sampler, settings=replace(sampler.settings, articulation="heuristic", snap_below=0)), rooms)
+
+
+def _furnished(sampler: Sampler, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:
+    return sampler.sample_rooms(rooms, [(k, 0, 0) for k in range(len(rooms))])
