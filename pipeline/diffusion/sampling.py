@@ -28,6 +28,7 @@ from pipeline.errors import ContentError
 
 Key = tuple[int, int, int]  # home index, room number, attempt
 TOKENS = (10, 16, 32)  # floor tokens that the rooms of a batch are padded to
+QUAD = 4  # batches are filled up to multiples of so many rooms: products of fewer rows are summed in another order
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +36,7 @@ class Sampler:
     """A trained layout model, ready to furnish rooms.
 
     The answer for a room depends on nothing but the weights, the settings, the seed, its key and its context: noise is
-    keyed, and rooms go through the nets in batches of a fixed shape.
+    keyed, a batch holds rooms of one shape, and matrix products give a row the same bits from QUAD rows on.
     """
 
     net: Denoiser
@@ -62,17 +63,17 @@ class Sampler:
 
     def sample_rooms(self, rooms: Sequence[RoomContext], keys: Sequence[Key]) -> list[list[Proposal]]:
         """Furnish rooms; `keys` gives (home index, room number, attempt) for each."""
-        held = self.inventories(rooms, keys)
-        return self.arranged(rooms, keys, held)
+        floors = [floor_tokens(r) for r in rooms]
+        return self.arranged(rooms, keys, self.inventories(rooms, keys, floors), floors)
 
-    def inventories(self, rooms: Sequence[RoomContext], keys: Sequence[Key]) -> list[NDArray[np.int64]]:
+    def inventories(self, rooms: Sequence[RoomContext], keys: Sequence[Key], floors: Sequence[Floor]) -> list[NDArray[np.int64]]:
         """Draw what each room holds: class indices (n,), rising. Told numbers and demands are met, at most `slots` objects."""
-        floors, layouts = [floor_tokens(r) for r in rooms], self._layouts(rooms)
+        layouts = self._layouts(rooms)
         classes, found = self.header.norm.classes, []
         with one_thread():
             for start in range(0, len(rooms), self.settings.batch):
                 part = range(start, min(start + self.settings.batch, len(rooms)))
-                padded = [*part, *[start] * (self.settings.batch - len(part))]
+                padded = filled(part)
                 features = torch.from_numpy(np.stack([room_features(floors[i], rooms[i].height) for i in padded]))
                 asks = [
                     Ask.of(rooms[i].n_target if self.settings.quantity else None, rooms[i].demands, classes, self.slots) for i in padded
@@ -82,13 +83,15 @@ class Sampler:
                 found += draw_inventories(self.inventory, features, kinds, asks, uniform)[: len(part)]
         return [np.repeat(np.arange(len(classes)), counts) for counts in found]
 
-    def arranged(self, rooms: Sequence[RoomContext], keys: Sequence[Key], held: Sequence[NDArray[np.int64]]) -> list[list[Proposal]]:
+    def arranged(
+        self, rooms: Sequence[RoomContext], keys: Sequence[Key], held: Sequence[NDArray[np.int64]], floors: Sequence[Floor]
+    ) -> list[list[Proposal]]:
         """Arrange what rooms hold: `held` are class indices (n,) per room. Proposals come in that order."""
         found: list[list[Proposal]] = [[] for _ in rooms]
-        floors, layouts = [floor_tokens(r) for r in rooms], self._layouts(rooms)
+        layouts = self._layouts(rooms)
         with one_thread(), torch.no_grad():
             for slots, tokens, part in self._batches(floors, held):
-                padded = [*part, *[part[0]] * (self.settings.batch - len(part))]
+                padded = filled(part)
                 told = room_batch([floors[i] for i in padded], [layouts[i] for i in padded], [rooms[i].height for i in padded])
                 classes = np.full((len(padded), slots), len(self.header.norm.classes))
                 for row, i in enumerate(padded):
@@ -133,6 +136,11 @@ class Sampler:
         if unknown:
             raise ContentError(f"the layout model knows no room type {unknown[0]!r}", f"use one of {', '.join(self.header.layouts)}")
         return [self.header.layouts.index(r.layout_type) for r in rooms]
+
+
+def filled(part: Sequence[int]) -> list[int]:
+    """Return the rooms of a batch, the first of them repeated until they are a multiple of QUAD."""
+    return [*part, *[part[0]] * (-len(part) % QUAD)]
 
 
 def openable_classes(classes: Sequence[str]) -> Tensor:

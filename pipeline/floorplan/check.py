@@ -243,7 +243,7 @@ def _planar(program: FloorProgram) -> None:
     for level in range(program.storeys):
         ids = {r.id for r in program.rooms if r.level == level or r.type == "staircase"}
         links = [k for k in program.links if k.a in ids and k.b in ids]
-        if len(links) < 9:  # too few to be non-planar: K5 has 10 links, K3,3 has 9
+        if _tangled([(k.a, k.b) for k in links]) < 9:  # too few to be non-planar: K5 has 10 links, K3,3 has 9
             continue
         import networkx as nx
 
@@ -251,3 +251,17 @@ def _planar(program: FloorProgram) -> None:
         if not nx.check_planarity(graph)[0]:
             words = cited(program, *(f"links.{k.a}-{k.b}" for k in links if k.stated))
             raise ImpossibleError("the links between rooms cross: no flat plan has them all", "drop a link", words)
+
+
+def _tangled(links: list[tuple[str, str]]) -> int:
+    """Return how many links are left when rooms with one link are taken off, and those with two become one link: as planar as before."""
+    near: dict[str, set[str]] = {}
+    for a, b in links:
+        near.setdefault(a, set()).add(b)
+        near.setdefault(b, set()).add(a)
+    while (slack := next((a for a, others in near.items() if len(others) < 3), None)) is not None:
+        ends = near.pop(slack)
+        for a in ends:
+            near[a].discard(slack)
+            near[a] |= ends - {a}
+    return sum(map(len, near.values())) // 2

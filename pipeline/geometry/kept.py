@@ -1,14 +1,15 @@
-"""What is derived from an asset alone, computed once and kept while the process lives."""
+"""What is derived from an asset alone, computed once and kept while the process lives; from other things, while they are in use."""
 
 from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from pipeline.entities.asset import Asset
 
 T = TypeVar("T")
+P = ParamSpec("P")
 
 
 def kept(make: Callable[[Asset], T]) -> Callable[[Asset], T]:
@@ -26,3 +27,27 @@ def kept(make: Callable[[Asset], T]) -> Callable[[Asset], T]:
         return entry[1]
 
     return found
+
+
+def recent(most: int) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """Let `make(subject, *others)` run once while its result is among the last `most`: homes in the making are asked the same again.
+
+    Keyed by the identity of the subject, which holds arrays and has no hash, and by the values of the other arguments.
+    """
+
+    def wrapped(make: Callable[P, T]) -> Callable[P, T]:
+        known: dict[tuple[Any, ...], tuple[Any, T]] = {}
+
+        @functools.wraps(make)
+        def found(*args: P.args, **kwargs: P.kwargs) -> T:
+            key = (id(args[0]), *args[1:], *kwargs.items())
+            entry = known.get(key)
+            if entry is None:
+                if len(known) >= most:
+                    del known[next(iter(known))]
+                entry = known[key] = (args[0], make(*args, **kwargs))
+            return entry[1]
+
+        return found
+
+    return wrapped

@@ -7,7 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.geometry.prisms import BULGE, STEPS, Prisms, Sweep, prism, stacked
+from pipeline.geometry.kept import recent
+from pipeline.geometry.prisms import BULGE, STEPS, Sweep, covering, stacked
 from pipeline.geometry.walls import LEAF_THICKNESS, Leaf
 
 Floats = NDArray[np.float64]
@@ -16,6 +17,7 @@ Floats = NDArray[np.float64]
 LEVER_EDGE, LEVER_LENGTH, LEVER_OUT, LEVER_Z = 0.03, 0.16, 0.065, (0.9, 1.15)
 
 
+@recent(512)
 def leaf_sweep(leaf: Leaf, elevation: float) -> Sweep:
     """Return the sweep of a door leaf and its levers, from closed to its full angle [world frame].
 
@@ -23,18 +25,15 @@ def leaf_sweep(leaf: Leaf, elevation: float) -> Sweep:
     """
     step = 2 * math.acos(1.0 - BULGE / leaf.width)
     angles = np.linspace(0.0, leaf.angle, max(STEPS, math.ceil(leaf.angle / step)) + 1)
-    groups: list[Prisms] = []
     pieces = [(0.0, leaf.width, 0.0, leaf.bottom, leaf.top)]
     if leaf.top - leaf.bottom > LEVER_Z[1]:
         far = leaf.width - LEVER_EDGE
         pieces.append((far - LEVER_LENGTH, far, LEVER_OUT, leaf.bottom + LEVER_Z[0], leaf.bottom + LEVER_Z[1]))
+    groups = []
     for start, end, out, low, high in pieces:
-        outlines = [_outline(leaf, float(a), start, end, out) for a in angles]
-        for k in range(len(angles) - 1):
-            flat = np.concatenate([outlines[k], outlines[k + 1]])
-            made = prism(np.concatenate([np.column_stack([flat, np.full(8, elevation + z)]) for z in (low, high)]), k)
-            if made is not None:
-                groups.append(made)
+        flat = _outlines(leaf, angles, start, end, out)
+        posed = np.concatenate([np.dstack([flat, np.full(flat.shape[:2], elevation + z)]) for z in (low, high)], axis=1)
+        groups.append(covering(np.concatenate([posed[:-1], posed[1:]], axis=1)))
     return Sweep(stacked(groups), angles[1:])
 
 
@@ -44,9 +43,9 @@ def leaf_handles(leaf: Leaf) -> Floats:
     return np.stack([at + LEVER_OUT * leaf.normal, at - (LEAF_THICKNESS + LEVER_OUT) * leaf.normal])
 
 
-def _outline(leaf: Leaf, angle: float, start: float, end: float, out: float) -> Floats:
-    """Return the part of the leaf from `start` to `end` [m from the hinge edge], thicker by `out`, opened by `angle`."""
-    a, b, _, d = leaf.outline(angle)
-    along = (b - a) / max(float(np.linalg.norm(b - a)), 1e-9)
-    front = (a - d) / max(float(np.linalg.norm(a - d)), 1e-9) * out
-    return np.array([a + along * start + front, a + along * end + front, d + along * end - front, d + along * start - front])
+def _outlines(leaf: Leaf, angles: Floats, start: float, end: float, out: float) -> Floats:
+    """Return the part (A, 4, 2) of the leaf from `start` to `end` [m from the hinge edge], thicker by `out`, opened by `angles` (A,)."""
+    a, b, _, d = np.moveaxis(np.array([leaf.outline(float(angle)) for angle in angles]), 1, 0)
+    along = (b - a) / np.maximum(np.linalg.norm(b - a, axis=1, keepdims=True), 1e-9)
+    front = (a - d) / np.maximum(np.linalg.norm(a - d, axis=1, keepdims=True), 1e-9) * out
+    return np.stack([a + along * start + front, a + along * end + front, d + along * end - front, d + along * start - front], axis=1)

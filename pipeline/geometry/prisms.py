@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Joint, Link
+from pipeline.geometry.compiled import compiled
 from pipeline.geometry.convex import hull
 from pipeline.geometry.kept import kept
 from pipeline.geometry.kinematics import joint_motion, joint_range, moved_links
@@ -88,13 +89,32 @@ def stacked(groups: list[Prisms]) -> Prisms:
 
 def prism(points: Floats, part: int = 0) -> Prisms | None:
     """Return the one prism that covers points (N, 3), or None when their projection is degenerate."""
-    outline = hull(np.ascontiguousarray(np.round(points[:, :2], 7)))
-    if len(outline) < 3:
-        return None
-    outline = _fewer(outline, CORNERS)
-    corners = np.concatenate([outline, np.repeat(outline[-1:], CORNERS - len(outline), axis=0)])
-    z = np.array([[points[:, 2].min(), points[:, 2].max()]])
-    return Prisms(corners[None], np.array([len(outline)]), z, np.array([part]))
+    made = covering(np.asarray(points, np.float64)[None], part)
+    return made if len(made) else None
+
+
+def covering(points: Floats, first: int = 0) -> Prisms:
+    """Return the prisms that cover sets of points (S, N, 3), parts `first` and following; none where a projection is degenerate."""
+    corners, count, z = _cover(np.ascontiguousarray(points))
+    there = np.flatnonzero(count)
+    return Prisms(corners[there], count[there], z[there], first + there)
+
+
+@compiled
+def _cover(points: Floats) -> tuple[Floats, NDArray[np.int64], Floats]:
+    """Return corners (S, CORNERS, 2), their number, 0 where degenerate, and z (S, 2) of prisms over points (S, N, 3)."""
+    sets = points.shape[0]
+    corners, count, z = np.zeros((sets, CORNERS, 2)), np.zeros(sets, np.int64), np.zeros((sets, 2))
+    for s in range(sets):
+        outline = hull(np.rint(points[s, :, :2] * 1e7) / 1e7)
+        if len(outline) < 3:
+            continue
+        outline = _fewer(outline, CORNERS)
+        count[s] = len(outline)
+        for k in range(CORNERS):
+            corners[s, k] = outline[min(k, len(outline) - 1)]
+        z[s, 0], z[s, 1] = points[s, :, 2].min(), points[s, :, 2].max()
+    return corners, count, z
 
 
 @kept
@@ -127,10 +147,7 @@ def sweep_of(asset: Asset, index: int) -> Sweep:
         motions = np.stack([joint_motion(joint, float(q)) for q in positions])
         for points in pieces:
             moved = np.einsum("kij,pj->kpi", motions[:, :3, :3], points) + motions[:, None, :3, 3]
-            for k in range(len(positions) - 1):
-                made = prism(moved[k : k + 2].reshape(-1, 3), len(reached) + k)
-                if made is not None:
-                    groups.append(made)
+            groups.append(covering(np.concatenate([moved[:-1], moved[1:]], axis=1), len(reached)))
         reached += positions[1:].tolist()
     return Sweep(stacked(groups), np.array(reached))
 
@@ -144,19 +161,29 @@ def _steps(joint: Joint, limit: float, pieces: list[Floats]) -> int:
     return min(MOST_STEPS, max(STEPS, math.ceil(abs(limit) / max(step, 1e-6))))
 
 
+@compiled
 def _fewer(outline: Floats, most: int) -> Floats:
     """Cover a convex polygon by one of at most `most` vertices: edges are dropped, the cheapest in area first."""
     while len(outline) > most:
-        before, a, b, after = (np.roll(outline, k, axis=0) for k in (1, 0, -1, -2))
-        u, v = a - before, b - after
-        det = u[:, 0] * -v[:, 1] - u[:, 1] * -v[:, 0]
-        w = after - before
-        t = (w[:, 0] * -v[:, 1] - w[:, 1] * -v[:, 0]) / np.where(np.abs(det) < 1e-12, np.nan, det)
-        apex = before + t[:, None] * u
-        cost = np.abs((b - a)[:, 0] * (apex - a)[:, 1] - (b - a)[:, 1] * (apex - a)[:, 0])
-        cost = np.where((t >= 1.0 - 1e-9) & np.isfinite(cost), cost, np.inf)
-        k = int(np.argmin(cost))
-        kept = np.delete(outline, (k + 1) % len(outline), axis=0)
-        kept[k if (k + 1) % len(outline) > k else k - 1] = apex[k]
+        n = len(outline)
+        best, edge, x, y = np.inf, 0, np.nan, np.nan
+        for k in range(n):
+            before, a, b, after = outline[(k - 1) % n], outline[k], outline[(k + 1) % n], outline[(k + 2) % n]
+            ux, uy, vx, vy = a[0] - before[0], a[1] - before[1], b[0] - after[0], b[1] - after[1]
+            det = ux * -vy - uy * -vx
+            if abs(det) < 1e-12:
+                continue
+            t = ((after[0] - before[0]) * -vy - (after[1] - before[1]) * -vx) / det
+            apex_x, apex_y = before[0] + t * ux, before[1] + t * uy
+            cost = abs((b[0] - a[0]) * (apex_y - a[1]) - (b[1] - a[1]) * (apex_x - a[0]))
+            if t >= 1.0 - 1e-9 and cost < best:
+                best, edge, x, y = cost, k, apex_x, apex_y
+        kept = np.empty((n - 1, 2))
+        dropped = (edge + 1) % n
+        for k in range(n):
+            if k != dropped:
+                kept[k - (k > dropped)] = outline[k]
+        place = edge if dropped > edge else edge - 1
+        kept[place, 0], kept[place, 1] = x, y
         outline = kept
     return outline

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from shapely.geometry import LineString, Polygon
 
 from pipeline.entities.plan import Opening, Plan, Room
+from pipeline.geometry.kept import recent
 from pipeline.geometry.stairs import Step, steps
 from pipeline.geometry.tiling import convex_pieces, polygons
 
@@ -104,6 +105,7 @@ def levels(plan: Plan) -> list[int]:
     return sorted({room.level for room in plan.rooms})
 
 
+@recent(64)
 def shell(plan: Plan, level: int) -> Shell:
     """Build the wall solids of one storey: what lies between the rooms (staircases from below too) and the outer edge, less the openings."""
     rooms = [room for room in plan.rooms if level in plan.levels_of(room)]
@@ -126,6 +128,7 @@ def shell(plan: Plan, level: int) -> Shell:
     return Shell(height, top, outline, region, cuts, tuple(prisms), leaves, steps(plan, level))
 
 
+@recent(64)
 def leaves(plan: Plan) -> tuple[Leaf, ...]:
     """Return the door leaves of all storeys, in the order of the openings, without building walls."""
     found = []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,16 +54,19 @@ def building(plan: Plan, level: int, shell: Shell) -> Soup:
         else:
             quads.append((cut.quad, pale(palette.threshold(plan, cut.opening)), 0.0))
     quads.extend((prism.polygon, WALL, WALL_TOP) for prism in shell.prisms if prism.kind == "wall")
-    faces = [fan(ring, z) for ring, _, z in quads]
-    colours = [np.tile(np.asarray(colour, np.float32), (len(f), 1)) for f, (_, colour, _) in zip(faces, quads, strict=True)]
-    stacked = np.concatenate(faces)
-    return Soup(stacked, np.concatenate(colours), np.zeros(len(stacked), np.int32))
+    corners = np.array([len(ring) - 2 for ring, *_ in quads])
+    colours = np.repeat(np.array([colour for _, colour, _ in quads], np.float32), corners, axis=0)
+    faces = fans([ring for ring, *_ in quads], np.array([z for *_, z in quads]))
+    return Soup(faces, colours, np.zeros(len(faces), np.int32))
 
 
-def fan(ring: NDArray[np.float64], z: float) -> NDArray[np.float64]:
-    """Triangulate a convex ring (n, 2) at height z: (n - 2, 3, 3)."""
-    flat = np.column_stack([ring, np.full(len(ring), z)])
-    return np.stack([np.stack([flat[0], flat[k], flat[k + 1]]) for k in range(1, len(ring) - 1)])
+def fans(rings: Sequence[NDArray[np.float64]], heights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Triangulate convex rings (n, 2), each at its height [m]: triangles (T, 3, 3), n - 2 for each, in their order."""
+    size = np.array([len(ring) for ring in rings])
+    first = np.repeat(np.cumsum(size) - size, size - 2)  # of each triangle's ring
+    number = np.arange(len(first)) - np.repeat(np.cumsum(size - 2) - (size - 2), size - 2) + 1
+    points = np.column_stack([np.concatenate(rings), np.repeat(heights, size)])
+    return np.stack([points[first], points[first + number], points[first + number + 1]], axis=1)
 
 
 def pale(material: Material) -> tuple[float, float, float]:

@@ -12,6 +12,7 @@ from PIL import ImageDraw
 
 from pipeline.entities.asset import Asset, Joint
 from pipeline.entities.home import Placement
+from pipeline.geometry.kept import kept
 from pipeline.geometry.kinematics import joint_motion
 from pipeline.geometry.tiling import polygons
 from pipeline.geometry.walls import Cut, Leaf, Shell
@@ -49,13 +50,17 @@ def swing_arc(leaf: Leaf, steps: int = 16) -> NDArray[np.float64]:
 def draw_reach(draw: ImageDraw.ImageDraw, placement: Placement, asset: Asset, project: Project, line: int) -> None:
     """Outline where each door, drawer and lid of a placed object moves, as far as that lies before its box."""
     T = placement_transform(placement.position, placement.yaw, placement.scale)
+    for ring in reaches(asset):
+        draw.line(project(ring @ T[:2, :2].T + T[:2, 3]), fill=OPENS, width=line)
+
+
+@kept
+def reaches(asset: Asset) -> tuple[NDArray[np.float64], ...]:
+    """Return the outlines (n, 2) [m, object frame] of what doors, drawers and lids cover before the asset's box."""
     w, d = asset.size[0] / 2, asset.size[1] / 2
     body = shapely.box(-w, -d, w, d)
-    for joint in asset.joints:
-        if joint.part_class in OPENERS:
-            for part in polygons(reach(asset, joint).difference(body)):
-                ring = np.asarray(part.exterior.coords)
-                draw.line(project(ring @ T[:2, :2].T + T[:2, 3]), fill=OPENS, width=line)
+    beyond = (part for joint in asset.joints if joint.part_class in OPENERS for part in polygons(reach(asset, joint).difference(body)))
+    return tuple(np.asarray(part.exterior.coords) for part in beyond)
 
 
 def reach(asset: Asset, joint: Joint, steps: int = 9) -> shapely.Geometry:

@@ -9,14 +9,13 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from pipeline.entities.asset import Asset
-from pipeline.entities.home import Home, Placement
+from pipeline.entities.home import Home
 from pipeline.geometry.walls import Shell, levels, shell
-from pipeline.preview.building import Soup, building
+from pipeline.preview.building import building
 from pipeline.preview.labels import SMALL, draw_label, summed
 from pipeline.preview.symbols import draw_openings, draw_reach
-from pipeline.rendering.pose import asset_triangles, placement_transform
+from pipeline.rendering.above import draw_roof
 from pipeline.rendering.raster import Frame, View, darken_edges, render, top_down
-from pipeline.rendering.texture import display, face_colours
 from pipeline.taxonomy import load
 
 MARGIN = 0.45  # around the outer walls [m]
@@ -44,15 +43,11 @@ def _storey(home: Home, assets: Mapping[str, Asset], level: int, built: Shell, v
     elevation = level * home.plan.storey_height
     categories = load().categories
     hanging = [p for p in placed if p.category in categories and categories[p.category].mount == "ceiling"]
-    standing = [p for p in placed if p not in hanging]
-    parts = [building(home.plan, level, built), *(_triangles(p, assets[p.asset_id], i + 1, elevation) for i, p in enumerate(standing))]
-    frame = render(
-        view,
-        np.concatenate([s.faces for s in parts]),
-        np.concatenate([s.colours for s in parts]),
-        np.concatenate([s.items for s in parts]),
-        BACKGROUND,
-    )
+    standing = [p for p in placed if p.category not in categories or categories[p.category].mount != "ceiling"]
+    ground = building(home.plan, level, built)
+    frame = render(view, ground.faces, ground.colours, ground.items, BACKGROUND)
+    for number, p in enumerate(standing, 1):
+        draw_roof(frame, view, assets[p.asset_id], p.position - (0.0, 0.0, elevation), p.yaw, p.scale, number)
     image = Image.fromarray(frame.colour)
     draw = ImageDraw.Draw(image)
 
@@ -74,12 +69,6 @@ def _storey(home: Home, assets: Mapping[str, Asset], level: int, built: Shell, v
             if room.level == level:
                 draw_label(image, room, np.array(project(room.polygon)) / SAMPLES, busy, min(size, 22))
     return image
-
-
-def _triangles(placement: Placement, asset: Asset, item: int, elevation: float) -> Soup:
-    faces, _ = asset_triangles(asset)
-    T = placement_transform(placement.position - np.array([0, 0, elevation]), placement.yaw, placement.scale)
-    return Soup(faces @ T[:3, :3].T + T[:3, 3], display(face_colours(asset)), np.full(len(faces), item, np.int32))
 
 
 def _shade(image: Image.Image, frame: Frame) -> Image.Image:

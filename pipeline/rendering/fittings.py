@@ -22,8 +22,22 @@ HANDLE_HEIGHT = 1.02  # [m]
 LEAF_DENSITY = 320.0  # hollow-core door [kg/m3]
 
 
+Size = tuple[float, ...]
+
+
 def door(leaf: Leaf, *, entrance: bool) -> tuple[Asset, NDArray[np.float64], float]:
     """Make the door of an opening: an asset in the fitting frame, its position (2,) [m] and yaw [rad]."""
+    return door_of(door_size(leaf), entrance=entrance), leaf.hinge, float(np.arctan2(leaf.along[1], leaf.along[0]))
+
+
+def door_size(leaf: Leaf) -> Size:
+    """Return all that a door's shape depends on, to the micrometre: most doors of most homes are alike."""
+    return tuple(round(v, 6) for v in (leaf.turn, leaf.angle, leaf.width, leaf.bottom, leaf.top, leaf.front, leaf.back, leaf.clear))
+
+
+def door_of(size: Size, *, entrance: bool) -> Asset:
+    """Make the door of a size."""
+    leaf = Leaf("door", np.zeros(2), np.array([1.0, 0.0]), np.array([0.0, size[0]]), int(size[0]), *size[1:])
     side = leaf.turn  # +1: the room it swings into lies towards +y
     frame = solid_link("frame", (*_lining(leaf, LINING), *_casing(leaf)), _lining(leaf, POST), 12.0)
     panel = _span("leaf", (LEAF_GAP, LEAF_GAP + leaf.width), (-side * LEAF_THICKNESS, 0.0), (leaf.bottom, leaf.top), 1)
@@ -31,24 +45,34 @@ def door(leaf: Leaf, *, entrance: bool) -> tuple[Asset, NDArray[np.float64], flo
     mass = LEAF_DENSITY * leaf.width * LEAF_THICKNESS * (leaf.top - leaf.bottom)
     moving = solid_link("leaf", (panel, *handles), (panel, *handles), mass)
     hinge = Joint("hinge", "revolute", 0, 1, np.array([0.0, 0.0, float(side)]), np.zeros(3), 0.0, leaf.angle, "hinge_door")
-    asset = Asset(
-        asset_id=leaf.opening_id,
+    return Asset(
+        asset_id="door",
         category="entrance_door" if entrance else "door",
         size=np.array([leaf.clear, leaf.front + leaf.back, leaf.top + LEAF_GAP]),
         links=(frame, moving),
         joints=(hinge,),
         materials=(JAMB, ENTRANCE_LEAF if entrance else LEAF, METAL),
         source="fitting",
-        source_id=leaf.opening_id,
+        source_id="door",
         licence="Apache-2.0",
     )
-    return asset, leaf.hinge, float(np.arctan2(leaf.along[1], leaf.along[0]))
 
 
 def window(cut: Cut) -> tuple[Asset, NDArray[np.float64], float]:
     """Make the window of an opening: frame, mullion, glass; static. Position and yaw as for a door."""
     a, b = (cut.quad[0] + cut.quad[3]) / 2, (cut.quad[1] + cut.quad[2]) / 2
-    width, z0, z1, bar, depth = float(np.linalg.norm(b - a)), cut.bottom, cut.top, 0.05, 0.035
+    return window_of(window_size(cut)), a, float(np.arctan2(*(b - a)[::-1]))
+
+
+def window_size(cut: Cut) -> Size:
+    """Return width, bottom and top of a window, to the micrometre [m]."""
+    across = (cut.quad[1] + cut.quad[2] - cut.quad[0] - cut.quad[3]) / 2
+    return round(float(np.linalg.norm(across)), 6), round(cut.bottom, 6), round(cut.top, 6)
+
+
+def window_of(size: Size) -> Asset:
+    """Make the window of a size."""
+    (width, z0, z1), bar, depth = size, 0.05, 0.035
     parts = [
         box("frame_left", (0, -depth, z0), (bar, depth, z1)),
         box("frame_right", (width - bar, -depth, z0), (width, depth, z1)),
@@ -61,18 +85,17 @@ def window(cut: Cut) -> tuple[Asset, NDArray[np.float64], float]:
         parts.append(box(f"mullion_{k}", (x - bar / 2, -depth, z0 + bar), (x + bar / 2, depth, z1 - bar)))
     for k, (x0, x1) in enumerate(itertools.pairwise(edges), 1):
         parts.append(box(f"glass_{k}", (x0 + bar / 2, -0.01, z0 + bar), (x1 - bar / 2, 0.01, z1 - bar), 1))
-    asset = Asset(
-        asset_id=cut.opening.opening_id,
+    return Asset(
+        asset_id="window",
         category="window",
         size=np.array([width, 2 * depth, z1]),
         links=(solid_link("frame", tuple(parts), tuple(parts), 30.0),),
         joints=(),
         materials=(WINDOW_FRAME, GLASS),
         source="fitting",
-        source_id=cut.opening.opening_id,
+        source_id="window",
         licence="Apache-2.0",
     )
-    return asset, a, float(np.arctan2(*(b - a)[::-1]))
 
 
 def _span(name: str, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], material: int, part: str = "") -> Mesh:

@@ -127,12 +127,12 @@ def darken_edges(frame: Frame, radius: int, strength: float, reach: float = 0.6,
     low = filled[::2, ::2]  # blurred at half the resolution: it is smooth, and four times cheaper
     for _ in range(2):  # two box passes come close to a Gaussian
         low = ndimage.uniform_filter(low, radius + 1, mode="nearest")
-    low = low.repeat(2, axis=0).repeat(2, axis=1)[: filled.shape[0], : filled.shape[1]]
-    occlusion = np.clip((low - filled) * np.float32(strength / reach), 0.0, strength)
-    if ground is None:
-        occlusion *= drawn
-    shaded = frame.colour * (1 - occlusion[..., None]) + np.float32(0.5)
-    return Frame(shaded.astype(np.uint8), frame.depth, frame.item)
+    everywhere = ground is not None
+    return Frame(
+        _darkened(frame.colour, frame.depth, filled, low, np.float32(strength / reach), np.float32(strength), everywhere),
+        frame.depth,
+        frame.item,
+    )
 
 
 def shrink(frame: Frame, factor: int) -> Frame:
@@ -162,42 +162,79 @@ def _fill(
     depth: NDArray[np.float32],
     item: NDArray[np.int32],
 ) -> None:
-    """Scan-convert triangles (T, 3, 3) of (u, v, depth) in their order; a pixel counts when its centre is inside."""
-    height, width = depth.shape
+    """Scan-convert triangles (T, 3, 3) of (u, v, depth) in their order."""
     for t in range(projected.shape[0]):
-        x0, y0, z0 = float(projected[t, 0, 0]), float(projected[t, 0, 1]), float(projected[t, 0, 2])
-        x1, y1, z1 = float(projected[t, 1, 0]), float(projected[t, 1, 1]), float(projected[t, 1, 2])
-        x2, y2, z2 = float(projected[t, 2, 0]), float(projected[t, 2, 1]), float(projected[t, 2, 2])
-        area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
-        if abs(area) < 1e-9:
-            continue
-        top, bottom = max(int(np.ceil(min(y0, y1, y2) - 0.5)), 0), min(int(np.floor(max(y0, y1, y2) - 0.5)), height - 1)
-        # Depth and the three edge functions are affine in (u, v): value = u * slope + rest(v), inside where all edges are >= 0.
-        sign = 1.0 if area > 0 else -1.0
-        zu = ((z1 - z0) * (y2 - y0) - (z2 - z0) * (y1 - y0)) / area
-        zv = ((z2 - z0) * (x1 - x0) - (z1 - z0) * (x2 - x0)) / area
-        slopes = (sign * (y1 - y2), sign * (y2 - y0), sign * (y0 - y1))
-        for row in range(top, bottom + 1):
-            v = row + 0.5
-            rests = (
-                sign * (x1 * (y2 - v) - x2 * (y1 - v)),
-                sign * (x2 * (y0 - v) - x0 * (y2 - v)),
-                sign * (x0 * (y1 - v) - x1 * (y0 - v)),
-            )
-            low, high = 0.0, float(width)
-            for k in range(3):
-                if slopes[k] > 0:
-                    low = max(low, -rests[k] / slopes[k])
-                elif slopes[k] < 0:
-                    high = min(high, -rests[k] / slopes[k])
-                elif rests[k] < 0:
-                    high = -1.0
-            first, last = int(np.ceil(low - 0.5)), min(int(np.floor(high - 0.5)), width - 1)
-            for column in range(first, last + 1):
-                z = z0 + zu * (column + 0.5 - x0) + zv * (v - y0)
-                if z > depth[row, column]:
-                    depth[row, column] = z
-                    item[row, column] = items[t]
-                    colour[row, column, 0] = colours[t, 0]
-                    colour[row, column, 1] = colours[t, 1]
-                    colour[row, column, 2] = colours[t, 2]
+        fill_triangle(projected[t], colours[t], items[t], colour, depth, item)
+
+
+@compiled
+def fill_triangle(
+    corners: NDArray[np.float32],
+    paint: NDArray[np.uint8],
+    label: int,
+    colour: NDArray[np.uint8],
+    depth: NDArray[np.float32],
+    item: NDArray[np.int32],
+) -> None:
+    """Scan-convert one triangle (3, 3) of (u, v, depth) in `paint` (3,); a pixel counts when its centre is inside."""
+    height, width = depth.shape
+    x0, y0, z0 = float(corners[0, 0]), float(corners[0, 1]), float(corners[0, 2])
+    x1, y1, z1 = float(corners[1, 0]), float(corners[1, 1]), float(corners[1, 2])
+    x2, y2, z2 = float(corners[2, 0]), float(corners[2, 1]), float(corners[2, 2])
+    area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+    if abs(area) < 1e-9:
+        return
+    top, bottom = max(int(np.ceil(min(y0, y1, y2) - 0.5)), 0), min(int(np.floor(max(y0, y1, y2) - 0.5)), height - 1)
+    # Depth and the three edge functions are affine in (u, v): value = u * slope + rest(v), inside where all edges are >= 0.
+    sign = 1.0 if area > 0 else -1.0
+    zu = ((z1 - z0) * (y2 - y0) - (z2 - z0) * (y1 - y0)) / area
+    zv = ((z2 - z0) * (x1 - x0) - (z1 - z0) * (x2 - x0)) / area
+    slopes = (sign * (y1 - y2), sign * (y2 - y0), sign * (y0 - y1))
+    for row in range(top, bottom + 1):
+        v = row + 0.5
+        rests = (
+            sign * (x1 * (y2 - v) - x2 * (y1 - v)),
+            sign * (x2 * (y0 - v) - x0 * (y2 - v)),
+            sign * (x0 * (y1 - v) - x1 * (y0 - v)),
+        )
+        low, high = 0.0, float(width)
+        for k in range(3):
+            if slopes[k] > 0:
+                low = max(low, -rests[k] / slopes[k])
+            elif slopes[k] < 0:
+                high = min(high, -rests[k] / slopes[k])
+            elif rests[k] < 0:
+                high = -1.0
+        first, last = int(np.ceil(low - 0.5)), min(int(np.floor(high - 0.5)), width - 1)
+        for column in range(first, last + 1):
+            z = z0 + zu * (column + 0.5 - x0) + zv * (v - y0)
+            if z > depth[row, column]:
+                depth[row, column] = z
+                item[row, column] = label
+                colour[row, column, 0] = paint[0]
+                colour[row, column, 1] = paint[1]
+                colour[row, column, 2] = paint[2]
+
+
+@compiled
+def _darkened(
+    colour: NDArray[np.uint8],
+    depth: NDArray[np.float32],
+    filled: NDArray[np.float32],
+    low: NDArray[np.float32],
+    slope: np.float32,
+    most: np.float32,
+    everywhere: bool,
+) -> NDArray[np.uint8]:
+    """Darken each pixel (H, W) by how far it lies below `low` (H / 2, W / 2), `slope` per metre and at `most`; empty ones `everywhere` or not."""
+    height, width = depth.shape
+    found = np.empty((height, width, 3), np.uint8)
+    zero, one, half = np.float32(0.0), np.float32(1.0), np.float32(0.5)
+    for row in range(height):
+        for column in range(width):
+            occlusion = min(max((low[row // 2, column // 2] - filled[row, column]) * slope, zero), most)
+            if not everywhere and not np.isfinite(depth[row, column]):
+                occlusion = zero
+            for channel in range(3):
+                found[row, column, channel] = np.uint8(np.float32(colour[row, column, channel]) * (one - occlusion) + half)
+    return found

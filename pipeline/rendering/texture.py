@@ -10,15 +10,23 @@ from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
 from pipeline.entities.asset import Asset, Material, Mesh
+from pipeline.geometry.compiled import compiled
 
 LARGEST = 256  # larger textures are averaged down first, so that fine patterns give their mean colour [pixels]
 GREY = (0.8, 0.8, 0.8)
+LINEAR = np.array(
+    [v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4 for v in np.arange(256) / 255], np.float32
+)  # of encoded 8 bits
 SPOTS = np.array([(i + 1 / 3, j + 1 / 3, 4 - i - j - 2 / 3) for i in range(4) for j in range(4 - i)], np.float32) / 4  # barycentric
 
 
-def face_colours(asset: Asset) -> NDArray[np.float32]:
-    """Return linear RGB (T, 3) of all visual triangles, in the order of `asset_triangles`."""
-    parts = [_mesh_colours(asset, mesh) for mesh in asset.meshes()]
+def face_colours(asset: Asset, chosen: NDArray[np.bool_] | None = None) -> NDArray[np.float32]:
+    """Return linear RGB (T, 3) of the visual triangles, in the order of `asset_triangles`: of all, or of those `chosen` by a mask."""
+    parts, start = [], 0
+    for mesh in asset.meshes():
+        mine = slice(None) if chosen is None else chosen[start : start + len(mesh.faces)]
+        parts.append(_mesh_colours(asset, mesh, mesh.faces[mine]))
+        start += len(mesh.faces)
     return np.concatenate(parts) if parts else np.zeros((0, 3), np.float32)
 
 
@@ -28,30 +36,41 @@ def display(linear: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.where(linear <= 0.0031308, 12.92 * linear, curve).astype(np.float32)
 
 
-def _mesh_colours(asset: Asset, mesh: Mesh) -> NDArray[np.float32]:
+def _mesh_colours(asset: Asset, mesh: Mesh, faces: NDArray[np.int32]) -> NDArray[np.float32]:
     material = asset.materials[mesh.material] if asset.materials else Material("none", GREY)
-    plain = np.tile(np.array(material.base_color, np.float32), (len(mesh.faces), 1))
-    if material.texture is None or mesh.uv is None or material.texture not in asset.textures:
+    plain = np.tile(np.array(material.base_color, np.float32), (len(faces), 1))
+    if material.texture is None or mesh.uv is None or material.texture not in asset.textures or not len(faces):
         return plain
     texels = _texels(asset.textures[material.texture])
-    if texels is None:
-        return plain
-    height, width, _ = texels.shape
-    u, v = np.moveaxis(np.einsum("sk,tkc->tsc", SPOTS, mesh.uv[mesh.faces]) % 1.0, 2, 0)
-    rows, columns = ((1 - v) * height).astype(int), (u * width).astype(int)
-    seen: NDArray[np.float32] = texels[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)].mean(axis=1)
-    return seen
+    return plain if texels is None else _sampled(texels, np.asarray(mesh.uv, np.float32), faces)
+
+
+@compiled
+def _sampled(texels: NDArray[np.uint8], uv: NDArray[np.float32], faces: NDArray[np.int32]) -> NDArray[np.float32]:
+    """Return the mean linear colour (F, 3) of the encoded texels (H, W, 3) under the spots of each face, by its corners' coordinates in `uv` (V, 2)."""
+    height, width = texels.shape[:2]
+    found = np.zeros((len(faces), 3), np.float32)
+    one = np.float32(1.0)
+    for f in range(len(faces)):
+        a, b, c = uv[faces[f, 0]], uv[faces[f, 1]], uv[faces[f, 2]]
+        for s in range(SPOTS.shape[0]):
+            u = (SPOTS[s, 0] * a[0] + SPOTS[s, 1] * b[0] + SPOTS[s, 2] * c[0]) % one
+            v = (SPOTS[s, 0] * a[1] + SPOTS[s, 1] * b[1] + SPOTS[s, 2] * c[1]) % one
+            row, column = min(int((one - v) * np.float32(height)), height - 1), min(int(u * np.float32(width)), width - 1)
+            for k in range(3):
+                found[f, k] += LINEAR[texels[row, column, k]]
+        for k in range(3):
+            found[f, k] /= np.float32(SPOTS.shape[0])
+    return found
 
 
 @functools.lru_cache(maxsize=128)
-def _texels(blob: bytes) -> NDArray[np.float32] | None:
-    """Decode a texture to linear RGB (H, W, 3); None where it is no picture."""
+def _texels(blob: bytes) -> NDArray[np.uint8] | None:
+    """Decode a texture (H, W, 3), encoded as it is; None where it is no picture."""
     try:
         image = Image.open(BytesIO(blob)).convert("RGB")
     except (UnidentifiedImageError, OSError):
         return None
     if max(image.size) > LARGEST:
         image.thumbnail((LARGEST, LARGEST), Image.Resampling.BOX)
-    encoded = np.asarray(image, np.float32) / 255
-    linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
-    return np.asarray(linear, np.float32)
+    return np.asarray(image)

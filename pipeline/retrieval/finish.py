@@ -31,8 +31,8 @@ def make_finish(asset: Asset) -> Floats:
         return UNKNOWN
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     colours = lab(face_colours(asset).astype(np.float64))
-    _, cell = np.unique(np.floor(colours / CELL), axis=0, return_inverse=True)
-    most = cell.reshape(-1) == int(np.bincount(cell.reshape(-1), area).argmax())
+    _, cell = np.unique(np.floor(colours / CELL) @ (1e6, 1e3, 1.0), return_inverse=True)
+    most = cell == int(np.bincount(cell, area).argmax())
     weight = area[most] if area[most].sum() > 0 else np.ones(int(most.sum()))
     return np.asarray(np.average(colours[most], axis=0, weights=weight))
 

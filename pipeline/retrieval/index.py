@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -32,7 +33,7 @@ class AssetIndex:
     """All assets of the library, ordered by asset_id.
 
     `sizes` (A, 3) [m]; `latents` (A, 32), standardised by `mean` and `spread`; `sweeps` (A, K, 2, 3) [m] object frame,
-    NaN where an asset has fewer than K boxes; `shelves` lists the rows of each category.
+    NaN where an asset has fewer than K boxes; `shelves` lists the rows of each category; `styles` (A,) are "" where there is none.
     """
 
     asset_ids: tuple[str, ...]
@@ -46,7 +47,7 @@ class AssetIndex:
     sweep_boxes: NDArray[np.float32]
     shelves: Mapping[str, NDArray[np.int64]]
     settings: RetrievalSettings
-    styles: tuple[str, ...] = ()
+    styles: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, "<U1"))
     style: str = ""
     style_cost: float = 0.0
 
@@ -106,7 +107,7 @@ class AssetIndex:
             boxes,
             shelves,
             settings,
-            tuple(str(r.get("style", "")) for r in rows),
+            np.array([str(r.get("style", "")) for r in rows], np.str_),
         )
 
     def match(
@@ -155,8 +156,8 @@ class AssetIndex:
         if openable.any():
             total = np.where(openable[None], total, (total + s.prefer_offset) * s.prefer_openable)
         if self.style:
-            other = np.array([self.styles[k] not in {"", self.style} for k in shelf])
-            total = total + self.style_cost * other[None]
+            own = self.styles[shelf]
+            total = total + self.style_cost * ((own != "") & (own != self.style))[None]
         return total
 
     def smaller(self, asset_id: str, max_area: float) -> Match | None:
@@ -200,7 +201,7 @@ class AssetIndex:
 
     def row(self, asset_id: str) -> int:
         """Return the row of an asset."""
-        at = int(np.searchsorted(np.array(self.asset_ids), asset_id))
+        at = bisect_left(self.asset_ids, asset_id)
         if at == len(self.asset_ids) or self.asset_ids[at] != asset_id:
             raise ContentError(f"asset {asset_id!r} is not in the library", "run `dvc repro` so that library and samples agree")
         return at

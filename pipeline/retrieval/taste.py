@@ -51,11 +51,8 @@ class Taste:
 
 def draw_style(rng: np.random.Generator, index: AssetIndex) -> str:
     """Draw a home's style, by its share among the library's assets; "" where none has a style: then finishes alone go together."""
-    styles = sorted({s for s in index.styles if s})
-    if not styles:
-        return ""
-    count = np.array([index.styles.count(s) for s in styles], float)
-    return str(rng.choice(styles, p=count / count.sum()))
+    styles, count = np.unique(index.styles[index.styles != ""], return_counts=True)
+    return str(rng.choice(styles, p=count / count.sum())) if len(styles) else ""
 
 
 def draw_finishes(rng: np.random.Generator, index: AssetIndex, style: str, finish_of: FinishOf) -> dict[str, Floats]:

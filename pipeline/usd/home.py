@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -11,47 +12,51 @@ from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home, Placement
 from pipeline.errors import ContentError
 from pipeline.geometry.walls import levels, shell
-from pipeline.usd.layer import new_layer, place, prim, relationship, save
-from pipeline.usd.lights import convert_dome, convert_lamp
+from pipeline.usd.layer import read_layer, save
+from pipeline.usd.lights import lamp, sky
 from pipeline.usd.material import Palette
 from pipeline.usd.physics import convert_scene
-from pipeline.usd.shell import convert_doors, convert_room, convert_walls, convert_windows
+from pipeline.usd.shell import MATERIALS, door_texts, room_text, walls_text, window_texts
+from pipeline.usd.text import cast, group, mould, placed, quoted
 
 
 def write_home(home: Home, assets: Mapping[str, Asset], path: Path, library: str = "../../assets") -> Path:
-    """Write the stage of a home to `path` (.usdc or .usda).
+    """Write the stage of a home to `path` (.usdc or .usda); see `home_layer`."""
+    return save(home_layer(home, assets, library, path.suffix), path)
+
+
+def home_layer(home: Home, assets: Mapping[str, Asset], library: str = "../../assets", suffix: str = ".usdc") -> Sdf.Layer:
+    """Return the stage of a home, not written yet.
 
     `assets` holds those that the home places, by id; `library` is the folder of the asset library as seen from the
     stage's folder, for references like `../../assets/<asset_id>/<asset_id>.usda`.
     """
-    layer = new_layer("World", path.suffix, _about(home))
-    world = prim(layer, "World")
-    world.kind = "assembly"
-    convert_scene(layer)
-    materials = Palette(world)
-    rooms, walls, doors, windows, objects, lights = (
-        prim(world, name) for name in ("Rooms", "Walls", "Doors", "Windows", "Objects", "Lights")
-    )
-    for group in (rooms, walls, doors, windows, objects, lights):
-        group.kind = "group"
-    convert_dome(lights)
-    shells = {level: shell(home.plan, level) for level in levels(home.plan)}
+    plan, materials = home.plan, Palette(MATERIALS)
+    groups: dict[str, list[str]] = {name: [] for name in ("Rooms", "Walls", "Doors", "Windows", "Objects", "Lights")}
+    groups["Lights"].append(cast(sky(), "/World/Lights/Sky"))
+    shells = {level: shell(plan, level) for level in levels(plan)}
     for level, built in shells.items():
-        elevation = level * home.plan.storey_height
-        convert_walls(walls, home.plan, level, built, materials)
-        convert_doors(doors, elevation, built, materials)
-        convert_windows(windows, elevation, built, materials)
-        for room in home.plan.rooms:
+        elevation = level * plan.storey_height
+        groups["Walls"].append(walls_text("/World/Walls", plan, level, built, materials))
+        groups["Doors"] += door_texts("/World/Doors", elevation, built, materials)
+        groups["Windows"] += window_texts("/World/Windows", elevation, built, materials)
+        for room in plan.rooms:
             if room.level == level:
-                convert_room(rooms, home.plan, room, shells, materials)
-                convert_lamp(lights, room, home.plan.levels_of(room)[-1] * home.plan.storey_height)
-    for placement in home.placements:
-        convert_placement(objects, placement, assets, library)
-    return save(layer, path)
+                groups["Rooms"].append(room_text("/World/Rooms", plan, room, shells, materials))
+                groups["Lights"].append(lamp(f"/World/Lights/{room.room_id}", room, plan.levels_of(room)[-1] * plan.storey_height))
+    groups["Objects"] += [placement_text("/World/Objects", p, assets, library) for p in home.placements]
+    parts = [cast(group("group"), f"/World/{name}", "".join(texts)) for name, texts in groups.items()]
+    world = cast(group("assembly"), "/World", "".join([materials.text(), *parts]))
+    return read_layer(world + cast(_scene(), "/PhysicsScene"), "World", suffix, _about(home))
 
 
-def convert_placement(parent: Sdf.PrimSpec, placement: Placement, assets: Mapping[str, Asset], library: str) -> Sdf.PrimSpec:
-    """Write one placed object: a reference, where it stands, on what, its room; articulated ones at their own size only."""
+@functools.cache
+def _scene() -> str:
+    return mould(lambda layer: convert_scene(layer, "Mould"))
+
+
+def placement_text(parent: str, placement: Placement, assets: Mapping[str, Asset], library: str) -> str:
+    """Return one placed object: a reference, where it stands, on what, its room; articulated ones at their own size only."""
     asset = assets.get(placement.asset_id)
     if asset is None:
         raise ContentError(
@@ -61,13 +66,14 @@ def convert_placement(parent: Sdf.PrimSpec, placement: Placement, assets: Mappin
         raise ContentError(
             f"object {placement.object_id} scales the articulated asset {asset.asset_id}", "place it with scale 1: joints break otherwise"
         )
-    spec = prim(parent, placement.object_id)
-    spec.referenceList.prependedItems = [Sdf.Reference(f"{library}/{asset.asset_id}/{asset.asset_id}.usda")]
-    place(spec, placement.position.tolist(), placement.yaw, placement.scale.tolist())
-    if placement.support:
-        relationship(spec, "sfgen:support", [parent.path.AppendChild(placement.support)])
-    spec.customData = {"articulated": asset.articulated, "room_id": placement.room_id}
-    return spec
+    about = f"bool articulated = {int(asset.articulated)}\nstring room_id = {quoted(placement.room_id)}\n"
+    support = f"rel sfgen:support = <{parent}/{placement.support}>\n" if placement.support else ""
+    return (
+        f'def Xform "{placement.object_id}" (\n'
+        f"customData = {{\n{about}}}\n"
+        f"prepend references = @{library}/{asset.asset_id}/{asset.asset_id}.usda@\n)\n"
+        f"{{\n{placed(placement.position.tolist(), placement.yaw, placement.scale.tolist())}{support}}}\n"
+    )
 
 
 def _about(home: Home) -> dict[str, object]:

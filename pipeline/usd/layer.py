@@ -54,6 +54,14 @@ def new_layer(default_prim: str, suffix: str, data: Mapping[str, Any] | None = N
     return layer
 
 
+def read_layer(text: str, default_prim: str, suffix: str, data: Mapping[str, Any] | None = None) -> Sdf.Layer:
+    """Return a layer as `new_layer` does, with the prims of a text."""
+    layer = Sdf.Layer.CreateAnonymous(suffix)
+    if not layer.ImportFromString(new_layer(default_prim, ".usda", data).ExportToString() + text):
+        raise ValueError("USD does not read the prims that were written for it")
+    return layer
+
+
 def save(layer: Sdf.Layer, path: Path) -> Path:
     """Write the layer under a temporary name, then rename it, so that no half file is ever seen."""
     path.parent.mkdir(parents=True, exist_ok=True)

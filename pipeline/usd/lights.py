@@ -2,37 +2,49 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 from pxr import Gf, Sdf
 from shapely.geometry import Polygon
 
 from pipeline.entities.plan import Room
-from pipeline.usd.layer import attribute, place, prim
+from pipeline.usd.layer import attribute, prim
+from pipeline.usd.text import cast, mould, placed
 
 DOME_INTENSITY = 600.0
 LAMP_INTENSITY = 4000.0
 LAMP_GAP = 0.03  # below the ceiling [m]
 
 
-def convert_dome(parent: Sdf.PrimSpec) -> Sdf.PrimSpec:
-    """Write the sky."""
-    spec = prim(parent, "Sky", "DomeLight")
-    attribute(spec, "inputs:intensity", "float", DOME_INTENSITY)
-    attribute(spec, "inputs:color", "color3f", Gf.Vec3f(0.86, 0.92, 1.0))
-    return spec
+@functools.cache
+def sky() -> str:
+    """Return the mould of the sky."""
+
+    def convert(layer: Sdf.Layer) -> None:
+        spec = prim(layer, "Mould", "DomeLight")
+        attribute(spec, "inputs:intensity", "float", DOME_INTENSITY)
+        attribute(spec, "inputs:color", "color3f", Gf.Vec3f(0.86, 0.92, 1.0))
+
+    return mould(convert)
 
 
-def convert_lamp(parent: Sdf.PrimSpec, room: Room, elevation: float) -> Sdf.PrimSpec:
-    """Write a room's lamp, a square just below the ceiling that shines down (-Z, as rect lights do); larger rooms get more light."""
-    spec = prim(parent, room.room_id, "RectLight")
-    x, y = np.asarray(_inside(Polygon(room.polygon)))
-    place(spec, (x, y, elevation + room.height - LAMP_GAP))
+def lamp(path: str, room: Room, elevation: float) -> str:
+    """Return a room's lamp, a square just below the ceiling that shines down (-Z, as rect lights do); larger rooms get more light."""
+    x, y = _inside(Polygon(room.polygon))
     side = float(np.clip(0.16 * np.sqrt(room.area), 0.25, 0.9))
-    attribute(spec, "inputs:width", "float", side)
-    attribute(spec, "inputs:height", "float", side)
-    attribute(spec, "inputs:intensity", "float", LAMP_INTENSITY)
-    attribute(spec, "inputs:color", "color3f", Gf.Vec3f(1.0, 0.93, 0.82))
-    return spec
+    size = f"float inputs:width = {side!r}\nfloat inputs:height = {side!r}\n"
+    return cast(_lamp(), path, placed((x, y, elevation + room.height - LAMP_GAP)) + size)
+
+
+@functools.cache
+def _lamp() -> str:
+    def convert(layer: Sdf.Layer) -> None:
+        spec = prim(layer, "Mould", "RectLight")
+        attribute(spec, "inputs:intensity", "float", LAMP_INTENSITY)
+        attribute(spec, "inputs:color", "color3f", Gf.Vec3f(1.0, 0.93, 0.82))
+
+    return mould(convert)
 
 
 def _inside(polygon: Polygon) -> tuple[float, float]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import functools
+from collections.abc import Sequence
 
 from pxr import Gf, Sdf
 
 from pipeline.entities.asset import Material
 from pipeline.usd.layer import apply, attribute, identifiers, label, prim, relationship
+from pipeline.usd.text import cast, group, mould
 
 FRICTION = (0.7, 0.6)  # static, dynamic: dry wood, painted board
 SLIPPERY = (0.35, 0.3)  # metal, glass, glazed tiles
@@ -61,25 +63,30 @@ def _texture(spec: Sdf.PrimSpec, material: Material) -> Sdf.PrimSpec:
 
 
 class Palette:
-    """The materials that a home's own parts use, written when they are first asked for, in a scope of their own."""
+    """The materials that a home's own parts use, in the order in which they are asked for, in a scope of their own at `path`."""
 
-    def __init__(self, parent: Sdf.PrimSpec) -> None:
-        self._scope = prim(parent, "Materials", "Scope")
-        self._paths: dict[str, Sdf.Path] = {}
+    def __init__(self, path: str) -> None:
+        self._path = path
+        self._used: dict[str, Material] = {}
 
-    def path(self, material: Material) -> Sdf.Path:
+    def path(self, material: Material) -> str:
         """Return the prim of a material."""
-        if material.name not in self._paths:
-            self._paths[material.name] = convert_material(self._scope, material.name, material)
-        return self._paths[material.name]
+        self._used.setdefault(material.name, material)
+        return f"{self._path}/{material.name}"
 
-    def paths(self, materials: Sequence[Material]) -> list[Sdf.Path]:
+    def paths(self, materials: Sequence[Material]) -> list[str]:
         """Return the prims of several materials."""
         return [self.path(m) for m in materials]
 
-    def known(self) -> Mapping[str, Sdf.Path]:
-        """Return what has been written so far."""
-        return self._paths
+    def text(self) -> str:
+        """Return the scope with what has been asked for so far."""
+        return cast(group(schema="Scope"), self._path, "".join(cast(_material(m), self.path(m)) for m in self._used.values()))
+
+
+@functools.lru_cache(maxsize=256)
+def _material(material: Material) -> str:
+    """Return the mould of a material."""
+    return mould(lambda layer: convert_material(layer, "Mould", material))
 
 
 def bind(spec: Sdf.PrimSpec, material: Sdf.Path) -> None:

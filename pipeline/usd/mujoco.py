@@ -26,10 +26,15 @@ def asset_overlay(asset: Asset, payload: Sdf.Layer) -> Sdf.Layer:
 
 def write_mujoco_overlay(scene: Path) -> Path:
     """Write `<scene>.mujoco.usda` beside a home's stage: the same home for MuJoCo. Returns its path."""
-    source = Sdf.Layer.OpenAsAnonymous(str(scene))
+    layer = home_overlay(Sdf.Layer.OpenAsAnonymous(str(scene)), scene.name)
+    return save(layer, scene.with_name(f"{scene.stem}.mujoco.usda"))
+
+
+def home_overlay(source: Sdf.Layer, name: str) -> Sdf.Layer:
+    """Return the overlay of a home's stage `source`, which lies beside it in the file `name`."""
     world = source.GetPrimAtPath(f"/{source.defaultPrim}")
     layer = new_layer(source.defaultPrim, ".usda")
-    layer.subLayerPaths.append(f"./{scene.name}")
+    layer.subLayerPaths.append(f"./{name}")
     root = over(layer, source.defaultPrim)
     objects = world.nameChildren.get("Objects")
     if objects is not None:
@@ -42,7 +47,7 @@ def write_mujoco_overlay(scene: Path) -> Path:
         scope = over(root, "Doors")
         for spec in doors.nameChildren:
             _convert(over(scope, spec.name), spec)
-    return save(layer, scene.with_name(f"{scene.stem}.mujoco.usda"))
+    return layer
 
 
 def _convert(root: Sdf.PrimSpec, source: Sdf.PrimSpec) -> None:

@@ -16,9 +16,9 @@ GRAVITY = 9.81  # [m/s2]
 LEAST_INERTIA = 1e-7  # engines divide by it [kg m2]
 
 
-def convert_scene(layer: Sdf.Layer) -> Sdf.PrimSpec:
-    """Write /PhysicsScene, beside the default prim, so that a reference to the home brings no second scene."""
-    spec = prim(layer, "PhysicsScene", "PhysicsScene")
+def convert_scene(layer: Sdf.Layer, name: str = "PhysicsScene") -> Sdf.PrimSpec:
+    """Write the scene beside the default prim, so that a reference to the home brings no second one."""
+    spec = prim(layer, name, "PhysicsScene")
     attribute(spec, "physics:gravityDirection", "vector3f", Gf.Vec3f(0, 0, -1))
     attribute(spec, "physics:gravityMagnitude", "float", GRAVITY)
     return spec

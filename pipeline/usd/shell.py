@@ -2,141 +2,207 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf
 from shapely.geometry import Polygon
 
-from pipeline.entities.asset import Material, Mesh
+from pipeline.entities.asset import Asset, Material, Mesh
 from pipeline.entities.plan import Plan, Room
 from pipeline.geometry.tiling import convex_pieces
 from pipeline.geometry.walls import SLAB, Panel, Shell, outer_panels, reveals, room_panels
 from pipeline.rendering import fittings, palette
 from pipeline.usd.articulation import convert_asset
-from pipeline.usd.layer import attribute, label, place, prim
+from pipeline.usd.layer import attribute, label, prim
 from pipeline.usd.material import Palette, bind
 from pipeline.usd.mesh import convert_mesh, convert_polygons
 from pipeline.usd.physics import convert_collider, hide
+from pipeline.usd.text import cast, group, mould, placed, shaped
+
+MATERIALS = "/World/Materials"  # where a home's own parts find theirs
+SHAPE = ("points", "extent")  # what each prism has of its own
 
 
-def convert_room(parent: Sdf.PrimSpec, plan: Plan, room: Room, shells: Mapping[int, Shell], materials: Palette) -> Sdf.PrimSpec:
-    """Write a room: floor and ceiling slabs in convex pieces that one sees and walks on, and its wall faces.
+def room_text(parent: str, plan: Plan, room: Room, shells: Mapping[int, Shell], materials: Palette) -> str:
+    """Return a room: floor and ceiling slabs in convex pieces that one sees and walks on, and its wall faces.
 
     A staircase has its floor on its lowest storey, its ceiling on the highest, faces on all; `shells` holds the storeys' walls.
     """
-    spec = prim(parent, room.room_id)
-    place(spec, (0.0, 0.0, room.level * plan.storey_height))
-    label(spec, "class", ["room"])
-    label(spec, "room_type", [room.type])
+    path = f"{parent}/{room.room_id}"
     pieces = convex_pieces(Polygon(room.polygon))
     storeys = plan.levels_of(room)
     under = (len(storeys) - 1) * plan.storey_height + room.height
-    floor = _scope(spec, "floor")
-    for i, piece in enumerate(pieces):
-        _slab(floor, f"piece_{i}", piece, -SLAB, 0.0, palette.floor(room.type), materials)
-    ceiling = _scope(spec, "ceiling")
-    for i, piece in enumerate(pieces):
-        _slab(ceiling, f"piece_{i}", piece, under, under + SLAB, palette.CEILING, materials)
+    parts = [placed((0.0, 0.0, room.level * plan.storey_height))]
+    for name, bottom, material in (("floor", -SLAB, palette.floor(room.type)), ("ceiling", under, palette.CEILING)):
+        slabs = (_slab(f"{path}/{name}/piece_{i}", piece, (bottom, bottom + SLAB), material, materials) for i, piece in enumerate(pieces))
+        parts.append(cast(_scope(name), f"{path}/{name}", "".join(slabs)))
     panels: list[Panel] = []
     for k, level in enumerate(storeys):
         faces = room_panels(room, shells[level].cuts, plan.storey_height if level < storeys[-1] else room.height)
         panels.extend(Panel(face.owner, face.corners + np.array([0.0, 0.0, k * plan.storey_height])) for face in faces)
     if panels:
-        _panels(spec, "wall", panels, palette.wall(room.type), materials)
-    return spec
+        parts.append(_panels(f"{path}/wall", panels, palette.wall(room.type), materials))
+    return cast(_room(room.type), path, "".join(parts))
 
 
-def convert_walls(parent: Sdf.PrimSpec, plan: Plan, level: int, shell: Shell, materials: Palette) -> Sdf.PrimSpec:
-    """Write a storey's wall solids (colliders, one convex piece each), facade, jambs, thresholds and steps."""
-    spec = prim(parent, f"level_{level}")
-    place(spec, (0.0, 0.0, level * plan.storey_height))
-    label(spec, "class", ["wall"])
-    solids = prim(spec, "solids", "Scope")
+def walls_text(parent: str, plan: Plan, level: int, shell: Shell, materials: Palette) -> str:
+    """Return a storey's wall solids (colliders, one convex piece each), facade, jambs, thresholds and steps."""
+    path = f"{parent}/level_{level}"
+    solids = []
     for i, solid in enumerate(shell.prisms):
-        mesh = prism_mesh(f"{solid.kind}_{i:03d}", solid.polygon, solid.bottom, solid.top)
-        made = convert_mesh(solids, mesh.name, mesh, None)
-        hide(made)
-        convert_collider(made)
-        bind(made, materials.path(palette.PLASTER))
-    _panels(spec, "facade", outer_panels(shell), palette.FACADE, materials)
+        form = _solid(len(solid.polygon), materials.path(palette.PLASTER))
+        solids.append(cast(form, f"{path}/solids/{solid.kind}_{i:03d}", shaped(prism_points(solid.polygon, solid.bottom, solid.top))))
+    parts = [placed((0.0, 0.0, level * plan.storey_height)), cast(group(schema="Scope"), f"{path}/solids", "".join(solids))]
+    parts.append(_panels(f"{path}/facade", outer_panels(shell), palette.FACADE, materials))
     faces = [panel for cut in shell.cuts for panel in reveals(cut)]
     if faces:
-        _panels(spec, "jambs", faces, palette.JAMB, materials)
+        parts.append(_panels(f"{path}/jambs", faces, palette.JAMB, materials))
     for cut in shell.cuts:
         if cut.bottom < 1e-3 and cut.opening.kind != "window":
             name = f"threshold_{cut.opening.opening_id}"
-            label(_slab(spec, name, cut.quad, -SLAB, 0.0, palette.threshold(plan, cut.opening), materials), "class", ["floor"])
+            parts.append(_slab(f"{path}/{name}", cut.quad, (-SLAB, 0.0), palette.threshold(plan, cut.opening), materials, "floor"))
     if shell.stairs:
-        stairs = prim(spec, "stairs", "Scope")
-        label(stairs, "class", ["stairs"])
-        for i, step in enumerate(shell.stairs):
-            _slab(stairs, f"{step.kind}_{i:02d}", step.polygon, step.bottom, step.top, palette.STEP, materials)
-    return spec
+        steps = (
+            _slab(f"{path}/stairs/{step.kind}_{i:02d}", step.polygon, (step.bottom, step.top), palette.STEP, materials)
+            for i, step in enumerate(shell.stairs)
+        )
+        parts.append(cast(_scope("stairs", "Scope"), f"{path}/stairs", "".join(steps)))
+    return cast(_scope("wall"), path, "".join(parts))
 
 
-def convert_doors(parent: Sdf.PrimSpec, elevation: float, shell: Shell, materials: Palette) -> list[Sdf.PrimSpec]:
-    """Write the doors of a storey, each an articulation of a fixed frame and a leaf on a hinge."""
+def door_texts(parent: str, elevation: float, shell: Shell, materials: Palette) -> list[str]:
+    """Return the doors of a storey, each an articulation of a fixed frame and a leaf on a hinge."""
     kinds = {cut.opening.opening_id: cut.opening.kind for cut in shell.cuts}
     made = []
     for leaf in shell.leaves:
-        asset, (x, y), yaw = fittings.door(leaf, entrance=kinds[leaf.opening_id] == "entrance")
-        spec = prim(parent, leaf.opening_id)
-        place(spec, (x, y, elevation), yaw)
-        label(spec, "class", ["door"])
-        convert_asset(spec, asset, materials.paths(asset.materials))
-        made.append(spec)
+        fitting = _door(fittings.door_size(leaf), entrance=kinds[leaf.opening_id] == "entrance")
+        materials.paths(fitting.materials)
+        where = placed((*leaf.hinge, elevation), float(np.arctan2(leaf.along[1], leaf.along[0])))
+        made.append(cast(fitting.form, f"{parent}/{leaf.opening_id}", where))
     return made
 
 
-def convert_windows(parent: Sdf.PrimSpec, elevation: float, shell: Shell, materials: Palette) -> list[Sdf.PrimSpec]:
-    """Write the windows of a storey: static frames and panes."""
+def window_texts(parent: str, elevation: float, shell: Shell, materials: Palette) -> list[str]:
+    """Return the windows of a storey: static frames and panes."""
     made = []
     for cut in shell.cuts:
         if cut.opening.kind == "window":
-            asset, (x, y), yaw = fittings.window(cut)
-            spec = prim(parent, cut.opening.opening_id)
-            place(spec, (x, y, elevation), yaw)
-            label(spec, "class", ["window"])
-            convert_asset(spec, asset, materials.paths(asset.materials))
-            made.append(spec)
+            a, b = (cut.quad[0] + cut.quad[3]) / 2, (cut.quad[1] + cut.quad[2]) / 2
+            fitting = _window(fittings.window_size(cut))
+            materials.paths(fitting.materials)
+            where = placed((*a, elevation), float(np.arctan2(*(b - a)[::-1])))
+            made.append(cast(fitting.form, f"{parent}/{cut.opening.opening_id}", where))
     return made
 
 
-def prism_mesh(name: str, polygon: NDArray[np.float64], bottom: float, top: float) -> Mesh:
-    """Make the closed triangle mesh of an upright prism over a convex counter-clockwise polygon (n, 2)."""
+class Fitting(NamedTuple):
+    """A door or window of one size: its mould and its materials."""
+
+    form: str
+    materials: tuple[Material, ...]
+
+
+@functools.lru_cache(maxsize=256)
+def _door(size: fittings.Size, *, entrance: bool) -> Fitting:
+    return _fitting(fittings.door_of(size, entrance=entrance), "door")
+
+
+@functools.lru_cache(maxsize=256)
+def _window(size: fittings.Size) -> Fitting:
+    return _fitting(fittings.window_of(size), "window")
+
+
+def _fitting(asset: Asset, name: str) -> Fitting:
+    def convert(layer: Sdf.Layer) -> None:
+        spec = prim(layer, "Mould")
+        label(spec, "class", [name])
+        convert_asset(spec, asset, Palette(MATERIALS).paths(asset.materials))
+
+    return Fitting(mould(convert), asset.materials)
+
+
+def prism_points(polygon: NDArray[np.float64], bottom: float, top: float) -> NDArray[np.float64]:
+    """Return the corners (2n, 3) of an upright prism over a polygon (n, 2), the lower ones first."""
     n = len(polygon)
-    vertices = np.concatenate([np.column_stack([polygon, np.full(n, z)]) for z in (bottom, top)]).astype(np.float32)
+    return np.concatenate([np.column_stack([polygon, np.full(n, z)]) for z in (bottom, top)])
+
+
+@functools.cache
+def _prism(n: int) -> Mesh:
+    """Return the closed triangle mesh of an upright prism over a convex counter-clockwise polygon of n corners."""
     faces = [[0, k + 1, k] for k in range(1, n - 1)] + [[n, n + k, n + k + 1] for k in range(1, n - 1)]
     for k in range(n):
         j = (k + 1) % n
         faces += [[k, j, n + j], [k, n + j, n + k]]
-    return Mesh(name, vertices, np.array(faces, np.int32))
+    return Mesh("prism", np.zeros((2 * n, 3), np.float32), np.array(faces, np.int32))
 
 
-def _scope(parent: Sdf.PrimSpec, name: str) -> Sdf.PrimSpec:
-    spec = prim(parent, name)
-    label(spec, "class", [name])
-    return spec
+@functools.cache
+def _scope(name: str, kind: str = "Xform") -> str:
+    return mould(lambda layer: label(prim(layer, "Mould", kind), "class", [name]))
+
+
+@functools.cache
+def _room(kind: str) -> str:
+    def convert(layer: Sdf.Layer) -> None:
+        spec = prim(layer, "Mould")
+        label(spec, "class", ["room"])
+        label(spec, "room_type", [kind])
+
+    return mould(convert)
+
+
+@functools.lru_cache(maxsize=256)
+def _solid(corners: int, material: str) -> str:
+    """Return the mould of a prism that collides and is not seen."""
+
+    def convert(layer: Sdf.Layer) -> None:
+        made = convert_mesh(layer, "Mould", _prism(corners), None)
+        hide(made)
+        convert_collider(made)
+        bind(made, material)
+
+    return mould(convert, SHAPE)
 
 
 def _slab(
-    parent: Sdf.PrimSpec, name: str, polygon: NDArray[np.float64], bottom: float, top: float, material: Material, materials: Palette
-) -> Sdf.PrimSpec:
-    made = convert_mesh(parent, name, prism_mesh(name, polygon, bottom, top), material.base_color)
-    bind(made, materials.path(material))
-    convert_collider(made)
-    return made
+    path: str, polygon: NDArray[np.float64], heights: tuple[float, float], material: Material, materials: Palette, name: str = ""
+) -> str:
+    """Return a prism that is seen and collides, labelled as `name`."""
+    return cast(_slab_form(len(polygon), material, materials.path(material), name), path, shaped(prism_points(polygon, *heights)))
 
 
-def _panels(parent: Sdf.PrimSpec, name: str, panels: Iterable[Panel], material: Material, materials: Palette) -> Sdf.PrimSpec:
-    """Write flat faces as one mesh without a collider; the solids behind them collide."""
+@functools.lru_cache(maxsize=256)
+def _slab_form(corners: int, material: Material, path: str, name: str) -> str:
+    def convert(layer: Sdf.Layer) -> None:
+        made = convert_mesh(layer, "Mould", _prism(corners), material.base_color)
+        bind(made, path)
+        convert_collider(made)
+        if name:
+            label(made, "class", [name])
+
+    return mould(convert, SHAPE)
+
+
+def _panels(path: str, panels: Iterable[Panel], material: Material, materials: Palette) -> str:
+    """Return flat faces as one mesh without a collider; the solids behind them collide."""
     corners = [panel.corners for panel in panels]
-    counts = np.array([len(c) for c in corners], np.int32)
     points = np.concatenate(corners)
-    made = convert_polygons(parent, name, points, counts, np.arange(len(points), dtype=np.int32), material.base_color)
-    attribute(made, "doubleSided", "bool", True, uniform=True)
-    label(made, "class", ["wall"])
-    bind(made, materials.path(material))
-    return made
+    topology = f"int[] faceVertexCounts = {[len(c) for c in corners]}\nint[] faceVertexIndices = {list(range(len(points)))}\n"
+    return cast(_panels_form(material, materials.path(material)), path, shaped(points) + topology)
+
+
+@functools.lru_cache(maxsize=256)
+def _panels_form(material: Material, path: str) -> str:
+    def convert(layer: Sdf.Layer) -> None:
+        one = np.arange(3, dtype=np.int32)
+        made = convert_polygons(layer, "Mould", np.zeros((3, 3)), one[2:] + 1, one, material.base_color)
+        attribute(made, "doubleSided", "bool", True, uniform=True)
+        label(made, "class", ["wall"])
+        bind(made, path)
+
+    return mould(convert, (*SHAPE, "faceVertexCounts", "faceVertexIndices"))

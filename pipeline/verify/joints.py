@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
-from pipeline.entities.plan import Plan
 from pipeline.geometry.contact import first_hits, group_boxes, wall_excesses
 from pipeline.geometry.freefloor import Walk
 from pipeline.geometry.kinematics import facing, handle_point, joint_range, moved_links, rotation
@@ -133,9 +132,10 @@ def check_leaves(home: Home, made: Bodies, walks: Walks, settings: VerifySetting
     levels = {o.opening_id: o.level for o in home.plan.openings}
     swings = {o.opening_id: o.swing.room_id for o in home.plan.openings if o.swing is not None}
     checks = []
-    for leaf, sweep in _leaf_sweeps(home.plan):
+    for leaf in leaves(home.plan):
         level = levels[leaf.opening_id]
         elevation = level * home.plan.storey_height
+        sweep = leaf_sweep(leaf, elevation)
         hits = _hits(sweep.prisms, -1, made, settings.touch)
         room = next((r.polygon for r in home.plan.rooms if r.room_id == swings[leaf.opening_id]), None)
         if room is not None:
@@ -162,19 +162,6 @@ def check_leaves(home: Home, made: Bodies, walks: Walks, settings: VerifySetting
             )
         )
     return checks
-
-
-_SWEPT: dict[int, tuple[Plan, list[tuple[Leaf, Sweep]]]] = {}
-
-
-def _leaf_sweeps(plan: Plan) -> list[tuple[Leaf, Sweep]]:
-    """Return a plan's door leaves and what they sweep; those of the last plan are kept, for a home is judged several times."""
-    if id(plan) not in _SWEPT:
-        levels = {o.opening_id: o.level for o in plan.openings}
-        found = [(leaf, leaf_sweep(leaf, levels[leaf.opening_id] * plan.storey_height)) for leaf in leaves(plan)]
-        _SWEPT.clear()
-        _SWEPT[id(plan)] = (plan, found)
-    return _SWEPT[id(plan)][1]
 
 
 def _hits(moved: Prisms, owner: int, made: Bodies, touch: float) -> NDArray[np.int64]:

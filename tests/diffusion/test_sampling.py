@@ -12,7 +12,7 @@ from pipeline.diffusion.settings import ModelSettings, SampleSettings
 from pipeline.errors import ContentError
 from tests.diffusion.small_world import LAYOUTS, make_context
 
-FEW = {"evaluations": 6, "batch": 4}
+FEW = {"evaluations": 6, "batch": 16}
 
 
 class Shelf:
@@ -56,8 +56,8 @@ def same(a, b):
 
 def test_a_room_does_not_know_who_shares_its_batch(weights):
     s = sampler(weights, Shelf())
-    rooms = [make_context(i, n_target=3 + i) for i in range(6)]
-    keys = [(i, 0, 0) for i in range(6)]
+    rooms = [make_context(i, n_target=3 + i % 4) for i in range(18)]  # batches of four to sixteen rooms
+    keys = [(i, 0, 0) for i in range(18)]
     together = s.sample_rooms(rooms, keys)
     alone = [s.sample_rooms([r], [k])[0] for r, k in zip(rooms, keys, strict=True)]
     turned = s.sample_rooms(rooms[::-1], keys[::-1])[::-1]

@@ -60,7 +60,7 @@ def test_style_decides_between_what_fits_alike_and_a_wish_goes_further():
 
 
 def test_finish_decides_where_there_is_no_style():
-    bare = replace(INDEX, styles=("",) * len(INDEX.styles))
+    bare = replace(INDEX, styles=np.zeros_like(INDEX.styles))
     assert draw_style(np.random.default_rng(0), bare) == ""
     assert asked(Taste(finishes={TIMBER: DARK}), DESK, bare) == ["desk_dark"]
     assert asked(Taste(finishes={TIMBER: LIGHT}), DESK, bare) == ["desk_light"]

@@ -1,0 +1,88 @@
+"""Assets as they are seen from straight above, and drawing them into a plan: turned and scaled, what is seen of them stays the same."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.asset import Asset
+from pipeline.geometry.compiled import compiled
+from pipeline.geometry.kept import kept
+from pipeline.rendering.pose import asset_triangles
+from pipeline.rendering.raster import AMBIENT, LIGHT, Frame, View, fill_triangle, render, top_down
+from pipeline.rendering.texture import display, face_colours
+
+FINENESS, MOST = 250.0, 640  # pixels per metre, and pixels a side, at which it is tried what is seen
+TO_LIGHT = LIGHT / np.linalg.norm(LIGHT)
+
+
+@dataclass(frozen=True, slots=True)
+class Roof:
+    """The triangles (T, 3, 3) [m, object frame] of an asset that are seen from above, and their display colours (T, 3)."""
+
+    faces: NDArray[np.float32]
+    colours: NDArray[np.float32]
+
+
+@kept
+def roof(asset: Asset) -> Roof:
+    """Return what is seen of an asset with all joints at 0."""
+    faces, _ = asset_triangles(asset)
+    seen = np.zeros(len(faces), np.bool_)
+    if len(faces):
+        low, high = faces[..., :2].min((0, 1)), faces[..., :2].max((0, 1))
+        width, height = (int(np.clip(math.ceil(FINENESS * side), 8, MOST)) for side in high - low)
+        items = render(top_down(low, high, width, height), faces, np.zeros((len(faces), 3), np.float32)).item
+        seen[items[items >= 0]] = True
+    return Roof(faces[seen].astype(np.float32), display(face_colours(asset, seen)))
+
+
+def draw_roof(
+    frame: Frame, view: View, asset: Asset, position: NDArray[np.float64], yaw: float, scale: NDArray[np.float64], item: int
+) -> None:
+    """Draw an asset into a frame that looks down at `position` (3,) [m], shaded as `render` does; `item` labels its pixels."""
+    found = roof(asset)
+    pose = np.array([*position, math.cos(yaw), math.sin(yaw)])
+    offset = np.array([view.width / 2, view.height / 2]) - view.scale * view.centre[:2] * (1.0, -1.0)
+    _draw(found.faces, found.colours, pose, scale, view.scale, offset, item, TO_LIGHT, AMBIENT, frame.colour, frame.depth, frame.item)
+
+
+@compiled
+def _draw(
+    faces: NDArray[np.float32],
+    colours: NDArray[np.float32],
+    pose: NDArray[np.float64],
+    size: NDArray[np.float64],
+    scale: float,
+    offset: NDArray[np.float64],
+    item: int,
+    light: NDArray[np.float64],
+    ambient: float,
+    colour: NDArray[np.uint8],
+    depth: NDArray[np.float32],
+    items: NDArray[np.int32],
+) -> None:
+    """Scale by `size`, turn and move by `pose` (x, y, z, cos, sin), shade and fill triangles.
+
+    A point's pixel is `offset` + `scale` times its (x, -y) [m].
+    """
+    world, corners, paint = np.empty((3, 3)), np.empty((3, 3), np.float32), np.empty(3, np.uint8)
+    for t in range(faces.shape[0]):
+        for k in range(3):
+            x, y = faces[t, k, 0] * size[0], faces[t, k, 1] * size[1]
+            world[k, 0] = pose[3] * x - pose[4] * y + pose[0]
+            world[k, 1] = pose[4] * x + pose[3] * y + pose[1]
+            world[k, 2] = faces[t, k, 2] * size[2] + pose[2]
+            corners[k, 0], corners[k, 1] = offset[0] + scale * world[k, 0], offset[1] - scale * world[k, 1]
+            corners[k, 2] = world[k, 2]
+        a, b = world[1] - world[0], world[2] - world[0]
+        normal = np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+        length = math.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
+        lambert = (normal[0] * light[0] + normal[1] * light[1] + normal[2] * light[2]) / max(length, 1e-12)
+        lambert = min(max(-lambert if normal[2] < 0 else lambert, 0.0), 1.0)  # the side that is seen
+        for k in range(3):
+            paint[k] = np.uint8(min(max(colours[t, k] * (ambient + (1.0 - ambient) * lambert) * 255.0 + 0.5, 0.0), 255.0))
+        fill_triangle(corners, paint, item, colour, depth, items)

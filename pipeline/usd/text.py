@@ -1,0 +1,80 @@
+"""Prims as text: what a home consists of is converted once, and then cast again and again under other names, at other places.
+
+Writing through Sdf costs some ten microseconds an attribute, and a home has four thousand; its text is read in one go.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Sdf
+
+from pipeline.usd.layer import prim
+
+Convert = Callable[[Sdf.Layer], object]
+
+
+def mould(convert: Convert, without: Iterable[str] = ()) -> str:
+    """Return the prim /Mould that `convert` writes into a layer as text, less the properties that each cast has of its own."""
+    layer = Sdf.Layer.CreateAnonymous(".usda")
+    convert(layer)
+    spec = layer.GetPrimAtPath("/Mould")
+    for name in without:
+        spec.RemoveProperty(spec.properties[name])
+    text: str = layer.ExportToString()
+    return text[text.index("def ") :]
+
+
+def cast(form: str, path: str, own: str = "") -> str:
+    """Return a mould's prim as it stands at `path`, with properties and children of its `own`."""
+    parent, name = path.rsplit("/", 1)
+    text = form.replace('"Mould"', f'"{name}"', 1).replace("</Mould", f"<{parent}/{name}")
+    return text.replace("{\n", f"{{\n{own}", 1)
+
+
+@functools.cache
+def group(kind: str = "", schema: str = "Xform") -> str:
+    """Return the mould of a prim that holds others, of a model kind or "" for none."""
+
+    def convert(layer: Sdf.Layer) -> None:
+        spec = prim(layer, "Mould", schema)
+        if kind:
+            spec.kind = kind
+
+    return mould(convert)
+
+
+def placed(position: Sequence[float], yaw: float = 0.0, scale: Sequence[float] = (1.0, 1.0, 1.0)) -> str:
+    """Return translate, orient and scale, as `layer.place` writes them."""
+    return (
+        f"double3 xformOp:translate = {numbers(position)}\n"
+        f"quatd xformOp:orient = {numbers((np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)))}\n"
+        f"float3 xformOp:scale = {numbers(scale)}\n"
+        'uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient", "xformOp:scale"]\n'
+    )
+
+
+def shaped(points: NDArray[np.floating]) -> str:
+    """Return the points (n, 3) [m] of a mesh and their extent."""
+    rows = np.asarray(points, np.float32)
+    ends = np.array([rows.min(axis=0), rows.max(axis=0)])
+    return f"point3f[] points = {rows_of(rows)}\nfloat3[] extent = {rows_of(ends)}\n"
+
+
+def numbers(values: Sequence[float]) -> str:
+    """Return a tuple of numbers that reads back to the same bits."""
+    return f"({', '.join(repr(float(v)) for v in values)})"
+
+
+def rows_of(values: NDArray[np.float32]) -> str:
+    """Return an array (n, k) as tuples."""
+    return f"[{', '.join(str(tuple(row)) for row in values.tolist())}]"
+
+
+def quoted(text: str) -> str:
+    """Return a string in quotes."""
+    return json.dumps(text, ensure_ascii=False)
