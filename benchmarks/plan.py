@@ -3,9 +3,9 @@
 python -m benchmarks.plan scores --count 5          the 20 prompts on 5 seeds, against the bars
 python -m benchmarks.plan times --count 200         CPU ms for 5, 8 and 12 rooms
 python -m benchmarks.plan failures --count 10000    programs of the prior, and of an independent generator; 1,000 and more are kept in
-                                                    docs/failures.json; one that was stopped goes on with --start
+                                                    benchmarks/records/failures.json; one that was stopped goes on with --start
 python -m benchmarks.plan diversity --count 100     one program, many seeds
-python -m benchmarks.plan knobs --count 120         every knob against its own term; tables over 100 seeds and more are kept in docs/knobs.json
+python -m benchmarks.plan knobs --count 120         every knob against its own term; tables over 100 seeds and more are kept in benchmarks/records/knobs.json
 """
 
 from __future__ import annotations

@@ -62,7 +62,7 @@ def contacts(plan: Plan) -> frozenset[tuple[str, str]]:
 
 
 def main(seeds: int) -> None:
-    """Print the mean pairwise IoU and the number of different wall-contact graphs per program; keep them in docs/planning.json."""
+    """Print the mean pairwise IoU and the number of different wall-contact graphs per program; keep them in benchmarks/records/planning.json."""
     programs: list[tuple[str, FloorProgram]] = [("8 rooms", home(8)), ("12 rooms", home(12)), *((p, complete(parse(p))) for p in PROMPTS)]
     figures = []
     for name, program in programs:

@@ -1,7 +1,7 @@
 """Failures to find a plan: programs of the prior, and programs read off plans of an independent generator.
 
 A refusal, a crash and whatever the audit finds are failures alike. Nothing stops the run: each is printed with its seed and reason.
-A run of LEAST programs or more is kept in docs/failures.json as it goes; one that was stopped goes on with `--start`.
+A run of LEAST programs or more is kept in benchmarks/records/failures.json as it goes; one that was stopped goes on with `--start`.
 """
 
 from __future__ import annotations

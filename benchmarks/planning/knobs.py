@@ -1,11 +1,11 @@
-"""Each knob against its own term: a table, its record (docs/knobs.json) and the picture of it (docs/images/knobs.png)."""
+"""Each knob against its own term: a table, its record (benchmarks/records/knobs.json) and the picture of it (docs/images/knobs.png)."""
 
 from __future__ import annotations
 
 import json
 import os
 
-from benchmarks.planning.record import DOCS, commit
+from benchmarks.planning.record import RECORDS, ROOT, commit
 from pipeline.experiments.knobs import VALUES, knob_picture, knob_table, monotone
 
 MOST_JOBS = 8
@@ -26,5 +26,5 @@ def main(seeds: int, first: int = 0) -> None:
         print(f"{name:14s}{row} {found['ends'][0] / max(found['ends'][1], 1e-12):15.1f}  {'yes' if monotone(found) else 'NO'}")
     if seeds < LEAST:
         return
-    (DOCS / "knobs.json").write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
-    (DOCS / "images" / "knobs.png").write_bytes(knob_picture(table))
+    (RECORDS / "knobs.json").write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
+    (ROOT / "docs" / "images" / "knobs.png").write_bytes(knob_picture(table))

@@ -1,4 +1,4 @@
-"""Figures that are too dear for `make run`: kept under docs/ with the command and the commit that made them, for the report to show."""
+"""Figures that are too dear for `make run`: kept under benchmarks/records/ with the command and the commit that made them, for the report to show."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
-DOCS = ROOT / "docs"
+RECORDS = ROOT / "benchmarks" / "records"
 
 
 @cache
@@ -24,18 +24,18 @@ def commit() -> str:
 
 
 def read(name: str) -> dict[str, Any]:
-    """Return what stands in docs/`name`, nothing where there is no such file."""
-    path = DOCS / name
+    """Return what stands in benchmarks/records/`name`, nothing where there is no such file."""
+    path = RECORDS / name
     found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
     return found
 
 
 def write(name: str, figures: Mapping[str, Any]) -> None:
-    """Write docs/`name`."""
-    (DOCS / name).write_text(json.dumps(figures, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    """Write benchmarks/records/`name`."""
+    (RECORDS / name).write_text(json.dumps(figures, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
 def keep(what: str, count: int, figures: Any) -> None:
-    """Put the figures of one measurement into docs/planning.json, beside those of the others."""
+    """Put the figures of one measurement into benchmarks/records/planning.json, beside those of the others."""
     told = {"command": f"python -m benchmarks.plan {what} --count {count}", "commit": commit(), "figures": figures}
     write("planning.json", read("planning.json") | {what: told})

@@ -50,7 +50,7 @@ def ceiling(case: Mapping[str, Any], program: FloorProgram) -> float:
 
 
 def main(seeds: int) -> None:
-    """Print both tables: means over prompts and seeds, and the spread of each score over seeds; keep them in docs/planning.json."""
+    """Print both tables: means over prompts and seeds, and the spread of each score over seeds; keep them in benchmarks/records/planning.json."""
     every = cases()
     figures: dict[str, Any] = {}
     tops = [ceiling(c, parse(c["prompt"])) for c in every]

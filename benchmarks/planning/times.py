@@ -27,7 +27,7 @@ def home(count: int) -> FloorProgram:
 
 
 def main(seeds: int) -> None:
-    """Print times and effort per number of rooms; keep them in docs/planning.json."""
+    """Print times and effort per number of rooms; keep them in benchmarks/records/planning.json."""
     figures = []
     search(home(5), 0)  # compiles
     print(

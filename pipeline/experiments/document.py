@@ -32,6 +32,8 @@ from schemas.scenes import SCENES
 LEAD = "Made by sfgen from the embedded corpus. Every figure was measured in the run that wrote this page; intervals are 95 %."
 SHOWN = 24  # top views on the page
 
+RECORDS = "benchmarks/records"  # figures that are too dear for `make run`, each with its commit and command
+
 
 def write_report(
     root: Path, figures: Mapping[str, Any], rejects: Sequence[RejectCount], factory: Factory, settings: MetricsSettings
@@ -97,7 +99,7 @@ def _calibration(folder: Path, found: Mapping[str, Any]) -> Section:
 
 def _planning(root: Path) -> list[Section]:
     """Return the chapter of the bars of floor plans, from the records that the checkout carries."""
-    kept, failures, knobs = (_json(root / "docs" / name) for name in ("planning.json", "failures.json", "knobs.json"))
+    kept, failures, knobs = (_json(root / RECORDS / name) for name in ("planning.json", "failures.json", "knobs.json"))
     made = planning.planning_section(kept, failures, knobs, monotone)
     return [made] if made else []
 
@@ -109,8 +111,8 @@ def _baselines(root: Path) -> list[Section]:
 
 
 def _knobs(root: Path, folder: Path) -> list[Section]:
-    """Return the chapter of the knobs, from the table that the checkout carries; a checkout without docs has none."""
-    kept = root / "docs" / "knobs.json"
+    """Return the chapter of the knobs, from the table that the checkout carries; a checkout without benchmarks has none."""
+    kept = root / RECORDS / "knobs.json"
     if not kept.is_file():
         return []
     table = _json(kept)

@@ -15,7 +15,7 @@ KNOBS = "python -m benchmarks.plan knobs"
 def planning_section(planning: Json, failures: Json, knobs: Json, falls: Callable[[Json], bool]) -> Section | None:
     """Return the table of the bars from the records that the checkout carries; None where there is none.
 
-    `planning`, `failures`, `knobs` are docs/planning.json, failures.json and knobs.json, empty where they are missing; `falls` tells
+    `planning`, `failures`, `knobs` are planning.json, failures.json and knobs.json of benchmarks/records/, empty where they are missing; `falls` tells
     whether a knob's own term falls as it is turned.
     """
     rows = [*_scores(planning.get("scores")), *_times(planning.get("times"))]

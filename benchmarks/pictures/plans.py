@@ -1,4 +1,4 @@
-"""Draws the plans of docs/images/plans.png: `python docs/plan_sheet.py docs/images`."""
+"""Draws the plans of docs/images/plans.png: `python benchmarks/pictures/plans.py docs/images`."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The furniture library in pictures and figures: path-traced contact sheets, and the counts of docs/library.md.
 
-python docs/library_sheets.py FOLDER [--only beds,chairs,counts] [--count 30] [--spp 24] [--cell 200] [--seed 0]
+python benchmarks/pictures/library.py FOLDER [--only beds,chairs,counts] [--count 30] [--spp 24] [--cell 200] [--seed 0]
 
 One sheet per group of categories goes to FOLDER/images; the tables between the two marks of FOLDER/library.md are made anew.
 All models are written as their files, read back as any 3D-FUTURE model or PartNet-Mobility object is, and rendered; of models
@@ -34,7 +34,7 @@ from pipeline.sources.guarded import Folder
 from pipeline.sources.partnet import read_shape
 from pipeline.sources.settings import ModelLimits
 
-MARKS = ("<!-- counts: made by docs/library_sheets.py -->\n", "<!-- end of counts -->\n")
+MARKS = ("<!-- counts: made by benchmarks/pictures/library.py -->\n", "<!-- end of counts -->\n")
 SHEETS = {
     "beds": ("double_bed", "single_bed", "kids_bed"),
     "chairs": ("dining_chair", "lounge_chair", "dressing_chair", "chinese_chair", "barstool", "stool"),
