@@ -13,6 +13,7 @@ from pipeline.sources.cutting import cut
 from pipeline.sources.densities import BOARD, BOXES, HOLLOW, MINIMUM
 from pipeline.sources.inertials import Inertial
 from pipeline.sources.merging import merged
+from pipeline.sources.near_boxes import boxed
 from pipeline.sources.settings import ModelLimits
 from pipeline.sources.solids import Part, convex, dissected, mass_properties
 
@@ -131,4 +132,5 @@ def _hollowed(part: Part, kind: str) -> Part:
 
 
 def _piece(number: int, part: Part) -> Mesh:
-    return Mesh(f"piece_{number:03d}", part.hull.astype(np.float32), part.faces.astype(np.int32))
+    hull, faces = boxed(part.hull, part.faces)
+    return Mesh(f"piece_{number:03d}", hull.astype(np.float32), faces.astype(np.int32))
