@@ -10,11 +10,9 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from tqdm import tqdm
-
 from pipeline import params, taxonomy
 from pipeline.errors import ContentError
-from pipeline.execution import cores
+from pipeline.execution import cores, track
 from pipeline.relations import files, learning
 from pipeline.relations.split import rooms_of
 from pipeline.sources import batch, inventory, proportions
@@ -48,7 +46,7 @@ def main(root: Path) -> None:
     library = read_library(root, front, partnet, objects, settings, workers)
     step, task, houses = homes(front, peers, library, settings)
     out = root / "data" / "tables"
-    read = progress(batch.each(step, task, houses, workers), "houses", len(houses))
+    read = track(batch.each(step, task, houses, workers), len(houses), "houses", unit="house")
     summary = write_houses(out, read, library, peers or front)
     library.assets += add_mirrored(root / "data" / "assets", library.assets, summary.assets)
     write_library(out, library, summary)
@@ -73,17 +71,17 @@ def read_library(
     out = root / "data" / "assets"
     library = LibraryRows()
     houses = [] if settings.peers else batch.house_files(front)
-    said = hints(progress(batch.each(batch.house_records, front, houses, workers), "records", len(houses)), taxonomy.load())
+    said = hints(track(batch.each(batch.house_records, front, houses, workers), len(houses), "records", unit="house"), taxonomy.load())
     if (front / batch.MODELS).is_dir():  # `folder` has seen to it, but where rooms can do without
         infos, library.rejects = batch.future_models(front, said)
         task = LibraryTask(front, out, settings.models, settings.front_licence, said)
-        for made in progress(batch.each(batch.read_future, task, infos, workers), "models", len(infos)):
+        for made in track(batch.each(batch.read_future, task, infos, workers), len(infos), "models", unit="model"):
             library.add(made)
     if partnet:
         categories = named_categories(Folder.at(partnet))
         spreads = proportions.spreads(batch.each(proportions.drawn, partnet, [found.path for found in objects], workers))
         task = LibraryTask(partnet, out, settings.models, settings.partnet_licence, categories=categories, spreads=spreads)
-        for made in progress(batch.each(batch.read_partnet, task, objects, workers), "articulated", len(objects)):
+        for made in track(batch.each(batch.read_partnet, task, objects, workers), len(objects), "articulated", unit="object"):
             library.add(made)
     if not library.assets and not settings.peers and not settings.filters.keep_without_model:
         raise ContentError(f"{front} gives no usable model", "check the folders in section preprocess of params.yaml")
@@ -103,12 +101,6 @@ def folder(root: Path, key: str, path: str, parts: Iterable[str]) -> Path:
             raise ContentError(f"preprocess.{key}: {part} is {'no folder' if part.exists() else 'missing'}", remedy)
     return found
 
-
-def progress(results: Iterable[Any], name: str, total: int) -> Iterable[Any]:
-    """Show how far long work is and how long it will take: a bar on a terminal, a line every half minute elsewhere."""
-    seen = sys.stderr.isatty()
-    bar: Iterable[Any] = tqdm(results, name, total, unit="", mininterval=1.0 if seen else 30.0, delay=0.0 if seen else 30.0)
-    return bar
 
 
 if __name__ == "__main__":

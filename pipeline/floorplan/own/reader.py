@@ -141,6 +141,8 @@ def _built(sketch: Sketch) -> Plan:
         walls = [s for level in levels for s in stretches(storey(rooms, level), level, outer)]
     fitted = fit(sketch, rooms, walls)
     _open_where_touching(sketch, walls, fitted)
+    if sketch.foreign:
+        _keep_main_part(sketch, rooms, walls, fitted)
     entrance = _entrance(sketch, rooms, walls, fitted)
     _join(sketch, rooms, walls, fitted, entrance)
     gaps = [f.stretch.gap for f in fitted if len(f.stretch.rooms) == 2 and f.opening.kind != "window" and f.stretch.gap >= TOUCH]
@@ -222,6 +224,20 @@ def _entrance(sketch: Sketch, rooms: list[Room], walls: list[Stretch], fitted: l
     raise refuse(f"no outside wall of {', '.join(wanted)} has room for an entrance")
 
 
+def _keep_main_part(sketch: Sketch, rooms: list[Room], walls: Iterable[Stretch], fitted: list[Fitted]) -> None:
+    """Leave rooms out that stand apart from the largest part which hangs together by openings, or by walls that may get doors."""
+    area = {r.room_id: r.area for r in rooms}
+    pairs = [set(s.rooms) for s in walls if len(s.rooms) == 2] + [set(f.opening.rooms) for f in fitted if f.opening.kind in PASSAGES]
+    parts: list[set[str]] = [{room} for room in area]
+    for pair in pairs:
+        joined = [part for part in parts if part & pair]
+        parts = [part for part in parts if not part & pair] + ([set().union(*joined)] if joined else [])
+    main = max(parts, key=lambda part: (round(sum(area[room] for room in part), 3), min(part)))
+    _leave_out(sketch, rooms, fitted, [room for room in area if room not in main], "it stands apart")
+    if sketch.entrance not in main:
+        sketch.entrance = ""
+
+
 def _only_entrance(sketch: Sketch, chosen: Fitted, marked: list[Fitted]) -> None:
     """Of several outside doors one is the entrance, the others are doors."""
     for item in marked:
@@ -257,11 +273,15 @@ def _leave(sketch: Sketch, rooms: list[Room], fitted: list[Fitted], lost: list[s
     area = {r.room_id: r.area for r in rooms}
     if 2 * sum(area[r] for r in lost) > sum(area.values()):
         return False
+    _leave_out(sketch, rooms, fitted, lost, "nothing leads to it")
+    return True
+
+
+def _leave_out(sketch: Sketch, rooms: list[Room], fitted: list[Fitted], lost: list[str], why: str) -> None:
     for room in lost:
-        sketch.repair("left_out", room, "left out: nothing leads to it")
+        sketch.repair("left_out", room, f"left out: {why}")
     rooms[:] = [r for r in rooms if r.room_id not in lost]
     fitted[:] = [f for f in fitted if not set(f.opening.rooms) & set(lost)]
-    return True
 
 
 def _explain(rooms: list[Room], walls: list[Stretch], lost: list[str]) -> None:

@@ -39,13 +39,18 @@ ROLE_OF = {
 
 
 def resolve_types(sketch: Sketch) -> None:
-    """Give every room one of our types, stating what was translated. Raises RefusedError for a type that nothing resembles."""
+    """Give every room one of our types, stating what was translated.
+
+    A type that nothing resembles is a store in a house of a dataset; elsewhere RefusedError is raised, for whoever wrote it can say what is meant.
+    """
     for room in sketch.rooms:
         said = room.type
         kind = re.sub(r"[^a-z]+", "_", re.sub(r"(?<=[a-z])(?=[A-Z])", "_", said).lower()).strip("_")
         plain = kind.replace("_", "")
         found = next((t for t in (kind, ALIASES.get(kind, ""), ALIASES.get(plain, ""), f"{kind}_room") if t in TYPES), "")
         found = found or next((t for t in TYPES if t.replace("_", "") == plain), "")
+        if not found and sketch.foreign:
+            found = "storage"
         if not found:
             near = difflib.get_close_matches(kind, TYPES, 1)
             hint = f"did you mean {near[0]}?" if near else f"types are {', '.join(TYPES)}"

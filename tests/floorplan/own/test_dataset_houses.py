@@ -96,6 +96,22 @@ def test_a_home_that_is_closed_for_the_larger_part_is_refused():
         check_sound(own.plan, VerifySettings())
 
 
+def test_a_house_of_which_rooms_are_missing_is_entered_where_most_of_it_is():
+    """Bedroom and balcony stand apart: the balcony has doors, and yet the bedroom is the home."""
+    tree, _ = front_houses.house("x", front_houses.Ways(balcony=True))
+    tree["scene"]["room"] = [r for r in tree["scene"]["room"] if r["type"] in {"MasterBedroom", "KidsRoom", "Balcony"}]
+    own = read_own_json(tree, "x")
+    assert [r.role for r in own.plan.rooms] == ["primary"]
+    assert sorted(r.where for r in own.repairs if r.code == "left_out") == ["r_balcony_106", "r_kidsroom_105"]
+
+
+def test_a_room_of_a_type_that_nobody_knows_is_a_store_and_said():
+    tree, _ = front_houses.house("x", front_houses.Ways(types={"KidsRoom": "PrayerNook", "Bathroom": ""}))
+    own = read_own_json(tree, "x")
+    assert [r.type for r in own.plan.rooms].count("storage") == 2
+    assert "the type 'PrayerNook' is taken as storage" in [r.text for r in own.repairs]
+
+
 def test_a_room_that_nothing_leads_to_is_left_out_and_said():
     tree, _ = front_houses.house("x", front_houses.Ways())
     making_far = [[12 + x, y, z] for x, y, z in ((0, 0, 0), (3, 0, 0), (3, 0, 3), (0, 0, 3))]
