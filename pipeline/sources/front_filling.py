@@ -35,7 +35,6 @@ def fill(
     found = {room.room_id: Candidates() for room in rooms}
     mine = {id(room.record): room for room in rooms}
     seen: set[tuple[Any, ...]] = set()
-    counts: dict[str, Counter[str]] = {}
     for record in house.rooms:
         room = mine.get(id(record))
         where = f"{house.uid}/{record.instance}"
@@ -62,13 +61,12 @@ def fill(
             else:
                 reason = made if isinstance(made, tuple) else ("outside_room", _outside(made, room, record))
                 rejects.append(reject("object", name, *reason))
-        if room:
-            counts[room.room_id] = count
+        rejects += [reject("room", where, k, f"{count[k]} of {len(record.children)} children") for k in sorted(count) if count[k]]
     placed_ones = {child.ref for record in house.rooms for child in record.children}
-    missing = ((uid, r) for uid, r in house.furniture.items() if r.valid and uid not in placed_ones)
+    missing = ((uid, r) for uid, r in house.furniture.items() if r.valid is not None and uid not in placed_ones)
     rejects += [reject("object", f"{house.uid}/{uid}", "not_placed", f"model {r.jid}") for uid, r in missing]
     for room in rooms:
-        _keep(house, room, found[room.room_id], counts[room.room_id], taxonomy, limits, rejects)
+        _keep(house, room, found[room.room_id], taxonomy, limits, rejects)
 
 
 def _home(made: Placed, room: ReadRoom | None, rooms: list[ReadRoom], limits: FrontFilters) -> ReadRoom | None:
@@ -88,12 +86,9 @@ def _outside(made: Placed, room: ReadRoom | None, record: RoomRecord) -> str:
     return f"{inside(made, room.polygon):.0%} of the footprint inside"
 
 
-def _keep(
-    house: HouseFile, room: ReadRoom, found: Candidates, count: Counter[str], taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]
-) -> None:
+def _keep(house: HouseFile, room: ReadRoom, found: Candidates, taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]) -> None:
     """Give a room what lies in it, but for what lies in each other and what hangs in the air."""
     where = f"{house.uid}/{room.record.instance}"
-    rejects += [reject("room", where, k, f"{count[k]} of {len(room.record.children)} children") for k in sorted(count) if count[k]]
     candidates = [*found.own, *found.guests]
     if len(candidates) > MAX_OBJECTS:
         raise SourceError("too_large", where, f"{len(candidates)} objects in {where}")

@@ -63,7 +63,7 @@ REASONS: dict[str, Reason] = {
     "bad_height": Reason("object", "dropped", "reaches below the floor or above `max_top`"),
     "outside_room": Reason("object", "dropped", "less than `min_inside` of its footprint lies in the room"),
     "other_room": Reason("object", "repaired", "filed under another room than the one in which it lies; it is in the latter"),
-    "not_placed": Reason("object", "dropped", "a valid furniture record that no room of the file refers to"),
+    "not_placed": Reason("object", "dropped", "a furniture record, valid or not, that no room of the file refers to"),
     "duplicate": Reason("object, model", "dropped", "the same model at the same pose was read before"),
     "overlap": Reason("object", "dropped", "shares more than `max_overlap` of its volume with a larger object"),
     "no_support": Reason("object", "dropped", "a small thing whose support was left out: it would hang in the air"),

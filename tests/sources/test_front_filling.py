@@ -168,3 +168,15 @@ def test_objects_without_models_need_no_models(tmp_path):
     made = read(tmp_path, filters={"keep_without_model": True})
     assert [o["category"] for o in made.objects] == ["double_bed", "nightstand", "pendant_lamp"]
     assert made.assets == []
+
+
+def test_what_is_filed_under_a_room_without_a_floor_is_counted_too(tmp_path):
+    making.write_library(tmp_path / "front", (BED, STAND, LAMP))
+    tree = making.two_rooms("house-a", more_furniture=[making.chair_record("gone/model", STAND, valid=False)])
+    tree["scene"]["room"].append(
+        {"type": "OtherRoom", "instanceid": "OtherRoom", "children": [making.child("nothing", f"furniture/{k}") for k in (1, 2)]}
+    )
+    making.write_house(tmp_path / "front", tree, "house-a")
+    told = {(r["where"], r["reason"], r["detail"]) for r in read(tmp_path).rejects}
+    assert ("house-a/OtherRoom", "dangling_ref", "2 of 2 children") in told
+    assert ("house-a/gone/model", "not_placed", f"model {STAND}") in told
