@@ -25,6 +25,7 @@ NEAR = 1e-3  # share of the link's diagonal within which boxes count as touching
 POCKET = 0.008  # the same for the depth of a slab's pockets: 8 mm of a door of 1 m
 SLAB = 0.06  # the same for the thickness of a slab
 MOST = 1500  # pieces; beyond that a link is left as it is, for pairs grow with the square
+HULLS = 9000  # that are tried at first, about: where hundreds of pieces touch each other, each is offered to the likeliest few
 ALL = 40  # pieces of a slab up to which what lies between any two is looked at
 SAMPLES = (8, 40)  # a side, of the grids on which a slab's pockets are looked for
 
@@ -54,6 +55,7 @@ class _State:
         self.matter = [p.hull_volume for p in pieces]
         self.planes = [_planes(p) for p in pieces]
         self.boxes: Floats = np.array([[p.hull.min(axis=0), p.hull.max(axis=0)] for p in pieces])
+        self.few = max(4, HULLS // len(pieces))
         self.span = float(np.linalg.norm(self.boxes[:, 1].max(axis=0) - self.boxes[:, 0].min(axis=0)))
 
     def living(self) -> list[int]:
@@ -76,7 +78,7 @@ class _State:
         return held
 
     def offers(self, i: int, others: Sequence[int]) -> list[tuple[float, int, int]]:
-        """Return the offers of piece i to pieces that touch it: bounds for all at once, hulls for the few that pass."""
+        """Return the offers of piece i to pieces that touch it: bounds for all at once, hulls for the likeliest few that pass."""
         if not others:
             return []
         js = np.asarray(others)
@@ -88,8 +90,9 @@ class _State:
         normals, offsets = self.planes[i]
         above = np.maximum(np.concatenate(hulls) @ normals.T - offsets, 0.0).sum(axis=1) / 6
         grown = self.pieces[i].hull_volume + np.maximum.reduceat(above, starts)
-        passed = js[(least > 0) & (grown <= least / (1 - GAIN) * (1 + 1e-9))]
-        return [entry for j in passed.tolist() if (entry := self.offer(min(i, j), max(i, j)))]
+        passed = np.flatnonzero((least > 0) & (grown <= least / (1 - GAIN) * (1 + 1e-9)))
+        likely = passed[np.argsort((grown[passed] / least[passed]).round(9), kind="stable")[: self.few]]
+        return [entry for j in np.sort(js[likely]).tolist() if (entry := self.offer(min(i, j), max(i, j)))]
 
     def offer(self, i: int, j: int) -> tuple[float, int, int] | None:
         """Return (share that the common hull fills, i, j), or None where it is more than GAIN."""

@@ -4,7 +4,7 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.sources import colliders
+from pipeline.sources import colliders, merging
 from pipeline.sources.colliders import link, solids
 from pipeline.sources.cutting import cut
 from pipeline.sources.densities import MINIMUM
@@ -252,3 +252,17 @@ def test_a_board_with_holes_drawn_from_both_sides_is_one_part(seed):
     """At a hole a face and its own back share an edge with nobody else: the two are no closed part."""
     mesh = mobility.dirty(mobility.board((0, 0, 0), (1, 0.4, 0.6), 12, 0.01), np.random.default_rng(seed))
     assert len(components(*mesh)) == 1
+
+
+def test_a_bound_on_the_hulls_that_are_tried_where_everything_touches(monkeypatch):
+    """Of pieces that all touch each other there are pairs without end; each is offered to the likeliest few, and what fits best still becomes one."""
+    rng = np.random.default_rng(0)
+    crowd = [p for _ in range(24) for p in parts(*box(rng.uniform(0.2, 0.5, 3), rng.uniform(-0.1, 0.1, 3)))]
+    boards = [p for k in range(6) for p in parts(*box((0.1, 0.8, 0.01), (0.1 * k - 0.25, 0, 0.9)))]
+    tried = []
+    hulls = merging._hull
+    monkeypatch.setattr(merging, "_hull", lambda pieces: tried.append(len(pieces)) or hulls(pieces))
+    monkeypatch.setattr(merging, "HULLS", 150)  # five for each of the thirty
+    made = merged(crowd + boards)
+    assert sum(count == 2 for count in tried) <= 2 * 5 * 30
+    assert sum(p.hull.min(axis=0)[2] > 0.8 for p in made) == 1
