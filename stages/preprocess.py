@@ -102,6 +102,5 @@ def folder(root: Path, key: str, path: str, parts: Iterable[str]) -> Path:
     return found
 
 
-
 if __name__ == "__main__":
     run(main)
