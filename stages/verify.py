@@ -19,7 +19,7 @@ def main(_root: Path, *, folder: Path, quick: bool = False, voice: Voice = "plai
     summary = check(folder, files.at)
     files.close()
     if not quick:
-        from pipeline.usd import check_stage
+        from pipeline.usd.check import check_stage
 
         for path in track(stages(folder), summary.homes, "stages", unit="stage", voice=voice):
             check_stage(path)

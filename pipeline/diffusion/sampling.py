@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from pipeline import seeds, taxonomy
-from pipeline.diffusion.batch import RoomBatch, bucket_of, room_batch
+from pipeline.diffusion.batch import RoomBatch, room_batch
 from pipeline.diffusion.checkpoint import Header, load_weights
 from pipeline.diffusion.codec import CHANNELS
 from pipeline.diffusion.context import Library, Proposal, RoomContext
@@ -27,7 +27,8 @@ from pipeline.diffusion.solver import diffused
 from pipeline.errors import ContentError
 
 Key = tuple[int, int, int]  # home index, room number, attempt
-TOKENS = (10, 16, 32)  # floor tokens that the rooms of a batch are padded to
+# Slots and floor tokens that the rooms of a batch are padded to: few shapes, for an evaluation costs more by its operations than by its rooms.
+SLOTS, TOKENS = (6, 12, 24, 32), (16, 32)
 QUAD = 4  # batches are filled up to multiples of so many rooms: products of fewer rows are summed in another order
 
 
@@ -103,7 +104,7 @@ class Sampler:
 
     def _batches(self, floors: Sequence[Floor], held: Sequence[NDArray[np.int64]]) -> Iterator[tuple[int, int, list[int]]]:
         """Cut rooms into batches of one shape: yields slots, floor tokens, and the indices of the rooms. A room's shape is its own."""
-        slots = bucket_of(np.array([len(h) for h in held], np.int64))
+        slots = np.array(SLOTS)[np.searchsorted(SLOTS, [len(h) for h in held])]
         tokens = np.array(TOKENS)[np.searchsorted(TOKENS, [int(f.mask.sum()) for f in floors])]
         for shape in sorted({(int(s), int(t)) for s, t, h in zip(slots, tokens, held, strict=True) if len(h)}):
             alike = [i for i, h in enumerate(held) if len(h) and (slots[i], tokens[i]) == shape]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 
 import numpy as np
@@ -36,10 +37,7 @@ def stand_pose(
     prisms, of which those below `ceiling` [m] must stay `radius` [m] away; `reach` [m] bounds the distance to the grip,
     `cone` [deg] the angle to the heading. Straight ahead is tried before the sides, middle distances before near and far.
     """
-    near, far = reach
-    distances = np.linspace(near, far, DISTANCES)
-    distances = distances[np.argsort(np.round(np.abs(distances - (near + far) / 2), 9), kind="stable")]
-    turns = np.radians([k * side * TURN for k in range(int(cone // TURN) + 1) for side in ((1, -1) if k else (1,))])
+    distances, turns = _tried(reach, cone)
     low = np.flatnonzero(swept.z[:, 0] < ceiling)
     raster = walked.floor.raster
     x, y, found = _search(
@@ -57,6 +55,15 @@ def stand_pose(
         radius,
     )
     return (x, y) if found else None
+
+
+@functools.lru_cache(maxsize=16)
+def _tried(reach: tuple[float, float], cone: float) -> tuple[Floats, Floats]:
+    """Return the distances [m] to the handle and the turns [rad] from its heading that are tried, in their order."""
+    near, far = reach
+    distances = np.linspace(near, far, DISTANCES)
+    distances = distances[np.argsort(np.round(np.abs(distances - (near + far) / 2), 9), kind="stable")]
+    return distances, np.radians([k * side * TURN for k in range(int(cone // TURN) + 1) for side in ((1, -1) if k else (1,))])
 
 
 @compiled

@@ -168,11 +168,11 @@ def home_rows(
 ) -> dict[str, list[Row]]:
     """Return a finished home's rows by table; `tries` counts the tries of its rooms."""
     openable = {p.object_id: assets[p.asset_id].openable for p in home.placements}
-    figures = certificate.room_figures()
+    figures, small = certificate.room_figures(), taxonomy.small
     rooms = []
     for room in home.plan.rooms:
         row = room_row(home.scene_id, room, layout_type(room, home.plan, taxonomy)) | figures[room.room_id]
-        mine = [p for p in home.in_room(room.room_id) if p.category not in taxonomy.small]
+        mine = [p for p in home.in_room(room.room_id) if p.category not in small]
         row |= {"objects": len(mine), "openable": sum(openable[p.object_id] for p in mine)}
         if room.room_id in results:
             draft = results[room.room_id].draft
@@ -186,7 +186,7 @@ def home_rows(
         scene_row(home)
         | certificate.scene_figures()
         | {
-            "objects": sum(p.category not in taxonomy.small for p in home.placements),
+            "objects": sum(p.category not in small for p in home.placements),
             "attempts": tries,
             "licence": licence,
             "usd": f"usd/{home.scene_id}.usdc",

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.geometry.compiled import compiled
+
 
 def anchored(
     position: NDArray[np.float64],
@@ -30,14 +32,15 @@ def anchored(
     return moved
 
 
+@compiled
 def _wall_within(point: NDArray[np.float64], outward: NDArray[np.float64], polygon: NDArray[np.float64], reach: float) -> bool:
-    """Whether a wall that faces `outward` squarely passes within `reach` of the point."""
-    start, end = polygon, np.roll(polygon, -1, 0)
-    along = end - start
-    length = np.maximum(np.linalg.norm(along, axis=1), 1e-9)
-    along = along / length[:, None]
-    normal = np.stack([along[:, 1], -along[:, 0]], 1)  # outward for a counter-clockwise polygon
-    offset = ((start - point) * normal).sum(1)
-    place = ((point - start) * along).sum(1)
-    square = normal @ outward > 0.98
-    return bool((square & (np.abs(offset) < reach) & (place > -0.1) & (place < length + 0.1)).any())
+    """Whether a wall of a counter-clockwise polygon that faces `outward` squarely passes within `reach` of the point."""
+    for k in range(len(polygon)):
+        start, end = polygon[k], polygon[(k + 1) % len(polygon)]
+        length = max(np.hypot(end[0] - start[0], end[1] - start[1]), 1e-9)
+        x, y = (end[0] - start[0]) / length, (end[1] - start[1]) / length
+        place = (point[0] - start[0]) * x + (point[1] - start[1]) * y
+        offset = (start[0] - point[0]) * y - (start[1] - point[1]) * x
+        if y * outward[0] - x * outward[1] > 0.98 and abs(offset) < reach and -0.1 < place < length + 0.1:
+            return True
+    return False

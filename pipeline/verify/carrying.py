@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -13,7 +12,7 @@ from pipeline.entities.asset import Asset, Joint
 from pipeline.entities.home import Placement
 from pipeline.geometry.kinematics import moved_links
 from pipeline.geometry.polygons import contains
-from pipeline.geometry.prisms import Prisms, prism, stacked
+from pipeline.geometry.prisms import Prisms, covering, stacked
 from pipeline.verify.bodies import Bodies
 
 LEVEL = 0.1  # a slide whose axis rises less than this per metre keeps what lies in it
@@ -66,11 +65,10 @@ def way(made: Bodies, things: Sequence[int], joint: Joint, turn: NDArray[np.floa
     """
     p = made.prisms
     axis = turn @ joint.axis
+    moves = np.asarray(ends)[:, None, None] * axis
     groups = []
     for i in (i for g in things for i in range(int(made.start[g]), int(made.start[g + 1]))):
         corners = p.polygon(i)
-        points = np.concatenate([np.column_stack([corners, np.full(len(corners), z)]) for z in p.z[i]])
-        for step, (a, b) in enumerate(itertools.pairwise(ends)):
-            covered = prism(np.concatenate([points + axis * a, points + axis * b]), step)
-            groups += [covered] if covered is not None else []
+        posed = np.concatenate([np.column_stack([corners, np.full(len(corners), z)]) for z in p.z[i]]) + moves
+        groups.append(covering(np.concatenate([posed[:-1], posed[1:]], axis=1)))
     return stacked(groups)

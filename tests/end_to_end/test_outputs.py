@@ -11,7 +11,7 @@ import sfgen
 from pipeline import tables, taxonomy
 from pipeline.entities.files import load_asset
 from pipeline.shards import TABLES, check
-from pipeline.usd import check_stage
+from pipeline.usd.check import check_stage
 from schemas.assets import ASSET_JOINTS, ASSET_PARTS, ASSETS, LATENTS
 from schemas.objects import OBJECTS
 from schemas.openings import OPENINGS

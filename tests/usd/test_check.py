@@ -6,7 +6,8 @@ import pytest
 from pxr import Gf, Sdf
 
 from pipeline.errors import ContentError
-from pipeline.usd import check_stage, write_home, write_library
+from pipeline.usd import write_home, write_library
+from pipeline.usd.check import check_stage
 
 
 @pytest.fixture

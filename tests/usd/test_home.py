@@ -11,7 +11,8 @@ import pytest
 from pxr import Sdf, Usd, UsdGeom, UsdLux, UsdPhysics
 
 from pipeline.errors import ContentError
-from pipeline.usd import check_stage, write_home, write_library, write_mujoco_overlay
+from pipeline.usd import write_home, write_library, write_mujoco_overlay
+from pipeline.usd.check import check_stage
 
 
 @pytest.fixture(scope="module")
