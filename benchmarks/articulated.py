@@ -1,4 +1,4 @@
-"""What articulated objects cost to read: CPU seconds of each, over made ones of several categories and of up to 150,000 triangles.
+"""What articulated objects cost to read: CPU seconds of each, over made ones of several categories and of up to 300,000 triangles; and the memory of the process.
 
     python benchmarks/articulated.py [objects]
 
@@ -22,8 +22,8 @@ from pipeline.sources.batch import LibraryTask
 from pipeline.sources.settings import ModelLimits
 from tests.sources import mobility
 
-OBJECTS = 36
-TRIANGLES = (5_000, 20_000, 60_000, 150_000)  # of an object, by turns
+OBJECTS = 60
+TRIANGLES = (5_000, 20_000, 60_000, 150_000, 300_000)  # of an object, by turns
 TWICE = 1.6  # by what drawing faces from both sides makes them more
 LICENCE = "CC0-1.0"
 

@@ -1,11 +1,14 @@
 """Articulated objects in the way the real ones are: drawn open, along their depth, upright, without a frame, of very many parts."""
 
 import time
+import tracemalloc
 
 import numpy as np
 import pytest
 
 from pipeline.entities.files import load_asset
+from pipeline.sources import joint_rules
+from pipeline.sources.shape import ShapeBody
 from tests.sources import mobility
 from tests.sources.reading import read
 
@@ -154,3 +157,15 @@ def test_words_are_whole_words(word, kind, part):
     from pipeline.sources.part_classes import named_class
 
     assert named_class(kind, word) == part
+
+
+def test_many_points_cost_little_memory():
+    """To see whether a lid or handle is drawn open, the points are projected on a hundred directions: not on all of them at once."""
+    points = rng().normal(size=(600_000, 3))
+    body = ShapeBody("lid", collisions=[(points, np.arange(600_000).reshape(-1, 3))])
+    tracemalloc.start()
+    outline = joint_rules._outline(body)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 120 << 20  # all at once it is 1,168 MiB
+    assert np.ptp(outline, axis=0) == pytest.approx(np.ptp(points, axis=0))
