@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from pipeline.floorplan.language.clause import Clause
 from pipeline.floorplan.language.comparing import compare, factor, superlative
-from pipeline.floorplan.language.facts import ROLES, SOCIAL, Fact, Group, Reading
+from pipeline.floorplan.language.facts import ROLES, SOCIAL, Fact, Group
 from pipeline.floorplan.language.flagging import flag
 from pipeline.floorplan.language.introductions import backward
 from pipeline.floorplan.language.naming import fresh, name
@@ -41,29 +42,8 @@ def _known(fact: Fact) -> bool:
 DENIED = {"door": "not_connected", "leads": "not_connected", "open": "not_open", "near": "ban", "wall": "ban"}  # what "does not" means
 
 
-class Clause:
+class Sentence(Clause):
     """Reads one sentence from left to right."""
-
-    def __init__(self, state: Reading, sentence: list[Element]) -> None:
-        self.state, self.sentence = state, sentence
-        self.stock = state.inventory
-        self.run: list[Element] = []  # the list of phrases in front of the next cue
-        self.subject: Group = ()
-        self.latest: Group = ()
-        self.objects: Group = ()
-        self.waiting: tuple[Element, Group] | None = None  # a cue in front of its subject: "next to the kitchen lies ..."
-        self.negative: Element | None = None
-        self.way: Fact | None = None  # the last way that was said
-        self.verb = self.relative = self.single = False
-        self.only: Element | None = None
-        self.factor: Element | None = None
-        self.owner = ""
-        self.owning = ""
-        first = next((e for e in sentence if e.kind in {"np", "level", "zone", "every"}), None)
-        self.forward = first is not None and first.kind == "level"
-        self.level: int | None = None
-        self.left_out: Group = ()  # "except the guest room, each has ..."
-        self.wing: tuple[Element, list[str]] | None = None  # words for a wing in front of its rooms
 
     def read(self) -> None:
         """Read all elements."""
@@ -210,10 +190,6 @@ class Clause:
         if e.mark is not None:
             attach(self.state, self.sentence, k, e.mark, self.latest)
         return k + 1
-
-    def negated(self, k: int) -> bool:
-        """Whether a negation stands just in front of the element at k."""
-        return any(x.kind == "neg" for x in self.sentence[max(0, k - 3) : k])
 
     def _owner(self, k: int, e: Element) -> int:
         self.state.understood(e.first, e.last)
@@ -371,8 +347,3 @@ class Clause:
     def after(self, k: int, cue: str, left: Group) -> tuple[Group, int]:
         """Return the rooms named after a cue, and where reading goes on."""
         return objects(self, k, cue, left)
-
-    def give(self, things: Group, owners: Group, e: Element) -> None:
-        """Let rooms belong to others."""
-        self.stock.belongings.update(things)
-        self.state.say("own", things, owners, e)

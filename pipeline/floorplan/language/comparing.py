@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from pipeline.floorplan.language.clause import Clause
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.subjects import listed
-
-if TYPE_CHECKING:
-    from pipeline.floorplan.language.clauses import Clause
 
 
 def factor(clause: Clause, k: int, e: Element) -> int:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from pipeline.floorplan.language.clause import Clause
 from pipeline.floorplan.language.facts import SOCIAL
 from pipeline.floorplan.language.naming import name
 from pipeline.floorplan.language.openness import merge_after, windows
@@ -11,9 +10,6 @@ from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import storey
 from pipeline.floorplan.language.quantities import share
 from pipeline.floorplan.language.subjects import listed
-
-if TYPE_CHECKING:
-    from pipeline.floorplan.language.clauses import Clause
 
 
 def flag(clause: Clause, k: int, e: Element) -> int:

@@ -104,7 +104,7 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
     if slots and _predicative(sentence, k):
         return [close(slots[0], role, e.text)]
     if "another" in e.det and role and e.type == "bedroom":  # "三间卧室：大儿子一间，小女儿一间": the second of theirs
-        told = [r for r in slots if listed(sentence, k, r) or (r.whole and state.heard.lexicon.language == "zh")]
+        told = [r for r in slots if listed(sentence, k, r) or (r.whole and "bare_nouns" in state.heard.lexicon.traits)]
         if len(told) >= count:
             return [close(r, role, e.text) for r in told[:count]]
     if "another" not in e.det:

@@ -15,7 +15,7 @@ OVER = {"least", "or_more"}
 def supplied(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks, figures and units still apart, with each unit and limit in its place."""
     made = _headed(_tabled(_dealt(_spread(_plus(list(marks), heard), heard))), heard)
-    return _turned(_with(made), heard) if heard.lexicon.language == "de" else made
+    return _turned(_with(made), heard) if "verb_last" in heard.lexicon.traits else made
 
 
 def _bound(heard: Words, value: str, like: Mark) -> Mark:

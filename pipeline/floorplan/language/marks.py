@@ -100,7 +100,7 @@ def segment(heard: Words) -> list[Mark]:
 
 def _articles(marks: list[Mark], heard: Words) -> list[Mark]:
     """Tell the Spanish article "el" from the pronoun "él" that accents set apart: in front of a name it is the article."""
-    if heard.lexicon.language != "es":
+    if "accented_pronouns" not in heard.lexicon.traits:
         return marks
     made = list(marks)
     for k, mark in enumerate(marks[:-1]):
@@ -200,7 +200,7 @@ def _numbers(marks: Sequence[Mark], heard: Words) -> list[Mark]:
             value = ahead.number
             if value >= 100:
                 total, current = total + max(current, 1.0) * value, 0.0
-            elif value == 10 and heard.lexicon.language == "zh" and 0 < current < 10:
+            elif value == 10 and "characters" in heard.lexicon.traits and 0 < current < 10:
                 current *= 10
             elif current == 0 or (current % 10 == 0 and value < 10 and current >= 10):
                 current += value
@@ -270,7 +270,7 @@ def measured(marks: Sequence[Mark], heard: Words) -> list[Mark]:
             k + 1 < len(marks)
             and marks[k].kind == "num"
             and marks[k + 1].kind == "times"
-            and len(marks[k + 1].text) > (heard.lexicon.language != "zh")
+            and len(marks[k + 1].text) > ("characters" not in heard.lexicon.traits)
             and not (k + 2 < len(marks) and marks[k + 2].kind == "num")
         ):
             made.append(Mark("factor", "", marks[k].number, False, marks[k].first, marks[k + 1].last, marks[k].text))

@@ -192,7 +192,7 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
         plain = [r for r in same if not r.role and not state.inventory.owned(r.id)]
         if slots:
             return [close(slots[0], role, e.text)]
-        bare = state.heard.lexicon.language == "zh" and not e.det and e.number is None  # no articles there
+        bare = "bare_nouns" in state.heard.lexicon.traits and not e.det and e.number is None  # no articles there
         return [close(plain[0], role, e.text)] if (e.definite or bare) and len(plain) == 1 else []
     if e.type != "bedroom":
         plain = [r for r in same if not r.role]
@@ -206,7 +206,7 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
         and not (r.extra and r.span is not None and r.span[0] > e.first)  # "the main bedroom ...; two more bedrooms"
         and not (role == "primary" and r.surface[:1] in {"次", "侧"})
         and (
-            e.definite or r.whole or state.heard.lexicon.language == "zh" or not _counted_later(sentence, k, r)
+            e.definite or r.whole or "bare_nouns" in state.heard.lexicon.traits or not _counted_later(sentence, k, r)
         )  # "maid's room, two bedrooms"
         and ((e.definite and level is None) or r.level is None or r.level == level)  # counted on another storey: others
     ]
@@ -266,13 +266,13 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
     if (
         not e.det
         and e.type == "bathroom"
-        and state.heard.lexicon.language != "zh"
+        and "bare_nouns" not in state.heard.lexicon.traits
         and all(stock.owned(r.id) or r.role == "ensuite" for r in same)
     ):
         return [stock.add(e.type, "", e.text, level)]  # "a master with en suite, ..., bathroom"
     if not e.det and (_repeated_bare(sentence, k) or (e.type == "storage" and all(e.text != r.surface for r in same))):
         return [stock.add(e.type, "", e.text, level)]
-    if len(same) > 1 and state.heard.lexicon.language == "zh" and not e.det and e.number is None and all(r.open_slot for r in same):
+    if len(same) > 1 and "bare_nouns" in state.heard.lexicon.traits and not e.det and e.number is None and all(r.open_slot for r in same):
         return same  # no plural there: "两间卧室 ... 卧室都朝走廊"
     if len(same) > 1:
         if e.number == 1 and (loose := [r for r in same if r.open_slot and not r.role]):

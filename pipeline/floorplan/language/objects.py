@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from pipeline.floorplan.language.clause import Clause
 from pipeline.floorplan.language.facts import HALLS, SOCIAL, Group
 from pipeline.floorplan.language.naming import name
 from pipeline.floorplan.language.openness import written_as_one
 from pipeline.floorplan.language.owning import FINITE, measures
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import zone
-
-if TYPE_CHECKING:
-    from pipeline.floorplan.language.clauses import Clause
 
 CLOSED = {"balcony", "garage", "bathroom", "wc", "closet", "storage", "utility", "bedroom"}
 CONNECTS = {"connect", "connects", "connecting", "links", "linking", "joins", "joining", "une", "conecta", "comunica", "verbindet"}

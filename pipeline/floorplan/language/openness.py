@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING
 
+from pipeline.floorplan.language.clause import Clause
 from pipeline.floorplan.language.facts import SOCIAL
 from pipeline.floorplan.language.naming import name
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import storey
 from pipeline.floorplan.language.pointing import and_follows
 
-if TYPE_CHECKING:
-    from pipeline.floorplan.language.clauses import Clause
-
 
 def merge(clause: Clause, k: int, e: Element) -> None:
     """Read "open kitchen/living room" and "combined kitchen and living room"; an open kitchen alone is open to where one lives."""
     listed = list(e.ids)
-    written_on = clause.state.heard.lexicon.language == "zh"  # "客厅餐厅厨房" needs no comma
+    written_on = "bare_nouns" in clause.state.heard.lexicon.traits  # "客厅餐厅厨房" needs no comma
     joined = written_on
     for x in clause.sentence[k + 1 :]:
         if x.kind == "np" and joined and x.type in SOCIAL and not x.banned:
@@ -42,7 +39,7 @@ def merge(clause: Clause, k: int, e: Element) -> None:
 
 def _behind(clause: Clause, e: Element) -> bool:
     """Whether an adjective stands behind its room."""
-    return e.mark is not None and e.last > e.mark.last and clause.state.heard.lexicon.language == "es"
+    return e.mark is not None and e.last > e.mark.last and "adjectives_behind" in clause.state.heard.lexicon.traits
 
 
 def merge_after(clause: Clause, k: int, e: Element) -> None:

@@ -21,9 +21,9 @@ FARTHEST = 14  # marks between the two parts of a frame
 
 def reorder(marks: list[Mark], heard: Words) -> list[Mark]:
     """Return the marks in the order that the grammar reads."""
-    framed = _frames(_reached(marks) if heard.lexicon.language == "de" else marks, heard)
-    if heard.lexicon.language == "de":
-        return _german(framed, heard)
+    framed = _frames(_reached(marks) if "verb_last" in heard.lexicon.traits else marks, heard)
+    if "verb_last" in heard.lexicon.traits:
+        return _verbs_last(framed, heard)
     return _behind(framed) if "adjectives_behind" in heard.lexicon.traits else framed
 
 
@@ -149,7 +149,7 @@ def _matches(marks: list[Mark], k: int, wanted: tuple[str, ...]) -> int | None:
     return None if need else k
 
 
-def _german(marks: list[Mark], heard: Words) -> list[Mark]:
+def _verbs_last(marks: list[Mark], heard: Words) -> list[Mark]:
     """Read "vier gleich große Zimmer" as bedrooms, and "25 m² großes Wohnzimmer" with its area behind the head."""
     made = list(marks)
     for k, mark in enumerate(made):

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from pipeline.floorplan.language.clause import Clause
 from pipeline.floorplan.language.facts import PERSONAL, Group
 from pipeline.floorplan.language.naming import name
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.places import storey
-
-if TYPE_CHECKING:
-    from pipeline.floorplan.language.clauses import Clause
 
 FINITE = {
     "has",
@@ -73,7 +69,10 @@ def has(clause: Clause, k: int, e: Element) -> int:  # noqa: C901, PLR0911, PLR0
     finite = e.text in FINITE and len(clause.run) == 1  # "the largest bedroom, of 18 m2, has one of the baths"
     opened = next((x.kind for x in reversed(sentence[:k]) if x.kind in {"open", "close"}), "") == "open"  # "主卧(16㎡,带卫生间)"
     single = (
-        clause.state.heard.lexicon.language == "zh" and len(clause.run) == 1 and clause.run[0].number is None and not clause.run[0].suite
+        "bare_nouns" in clause.state.heard.lexicon.traits
+        and len(clause.run) == 1
+        and clause.run[0].number is None
+        and not clause.run[0].suite
     )  # "客厅朝南,带阳台"
     if clause.run and not (opened or single) and sentence[k - 1].kind == "comma" and not clause.verb and not own and not finite:
         return k + 1

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from pipeline.floorplan.language.clause import Clause
 from pipeline.floorplan.language.introductions import heads
 from pipeline.floorplan.language.phrases import Element
-
-if TYPE_CHECKING:
-    from pipeline.floorplan.language.clauses import Clause
 
 
 def storey(clause: Clause, k: int) -> int | None:

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from pipeline.floorplan.language.clause import Clause
 from pipeline.floorplan.language.facts import Group
 from pipeline.floorplan.language.owning import one_each
 from pipeline.floorplan.language.phrases import Element
 
 ONE_THAT = {"in", "ensuite", "near", "door"}  # what tells the second of "one bathroom for guests and one inside the master"
-if TYPE_CHECKING:
-    from pipeline.floorplan.language.clauses import Clause
 
 
 def pronoun(clause: Clause, k: int, e: Element) -> int:

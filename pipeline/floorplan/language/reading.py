@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from pipeline.floorplan.language.clauses import Clause
+from pipeline.floorplan.language.clauses import Sentence
 from pipeline.floorplan.language.facts import Reading
 from pipeline.floorplan.language.introductions import introduce
 from pipeline.floorplan.language.marks import Words
@@ -23,7 +23,7 @@ def read(heard: Words, sentences: list[list[Element]]) -> Reading:
         _compared(sentence)
     introduce(state, sentences)
     for sentence in sentences:
-        Clause(state, sentence).read()
+        Sentence(state, sentence).read()
     return state
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from pipeline.floorplan.language.clause import Clause
 from pipeline.floorplan.language.facts import HALLS, SOCIAL, Fact, Group
 from pipeline.floorplan.language.lexicon import ONLY
 from pipeline.floorplan.language.objects import CLOSED, objects
@@ -11,9 +10,6 @@ from pipeline.floorplan.language.owning import has
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.subjects import THROUGH, _place, coordinate, ids_of, subject_of
 from pipeline.floorplan.language.ways import by_way_of, door_between, enter, excepted, through
-
-if TYPE_CHECKING:
-    from pipeline.floorplan.language.clauses import Clause
 
 MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two rooms at the end: "kitchen and bath adjacent"
 TOWARDS = {"zu", "zum", "zur", "in", "ins", "auf", "an", "nach", "to", "into", "onto", "al"}  # something follows, though no room

@@ -71,7 +71,7 @@ def _premises(marks: list[Mark]) -> list[Mark]:
 
 def _summed(marks: list[Mark], heard: Words) -> list[Mark]:
     """Read Spanish "cinco habitaciones en total: salón, cocina, ..." as five rooms where the list has so many."""
-    if heard.lexicon.language != "es":
+    if "rooms_are_bedrooms" not in heard.lexicon.traits:
         return marks
     for k in range(1, len(marks)):
         j = k + 1
@@ -119,15 +119,15 @@ def _partial(marks: list[Mark]) -> list[Mark]:
 def _both(marks: list[Mark], heard: Words) -> list[Mark]:
     """Tell "both bedrooms" from "both the bedroom and the hall" and "dan los dos a la cocina"."""
     made = list(marks)
-    if heard.lexicon.language not in {"en", "es"}:
+    if not heard.lexicon.traits & {"both_and", "both_alone"}:
         return made
     for k, mark in enumerate(made):
         j = k + 1
         while j < len(made) and made[j].kind in {"det", "adj", "fill"}:
             j += 1
         if mark.kind == "det" and mark.value == "both" and j < len(made) and made[j].kind == "room" and not made[j].plural:
-            english = replace(mark, value="definite") if mark.text.endswith("the") else replace(mark, kind="fill")
-            made[k] = english if heard.lexicon.language == "en" else replace(mark, kind="pron")
+            pair = replace(mark, value="definite") if mark.text.endswith("the") else replace(mark, kind="fill")
+            made[k] = pair if "both_and" in heard.lexicon.traits else replace(mark, kind="pron")
     return made
 
 
@@ -147,7 +147,7 @@ def crossed(marks: Sequence[Mark], heard: Words) -> list[Mark]:
         if not pair or (k + 1 < len(marks) and marks[k + 1].kind == "unit") or mark.value != "figure":
             continue
         product = mark.number * marks[k - 2].number
-        feet = imperial or (not lengths and heard.lexicon.language == "en" and product > LARGEST and product < 1000)
+        feet = imperial or (not lengths and "feet" in heard.lexicon.traits and product > LARGEST and product < 1000)
         made.append(Mark("unit", "length", FEET if feet else METRES, False, mark.last, mark.last, ""))
     return made
 
@@ -307,7 +307,7 @@ def _activities(marks: list[Mark]) -> list[Mark]:
 
 def _floors(marks: list[Mark], heard: Words) -> list[Mark]:
     """Count floors as in Europe where a prompt knows a ground floor: then the first floor is the one above."""
-    if heard.lexicon.language != "en" or not any(m.kind == "level" and GROUND & set(m.text.split()) for m in marks):
+    if "floors_from_one" not in heard.lexicon.traits or not any(m.kind == "level" and GROUND & set(m.text.split()) for m in marks):
         return marks
     return [
         replace(m, value=next((v for s, v in SHIFTED.items() if m.text.endswith(s)), m.value)) if m.kind == "level" else m for m in marks
@@ -316,7 +316,7 @@ def _floors(marks: list[Mark], heard: Words) -> list[Mark]:
 
 def _studies(marks: list[Mark], heard: Words) -> list[Mark]:
     """Read Spanish "estudio" as a study where the home has bedrooms."""
-    if heard.lexicon.language != "es" or not any(m.kind == "room" and m.value.startswith("bedroom") for m in marks):
+    if "rooms_are_bedrooms" not in heard.lexicon.traits or not any(m.kind == "room" and m.value.startswith("bedroom") for m in marks):
         return marks
     marks = _pisos(marks)
     study = [k for k, m in enumerate(marks) if m.kind == "home" and m.text == "estudio" and k]

@@ -117,11 +117,11 @@ def fill(draft: Draft, state: Reading) -> None:
         _peopled(draft, state)
         return
     count, mark = state.rooms
-    stock, language = state.inventory, state.heard.lexicon.language
+    stock, traits = state.inventory, state.heard.lexicon.traits
     draft.cite(mark.first, mark.last, "rooms")
     if count > MAX_ROOMS:
         raise RefusedError(f"{count} rooms are asked for", f"ask for {MAX_ROOMS} at most")
-    if language in {"de", "zh"} and not mark.text.endswith(("raeume", "个 房 间")) and count <= 9:
+    if "counts_living_rooms" in traits and not mark.text.endswith(("raeume", "个 房 间")) and count <= 9:
         _living_rooms(draft, state, count)
         return
     if count < 2:

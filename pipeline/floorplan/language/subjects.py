@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
+from pipeline.floorplan.language.clause import Clause
 from pipeline.floorplan.language.facts import Group
 from pipeline.floorplan.language.phrases import Element
-
-if TYPE_CHECKING:
-    from pipeline.floorplan.language.clauses import Clause
 
 WITH = {"con", "with", "mit"}
 THROUGH = {"through", "via", "durch", "ueber", "por", "traves", "经", "过", "通"}
@@ -54,7 +51,7 @@ def subject_of(clause: Clause, k: int, e: Element) -> Group:  # noqa: C901, PLR0
         passed = before is not None and before.kind == "np" and cue is not None and bool(THROUGH & set(cue.text.split()))
         if passed and clause.objects and e.value in {"door", "leads"} and e.text.split()[0] not in THROUGH:
             return clause.objects  # "the garage is connected by way of the utility room to the kitchen"
-        if clause.relative and clause.objects and clause.state.heard.lexicon.language in {"en", "es", "zh"}:
+        if clause.relative and clause.objects and "verb_last" not in clause.state.heard.lexicon.traits:
             return clause.objects  # "away from the parents' bedroom, which is next to ..."
         chained = before is not None and before.kind == "np" and cue is not None and cue.value == e.value == "near"
         return clause.objects if chained and clause.objects and not clause.relative else clause.subject  # "X next to Y next to Z"

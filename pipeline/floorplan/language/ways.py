@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+from pipeline.floorplan.language.clause import Clause
 from pipeline.floorplan.language.facts import HALLS, Group
 from pipeline.floorplan.language.phrases import Element
-
-if TYPE_CHECKING:
-    from pipeline.floorplan.language.clauses import Clause
 
 BY = {"durch", "through", "por"}
 THEN = {"then", "dann", "luego", "despues"}

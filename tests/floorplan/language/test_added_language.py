@@ -1,9 +1,13 @@
 """French is a file of data, `manifests/lexicon/fr.yaml`: plurals, adjectives behind their noun and all ways to say a thing, without a line of code of its own."""
 
+import ast
+from pathlib import Path
+
 import pytest
 
 from benchmarks.language import faults
 from pipeline.floorplan import parse
+from pipeline.floorplan.language.lexicon import LANGUAGES, lexicon
 
 SAID = [
     ("Un appartement de 70 m² avec deux chambres, une salle de bain et une cuisine ouverte sur le salon.",
@@ -33,3 +37,15 @@ def test_french_is_read(prompt, said):
 
 def test_a_french_family_has_bedrooms():
     assert sum(r.type == "bedroom" for r in parse("Une maison pour une famille de quatre personnes.").rooms) == 3
+
+
+def test_no_code_asks_for_a_language_by_name():
+    names = {lexicon(language).name.lower() for language in LANGUAGES} | {"mandarin"}
+    for file in sorted((Path(__file__).parents[3] / "pipeline" / "floorplan" / "language").glob("*.py")):
+        assert not names & set(file.stem.split("_")), file.name
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Compare) and "language" in ast.unparse(node):
+                asked = {c.value for c in ast.walk(node) if isinstance(c, ast.Constant)} & set(LANGUAGES)
+                assert not asked, f"{file.name}:{node.lineno} asks for {asked}"
+            if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+                assert not names & set(node.name.lower().split("_")), f"{file.name}:{node.lineno} {node.name}"
