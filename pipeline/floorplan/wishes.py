@@ -8,8 +8,7 @@ from collections.abc import Mapping
 from pipeline.errors import RefusedError
 from pipeline.floorplan.check import ImpossibleError, check_furniture
 from pipeline.floorplan.furniture import allot, spread
-from pipeline.floorplan.language.attaching import Mention, attach, mentioned
-from pipeline.floorplan.language.masking import read_furniture
+from pipeline.floorplan.language.attaching import Mention, attach, mentioned, read_furniture
 from pipeline.floorplan.language.parser import bounded, understand_rooms
 from pipeline.floorplan.program import Evidence, FloorProgram, RoomReq
 

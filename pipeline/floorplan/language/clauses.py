@@ -4,21 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from pipeline.floorplan.language.clause import Clause
-from pipeline.floorplan.language.comparing import compare, factor, superlative
-from pipeline.floorplan.language.facts import ROLES, SOCIAL, Fact, Group
-from pipeline.floorplan.language.flagging import flag
+from pipeline.floorplan.language.facts import ROLES, SOCIAL, Clause, Fact, Group
 from pipeline.floorplan.language.introductions import backward
-from pipeline.floorplan.language.naming import fresh, name
+from pipeline.floorplan.language.naming import fresh, name, point
 from pipeline.floorplan.language.objects import objects
-from pipeline.floorplan.language.openness import merge, no_door, written_as_one
 from pipeline.floorplan.language.phrases import Element
-from pipeline.floorplan.language.places import close, level, storey, wing, zone
-from pipeline.floorplan.language.pointing import point
-from pipeline.floorplan.language.pronouns import cast, determiner, every, pronoun
-from pipeline.floorplan.language.quantities import attach, belongs
+from pipeline.floorplan.language.pronouns import attach, belongs, cast, determiner, every, flag, pronoun
 from pipeline.floorplan.language.relating import SINGULAR, relate
-from pipeline.floorplan.language.ways import entered, listing
+from pipeline.floorplan.language.remarks import close, level, merge, no_door, storey, wing, written_as_one, zone
+from pipeline.floorplan.language.ways import compare, entered, factor, listing, superlative
 
 ELSEWHERE = {
     "level": level,

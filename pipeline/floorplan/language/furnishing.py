@@ -1,7 +1,7 @@
 """Wishes for furniture in words: how many things, which, in what style, what opens, how much floor stays free.
 
-They are read before the rooms are, in all four languages at once, and taken out of the prompt: what is left speaks of rooms alone. Which
-room a wish means is settled afterwards (`attaching.py`); `masking.py` takes them out, when the rooms and their places in the prompt are known.
+They are read before the rooms are, in all languages at once, and taken out of the prompt: what is left speaks of rooms alone. Which
+room a wish means is settled afterwards (`attaching.py`), when the rooms and their places in the prompt are known.
 """
 
 from __future__ import annotations
@@ -10,9 +10,12 @@ import bisect
 from dataclasses import dataclass
 from typing import Literal
 
+from pipeline.errors import RefusedError
 from pipeline.floorplan.furniture import lexicon
-from pipeline.floorplan.language.dwellings import named
+from pipeline.floorplan.language.lexicon import STRONG, Language
 from pipeline.floorplan.language.lexicon import lexicon as spoken
+from pipeline.floorplan.language.marks import listen, segment
+from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.vocabulary import (
     COMMAS,
     FIGURES,
@@ -26,6 +29,19 @@ from pipeline.floorplan.language.vocabulary import (
     phrases,
     words,
 )
+
+
+def named(prompt: str) -> tuple[Language | None, frozenset[int], frozenset[int]]:
+    """Return the language of a prompt (None where it is none that is read), where words for rooms and homes begin, and which are not their first."""
+    try:
+        language = detect(prompt)
+    except RefusedError:
+        return None, frozenset(), frozenset()
+    heard = listen(prompt, language)
+    rooms = [m for m in segment(heard) if m.kind in STRONG]
+    starts, inner = ([heard.tokens[k].start for m in rooms for k in range(m.first + skip, m.last)] for skip in (0, 1))
+    return language, frozenset(starts), frozenset(inner)
+
 
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
 

@@ -5,9 +5,7 @@ from __future__ import annotations
 import itertools
 
 from pipeline.floorplan.check import ImpossibleError
-from pipeline.floorplan.language.draft import Draft
-from pipeline.floorplan.language.facts import HALLS, Fact, Group, Reading
-from pipeline.floorplan.language.inventory import Inventory
+from pipeline.floorplan.language.facts import HALLS, Draft, Fact, Group, Inventory, Reading
 from pipeline.floorplan.program import Evidence
 
 MERGE_ORDER = ("living_room", "family_room", "dining_room", "kitchen", "studio_room")

@@ -19,8 +19,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from pipeline.errors import ContentError
 from pipeline.floorplan.furniture import lexicon as furniture
-from pipeline.floorplan.language.inflection import INFINITIVE, Compounds, Plurals, Verbs, forms
-from pipeline.floorplan.language.text import bare, fold, words
+from pipeline.floorplan.language.text import INFINITIVE, Compounds, Plurals, Verbs, bare, fold, forms, words
 from pipeline.floorplan.program import RoomType, Style
 
 FOLDER = Path(__file__).resolve().parents[3] / "manifests" / "lexicon"

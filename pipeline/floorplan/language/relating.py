@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from pipeline.floorplan.language.clause import Clause
-from pipeline.floorplan.language.facts import HALLS, SOCIAL, Fact, Group
+from pipeline.floorplan.language.facts import HALLS, SOCIAL, Clause, Fact, Group
 from pipeline.floorplan.language.lexicon import ONLY
-from pipeline.floorplan.language.objects import CLOSED, objects
-from pipeline.floorplan.language.owning import has
+from pipeline.floorplan.language.objects import CLOSED, has, objects
 from pipeline.floorplan.language.phrases import Element
-from pipeline.floorplan.language.subjects import THROUGH, _place, coordinate, ids_of, subject_of
-from pipeline.floorplan.language.ways import by_way_of, door_between, enter, excepted, through
+from pipeline.floorplan.language.ways import (
+    THROUGH,
+    _place,
+    by_way_of,
+    coordinate,
+    door_between,
+    enter,
+    excepted,
+    ids_of,
+    subject_of,
+    through,
+)
 
 MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two rooms at the end: "kitchen and bath adjacent"
 TOWARDS = {"zu", "zum", "zur", "in", "ins", "auf", "an", "nach", "to", "into", "onto", "al"}  # something follows, though no room

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from pipeline.floorplan.language.amounts import summed, titled
 from pipeline.floorplan.language.marks import Mark, Words
-from pipeline.floorplan.language.tables import summed, titled
 
 FEET, METRES = 0.3048, 1.0
 LARGEST = 80.0  # a side-by-side product above this is no room in square metres: then the figures are feet

@@ -11,8 +11,7 @@ from pipeline import taxonomy
 from pipeline.errors import RefusedError
 from pipeline.floorplan import complete, parse
 from pipeline.floorplan.furniture import lexicon, meant, members
-from pipeline.floorplan.language.attaching import Mention, attach
-from pipeline.floorplan.language.masking import read_furniture
+from pipeline.floorplan.language.attaching import Mention, attach, read_furniture
 from pipeline.floorplan.program import FloorProgram, Furniture, RoomReq, Things
 
 

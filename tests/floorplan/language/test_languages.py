@@ -12,8 +12,8 @@ from benchmarks.language import faults, load
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan import parse
 from pipeline.floorplan.check import ImpossibleError
-from pipeline.floorplan.language.detection import detect
 from pipeline.floorplan.language.parser import MOST_WORDS, understand
+from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import tokenize
 
 CASES = load()
