@@ -85,7 +85,8 @@ class _Writer:
     def _geoms(self, element: Element, placed: Placed, model: Model, body: Body) -> None:
         for surface in body.surfaces:
             mesh = self._mesh(model, placed, surface.name, visual=True)
-            SubElement(element, "geom", {"class": "visual"}, mesh=mesh, material=self._material(model, surface.material))
+            seen = "ceiling" if surface.group == "ceiling" else "visual"
+            SubElement(element, "geom", {"class": seen}, mesh=mesh, material=self._material(model, surface.material))
         for box in body.boxes:
             pos, size = numbers(box.center * placed.scale), numbers(box.half * placed.scale)
             SubElement(element, "geom", {"class": "collider"}, type="box", pos=pos, size=size, friction=numbers([box.friction]))
@@ -141,8 +142,10 @@ def _root(name: str) -> Element:
     visual = SubElement(root, "visual")
     SubElement(visual, "headlight", ambient="0.45 0.45 0.45", diffuse="0.5 0.5 0.5", specular="0.1 0.1 0.1")
     default = SubElement(root, "default")
-    seen, felt = (SubElement(default, "default", {"class": name}) for name in ("visual", "collider"))
-    SubElement(seen, "geom", type="mesh", contype="0", conaffinity="0", group="2", density="0")
+    for name, group in (("visual", "2"), ("ceiling", "1")):  # of its own, so that a viewer can look in from above
+        seen = SubElement(default, "default", {"class": name})
+        SubElement(seen, "geom", type="mesh", contype="0", conaffinity="0", group=group, density="0")
+    felt = SubElement(default, "default", {"class": "collider"})
     SubElement(felt, "geom", group="3", density="0")
     return root
 
