@@ -27,7 +27,7 @@ def main(folder: str, seconds: float = 1.0) -> None:
         f"{len(models)} homes, {sum(model.njnt for model in models)} joints, {sum(model.ngeom for model in models)} geoms: {rate:.0f} steps/s"
     )
     for model, state in zip(models, states, strict=True):
-        hinged = model.jnt_type >= mujoco.mjtJoint.mjJNT_SLIDE
+        hinged = model.jnt_type != mujoco.mjtJoint.mjJNT_FREE
         print(f"  after {seconds:g} s the joint that moved most stands at {np.abs(state.qpos[model.jnt_qposadr[hinged]]).max():.4f}")
 
 

@@ -20,6 +20,7 @@ import sfgen
 from sfgen.homes import Home, Joint
 
 RADIUS, HEIGHT, STEP = 0.25, 1.4, 0.02  # of the robot, and what it drives over [m]
+CLEAR = 0.03  # that its way keeps from things beside, for it lags behind its target and cuts corners [m]
 CELL, SPEED = 0.05, 0.6  # of the map [m], of the robot [m/s]
 START, PARKED = 0.35, 0.9  # how far its arm is out, and how high, while it drives [m]
 
@@ -108,7 +109,7 @@ def route(home: Home, joint: Joint, model: mujoco.MjModel, data: mujoco.MjData) 
     floor = np.concatenate([room.polygon for room in home.rooms])
     origin = floor.min(axis=0) - 0.5
     shape = tuple(np.ceil((np.ptp(floor, axis=0) + 1.0) / CELL).astype(int))
-    free = distance_transform_edt(~obstacles(model, data, origin, shape)) * CELL > RADIUS
+    free = distance_transform_edt(~obstacles(model, data, origin, shape)) * CELL > RADIUS + CLEAR
 
     def nearest(point: np.ndarray, cells: np.ndarray) -> tuple[int, int]:
         return tuple(cells[np.linalg.norm(origin + (cells + 0.5) * CELL - point, axis=1).argmin()].tolist())

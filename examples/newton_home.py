@@ -1,6 +1,6 @@
 """Load a home's USD stage into Newton and let it rest, such as `python examples/newton_home.py data/shards`.
 
-Needs `pip install "newton[sim,importers]"` in an environment of its own (its MuJoCo is older than ours). The first run compiles kernels.
+Needs `pip install "newton[sim,importers]"` in an environment of its own (its MuJoCo is older than ours).
 """
 
 import sys
@@ -16,8 +16,8 @@ def main(folder: str, seconds: float = 1.0) -> None:
     home = next(h for h in sfgen.load(folder) if h.usd)
     builder = newton.ModelBuilder()
     builder.add_usd(str(home.usd))
-    model = builder.finalize()
-    solver = newton.solvers.SolverMuJoCo(model, njmax=20000, nconmax=20000)
+    model = builder.finalize(device="cpu")
+    solver = newton.solvers.SolverMuJoCo(model, use_mujoco_cpu=True)  # on a GPU leave both out
     now, then, control = model.state(), model.state(), model.control()
     newton.eval_fk(model, model.joint_q, model.joint_qd, now)
     start = now.body_q.numpy()[:, :3]

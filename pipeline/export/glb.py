@@ -171,6 +171,7 @@ def _joint_extras(joint: Joint) -> dict[str, Any]:
     about: dict[str, Any] = {"joint": joint.kind}
     if joint.kind != "fixed":
         about |= {"axis": joint.axis.tolist(), "damping": joint.damping, "friction": joint.friction}
+        about |= {"stiffness": joint.stiffness, "rest": joint.rest} if joint.stiffness else {}
     if np.isfinite([joint.lower, joint.upper]).all() and joint.kind != "fixed":
         about |= {"lower": joint.lower, "upper": joint.upper}
     return about | ({"after": list(joint.after)} if joint.after else {})

@@ -61,11 +61,15 @@ def _joint(prim: Usd.Prim, parent: int, child: int, T_parent: Floats, T_child: F
     elif prim.IsA(UsdPhysics.PrismaticJoint):
         kind, typed, drive, unit = "slide", UsdPhysics.PrismaticJoint(prim), "linear", 1.0
     elif prim.IsA(UsdPhysics.FixedJoint):
-        return Joint(prim.GetName(), "fixed", parent, child, T_parent, T_child, np.zeros(3), 0.0, 0.0, 0.0, 0.0, 0.0, (), ())
+        return Joint(prim.GetName(), "fixed", parent, child, T_parent, T_child, np.zeros(3), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, (), ())
     else:
         raise ContentError(f"{prim.GetPath()} is a {prim.GetTypeName()}", "only hinges, slides and welds can be exported")
     driven = UsdPhysics.DriveAPI.Get(prim, drive)
-    damping = driven.GetDampingAttr().Get() if driven else 0.0
+    damping, stiffness, rest = (
+        (driven.GetDampingAttr().Get(), driven.GetStiffnessAttr().Get(), driven.GetTargetPositionAttr().Get())
+        if driven
+        else (0.0, 0.0, 0.0)
+    )
     stops = [prim.GetAttribute(f"mjc:{name}").Get() for name in ("solreflimit", "solimplimit")]
     after = prim.GetRelationship("sfgen:after")
     return Joint(
@@ -78,14 +82,16 @@ def _joint(prim: Usd.Prim, parent: int, child: int, T_parent: Floats, T_child: F
         np.array(AXES[typed.GetAxisAttr().Get()]),
         typed.GetLowerLimitAttr().Get() / unit,
         typed.GetUpperLimitAttr().Get() / unit,
-        _number(prim, "newton:damping", damping) * unit,
-        _number(prim, "newton:friction", 0.0),
-        _number(prim, "newton:armature", 0.0),
+        damping * unit,
+        _number(prim, "newton:friction"),
+        _number(prim, "newton:armature"),
+        stiffness * unit,
+        rest / unit,
         tuple(tuple(map(float, values)) for values in stops) if all(stops) else (),
         tuple(path.name for path in after.GetTargets()) if after else (),
     )
 
 
-def _number(prim: Usd.Prim, name: str, otherwise: float) -> float:
+def _number(prim: Usd.Prim, name: str) -> float:
     value = prim.GetAttribute(name).Get() if prim.HasAttribute(name) else None
-    return otherwise if value is None else float(value)
+    return 0.0 if value is None else float(value)

@@ -127,11 +127,12 @@ class _Writer:
         about = {"pos": position(T), "axis": numbers(T[:3, :3] @ joint.axis)}
         if np.isfinite([joint.lower, joint.upper]).all():
             about["range"] = numbers([joint.lower, joint.upper])
-            for name, values in zip(("solreflimit", "solimplimit"), joint.stops, strict=False):
-                about[name] = numbers(values)
-        for name, value in (("damping", joint.damping), ("frictionloss", joint.friction), ("armature", joint.armature)):
-            if value:
-                about[name] = numbers([value])
+        for name, values in zip(("solreflimit", "solimplimit"), joint.stops, strict=False):
+            about[name] = numbers(values)
+        held = {"damping": joint.damping, "frictionloss": joint.friction, "armature": joint.armature, "stiffness": joint.stiffness}
+        if joint.stiffness:
+            about["springref"] = numbers([joint.rest])
+        about |= {name: numbers([value]) for name, value in held.items() if value}
         SubElement(element, "joint", {"name": f"{placed.name}/{joint.name}", "type": joint.kind, **about})
 
 
@@ -142,8 +143,8 @@ def _root(name: str) -> Element:
     visual = SubElement(root, "visual")
     SubElement(visual, "headlight", ambient="0.45 0.45 0.45", diffuse="0.5 0.5 0.5", specular="0.1 0.1 0.1")
     default = SubElement(root, "default")
-    for name, group in (("visual", "2"), ("ceiling", "1")):  # of its own, so that a viewer can look in from above
-        seen = SubElement(default, "default", {"class": name})
+    for kind, group in (("visual", "2"), ("ceiling", "1")):  # of its own, so that a viewer can look in from above
+        seen = SubElement(default, "default", {"class": kind})
         SubElement(seen, "geom", type="mesh", contype="0", conaffinity="0", group=group, density="0")
     felt = SubElement(default, "default", {"class": "collider"})
     SubElement(felt, "geom", group="3", density="0")

@@ -90,7 +90,7 @@ class Joint:
     """A hinge, a slide or a weld ("fixed") between two bodies of a model; `parent` -1 is the ground.
 
     `axis` (3,) is in the joint's frame; limits and resistance in rad or m, N m or N; infinite limits mean none.
-    `stops` are MuJoCo's solref and solimp of the limits, where the stage names them. `after` are joints that must be open first.
+    A spring of `stiffness` pulls towards `rest`. `stops` are MuJoCo's solref and solimp of the limits, where the stage names them. `after` are joints that must be open first.
     """
 
     name: str
@@ -105,6 +105,8 @@ class Joint:
     damping: float
     friction: float
     armature: float
+    stiffness: float
+    rest: float
     stops: tuple[tuple[float, ...], ...]
     after: tuple[str, ...]
 

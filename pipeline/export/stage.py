@@ -1,6 +1,6 @@
 """Reads stages and assets through USD's schemas: whatever wrote them, what a simulator would see is what is exported.
 
-The overlays for MuJoCo are read where there are any: only they tell dry friction and stops.
+The overlays for MuJoCo are read where there are any: only they tell how hard the stops are.
 """
 
 from __future__ import annotations

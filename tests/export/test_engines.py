@@ -26,6 +26,41 @@ def test_mujoco_steps_a_home_and_nothing_moves(export):
     assert moved < 0.005
 
 
+DECODED = """
+import json, sys
+import mujoco, mujoco._usd
+import numpy as np
+found = []
+for path in sys.argv[1:]:
+    model = mujoco.MjSpec.from_file(path).compile()
+    joints = [j for j in range(model.njnt) if model.jnt_type[j] != mujoco.mjtJoint.mjJNT_FREE]
+    dofs = model.jnt_dofadr[joints]
+    values = [model.dof_damping[dofs], model.dof_frictionloss[dofs], model.dof_armature[dofs], model.jnt_stiffness[joints, 0]
+              if model.jnt_stiffness.ndim > 1 else model.jnt_stiffness[joints], model.qpos_spring[model.jnt_qposadr[joints]],
+              *model.jnt_solref[joints].T, *model.jnt_solimp[joints].T, *model.jnt_range[joints].T]
+    bodies = [model.body(model.jnt_bodyid[j]).name.removeprefix("/World/Objects/").removeprefix("/World/Doors/") for j in joints]
+    frictions = sorted(model.geom_friction[model.geom_contype > 0, 0].tolist())
+    found.append([dict(zip(bodies, np.transpose(values).tolist())), model.nexclude, frictions, int(model.ngeom)])
+print(json.dumps(found))
+"""
+
+
+def test_mujoco_finds_in_mjcf_what_it_finds_in_usd(export, furnished):
+    """Damping, friction, springs, stops of every joint, and which bodies pass: MuJoCo's own reading of the stage beside ours."""
+    pytest.importorskip("mujoco")
+    home = sfgen.load(furnished)[0]
+    overlay = home.usd.with_name(f"{home.scene_id}.mujoco.usda")
+    done = subprocess.run([sys.executable, "-c", DECODED, str(export("mjcf")), str(overlay)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-2000:]
+    mine, theirs = json.loads(done.stdout.splitlines()[-1])
+    assert len(mine[0]) == 14
+    assert mine[0].keys() == theirs[0].keys()
+    for name, values in mine[0].items():
+        assert np.allclose(values, theirs[0][name], rtol=1e-6, atol=1e-9), name
+    assert mine[1] == theirs[1] > 0
+    assert set(mine[2]) == set(theirs[2])
+
+
 def test_mujoco_loads_each_asset_alone(export):
     mujoco = pytest.importorskip("mujoco")
     assets = export("mjcf").parents[2] / "assets"

@@ -57,7 +57,7 @@ def exported(furnished, tmp_path_factory):
 def test_mujoco_homes(exported):
     pytest.importorskip("mujoco")
     said = run("mujoco_homes.py", exported("mjcf"))
-    assert "1 homes, 17 joints" in said  # fourteen that open, two things that lie free, one of which has a lid
+    assert "1 homes, 16 joints" in said  # fourteen that move, two things that lie free
 
 
 def test_mujoco_robot(furnished, exported):
