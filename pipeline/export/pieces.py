@@ -18,7 +18,7 @@ from pipeline.export.frames import inverse, world
 from pipeline.export.model import Box, Floats, Hull, Material, Surface
 
 GREY = Material("grey", (0.8, 0.8, 0.8), 0.5, 0.0, 1.0, None)
-FRICTION = 0.6  # of what is bound to no physics material
+FRICTION = 1.0  # of what is bound to no physics material, as MuJoCo has it
 SQUARE = 1e-6  # how far corners may stand off those of a box [m]
 
 
