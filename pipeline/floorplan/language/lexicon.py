@@ -251,7 +251,9 @@ def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0
 def _spellings(phrase: str, contracted: Mapping[str, str]) -> Iterable[tuple[str, ...]]:
     """Return the words of a phrase, also as they look when umlauts and apostrophes are dropped, or its last word has an article in it."""
     usual = words(phrase)
-    plain = words(bare(phrase)) if "n't" not in phrase else words(phrase.replace("n't", "nt"))
+    plain = usual if phrase.isascii() else words(bare(phrase))
+    if "n't" in phrase:
+        plain = words(phrase.replace("n't", "nt"))
     made = dict.fromkeys((usual, plain))
     if len(usual) > 1 and usual[-1] in contracted:  # "la mitad de" and "la mitad del"
         made |= dict.fromkeys((*p[:-1], contracted[p[-1]]) for p in (usual, plain))
@@ -350,7 +352,8 @@ def lexicon(language: Language) -> Lexicon:
     others |= _brackets(entries, made)
     others |= {w: COMMON for w in made.vocabulary if w not in others}
     others = dict.fromkeys(_things(language, entries.plurals), FARTHER[True]) | others
-    made.others = {w: far for w, far in others.items() if w not in made.targets and w.isalpha()}
+    spared = set(made.targets)
+    made.others = {w: far for w, far in others.items() if w not in spared and w.isalpha()}
     return made
 
 

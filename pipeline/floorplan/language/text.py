@@ -115,10 +115,10 @@ def bare(word: str) -> str:
 
 def words(phrase: str) -> tuple[str, ...]:
     """Return the folded words of a phrase of a lexicon."""
-    if all("\u3400" <= c <= "\u9fff" for c in phrase):
+    plain, ascii_only = phrase.replace("-", " "), phrase.isascii()
+    if not ascii_only and all("\u3400" <= c <= "\u9fff" for c in phrase):
         return tuple(phrase.translate(ALIKE))
-    plain = phrase.replace("-", " ")
-    if plain.replace(" ", "").isalpha() and not any("\u3400" <= c <= "\u9fff" for c in plain):
+    if plain.replace(" ", "").isalpha() and (ascii_only or not any("\u3400" <= c <= "\u9fff" for c in plain)):
         return tuple(fold(w) for w in plain.split())
     return tuple(fold(t.text) for t in tokenize(phrase) if t.text != "-")
 
