@@ -71,7 +71,11 @@ def fill(mask: Mask, polygon: Floats, value: bool) -> None:
             if (x0 > x) != (x1 > x):
                 crossings[count] = y0 + (x - x0) * (y1 - y0) / (x1 - x0)
                 count += 1
-        ordered = np.sort(crossings[:count])
+        ordered = crossings[:count]
+        if count > 2:
+            ordered = np.sort(ordered)
+        elif count == 2 and ordered[0] > ordered[1]:  # most polygons are convex
+            ordered[0], ordered[1] = ordered[1], ordered[0]
         for k in range(0, count - 1, 2):
             # A centre j + 0.5 lies in [start, end); the small slack keeps shapes that meet edge to edge without a seam.
             j0 = max(0, int(np.ceil(ordered[k] - 0.5 - 1e-9)))
@@ -130,8 +134,46 @@ def covered(centres: Mask, radius_cells: float) -> Mask:
 
 def components(mask: Mask) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
     """Label the 4-connected parts of a mask from 1, and return their sizes in cells (entry 0 counts what is outside)."""
-    labels, count = ndimage.label(mask)
-    return labels.astype(np.int32), np.bincount(labels.ravel(), minlength=count + 1)
+    labels, sizes = _labelled(mask)
+    return labels, sizes
+
+
+@compiled
+def _labelled(mask: Mask) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    """Flood each part from its first cell, in the order of rows and columns."""
+    rows, columns = mask.shape
+    wide = columns + 2
+    labels = np.full((rows + 2) * wide, -1, np.int32)  # with a margin, so that no neighbour lies outside; -1 is no cell of the mask
+    for i in range(rows):
+        for j in range(columns):
+            if mask[i, j]:
+                labels[(i + 1) * wide + j + 1] = 0
+    queue, ends = np.empty(rows * columns, np.int64), np.zeros(rows * columns + 1, np.int64)
+    count, tail = 0, 0
+    for first in range(wide, (rows + 1) * wide):
+        if labels[first] != 0:
+            continue
+        count += 1
+        head = tail
+        labels[first], queue[tail] = count, first
+        tail += 1
+        while head < tail:
+            cell = queue[head]
+            head += 1
+            for step in (-wide, wide, -1, 1):
+                if labels[cell + step] == 0:
+                    labels[cell + step], queue[tail] = count, cell + step
+                    tail += 1
+        ends[count] = tail
+    sizes = np.empty(count + 1, np.int64)
+    sizes[0] = rows * columns - tail
+    for k in range(1, count + 1):
+        sizes[k] = ends[k] - ends[k - 1]
+    found = np.empty((rows, columns), np.int32)
+    for i in range(rows):
+        for j in range(columns):
+            found[i, j] = max(labels[(i + 1) * wide + j + 1], 0)
+    return found, sizes
 
 
 def largest_component(mask: Mask) -> Mask:

@@ -46,13 +46,39 @@ class Prisms:
 
     def placed(self, position: Floats, yaw: float, scale: Floats) -> Prisms:
         """Return the prisms in the world: scaled, turned by `yaw` [rad], moved to `position` (3,) [m]."""
-        c, s = math.cos(yaw), math.sin(yaw)
-        corners = (self.corners * scale[:2]) @ np.array([[c, s], [-s, c]]) + position[:2]
-        return Prisms(corners, self.count, self.z * scale[2] + position[2], self.part)
+        corners, z = _placed(self.corners, self.z, np.asarray(position, np.float64), yaw, np.asarray(scale, np.float64))
+        return Prisms(corners, self.count, z, self.part)
 
     def boxes(self) -> Floats:
         """Return the plan boxes (P, 4): x0, y0, x1, y1 (padding repeats the last vertex, so all may be used)."""
-        return np.concatenate([self.corners.min(1), self.corners.max(1)], axis=1)
+        return _boxes(self.corners)
+
+
+@compiled
+def _placed(corners: Floats, z: Floats, position: Floats, yaw: float, scale: Floats) -> tuple[Floats, Floats]:
+    """Scale, turn and move corners (P, V, 2) and heights (P, 2)."""
+    c, s = math.cos(yaw), math.sin(yaw)
+    moved, raised = np.empty(corners.shape), np.empty(z.shape)
+    for i in range(corners.shape[0]):
+        for k in range(corners.shape[1]):
+            x, y = corners[i, k, 0] * scale[0], corners[i, k, 1] * scale[1]
+            moved[i, k, 0] = c * x - s * y + position[0]
+            moved[i, k, 1] = s * x + c * y + position[1]
+        raised[i, 0], raised[i, 1] = z[i, 0] * scale[2] + position[2], z[i, 1] * scale[2] + position[2]
+    return moved, raised
+
+
+@compiled
+def _boxes(corners: Floats) -> Floats:
+    """Return the boxes (P, 4) of corners (P, V, 2)."""
+    found = np.empty((corners.shape[0], 4))
+    for i in range(corners.shape[0]):
+        for axis in range(2):
+            low = high = corners[i, 0, axis]
+            for k in range(1, corners.shape[1]):
+                low, high = min(low, corners[i, k, axis]), max(high, corners[i, k, axis])
+            found[i, axis], found[i, axis + 2] = low, high
+    return found
 
 
 @dataclass(frozen=True, slots=True)
