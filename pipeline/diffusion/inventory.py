@@ -171,15 +171,16 @@ def draw_inventories(
     rooms then hold what they need and no more than rooms of their type do. `amended` mends what no draw meets.
     """
     about = net.about(features, layout)
-    first = _drawn(net, about, layout, [Ask(None, most=ask.most) for ask in asks], uniform[:, :1])
-    asks = [ask if ask.met_by(mine[None])[0] else ask.sized(int(mine.sum())) for ask, mine in zip(asks, first[:, 0], strict=True)]
-    again = _drawn(net, about, layout, asks, uniform[:, 1:])
-    found = []
-    for i, ask in enumerate(asks):
-        mine = np.concatenate([first[i], again[i]])
-        met = np.flatnonzero(ask.met_by(mine) & (mine.sum(1) > 0))
+    found = list(_drawn(net, about, layout, [Ask(None, most=ask.most) for ask in asks], uniform[:, :1])[:, 0])
+    met = [bool(ask.met_by(mine[None])[0]) for ask, mine in zip(asks, found, strict=True)]
+    lacking = [i for i, mine in enumerate(found) if not (met[i] and mine.any())]
+    if not lacking:
+        return found
+    asks = [asks[i] if met[i] else asks[i].sized(int(found[i].sum())) for i in lacking]
+    for i, ask, mine in zip(lacking, asks, _drawn(net, about[lacking], layout[lacking], asks, uniform[lacking, 1:]), strict=True):
+        good = np.flatnonzero(ask.met_by(mine) & (mine.sum(1) > 0))
         usual: NDArray[np.float64] = net.own[:, layout[i]].softmax(-1).double().numpy() @ np.arange(MOST + 1, dtype=float)
-        found.append(mine[met[0]] if len(met) else amended(mine[-1], ask, usual))
+        found[i] = mine[good[0]] if len(good) else amended(mine[-1], ask, usual)
     return found
 
 

@@ -30,8 +30,8 @@ class Room:
     @property
     def area(self) -> float:
         """Area of the polygon [m2] (shoelace formula)."""
-        x, y = self.polygon[:, 0], self.polygon[:, 1]
-        return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+        here, there = self.polygon, self.polygon[[*range(1, len(self.polygon)), 0]]
+        return float(0.5 * np.sum(here[:, 0] * there[:, 1] - there[:, 0] * here[:, 1]))
 
 
 @dataclass(frozen=True, slots=True)
