@@ -2,23 +2,41 @@
 
 ./isaaclab.sh -p examples/isaac_lab_scene.py data/shards --num_envs 16
 
-Runs inside Isaac Lab 2; `articulated` alone, which says what is where, needs only sfgen's loaders. Bases are fixed to their own
-Xform in the stage, so `fix_root_link` stays unset; `spawn=None` takes what the home's stage has brought.
+Runs inside Isaac Lab 2; `articulated` alone, which says what is where, needs only sfgen's loaders and pxr. Bases are fixed to their own
+Xform in the stage, so `fix_root_link` stays unset; `spawn=None` takes what the home's stage has brought. Poses are given once more,
+because Isaac Lab puts an articulation where its `init_state` says when it resets.
 """
 
 import argparse
+from typing import NamedTuple
+
+from pxr import Usd, UsdGeom
 
 import sfgen
 from sfgen.homes import Home
 
 
-def articulated(home: Home) -> dict[str, tuple[str, list[str]]]:
-    """Return for everything in a home that has joints the prim within the home's stage, and the names of its joints."""
+class Article(NamedTuple):
+    """Something with joints: its prim within the home's stage, position [m], orientation (w, x, y, z), the names of its joints."""
+
+    prim: str
+    position: tuple[float, ...]
+    orientation: tuple[float, ...]
+    joints: list[str]
+
+
+def articulated(home: Home) -> dict[str, Article]:
+    """Return everything in a home that has joints."""
+    stage, cache = Usd.Stage.Open(str(home.usd)), UsdGeom.XformCache()
     objects = {o.object_id for o in home.objects}
-    names = dict.fromkeys(joint.object_id for joint in home.joints)
-    return {
-        name: (f"{'Objects' if name in objects else 'Doors'}/{name}", [joint.joint_id for joint in home.joints_of(name)]) for name in names
-    }
+    found = {}
+    for name in dict.fromkeys(joint.object_id for joint in home.joints):
+        prim = f"{'Objects' if name in objects else 'Doors'}/{name}"
+        matrix = cache.GetLocalToWorldTransform(stage.GetDefaultPrim().GetPrimAtPath(prim))
+        turned = matrix.ExtractRotationQuat()
+        orientation = (turned.GetReal(), *turned.GetImaginary())
+        found[name] = Article(prim, tuple(matrix.ExtractTranslation()), orientation, [j.joint_id for j in home.joints_of(name)])
+    return found
 
 
 def scene_cfg(home: Home, num_envs: int, spacing: float) -> object:
@@ -30,11 +48,12 @@ def scene_cfg(home: Home, num_envs: int, spacing: float) -> object:
 
     cfg = InteractiveSceneCfg(num_envs=num_envs, env_spacing=spacing, replicate_physics=True)
     cfg.home = AssetBaseCfg(prim_path="{ENV_REGEX_NS}/Home", spawn=sim.UsdFileCfg(usd_path=str(home.usd)))
-    for name, (prim, joints) in articulated(home).items():
-        # the stage's own drives (damping, and what holds flaps shut) stay: None leaves them as they are
-        passive = ImplicitActuatorCfg(joint_names_expr=joints, stiffness=None, damping=None)
-        article = ArticulationCfg(prim_path=f"{{ENV_REGEX_NS}}/Home/{prim}", spawn=None, actuators={"passive": passive})
-        setattr(cfg, name, article)
+    for name, found in articulated(home).items():
+        # the stage's own drives (damping, springs) stay: None leaves them as they are
+        passive = ImplicitActuatorCfg(joint_names_expr=found.joints, stiffness=None, damping=None)
+        state = ArticulationCfg.InitialStateCfg(pos=found.position, rot=found.orientation, joint_pos={".*": 0.0})
+        prim = f"{{ENV_REGEX_NS}}/Home/{found.prim}"
+        setattr(cfg, name, ArticulationCfg(prim_path=prim, spawn=None, init_state=state, actuators={"passive": passive}))
     return cfg
 
 

@@ -1,5 +1,6 @@
 """The examples run, as programs, on a dataset."""
 
+import math
 import re
 import runpy
 import subprocess
@@ -95,10 +96,15 @@ def test_isaac_lab_scene_names_the_prims_that_are_there(furnished):
     stage = Usd.Stage.Open(str(home.usd))
     found = runpy.run_path(str(ROOT / "examples" / "isaac_lab_scene.py"))["articulated"](home)
     assert len(found) == 4 + 3 + 1
-    for path, joints in found.values():
-        prim = stage.GetDefaultPrim().GetPrimAtPath(path)
+    for article in found.values():
+        prim = stage.GetDefaultPrim().GetPrimAtPath(article.prim)
         assert prim.HasAPI(UsdPhysics.ArticulationRootAPI)
-        assert all(prim.GetPrimAtPath(f"joints/{name}").IsA(UsdPhysics.Joint) for name in joints)
+        assert all(prim.GetPrimAtPath(f"joints/{name}").IsA(UsdPhysics.Joint) for name in article.joints)
+    for placed in home.objects:
+        if placed.object_id in found:
+            article = found[placed.object_id]
+            assert article.position == pytest.approx(placed.position.tolist())
+            assert article.orientation == pytest.approx((math.cos(placed.yaw / 2), 0, 0, math.sin(placed.yaw / 2)))
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.py")), ids=lambda p: p.name)
