@@ -20,6 +20,7 @@ from pipeline.manifest import write_bytes, write_json
 
 FORMATS = ("mjcf", "urdf", "glb")
 HEADER = "export.json"
+TEMPORARY = ".tmp-"  # how names begin of what is being written, here and in pipeline/manifest.py
 REMEMBERED = 512  # models of the library that are kept in memory
 
 
@@ -32,6 +33,8 @@ class ExportFolder:
         if path.exists() and (not path.is_dir() or any(path.iterdir())) and _header(path) != about:
             raise UsageError(f"--out {path} holds something else than an export of this dataset to {form}", "name a new folder")
         write_json(path / HEADER, about)
+        for left in path.glob(f"*/{TEMPORARY}*"):  # by a run that was killed
+            shutil.rmtree(left) if left.is_dir() else left.unlink()
         self._asset = lru_cache(REMEMBERED)(read_asset)
 
     def home_file(self, scene_id: str) -> Path:
@@ -96,7 +99,7 @@ def _whole(target: Path, fill: Callable[[Path], object]) -> None:
     """Let `fill` make a folder under a name of its own, then rename it: under its name it is whole or not there."""
     if target.exists():
         return
-    temporary = target.with_name(f".tmp-{os.getpid()}-{target.name}")
+    temporary = target.with_name(f"{TEMPORARY}{os.getpid()}-{target.name}")
     target.parent.mkdir(parents=True, exist_ok=True)
     try:
         fill(temporary)

@@ -112,18 +112,3 @@ def test_a_glb_is_well_formed_and_trimesh_reads_it(export):
     for mesh in document["meshes"]:
         for part in mesh["primitives"]:
             assert document["accessors"][part["indices"]]["count"] % 3 == 0
-
-
-def test_a_killed_export_goes_on_and_leaves_nothing_half_written(furnished, tmp_path):
-    out = tmp_path / "out"
-    arguments = [sys.executable, "-m", "sfgen.cli", "export", str(furnished), "--to", "urdf", "--out", str(out)]
-    with subprocess.Popen(arguments) as run:
-        while run.poll() is None and not list(out.glob("assets/cabinet_a")):
-            pass
-        run.kill()
-    assert not list(out.glob("homes/*/home.json"))
-    whole = {path.parent.name for path in out.glob("assets/[!.]*/*.urdf")}
-    assert "cabinet_a" in whole
-    assert whole == {path.name for path in out.glob("assets/[!.]*")}
-    assert subprocess.run(arguments, check=False).returncode == 0
-    assert len(list(out.glob("homes/*/home.json"))) == 1
