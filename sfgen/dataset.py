@@ -36,7 +36,7 @@ def load(path: str | Path, split: str | None = None) -> Dataset:
     if not isinstance(header, dict) or header.get("format") != FORMAT:
         msg = f"{folder}/dataset.json is not of format {FORMAT}; use the release of sfgen that made it"
         raise DatasetError(msg)
-    numbers = sorted(int(p.stem.removeprefix("shard-")) for p in (folder / "commits").glob("shard-*.json"))
+    numbers = _committed(folder)
     counts = [_read_json(folder / "commits" / f"shard-{n:05d}.json")["rows"]["scenes"] for n in numbers]
     whole = [np.column_stack([np.full(c, n), np.arange(c)]) for n, c in zip(numbers, counts, strict=True)]
     places = np.concatenate(whole) if whole else np.empty((0, 2), np.int64)
@@ -90,6 +90,11 @@ class Dataset(Sequence[Home]):
         """Return the object categories that occur, sorted."""
         return tuple(sorted({c for n in self._shards() for c in self._column("objects", n, "category")}))
 
+    def empty(self) -> dict[int, str]:
+        """Return the indices whose homes could not be made, each with the code of its reason (docs/reasons.md)."""
+        rows = [row for n in _committed(self.folder) for row in self._read("rejects", n, ["what", "where", "reason"]).to_pylist()]
+        return {int(row["where"].rpartition("_")[2]): row["reason"] for row in rows if row["what"] == "index"}
+
     def _shards(self) -> list[int]:
         return [int(n) for n in np.unique(self._places[:, 0])]
 
@@ -137,6 +142,10 @@ class Dataset(Sequence[Home]):
         except (OSError, pa.ArrowException) as error:
             msg = f"cannot read {path} ({str(error).splitlines()[0]}); copy the dataset again, or run `sfgen verify {self.folder}`"
             raise DatasetError(msg) from error
+
+
+def _committed(folder: Path) -> list[int]:
+    return sorted(int(p.stem.removeprefix("shard-")) for p in (folder / "commits").glob("shard-*.json"))
 
 
 def _read_json(path: Path) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from typing import TypeVar, overload
 
 from pipeline.errors import ContentError
@@ -23,7 +23,7 @@ def map_jobs(
     workers: int = ...,
     scheduler: str | None = ...,
     note: Callable[[Note], object] | None = ...,
-) -> Iterator[tuple[J, R]]: ...
+) -> Generator[tuple[J, R]]: ...
 @overload
 def map_jobs(
     step: Callable[[J], R],
@@ -34,7 +34,7 @@ def map_jobs(
     split: Split[J],
     note: Callable[[Note], object] | None = ...,
     silence: float = ...,
-) -> Iterator[tuple[J, R | Lost]]: ...
+) -> Generator[tuple[J, R | Lost]]: ...
 def map_jobs(
     step: Callable[[J], R],
     jobs: Iterable[J],
@@ -44,7 +44,7 @@ def map_jobs(
     split: Split[J] | None = None,
     note: Callable[[Note], object] | None = None,
     silence: float = SILENCE,
-) -> Iterator[tuple[J, R | Lost]]:
+) -> Generator[tuple[J, R | Lost]]:
     """Yield (job, result) as jobs complete, in any order; jobs are drawn as they are needed.
 
     `workers` <= 1 without `scheduler` runs here, one after the other, and starts no other process. Otherwise `step` and the

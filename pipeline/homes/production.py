@@ -8,6 +8,7 @@ import shutil
 import tempfile
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -134,18 +135,19 @@ def fill(
         note=watch.heard,
         silence=factory.shard.home_seconds,
     )
-    for chunk, answer in done:
-        batch = lost(chunk, answer, factory.seed) if isinstance(answer, Lost) else answer
-        for empty in batch.empties:
-            if strict:
-                raise empty.error
-            if empty.reason in {"internal", "worker_lost"}:
-                place = f"home {empty.index} ({shard_name(chunk.shard)}, seed {factory.seed})"
-                progress.say(f"{place} stays empty: {empty.error}{f'; again: {again.format(index=empty.index)}' if again else ''}")
-        add_part(dataset, chunk.shard, batch.content)
-        watch.counted(chunk, batch)
-        if not dataset.todo(chunk.shard):
-            _finish(dataset, chunk.shard, shelf)
+    with closing(done):  # an error stops the workers at once
+        for chunk, answer in done:
+            batch = lost(chunk, answer, factory.seed) if isinstance(answer, Lost) else answer
+            for empty in batch.empties:
+                if strict:
+                    raise empty.error
+                if empty.reason in {"internal", "worker_lost"}:
+                    place = f"home {empty.index} ({shard_name(chunk.shard)}, seed {factory.seed})"
+                    progress.say(f"{place} stays empty: {empty.error}{f'; again: {again.format(index=empty.index)}' if again else ''}")
+            add_part(dataset, chunk.shard, batch.content)
+            watch.counted(chunk, batch)
+            if not dataset.todo(chunk.shard):
+                _finish(dataset, chunk.shard, shelf)
     tally.empty = empties_of(dataset)
     return tally
 

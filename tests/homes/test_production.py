@@ -22,11 +22,19 @@ from pipeline.shards import check, open_or_create
 ROOT = Path(__file__).parents[2]
 
 
-def filled(folder, workers=1, **asked):
+def filled(folder, workers=1, scheduler=None, **asked):
     """Fill a dataset with made-up homes; returns the tally."""
     recipe = Recipe(functools.partial(papers.open_paper, str(folder.parent), **asked))
     with open_or_create(folder, papers.HEADER) as dataset:
-        return fill(dataset, recipe, papers.request, workers=workers, progress=Progress(10, "homes", voice="quiet"), again="again {index}")
+        return fill(
+            dataset,
+            recipe,
+            papers.request,
+            workers=workers,
+            scheduler=scheduler,
+            progress=Progress(10, "homes", voice="quiet"),
+            again="again {index}",
+        )
 
 
 def test_one_and_two_workers_and_a_resumed_run_give_the_same_bytes(tmp_path):
@@ -38,6 +46,22 @@ def test_one_and_two_workers_and_a_resumed_run_give_the_same_bytes(tmp_path):
     again = filled(tmp_path / "two", workers=2)
     assert (again.homes, again.resumed) == (10, 0)
     assert papers.made.snapshot(tmp_path / "one") == papers.made.snapshot(tmp_path / "two")
+
+
+def test_a_cluster_gives_the_same_bytes_and_loses_the_same_home(tmp_path):
+    import dask
+    from distributed import LocalCluster
+
+    patience = dask.config.set({"distributed.scheduler.allowed-failures": 0})  # of the scheduler itself; every restart takes seconds
+    with (
+        patience,
+        LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs="CRITICAL") as cluster,
+    ):
+        filled(tmp_path / "here")
+        filled(tmp_path / "cluster", scheduler=cluster.scheduler_address)
+        assert papers.made.snapshot(tmp_path / "here") == papers.made.snapshot(tmp_path / "cluster")
+        tally = filled(tmp_path / "lost", scheduler=cluster.scheduler_address, die=6)
+    assert (tally.homes, list(tally.empty)) == (9, ["worker_lost"])
 
 
 def test_workers_that_are_killed_now_and_then_change_nothing(tmp_path):

@@ -106,3 +106,12 @@ def test_loaders_import_none_of_the_factory(dataset_folder):
         "assert not {'pipeline', 'schemas', 'stages', 'typer', 'torch', 'yaml'} & sys.modules.keys()"
     )
     subprocess.run([sys.executable, "-c", program], check=True)
+
+
+def test_empty_indices_are_told(tmp_path):
+    import made
+
+    made.fill(tmp_path / "set", without={1, 4, 5, 6, 7})
+    dataset = sfgen.load(tmp_path / "set")
+    assert [home.index for home in dataset] == [0, 2, 3, 8, 9]
+    assert dataset.empty() == dict.fromkeys((1, 4, 5, 6, 7), "refused")
