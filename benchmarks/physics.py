@@ -53,19 +53,15 @@ def asset_stage(ids: list[str], folder: Path) -> Path:
     from pipeline.geometry.kinematics import sweep_box
     from pipeline.rendering.boxes import box
     from pipeline.usd import write_library, write_mujoco_overlay
-    from pipeline.usd.home import convert_placement
-    from pipeline.usd.layer import new_layer, prim, save
+    from pipeline.usd.home import placement_text
+    from pipeline.usd.layer import read_layer, save
     from pipeline.usd.mesh import convert_mesh
     from pipeline.usd.physics import convert_collider, convert_scene
+    from pipeline.usd.text import cast, group
 
     assets = [load_asset(ROOT / "data" / "assets" / f"{name}.safetensors") for name in ids]
     write_library(assets, folder / "assets")
-    layer = new_layer("World", ".usdc")
-    world = prim(layer, "World")
-    world.kind = "assembly"
-    convert_scene(layer)
-    objects = prim(world, "Objects")
-    objects.kind = "group"
+    objects = []
     x = y = deep = 0.0
     for asset in assets:
         boxes = [sweep_box(asset, k) for k in range(len(asset.joints))] + [np.array([-asset.size / 2, asset.size / 2])]
@@ -73,12 +69,14 @@ def asset_stage(ids: list[str], folder: Path) -> Path:
         known = taxonomy.load().categories.get(asset.category)
         height = {"floor": 0.0, "wall": 1.2, "ceiling": 2.0}[known.mount if known else "floor"]
         at = np.array([x - low[0], y - low[1], height])
-        convert_placement(
-            objects, Placement(asset.asset_id, "", asset.category, asset.asset_id, at, 0.0, asset.size), {asset.asset_id: asset}, "assets"
-        )
+        placed = Placement(asset.asset_id, "", asset.category, asset.asset_id, at, 0.0, asset.size)
+        objects.append(placement_text("/World/Objects", placed, {asset.asset_id: asset}, "assets"))
         x, deep = x + high[0] - low[0] + PITCH, max(deep, high[1] - low[1])
         if x > 25:
             x, y, deep = 0.0, y + deep + PITCH, 0.0
+    layer = read_layer(cast(group("assembly"), "/World", cast(group("group"), "/World/Objects", "".join(objects))), "World", ".usdc", {})
+    convert_scene(layer)
+    world = layer.GetPrimAtPath("/World")
     floor = convert_mesh(world, "floor", box("floor", (-30.0, -30.0, -0.5), (60.0, 60.0, 0.0)), (0.5, 0.5, 0.5))
     convert_collider(floor)
     path = save(layer, folder / f"{folder.name}.usdc")

@@ -39,7 +39,8 @@ def door_of(size: Size, *, entrance: bool) -> Asset:
     """Make the door of a size."""
     leaf = Leaf("door", np.zeros(2), np.array([1.0, 0.0]), np.array([0.0, size[0]]), int(size[0]), *size[1:])
     side = leaf.turn  # +1: the room it swings into lies towards +y
-    frame = solid_link("frame", (*_lining(leaf, LINING), *_casing(leaf)), _lining(leaf, POST), 12.0)
+    # The posts' lining is 3 mm before the wall, which collides itself: the head alone is the frame's collider.
+    frame = solid_link("frame", (*_lining(leaf, LINING), *_casing(leaf)), _lining(leaf, POST)[2:], 12.0)
     panel = _span("leaf", (LEAF_GAP, LEAF_GAP + leaf.width), (-side * LEAF_THICKNESS, 0.0), (leaf.bottom, leaf.top), 1)
     handles = _handles(leaf)
     mass = LEAF_DENSITY * leaf.width * LEAF_THICKNESS * (leaf.top - leaf.bottom)
@@ -59,7 +60,7 @@ def door_of(size: Size, *, entrance: bool) -> Asset:
 
 
 def window(cut: Cut) -> tuple[Asset, NDArray[np.float64], float]:
-    """Make the window of an opening: frame, mullion, glass; static. Position and yaw as for a door."""
+    """Make the window of an opening: frame, mullion, glass; static, one block to what touches it. Position and yaw as for a door."""
     a, b = (cut.quad[0] + cut.quad[3]) / 2, (cut.quad[1] + cut.quad[2]) / 2
     return window_of(window_size(cut)), a, float(np.arctan2(*(b - a)[::-1]))
 
@@ -89,7 +90,7 @@ def window_of(size: Size) -> Asset:
         asset_id="window",
         category="window",
         size=np.array([width, 2 * depth, z1]),
-        links=(solid_link("frame", tuple(parts), tuple(parts), 30.0),),
+        links=(solid_link("frame", tuple(parts), (box("block", (0, -depth, z0), (width, depth, z1)),), 30.0),),
         joints=(),
         materials=(WINDOW_FRAME, GLASS),
         source="fitting",

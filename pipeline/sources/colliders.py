@@ -16,6 +16,7 @@ from pipeline.sources.merging import merged
 from pipeline.sources.near_boxes import boxed
 from pipeline.sources.settings import ModelLimits
 from pipeline.sources.solids import Part, convex, dissected, mass_properties
+from pipeline.sources.touching import TOUCHED, simpler
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -100,9 +101,15 @@ def _solids(name: str, found: Sequence[Dissected], cuts: Mapping[int, list[Part]
 
 
 def link(
-    name: str, visuals: Iterable[Mesh], matter: Solids, density: float, kind: str = "", stated: Inertial | float | None = None
+    name: str,
+    visuals: Iterable[Mesh],
+    matter: Solids,
+    density: float,
+    kind: str = "",
+    stated: Inertial | float | None = None,
+    felt: float = TOUCHED,
 ) -> Link:
-    """Return the link [m, kg] of visual meshes and solids; `kind` is the super-category.
+    """Return the link [m, kg] of visual meshes and solids; `kind` is the super-category, `felt` how true its colliders are [m].
 
     It weighs what is `stated`, a mass alone or with its inertia, else what its matter does at one `density` [kg/m3].
     """
@@ -115,7 +122,7 @@ def link(
     if 0 < mass < MINIMUM:
         inertia = inertia * (MINIMUM / mass)
     least = 1e-6 * np.eye(3)  # engines refuse inertias of thin parts that round to zero
-    colliders = tuple(_piece(k, p) for k, p in enumerate(matter.pieces))
+    colliders = tuple(_piece(k, p) for k, p in enumerate(simpler(matter.pieces, felt)))
     return Link(name, tuple(visuals), colliders, round(max(mass, MINIMUM), 5), np.round(com, 6), np.round(inertia, 9) + least)
 
 

@@ -18,10 +18,12 @@ from pipeline.sources.guarded import Folder, read_json
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
 from pipeline.sources.surfaces import Palette, read_obj, visual
+from pipeline.sources.touching import HUNG, TOUCHED
 from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
 Notes = list[tuple[str, str]]
+LEAVES = frozenset({"plant"})  # categories whose outline gives way: their colliders may be as coarse as those out of reach
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,9 +107,10 @@ def read_model(
         if mesh:
             visuals.append(mesh)
             collisions.append((points, group.faces))
-    kind = taxonomy.categories[category].super
+    known = taxonomy.categories[category]
+    kind, hung = known.super, known.mount == "ceiling" or known.fixed or category in LEAVES or (known.mount == "wall" and not known.layout)
     matter = solids("base", collisions, limits, POCKET * float(np.linalg.norm(size)) if cut else None)
-    base = link("base", visuals, matter, density(kind, info.material, category), kind)
+    base = link("base", visuals, matter, density(kind, info.material, category), kind, felt=HUNG if hung else TOUCHED)
     if not base.visuals or not base.colliders:
         raise SourceError("not_obj", info.model_id, "has no face with an area")
     asset = Asset(

@@ -15,7 +15,7 @@ from pipeline.entities.asset import Asset, Link, Mesh
 from pipeline.usd.joints import convert_fixed, convert_joint
 from pipeline.usd.layer import apply, identifiers, label, prim, relationship
 from pipeline.usd.material import bind
-from pipeline.usd.mesh import convert_mesh
+from pipeline.usd.mesh import convert_box, convert_mesh
 from pipeline.usd.physics import convert_body, convert_collider, convert_filter, hide, volume
 from pipeline.usd.resistance import resistance
 
@@ -29,6 +29,7 @@ MOVERS = {
     "slider_button": "button",
 }
 HANDLES = {"line_fixed_handle": "handle", "round_fixed_handle": "handle", "hinge_handle": "handle"}
+SAME = 1e-5  # corners of a box may be off by so much [m]
 TOUCH = 0.005  # parts whose boxes come this close at rest may rub [m]
 
 
@@ -77,10 +78,11 @@ def convert_asset(root: Sdf.PrimSpec, asset: Asset, materials: Sequence[Sdf.Path
 
 
 def _convert_pieces(spec: Sdf.PrimSpec, link: Link, asset: Asset, materials: Sequence[Sdf.Path], *, weigh: bool) -> None:
-    """Write visuals and colliders; where a collider is the very mesh that one sees, one prim is both."""
-    volumes = {_key(c): volume(c) for c in link.colliders}
-    total = sum(volumes.values())
-    seen = set()
+    """Write visuals and colliders; a collider that is the very mesh that one sees, and no box, is one prim with it."""
+    weights = [volume(c) for c in link.colliders]
+    shares = {_key(c): link.mass * w / sum(weights) if weigh else None for c, w in zip(link.colliders, weights, strict=True)}
+    boxes = {_key(c) for c in link.colliders if _is_box(c)}
+    seen: set[tuple[bytes, bytes]] = set()
     visual_names = identifiers(m.name for m in link.visuals)
     for name, mesh in zip(visual_names, link.visuals, strict=True):
         material = asset.materials[mesh.material] if asset.materials else None
@@ -91,24 +93,35 @@ def _convert_pieces(spec: Sdf.PrimSpec, link: Link, asset: Asset, materials: Seq
             label(made, "class", [HANDLES.get(mesh.part, MOVERS.get(mesh.part, "part"))])
             label(made, "part", [mesh.part])
         key = _key(mesh)
-        if key in volumes and key not in seen:
+        if key in shares and key not in seen | boxes:
             seen.add(key)
-            convert_collider(made, link.mass * volumes[key] / total if weigh else None)
-    hidden = [c for c in link.colliders if _key(c) not in seen]
-    for name, mesh in zip(identifiers((f"{c.name}_collider" for c in hidden), visual_names), hidden, strict=True):
-        key = _key(mesh)
-        if key in seen:
-            continue
-        seen.add(key)
-        made = convert_mesh(spec, name, Mesh(mesh.name, mesh.vertices, mesh.faces), None)
+            convert_collider(made, shares[key])
+    hidden = {_key(c): c for c in link.colliders if _key(c) not in seen}
+    for name, (key, mesh) in zip(identifiers((f"{c.name}_collider" for c in hidden.values()), visual_names), hidden.items(), strict=True):
+        if key in boxes:
+            made = convert_box(spec, name, mesh.vertices.min(axis=0), mesh.vertices.max(axis=0))
+        else:
+            made = convert_mesh(spec, name, Mesh(mesh.name, mesh.vertices, mesh.faces), None)
         hide(made)
-        convert_collider(made, link.mass * volumes[key] / total if weigh else None)
+        convert_collider(made, shares[key])
         if materials:
             bind(made, materials[min(mesh.material, len(materials) - 1)])
 
 
 def _key(mesh: Mesh) -> tuple[bytes, bytes]:
     return np.ascontiguousarray(mesh.vertices, np.float32).tobytes(), np.ascontiguousarray(mesh.faces, np.int32).tobytes()
+
+
+def _is_box(mesh: Mesh) -> bool:
+    """Whether a convex mesh is a box with sides along the axes."""
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    ends = (np.abs(mesh.vertices - low) < SAME) | (np.abs(mesh.vertices - high) < SAME)
+    return bool(
+        len(mesh.vertices) == 8
+        and ends.all()
+        and (high - low > SAME).all()
+        and len(np.unique(mesh.vertices > (low + high) / 2, axis=0)) == 8
+    )
 
 
 def _passes(asset: Asset, link: int) -> list[int]:

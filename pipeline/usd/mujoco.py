@@ -71,11 +71,11 @@ def _convert(root: Sdf.PrimSpec, source: Sdf.PrimSpec) -> None:
 def _convert_joint(spec: Sdf.PrimSpec, source: Sdf.PrimSpec) -> None:
     """Write damping, spring and stops; MuJoCo reads no DriveAPI, but these."""
     drive = "angular" if source.typeName == "PhysicsRevoluteJoint" else "linear"
-    said = {name: source.attributes[f"drive:{drive}:physics:{name}"].default for name in ("damping", "stiffness", "targetPosition")}
+    said = f"drive:{drive}:physics:"
     apply(spec, ["NewtonJointAPI", "MjcJointAPI"])
-    attribute(spec, "newton:damping", "float", said["damping"])
-    if said["stiffness"]:
-        attribute(spec, "mjc:stiffness", "double", said["stiffness"], uniform=True)
-        attribute(spec, "mjc:springref", "double", said["targetPosition"], uniform=True)
+    attribute(spec, "newton:damping", "float", source.attributes[f"{said}damping"].default)
+    if stiffness := source.attributes[f"{said}stiffness"].default:
+        attribute(spec, "mjc:stiffness", "double", stiffness, uniform=True)
+        attribute(spec, "mjc:springref", "double", source.attributes[f"{said}targetPosition"].default, uniform=True)
     for attribute_name, values in zip(("mjc:solreflimit", "mjc:solimplimit"), STOP, strict=True):
         attribute(spec, attribute_name, "double[]", Vt.DoubleArray(values), uniform=True)

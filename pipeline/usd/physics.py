@@ -35,9 +35,11 @@ def convert_body(spec: Sdf.PrimSpec, link: Link) -> None:
 
 
 def convert_collider(spec: Sdf.PrimSpec, mass: float | None = None) -> None:
-    """Make a mesh a convex collider; `mass` [kg] is its share of the body, for engines that weigh colliders."""
-    apply(spec, ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI", *(["PhysicsMassAPI"] if mass is not None else [])])
-    attribute(spec, "physics:approximation", "token", "convexHull", uniform=True)
+    """Make a mesh a convex collider, or a box one; `mass` [kg] is its share of the body, for engines that weigh colliders."""
+    mesh = spec.typeName == "Mesh"
+    apply(spec, ["PhysicsCollisionAPI", *(["PhysicsMeshCollisionAPI"] if mesh else []), *(["PhysicsMassAPI"] if mass is not None else [])])
+    if mesh:
+        attribute(spec, "physics:approximation", "token", "convexHull", uniform=True)
     if mass is not None:
         attribute(spec, "physics:mass", "float", float(mass))
 

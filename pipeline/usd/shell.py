@@ -19,12 +19,12 @@ from pipeline.rendering import fittings, palette
 from pipeline.usd.articulation import convert_asset
 from pipeline.usd.layer import attribute, label, prim
 from pipeline.usd.material import Palette, bind
-from pipeline.usd.mesh import convert_mesh, convert_polygons
+from pipeline.usd.mesh import convert_mesh, convert_polygons, flat_normals
 from pipeline.usd.physics import convert_collider, hide
 from pipeline.usd.text import cast, group, mould, placed, shaped
 
 MATERIALS = "/World/Materials"  # where a home's own parts find theirs
-SHAPE = ("points", "extent")  # what each prism has of its own
+SHAPE = ("points", "extent", "normals")  # what each prism has of its own
 
 
 def room_text(parent: str, plan: Plan, room: Room, shells: Mapping[int, Shell], materials: Palette) -> str:
@@ -55,7 +55,7 @@ def walls_text(parent: str, plan: Plan, level: int, shell: Shell, materials: Pal
     solids = []
     for i, solid in enumerate(shell.prisms):
         form = _solid(len(solid.polygon), materials.path(palette.PLASTER))
-        solids.append(cast(form, f"{path}/solids/{solid.kind}_{i:03d}", shaped(prism_points(solid.polygon, solid.bottom, solid.top))))
+        solids.append(cast(form, f"{path}/solids/{solid.kind}_{i:03d}", _prism_shape(solid.polygon, solid.bottom, solid.top)))
     parts = [placed((0.0, 0.0, level * plan.storey_height)), cast(group(schema="Scope"), f"{path}/solids", "".join(solids))]
     parts.append(_panels(f"{path}/facade", outer_panels(shell), palette.FACADE, materials))
     faces = [panel for cut in shell.cuts for panel in reveals(cut)]
@@ -138,7 +138,14 @@ def _prism(n: int) -> Mesh:
     for k in range(n):
         j = (k + 1) % n
         faces += [[k, j, n + j], [k, n + j, n + k]]
-    return Mesh("prism", np.zeros((2 * n, 3), np.float32), np.array(faces, np.int32))
+    turn = 2 * np.pi * np.arange(n) / n  # any such polygon: corners that are one would be written as one
+    outline = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    return Mesh("prism", prism_points(outline, 0.0, 1.0).astype(np.float32), np.array(faces, np.int32))
+
+
+def _prism_shape(polygon: NDArray[np.float64], bottom: float, top: float) -> str:
+    points, faces = prism_points(polygon, bottom, top), _prism(len(polygon)).faces
+    return shaped(points, flat_normals(points, np.full(len(faces), 3, np.int32), faces.ravel()))
 
 
 @functools.cache
@@ -173,7 +180,7 @@ def _slab(
     path: str, polygon: NDArray[np.float64], heights: tuple[float, float], material: Material, materials: Palette, name: str = ""
 ) -> str:
     """Return a prism that is seen and collides, labelled as `name`."""
-    return cast(_slab_form(len(polygon), material, materials.path(material), name), path, shaped(prism_points(polygon, *heights)))
+    return cast(_slab_form(len(polygon), material, materials.path(material), name), path, _prism_shape(polygon, *heights))
 
 
 @functools.lru_cache(maxsize=256)
@@ -191,16 +198,20 @@ def _slab_form(corners: int, material: Material, path: str, name: str) -> str:
 def _panels(path: str, panels: Iterable[Panel], material: Material, materials: Palette) -> str:
     """Return flat faces as one mesh without a collider; the solids behind them collide."""
     corners = [panel.corners for panel in panels]
-    points = np.concatenate(corners)
-    topology = f"int[] faceVertexCounts = {[len(c) for c in corners]}\nint[] faceVertexIndices = {list(range(len(points)))}\n"
-    return cast(_panels_form(material, materials.path(material)), path, shaped(points) + topology)
+    counts = np.array([len(c) for c in corners], np.int32)
+    every = np.concatenate(corners).astype(np.float32)
+    normals = np.repeat(flat_normals(every, counts, np.arange(len(every), dtype=np.int32)), counts, axis=0)
+    rows, index = np.unique(np.concatenate([every, normals.round(5)], axis=1), axis=0, return_inverse=True)  # one corner a plane
+    topology = f"int[] faceVertexCounts = {counts.tolist()}\nint[] faceVertexIndices = {index.reshape(-1).tolist()}\n"
+    shape = shaped(rows[:, :3], rows[:, 3:], "vertex")
+    return cast(_panels_form(material, materials.path(material)), path, shape + topology)
 
 
 @functools.lru_cache(maxsize=256)
 def _panels_form(material: Material, path: str) -> str:
     def convert(layer: Sdf.Layer) -> None:
         one = np.arange(3, dtype=np.int32)
-        made = convert_polygons(layer, "Mould", np.zeros((3, 3)), one[2:] + 1, one, material.base_color)
+        made = convert_polygons(layer, "Mould", np.eye(3), one[2:] + 1, one, material.base_color)
         attribute(made, "doubleSided", "bool", True, uniform=True)
         label(made, "class", ["wall"])
         bind(made, path)

@@ -58,11 +58,12 @@ def placed(position: Sequence[float], yaw: float = 0.0, scale: Sequence[float] =
     )
 
 
-def shaped(points: NDArray[np.floating]) -> str:
-    """Return the points (n, 3) [m] of a mesh and their extent."""
+def shaped(points: NDArray[np.floating], normals: NDArray[np.floating], interpolation: str = "uniform") -> str:
+    """Return the points (n, 3) [m] of a mesh, their extent, and normals, one a face ("uniform") or a point ("vertex")."""
     rows = np.asarray(points, np.float32)
     ends = np.array([rows.min(axis=0), rows.max(axis=0)])
-    return f"point3f[] points = {rows_of(rows)}\nfloat3[] extent = {rows_of(ends)}\n"
+    shading = f'normal3f[] normals = {rows_of(np.asarray(normals, np.float32))} (interpolation = "{interpolation}")'
+    return f"point3f[] points = {rows_of(rows)}\nfloat3[] extent = {rows_of(ends)}\n{shading}\n"
 
 
 def numbers(values: Sequence[float]) -> str:
