@@ -6,10 +6,12 @@ bytes depend on besides (the code, the libraries that write) names the folder ab
 
 from __future__ import annotations
 
+import fcntl
 import os
 import shutil
 import tempfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -36,9 +38,13 @@ class AssetShelf:
         """Return the folder of an asset's files, after writing it where it is missing or broken."""
         place = self.folder / f"{asset_id}-{self.library.rows[asset_id]['sha256'][:16]}"
         seal = place.with_suffix(".json")
-        commit = read_file(seal) if seal.is_file() else None
-        if commit is None or commit.altered(place):
-            self._write(asset_id, place, seal)
+        if not whole(place, seal):
+            if not self.folder.exists():
+                self.folder.mkdir(parents=True, exist_ok=True)
+                make_room(self.folder)
+            with alone(place.with_suffix(".lock")):
+                if not whole(place, seal):  # another process may have written it meanwhile
+                    self._write(asset_id, place, seal)
         return place
 
     def tables(self, asset_ids: Sequence[str]) -> Mapping[Table, Iterable[Mapping[str, Any]]]:
@@ -50,10 +56,7 @@ class AssetShelf:
         }
 
     def _write(self, asset_id: str, place: Path, seal: Path) -> None:
-        """Write an asset under another name and exchange it with what is there: others may be reading, or writing the same."""
-        if not self.folder.exists():
-            self.folder.mkdir(parents=True)
-            make_room(self.folder)
+        """Write an asset under another name and exchange it with what is there: others may be reading."""
         with tempfile.TemporaryDirectory(prefix=".tmp-", dir=self.folder) as scratch:
             made = Path(scratch) / "made"
             write_asset(self.library[asset_id], made)
@@ -65,6 +68,23 @@ class AssetShelf:
                 place.rename(Path(scratch) / "old")
             made.rename(place)
             write_json(seal, commit.to_json())
+
+
+def whole(place: Path, seal: Path) -> bool:
+    """Tell whether an entry is there, and as its commit file says."""
+    commit = read_file(seal) if seal.is_file() else None
+    return commit is not None and not commit.altered(place)
+
+
+@contextmanager
+def alone(path: Path) -> Iterator[None]:
+    """Hold a file's lock: of the processes that would write one entry, one does, and the others wait."""
+    descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)
 
 
 def cache_folder() -> Path:
