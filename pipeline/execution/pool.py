@@ -170,7 +170,7 @@ def _serve(pipe: Connection, step: Callable[[J], R], scratch: str) -> None:
         while True:
             pipe.send(_answer(step, pipe.recv()))
     except (EOFError, OSError):
-        return
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # it is ending by itself: to be told so once more would print a traceback
 
 
 def _answer(step: Callable[[J], R], job: J) -> tuple[str, Any]:

@@ -200,7 +200,7 @@ def test_processes_give_what_one_gives():
 
 
 def test_small_samples_leave_the_record_alone_and_long_ones_grow_it(monkeypatch, tmp_path):
-    monkeypatch.setattr(failures.record, "DOCS", tmp_path)
+    monkeypatch.setattr(failures.record, "RECORDS", tmp_path)
     monkeypatch.setattr(failures, "LEAST", 4)
     monkeypatch.setattr(failures, "CHUNK", 2)
     monkeypatch.setattr(
