@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from pipeline.errors import RefusedError
 from pipeline.floorplan import plan_json
 from pipeline.floorplan.own import program_of, read_own_json
 from pipeline.floorplan.program import FloorProgram
