@@ -124,9 +124,11 @@ def _arranged(
     poses, bonds = exact_poses(items, site, walls, lore, settings, laid)
     crowd = Crowd(site, items, settings, [i for i, bond in enumerate(bonds) if bond is not None])
     settle_all(crowd, Draft(poses, bonds, runs, walls, lore), first, careful=number > 0, bulk=number <= 1)
+    if number > 0:
+        return crowd, True, bonds
     found = crowd.out_of_reach()
     crowd.unreached = found or frozenset()
-    return crowd, number > 0 or found is not None, bonds
+    return crowd, found is not None, bonds
 
 
 def _separated(asked: Sequence[Item], best: Mapping[int, Placement], *, keep_count: bool) -> Separated:

@@ -17,16 +17,9 @@ LAMP_INTENSITY = 4000.0
 LAMP_GAP = 0.03  # below the ceiling [m]
 
 
-@functools.cache
 def sky() -> str:
     """Return the mould of the sky."""
-
-    def convert(layer: Sdf.Layer) -> None:
-        spec = prim(layer, "Mould", "DomeLight")
-        attribute(spec, "inputs:intensity", "float", DOME_INTENSITY)
-        attribute(spec, "inputs:color", "color3f", Gf.Vec3f(0.86, 0.92, 1.0))
-
-    return mould(convert)
+    return _light("DomeLight", DOME_INTENSITY, (0.86, 0.92, 1.0))
 
 
 def lamp(path: str, room: Room, elevation: float) -> str:
@@ -34,15 +27,17 @@ def lamp(path: str, room: Room, elevation: float) -> str:
     x, y = _inside(Polygon(room.polygon))
     side = float(np.clip(0.16 * np.sqrt(room.area), 0.25, 0.9))
     size = f"float inputs:width = {side!r}\nfloat inputs:height = {side!r}\n"
-    return cast(_lamp(), path, placed((x, y, elevation + room.height - LAMP_GAP)) + size)
+    return cast(_light("RectLight", LAMP_INTENSITY, (1.0, 0.93, 0.82)), path, placed((x, y, elevation + room.height - LAMP_GAP)) + size)
 
 
 @functools.cache
-def _lamp() -> str:
+def _light(kind: str, intensity: float, colour: tuple[float, float, float]) -> str:
+    """Return the mould of a light of a USD type."""
+
     def convert(layer: Sdf.Layer) -> None:
-        spec = prim(layer, "Mould", "RectLight")
-        attribute(spec, "inputs:intensity", "float", LAMP_INTENSITY)
-        attribute(spec, "inputs:color", "color3f", Gf.Vec3f(1.0, 0.93, 0.82))
+        spec = prim(layer, "Mould", kind)
+        attribute(spec, "inputs:intensity", "float", intensity)
+        attribute(spec, "inputs:color", "color3f", Gf.Vec3f(*colour))
 
     return mould(convert)
 
