@@ -23,6 +23,7 @@ from pipeline.sources.front_hints import Hint, records
 from pipeline.sources.front_house import HouseRows, read_house
 from pipeline.sources.front_objects import Model
 from pipeline.sources.front_shapes import filled
+from pipeline.sources.front_walkable import Walker
 from pipeline.sources.future import ModelInfo, read_model, read_model_info
 from pipeline.sources.guarded import Folder
 from pipeline.sources.household import candidates, oriented, read_household
@@ -219,6 +220,7 @@ class HouseTask:
     models: Mapping[str, Model]
     filters: FrontFilters
     licence: str
+    walker: Walker
 
 
 def house_files(source: Path) -> list[str]:
@@ -229,7 +231,7 @@ def house_files(source: Path) -> list[str]:
 def read_front(task: HouseTask, file: str) -> HouseRows:
     """Read one house."""
     try:
-        return read_house(Folder.at(task.source), file, task.models, taxonomy.load(), task.filters, task.licence)
+        return read_house(Folder.at(task.source), file, task.models, taxonomy.load(), task.filters, task.licence, task.walker)
     except Exception as error:  # noqa: BLE001 - as in _guarded
         return HouseRows(rejects=[reject("house", Path(file).stem, "internal", f"{type(error).__name__}: {error}")])
 

@@ -24,6 +24,7 @@ from pipeline.sources.front_house import HouseRows, rows_of
 from pipeline.sources.front_objects import MIN_SIZE, Model, Placed
 from pipeline.sources.front_poses import Pose, to_ours
 from pipeline.sources.front_rows import ReadRoom
+from pipeline.sources.front_walkable import Walker
 from pipeline.sources.future_scale import LONGEST, likeliest
 from pipeline.sources.guarded import Folder
 from pipeline.sources.identity import slug
@@ -38,13 +39,14 @@ House = tuple[str, tuple[tuple[str, str], ...]]  # its id, and (folder of the ki
 
 @dataclass(frozen=True, slots=True)
 class PeersTask:
-    """What every house needs: the root, the classes of each kind's folder, models by jid, filters, licence."""
+    """What every house needs: the root, the classes of each kind's folder, models by jid, filters, licence, and who must find a way."""
 
     source: Path
     kinds: Mapping[str, Kind]
     models: Mapping[str, Model]
     filters: FrontFilters
     licence: str
+    walker: Walker
 
 
 def kinds_of(source: Path) -> dict[str, Kind]:
@@ -93,7 +95,7 @@ def read_peers(task: PeersTask, house: House) -> HouseRows:
         rows.rejects.append(reject("house", uid, "no_objects" if rooms else "no_rooms"))
         return rows
     try:
-        return rows_of(HouseFile(uid, {}, {}, (), (), ()), rooms, rows, taxonomy.load(), task.filters, task.licence)
+        return rows_of(HouseFile(uid, {}, {}, (), (), ()), rooms, rows, taxonomy.load(), task.filters, task.licence, task.walker)
     except SourceError as error:
         return HouseRows(rejects=[*rows.rejects, reject("house", uid, error.code, error.detail)])
 

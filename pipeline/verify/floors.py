@@ -26,7 +26,7 @@ def walk_level(home: Home, level: int, made: Bodies, settings: VerifySettings) -
     openings = [o for o in plan.openings if o.level == level]
     floor = bare_floor(rooms, openings, max(plan.inner_wall, plan.outer_wall) / 2 + settings.cell, settings.cell)
     base = level * plan.storey_height
-    walked = walk(floor, _furniture(home, made), robot.radius, (base + robot.step, base + robot.height))
+    walked = walk(floor, _furniture(home, made), robot.radius, robot.band(base))
     return walked, _entered(plan, level, rooms, walked)
 
 

@@ -17,12 +17,13 @@ from pipeline.geometry.kinematics import facing, handle_point, joint_range, move
 from pipeline.geometry.leaves import leaf_handles, leaf_sweep
 from pipeline.geometry.polygons import contains
 from pipeline.geometry.prisms import Prisms, Sweep, stacked
+from pipeline.geometry.robot import Robot
 from pipeline.geometry.standing import stand_pose
 from pipeline.geometry.walls import Leaf, leaves
 from pipeline.verify.bodies import Bodies
 from pipeline.verify.carrying import Carrier, riders, way
 from pipeline.verify.certificate import JointCheck
-from pipeline.verify.settings import Robot, VerifySettings
+from pipeline.verify.settings import VerifySettings
 
 Floats = NDArray[np.float64]
 Walks = Mapping[int, tuple[Walk, int]]
@@ -209,7 +210,7 @@ def _stand(
     grip: Floats, heading: Floats, swept: Prisms, floor: float, walked: Walk, label: int, robot: Robot
 ) -> tuple[float, float, float] | None:
     """Return (x, y, yaw) at which the robot, coming from the entrance, opens a part. At yaw 0 it looks along +x."""
-    found = stand_pose(grip, heading, swept, floor + robot.height, walked, label, radius=robot.radius, reach=robot.reach, cone=robot.cone)
+    found = stand_pose(grip, heading, swept, floor, walked, label, robot)
     if found is None:
         return None
     x, y = found
