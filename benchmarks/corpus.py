@@ -18,7 +18,7 @@ from pathlib import Path
 from pipeline.corpus.calibration import figures
 from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.corpus.house_files import write_houses
-from pipeline.corpus.houses import mess
+from pipeline.corpus.houses import corruption
 from pipeline.corpus.settings import CorpusSettings
 from pipeline.manifest import digest
 
@@ -37,7 +37,7 @@ def key(text: str) -> str:
 
 def main(houses: int, seed: int) -> None:
     """Write, weigh, compare."""
-    settings = CorpusSettings(houses, 1.0, mess=True)
+    settings = CorpusSettings(houses, 1.0, corruption=True)
     models = catalogue(seed, settings.models).future
     with tempfile.TemporaryDirectory() as folder:
         start = time.process_time()
@@ -46,7 +46,7 @@ def main(houses: int, seed: int) -> None:
         files = sorted(Path(folder).glob("*.json"))
         sizes = [file.stat().st_size for file in files]
         seen = Counter(key(file.read_text(encoding="utf-8")) for file in files)
-    found = figures.calibration(tallies, models, len(mess.in_centimetres(seed, models)))
+    found = figures.calibration(tallies, models, len(corruption.in_centimetres(seed, models)))
     lines = [entry["ok"] for _, _, entry in figures.table(found)]
     print(f"{houses} houses of seed {seed}: {seconds:.3f} CPU s each; {WANTED} in {seconds * WANTED:.0f} of {MOST_SECONDS:.0f} CPU s")
     print(f"{sum(sizes) / len(sizes) / 1000:.0f} KB each, the largest {max(sizes) / 1000:.0f} of {MOST_BYTES / 1000:.0f} KB")

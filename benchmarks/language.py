@@ -22,9 +22,9 @@ import yaml
 from benchmarks import slips
 from pipeline.errors import RefusedError
 from pipeline.floorplan import FloorProgram, complete, parse
-from pipeline.floorplan.check import check
 from pipeline.floorplan.language import llm
-from pipeline.floorplan.program import Furniture, Range
+from pipeline.floorplan.program.consistency import check
+from pipeline.floorplan.program.floor_program import Furniture, Range
 
 PROMPTS = Path(__file__).resolve().parents[1] / "manifests" / "prompts"
 FILES = ("languages", "sentences", "speech", "fourth", "fifth", "everyday")

@@ -21,9 +21,8 @@ from typing import Any, TypeVar
 from pipeline import params, taxonomy
 from pipeline.sources import batch
 from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
-from pipeline.sources.front_hints import hints
-from pipeline.sources.front_walkable import Walker
 from pipeline.sources.settings import PreprocessSettings
+from pipeline.sources.threed_front.model_hints import hints
 
 ROOT = Path(__file__).resolve().parents[1]
 SIZE = 2_000_000  # bytes of a house file
@@ -82,8 +81,7 @@ def peak() -> float:
 
 def main(count: int) -> None:
     """Read everything once and print figures."""
-    tree = params.read(ROOT / "params.yaml")
-    settings = params.section(PreprocessSettings, tree, "preprocess")
+    settings = params.section(PreprocessSettings, params.read(ROOT / "params.yaml"), "preprocess")
     front = ROOT / settings.front
     sources = batch.house_files(front)
     with tempfile.TemporaryDirectory() as place:
@@ -105,7 +103,7 @@ def main(count: int) -> None:
             task = LibraryTask(partnet, Path(place) / "assets", settings.models, settings.partnet_licence)
             measured("PartNet objects", partial(batch.read_partnet, task), batch.partnet_objects(partnet)[:40])
         measured("records of houses", partial(batch.house_records, Path(place)), files)
-        house = HouseTask(Path(place), library.models, settings.filters, settings.front_licence, Walker.of(tree))
+        house = HouseTask(Path(place), library.models, settings.filters, settings.front_licence)
         measured("houses, the first", partial(batch.read_front, house), files[:WARM])
         before = peak()
         measured("houses, the rest", partial(batch.read_front, house), files[WARM:])

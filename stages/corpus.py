@@ -20,7 +20,7 @@ from pipeline.corpus.calibration.tally import HouseTally
 from pipeline.corpus.furniture.catalogue import Model, catalogue
 from pipeline.corpus.future_writer import info, write_model
 from pipeline.corpus.house_files import write_houses
-from pipeline.corpus.houses import mess
+from pipeline.corpus.houses import corruption
 from pipeline.corpus.partnet_writer import write_partnet
 from pipeline.corpus.settings import CorpusSettings
 from pipeline.execution import cores, track
@@ -59,13 +59,13 @@ def make(target: Path, seed: int, settings: CorpusSettings, workers: int) -> dic
     making.replace(target)
     shutil.rmtree(old, ignore_errors=True)
     models = catalogue(seed, settings.models).future
-    return figures.calibration(tallies, models, len(mess.in_centimetres(seed, models) if settings.mess else ()))
+    return figures.calibration(tallies, models, len(corruption.in_centimetres(seed, models) if settings.corruption else ()))
 
 
 def tasks(folder: Path, seed: int, settings: CorpusSettings) -> Iterator[tuple[int, Task]]:
     """Cut the work into batches that depend on nothing but their arguments; yields (number of things, task)."""
     models = catalogue(seed, settings.models)
-    centimetres = mess.in_centimetres(seed, models.future) if settings.mess else frozenset()
+    centimetres = corruption.in_centimetres(seed, models.future) if settings.corruption else frozenset()
     front = folder / "3d-front"
     for name in ("3D-FRONT", "3D-FUTURE-model"):
         (front / name).mkdir(parents=True)

@@ -11,9 +11,9 @@ from pipeline.entities.home import Home
 from pipeline.execution import Progress, Voice, single_thread
 from pipeline.execution.notes import listen
 from pipeline.floorplan import FloorProgram, describe, plan_json, request
-from pipeline.floorplan.assumptions import assumptions, notes
-from pipeline.floorplan.draw import svg
-from pipeline.floorplan.own import program_of, read_own, told
+from pipeline.floorplan.draw.drawing import svg
+from pipeline.floorplan.imports import program_of, read_own, told
+from pipeline.floorplan.program.assumptions import assumptions, notes
 from pipeline.floorplan.wishes import with_wishes
 from pipeline.homes.delivery import deliveries, report
 from pipeline.homes.factory import open_factory
@@ -47,7 +47,7 @@ def main(
     factory = open_factory(root, seed)
     asked = digest([wish.prompt, wish.program, wish.plan])
     header = Header(seed, 1, factory.shard_size, factory.licence, {**factory.digests, "prompts": asked})
-    warm_up(progress, root)
+    warm_up(progress)
     listen(lambda note: progress.phase(note[0]))
     (outcome,) = factory.make([wish])  # before the folder is touched: a request may yet be refused
     listen(None)

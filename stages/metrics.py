@@ -10,7 +10,7 @@ from typing import Any
 
 from pipeline import params, seeds, tables, taxonomy
 from pipeline.execution import cores, map_jobs, track
-from pipeline.experiments import tables as paper
+from pipeline.experiments import paper_tables
 from pipeline.experiments.dataset import dataset_figures, reject_counts
 from pipeline.experiments.document import write_report
 from pipeline.experiments.plans import plan_table, read_benchmark
@@ -37,7 +37,7 @@ def main(root: Path) -> None:
     """Measure, and write metrics/metrics.json, plots/ and report/."""
     tree = params.read(root / "params.yaml")
     settings, seed = params.section(MetricsSettings, tree, "metrics"), tree["seed"]
-    parts: list[Callable[[], Any]] = [partial(run, root, seed, settings, family) for family in paper.families(settings)]
+    parts: list[Callable[[], Any]] = [partial(run, root, seed, settings, family) for family in paper_tables.families(settings)]
     parts.append(partial(plans, root, settings))
     found = map_jobs(partial(measure, parts), range(len(parts)), workers=min(cores(), len(parts)))
     *families, plan = (made for _, made in sorted(track(found, len(parts), "metrics", unit="experiment"), key=itemgetter(0)))
@@ -51,23 +51,23 @@ def main(root: Path) -> None:
     rooms = len(trials["plain"].drafted["rooms"])
     figures = {
         "dataset": dataset_figures(root / "data" / "shards"),
-        "quantity": paper.quantity_table(trials, settings.counts, settings.rooms),
-        "walkable": paper.walkable_table(trials, settings.taus, rooms),
-        "articulation": paper.articulation_table(rng, trials, sweeps_of(factory.library.joints), factory.library),
-        "ablation": paper.ablation_table(rng, trials, settings.taus),
-        "category": paper.category_table(trials, real, held_out, taxonomy.load().names),
+        "quantity": paper_tables.quantity_table(trials, settings.counts, settings.rooms),
+        "walkable": paper_tables.walkable_table(trials, settings.taus, rooms),
+        "articulation": paper_tables.articulation_table(rng, trials, sweeps_of(factory.library.joints), factory.library),
+        "ablation": paper_tables.ablation_table(rng, trials, settings.taus),
+        "category": paper_tables.category_table(trials, real, held_out, taxonomy.load().names),
         "realism": realism(root, seed, settings, trials),
         "plan": plan,
     }
     write_json(root / "metrics" / "metrics.json", figures)
-    for name, text in paper.curves(figures).items():
+    for name, text in paper_tables.curves(figures).items():
         write_bytes(root / "plots" / f"{name}.csv", text.encode())
     write_report(root, figures, reject_counts(root), factory, settings)
 
 
 def realism(root: Path, seed: int, settings: MetricsSettings, trials: Mapping[str, Trial]) -> dict[str, Any]:
     """Put what was drafted for the split's floors, and what shipped, beside the rooms that stand there."""
-    drafted = {"unguided": trials[paper.ALL_PLAIN].drafted, "guided": trials[paper.ALL_GUIDED].drafted}
+    drafted = {"unguided": trials[paper_tables.ALL_PLAIN].drafted, "guided": trials[paper_tables.ALL_GUIDED].drafted}
     known = files.load(root / "data" / "tables" / "relations.json")
     return realism_table(seed, beside(root, settings.split, drafted), known, embeddings(settings.inception))
 
@@ -87,7 +87,7 @@ def run(root: Path, seed: int, settings: MetricsSettings, family: Sequence[Condi
 
 
 def _rooms(source: Mapping[str, Sequence[Row]], settings: MetricsSettings, condition: Condition) -> Sequence[RoomJob]:
-    if condition.name in {paper.ALL_PLAIN, paper.ALL_GUIDED}:
+    if condition.name in {paper_tables.ALL_PLAIN, paper_tables.ALL_GUIDED}:
         return spread(test_rooms(source, settings.split, taxonomy.load().layout_types), settings.all_rooms)
     jobs = test_rooms(source, settings.split, LIVED_IN)
     if condition.count is not None:  # rooms that can hold so many things: 1.2 m2 of floor for each

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from pipeline import tables
 from pipeline.errors import UsageError
-from pipeline.sources.peers_labels import KINDS
-from pipeline.sources.peers_writer import grouped, write_kind
+from pipeline.sources.atiss.labels import KINDS
+from pipeline.sources.atiss.writer import grouped, write_kind
 from pipeline.sources.reasons import Row
 from schemas.objects import OBJECTS
 from schemas.rejects import REJECTS

@@ -10,11 +10,11 @@ from pipeline.errors import RefusedError, UsageError
 from pipeline.experiments.prompt_file import read_prompts
 from pipeline.experiments.prompts import measured, report
 from pipeline.floorplan import plan_json, refusal_json, request, solve, warm
-from pipeline.floorplan.assumptions import assumptions, notes
-from pipeline.floorplan.characters import terminal
 from pipeline.floorplan.document import document_schema
-from pipeline.floorplan.draw import png, svg
-from pipeline.floorplan.own import program_of, read_own, told
+from pipeline.floorplan.draw.characters import terminal
+from pipeline.floorplan.draw.drawing import png, svg
+from pipeline.floorplan.imports import program_of, read_own, told
+from pipeline.floorplan.program.assumptions import assumptions, notes
 from pipeline.homes.soundness import require_sound
 from pipeline.manifest import write_bytes, write_json
 from stages.runner import announce_compiling

@@ -15,26 +15,24 @@ from pipeline.errors import ContentError
 from pipeline.execution import cores, track
 from pipeline.relations import files, learning
 from pipeline.relations.split import rooms_of
-from pipeline.sources import batch, inventory, proportions
+from pipeline.sources import batch, inventory
+from pipeline.sources.articulated import proportions
+from pipeline.sources.articulated.household import named_categories
+from pipeline.sources.atiss.reader import PeersTask, kinds_of, peers_houses, read_peers
 from pipeline.sources.batch import Found, HouseTask, LibraryRows, LibraryTask
-from pipeline.sources.front_hints import hints
-from pipeline.sources.front_house import HouseRows
-from pipeline.sources.front_walkable import Walker
 from pipeline.sources.guarded import Folder
-from pipeline.sources.household import named_categories
-from pipeline.sources.mirrored import add_mirrored
-from pipeline.sources.peers_reader import PeersTask, kinds_of, peers_houses, read_peers
 from pipeline.sources.recognition import front_at, partnet_at, peers_at
 from pipeline.sources.settings import PreprocessSettings
 from pipeline.sources.sink import write_houses, write_library
+from pipeline.sources.threed_front.house import HouseRows
+from pipeline.sources.threed_front.mirrored import add_mirrored
+from pipeline.sources.threed_front.model_hints import hints
 from stages.runner import run
 
 
 def main(root: Path) -> None:
     """Read the sources that section `preprocess` of params.yaml names."""
-    tree = params.read(root / "params.yaml")
-    settings = params.section(PreprocessSettings, tree, "preprocess")
-    walker = Walker.of(tree)
+    settings = params.section(PreprocessSettings, params.read(root / "params.yaml"), "preprocess")
     workers = settings.workers or cores()
     needed = () if settings.peers else (batch.HOUSES,) if settings.filters.keep_without_model else (batch.HOUSES, batch.MODELS)
     front = folder(root, "front", settings.front, needed)
@@ -47,7 +45,7 @@ def main(root: Path) -> None:
     if peers:
         inventory.require_listed(root, peers, peers_at)
     library = read_library(root, front, partnet, objects, settings, workers)
-    step, task, houses = homes(front, peers, library, settings, walker)
+    step, task, houses = homes(front, peers, library, settings)
     out = root / "data" / "tables"
     read = track(batch.each(step, task, houses, workers), len(houses), "houses", unit="house")
     summary = write_houses(out, read, library, peers or front)
@@ -58,17 +56,13 @@ def main(root: Path) -> None:
 
 
 def homes(
-    front: Path, peers: Path | None, library: LibraryRows, settings: PreprocessSettings, walker: Walker
+    front: Path, peers: Path | None, library: LibraryRows, settings: PreprocessSettings
 ) -> tuple[Callable[[Any, Any], HouseRows], Any, Sequence[Any]]:
     """Return how a house is read, what each of them needs, and the houses: 3D-FRONT files, or the peers' cached rooms."""
     if peers:
         kinds = kinds_of(peers)
-        return (
-            read_peers,
-            PeersTask(peers, kinds, library.models, settings.filters, settings.peers_licence, walker),
-            peers_houses(peers, kinds),
-        )
-    return batch.read_front, HouseTask(front, library.models, settings.filters, settings.front_licence, walker), batch.house_files(front)
+        return read_peers, PeersTask(peers, kinds, library.models, settings.filters, settings.peers_licence), peers_houses(peers, kinds)
+    return batch.read_front, HouseTask(front, library.models, settings.filters, settings.front_licence), batch.house_files(front)
 
 
 def read_library(

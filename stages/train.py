@@ -19,9 +19,9 @@ from pipeline.diffusion.checkpoint import save_checkpoint, save_weights
 from pipeline.diffusion.inventory import fit
 from pipeline.diffusion.job import CHECKPOINT, WEIGHTS, Job, holdings, open_job
 from pipeline.diffusion.livelog import LiveLog
+from pipeline.diffusion.process_group import ProcessGroup, gathered
 from pipeline.diffusion.rooms import Sets
 from pipeline.diffusion.settings import TrainSettings
-from pipeline.diffusion.team import Team, gathered
 from pipeline.diffusion.training import Trainer, train, validation
 from pipeline.manifest import write_json
 from stages.runner import run
@@ -31,7 +31,7 @@ def main(root: Path) -> None:
     """Train, or go on training, the denoiser of params.yaml."""
     settings, seed = settings_of(root)
     size = 1 if torch.cuda.is_available() else settings.workers or os.cpu_count() or 1
-    job = open_job(root, settings, seed, Team(0, size))
+    job = open_job(root, settings, seed, ProcessGroup(0, size))
     with gathered(size, partial(follow, root)):
         lead(root, job, settings)
 
@@ -42,10 +42,10 @@ def settings_of(root: Path) -> tuple[TrainSettings, int]:
     return params.section(TrainSettings, tree, "train"), int(tree["seed"])
 
 
-def follow(root: Path, team: Team) -> None:
+def follow(root: Path, group: ProcessGroup) -> None:
     """Train beside the first process: the same steps on other rooms of each batch."""
     settings, seed = settings_of(root)
-    job = open_job(root, settings, seed, team)
+    job = open_job(root, settings, seed, group)
     for _ in train(job.trainer, job.data):
         pass
 

@@ -11,9 +11,9 @@ from pipeline.homes.warmth import warm
 from stages import runner
 
 
-def main(root: Path) -> None:
+def main(_root: Path) -> None:
     """Compile."""
-    warm(root)
+    warm()
 
 
 if __name__ == "__main__":

@@ -28,11 +28,11 @@ from pipeline.corpus.partnet_writer import write_partnet
 from pipeline.entities.asset import PART_CLASSES, Asset
 from pipeline.preview.sheet import contact_sheet
 from pipeline.preview.showroom import portrait
-from pipeline.sources import articulated
-from pipeline.sources.future import read_model, read_model_info
+from pipeline.sources.articulated import assets as articulated
+from pipeline.sources.articulated.partnet import read_shape
 from pipeline.sources.guarded import Folder
-from pipeline.sources.partnet import read_shape
 from pipeline.sources.settings import ModelLimits
+from pipeline.sources.threed_front.future import read_model, read_model_info
 
 MARKS = ("<!-- counts: made by benchmarks/pictures/library.py -->\n", "<!-- end of counts -->\n")
 SHEETS = {

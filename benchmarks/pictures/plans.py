@@ -11,7 +11,7 @@ from matplotlib.font_manager import findfont
 from PIL import Image, ImageDraw, ImageFont
 
 from pipeline.floorplan import request, solve
-from pipeline.floorplan.draw import png
+from pipeline.floorplan.draw.drawing import png
 
 PROMPTS = (
     "a two-bedroom flat of 75 m2 with an open kitchen, a hallway, one bathroom and a balcony off the living room",

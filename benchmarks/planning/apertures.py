@@ -9,8 +9,8 @@ import numpy as np
 import shapely
 
 from pipeline.entities.plan import Opening, Plan
-from pipeline.floorplan.defaults import DEFAULTS
-from pipeline.floorplan.program import FloorProgram
+from pipeline.floorplan.program.defaults import DEFAULTS
+from pipeline.floorplan.program.floor_program import FloorProgram
 
 BESIDE = 0.09  # [m] of wall beside an opening on both its sides
 FREE_WALL = 1.0  # [m] of outside wall without another opening that a window finds place in

@@ -13,8 +13,8 @@ import shapely
 
 from benchmarks.planning import apertures
 from pipeline.entities.plan import Plan, Room
-from pipeline.floorplan.defaults import OUTSIDE
-from pipeline.floorplan.program import FloorProgram
+from pipeline.floorplan.program.defaults import OUTSIDE
+from pipeline.floorplan.program.floor_program import FloorProgram
 
 DEAD = frozenset({"bathroom", "wc"})
 BEHIND_BEDROOMS = frozenset({"bathroom", "wc", "closet", "balcony", "storage", "office", "sunroom", "utility"})

@@ -9,7 +9,7 @@ from benchmarks.planning import record
 from benchmarks.planning.times import home
 from pipeline.entities.plan import Plan
 from pipeline.floorplan import complete, parse, solve
-from pipeline.floorplan.program import FloorProgram
+from pipeline.floorplan.program.floor_program import FloorProgram
 
 SIDE = 64  # raster of a plan's bounding box
 PROMPTS = (

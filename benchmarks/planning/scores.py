@@ -12,7 +12,7 @@ import yaml
 
 from benchmarks.planning import record
 from pipeline.floorplan import FloorProgram, parse, solve
-from pipeline.floorplan.program import Entrance, Link, Range, RoomReq
+from pipeline.floorplan.program.floor_program import Entrance, Link, Range, RoomReq
 from pipeline.metrics.plan_scores import s_constraint, score
 
 CASES = Path(__file__).resolve().parents[2] / "manifests" / "prompts" / "benchmark.yaml"

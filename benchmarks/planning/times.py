@@ -8,7 +8,7 @@ import numpy as np
 
 from benchmarks.planning import record
 from pipeline.floorplan import FloorProgram, complete
-from pipeline.floorplan.program import RoomReq, RoomType
+from pipeline.floorplan.program.floor_program import RoomReq, RoomType
 from pipeline.floorplan.solver import search
 
 HOMES: dict[int, tuple[RoomType, ...]] = {

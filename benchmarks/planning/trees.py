@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pipeline.floorplan.program import Entrance, FloorProgram, Footprint, Link, LinkKind, Range, RoomReq
+from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, Footprint, Link, LinkKind, Range, RoomReq
 
 LEAST_SIDE = 1.55  # of a rectangle, walls included [m]
 WALL = 0.16  # of thickness, roughly [m]

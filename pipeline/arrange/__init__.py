@@ -1,14 +1,14 @@
 """Post-optimisation: walkable area (algorithm 2 of the paper), relations made exact, and what is left of collisions separated."""
 
 from pipeline.arrange.hanging import Hanging, Window
-from pipeline.arrange.laying import Laying
 from pipeline.arrange.lore import Lore
 from pipeline.arrange.room import Arranged, post_optimise
 from pipeline.arrange.rugs import lay_rug
 from pipeline.arrange.separate import Reject, Separated, separate
 from pipeline.arrange.settings import PostoptSettings, SeparateSettings, ThingsSettings, WalkableSettings
 from pipeline.arrange.site import Site
-from pipeline.arrange.walkable import Controlled, control_walkable, free_ratio, paper_ratio
+from pipeline.arrange.surface_placement import Laying
+from pipeline.arrange.walkable_area import Controlled, control_walkable, free_ratio, paper_ratio
 
 __all__ = [
     "Arranged",

@@ -15,7 +15,7 @@ from pipeline.arrange.item import Item, turned, wrapped
 from pipeline.arrange.lore import Lore
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
-from pipeline.arrange.walls import Edge, at_wall, hides_window, hole_cost
+from pipeline.arrange.walls import Edge, at_wall, hides_window, opening_cost
 
 Floats = NDArray[np.float64]
 
@@ -118,11 +118,11 @@ def _along_walls(item: Item, target: Floats, walls: Sequence[Edge], neighbours: 
             near = (neighbours - edge.start) @ edge.inward
             s = ((neighbours - edge.start) @ edge.along)[near.min(1) < 2 * d]
             stops += [s.min(1) - w - SEAM, s.max(1) + w + SEAM]
-        stops += [np.array([hole.start - w - SEAM, hole.end + w + SEAM]) for hole in edge.holes]
+        stops += [np.array([opening.start - w - SEAM, opening.end + w + SEAM]) for opening in edge.openings]
         places = np.concatenate(stops)
         places = np.unique(np.round(places[(places >= w) & (places <= edge.length - w)], 4))
         points = edge.start + places[:, None] * edge.along + (d + gap) * edge.inward
-        cost = np.linalg.norm(points - target[:2], axis=1) + hole_cost(item, places, edge.holes)
+        cost = np.linalg.norm(points - target[:2], axis=1) + opening_cost(item, places, edge.openings)
         found.append(_made(points, np.full(len(places), edge.yaw), target[2])[np.isfinite(cost)])
         costs.append(cost[np.isfinite(cost)])
     return np.concatenate(found), np.concatenate(costs)
@@ -145,10 +145,10 @@ def _window_cost(item: Item, poses: Floats, walls: Sequence[Edge]) -> Floats:
     """Return what hiding a window costs at poses with the target's yaw."""
     cost = np.zeros(len(poses))
     for edge in walls:
-        holes = [hole for hole in edge.holes if hides_window(item, hole) and item.habit.kind != "bed"]
-        if holes and turned(edge.yaw, float(poses[0, 3])) < 0.1:
+        openings = [opening for opening in edge.openings if hides_window(item, opening) and item.habit.kind != "bed"]
+        if openings and turned(edge.yaw, float(poses[0, 3])) < 0.1:
             near = (poses[:, :2] - edge.start) @ edge.inward < item.half[1] + 0.3
-            cost += near * hole_cost(item, (poses[:, :2] - edge.start) @ edge.along, holes)
+            cost += near * opening_cost(item, (poses[:, :2] - edge.start) @ edge.along, openings)
     return cost
 
 

@@ -79,10 +79,10 @@ class Hanging:
             along = (b - a) / max(length, 1e-9)
             s, off = (corners - a) @ along, (corners - a) @ np.array([-along[1], along[0]])
             standing = np.column_stack([s.min(1), s.max(1), off.min(1), heights])[off.max(1) > 0] if len(s) else np.zeros((0, 5))
-            holes = self._holes(len(self.walls), a, along, length, openings)
-            self.walls.append(Wall(a, along, length, np.concatenate([standing[standing[:, 2] < DEEP], holes])))
+            in_wall = self._openings_of(len(self.walls), a, along, length, openings)
+            self.walls.append(Wall(a, along, length, np.concatenate([standing[standing[:, 2] < DEEP], in_wall])))
 
-    def _holes(self, number: int, a: Floats, along: Floats, length: float, openings: Sequence[Opening]) -> Floats:
+    def _openings_of(self, number: int, a: Floats, along: Floats, length: float, openings: Sequence[Opening]) -> Floats:
         found = []
         for o in openings:
             s = (o.segment - a) @ along

@@ -9,7 +9,7 @@ from pipeline.arrange.lore import Lore
 from pipeline.arrange.separate import Reject, Separated, Smaller, separate
 from pipeline.arrange.settings import PostoptSettings
 from pipeline.arrange.site import Site
-from pipeline.arrange.walkable import Controlled, control_walkable, free_ratio, paper_ratio
+from pipeline.arrange.walkable_area import Controlled, control_walkable, free_ratio, paper_ratio
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 

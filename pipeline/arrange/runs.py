@@ -87,7 +87,7 @@ def _wall_of(item: Item, walls: Sequence[Edge]) -> Edge | None:
 
 def _stretches(edge: Edge, depth: float, site: Site, taken: Sequence[Floats]) -> list[Stretch]:
     """Return the free pieces of a wall for units of this depth: without doors, their swing, and what stands in the corners."""
-    cuts = [(hole.start - DOORWAY, hole.end + DOORWAY) for hole in edge.holes if not hole.window]
+    cuts = [(opening.start - DOORWAY, opening.end + DOORWAY) for opening in edge.openings if not opening.window]
     swung = [site.swung.polygon(k) for k in range(len(site.swung))]
     for outline, margin in [*((o, DOORWAY) for o in swung), *((o, SEAM) for o in taken)]:
         s, off = (outline - edge.start) @ edge.along, (outline - edge.start) @ edge.inward
@@ -213,7 +213,7 @@ def _hang(items: Sequence[Item], walls: Sequence[Edge], runs: list[list[int]], p
         bottom = min(bottom if abs(bottom - HUNG_AT) < 0.1 else HUNG_AT, highest)
         if bottom < top + LEAST_AIR:
             continue
-        cuts = [(hole.start - SEAM, hole.end + SEAM) for hole in edge.holes]
+        cuts = [(opening.start - SEAM, opening.end + SEAM) for opening in edge.openings]
         cuts += [
             (_place_of(poses[i], edge) - float(items[i].half[0]) - SEAM, _place_of(poses[i], edge) + float(items[i].half[0]) + SEAM)
             for i in base

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import Bond, broken
-from pipeline.arrange.crowd import Crowd
 from pipeline.arrange.exact import exact_poses
 from pipeline.arrange.item import Item, make_item
 from pipeline.arrange.lore import Lore
+from pipeline.arrange.occupancy import Occupancy
 from pipeline.arrange.runs import lay_runs
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.settling import Draft, settle_all
@@ -93,14 +93,14 @@ def separate(
     best: dict[int, Placement] = {}
     least: tuple[float, float] | None = None
     for number in range(max(1, settings.rounds)):
-        crowd, sound, bonds = _arranged(site, items, first, lore, settings, number)
-        apart = broken(bonds, items, crowd.poses, crowd.there, lore)
-        there = {i: items[i].at(crowd.poses[i]) for i in np.flatnonzero(crowd.there).tolist()}
+        occupancy, sound, bonds = _arranged(site, items, first, lore, settings, number)
+        apart = broken(bonds, items, occupancy.poses, occupancy.there, lore)
+        there = {i: items[i].at(occupancy.poses[i]) for i in np.flatnonzero(occupancy.there).tolist()}
         lost = [i for i in range(len(items)) if i not in there]
-        score = _score(there, items, BROKEN * len(apart) + UNREACHED * len(crowd.unreached))
+        score = _score(there, items, BROKEN * len(apart) + UNREACHED * len(occupancy.unreached))
         if (sound or number == settings.rounds - 1) and (least is None or score < least):
             best, least = there, score
-        hidden = [i for i in crowd.unreached if number == 0 or (bonds[i] is None and number < HIDDEN_ROUNDS)]
+        hidden = [i for i in occupancy.unreached if number == 0 or (bonds[i] is None and number < HIDDEN_ROUNDS)]
         if sound and not (lost or apart or hidden):
             break
         if number and smaller is not None:
@@ -117,18 +117,18 @@ def separate(
 
 def _arranged(
     site: Site, items: list[Item], first: Sequence[int], lore: Lore, settings: SeparateSettings, number: int
-) -> tuple[Crowd, bool, list[Bond | None]]:
+) -> tuple[Occupancy, bool, list[Bond | None]]:
     """Arrange a room once; return who stands where, whether the floor is sound (looked at for each group after round 0), the bonds."""
     walls = edges(site)
     runs, laid = lay_runs(items, walls, site)
     poses, bonds = exact_poses(items, site, walls, lore, settings, laid)
-    crowd = Crowd(site, items, settings, [i for i, bond in enumerate(bonds) if bond is not None])
-    settle_all(crowd, Draft(poses, bonds, runs, walls, lore), first, careful=number > 0, bulk=number <= 1)
+    occupancy = Occupancy(site, items, settings, [i for i, bond in enumerate(bonds) if bond is not None])
+    settle_all(occupancy, Draft(poses, bonds, runs, walls, lore), first, careful=number > 0, bulk=number <= 1)
     if number > 0:
-        return crowd, True, bonds
-    found = crowd.out_of_reach()
-    crowd.unreached = found or frozenset()
-    return crowd, found is not None, bonds
+        return occupancy, True, bonds
+    found = occupancy.out_of_reach()
+    occupancy.unreached = found or frozenset()
+    return occupancy, found is not None, bonds
 
 
 def _separated(asked: Sequence[Item], best: Mapping[int, Placement], *, keep_count: bool) -> Separated:

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import Bond, at_anchor
 from pipeline.arrange.candidates import ALONE, at_anchor_poses, everywhere, hides, near_by
-from pipeline.arrange.crowd import Crowd
 from pipeline.arrange.groups import Group, group_of, groups
 from pipeline.arrange.item import wrapped
 from pipeline.arrange.lore import Lore
+from pipeline.arrange.occupancy import Occupancy
 from pipeline.arrange.walls import Edge
 from pipeline.arrange.world import FREE, conflicts, put
 
@@ -39,48 +39,48 @@ class Draft:
         return found
 
 
-def settle_all(crowd: Crowd, draft: Draft, first: Sequence[int], *, careful: bool, bulk: bool) -> None:
-    """Find a place for every group, those that hold one of `first` before the others; who finds none is not in the crowd.
+def settle_all(occupancy: Occupancy, draft: Draft, first: Sequence[int], *, careful: bool, bulk: bool) -> None:
+    """Find a place for every group, those that hold one of `first` before the others; who finds none stands nowhere.
 
     `careful`: the floor must hang together with each group that is added. `bulk`: those that are free where they belong come first, all at once.
     """
-    pairs, alone = conflicts(crowd.world, draft.poses, crowd.settings.touch)
-    whole = groups(crowd.items, draft.poses, draft.bonds, draft.runs)
-    made, strays, poses = _fitted(crowd, draft, whole, pairs)
+    pairs, alone = conflicts(occupancy.world, draft.poses, occupancy.settings.touch)
+    whole = groups(occupancy.items, draft.poses, draft.bonds, draft.runs)
+    made, strays, poses = _fitted(occupancy, draft, whole, pairs)
     if not np.array_equal(poses, draft.poses):
         draft = replace(draft, poses=poses)
-        pairs, alone = conflicts(crowd.world, poses, crowd.settings.touch)
-    at_fault = (alone != FREE) | np.array([hides(i, p, draft.walls) for i, p in zip(crowd.items, draft.poses, strict=True)], np.bool_)
-    member = np.full(len(crowd.items), -1)
+        pairs, alone = conflicts(occupancy.world, poses, occupancy.settings.touch)
+    at_fault = (alone != FREE) | np.array([hides(i, p, draft.walls) for i, p in zip(occupancy.items, draft.poses, strict=True)], np.bool_)
+    member = np.full(len(occupancy.items), -1)
     for number, group in enumerate(made):
         member[group.members] = number
     clash = pairs & (member[:, None] != member[None]) & (member >= 0)[:, None] & (member >= 0)[None]
-    order = sorted(range(len(made)), key=lambda k: _rank(crowd, made[k], draft, first))
+    order = sorted(range(len(made)), key=lambda k: _rank(occupancy, made[k], draft, first))
     free = [k for k in order if bulk and not (at_fault[made[k].members].any() or clash[made[k].members].any())]
     for k in free:
-        crowd.stand(made[k], draft.poses[made[k].first])
-    if careful and free and crowd.out_of_reach() != frozenset():
+        occupancy.stand(made[k], draft.poses[made[k].first])
+    if careful and free and occupancy.out_of_reach() != frozenset():
         for k in free:
-            crowd.leave(made[k])
+            occupancy.leave(made[k])
         free = []
     order = [k for k in order if k not in set(free)]
     for k in order:
-        strays += _settle_group(crowd, draft, made[k], careful=careful)
-    for i in sorted(strays, key=lambda i: (-crowd.items[i].area, i)):
-        _settle_one(crowd, draft, i, careful=careful)
+        strays += _settle_group(occupancy, draft, made[k], careful=careful)
+    for i in sorted(strays, key=lambda i: (-occupancy.items[i].area, i)):
+        _settle_one(occupancy, draft, i, careful=careful)
 
 
-def _rank(crowd: Crowd, group: Group, draft: Draft, first: Sequence[int]) -> tuple[int, int, int, float, int]:
+def _rank(occupancy: Occupancy, group: Group, draft: Draft, first: Sequence[int]) -> tuple[int, int, int, float, int]:
     """Order of placing: who found nothing before, kitchen runs, what leans on none, large before small, what opens before what does not."""
-    lead = crowd.items[group.first]
+    lead = occupancy.items[group.first]
     waits = draft.bonds[group.first] is not None
     again = min((first.index(i) for i in group.members.tolist() if i in first), default=len(first))
-    area = sum(crowd.items[i].area for i in group.members.tolist())
+    area = sum(occupancy.items[i].area for i in group.members.tolist())
     run = group.first in {run[0] for run in draft.runs}
     return again, 0 if run else 1, int(waits), -area * (OPENS if lead.shape.opens else 1.0), group.first
 
 
-def _fitted(crowd: Crowd, draft: Draft, whole: Sequence[Group], pairs: NDArray[np.bool_]) -> tuple[list[Group], list[int], Floats]:
+def _fitted(occupancy: Occupancy, draft: Draft, whole: Sequence[Group], pairs: NDArray[np.bool_]) -> tuple[list[Group], list[int], Floats]:
     """Move each member that is in another of its group to the next place at its anchor where it is not: a chair out from under the table.
 
     Return the groups, the strays, who found none, and the poses (N, 4).
@@ -90,7 +90,7 @@ def _fitted(crowd: Crowd, draft: Draft, whole: Sequence[Group], pairs: NDArray[n
         kept = [group.first]
         for i in group.members[1:].tolist():
             if pairs[i, kept].any():
-                place = _beside(crowd, draft, i, group, poses)
+                place = _beside(occupancy, draft, i, group, poses)
                 if place is None:
                     strays.append(i)
                     continue
@@ -100,76 +100,76 @@ def _fitted(crowd: Crowd, draft: Draft, whole: Sequence[Group], pairs: NDArray[n
     return made, strays, poses
 
 
-def _beside(crowd: Crowd, draft: Draft, i: int, group: Group, poses: Floats) -> Floats | None:
+def _beside(occupancy: Occupancy, draft: Draft, i: int, group: Group, poses: Floats) -> Floats | None:
     """Return the nearest pose of a member at its anchor that is free of the other members, and place it there."""
     bond = draft.bonds[i]
     if bond is None or bond.over:
         return None
     found, costs = at_anchor_poses(
-        crowd.items[i], poses[i], crowd.items[bond.anchor], poses[bond.anchor], draft.walls, draft.lore, crowd.settings
+        occupancy.items[i], poses[i], occupancy.items[bond.anchor], poses[bond.anchor], draft.walls, draft.lore, occupancy.settings
     )
-    others = np.zeros(len(crowd.items), np.bool_)
+    others = np.zeros(len(occupancy.items), np.bool_)
     others[group.members[group.members != i]] = True
-    best = crowd.nearest(group_of([i], poses), found, costs, others)
-    put(crowd.world, i, poses[i] if best is None else best[0])
+    best = occupancy.nearest(group_of([i], poses), found, costs, others)
+    put(occupancy.world, i, poses[i] if best is None else best[0])
     return None if best is None else best[0]
 
 
-def _settle_group(crowd: Crowd, draft: Draft, group: Group, *, careful: bool) -> list[int]:
+def _settle_group(occupancy: Occupancy, draft: Draft, group: Group, *, careful: bool) -> list[int]:
     """Place a group as one near its target; else its anchor alone. Return the members that are then still to be placed."""
     first = group.first
     if len(group.members) == 1:
-        _settle_one(crowd, draft, first, careful=careful)
+        _settle_one(occupancy, draft, first, careful=careful)
         return []
-    poses, costs = _near(crowd, draft, first)
+    poses, costs = _near(occupancy, draft, first)
     close = costs <= SHIFT
-    if _put(crowd, group, poses[close], costs[close], careful=careful):
+    if _put(occupancy, group, poses[close], costs[close], careful=careful):
         return []
-    _settle_one(crowd, draft, first, careful=careful)
+    _settle_one(occupancy, draft, first, careful=careful)
     return [int(i) for i in group.members[1:]]
 
 
-def _settle_one(crowd: Crowd, draft: Draft, i: int, *, careful: bool) -> None:
+def _settle_one(occupancy: Occupancy, draft: Draft, i: int, *, careful: bool) -> None:
     """Place one object: near its target or elsewhere at its anchor, else all over the room."""
     alone = group_of([i], draft.poses)
-    poses, costs = _near(crowd, draft, i)
-    if not _put(crowd, alone, poses, costs, careful=careful):
-        poses, costs = everywhere(crowd.items[i], _target(crowd, draft, i), draft.walls, crowd.site, crowd.settings)
-        _put(crowd, alone, poses, costs, careful=careful)
+    poses, costs = _near(occupancy, draft, i)
+    if not _put(occupancy, alone, poses, costs, careful=careful):
+        poses, costs = everywhere(occupancy.items[i], _target(occupancy, draft, i), draft.walls, occupancy.site, occupancy.settings)
+        _put(occupancy, alone, poses, costs, careful=careful)
 
 
-def _put(crowd: Crowd, group: Group, poses: Floats, costs: Floats, *, careful: bool) -> bool:
+def _put(occupancy: Occupancy, group: Group, poses: Floats, costs: Floats, *, careful: bool) -> bool:
     if careful:
-        return crowd.settle(group, poses, costs)
-    found = crowd.nearest(group, poses, costs)
+        return occupancy.settle(group, poses, costs)
+    found = occupancy.nearest(group, poses, costs)
     if found is not None:
-        crowd.stand(group, found[0])
+        occupancy.stand(group, found[0])
     return found is not None
 
 
-def _target(crowd: Crowd, draft: Draft, i: int) -> Floats:
+def _target(occupancy: Occupancy, draft: Draft, i: int) -> Floats:
     """Return the exact pose of an object; where its anchor has moved, it goes along."""
     bond = draft.bonds[i]
-    if bond is None or not crowd.there[bond.anchor]:
+    if bond is None or not occupancy.there[bond.anchor]:
         return draft.pose(i)
-    now, then = crowd.poses[bond.anchor], draft.poses[bond.anchor]
+    now, then = occupancy.poses[bond.anchor], draft.poses[bond.anchor]
     if np.allclose(now, then, atol=1e-3):
         return draft.pose(i)
     x, y, yaw = at_anchor(now, bond.local)
     return np.array([x, y, draft.poses[i, 2], wrapped(float(yaw))])
 
 
-def _near(crowd: Crowd, draft: Draft, i: int) -> tuple[Floats, Floats]:
+def _near(occupancy: Occupancy, draft: Draft, i: int) -> tuple[Floats, Floats]:
     """Return poses near the target of an object, and at its anchor if it has one, the cheapest first."""
-    item, target = crowd.items[i], _target(crowd, draft, i)
-    there = np.flatnonzero(crowd.there).tolist()
-    neighbours = np.array([crowd.outline(k) for k in there]).reshape(-1, 4, 2)
-    poses, costs = near_by(item, target, draft.walls, neighbours, crowd.site, crowd.settings)
+    item, target = occupancy.items[i], _target(occupancy, draft, i)
+    there = np.flatnonzero(occupancy.there).tolist()
+    neighbours = np.array([occupancy.outline(k) for k in there]).reshape(-1, 4, 2)
+    poses, costs = near_by(item, target, draft.walls, neighbours, occupancy.site, occupancy.settings)
     bond = draft.bonds[i]
-    if bond is None or bond.over or not crowd.there[bond.anchor]:
+    if bond is None or bond.over or not occupancy.there[bond.anchor]:
         return poses, costs
-    anchor = crowd.items[bond.anchor]
-    beside, cost = at_anchor_poses(item, target, anchor, crowd.poses[bond.anchor], draft.walls, draft.lore, crowd.settings)
+    anchor = occupancy.items[bond.anchor]
+    beside, cost = at_anchor_poses(item, target, anchor, occupancy.poses[bond.anchor], draft.walls, draft.lore, occupancy.settings)
     if not len(beside):
         return poses, costs
     poses, costs = np.concatenate([beside, poses]), np.concatenate([cost, np.where(costs > 0.05, costs + ALONE, costs)])

@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.plan import Opening, Plan
-from pipeline.geometry.freefloor import PASSABLE, Floor, Walk, bare_floor, walk
+from pipeline.geometry.free_space import PASSABLE, Floor, FreeSpace, bare_floor, free_space
 from pipeline.geometry.leaves import leaf_sweep
 from pipeline.geometry.prisms import Prisms, stacked
-from pipeline.geometry.robot import Robot
 from pipeline.geometry.walls import leaves
 
 Floats = NDArray[np.float64]
@@ -23,7 +22,7 @@ NEAR_DOOR = 0.15  # the robot must find a place this near to the middle of each 
 
 
 @dataclass(frozen=True, slots=True)
-class Hole:
+class EdgeOpening:
     """An opening in one edge of a room: from `start` to `end` [m along the edge], `sill` [m above the floor]."""
 
     start: float
@@ -37,8 +36,9 @@ class Site:
     """One room.
 
     `polygon` (n, 2) [m]; floor at `elevation`, ceiling at `ceiling` [m]; `swung` are the prisms that room doors sweep;
-    `doors` (D, 2) [m] the middles of the openings that one walks through; `holes` are per edge of the polygon the openings
-    in it, as (start, end) [m along the edge], lower edge [m above the floor], and whether it is a window; `bare` is where the robot can stand on the empty floor.
+    `doors` (D, 2) [m] the middles of the openings that one walks through; `openings` are per edge of the polygon the openings
+    in it, as (start, end) [m along the edge], lower edge [m above the floor], and whether it is a window; `radius`, `step`, `height`, `reach` [m] and `cone`
+    [deg] are the robot's.
     """
 
     room_id: str
@@ -47,21 +47,40 @@ class Site:
     ceiling: float
     swung: Prisms
     doors: Floats
-    holes: tuple[tuple[Hole, ...], ...]
+    openings: tuple[tuple[EdgeOpening, ...], ...]
     floor: Floor
-    bare: Walk
-    robot: Robot
+    bare: FreeSpace
+    radius: float
+    step: float
+    height: float
+    reach: tuple[float, float]
+    cone: float
 
     @classmethod
-    def of(cls, plan: Plan, room_id: str, robot: Robot, cell: float) -> Site:
-        """Take one room out of a plan, with a raster of that cell [m] for the robot's ways."""
+    def of(
+        cls,
+        plan: Plan,
+        room_id: str,
+        *,
+        radius: float = 0.28,
+        step: float = 0.02,
+        height: float = 1.4,
+        reach: tuple[float, float] = (0.4, 0.9),
+        cone: float = 75.0,
+        cell: float = 0.05,
+    ) -> Site:
+        """Take one room out of a plan.
+
+        The numbers are the robot's radius, climb, height and reach [m], the half angle [deg] of the cone before a handle
+        in which it stands, and the raster's cell [m]; `bare` is the empty floor.
+        """
         room = plan.room(room_id)
         openings = [o for o in plan.openings if room_id in o.rooms and o.level == room.level]
         elevation = plan.elevation(room_id)
         own = {o.opening_id for o in openings}
         # Beyond each opening lies floor on which the robot can stand whole: one passes through, not up to the wall.
         # Wide openings must be free in the middle, seen from both of their rooms: so both agree on where to pass.
-        floor = bare_floor([room], openings, 2 * robot.radius + cell, cell, PASS_WIDTH)
+        floor = bare_floor([room], openings, 2 * radius + cell, cell, PASS_WIDTH)
         swung = stacked([leaf_sweep(leaf, elevation).prisms for leaf in leaves(plan) if leaf.opening_id in own])
         return cls(
             room_id,
@@ -70,10 +89,14 @@ class Site:
             elevation + room.height,
             swung,
             np.array([o.segment.mean(0) for o in openings if o.kind in PASSABLE]).reshape(-1, 2),
-            _holes(room.polygon, openings),
+            _openings_by_edge(room.polygon, openings),
             floor,
-            walk(floor, stacked([]), robot.radius, robot.band(elevation)),
-            robot,
+            free_space(floor, stacked([]), radius, (elevation + step, elevation + height)),
+            radius,
+            step,
+            height,
+            reach,
+            cone,
         )
 
     @property
@@ -82,35 +105,35 @@ class Site:
         x, y = self.polygon[:, 0], self.polygon[:, 1]
         return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 
-    def walk(self, obstacles: Prisms) -> Walk:
+    def free_space(self, obstacles: Prisms) -> FreeSpace:
         """Find where the robot can stand with these obstacles in the room."""
-        return walk(self.floor, obstacles, self.robot.radius, self.robot.band(self.elevation))
+        return free_space(self.floor, obstacles, self.radius, (self.elevation + self.step, self.elevation + self.height))
 
-    def door_labels(self, walked: Walk) -> list[int]:
+    def door_labels(self, space: FreeSpace) -> list[int]:
         """Return per opening the label of the free part that it opens to, 0 where the robot cannot stand in it."""
-        return [walked.label_near(door, NEAR_DOOR) for door in self.doors]
+        return [space.label_near(door, NEAR_DOOR) for door in self.doors]
 
-    def gate(self, walked: Walk) -> tuple[int, int]:
+    def gate(self, space: FreeSpace) -> tuple[int, int]:
         """Return the label of the free part that most doors open to (the largest of equals), and how many do.
 
         Without doors it is the largest part; (0, 0) when the robot gets in by no door.
         """
         if not len(self.doors):
-            return walked.largest_label(self.floor.room >= 0), 0
-        near = self.door_labels(walked)
+            return space.largest_label(self.floor.room >= 0), 0
+        near = self.door_labels(space)
         votes = sorted({label for label in near if label}, key=lambda label: (-near.count(label), label))
         if not votes:
             return 0, 0
         tied = [label for label in votes if near.count(label) == near.count(votes[0])]
-        best = max(tied, key=lambda label: (np.count_nonzero(walked.labels == label), -label)) if len(tied) > 1 else tied[0]
+        best = max(tied, key=lambda label: (np.count_nonzero(space.labels == label), -label)) if len(tied) > 1 else tied[0]
         return best, near.count(best)
 
-    def free_share(self, walked: Walk) -> float:
+    def free_share(self, space: FreeSpace) -> float:
         """Return the true walkable ratio: what the robot covers, moving about from the doors, over the floor."""
-        return float(walked.shares(walked.covered(self.gate(walked)[0]), 1)[0])
+        return float(space.shares(space.covered(self.gate(space)[0]), 1)[0])
 
 
-def _holes(polygon: Floats, openings: Sequence[Opening]) -> tuple[tuple[Hole, ...], ...]:
+def _openings_by_edge(polygon: Floats, openings: Sequence[Opening]) -> tuple[tuple[EdgeOpening, ...], ...]:
     """Return the openings in each edge of a polygon."""
     found = []
     for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
@@ -121,6 +144,6 @@ def _holes(polygon: Floats, openings: Sequence[Opening]) -> tuple[tuple[Hole, ..
             s = (o.segment - a) @ t
             off = np.abs((o.segment - a) @ np.array([-t[1], t[0]]))
             if off.max() < WALL and min(length, s.max()) - max(0.0, s.min()) > 0.05:
-                own.append(Hole(float(s.min()), float(s.max()), o.sill, o.kind == "window"))
+                own.append(EdgeOpening(float(s.min()), float(s.max()), o.sill, o.kind == "window"))
         found.append(tuple(own))
     return tuple(found)

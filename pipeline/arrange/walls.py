@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.item import Item, turned, wrapped
-from pipeline.arrange.site import Hole, Site
+from pipeline.arrange.site import EdgeOpening, Site
 
 Floats = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ class Edge:
     inward: Floats
     length: float
     yaw: float  # of an object that has its back to it [rad]
-    holes: tuple[Hole, ...]
+    openings: tuple[EdgeOpening, ...]
 
     def pose(self, s: float, off: float, z: float) -> Floats:
         """Return the pose of an object whose middle is `s` along the wall and `off` before it [m]."""
@@ -43,29 +43,29 @@ class Edge:
 def edges(site: Site) -> list[Edge]:
     """Return the walls of a room."""
     found = []
-    for a, b, holes in zip(site.polygon, np.roll(site.polygon, -1, axis=0), site.holes, strict=True):
+    for a, b, openings in zip(site.polygon, np.roll(site.polygon, -1, axis=0), site.openings, strict=True):
         length = math.hypot(*(b - a))
         t = (b - a) / max(length, 1e-9)
-        found.append(Edge(a, t, np.array([-t[1], t[0]]), length, wrapped(math.atan2(-t[1], -t[0])), holes))
+        found.append(Edge(a, t, np.array([-t[1], t[0]]), length, wrapped(math.atan2(-t[1], -t[0])), openings))
     return found
 
 
-def hides_window(item: Item, hole: Hole) -> bool:
+def hides_window(item: Item, opening: EdgeOpening) -> bool:
     """Whether an object is too high to stand before a window."""
-    return hole.window and item.mount == "floor" and float(item.placement.size[2]) > hole.sill + ABOVE_SILL
+    return opening.window and item.mount == "floor" and float(item.placement.size[2]) > opening.sill + ABOVE_SILL
 
 
-def hole_cost(item: Item, s: Floats, holes: Sequence[Hole]) -> Floats:
+def opening_cost(item: Item, s: Floats, openings: Sequence[EdgeOpening]) -> Floats:
     """Return what standing before openings costs at places `s` (S,) along a wall: there is none to lean on. What hangs needs one."""
     cost = np.zeros(len(s))
     w = float(item.half[0])
-    for hole in holes:
-        before = np.minimum(s + w, hole.end) - np.maximum(s - w, hole.start) > OVERHANG
+    for opening in openings:
+        before = np.minimum(s + w, opening.end) - np.maximum(s - w, opening.start) > OVERHANG
         if item.mount == "wall":
             cost[before] = np.inf
-        elif not hole.window:
+        elif not opening.window:
             cost[before] += BEFORE_HOLE
-        elif hides_window(item, hole) and item.habit.kind != "bed":
+        elif hides_window(item, opening) and item.habit.kind != "bed":
             cost[before] += BEFORE_WINDOW
     return cost
 
@@ -88,7 +88,7 @@ def at_wall(item: Item, pose: Floats, walls: Sequence[Edge], reach: float, turn_
             continue
         stop = min(max(s, w + low), edge.length - w - low)
         moved = math.hypot(stop - s, gap - usual)
-        cost = moved + turn_cost * turn + float(hole_cost(item, np.array([stop]), edge.holes)[0])
+        cost = moved + turn_cost * turn + float(opening_cost(item, np.array([stop]), edge.openings)[0])
         if cost < (best[0] if best else reach):
             best = cost, edge.pose(stop, d + (gap if low <= gap <= high else usual), float(pose[2]))
     return best[1] if best else None

@@ -14,7 +14,7 @@ from scipy import ndimage, sparse
 from scipy.sparse import csgraph
 
 from pipeline.geometry.boxes import footprints
-from pipeline.geometry.occupancy import Mask, Raster
+from pipeline.geometry.floor_raster import Mask, Raster
 
 Floats = NDArray[np.float64]
 CELL = 0.05  # [m]

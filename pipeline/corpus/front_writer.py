@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from pipeline.corpus.houses import shell
-from pipeline.corpus.houses.mess import Litter
+from pipeline.corpus.houses.corruption import Litter
 from pipeline.corpus.houses.records import House, Item
 from pipeline.entities.plan import Opening
 

@@ -9,8 +9,8 @@ from pipeline.corpus import reference
 from pipeline.corpus.calibration.tally import HouseTally, tally
 from pipeline.corpus.front_writer import DIALECTS, scene_json
 from pipeline.corpus.furniture.catalogue import catalogue
-from pipeline.corpus.furniture.surfaces import surfaces_of
-from pipeline.corpus.houses import mess
+from pipeline.corpus.furniture.level_tops import surfaces_of
+from pipeline.corpus.houses import corruption
 from pipeline.corpus.houses.house import make_house
 from pipeline.corpus.houses.stock import Stock
 from pipeline.corpus.settings import CorpusSettings
@@ -25,10 +25,10 @@ def write_houses(folder: Path, seed: int, settings: CorpusSettings, indices: ran
         house = make_house(seed, index, stock)
         rng = generator(seed, "front", index)
         dialect = DIALECTS[int(rng.random() >= 5 / 12)]
-        litter = mess.Litter()
-        if settings.mess:
-            house = mess.disturb(rng, house, stock)
-            litter = mess.litter(rng, house)
+        litter = corruption.Litter()
+        if settings.corruption:
+            house = corruption.disturb(rng, house, stock)
+            litter = corruption.litter(rng, house)
         scene = scene_json(house, dialect, rng, litter)
         (folder / f"{house.uid}.json").write_text(json.dumps(scene, separators=(",", ":")), encoding="utf-8")
         tallies.append(tally(house, scene, reference.load()))

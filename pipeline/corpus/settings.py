@@ -11,11 +11,11 @@ MOST_HOUSES = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class CorpusSettings:
-    """`houses` in number; `models` as a factor on the catalogue (1 is some hundreds); `mess`: with the defects of real files."""
+    """`houses` in number; `models` as a factor on the catalogue (1 is some hundreds); `corruption`: with the defects of real files."""
 
     houses: int
     models: float
-    mess: bool
+    corruption: bool
 
     def __post_init__(self) -> None:
         if not 1 <= self.houses <= MOST_HOUSES:

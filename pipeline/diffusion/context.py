@@ -27,7 +27,7 @@ class Library(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Gap:
+class RoomOpening:
     """An opening as one of its rooms sees it.
 
     `segment` (2, 2) [m, world]; `hinge` is the end of the segment (0 or 1) about which the leaf turns into THIS room,
@@ -40,14 +40,14 @@ class Gap:
     hinge: int = -1
 
     @classmethod
-    def of(cls, opening: Opening, room_id: str) -> Gap:
+    def of(cls, opening: Opening, room_id: str) -> RoomOpening:
         """See `opening` from the room `room_id`."""
         inwards = opening.swing is not None and opening.swing.room_id == room_id
         return cls(opening.kind, opening.segment, opening.sill, opening.swing.hinge if inwards and opening.swing else -1)
 
 
 @dataclass(frozen=True, slots=True)
-class Demand:
+class CategoryBounds:
     """How many objects of these categories a room is to have: at least `least`, at most `most` (None: any number)."""
 
     categories: tuple[str, ...]
@@ -60,23 +60,25 @@ class RoomContext:
     """A room to furnish.
 
     `polygon` (n, 2) [m, world], inner wall faces, counter-clockwise. `n_target` is the exact number of objects that is
-    asked for, or None; `demands` bound the numbers of categories. `elevation` [m] is the z of the floor, `height` [m] that of the ceiling above it.
+    asked for, or None; `category_bounds` bound the numbers of categories. `elevation` [m] is the z of the floor, `height` [m] that of the ceiling above it.
     """
 
     layout_type: str
     polygon: NDArray[np.float64]
-    gaps: tuple[Gap, ...] = ()
+    openings: tuple[RoomOpening, ...] = ()
     n_target: int | None = None
     elevation: float = 0.0
     height: float = 2.7
-    demands: tuple[Demand, ...] = ()
+    category_bounds: tuple[CategoryBounds, ...] = ()
 
     @classmethod
-    def of(cls, plan: Plan, room_id: str, layout_type: str, n_target: int | None = None, demands: tuple[Demand, ...] = ()) -> RoomContext:
+    def of(
+        cls, plan: Plan, room_id: str, layout_type: str, n_target: int | None = None, category_bounds: tuple[CategoryBounds, ...] = ()
+    ) -> RoomContext:
         """Take one room out of a plan."""
         room = plan.room(room_id)
-        gaps = tuple(Gap.of(o, room_id) for o in plan.openings if room_id in o.rooms)
-        return cls(layout_type, room.polygon, gaps, n_target, plan.elevation(room_id), room.height, demands)
+        openings = tuple(RoomOpening.of(o, room_id) for o in plan.openings if room_id in o.rooms)
+        return cls(layout_type, room.polygon, openings, n_target, plan.elevation(room_id), room.height, category_bounds)
 
     @property
     def centre(self) -> NDArray[np.float64]:

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.diffusion.context import Gap, RoomContext
+from pipeline.diffusion.context import RoomContext, RoomOpening
 
 WALLS = 20  # wall tokens; a polygon with more corners loses those that matter least
-GAPS = 12  # opening tokens; a room with more openings loses the narrowest
-TOKENS = WALLS + GAPS
+OPENINGS = 12  # opening tokens; a room with more openings loses the narrowest
+TOKENS = WALLS + OPENINGS
 KINDS = ("wall", "door", "open", "portal", "window", "entrance")
 
 
@@ -45,11 +45,11 @@ def floor_tokens(context: RoomContext) -> Floor:
     inward = inward_normals(walls)
     count = len(walls)
     ends[:count], normal[:count], mask[:count] = walls, inward, True
-    gaps = sorted(context.gaps, key=lambda g: -float(np.linalg.norm(g.segment[1] - g.segment[0])))[:GAPS]
-    for i, gap in enumerate(gaps, WALLS):
-        ends[i], normal[i], swapped = on_wall(gap, context.centre, walls, inward)
-        kind[i], sill[i], mask[i] = KINDS.index(gap.kind), gap.sill, True
-        hinge[i] = gap.hinge if gap.hinge < 0 or not swapped else 1 - gap.hinge
+    openings = sorted(context.openings, key=lambda g: -float(np.linalg.norm(g.segment[1] - g.segment[0])))[:OPENINGS]
+    for i, opening in enumerate(openings, WALLS):
+        ends[i], normal[i], swapped = on_wall(opening, context.centre, walls, inward)
+        kind[i], sill[i], mask[i] = KINDS.index(opening.kind), opening.sill, True
+        hinge[i] = opening.hinge if opening.hinge < 0 or not swapped else 1 - opening.hinge
     return Floor(ends, normal, kind, hinge, sill, mask)
 
 
@@ -62,13 +62,13 @@ def inward_normals(walls: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def on_wall(
-    gap: Gap, centre: NDArray[np.float64], walls: NDArray[np.float64], inward: NDArray[np.float64]
+    opening: RoomOpening, centre: NDArray[np.float64], walls: NDArray[np.float64], inward: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], bool]:
     """Project an opening from the wall's centre line to the face of the nearest parallel wall, with the wall's direction.
 
     Returns the ends (2, 2) in the room frame, the inward normal (2,), and whether the ends were swapped.
     """
-    segment = np.asarray(gap.segment, float) - centre
+    segment = np.asarray(opening.segment, float) - centre
     middle, along = segment.mean(0), segment[1] - segment[0]
     along = along / max(float(np.linalg.norm(along)), 1e-9)
     start, edge = walls[:, 0], walls[:, 1] - walls[:, 0]

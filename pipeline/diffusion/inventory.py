@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from pipeline import seeds
-from pipeline.diffusion.context import Demand
+from pipeline.diffusion.context import CategoryBounds
 from pipeline.diffusion.floor import KINDS, Floor
 from pipeline.diffusion.settings import InventorySettings
 
@@ -79,10 +79,10 @@ class Ask:
     most: int = 24
 
     @classmethod
-    def of(cls, total: int | None, demands: Sequence[Demand], classes: Sequence[str], most: int = 24) -> Ask:
+    def of(cls, total: int | None, category_bounds: Sequence[CategoryBounds], classes: Sequence[str], most: int = 24) -> Ask:
         """Read what a room context asks for, in class indices. A least number that a total cannot hold is cut by nobody: both are asked."""
         order = {name: k for k, name in enumerate(classes)}
-        groups = ((tuple(sorted({order[c] for c in d.categories if c in order})), d.least, d.most) for d in demands)
+        groups = ((tuple(sorted({order[c] for c in d.categories if c in order})), d.least, d.most) for d in category_bounds)
         return cls(total, tuple(group for group in groups if group[0]), most)
 
     def sized(self, usual: int) -> Ask:

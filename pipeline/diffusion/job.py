@@ -17,9 +17,9 @@ from pipeline.diffusion.checkpoint import Header, load_checkpoint, load_weights
 from pipeline.diffusion.codec import Codec, Normalisation
 from pipeline.diffusion.denoiser import Denoiser
 from pipeline.diffusion.inventory import Holdings, Inventory, begun, counts_of, room_features
+from pipeline.diffusion.process_group import ProcessGroup
 from pipeline.diffusion.rooms import Example, Sets, layout_weights, sets_of, stacked_classes, stacked_rows, sweeps_by_asset
 from pipeline.diffusion.settings import TrainSettings
-from pipeline.diffusion.team import Team
 from pipeline.diffusion.training import Rooms, Trainer
 from pipeline.errors import ContentError
 from pipeline.manifest import digest, sha256_file
@@ -47,7 +47,7 @@ class Job(NamedTuple):
     key: str
 
 
-def open_job(root: Path, settings: TrainSettings, seed: int, team: Team) -> Job:
+def open_job(root: Path, settings: TrainSettings, seed: int, group: ProcessGroup) -> Job:
     """Read the data and take up the checkpoint of the same data and settings, if there is one; else start, from the released weights where asked."""
     threads = settings.threads or os.cpu_count() or 1
     torch.set_num_threads(threads)
@@ -63,8 +63,8 @@ def open_job(root: Path, settings: TrainSettings, seed: int, team: Team) -> Job:
         inventory = begun(holdings(sets.train, header), len(header.layouts), settings.inventory.width, seed)
     per_epoch = max(1, sum(len(e.classes) for e in sets.train) // settings.objects)
     total = settings.epochs * per_epoch if settings.epochs else settings.steps
-    trainer = Trainer(seed, header, settings, total, per_epoch, device, team, start)
-    key = digest([asdict(settings), asdict(header), seed, threads, team.size, device.type, inputs(root, settings)])
+    trainer = Trainer(seed, header, settings, total, per_epoch, device, group, start)
+    key = digest([asdict(settings), asdict(header), seed, threads, group.size, device.type, inputs(root, settings)])
     found = load_checkpoint(root / CHECKPOINT, key)
     if found:
         trainer.restore(*found)

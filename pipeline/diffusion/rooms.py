@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.diffusion.codec import CHANNELS, LATENT, class_indices, continuous_rows
-from pipeline.diffusion.context import Gap, RoomContext
+from pipeline.diffusion.context import RoomContext, RoomOpening
 from pipeline.diffusion.floor import Floor, floor_tokens
 
 Row = Mapping[str, Any]
@@ -48,8 +48,8 @@ class Sets:
 
 def context_of(room: Row, openings: Iterable[Row]) -> RoomContext:
     """Build the context of a rooms row and the openings of its scene."""
-    gaps = tuple(
-        Gap(
+    seen = tuple(
+        RoomOpening(
             o["kind"],
             np.array(o["segment"], float),
             float(o["sill"]),
@@ -58,7 +58,7 @@ def context_of(room: Row, openings: Iterable[Row]) -> RoomContext:
         for o in openings
         if room["room_id"] in o["rooms"]
     )
-    return RoomContext(str(room["layout_type"]), np.array(room["polygon"], float), gaps, height=float(room["height"]))
+    return RoomContext(str(room["layout_type"]), np.array(room["polygon"], float), seen, height=float(room["height"]))
 
 
 def example_of(

@@ -68,7 +68,7 @@ class Sampler:
         return self.arranged(rooms, keys, self.inventories(rooms, keys, floors), floors)
 
     def inventories(self, rooms: Sequence[RoomContext], keys: Sequence[Key], floors: Sequence[Floor]) -> list[NDArray[np.int64]]:
-        """Draw what each room holds: class indices (n,), rising. Told numbers and demands are met, at most `slots` objects."""
+        """Draw what each room holds: class indices (n,), rising. Told numbers and category_bounds are met, at most `slots` objects."""
         layouts = self._layouts(rooms)
         classes, found = self.header.norm.classes, []
         with one_thread():
@@ -77,7 +77,8 @@ class Sampler:
                 padded = filled(part)
                 features = torch.from_numpy(np.stack([room_features(floors[i], rooms[i].height) for i in padded]))
                 asks = [
-                    Ask.of(rooms[i].n_target if self.settings.quantity else None, rooms[i].demands, classes, self.slots) for i in padded
+                    Ask.of(rooms[i].n_target if self.settings.quantity else None, rooms[i].category_bounds, classes, self.slots)
+                    for i in padded
                 ]
                 uniform = np.stack([seeds.generator(self.seed, "inventory", *keys[i]).random((DRAWS, len(classes))) for i in padded])
                 kinds = torch.tensor([layouts[i] for i in padded])

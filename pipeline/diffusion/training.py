@@ -19,8 +19,8 @@ from pipeline.diffusion.checkpoint import Header, build_net
 from pipeline.diffusion.denoiser import Denoiser
 from pipeline.diffusion.loss import Draw, denoising_loss, draw
 from pipeline.diffusion.optimiser import Optimiser
+from pipeline.diffusion.process_group import ALONE, ProcessGroup
 from pipeline.diffusion.settings import TrainSettings
-from pipeline.diffusion.team import ALONE, Team
 
 EARLY = 0.5  # weight of the loss of all passes but the last
 LEVELS = (-3.0, -1.0, 0.5, 2.0, 4.0, 6.0)  # lambda at which validation asks
@@ -55,7 +55,7 @@ class Trainer:
         total: int,
         per_epoch: int,
         device: torch.device,
-        team: Team = ALONE,
+        group: ProcessGroup = ALONE,
         start: Denoiser | None = None,
     ) -> None:
         with torch.random.fork_rng(devices=[]):
@@ -63,7 +63,7 @@ class Trainer:
             self.net = (start or build_net(header)).to(device)
         self.average = copy.deepcopy(self.net).eval().requires_grad_(False)
         self.seed, self.settings, self.total, self.per_epoch, self.device, self.done = seed, settings, total, per_epoch, device, 0
-        self.team = team
+        self.group = group
         self.optimiser = Optimiser(self.net, settings)
 
     def rate(self, step: int) -> float:
@@ -85,14 +85,14 @@ class Trainer:
         slots = bucket_of(data.held)
         share = np.array([data.weights[slots == size].sum() * size for size in BUCKETS])
         size = BUCKETS[int(torch.multinomial(torch.from_numpy(share), 1, generator=rng))]
-        count = max(1, self.settings.objects // size // self.team.size) * self.team.size
+        count = max(1, self.settings.objects // size // self.group.size) * self.group.size
         chances = torch.from_numpy(np.where(slots == size, data.weights, 0.0))
         return torch.multinomial(chances, count, replacement=True, generator=rng), size
 
     def step(self, data: Rooms) -> Step:
         """Take one step. All it draws comes from a generator keyed by (seed, step).
 
-        Every process of a team draws the whole batch and computes its share of it, so that the number of processes
+        Every process of a group draws the whole batch and computes its share of it, so that the number of processes
         changes nothing but the order of sums.
         """
         s = self.settings
@@ -100,7 +100,7 @@ class Trainer:
         rows, slots = self.chosen(rng, data)
         reflection = reflections(rng, len(rows)).to(self.device)
         drawn = draw(rng, len(rows), slots)
-        own = self.team.share(len(rows))
+        own = self.group.share(len(rows))
         rows, reflection = rows[own].to(self.device), reflection[own]
         objects = moved_objects(data.objects.rows(rows).first(slots), reflection)
         rooms = moved_rooms(data.rooms.rows(rows).trimmed(), reflection)
@@ -111,7 +111,7 @@ class Trainer:
             total = total + EARLY * (early.geometry.mean() + s.latent_weight * early.shape.mean())
         rate = self.rate(self.done)
         total.backward()
-        terms = self.team.averaged(list(self.net.parameters()), torch.stack([geometry, shape]).detach())
+        terms = self.group.averaged(list(self.net.parameters()), torch.stack([geometry, shape]).detach())
         torch.nn.utils.clip_grad_norm_(self.net.parameters(), s.clip)
         self.optimiser.step(rate)
         self._follow()

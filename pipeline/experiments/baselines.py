@@ -25,7 +25,7 @@ from pipeline.metrics.intervals import bootstrap, rate
 from pipeline.metrics.layout_features import features
 from pipeline.metrics.rows import Row
 from pipeline.metrics.two_samples import forest_accuracy
-from pipeline.relations.arrangement import Arrangement, Gap, arranged
+from pipeline.relations.arrangement import Arrangement, RoomOpening, arranged
 from pipeline.relations.known import Relations
 
 Furnish = Callable[[Sequence[RoomContext]], list[list[Proposal]]]
@@ -177,7 +177,7 @@ def arrangement(case: Case, draft: Sequence[Proposal]) -> Arrangement:
     """Return a draft as the room metrics read it."""
     things = [(p.category, p.position, p.yaw, p.size) for p in draft]
     context = case.context
-    return arranged(case.name, context.layout_type, context.polygon, things, [Gap(g.kind, g.segment) for g in context.gaps])
+    return arranged(case.name, context.layout_type, context.polygon, things, [RoomOpening(g.kind, g.segment) for g in context.openings])
 
 
 def asked(cases: Sequence[Case], count: int, rooms: int) -> list[RoomContext]:

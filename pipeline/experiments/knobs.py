@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from pipeline.execution import single_thread
 from pipeline.floorplan import FloorProgram, complete
-from pipeline.floorplan.energy import TERMS
-from pipeline.floorplan.program import Link, RoomReq, Style
+from pipeline.floorplan.program.floor_program import Link, RoomReq, Style
+from pipeline.floorplan.search.energy import TERMS
 from pipeline.floorplan.solver import search
 from pipeline.report.plots import Curve, panels
 

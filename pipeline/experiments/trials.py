@@ -12,9 +12,9 @@ from pipeline.experiments.rooms import room_home
 from pipeline.homes.factory import Factory
 from pipeline.homes.finish import RoomResult, finish
 from pipeline.homes.furnish import Draft
-from pipeline.homes.guilt import guilty_objects
 from pipeline.homes.request import RoomJob
 from pipeline.homes.rows import Row, object_row, room_row
+from pipeline.homes.violations import violations
 from pipeline.verify import verify_home
 
 
@@ -86,7 +86,7 @@ def _finished(factory: Factory, asked: Sequence[Draft], drafts: Drafts) -> tuple
     for attempt in range(factory.shard.room_attempts):
         for i, draft in pending:
             result = _cleared(
-                factory, finish(draft, factory.library, factory.index, factory.lore, factory.postopt, factory.verify, taxonomy.load())
+                factory, finish(draft, factory.library, factory.index, factory.lore, factory.postopt, factory.verify.robot, taxonomy.load())
             )
             first.setdefault(i, result)
             if i not in best or result.rank() > best[i].rank():
@@ -103,10 +103,10 @@ def _cleared(factory: Factory, result: RoomResult) -> RoomResult:
     """Take out of a finished room what the judge faults, as the factory does with homes."""
     while True:
         home = room_home(result.draft.job, result.placements)
-        guilty = guilty_objects(home, verify_home(home, factory.library, factory.verify))
-        if not guilty:
+        violating = violations(home, verify_home(home, factory.library, factory.verify))
+        if not violating:
             return result
-        result = result.without(guilty, taxonomy.load())
+        result = result.without(violating, taxonomy.load())
 
 
 def _rows(factory: Factory, rooms: Sequence[tuple[Draft, Sequence[Placement]]]) -> dict[str, list[Row]]:

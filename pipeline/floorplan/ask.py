@@ -5,12 +5,12 @@ from __future__ import annotations
 import logging
 
 from pipeline.errors import RefusedError, UsageError
-from pipeline.floorplan.check import ImpossibleError, check
-from pipeline.floorplan.completion import complete
 from pipeline.floorplan.language import parse
 from pipeline.floorplan.language.llm import Server, UnansweredError, ask, configured
 from pipeline.floorplan.language.parser import bounded
-from pipeline.floorplan.program import Evidence, FloorProgram
+from pipeline.floorplan.program.completion import complete
+from pipeline.floorplan.program.consistency import ImpossibleError, check
+from pipeline.floorplan.program.floor_program import Evidence, FloorProgram
 
 LOG = logging.getLogger(__name__)
 

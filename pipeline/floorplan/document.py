@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from pipeline.entities.plan import Opening, OpeningKind, Plan, Room, Swing
 from pipeline.errors import ContentError, RefusedError
-from pipeline.floorplan.program import FloorProgram
+from pipeline.floorplan.program.floor_program import FloorProgram
 
 VERSION = 1
 MM = 3  # decimals
@@ -181,7 +181,7 @@ def refusal_json(error: RefusedError) -> dict[str, Any]:
 def plan_from_json(document: object) -> Plan:
     """Return the plan of a document that `plan_json` made. Raises ContentError naming the field that is wrong.
 
-    What others wrote goes through `pipeline.floorplan.own`, which checks that it can be built.
+    What others wrote goes through `pipeline.floorplan.imports`, which checks that it can be built.
     """
     try:
         read = PlanDocument.model_validate(document)

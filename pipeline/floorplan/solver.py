@@ -10,16 +10,16 @@ from numpy.typing import NDArray
 from pipeline import seeds
 from pipeline.entities.plan import Plan
 from pipeline.errors import RefusedError
-from pipeline.floorplan import anneal
-from pipeline.floorplan.check import check
-from pipeline.floorplan.completion import complete
-from pipeline.floorplan.energy import TERMS, area, useful_area
-from pipeline.floorplan.grid import Labels
-from pipeline.floorplan.program import FloorProgram, RoomReq
-from pipeline.floorplan.realisation import build
-from pipeline.floorplan.stairwell import rectangle
-from pipeline.floorplan.storeys import Storey, founded, storey
-from pipeline.floorplan.trees import Effort, Outline, Trees
+from pipeline.floorplan.program.completion import complete
+from pipeline.floorplan.program.consistency import check
+from pipeline.floorplan.program.floor_program import FloorProgram, RoomReq
+from pipeline.floorplan.realise.realisation import build
+from pipeline.floorplan.search import anneal
+from pipeline.floorplan.search.energy import TERMS, area, useful_area
+from pipeline.floorplan.search.grid import Labels
+from pipeline.floorplan.search.stairwell import rectangle
+from pipeline.floorplan.search.storeys import Storey, founded, storey
+from pipeline.floorplan.search.trees import Effort, Outline, Trees
 
 TRIES = 24  # whole attempts before a program is refused
 LENGTHS = (1, 1, 2, 2, 4, 4, 4, 4, 8)  # how much longer attempts search

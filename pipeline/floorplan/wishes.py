@@ -6,11 +6,11 @@ import dataclasses
 from collections.abc import Mapping
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.check import ImpossibleError, check_furniture
-from pipeline.floorplan.furniture import allot, spread
 from pipeline.floorplan.language.attaching import Mention, attach, mentioned, read_furniture
 from pipeline.floorplan.language.parser import bounded, understand_rooms
-from pipeline.floorplan.program import Evidence, FloorProgram, RoomReq
+from pipeline.floorplan.program.consistency import ImpossibleError, check_furniture
+from pipeline.floorplan.program.floor_program import Evidence, FloorProgram, RoomReq
+from pipeline.floorplan.program.furniture import allot, spread
 
 
 def with_wishes(program: FloorProgram, prompt: str) -> FloorProgram:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from pipeline import taxonomy
-from pipeline.floorplan.furniture import meant, plain
-from pipeline.floorplan.program import FloorProgram, Furniture, RoomReq
+from pipeline.floorplan.program.floor_program import FloorProgram, Furniture, RoomReq
+from pipeline.floorplan.program.furniture import meant, plain
 
 
 @dataclass(frozen=True, slots=True)

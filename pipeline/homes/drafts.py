@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
-from pipeline.floorplan.program import FloorProgram
+from pipeline.floorplan.program.floor_program import FloorProgram
 from pipeline.homes.factory import Factory
 from pipeline.homes.furnish import Draft, taste_of
 from pipeline.homes.request import Request

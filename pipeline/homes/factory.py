@@ -25,14 +25,14 @@ from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Plan
 from pipeline.errors import ContentError, RefusedError, SfgenError
 from pipeline.execution import tell
-from pipeline.floorplan.furniture import meant, needed, plain
 from pipeline.floorplan.language import parse
-from pipeline.floorplan.priors import PriorSettings
-from pipeline.floorplan.program import Furniture
+from pipeline.floorplan.program.floor_program import Furniture
+from pipeline.floorplan.program.furniture import meant, needed, plain
+from pipeline.floorplan.program.priors import PriorSettings
+from pipeline.homes.clutter import small_things
 from pipeline.homes.exports import files_of
 from pipeline.homes.finish import finish
 from pipeline.homes.furnish import Draft, furnish
-from pipeline.homes.guilt import Guilt, guilty_objects
 from pipeline.homes.library import Library
 from pipeline.homes.outcomes import Empty, Outcome
 from pipeline.homes.request import Request, RoomJob, layout_type
@@ -40,7 +40,7 @@ from pipeline.homes.rows import home_rows, reject_row
 from pipeline.homes.settings import ShardSettings
 from pipeline.homes.shelf import AssetShelf
 from pipeline.homes.soundness import closed_rooms
-from pipeline.homes.things import small_things
+from pipeline.homes.violations import Violation, violations
 from pipeline.homes.work import HomeDraft, Work
 from pipeline.manifest import digest, sha256_file
 from pipeline.relations import files as relation_files
@@ -212,7 +212,7 @@ class Factory:
         work.pending.remove(job)
         work.tries += 1
         with self._charged(work), self.timed("postopt"):
-            result = finish(draft, self.library, self.index, self.lore, self.postopt, self.verify, taxonomy.load())
+            result = finish(draft, self.library, self.index, self.lore, self.postopt, self.verify.robot, taxonomy.load())
         before = work.results.get(job.room_id)
         work.rejects.extend(reject_row(scene_id(self.seed, job.index), job.room_id, job.attempt, r) for r in result.rejects)
         if before is None or result.rank() > before.rank():
@@ -268,42 +268,44 @@ class Factory:
             with self.timed("things"):
                 draw = seeds.generator(self.seed, "things", work.request.index, work.attempt)
                 laid = small_things(bare, self.library, self.postopt.things, draw, self.postopt.separate.touch)
-            laid, certificate, guilty = self._verdict(work, bare, laid)
-            if guilty:
-                self._expel(work, guilty)  # things are laid anew on what is left
+            laid, certificate, violating = self._verdict(work, bare, laid)
+            if violating:
+                self._expel(work, violating)  # things are laid anew on what is left
             elif faults := certificate.faults(self.verify.policy, work.closed):
                 self._replan(work, *faults[0])
             else:
                 work.things, work.certificate = laid, certificate
 
-    def _verdict(self, work: Work, bare: Home, laid: tuple[Placement, ...]) -> tuple[tuple[Placement, ...], Certificate, dict[str, Guilt]]:
-        """Judge a home with its small things, leaving out those at fault; return the others, the certificate, the guilty furniture."""
+    def _verdict(
+        self, work: Work, bare: Home, laid: tuple[Placement, ...]
+    ) -> tuple[tuple[Placement, ...], Certificate, dict[str, Violation]]:
+        """Judge a home with its small things, leaving out those at fault; return the others, the certificate, the furniture that violates."""
         while True:
             home = replace(bare, placements=bare.placements + laid)
             with self.timed("verify"):
                 certificate = verify_home(home, self.library, self.verify)
-            guilty = guilty_objects(home, certificate, work.closed)
+            violating = violations(home, certificate, work.closed)
             small = {p.object_id for p in laid}
-            furniture = {k: guilt for k, guilt in guilty.items() if k not in small}
-            if furniture or not guilty:
+            furniture = {k: violation for k, violation in violating.items() if k not in small}
+            if furniture or not violating:
                 return laid, certificate, furniture
-            for object_id, guilt in sorted(guilty.items()):
-                reject = ("object", guilt.reason, f"{object_id}: {guilt.detail}")
-                work.rejects.append(reject_row(home.scene_id, guilt.room_id, work.results[guilt.room_id].draft.job.attempt, reject))
-            laid = tuple(p for p in laid if p.object_id not in guilty)
+            for object_id, violation in sorted(violating.items()):
+                reject = ("object", violation.reason, f"{object_id}: {violation.detail}")
+                work.rejects.append(reject_row(home.scene_id, violation.room_id, work.results[violation.room_id].draft.job.attempt, reject))
+            laid = tuple(p for p in laid if p.object_id not in violating)
 
-    def _expel(self, work: Work, guilty: Mapping[str, Guilt]) -> None:
-        """Take the guilty objects out of their rooms, each with its reason."""
+    def _expel(self, work: Work, violating: Mapping[str, Violation]) -> None:
+        """Take the violating objects out of their rooms, each with its reason."""
         where = scene_id(self.seed, work.request.index)
-        for room_id in sorted({guilt.room_id for guilt in guilty.values()}):
+        for room_id in sorted({violation.room_id for violation in violating.values()}):
             if room_id not in work.results:  # a room before it has led to a new plan
                 break
-            mine = {k: guilt for k, guilt in sorted(guilty.items()) if guilt.room_id == room_id}
+            mine = {k: violation for k, violation in sorted(violating.items()) if violation.room_id == room_id}
             result = work.results[room_id] = work.results[room_id].without(mine, taxonomy.load())
             job = result.draft.job
             work.rejects.extend(
-                reject_row(where, room_id, job.attempt, ("object", guilt.reason, f"{object_id}: {guilt.detail}"))
-                for object_id, guilt in mine.items()
+                reject_row(where, room_id, job.attempt, ("object", violation.reason, f"{object_id}: {violation.detail}"))
+                for object_id, violation in mine.items()
             )
             self._retry(work, job, result.failure, result.detail)
 

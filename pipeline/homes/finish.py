@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 from pipeline.arrange import Lore, PostoptSettings, Site, post_optimise
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
-from pipeline.floorplan.furniture import meant
+from pipeline.floorplan.program.furniture import meant
 from pipeline.homes.furnish import Draft
-from pipeline.homes.guilt import Guilt
 from pipeline.homes.request import RoomJob
 from pipeline.homes.rounding import rounded
+from pipeline.homes.violations import Violation
 from pipeline.retrieval.index import AssetIndex
 from pipeline.taxonomy import Taxonomy
-from pipeline.verify import VerifySettings
+from pipeline.verify import Robot
 
 MARGIN = 0.03  # by which the arranger's robot is wider than the judge's, whose raster lies differently [m]
 KEPT = 0.6  # share of what was drafted that a room must keep
@@ -43,9 +43,9 @@ class RoomResult:
         """Order results of one room: without failure first, then wishes met, then the number of objects."""
         return not self.failure, not self.binding, len(self.placements)
 
-    def without(self, guilty: Mapping[str, Guilt], taxonomy: Taxonomy) -> RoomResult:
+    def without(self, violating: Mapping[str, Violation], taxonomy: Taxonomy) -> RoomResult:
         """Return the result less the objects of these ids, judged again."""
-        left = tuple(p for p in self.placements if p.object_id not in guilty)
+        left = tuple(p for p in self.placements if p.object_id not in violating)
         failure, detail, binding = shortcoming(self.draft, left, taxonomy, self.openers, self.free)
         return replace(self, placements=left, failure=failure, detail=detail, binding=binding)
 
@@ -93,12 +93,12 @@ def finish(
     index: AssetIndex,
     lore: Lore,
     settings: PostoptSettings,
-    verify: VerifySettings,
+    robot: Robot,
     taxonomy: Taxonomy,
 ) -> RoomResult:
     """Take one draft through algorithm 2 (where a share of free floor is asked for) and separation."""
     job, placements = draft.job, draft.placements
-    site = Site.of(job.plan, job.room_id, replace(verify.robot, radius=verify.robot.radius + MARGIN), verify.cell)
+    site = Site.of(job.plan, job.room_id, radius=robot.radius + MARGIN, step=robot.step, height=robot.height)
     rejects: list[Reject] = [("object", "no_asset", category) for category in draft.lost]
     smaller = index.favouring(draft.taste.style, wished=draft.taste.wished).smaller
     arranged = post_optimise(site, placements, assets, lore, settings, smaller, target=job.walkable, keep_count=job.bounds[0] is not None)

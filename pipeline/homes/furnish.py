@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pipeline import seeds
-from pipeline.diffusion.context import Demand, Proposal, RoomContext
+from pipeline.diffusion.context import CategoryBounds, Proposal, RoomContext
 from pipeline.diffusion.sampling import Sampler
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
@@ -36,7 +36,7 @@ def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxono
 
     Draws are keyed by (seed, home, room, attempt) alone, so a room does not depend on which rooms share its batch.
     """
-    contexts = [RoomContext.of(job.plan, job.room_id, job.layout_type, job.count, demands(job, taxonomy)) for job in jobs]
+    contexts = [RoomContext.of(job.plan, job.room_id, job.layout_type, job.count, category_bounds(job, taxonomy)) for job in jobs]
     keys = [(job.index, job.number, job.attempt) for job in jobs]
     proposals = sampler.sample_rooms(contexts, keys)
     return [
@@ -53,15 +53,15 @@ def taste_of(job: RoomJob, seed: int, index: AssetIndex, assets: Mapping[str, As
     return Taste(style, bool(wish), finishes)
 
 
-def demands(job: RoomJob, taxonomy: Taxonomy) -> tuple[Demand, ...]:
+def category_bounds(job: RoomJob, taxonomy: Taxonomy) -> tuple[CategoryBounds, ...]:
     """Return what a room is to hold: what is wished for, and of each group of its type's essentials one thing.
 
     What is wished for of a group, none of it too, stands. What rooms of the plan's type do not want stays out, unless it is wished for.
     """
-    wished = {c for demand in job.demands for c in demand.categories}
-    groups = tuple(Demand(group, 1) for group in job.essentials(taxonomy) if not wished.intersection(group))
+    wished = {c for bounds in job.category_bounds for c in bounds.categories}
+    groups = tuple(CategoryBounds(group, 1) for group in job.essentials(taxonomy) if not wished.intersection(group))
     unwanted = tuple(c for c in job.unwanted(taxonomy) if c not in wished)
-    return (*job.demands, *groups, *([Demand(unwanted, 0, 0)] if unwanted else []))
+    return (*job.category_bounds, *groups, *([CategoryBounds(unwanted, 0, 0)] if unwanted else []))
 
 
 def retrieve(

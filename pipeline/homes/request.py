@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from pipeline.diffusion.context import Demand
+from pipeline.diffusion.context import CategoryBounds
 from pipeline.entities.plan import Plan, Room
-from pipeline.floorplan.furniture import meant
-from pipeline.floorplan.program import Furniture
+from pipeline.floorplan.program.floor_program import Furniture
+from pipeline.floorplan.program.furniture import meant
 from pipeline.taxonomy import Taxonomy
 
 LIVING = frozenset({"living_room", "family_room"})
@@ -48,10 +48,10 @@ class RoomJob:
     furniture: Furniture = field(default_factory=Furniture)
 
     @property
-    def demands(self) -> tuple[Demand, ...]:
+    def category_bounds(self) -> tuple[CategoryBounds, ...]:
         """What is wished for by category, as the sampler takes it."""
         kind = self.room.type
-        return tuple(Demand(meant(c, kind), c.min, c.max) for c in self.furniture.counts)
+        return tuple(CategoryBounds(meant(c, kind), c.min, c.max) for c in self.furniture.counts)
 
     def essentials(self, taxonomy: Taxonomy) -> tuple[tuple[str, ...], ...]:
         """Return the groups of categories of which the room needs one thing each; a stated number of objects may be too small for them."""

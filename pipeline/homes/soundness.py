@@ -12,7 +12,7 @@ from pipeline import params
 from pipeline.entities.home import Home
 from pipeline.entities.plan import Plan
 from pipeline.errors import RefusedError
-from pipeline.floorplan.own import OwnPlan, Repair
+from pipeline.floorplan.imports import OwnPlan, Repair
 from pipeline.verify import Certificate, VerifySettings, verify_home
 
 

@@ -17,7 +17,7 @@ from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
 from pipeline.errors import UsageError
 from pipeline.preview.denoise import Guides, denoise
-from pipeline.preview.solids import Batch, home_batches
+from pipeline.preview.triangles import Batch, home_batches
 from pipeline.rendering.normals import corner_normals
 from pipeline.rendering.raster import face_normals, fill
 

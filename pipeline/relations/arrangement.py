@@ -25,7 +25,7 @@ class Thing(NamedTuple):
     z: float = 0.0
 
 
-class Gap(NamedTuple):
+class RoomOpening(NamedTuple):
     """An opening of the room: kind (door, window, ...) and clear width as a segment (2, 2) [m]."""
 
     kind: str
@@ -43,7 +43,7 @@ class Arrangement:
     position: Floats
     yaw: Floats
     size: Floats
-    openings: tuple[Gap, ...] = ()
+    openings: tuple[RoomOpening, ...] = ()
 
     def thing(self, index: int) -> Thing:
         """Return one of the things."""
@@ -58,7 +58,7 @@ class Arrangement:
 
 
 def arranged(
-    name: str, layout_type: str, polygon: Any, things: Iterable[tuple[str, Any, float, Any]], openings: Iterable[Gap] = ()
+    name: str, layout_type: str, polygon: Any, things: Iterable[tuple[str, Any, float, Any]], openings: Iterable[RoomOpening] = ()
 ) -> Arrangement:
     """Return the arrangement of things (category, position (3,), yaw, size (3,))."""
     listed = list(things)
@@ -83,10 +83,10 @@ def from_rows(
         if not (row["support"] and row["category"] in small):
             thing = (row["category"], row["position"], row["yaw"], row["size"])
             inside.setdefault((row["scene_id"], row["room_id"]), []).append(thing)
-    holes: dict[tuple[str, str], list[Gap]] = {}
+    holes: dict[tuple[str, str], list[RoomOpening]] = {}
     for row in openings:
         for room in row["rooms"]:
-            holes.setdefault((row["scene_id"], room), []).append(Gap(row["kind"], np.asarray(row["segment"], float)))
+            holes.setdefault((row["scene_id"], room), []).append(RoomOpening(row["kind"], np.asarray(row["segment"], float)))
     made = []
     for row in rooms:
         key = row["scene_id"], row["room_id"]

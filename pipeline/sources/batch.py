@@ -17,23 +17,22 @@ from pipeline.entities.asset import Asset
 from pipeline.entities.files import save_asset
 from pipeline.errors import ContentError
 from pipeline.manifest import sha256
-from pipeline.sources import articulated
-from pipeline.sources.front_file import Furniture
-from pipeline.sources.front_hints import Hint, records
-from pipeline.sources.front_house import HouseRows, read_house
-from pipeline.sources.front_objects import Model
-from pipeline.sources.front_shapes import filled
-from pipeline.sources.front_walkable import Walker
-from pipeline.sources.future import ModelInfo, read_model, read_model_info
+from pipeline.sources.articulated import assets as articulated
+from pipeline.sources.articulated.household import candidates, oriented, read_household
+from pipeline.sources.articulated.partnet import URDFS, read_shape
+from pipeline.sources.articulated.proportions import Proportions
 from pipeline.sources.guarded import Folder
-from pipeline.sources.household import candidates, oriented, read_household
 from pipeline.sources.identity import split_of
 from pipeline.sources.library_rows import Scale, asset_row, joint_rows, part_rows
 from pipeline.sources.masses import held
-from pipeline.sources.partnet import URDFS, read_shape
-from pipeline.sources.proportions import Proportions
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import FrontFilters, ModelLimits
+from pipeline.sources.threed_front.furniture import Model
+from pipeline.sources.threed_front.future import ModelInfo, read_model, read_model_info
+from pipeline.sources.threed_front.house import HouseRows, read_house
+from pipeline.sources.threed_front.house_file import Furniture
+from pipeline.sources.threed_front.model_hints import Hint, records
+from pipeline.sources.threed_front.notches import filled
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -220,7 +219,6 @@ class HouseTask:
     models: Mapping[str, Model]
     filters: FrontFilters
     licence: str
-    walker: Walker
 
 
 def house_files(source: Path) -> list[str]:
@@ -231,7 +229,7 @@ def house_files(source: Path) -> list[str]:
 def read_front(task: HouseTask, file: str) -> HouseRows:
     """Read one house."""
     try:
-        return read_house(Folder.at(task.source), file, task.models, taxonomy.load(), task.filters, task.licence, task.walker)
+        return read_house(Folder.at(task.source), file, task.models, taxonomy.load(), task.filters, task.licence)
     except Exception as error:  # noqa: BLE001 - as in _guarded
         return HouseRows(rejects=[reject("house", Path(file).stem, "internal", f"{type(error).__name__}: {error}")])
 

@@ -9,10 +9,10 @@ from pathlib import Path, PurePosixPath
 from typing import Literal
 
 from pipeline.errors import ContentError, UsageError
+from pipeline.sources.articulated.partnet import URDFS
+from pipeline.sources.atiss.files import BOXES, STATS
+from pipeline.sources.atiss.reader import kinds_of
 from pipeline.sources.batch import HOUSES, MODELS, Found, partnet_objects
-from pipeline.sources.partnet import URDFS
-from pipeline.sources.peers_files import BOXES, STATS
-from pipeline.sources.peers_reader import kinds_of
 
 TEXTURES = "3D-FRONT-texture"
 LEVELS = 2  # folders below the named one in which 3D-FRONT is looked for

@@ -10,7 +10,7 @@ from pathlib import Path
 from pipeline import tables
 from pipeline.errors import ContentError
 from pipeline.sources.batch import LibraryRows, numbered
-from pipeline.sources.front_house import HouseRows
+from pipeline.sources.threed_front.house import HouseRows
 from schemas.assets import ASSET_JOINTS, ASSET_PARTS, ASSETS
 from schemas.objects import OBJECTS
 from schemas.openings import OPENINGS

@@ -7,7 +7,7 @@ import numpy as np
 from pipeline import taxonomy
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Plan, Room
-from pipeline.geometry.freefloor import Walk, bare_floor, walk
+from pipeline.geometry.free_space import FreeSpace, bare_floor, free_space
 from pipeline.geometry.prisms import Prisms
 from pipeline.verify.bodies import Bodies
 from pipeline.verify.certificate import RoomCheck
@@ -16,7 +16,7 @@ from pipeline.verify.settings import VerifySettings
 NEAR_ENTRANCE = 1.0  # the robot must find a place this near to the entrance door [m]
 
 
-def walk_level(home: Home, level: int, made: Bodies, settings: VerifySettings) -> tuple[Walk, int]:
+def level_free_space(home: Home, level: int, made: Bodies, settings: VerifySettings) -> tuple[FreeSpace, int]:
     """Return the furnished floor of one storey, and the label of the part that one enters.
 
     Small things take no floor: what lies on furniture is above it, rugs are driven over, curtains give way.
@@ -26,8 +26,8 @@ def walk_level(home: Home, level: int, made: Bodies, settings: VerifySettings) -
     openings = [o for o in plan.openings if o.level == level]
     floor = bare_floor(rooms, openings, max(plan.inner_wall, plan.outer_wall) / 2 + settings.cell, settings.cell)
     base = level * plan.storey_height
-    walked = walk(floor, _furniture(home, made), robot.radius, robot.band(base))
-    return walked, _entered(plan, level, rooms, walked)
+    space = free_space(floor, _furniture(home, made), robot.radius, (base + robot.step, base + robot.height))
+    return space, _entered(plan, level, rooms, space)
 
 
 def _furniture(home: Home, made: Bodies) -> Prisms:
@@ -37,26 +37,26 @@ def _furniture(home: Home, made: Bodies) -> Prisms:
     return Prisms(p.corners[own], p.count[own], p.z[own], p.part[own])
 
 
-def _entered(plan: Plan, level: int, rooms: list[Room], walked: Walk) -> int:
+def _entered(plan: Plan, level: int, rooms: list[Room], space: FreeSpace) -> int:
     """Return the label of the part one comes into: at the entrance door, else in the entrance room, else by the stairs."""
     doors = [o for o in plan.openings if o.level == level and o.kind == "entrance"]
     if doors:
-        return walked.label_near(doors[0].segment.mean(0), NEAR_ENTRANCE)
-    where = np.zeros(walked.labels.shape, np.bool_)
+        return space.label_near(doors[0].segment.mean(0), NEAR_ENTRANCE)
+    where = np.zeros(space.labels.shape, np.bool_)
     for number, room in enumerate(rooms):
         if room.room_id == plan.entrance or room.type == "staircase":
-            where |= walked.floor.room == number
-    return walked.largest_label(where if where.any() else walked.floor.room >= 0)
+            where |= space.floor.room == number
+    return space.largest_label(where if where.any() else space.floor.room >= 0)
 
 
-def check_rooms(home: Home, walks: dict[int, tuple[Walk, int]]) -> dict[str, RoomCheck]:
+def check_rooms(home: Home, spaces: dict[int, tuple[FreeSpace, int]]) -> dict[str, RoomCheck]:
     """Return the figures of every room."""
     found: dict[str, RoomCheck] = {}
     small = taxonomy.load().small
-    for level, (walked, label) in walks.items():
+    for level, (space, label) in spaces.items():
         rooms = [r for r in home.plan.rooms if r.level == level]
-        shares = walked.shares(walked.covered(label), len(rooms))
-        inside = walked.floor.room[walked.reached(label)]
+        shares = space.shares(space.covered(label), len(rooms))
+        inside = space.floor.room[space.reached(label)]
         entered = np.bincount(inside[inside >= 0], minlength=len(rooms))
         for number, room in enumerate(rooms):
             own = tuple(p for p in home.in_room(room.room_id) if p.category not in small)

@@ -11,22 +11,23 @@ from pipeline.geometry.walls import levels
 from pipeline.verify.bodies import bodies
 from pipeline.verify.carrying import carried
 from pipeline.verify.certificate import Certificate
-from pipeline.verify.floors import check_rooms, walk_level
+from pipeline.verify.floors import check_rooms, level_free_space
 from pipeline.verify.joints import check_joints, check_leaves
 from pipeline.verify.objects import check_objects
 from pipeline.verify.settings import VerifySettings
 
 
-def verify_home(home: Home, assets: Mapping[str, Asset], settings: VerifySettings) -> Certificate:
+def verify_home(home: Home, assets: Mapping[str, Asset], settings: VerifySettings | None = None) -> Certificate:
     """Judge one home: every joint swept, every object at rest, every room's floor."""
+    settings = settings or VerifySettings()
     made = bodies(home.placements, assets)
     held = carried(home.placements, made, settings.float_gap)
-    walks = {level: walk_level(home, level, made, settings) for level in levels(home.plan)}
-    rooms = check_rooms(home, walks)
+    spaces = {level: level_free_space(home, level, made, settings) for level in levels(home.plan)}
+    rooms = check_rooms(home, spaces)
     small = taxonomy.load().small
     return Certificate(
         home.scene_id,
-        (*check_joints(home, assets, made, held, walks, settings), *check_leaves(home, made, walks, settings)),
+        (*check_joints(home, assets, made, held, spaces, settings), *check_leaves(home, made, spaces, settings)),
         check_objects(home, made, held, settings),
         tuple(rooms[room.room_id] for room in home.plan.rooms),
         frozenset(p.object_id for p in home.placements if p.category in small),

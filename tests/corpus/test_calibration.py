@@ -15,7 +15,7 @@ from pipeline.corpus.calibration import figures
 from pipeline.corpus.calibration.tally import HouseTally, RoomTally, relate, tally
 from pipeline.corpus.front_writer import scene_json
 from pipeline.corpus.furniture.catalogue import catalogue
-from pipeline.corpus.houses import mess
+from pipeline.corpus.houses import corruption
 from pipeline.corpus.houses.records import House, Item
 from pipeline.entities.plan import Plan, Room
 from pipeline.seeds import generator
@@ -111,9 +111,9 @@ def table():
     tallies = []
     for index in range(64):
         rng = generator(5, "front", index)
-        home = mess.disturb(rng, house(index), stock())
-        tallies.append(tally(home, scene_json(home, "0.11", rng, mess.litter(rng, home)), KNOWN))
-    return figures.calibration(tallies, catalogue(5).future, len(mess.in_centimetres(5, catalogue(5).future)))
+        home = corruption.disturb(rng, house(index), stock())
+        tallies.append(tally(home, scene_json(home, "0.11", rng, corruption.litter(rng, home)), KNOWN))
+    return figures.calibration(tallies, catalogue(5).future, len(corruption.in_centimetres(5, catalogue(5).future)))
 
 
 def test_the_corpus_is_near_the_reference(table):
@@ -141,7 +141,7 @@ def test_sizes_are_held_to_a_tenth(table):
 
 def test_without_mess_there_is_none():
     home = house(0)
-    found = tally(home, scene_json(home, "0.4", generator(5, "front", 0), mess.Litter()), KNOWN)
+    found = tally(home, scene_json(home, "0.4", generator(5, "front", 0), corruption.Litter()), KNOWN)
     for name in ("dangling", "invalid", "surplus", "floorless", "mirrored", "outside"):
         assert found.shares[name][0] == 0, name
 

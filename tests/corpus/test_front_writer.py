@@ -15,12 +15,12 @@ sys.path.insert(0, str(Path(__file__).parent / "houses"))
 from sample_houses import house, houses, stock
 
 from pipeline.corpus.front_writer import DIALECTS, quaternion, scene_json
-from pipeline.corpus.houses import mess
+from pipeline.corpus.houses import corruption
 from pipeline.seeds import generator
 
 
 def scene(index=0, dialect="0.4", litter=None):
-    return scene_json(house(index), dialect, generator(5, "front", index), litter or mess.Litter())
+    return scene_json(house(index), dialect, generator(5, "front", index), litter or corruption.Litter())
 
 
 def floor_area(record):
@@ -147,7 +147,7 @@ def test_the_scene_bounds_have_z_swapped_like_the_real_ones():
 
 
 def test_litter_is_all_there_and_changes_nothing_real():
-    litter = mess.Litter(dangling=30, invalid=3, duplicates=2, double_children=1, other_room=True, shaft_room=True)
+    litter = corruption.Litter(dangling=30, invalid=3, duplicates=2, double_children=1, other_room=True, shaft_room=True)
     tree = scene(3, "0.11", litter)
     uids = Counter(r["uid"] for r in tree["furniture"] + tree["mesh"])
     children = [c for room in tree["scene"]["room"] for c in room["children"]]
@@ -161,7 +161,7 @@ def test_litter_is_all_there_and_changes_nothing_real():
 
 def test_disturbed_houses_have_replaced_mirrored_and_misplaced_pieces_at_their_rates():
     rng = generator(1, "test-mess")
-    pairs = [(a, b) for home in houses(24) for a, b in zip(home.items, mess.disturb(rng, home, stock()).items, strict=True)]
+    pairs = [(a, b) for home in houses(24) for a, b in zip(home.items, corruption.disturb(rng, home, stock()).items, strict=True)]
     replaced = np.mean([a.model is not b.model for a, b in pairs if a.support < 0])
     moved = np.mean([a.position != b.position for a, b in pairs if a.support < 0])
     assert 0.02 < replaced < 0.15
@@ -173,8 +173,8 @@ def test_disturbed_houses_have_replaced_mirrored_and_misplaced_pieces_at_their_r
 
 def test_replaced_models_are_told_as_such():
     rng = generator(1, "test-mess")
-    home = next(h for h in (mess.disturb(rng, h, stock()) for h in houses(8)) if any(abs(i.scale[1]) != 1 for i in h.items))
-    tree = scene_json(home, "0.4", generator(5, "front", 0), mess.Litter())
+    home = next(h for h in (corruption.disturb(rng, h, stock()) for h in houses(8)) if any(abs(i.scale[1]) != 1 for i in h.items))
+    tree = scene_json(home, "0.4", generator(5, "front", 0), corruption.Litter())
     records = {f["uid"]: f for f in tree["furniture"]}
     swapped = [c for room in tree["scene"]["room"] for c in room["children"] if "replace_jid" in c]
     assert swapped
@@ -187,7 +187,7 @@ def test_replaced_models_are_told_as_such():
 
 @pytest.mark.parametrize("index", range(4))
 def test_files_are_deterministic_finite_and_small(index):
-    litter = mess.litter(generator(5, "litter", index), house(index))
+    litter = corruption.litter(generator(5, "litter", index), house(index))
     texts = [json.dumps(scene(index, "0.11", litter), allow_nan=False) for _ in range(2)]
     assert texts[0] == texts[1]
     assert len(texts[0]) < 400_000

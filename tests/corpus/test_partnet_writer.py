@@ -8,9 +8,9 @@ from pipeline.corpus.furniture.assembly import shape_of
 from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.corpus.furniture.shape import colliders
 from pipeline.corpus.partnet_writer import write_partnet
+from pipeline.sources.articulated.partnet import read_shape
 from pipeline.sources.guarded import Folder
-from pipeline.sources.partnet import read_shape
-from pipeline.sources.solids import parts
+from pipeline.sources.meshes.mesh_solids import parts
 
 CHOSEN = ("wardrobe", "cabinet", "oven", "washing_machine", "toilet", "trash_can", "desk", "sink_cabinet")
 WORLD = np.array([[0, 0, -1], [-1, 0, 0], [0, 1, 0]])  # mesh frame to world: up +z, front -x

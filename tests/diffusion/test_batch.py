@@ -98,7 +98,7 @@ def test_a_door_is_on_its_wall_and_keeps_its_hinge():
     assert abs(floor.ends[door][:, 1] - bottom).max() < 1e-6
     assert floor.normal[door].tolist() == [0, 1]
     hinge = floor.ends[door][floor.hinge[door]] + context.centre
-    assert abs(hinge[0] - context.gaps[0].segment[0][0]) < 1e-6
+    assert abs(hinge[0] - context.openings[0].segment[0][0]) < 1e-6
 
 
 def test_objects_take_rows(examples, norm):

@@ -3,7 +3,7 @@ import pytest
 import torch
 
 from pipeline import seeds
-from pipeline.diffusion.context import Demand
+from pipeline.diffusion.context import CategoryBounds
 from pipeline.diffusion.inventory import (
     DRAWS,
     Ask,
@@ -57,10 +57,10 @@ def test_a_told_number_is_met_exactly(net, rooms, total):
 
 def test_demands_are_met_with_and_without_a_number(net, rooms):
     asks = [
-        Ask.of(None, (Demand(("nightstand",), 3),), CLASSES),
-        Ask.of(9, (Demand(("dining_chair",), 5, 5),), CLASSES),
-        Ask.of(None, (Demand(("double_bed", "dining_table"), 2, 2), Demand(("nightstand",), 0, 0)), CLASSES),
-        Ask.of(4, (Demand(("wardrobe",), 1, 1), Demand(("double_bed",), 0, 0)), CLASSES),
+        Ask.of(None, (CategoryBounds(("nightstand",), 3),), CLASSES),
+        Ask.of(9, (CategoryBounds(("dining_chair",), 5, 5),), CLASSES),
+        Ask.of(None, (CategoryBounds(("double_bed", "dining_table"), 2, 2), CategoryBounds(("nightstand",), 0, 0)), CLASSES),
+        Ask.of(4, (CategoryBounds(("wardrobe",), 1, 1), CategoryBounds(("double_bed",), 0, 0)), CLASSES),
     ]
     found = drawn(net, rooms, asks)
     for ask, counts in zip(asks, found, strict=True):
@@ -70,7 +70,7 @@ def test_demands_are_met_with_and_without_a_number(net, rooms):
 
 def test_free_draws_that_meet_a_wish_are_not_distorted(net, rooms):
     """Every dining room of the small world holds four chairs: to ask for one chair at least changes nothing."""
-    wish = Ask.of(None, (Demand(("dining_chair", "double_bed"), 1),), CLASSES)
+    wish = Ask.of(None, (CategoryBounds(("dining_chair", "double_bed"), 1),), CLASSES)
     assert (drawn(net, rooms, [wish] * 60) == drawn(net, rooms, [Ask(None)] * 60)).all(1).mean() > 0.9
 
 
@@ -89,7 +89,7 @@ def test_a_room_is_never_empty_unless_nothing_may_be_there():
 
 
 def test_a_wish_for_a_class_that_the_model_does_not_know_asks_nothing():
-    assert Ask.of(None, (Demand(("spaceship",), 1),), CLASSES).bounds == ()
+    assert Ask.of(None, (CategoryBounds(("spaceship",), 1),), CLASSES).bounds == ()
 
 
 def test_the_likelihood_is_a_distribution_over_counts(rooms):
@@ -122,7 +122,7 @@ def test_the_fit_is_the_same_every_time(rooms):
 
 def test_what_a_room_needs_does_not_make_it_fuller(net, rooms):
     """To ask for a thing that most rooms lack changes what they hold, not how much."""
-    wish = Ask.of(None, (Demand(("dining_chair",), 1), Demand(("wardrobe",), 1)), CLASSES)
+    wish = Ask.of(None, (CategoryBounds(("dining_chair",), 1), CategoryBounds(("wardrobe",), 1)), CLASSES)
     asked, free = drawn(net, rooms, [wish] * 200), drawn(net, rooms, [Ask(None)] * 200)
     assert (asked[:, CHAIR] > 0).all()
     assert (free[:, CHAIR] == 0).mean() > 0.3
@@ -130,7 +130,7 @@ def test_what_a_room_needs_does_not_make_it_fuller(net, rooms):
 
 
 def test_what_is_unwanted_stays_out_and_nothing_is_asked_of_the_rest(net, rooms):
-    none = Ask.of(None, (Demand(("dining_chair",), 0, 0),), CLASSES)
+    none = Ask.of(None, (CategoryBounds(("dining_chair",), 0, 0),), CLASSES)
     found = drawn(net, rooms, [none] * 60)
     assert (found[:, CHAIR] == 0).all()
     assert (found.sum(1) > 0).all()

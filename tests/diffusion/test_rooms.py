@@ -1,8 +1,8 @@
 import numpy as np
 
 from pipeline import seeds
-from pipeline.diffusion.context import Gap, RoomContext
-from pipeline.diffusion.floor import GAPS, WALLS, floor_tokens, simplified
+from pipeline.diffusion.context import RoomContext, RoomOpening
+from pipeline.diffusion.floor import OPENINGS, WALLS, floor_tokens, simplified
 from pipeline.diffusion.rooms import sets_of, sweeps_by_asset
 from pipeline.entities.plan import Opening, Plan, Room, Swing
 from tests.diffusion.small_world import CLASSES, LAYOUTS, room_rows, shapes
@@ -51,8 +51,8 @@ def test_a_context_comes_out_of_a_plan():
     plan = Plan((here, there), (door,), "b")
     inside, outside = RoomContext.of(plan, "a", "bedroom", 4), RoomContext.of(plan, "b", "hallway")
     assert (inside.n_target, inside.elevation) == (4, 3.0)
-    assert inside.gaps[0].hinge == 1
-    assert outside.gaps[0].hinge == -1
+    assert inside.openings[0].hinge == 1
+    assert outside.openings[0].hinge == -1
     assert floor_tokens(inside).normal[WALLS].tolist() == [0, 1]
     assert floor_tokens(outside).normal[WALLS].tolist() == [0, -1]
 
@@ -60,9 +60,9 @@ def test_a_context_comes_out_of_a_plan():
 def test_many_corners_and_openings_are_cut_to_what_fits():
     angle = np.linspace(0, 2 * np.pi, 60, endpoint=False)
     polygon = np.stack([3 * np.cos(angle), 3 * np.sin(angle)], 1)
-    gaps = tuple(Gap("window", np.array([[0, 2.9], [0.2 + 0.1 * i, 2.9]])) for i in range(20))
-    floor = floor_tokens(RoomContext("bedroom", polygon, gaps))
-    assert int(floor.mask.sum()) == WALLS + GAPS
+    openings = tuple(RoomOpening("window", np.array([[0, 2.9], [0.2 + 0.1 * i, 2.9]])) for i in range(20))
+    floor = floor_tokens(RoomContext("bedroom", polygon, openings))
+    assert int(floor.mask.sum()) == WALLS + OPENINGS
     widths = np.linalg.norm(floor.ends[WALLS:, 1] - floor.ends[WALLS:, 0], axis=1)
     assert widths.min() > 0.95
     assert len(simplified(polygon, WALLS)) == WALLS

@@ -6,7 +6,7 @@ import pytest
 import torch
 
 from pipeline.diffusion.checkpoint import Header, build_inventory, build_net, save_weights
-from pipeline.diffusion.context import Demand
+from pipeline.diffusion.context import CategoryBounds
 from pipeline.diffusion.sampling import Sampler
 from pipeline.diffusion.settings import ModelSettings, SampleSettings
 from pipeline.errors import ContentError
@@ -83,8 +83,8 @@ def test_the_asked_number_is_exact_even_from_a_net_that_knows_nothing(weights, c
 
 
 def test_demands_are_met(weights):
-    wish = (Demand(("dining_chair",), 3, 3), Demand(("wardrobe",), 0, 0))
-    rooms = [replace(make_context(i), demands=wish) for i in range(5)]
+    wish = (CategoryBounds(("dining_chair",), 3, 3), CategoryBounds(("wardrobe",), 0, 0))
+    rooms = [replace(make_context(i), category_bounds=wish) for i in range(5)]
     for room in sampler(weights).sample_rooms(rooms, [(i, 0, 0) for i in range(5)]):
         held = Counter(p.category for p in room)
         assert (held["dining_chair"], held["wardrobe"]) == (3, 0)

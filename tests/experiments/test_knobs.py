@@ -3,7 +3,7 @@
 import pytest
 
 from pipeline.experiments.knobs import VALUES, knob_picture, knob_table, monotone, subjects
-from pipeline.floorplan.energy import TERMS
+from pipeline.floorplan.search.energy import TERMS
 from pipeline.report.page import Picture
 from pipeline.report.sections import knob_section
 

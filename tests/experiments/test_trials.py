@@ -9,7 +9,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "homes"))
 from conftest import Rules, factory, library  # noqa: F401 - the factory of rules
 
 from pipeline.errors import ContentError
-from pipeline.experiments import tables as paper
+from pipeline.experiments import paper_tables
 from pipeline.experiments.rooms import spread
 from pipeline.experiments.rooms import test_rooms as rooms_of
 from pipeline.experiments.settings import MetricsSettings
@@ -36,7 +36,7 @@ def jobs():
 @pytest.fixture(scope="module")
 def trials(factory, jobs):  # noqa: F811
     made = {}
-    for family in paper.families(SETTINGS):
+    for family in paper_tables.families(SETTINGS):
         drafts = Drafts(factory, family[0].articulation)
         made |= {c.name: trial(factory, jobs, c, drafts) for c in family}
     return made
@@ -62,20 +62,20 @@ def test_what_ships_is_clean_and_counts_are_kept(trials):
 
 
 def test_tables_have_every_row_and_rates_lie_in_their_intervals(factory, trials):  # noqa: F811
-    quantity = paper.quantity_table(trials, SETTINGS.counts, 2)
+    quantity = paper_tables.quantity_table(trials, SETTINGS.counts, 2)
     assert quantity["3"]["drafted"]["rate"] == 1.0
-    walkable = paper.walkable_table(trials, SETTINGS.taus, 2)
+    walkable = paper_tables.walkable_table(trials, SETTINGS.taus, 2)
     assert set(walkable) == {"0.50", "0.70"}
     rng = np.random.default_rng(1)
-    made = paper.articulation_table(rng, trials, {}, factory.library)
+    made = paper_tables.articulation_table(rng, trials, {}, factory.library)
     assert list(made) == ["plain_drafted", "heuristic_drafted", "guided_drafted", "plain_shipped", "guided_shipped"]
     assert made["guided_shipped"]["collision"]["prism"]["col_obj"]["rate"] == 0.0
-    ablation = paper.ablation_table(rng, trials, SETTINGS.taus)
+    ablation = paper_tables.ablation_table(rng, trials, SETTINGS.taus)
     assert set(ablation) == {"neither", "articulation", "walkable", "both"}
     for row in ablation.values():
         for rate in (row["col_obj"], row["r_reach"], row["r_walkable"]["free"]):
             assert rate["low"] <= rate.get("rate", rate.get("mean")) <= rate["high"]
-    curves = paper.curves({"quantity": quantity, "walkable": walkable})
+    curves = paper_tables.curves({"quantity": quantity, "walkable": walkable})
     assert curves["quantity"].splitlines()[0] == "n,guidance,rate,low,high"
     assert len(curves["walkable"].splitlines()) == 1 + 3 * 2
 
@@ -89,14 +89,14 @@ def test_things_that_the_layout_model_does_not_learn_are_not_compared():
     def rows(*names):
         return {"objects": [{"category": name} for name in names]}
 
-    drafted = {name: Trial(rows("double_bed"), {}, {}) for name in (paper.ALL_PLAIN, paper.ALL_GUIDED)}
+    drafted = {name: Trial(rows("double_bed"), {}, {}) for name in (paper_tables.ALL_PLAIN, paper_tables.ALL_GUIDED)}
     held_out = [{"category": name} for name in ("double_bed", "cup", "rug")]
-    table = paper.category_table(drafted, [{"category": "double_bed"}], held_out, ("double_bed", "nightstand"))
+    table = paper_tables.category_table(drafted, [{"category": "double_bed"}], held_out, ("double_bed", "nightstand"))
     assert table["guided"] == {"real_to_generated": 0.0, "generated_to_real": 0.0, "real_objects": 1, "generated_objects": 1}
 
 
 def test_conditions_of_a_family_draw_alike_and_share_their_draws(factory, jobs):  # noqa: F811
-    for family in paper.families(SETTINGS):
+    for family in paper_tables.families(SETTINGS):
         assert len({(c.articulation, c.count) for c in family}) == 1
     drawn = []
     drafts = Drafts(replace(factory, sampler=Counting(**vars(factory.sampler), drawn=drawn)), "joints")

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from pipeline.floorplan import complete, parse, prior
-from pipeline.floorplan.areas import usual_area
-from pipeline.floorplan.assumptions import assumptions
-from pipeline.floorplan.program import Entrance, FloorProgram, Footprint, Link, Range, RoomReq, Shell
+from pipeline.floorplan.program.areas import usual_area
+from pipeline.floorplan.program.assumptions import assumptions
+from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, Footprint, Link, Range, RoomReq, Shell
 from stages.plan import main
 
 

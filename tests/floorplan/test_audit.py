@@ -8,7 +8,7 @@ import pytest
 from benchmarks.planning import audit, failures
 from pipeline.errors import RefusedError
 from pipeline.floorplan import FloorProgram, complete, solve
-from pipeline.floorplan.program import Entrance, Footprint, Forbid, Link, Range, Relation, RoomReq, Shell
+from pipeline.floorplan.program.floor_program import Entrance, Footprint, Forbid, Link, Range, Relation, RoomReq, Shell
 
 PROGRAM = complete(
     FloorProgram(

@@ -9,10 +9,10 @@ import pytest
 
 from pipeline.errors import ContentError, RefusedError, UsageError
 from pipeline.floorplan import parse, plan_from_json, plan_json, prior, refusal_json, solve
-from pipeline.floorplan.characters import terminal
 from pipeline.floorplan.document import PlanDocument
-from pipeline.floorplan.draw import image, svg
-from pipeline.floorplan.program import FloorProgram
+from pipeline.floorplan.draw.characters import terminal
+from pipeline.floorplan.draw.drawing import image, svg
+from pipeline.floorplan.program.floor_program import FloorProgram
 from stages.plan import main
 
 

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 import shapely
 
-from pipeline.floorplan import energy, grid, trace
-from pipeline.floorplan.anneal import score
-from pipeline.floorplan.program import FloorProgram, Style
-from pipeline.floorplan.storeys import weights_of
+from pipeline.floorplan.program.floor_program import FloorProgram, Style
+from pipeline.floorplan.realise import trace
+from pipeline.floorplan.search import energy, grid
+from pipeline.floorplan.search.anneal import score
+from pipeline.floorplan.search.storeys import weights_of
 
 UNIT = 0.25
 HALF = grid.Halves(0.06, 0.12)

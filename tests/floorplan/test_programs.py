@@ -10,10 +10,10 @@ from pydantic import ValidationError
 from pipeline import params, taxonomy
 from pipeline.errors import ContentError, RefusedError
 from pipeline.floorplan import complete, describe, json_schema, parse, prior, solve
-from pipeline.floorplan.check import check, reach
-from pipeline.floorplan.defaults import DEFAULTS
-from pipeline.floorplan.priors import TYPES, PriorSettings
-from pipeline.floorplan.program import FloorProgram, Forbid, Link, Range, Relation, RoomReq, RoomType
+from pipeline.floorplan.program.consistency import check, reach
+from pipeline.floorplan.program.defaults import DEFAULTS
+from pipeline.floorplan.program.floor_program import FloorProgram, Forbid, Link, Range, Relation, RoomReq, RoomType
+from pipeline.floorplan.program.priors import TYPES, PriorSettings
 
 
 def room(name, kind, **more):

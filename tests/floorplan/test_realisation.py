@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.planning import failures
 from pipeline.entities.plan import Room
-from pipeline.floorplan.realisation import NARROW, _is_narrow
+from pipeline.floorplan.realise.realisation import NARROW, _is_narrow
 
 
 @pytest.mark.parametrize("number", [461, 620, 705, 1019, 2288])

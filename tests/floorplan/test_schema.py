@@ -11,7 +11,7 @@ import shapely
 from pipeline.errors import RefusedError
 from pipeline.floorplan import complete, parse, plan_json, prior, refusal_json, solve
 from pipeline.floorplan.document import document_schema
-from pipeline.floorplan.program import FloorProgram, Footprint, RoomReq, Shell
+from pipeline.floorplan.program.floor_program import FloorProgram, Footprint, RoomReq, Shell
 from stages.plan import main
 
 KINDS = {"door", "open", "portal", "window", "entrance"}

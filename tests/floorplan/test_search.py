@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from pipeline.floorplan import anneal, grid, layout, slicing
-from pipeline.floorplan.completion import complete
-from pipeline.floorplan.program import FloorProgram, RoomReq
-from pipeline.floorplan.storeys import storey
-from pipeline.floorplan.trees import Effort, Outline, Trees
+from pipeline.floorplan.program.completion import complete
+from pipeline.floorplan.program.floor_program import FloorProgram, RoomReq
+from pipeline.floorplan.search import anneal, grid, layout, slicing
+from pipeline.floorplan.search.storeys import storey
+from pipeline.floorplan.search.trees import Effort, Outline, Trees
 
 
 def program():

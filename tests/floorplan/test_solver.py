@@ -8,9 +8,9 @@ import shapely
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan import complete, plan_json, prior, solve, solver
-from pipeline.floorplan.openings import leaf_sweep
-from pipeline.floorplan.program import Accessibility, FloorProgram, Footprint, Forbid, Link, Range, Relation, RoomReq, Zone
-from pipeline.floorplan.storeys import storey
+from pipeline.floorplan.program.floor_program import Accessibility, FloorProgram, Footprint, Forbid, Link, Range, Relation, RoomReq, Zone
+from pipeline.floorplan.realise.openings import leaf_sweep
+from pipeline.floorplan.search.storeys import storey
 
 SEEDS = 24
 

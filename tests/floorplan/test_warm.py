@@ -4,8 +4,12 @@ import subprocess
 import sys
 
 SCRIPT = """
-from pipeline.floorplan import FloorProgram, anneal, complete, energy, grid, slicing, solve, warm
-from pipeline.floorplan.program import RoomReq
+from pipeline.floorplan import FloorProgram, complete, solve, warm
+from pipeline.floorplan.search import anneal
+from pipeline.floorplan.search import energy
+from pipeline.floorplan.search import grid
+from pipeline.floorplan.search import slicing
+from pipeline.floorplan.program.floor_program import RoomReq
 
 def signatures():
     every = [f for m in (energy, grid, slicing, anneal) for f in vars(m).values() if hasattr(f, "py_func")]
@@ -16,7 +20,7 @@ before = signatures()
 types = ("entry", "living_room", "kitchen", "wc", "bedroom", "bathroom")
 rooms = tuple(RoomReq(id=f"r{i}", type=k, level=int(i > 3)) for i, k in enumerate(types))
 solve(complete(FloorProgram(rooms=rooms, storeys=2)), 1)
-print([f for f, n in signatures().items() if n > 1 or n != before[f]], before["pipeline.floorplan.anneal.anneal"])
+print([f for f, n in signatures().items() if n > 1 or n != before[f]], before["pipeline.floorplan.search.anneal.anneal"])
 """
 
 

@@ -7,8 +7,8 @@ import shapely
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan import complete, solve
-from pipeline.floorplan.distance import distances, nearness
-from pipeline.floorplan.program import FloorProgram, Footprint, Link, Relation, RoomReq
+from pipeline.floorplan.program.distance import distances, nearness
+from pipeline.floorplan.program.floor_program import FloorProgram, Footprint, Link, Relation, RoomReq
 
 
 def room(name, kind, **more):

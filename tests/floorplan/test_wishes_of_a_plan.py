@@ -3,8 +3,8 @@
 import pytest
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.own import program_of, read_own_json
-from pipeline.floorplan.program import Furniture, Things
+from pipeline.floorplan.imports import program_of, read_own_json
+from pipeline.floorplan.program.floor_program import Furniture, Things
 from pipeline.floorplan.wishes import with_wishes
 
 

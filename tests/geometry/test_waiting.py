@@ -4,10 +4,10 @@ from pipeline import taxonomy
 from pipeline.corpus.furniture.assembly import shape_of
 from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.corpus.partnet_writer import write_partnet
-from pipeline.geometry.waiting import ordered, waiting
-from pipeline.sources.articulated import assets
+from pipeline.geometry.prerequisites import ordered, waiting
+from pipeline.sources.articulated.assets import assets
+from pipeline.sources.articulated.partnet import read_shape
 from pipeline.sources.guarded import Folder
-from pipeline.sources.partnet import read_shape
 from pipeline.sources.settings import ModelLimits
 from tests.geometry.furniture import inner_drawer
 

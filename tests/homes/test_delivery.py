@@ -7,8 +7,8 @@ import pytest
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan import plan_json
-from pipeline.floorplan.own import program_of, read_own_json
-from pipeline.floorplan.program import FloorProgram
+from pipeline.floorplan.imports import program_of, read_own_json
+from pipeline.floorplan.program.floor_program import FloorProgram
 from pipeline.floorplan.wishes import with_wishes
 from pipeline.homes.delivery import deliveries, report
 from pipeline.homes.factory import told_count

@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline import taxonomy
-from pipeline.diffusion.context import Demand
+from pipeline.diffusion.context import CategoryBounds
 from pipeline.entities.plan import Plan, Room
-from pipeline.floorplan.program import Furniture
-from pipeline.homes.furnish import demands
+from pipeline.floorplan.program.floor_program import Furniture
+from pipeline.homes.furnish import category_bounds
 from pipeline.homes.request import RoomJob
 
 
@@ -18,19 +18,19 @@ def job(layout_type, count=None, wishes=()):
 
 def test_a_room_is_to_hold_what_makes_it_that_room():
     words = taxonomy.load()
-    asked = demands(job("kitchen"), words)
+    asked = category_bounds(job("kitchen"), words)
     assert [d.categories for d in asked] == list(words.essentials["kitchen"])
     assert all(d.least == 1 for d in asked)
-    assert demands(job("hallway"), words) == ()
+    assert category_bounds(job("hallway"), words) == ()
 
 
 def test_a_stated_number_of_things_is_not_crowded_by_essentials():
-    assert demands(job("kitchen", count=2), taxonomy.load()) == ()
+    assert category_bounds(job("kitchen", count=2), taxonomy.load()) == ()
 
 
 def test_a_wish_takes_the_place_of_an_essential():
-    none = Demand(("oven",), most=0)
-    asked = demands(job("kitchen", wishes=[none]), taxonomy.load())
+    none = CategoryBounds(("oven",), most=0)
+    asked = category_bounds(job("kitchen", wishes=[none]), taxonomy.load())
     assert [d for d in asked if "oven" in d.categories] == [none]
     assert any(d.least == 1 and "sink_cabinet" in d.categories for d in asked)
 
@@ -39,7 +39,7 @@ def test_no_tub_stands_in_a_wc_unless_it_is_wished_for():
     words = taxonomy.load()
     bath, wc = (replace(job("bathroom", wishes=w), plan=Plan((replace(job("bathroom").room, type=kind),), (), "room"))
                 for kind, w in (("bathroom", ()), ("wc", ())))  # fmt: skip
-    assert Demand(("shower", "bathtub"), 1) in demands(bath, words)
-    assert Demand(("shower", "bathtub"), 0, 0) in demands(wc, words)
-    asked = demands(replace(wc, furniture=job("bathroom", wishes=[Demand(("shower",), 1)]).furniture), words)
-    assert Demand(("bathtub",), 0, 0) in asked
+    assert CategoryBounds(("shower", "bathtub"), 1) in category_bounds(bath, words)
+    assert CategoryBounds(("shower", "bathtub"), 0, 0) in category_bounds(wc, words)
+    asked = category_bounds(replace(wc, furniture=job("bathroom", wishes=[CategoryBounds(("shower",), 1)]).furniture), words)
+    assert CategoryBounds(("bathtub",), 0, 0) in asked

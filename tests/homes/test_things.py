@@ -7,8 +7,8 @@ import pytest
 
 from pipeline.geometry.polygons import boundary_distance
 from pipeline.homes import customs
+from pipeline.homes.clutter import placeable
 from pipeline.homes.request import Request
-from pipeline.homes.things import placeable
 from pipeline.taxonomy import load
 from pipeline.verify import verify_home
 from tests.geometry import furniture

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from pipeline.relations.arrangement import Gap, arranged
+from pipeline.relations.arrangement import RoomOpening, arranged
 from pipeline.rendering.plan_view import DOOR, FLOOR, PAPER, colours, plan_view
 
 SQUARE = np.array([[0.0, 0], [5, 0], [5, 5], [0, 5]])
@@ -31,11 +31,11 @@ def test_what_is_higher_hides_what_is_lower_and_unknown_things_are_left_out():
 
 
 def test_a_turned_room_is_a_turned_picture():
-    door = Gap("door", np.array([[1.0, 0.0], [2.0, 0.0]]))
+    door = RoomOpening("door", np.array([[1.0, 0.0], [2.0, 0.0]]))
     room = arranged("r", "living_room", SQUARE, [SOFA], [door])
     quarter = np.array([[0.0, 1], [-1, 0]])  # rows turned by 90 degrees
     things = [(SOFA[0], [*(np.array(SOFA[1][:2]) @ quarter), 0.0], np.pi / 2, SOFA[3])]
-    turned = arranged("r", "living_room", SQUARE @ quarter, things, [Gap("door", door.segment @ quarter)])
+    turned = arranged("r", "living_room", SQUARE @ quarter, things, [RoomOpening("door", door.segment @ quarter)])
     apart = np.abs(np.rot90(plan_view(room), 1).astype(int) - plan_view(turned))
     assert (apart > 40).any(-1).mean() < 0.03
     assert (np.abs(plan_view(room) - level(DOOR)) < 3).all(-1).any()

@@ -5,18 +5,15 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from pipeline import taxonomy
-from pipeline.sources import batch, proportions
+from pipeline.sources import batch
+from pipeline.sources.articulated import proportions
+from pipeline.sources.articulated.household import named_categories
 from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
-from pipeline.sources.front_hints import hints
-from pipeline.sources.front_house import HouseRows
-from pipeline.sources.front_walkable import Walker
 from pipeline.sources.guarded import Folder
-from pipeline.sources.household import named_categories
-from pipeline.sources.mirrored import add_mirrored
 from pipeline.sources.settings import FrontFilters, ModelLimits
-from tests.judging import SETTINGS
-
-WALKER = Walker(SETTINGS.robot, SETTINGS.cell)
+from pipeline.sources.threed_front.house import HouseRows
+from pipeline.sources.threed_front.mirrored import add_mirrored
+from pipeline.sources.threed_front.model_hints import hints
 
 
 def read(root, *, front="front", partnet="partnet", filters=None, limits=None):
@@ -38,7 +35,7 @@ def read(root, *, front="front", partnet="partnet", filters=None, limits=None):
         for name in batch.partnet_objects(root / partnet):
             library.add(batch.read_partnet(task, name))
     if (root / front / batch.HOUSES).is_dir():
-        task = HouseTask(root / front, library.models, made_filters, "CC0-1.0", WALKER)
+        task = HouseTask(root / front, library.models, made_filters, "CC0-1.0")
         for part in batch.numbered(batch.read_front(task, file) for file in batch.house_files(root / front)):
             for name in ("scenes", "rooms", "openings", "objects", "rejects"):
                 getattr(houses, name).extend(getattr(part, name))

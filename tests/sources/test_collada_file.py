@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from pipeline.entities.files import load_asset
-from pipeline.sources.collada_file import parse_dae
+from pipeline.sources.meshes.collada_file import parse_dae
+from pipeline.sources.meshes.mesh_solids import signed_volume
 from pipeline.sources.reasons import SourceError
-from pipeline.sources.solids import signed_volume
 from tests.sources import collada, making
 from tests.sources.reading import read
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from pipeline import taxonomy
-from pipeline.sources.front_file import Furniture, declared_box, deferred, parse_house
-from pipeline.sources.front_objects import category_of
 from pipeline.sources.reasons import SourceError
+from pipeline.sources.threed_front.furniture import category_of
+from pipeline.sources.threed_front.house_file import Furniture, declared_box, deferred, parse_house
 from tests.sources import making
 from tests.sources.making import BED
 from tests.sources.reading import read

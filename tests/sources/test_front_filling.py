@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from pipeline.sources.front_poses import Pose
-from pipeline.sources.front_shapes import CELLS, filled, shared
 from pipeline.sources.identity import split_of
+from pipeline.sources.threed_front.notches import CELLS, filled, shared
+from pipeline.sources.threed_front.poses import Pose
 from tests.sources import making
 from tests.sources.making import BED, CHAIR, LAMP, STAND, TABLE, chair_record, child, floor
 from tests.sources.reading import read

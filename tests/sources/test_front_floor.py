@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely.geometry import Polygon
 
-from pipeline.sources.front_floor import outline
+from pipeline.sources.threed_front.floors import outline
 
 
 def triangles(*quads):

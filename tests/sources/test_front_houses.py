@@ -3,9 +3,9 @@
 import pytest
 
 from pipeline import taxonomy
-from pipeline.sources.front_file import parse_house
-from pipeline.sources.front_house import openings_of, rooms_of
 from pipeline.sources.settings import FrontFilters
+from pipeline.sources.threed_front.house import openings_of, rooms_of
+from pipeline.sources.threed_front.house_file import parse_house
 from tests.sources import front_houses
 
 CLEAR = 0.03  # [m] by which a width may differ from what is clear

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from shapely.geometry import box
 
-from pipeline.sources.front_holes import MESHES, MIN_WIDTH, from_furniture, from_mesh
-from pipeline.sources.front_openings import Outline, resolve, touching
-from pipeline.sources.front_reveals import covered, jambs, merge
+from pipeline.sources.threed_front.opening_evidence import MESHES, MIN_WIDTH, from_furniture, from_mesh
+from pipeline.sources.threed_front.reveals import covered, jambs, merge
+from pipeline.sources.threed_front.wall_openings import Outline, resolve, touching
 from tests.sources import making
 from tests.sources.making import floor, slab
 from tests.sources.reading import read

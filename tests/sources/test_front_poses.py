@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pipeline.entities.home import Placement
-from pipeline.sources.front_poses import Box, place, to_ours, wrap, yaw_and_tilt
+from pipeline.sources.threed_front.poses import Box, place, to_ours, wrap, yaw_and_tilt
 
 angles = st.floats(-math.pi + 1e-3, math.pi)
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from pipeline import taxonomy
-from pipeline.sources.front_file import Child
-from pipeline.sources.front_objects import Placed, overlapping
-from pipeline.sources.front_poses import Pose
-from pipeline.sources.front_supports import floating, supports
 from pipeline.sources.settings import FrontFilters
+from pipeline.sources.threed_front.furniture import Placed, overlapping
+from pipeline.sources.threed_front.house_file import Child
+from pipeline.sources.threed_front.poses import Pose
+from pipeline.sources.threed_front.supports import floating, supports
 
 WORDS = taxonomy.load()
 

@@ -8,8 +8,8 @@ import pytest
 
 from pipeline import taxonomy
 from pipeline.entities.files import load_asset
-from pipeline.sources.front_poses import to_ours
-from pipeline.sources.solids import signed_volume
+from pipeline.sources.meshes.mesh_solids import signed_volume
+from pipeline.sources.threed_front.poses import to_ours
 from tests.sources import making
 from tests.sources.making import BED, CHAIR, LAMP, STAND, chair_record, child, floor
 from tests.sources.reading import read

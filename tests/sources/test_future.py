@@ -6,11 +6,11 @@ from PIL import Image
 
 from pipeline import taxonomy
 from pipeline.entities.files import encode, load_asset
-from pipeline.sources.future import ModelInfo, read_model, read_model_info
 from pipeline.sources.guarded import Folder
 from pipeline.sources.identity import split_of
 from pipeline.sources.reasons import SourceError
 from pipeline.sources.settings import ModelLimits
+from pipeline.sources.threed_front.future import ModelInfo, read_model, read_model_info
 from tests.sources import making
 from tests.sources.making import BED, STAND
 from tests.sources.reading import read
@@ -42,7 +42,7 @@ def test_frame_and_size(tmp_path):
 
 
 def test_faces_stay_outward(tmp_path):
-    from pipeline.sources.solids import signed_volume
+    from pipeline.sources.meshes.mesh_solids import signed_volume
 
     (mesh,) = model(tmp_path, making.box_obj((1.8, 2.2, 1.1), uv=False)).asset.links[0].visuals
     (collider,) = model(tmp_path).asset.links[0].colliders

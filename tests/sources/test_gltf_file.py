@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from pipeline.entities.files import load_asset
-from pipeline.sources.gltf_file import parse_glb
+from pipeline.sources.meshes.gltf_file import parse_glb
 from pipeline.sources.reasons import SourceError
 from tests.sources import making
 from tests.sources.reading import read

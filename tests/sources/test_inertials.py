@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from pipeline.entities.files import load_asset
-from pipeline.sources.inertials import Inertial, inertia_flaw, joined, mass_flaw
+from pipeline.sources.meshes.inertials import Inertial, inertia_flaw, joined, mass_flaw
 from tests.sources import test_household as household
 from tests.sources.reading import read
 

@@ -9,12 +9,12 @@ from pipeline import taxonomy
 from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.corpus.future_writer import write_future
 from pipeline.corpus.partnet_writer import write_partnet
-from pipeline.sources import articulated
-from pipeline.sources.future import read_model, read_model_info
+from pipeline.sources.articulated import assets as articulated
+from pipeline.sources.articulated.partnet import read_shape
 from pipeline.sources.guarded import Folder
 from pipeline.sources.masses import RANGES, factor, held, mass
-from pipeline.sources.partnet import read_shape
 from pipeline.sources.settings import ModelLimits
+from pipeline.sources.threed_front.future import read_model, read_model_info
 
 
 @pytest.fixture(scope="module")

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from pipeline.entities.files import load_asset
-from pipeline.sources import joint_rules
-from pipeline.sources.shape import ShapeBody
+from pipeline.sources.articulated import joint_rules
+from pipeline.sources.articulated.shape import ShapeBody
 from tests.sources import mobility
 from tests.sources.reading import read
 
@@ -126,7 +126,7 @@ def test_the_same_bytes_again(tmp_path):
 
 
 def test_what_fits_nothing_is_never_cut(tmp_path, monkeypatch):
-    monkeypatch.setattr("pipeline.sources.colliders.cut", lambda *_: pytest.fail("cut"))
+    monkeypatch.setattr("pipeline.sources.meshes.colliders.cut", lambda *_: pytest.fail("cut"))
     wall = mobility.lathe([(0.0, 0.0), (0.1, 0.0), (0.1, 18.0)], 24)
     _, made = assets(tmp_path, "Laptop", [mobility.Moving("body", [wall])])
     assert made.reasons == {"no_metric_fit"}
@@ -154,7 +154,7 @@ def test_hundreds_of_parts_cost_seconds(tmp_path):
     ],
 )
 def test_words_are_whole_words(word, kind, part):
-    from pipeline.sources.part_classes import named_class
+    from pipeline.sources.articulated.part_classes import named_class
 
     assert named_class(kind, word) == part
 

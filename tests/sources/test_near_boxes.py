@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 from scipy.optimize import nnls
 from scipy.spatial.transform import Rotation
 
-from pipeline.sources.colliders import link, solids
-from pipeline.sources.near_boxes import NEAR, boxed
+from pipeline.sources.meshes.colliders import link, solids
+from pipeline.sources.meshes.mesh_solids import hull, signed_volume
+from pipeline.sources.meshes.near_boxes import NEAR, boxed
 from pipeline.sources.settings import ModelLimits
-from pipeline.sources.solids import hull, signed_volume
 from tests.sources import mobility
 
 

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pipeline.sources.obj_file import parse_mtl, parse_obj
+from pipeline.sources.meshes.obj_file import parse_mtl, parse_obj
 from pipeline.sources.reasons import SourceError
 from tests.sources.making import box_obj
 

@@ -10,12 +10,12 @@ from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.corpus.partnet_writer import write_partnet
 from pipeline.entities.files import load_asset
 from pipeline.geometry.kinematics import handle_point, link_transforms
-from pipeline.sources import metric_scale
-from pipeline.sources.calibration import sizes
-from pipeline.sources.category_signs import Signs
+from pipeline.sources.articulated import metric_scale
+from pipeline.sources.articulated.category_signs import Signs
+from pipeline.sources.articulated.part_classes import cornered
+from pipeline.sources.articulated.partnet import read_shape
+from pipeline.sources.category_sizes import sizes
 from pipeline.sources.guarded import Folder
-from pipeline.sources.part_classes import cornered
-from pipeline.sources.partnet import read_shape
 from tests.sources import making
 from tests.sources.reading import read
 

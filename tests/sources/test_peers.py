@@ -11,17 +11,16 @@ from hypothesis import strategies as st
 
 from pipeline import taxonomy
 from pipeline.errors import ContentError
-from pipeline.sources.front_objects import Model
-from pipeline.sources.front_poses import Box
+from pipeline.sources.atiss.files import BOXES, STATS, read_room, write_stats
+from pipeline.sources.atiss.labels import KINDS, kind_of
+from pipeline.sources.atiss.reader import PeersTask, kinds_of, peers_houses, read_peers
+from pipeline.sources.atiss.writer import cached, floor_mesh, grouped, write_kind
 from pipeline.sources.guarded import Folder
 from pipeline.sources.identity import split_of
-from pipeline.sources.peers_files import BOXES, STATS, read_room, write_stats
-from pipeline.sources.peers_labels import KINDS, kind_of
-from pipeline.sources.peers_reader import PeersTask, kinds_of, peers_houses, read_peers
-from pipeline.sources.peers_writer import cached, floor_mesh, grouped, write_kind
 from pipeline.sources.reasons import SourceError
 from pipeline.sources.settings import FrontFilters
-from tests.sources.reading import WALKER
+from pipeline.sources.threed_front.furniture import Model
+from pipeline.sources.threed_front.poses import Box
 
 L_SHAPE = [[-1.5, -2.25], [2.5, -2.25], [2.5, 1.0], [0.5, 1.0], [0.5, 2.75], [-1.5, 2.75]]
 FIELDS = ("translations", "sizes", "angles", "classes", "vertices", "faces", "centroid", "layout")
@@ -60,7 +59,7 @@ def written(tmp_path, rooms, kind="bedroom", *, filtered=False):
 
 def read_all(source, models=None):
     kinds = kinds_of(source)
-    task = PeersTask(source, kinds, models or {}, FrontFilters(), "CC0-1.0", WALKER)
+    task = PeersTask(source, kinds, models or {}, FrontFilters(), "CC0-1.0")
     return [read_peers(task, house) for house in peers_houses(source, kinds)]
 
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from pipeline.sources import batch
-from pipeline.sources.peers_labels import KINDS
-from pipeline.sources.peers_reader import PeersTask, read_peers
-from pipeline.sources.peers_writer import grouped, write_kind
+from pipeline.sources.atiss.labels import KINDS
+from pipeline.sources.atiss.reader import PeersTask, read_peers
+from pipeline.sources.atiss.writer import grouped, write_kind
 from pipeline.sources.reasons import REASONS, SourceError, reject
 from pipeline.sources.settings import FrontFilters
 from tests.sources import making, mobility
 from tests.sources.making import BED, CHAIR, LAMP, STAND, TABLE, chair_record, child, floor, slab
-from tests.sources.reading import WALKER, read
+from tests.sources.reading import read
 
 BAD_OBJ = "v 0 0 0\nv 1 0 0\nf 1 2 9\n"
 
@@ -239,7 +239,7 @@ def peers(tmp, *, filtered):
 def bad_boxes(tmp):
     (tmp / "h_Bedroom-1").mkdir()
     (tmp / "h_Bedroom-1" / "boxes.npz").write_bytes(b"PK")
-    task = PeersTask(tmp, {".": KINDS["bedroom"]}, {}, FrontFilters(), "CC0-1.0", WALKER)
+    task = PeersTask(tmp, {".": KINDS["bedroom"]}, {}, FrontFilters(), "CC0-1.0")
     rejects = read_peers(task, ("h", ((".", "h_Bedroom-1"),))).rejects
     return SimpleNamespace(rejects=rejects, reasons={r["reason"] for r in rejects})
 

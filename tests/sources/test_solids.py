@@ -4,13 +4,13 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.sources import colliders, merging
-from pipeline.sources.colliders import link, solids
-from pipeline.sources.cutting import cut
 from pipeline.sources.densities import MINIMUM
-from pipeline.sources.merging import merged
+from pipeline.sources.meshes import colliders, merging
+from pipeline.sources.meshes.colliders import link, solids
+from pipeline.sources.meshes.cutting import cut
+from pipeline.sources.meshes.merging import merged
+from pipeline.sources.meshes.mesh_solids import MAX_HULL, components, convex, hull, mass_properties, parts, signed_volume
 from pipeline.sources.settings import ModelLimits
-from pipeline.sources.solids import MAX_HULL, components, convex, hull, mass_properties, parts, signed_volume
 from tests.sources import mobility
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from pipeline.sources.near_boxes import CORNERS
-from pipeline.sources.solids import convex
-from pipeline.sources.touching import fewer, simpler
+from pipeline.sources.meshes.mesh_solids import convex
+from pipeline.sources.meshes.near_boxes import CORNERS
+from pipeline.sources.meshes.touching import fewer, simpler
 
 
 def block(low, high):

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from pipeline.sources.articulated.urdf import parse_urdf
 from pipeline.sources.reasons import SourceError
-from pipeline.sources.urdf import parse_urdf
 
 LINKS = '<link name="a"/><link name="b"/>'
 

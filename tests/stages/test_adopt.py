@@ -8,8 +8,8 @@ import pytest
 from pipeline import params
 from pipeline.errors import ContentError, UsageError
 from pipeline.sources import batch, inventory, recognition
-from pipeline.sources.peers_files import BOXES, STATS, stats, write_stats
-from pipeline.sources.peers_labels import KINDS
+from pipeline.sources.atiss.files import BOXES, STATS, stats, write_stats
+from pipeline.sources.atiss.labels import KINDS
 from pipeline.sources.recognition import recognised
 from stages import adopt, doctor, preprocess
 from tests.sources import making

@@ -10,7 +10,7 @@ from pipeline.corpus.settings import CorpusSettings
 from pipeline.errors import ContentError
 from stages import corpus
 
-SMALL = CorpusSettings(houses=12, models=0.1, mess=True)
+SMALL = CorpusSettings(houses=12, models=0.1, corruption=True)
 
 
 def contents(folder):
@@ -64,7 +64,7 @@ def test_workers_do_not_change_a_byte_and_seeds_do(tmp_path, light):
 
 def test_a_run_that_fails_leaves_the_old_corpus_as_it_was(tmp_path, light, monkeypatch):
     target = tmp_path / "raw"
-    corpus.make(target, 3, CorpusSettings(1, 0.1, mess=False), workers=1)
+    corpus.make(target, 3, CorpusSettings(1, 0.1, corruption=False), workers=1)
     before = contents(target)
 
     def fails(*_):
@@ -79,7 +79,7 @@ def test_a_run_that_fails_leaves_the_old_corpus_as_it_was(tmp_path, light, monke
 def test_leftovers_of_a_killed_run_are_cleared(tmp_path, light):
     (tmp_path / ".raw.making" / "3d-front").mkdir(parents=True)
     (tmp_path / ".raw.making" / "junk").write_text("x")
-    corpus.make(tmp_path / "raw", 3, CorpusSettings(1, 0.1, mess=False), workers=1)
+    corpus.make(tmp_path / "raw", 3, CorpusSettings(1, 0.1, corruption=False), workers=1)
     assert {p.name for p in tmp_path.iterdir()} == {"raw"}
     assert {p.name for p in (tmp_path / "raw").iterdir()} == {"3d-front", "partnet"}
 
@@ -88,7 +88,7 @@ def test_real_models_are_written(tmp_path, monkeypatch):
     full = catalogue(0, 0.1)
     few = Catalogue(full.future[:2], full.partnet[:1])
     monkeypatch.setattr(corpus, "catalogue", lambda *_: few)
-    corpus.make(tmp_path / "raw", 0, CorpusSettings(1, 0.1, mess=True), workers=1)
+    corpus.make(tmp_path / "raw", 0, CorpusSettings(1, 0.1, corruption=True), workers=1)
     names = {Path(p).name for p in contents(tmp_path / "raw")}
     assert {"raw_model.obj", "model.mtl", "texture.png", "mobility.urdf", "link_annotation_gapartnet.json"} <= names
 
@@ -96,11 +96,11 @@ def test_real_models_are_written(tmp_path, monkeypatch):
 @pytest.mark.parametrize("bad", [{"houses": 0}, {"houses": -5}, {"models": 0.0}, {"models": 1e9}])
 def test_settings_out_of_range_are_refused(bad):
     with pytest.raises(ContentError, match=f"corpus.{next(iter(bad))}"):
-        CorpusSettings(**({"houses": 1, "models": 1.0, "mess": True} | bad))
+        CorpusSettings(**({"houses": 1, "models": 1.0, "corruption": True} | bad))
 
 
 def test_main_reads_params(tmp_path, light):
-    text = "seed: 1\npreset: quick\ncorpus: {houses: 2, models: 0.1, mess: false}\npresets: {quick: {corpus: {houses: 1}}}\n"
+    text = "seed: 1\npreset: quick\ncorpus: {houses: 2, models: 0.1, corruption: false}\npresets: {quick: {corpus: {houses: 1}}}\n"
     (tmp_path / "params.yaml").write_text(text)
     corpus.main(tmp_path)
     assert len(list((tmp_path / "data" / "raw" / "3d-front" / "3D-FRONT").glob("*.json"))) == 1

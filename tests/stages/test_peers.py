@@ -6,7 +6,7 @@ import pytest
 from pipeline import tables
 from pipeline.errors import UsageError
 from pipeline.sources import inventory
-from pipeline.sources.peers_files import BOXES
+from pipeline.sources.atiss.files import BOXES
 from pipeline.sources.recognition import peers_at
 from schemas.objects import OBJECTS
 from schemas.rejects import REJECTS

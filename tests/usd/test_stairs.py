@@ -13,7 +13,7 @@ from pxr import Usd, UsdGeom, UsdPhysics
 
 from pipeline.entities.home import Home
 from pipeline.floorplan import complete, solve
-from pipeline.floorplan.program import FloorProgram, RoomReq
+from pipeline.floorplan.program.floor_program import FloorProgram, RoomReq
 from pipeline.geometry.stairs import steps
 from pipeline.usd.home import write_home
 from pipeline.usd.mujoco import write_mujoco_overlay

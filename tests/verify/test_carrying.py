@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.homes.guilt import guilty_objects
+from pipeline.homes.violations import violations
 from pipeline.verify import Policy, verify_home
 from tests.geometry.furniture import LIBRARY, home, placed
-from tests.judging import SETTINGS
 
 CHEST = placed("tray_chest", 2.0, 2.74)
 FLOOR = 0.14  # of its drawer
@@ -18,7 +17,7 @@ def thing(name, dx, dy, z, support="tray_chest_0"):
 
 
 def judge(*placements):
-    return verify_home(home(placements), LIBRARY, SETTINGS)
+    return verify_home(home(placements), LIBRARY)
 
 
 def test_a_thing_is_held_by_what_it_names():
@@ -45,7 +44,7 @@ def test_what_stands_too_high_in_a_drawer_is_caught_by_the_frame():
     found = judge(CHEST, tall)
     joint = next(j for j in found.joints if j.object_id == "tray_chest_0")
     assert not joint.clear or found.collisions
-    assert set(guilty_objects(home((CHEST, tall)), found)) == {"cup_9"}
+    assert set(violations(home((CHEST, tall)), found)) == {"cup_9"}
 
 
 def test_a_drawer_with_a_thing_in_it_still_hits_what_stands_before_it():
@@ -58,19 +57,19 @@ def test_a_drawer_with_a_thing_in_it_still_hits_what_stands_before_it():
 def test_what_lies_under_a_drawer_stays_and_what_it_strikes_goes():
     below = thing("book", 0, 0, 0.12)
     found = judge(CHEST, below)  # 3 cm high: the drawer's floor is 1 cm above the board
-    assert "book_9" in guilty_objects(home((CHEST, below)), found)
+    assert "book_9" in violations(home((CHEST, below)), found)
 
 
 def test_a_small_thing_goes_before_furniture_does():
     lamp = placed("lamp", 2.0, 2.74, 0.0, 0.5)
     cup = replace(thing("cup", 0, 0, 0.5), scale=np.array([8.0, 8.0, 8.0]), size=8 * LIBRARY["cup"].size)
-    assert set(guilty_objects(home((CHEST, lamp, cup)), judge(CHEST, lamp, cup))) >= {"cup_9"}
-    assert "lamp_0" not in guilty_objects(home((CHEST, lamp, cup)), judge(CHEST, lamp, cup))
+    assert set(violations(home((CHEST, lamp, cup)), judge(CHEST, lamp, cup))) >= {"cup_9"}
+    assert "lamp_0" not in violations(home((CHEST, lamp, cup)), judge(CHEST, lamp, cup))
 
 
 def test_a_lid_that_does_not_open_costs_the_thing_and_not_what_is_above():
     above = placed("block", 2.0, 2.74, 0.0, 0.6)
     found = judge(CHEST, thing("flip", 0, 0, 0.5), above)
-    guilty = guilty_objects(home((CHEST, thing("flip", 0, 0, 0.5), above)), found)
-    assert guilty["flip_9"].reason == "blocks_joint"
+    violating = violations(home((CHEST, thing("flip", 0, 0, 0.5), above)), found)
+    assert violating["flip_9"].reason == "blocks_joint"
     assert found.openable == 1  # the chest; a laptop is no furniture

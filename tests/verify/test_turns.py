@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 
-from pipeline.geometry.waiting import ordered
+from pipeline.geometry.prerequisites import ordered
 from pipeline.verify import verify_home
 from tests.geometry.furniture import LIBRARY, home, inner_drawer, placed
-from tests.judging import SETTINGS
 
 
 def judged(*things, made):
-    return verify_home(home(tuple(placed(name, x, y, yaw) for name, x, y, yaw in things)), LIBRARY | {made.asset_id: made}, SETTINGS)
+    return verify_home(home(tuple(placed(name, x, y, yaw) for name, x, y, yaw in things)), LIBRARY | {made.asset_id: made})
 
 
 @pytest.fixture

@@ -8,11 +8,11 @@ import math
 import numpy as np
 
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
+from pipeline.corpus.furniture.dining_tables import cased_table, legged
 from pipeline.corpus.furniture.finishes import MIRROR, Scheme
 from pipeline.corpus.furniture.shape import Piece, Shape, joined, moved, pieces
 from pipeline.corpus.furniture.solids import box, revolve, ring
 from pipeline.corpus.furniture.storage import Size, front_style
-from pipeline.corpus.furniture.tables import cased_table, legged
 
 
 def desk(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:

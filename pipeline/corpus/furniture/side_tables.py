@@ -7,12 +7,12 @@ import math
 import numpy as np
 
 from pipeline.corpus.furniture.bent import arc, band, curve, prism, tube, turns
+from pipeline.corpus.furniture.dining_tables import apron, cased_table, fluted_drum, legged, rails, top, top_finish, trumpet
 from pipeline.corpus.furniture.finishes import GLASS, Scheme, cane
 from pipeline.corpus.furniture.legs import draw_kind, inside, leg_finish, legs, pedestal
 from pipeline.corpus.furniture.shape import Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, rounded, slab
 from pipeline.corpus.furniture.storage import Size
-from pipeline.corpus.furniture.tables import apron, cased_table, fluted_drum, legged, rails, top, top_finish, trumpet
 
 
 def coffee_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:  # noqa: PLR0911 - one return per form

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pipeline.corpus import reference
 from pipeline.corpus.houses import rates
 from pipeline.corpus.houses.deal import Deal
-from pipeline.corpus.houses.program import PRIVATE
+from pipeline.corpus.houses.room_list import PRIVATE
 from pipeline.seeds import generator
 
 BLOCK = 32

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeline.corpus.houses.outline import OUTSIDE, Patch
-from pipeline.corpus.houses.program import Program
+from pipeline.corpus.houses.room_list import Program
 
 Wish = tuple[str, float]
 LINE = 0.12

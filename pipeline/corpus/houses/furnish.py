@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from pipeline import taxonomy
-from pipeline.corpus.houses import bedrooms, dining, kitchens, living, rates, small_rooms, small_things, walkable
+from pipeline.corpus.houses import bedrooms, dining, kitchens, living, rates, small_rooms, small_things, walkable_grid
 from pipeline.corpus.houses.agenda import KINDS
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.deal import Deal
@@ -70,7 +70,7 @@ def furnish_room(
         space = Space(number, room, openings)
         arranger = Arranger(rng, space, stock, style, rates.load()[KINDS[room.type]], deal)
         RECIPES[kind](arranger, rich)
-        cut_off, far = walkable.problems(space)
+        cut_off, far = walkable_grid.problems(space)
         present = {i.model.category for i in space.items}
         missing = sum(not (wanted & present) for wanted in MUSTS.get(kind, ()))
         score = (missing, cut_off, len(far))
@@ -87,7 +87,7 @@ def furnish_room(
 def tidy(space: Space) -> None:
     """Take away, latest first, what still cuts a door off or cannot be approached; lamps and big pieces stay if they can."""
     for _ in range(6):
-        cut_off, far = walkable.problems(space)
+        cut_off, far = walkable_grid.problems(space)
         if not cut_off and not far:
             break
         standing = [k for k, i in enumerate(space.items) if i.position[2] < 1.0]
@@ -105,7 +105,7 @@ def _culprit(space: Space, standing: list[int]) -> int:
     found = []
     for k in reversed(standing):
         space.items = items[:k] + items[k + 1 :]
-        found.append((walkable.problems(space)[0], -k))
+        found.append((walkable_grid.problems(space)[0], -k))
     space.items = items
     return -min(found)[1]
 

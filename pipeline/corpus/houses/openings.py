@@ -39,7 +39,7 @@ WINDOWS: dict[str, tuple[int, float, float]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Hole:
+class WallOpening:
     """An opening in a wall stretch, in wall coordinates: from `low` to `high` along it [cm]."""
 
     wall: int
@@ -53,39 +53,41 @@ class Hole:
     hinge: int = 0
 
 
-def plan_holes(rng: np.random.Generator, types: Sequence[str], parents: dict[int, int], walls: Sequence[Wall]) -> tuple[Hole, ...] | None:
+def wall_openings(
+    rng: np.random.Generator, types: Sequence[str], parents: dict[int, int], walls: Sequence[Wall]
+) -> tuple[WallOpening, ...] | None:
     """Place doors, then the entrance, then windows. None where a room cannot be reached."""
-    holes: list[Hole] = []
+    placed: list[WallOpening] = []
     for room in range(len(types)):
         if types[room] in PUBLIC and _first_public(types) == room:
             continue
-        hole = _connection(rng, room, types, parents, walls, holes)
-        if hole is None:
+        gap = _connection(rng, room, types, parents, walls, placed)
+        if gap is None:
             return None
-        if all(set(h.rooms) != set(hole.rooms) for h in holes):
-            holes.append(hole)
-    if not _connected(len(types), holes):
+        if all(set(h.rooms) != set(gap.rooms) for h in placed):
+            placed.append(gap)
+    if not _connected(len(types), placed):
         return None
-    entrance = _entrance(rng, types, walls, holes)
+    entrance = _entrance(rng, types, walls, placed)
     if entrance is None:
         return None
-    holes.append(entrance)
+    placed.append(entrance)
     for room, room_type in enumerate(types):
-        holes += _windows(rng, room, room_type, walls, holes)
-    return tuple(holes)
+        placed += _windows(rng, room, room_type, walls, placed)
+    return tuple(placed)
 
 
 def _first_public(types: Sequence[str]) -> int:
     return next(i for i, t in enumerate(types) if t in PUBLIC)
 
 
-def _connected(count: int, holes: Sequence[Hole]) -> bool:
+def _connected(count: int, placed: Sequence[WallOpening]) -> bool:
     reached, edge = {0}, [0]
     while edge:
         room = edge.pop()
-        for hole in holes:
-            if room in hole.rooms:
-                for other in hole.rooms:
+        for gap in placed:
+            if room in gap.rooms:
+                for other in gap.rooms:
                     if other not in reached:
                         reached.add(other)
                         edge.append(other)
@@ -93,8 +95,8 @@ def _connected(count: int, holes: Sequence[Hole]) -> bool:
 
 
 def _connection(
-    rng: np.random.Generator, room: int, types: Sequence[str], parents: dict[int, int], walls: Sequence[Wall], holes: Sequence[Hole]
-) -> Hole | None:
+    rng: np.random.Generator, room: int, types: Sequence[str], parents: dict[int, int], walls: Sequence[Wall], placed: Sequence[WallOpening]
+) -> WallOpening | None:
     """Choose the wall that a room's door stands in, and the door."""
     wanted = [parents[room]] if room in parents else []
     if not wanted:
@@ -104,22 +106,22 @@ def _connection(
     for host in wanted:
         shared = [i for i, w in enumerate(walls) if {w.a, w.b} == {room, host}]
         for i in sorted(shared, key=lambda i: -walls[i].length):
-            hole = _door(rng, i, walls[i], room, host, types, holes)
-            if hole is not None:
-                return hole
+            gap = _door(rng, i, walls[i], room, host, types, placed)
+            if gap is not None:
+                return gap
     return None
 
 
 def _door(
-    rng: np.random.Generator, index: int, wall: Wall, room: int, host: int, types: Sequence[str], holes: Sequence[Hole]
-) -> Hole | None:
+    rng: np.random.Generator, index: int, wall: Wall, room: int, host: int, types: Sequence[str], placed: Sequence[WallOpening]
+) -> WallOpening | None:
     kind, width = _door_kind(rng, types[room], types[host], wall.length)
     room_for = wall.length - 2 * (6 + (6 if kind == "open" else 12))
     if kind == "open":
         width = min(width, room_for)
     if width > room_for or width < 65:
         return None
-    free = _free(index, wall, holes, 15)
+    free = _free(index, wall, placed, 15)
     spans = next((s for spare in (36, 12, 0) if (s := [(a, b) for a, b in free if b - a >= width + spare])), [])
     if not spans:
         return None
@@ -134,7 +136,7 @@ def _door(
     hinge = 0 if start + width / 2 < (wall.low + wall.high) / 2 else 1
     leaf = kind == "door" and width <= 100
     height = DOOR_HEIGHT if kind == "door" else float(rng.choice([2.2, 2.3, 2.4]))
-    return Hole(index, start, start + width, kind, (room, host), height, 0.0, room if leaf else None, hinge)
+    return WallOpening(index, start, start + width, kind, (room, host), height, 0.0, room if leaf else None, hinge)
 
 
 def _door_kind(rng: np.random.Generator, room_type: str, host_type: str, length: int) -> tuple[OpeningKind, int]:
@@ -149,16 +151,16 @@ def _door_kind(rng: np.random.Generator, room_type: str, host_type: str, length:
     return "door", int(rng.choice([70, 75, 80] if narrow else [80, 85, 90]))
 
 
-def _free(index: int, wall: Wall, holes: Sequence[Hole], gap: int) -> list[tuple[int, int]]:
-    """Return the stretches of a wall clear of its ends and of other holes [cm]."""
+def _free(index: int, wall: Wall, placed: Sequence[WallOpening], margin: int) -> list[tuple[int, int]]:
+    """Return the stretches of a wall clear of its ends and of those placed, with a margin [cm]."""
     spans = [(wall.low + 12, wall.high - 12)]
-    for hole in holes:
-        if hole.wall == index:
-            spans = [p for a, b in spans for p in ((a, min(b, hole.low - gap)), (max(a, hole.high + gap), b)) if p[1] - p[0] > 0]
+    for gap in placed:
+        if gap.wall == index:
+            spans = [p for a, b in spans for p in ((a, min(b, gap.low - margin)), (max(a, gap.high + margin), b)) if p[1] - p[0] > 0]
     return spans
 
 
-def _entrance(rng: np.random.Generator, types: Sequence[str], walls: Sequence[Wall], holes: Sequence[Hole]) -> Hole | None:
+def _entrance(rng: np.random.Generator, types: Sequence[str], walls: Sequence[Wall], placed: Sequence[WallOpening]) -> WallOpening | None:
     """Put the entrance into the hall if there is one, else into a public room; away from the long outer walls."""
     rank = {"Hallway": 0, "Corridor": 1, "Aisle": 1, "DiningRoom": 2, "LivingDiningRoom": 3, "LivingRoom": 4}
     found = []
@@ -168,57 +170,55 @@ def _entrance(rng: np.random.Generator, types: Sequence[str], walls: Sequence[Wa
             found.append((rank[types[inside]], wall.length, i, inside))
     for _, length, i, inside in sorted(found):
         width = 90 if length < 160 else 95
-        spans = [(a, b) for a, b in _free(i, walls[i], holes, 20) if b - a >= width + 10]
+        spans = [(a, b) for a, b in _free(i, walls[i], placed, 20) if b - a >= width + 10]
         if spans:
             a, b = spans[int(rng.integers(len(spans)))]
             near_low = rng.random() < 0.5
             start = a + min(20, b - a - width) if near_low else b - width - min(20, b - a - width)
-            return Hole(i, start, start + width, "entrance", (inside,), DOOR_HEIGHT, 0.0, inside, 0 if near_low else 1)
+            return WallOpening(i, start, start + width, "entrance", (inside,), DOOR_HEIGHT, 0.0, inside, 0 if near_low else 1)
     return None
 
 
-def _windows(rng: np.random.Generator, room: int, room_type: str, walls: Sequence[Wall], holes: Sequence[Hole]) -> list[Hole]:
+def _windows(
+    rng: np.random.Generator, room: int, room_type: str, walls: Sequence[Wall], placed: Sequence[WallOpening]
+) -> list[WallOpening]:
     """Put windows into the outer walls of a room: one in the longest, now and then a second around the corner."""
     outer = [(w.length, i) for i, w in enumerate(walls) if {w.a, w.b} == {room, OUTSIDE} and w.length >= 90]
-    made: list[Hole] = []
+    made: list[WallOpening] = []
     if room_type in CORRIDORS or room_type in {"StorageRoom", "CloakRoom"}:
         return made
     widest, sill, height = WINDOWS.get(room_type, (240, float(rng.choice([0.3, 0.6, 0.9, 0.9])), 0.0))
     height = height or float(rng.choice([2.3, 2.4])) - sill
     count = 3 if room_type == "Balcony" else 2 if room_type in PUBLIC or rng.random() < 0.15 else 1
     for _, i in sorted(outer, reverse=True)[:count]:
-        spans = sorted(_free(i, walls[i], holes, 25), key=lambda s: s[0] - s[1])
+        spans = sorted(_free(i, walls[i], placed, 25), key=lambda s: s[0] - s[1])
         if not spans or spans[0][1] - spans[0][0] < 60:
             continue
         a, b = spans[0]
         share = 1.0 if room_type == "Balcony" else rng.uniform(0.4, 0.75)
         width = int(np.clip(round((b - a) * share / 5) * 5, 60, widest))
         start = a + (b - a - width) // 2 + (0 if b - a - width < 40 else int(rng.integers(-10, 10)))
-        made.append(Hole(i, start, start + width, "window", (room,), height, sill))
+        made.append(WallOpening(i, start, start + width, "window", (room,), height, sill))
     return made
 
 
-def opening(number: int, hole: Hole, walls: Sequence[Wall], angle: float) -> Opening:
-    """Turn a hole into the plan's record: the segment on the wall's centre line [m]."""
-    wall = walls[hole.wall]
+def opening(number: int, gap: WallOpening, walls: Sequence[Wall], angle: float) -> Opening:
+    """Turn a gap into the plan's record: the segment on the wall's centre line [m]."""
+    wall = walls[gap.wall]
     shift = 0.0
     if OUTSIDE in (wall.a, wall.b):  # outer walls grow outwards from the inner face
         out = (OUTER_WALL - 12) / 2
         shift = out if wall.b == OUTSIDE else -out
     at = (wall.at + shift) / 100
-    ends = (
-        np.array([[at, hole.low / 100], [at, hole.high / 100]])
-        if wall.vertical
-        else np.array([[hole.low / 100, at], [hole.high / 100, at]])
-    )
-    swing = None if hole.swing_room is None else Swing(f"room_{hole.swing_room}", hole.hinge, angle)
-    return Opening(f"opening_{number}", hole.kind, tuple(f"room_{r}" for r in hole.rooms), ends, hole.height, hole.sill, swing)
+    ends = np.array([[at, gap.low / 100], [at, gap.high / 100]]) if wall.vertical else np.array([[gap.low / 100, at], [gap.high / 100, at]])
+    swing = None if gap.swing_room is None else Swing(f"room_{gap.swing_room}", gap.hinge, angle)
+    return Opening(f"opening_{number}", gap.kind, tuple(f"room_{r}" for r in gap.rooms), ends, gap.height, gap.sill, swing)
 
 
-def leaf_corner(hole: Opening, into: tuple[float, float]) -> tuple[float, float, float, float]:
+def leaf_corner(gap: Opening, into: tuple[float, float]) -> tuple[float, float, float, float]:
     """Return the rectangle that the swinging leaf sweeps, in plan [m]. `into` is the unit normal of the side it opens to."""
-    assert hole.swing is not None
-    (ax, ay), (bx, by) = hole.segment.tolist()
+    assert gap.swing is not None
+    (ax, ay), (bx, by) = gap.segment.tolist()
     w = math.hypot(bx - ax, by - ay)
     corners = [(ax, ay), (bx, by), (ax + into[0] * w, ay + into[1] * w), (bx + into[0] * w, by + into[1] * w)]
     xs, ys = zip(*corners, strict=True)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
-from pipeline.corpus.houses import draft, openings, outline, program
+from pipeline.corpus.houses import draft, openings, outline, room_list
 from pipeline.entities.plan import Plan, Room
 from pipeline.errors import ContentError
 
@@ -29,7 +29,7 @@ def make_plan(rng: np.random.Generator, furnished: Sequence[str]) -> Plan:
     It has a room of every type in `furnished`; only where many programs fail at that, one may be missing.
     """
     for attempt in range(PROGRAMS):
-        wanted = program.sample(rng, furnished)
+        wanted = room_list.sample(rng, furnished)
         for _ in range(DRAFTS):  # redrawn for one program, so that hard programs are not crowded out by easy ones
             plan = _attempt(rng, wanted, furnished if attempt < STRICT else ())
             if plan is not None:
@@ -43,7 +43,7 @@ def lacking(types: Sequence[str], furnished: Sequence[str]) -> Counter[str]:
     return wanted - Counter("Hallway" if t in openings.CORRIDORS else t for t in types)
 
 
-def _attempt(rng: np.random.Generator, wanted: program.Program, furnished: Sequence[str]) -> Plan | None:
+def _attempt(rng: np.random.Generator, wanted: room_list.Program, furnished: Sequence[str]) -> Plan | None:
     make = draft.spine if rng.random() < 0.55 else draft.centre
     sketch = make(rng, wanted)
     if lacking(sketch.types, furnished):
@@ -65,11 +65,11 @@ def _attempt(rng: np.random.Generator, wanted: program.Program, furnished: Seque
         if not passable(faces):
             return None
         made.append(Room(f"room_{i}", room_type, faces, height=height))
-    holes = openings.plan_holes(rng, sketch.types, sketch.parents, stretches)
-    if holes is None:
+    placed = openings.wall_openings(rng, sketch.types, sketch.parents, stretches)
+    if placed is None:
         return None
     angle = float(rng.uniform(1.45, 1.57))
-    ways = tuple(openings.opening(k, hole, stretches, angle) for k, hole in enumerate(holes))
+    ways = tuple(openings.opening(k, gap, stretches, angle) for k, gap in enumerate(placed))
     entrance = next(w.rooms[0] for w in ways if w.kind == "entrance")
     return Plan(tuple(made), ways, entrance)
 
@@ -92,7 +92,7 @@ def _usable(loop: Sequence[tuple[int, int]], room_type: str) -> bool:
     # Between the faces: the loop's area less a strip of INSET along its edges, its corners counted once (4 more outer than inner ones).
     twice = sum(px * y - x * py for (x, y), (px, py) in zip(loop, [loop[-1], *loop[:-1]], strict=True))
     size = (abs(twice) / 2 - outline.INSET * sum(steps) + 4 * outline.INSET**2) / 1e4
-    if room_type in program.AREAS:
-        _, _, least, most = program.AREAS[room_type]
+    if room_type in room_list.AREAS:
+        _, _, least, most = room_list.AREAS[room_type]
         return 0.82 * least <= size <= 1.15 * most
     return 0.9 <= size <= 12.0

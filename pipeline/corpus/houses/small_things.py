@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from pipeline.corpus.houses import walkable
+from pipeline.corpus.houses import walkable_grid
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.rates import load as load_rates
 from pipeline.corpus.houses.records import Item, Model, Rect, wrap
@@ -209,7 +209,7 @@ def _on_floor(arranger: Arranger, category: str) -> None:
         return
     space = arranger.space
     spot = against(arranger.rng, space, model, front=0.0, corner=0.8)
-    cut_off = walkable.problems(space)[0]
-    if spot is not None and space.try_add(model, spot) and walkable.problems(space)[0] > cut_off:
+    cut_off = walkable_grid.problems(space)[0]
+    if spot is not None and space.try_add(model, spot) and walkable_grid.problems(space)[0] > cut_off:
         space.items.pop()
         space.solids.pop()

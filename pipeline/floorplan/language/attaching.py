@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from pipeline.floorplan.check import ImpossibleError
-from pipeline.floorplan.furniture import natural
 from pipeline.floorplan.language.furnishing import Claim, Scan
 from pipeline.floorplan.language.vocabulary import STOPS, words
-from pipeline.floorplan.program import MAX_PIECES, Evidence, FloorProgram, Furniture, RoomReq, Things
+from pipeline.floorplan.program.consistency import ImpossibleError
+from pipeline.floorplan.program.floor_program import MAX_PIECES, Evidence, FloorProgram, Furniture, RoomReq, Things
+from pipeline.floorplan.program.furniture import natural
 
 
 def read_furniture(prompt: str) -> tuple[str, list[Claim]]:

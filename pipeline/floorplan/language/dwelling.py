@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.check import ImpossibleError
 from pipeline.floorplan.language.facts import HALLS, Draft, Named, Reading
 from pipeline.floorplan.language.joints import late_zone
 from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.text import spread
-from pipeline.floorplan.program import MAX_ROOMS, Evidence, Style
+from pipeline.floorplan.program.consistency import ImpossibleError
+from pipeline.floorplan.program.floor_program import MAX_ROOMS, Evidence, Style
 
 ABOUT = 0.1  # "about 75 m2" allows this much either way
 SAME = 0.02  # two totals that differ by less are one, said twice

@@ -10,7 +10,7 @@ from pipeline.errors import RefusedError
 from pipeline.floorplan.language.marks import Mark, Words
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.text import spread
-from pipeline.floorplan.program import MAX_ROOMS
+from pipeline.floorplan.program.floor_program import MAX_ROOMS
 
 MOST = MAX_ROOMS + 1
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.furniture import lexicon
 from pipeline.floorplan.language.lexicon import STRONG, Language
 from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.marks import listen, segment
@@ -29,6 +28,7 @@ from pipeline.floorplan.language.vocabulary import (
     phrases,
     words,
 )
+from pipeline.floorplan.program.furniture import lexicon
 
 
 def named(prompt: str) -> tuple[Language | None, frozenset[int], frozenset[int]]:

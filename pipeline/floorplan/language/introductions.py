@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from pipeline.floorplan.check import ImpossibleError
 from pipeline.floorplan.language.facts import SOCIAL, Named, Reading
 from pipeline.floorplan.language.naming import ALONE, PLURAL_NAMES, ROLES, close, conjoined, is_landing, listed, repeated
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.text import spread
-from pipeline.floorplan.program import MAX_ROOMS, Evidence
+from pipeline.floorplan.program.consistency import ImpossibleError
+from pipeline.floorplan.program.floor_program import MAX_ROOMS, Evidence
 
 REMOVES = {"quitar", "quita", "eliminar", "elimina", "suprimir", "leave out", "get rid of", "drop", "scrap", "skip", "omit"}
 BEFORE_CUE = {"near", "door", "open", "wall", "away", "apart", "leads", "between"}

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import itertools
 
-from pipeline.floorplan.check import ImpossibleError
 from pipeline.floorplan.language.facts import HALLS, Draft, Fact, Group, Inventory, Reading
-from pipeline.floorplan.program import Evidence
+from pipeline.floorplan.program.consistency import ImpossibleError
+from pipeline.floorplan.program.floor_program import Evidence
 
 MERGE_ORDER = ("living_room", "family_room", "dining_room", "kitchen", "studio_room")
 OPPOSITE, FAR, WINGS = 0.45, 0.35, 0.2  # "at the other end", "away from" and "in another wing", as shares of the diagonal

@@ -18,9 +18,9 @@ import yaml
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from pipeline.errors import ContentError
-from pipeline.floorplan.furniture import lexicon as furniture
 from pipeline.floorplan.language.text import INFINITIVE, Compounds, Plurals, Verbs, bare, fold, forms, words
-from pipeline.floorplan.program import RoomType, Style
+from pipeline.floorplan.program.floor_program import RoomType, Style
+from pipeline.floorplan.program.furniture import lexicon as furniture
 
 FOLDER = Path(__file__).resolve().parents[3] / "manifests" / "lexicon"
 Language = str  # the name of a file there

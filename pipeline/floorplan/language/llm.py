@@ -28,9 +28,9 @@ from pydantic import ValidationError
 
 from pipeline import taxonomy
 from pipeline.errors import UsageError
-from pipeline.floorplan.furniture import lexicon
 from pipeline.floorplan.language.quoting import quoted
-from pipeline.floorplan.program import MAX_ROOMS, FloorProgram, json_schema
+from pipeline.floorplan.program.floor_program import MAX_ROOMS, FloorProgram, json_schema
+from pipeline.floorplan.program.furniture import lexicon
 from pipeline.manifest import digest, write_bytes
 
 SECONDS = 60.0  # for all turns together

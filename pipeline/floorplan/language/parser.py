@@ -10,9 +10,6 @@ from typing import Any
 from pydantic import ValidationError
 
 from pipeline.errors import RefusedError, UsageError
-from pipeline.floorplan.check import ImpossibleError, check
-from pipeline.floorplan.completion import complete
-from pipeline.floorplan.defaults import DEFAULTS
 from pipeline.floorplan.language import dwelling, joints
 from pipeline.floorplan.language.amounts import plain_areas, supplied
 from pipeline.floorplan.language.attaching import attach, read_furniture
@@ -27,7 +24,10 @@ from pipeline.floorplan.language.revising import revise
 from pipeline.floorplan.language.shorthand import crossed, dealt, shared_unit, widen
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import spread, tokenize
-from pipeline.floorplan.program import Evidence, FloorProgram
+from pipeline.floorplan.program.completion import complete
+from pipeline.floorplan.program.consistency import ImpossibleError, check
+from pipeline.floorplan.program.defaults import DEFAULTS
+from pipeline.floorplan.program.floor_program import Evidence, FloorProgram
 
 SORTS = {
     "storage",

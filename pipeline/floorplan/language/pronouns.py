@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from pipeline.floorplan.defaults import DEFAULTS
 from pipeline.floorplan.language.facts import SOCIAL, Clause, Group, Reading
 from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.naming import name
@@ -12,6 +11,7 @@ from pipeline.floorplan.language.objects import one_each
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.remarks import merge_after, storey, windows
 from pipeline.floorplan.language.ways import listed
+from pipeline.floorplan.program.defaults import DEFAULTS
 
 LISTED = 1.3  # the same behind a list of three rooms and more
 NAMED = {"doors", "corridors", "ceiling", "walls", "inner_walls", "outer_walls"}  # what a length may measure besides rooms

@@ -9,7 +9,7 @@ from typing import Any
 
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan.language.parser import understand
-from pipeline.floorplan.program import Evidence, FloorProgram
+from pipeline.floorplan.program.floor_program import Evidence, FloorProgram
 
 LOG = logging.getLogger(__name__)
 MOST_QUOTES, LONGEST_FIELD = 400, 80

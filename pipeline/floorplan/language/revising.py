@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from pipeline.floorplan.check import ImpossibleError
 from pipeline.floorplan.language.marks import ENDS, Mark, Words
 from pipeline.floorplan.language.text import spread
-from pipeline.floorplan.program import Evidence
+from pipeline.floorplan.program.consistency import ImpossibleError
+from pipeline.floorplan.program.floor_program import Evidence
 
 LIGHT = {"fill", "adverb", "comma", "det", "hyphen", "dash", "bound", "verb", "adj", "colon", "word", "open", "close", "bullet", "but"}
 INNER = {"adj", "size", "clf", "adverb", "look", "fill"}  # may stand between a number and its room

@@ -8,10 +8,10 @@ import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from pipeline.floorplan.furniture import lexicon
 from pipeline.floorplan.language.lexicon import LANGUAGES, Language
 from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.spelling import resolve
+from pipeline.floorplan.program.furniture import lexicon
 
 HAN = "\u3400-\u9fff"
 WORD = re.compile(rf"\d+(?:[.,]\d+)?|[{HAN}]|[^\W\d_{HAN}]+(?:'[^\W\d_]+)?|[%.,;:!?()\n+&、。;,!?]")

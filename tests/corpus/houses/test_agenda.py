@@ -10,7 +10,7 @@ from pipeline.corpus import reference
 from pipeline.corpus.houses import rates
 from pipeline.corpus.houses.agenda import BLOCK, KINDS, MOST_PRIVATE, agenda, chances
 from pipeline.corpus.houses.deal import Deal
-from pipeline.corpus.houses.program import PRIVATE
+from pipeline.corpus.houses.room_list import PRIVATE
 
 
 def test_furnished_rooms_come_in_the_observed_shares_and_types():

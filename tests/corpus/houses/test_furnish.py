@@ -9,7 +9,7 @@ from sample_houses import house, houses, stock
 from shapely.geometry import LineString, Point, Polygon
 
 from pipeline import taxonomy
-from pipeline.corpus.houses import walkable
+from pipeline.corpus.houses import walkable_grid
 from pipeline.corpus.houses.agenda import agenda
 from pipeline.corpus.houses.house import make_house
 from pipeline.corpus.houses.planner import make_plan
@@ -93,7 +93,7 @@ def test_a_robot_gets_from_door_to_door_and_near_most_things(home):
         if min(np.ptp(room.polygon, axis=0)) < 1.2:
             continue
         space.items = [i for i in home.items if i.room == k and not small(i)]
-        cut_off, far = walkable.problems(space)
+        cut_off, far = walkable_grid.problems(space)
         assert cut_off == 0, room.type
         assert not far, room.type
 

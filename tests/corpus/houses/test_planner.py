@@ -5,7 +5,7 @@ import pytest
 from sample_houses import houses
 from shapely.geometry import LineString, Point, Polygon
 
-from pipeline.corpus.houses import program
+from pipeline.corpus.houses import room_list
 from pipeline.corpus.houses.agenda import agenda
 from pipeline.corpus.houses.planner import make_plan, passable
 from pipeline.seeds import generator
@@ -73,8 +73,8 @@ def test_outer_openings_have_nothing_behind_them(plan):
 
 
 def test_areas_are_near_what_the_types_have():
-    found = [(r.type, r.area) for plan in PLANS for r in plan.rooms if r.type in program.AREAS]
-    for room_type, (mean, _, least, most) in program.AREAS.items():
+    found = [(r.type, r.area) for plan in PLANS for r in plan.rooms if r.type in room_list.AREAS]
+    for room_type, (mean, _, least, most) in room_list.AREAS.items():
         sizes = [a for t, a in found if t == room_type]
         assert all(0.8 * least <= a <= 1.15 * most for a in sizes), room_type
         if len(sizes) >= 30:

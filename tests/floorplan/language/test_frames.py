@@ -7,9 +7,9 @@ import pytest
 
 from benchmarks.language import faults
 from pipeline.floorplan import parse, request
-from pipeline.floorplan.check import ImpossibleError
 from pipeline.floorplan.language import frames
 from pipeline.floorplan.language.lexicon import LANGUAGES, lexicon
+from pipeline.floorplan.program.consistency import ImpossibleError
 
 KINDS = {
     "adj", "amount", "bound", "but", "clf", "close", "cmp", "colon", "comma", "cue", "det", "enter", "every", "factor", "fix", "flag", "home", "join", "level", "look", "neg", "num",

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from pipeline import taxonomy
 from pipeline.errors import RefusedError
 from pipeline.floorplan import complete, parse
-from pipeline.floorplan.furniture import lexicon, meant, members
 from pipeline.floorplan.language.attaching import Mention, attach, read_furniture
-from pipeline.floorplan.program import FloorProgram, Furniture, RoomReq, Things
+from pipeline.floorplan.program.floor_program import FloorProgram, Furniture, RoomReq, Things
+from pipeline.floorplan.program.furniture import lexicon, meant, members
 
 
 def said(prompt):

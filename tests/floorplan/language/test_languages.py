@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from benchmarks.language import faults, load
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan import parse
-from pipeline.floorplan.check import ImpossibleError
 from pipeline.floorplan.language.parser import MOST_WORDS, understand
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import tokenize
+from pipeline.floorplan.program.consistency import ImpossibleError
 
 CASES = load()
 UNREAD = {"zh25", "zh40"}  # one bathroom or two; a house "of one bedroom" with three

@@ -16,9 +16,9 @@ from benchmarks.language import faults, recorded
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan import complete
 from pipeline.floorplan.ask import request
-from pipeline.floorplan.check import check
 from pipeline.floorplan.language import llm
 from pipeline.floorplan.language.llm import Server, UnansweredError, ask, configured
+from pipeline.floorplan.program.consistency import check
 
 GOOD = json.dumps(
     {

@@ -1,0 +1,159 @@
+"""What already stands in a room, whether a group can join it, and whether the floor still hangs together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.arrange.groups import Group
+from pipeline.arrange.item import Item
+from pipeline.arrange.settings import SeparateSettings
+from pipeline.arrange.site import Site
+from pipeline.arrange.world import composed, free_poses, make_world, put
+from pipeline.geometry.free_space import FreeSpace
+from pipeline.geometry.prisms import Prisms
+from pipeline.geometry.standing import stand_pose
+
+Floats = NDArray[np.float64]
+
+SPREAD = 0.12  # when a pose cuts the floor, poses nearer to it than this are not tried [m]; more after every try
+TRIES = 24  # poses whose floor is looked at per group
+UNIT = np.ones(3)
+OUT_OF_REACH = (2.0, 0.7)  # cost of what a robot cannot open where it stands [m]; at its anchor: less than to leave it
+
+
+class Occupancy:
+    """The objects of a room, of which those of `there` (N,) stand at `poses` (N, 4); a relation holds those of `bound` where they are."""
+
+    def __init__(self, site: Site, items: list[Item], settings: SeparateSettings, bound: Collection[int] = ()) -> None:
+        self.site, self.items, self.settings, self.bound = site, items, settings, frozenset(bound)
+        self.world = make_world([item.shape for item in items], site.swung, site.polygon, site.ceiling)
+        self.poses = np.array([item.wished for item in items]).reshape(-1, 4)
+        self.there = np.zeros(len(items), np.bool_)
+        self.unreached: frozenset[int] = frozenset()
+        label, self.doors = site.gate(site.bare)
+        self.enters = self._enters(site.bare, label)
+
+    def stand(self, group: Group, pose: Floats) -> None:
+        """Let a group stand with its first member at a pose."""
+        for i, offset in zip(group.members, group.offsets, strict=True):
+            composed(pose, offset, self.poses[i])
+            put(self.world, i, self.poses[i])
+            self.there[i] = True
+
+    def leave(self, group: Group) -> None:
+        """Take a group out."""
+        self.there[group.members] = False
+
+    def outline(self, i: int) -> Floats:
+        """Return the corners (4, 2) of the box of an object that stands [m]."""
+        w, d = self.items[i].half
+        x, y, _, yaw = self.poses[i]
+        c, s = np.cos(yaw), np.sin(yaw)
+        corners: Floats = np.array([[-w, -d], [w, -d], [w, d], [-w, d]]) @ np.array([[c, s], [-s, c]]) + (x, y)
+        return corners
+
+    def nearest(self, group: Group, poses: Floats, costs: Floats, among: NDArray[np.bool_] | None = None) -> tuple[Floats, float] | None:
+        """Return the cheapest free pose of a group and its cost, whatever becomes of the floor; poses come cheapest first.
+
+        Free of what stands, or of the objects of `among` (N,), at which they were placed last.
+        """
+        totals, _ = self._totals(group, poses, costs, 0, self.there if among is None else among)
+        k = int(np.argmin(np.round(totals, 9))) if len(totals) else 0
+        return (poses[k], float(totals[k])) if len(totals) and np.isfinite(totals[k]) else None
+
+    def settle(self, group: Group, poses: Floats, costs: Floats) -> bool:
+        """Let a group stand at the cheapest of its poses that is free and leaves the floor in one piece; tell whether there is one.
+
+        What then has no handle within reach any more, the group itself or others, costs `OUT_OF_REACH` each.
+        """
+        start, tries = 0, 0
+        failed: list[list[float]] = []
+        best: tuple[float, Floats, frozenset[int]] | None = None
+        while start < len(poses) and tries < TRIES and (best is None or costs[start] < best[0]):
+            totals, start = self._totals(group, poses, costs, start, self.there)
+            for k in np.argsort(np.round(totals, 9), kind="stable")[: int(np.isfinite(totals).sum())]:
+                if tries >= TRIES or (best is not None and totals[k] >= best[0]):
+                    break
+                apart = SPREAD * (1.0 + 0.15 * tries)
+                x, y, _, yaw = poses[k].tolist()
+                if any(math.hypot(x - f[0], y - f[1]) < apart and abs(math.remainder(yaw - f[2], math.tau)) < 0.3 for f in failed):
+                    continue
+                self.stand(group, poses[k])
+                found = self.out_of_reach()
+                self.leave(group)
+                total = np.inf if found is None else float(totals[k]) + sum(OUT_OF_REACH[i in self.bound] for i in found - self.unreached)
+                if found is not None and (best is None or total < best[0]):
+                    best = total, poses[k], found
+                if found == self.unreached:
+                    break
+                failed.append([x, y, yaw])
+                tries += 1
+        if best is None:
+            return False
+        self.stand(group, best[1])
+        self.unreached = best[2]
+        return True
+
+    def out_of_reach(self) -> frozenset[int] | None:
+        """Return the objects that stand and open, and have no handle within a robot's reach; None where the floor falls apart.
+
+        It does when doors are no longer joined, or the robot does not get from them into the room.
+        """
+        space = self.site.free_space(self._bodies())
+        label, doors = self.site.gate(space)
+        if doors < self.doors or (self.enters and not self._enters(space, label)):
+            return None
+        there = np.flatnonzero(self.there).tolist()
+        return frozenset(i for i in there if i in self.unreached or not self._usable(i, space, label))
+
+    def _totals(self, group: Group, poses: Floats, costs: Floats, start: int, others: NDArray[np.bool_]) -> tuple[Floats, int]:
+        settings = self.settings
+        return free_poses(
+            self.world,
+            group.members,
+            group.offsets,
+            poses,
+            costs,
+            start,
+            settings.candidates,
+            others,
+            settings.touch,
+            settings.access_cost,
+        )
+
+    def _bodies(self) -> Prisms:
+        """Return the bodies of what stands."""
+        start = self.world.start
+        rows = np.concatenate([np.arange(start[i, 0], start[i, 1]) for i in np.flatnonzero(self.there)] or [np.zeros(0, np.int64)])
+        return Prisms(self.world.at[rows], self.world.corner_count[rows], self.world.at_z[rows], rows)
+
+    def _enters(self, space: FreeSpace, label: int) -> bool:
+        """Whether the robot gets from the doors into the room itself."""
+        return label > 0 and bool((space.labels[self.site.floor.room >= 0] == label).any())
+
+    def _usable(self, i: int, space: FreeSpace, label: int) -> bool:
+        """Whether a robot can stand at one of an item's handles, if it has any."""
+        site, pose = self.site, self.poses[i]
+        grips = self.items[i].shape.grips
+        c, s = np.cos(pose[3]), np.sin(pose[3])
+        T = np.array([[c, s], [-s, c]])
+        ceiling = site.elevation + site.height
+        return not grips or any(
+            stand_pose(
+                grip.point @ T + pose[:2],
+                grip.heading @ T,
+                grip.swept.placed(pose[:3], float(pose[3]), UNIT),
+                ceiling,
+                space,
+                label,
+                radius=site.radius,
+                reach=site.reach,
+                cone=site.cone,
+            )
+            is not None
+            for grip in grips
+        )

@@ -1,0 +1,1 @@
+"""Plans as SVG, as images and in a terminal."""

@@ -1,0 +1,204 @@
+"""From what was said to what can be built: one entry per room, levels, links, entrance and areas filled by documented defaults."""
+
+from __future__ import annotations
+
+from pipeline.floorplan.program.areas import with_areas
+from pipeline.floorplan.program.consistency import names, reach, storeys
+from pipeline.floorplan.program.distance import distances, nearness
+from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, RoomReq, Shell
+from pipeline.floorplan.program.furniture import allot, spread
+from pipeline.floorplan.program.links import connect, is_forbidden, resolve
+
+UPSTAIRS = {"bedroom", "bathroom", "playroom"}
+BESIDE = {"bathroom", "wc", "closet", "balcony", "storage", "utility", "hallway", "office"}  # lie on the storey of what they are joined to
+HUBLESS = {"living_room", "family_room", "studio_room", "hallway", "entry"}
+
+
+def complete(program: FloorProgram) -> FloorProgram:
+    """Return the program with every gap filled. Completing twice changes nothing."""
+    program = program.model_copy(update={"rooms": _expand(program), "shell": _shell(program)})
+    program = program.model_copy(update={"rooms": _add_missing(program)})
+    program = program.model_copy(update={"rooms": _storeys(program)})
+    program = program.model_copy(update={"rooms": _add_circulation(program)})
+    names(program)
+    storeys(program)
+    program = _join(program)
+    program = program.model_copy(update={"entrance": _entrance(program)})
+    return allot(with_areas(spread(program)))
+
+
+def _expand(program: FloorProgram) -> tuple[RoomReq, ...]:
+    """Replace an entry with count k by k entries of unique ids."""
+    rooms: list[RoomReq] = []
+    taken = {r.id for r in program.rooms if r.count == 1}
+    for room in program.rooms:
+        if room.count == 1:
+            rooms.append(room)
+            continue
+        for k in range(1, room.count + 1):
+            name = f"{room.id}_{k}"
+            while name in taken:
+                name += "x"
+            taken.add(name)
+            rooms.append(room.model_copy(update={"id": name, "count": 1}))
+    return tuple(rooms)
+
+
+def _shell(program: FloorProgram) -> Shell:
+    """Return the shell; what is usual of it gives way where outside walls would be thinner than those between rooms."""
+    shell, usual = program.shell, Shell()
+    if shell.outer_wall < shell.inner_wall:
+        if shell.outer_wall == usual.outer_wall:
+            return shell.model_copy(update={"outer_wall": shell.inner_wall})
+        if shell.inner_wall == usual.inner_wall:
+            return shell.model_copy(update={"inner_wall": shell.outer_wall})
+    return shell
+
+
+def _forbidden_types(program: FloorProgram) -> set[str]:
+    return {f.a for f in program.forbids if f.what == "room_type"}
+
+
+def _add_missing(program: FloorProgram) -> tuple[RoomReq, ...]:
+    """Add the places to live, to cook and to wash that a dwelling needs and nobody named."""
+    rooms = list(program.rooms)
+    types: set[str] = {r.type for r in rooms}
+    functions = {f for r in rooms for f in r.functions}
+    never = _forbidden_types(program)
+    work = bool(types & {"office", "meeting_room"}) and not types & {"bedroom", "living_room", "studio_room", "family_room"}
+
+    def add(kind: str, name: str) -> None:
+        if kind not in types and kind not in never:
+            used = {r.id for r in rooms}
+            rooms.append(RoomReq.model_validate({"id": name if name not in used else f"{name}_x", "type": kind, "stated": False}))
+            types.add(kind)
+
+    if not program.only and not work:
+        if not types & {"living_room", "family_room", "studio_room"} and "living" not in functions:
+            social = "bedroom" in types and not (program.select("bedroom")[3:] and "kitchen" in types)
+            if social or "bedroom" not in types:
+                add("living_room" if "bedroom" in types else "studio_room", "living" if "bedroom" in types else "studio")
+        if "kitchen" not in types and "cooking" not in functions:
+            add("kitchen", "kitchen")
+        if "bathroom" not in types:
+            add("bathroom", "bath")
+    return tuple(rooms)
+
+
+def _storeys(program: FloorProgram) -> tuple[RoomReq, ...]:
+    """Give every room a storey, and a home of several storeys a staircase and a landing on each upper one."""
+    if program.storeys == 1:
+        return tuple(r.model_copy(update={"level": 0}) for r in program.rooms)
+    rooms = []
+    stated = [k for k in program.links if k.stated]
+    for room in program.rooms:
+        top = program.storeys - 1
+        beside = {r.level for k in stated if room.id in {k.a, k.b} for r in program.rooms if r.id in {k.a, k.b} and r.level is not None}
+        usual = beside.pop() if len(beside) == 1 and room.type in BESIDE else (1 if room.type in UPSTAIRS else 0)
+        level = room.level if room.level is not None else usual
+        rooms.append(room.model_copy(update={"level": 0 if room.type == "staircase" else min(level, top)}))
+    if not any(r.level == 0 and r.type != "staircase" for r in rooms):  # nobody lives on the stairs alone: all move down
+        rooms = [r.model_copy(update={"level": max((r.level or 0) - 1, 0)}) for r in rooms]
+    if program.storeys == 3 and not any(r.level == 2 for r in rooms):
+        rooms = _spread(rooms)
+    if not any(r.type == "staircase" for r in rooms):
+        rooms.append(RoomReq(id=_name("stairs", rooms), type="staircase", level=0, stated=False, inferred=True))
+    for level in range(1, program.storeys):
+        here = [r for r in rooms if r.level == level]
+        if not here:
+            continue
+        if not any(r.type == "hallway" for r in here):
+            name = _name("landing" if level == 1 else f"landing_{level}", rooms)
+            rooms.append(RoomReq(id=name, type="hallway", level=level, stated=False, inferred=True))
+    return tuple(rooms)
+
+
+def _spread(rooms: list[RoomReq]) -> list[RoomReq]:
+    """Move every second room of each type from the first upper storey to an empty second one."""
+    seen: dict[str, int] = {}
+    result = []
+    for room in rooms:
+        if room.level == 1 and room.type != "hallway":
+            seen[room.type] = seen.get(room.type, 0) + 1
+            result.append(room.model_copy(update={"level": 2 if seen[room.type] % 2 == 0 else 1}))
+        else:
+            result.append(room)
+    return result
+
+
+def _name(wanted: str, rooms: list[RoomReq]) -> str:
+    used = {r.id for r in rooms}
+    name, k = wanted, 2
+    while name in used:
+        name, k = f"{wanted}_{k}", k + 1
+    return name
+
+
+def _add_circulation(program: FloorProgram) -> tuple[RoomReq, ...]:
+    """Add an entry or a hallway where three or more closed rooms would have to hang on a living room, or on nothing."""
+    rooms = list(program.rooms)
+    never = _forbidden_types(program)
+    ground = [r for r in rooms if r.level == 0]
+    if any(r.type in {"hallway", "entry"} for r in ground):
+        return program.rooms
+    joined = {i for k in resolve(program) for i in (k.a, k.b) if k.kind != "wall"}
+    hanging = [r for r in ground if r.type in {"bedroom", "bathroom", "office", "library", "media_room", "playroom", "wc", "gym"}]
+    owned = {k.b for k in resolve(program)} | {k.a for k in resolve(program)}
+    del joined
+    suites = {k.a if k.b == r.id else k.b for k in resolve(program) for r in hanging if r.type == "bathroom" and r.id in {k.a, k.b}}
+    loose = [r for r in hanging if r.id not in owned or r.id in suites]
+    beds = [r for r in ground if r.type == "bedroom"]
+    wanted = len(loose) >= 3 and len(beds) >= 2 and "hallway" not in never
+    hubless = len(ground) > 2 and not any(r.type in HUBLESS for r in ground)
+    if hubless and not program.only and "entry" not in never:
+        rooms.append(RoomReq(id=_name("entry", rooms), type="entry", level=0, stated=False, inferred=True))
+    elif wanted and not program.only:
+        rooms.append(RoomReq(id=_name("hall", rooms), type="hallway", level=0, stated=False, inferred=True))
+    return tuple(rooms)
+
+
+def _join(program: FloorProgram) -> FloorProgram:
+    """Fill in the links. Where rooms then lie nearer than a `hops` relation allows, a hallway more may put them apart.
+
+    Where what may not be joined would be, or a room lies behind one that must not be passed, an entry more gives another way.
+    """
+    joined = program.model_copy(update={"links": connect(program)})
+    if _barred(joined) and not program.only and "entry" not in _forbidden_types(program):
+        entry = RoomReq(id=_name("entry", list(program.rooms)), type="entry", level=0, stated=False, inferred=True)
+        around = program.model_copy(update={"rooms": (*program.rooms, entry)})
+        around = around.model_copy(update={"links": connect(around)})
+        if not _barred(around):
+            return around
+    broken = nearness(distances(program), joined.links)
+    if not broken or program.only or "hallway" in _forbidden_types(program):
+        return joined
+    level = next(r.level for r in program.rooms if r.id == broken[0].asked.a)
+    hall = RoomReq(id=_name("hall", list(program.rooms)), type="hallway", level=level, stated=False, inferred=True)
+    wider = program.model_copy(update={"rooms": (*program.rooms, hall)})
+    wider = wider.model_copy(update={"links": connect(wider)})
+    return joined if nearness(distances(wider), wider.links) else wider
+
+
+def _barred(program: FloorProgram) -> bool:
+    """Whether a link that nobody stated joins what may not be joined, or a room can only be reached through one to be avoided."""
+    rooms = {r.id: r for r in program.rooms}
+    if any(not k.stated and k.kind != "wall" and is_forbidden(program, rooms[k.a], rooms[k.b]) for k in program.links):
+        return True
+    root = _entrance(program).into or ""
+    ways = [f for f in program.forbids if f.what == "through" and f.avoid]
+    avoided = {f.avoid: reach(program, root, frozenset(r.id for r in program.select(f.avoid or ""))) for f in ways}
+    return any(r.id not in avoided[f.avoid] and r not in program.select(f.avoid or "") for f in ways for r in program.select(f.a))
+
+
+def _entrance(program: FloorProgram) -> Entrance:
+    if program.entrance.into and program.select(program.entrance.into):
+        into = program.select(program.entrance.into)[0].id
+        return program.entrance.model_copy(update={"into": into})
+    ground = [r for r in program.rooms if r.level == 0]
+    order = ("entry", "living_room", "hallway", "studio_room", "family_room", "kitchen", "dining_room", "office")
+    for kind in order:
+        for room in ground:
+            if room.type == kind:
+                return program.entrance.model_copy(update={"into": room.id, "stated": False})
+    best = [r for r in ground if r.type not in {"bathroom", "wc", "balcony", "closet"}] or ground
+    return program.entrance.model_copy(update={"into": best[0].id, "stated": False})

@@ -1,0 +1,267 @@
+"""Is a completed program consistent? Contradictions and impossibilities are refused, naming the words that clash."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+
+from pipeline.errors import RefusedError
+from pipeline.floorplan.program.defaults import DEFAULTS, OUTSIDE
+from pipeline.floorplan.program.distance import distances, nearness
+from pipeline.floorplan.program.floor_program import MAX_ROOMS, Evidence, FloorProgram, RoomReq
+from pipeline.floorplan.program.furniture import faults
+
+LEAST_SHARE = 0.4  # a room of less than this share of its type's usual area is no such room
+CORNERS = {"rectangle": 4, "L": 5, "T": 6, "any": 6}  # of an outline that stick out
+WALLS = 1.02  # total area may be exceeded by this much before stated areas clash with it
+PRIVATE = {"bathroom", "wc", "closet", "balcony", "storage", "office", "sunroom", "utility"}  # may lie behind a bedroom
+
+
+class ImpossibleError(RefusedError):
+    """A request that contradicts itself; `clashes` are the words of the prompt that do."""
+
+    code = "impossible"
+
+    def __init__(self, message: str, remedy: str, clashes: Iterable[Evidence] = ()) -> None:
+        self.clashes = tuple(dict.fromkeys(clashes))
+        words = sorted({c.text for c in self.clashes})
+        super().__init__(f"{message} ({' / '.join(repr(w) for w in words)})" if words else message, remedy)
+
+
+def check(program: FloorProgram) -> None:
+    """Raise ImpossibleError (a RefusedError) for a program that no plan can meet."""
+    names(program)
+    _shell(program)
+    _forbidden(program)
+    _areas(program)
+    _degrees(program)
+    _ways(program)
+    _distances(program)
+    _corners(program)
+    _planar(program)
+    check_furniture(program)
+
+
+def check_furniture(program: FloorProgram) -> None:
+    """Raise ImpossibleError for the first wish for furniture that no room can meet."""
+    for message, remedy, fields in faults(program):
+        raise ImpossibleError(message, remedy, cited(program, *fields))
+
+
+def cited(program: FloorProgram, *fields: str) -> list[Evidence]:
+    """Return the evidence of fields that start with one of the names."""
+    return [e for e in program.evidence if any(e.field == f or e.field.startswith(f + ".") for f in fields)]
+
+
+def names(program: FloorProgram) -> None:
+    """Raise ImpossibleError when ids repeat or a selector names no room."""
+    twice = [name for name, count in Counter(r.id for r in program.rooms).items() if count > 1]
+    if twice:
+        raise ImpossibleError(f"two rooms are called {twice[0]!r}", "give each room an id of its own")
+    if len(program.rooms) > MAX_ROOMS:
+        raise ImpossibleError(f"{len(program.rooms)} rooms are asked for", f"ask for {MAX_ROOMS} at most")
+    wanted = {s for k in program.links for s in (k.a, k.b)} | {s for r in program.relations for s in (r.a, r.b, r.c) if s}
+    wanted |= {m for z in program.zones for m in z.members}
+    if program.entrance.into:
+        wanted.add(program.entrance.into)
+    for selector in sorted(wanted):
+        if not program.select(selector):
+            raise ImpossibleError(f"no room is called {selector!r}", f"rooms are {', '.join(r.id for r in program.rooms)}")
+
+
+def storeys(program: FloorProgram) -> None:
+    """Raise ImpossibleError when a storey has no room, or a stated link would join rooms of two storeys; levels are filled in."""
+    for level in range(program.storeys):
+        if not any(r.level == level and r.type != "staircase" for r in program.rooms):
+            message = f"{program.storeys} storeys are asked for, and level {level} has no room"
+            raise ImpossibleError(message, "name a room for each storey, or ask for fewer storeys", cited(program, "storeys"))
+    for k in program.links:
+        ones, others = program.select(k.a), program.select(k.b)
+        meet = any(a.level == b.level or "staircase" in {a.type, b.type} for a in ones for b in others)
+        if k.stated and ones and others and not meet:
+            words = cited(program, f"links.{k.a}-{k.b}", f"links.{k.b}-{k.a}", f"rooms.{k.a}", f"rooms.{k.b}")
+            raise ImpossibleError(f"{k.a} and {k.b} are to be joined and lie on different storeys", "put both on one storey", words)
+
+
+def _shell(program: FloorProgram) -> None:
+    shell = program.shell
+    if shell.outer_wall < shell.inner_wall:
+        raise ImpossibleError(
+            f"outside walls of {shell.outer_wall:g} m are thinner than those between rooms, {shell.inner_wall:g} m",
+            "make them as thick at least",
+            cited(program, "shell"),
+        )
+
+
+def _forbidden(program: FloorProgram) -> None:
+    for f in program.forbids:
+        rooms = program.select(f.a)
+        if f.what == "room_type":
+            there = [r for r in program.rooms if r.type == f.a and r.stated]
+            if there:
+                words = cited(program, f"forbids.room_type.{f.a}", *(f"rooms.{r.id}" for r in there))
+                raise ImpossibleError(f"a {f.a.replace('_', ' ')} is both asked for and ruled out", "keep one of the two", words)
+            continue
+        others = program.select(f.b) if f.b else ()
+        for k in program.links:
+            ends = {k.a, k.b}
+            hit = any({a.id, b.id} == ends for a in rooms for b in others if a.id != b.id)
+            if hit and (f.what == "adjacent" or (f.what == "connected" and k.kind != "wall") or (f.what == "open" and k.kind == "open")):
+                words = cited(program, f"forbids.{f.what}.{f.a}", f"links.{k.a}-{k.b}", f"links.{k.b}-{k.a}")
+                raise ImpossibleError(f"{k.a} and {k.b} are to be joined and kept apart", "keep one of the two", words)
+
+
+def _least(room: RoomReq) -> float:
+    """Return the smallest area that the room can have."""
+    if room.area.min is not None:
+        return room.area.min
+    if room.area.stated and room.area.target is not None:
+        return 0.9 * room.area.target
+    return LEAST_SHARE * DEFAULTS[room.type].area
+
+
+def _areas(program: FloorProgram) -> None:
+    for room in program.rooms:
+        low, high = room.area.min, room.area.max
+        if low is not None and high is not None and low > high:
+            words = cited(program, f"rooms.{room.id}.area")
+            raise ImpossibleError(f"{room.id} is to have at least {low:g} and at most {high:g} m²", "swap the two", words)
+    inside = [r for r in program.rooms if r.type not in OUTSIDE]
+    most = program.total_area.max
+    if most is None and program.total_area.stated and program.total_area.target:
+        most = program.total_area.target * 1.1
+    least = sum(_least(r) for r in inside)
+    if most is not None and least > most * WALLS:
+        words = cited(program, "total_area", "rooms")
+        raise ImpossibleError(
+            f"{len(inside)} rooms need at least {least:.0f} m² and {most:.0f} m² are allowed",
+            "ask for fewer rooms or more area",
+            [w for w in words if w.field == "total_area" or w.field.endswith(".area") or w.field == "rooms"],
+        )
+    stated = [r for r in inside if r.area.stated]
+    low = program.total_area.min if program.total_area.stated else None
+    if low is not None and len(stated) == len(inside):
+        largest = sum(r.area.max or (r.area.target or r.area.min or 0.0) * (1.1 if r.area.min is None else 3.0) for r in inside)
+        if largest < low / WALLS:
+            words = cited(program, "total_area", *(f"rooms.{r.id}.area" for r in inside))
+            raise ImpossibleError(f"the rooms add up to {largest:.0f} m², the home to at least {low:.0f} m²", "change one", words)
+    for relation in program.relations:
+        if relation.kind != "area_order":
+            continue
+        for a in program.select(relation.a):
+            for b in program.select(relation.b or ""):
+                high = a.area.max or (a.area.target if a.area.stated else None)
+                if a.id != b.id and high is not None and b.area.stated and high * 1.1 < relation.value * _least(b):
+                    words = cited(program, f"relations.area_order.{a.id}", f"rooms.{a.id}.area", f"rooms.{b.id}.area")
+                    raise ImpossibleError(f"{a.id} cannot be {relation.value:g} times as large as {b.id}", "change an area", words)
+
+
+def _degrees(program: FloorProgram) -> None:
+    for relation in program.relations:
+        if relation.kind != "degree":
+            continue
+        for room in program.select(relation.a):
+            joined = [k for k in program.links if room.id in {k.a, k.b} and k.kind != "wall"]
+            if len(joined) > relation.value:
+                fields = [f"links.{x}" for k in joined for x in (f"{k.a}-{k.b}", f"{k.b}-{k.a}")]
+                words = cited(program, f"relations.degree.{room.id}", *fields)
+                raise ImpossibleError(
+                    f"{room.id} is to have {relation.value:g} door{'s' * (relation.value != 1)} and is joined to {len(joined)} rooms",
+                    "drop one of the links",
+                    words,
+                )
+
+
+def _ways(program: FloorProgram) -> None:
+    """Every room is reached from the entrance, bathrooms are no thoroughfares, and avoided rooms are avoided."""
+    root = program.entrance.into or ""
+    reached = reach(program, root, frozenset())
+    for room in program.rooms:
+        if room.id not in reached:
+            words = cited(program, f"rooms.{room.id}")
+            raise ImpossibleError(f"{room.id} can be reached only through a bathroom or a bedroom", "say what it opens off", words)
+    for f in program.forbids:
+        if f.what != "through" or not f.avoid:
+            continue
+        avoid = frozenset(r.id for r in program.select(f.avoid))
+        for room in program.select(f.a):
+            if room.id not in reach(program, root, avoid - {room.id}):
+                words = cited(program, f"forbids.through.{f.a}", *(f"links.{room.id}-{i}" for i in avoid))
+                raise ImpossibleError(f"{room.id} can be reached only through {', '.join(sorted(avoid))}", "add another door", words)
+
+
+def reach(program: FloorProgram, root: str, avoid: frozenset[str]) -> set[str]:
+    """Return the rooms that one can walk to from `root` without entering `avoid`.
+
+    No way leads through a bathroom, nor through a balcony or from a bedroom to a room that is not its own unless such a link was stated.
+    """
+    kinds = {r.id: r.type for r in program.rooms}
+    found, frontier = {root} - avoid, [root]
+    while frontier:
+        here = frontier.pop()
+        if here in avoid or (here != root and kinds[here] in {"bathroom", "wc"}):
+            continue
+        for k in program.links:
+            other = k.b if k.a == here else (k.a if k.b == here else None)
+            if other is None or other in found or other in avoid or k.kind == "wall":
+                continue
+            private = kinds[here] == "balcony" or (kinds[here] == "bedroom" and kinds[other] not in PRIVATE)
+            if private and here != root and not k.stated:
+                continue
+            found.add(other)
+            frontier.append(other)
+    return found
+
+
+def _distances(program: FloorProgram) -> None:
+    for asked, made in nearness(distances(program), program.links):
+        fields = [f"links.{x}" for k in program.links if {asked.a, asked.b} == {k.a, k.b} for x in (f"{k.a}-{k.b}", f"{k.b}-{k.a}")]
+        words = cited(program, f"relations.hops.{asked.selector}", *fields)
+        raise ImpossibleError(
+            f"hops: {asked.a} and {asked.b} are to be at least {asked.least:g} openings apart and lie {made} apart",
+            "drop a link between them, or let the home have a hallway more",
+            words,
+        )
+
+
+def _corners(program: FloorProgram) -> None:
+    """Refuse more corner rooms than an outline has corners: each belongs to one room."""
+    most = max(CORNERS.values()) if program.storeys > 1 else CORNERS[program.footprint.shape]  # a smaller storey leaves one open
+    for level in range(program.storeys):
+        rooms = [r for r in program.rooms if r.exterior == "corner" and r.level == level]
+        if len(rooms) > most:
+            words = cited(program, *(f"rooms.{r.id}" for r in rooms))
+            raise ImpossibleError(
+                f"{len(rooms)} rooms of one storey are to have a corner of the outline ('exterior: corner'), which has {most}",
+                "ask for fewer corner rooms",
+                words,
+            )
+
+
+def _planar(program: FloorProgram) -> None:
+    """Rooms on one floor can touch only as the links of a planar graph do, those with outside walls on its outer face."""
+    for level in range(program.storeys):
+        ids = {r.id for r in program.rooms if r.level == level or r.type == "staircase"}
+        links = [k for k in program.links if k.a in ids and k.b in ids]
+        if _tangled([(k.a, k.b) for k in links]) < 9:  # too few to be non-planar: K5 has 10 links, K3,3 has 9
+            continue
+        import networkx as nx
+
+        graph = nx.Graph([(k.a, k.b) for k in links])
+        if not nx.check_planarity(graph)[0]:
+            words = cited(program, *(f"links.{k.a}-{k.b}" for k in links if k.stated))
+            raise ImpossibleError("the links between rooms cross: no flat plan has them all", "drop a link", words)
+
+
+def _tangled(links: list[tuple[str, str]]) -> int:
+    """Return how many links are left when rooms with one link are taken off, and those with two become one link: as planar as before."""
+    near: dict[str, set[str]] = {}
+    for a, b in links:
+        near.setdefault(a, set()).add(b)
+        near.setdefault(b, set()).add(a)
+    while (slack := next((a for a, others in near.items() if len(others) < 3), None)) is not None:
+        ends = near.pop(slack)
+        for a in ends:
+            near[a].discard(slack)
+            near[a] |= ends - {a}
+    return sum(map(len, near.values())) // 2

@@ -1,0 +1,63 @@
+"""How many openings lie between rooms: `hops` relations, and which of them a set of links breaks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from pipeline.floorplan.program.floor_program import FloorProgram, Link
+
+
+class Distance(NamedTuple):
+    """At least `least` openings are to lie on every way from room `a` to room `b`; `selector` is what the request called `a`."""
+
+    selector: str
+    a: str
+    b: str
+    least: float
+
+
+class Nearness(NamedTuple):
+    """A distance that is not kept: `made` openings lie between the rooms."""
+
+    asked: Distance
+    made: int
+
+
+def distances(program: FloorProgram) -> tuple[Distance, ...]:
+    """Return what the `hops` relations ask for, room by room; without `b` the rooms of `a` are meant with each other."""
+    return tuple(
+        Distance(r.a, a.id, b.id, r.value)
+        for r in program.relations
+        if r.kind == "hops"
+        for a in program.select(r.a)
+        for b in program.select(r.b or r.a)
+        if a.id != b.id
+    )
+
+
+def nearness(asked: Sequence[Distance], links: Sequence[Link]) -> list[Nearness]:
+    """Return the distances that the graph of links breaks. Rooms that nothing joins yet are far apart."""
+    beside: dict[str, set[str]] = {}
+    for link in links:
+        if link.kind != "wall":
+            beside.setdefault(link.a, set()).add(link.b)
+            beside.setdefault(link.b, set()).add(link.a)
+    broken = []
+    for distance in asked:
+        made = _openings(beside, distance.a, distance.b)
+        if made is not None and made < distance.least:
+            broken.append(Nearness(distance, made))
+    return broken
+
+
+def _openings(beside: dict[str, set[str]], start: str, end: str) -> int | None:
+    """Return the number of openings on the shortest way, or None where there is no way."""
+    seen, ring, count = {start}, {start}, 0
+    while ring:
+        if end in ring:
+            return count
+        ring = {j for i in ring for j in beside.get(i, ())} - seen
+        seen |= ring
+        count += 1
+    return None

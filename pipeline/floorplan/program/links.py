@@ -1,0 +1,225 @@
+"""The graph of links: selectors resolved to rooms, and what nobody stated filled in until every room can be reached."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from pipeline.floorplan.program.defaults import DEFAULTS, HUBS
+from pipeline.floorplan.program.distance import Distance, distances, nearness
+from pipeline.floorplan.program.floor_program import FloorProgram, Link, RoomReq
+
+PARENTS: dict[str, tuple[str, ...]] = {
+    "living_room": ("entry", "hallway", "dining_room", "kitchen"),
+    "family_room": ("living_room", "kitchen", "dining_room", "hallway", "entry"),
+    "kitchen": ("dining_room", "living_room", "studio_room", "family_room", "entry", "hallway", "office"),
+    "dining_room": ("living_room", "kitchen", "family_room", "hallway", "entry"),
+    "bedroom": ("hallway", "living_room", "family_room", "entry", "studio_room", "dining_room", "kitchen"),
+    "bathroom": ("hallway", "entry", "studio_room", "living_room", "family_room", "bedroom", "office", "kitchen"),
+    "wc": ("entry", "hallway", "living_room", "family_room", "studio_room", "office", "kitchen"),
+    "hallway": ("entry", "living_room", "staircase", "hallway", "family_room", "dining_room", "kitchen"),
+    "entry": ("living_room", "hallway", "studio_room", "kitchen", "dining_room"),
+    "closet": ("bedroom", "hallway", "entry", "living_room", "studio_room"),
+    "utility": ("kitchen", "hallway", "entry", "living_room", "bathroom"),
+    "storage": ("hallway", "entry", "kitchen", "utility", "office", "living_room", "studio_room"),
+    "garage": ("utility", "entry", "hallway", "kitchen", "living_room"),
+    "balcony": ("living_room", "studio_room", "family_room", "dining_room", "kitchen", "bedroom"),
+    "staircase": ("entry", "hallway", "living_room", "family_room", "dining_room", "kitchen"),
+    "media_room": ("living_room", "family_room", "hallway", "entry", "dining_room", "kitchen"),
+    "sunroom": ("living_room", "family_room", "dining_room", "kitchen", "hallway"),
+}
+ANY_HUB = ("hallway", "entry", "living_room", "family_room", "studio_room", "dining_room", "kitchen", "office", "staircase")
+# Who stands for a group of joined rooms when the group is attached to the rest.
+FRONT = (*HUBS, "library", "media_room", "playroom", "gym", "meeting_room", "sunroom", "utility", "bedroom", "storage", "closet")
+OPENABLE = {"door", "open", "portal", "any"}
+BUDGET = 600  # sets of links that are tried before `hops` relations are given up
+
+
+def resolve(program: FloorProgram) -> tuple[Link, ...]:
+    """Expand selectors to room ids: `each` gives every room of `a` a partner of `b`, `some` joins one pair."""
+    found: dict[tuple[str, str], Link] = {}
+    for link in program.links:
+        ones, others = program.select(link.a), program.select(link.b)
+        pairs: list[tuple[RoomReq, RoomReq]] = []
+        for k, one in enumerate(ones):
+            partners = [o for o in others if o.id != one.id and _meet(one, o)]
+            if partners:
+                pairs.append((one, partners[k % len(partners)] if len(partners) == len(ones) else partners[0]))
+        for one, other in pairs[:1] if link.quant == "some" else pairs:
+            key = (min(one.id, other.id), max(one.id, other.id))
+            old = found.get(key)
+            if old is None or (old.kind in {"any", "wall"} and link.kind not in {"any", "wall"}):
+                found[key] = link.model_copy(update={"a": one.id, "b": other.id, "quant": "each"})
+    return tuple(found.values())
+
+
+def _meet(a: RoomReq, b: RoomReq) -> bool:
+    return a.level is None or b.level is None or "staircase" in {a.type, b.type} or a.level == b.level
+
+
+def connect(program: FloorProgram) -> tuple[Link, ...]:
+    """Add links until the rooms form one piece. Groups are attached by the usual parent of the room that stands for them.
+
+    Where `hops` relations are broken that way, other parents and other rooms are tried; if none keeps them, the usual links are returned.
+    """
+    stated = resolve(program)
+    root = _root(program, stated)
+    distant = distances(program)
+    found = _complete(program, stated, root, distant, set())
+    return found if found is not None else _complete(program, stated, root, (), set()) or stated
+
+
+def _complete(
+    program: FloorProgram, links: tuple[Link, ...], root: str, distant: Sequence[Distance], seen: set[frozenset[tuple[str, str, bool]]]
+) -> tuple[Link, ...] | None:
+    """Return the first completion that keeps rooms far enough apart. Links only bring rooms nearer: a set that fails is left at once."""
+    key = frozenset((k.a, k.b, k.kind == "wall") for k in links)
+    if key in seen or len(seen) >= BUDGET or nearness(distant, links):
+        return None
+    seen.add(key)
+    groups = _groups(program, links)
+    if len(groups) <= 1:
+        return links
+    for made in _options(program, groups, root, links, wide=bool(distant)):
+        found = _complete(program, (*links, made), root, distant, seen)
+        if found is not None:
+            return found
+    return None
+
+
+def _options(program: FloorProgram, groups: Sequence[frozenset[str]], root: str, links: Sequence[Link], *, wide: bool) -> Iterator[Link]:
+    """Yield links that attach one more group to the root's, the usual one first; `wide`: by any of the group's rooms."""
+    main = next(g for g in groups if root in g)
+    fronts = {g: _fronts(program, g, links) for g in groups if root not in g}
+    waiting = sorted(fronts, key=lambda g: _order(fronts[g][0]))
+    usual = [made for g in waiting for made in _hosted(program, fronts[g][0], main, links)]
+    yield from usual
+    if not usual:
+        yield from _unusual(program, fronts[waiting[0]][:1], frozenset({root}))
+        yield from (made for g in waiting for made in _unusual(program, fronts[g], main))
+    if wide:
+        yield from (made for g in waiting for front in fronts[g][1:] for made in _hosted(program, front, main, links))
+
+
+def _unusual(program: FloorProgram, fronts: Sequence[RoomReq], main: frozenset[str]) -> Iterator[Link]:
+    """Yield the links by which any of some rooms may hang on any room of `main` on its storey, on what one walks through first."""
+    hosts = sorted((r for r in program.rooms if r.id in main), key=lambda r: (not DEFAULTS[r.type].through, _order(r)))
+    for front in fronts:
+        for host in hosts:
+            if _meet(host, front):
+                yield Link(a=host.id, b=front.id, kind="open" if "staircase" in {front.type, host.type} else "door")
+
+
+def _groups(program: FloorProgram, links: Sequence[Link]) -> list[frozenset[str]]:
+    """Return the groups of rooms that one can walk between without passing through a bathroom."""
+    dead = {r.id: r for r in program.rooms if r.type in {"bathroom", "wc"}}
+    rank = {t: i for i, t in enumerate(HUBS)}
+    kinds = {r.id: r.type for r in program.rooms}
+    kept: list[Link] = []
+    used: set[str] = set()
+    # of a bathroom's doors the one to the most public room counts
+    for link in sorted(links, key=lambda k: min(rank.get(kinds[k.a], 99), rank.get(kinds[k.b], 99))):
+        ends = {link.a, link.b} & set(dead)
+        if link.kind in OPENABLE and not ends & used:
+            kept.append(link)
+            used |= ends
+    return components([r.id for r in program.rooms], kept)
+
+
+def components(ids: Sequence[str], links: Iterable[Link]) -> list[frozenset[str]]:
+    """Return the groups of rooms that links with an opening join, in the order of their first room."""
+    parent = {i: i for i in ids}
+
+    def find(i: str) -> str:
+        while parent[i] != i:
+            i = parent[i]
+        return i
+
+    for link in links:
+        if link.kind in OPENABLE:
+            parent[find(link.a)] = find(link.b)
+    groups: dict[str, set[str]] = {}
+    for i in ids:
+        groups.setdefault(find(i), set()).add(i)
+    return [frozenset(g) for g in groups.values()]
+
+
+def _root(program: FloorProgram, links: Sequence[Link]) -> str:
+    """Return the room that the rest is attached to: the entrance if stated, else the busiest hub of the lowest storey."""
+    if program.entrance.into:
+        stated = program.select(program.entrance.into)
+        if stated:
+            return stated[0].id
+    degree = {r.id: sum(r.id in {k.a, k.b} for k in links) for r in program.rooms}
+    ground = [r for r in program.rooms if not r.level] or list(program.rooms)
+    for kind in ("living_room", "studio_room", "entry", "hallway", *HUBS):
+        same = [r for r in ground if r.type == kind]
+        if same:
+            return max(same, key=lambda r: degree[r.id]).id
+    return ground[0].id
+
+
+def _fronts(program: FloorProgram, group: frozenset[str], links: Sequence[Link]) -> list[RoomReq]:
+    """Return the rooms of a group that may stand for it, the most public first; a full one only where all are."""
+    members = [r for r in program.rooms if r.id in group]
+    rank = {t: i for i, t in enumerate(FRONT)}
+    free = [m for m in members if not _is_full(program, m, links)] or members
+    return sorted(free, key=lambda r: rank.get(r.type, len(rank)))
+
+
+def _order(room: RoomReq) -> int:
+    """Attach circulation first, so that others find it."""
+    order = ("entry", "hallway", "staircase", "living_room", "studio_room", "family_room", "dining_room", "kitchen", "utility")
+    return order.index(room.type) if room.type in order else len(order)
+
+
+def _hosted(program: FloorProgram, front: RoomReq, main: frozenset[str], links: Sequence[Link]) -> Iterator[Link]:
+    """Yield the links by which a room may hang on one of `main`, the usual one first."""
+    second = front.type == "kitchen" and front.role not in {"", "primary"}  # a kitchen of somebody's own stands by itself
+    for wanted in PARENTS["bedroom"][1:] if second else PARENTS.get(front.type, ANY_HUB):
+        hosts = [r for r in program.rooms if r.type == wanted and r.id in main and _meet(r, front)]
+        hosts = [h for h in hosts if not _is_full(program, h, links) and not is_forbidden(program, h, front)]
+        hosts = [h for h in hosts if h.type != "hallway" or h.level == front.level or front.type == "staircase"] or hosts
+        if wanted == "bedroom" and front.type in {"closet", "bathroom"}:
+            hosts = [h for h in hosts if not _has(program, h, front.type, links)] or hosts
+        if wanted == "hallway":
+            hosts = sorted(hosts, key=lambda h: _load(h, links))
+        for host in hosts:
+            yield Link(a=host.id, b=front.id, kind="open" if "staircase" in {front.type, host.type} else "door")
+
+
+def _load(room: RoomReq, links: Sequence[Link]) -> int:
+    return sum(room.id in {k.a, k.b} for k in links)
+
+
+def _has(program: FloorProgram, host: RoomReq, kind: str, links: Sequence[Link]) -> bool:
+    mates = {k.b if k.a == host.id else k.a for k in links if host.id in {k.a, k.b}}
+    return any(r.type == kind and r.id in mates for r in program.rooms)
+
+
+def _is_full(program: FloorProgram, room: RoomReq, links: Sequence[Link]) -> bool:
+    """Whether a `degree` relation or the type leaves no room for another opening."""
+    load = sum(room.id in {k.a, k.b} for k in links if k.kind in OPENABLE)
+    asked = [r.value for r in program.relations if r.kind == "degree" and _covers(program, r.a, room)]
+    if asked:
+        return load >= min(asked)
+    return load >= 1 and not DEFAULTS[room.type].through and room.type in {"bathroom", "wc", "balcony", "storage", "closet"}
+
+
+def is_forbidden(program: FloorProgram, a: RoomReq, b: RoomReq) -> bool:
+    """Whether no opening may join two rooms."""
+    for f in program.forbids:
+        if f.what in {"adjacent", "connected"} and f.b:
+            if _covers(program, f.a, a) and _covers(program, f.b, b):
+                return True
+            if _covers(program, f.a, b) and _covers(program, f.b, a):
+                return True
+        if f.what == "through" and f.avoid and _covers(program, f.a, b) and _covers(program, f.avoid, a):
+            return True
+    return False
+
+
+def _covers(program: FloorProgram, selector: str, room: RoomReq) -> bool:
+    """Whether `program.select(selector)` has this room; most selectors are told by its id and type alone."""
+    if selector == room.id:
+        return True
+    return (selector == room.type or bool(program.zones)) and any(r.id == room.id for r in program.select(selector))

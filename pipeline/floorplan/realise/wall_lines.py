@@ -1,0 +1,145 @@
+"""Walls as movable lines: the grid's walls leave the raster by a few centimetres until the rooms have the areas asked for.
+
+Every maximal connected straight wall is one line with one coordinate. A room's inner area is bilinear in the coordinates of its
+sides; a few bounded, regularised least-squares steps bring all areas near their targets while no wall crosses another.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.floorplan.realise import trace
+from pipeline.floorplan.search.grid import Halves, Labels
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+FARTHEST, AT_JOG = 0.10, 0.03  # how far lines may move [m]; beside a jog of one cell
+RIDGE = 0.02  # weight of moving one line by FARTHEST, against the squared relative error of one area
+ROUNDS = 3
+
+
+class Lines(NamedTuple):
+    """Lines of a grid. `upright` and `level` give each unit wall's line (-1: no wall); `at` (k,) are coordinates [m]."""
+
+    upright: Ints  # (rows, columns+1)
+    level: Ints  # (rows+1, columns)
+    at: Floats
+
+
+def find(grid: Labels, unit: float) -> Lines:
+    """Find the lines of a bordered grid."""
+    height, width = grid.shape[0] - 2, grid.shape[1] - 2
+    body = grid[1:-1, :], grid[:, 1:-1]
+    upright, up_at = _number(body[0][:, :-1] != body[0][:, 1:], 0)
+    level, level_at = _number((body[1][:-1, :] != body[1][1:, :]).T, len(up_at))
+    assert upright.shape == (height, width + 1)
+    return Lines(upright, np.ascontiguousarray(level.T), np.array(up_at + level_at) * unit)
+
+
+def _number(walls: NDArray[np.bool_], first: int) -> tuple[Ints, list[float]]:
+    """Give each run of unit walls down a column a number from `first` on; return them with their columns."""
+    across = walls.T
+    begins = across.copy()
+    begins[:, 1:] &= ~across[:, :-1]
+    ids = np.where(across, first - 1 + np.cumsum(begins).reshape(begins.shape), -1)
+    return np.ascontiguousarray(ids.T), np.nonzero(begins)[0].astype(float).tolist()
+
+
+def corner_lines(lines: Lines, corners: trace.Corners) -> Ints:
+    """Return for each corner (x, y) of an outline the numbers of the lines that fix it (count, 2)."""
+    count = len(corners)
+    ids = np.empty((count, 2), np.int64)
+    for i, (x, y) in enumerate(corners):
+        for x1, y1 in (corners[i - 1], corners[(i + 1) % count]):
+            if x1 == x:
+                ids[i, 0] = lines.upright[min(y, y1), x]
+            else:
+                ids[i, 1] = lines.level[y, min(x, x1)]
+    return ids
+
+
+def outer(lines: Lines, grid: Labels, n: int) -> NDArray[np.bool_]:
+    """Whether each line has the outside on any part of it (k,)."""
+    held = np.zeros(lines.at.size, dtype=bool)
+    beside = (grid[1:-1, :-1] == n) ^ (grid[1:-1, 1:] == n)
+    held[lines.upright[beside]] = True
+    above = (grid[:-1, 1:-1] == n) ^ (grid[1:, 1:-1] == n)
+    held[lines.level[above]] = True
+    return held
+
+
+def fit(
+    lines: Lines,
+    outlines: list[trace.Corners],
+    sides: list[list[bool]],
+    target: Floats,
+    trust: Floats,
+    slack: Floats,
+    held: NDArray[np.bool_],
+    share: float,
+    half: Halves,
+) -> Floats:
+    """Return moved coordinates [m], rounded to 1 mm.
+
+    `target` (n,) areas [m2], `trust` (n,) their weights, `slack` (n,) how far the lines of each room may move [m],
+    `held` (k,) lines that stay, `share` scales all bounds (0: nothing moves), `half` are the walls.
+    """
+    at = lines.at.copy()
+    ids = [corner_lines(lines, c) for c in outlines]
+    shape = _shape(outlines, ids, sides, half)
+    bound = np.full(at.size, FARTHEST)
+    for corners, own, most in zip(outlines, ids, slack, strict=True):
+        bound[own] = np.minimum(bound[own], most)
+        for i, (x, y) in enumerate(corners):
+            x1, y1 = corners[(i + 1) % len(corners)]
+            if abs(x1 - x) + abs(y1 - y) == 1:  # a jog of one cell: the lines at both its ends stay near
+                axis = 0 if y1 == y else 1
+                for k in (own[i, axis], own[(i + 1) % len(corners), axis]):
+                    bound[k] = min(bound[k], AT_JOG)
+    bound *= np.where(held, 0.0, share)
+    for _ in range(ROUNDS):
+        error, slope = _areas(at, shape, target)
+        weight = np.sqrt(trust) / target
+        ridge = np.sqrt(RIDGE) / FARTHEST
+        left = np.vstack([slope * weight[:, None], np.eye(at.size) * ridge])
+        right = np.concatenate([-error * weight, -(at - lines.at) * ridge])
+        step = np.linalg.solve(left.T @ left, left.T @ right)
+        at = np.clip(at + step, lines.at - bound, lines.at + bound)
+    return np.round(at, 3)
+
+
+class Shape(NamedTuple):
+    """All corners of all rooms, one room after the other."""
+
+    first: Ints  # (n,) each room's first corner
+    room: Ints  # (c,) whose it is
+    next: Ints  # (c,) the corner after it
+    ids: Ints  # (c, 2) the lines that fix it
+    inset: Floats  # (c, 2) from the lines to the room's faces [m]
+    flat: NDArray[np.bool_]  # (c,) whether the side from it runs along x
+
+
+def _shape(outlines: list[trace.Corners], ids: list[Ints], sides: list[list[bool]], half: Halves) -> Shape:
+    counts = np.array([len(c) for c in outlines])
+    first = np.cumsum(counts) - counts
+    after = np.arange(counts.sum()) + 1
+    after[first + counts - 1] = first
+    whole = np.vstack(ids)
+    inset = np.vstack([trace.insets(c, inner, half) for c, inner in zip(outlines, sides, strict=True)])
+    return Shape(first, np.repeat(np.arange(counts.size), counts), after, whole, inset, whole[:, 1] == whole[after, 1])
+
+
+def _areas(at: Floats, shape: Shape, target: Floats) -> tuple[Floats, Floats]:
+    """Return inner areas minus targets (n,) and their derivatives by the lines' coordinates (n, k)."""
+    p = at[shape.ids] + shape.inset
+    q = p[shape.next]
+    error = 0.5 * np.add.reduceat(p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1], shape.first) - target
+    # moving a side along its outward normal by 1 adds its length
+    line = np.where(shape.flat, shape.ids[:, 1], shape.ids[:, 0])
+    slope = np.zeros((target.size, at.size))
+    np.add.at(slope, (shape.room, line), np.where(shape.flat, p[:, 0] - q[:, 0], q[:, 1] - p[:, 1]))
+    return error, slope

@@ -1,0 +1,393 @@
+"""The twelve energy terms of a floor plan, and the measure of what must not be violated.
+
+Terms, names and forms follow the twelve weights of Infinigen's room solver (v1.7.0), of which the paper's "twelve reward
+functions" are the best reading; ours differ where said: areas are absolute, not shares, and each term is normalised so that one
+set of weights serves homes of any size. Each term is a pure function of the plan's measures; smaller is better; 0 is ideal
+except for `alignment`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.floorplan.search.grid import Halves, Labels, Measures, ell_opening, hull_area, inner_area, notch_width, opening, simple
+from pipeline.geometry.compiled import compiled
+
+Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
+
+TERMS = (
+    "circulation",
+    "area",
+    "squareness",
+    "convexity",
+    "simplicity",
+    "exterior",
+    "corner_light",
+    "alignment",
+    "useful_area",
+    "min_width",
+    "stair_fit",
+    "stair_snug",
+)
+WEIGHTS = (5.0, 24.0, 1.6, 40.0, 2.4, 2.0, 1.0, 0.5, 10.0, 0.5, 12.0, 8.0)
+TONGUE = 0.76  # m between inner faces: no part of a room is narrower
+TOGETHER = 12.0  # weight of what belongs together, beside the twelve
+SPLIT = 4.5  # m2 charged when a room falls apart at a neck; the legacy solver charges 45 in its units of 0.25 m2 x 0.4
+
+
+class Spec(NamedTuple):
+    """One storey's request in numbers, for n rooms. `unit` is the cell's side [m]."""
+
+    unit: float
+    root: int  # the room from which walks start
+    target: Floats  # (n,) wanted inner areas [m2]
+    low: Floats  # (n,) least and
+    high: Floats  # (n,) largest inner area [m2]
+    total: Floats  # (2,) bounds of the sum over `inside` [m2]
+    inside: Ints  # (n,) counts for the total
+    least: Ints  # (n,) wanted least width [cells]
+    strict: Ints  # (n,) a square of this side must fit somewhere (everywhere, for circulation)
+    square: Ints  # (n,) 1: a square shape is wanted
+    habitable: Ints  # (n,)
+    useful: Ints  # (n,)
+    corridor: Ints  # (n,) 1: must be `strict` wide everywhere
+    link: Ints  # (n, n) 1: joined by an opening
+    need: Ints  # (n, n) straight common wall that is required [cells]
+    ban: Ints  # (n, n) 1: must not share a wall
+    outside: Ints  # (n,) straight outside wall that is required [cells]
+    outside_sum: Ints  # (n,) outside wall in all that is required [cells]
+    corner: Ints  # (n,) 1: must own a corner of the outline
+    apart: Floats  # (n, n) least distance of centroids / diagonal
+    order: Floats  # (n, n) area[a] >= order * area[b]
+    stair_room: int  # index of the staircase, or -1
+    stair: Ints  # (4,) its rectangle x0, y0, x1, y1 [cells]
+    nonrect: int  # at least so many rooms that are not rectangles
+    half: Halves  # half the thickness of walls [m]
+    heed: Floats  # (n,) how much the wanted area counts
+    flight: Ints  # (3,) index of the staircase or -1, longer and shorter side of what its flights take [cells]
+    between: Ints  # (k, 3) room a lies between b and c: seen from its centroid, theirs lie in opposite halves
+    near: Floats  # (k, 3) rooms a, b that belong together (members of a zone), and how much
+
+
+def tree(link: Ints, root: int) -> Ints:
+    """Return rows (room, parent) of the breadth-first tree of links from `root`, the root left out."""
+    n = link.shape[0]
+    found = np.full((max(n - 1, 0), 2), -1, np.int64)
+    queue = np.empty(n, np.int64)
+    seen = np.zeros(n, np.int64)
+    queue[0] = root
+    seen[root] = 1
+    head, tail, size = 0, 1, 0
+    while head < tail:
+        a = queue[head]
+        head += 1
+        for b in range(n):
+            if link[a, b] > 0 and seen[b] == 0:
+                seen[b] = 1
+                found[size, 0], found[size, 1] = b, a
+                size += 1
+                queue[tail] = b
+                tail += 1
+    return found[:size]
+
+
+@compiled
+def circulation(out: Measures, edges: Ints) -> float:
+    """Term 1: ways from the entrance that double back.
+
+    Mean over rooms of (|D|_1 / (max(D_right, D_left) + max(D_up, D_down)) - 1)^2, where D is the travel in the four directions
+    along the tree of links, each hop from centroid to the middle of the common wall to centroid.
+    """
+    n = out.cells.size - 1
+    travel = np.zeros((n, 4))
+    total = 0.0
+    for k in range(edges.shape[0]):
+        room, parent = edges[k, 0], edges[k, 1]
+        for way in range(4):
+            travel[room, way] = travel[parent, way]
+        if out.run[room, parent] == 0:
+            continue
+        straight, whole = 0.0, 0.0
+        for axis in range(2):
+            through = out.middle[parent, room, axis]
+            for leg in range(2):
+                step = through - out.centre[parent, axis] if leg == 0 else out.centre[room, axis] - through
+                travel[room, 2 * axis + (step < 0.0)] += abs(step)
+            ahead, back = travel[room, 2 * axis], travel[room, 2 * axis + 1]
+            straight += max(ahead, back)
+            whole += ahead + back
+        if straight > 0.0:
+            total += (whole / straight - 1.0) ** 2
+    return total / max(n - 1, 1) * 4.0
+
+
+@compiled
+def area(areas: Floats, target: Floats, heed: Floats) -> float:
+    """Term 2: mean over rooms of max(q, 1/q) - 1 with q = inner area / target (absolute, unlike the legacy shares).
+
+    Rooms count as `heed` says: corridors of no stated area take what is left.
+    """
+    total = 0.0
+    for i in range(target.size):
+        q = max(areas[i], 0.05) / target[i]
+        total += heed[i] * (max(q, 1.0 / q) - 1.0)
+    return total / target.size * 4.0
+
+
+@compiled
+def squareness(box: Ints, square: Ints) -> float:
+    """Term 3: mean over square types of max(w/h, h/w) - 1 of bounding boxes."""
+    total, count = 0.0, 0
+    for i in range(square.size):
+        if square[i] > 0:
+            w, h = box[i, 2] - box[i, 0], box[i, 3] - box[i, 1]
+            total += max(w, h) / max(min(w, h), 1) - 1.0
+            count += 1
+    return total / max(count, 1) * 4.0
+
+
+@compiled
+def convexity(shape: Floats, cells: Ints) -> float:
+    """Term 4: mean over rooms of (hull area / area - 1)^2; hull areas in column 0."""
+    n = shape.shape[0]
+    total = 0.0
+    for i in range(n):
+        total += (shape[i, 0] / max(cells[i], 1) - 1.0) ** 2
+    return float(total / n * 4.0)
+
+
+@compiled
+def simplicity(corners: Ints, n: int) -> float:
+    """Term 5: mean over rooms of (vertices / 4 - 1)^2; an L-shaped room counts 0.25."""
+    total = 0.0
+    for i in range(n):
+        total += ((corners[i, 0] + corners[i, 1]) / 4.0 - 1.0) ** 2
+    return total / n * 4.0
+
+
+@compiled
+def exterior(walls: Ints, habitable: Ints) -> float:
+    """Term 6: (share of the outline that habitable rooms own - 1)^2."""
+    n = habitable.size
+    own, whole = 0, 0
+    for i in range(n):
+        whole += walls[i, n]
+        own += walls[i, n] * habitable[i]
+    return (own / max(whole, 1) - 1.0) ** 2 * 4.0
+
+
+@compiled
+def corner_light(outline_corners: Ints, habitable: Ints) -> float:
+    """Term 7: (share of the outline's convex corners that habitable rooms own - 1)^2."""
+    own, whole = 0, 0
+    for i in range(habitable.size):
+        whole += outline_corners[i]
+        own += outline_corners[i] * habitable[i]
+    return (own / max(whole, 1) - 1.0) ** 2 * 4.0
+
+
+@compiled
+def alignment(columns: Ints, rows: Ints) -> float:
+    """Term 8: number of distinct lines on which walls lie."""
+    total = 0
+    for k in range(columns.size):
+        total += columns[k]
+    for k in range(rows.size):
+        total += rows[k]
+    return float(total)
+
+
+@compiled
+def useful_area(areas: Floats, useful: Ints) -> float:
+    """Term 9: (1 - share of the area that is useful)^2."""
+    own, whole = 0.0, 0.0
+    for i in range(areas.size):
+        own += areas[i] * useful[i]
+        whole += areas[i]
+    return (1.0 - own / max(whole, 1e-9)) ** 2 * 4.0
+
+
+@compiled
+def min_width(shape: Floats) -> float:
+    """Term 10: area [m2] that squares of half and of the whole wanted width miss (column 1), and a charge per room that splits (2)."""
+    total = 0.0
+    for i in range(shape.shape[0]):
+        total += shape[i, 1] + SPLIT * shape[i, 2]
+    return total
+
+
+@compiled
+def overlap(w: int, h: int, long: int, short: int) -> float:
+    """Cells that a staircase of w x h shares with the rectangle of its flights, laid into it as well as it goes."""
+    return float(min(max(w, h), long) * min(w, h, short))
+
+
+@compiled
+def stair_fit(both: float, stair: float) -> float:
+    """Term 11: (share of the flights' rectangle that the staircase covers - 1)^2."""
+    return (both / max(stair, 1.0) - 1.0) ** 2
+
+
+@compiled
+def stair_snug(both: float, stair: float, own: float) -> float:
+    """Term 12: (IoU of staircase and the flights' rectangle - 1)^2."""
+    return (both / max(own + stair - both, 1.0) - 1.0) ** 2
+
+
+@compiled
+def together(out: Measures, near: Floats) -> float:
+    """Return what zones ask for, weighted: distances of centroids / diagonal, meant over each zone's pairs."""
+    total = 0.0
+    for k in range(near.shape[0]):
+        a, b = int(near[k, 0]), int(near[k, 1])
+        dx, dy = out.centre[a, 0] - out.centre[b, 0], out.centre[a, 1] - out.centre[b, 1]
+        total += near[k, 2] * (dx * dx + dy * dy) ** 0.5
+    if total == 0.0:
+        return 0.0
+    width, height = out.columns.size - 1, out.rows.size - 1
+    return float(TOGETHER * total / (width * width + height * height) ** 0.5)
+
+
+@compiled
+def room_shape(grid: Labels, out: Measures, spec: Spec, i: int, shape: Floats) -> None:  # noqa: PLR0912 - compiled
+    """Write what depends on the cells of room i alone to `shape[i]`: hull [cells], area missed [m2], 1 if it splits, violation."""
+    w, h = out.box[i, 2] - out.box[i, 0], out.box[i, 3] - out.box[i, 1]
+    cells = out.cells[i]
+    square_metre = spec.unit * spec.unit
+    half = (spec.least[i] + 1) // 2
+    shape[i, 2] = 0.0
+    shape[i, 3] = 0.0
+    if cells == w * h:
+        shape[i, 0] = float(cells)
+        short = min(w, h)
+        shape[i, 1] = square_metre * cells * ((short < spec.least[i]) + (short < half))
+        if short < spec.strict[i]:
+            shape[i, 3] = 0.5 + (spec.strict[i] - short) / spec.strict[i]
+        return
+    notch = 0
+    if out.corners[i, 1] == 1:
+        notch = notch_width(grid, i, out.box)
+        shape[i, 0] = cells + 0.5 * (w * h - cells)
+    else:
+        shape[i, 0] = hull_area(grid, i, out.box)
+    shape[i, 1] = 0.0
+    tongue = min(int(np.ceil((TONGUE + 2.0 * max(spec.half.inner, spec.half.outer)) / spec.unit - 1e-9)), spec.strict[i])
+    for part in range(4):
+        side = spec.least[i] if part == 0 else (half if part == 1 else (tongue if part == 2 else spec.strict[i]))
+        if notch > 0:
+            reached, pieces = ell_opening(w, h, notch, (w * h - cells) // notch, side)
+        else:
+            reached, pieces = opening(grid, i, out.box, side)
+        if part < 2:
+            shape[i, 1] += square_metre * (cells - reached)
+            if pieces > 1:
+                shape[i, 2] = 1.0
+        elif part == 2:
+            if pieces > 1 or reached < cells:
+                shape[i, 3] += 0.3 + (cells - reached) / cells
+        elif side > 1:
+            if reached == 0:
+                shape[i, 3] += 1.0
+            elif spec.corridor[i] > 0 and (pieces > 1 or reached < cells):
+                shape[i, 3] += 0.3 + (cells - reached) / cells
+
+
+@compiled
+def terms(
+    grid: Labels, out: Measures, spec: Spec, edges: Ints, values: Floats, areas: Floats, shape: Floats, stale: Ints, exact: bool
+) -> float:
+    """Write the twelve terms to `values` (12,) and inner areas to `areas` (n,); return the hard violation (0: none).
+
+    `shape` (n, 4) keeps what `room_shape` found; only rooms that `stale` (n+1,) marks are looked at again, and
+    those of more than four corners only if `exact`: else terms and violation are lower bounds. Infinity when a room is not one simple piece.
+    """
+    n = spec.target.size
+    for i in range(n):
+        if not simple(out, i):
+            return np.inf
+    hard = 0.0
+    bent = 0
+    for i in range(n):
+        areas[i] = inner_area(out, i, n, spec.unit, spec.half)
+        if stale[i] > 0:
+            if exact or out.corners[i, 1] == 0:
+                room_shape(grid, out, spec, i, shape)
+            else:
+                shape[i, 0] = float(out.cells[i])
+                shape[i, 1], shape[i, 2], shape[i, 3] = 0.0, 0.0, 0.0
+        hard += shape[i, 3]
+        bent += out.corners[i, 1] > 0
+    if bent < spec.nonrect:
+        hard += 0.3 * (spec.nonrect - bent)
+    values[0] = circulation(out, edges)
+    values[1] = area(areas, spec.target, spec.heed)
+    values[2] = squareness(out.box, spec.square)
+    values[3] = convexity(shape, out.cells)
+    values[4] = simplicity(out.corners, n)
+    values[5] = exterior(out.walls, spec.habitable)
+    values[6] = corner_light(out.outline_corners, spec.habitable)
+    values[7] = alignment(out.columns, out.rows)
+    values[8] = useful_area(areas, spec.useful)
+    values[9] = min_width(shape)
+    values[10], values[11] = 0.0, 0.0
+    room = spec.flight[0]
+    if room >= 0:
+        rectangle = float(spec.flight[1] * spec.flight[2])
+        w, h = out.box[room, 2] - out.box[room, 0], out.box[room, 3] - out.box[room, 1]
+        both = overlap(w, h, spec.flight[1], spec.flight[2])
+        values[10] = n * stair_fit(both, rectangle)
+        values[11] = n * stair_snug(both, rectangle, float(w * h))
+        hard += 0.5 * out.corners[room, 1]  # storeys share the staircase: a rectangle
+    return hard + violations(out, spec, areas)
+
+
+@compiled
+def violations(out: Measures, spec: Spec, areas: Floats) -> float:  # noqa: C901, PLR0912 - a list of independent conditions
+    """Hard conditions on walls and areas: 0 when all hold, else roughly the number of violated ones."""
+    n = spec.target.size
+    width, height = out.columns.size - 1, out.rows.size - 1
+    diagonal = (width * width + height * height) ** 0.5
+    hard = 0.0
+    total = 0.0
+    for a in range(n):
+        total += areas[a] * spec.inside[a]
+        if areas[a] < spec.low[a]:
+            hard += 0.1 + 2.0 * (spec.low[a] - areas[a]) / spec.low[a]
+        elif areas[a] > spec.high[a]:
+            hard += 0.1 + 2.0 * (areas[a] - spec.high[a]) / spec.high[a]
+        if out.run[a, n] < spec.outside[a]:
+            hard += 0.5 + (spec.outside[a] - out.run[a, n]) / spec.outside[a]
+        if out.walls[a, n] < spec.outside_sum[a]:
+            hard += 0.2 + (spec.outside_sum[a] - out.walls[a, n]) / spec.outside_sum[a]
+        if spec.corner[a] > 0 and out.outline_corners[a] == 0:
+            hard += 1.0
+        for b in range(n):
+            if spec.order[a, b] > 0.0 and areas[a] < spec.order[a, b] * areas[b]:
+                hard += 0.1 + 1.0 - areas[a] / (spec.order[a, b] * areas[b])
+            if b <= a:
+                continue
+            if out.run[a, b] < spec.need[a, b]:
+                hard += 0.5 + (spec.need[a, b] - out.run[a, b]) / spec.need[a, b]
+            if spec.ban[a, b] > 0 and out.walls[a, b] > 0:
+                hard += 0.5 + 0.1 * out.walls[a, b]
+            if spec.apart[a, b] > 0.0:
+                dx = out.centre[a, 0] - out.centre[b, 0]
+                dy = out.centre[a, 1] - out.centre[b, 1]
+                far = (dx * dx + dy * dy) ** 0.5 / diagonal
+                if far < spec.apart[a, b]:
+                    hard += 0.2 + 3.0 * (spec.apart[a, b] - far)
+    for k in range(spec.between.shape[0]):
+        a, b, c = spec.between[k, 0], spec.between[k, 1], spec.between[k, 2]
+        ahead = (out.centre[b, 0] - out.centre[a, 0]) * (out.centre[c, 0] - out.centre[a, 0])
+        ahead += (out.centre[b, 1] - out.centre[a, 1]) * (out.centre[c, 1] - out.centre[a, 1])
+        if ahead > 0.0:
+            hard += 0.2 + 3.0 * ahead**0.5 / diagonal
+    if total < spec.total[0]:
+        hard += 0.1 + 3.0 * (spec.total[0] - total) / spec.total[0]
+    elif total > spec.total[1]:
+        hard += 0.1 + 3.0 * (total - spec.total[1]) / spec.total[1]
+    return hard

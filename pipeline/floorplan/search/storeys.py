@@ -1,0 +1,306 @@
+"""One storey of a completed program as numbers for the searches."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.floorplan.program.daylight import YIELDS, daylit
+from pipeline.floorplan.program.defaults import DEFAULTS, OUTSIDE
+from pipeline.floorplan.program.floor_program import FloorProgram, RoomReq
+from pipeline.floorplan.search.energy import TERMS, WEIGHTS, Spec
+from pipeline.floorplan.search.grid import Halves
+
+UNIT = 0.25  # side of a cell [m]
+FRAME = 0.105  # wall beside the frame of an opening [m]
+OPEN_FRONT, PORTAL = 1.5, 1.2  # least clear widths [m]
+# How far an unstated area may miss its target: a share, and a strip of this width [m] along one side, for the raster; where nothing else helps.
+LOOSE, STRIP, EASED = 0.02, 0.2, 0.4
+SMALL, BUSY = 7.0, 3  # rooms of less area [m2] or so many links give up their outside wall first
+HALL_HEED = 0.25  # how much an unstated hallway's usual area counts beside that of a room
+FLIGHTS = (2.85, 2.1)  # what two flights side by side take, with their landings [m]: 16 risers of 0.18 m, treads of 0.27 m
+SOFTER = (1.0, 0.3, 0.1, 0.03)  # factors on the weights of all terms then: what must be comes before what should
+EASED_HALL = 1.95  # how much larger than its target an unstated hallway may be then
+EASED_WIDTH = 1.2  # least width of rooms then [m]
+STATED = 0.10  # how far a stated target may be missed
+EDGE = 0.012  # hard bounds are drawn in by this share, so that rounding cannot cross them
+MOST_STRETCH = 1.4  # how far usual areas are stretched under a larger storey
+FREE_HALL = (0.6, 1.7)  # how far an unstated hallway's area may move
+
+
+@dataclass(frozen=True)
+class Storey:
+    """A storey's rooms, its numbers, and what the slicing search needs beside them: gross areas and their bounds [cells]."""
+
+    level: int
+    rooms: tuple[RoomReq, ...]
+    spec: Spec
+    weights: NDArray[np.float64]
+    gross: NDArray[np.float64]
+    gross_low: NDArray[np.float64]
+    gross_high: NDArray[np.float64]
+    clear: NDArray[np.float64]  # (n,) width between the middles of walls that corridors, and rooms of a stated width, must keep [m]
+
+
+def cells(metres: float) -> int:
+    """Return the number of cells that cover a length."""
+    return int(np.ceil(metres / UNIT - 1e-9))
+
+
+def halves(program: FloorProgram) -> Halves:
+    """Return half the thickness of the program's walls [m]."""
+    return Halves(program.shell.inner_wall / 2, program.shell.outer_wall / 2)
+
+
+def sides(program: FloorProgram) -> float:
+    """Return what an opening needs of straight wall beside its clear width [m]: its frame's, and half a wall at both ends."""
+    return 2 * FRAME + 2 * max(halves(program))
+
+
+def wall_for(kind: str, door: float, small: bool, beside: float) -> int:
+    """Return the straight wall [cells] that a link of that kind needs; `beside` [m] as `sides` returns it."""
+    if kind == "wall":
+        return 2
+    if kind == "open":
+        return cells((1.1 if small else OPEN_FRONT) + beside)
+    if kind == "portal":
+        return cells((1.0 if small else PORTAL) + beside)
+    return cells(door + beside)
+
+
+def weights_of(program: FloorProgram) -> NDArray[np.float64]:
+    """Return the twelve weights: defaults times two to the power of the knobs."""
+    knobs = np.array([getattr(program.style, name) for name in TERMS], dtype=float)
+    return np.asarray(np.array(WEIGHTS) * np.exp2(knobs))
+
+
+def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, int] | None = None, ease: int = 0) -> Storey:
+    """Translate one storey of a completed program. `stair_cells` is the rectangle that the staircase must take, if it is fixed.
+
+    `ease` lets go of what nobody stated: 1 of usual widths and of much of the usual areas, 2 of usual outside walls of rooms that are
+    small, busy or can do without, 3 of all usual outside walls.
+    """
+    rooms = tuple(r for r in program.rooms if r.level == level or (r.type == "staircase" and level < program.storeys))
+    index = {r.id: i for i, r in enumerate(rooms)}
+    n = len(rooms)
+    target = np.array([r.area.target or DEFAULTS[r.type].area for r in rooms])
+    low, high = _bounds(rooms, target, ease)
+    half, door = halves(program), program.accessibility.min_door
+    link, need = np.zeros((n, n), np.int64), np.zeros((n, n), np.int64)
+    for k in program.links:
+        if k.a in index and k.b in index:
+            a, b = index[k.a], index[k.b]
+            need[a, b] = need[b, a] = wall_for(k.kind, door, min(target[a], target[b]) < 7.0, sides(program))
+            if k.kind != "wall":
+                link[a, b] = link[b, a] = 1
+    here = program.model_copy(update={"rooms": rooms})
+    ban, apart, order = _relations(here, index)
+    clear = np.array([_clear(r, program) for r in rooms])
+    outside = _outside(rooms, program, level, ease)
+    # a small room cannot be as wide as its type usually is
+    least = np.array([cells(min(w, 0.92 * t**0.5 + 2 * half.inner)) for w, t in zip(clear, target, strict=True)])
+    strict = np.maximum((0.8 * least).astype(np.int64), 3)
+    corridor = np.array([int(r.type == "hallway") for r in rooms])
+    for i, r in enumerate(rooms):
+        if r.min_width is not None or r.type in {"hallway", "entry"}:
+            strict[i] = least[i]
+        elif ease:
+            strict[i] = min(strict[i], cells(EASED_WIDTH + 2 * half.inner))
+        if r.type == "wc":
+            strict[i] = cells(0.85 + 2 * half.inner)
+    total = np.array([0.0, np.inf])
+    wish = program.total_area
+    if program.storeys == 1 and wish.stated:
+        total[0] = (wish.min or 0.0) * (1 + EDGE)
+        total[1] = (wish.max or np.inf) * (1 - EDGE)
+    spec = Spec(
+        UNIT,
+        _root(program, rooms, index),
+        target,
+        low,
+        high,
+        total,
+        np.array([int(r.type not in OUTSIDE) for r in rooms]),
+        least,
+        strict,
+        np.array([int(DEFAULTS[r.type].square) for r in rooms]),
+        np.array([int(DEFAULTS[r.type].habitable) for r in rooms]),
+        np.array([int(DEFAULTS[r.type].useful) for r in rooms]),
+        corridor,
+        link,
+        need,
+        ban,
+        np.array(outside),
+        np.array([cells(r.exterior_length + 0.5) if r.exterior_length else 0 for r in rooms]),
+        np.array([int(r.exterior == "corner") for r in rooms]),
+        apart,
+        order,
+        index[_stairs(rooms)] if stair_cells is not None else -1,
+        np.array(stair_cells or (0, 0, 0, 0)),
+        program.nonrect if level == 0 else 0,
+        half,
+        np.array([HALL_HEED if r.type in {"hallway", "entry"} and not r.area.stated else 1.0 for r in rooms]),
+        np.array([index[_stairs(rooms)], *(cells(s + 2 * half.inner) for s in FLIGHTS)] if program.storeys > 1 else [-1, 0, 0]),
+        _between(here, index),
+        _near(here, index),
+    )
+    gross = _gross(target, half)
+    gross_low, gross_high = gross.copy(), gross.copy()
+    for i, r in enumerate(rooms):
+        if r.type in {"hallway", "entry"} and not r.area.stated:
+            gross_low[i], gross_high[i] = gross[i] * 0.75, gross[i] * (1.9 if ease else 1.3)
+    return Storey(level, rooms, spec, weights_of(program) * SOFTER[min(ease, len(SOFTER) - 1)], gross, gross_low, gross_high, clear)
+
+
+def founded(program: FloorProgram) -> FloorProgram:
+    """Stretch the usual areas of storeys that are smaller than what stands on them, so that no room hangs in the air.
+
+    A stated total stays: then what stands on them shrinks as well.
+    """
+    half = halves(program)
+    rooms = list(program.rooms)
+    above = 0.0
+    for level in reversed(range(program.storeys)):
+        gross = {
+            i: float(_gross(np.array([r.area.target or DEFAULTS[r.type].area]), half)[0])
+            for i, r in enumerate(rooms)
+            if r.level == level or r.type == "staircase"
+        }
+        free = [i for i in gross if not rooms[i].area.stated and rooms[i].type != "staircase"]
+        flexible, whole = sum(gross[i] for i in free), sum(gross.values())
+        if flexible and whole < above:
+            factor = min(1.0 + (above - whole) / flexible, MOST_STRETCH)
+            for i in free:
+                area = rooms[i].area
+                rooms[i] = rooms[i].model_copy(update={"area": area.model_copy(update={"target": (area.target or 0.0) * factor})})
+            whole += (factor - 1.0) * flexible
+        above = max(above, whole)
+    loose = [i for i, r in enumerate(rooms) if not r.area.stated and r.type not in OUTSIDE]
+    before, after = (sum(rs[i].area.target or 0.0 for i in loose) for rs in (program.rooms, rooms))
+    if program.total_area.stated and after > before:
+        for i in loose:
+            area = rooms[i].area
+            rooms[i] = rooms[i].model_copy(update={"area": area.model_copy(update={"target": (area.target or 0.0) * before / after})})
+    return program.model_copy(update={"rooms": tuple(rooms)})
+
+
+def _gross(target: NDArray[np.float64], half: Halves) -> NDArray[np.float64]:
+    """Area up to wall centre lines [cells] of a room of that inner area, were it nearly square."""
+    side = np.sqrt(target) + 2 * (0.65 * half.inner + 0.35 * half.outer)
+    return np.asarray(side * side / UNIT**2)
+
+
+def _bounds(rooms: tuple[RoomReq, ...], target: NDArray[np.float64], ease: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    loose, most = (EASED, EASED_HALL) if ease else (LOOSE + STRIP / np.sqrt(target), FREE_HALL[1])
+    low, high = target * (1 - loose), target * (1 + loose)
+    for i, r in enumerate(rooms):
+        if r.type in {"hallway", "entry"} and not r.area.stated:
+            low[i], high[i] = target[i] * FREE_HALL[0], target[i] * most
+        if r.area.stated and r.area.target is not None and r.area.min is None and r.area.max is None:
+            low[i], high[i] = target[i] * (1 - STATED) * (1 + EDGE), target[i] * (1 + STATED) * (1 - EDGE)
+        if r.area.min is not None:
+            low[i] = max(low[i], r.area.min * (1 + EDGE))
+        if r.area.max is not None:
+            high[i] = min(high[i], r.area.max * (1 - EDGE))
+    return low, high
+
+
+def _clear(room: RoomReq, program: FloorProgram) -> float:
+    """Return the width between the middles of a room's walls [m]: what is asked for holds beside an outside wall too."""
+    half = halves(program)
+    usual = DEFAULTS[room.type].width + 2 * half.inner
+    if room.min_width is not None:
+        return room.min_width + half.inner + half.outer
+    if room.type == "hallway":
+        return max(usual, program.accessibility.min_corridor + half.inner + half.outer)
+    return usual
+
+
+def _outside(rooms: tuple[RoomReq, ...], program: FloorProgram, level: int, ease: int) -> list[int]:
+    """Straight outside wall that each room needs [cells]: what was asked for, and usual ones as far as all fit together."""
+    asked = [_asked_outside(r, program, level) for r in rooms]
+    usual = [
+        r for r, a in zip(rooms, asked, strict=True) if a == 0 and DEFAULTS[r.type].exterior and r.type != "entry" and r.exterior != "none"
+    ]
+    ids = {r.id for r in rooms}
+    links = [k for k in program.links if k.a in ids and k.b in ids]
+    if ease >= 2:
+        doors = Counter(i for k in links for i in (k.a, k.b))
+        usual = [r for r in usual if ease == 2 and r.type not in YIELDS and (r.area.target or 0.0) >= SMALL and doors[r.id] < BUSY]
+    lit = daylit(links, [r.id for r, a in zip(rooms, asked, strict=True) if a], [(r.id, r.type) for r in usual])
+    return [a or (cells(0.8 + sides(program)) if r.id in lit else 0) for r, a in zip(rooms, asked, strict=True)]
+
+
+def _asked_outside(room: RoomReq, program: FloorProgram, level: int) -> int:
+    into = level == 0 and program.entrance.into == room.id
+    own = any(room in program.select(s) for s in program.entrance.separate)
+    if room.type == "garage":
+        return cells(2.4 + sides(program))
+    if into or own or room.exterior == "door":
+        return cells(0.9 + sides(program))
+    if room.exterior == "none":
+        return 0
+    if room.exterior in {"wall", "corner"} or room.window == "required":
+        return cells(1.0 + sides(program))
+    return 0
+
+
+def _relations(program: FloorProgram, index: dict[str, int]) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    n = len(index)
+    ban, apart, order = np.zeros((n, n), np.int64), np.zeros((n, n)), np.zeros((n, n))
+
+    def pairs(one: str, other: str | None) -> list[tuple[int, int]]:
+        ones = [index[r.id] for r in program.select(one)]
+        others = [index[r.id] for r in program.select(other or one)]
+        return [(a, b) for a in ones for b in others if a != b]
+
+    for f in program.forbids:
+        if f.what == "adjacent":
+            for a, b in pairs(f.a, f.b):
+                ban[a, b] = ban[b, a] = 1
+    for r in program.relations:
+        for a, b in pairs(r.a, r.b):
+            if r.kind == "separation":
+                apart[a, b] = apart[b, a] = max(apart[a, b], r.value * (1 + 3 * EDGE))
+            elif r.kind == "area_order":
+                order[a, b] = max(order[a, b], r.value * (1 + EDGE))
+            elif r.kind == "largest":
+                order[a, b] = max(order[a, b], 1 + EDGE)
+            elif r.kind == "area_equal":
+                order[a, b] = order[b, a] = max(order[a, b], 1 / (1 + r.value) + EDGE)
+    return ban, apart, order
+
+
+def _between(program: FloorProgram, index: dict[str, int]) -> NDArray[np.int64]:
+    """Return rows (a, b, c) of rooms of which a lies between b and c."""
+    found = [
+        (index[a.id], index[b.id], index[c.id])
+        for r in program.relations
+        if r.kind == "between" and r.b and r.c
+        for a in program.select(r.a)
+        for b in program.select(r.b)
+        for c in program.select(r.c)
+        if len({a.id, b.id, c.id}) == 3
+    ]
+    return np.array(found, np.int64).reshape(-1, 3)
+
+
+def _near(program: FloorProgram, index: dict[str, int]) -> NDArray[np.float64]:
+    """Return rows (a, b, share) of rooms that belong together: members of a zone; shares of each sum to 1."""
+    groups = [list(combinations(sorted({index[r.id] for m in z.members for r in program.select(m)}), 2)) for z in program.zones]
+    found = [(a, b, 1.0 / len(group)) for group in groups for a, b in group]
+    return np.array(found, np.float64).reshape(-1, 3)
+
+
+def _stairs(rooms: tuple[RoomReq, ...]) -> str:
+    return next(r.id for r in rooms if r.type == "staircase")
+
+
+def _root(program: FloorProgram, rooms: tuple[RoomReq, ...], index: dict[str, int]) -> int:
+    if program.entrance.into in index and index:
+        return index[program.entrance.into or ""]
+    return next((i for i, r in enumerate(rooms) if r.type == "staircase"), 0)

@@ -1,0 +1,98 @@
+"""The constructive starts of one storey: annealed slicing trees in the outline that all storeys share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.floorplan.program.floor_program import FloorProgram
+from pipeline.floorplan.search import slicing
+from pipeline.floorplan.search.energy import tree
+from pipeline.floorplan.search.grid import Labels
+from pipeline.floorplan.search.layout import Wishes
+from pipeline.floorplan.search.stairwell import stamp
+from pipeline.floorplan.search.storeys import Storey
+
+SLICES = 1000  # slicing proposals per room and tree
+SLICE_HOT, SLICE_COLD = 8.0, 0.05
+LEAST_CUT = 4  # cells
+
+
+@dataclass
+class Effort:
+    """What a search took: whole attempts, slicing searches and their proposals, annealing runs and their evaluated proposals."""
+
+    attempts: int = 0
+    slicings: int = 0
+    sliced: int = 0
+    runs: int = 0
+    proposals: int = 0
+
+
+class Outline(NamedTuple):
+    """The building's rectangle [cells] that all storeys share, and how many of its corners are cut out."""
+
+    width: int
+    height: int
+    cuts: int
+
+
+class Trees:
+    """The slicing searches of one storey in its outline: what all of them share."""
+
+    def __init__(self, request: Storey, program: FloorProgram, outline: Outline) -> None:
+        n, spec, self.outline = len(request.rooms), request.spec, outline
+        self.request = request
+        whole = outline.width * outline.height
+        spare = whole - request.gross.sum()
+        # a storey that is clearly smaller than the outline leaves a corner free
+        self.voids = max(outline.cuts, int(spare > 0.1 * whole))
+        empty = np.full(self.voids, max(spare, 1.0) / max(self.voids, 1))
+        self.gross = np.concatenate([request.gross, empty])
+        self.low = np.concatenate([request.gross_low, empty * 0.7])
+        self.high = np.concatenate([request.gross_high, empty * 1.3])
+        square = np.where(spec.square > 0, 0.6, 0.08) * 2.0**program.style.squareness
+        flexible = request.weights[1] * 4.0 / n * spec.heed * (request.gross_high > request.gross_low)
+        pairs = np.argwhere(np.triu((spec.need > 0) | (spec.ban > 0) | (spec.apart > 0), 1))
+        one, other = pairs.T
+        self.wishes = Wishes(
+            np.column_stack([pairs, spec.need[one, other], spec.ban[one, other]]), spec.apart[one, other], spec.outside, spec.corner, spec.strict,
+            spec.least, square, spec.stair, spec.stair_room, spec.flight, spec.between, spec.habitable, spec.useful, tree(spec.link, spec.root), spec.near,
+            self.gross, flexible, request.weights, spec.unit,
+        )  # fmt: skip
+
+    def grow(self, rng: np.random.Generator, length: int, effort: Effort) -> tuple[Labels, float]:
+        """Anneal one slicing tree; return its bordered grid and cost (infinite when a cut-out is misplaced)."""
+        n, m, spec, (width, height, _) = len(self.request.rooms), self.gross.size, self.request.spec, self.outline
+        order = rng.permutation(m)
+        expr = np.empty(2 * m - 1, np.int64)
+        expr[0] = order[0]
+        expr[1::2], expr[2::2] = order[1:], np.where(np.arange(1, m) % 2, slicing.V, slicing.H)
+        draws = rng.random((SLICES * m * length, slicing.DRAWS))
+        effort.slicings += 1
+        effort.sliced += draws.shape[0]
+        rects, cost = slicing.search(expr, draws, SLICE_HOT, SLICE_COLD, width, height, n, self.gross, self.low, self.high, self.wishes)
+        grid = np.full((height + 2, width + 2), n, np.int16)
+        for i, (x0, y0, x1, y1) in enumerate(rects.tolist()):
+            grid[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = min(i, n)
+        cut = rects[n:]
+        corners = [
+            (x0 == 0) != (x1 == width) and (y0 == 0) != (y1 == height) and min(x1 - x0, y1 - y0) >= LEAST_CUT
+            for x0, y0, x1, y1 in cut.tolist()
+        ]
+        if not all(corners) or (self.voids == 2 and not _same_side(cut)):
+            return grid, np.inf
+        if spec.stair_room >= 0:
+            stamp(grid, spec.stair_room, tuple(spec.stair.tolist()), n)
+        return grid, float(cost)
+
+
+def _same_side(cut: NDArray[np.int64]) -> bool:
+    """Whether two cut-outs lie in different corners of one side, with building between them."""
+    (ax0, ay0, ax1, ay1), (bx0, by0, bx1, by1) = cut.tolist()
+    across = max(ax0, bx0) - min(ax1, bx1) >= LEAST_CUT and (ay0 == 0) == (by0 == 0)
+    along = max(ay0, by0) - min(ay1, by1) >= LEAST_CUT and (ax0 == 0) == (bx0 == 0)
+    return bool(across or along)

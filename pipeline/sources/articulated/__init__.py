@@ -1,0 +1,1 @@
+"""PartNet-Mobility, GAPartNet and other URDF furniture: shapes, joints, metric scale, categories."""

@@ -1,0 +1,121 @@
+"""Articulated shapes at a metric scale: one asset per category that an object may serve as."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.asset import Asset, Joint, Mesh, PartBox
+from pipeline.geometry.prerequisites import ordered
+from pipeline.sources.articulated.fitting import fitted
+from pipeline.sources.articulated.metric_scale import Fit
+from pipeline.sources.articulated.proportions import Proportions
+from pipeline.sources.articulated.shape import ArticulatedShape, ShapeBody, ShapeJoint, ShapePart
+from pipeline.sources.articulated.shape_reader import unused
+from pipeline.sources.densities import density
+from pipeline.sources.meshes.colliders import POCKET, Solids, bodies_solids, link, matter_volume, solids
+from pipeline.sources.meshes.inertials import Inertial, inertia_flaw, joined, mass_flaw
+from pipeline.sources.reasons import Row, SourceError, reject
+from pipeline.sources.settings import ModelLimits
+from pipeline.taxonomy import Taxonomy
+
+Floats = NDArray[np.float64]
+SHORT = {"gapartnet": "ga", "partnet-mobility": "pm", "urdf": "ur"}
+
+
+def assets(
+    shape: ArticulatedShape, stem: str, categories: Sequence[str], taxonomy: Taxonomy, limits: ModelLimits, licence: str,
+    own: Proportions | None = None,
+) -> Iterator[tuple[Asset, Fit, list[Row]]]:  # fmt: skip
+    """Yield (asset, how it was scaled, reject rows) for each of the `categories` that the shape fits, best first.
+
+    The assets' ids are made of `stem`; `own` are the proportions of the objects of its model category. Raises SourceError `unknown_category` or `no_metric_fit` where there is none.
+    """
+    if not categories:
+        raise SourceError("unknown_category", shape.source_id, f"model_cat {shape.model_cat!r}")
+    base = solids("base", shape.bodies[0].collisions, limits, None).pieces
+    shape, fits = fitted(shape, base, categories, limits, own)
+    low, high = shape.bounds()
+    extent = high - low
+    if not fits:
+        what = shape.model_cat or "none of the categories"
+        raise SourceError("no_metric_fit", shape.source_id, f"{what} of proportions {np.round(extent, 3).tolist()}")
+    bodies = _unique(shape.bodies)
+    # What fits nothing has cost no cut so far.
+    tolerance = None if limits.cut == "none" else POCKET * float(np.linalg.norm(extent))
+    matter = bodies_solids([(body.name, body.collisions) for body in bodies], limits, tolerance)
+    middle = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
+    for number, fit in enumerate(fits):
+        kind = taxonomy.categories[fit.category].super
+        links, weighed = [], []
+        for body, solid in zip(bodies, matter, strict=True):
+            real = solid.scaled(middle, fit.scale)
+            stated, note = _stated(body, real, middle, fit, kind)
+            weighed += note
+            links.append(link(body.name, _metric(body, middle, fit.scale), real, density(kind, "", fit.category), kind, stated))
+        asset = Asset(
+            f"{SHORT[shape.source]}_{stem}_{fit.category}", fit.category, np.round(extent * fit.scale, 4),
+            tuple(links), tuple(_joint(j, middle, fit.scale) for j in shape.joints), tuple(shape.palette.materials),
+            shape.source, shape.source_id, licence, "", kind, dict(shape.palette.textures),
+            tuple(_part(p, middle, fit.scale) for p in shape.parts),
+        )  # fmt: skip
+        yield ordered(asset), fit, _rejects(shape, matter, weighed) if number == 0 else []  # what befell the folder is told once
+
+
+def _stated(
+    body: ShapeBody, matter: Solids, middle: Floats, fit: Fit, kind: str
+) -> tuple[Inertial | float | None, list[tuple[str, str]]]:  # fmt: skip
+    """Return what the source states of a body [m, kg] and a note of it: an inertial, the mass alone where the rest is a placeholder, or None."""
+    pieces = [i for i in body.inertials if i is not None]
+    if not pieces:
+        return None, []
+    points = (body.points() - middle) * fit.scale
+    stated = joined(pieces).scaled(middle, fit.scale)
+    why = mass_flaw(stated.mass, matter_volume(matter, kind))
+    if fit.fitted:
+        why = "is of another size"
+    elif len(pieces) < len(body.inertials):
+        why = f"is of {len(pieces)} of its {len(body.inertials)} links"
+    if why:
+        return None, [("inertial_refused", f"{body.name}: {why}")]
+    placeholder = inertia_flaw(stated, points.min(axis=0), points.max(axis=0))
+    if placeholder:
+        return stated.mass, [("mass_used", f"{body.name}: {stated.mass:.4g} kg, its inertia {placeholder}")]
+    return stated, [("inertial_used", f"{body.name}: {stated.mass:.4g} kg")]
+
+
+def _rejects(shape: ArticulatedShape, matter: list[Solids], weighed: list[tuple[str, str]]) -> list[Row]:
+    rows = [reject(what, shape.source_id, reason, detail) for what, reason, detail in shape.notes]
+    notes = [*(note for solid in matter for note in solid.notes), *weighed]
+    return rows + [reject("model", shape.source_id, reason, detail) for reason, detail in notes]
+
+
+def _metric(body: ShapeBody, middle: Floats, scale: float) -> list[Mesh]:
+    return [replace(m, vertices=((m.vertices - middle) * scale).astype(np.float32)) for m in body.visuals]
+
+
+def _joint(joint: ShapeJoint, middle: Floats, scale: float) -> Joint:
+    reach = scale if joint.type == "prismatic" else 1.0
+    axis: Floats = np.round(joint.axis / float(np.linalg.norm(joint.axis)), 9) + 0.0
+    origin = np.round((joint.origin - middle) * scale, 6) + 0.0
+    lower, upper = round(joint.lower * reach, 6) + 0.0, round(joint.upper * reach, 6) + 0.0
+    return Joint(joint.name, joint.type, joint.parent, joint.child, axis, origin, lower, upper, joint.part_class)
+
+
+def _part(part: ShapePart, middle: Floats, scale: float) -> PartBox:
+    centre, size = np.round((part.centre - middle) * scale, 6) + 0.0, np.round(part.size * scale, 6) + 0.0
+    return PartBox(part.body, part.part_class, centre, np.round(part.axes, 9) + 0.0, size, part.annotated)
+
+
+def _unique(bodies: tuple[ShapeBody, ...]) -> list[ShapeBody]:
+    """Return the bodies under names that differ."""
+    taken: set[str] = {"base"}
+    named = [replace(bodies[0], name="base")]
+    for body in bodies[1:]:
+        name = unused(body.name, taken)
+        taken.add(name)
+        named.append(replace(body, name=name))
+    return named

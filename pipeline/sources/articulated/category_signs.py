@@ -1,0 +1,110 @@
+"""What an articulated shape tells of its category beside its proportions: its doors and drawers, and how large they would be."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+
+from pipeline.sources.articulated.shape import ArticulatedShape, ShapePart
+from pipeline.sources.meshes.mesh_solids import Part
+
+Floats = NDArray[np.float64]
+PATH = Path(__file__).resolve().parents[3] / "manifests" / "calibration" / "signs.yaml"
+CLEAR = 0.9  # opacity below which a door is glazed
+LEAF = 0.05  # share of the front from which on what slides along it is a door
+FLAT = 5.0  # a piece this much wider than thick, both ways, is a board
+
+
+@dataclass(frozen=True, slots=True)
+class Signs:
+    """Of a shape in its own units: `sizes` of things whose real size is known, counts, and shares."""
+
+    sizes: Mapping[str, tuple[float, ...]]
+    doors: int
+    drawers: int
+    glass: bool
+    covered: float
+    grip: float | None
+
+
+@functools.cache
+def _expected() -> Mapping[str, Any]:
+    table: Mapping[str, Any] = yaml.safe_load(PATH.read_text(encoding="utf-8"))
+    return table
+
+
+def signs(shape: ArticulatedShape, base: Sequence[Part]) -> Signs:
+    """Return the signs of a shape; `base` are the convex pieces of its body."""
+    low, high = shape.bounds()
+    doors = [p for p in shape.parts if p.part_class == "hinge_door"]
+    drawers = [p for p in shape.parts if p.part_class == "slider_drawer"]
+    whole = max(float((high - low)[0] * (high - low)[2]), 1e-12)
+    sliding = [area for area in _sliding(shape) if area > LEAF * whole]
+    front = (sum(_reach(p)[0] * _reach(p)[2] for p in doors + drawers) + sum(sliding)) / whole
+    extents = [np.sort(np.ptp(p.hull, axis=0)) for p in base]
+    sizes = {
+        "leaf_width": tuple(float(p.size[1]) for p in doors),
+        "drawer_height": tuple(float(_reach(p)[2]) for p in drawers),
+        "handle_length": tuple(float(p.size.max()) for p in shape.parts if p.part_class == "line_fixed_handle"),
+        "board": tuple(float(e[0]) for e in extents if e[1] > FLAT * e[0]),
+    }
+    leaves = {p.body for p in doors}
+    clear = any(shape.palette.materials[m.material].opacity < CLEAR for k in leaves for m in shape.bodies[k].visuals)
+    return Signs(sizes, len(doors) + len(sliding), len(drawers), clear, min(front, 1.0), _grip(shape.parts, doors))
+
+
+def log_likelihood(found: Signs, category: str, scale: float) -> float:
+    """Return how well the signs suit a category at `scale` [m per unit], up to a constant that all categories share."""
+    known, entry = _expected()["known"], _entry(category)
+    total = 0.0
+    for name, (median, spread) in known.items():
+        values = [v for v in found.sizes[name] if v > 0]
+        if values:
+            total -= 0.5 * ((math.log(float(np.median(values)) * scale) - math.log(median)) / spread) ** 2
+    total += math.log(entry["doors"] if found.doors else 1 - entry["doors"])
+    total += math.log(entry["drawers"] if found.drawers else 1 - entry["drawers"])
+    total += _normal(found.covered, *entry["covered"])
+    if found.doors:
+        total += math.log(entry["glass"] if found.glass else 1 - entry["glass"])
+    if found.grip is not None:
+        total += _normal(found.grip, *entry["grip"])
+    return total
+
+
+def _sliding(shape: ArticulatedShape) -> list[float]:
+    """Return the areas, seen from the front, of what slides along the front: doors that have no class of their own."""
+    extents = [np.ptp(shape.bodies[j.child].points(), axis=0) for j in shape.joints if j.type == "prismatic" and abs(j.axis[0]) > 0.8]
+    return [float(e[0] * e[2]) for e in extents]
+
+
+def _entry(category: str) -> Mapping[str, Any]:
+    entry: Mapping[str, Any] = _expected()["categories"].get(category) or _expected()["default"]
+    return entry
+
+
+def _normal(value: float, mean: float, spread: float) -> float:
+    return -0.5 * ((value - mean) / spread) ** 2 - math.log(spread)
+
+
+def _reach(part: ShapePart) -> Floats:
+    """Return the extent (3,) of a part's box along our axes."""
+    return np.asarray(part.size @ np.abs(part.axes))
+
+
+def _grip(parts: Sequence[ShapePart], doors: Sequence[ShapePart]) -> float | None:
+    """Return the mean height of handles on upright doors, in shares of the door's height from its middle."""
+    found = []
+    for door in doors:
+        height = float(_reach(door)[2])
+        if abs(float(door.axes[0, 2])) < 0.8 or height <= 0:
+            continue
+        found += [(p.centre[2] - door.centre[2]) / height for p in parts if p.body == door.body and p.part_class.endswith("fixed_handle")]
+    return float(np.clip(np.mean(found), -0.5, 0.5)) if found else None

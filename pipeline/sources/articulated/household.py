@@ -1,0 +1,182 @@
+"""Other people's furniture: a URDF by itself, in metres more often than not, whose frame and category have to be found.
+
+Read beside what `urdf` tolerates: angles that are nearly right, meshes in folders beside the URDF's own, a door without
+a frame. The robot's name is not believed, for it is often that of another piece; a category comes from a
+categories.csv, else from the file's name and those of its folders, else from the size.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import PurePosixPath
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.sources.articulated import metric_scale
+from pipeline.sources.articulated.metric_scale import UNITS
+from pipeline.sources.articulated.part_inference import completed
+from pipeline.sources.articulated.shape import ArticulatedShape, below
+from pipeline.sources.articulated.shape_reader import Hints, ShapeReader
+from pipeline.sources.articulated.urdf import MAX_URDF, Urdf, parse_urdf
+from pipeline.sources.guarded import MIB, Folder
+from pipeline.taxonomy import Taxonomy
+
+Floats = NDArray[np.float64]
+CATEGORIES = "categories.csv"
+SNAP = 0.01  # [rad] an angle this near to a right one is one
+FURNITURE = "StorageFurniture"
+# Words of everyday language for PartNet's model categories and for ours.
+SYNONYMS = {
+    "fridge": "Refrigerator", "freezer": "Refrigerator", "washer": "WashingMachine", "bin": "TrashCan", "trashcan": "TrashCan",
+    "cupboard": FURNITURE, "cabinet": FURNITURE, "drawers": FURNITURE, "drawer": FURNITURE, "dresser": FURNITURE, "chest": FURNITURE,
+    "counter": "kitchen_cabinet", "closet": "wardrobe", "armoire": "wardrobe", "bedside": "nightstand", "commode": "cabinet",
+    "bookcase": "bookshelf", "shelf": "bookshelf", "console": "sideboard", "buffet": "sideboard", "stove": "Oven", "cooker": "Oven", "wc": "Toilet",
+}  # fmt: skip
+
+
+def read_household(root: Folder, file: str, source_id: str, texture_limit: int) -> ArticulatedShape:
+    """Read the URDF at `file` (relative to `root`), in the frame that it is drawn in. Raises SourceError."""
+    base = PurePosixPath(file).parent.as_posix()
+    urdf, snapped = _straightened(parse_urdf(root.read(file, MAX_URDF), file))
+    reader = ShapeReader(root, "" if base == "." else base, urdf, np.eye(3), Hints(named=_words(urdf)), texture_limit)
+    if snapped:
+        reader.notes.append(("model", "angle_snapped", f"{snapped} angles"))
+    return reader.shape("urdf", source_id, "")
+
+
+def named_categories(root: Folder) -> dict[str, str]:
+    """Return {id: category} of the file categories.csv, whose lines are "id,category" or "category id"; {} without it."""
+    if not root.has(CATEGORIES):
+        return {}
+    text = root.read(CATEGORIES, 4 * MIB).decode("utf-8-sig", "replace")
+    pairs = (re.split(r"[,;\t ]+", line.strip(), maxsplit=1) for line in text.splitlines())
+    return {pair[0]: pair[1].strip() for pair in pairs if len(pair) == 2}
+
+
+def candidates(file: str, named: str, taxonomy: Taxonomy) -> tuple[str, ...]:
+    """Return the categories that a file may be, by the name that the user gave or by its path, the file's own name first.
+
+    Without a word that tells, these are all that open.
+    """
+    for word in [named] if named else _tokens(file):
+        found = _meant(word, taxonomy)
+        if found:
+            return found
+    return () if named else tuple(c.name for c in taxonomy.categories.values() if c.partnet)
+
+
+def _tokens(file: str) -> list[str]:
+    path = PurePosixPath(file)
+    parts = [path.stem, *reversed(path.parent.parts)]
+    return [t for part in parts for t in (part, *re.split(r"[^A-Za-z]+|(?<=[a-z])(?=[A-Z])", part)) if t]
+
+
+def _meant(word: str, taxonomy: Taxonomy) -> tuple[str, ...]:
+    plain = re.sub(r"[^a-z]+", "_", word.lower()).strip("_")
+    by_name = {c: c for c in taxonomy.names} | {m.lower(): m for e in taxonomy.categories.values() for m in e.partnet}
+    wanted = by_name.get(plain) or by_name.get(plain.replace("_", "")) or SYNONYMS.get(plain) or SYNONYMS.get(plain.removesuffix("s"))
+    if wanted is None:
+        return ()
+    return (wanted,) if wanted in taxonomy.categories else taxonomy.from_partnet(wanted)
+
+
+def oriented(shape: ArticulatedShape, categories: Sequence[str]) -> ArticulatedShape:
+    """Return the shape turned so that up is z and the front -y, its parts and classes inferred.
+
+    Up is z, or y where that makes a likelier piece of furniture; the front is where drawers and doors open to, else a
+    long side.
+    """
+    tried = []
+    for up in (2, 1):
+        turned = shape.turned(_upright(up))
+        turned = turned.turned(_about(_heading(turned)))
+        low, high = turned.bounds()
+        found = [f.likelihood for unit in UNITS for c in categories if (f := metric_scale.metric(high - low, c, None, unit)) is not None]
+        tried.append((_level(turned) + (0.5 if up == 2 else 0.0) + 0.2 * max(found, default=-20.0), turned))
+    return completed(max(tried, key=lambda t: t[0])[1])
+
+
+def _upright(up: int) -> Floats:
+    """Return the rotation that brings axis `up` to z: none, or y to z about x."""
+    return np.eye(3) if up == 2 else np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+
+
+def _about(heading: int) -> Floats:
+    """Return the turn about z, by quarters, that brings direction `heading` (0 +x, 1 +y, 2 -x, 3 -y) to the front -y."""
+    quarters = (3 - heading) % 4
+    c, s = ((1, 0), (0, 1), (-1, 0), (0, -1))[quarters]
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def _ways(shape: ArticulatedShape) -> list[Floats]:
+    """Return the directions (3,) in which doors and drawers set off, the small ones such as knobs left out."""
+    low, high = shape.bounds()
+    ways = []
+    for joint in shape.joints:
+        points = np.concatenate([shape.bodies[k].points() for k in sorted(below(shape.joints, joint.child))])
+        if np.ptp(points, axis=0).max() < 0.15 * (high - low).max() or joint.type == "continuous":
+            continue
+        way = joint.axis if joint.type == "prismatic" else np.cross(joint.axis, points.mean(axis=0) - joint.origin)
+        length = float(np.linalg.norm(way))
+        if length > 1e-9:
+            ways.append(way / length)
+    return ways
+
+
+def _heading(shape: ArticulatedShape) -> int:
+    """Return where the front is: 0 +x, 1 +y, 2 -x, 3 -y."""
+    flat = np.sum([way[:2] for way in _ways(shape)], axis=0) if _ways(shape) else np.zeros(2)
+    if np.abs(flat).max() > 0.3:
+        return int(np.argmax([flat[0], flat[1], -flat[0], -flat[1]]))
+    low, high = shape.bounds()
+    wide = high - low
+    return 0 if wide[1] > 1.05 * wide[0] else 3
+
+
+def _level(shape: ArticulatedShape) -> float:
+    """Return how well the joints suit their being upright: drawers and doors set off level, and hinges stand more often than not."""
+    score = 0.0
+    for way in _ways(shape):
+        score += 1.0 if abs(way[2]) < 0.3 else -1.0
+    for joint in shape.joints:
+        if joint.type == "revolute":
+            score += 0.3 if abs(joint.axis[2]) > 0.9 else 0.0
+    return score
+
+
+def _straightened(urdf: Urdf) -> tuple[Urdf, int]:
+    """Return the URDF with rotations that are within SNAP of quarter turns made exact, and how many were off."""
+    count = 0
+
+    def exact(T: Floats) -> Floats:
+        nonlocal count
+        near = np.round(T[:3, :3])
+        if np.abs(near @ near.T - np.eye(3)).max() > 1e-9:
+            return T
+        off = float(np.abs(T[:3, :3] - near).max())
+        if not 0 < off <= SNAP:
+            return T
+        count += off > 1e-4
+        made = T.copy()
+        made[:3, :3] = near
+        return made
+
+    links = {
+        name: replace(
+            link, visuals=tuple(replace(s, T=exact(s.T)) for s in link.visuals), collisions=tuple(replace(s, T=exact(s.T)) for s in link.collisions)
+        )
+        for name, link in urdf.links.items()
+    }  # fmt: skip
+    joints = tuple(replace(j, T=exact(j.T)) for j in urdf.joints)
+    return replace(urdf, links=links, joints=joints), count
+
+
+def _words(urdf: Urdf) -> Mapping[str, str]:
+    """Return {link: the words of its own name and its joint's}: "drawer_top" says what it is."""
+    found = {name: name for name in urdf.links}
+    for joint in urdf.joints:
+        found[joint.child] = f"{joint.child} {joint.name}"
+    return found

@@ -1,0 +1,268 @@
+"""What becomes of a joint as it is written: limits, direction, rest, and screws of two joints."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.asset import JointType
+from pipeline.geometry.kinematics import joint_motion
+from pipeline.sources.articulated.mobility_v2 import Mobility
+from pipeline.sources.articulated.part_classes import words_of
+from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, ShapePart, apply, below
+from pipeline.sources.articulated.urdf import UrdfJoint
+
+Floats = NDArray[np.float64]
+TURNS = 4 * math.pi  # [rad] a range beyond this is no limit
+SMALLEST = {"revolute": 1e-3, "prismatic": 1e-4}  # ranges [rad, units] below which nothing moves
+WORDS = {"revolute": ("hinge",), "prismatic": ("slider", "slider+")}  # mobility_v2.json's for a joint that moves so
+MOVING = frozenset({"revolute", "prismatic", "continuous"})
+CLOSED = 0.8  # a door or drawer is drawn open when at its other limit the object's box is smaller than this
+FOLDED = 0.93  # the same for handles that are pulled out and whatever else can be put away
+STEPS = 41  # positions of a hinge that are tried, and again between the neighbours of the best
+STROKE = 0.08  # share of the object's diagonal up to which what slides and turns is a knob or cap that turns
+TURNED = frozenset({"hinge_knob", "hinge_handle", "hinge_lid", "hinge_door"})
+TURNING_WORDS = ("knob", "cap", "dial", "switch", "screw", "lever", "valve", "wheel", "seat", "chair")
+Limits = tuple[JointType, float, float]
+
+
+def _directions(count: int) -> Floats:
+    """Return unit vectors (count + 26, 3): evenly spread, and those towards the faces, edges and corners of a cube."""
+    k = np.arange(count) + 0.5
+    polar, turn = np.arccos(1 - 2 * k / count), np.pi * (1 + 5**0.5) * k
+    even = np.stack([np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1)
+    cube = np.stack(np.meshgrid(*[(-1.0, 0.0, 1.0)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    cube = cube[np.abs(cube).sum(axis=1) > 0]
+    return np.concatenate([even, cube / np.linalg.norm(cube, axis=1)[:, None]])
+
+
+DIRECTIONS = _directions(100)
+
+
+def limits(joint: UrdfJoint, known: Mobility | None, notes: list[Note]) -> Limits | None:
+    """Return (type, lower, upper), or None for a joint that is taken as fixed.
+
+    `known` is PartNet's own entry; it speaks where the URDF has no limit, or one without range.
+    """
+    if joint.type not in MOVING:
+        if joint.type != "fixed":
+            notes.append(_note(joint, "joint_unsupported", f"type {joint.type!r}"))
+        return None
+    if joint.follows:
+        notes.append(_note(joint, "joint_mimic", f"follows {joint.follows}"))
+    if joint.type == "continuous":
+        return "continuous", -math.inf, math.inf
+    kind: JointType = "revolute" if joint.type == "revolute" else "prismatic"
+    lower, upper = joint.limits or (0.0, 0.0)
+    if lower > upper:
+        notes.append(_note(joint, "joint_flipped_limits", f"{lower} to {upper}"))
+        lower, upper = upper, lower
+    if upper - lower < SMALLEST[kind]:
+        found = _from_mobility(joint, kind, known)
+        if found is None:
+            notes.append(_note(joint, "joint_no_range", f"{kind}, limits {joint.limits}"))
+            return None
+        notes.append(_note(joint, "joint_limits_found", f"{kind}, limits {joint.limits} in the URDF, {found[1:]} in mobility_v2.json"))
+        return found
+    if kind == "revolute" and upper - lower > TURNS:
+        return "continuous", -math.inf, math.inf
+    return kind, lower, upper
+
+
+def _from_mobility(joint: UrdfJoint, kind: JointType, known: Mobility | None) -> Limits | None:
+    if known is None or known.joint not in WORDS[kind]:
+        return None
+    if known.free and kind == "revolute":
+        return "continuous", -math.inf, math.inf
+    if known.limits is None:
+        return None
+    a, b = known.limits
+    if known.direction is not None and float(known.direction @ joint.axis) < 0:  # the URDF turned the axis round
+        a, b = -a, -b
+    lower, upper = min(a, b), max(a, b)
+    return (kind, lower, upper) if SMALLEST[kind] <= upper - lower <= TURNS else None
+
+
+def rested(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapePart], notes: list[Note]) -> None:
+    """Bring every joint to its rest, in place: 0 where the limits allow it, else the nearest limit; limits become relative to it."""
+    for number in range(len(joints)):
+        joint = joints[number]
+        rest = min(max(0.0, joint.lower), joint.upper)
+        if rest:
+            notes.append(("joint", "joint_rest_shifted", f"{joint.name}: by {rest:.4f}, limits {joint.lower:.4f} to {joint.upper:.4f}"))
+            _shift(bodies, joints, parts, number, rest)
+        joints[number] = opening(joints[number])
+
+
+def closed(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapePart], notes: list[Note]) -> None:
+    """Close, in place, doors, drawers and lids that are drawn open: the object's box is much smaller at their other limit.
+
+    A lid closes where the box is smallest, which need be no limit; it opens from there the way that it was drawn.
+    """
+    lids = [k for k, joint in enumerate(joints) if joint.part_class == "hinge_lid" and math.isfinite(joint.upper)]
+    if lids:
+        outlines = [_outline(body) for body in bodies]
+        for number in lids:
+            q = _smallest(outlines, joints, number, CLOSED)
+            if q:
+                notes.append(("joint", "joint_rest_shifted", f"{joints[number].name}: drawn open, closed by {q:.4f}"))
+                _shift(bodies, joints, parts, number, q, outlines)
+                shut = joints[number]
+                joints[number] = opening(replace(shut, lower=0.0) if q < 0 else replace(shut, upper=0.0))
+    boxes = [_box(body) for body in bodies]
+    for number, joint in enumerate(joints):
+        if joint.part_class not in {"hinge_door", "slider_drawer"} or not math.isfinite(joint.upper):
+            continue
+        moved = below(joints, joint.child)
+        ends = [(q, _volume(boxes, moved, joint_motion(joint, q))) for q in (0.0, joint.lower, joint.upper) if q == 0.0 or abs(q) > 1e-9]
+        best = min(ends[1:], key=lambda e: e[1], default=ends[0])
+        if best[1] < CLOSED * ends[0][1]:
+            notes.append(("joint", "joint_rest_shifted", f"{joint.name}: drawn open, closed by {best[0]:.4f}"))
+            _shift(bodies, joints, parts, number, best[0])
+            joints[number] = opening(joints[number])
+            boxes = [_box(body) for body in bodies]
+
+
+def folded(shape: ArticulatedShape) -> ArticulatedShape | None:
+    """Return the shape with every joint where the object's box is smallest, None where that is how it is drawn."""
+    bodies, joints, parts, notes = list(shape.bodies), list(shape.joints), list(shape.parts), list(shape.notes)
+    outlines = [_outline(body) for body in bodies]
+    for number, joint in enumerate(shape.joints):
+        if not math.isfinite(joint.upper):
+            continue
+        q = _smallest(outlines, joints, number, FOLDED)
+        if q:
+            notes.append(("joint", "joint_rest_shifted", f"{joint.name}: drawn spread out, folded by {q:.4f}"))
+            _shift(bodies, joints, parts, number, q, outlines)
+            joints[number] = opening(joints[number])
+    if len(notes) == len(shape.notes):
+        return None
+    return replace(shape, bodies=tuple(bodies), joints=tuple(joints), parts=tuple(parts), notes=tuple(notes))
+
+
+def _smallest(outlines: Sequence[Floats], joints: Sequence[ShapeJoint], number: int, share: float) -> float:
+    """Return the position of a joint at which the box around the bodies' outlines is smallest, 0 where it is not below `share` of that at 0."""
+    joint = joints[number]
+    moved = below(joints, joint.child)
+    still = [outline for k, outline in enumerate(outlines) if k not in moved]
+    rest = np.concatenate(still) if still else np.zeros((0, 3))
+    mine = np.concatenate([outlines[k] for k in sorted(moved)])
+
+    def volume(q: float) -> float:
+        return float(np.prod(np.ptp(np.concatenate([rest, apply(joint_motion(joint, q), mine)]), axis=0)))
+
+    ends = (joint.lower, joint.upper)
+    tried = np.linspace(*ends, STEPS) if joint.type == "revolute" else np.array(ends)
+    best = min(tried.tolist(), key=volume)
+    if joint.type == "revolute":
+        step = (ends[1] - ends[0]) / (STEPS - 1)
+        best = min(np.clip(best + np.linspace(-step, step, STEPS), *ends).tolist(), key=volume)
+    end = min(ends, key=volume)
+    best = end if volume(end) <= 1.02 * volume(best) else best
+    return best if abs(best) > 1e-6 and volume(best) < share * volume(0.0) else 0.0
+
+
+def _outline(body: ShapeBody) -> Floats:
+    """Return the points (N, 3) of a body that lie furthest in one of many directions: the corners of what is angular."""
+    points = body.points()
+    if not len(points):
+        return points
+    few = range(0, len(DIRECTIONS), 8)  # at a time: a mesh may have half a million points
+    furthest = np.unique(np.concatenate([np.argmax(points @ DIRECTIONS[k : k + 8].T, axis=0) for k in few]))
+    return np.asarray(points[furthest])
+
+
+def opening(joint: ShapeJoint) -> ShapeJoint:
+    """Turn the axis so that the longer side of the range is positive: from closed, motion opens."""
+    if -joint.lower > joint.upper:
+        return replace(joint, axis=-joint.axis, lower=-joint.upper, upper=-joint.lower)
+    return joint
+
+
+def without_empty(bodies: list[ShapeBody], joints: list[ShapeJoint], words: Mapping[int, str], notes: list[Note]) -> list[ShapeJoint]:
+    """Leave out joints to bodies without geometry: helper links of screws, and what moves nothing. `words` name bodies."""
+    span = _span(bodies)
+    while True:
+        odd = next((j for j in joints if bodies[j.child].empty), None)
+        if odd is None:
+            return joints
+        after = [j for j in joints if j.parent == odd.child]
+        rest = [j for j in joints if j is not odd and j not in after]
+        if len(after) == 1:
+            kept = _screw(odd, after[0], words.get(after[0].child, ""), span)
+            notes.append(
+                ("joint", "screw_collapsed", f"{odd.name} ({odd.type}) and {after[0].name} ({after[0].type}): {kept.name} is kept")
+            )
+            part = after[0] if after[0].part_class != "other" else odd
+            after = [replace(kept, parent=odd.parent, child=after[0].child, part_class=part.part_class, inferred=part.inferred)]
+        else:
+            notes.append(("joint", "joint_moves_nothing", odd.name))
+            after = [replace(j, parent=odd.parent) for j in after]
+        joints = sorted([*rest, *after], key=lambda j: j.child)
+
+
+def _screw(first: ShapeJoint, second: ShapeJoint, word: str, span: float) -> ShapeJoint:
+    """Return which of two joints in a row stands for both: what a hand does with the part.
+
+    A slide and a turn, in either order: what is a knob, cap or lid by its class or name turns, and so does what slides
+    by a few hundredths of the object only; a drawer slides. Of two joints of one kind the one with the longer range.
+    """
+    if (first.type == "prismatic") == (second.type == "prismatic"):
+        return max((second, first), key=lambda j: j.upper - j.lower)
+    slide, turn = (first, second) if first.type == "prismatic" else (second, first)
+    for joint in (second, first):
+        if not joint.inferred:
+            return turn if joint.part_class in TURNED else slide
+    words = words_of(word)
+    if any(w in words for w in TURNING_WORDS):
+        return turn
+    if "drawer" in words or "button" in words:
+        return slide
+    return turn if slide.upper - slide.lower <= STROKE * span else slide
+
+
+def _shift(
+    bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapePart], number: int, rest: float, outlines: list[Floats] | None = None
+) -> None:  # fmt: skip
+    """Move, in place, what hangs on a joint by `rest`; limits become relative to it."""
+    joint = joints[number]
+    T = joint_motion(joint, rest)
+    moved = below(joints, joint.child)
+    for body in moved:
+        bodies[body] = bodies[body].moved(T)
+        if outlines is not None:
+            outlines[body] = apply(T, outlines[body])
+    for k, other in enumerate(joints):
+        if other.parent in moved:
+            joints[k] = other.moved(T)
+    for k, part in enumerate(parts):
+        if part.body in moved:
+            parts[k] = part.moved(T)
+    joints[number] = replace(joint, lower=joint.lower - rest, upper=joint.upper - rest)
+
+
+def _box(body: ShapeBody) -> Floats:
+    """Return the corners (8, 3) of a body's box, (0, 3) of an empty one."""
+    points = body.points()
+    if not len(points):
+        return points
+    low, high = points.min(axis=0), points.max(axis=0)
+    return np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+
+
+def _volume(boxes: Sequence[Floats], moved: set[int], T: Floats) -> float:
+    points = np.concatenate([apply(T, box) if k in moved else box for k, box in enumerate(boxes)])
+    return float(np.prod(np.ptp(points, axis=0)))
+
+
+def _span(bodies: Sequence[ShapeBody]) -> float:
+    found = [b for body in bodies if len(b := _box(body))]
+    return float(np.linalg.norm(np.ptp(np.concatenate(found), axis=0))) if found else 1.0
+
+
+def _note(joint: UrdfJoint, reason: str, detail: str) -> Note:
+    return "joint", reason, f"{joint.name}: {detail}"

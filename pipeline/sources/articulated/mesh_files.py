@@ -1,0 +1,105 @@
+"""The mesh files and primitives that the shapes of a URDF name, each file read once."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import PurePosixPath
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.sources.articulated.shape import Note
+from pipeline.sources.articulated.urdf import Shape
+from pipeline.sources.guarded import Folder
+from pipeline.sources.meshes.collada_file import MAX_DAE, parse_dae
+from pipeline.sources.meshes.gltf_file import MAX_GLB, GltfMaterial, parse_glb
+from pipeline.sources.meshes.obj_file import MAX_OBJ, MtlMaterial, ObjFile, ObjGroup, parse_obj
+from pipeline.sources.meshes.primitives import MAX_STL, parse_stl, primitive
+from pipeline.sources.reasons import SourceError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+PACKAGE = re.compile(r"^(?:package|model)://", re.IGNORECASE)
+MAX_TOTAL = 1_500_000  # triangles of all files of an object together, counted once per use
+
+
+class MeshFiles:
+    """Files below `base` of a folder; what is missing goes to `notes`."""
+
+    def __init__(self, folder: Folder, base: str, notes: list[Note]) -> None:
+        self.folder, self.base, self.notes = folder, base, notes
+        self.files: dict[str, ObjFile | None] = {}
+        # By mesh file and name, where a file brings its own.
+        self.materials: dict[str, dict[str, GltfMaterial] | dict[str, MtlMaterial]] = {}
+        self.total = 0
+        self._places: dict[str, str] = {}
+
+    def place(self, mesh: str) -> str:
+        """Return the path of a mesh from `base` on.
+
+        package://name/rest is looked up as name/rest and as rest beside the URDF, then in the folders above it, as far up
+        as the source goes. Raises SourceError `unsafe_path` for one that leads out of the source.
+        """
+        if not PACKAGE.match(mesh):
+            return mesh
+        if mesh not in self._places:
+            full = PACKAGE.sub("", mesh).replace("\\", "/").lstrip("/")
+            tails = (full, full.partition("/")[2] or full)
+            ways = ("../" * up + tail for up in range(len(PurePosixPath(self.base).parts) + 1) for tail in tails)
+            self._places[mesh] = next((way for way in ways if self.folder.has(way, self.base)), tails[1])
+        return self._places[mesh]
+
+    def geometry(self, shape: Shape, T: Floats) -> list[tuple[ObjGroup, ObjFile, Floats]]:
+        """Return the groups of a shape of a link at T (4, 4), with their file and its vertices there.
+
+        A mirrored scale turns the faces. Raises SourceError for a file that is broken, too large or outside the folder.
+        """
+        file = self._file(shape.mesh) if shape.mesh else _solid(shape)
+        if file is None:
+            return []
+        self.total += sum(len(g.faces) for g in file.groups)
+        if self.total > MAX_TOTAL:
+            raise SourceError("too_large", shape.mesh, f"more than {MAX_TOTAL} triangles in all")
+        T_shape = T @ shape.T
+        points = (file.vertices * shape.scale) @ T_shape[:3, :3].T + T_shape[:3, 3]
+        groups = file.groups
+        if np.prod(shape.scale) < 0:
+            groups = tuple(replace(g, faces=g.faces[:, ::-1], uv_faces=g.uv_faces[:, ::-1]) for g in groups)
+        return [(group, file, points) for group in groups if len(group.faces)]
+
+    def _file(self, path: str) -> ObjFile | None:
+        """Return a mesh file, read once; a missing one is noted."""
+        if path not in self.files:
+            try:
+                self.files[path] = self._load(path)
+            except SourceError as error:
+                if error.code != "missing_file":
+                    raise
+                self.notes.append(("model", "missing_mesh", f"{path}: {error.detail}"))
+                self.files[path] = None
+        return self.files[path]
+
+    def _load(self, mesh: str) -> ObjFile:
+        path = self.place(mesh)
+        suffix = path.lower().rsplit(".", 1)[-1]
+        if suffix == "obj":
+            return parse_obj(self.folder.read(path, MAX_OBJ, self.base), path)
+        if suffix == "glb":
+            file, self.materials[mesh] = parse_glb(self.folder.read(path, MAX_GLB, self.base), path)
+            return file
+        if suffix == "dae":
+            file, self.materials[mesh] = parse_dae(self.folder.read(path, MAX_DAE, self.base), path)
+            return file
+        if suffix == "stl":
+            return _plain(*parse_stl(self.folder.read(path, MAX_STL, self.base), path))
+        self.folder.path(path, self.base)  # a path that leaves the folder is refused whatever it names
+        raise SourceError("missing_file", path, f"is of a kind that is not read ({suffix[:10]})")
+
+
+def _solid(shape: Shape) -> ObjFile | None:
+    return _plain(*primitive(*shape.primitive, shape.name)) if shape.primitive[0] else None
+
+
+def _plain(vertices: Floats, faces: Ints) -> ObjFile:
+    return ObjFile(vertices, np.zeros((0, 2)), (ObjGroup("", "", faces, np.full_like(faces, -1)),), "")

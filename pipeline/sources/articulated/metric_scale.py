@@ -1,0 +1,114 @@
+"""The metric scale of shapes that have none: PartNet-Mobility's are normalised to the unit sphere.
+
+For each category that an object may serve as, one uniform scale is fitted to the log-normal distribution of that
+category's sizes by maximum likelihood. Proportions alone rarely tell which category it is: at any scale of its own a
+nightstand has those of a kitchen unit. So categories compare by what the object would be at their scale: how likely its
+size is, how large its doors, drawers, handles and boards would be, which of them such furniture has
+(`category_signs`), and how common the category is.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.sources.articulated.category_signs import Signs, log_likelihood
+from pipeline.sources.articulated.proportions import Proportions
+from pipeline.sources.category_sizes import sizes
+
+Floats = NDArray[np.float64]
+COMMON = 30  # models that every category counts beside its own, so that none is ruled out for being rare
+UNITS = (1.0, 0.01, 0.001)  # metres per unit of files that are to scale: metres, centimetres, millimetres
+METRIC = 2.5  # rms of standard deviations within which a shape passes for one that is in metres already
+WIDE = 0.35  # spread of the logarithm that is added where nothing but our estimates of usual products is known
+AGREE = 2.5  # spreads within which two of three sides must agree on a scale
+ODD = math.log(15)  # by how much the third may be off: a laptop that stays open is as much higher than a closed one
+TALLEST = 2.75  # [m] that such a shape may be: rooms are 2.6 to 2.8 m high, and a chest of 3.2 m was drawn to be scaled
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """`scale` [m per unit] as `category`; `rms` in standard deviations; log-likelihood of the object at that scale.
+
+    `fitted`: the scale was chosen for that category; otherwise it is the unit of the file.
+    """
+
+    category: str
+    scale: float
+    rms: float
+    likelihood: float
+    fitted: bool
+
+
+def fit(extent: Floats, category: str, found: Signs | None = None) -> Fit | None:
+    """Fit a category's sizes to an object of `extent` (w, d, h) [units], or None without statistics.
+
+    With e = log extent and N(m, s^2) the logarithm of the sizes, log scale = sum((m - e) / s^2) / sum(1 / s^2).
+    """
+    known = sizes().get(category)
+    if known is None or extent.min() <= 0:
+        return None
+    location, spread = known.logarithmic()
+    weight = 1 / spread**2
+    log_scale = float(((location - np.log(extent)) * weight).sum() / weight.sum())
+    return _at(extent, category, math.exp(log_scale), found, fitted=True)
+
+
+def metric(extent: Floats, category: str, found: Signs | None = None, unit: float = 1.0) -> Fit | None:
+    """Return the fit of an object that is to scale already, of `unit` metres per unit, or None where it is no such thing."""
+    if sizes().get(category) is None or extent.min() <= 0 or extent[2] * unit > TALLEST:
+        return None
+    made = _at(extent, category, unit, found, fitted=False)
+    return made if made.rms <= METRIC else None
+
+
+def wide(extent: Floats, category: str, found: Signs | None = None, own: Proportions | None = None) -> Fit | None:
+    """Return the fit of an object that is built unlike its category's usual products, or None where it is nothing of the kind.
+
+    Two of its three sides must agree on a scale, and decide it; the third may be odd (the sum of log(1 + z^2), Cauchy's
+    likelihood, has its least value near what most say). How much a side says is its spread: the category's own, from its
+    objects (`own`) and with how far these are from our estimate, or WIDE.
+    """
+    known = sizes().get(category)
+    if known is None or extent.min() <= 0:
+        return None
+    location, spread = known.logarithmic()
+    if own is not None:
+        away = location - own.middle
+        spread = np.sqrt(spread**2 + own.spread**2 + (away - np.median(away)) ** 2)
+    else:
+        spread = np.sqrt(spread**2 + WIDE**2)
+    asked = location - np.log(extent)  # the log of the scale that each side asks for
+    tried = np.array([*asked, (asked / spread**2).sum() / (1 / spread**2).sum()])
+    z = (asked[None] - tried[:, None]) / spread
+    cost = np.log1p(z**2).sum(axis=1).round(9)
+    k = int(np.argmin(cost))
+    off = np.sort(np.abs(z[k]))
+    if off[1] > AGREE or float(np.abs(asked - tried[k]).max()) > ODD:
+        return None
+    scale = round(math.exp(float(tried[k])), 6)
+    likelihood = -float(cost[k] + np.log(spread).sum()) + math.log(known.count + COMMON)
+    if found is not None:
+        likelihood += log_likelihood(found, category, scale)
+    return Fit(category, scale, float(np.sqrt((z[k] ** 2).mean())), likelihood, fitted=True)
+
+
+def _at(extent: Floats, category: str, scale: float, found: Signs | None, *, fitted: bool) -> Fit:
+    known = sizes()[category]
+    location, spread = known.logarithmic()
+    z = (np.log(extent) + math.log(scale) - location) / spread
+    likelihood = float(-0.5 * (z**2).sum() - np.log(spread).sum() - 1.5 * math.log(2 * math.pi)) + math.log(known.count + COMMON)
+    if found is not None:
+        likelihood += log_likelihood(found, category, scale)
+    return Fit(category, round(scale, 6), float(np.sqrt((z**2).mean())), likelihood, fitted)
+
+
+def best(fits: Iterable[Fit | None], *, rms: float, keep: int, margin: float) -> tuple[Fit, ...]:
+    """Return the fits within `rms`, most likely first: at most `keep`, none worse than the best by more than `margin`."""
+    found = [f for f in fits if f is not None and f.rms <= rms]
+    found.sort(key=lambda f: (-f.likelihood, f.category))
+    return tuple(f for f in found[:keep] if f.likelihood >= found[0].likelihood - margin)

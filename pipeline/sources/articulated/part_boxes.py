@@ -1,0 +1,101 @@
+"""Boxes of parts in GAPartNet's axes: as annotated, or of the geometry where there is no annotation.
+
+z looks outwards, the way in which a part sets off when it opens, or its carrier's front; x is a hinge's axis in the
+opening sense, the long side of a handle, else level; y = z x x.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, QhullError
+
+from pipeline.sources.articulated.part_classes import box_of
+from pipeline.sources.articulated.shape import ShapeBody, ShapeJoint, ShapePart
+
+Floats = NDArray[np.float64]
+FRONT = np.array([0.0, -1.0, 0.0])
+
+
+def annotated_part(body: int, part_class: str, corners: Floats) -> ShapePart:
+    """Return a part of annotated corners (8, 3), already in our orientation."""
+    return ShapePart(body, part_class, *box_of(corners), annotated=True)
+
+
+def mover_part(body: ShapeBody, joint: ShapeJoint) -> ShapePart:
+    """Return the part that a joint moves, boxed by its own geometry."""
+    points = body.points()
+    if joint.type == "prismatic":
+        z = _unit(joint.axis, FRONT)
+    else:
+        out = _unit(np.cross(joint.axis, _far(points, joint) - joint.origin), FRONT)
+        z = max((s * n for n in _sides(points, joint.axis) for s in (1, -1)), key=lambda n: float(n @ out), default=out)
+    x = joint.axis if joint.part_class in {"hinge_door", "hinge_lid"} else _level(z)
+    return _boxed(joint.child, joint.part_class, points, x, z, annotated=not joint.inferred)
+
+
+def _sides(points: Floats, axis: Floats) -> list[Floats]:
+    """Return the normals (3,) of two sides of the narrowest box about an axis (a side lies along an edge of the outline)."""
+    across = _level(axis)
+    plane = np.stack([across, np.cross(axis, across)])
+    flat = points @ plane.T
+    try:
+        outline = flat[ConvexHull(flat).vertices]
+    except (QhullError, ValueError):
+        return []
+    edges = np.roll(outline, -1, axis=0) - outline
+    along = edges / np.linalg.norm(edges, axis=1)[:, None]
+    normal = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    areas = np.ptp(outline @ along.T, axis=0) * np.ptp(outline @ normal.T, axis=0)
+    best = int(np.argmin(areas.round(9)))
+    return [along[best] @ plane, normal[best] @ plane]
+
+
+def fixed_parts(number: int, body: ShapeBody, joints: Sequence[ShapeJoint]) -> list[ShapePart]:
+    """Return the handles and buttons among a body's visuals, one part for each mesh."""
+    carrier = next((j for j in joints if j.child == number), None)
+    made = []
+    for mesh in body.visuals:
+        if mesh.part:
+            points = np.asarray(mesh.vertices, np.float64)
+            z = FRONT if carrier is None else _outwards(points, carrier)
+            across = np.ptp(points, axis=0) * (np.abs(z) < 0.5)
+            x = np.eye(3)[int(np.argmax(across))] if mesh.part == "line_fixed_handle" else _level(z)
+            made.append(_boxed(number, mesh.part, points, x, z, annotated=False))
+    return made
+
+
+def _outwards(points: Floats, carrier: ShapeJoint) -> Floats:
+    """Return the axis along which a handle sets off when its carrier opens."""
+    out = carrier.axis if carrier.type == "prismatic" else np.cross(carrier.axis, points.mean(axis=0) - carrier.origin)
+    z = np.zeros(3)
+    k = int(np.argmax(np.abs(out)))
+    z[k] = np.sign(out[k]) or 1.0
+    return z
+
+
+def _far(points: Floats, joint: ShapeJoint) -> Floats:
+    """Return the middle of the points that lie farthest from a hinge's axis."""
+    away = points - joint.origin
+    radius = np.linalg.norm(away - np.outer(away @ joint.axis, joint.axis), axis=1)
+    return np.asarray(points[radius >= 0.9 * radius.max()].mean(axis=0))
+
+
+def _boxed(body: int, part_class: str, points: Floats, x: Floats, z: Floats, *, annotated: bool) -> ShapePart:
+    z = _unit(z - x * (z @ x), _level(x))
+    axes = np.stack([x, np.cross(z, x), z])
+    along = points @ axes.T
+    low, high = along.min(axis=0), along.max(axis=0)
+    return ShapePart(body, part_class, (low + high) / 2 @ axes, axes, high - low, annotated)
+
+
+def _level(z: Floats) -> Floats:
+    """Return a unit vector across z, level where z is not upright."""
+    return _unit(np.cross([0.0, 0.0, 1.0], z), np.array([1.0, 0.0, 0.0]))
+
+
+def _unit(vector: Floats, otherwise: Floats) -> Floats:
+    length = float(np.linalg.norm(vector))
+    return np.asarray(vector / length) if length > 1e-6 else otherwise

@@ -1,0 +1,126 @@
+"""Articulated shapes as they are read: bodies, joints and parts in our orientation, in the source's units."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.asset import JointType, Mesh
+from pipeline.sources.meshes.inertials import Inertial
+from pipeline.sources.meshes.visual_meshes import Palette
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Note = tuple[str, str, str]  # (what, reason, detail)
+
+
+@dataclass(slots=True)
+class ShapeBody:
+    """A rigid body: visual meshes, collision meshes, and what each of its links with geometry states of its mass, if anything."""
+
+    name: str
+    visuals: list[Mesh] = field(default_factory=list)
+    collisions: list[tuple[Floats, Ints]] = field(default_factory=list)
+    inertials: list[Inertial | None] = field(default_factory=list)
+
+    @property
+    def empty(self) -> bool:
+        """Whether it has no geometry at all."""
+        return not self.visuals and not self.collisions
+
+    def points(self) -> Floats:
+        """Return the vertices (V, 3) of the visuals, or of the collision meshes where there are none."""
+        found = [np.asarray(m.vertices, np.float64) for m in self.visuals] or [v[np.unique(f)] for v, f in self.collisions]
+        return np.concatenate(found) if found else np.zeros((0, 3))
+
+    def moved(self, T: Floats) -> ShapeBody:
+        """Return the body under the rigid motion T (4, 4)."""
+        visuals = [replace(m, vertices=apply(T, np.asarray(m.vertices, np.float64)).astype(np.float32)) for m in self.visuals]
+        inertials = [i and i.moved(T) for i in self.inertials]
+        return ShapeBody(self.name, visuals, [(apply(T, v), f) for v, f in self.collisions], inertials)
+
+
+@dataclass(frozen=True, slots=True)
+class ShapeJoint:
+    """A moving joint at rest; positive motion opens. `inferred`: nobody has annotated its part class."""
+
+    name: str
+    type: JointType
+    parent: int
+    child: int
+    axis: Floats
+    origin: Floats
+    lower: float
+    upper: float
+    part_class: str
+    inferred: bool = True
+
+    def moved(self, T: Floats) -> ShapeJoint:
+        """Return the joint under the rigid motion T (4, 4)."""
+        return replace(self, axis=T[:3, :3] @ self.axis, origin=T[:3, :3] @ self.origin + T[:3, 3])
+
+
+@dataclass(frozen=True, slots=True)
+class ShapePart:
+    """The oriented box of a part of `part_class` on a body: `centre` (3,), `axes` (3, 3) rows x, y, z right-handed, `size` (3,).
+
+    z looks outwards. `annotated`: the source says so; otherwise class and box were inferred.
+    """
+
+    body: int
+    part_class: str
+    centre: Floats
+    axes: Floats
+    size: Floats
+    annotated: bool
+
+    def moved(self, T: Floats) -> ShapePart:
+        """Return the part under the rigid motion T (4, 4)."""
+        return replace(self, centre=T[:3, :3] @ self.centre + T[:3, 3], axes=self.axes @ T[:3, :3].T)
+
+
+@dataclass(frozen=True, slots=True)
+class ArticulatedShape:
+    """What a folder or file holds: bodies (0 is the base), joints parents first, parts, and the notes of repairs."""
+
+    source: str
+    source_id: str
+    model_cat: str
+    bodies: tuple[ShapeBody, ...]
+    joints: tuple[ShapeJoint, ...]
+    parts: tuple[ShapePart, ...]
+    palette: Palette
+    notes: tuple[Note, ...]
+
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Return the corners of the box at rest [units]."""
+        points = np.concatenate([m.vertices for b in self.bodies for m in b.visuals])
+        return points.min(axis=0).astype(np.float64), points.max(axis=0).astype(np.float64)
+
+    def turned(self, R: Floats) -> ArticulatedShape:
+        """Return the shape turned by R (3, 3)."""
+        T = np.eye(4)
+        T[:3, :3] = R
+        return replace(
+            self,
+            bodies=tuple(b.moved(T) for b in self.bodies),
+            joints=tuple(j.moved(T) for j in self.joints),
+            parts=tuple(p.moved(T) for p in self.parts),
+        )
+
+
+def apply(T: Floats, points: Floats) -> Floats:
+    """Return points (N, 3) under T (4, 4)."""
+    return np.asarray(points @ T[:3, :3].T + T[:3, 3])
+
+
+def below(joints: Sequence[ShapeJoint], body: int) -> set[int]:
+    """Return the bodies that move with `body`, itself included; joints come parents first."""
+    found = {body}
+    for joint in joints:
+        if joint.parent in found:
+            found.add(joint.child)
+    return found

@@ -1,0 +1,263 @@
+"""URDF trees to articulated shapes: bodies of links that do not move against each other, joints between them, parts."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import PurePosixPath
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.entities.asset import Mesh
+from pipeline.sources.articulated import joint_rules
+from pipeline.sources.articulated.mesh_files import MeshFiles
+from pipeline.sources.articulated.mobility_v2 import Mobility
+from pipeline.sources.articulated.part_boxes import annotated_part
+from pipeline.sources.articulated.part_classes import Annotation, fixed_class, named_class
+from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, ShapePart, below
+from pipeline.sources.articulated.urdf import Shape, Urdf, UrdfLink
+from pipeline.sources.guarded import Folder
+from pipeline.sources.meshes.obj_file import MtlMaterial, ObjFile, ObjGroup
+from pipeline.sources.meshes.visual_meshes import Palette, visual
+from pipeline.sources.reasons import SourceError
+
+Floats = NDArray[np.float64]
+LIKE = 0.03  # share of the object's diagonal within which the boxes of two sets of meshes of a body agree
+POST = 0.02  # the same for the thickness of the post that stands in for a frame that a door lacks
+
+
+@dataclass(frozen=True, slots=True)
+class Hints:
+    """What a source says beside its URDF: annotations and semantics by link, PartNet's own joints, and a second URDF for looks."""
+
+    annotated: Mapping[str, Annotation] = field(default_factory=dict)
+    named: Mapping[str, str] = field(default_factory=dict)
+    mobility: Mapping[str, Mobility] = field(default_factory=dict)
+    looks: Urdf | None = None
+
+
+class ShapeReader:
+    """Reads one URDF: `base` is the folder of its paths, `frame` (3, 3) turns its root's frame into ours."""
+
+    def __init__(self, folder: Folder, base: str, urdf: Urdf, frame: Floats, hints: Hints, texture_limit: int) -> None:
+        self.urdf, self.hints, self.frame = urdf, hints, frame
+        self.base = base
+        self.palette = Palette(folder, texture_limit)
+        self.notes: list[Note] = []
+        self.files = MeshFiles(folder, base, self.notes)
+
+    def shape(self, source: str, source_id: str, model_cat: str) -> ArticulatedShape:
+        """Return the shape at rest, with the parts that are annotated (`part_inference` finds the others).
+
+        Raises SourceError `no_base`, or what a mesh file raises.
+        """
+        T = self._transforms(self.urdf)
+        body_of, bodies, joints = self._tree(T)
+        for name, link in self.urdf.links.items():
+            self._fill(bodies[body_of[name]], link, T[name], moves=self._moves(name, body_of))
+        self._borrow_looks(bodies, body_of)
+        words = {body_of[name]: word for name, word in self.hints.named.items() if name in body_of}
+        joints = joint_rules.without_empty(bodies, joints, words, self.notes)
+        bodies, joints, index = self._used(bodies, joints)
+        joints = self._based(bodies, joints, source_id)
+        parts = self._annotated_parts({name: index[body] for name, body in body_of.items() if body in index})
+        joint_rules.rested(bodies, joints, parts, self.notes)
+        for body in bodies:
+            if not body.collisions:
+                body.collisions = [(m.vertices.astype(np.float64), m.faces.astype(np.int64)) for m in body.visuals]
+        notes = [*self.notes, *(("model", reason, detail) for reason, detail in self.palette.notes)]
+        return ArticulatedShape(
+            source, source_id, model_cat, tuple(bodies), tuple(_named(joints)), tuple(parts), self.palette, tuple(notes)
+        )  # fmt: skip
+
+    def _transforms(self, urdf: Urdf) -> dict[str, Floats]:
+        """Return the pose (4, 4) of every link with all joints at 0, in our orientation."""
+        T = {urdf.root: np.eye(4)}
+        T[urdf.root][:3, :3] = self.frame
+        for joint in urdf.joints:
+            T[joint.child] = T[joint.parent] @ joint.T
+        return T
+
+    def _tree(self, T: Mapping[str, Floats]) -> tuple[dict[str, int], list[ShapeBody], list[ShapeJoint]]:
+        """Return the body of every link, the bodies, still empty, and the moving joints."""
+        bodies = [ShapeBody(slug(self.urdf.root))]
+        body_of = {self.urdf.root: 0}
+        joints: list[ShapeJoint] = []
+        for joint in self.urdf.joints:
+            found = joint_rules.limits(joint, self.hints.mobility.get(joint.child), self.notes)
+            if found is None:
+                body_of[joint.child] = body_of[joint.parent]
+                continue
+            kind, lower, upper = found
+            body_of[joint.child] = len(bodies)
+            pose = T[joint.child]
+            part, inferred = self._told(joint.child, kind)
+            axis, origin = pose[:3, :3] @ joint.axis, pose[:3, 3].copy()
+            child = len(bodies)
+            joints.append(ShapeJoint(joint.name, kind, body_of[joint.parent], child, axis, origin, lower, upper, part, inferred))
+            bodies.append(ShapeBody(slug(joint.child)))
+        return body_of, bodies, joints
+
+    def _told(self, link: str, kind: str) -> tuple[str, bool]:
+        """Return (part class, whether inferred) of a moving link, "other" where nothing but its shape can tell."""
+        if link in self.hints.annotated:
+            return self.hints.annotated[link].part_class, False
+        known = self.hints.mobility.get(link)
+        return named_class(kind, self.hints.named.get(link) or (known.name if known else "")) or "other", True
+
+    def _moves(self, name: str, body_of: Mapping[str, int]) -> bool:
+        """Whether the link hangs on a moving joint of its own."""
+        return name != self.urdf.root and all(body_of[j.parent] != body_of[name] for j in self.urdf.joints if j.child == name)
+
+    def _fill(self, body: ShapeBody, link: UrdfLink, T: Floats, *, moves: bool) -> None:
+        body.visuals += self._visuals(link, T, len(body.visuals), moves=moves)
+        if link.visuals or link.collisions:
+            body.inertials.append(link.inertial and link.inertial.moved(T))
+        for shape in link.collisions:
+            body.collisions += [(points, group.faces) for group, _, points in self.files.geometry(shape, T)]
+
+    def _visuals(self, link: UrdfLink, T: Floats, start: int, *, moves: bool) -> list[Mesh]:
+        made: list[Mesh] = []
+        for shape in link.visuals:
+            for group, file, points in self.files.geometry(shape, T):
+                extent = np.ptp(points[np.unique(group.faces)], axis=0)
+                part = fixed_class(link.name, shape.name, self.hints.annotated, extent, moves=moves)
+                material = self._material(shape, file, group)
+                mesh = visual(group, file, points, f"mesh_{start + len(made):03d}", material, part)
+                if mesh:
+                    made.append(mesh)
+        return made
+
+    def _material(self, shape: Shape, file: ObjFile, group: ObjGroup) -> int:
+        own = self.files.materials.get(shape.mesh, {}).get(group.material)
+        base = PurePosixPath(self.base, self.files.place(shape.mesh).replace("\\", "/")).parent.as_posix() if shape.mesh else ""
+        base = "" if base == "." else base
+        if isinstance(own, MtlMaterial):
+            return self.palette.entry(own, base)
+        if own:
+            return self.palette.own(own.color, own.roughness, own.image, f"{shape.mesh}#{group.material}")
+        if shape.color and not file.library:
+            return self.palette.add(shape.color[:3], shape.color[3], None)
+        return self.palette.index(file.library, base, group.material)
+
+    def _borrow_looks(self, bodies: list[ShapeBody], body_of: Mapping[str, int]) -> None:
+        """Take the visuals of the second URDF where it has the same links in the same places; else keep our own."""
+        looks = self.hints.looks
+        if looks is None:
+            return
+        T = self._transforms(looks)
+        owner = {looks.root: body_of.get(looks.root, 0)}
+        for joint in looks.joints:
+            owner[joint.child] = body_of.get(joint.child, owner[joint.parent])
+        borrowed = [ShapeBody(body.name) for body in bodies]
+        for name, link in looks.links.items():
+            body = borrowed[owner[name]]
+            body.visuals += self._visuals(link, T[name], len(body.visuals), moves=self._moves(name, body_of) if name in body_of else False)
+        span = _span(bodies)
+        if all(_alike(a, b, span) for a, b in zip(bodies, borrowed, strict=True)):
+            for body, other in zip(bodies, borrowed, strict=True):
+                body.visuals = other.visuals
+        else:
+            self.notes.append(("model", "looks_differ", "the meshes of the URDF for looks are not where the annotated ones are"))
+
+    def _used(self, bodies: list[ShapeBody], joints: list[ShapeJoint]) -> tuple[list[ShapeBody], list[ShapeJoint], dict[int, int]]:
+        """Return bodies and joints without the bodies that no joint moves, and the new index of each old one."""
+        used = [0, *(j.child for j in joints)]
+        index = {old: new for new, old in enumerate(used)}
+        return [bodies[k] for k in used], [replace(j, parent=index[j.parent], child=index[j.child]) for j in joints], index
+
+    def _based(self, bodies: list[ShapeBody], joints: list[ShapeJoint], source_id: str) -> list[ShapeJoint]:
+        """See that every body has visuals, and the base something to be seen at all."""
+        for body in bodies:
+            if not body.visuals and body.collisions:
+                material = self.palette.add((0.7, 0.7, 0.7), 1.0, None)
+                body.visuals = [
+                    Mesh(f"mesh_{k:03d}", v.astype(np.float32), f.astype(np.int32), material) for k, (v, f) in enumerate(body.collisions)
+                ]
+                self.notes.append(("model", "looks_from_colliders", body.name))
+        if bodies[0].visuals:
+            return joints
+        hinged = [j for j in joints if j.parent == 0 and j.type == "revolute"]
+        if (
+            len(hinged) != 1
+            or any(j.parent == 0 for j in joints if j is not hinged[0])
+            or any(r == "missing_mesh" for _, r, _ in self.notes)
+        ):
+            raise SourceError("no_base", source_id, "its root body has no geometry")
+        vertices, faces = _post(bodies, joints, hinged[0])
+        bodies[0].visuals = [
+            Mesh("post", vertices.astype(np.float32), faces.astype(np.int32), self.palette.add((0.6, 0.6, 0.6), 1.0, None))
+        ]
+        self.notes.append(("model", "base_made", f"a post along the hinge {hinged[0].name}"))
+        return joints
+
+    def _annotated_parts(self, body_of: Mapping[str, int]) -> list[ShapePart]:
+        return [
+            annotated_part(body_of[name], note.part_class, note.corners @ self.frame.T)
+            for name, note in self.hints.annotated.items()
+            if note.corners is not None and name in body_of
+        ]
+
+
+def _alike(body: ShapeBody, other: ShapeBody, span: float) -> bool:
+    if not body.visuals or not other.visuals:
+        return not body.visuals and not other.visuals
+    a, b = body.points(), other.points()
+    away = np.maximum(np.abs(a.min(axis=0) - b.min(axis=0)), np.abs(a.max(axis=0) - b.max(axis=0)))
+    return float(away.max()) <= LIKE * span
+
+
+def _span(bodies: list[ShapeBody]) -> float:
+    points = np.concatenate([body.points() for body in bodies])
+    return float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else 1.0
+
+
+def _post(bodies: list[ShapeBody], joints: list[ShapeJoint], hinge: ShapeJoint) -> tuple[Floats, Floats]:
+    """Return vertices (8, 3) and faces (12, 3) of a square post along a hinge, on the far side of it from its leaf."""
+    points = np.concatenate([bodies[k].points() for k in sorted(below(joints, hinge.child))])
+    along = (points - hinge.origin) @ hinge.axis
+    thick = POST * float(np.linalg.norm(np.ptp(points, axis=0)))
+    out = hinge.origin - points.mean(axis=0)
+    out = out - hinge.axis * (out @ hinge.axis)
+    length = float(np.linalg.norm(out))
+    across = out / length if length > 1e-9 else np.cross(hinge.axis, [1.0, 0.3, 0.2])
+    across = across / np.linalg.norm(across)
+    side = np.cross(hinge.axis, across)
+    reach = float(((points - hinge.origin) @ across).max())
+    corners = [
+        hinge.origin + hinge.axis * a + across * (max(reach, 0.0) + b * thick) + side * (c - 0.5) * thick
+        for a in (along.min(), along.max()) for b in (0, 1) for c in (0, 1)
+    ]  # fmt: skip
+    faces = np.array(
+        [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
+    )
+    return np.array(corners), faces
+
+
+def _named(joints: list[ShapeJoint]) -> list[ShapeJoint]:
+    """Give joints ids that are unique in the asset and match [a-z][a-z0-9_]*."""
+    taken: set[str] = set()
+    named = []
+    for joint in joints:
+        name = unused(slug(joint.name), taken)
+        taken.add(name)
+        named.append(replace(joint, name=name))
+    return named
+
+
+def unused(name: str, taken: set[str]) -> str:
+    """Return the name, with a number behind it where it is taken."""
+    number = 1
+    made = name
+    while made in taken:
+        number += 1
+        made = f"{name}_n{number}"
+    return made
+
+
+def slug(name: str) -> str:
+    """Return a name that matches [a-z][a-z0-9_]*, of at most 48 characters."""
+    plain = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")[:48]
+    return plain if plain[:1].isalpha() else f"n_{plain}"

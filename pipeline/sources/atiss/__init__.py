@@ -1,0 +1,1 @@
+"""The cached rooms of ATISS and DiffuScene, read and written."""

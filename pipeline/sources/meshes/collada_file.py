@@ -1,0 +1,219 @@
+"""COLLADA 1.4 and 1.5 files (.dae) as meshes, for URDFs whose meshes are of that kind.
+
+Read: the scene's nodes with their transforms, triangles, polylists, polygons, strips and fans, the first set of uvs, the
+unit and the axis that is up (turned to z, as a URDF's frames have it); `collada_materials` reads what colours them. Left
+out: lines, holes of polygons, skins, cameras, lights. A DTD, an entity or an external reference is refused.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.sources.meshes.collada_materials import Elements, material
+from pipeline.sources.meshes.obj_file import MAX_COORDINATE, MAX_FACES, MAX_GROUPS, MAX_VERTICES, MtlMaterial, ObjFile, ObjGroup
+from pipeline.sources.meshes.xml_file import xml_root
+from pipeline.sources.reasons import SourceError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+MAX_DAE = 16 << 20  # bytes; numbers of one digit take eight times their text
+MAX_ELEMENTS = 200_000
+DEPTH = 64  # of the tree of nodes
+MOST_INPUTS = 64  # indices of a corner
+MOST = 20_000  # nodes and primitives drawn
+# Turns to z up; COLLADA 1.4 chapter 5, up_axis: right, up and inwards are -y, +x, +z of X_UP and +x, +y, +z of Y_UP.
+UPRIGHT = {
+    "X_UP": np.array([[0.0, -1, 0], [0, 0, -1], [1, 0, 0]]),
+    "Y_UP": np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]),
+    "Z_UP": np.eye(3),
+}
+KINDS = frozenset({"triangles", "polylist", "polygons", "tristrips", "trifans"})
+
+
+def parse_dae(data: bytes, where: str) -> tuple[ObjFile, dict[str, MtlMaterial]]:
+    """Return the file's triangles [m, z up], a group per primitive, and its materials by name.
+
+    Raises SourceError `not_obj`, `bad_number` or `too_large`, naming `where`.
+    """
+    try:
+        return _Reader(_tree(data, where), where).read()
+    except (KeyError, IndexError, TypeError, ValueError, OverflowError, AttributeError) as error:
+        raise SourceError("not_obj", where, f"is no COLLADA file, or a broken one ({type(error).__name__}: {str(error)[:60]})") from error
+
+
+def _tree(data: bytes, where: str) -> Any:
+    root = xml_root(data, "not_obj", where, MAX_ELEMENTS)
+    for element in root.iter():  # one namespace per version says nothing that the names do not
+        if isinstance(element.tag, str):
+            element.tag = element.tag.rpartition("}")[2]
+    if root.tag != "COLLADA":
+        raise SourceError("not_obj", where, f"its root is <{str(root.tag)[:40]}>, not <COLLADA>")
+    return root
+
+
+class _Reader:
+    def __init__(self, root: Any, where: str) -> None:
+        self.root, self.where = root, where
+        self.elements: Elements = {e.get("id"): e for e in root.iter() if e.get("id")}
+        self.vertices: list[Floats] = []
+        self.uvs: list[Floats] = []
+        self.groups: list[ObjGroup] = []
+        self.sources: dict[tuple[str, int], Floats] = {}
+        self.counts = [0, 0, 0]  # vertices, uvs, faces
+        self.visits = 0  # of nodes and primitives: a few nodes that name each other twice are a tree without end
+
+    def read(self) -> tuple[ObjFile, dict[str, MtlMaterial]]:
+        T = np.eye(4)
+        unit = self.root.find("asset/unit")
+        T[:3, :3] = UPRIGHT[(self.root.findtext("asset/up_axis") or "Y_UP").strip()]
+        T[:3, :3] *= float(unit.get("meter", 1.0)) if unit is not None else 1.0
+        scene = self.root.find("scene/instance_visual_scene")
+        shown = [self._named(scene)] if scene is not None else self.root.findall("library_visual_scenes/visual_scene")
+        for element in shown:
+            for node in element.findall("node"):
+                self._node(node, T, 0)
+        if not self.groups:
+            raise SourceError("not_obj", self.where, "has no triangles")
+        uvs = np.concatenate(self.uvs) if self.counts[1] else np.zeros((0, 2))
+        file = ObjFile(np.concatenate(self.vertices), uvs, tuple(self.groups), "")
+        return file, {name: material(name, self.elements) for name in sorted({g.material for g in self.groups} - {""})}
+
+    def _named(self, instance: Any) -> Any:
+        return self.elements[instance.get("url").removeprefix("#")]
+
+    def _visit(self) -> None:
+        self.visits += 1
+        if self.visits > MOST:
+            raise SourceError("too_large", self.where, f"draws more than {MOST} things")
+
+    def _node(self, node: Any, T: Floats, depth: int) -> None:
+        if depth > DEPTH:
+            raise SourceError("not_obj", self.where, "has nodes in a loop, or too deep")
+        self._visit()
+        for element in node:
+            T = T @ _transform(element)
+        for instance in node.findall("instance_geometry"):
+            bound = {m.get("symbol"): m.get("target", "").removeprefix("#") for m in instance.iter("instance_material")}
+            self._geometry(self._named(instance), T, bound)
+        for child in node.findall("node"):
+            self._node(child, T, depth + 1)
+        for instance in node.findall("instance_node"):
+            self._node(self._named(instance), T, depth + 1)
+
+    def _geometry(self, geometry: Any, T: Floats, bound: dict[str, str]) -> None:
+        mesh = geometry.find("mesh")
+        for primitive in mesh if mesh is not None else ():
+            if primitive.tag in KINDS:
+                self._visit()
+                self._primitive(primitive, T, bound)
+
+    def _primitive(self, primitive: Any, T: Floats, bound: dict[str, str]) -> None:
+        inputs = {i.get("semantic"): i for i in reversed(primitive.findall("input"))}  # of several sets the first
+        vertex, uv = inputs["VERTEX"], inputs.get("TEXCOORD")
+        width = 1 + max(int(i.get("offset", 0)) for i in primitive.findall("input"))
+        if not 0 < width <= MOST_INPUTS:
+            raise SourceError("not_obj", self.where, f"has corners of {width} indices")
+        corners = np.concatenate([*_triangles(primitive, width), np.zeros((0, 3, width), np.int64)])
+        position = next(i for i in self._named_source(vertex).findall("input") if i.get("semantic") == "POSITION")
+        points = self._source(position, 3)
+        uvs = self._source(uv, 2) if uv is not None else np.zeros((0, 2))
+        faces = corners[:, :, int(vertex.get("offset", 0))]
+        uv_faces = corners[:, :, int(uv.get("offset", 0))] if uv is not None else np.full_like(faces, -1)
+        if len(faces) and (faces.min() < 0 or faces.max() >= len(points) or uv_faces.min() < -1 or uv_faces.max() >= len(uvs)):
+            raise SourceError("not_obj", self.where, "indexes vertices that are not there")
+        points = points @ T[:3, :3].T + T[:3, 3]
+        if not np.isfinite(points).all() or np.abs(points).max(initial=0) > MAX_COORDINATE:
+            raise SourceError("bad_number", self.where, "has coordinates that are not finite, or absurd")
+        if np.linalg.det(T[:3, :3]) < 0:
+            faces, uv_faces = faces[:, ::-1], uv_faces[:, ::-1]
+        start, start_uv = self.counts[0], self.counts[1]
+        self.counts = [start + len(points), start_uv + len(uvs), self.counts[2] + len(faces)]
+        if self.counts[0] > MAX_VERTICES or self.counts[2] > MAX_FACES or len(self.groups) >= MAX_GROUPS:
+            raise SourceError("too_large", self.where, f"has {self.counts[0]} vertices and {self.counts[2]} faces")
+        self.vertices.append(points)
+        self.uvs.append(uvs)
+        symbol = primitive.get("material", "")
+        uv_faces = uv_faces + start_uv if uv is not None else uv_faces
+        self.groups.append(ObjGroup(primitive.get("name", ""), bound.get(symbol, symbol), faces + start, uv_faces))
+
+    def _named_source(self, given: Any) -> Any:
+        return self.elements[given.get("source").removeprefix("#")]
+
+    def _source(self, given: Any, width: int) -> Floats:
+        """Return the values (N, width) of a source, parsed once."""
+        name = given.get("source").removeprefix("#")
+        if (name, width) not in self.sources:
+            source = self.elements[name]
+            accessor = source.find("technique_common/accessor")
+            values = _numbers(self.elements[accessor.get("source").removeprefix("#")].text, np.float64, self.where)
+            stride, offset, count = (int(accessor.get(k, d)) for k, d in (("stride", 1), ("offset", 0), ("count", 0)))
+            if stride < width or offset < 0 or count < 0 or offset + count * stride > len(values):
+                raise SourceError("not_obj", self.where, "has an accessor beyond its numbers")
+            self.sources[name, width] = values[offset : offset + count * stride].reshape(count, stride)[:, :width]
+        return self.sources[name, width]
+
+
+def _numbers(text: str | None, kind: type, where: str) -> NDArray[Any]:
+    """Return numbers separated by blanks. Raises SourceError for anything else."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            found: NDArray[Any] = np.fromstring((text or "").strip(), kind, sep=" ")
+        except (ValueError, DeprecationWarning) as error:
+            raise SourceError("bad_number", where, "has a list that holds something that is no number") from error
+    if kind is np.float64 and not np.isfinite(found).all():
+        raise SourceError("bad_number", where, "has a number that is not finite")
+    return found
+
+
+def _triangles(primitive: Any, width: int) -> Iterator[Ints]:
+    """Yield triangles (T, 3, width) of indices into the inputs."""
+    where = primitive.tag
+    lists = [_numbers(p.text, np.int64, where) for p in primitive.findall("p")]
+    lists = [p[: len(p) // width * width].reshape(-1, width) for p in lists]
+    if primitive.tag == "triangles":
+        yield from (p[: len(p) // 3 * 3].reshape(-1, 3, width) for p in lists)
+    elif primitive.tag == "tristrips":
+        for p in lists:
+            k = np.arange(max(len(p) - 2, 0))
+            yield p[np.stack([k, k + 1 + k % 2, k + 2 - k % 2], axis=1)]
+    else:
+        text = primitive.findtext("vcount")
+        whole = np.concatenate([*lists, np.zeros((0, width), np.int64)])
+        counts = _numbers(text, np.int64, where) if primitive.tag == "polylist" else np.array([len(p) for p in lists], np.int64)
+        if (counts < 0).any() or counts.sum() > len(whole):
+            raise ValueError(f"<{where}> names more corners than it has")
+        yield whole[_fanned(counts)]
+
+
+def _fanned(counts: Ints) -> Ints:
+    """Return (T, 3) positions in the list of corners: each polygon of n corners becomes n - 2 triangles."""
+    starts, inner = np.cumsum(counts) - counts, np.maximum(counts - 2, 0)
+    step = np.arange(int(inner.sum())) - np.repeat(np.cumsum(inner) - inner, inner)
+    first = np.repeat(starts, inner)
+    return np.stack([first, first + step + 1, first + step + 2], axis=1)
+
+
+def _transform(element: Any) -> Floats:
+    """Return what a child of a node adds to its transform (4, 4)."""
+    T = np.eye(4)
+    if element.tag not in {"matrix", "translate", "rotate", "scale"}:
+        return T
+    values = _numbers(element.text, np.float64, element.tag)
+    if element.tag == "matrix":
+        return values.reshape(4, 4)
+    if element.tag == "translate":
+        T[:3, 3] = values.reshape(3)
+    elif element.tag == "scale":
+        T[:3, :3] *= values.reshape(3)
+    else:
+        x, y, z = values[:3] / max(float(np.linalg.norm(values[:3])), 1e-12)
+        c, s = np.cos(np.radians(values[3])), np.sin(np.radians(values[3]))
+        cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        T[:3, :3] = np.eye(3) + s * cross + (1 - c) * cross @ cross
+    return T

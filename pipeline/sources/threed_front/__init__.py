@@ -1,0 +1,1 @@
+"""3D-FRONT houses and 3D-FUTURE models."""

@@ -1,0 +1,120 @@
+"""The furniture of a 3D-FRONT house put into its rooms: each piece in the room in which it lies, or a reason why in none."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from pipeline.sources.reasons import Row, SourceError, reject
+from pipeline.sources.settings import FrontFilters
+from pipeline.sources.threed_front.furniture import Model, Placed, inside, overlapping, placed
+from pipeline.sources.threed_front.house_file import HouseFile, RoomRecord
+from pipeline.sources.threed_front.rows import ReadRoom
+from pipeline.sources.threed_front.supports import floating, supports
+from pipeline.taxonomy import Taxonomy
+
+MAX_OBJECTS = 500  # of one room
+
+
+@dataclass(slots=True)
+class Candidates:
+    """What lies in a room: its own children, then what is filed under others."""
+
+    own: list[Placed] = field(default_factory=list)
+    guests: list[Placed] = field(default_factory=list)
+
+
+def fill(
+    house: HouseFile, rooms: list[ReadRoom], models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]
+) -> None:
+    """Give each room its objects; every child that is left out gets a reason, dangling and built-in ones by the room."""
+    found = {room.room_id: Candidates() for room in rooms}
+    mine = {id(room.record): room for room in rooms}
+    seen: set[tuple[Any, ...]] = set()
+    for record in house.rooms:
+        room = mine.get(id(record))
+        where = f"{house.uid}/{record.instance}"
+        count: Counter[str] = Counter()
+        for child in record.children:
+            furniture = house.furniture.get(child.ref)
+            if furniture is None or furniture.valid is None:
+                kind = "built_in" if furniture else "dangling_ref"
+                count[kind] += not furniture.title.startswith(("door/", "window/")) if furniture else child.ref not in house.meshes
+                continue
+            name = f"{where}/{child.instance}"
+            pose = (child.replaced_by or furniture.jid, *np.round(child.position, 3).tolist(), *np.round(child.rotation, 3).tolist())
+            if furniture.valid and pose in seen:
+                rejects.append(reject("object", name, "duplicate", f"model {furniture.jid}"))
+                continue
+            seen.add(pose)
+            made = placed(child, furniture, models, taxonomy, limits)
+            home = _home(made, room, rooms, limits) if isinstance(made, Placed) else None
+            if isinstance(made, Placed) and home is not None:
+                if home is room:
+                    found[home.room_id].own.append(made)
+                else:
+                    found[home.room_id].guests.append(_moved(made, record, home))
+            else:
+                reason = made if isinstance(made, tuple) else ("outside_room", _outside(made, room, record))
+                rejects.append(reject("object", name, *reason))
+        rejects += [reject("room", where, k, f"{count[k]} of {len(record.children)} children") for k in sorted(count) if count[k]]
+    placed_ones = {child.ref for record in house.rooms for child in record.children}
+    missing = ((uid, r) for uid, r in house.furniture.items() if r.valid is not None and uid not in placed_ones)
+    rejects += [reject("object", f"{house.uid}/{uid}", "not_placed", f"model {r.jid}") for uid, r in missing]
+    for room in rooms:
+        _keep(house, room, found[room.room_id], taxonomy, limits, rejects)
+
+
+def _home(made: Placed, room: ReadRoom | None, rooms: list[ReadRoom], limits: FrontFilters) -> ReadRoom | None:
+    """Return the room in which a piece lies: its own, else the one that holds most of it, None where it is in none."""
+    ordered = sorted(rooms, key=lambda r: (r is not room, -inside(made, r.polygon)))
+    return next((r for r in ordered if inside(made, r.polygon) >= limits.min_inside), None)
+
+
+def _moved(made: Placed, record: RoomRecord, home: ReadRoom) -> Placed:
+    note = ("other_room", f"filed under {record.instance or record.type}, lies in {home.record.instance}")
+    return replace(made, notes=(*made.notes, note), filed=record.instance)
+
+
+def _outside(made: Placed, room: ReadRoom | None, record: RoomRecord) -> str:
+    if room is None:
+        return f"{record.instance or record.type} was left out, and it lies in no other room"
+    return f"{inside(made, room.polygon):.0%} of the footprint inside"
+
+
+def _keep(house: HouseFile, room: ReadRoom, found: Candidates, taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]) -> None:
+    """Give a room what lies in it, but for what lies in each other and what hangs in the air."""
+    where = f"{house.uid}/{room.record.instance}"
+    candidates = [*found.own, *found.guests]
+    if len(candidates) > MAX_OBJECTS:
+        raise SourceError("too_large", where, f"{len(candidates)} objects in {where}")
+    dropped = overlapping(candidates, limits, taxonomy)
+    for i, made in enumerate(candidates):
+        name = _name(house, room, made)
+        if i in dropped:
+            j, share = dropped[i]
+            detail = f"{made.category} has {share:.0%} in {candidates[j].category} {candidates[j].child.instance}"
+            rejects.append(reject("object", name, "overlap", detail))
+            continue
+        rejects.extend(reject("object", name, reason, detail) for reason, detail in made.notes)
+        room.objects.append(made)
+    _support(house, room, taxonomy, rejects)
+
+
+def _name(house: HouseFile, room: ReadRoom, made: Placed) -> str:
+    """Return where the file has a piece."""
+    return f"{house.uid}/{made.filed or room.record.instance}/{made.child.instance}"
+
+
+def _support(house: HouseFile, room: ReadRoom, taxonomy: Taxonomy, rejects: list[Row]) -> None:
+    """Find what the room's objects stand on; small things whose support was left out are left out as well."""
+    held = supports(room.objects, taxonomy)
+    while any(lost := [floating(o, on, taxonomy) for o, on in zip(room.objects, held, strict=True)]):
+        rejects.extend(reject("object", _name(house, room, o), "no_support") for o, gone in zip(room.objects, lost, strict=True) if gone)
+        room.objects = [o for o, gone in zip(room.objects, lost, strict=True) if not gone]
+        held = supports(room.objects, taxonomy)
+    room.supports = held

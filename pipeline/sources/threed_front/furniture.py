@@ -1,0 +1,200 @@
+"""Furniture of a 3D-FRONT room as placed boxes, each kept or left out with a reason."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
+
+from pipeline.entities.home import Placement
+from pipeline.sources.settings import FrontFilters
+from pipeline.sources.threed_front.future_scale import LONGEST, likeliest
+from pipeline.sources.threed_front.house_file import FARTHEST, Child, Furniture
+from pipeline.sources.threed_front.model_hints import kinds_of
+from pipeline.sources.threed_front.notches import shared
+from pipeline.sources.threed_front.poses import Box, Pose, place, yaw_and_tilt
+from pipeline.taxonomy import Taxonomy
+
+Floats = NDArray[np.float64]
+
+SEATS = frozenset({"dining_chair", "lounge_chair", "dressing_chair", "chinese_chair", "barstool", "stool", "armchair"})
+TABLES = frozenset({"dining_table", "desk", "dressing_table", "coffee_table", "corner_side_table"})
+MIN_SIZE = 0.01  # [m]
+STANDING, TALL = 0.1, 1.0  # [m] a lamp whose foot is lower and that is higher hangs from no ceiling
+BELOW = 0.05  # [m] under the floor: rounding of the source
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """What a house needs to know of a model: its box, its category, whether an asset was made of it, and what of its box it fills."""
+
+    box: Box
+    category: str
+    asset_id: str
+    asset_size: tuple[float, float, float]
+    openable: bool = False
+    shape: bytes = b""
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """An accepted object: `scale` (3,) on the asset's size; `notes` are (reason, detail) of what was repaired.
+
+    `shape` is what of its box it fills, see `front_shapes`; `filed` the room under which the file has it, where that is another.
+    """
+
+    child: Child
+    jid: str
+    category: str
+    asset_id: str
+    pose: Pose
+    scale: Floats
+    openable: bool
+    notes: tuple[tuple[str, str], ...]
+    shape: bytes = b""
+    filed: str = ""
+
+    def footprint(self) -> Polygon:
+        """Return the box in plan."""
+        return Polygon(Placement("", "", "", "", self.pose.position, self.pose.yaw, self.pose.size).footprint())
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Return bottom and top [m]."""
+        return float(self.pose.position[2]), float(self.pose.position[2] + self.pose.size[2])
+
+
+def mirrored_id(asset_id: str) -> str:
+    """Return the id of the asset that is the mirror image, across its width, of another."""
+    return f"{asset_id}_mirrored"
+
+
+def category_of(record: Furniture, taxonomy: Taxonomy) -> str | None:
+    """Return the category that the scene's own record gives.
+
+    Its category, else the kind in its title; where no more is said than a super-category or the title's group, the
+    member whose sizes fit the declared box best.
+    """
+    named = taxonomy.from_future(record.category) or taxonomy.from_title(record.title)
+    if named or record.box is None:
+        return named
+    return likeliest(np.array(record.box), taxonomy.of_kind(*kinds_of(record)))
+
+
+def placed(  # noqa: PLR0911 - one return per reason
+    child: Child,
+    record: Furniture,
+    models: Mapping[str, Model],
+    taxonomy: Taxonomy,
+    limits: FrontFilters,
+) -> Placed | tuple[str, str]:
+    """Return the object, whatever room it lies in, or (reason, detail) for leaving it out."""
+    if record.valid is not True:
+        return "invalid_flag", f"valid is {record.valid}, category {record.category!r}"
+    jid = child.replaced_by or record.jid
+    model = models.get(jid)
+    category = model.category if model else category_of(record, taxonomy)
+    if category is None:
+        return "unknown_category", f"category {record.category!r}, title {record.title!r}"
+    if model is None and not (limits.keep_without_model and record.box):
+        return "missing_model", f"no asset of model {jid}"
+    if np.abs(child.position).max() > FARTHEST:
+        return "bad_number", f"stands {np.abs(child.position).max():.3g} m from the origin"
+    magnitude = np.abs(child.scale)
+    if magnitude.min() < 1e-5 or magnitude.max() > limits.max_scale:
+        return "bad_scale", f"scale {child.scale.tolist()}"
+    yaw, tilt = yaw_and_tilt(child.rotation)
+    if tilt > limits.max_tilt or child.scale[1] < 0:
+        return "tilted", f"by {tilt:.3f} rad, scale {child.scale.tolist()}"
+    pose, scale, notes = _pose(child, record, model, yaw)
+    if pose.size.max() > LONGEST or pose.size.min() < MIN_SIZE:
+        return "bad_size", f"size {np.round(pose.size, 3).tolist()}"
+    asset_id = "" if model is None else mirrored_id(model.asset_id) if pose.mirrored else model.asset_id
+    made = Placed(child, jid, category, asset_id, pose, scale, bool(model and model.openable), notes, model.shape if model else b"")
+    low, top = made.span
+    if taxonomy.categories[category].mount == "ceiling" and low < STANDING and top - low > TALL:
+        note = ("category_inferred", f"floor_lamp, for a {category} of {top - low:.2f} m that stands on the floor")
+        made = replace(made, category="floor_lamp", notes=(*notes, note))
+    if low < -BELOW or top > limits.max_top:
+        return "bad_height", f"from {low:.2f} to {top:.2f} m"
+    return made
+
+
+def inside(made: Placed, floor: Polygon) -> float:
+    """Return the share of an object's footprint that lies on a floor, in whole per cent: what is said of it is what counts."""
+    footprint = made.footprint()
+    return round(float(footprint.intersection(floor).area / footprint.area), 2)
+
+
+def _pose(child: Child, record: Furniture, model: Model | None, yaw: float) -> tuple[Pose, Floats, tuple[tuple[str, str], ...]]:
+    """Return pose, scale on the asset, and notes; position and size rounded to 0.1 mm."""
+    notes: list[tuple[str, str]] = []
+    if model is None:
+        w, d, h = record.box or (0.0, 0.0, 0.0)
+        box, unit = Box((-w / 2, 0.0, -d / 2), (w / 2, h, d / 2)), 1.0
+        notes.append(("size_from_bbox", f"model {record.jid}"))
+    else:
+        box, unit = model.box, model.box.unit
+    raw = place(box, unit, child.position, yaw, child.scale)
+    pose = Pose(np.round(raw.position, 4) + 0.0, raw.yaw, np.round(raw.size, 4), raw.mirrored)
+    if pose.mirrored:
+        notes.append(("mirrored", f"scale {child.scale.tolist()}"))
+    scale = np.round(pose.size / np.array(model.asset_size), 6) if model else np.ones(3)
+    return pose, scale, tuple(notes)
+
+
+def shared_volume(a: Placed, b: Placed) -> float:
+    """Return the volume that two boxes share, as a share of the smaller one's."""
+    height = min(a.span[1], b.span[1]) - max(a.span[0], b.span[0])
+    if height <= 0:
+        return 0.0
+    area = float(a.footprint().intersection(b.footprint()).area)
+    return area * height / float(min(np.prod(a.pose.size), np.prod(b.pose.size)))
+
+
+def shared_shape(a: Placed, b: Placed) -> float:
+    """Return what `shared_volume` does for the shapes in the boxes, as far as the models tell: the lower of the two figures."""
+    boxes = shared_volume(a, b)
+    if not (a.shape or b.shape) or boxes == 0.0:
+        return boxes
+    first, second = sorted((a, b), key=lambda o: float(np.prod(o.pose.size)))
+    return min(boxes, shared((first.pose, first.shape), (second.pose, second.shape)))
+
+
+def overlapping(objects: list[Placed], limits: FrontFilters, taxonomy: Taxonomy) -> dict[int, tuple[int, float]]:
+    """Return {index of the object to drop: (index of what it is in, share)}.
+
+    Rule: largest box first, an object is dropped when it shares more than `max_overlap` of the smaller one's volume
+    with one that was kept; a seat at a table may share up to `max_overlap_tucked`, for its box reaches under the top. What counts is
+    the models' shapes, where they are known. Lamps come last: they evict nobody. Small things lie in furniture's boxes by right.
+    """
+    large = [i for i, o in enumerate(objects) if o.category not in taxonomy.small]
+    lamps = {c.name for c in taxonomy.categories.values() if c.super == "lighting"}
+    order = sorted(large, key=lambda i: (objects[i].category in lamps, -float(np.prod(objects[i].pose.size)), i))
+    shapes = [o.footprint() for o in objects]
+    tree = shapely.STRtree(shapes) if shapes else None
+    near: dict[int, list[int]] = {}
+    if tree is not None:
+        for i, j in zip(*tree.query(shapes, predicate="intersects"), strict=True):
+            near.setdefault(int(i), []).append(int(j))
+    dropped: dict[int, tuple[int, float]] = {}
+    kept: set[int] = set()
+    for i in order:
+        for j in near.get(i, ()):
+            if j not in kept:
+                continue
+            pair = {objects[i].category, objects[j].category}
+            tucked = bool(pair & SEATS) and bool(pair & TABLES)
+            most = limits.max_overlap_tucked if tucked else limits.max_overlap
+            share = round(shared_volume(objects[i], objects[j]), 2)
+            share = round(shared_shape(objects[i], objects[j]), 2) if share > most else share
+            if share > most:
+                dropped[i] = (j, share)
+                break
+        else:
+            kept.add(i)
+    return dropped
