@@ -23,6 +23,7 @@ from pipeline.sources import batch
 from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
 from pipeline.sources.settings import PreprocessSettings
 from pipeline.sources.threed_front.model_hints import hints
+from pipeline.sources.threed_front.walkable_share import Walker
 
 ROOT = Path(__file__).resolve().parents[1]
 SIZE = 2_000_000  # bytes of a house file
@@ -81,7 +82,8 @@ def peak() -> float:
 
 def main(count: int) -> None:
     """Read everything once and print figures."""
-    settings = params.section(PreprocessSettings, params.read(ROOT / "params.yaml"), "preprocess")
+    tree = params.read(ROOT / "params.yaml")
+    settings = params.section(PreprocessSettings, tree, "preprocess")
     front = ROOT / settings.front
     sources = batch.house_files(front)
     with tempfile.TemporaryDirectory() as place:
@@ -103,7 +105,7 @@ def main(count: int) -> None:
             task = LibraryTask(partnet, Path(place) / "assets", settings.models, settings.partnet_licence)
             measured("PartNet objects", partial(batch.read_partnet, task), batch.partnet_objects(partnet)[:40])
         measured("records of houses", partial(batch.house_records, Path(place)), files)
-        house = HouseTask(Path(place), library.models, settings.filters, settings.front_licence)
+        house = HouseTask(Path(place), library.models, settings.filters, settings.front_licence, Walker.of(tree))
         measured("houses, the first", partial(batch.read_front, house), files[:WARM])
         before = peak()
         measured("houses, the rest", partial(batch.read_front, house), files[WARM:])

@@ -47,7 +47,7 @@ def main(
     factory = open_factory(root, seed)
     asked = digest([wish.prompt, wish.program, wish.plan])
     header = Header(seed, 1, factory.shard_size, factory.licence, {**factory.digests, "prompts": asked})
-    warm_up(progress)
+    warm_up(progress, root)
     listen(lambda note: progress.phase(note[0]))
     (outcome,) = factory.make([wish])  # before the folder is touched: a request may yet be refused
     listen(None)

@@ -27,12 +27,15 @@ from pipeline.sources.sink import write_houses, write_library
 from pipeline.sources.threed_front.house import HouseRows
 from pipeline.sources.threed_front.mirrored import add_mirrored
 from pipeline.sources.threed_front.model_hints import hints
+from pipeline.sources.threed_front.walkable_share import Walker
 from stages.runner import run
 
 
 def main(root: Path) -> None:
     """Read the sources that section `preprocess` of params.yaml names."""
-    settings = params.section(PreprocessSettings, params.read(root / "params.yaml"), "preprocess")
+    tree = params.read(root / "params.yaml")
+    settings = params.section(PreprocessSettings, tree, "preprocess")
+    walker = Walker.of(tree)
     workers = settings.workers or cores()
     needed = () if settings.peers else (batch.HOUSES,) if settings.filters.keep_without_model else (batch.HOUSES, batch.MODELS)
     front = folder(root, "front", settings.front, needed)
@@ -45,7 +48,7 @@ def main(root: Path) -> None:
     if peers:
         inventory.require_listed(root, peers, peers_at)
     library = read_library(root, front, partnet, objects, settings, workers)
-    step, task, houses = homes(front, peers, library, settings)
+    step, task, houses = homes(front, peers, library, settings, walker)
     out = root / "data" / "tables"
     read = track(batch.each(step, task, houses, workers), len(houses), "houses", unit="house")
     summary = write_houses(out, read, library, peers or front)
@@ -56,13 +59,17 @@ def main(root: Path) -> None:
 
 
 def homes(
-    front: Path, peers: Path | None, library: LibraryRows, settings: PreprocessSettings
+    front: Path, peers: Path | None, library: LibraryRows, settings: PreprocessSettings, walker: Walker
 ) -> tuple[Callable[[Any, Any], HouseRows], Any, Sequence[Any]]:
     """Return how a house is read, what each of them needs, and the houses: 3D-FRONT files, or the peers' cached rooms."""
     if peers:
         kinds = kinds_of(peers)
-        return read_peers, PeersTask(peers, kinds, library.models, settings.filters, settings.peers_licence), peers_houses(peers, kinds)
-    return batch.read_front, HouseTask(front, library.models, settings.filters, settings.front_licence), batch.house_files(front)
+        return (
+            read_peers,
+            PeersTask(peers, kinds, library.models, settings.filters, settings.peers_licence, walker),
+            peers_houses(peers, kinds),
+        )
+    return batch.read_front, HouseTask(front, library.models, settings.filters, settings.front_licence, walker), batch.house_files(front)
 
 
 def read_library(

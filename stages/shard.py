@@ -45,7 +45,7 @@ def main(
     workers = workers or cores()
     with open_or_create(folder, header) as dataset:
         if dataset.missing():
-            warm_up(progress)
+            warm_up(progress, root)
         again = shlex.join(
             ["sfgen", "shard", "--count", str(count), "--seed", str(seed), *(["--prompts", str(prompts)] if prompts else [])]
         )

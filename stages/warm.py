@@ -11,9 +11,9 @@ from pipeline.homes.warmth import warm
 from stages import runner
 
 
-def main(_root: Path) -> None:
+def main(root: Path) -> None:
     """Compile."""
-    warm()
+    warm(root)
 
 
 if __name__ == "__main__":

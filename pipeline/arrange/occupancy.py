@@ -141,18 +141,15 @@ class Occupancy:
         grips = self.items[i].shape.grips
         c, s = np.cos(pose[3]), np.sin(pose[3])
         T = np.array([[c, s], [-s, c]])
-        ceiling = site.elevation + site.height
         return not grips or any(
             stand_pose(
                 grip.point @ T + pose[:2],
                 grip.heading @ T,
                 grip.swept.placed(pose[:3], float(pose[3]), UNIT),
-                ceiling,
+                site.elevation,
                 space,
                 label,
-                radius=site.radius,
-                reach=site.reach,
-                cone=site.cone,
+                site.robot,
             )
             is not None
             for grip in grips

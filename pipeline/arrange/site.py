@@ -12,6 +12,7 @@ from pipeline.entities.plan import Opening, Plan
 from pipeline.geometry.free_space import PASSABLE, Floor, FreeSpace, bare_floor, free_space
 from pipeline.geometry.leaves import leaf_sweep
 from pipeline.geometry.prisms import Prisms, stacked
+from pipeline.geometry.robot import Robot
 from pipeline.geometry.walls import leaves
 
 Floats = NDArray[np.float64]
@@ -37,8 +38,7 @@ class Site:
 
     `polygon` (n, 2) [m]; floor at `elevation`, ceiling at `ceiling` [m]; `swung` are the prisms that room doors sweep;
     `doors` (D, 2) [m] the middles of the openings that one walks through; `openings` are per edge of the polygon the openings
-    in it, as (start, end) [m along the edge], lower edge [m above the floor], and whether it is a window; `radius`, `step`, `height`, `reach` [m] and `cone`
-    [deg] are the robot's.
+    in it, as (start, end) [m along the edge], lower edge [m above the floor], and whether it is a window; `bare` is where the robot can stand on the empty floor.
     """
 
     room_id: str
@@ -50,37 +50,18 @@ class Site:
     openings: tuple[tuple[EdgeOpening, ...], ...]
     floor: Floor
     bare: FreeSpace
-    radius: float
-    step: float
-    height: float
-    reach: tuple[float, float]
-    cone: float
+    robot: Robot
 
     @classmethod
-    def of(
-        cls,
-        plan: Plan,
-        room_id: str,
-        *,
-        radius: float = 0.28,
-        step: float = 0.02,
-        height: float = 1.4,
-        reach: tuple[float, float] = (0.4, 0.9),
-        cone: float = 75.0,
-        cell: float = 0.05,
-    ) -> Site:
-        """Take one room out of a plan.
-
-        The numbers are the robot's radius, climb, height and reach [m], the half angle [deg] of the cone before a handle
-        in which it stands, and the raster's cell [m]; `bare` is the empty floor.
-        """
+    def of(cls, plan: Plan, room_id: str, robot: Robot, cell: float) -> Site:
+        """Take one room out of a plan, with a raster of that cell [m] for the robot's ways."""
         room = plan.room(room_id)
         openings = [o for o in plan.openings if room_id in o.rooms and o.level == room.level]
         elevation = plan.elevation(room_id)
         own = {o.opening_id for o in openings}
         # Beyond each opening lies floor on which the robot can stand whole: one passes through, not up to the wall.
         # Wide openings must be free in the middle, seen from both of their rooms: so both agree on where to pass.
-        floor = bare_floor([room], openings, 2 * radius + cell, cell, PASS_WIDTH)
+        floor = bare_floor([room], openings, 2 * robot.radius + cell, cell, PASS_WIDTH)
         swung = stacked([leaf_sweep(leaf, elevation).prisms for leaf in leaves(plan) if leaf.opening_id in own])
         return cls(
             room_id,
@@ -91,12 +72,8 @@ class Site:
             np.array([o.segment.mean(0) for o in openings if o.kind in PASSABLE]).reshape(-1, 2),
             _openings_by_edge(room.polygon, openings),
             floor,
-            free_space(floor, stacked([]), radius, (elevation + step, elevation + height)),
-            radius,
-            step,
-            height,
-            reach,
-            cone,
+            free_space(floor, stacked([]), robot.radius, robot.band(elevation)),
+            robot,
         )
 
     @property
@@ -107,7 +84,7 @@ class Site:
 
     def free_space(self, obstacles: Prisms) -> FreeSpace:
         """Find where the robot can stand with these obstacles in the room."""
-        return free_space(self.floor, obstacles, self.radius, (self.elevation + self.step, self.elevation + self.height))
+        return free_space(self.floor, obstacles, self.robot.radius, self.robot.band(self.elevation))
 
     def door_labels(self, space: FreeSpace) -> list[int]:
         """Return per opening the label of the free part that it opens to, 0 where the robot cannot stand in it."""

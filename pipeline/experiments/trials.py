@@ -86,7 +86,7 @@ def _finished(factory: Factory, asked: Sequence[Draft], drafts: Drafts) -> tuple
     for attempt in range(factory.shard.room_attempts):
         for i, draft in pending:
             result = _cleared(
-                factory, finish(draft, factory.library, factory.index, factory.lore, factory.postopt, factory.verify.robot, taxonomy.load())
+                factory, finish(draft, factory.library, factory.index, factory.lore, factory.postopt, factory.verify, taxonomy.load())
             )
             first.setdefault(i, result)
             if i not in best or result.rank() > best[i].rank():

@@ -12,6 +12,7 @@ from pipeline.geometry.compiled import compiled
 from pipeline.geometry.convex import distance_to
 from pipeline.geometry.free_space import FreeSpace
 from pipeline.geometry.prisms import Prisms
+from pipeline.geometry.robot import Robot
 
 Floats = NDArray[np.float64]
 
@@ -23,22 +24,19 @@ def stand_pose(
     grip: Floats,
     heading: Floats,
     swept: Prisms,
-    ceiling: float,
+    floor: float,
     space: FreeSpace,
     label: int,
-    *,
-    radius: float,
-    reach: tuple[float, float],
-    cone: float,
+    robot: Robot,
 ) -> tuple[float, float] | None:
     """Return (x, y) [m] at which the robot, within one connected part of the floor, reaches the grip; None if nowhere.
 
     `grip` (2,) [m] and `heading` (2,), the way in which the handle sets off, are in plan; `swept` are the moving part's
-    prisms, of which those below `ceiling` [m] must stay `radius` [m] away; `reach` [m] bounds the distance to the grip,
-    `cone` [deg] the angle to the heading. Straight ahead is tried before the sides, middle distances before near and far.
+    prisms, of which those that the robot is high enough to meet, standing at `floor` [m], must stay its radius away; its reach
+    bounds the distance to the grip, its cone the angle to the heading. Straight ahead is tried before the sides, middle distances before near and far.
     """
-    distances, turns = _tried(reach, cone)
-    low = np.flatnonzero(swept.z[:, 0] < ceiling)
+    distances, turns = _tried(robot.reach, robot.cone)
+    low = np.flatnonzero(swept.z[:, 0] < robot.band(floor)[1])
     raster = space.floor.raster
     x, y, found = _search(
         float(grip[0]),
@@ -52,7 +50,7 @@ def stand_pose(
         raster.cell,
         np.ascontiguousarray(swept.corners[low]),
         swept.count[low],
-        radius,
+        robot.radius,
     )
     return (x, y) if found else None
 

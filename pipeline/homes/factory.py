@@ -212,7 +212,7 @@ class Factory:
         work.pending.remove(job)
         work.tries += 1
         with self._charged(work), self.timed("postopt"):
-            result = finish(draft, self.library, self.index, self.lore, self.postopt, self.verify.robot, taxonomy.load())
+            result = finish(draft, self.library, self.index, self.lore, self.postopt, self.verify, taxonomy.load())
         before = work.results.get(job.room_id)
         work.rejects.extend(reject_row(scene_id(self.seed, job.index), job.room_id, job.attempt, r) for r in result.rejects)
         if before is None or result.rank() > before.rank():

@@ -15,7 +15,7 @@ from pipeline.homes.rounding import rounded
 from pipeline.homes.violations import Violation
 from pipeline.retrieval.index import AssetIndex
 from pipeline.taxonomy import Taxonomy
-from pipeline.verify import Robot
+from pipeline.verify import VerifySettings
 
 MARGIN = 0.03  # by which the arranger's robot is wider than the judge's, whose raster lies differently [m]
 KEPT = 0.6  # share of what was drafted that a room must keep
@@ -93,12 +93,12 @@ def finish(
     index: AssetIndex,
     lore: Lore,
     settings: PostoptSettings,
-    robot: Robot,
+    verify: VerifySettings,
     taxonomy: Taxonomy,
 ) -> RoomResult:
     """Take one draft through algorithm 2 (where a share of free floor is asked for) and separation."""
     job, placements = draft.job, draft.placements
-    site = Site.of(job.plan, job.room_id, radius=robot.radius + MARGIN, step=robot.step, height=robot.height)
+    site = Site.of(job.plan, job.room_id, replace(verify.robot, radius=verify.robot.radius + MARGIN), verify.cell)
     rejects: list[Reject] = [("object", "no_asset", category) for category in draft.lost]
     smaller = index.favouring(draft.taste.style, wished=draft.taste.wished).smaller
     arranged = post_optimise(site, placements, assets, lore, settings, smaller, target=job.walkable, keep_count=job.bounds[0] is not None)

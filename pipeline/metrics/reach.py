@@ -15,7 +15,7 @@ from pipeline.metrics.intervals import Mean, Rate, bootstrap, rate
 from pipeline.metrics.rows import Row, boxes, by_room
 
 PIXELS = 256  # side of the raster
-ROBOT = 0.3  # width of the robot [m]
+ROBOT = 0.3  # width of PhyScene's robot, by which R_reach is defined [m]
 LIMIT = 1.5  # objects whose centre is higher are no obstacles [m]
 MARGIN = 0.2  # of the raster around the room [m]
 

@@ -33,6 +33,7 @@ from pipeline.sources.threed_front.house import HouseRows, read_house
 from pipeline.sources.threed_front.house_file import Furniture
 from pipeline.sources.threed_front.model_hints import Hint, records
 from pipeline.sources.threed_front.notches import filled
+from pipeline.sources.threed_front.walkable_share import Walker
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -219,6 +220,7 @@ class HouseTask:
     models: Mapping[str, Model]
     filters: FrontFilters
     licence: str
+    walker: Walker
 
 
 def house_files(source: Path) -> list[str]:
@@ -229,7 +231,7 @@ def house_files(source: Path) -> list[str]:
 def read_front(task: HouseTask, file: str) -> HouseRows:
     """Read one house."""
     try:
-        return read_house(Folder.at(task.source), file, task.models, taxonomy.load(), task.filters, task.licence)
+        return read_house(Folder.at(task.source), file, task.models, taxonomy.load(), task.filters, task.licence, task.walker)
     except Exception as error:  # noqa: BLE001 - as in _guarded
         return HouseRows(rejects=[reject("house", Path(file).stem, "internal", f"{type(error).__name__}: {error}")])
 

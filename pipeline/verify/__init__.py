@@ -2,6 +2,6 @@
 
 from pipeline.verify.certificate import Certificate, JointCheck, ObjectCheck, RoomCheck
 from pipeline.verify.home import verify_home
-from pipeline.verify.settings import Policy, Robot, VerifySettings
+from pipeline.verify.settings import Policy, VerifySettings
 
-__all__ = ["Certificate", "JointCheck", "ObjectCheck", "Policy", "Robot", "RoomCheck", "VerifySettings", "verify_home"]
+__all__ = ["Certificate", "JointCheck", "ObjectCheck", "Policy", "RoomCheck", "VerifySettings", "verify_home"]

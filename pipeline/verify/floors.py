@@ -26,7 +26,7 @@ def level_free_space(home: Home, level: int, made: Bodies, settings: VerifySetti
     openings = [o for o in plan.openings if o.level == level]
     floor = bare_floor(rooms, openings, max(plan.inner_wall, plan.outer_wall) / 2 + settings.cell, settings.cell)
     base = level * plan.storey_height
-    space = free_space(floor, _furniture(home, made), robot.radius, (base + robot.step, base + robot.height))
+    space = free_space(floor, _furniture(home, made), robot.radius, robot.band(base))
     return space, _entered(plan, level, rooms, space)
 
 

@@ -17,9 +17,8 @@ from pipeline.verify.objects import check_objects
 from pipeline.verify.settings import VerifySettings
 
 
-def verify_home(home: Home, assets: Mapping[str, Asset], settings: VerifySettings | None = None) -> Certificate:
+def verify_home(home: Home, assets: Mapping[str, Asset], settings: VerifySettings) -> Certificate:
     """Judge one home: every joint swept, every object at rest, every room's floor."""
-    settings = settings or VerifySettings()
     made = bodies(home.placements, assets)
     held = carried(home.placements, made, settings.float_gap)
     spaces = {level: level_free_space(home, level, made, settings) for level in levels(home.plan)}

@@ -17,21 +17,22 @@ from pipeline.geometry.kinematics import facing, handle_point, joint_range, move
 from pipeline.geometry.leaves import leaf_handles, leaf_sweep
 from pipeline.geometry.polygons import contains
 from pipeline.geometry.prisms import Prisms, Sweep, stacked
+from pipeline.geometry.robot import Robot
 from pipeline.geometry.standing import stand_pose
 from pipeline.geometry.walls import Leaf, leaves
 from pipeline.verify.bodies import Bodies
 from pipeline.verify.carrying import Carrier, riders, way
 from pipeline.verify.certificate import JointCheck
-from pipeline.verify.settings import Robot, VerifySettings
+from pipeline.verify.settings import VerifySettings
 
 Floats = NDArray[np.float64]
-FreeSpaces = Mapping[int, tuple[FreeSpace, int]]
+Walks = Mapping[int, tuple[FreeSpace, int]]
 
 WALL = "wall"  # blocker's name where a part meets a wall
 
 
 def check_joints(
-    home: Home, assets: Mapping[str, Asset], made: Bodies, held: Mapping[int, Carrier], spaces: FreeSpaces, settings: VerifySettings
+    home: Home, assets: Mapping[str, Asset], made: Bodies, held: Mapping[int, Carrier], walks: Walks, settings: VerifySettings
 ) -> list[JointCheck]:
     """Check every joint of every placed object, in order. What lies in a drawer comes out with it."""
     checks = []
@@ -41,7 +42,7 @@ def check_joints(
             continue
         turn = rotation(np.array([0.0, 0.0, 1.0]), placement.yaw)
         room = np.ascontiguousarray(home.plan.room(placement.room_id).polygon, np.float64)
-        space, label = spaces[home.plan.room(placement.room_id).level]
+        space, label = walks[home.plan.room(placement.room_id).level]
         floor = home.plan.elevation(placement.room_id)
         moved = [sweep.prisms.placed(placement.position, placement.yaw, placement.scale) for sweep in made.solids[g].sweeps]
         own = []
@@ -127,7 +128,7 @@ def _only(made: Bodies, which: NDArray[np.int64]) -> Bodies:
     return Bodies(kept, start, kept.boxes(), group_boxes(kept, start), ())
 
 
-def check_leaves(home: Home, made: Bodies, spaces: FreeSpaces, settings: VerifySettings) -> list[JointCheck]:
+def check_leaves(home: Home, made: Bodies, walks: Walks, settings: VerifySettings) -> list[JointCheck]:
     """Check every room door, in the order of the openings."""
     levels = {o.opening_id: o.level for o in home.plan.openings}
     swings = {o.opening_id: o.swing.room_id for o in home.plan.openings if o.swing is not None}
@@ -141,7 +142,7 @@ def check_leaves(home: Home, made: Bodies, spaces: FreeSpaces, settings: VerifyS
         if room is not None:
             hits[_through_wall(leaf, sweep, np.ascontiguousarray(room, np.float64), hits)] = -2
         clear_upper, clear, blocker = _progress(sweep, sweep.prisms, hits, home)
-        space, label = spaces[level]
+        space, label = walks[level]
         stand = None
         for handle, heading in zip(leaf_handles(leaf), (leaf.normal, -leaf.normal), strict=True):
             stand = stand or _stand(handle, heading, sweep.prisms, elevation, space, label, settings.robot)
@@ -209,7 +210,7 @@ def _stand(
     grip: Floats, heading: Floats, swept: Prisms, floor: float, space: FreeSpace, label: int, robot: Robot
 ) -> tuple[float, float, float] | None:
     """Return (x, y, yaw) at which the robot, coming from the entrance, opens a part. At yaw 0 it looks along +x."""
-    found = stand_pose(grip, heading, swept, floor + robot.height, space, label, radius=robot.radius, reach=robot.reach, cone=robot.cone)
+    found = stand_pose(grip, heading, swept, floor, space, label, robot)
     if found is None:
         return None
     x, y = found

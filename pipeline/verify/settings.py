@@ -4,16 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-
-@dataclass(frozen=True, slots=True)
-class Robot:
-    """The robot for which floors must be walkable and handles in reach: an upright cylinder."""
-
-    radius: float = 0.25  # [m]
-    height: float = 1.4  # [m]
-    step: float = 0.02  # it drives over what is lower [m]
-    reach: tuple[float, float] = (0.4, 0.9)  # distance in plan from its axis to a handle [m]
-    cone: float = 75.0  # it stands within this angle of the way in which the handle sets off [deg]
+from pipeline.geometry.robot import Robot
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,9 +22,9 @@ class Policy:
 class VerifySettings:
     """Section `verify` of params.yaml."""
 
-    touch: float = 0.005  # prisms that are in each other by no more touch, but do not collide [m]
-    wall: float = 0.01  # the same at walls [m]
-    float_gap: float = 0.02  # an object that stands no higher than this above its support does not float [m]
-    cell: float = 0.05  # cell of the free-floor raster [m]
-    robot: Robot = field(default_factory=Robot)
+    touch: float  # prisms that are in each other by no more touch, but do not collide [m]
+    wall: float  # the same at walls [m]
+    float_gap: float  # an object that stands no higher than this above its support does not float [m]
+    cell: float  # cell of the free-floor raster [m]
+    robot: Robot
     policy: Policy = field(default_factory=Policy)

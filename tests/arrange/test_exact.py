@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.arrange import Lore, Site, separate
+from pipeline.arrange import Lore, separate
 from pipeline.arrange.bonds import broken, find_bond, nearest
 from pipeline.arrange.item import make_item
 from pipeline.entities.plan import Opening, Plan
@@ -17,6 +17,7 @@ from pipeline.relations.modes import Span
 from pipeline.verify import Policy, verify_home
 from tests.arrange.known import LORE, RELATIONS, drafted, mode, pair
 from tests.geometry.furniture import LIBRARY, block, home, one_room
+from tests.judging import SETTINGS, site
 
 ASSETS = {
     **LIBRARY,
@@ -33,8 +34,8 @@ def room(width=5.0, depth=4.0):
 
 
 def arranged(placements, plan):
-    found = separate(Site.of(plan, "room"), placements, ASSETS, LORE)
-    assert verify_home(home(found.placements, plan), ASSETS).faults(Policy()) == ()
+    found = separate(site(plan, "room"), placements, ASSETS, LORE)
+    assert verify_home(home(found.placements, plan), ASSETS, SETTINGS).faults(Policy()) == ()
     assert found.rejects == ()
     return found.placements
 
@@ -124,7 +125,7 @@ def test_a_lamp_over_a_table_hangs_from_the_ceiling():
     """Whatever height it was drafted at: a bond says where in plan."""
     lore = Lore(relations([pair("dining_table", "ceiling_lamp", mode("over", (0.0, 0.0, 0.0), ("middle", 0.0, 0.0, 0.0), 0.0))], []))
     wished = [drafted(ASSETS["table"], 2.5, 2.0), drafted(ASSETS["lamp"], 2.6, 2.1, z=1.9, number=1)]
-    table, lamp = separate(Site.of(room(), "room"), wished, ASSETS, lore).placements
+    table, lamp = separate(site(room(), "room"), wished, ASSETS, lore).placements
     assert lamp.position[2] == pytest.approx(2.7 - 0.3)
     assert abs(lamp.position[0] - table.position[0]) < 0.2
 
@@ -171,8 +172,8 @@ def test_what_belongs_into_corners_goes_into_the_corner_that_it_is_near():
     snug = Lore(relations(list(RELATIONS.pairs.values()), walls))
     wished = [drafted(CABINET, 0.62, 3.7)]
     plan = room()
-    (loose,) = separate(Site.of(plan, "room"), wished, {CABINET.asset_id: CABINET}, LORE).placements
-    (cornered,) = separate(Site.of(plan, "room"), wished, {CABINET.asset_id: CABINET}, snug).placements
+    (loose,) = separate(site(plan, "room"), wished, {CABINET.asset_id: CABINET}, LORE).placements
+    (cornered,) = separate(site(plan, "room"), wished, {CABINET.asset_id: CABINET}, snug).placements
     assert loose.position[0] == pytest.approx(0.62, abs=1e-3)
     assert cornered.position[0] == pytest.approx(0.5 + 0.02, abs=1e-3)
 

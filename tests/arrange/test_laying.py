@@ -12,6 +12,7 @@ from pipeline.arrange.surfaces import make_surfaces
 from pipeline.entities.home import Placement
 from pipeline.verify import Policy, verify_home
 from tests.geometry.furniture import LIBRARY, SQUARE, asset, box, chest, cupboard, home, link, placed
+from tests.judging import SETTINGS
 
 EVERYWHERE = ThingsSettings(hidden=1.0, tries=12)
 THINGS = ("cup", "book", "flip", "book", "cup")
@@ -65,7 +66,7 @@ def test_the_judge_finds_no_fault(seed):
         placed("cupboard", 3.65, 0.3, np.pi),
     ]
     things = laid(furniture, seed)
-    before, after = verify_home(home(furniture), LIBRARY), verify_home(home([*furniture, *things]), LIBRARY)
+    before, after = verify_home(home(furniture), LIBRARY, SETTINGS), verify_home(home([*furniture, *things]), LIBRARY, SETTINGS)
     assert after.faults(Policy()) == ()
     assert len(things) >= 6
     assert (after.reach, after.openable) == (before.reach, before.openable)

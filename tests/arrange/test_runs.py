@@ -8,10 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.arrange import Site, separate
+from pipeline.arrange import separate
 from pipeline.verify import Policy, verify_home
 from tests.arrange.known import LORE, drafted
 from tests.geometry.furniture import block, home, one_room
+from tests.judging import SETTINGS, site
 
 ASSETS = {
     "base": block("base", "kitchen_cabinet", (0.8, 0.58, 0.9)),
@@ -28,8 +29,8 @@ def room():
 
 
 def arranged(placements):
-    found = separate(Site.of(room(), "room"), placements, ASSETS, LORE)
-    assert verify_home(home(found.placements, room()), ASSETS).faults(Policy()) == ()
+    found = separate(site(room(), "room"), placements, ASSETS, LORE)
+    assert verify_home(home(found.placements, room()), ASSETS, SETTINGS).faults(Policy()) == ()
     assert found.rejects == ()
     return {p.asset_id: p for p in found.placements}
 
@@ -57,8 +58,8 @@ def test_a_rough_draft_becomes_one_run(seed, names):
 def test_wall_units_hang_flush_over_the_base_and_not_over_the_refrigerator():
     wished = [drafted(ASSETS[name], 0.9 + 0.8 * k, 2.65, number=k) for k, name in enumerate(("fridge", "sink", "base", "cooker"))]
     wished += [drafted(ASSETS["hung"], 1.2, 2.8, 0.1, z=1.5, number=4), drafted(ASSETS["hung"], 2.3, 2.75, -0.1, z=1.38, number=5)]
-    found = separate(Site.of(room(), "room"), wished, ASSETS, LORE).placements
-    assert verify_home(home(found, room()), ASSETS).faults(Policy()) == ()
+    found = separate(site(room(), "room"), wished, ASSETS, LORE).placements
+    assert verify_home(home(found, room()), ASSETS, SETTINGS).faults(Policy()) == ()
     left, right = sorted((p for p in found if p.asset_id == "hung"), key=lambda p: p.position[0])
     assert right.position[0] - left.position[0] == pytest.approx(0.802, abs=0.001)
     assert left.position[2] == right.position[2] == pytest.approx(1.44, abs=0.02)

@@ -6,14 +6,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.arrange import Site, separate
+from pipeline.arrange import separate
 from pipeline.verify import Policy, verify_home
 from tests.arrange.known import LORE
 from tests.geometry.furniture import LIBRARY, home, one_room, placed, two_rooms
+from tests.judging import SETTINGS, site
 
 
 def judge(placements, plan=None):
-    return verify_home(home(placements, plan), LIBRARY)
+    return verify_home(home(placements, plan), LIBRARY, SETTINGS)
 
 
 def messy(seed, names=("bed", "nightstand", "chest", "cupboard", "chair", "table")):
@@ -31,7 +32,7 @@ def room(side=4.5, plan=None):
 @given(st.integers(0, 10**6))
 def test_what_comes_out_passes_the_judge(seed):
     plan = room()
-    found = separate(Site.of(plan, "room"), messy(seed), LIBRARY, LORE)
+    found = separate(site(plan, "room"), messy(seed), LIBRARY, LORE)
     assert judge(found.placements, plan).faults(Policy()) == ()
     assert len(found.placements) + sum(r.reason == "unplaceable" for r in found.rejects) == 6
 
@@ -39,7 +40,7 @@ def test_what_comes_out_passes_the_judge(seed):
 def test_a_robot_gets_to_nearly_all_that_opens_where_no_relation_is_in_its_way():
     plan = room()
     drafts = [messy(seed, ("bed", "chest", "cupboard", "chair", "table")) for seed in range(16)]
-    found = [judge(separate(Site.of(plan, "room"), draft, LIBRARY, LORE).placements, plan) for draft in drafts]
+    found = [judge(separate(site(plan, "room"), draft, LIBRARY, LORE).placements, plan) for draft in drafts]
     assert sum(certificate.faults(Policy(reach=1.0)) == () for certificate in found) >= 14
 
 
@@ -48,7 +49,7 @@ def test_a_robot_gets_to_nearly_all_that_opens_where_no_relation_is_in_its_way()
 def test_separation_never_increases_collisions(seed, side):
     plan = room(side)
     before = judge(messy(seed), plan)
-    found = separate(Site.of(plan, "room"), messy(seed), LIBRARY, LORE)
+    found = separate(site(plan, "room"), messy(seed), LIBRARY, LORE)
     after = judge(found.placements, plan)
     assert after.collisions == 0 <= before.collisions
     assert all(j.clear for j in after.joints)
@@ -58,20 +59,20 @@ def test_what_is_well_stays():
     plan = room()
     # Backs at walls, in the gap that is usual, axis-parallel, nothing near anything.
     well = [placed("bed", 3.0, 3.49), placed("cupboard", 0.26, 2.5, math.pi / 2, number=1)]
-    found = separate(Site.of(plan, "room"), well, LIBRARY, LORE)
+    found = separate(site(plan, "room"), well, LIBRARY, LORE)
     assert max(found.moved) < 0.005
     assert [p.yaw for p in found.placements] == pytest.approx([0, math.pi / 2], abs=1e-4)
 
 
 def test_the_outcome_is_the_same_twice_and_keeps_the_order():
     plan = room()
-    one, two = (separate(Site.of(plan, "room"), messy(3), LIBRARY, LORE) for _ in range(2))
+    one, two = (separate(site(plan, "room"), messy(3), LIBRARY, LORE) for _ in range(2))
     assert [p.object_id for p in one.placements] == sorted((p.object_id for p in one.placements), key=lambda i: int(i.split("_")[1]))
     assert all(np.array_equal(a.position, b.position) and a.yaw == b.yaw for a, b in zip(one.placements, two.placements, strict=True))
 
 
 def test_poses_are_rounded():
-    for p in separate(Site.of(room(), "room"), messy(5), LIBRARY, LORE).placements:
+    for p in separate(site(room(), "room"), messy(5), LIBRARY, LORE).placements:
         assert np.array_equal(p.position, np.round(p.position, 4))
         assert p.yaw == round(p.yaw, 5)
         assert -math.pi < p.yaw <= math.pi
@@ -80,7 +81,7 @@ def test_poses_are_rounded():
 def test_backs_go_to_walls():
     plan = room()
     tilted = [placed("cupboard", 2.0, 4.0, 0.15), placed("bed", 0.9, 2.0, math.pi / 2 - 0.1, number=1)]
-    cupboard, bed = separate(Site.of(plan, "room"), tilted, LIBRARY, LORE).placements
+    cupboard, bed = separate(site(plan, "room"), tilted, LIBRARY, LORE).placements
     assert cupboard.yaw == pytest.approx(0.0, abs=1e-4)
     assert cupboard.position[1] == pytest.approx(4.5 - 0.25 - 0.01, abs=0.005)
     assert bed.yaw == pytest.approx(math.pi / 2, abs=1e-4)
@@ -90,7 +91,7 @@ def test_backs_go_to_walls():
 def test_a_chair_may_stay_under_its_table():
     plan = room()
     tucked = [placed("table", 2.2, 2.2), placed("chair", 2.2 - 0.35, 2.2 - 0.4 - 0.25 + 0.14, math.pi, number=1)]
-    found = separate(Site.of(plan, "room"), tucked, LIBRARY, LORE)
+    found = separate(site(plan, "room"), tucked, LIBRARY, LORE)
     assert max(found.moved) < 0.1
     assert abs(found.placements[1].position[1] - found.placements[0].position[1]) < 0.4 + 0.25
 
@@ -98,7 +99,7 @@ def test_a_chair_may_stay_under_its_table():
 def test_nightstands_go_beside_beds():
     plan = room()
     wished = [placed("bed", 2.2, 3.4), placed("nightstand", 1.3, 3.6, 0.3, number=1)]
-    bed, stand = separate(Site.of(plan, "room"), wished, LIBRARY, LORE).placements
+    bed, stand = separate(site(plan, "room"), wished, LIBRARY, LORE).placements
     assert bed.position[0] - 0.8 - (stand.position[0] + 0.25) == pytest.approx(0.08, abs=0.05)
     assert stand.yaw == bed.yaw
     assert stand.position[1] + 0.2 == pytest.approx(bed.position[1] + 1.0, abs=0.01)
@@ -109,25 +110,25 @@ def test_the_way_through_stays_open():
     for seed in range(5):
         rng = np.random.default_rng(seed)
         wished = [placed("cupboard", *rng.uniform(3.0, 3.9, 2), rng.uniform(-3, 3), room="living", number=k) for k in range(3)]
-        found = separate(Site.of(plan, "living"), wished, LIBRARY, LORE)
+        found = separate(site(plan, "living"), wished, LIBRARY, LORE)
         certificate = judge(found.placements, plan)
         assert [r.connected for r in certificate.rooms] == [True, True]
 
 
 def test_lamps_hang_from_the_ceiling_and_the_rest_stands_on_the_floor():
     plan = room()
-    found = separate(Site.of(plan, "room"), [placed("lamp", 2, 2, z=1.0), placed("chair", 1, 2, z=0.3, number=1)], LIBRARY, LORE)
+    found = separate(site(plan, "room"), [placed("lamp", 2, 2, z=1.0), placed("chair", 1, 2, z=0.3, number=1)], LIBRARY, LORE)
     assert [p.position[2] for p in found.placements] == pytest.approx([2.4, 0.0])
 
 
 def test_what_does_not_fit_is_named_and_fails_a_kept_count():
     plan = room(2.2)
     many = [placed("bed", 1.1, 1.1, number=k) for k in range(3)]
-    found = separate(Site.of(plan, "room"), many, LIBRARY, LORE)
+    found = separate(site(plan, "room"), many, LIBRARY, LORE)
     assert {r.reason for r in found.rejects} == {"unplaceable"}
     assert len(found.placements) + len(found.rejects) == 3
     assert not found.failed
-    assert separate(Site.of(plan, "room"), many, LIBRARY, LORE, keep_count=True).failed
+    assert separate(site(plan, "room"), many, LIBRARY, LORE, keep_count=True).failed
 
 
 def test_what_is_too_large_is_exchanged():
@@ -137,7 +138,7 @@ def test_what_is_too_large_is_exchanged():
     def smaller(asset_id, area):
         return SimpleNamespace(asset_id="small_block", distance=0.1, scale=np.ones(3)) if asset_id == "block" and area > 0.28 else None
 
-    found = separate(Site.of(plan, "room", radius=0.2), [placed("block", 0.5, 0.5)], LIBRARY, LORE, smaller=smaller)
+    found = separate(site(plan, "room", radius=0.2), [placed("block", 0.5, 0.5)], LIBRARY, LORE, smaller=smaller)
     assert [(p.asset_id, p.retrieval_distance) for p in found.placements] == [("small_block", 0.1)]
     assert np.array_equal(found.placements[0].size, LIBRARY["small_block"].size)
     assert [r.reason for r in found.rejects] == ["shrunk_to_fit"]

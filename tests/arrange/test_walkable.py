@@ -5,10 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.arrange import PostoptSettings, Site, WalkableSettings, control_walkable, free_ratio, paper_ratio, post_optimise
+from pipeline.arrange import PostoptSettings, WalkableSettings, control_walkable, free_ratio, paper_ratio, post_optimise
 from pipeline.verify import verify_home
 from tests.arrange.known import LORE
 from tests.geometry.furniture import LIBRARY, block, home, one_room, placed
+from tests.judging import SETTINGS, site
 
 SIZES = {f"size_{k}": block(f"size_{k}", "cabinet", (1.5 - 0.15 * k, 0.8 - 0.05 * k, 1.0)) for k in range(8)}
 ASSETS = {**LIBRARY, **SIZES}
@@ -80,23 +81,23 @@ def test_lamps_take_no_floor():
 
 
 def test_the_true_ratio_is_the_judges():
-    site = Site.of(one_room(), "room", radius=0.25)
+    place = site(one_room(), radius=0.25)
     placements = (placed("bed", 3.0, 1.9), placed("chest", 0.6, 2.74, number=1), placed("lamp", 1, 1, z=2.4, number=2))
-    judged = verify_home(home(placements), LIBRARY).rooms[0].walkable_free
-    assert free_ratio(site, LIBRARY)(placements) == pytest.approx(judged, abs=0.01)
+    judged = verify_home(home(placements), LIBRARY, SETTINGS).rooms[0].walkable_free
+    assert free_ratio(place, LIBRARY)(placements) == pytest.approx(judged, abs=0.01)
 
 
 @pytest.mark.parametrize("kind", ["free", "paper"])
 def test_control_and_separation_together_reach_what_can_be_reached(kind):
-    site = Site.of(one_room(), "room")
+    place = site(one_room())
     options = PostoptSettings(walkable=WalkableSettings(ratio=kind))
     crowded = objects(2, 4)
-    plain = post_optimise(site, crowded, ASSETS, LORE, options, smaller, target=0.01).ratio
-    found = post_optimise(site, crowded, ASSETS, LORE, options, smaller, target=plain + 0.05)
+    plain = post_optimise(place, crowded, ASSETS, LORE, options, smaller, target=0.01).ratio
+    found = post_optimise(place, crowded, ASSETS, LORE, options, smaller, target=plain + 0.05)
     assert found.failed == ""
     assert found.ratio >= plain + 0.05
     assert found.exchanges > 0
-    assert verify_home(home(found.placements), ASSETS).collisions == 0
-    hopeless = post_optimise(site, crowded, ASSETS, LORE, options, smaller, target=0.999)
+    assert verify_home(home(found.placements), ASSETS, SETTINGS).collisions == 0
+    hopeless = post_optimise(place, crowded, ASSETS, LORE, options, smaller, target=0.999)
     assert hopeless.failed == "walkable_missed"
     assert hopeless.ratio >= plain

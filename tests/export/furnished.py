@@ -12,6 +12,7 @@ from pipeline.shards import Header, add_part, commit_shard, extend_library, gath
 from pipeline.usd.library import write_asset
 from pipeline.verify import verify_home
 from tests.geometry import furniture
+from tests.judging import SETTINGS
 from tests.usd.conftest import make_home
 
 HEADER = Header(seed=0, count=1, shard_size=4, licence="CC0-1.0", digests={"params": "p" * 64})
@@ -47,7 +48,7 @@ class Shelf:
 def fill(folder):
     """Write the dataset."""
     home, assets = made()
-    rows = home_rows(home, verify_home(home, assets), {}, assets, taxonomy.load(), 1, HEADER.licence)
+    rows = home_rows(home, verify_home(home, assets, SETTINGS), {}, assets, taxonomy.load(), 1, HEADER.licence)
     with open_or_create(folder, HEADER) as dataset:
         extend_library(dataset, assets, Shelf(folder.parent / "shelf", assets))
         add_part(dataset, 0, gather(0, [({**rows, "rejects": []}, files_of(home, assets, 0))]))

@@ -18,7 +18,7 @@ from pipeline.homes.library import Library
 from pipeline.homes.settings import ShardSettings
 from pipeline.relations.known import relations
 from pipeline.retrieval.index import AssetIndex
-from pipeline.verify import VerifySettings
+from tests.judging import SETTINGS
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "geometry"))
@@ -121,7 +121,7 @@ def factory_of(library):
     latents = [{"asset_id": a, "latent": np.full(32, i, np.float32)} for i, a in enumerate(sorted(library))]
     index = AssetIndex.from_tables(library.rows.values(), latents)
     shard = ShardSettings(homes=4, chunk=2, preview=0)
-    return Factory(3, Rules(3), index, library, shard, PostoptSettings(), VerifySettings(), PriorSettings(), {}, Lore(relations([], [])))
+    return Factory(3, Rules(3), index, library, shard, PostoptSettings(), SETTINGS, PriorSettings(), {}, Lore(relations([], [])))
 
 
 @pytest.fixture(scope="session")

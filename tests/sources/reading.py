@@ -14,6 +14,10 @@ from pipeline.sources.settings import FrontFilters, ModelLimits
 from pipeline.sources.threed_front.house import HouseRows
 from pipeline.sources.threed_front.mirrored import add_mirrored
 from pipeline.sources.threed_front.model_hints import hints
+from pipeline.sources.threed_front.walkable_share import Walker
+from tests.judging import SETTINGS
+
+WALKER = Walker(SETTINGS.robot, SETTINGS.cell)
 
 
 def read(root, *, front="front", partnet="partnet", filters=None, limits=None):
@@ -35,7 +39,7 @@ def read(root, *, front="front", partnet="partnet", filters=None, limits=None):
         for name in batch.partnet_objects(root / partnet):
             library.add(batch.read_partnet(task, name))
     if (root / front / batch.HOUSES).is_dir():
-        task = HouseTask(root / front, library.models, made_filters, "CC0-1.0")
+        task = HouseTask(root / front, library.models, made_filters, "CC0-1.0", WALKER)
         for part in batch.numbered(batch.read_front(task, file) for file in batch.house_files(root / front)):
             for name in ("scenes", "rooms", "openings", "objects", "rejects"):
                 getattr(houses, name).extend(getattr(part, name))

@@ -2,10 +2,9 @@ import numpy as np
 import pytest
 
 from pipeline.entities.plan import Opening, Room
-from pipeline.sources.threed_front.walkable_share import walkable
 from tests.sources import making
 from tests.sources.making import child, floor
-from tests.sources.reading import read
+from tests.sources.reading import WALKER, read
 
 ROOMS = [
     Room("a", "x", np.array([[0.0, 0], [4, 0], [4, 4], [0, 4]])),
@@ -15,18 +14,19 @@ DOOR = Opening("d", "door", ("a", "b"), np.array([[4.06, 1.5], [4.06, 2.5]]), 2.
 
 
 def test_empty_rooms_with_a_door_are_all_but_their_corners():
-    assert walkable(ROOMS, [DOOR], []) == pytest.approx([1, 1], abs=0.03)
+    assert WALKER.shares(ROOMS, [DOOR], []) == pytest.approx([1, 1], abs=0.03)
 
 
 def test_without_a_door_only_the_larger_room_counts():
-    assert walkable(ROOMS, [], []) == pytest.approx([1, 0], abs=0.03)
+    assert WALKER.shares(ROOMS, [], []) == pytest.approx([1, 0], abs=0.03)
 
 
 def test_a_box_takes_its_floor_and_a_wall_of_boxes_what_is_behind():
     middle = np.array([[1.0, 1], [3, 1], [3, 3], [1, 3]])
-    assert walkable(ROOMS[:1], [], [middle])[0] == pytest.approx(0.75, abs=0.03)
+    assert WALKER.shares(ROOMS[:1], [], [(middle, (0.0, 1.0))])[0] == pytest.approx(0.75, abs=0.03)
     wall = np.array([[2.0, 0], [2.2, 0], [2.2, 4], [2, 4]])
-    assert walkable(ROOMS[:1], [], [wall])[0] == pytest.approx(0.5, abs=0.03)
+    assert WALKER.shares(ROOMS[:1], [], [(wall, (0.0, 1.0))])[0] == pytest.approx(0.5, abs=0.03)
+    assert WALKER.shares(ROOMS[:1], [], [(wall, (WALKER.robot.height, 2.0))])[0] > 0.97  # it passes below
 
 
 def test_rows_carry_it_weighted_by_area(tmp_path):

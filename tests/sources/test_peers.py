@@ -21,6 +21,7 @@ from pipeline.sources.reasons import SourceError
 from pipeline.sources.settings import FrontFilters
 from pipeline.sources.threed_front.furniture import Model
 from pipeline.sources.threed_front.poses import Box
+from tests.sources.reading import WALKER
 
 L_SHAPE = [[-1.5, -2.25], [2.5, -2.25], [2.5, 1.0], [0.5, 1.0], [0.5, 2.75], [-1.5, 2.75]]
 FIELDS = ("translations", "sizes", "angles", "classes", "vertices", "faces", "centroid", "layout")
@@ -59,7 +60,7 @@ def written(tmp_path, rooms, kind="bedroom", *, filtered=False):
 
 def read_all(source, models=None):
     kinds = kinds_of(source)
-    task = PeersTask(source, kinds, models or {}, FrontFilters(), "CC0-1.0")
+    task = PeersTask(source, kinds, models or {}, FrontFilters(), "CC0-1.0", WALKER)
     return [read_peers(task, house) for house in peers_houses(source, kinds)]
 
 

@@ -15,7 +15,7 @@ from pipeline.sources.reasons import REASONS, SourceError, reject
 from pipeline.sources.settings import FrontFilters
 from tests.sources import making, mobility
 from tests.sources.making import BED, CHAIR, LAMP, STAND, TABLE, chair_record, child, floor, slab
-from tests.sources.reading import read
+from tests.sources.reading import WALKER, read
 
 BAD_OBJ = "v 0 0 0\nv 1 0 0\nf 1 2 9\n"
 
@@ -239,7 +239,7 @@ def peers(tmp, *, filtered):
 def bad_boxes(tmp):
     (tmp / "h_Bedroom-1").mkdir()
     (tmp / "h_Bedroom-1" / "boxes.npz").write_bytes(b"PK")
-    task = PeersTask(tmp, {".": KINDS["bedroom"]}, {}, FrontFilters(), "CC0-1.0")
+    task = PeersTask(tmp, {".": KINDS["bedroom"]}, {}, FrontFilters(), "CC0-1.0", WALKER)
     rejects = read_peers(task, ("h", ((".", "h_Bedroom-1"),))).rejects
     return SimpleNamespace(rejects=rejects, reasons={r["reason"] for r in rejects})
 

@@ -7,6 +7,7 @@ import numpy as np
 from pipeline.homes.violations import violations
 from pipeline.verify import Policy, verify_home
 from tests.geometry.furniture import LIBRARY, home, placed
+from tests.judging import SETTINGS
 
 CHEST = placed("tray_chest", 2.0, 2.74)
 FLOOR = 0.14  # of its drawer
@@ -17,7 +18,7 @@ def thing(name, dx, dy, z, support="tray_chest_0"):
 
 
 def judge(*placements):
-    return verify_home(home(placements), LIBRARY)
+    return verify_home(home(placements), LIBRARY, SETTINGS)
 
 
 def test_a_thing_is_held_by_what_it_names():

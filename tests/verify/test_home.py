@@ -5,13 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.verify import Policy, VerifySettings, verify_home
+from pipeline.verify import Policy, verify_home
 from schemas.joints import JOINTS
 from tests.geometry.furniture import LIBRARY, home, moved_placements, moved_plan, one_room, placed, two_rooms
+from tests.judging import SETTINGS
 
 
-def judge(*placements, plan=None, settings=None):
-    return verify_home(home(placements, plan), LIBRARY, settings)
+def judge(*placements, plan=None):
+    return verify_home(home(placements, plan), LIBRARY, SETTINGS)
 
 
 def test_a_drawer_blocked_by_a_bed_at_thirty_centimetres():
@@ -22,7 +23,7 @@ def test_a_drawer_blocked_by_a_bed_at_thirty_centimetres():
     joint = judge(chest, bed).joints[0]
     assert (joint.clear, joint.blocker) == (False, "bed_0")
     assert joint.clear_upper == pytest.approx(0.3 - 0.03, abs=0.4 / 12)
-    assert joint.clear_upper <= 0.27 + VerifySettings().touch
+    assert joint.clear_upper <= 0.27 + SETTINGS.touch
     free = judge(chest, placed("bed", 2.0, front - 0.44 - 1.0)).joints[0]
     assert (free.clear, free.blocker, free.clear_upper) == (True, "", pytest.approx(0.4))
 
@@ -89,7 +90,7 @@ def test_stand_poses_are_free_and_in_reach():
     found = judge(placed("chest", 2.0, 2.74)).joints[0]
     x, y, yaw = found.stand
     handle = np.array([2.0, 2.74 - 0.265])
-    robot = VerifySettings().robot
+    robot = SETTINGS.robot
     assert robot.reach[0] - 1e-4 <= np.hypot(*(handle - [x, y])) <= robot.reach[1] + 1e-4
     assert y < 2.74 - 0.25 - 0.43 - robot.radius + 0.01  # clear of the open drawer
     assert np.allclose([math.cos(yaw), math.sin(yaw)], (handle - [x, y]) / np.hypot(*(handle - [x, y])), atol=1e-3)

@@ -6,10 +6,11 @@ import pytest
 from pipeline.geometry.prerequisites import ordered
 from pipeline.verify import verify_home
 from tests.geometry.furniture import LIBRARY, home, inner_drawer, placed
+from tests.judging import SETTINGS
 
 
 def judged(*things, made):
-    return verify_home(home(tuple(placed(name, x, y, yaw) for name, x, y, yaw in things)), LIBRARY | {made.asset_id: made})
+    return verify_home(home(tuple(placed(name, x, y, yaw) for name, x, y, yaw in things)), LIBRARY | {made.asset_id: made}, SETTINGS)
 
 
 @pytest.fixture

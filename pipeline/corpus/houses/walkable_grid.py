@@ -1,4 +1,4 @@
-"""What a robot can walk on in a furnished room, on a grid: whether all doors are joined, and what it can get near."""
+"""Where one can walk in a furnished room, on a grid: whether all doors are joined, and what it can get near."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from pipeline.corpus.houses.records import Item, Rect
 from pipeline.corpus.houses.space import LOW, Space
 
 CELL = 0.1
-ROBOT = 0.3
-"""Radius of the robot [m]."""
+WAY = 0.3
+"""Half the width that people leave for the ways through their rooms [m]."""
 
 
 def free_floor(space: Space, items: Sequence[Item]) -> NDArray[np.bool_]:
@@ -36,7 +36,7 @@ def problems(space: Space) -> tuple[int, list[int]]:
     """Return how many doors are cut off from the main floor, and which items cannot be approached within arm's length."""
     free = free_floor(space, space.items)
     distance = ndimage.distance_transform_edt(np.pad(free, 1), sampling=CELL)[1:-1, 1:-1]
-    labels, count = ndimage.label(distance >= ROBOT - CELL / 2)
+    labels, count = ndimage.label(distance >= WAY - CELL / 2)
     if count == 0:
         return len(space.doors), []
     main = 1 + int(np.argmax(np.bincount(labels.ravel())[1:]))

@@ -31,6 +31,7 @@ from pipeline.sources.threed_front.house import HouseRows, rows_of
 from pipeline.sources.threed_front.house_file import NO_TURN, ONE, Child, HouseFile, RoomRecord
 from pipeline.sources.threed_front.poses import Pose, to_ours
 from pipeline.sources.threed_front.rows import ReadRoom
+from pipeline.sources.threed_front.walkable_share import Walker
 
 Floats = NDArray[np.float64]
 House = tuple[str, tuple[tuple[str, str], ...]]  # its id, and (folder of the kind, folder of the room) of each room
@@ -38,13 +39,14 @@ House = tuple[str, tuple[tuple[str, str], ...]]  # its id, and (folder of the ki
 
 @dataclass(frozen=True, slots=True)
 class PeersTask:
-    """What every house needs: the root, the classes of each kind's folder, models by jid, filters, licence."""
+    """What every house needs: the root, the classes of each kind's folder, models by jid, filters, licence, and who must find a way."""
 
     source: Path
     kinds: Mapping[str, Kind]
     models: Mapping[str, Model]
     filters: FrontFilters
     licence: str
+    walker: Walker
 
 
 def kinds_of(source: Path) -> dict[str, Kind]:
@@ -93,7 +95,7 @@ def read_peers(task: PeersTask, house: House) -> HouseRows:
         rows.rejects.append(reject("house", uid, "no_objects" if rooms else "no_rooms"))
         return rows
     try:
-        return rows_of(HouseFile(uid, {}, {}, (), (), ()), rooms, rows, taxonomy.load(), task.filters, task.licence)
+        return rows_of(HouseFile(uid, {}, {}, (), (), ()), rooms, rows, taxonomy.load(), task.filters, task.licence, task.walker)
     except SourceError as error:
         return HouseRows(rejects=[*rows.rejects, reject("house", uid, error.code, error.detail)])
 

@@ -26,7 +26,7 @@ from pipeline.sources.threed_front.house_file import HouseFile, RoomRecord, defe
 from pipeline.sources.threed_front.opening_evidence import MESHES, OpeningEvidence, from_furniture, from_mesh
 from pipeline.sources.threed_front.poses import to_ours, yaw_and_tilt
 from pipeline.sources.threed_front.rows import ReadRoom, object_row, opening_row, room_row, scene_row
-from pipeline.sources.threed_front.walkable_share import HEIGHT, STEP, walkable
+from pipeline.sources.threed_front.walkable_share import Walker
 from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
@@ -56,7 +56,9 @@ class HouseRows:
     content: str = ""
 
 
-def read_house(folder: Folder, file: str, models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, licence: str) -> HouseRows:
+def read_house(
+    folder: Folder, file: str, models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, licence: str, walker: Walker
+) -> HouseRows:
     """Read one house. A file that is refused gives one reject row with its reason."""
     name = file.rsplit("/", 1)[-1].removesuffix(".json")
     try:
@@ -66,12 +68,14 @@ def read_house(folder: Folder, file: str, models: Mapping[str, Model], taxonomy:
         except SourceError:
             parse_json(folder.read(file, MAX_JSON), file)  # says where in the file itself, whose arrays `deferred` took out
             raise
-        return house_rows(parse_house(tree, name, arrays), models, taxonomy, limits, licence)
+        return house_rows(parse_house(tree, name, arrays), models, taxonomy, limits, licence, walker)
     except SourceError as error:
         return HouseRows(rejects=[reject("house", name, error.code, error.detail)])
 
 
-def house_rows(house: HouseFile, models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, licence: str) -> HouseRows:
+def house_rows(
+    house: HouseFile, models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, licence: str, walker: Walker
+) -> HouseRows:
     """Turn a house's records into rows."""
     rows = HouseRows(house.uid, rejects=list(house.rejects))
     rooms = rooms_of(house, taxonomy, limits, rows.rejects)
@@ -82,7 +86,7 @@ def house_rows(house: HouseFile, models: Mapping[str, Model], taxonomy: Taxonomy
     if not any(room.objects for room in rooms):
         rows.rejects.append(reject("house", house.uid, "no_objects"))
         return rows
-    rows = rows_of(house, rooms, rows, taxonomy, limits, licence)
+    rows = rows_of(house, rooms, rows, taxonomy, limits, licence, walker)
     rows.content = _content(house.identity, rows)
     return rows
 
@@ -94,7 +98,9 @@ def _content(identity: str, rows: HouseRows) -> str:
     return sha256("\n".join([identity, *floors, *things]).encode())
 
 
-def rows_of(house: HouseFile, rooms: list[ReadRoom], rows: HouseRows, taxonomy: Taxonomy, limits: FrontFilters, licence: str) -> HouseRows:
+def rows_of(
+    house: HouseFile, rooms: list[ReadRoom], rows: HouseRows, taxonomy: Taxonomy, limits: FrontFilters, licence: str, walker: Walker
+) -> HouseRows:
     """Complete the rows of a house whose rooms and objects are known; its meshes and built-in furniture give the openings.
 
     Raises SourceError `too_large` for a house that no raster holds.
@@ -105,7 +111,7 @@ def rows_of(house: HouseFile, rooms: list[ReadRoom], rows: HouseRows, taxonomy: 
     scene_id = slug("h", house.uid)
     openings, walls = openings_of(house, rooms, limits, rows.rejects)
     rows.rooms = [room_row(scene_id, house.uid, room, taxonomy) for room in rooms]
-    for row, share in zip(rows.rooms, _walkable(rooms, openings), strict=True):
+    for row, share in zip(rows.rooms, _walkable(rooms, openings, walker), strict=True):
         row["walkable_free"] = share
     rows.openings = [opening_row(scene_id, o) for o in openings]
     rows.objects = [
@@ -187,10 +193,10 @@ def _height(house: HouseFile, record: RoomRecord, default: float) -> float:
     return default
 
 
-def _walkable(rooms: list[ReadRoom], openings: list[Opening]) -> list[float]:
+def _walkable(rooms: list[ReadRoom], openings: list[Opening], walker: Walker) -> list[float]:
     plain = [Room(r.room_id, r.type, r.floor.polygon) for r in rooms]
-    in_the_way = [o for r in rooms for o in r.objects if o.span[0] < HEIGHT and o.span[1] > STEP]
-    return walkable(plain, openings, [np.asarray(o.footprint().exterior.coords)[:4] for o in in_the_way])
+    boxes = ((np.asarray(o.footprint().exterior.coords)[:4], o.span) for r in rooms for o in r.objects)
+    return walker.shares(plain, openings, boxes)
 
 
 def openings_of(

@@ -2,29 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline import params
 from pipeline.entities.plan import Opening, Room
 from pipeline.geometry.floor_raster import components, standing
 from pipeline.geometry.free_space import FreeSpace, bare_floor
+from pipeline.geometry.robot import Robot
 
 Floats = NDArray[np.float64]
 
-CELL = 0.05  # [m] of the raster
-RADIUS, HEIGHT, STEP = 0.25, 1.4, 0.02  # [m] the robot that homes are verified for: an upright cylinder
 
+@dataclass(frozen=True, slots=True)
+class Walker:
+    """The robot that homes are verified for, and the cell of the raster [m] on which its ways are looked for."""
 
-def walkable(rooms: Sequence[Room], openings: Sequence[Opening], footprints: Sequence[Floats]) -> list[float]:
-    """Return for each room the share of its floor in the largest connected part that the robot covers.
+    robot: Robot
+    cell: float
 
-    `footprints` (4, 2) [m] are those of the objects in its way: between STEP and HEIGHT above the floor.
-    """
-    floor = bare_floor(rooms, openings, 0.2, CELL)
-    free = floor.raster.fill(floor.free.copy(), footprints, value=False)
-    labels, sizes = components(standing(free, RADIUS / CELL))
-    space = FreeSpace(floor, labels, RADIUS / CELL)
-    label = int(np.argmax(sizes[1:])) + 1 if len(sizes) > 1 else 0
-    return [round(float(share), 4) for share in space.shares(space.covered(label), len(rooms))]
+    @classmethod
+    def of(cls, tree: Mapping[str, Any]) -> Walker:
+        """Take both from section `verify` of params.yaml: rooms are measured alike before training and when they are judged."""
+        return cls(params.section(Robot, tree["verify"], "robot"), params.convert(float, tree["verify"]["cell"], "verify.cell"))
+
+    def shares(
+        self, rooms: Sequence[Room], openings: Sequence[Opening], boxes: Iterable[tuple[Floats, tuple[float, float]]]
+    ) -> list[float]:
+        """Return for each room the share of its floor in the largest connected part that the robot covers.
+
+        `boxes` are the footprints (4, 2) [m] of objects, and from where to where they reach above their floor [m].
+        """
+        low, high = self.robot.band(0.0)
+        in_the_way = [footprint for footprint, (bottom, top) in boxes if bottom < high and top > low]
+        floor = bare_floor(rooms, openings, 0.2, self.cell)
+        free = floor.raster.fill(floor.free.copy(), in_the_way, value=False)
+        radius = self.robot.radius / self.cell
+        labels, sizes = components(standing(free, radius))
+        space = FreeSpace(floor, labels, radius)
+        label = int(np.argmax(sizes[1:])) + 1 if len(sizes) > 1 else 0
+        return [round(float(share), 4) for share in space.shares(space.covered(label), len(rooms))]

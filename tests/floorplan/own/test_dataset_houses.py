@@ -8,8 +8,8 @@ from pipeline.floorplan.document import PlanDocument
 from pipeline.floorplan.imports import program_of, read_own_json, told
 from pipeline.homes.request import layout_type
 from pipeline.homes.soundness import UnsoundError, check_sound, closed_rooms
-from pipeline.verify import VerifySettings
 from tests.floorplan.own import procthor_houses
+from tests.judging import SETTINGS
 from tests.sources import front_houses
 
 OURS = {"Kitchen": "kitchen", "Hallway": "hallway", "MasterBedroom": "bedroom", "KidsRoom": "bedroom", "Bathroom": "bathroom",
@@ -21,7 +21,7 @@ JAMBS = 0.05  # [m] that an opening from corner to corner loses
 def test_a_3d_front_house_is_a_plan(name):
     tree, truth = front_houses.house(name, front_houses.HOUSES[name])
     own = read_own_json(tree, name)
-    assert check_sound(own.plan, VerifySettings()) == ()
+    assert check_sound(own.plan, SETTINGS) == ()
     PlanDocument.model_validate(plan_json(own.plan, program_of(own.plan), own.repairs_json()))
     types = {r.room_id: r.type for r in own.plan.rooms}
     left = [(o.kind, sorted(types[r] for r in o.rooms), o.width) for o in own.plan.openings]
@@ -64,7 +64,7 @@ def test_a_living_dining_room_is_one_whatever_else_is_there():
 def test_a_procthor_house_is_a_plan(seed):
     document = procthor_houses.house(seed)
     own = read_own_json(document, str(seed))
-    assert check_sound(own.plan, VerifySettings()) == ()
+    assert check_sound(own.plan, SETTINGS) == ()
     doors = sum(o.kind != "window" for o in own.plan.openings)
     walls = sum(bool(w.get("empty")) for w in document["walls"]) // 2
     assert (len(own.plan.rooms), doors) == (len(document["rooms"]), len(document["doors"]) + walls)
@@ -76,11 +76,11 @@ def test_a_procthor_house_is_a_plan(seed):
 def test_a_closet_behind_a_narrow_door_is_closed_to_the_robot_and_the_house_is_a_plan(ways):
     tree, _ = front_houses.house("x", ways)
     own = read_own_json(tree, "x")
-    (found,) = check_sound(own.plan, VerifySettings())
+    (found,) = check_sound(own.plan, SETTINGS)
     assert (found.code, found.where) == ("closed", "r_bathroom_104")
     assert f"is {ways.closet:.2f} m wide" in found.text
     assert told(own.and_found([found]).repairs_json()).count("found: r_bathroom_104: a robot 0.50 m wide does not get into it") == 1
-    assert closed_rooms(own.plan, VerifySettings()) == {"r_bathroom_104"}
+    assert closed_rooms(own.plan, SETTINGS) == {"r_bathroom_104"}
 
 
 def test_a_home_that_is_closed_for_the_larger_part_is_refused():
@@ -93,7 +93,7 @@ def test_a_home_that_is_closed_for_the_larger_part_is_refused():
     ]
     own = read_own_json({"rooms": rooms, "doors": [{"rooms": ["hall", "room"], "width": 0.4}], "entrance": "hall"})
     with pytest.raises(UnsoundError, match=r"room: a robot 0.50 m wide does not get into it: \w+ is 0.40 m wide; that is more than half"):
-        check_sound(own.plan, VerifySettings())
+        check_sound(own.plan, SETTINGS)
 
 
 def test_a_house_of_which_rooms_are_missing_is_entered_where_most_of_it_is():

@@ -15,7 +15,7 @@ from pipeline.floorplan import parse, plan_json, solve
 from pipeline.floorplan.document import PlanDocument, document_schema, refusal_json
 from pipeline.floorplan.imports import program_of, read_own, read_own_json
 from pipeline.homes.soundness import check_sound
-from pipeline.verify import VerifySettings
+from tests.judging import SETTINGS
 
 
 def box(x0, y0, x1, y1):
@@ -60,7 +60,7 @@ def polygon(room, points):
 def test_a_good_plan_is_taken_as_it_is():
     own = read()
     assert own.repairs == ()
-    check_sound(own.plan, VerifySettings())
+    check_sound(own.plan, SETTINGS)
     for room, said in zip(own.plan.rooms, home()["rooms"], strict=True):
         np.testing.assert_allclose(room.polygon, said["polygon"])
     assert [(o.kind, o.rooms) for o in own.plan.openings] == [
@@ -131,7 +131,7 @@ def test_repairs_are_stated_and_the_plan_is_sound(code):
     own = read(REPAIRED[code])
     assert code in codes(own)
     assert all(r.where and r.text for r in own.repairs)
-    check_sound(own.plan, VerifySettings())
+    check_sound(own.plan, SETTINGS)
     assert len(own.plan.rooms) == 4
     for room in own.plan.rooms:
         shape = shapely.Polygon(room.polygon)
@@ -278,12 +278,12 @@ def test_outside_walls_meet_between_rooms_that_are_far_apart():
     )
     assert "outer_wall" in codes(own)
     assert own.plan.outer_wall == pytest.approx(0.25, abs=2e-3)
-    check_sound(own.plan, VerifySettings())
+    check_sound(own.plan, SETTINGS)
 
 
 def test_leaves_do_not_meet():
     own = read(lambda d: d["doors"][0].update(segment=[[5.05, 3.1], [5.05, 3.9]]))
-    check_sound(own.plan, VerifySettings())
+    check_sound(own.plan, SETTINGS)
 
 
 def procthor():
@@ -319,7 +319,7 @@ def procthor():
 
 def test_a_procthor_house():
     own = read_own_json(procthor())
-    check_sound(own.plan, VerifySettings())
+    check_sound(own.plan, SETTINGS)
     assert {r.code for r in own.repairs} <= {"clockwise", "type", "id", "centre_lines"}
     assert [r.type for r in own.plan.rooms] == ["living_room", "bedroom"]
     assert own.plan.room("room_2").area == pytest.approx(3.88 * 4.88, abs=0.01)
@@ -388,7 +388,7 @@ def front():
 
 def test_a_3d_front_house_without_its_furniture():
     own = read_own_json(front(), "x")
-    check_sound(own.plan, VerifySettings())
+    check_sound(own.plan, SETTINGS)
     assert [(r.type, r.role) for r in own.plan.rooms] == [("living_room", ""), ("bedroom", "primary")]
     assert sorted(o.kind for o in own.plan.openings) == ["door", "entrance"]
     assert own.plan.inner_wall == pytest.approx(0.12)

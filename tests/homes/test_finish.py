@@ -1,0 +1,32 @@
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+from pipeline import taxonomy
+from pipeline.homes import finish as finishing
+from tests.geometry.furniture import one_room
+from tests.judging import SETTINGS
+
+
+class SeenError(Exception):
+    """Carries what the arranger was handed."""
+
+
+@pytest.mark.parametrize(
+    "change", [{"reach": (0.1, 0.2)}, {"cone": 11.0}, {"step": 0.07}, {"height": 0.9}, {"radius": 0.1}], ids=lambda c: next(iter(c))
+)
+def test_the_arranger_has_the_robot_and_the_raster_of_the_judge(monkeypatch, change):
+    def stop(site, *_args, **_kwargs):
+        raise SeenError(site)
+
+    monkeypatch.setattr(finishing, "post_optimise", stop)
+    job = SimpleNamespace(plan=one_room(), room_id="room", walkable=None, bounds=(None, None))
+    draft = SimpleNamespace(job=job, placements=(), lost=(), taste=SimpleNamespace(style="", wished=False))
+    index = SimpleNamespace(favouring=lambda _style, *, wished: SimpleNamespace(smaller=wished))
+    settings = replace(SETTINGS, cell=0.08, robot=replace(SETTINGS.robot, **change))
+    with pytest.raises(SeenError) as seen:
+        finishing.finish(draft, {}, index, None, None, settings, taxonomy.load())
+    site = seen.value.args[0]
+    assert site.robot == replace(settings.robot, radius=settings.robot.radius + finishing.MARGIN)
+    assert site.floor.raster.cell == settings.cell
