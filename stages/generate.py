@@ -22,7 +22,7 @@ from pipeline.homes.request import Request
 from pipeline.homes.soundness import require_sound
 from pipeline.homes.warmth import warm_up
 from pipeline.manifest import digest
-from pipeline.shards import Header, add_part, commit_shard, extend_library, gather, open_or_create, require_prompt
+from pipeline.shards import Header, add_part, commit_shard, gather, open_or_create, require_prompt
 
 
 def main(
@@ -53,10 +53,9 @@ def main(
     listen(None)
     if isinstance(outcome, Empty):
         raise outcome.error
-    with open_or_create(out, header) as dataset:
+    with open_or_create(out, header, factory.shelf()) as dataset:
         if dataset.missing():
             progress.phase("writing the assets")
-            extend_library(dataset, {p.asset_id for p in outcome.home.placements}, factory.shelf())
             assumed = assumptions(program) if source is None else []
             files = {**outcome.files, **drawings(outcome.home, program, repairs, assumed)}
             add_part(dataset, 0, gather(0, [(outcome.rows, files)]))

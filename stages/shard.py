@@ -12,7 +12,7 @@ from pipeline.execution import Progress, Voice, cores
 from pipeline.homes.factory import open_factory
 from pipeline.homes.order import read_order
 from pipeline.homes.outcomes import Empty
-from pipeline.homes.production import Recipe, Tally, fill
+from pipeline.homes.production import FAILURES, Recipe, Tally, fill
 from pipeline.homes.request import Request
 from pipeline.homes.warmth import warm_up
 from pipeline.shards import Header, forget_altered, open_or_create, read_header
@@ -43,7 +43,7 @@ def main(
         return try_one(root, seed, order.asked(only))
     header = Header(seed, count, factory.shard_size, factory.licence, {**factory.digests, "prompts": order.digest()})
     workers = workers or cores()
-    with open_or_create(folder, header) as dataset:
+    with open_or_create(folder, header, factory.shelf()) as dataset:
         if dataset.missing():
             warm_up(progress, root)
         again = shlex.join(
@@ -66,9 +66,10 @@ def main(
 def repair(root: Path, *, folder: Path, prompts: Path | None = None, workers: int | None = None, voice: Voice = "plain") -> int:
     """Make again what is broken or missing of a dataset, by the checkout that made it; returns the exit code of `main`."""
     header = read_header(folder)
-    with open_or_create(folder, header) as dataset:
-        for name in forget_altered(dataset):
-            Progress(0, "homes", voice=voice).say(f"{name} is made again")
+    progress = Progress(0, "homes", voice=voice)
+    with open_or_create(folder, header, open_factory(root, header.seed).shelf()) as dataset:
+        for name in forget_altered(dataset, FAILURES):
+            progress.say(f"{name} is made again")
     return main(root, count=header.count, out=folder, seed=header.seed, workers=workers, prompts=prompts, voice=voice)
 
 
@@ -85,11 +86,18 @@ def tell(tally: Tally, header: Header, folder: Path, progress: Progress, voice: 
     """Say what the run came to; returns the exit code."""
     lost = sum(map(len, tally.empty.values()))
     if voice == "json":
-        figures = {"made": tally.homes, "resumed": tally.resumed, "retries": tally.retries, "cpu_seconds": tally.seconds}
+        figures = {
+            "made": tally.homes,
+            "resumed": tally.resumed,
+            "others": tally.others,
+            "retries": tally.retries,
+            "cpu_seconds": tally.seconds,
+        }
         progress.summary(dataset=str(folder), homes=header.count - lost, **figures, empty={k: len(v) for k, v in tally.empty.items()})
         return 1 if lost else 0
     spent = ", ".join(f"{part} {seconds:.1f}" for part, seconds in sorted(tally.seconds.items(), key=lambda pair: -pair[1]))
     before = f", {tally.resumed} were there before" if tally.resumed else ""
+    before += f", {tally.others} made by other commands" if tally.others else ""
     if tally.homes:
         progress.say(f"{tally.homes} made in {progress.seconds:.0f} s{before}, {tally.retries} rooms and homes tried again; CPU s: {spent}")
     for line in tally.lines():

@@ -1,4 +1,4 @@
-"""Fills a dataset: chunks of homes on workers, put aside as they come, joined to shards; what cannot be made is accounted for."""
+"""Fills a dataset, alone or beside other commands: chunks of homes on workers, put aside as they come, joined to shards; what cannot be made is accounted for."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import errno
 import os
 import shutil
 import tempfile
+import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
@@ -26,18 +27,18 @@ from pipeline.shards import (
     TABLES,
     Dataset,
     ShardContent,
-    Shelf,
     add_part,
-    assets_of,
     commit_shard,
-    extend_library,
     gather,
     shard_name,
 )
 from pipeline.shards.commits import read_commit
 from pipeline.shards.layout import table_path
+from pipeline.shards.parts import Part, part_place, parts_there
 
 LEAST = 4  # homes of a chunk: fewer fill the sampler's batches badly
+WAIT = 0.5  # seconds between two looks at what other commands have done
+FAILURES = frozenset({"internal", "worker_lost"})  # reasons that are the factory's or the machine's, not the home's: worth another try
 SPARE = 16 << 20  # bytes of disk below which an unknown error is taken for a full disk
 
 
@@ -58,9 +59,9 @@ class Chunk:
 
 @dataclass(frozen=True, slots=True)
 class Batch:
-    """A chunk that is made: what it brings, the homes that could not be, CPU seconds by part, and rooms and homes that were tried again."""
+    """A chunk that is made: each home, those that could not be made, CPU seconds by part, and rooms and homes that were tried again."""
 
-    content: ShardContent
+    homes: tuple[ShardContent, ...]
     empties: tuple[Empty, ...]
     seconds: Mapping[str, float]
     retries: int
@@ -80,10 +81,12 @@ class Recipe:
 
 @dataclass
 class Tally:
-    """What a run came to. `empty` lists, by reason, every home of the dataset that stays empty, whichever run found that: (scene id, detail)."""
+    """What a run came to: homes made and found impossible, those that were there before or that other commands made. `empty` lists, by reason, every home of the dataset that stays empty, whichever run found that: (scene id, detail)."""
 
     homes: int = 0
+    unmade: int = 0
     resumed: int = 0
+    others: int = 0
     retries: int = 0
     seconds: dict[str, float] = field(default_factory=dict)
     empty: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
@@ -112,56 +115,66 @@ def fill(
 
     A home that cannot be made leaves its index empty and the run goes on; with `strict` its error is raised.
     """
-    factory = recipe.opened()
-    shelf, missing, tally = factory.shelf(), dataset.missing(), Tally()
-    extend_library(dataset, (), shelf)
+    factory, tally = recipe.opened(), Tally()
+    missing = dataset.missing()
     todo = sum(len(dataset.todo(number)) for number in missing)
     tally.resumed = dataset.header.count - todo
     if strict:
         for reason, cases in empties_of(dataset).items():
             raise ContentError(f"{cases[0][0]} stays empty ({reason}: {cases[0][1]})", "leave --strict out")
-    for number in [n for n in missing if not dataset.todo(n)]:  # killed before its commit
-        missing.remove(number)
-        _finish(dataset, number, shelf)
-    workers = min(workers, -(-todo // LEAST))
-    size = max(LEAST, min(factory.chunk, -(-todo // max(1, workers))))
     watch = _Watch(tally, progress)
-    done = map_jobs(
-        partial(make_chunk, recipe),
-        chunks(dataset, missing, asked, size),
-        workers=workers,
-        scheduler=scheduler,
-        split=Chunk.pieces,
-        note=watch.heard,
-        silence=factory.shard.home_seconds,
-    )
-    with closing(done):  # an error stops the workers at once
-        for chunk, answer in done:
-            batch = lost(chunk, answer, factory.seed) if isinstance(answer, Lost) else answer
-            for empty in batch.empties:
-                if strict:
-                    raise empty.error
-                if empty.reason in {"internal", "worker_lost"}:
-                    place = f"home {empty.index} ({shard_name(chunk.shard)}, seed {factory.seed})"
-                    progress.say(f"{place} stays empty: {empty.error}{f'; again: {again.format(index=empty.index)}' if again else ''}")
-            add_part(dataset, chunk.shard, batch.content)
-            watch.counted(chunk, batch)
-            if not dataset.todo(chunk.shard):
-                _finish(dataset, chunk.shard, shelf)
+    while missing:
+        done = map_jobs(
+            partial(make_chunk, recipe),
+            chunks(dataset, missing, asked, factory.chunk, workers),
+            workers=min(workers, -(-todo // LEAST)),
+            scheduler=scheduler,
+            split=Chunk.pieces,
+            note=watch.heard,
+            silence=factory.shard.home_seconds,
+        )
+        before = tally.homes + tally.unmade
+        with closing(done):  # an error stops the workers at once
+            for chunk, answer in done:
+                batch = lost(chunk, answer, factory.seed) if isinstance(answer, Lost) else answer
+                for empty in batch.empties:
+                    if strict:
+                        raise empty.error
+                    if empty.reason in FAILURES:
+                        place = f"home {empty.index} ({shard_name(chunk.shard)}, seed {factory.seed})"
+                        progress.say(f"{place} stays empty: {empty.error}{f'; again: {again.format(index=empty.index)}' if again else ''}")
+                for home in batch.homes:
+                    add_part(dataset, chunk.shard, home)
+                watch.counted(chunk, batch)
+                _finish(dataset, chunk.shard)
+        for number in dataset.missing():  # whose last home is another command's, or whose maker was killed before the commit
+            _finish(dataset, number)
+        if (missing := dataset.missing()) and tally.homes + tally.unmade == before:
+            progress.state("waiting for other commands")
+            time.sleep(WAIT)
+    tally.others = todo - tally.homes - tally.unmade
+    progress.add(tally.others)
     tally.empty = empties_of(dataset)
     return tally
 
 
-def chunks(dataset: Dataset, missing: Sequence[int], asked: Callable[[int], Request], size: int) -> Iterator[Chunk]:
-    """Yield what is still to be made, in order, in runs of at most `size` consecutive homes."""
+def chunks(dataset: Dataset, missing: Sequence[int], asked: Callable[[int], Request], most: int, workers: int) -> Iterator[Chunk]:
+    """Claim what is still to be made, in order, and yield it in runs of at most `most` consecutive homes; of fewer when few are left."""
+    left = sum(len(dataset.todo(number)) for number in missing)
     for number in missing:
+        hands = max(1, workers) * (1 + len(dataset.claims.others()))
         run: list[Request] = []
-        for index in dataset.todo(number):
-            if run and (len(run) == size or index != run[-1].index + 1):
+        todo = dataset.todo(number)
+        for index in todo:
+            taken = dataset.take(number, index)
+            if run and (not taken or len(run) >= max(LEAST, min(most, -(-left // hands))) or index != run[-1].index + 1):
+                left -= len(run)
                 yield Chunk(number, tuple(run))
                 run = []
-            run.append(asked(index))
+            if taken:
+                run.append(asked(index))
         if run:
+            left -= len(run)
             yield Chunk(number, tuple(run))
 
 
@@ -171,17 +184,15 @@ def make_chunk(recipe: Recipe, chunk: Chunk) -> Batch:
     factory.seconds.clear()
     first = recipe.drafts(factory, chunk.requests) if recipe.drafts else None
     outcomes = attempt(factory, chunk.requests, first)
-    content = gather(
-        chunk.shard,
-        ((o.rows(factory.seed), {}) if isinstance(o, Empty) else (o.rows, o.files) for o in outcomes),
-    )
+    brought = [(o.rows(factory.seed), {}) if isinstance(o, Empty) else (o.rows, o.files) for o in outcomes]
+    homes = tuple(gather(chunk.shard, [home]) for home in brought)
     if recipe.shelve:
         with factory.timed("library"):
             shelf = factory.shelf()
-            for asset_id in sorted({row["asset_id"] for row in content.rows["objects"]}):
+            for asset_id in sorted({row["asset_id"] for home in homes for row in home.rows["objects"]}):
                 shelf.entry(asset_id)
-    retries = sum(row["what"] in {"room", "home"} for row in content.rows["rejects"])
-    return Batch(content, tuple(o for o in outcomes if isinstance(o, Empty)), dict(factory.seconds), retries)
+    retries = sum(row["what"] in {"room", "home"} for home in homes for row in home.rows["rejects"])
+    return Batch(homes, tuple(o for o in outcomes if isinstance(o, Empty)), dict(factory.seconds), retries)
 
 
 def attempt(factory: Factory, requests: Sequence[Request], first: Sequence[HomeDraft] | None) -> list[Outcome | Empty]:
@@ -206,7 +217,7 @@ def lost(chunk: Chunk, answer: Lost, seed: int) -> Batch:
     (request,) = chunk.requests
     how = "died at it" if answer.how == "died" else "kept silent"
     empty = Empty(request.index, "worker_lost", ContentError(f"{answer.times} workers {how}", "give them more memory (fewer --workers)"))
-    return Batch(gather(chunk.shard, [(empty.rows(seed), {})]), (empty,), {}, 0)
+    return Batch((gather(chunk.shard, [(empty.rows(seed), {})]),), (empty,), {}, 0)
 
 
 def empties_of(dataset: Dataset) -> dict[str, list[tuple[str, str]]]:
@@ -219,16 +230,18 @@ def empties_of(dataset: Dataset) -> dict[str, list[tuple[str, str]]]:
         if commit:
             rows = tables.read(dataset.folder / table_path("rejects", number), TABLES["rejects"])
         else:
-            rows = [row for part in dataset.parts.get(number, ()) for row in part.rows("rejects").to_pylist()]
+            parts = [Part(part_place(dataset.folder, number, i)) for i in sorted(parts_there(dataset.folder, number))]
+            rows = [row for part in parts if part.whole() for row in part.rows("rejects").to_pylist()]
         for row in rows:
             if row["what"] == EMPTY:
                 found.setdefault(row["reason"], []).append((row["where"], row["detail"]))
     return found
 
 
-def _finish(dataset: Dataset, number: int, shelf: Shelf) -> None:
-    extend_library(dataset, assets_of(dataset, number), shelf)
-    commit_shard(dataset, number)
+def _finish(dataset: Dataset, number: int) -> None:
+    """Commit a shard once all of its homes are there, and no other command does."""
+    if not dataset.todo(number):
+        commit_shard(dataset, number)
 
 
 class _Watch:
@@ -252,6 +265,7 @@ class _Watch:
         self.progress.add(len(indices - self._told))
         self._told -= indices
         self.tally.homes += len(indices) - len(batch.empties)
+        self.tally.unmade += len(batch.empties)
         self.tally.retries += batch.retries
         for part, spent in batch.seconds.items():
             self.tally.seconds[part] = self.tally.seconds.get(part, 0.0) + spent

@@ -5,7 +5,7 @@ from pipeline.shards.content import ShardContent, gather
 from pipeline.shards.dataset import Dataset, add_part, commit_shard, committed, forget_altered, open_or_create
 from pipeline.shards.header import Header, code_digest, read_header
 from pipeline.shards.layout import EMPTY, TABLES, file_path, scene_id, shard_name
-from pipeline.shards.library import Shelf, assets_of, extend_library
+from pipeline.shards.library import Shelf
 from pipeline.shards.mix import Mix, read_mix, require_prompt
 
 __all__ = [
@@ -18,12 +18,10 @@ __all__ = [
     "Shelf",
     "Summary",
     "add_part",
-    "assets_of",
     "check",
     "code_digest",
     "commit_shard",
     "committed",
-    "extend_library",
     "file_path",
     "forget_altered",
     "gather",

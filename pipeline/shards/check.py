@@ -15,7 +15,7 @@ from pipeline.errors import ContentError, UsageError
 from pipeline.manifest import sha256_file
 from pipeline.shards.commits import Commit, read_commit
 from pipeline.shards.header import Header, read_header
-from pipeline.shards.layout import ASSETS, COMMITS, PARTS, STAGING, TABLES, TEMPORARY, scene_id, shard_name, table_path
+from pipeline.shards.layout import ASSETS, COMMITS, PASSING, TABLES, scene_id, shard_name, table_path
 from pipeline.shards.parts import indices_of
 from pipeline.shards.seal import SEAL, check_seal
 
@@ -87,8 +87,8 @@ def _refuse_strangers(folder: Path, commits: list[Commit], header: Header) -> No
     for path in _files(folder):
         name = path.relative_to(folder).as_posix()
         first = PurePosixPath(name).parts[0]
-        if first in {STAGING, PARTS} or path.name.startswith(TEMPORARY):
-            raise ContentError(f"{folder / name} was left by a run that was killed", AGAIN)
+        if first in PASSING:
+            raise ContentError(f"{folder / name} belongs to a run that was killed, or is at work", AGAIN)
         if first in families and name not in known:
             raise ContentError(f"{folder / name} belongs to no shard", "move it out of the dataset")
 

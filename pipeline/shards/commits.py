@@ -64,11 +64,11 @@ def record(staging: Path, name: str, rows: Mapping[str, int], *, flush: bool = T
     for place, _, names in os.walk(staging):
         folders.append(Path(place))
         paths += [Path(place) / file for file in names]
-    with ThreadPoolExecutor(FLUSHES) as pool:
-        if flush:
+    if flush:
+        with ThreadPoolExecutor(FLUSHES) as pool:
             list(pool.map(sync, paths))
             list(pool.map(sync, folders))  # after their files
-        entries = list(pool.map(entry_of, paths))
+    entries = map(entry_of, paths)
     files = {path.relative_to(staging).as_posix(): entry for path, entry in zip(paths, entries, strict=True)}
     return Commit(name, dict(sorted(files.items())), rows)
 

@@ -1,13 +1,12 @@
-"""A dataset folder that is being filled: opened or created, locked, resumed; shards are written whole or not at all.
+"""A dataset folder that is being filled, by one command or by several at once: opened or created, resumed; shards are written whole or not at all.
 
-One process writes; workers return homes, which it puts aside as parts until a shard has all of its own. So no two writers
-ever meet, workers need no shared disk, and what a killed run leaves behind is told apart by one question: is there a commit file?
+Workers return homes, which their command puts aside as parts until a shard has all of its own. Every name in the folder has one content only
+(the same home is the same bytes), is written elsewhere, and renamed to its place; so it is harmless when two write it, and claims see to it
+that they seldom do. What a killed run leaves behind is told apart by one question: is there a commit file?
 """
 
 from __future__ import annotations
 
-import fcntl
-import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -17,41 +16,69 @@ from pathlib import Path
 import pyarrow.parquet as pq
 
 from pipeline.errors import ContentError, UsageError
-from pipeline.manifest import write_json
+from pipeline.manifest import text_of
+from pipeline.shards.claims import Claims
 from pipeline.shards.commits import Commit, read_commit, record
 from pipeline.shards.content import ShardContent
-from pipeline.shards.disk import link, sync
+from pipeline.shards.disk import link, put, sync
 from pipeline.shards.header import Header, read_header
-from pipeline.shards.layout import ASSETS, COMMITS, HEADER, PARTS, STAGING, TABLES, TEMPORARY, commit_path, shard_name, table_path
-from pipeline.shards.parts import FILES, Part, join, read_parts, remove_parts, write_part
-from pipeline.shards.seal import seal
+from pipeline.shards.layout import (
+    ASSETS,
+    CLAIMS,
+    COMMITS,
+    HEADER,
+    PARTS,
+    PASSING,
+    STAGING,
+    TABLES,
+    commit_path,
+    shard_name,
+    table_path,
+)
+from pipeline.shards.library import Shelf, adopt, settle
+from pipeline.shards.parts import FILES, Part, indices_of, join, part_place, parts_there, write_part
+from pipeline.shards.seal import SEAL, is_sealed, seal
 
 
 @dataclass(frozen=True, slots=True)
 class Dataset:
-    """An open dataset: where it lies, what it is, and the parts of shards that are not whole yet."""
+    """An open dataset: where it lies, what it is, where its assets come from, and what this command has claimed of it."""
 
     folder: Path
     header: Header
-    parts: dict[int, list[Part]] = field(default_factory=dict)
+    shelf: Shelf
+    claims: Claims
+    done: set[int] = field(default_factory=set)  # shards that were seen to be committed
+
+    @property
+    def staging(self) -> Path:
+        """Where this command, and no other, writes."""
+        return self.folder / STAGING / self.claims.token
 
     def missing(self) -> list[int]:
         """Return the numbers of the shards that are still to be made."""
-        return [n for n in range(self.header.shards) if not committed(self, n)]
+        self.done.update(n for n in range(self.header.shards) if n not in self.done and committed(self, n))
+        return [n for n in range(self.header.shards) if n not in self.done]
 
     def todo(self, number: int) -> list[int]:
-        """Return the indices of a shard that is not committed which no part answers for."""
-        there = {i for part in self.parts.get(number, ()) for i in part.indices}
+        """Return the indices of a shard that is not committed of which there are no parts, whoever may be at work at them."""
+        there = parts_there(self.folder, number)
         return [i for i in self.header.indices(number) if i not in there]
+
+    def take(self, number: int, index: int) -> bool:
+        """Claim home `index`; False where it is there, or another is at work at it."""
+        if not self.claims.take(f"{shard_name(number)}/{index:08d}"):
+            return False
+        return not (part_place(self.folder, number, index).exists() or committed(self, number))
 
 
 @contextmanager
-def open_or_create(folder: Path, header: Header, *, discard: bool = False) -> Iterator[Dataset]:
-    """Open a dataset for writing: create it, or resume an equal one; the folder is locked meanwhile.
+def open_or_create(folder: Path, header: Header, shelf: Shelf, *, discard: bool = False) -> Iterator[Dataset]:
+    """Open a dataset for writing: create it, or resume an equal one, beside others that do so. Once all shards are there it is sealed.
 
     A dataset of full shards may grow: the same header with a larger count resumes it. With `discard`, an unequal
     dataset is deleted first (for folders that DVC owns). Raises UsageError for a folder that holds another dataset or
-    other files, or that another run is writing; ContentError when dataset.json is broken. Nothing is touched then.
+    other files; ContentError when dataset.json is broken. Nothing is touched then.
     """
     if header.count < 1 or header.shard_size < 1:
         raise UsageError(f"a dataset of {header.count} homes in shards of {header.shard_size} cannot be", "give numbers from 1 on")
@@ -59,25 +86,25 @@ def open_or_create(folder: Path, header: Header, *, discard: bool = False) -> It
         raise UsageError(f"{folder} is not a folder", "give a folder that is new, empty, or holds this very dataset")
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        _resumes(folder, header, discard=discard)
+        claims = Claims(folder / CLAIMS)
     except OSError as error:
         raise UsageError(f"cannot make the folder {folder} ({error.strerror})", "give a place that you may write to") from error
-    with _locked(folder):
-        if (folder / HEADER).exists():
-            if not _resumes(folder, header, discard=discard):
-                _wipe(folder)
-        elif any(not p.name.startswith((TEMPORARY, STAGING)) for p in folder.iterdir()):
-            raise UsageError(f"{folder} holds other files", "give a folder that is new or empty")
-        dataset = Dataset(folder, header)
-        _clean(dataset)
-        if not (folder / HEADER).exists() or read_header(folder) != header:
-            write_json(folder / HEADER, header.to_json())
-        try:
-            dataset.parts.update(read_parts(folder, {n: header.indices(n) for n in dataset.missing()}))
-            yield dataset
-            if not dataset.missing():
-                seal(folder, header)
-        finally:
+    dataset = Dataset(folder, header, shelf, claims)
+    try:
+        with claims.alone("open"):
+            _prepare(dataset, discard=discard)
+        yield dataset
+        if not dataset.missing() and read_header(folder) == header and not is_sealed(folder, header):
+            settle(folder, shelf, dataset.staging, assets_of_all(dataset))
+            seal(folder, header, dataset.staging)
+    finally:
+        shutil.rmtree(dataset.staging, ignore_errors=True)
+        whole = (folder / commit_path(SEAL)).exists()
+        if claims.leave():  # nobody is at work: what was left by those who were killed goes too
             shutil.rmtree(folder / STAGING, ignore_errors=True)
+            if whole:
+                shutil.rmtree(folder / PARTS, ignore_errors=True)
 
 
 def committed(dataset: Dataset, number: int) -> bool:
@@ -86,48 +113,91 @@ def committed(dataset: Dataset, number: int) -> bool:
     return commit is not None and not commit.damaged(dataset.folder)
 
 
-def forget_altered(dataset: Dataset) -> list[str]:
-    """Remove shards and library of which a file is not what was written, so that they are made again; returns their names."""
-    names = [*map(shard_name, range(dataset.header.shards)), ASSETS]
+def assets_of_all(dataset: Dataset) -> set[str]:
+    """Return the assets that the homes of a dataset use."""
+    paths = [dataset.folder / table_path("objects", n) for n in range(dataset.header.shards)]
+    return {a for path in paths for a in pq.ParquetFile(path).read(["asset_id"])["asset_id"].to_pylist()}
+
+
+def forget_altered(dataset: Dataset, retry: frozenset[str] = frozenset()) -> list[str]:
+    """Make what is missing of a dataset of which a file is not what was written, or a home stays empty for a reason in `retry`; returns names.
+
+    Raises UsageError while others are at work.
+    """
+    if dataset.claims.others():
+        raise UsageError(f"another run is writing {dataset.folder}", "wait for it")
     broken = []
-    for name in names:
+    for name in [*map(shard_name, range(dataset.header.shards)), ASSETS]:
         try:
             commit = read_commit(dataset.folder, name)
         except ContentError:
             commit = Commit(name, {}, {})
-        if commit is not None and (not commit.files or commit.altered(dataset.folder)):
+        if commit is not None and (not commit.files or commit.altered(dataset.folder) or _fails(dataset.folder, commit, retry)):
             _forget(dataset.folder, name)
             broken.append(name)
+    dataset.done.clear()
     return broken
 
 
-def add_part(dataset: Dataset, number: int, content: ShardContent) -> Part:
-    """Put homes of shard `number` aside until it is whole; they survive the end of this process.
+def _fails(folder: Path, commit: Commit, reasons: frozenset[str]) -> bool:
+    """Tell whether homes of a shard stay empty for one of the reasons."""
+    path = next((path for path in commit.files if path.startswith("rejects/")), None)
+    rows = pq.ParquetFile(folder / path).read(["what", "reason"]).to_pylist() if path and reasons else []
+    return any(row["what"] == "index" and row["reason"] in reasons for row in rows)
 
-    Raises ContentError for a table or file that has no place in the shard, and for homes that are not to be made.
+
+def add_part(dataset: Dataset, number: int, content: ShardContent) -> int:
+    """Put a home of shard `number` aside until the shard is whole, and return its index; it survives the end of this process.
+
+    Raises ContentError for a table or file that has no place in the shard, and for a home that is not of it.
     """
-    part = write_part(dataset.folder, number, content)
-    if not set(part.indices) <= set(dataset.todo(number)):
-        shutil.rmtree(part.folder)
-        wanted = list(dataset.header.indices(number))
-        raise ContentError(f"{shard_name(number)} brings homes {part.indices}, not some of {wanted}", "one scenes row per index, in order")
-    dataset.parts[number] = sorted([*dataset.parts.get(number, ()), part], key=lambda p: p.indices)
-    return part
+    scenes, rejects = (TABLES[t].from_rows(content.rows.get(t, ())) for t in ("scenes", "rejects"))
+    made = [i for some in indices_of(scenes, rejects) for i in some]
+    wanted = dataset.header.indices(number)
+    if not set(made) <= set(wanted):
+        raise ContentError(f"{shard_name(number)} brings homes {made}, not one of {list(wanted)}", "one home a part")
+    return write_part(dataset.folder, dataset.staging, number, content)
 
 
-def commit_shard(dataset: Dataset, number: int) -> Commit:
+def commit_shard(dataset: Dataset, number: int) -> bool:
     """Write shard `number` from its parts: stage, fsync, rename, commit file last. A committed shard is never rewritten.
 
+    False while another command does so, and where parts turn out to be torn: those are to be made again.
     Raises ContentError when a home is missing that no rejects row accounts for.
     """
     name = shard_name(number)
     if committed(dataset, number):
-        raise ContentError(f"{name} of {dataset.folder} is committed already", "a committed shard is never rewritten")
-    parts = dataset.parts.get(number, [])
-    there = [i for part in parts for i in part.indices]
-    if there != list(dataset.header.indices(number)):
-        raise ContentError(f"{name} brings homes {there}, not {list(dataset.header.indices(number))}", "one scenes row per index, in order")
-    staging = dataset.folder / STAGING / name
+        return True
+    if left := dataset.todo(number):
+        raise ContentError(f"{name} lacks the homes {left}", "one scenes row per index, or a rejects row that says why there is none")
+    if not dataset.claims.take(f"{name}/commit"):
+        return False
+    try:
+        if not _drop_torn(dataset, number):
+            _commit(dataset, number)
+    except OSError:
+        if not committed(dataset, number):
+            raise  # or else: this one was given up, and another has done it meanwhile
+    if not committed(dataset, number):
+        return False
+    dataset.claims.forget(name)
+    shutil.rmtree(dataset.folder / PARTS / name, ignore_errors=True)
+    return True
+
+
+def _drop_torn(dataset: Dataset, number: int) -> list[int]:
+    """Remove the parts of a shard that are not what was written, and claim their homes."""
+    torn = [i for i in dataset.header.indices(number) if not Part(part_place(dataset.folder, number, i)).whole()]
+    for index in torn:
+        dataset.claims.take(f"{shard_name(number)}/{index:08d}", by_force=True)
+        shutil.rmtree(part_place(dataset.folder, number, index), ignore_errors=True)
+    return torn
+
+
+def _commit(dataset: Dataset, number: int) -> None:
+    name, folder = shard_name(number), dataset.folder
+    parts = [Part(part_place(folder, number, i)) for i in dataset.header.indices(number)]
+    staging = dataset.staging / name
     shutil.rmtree(staging, ignore_errors=True)
     rows = {}
     for table in TABLES:
@@ -136,30 +206,41 @@ def commit_shard(dataset: Dataset, number: int) -> Commit:
         path = staging / table_path(table, number)
         path.parent.mkdir(parents=True)
         pq.write_table(data, path, compression="zstd", store_schema=True)
+        if table == "objects":
+            adopt(folder, dataset.shelf, dataset.staging, set(data["asset_id"].to_pylist()))
     for part in parts:
         for family in sorted((part.folder / FILES).glob("*")):
             place = staging / family.name / name
             place.mkdir(parents=True, exist_ok=True)
-            for file in sorted((family / name).iterdir()):
-                link(file, place / file.name)  # the part stays whole until the shard is
+            for source in sorted((family / name).iterdir()):
+                link(source, place / source.name)  # the part stays whole until the shard is
     commit = record(staging, name, rows)
-    _forget(dataset.folder, name)
-    for family in sorted(staging.iterdir()):
-        (dataset.folder / family.name).mkdir(exist_ok=True)
-        for item in sorted(family.iterdir()):
-            item.rename(dataset.folder / family.name / item.name)
-        sync(dataset.folder / family.name)
-    sync(dataset.folder)
-    write_json(dataset.folder / commit_path(name), commit.to_json())
-    sync(dataset.folder / COMMITS)
+    _remove_strangers(folder, name, commit)
+    places = {(folder / file).parent for file in commit.files}
+    for place in places:
+        place.mkdir(parents=True, exist_ok=True)
+    for file in commit.files:
+        (staging / file).replace(folder / file)
+    for named in sorted({p for place in places for p in (place, *place.parents) if p.is_relative_to(folder)}, reverse=True):
+        sync(named)  # a folder before the one that names it
+    put(folder / commit_path(name), text_of(commit.to_json()), dataset.staging)
     shutil.rmtree(staging)
-    remove_parts(dataset.folder, number)
-    dataset.parts.pop(number, None)
-    return commit
+
+
+def _remove_strangers(folder: Path, name: str, commit: Commit) -> None:
+    """Remove what lies in a shard's places and is none of its files."""
+    for path in [*folder.glob(f"*/{name}/**/*"), *folder.glob(f"*/{name}.parquet")]:
+        relative = path.relative_to(folder)
+        if relative.parts[0] not in {*PASSING, ASSETS} and not path.is_dir() and relative.as_posix() not in commit.files:
+            path.unlink()
 
 
 def _resumes(folder: Path, header: Header, *, discard: bool) -> bool:
-    """Tell whether the dataset in `folder` is an equal or a smaller one (True) or is to be discarded (False)."""
+    """Tell whether the dataset in `folder` is an equal or a smaller one (True), or there is none, or it is to be discarded (False)."""
+    if not (folder / HEADER).exists():
+        if any(p.name not in PASSING for p in folder.iterdir()):
+            raise UsageError(f"{folder} holds other files", "give a folder that is new or empty")
+        return False
     try:
         there = read_header(folder)
     except ContentError:
@@ -179,49 +260,35 @@ def _resumes(folder: Path, header: Header, *, discard: bool) -> bool:
     raise UsageError(f"{folder} holds another dataset ({what})", remedy)
 
 
-def _clean(dataset: Dataset) -> None:
-    """Remove what a killed run left: staging, temporary files, shards without (or that do not fit) a commit. Parts are looked at later."""
-    folder = dataset.folder
-    shutil.rmtree(folder / STAGING, ignore_errors=True)
-    for place in (folder, folder / COMMITS):
-        for left in place.glob(f"{TEMPORARY}*"):
-            left.unlink()
-    seen = {p.name.removesuffix(".parquet") for p in folder.glob("*/shard-*") if p.parent.name != PARTS}
-    for name in sorted(n for n in seen if "." not in n):
-        commit = read_commit(folder, name)
-        if commit is None or commit.damaged(folder):
-            _forget(folder, name)
+def _prepare(dataset: Dataset, *, discard: bool) -> None:
+    """Bring the folder to where work can begin: an equal header, and no commit of a shard or library that lost a file."""
+    folder, header = dataset.folder, dataset.header
+    if not _resumes(folder, header, discard=discard) and (folder / HEADER).exists():
+        if dataset.claims.others():
+            raise UsageError(f"another run is writing {folder}", "wait for it, or give another --out")
+        _wipe(folder)
+    if not (folder / HEADER).exists() or read_header(folder) != header:
+        (folder / commit_path(SEAL)).unlink(missing_ok=True)
+        put(folder / HEADER, text_of(header.to_json()), dataset.staging)
+    for number in dataset.missing():
+        if (folder / commit_path(shard_name(number))).exists():
+            _forget(folder, shard_name(number))
+    library = read_commit(folder, ASSETS)
+    if library and library.damaged(folder):
+        _forget(folder, ASSETS)
 
 
 def _forget(folder: Path, name: str) -> None:
-    """Remove a shard: its commit first, so that no commit ever vouches for files that are gone."""
-    (folder / commit_path(name)).unlink(missing_ok=True)
-    for item in sorted([*folder.glob(f"*/{name}"), *folder.glob(f"*/{name}.parquet")]):
-        if item.parent.name in {STAGING, PARTS, ASSETS}:
-            continue
-        if item.is_dir() and not item.is_symlink():
-            shutil.rmtree(item)
-        else:
-            item.unlink()
+    """Let a shard, or the library, be made again; its commit goes, its files are written over."""
+    for path in (commit_path(SEAL), commit_path(name)):
+        (folder / path).unlink(missing_ok=True)
+    sync(folder / COMMITS)
 
 
 def _wipe(folder: Path) -> None:
     """Remove a whole dataset, its header first; files and folders that are no dataset's stay."""
     (folder / HEADER).unlink()
+    sync(folder)
     ours = {*TABLES, COMMITS, ASSETS, STAGING, PARTS, *(p.parent.name for p in folder.glob("*/shard-*"))}
     for name in sorted(ours):
         shutil.rmtree(folder / name, ignore_errors=True)
-
-
-@contextmanager
-def _locked(folder: Path) -> Iterator[None]:
-    """Hold the folder's lock; the kernel frees it when the process dies."""
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            raise UsageError(f"another run is writing {folder}", "wait for it, or give another --out") from error
-        yield
-    finally:
-        os.close(descriptor)

@@ -1,4 +1,4 @@
-"""Folders and names on disk: flushed, linked."""
+"""Folders and names on disk: flushed, linked, put."""
 
 from __future__ import annotations
 
@@ -22,3 +22,15 @@ def link(source: str | Path, target: str | Path) -> None:
         os.link(source, target)
     except OSError:
         shutil.copyfile(source, target)
+
+
+def put(path: Path, data: bytes, staging: Path) -> None:
+    """Write a file whole or not at all, by way of a folder that nobody else writes in; it is on disk, and so is its name."""
+    staging.mkdir(parents=True, exist_ok=True)
+    path.parent.mkdir(exist_ok=True)
+    temporary = staging / path.name
+    temporary.write_bytes(data)
+    sync(temporary)
+    temporary.replace(path)
+    sync(path.parent)
+    sync(path.parent.parent)

@@ -1,4 +1,4 @@
-"""Where things lie in a dataset folder, and the names that never last: parts, staging and temporary files.
+"""Where things lie in a dataset folder, and the names that never last: parts, claims and staging.
 
 dataset.json                      what the dataset is
 scenes/shard-00000.parquet ...    one folder per table
@@ -6,7 +6,9 @@ usd/shard-00000/...               one folder per family of files: usd, plans, pr
 assets/...                        the asset library that every shard reads
 commits/shard-00000.json          digest of every file of the shard; written last, it makes the shard exist
 commits/assets.json               the same for the library
-.parts/shard-00000/00000016/      homes of a shard that is not whole yet, from index 16 on; gone when it is
+.parts/shard-00000/00000016/      home 16 of a shard that is not whole yet; gone when it is
+.claims/                          who is making what; gone when nobody is
+.staging/<token>/                 what a command is writing
 """
 
 from __future__ import annotations
@@ -27,8 +29,9 @@ COMMITS = "commits"
 ASSETS = "assets"
 STAGING = ".staging"
 PARTS = ".parts"
+CLAIMS = ".claims"
 EMPTY = "index"  # `what` of the rejects row of a home that could not be made: its index stays empty
-TEMPORARY = ".tmp-"  # how pipeline/manifest.py begins the names of files that are being written
+PASSING = frozenset({STAGING, PARTS, CLAIMS})  # folders that are gone when a dataset is whole
 
 
 def shard_name(number: int) -> str:

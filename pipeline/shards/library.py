@@ -1,24 +1,22 @@
 """The asset library of a dataset: the assets that its homes use, hard-linked from a shelf that all datasets of a machine share.
 
-It grows with the shards: a shard's assets are there, and committed, before the shard is.
+It grows with the shards: a shard's assets are there before the shard is. When all shards are, it is settled: held against the shelf
+to the last byte, described by its tables, and committed.
 """
 
 from __future__ import annotations
 
 import shutil
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import Any, Protocol
 
 import pyarrow.parquet as pq
 
-from pipeline import tables
-from pipeline.errors import ContentError
-from pipeline.manifest import write_json
-from pipeline.shards.commits import Commit, entry_of, read_commit, record
-from pipeline.shards.dataset import Dataset, committed
-from pipeline.shards.disk import link, sync
-from pipeline.shards.layout import ASSETS, COMMITS, STAGING, commit_path, table_path
+from pipeline.manifest import text_of
+from pipeline.shards.commits import Commit, Entry, record
+from pipeline.shards.disk import link, put, sync
+from pipeline.shards.layout import ASSETS, commit_path
 from schemas.table import Table
 
 
@@ -32,57 +30,45 @@ class Shelf(Protocol):
         """Return the tables that describe assets."""
 
 
-def extend_library(dataset: Dataset, asset_ids: Iterable[str], shelf: Shelf) -> None:
-    """Put the assets into the dataset's library, beside those that are there; a library with a broken file is put together anew."""
-    there = _read(dataset)
-    held = {PurePosixPath(path).parts[1] for path in there.files if len(PurePosixPath(path).parts) > 2} if there else set()
-    if there is None:
-        shutil.rmtree(dataset.folder / ASSETS, ignore_errors=True)
-    wanted = held | set(asset_ids)
-    if there is None:  # shards that were committed before it broke need their assets too
-        wanted |= {a for n in range(dataset.header.shards) if committed(dataset, n) for a in assets_of(dataset, n)}
-    if there is not None and wanted == held:
-        return
-    files = dict(there.files) if there else {}
-    for asset_id in sorted(wanted - held):
-        files |= _adopt(dataset, asset_id, shelf.entry(asset_id))
-    for table, rows in shelf.tables(sorted(wanted)).items():
-        path = f"{ASSETS}/{table.name}.parquet"
-        tables.write(dataset.folder / path, table, rows)
-        files[path] = entry_of(dataset.folder / path)
-    sync(dataset.folder / ASSETS)
-    sync(dataset.folder)
-    write_json(dataset.folder / commit_path(ASSETS), Commit(ASSETS, files, {}).to_json())
-    sync(dataset.folder / COMMITS)
+def adopt(folder: Path, shelf: Shelf, staging: Path, asset_ids: Iterable[str]) -> None:
+    """Bring the assets that are not there yet into the library of the dataset in `folder`."""
+    missing = [a for a in sorted(asset_ids) if not (folder / ASSETS / a).exists()]
+    (folder / ASSETS).mkdir(exist_ok=True)
+    for asset_id in missing:
+        place = staging / ASSETS / asset_id
+        shutil.rmtree(place, ignore_errors=True)
+        shutil.copytree(shelf.entry(asset_id), place, copy_function=link)
+        record(place, asset_id, {})
+        try:
+            place.rename(folder / ASSETS / asset_id)
+        except OSError:
+            if not (folder / ASSETS / asset_id).exists():
+                raise
+            shutil.rmtree(place)  # another command was faster
+    if missing:
+        sync(folder / ASSETS)
+        sync(folder)
 
 
-def _read(dataset: Dataset) -> Commit | None:
-    """Return the library's commit, None when there is none or a file is not as it says."""
-    try:
-        commit = read_commit(dataset.folder, ASSETS)
-    except ContentError:
-        return None
-    tops = {p: entry for p, entry in commit.files.items() if len(PurePosixPath(p).parts) == 2} if commit else {}
-    if commit is None or commit.damaged(dataset.folder) or Commit(ASSETS, tops, {}).altered(dataset.folder):
-        return None
-    return commit
-
-
-def assets_of(dataset: Dataset, number: int) -> set[str]:
-    """Return the assets that the homes of a shard use, as far as they are made."""
-    if number in dataset.parts:
-        return {a for part in dataset.parts[number] for a in part.rows("objects")["asset_id"].to_pylist()}
-    return set(pq.ParquetFile(dataset.folder / table_path("objects", number)).read(["asset_id"])["asset_id"].to_pylist())
-
-
-def _adopt(dataset: Dataset, asset_id: str, entry: Path) -> dict[str, Any]:
-    """Bring one asset into the library; returns its part of the commit."""
-    staging = dataset.folder / STAGING / ASSETS
-    shutil.rmtree(staging, ignore_errors=True)
-    shutil.copytree(entry, staging / ASSETS / asset_id, copy_function=link)
-    commit = record(staging, ASSETS, {})
-    target = dataset.folder / ASSETS / asset_id
-    shutil.rmtree(target, ignore_errors=True)  # left by a run that was killed before the commit
-    target.parent.mkdir(exist_ok=True)
-    (staging / ASSETS / asset_id).rename(target)
-    return dict(commit.files)
+def settle(folder: Path, shelf: Shelf, staging: Path, asset_ids: set[str]) -> None:
+    """Make the library exactly these assets, as the shelf has them, and commit it."""
+    (folder / ASSETS).mkdir(exist_ok=True)
+    files: dict[str, Entry] = {}
+    for asset_id in sorted(asset_ids):
+        place = folder / ASSETS / asset_id
+        wanted = record(shelf.entry(asset_id), asset_id, {}, flush=False)
+        if place.exists() and (wanted.altered(place) or {p for p in place.rglob("*") if p.is_file()} != {place / p for p in wanted.files}):
+            shutil.rmtree(place)
+        adopt(folder, shelf, staging, [asset_id])
+        files |= {f"{ASSETS}/{asset_id}/{path}": entry for path, entry in wanted.files.items()}
+    for table, rows in shelf.tables(sorted(asset_ids)).items():
+        path = staging / "tables" / f"{table.name}.parquet"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        pq.write_table(table.from_rows(rows), path, compression="zstd", store_schema=True)
+        files |= {f"{ASSETS}/{p}": entry for p, entry in record(path.parent, ASSETS, {}).files.items()}
+        path.replace(folder / ASSETS / path.name)
+    for path in sorted((folder / ASSETS).iterdir()):
+        if path.name not in asset_ids and f"{ASSETS}/{path.name}" not in files:
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+    sync(folder / ASSETS)
+    put(folder / commit_path(ASSETS), text_of(Commit(ASSETS, files, {}).to_json()), staging)

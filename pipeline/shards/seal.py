@@ -6,20 +6,24 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.errors import ContentError
-from pipeline.manifest import digest, text_of, write_bytes
+from pipeline.manifest import digest, text_of
 from pipeline.shards.commits import Commit, entry_of, read_commit
+from pipeline.shards.disk import put
 from pipeline.shards.header import Header
 from pipeline.shards.layout import ASSETS, HEADER, commit_path, shard_name
 
 SEAL = "dataset"
 
 
-def seal(folder: Path, header: Header) -> None:
+def seal(folder: Path, header: Header, staging: Path) -> None:
     """Write the seal of a dataset whose shards are all committed."""
-    data = text_of(_content(folder, header))
+    put(folder / commit_path(SEAL), text_of(_content(folder, header)), staging)
+
+
+def is_sealed(folder: Path, header: Header) -> bool:
+    """Tell whether the seal is there and says what the header and the commit files are."""
     path = folder / commit_path(SEAL)
-    if not path.is_file() or path.read_bytes() != data:
-        write_bytes(path, data)
+    return path.is_file() and (folder / commit_path(ASSETS)).is_file() and path.read_bytes() == text_of(_content(folder, header))
 
 
 def check_seal(folder: Path, header: Header, remedy: str, again: str) -> None:

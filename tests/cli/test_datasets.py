@@ -201,25 +201,25 @@ def test_machines_get_json_and_the_quiet_nothing(factory, tmp_path, capsys):
 
 
 def test_a_full_disk_is_one_line_and_nothing_half_written_stays(factory, capsys, monkeypatch):
-    """Every write fails from the third homes on, as on a disk that is full."""
+    """Every write fails from the sixth home on, as on a disk that is full."""
     from pipeline.shards import parts
 
-    real, count = parts.write_json, iter(range(100))
+    real, count = parts.write_bytes, iter(range(100))
 
-    def full(path, value):
-        if next(count) >= 1:
+    def full(path, data, **how):
+        if next(count) >= 5:
             raise OSError(28, "No space left on device", str(path))
-        real(path, value)
+        real(path, data, **how)
 
-    monkeypatch.setattr(parts, "write_json", full)
+    monkeypatch.setattr(parts, "write_bytes", full)
     assert run("shard", "--count", 8, "--out", "d", "--seed", 3) == 1
     err = capsys.readouterr().err.splitlines()
     assert err[-1].startswith("sfgen: No space left on device: ")
     assert [line for line in err if line.startswith("sfgen: ")] == err[-1:]
     assert not Path("d/.staging").exists()
-    monkeypatch.setattr(parts, "write_json", real)
+    monkeypatch.setattr(parts, "write_bytes", real)
     assert run("shard", "--count", 8, "--out", "d", "--seed", 3) == 0
-    assert [i for i, _ in factory.asked] == [0, 1, 2, 3, 4, 5, 6, 7, 4, 5, 6, 7]
+    assert [i for i, _ in factory.asked] == [0, 1, 2, 3, 4, 5, 6, 7, 5, 6, 7]
 
 
 def test_another_dataset_stays_as_it_is(factory, capsys):

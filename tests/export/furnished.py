@@ -8,7 +8,7 @@ from pipeline import taxonomy
 from pipeline.entities.home import Placement
 from pipeline.homes.exports import files_of
 from pipeline.homes.rows import home_rows
-from pipeline.shards import Header, add_part, commit_shard, extend_library, gather, open_or_create
+from pipeline.shards import Header, add_part, commit_shard, gather, open_or_create
 from pipeline.usd.library import write_asset
 from pipeline.verify import verify_home
 from tests.geometry import furniture
@@ -49,7 +49,6 @@ def fill(folder):
     """Write the dataset."""
     home, assets = made()
     rows = home_rows(home, verify_home(home, assets, SETTINGS), {}, assets, taxonomy.load(), 1, HEADER.licence)
-    with open_or_create(folder, HEADER) as dataset:
-        extend_library(dataset, assets, Shelf(folder.parent / "shelf", assets))
+    with open_or_create(folder, HEADER, Shelf(folder.parent / "shelf", assets)) as dataset:
         add_part(dataset, 0, gather(0, [({**rows, "rejects": []}, files_of(home, assets, 0))]))
         commit_shard(dataset, 0)

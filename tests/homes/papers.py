@@ -6,6 +6,7 @@ import signal
 import sys
 import time
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -55,6 +56,8 @@ class Paper:
             time.sleep(600)
         if index in self.stumble:
             raise ZeroDivisionError("a bug")
+        with (self.folder / "made.txt").open("a") as log:
+            log.write(f"{index} {os.getppid()}\n")
         rows, files = made.home(index)
         return SimpleNamespace(rows=rows, files=files)
 
@@ -69,7 +72,7 @@ if __name__ == "__main__":
     from pipeline.homes.production import Recipe, fill
     from pipeline.shards import open_or_create
 
-    out = Path(sys.argv[1])
-    with open_or_create(out, HEADER) as dataset:
+    out, count = Path(sys.argv[1]), int(sys.argv[4])
+    with open_or_create(out, replace(HEADER, count=count), made.Shelf(out.parent / "shelf")) as dataset:
         recipe = Recipe(functools.partial(open_paper, str(out.parent), nap=float(sys.argv[2])))
-        fill(dataset, recipe, request, workers=2, progress=Progress(10, "homes"))
+        fill(dataset, recipe, request, workers=int(sys.argv[3]), progress=Progress(count, "homes"))

@@ -25,7 +25,7 @@ ROOT = Path(__file__).parents[2]
 def filled(folder, workers=1, scheduler=None, **asked):
     """Fill a dataset with made-up homes; returns the tally."""
     recipe = Recipe(functools.partial(papers.open_paper, str(folder.parent), **asked))
-    with open_or_create(folder, papers.HEADER) as dataset:
+    with open_or_create(folder, papers.HEADER, papers.made.Shelf(folder.parent / "shelf")) as dataset:
         return fill(
             dataset,
             recipe,
@@ -95,7 +95,7 @@ def test_an_unknown_error_costs_one_home_and_a_full_disk_the_run(tmp_path, monke
 
 def test_a_run_that_is_killed_keeps_the_chunks_that_were_done(tmp_path):
     filled(tmp_path / "whole")
-    program = [sys.executable, str(Path(__file__).parent / "papers.py"), str(tmp_path / "cut"), "0.25"]
+    program = [sys.executable, str(Path(__file__).parent / "papers.py"), str(tmp_path / "cut"), "0.25", "2", "10"]
     run = subprocess.Popen(program, env={**os.environ, "PYTHONPATH": str(ROOT)}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     end = time.monotonic() + 240
     while not list((tmp_path / "cut").glob(".parts/*/*")):
@@ -105,6 +105,40 @@ def test_a_run_that_is_killed_keeps_the_chunks_that_were_done(tmp_path):
     run.send_signal(signal.SIGKILL)
     run.wait()
     tally = filled(tmp_path / "cut", workers=1)
-    assert tally.resumed >= 4
+    assert tally.resumed >= 1
     assert tally.homes == 10 - tally.resumed
     assert papers.made.snapshot(tmp_path / "cut") == papers.made.snapshot(tmp_path / "whole")
+
+
+def command(folder, count, workers=1, nap=0.15):
+    program = [sys.executable, str(Path(__file__).parent / "papers.py"), str(folder), str(nap), str(workers), str(count)]
+    return subprocess.Popen(program, env={**os.environ, "PYTHONPATH": str(ROOT)}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def test_several_commands_share_one_dataset_and_each_home_is_made_once(tmp_path):
+    """Three commands that join one after the other, one of them with processes of its own."""
+    (tmp_path / "alone").mkdir()
+    assert command(tmp_path / "alone" / "set", 40, nap=0).wait() == 0
+    runs = []
+    for workers in (1, 2, 1):
+        runs.append(command(tmp_path / "set", 40, workers))
+        time.sleep(0.7)
+    assert [run.wait() for run in runs] == [0, 0, 0]
+    lines = [line.split() for line in (tmp_path / "made.txt").read_text().splitlines()]
+    assert sorted(int(index) for index, _ in lines) == list(range(40))
+    assert len({parent for _, parent in lines}) == 2  # this test's, of the two that work themselves, and the command with processes
+    assert papers.made.snapshot(tmp_path / "set") == papers.made.snapshot(tmp_path / "alone" / "set")
+
+
+def test_what_a_killed_command_had_claimed_is_made_by_the_others(tmp_path):
+    (tmp_path / "alone").mkdir()
+    assert command(tmp_path / "alone" / "set", 24, nap=0).wait() == 0
+    runs = [command(tmp_path / "set", 24), command(tmp_path / "set", 24)]
+    while not list((tmp_path / "set").glob(".parts/*/*")):
+        time.sleep(0.01)
+    runs[0].kill()
+    runs[0].wait()
+    began = time.monotonic()
+    assert runs[1].wait() == 0
+    assert time.monotonic() - began < 45  # on one machine it is seen at once that a process is gone
+    assert papers.made.snapshot(tmp_path / "set") == papers.made.snapshot(tmp_path / "alone" / "set")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from pipeline.shards import EMPTY, TABLES, Header, add_part, commit_shard, extend_library, gather, open_or_create, scene_id
+from pipeline.shards import EMPTY, TABLES, Header, add_part, commit_shard, committed, gather, open_or_create, scene_id
 from schemas.assets import ASSETS
 
 HEADER = Header(seed=5, count=10, shard_size=4, licence="CC0-1.0", digests={"params": "p" * 64, "weights": "w" * 64})
@@ -98,24 +98,24 @@ class Shelf:
         return {ASSETS: [{**{c.name: value(c, 0) for c in ASSETS.columns}, "asset_id": a} for a in asset_ids]}
 
 
-def used(content):
-    return {row["asset_id"] for row in content.rows.get("objects", ())}
+def opened(folder, header=HEADER, **how):
+    return open_or_create(Path(folder), header, Shelf(Path(folder).parent / "shelf"), **how)
 
 
-def fill(folder, header=HEADER, nap=0.0, numbers=None, size=2, without=()):
-    """Make what is missing of a dataset, in parts of `size` homes; returns the numbers of the shards that were made."""
-    with open_or_create(Path(folder), header) as dataset:
-        shelf = Shelf(Path(folder).parent / "shelf")
-        extend_library(dataset, (), shelf)
+def fill(folder, header=HEADER, nap=0.0, numbers=None, without=()):
+    """Make what is missing of a dataset; returns the numbers of the shards that were made."""
+    with opened(folder, header) as dataset:
         missing = [n for n in dataset.missing() if numbers is None or n in numbers]
         for number in missing:
-            todo = dataset.todo(number)
-            for start in range(0, len(todo), size):
-                part = todo[start : start + size]
-                time.sleep(nap)
-                add_part(dataset, number, gather(number, (empty(i, header.seed) if i in without else home(i, header.seed) for i in part)))
-            extend_library(dataset, used(shard(number, header, without)), shelf)
-            commit_shard(dataset, number)
+            while not committed(dataset, number):
+                for index in dataset.todo(number):
+                    if dataset.take(number, index):
+                        time.sleep(nap)
+                        add_part(
+                            dataset, number, gather(number, [empty(index, header.seed) if index in without else home(index, header.seed)])
+                        )
+                if not dataset.todo(number):
+                    commit_shard(dataset, number)
     return missing
 
 

@@ -76,7 +76,7 @@ def rewritten(folder, table, number, change):
     forged = json.loads(commit.read_text())
     forged["files"][f"{table}/{path.name}"] = {"sha256": sha256(path.read_bytes()), "bytes": path.stat().st_size}
     commit.write_text(json.dumps(forged))
-    seal(folder, read_header(folder))
+    seal(folder, read_header(folder), folder.parent)
 
 
 @pytest.mark.parametrize(
