@@ -1,15 +1,16 @@
-"""params.yaml, read strictly: an unknown key, a wrong type or a bad value is an error that names it."""
+"""params.yaml and other files of settings, read strictly: an unknown key, a wrong type or a bad value is an error that names it."""
 
 from __future__ import annotations
 
 import dataclasses
 import difflib
+import functools
 import json
 import math
 import re
 import types
 import typing
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -35,6 +36,7 @@ SECTIONS = (
     "metrics",
 )
 
+FILE = "params.yaml"
 T = TypeVar("T")
 Tree = dict[str, Any]
 
@@ -107,58 +109,64 @@ def section(cls: type[T], tree: Mapping[str, Any], name: str) -> T:
     return build(cls, tree[name], name)
 
 
-def build(cls: type[T], value: Any, where: str) -> T:
-    """Build dataclass `cls` from a mapping, checking every key and type; `where` is the dotted path for messages."""
+def build(cls: type[T], value: Any, where: str, file: str = FILE) -> T:
+    """Build dataclass `cls` from a mapping, checking every key and type; `where` is the dotted path in `file`, for messages."""
+    remedy = "see the comments in params.yaml" if file == FILE else "compare it with the files beside it"
     if not isinstance(value, Mapping):
-        raise ContentError(f"params.yaml: {where} must be a mapping", "see the comments in params.yaml")
+        raise ContentError(f"{file}: {where} must be a mapping", remedy)
     fields = {f.name: f for f in dataclasses.fields(cls)}  # type: ignore[arg-type]
     for key in value:
         if key not in fields:
-            raise unknown(f"{where}.{key}", str(key), fields)
-    hints = typing.get_type_hints(cls)
+            raise unknown(f"{where}.{key}", str(key), fields, file)
+    hints = _hints(typing.cast("Hashable", cls))
     for key, field in fields.items():
         required = field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
         if key not in value and required:
-            raise ContentError(f"params.yaml: key {where}.{key} is missing", "see the comments in params.yaml")
-    return cls(**{k: convert(hints[k], v, f"{where}.{k}") for k, v in value.items()})
+            raise ContentError(f"{file}: key {where}.{key} is missing", remedy)
+    return cls(**{k: convert(hints[k], v, f"{where}.{k}", file) for k, v in value.items()})
 
 
-def convert(hint: Any, value: Any, where: str) -> Any:  # noqa: PLR0911 - one return per kind of type
+@functools.cache
+def _hints(cls: Hashable) -> dict[str, Any]:
+    return typing.get_type_hints(cls)
+
+
+def convert(hint: Any, value: Any, where: str, file: str = FILE) -> Any:  # noqa: PLR0911 - one return per kind of type
     """Convert one YAML value to the annotated type, or raise ContentError naming the key."""
     origin, args = typing.get_origin(hint), typing.get_args(hint)
     if origin in {types.UnionType, typing.Union}:
         if value is None and type(None) in args:
             return None
-        return convert(next(a for a in args if a is not type(None)), value, where)
+        return convert(next(a for a in args if a is not type(None)), value, where, file)
     if dataclasses.is_dataclass(hint):
-        return build(typing.cast("type[Any]", hint), value, where)
+        return build(typing.cast("type[Any]", hint), value, where, file)
     if origin is typing.Literal:
         if value in args:
             return value
-        raise wrong(where, value, f"one of {', '.join(map(str, args))}")
+        raise wrong(where, value, f"one of {', '.join(map(str, args))}", file)
     if origin is tuple:
         if isinstance(value, (list, tuple)) and (args[-1] is Ellipsis or len(args) == len(value)):
             kinds = [args[0]] * len(value) if args[-1] is Ellipsis else args
-            return tuple(convert(kind, v, f"{where}[{i}]") for i, (kind, v) in enumerate(zip(kinds, value, strict=True)))
-        raise wrong(where, value, "a list")
+            return tuple(convert(kind, v, f"{where}[{i}]", file) for i, (kind, v) in enumerate(zip(kinds, value, strict=True)))
+        raise wrong(where, value, "a list", file)
     if origin in {dict, Mapping} or str(origin).endswith("abc.Mapping'>"):
         if isinstance(value, Mapping):
-            return {convert(args[0], k, where): convert(args[1], v, f"{where}.{k}") for k, v in value.items()}
-        raise wrong(where, value, "a mapping")
+            return {convert(args[0], k, where, file): convert(args[1], v, f"{where}.{k}", file) for k, v in value.items()}
+        raise wrong(where, value, "a mapping", file)
     if hint is float and isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value):
         return float(value)
     if hint in {int, str, bool} and type(value) is hint:
         return value
-    raise wrong(where, value, getattr(hint, "__name__", str(hint)))
+    raise wrong(where, value, getattr(hint, "__name__", str(hint)), file)
 
 
-def unknown(where: str, key: str, known: Mapping[str, Any]) -> ContentError:
+def unknown(where: str, key: str, known: Mapping[str, Any], file: str = FILE) -> ContentError:
     """Return the error for an unknown key, with the nearest known one."""
     near = difflib.get_close_matches(key, list(known), 1)
     hint = f"did you mean {near[0]!r}?" if near else f"known keys: {', '.join(known)}"
-    return ContentError(f"params.yaml: unknown key {where}", hint)
+    return ContentError(f"{file}: unknown key {where}", hint)
 
 
-def wrong(where: str, value: Any, wanted: str) -> ContentError:
+def wrong(where: str, value: Any, wanted: str, file: str = FILE) -> ContentError:
     """Return the error for a value of the wrong type."""
-    return ContentError(f"params.yaml: {where} = {value!r} is not valid", f"give {wanted}")
+    return ContentError(f"{file}: {where} = {value!r} is not valid", f"give {wanted}")

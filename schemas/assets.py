@@ -11,7 +11,7 @@ ASSETS = Table(
         Column("asset_id", pa.string(), "unique in the library; matches [a-z][a-z0-9_]*"),
         Column("source", pa.string(), "3d-future, partnet-mobility, gapartnet ..."),
         Column("source_id", pa.string(), "id in that source"),
-        Column("category", pa.string(), "object category, see manifests/taxonomy.yaml"),
+        Column("category", pa.string(), "object category, see manifests/categories"),
         Column("super_category", pa.string(), "super-category"),
         Column("style", pa.string(), "style, empty when unknown"),
         Column("material", pa.string(), "main material, empty when unknown"),

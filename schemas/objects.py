@@ -11,7 +11,7 @@ OBJECTS = Table(
         Column("scene_id", pa.string(), "the home"),
         Column("object_id", pa.string(), "unique in the home"),
         Column("room_id", pa.string(), "the room"),
-        Column("category", pa.string(), "object category, see manifests/taxonomy.yaml"),
+        Column("category", pa.string(), "object category, see manifests/categories"),
         Column("asset_id", pa.string(), "row of the assets table"),
         Column("position", VEC3, "bottom centre of the asset's box with all joints at 0", "m", "world"),
         Column("yaw", pa.float64(), "right-handed about +Z; at 0 the front faces -Y", "rad", "world"),

@@ -66,7 +66,7 @@ def open_job(root: Path, settings: BaselineSettings) -> Job:
 def openable(classes: tuple[str, ...]) -> Tensor:
     """Return which classes (C,) can come from PartNet: the lookup by class of the paper's heuristic."""
     known = taxonomy.load().categories
-    return torch.tensor([name in known and bool(known[name].partnet) for name in classes])
+    return torch.tensor([name in known and bool(known[name].names.partnet) for name in classes])
 
 
 def trainer(name: str, job: Job, settings: BaselineSettings, seed: int) -> Trainer:

@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from pipeline.card import cards
 from pipeline.corpus.houses import shell
 from pipeline.corpus.houses.corruption import Litter
 from pipeline.corpus.houses.records import House, Item
@@ -24,25 +25,6 @@ Json = dict[str, Any]
 IDENTITY: Json = {"pos": [0, 0, 0], "rot": [0, 0, 0, 1], "scale": [1, 1, 1]}
 # Share of each record variant among valid furniture: with size and no category, added later, model replaced.
 VARIANTS = {"sized": 0.67, "late": 0.33}
-TITLES = {
-    "double_bed": "bed/king-size bed",
-    "single_bed": "bed/single bed",
-    "kids_bed": "bed/kids bed",
-    "nightstand": "table/night table",
-    "wardrobe": "storage unit/armoire",
-    "multi_seat_sofa": "sofa/ multi seat sofa",
-    "loveseat_sofa": "sofa/double seat sofa",
-    "l_shaped_sofa": "sofa/corner sofa",
-    "armchair": "chair/armchair",
-    "dining_chair": "chair/dining chair",
-    "dining_table": "table/dining table",
-    "coffee_table": "table/coffee table",
-    "tv_stand": "cabinet/tv stand",
-    "pendant_lamp": "lighting/pendant light",
-    "ceiling_lamp": "lighting/ceiling light",
-    "bookshelf": "shelf/bookcase",
-    "plant": "plants/plants - floor-based",
-}
 # Colours [0-255] and file-level order of the materials that surfaces use.
 MATERIALS = {
     "Floor": [203, 178, 145, 255],
@@ -226,7 +208,7 @@ def furniture_record(item: Item, variant: str, ids: Ids, dialect: Dialect) -> Js
         return {"jid": model.model_id, "uid": uid, "aid": [], "category": model.future_name, "bbox": [w, h, d], "valid": True}
     record: Json = {"uid": ids.uid("model"), "jid": model.model_id, "aid": [], "size": [w, d, h]}
     record["sourceCategoryId"] = str(uuid.uuid5(uuid.NAMESPACE_OID, model.category))
-    record["title"] = TITLES.get(model.category, f"{model.super_category}/{model.category.replace('_', ' ')}".lower())
+    record["title"] = cards()[model.category].corpus.title or f"{model.super_category}/{model.category.replace('_', ' ')}".lower()
     if dialect == "0.11":
         record["type"] = "standard"
     if variant == "replaced":

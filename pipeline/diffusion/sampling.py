@@ -148,7 +148,7 @@ def filled(part: Sequence[int]) -> list[int]:
 def openable_classes(classes: Sequence[str]) -> Tensor:
     """Return which classes (C + 1,) can come from PartNet: the lookup by class of the paper's heuristic; padding cannot."""
     known = taxonomy.load().categories
-    return torch.tensor([*(bool(known[c].partnet) if c in known else False for c in classes), False])
+    return torch.tensor([*(bool(known[c].names.partnet) if c in known else False for c in classes), False])
 
 
 @contextmanager

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from pipeline import taxonomy
 from pipeline.arrange import Hanging, Laying, ThingsSettings, Window, lay_rug
+from pipeline.card import Hangs, cards
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Room
 from pipeline.geometry.prisms import solid
@@ -187,7 +188,7 @@ class _Dressing:
             self._add(category, asset_id, place + np.array([0.0, 0.0, self.floor]), yaw, scale)
         return hung is not None
 
-    def _walls(self, hanging: Hanging, category: str, expected: float, custom: customs.WallCustom) -> None:
+    def _walls(self, hanging: Hanging, category: str, expected: float, custom: Hangs) -> None:
         anchors = [p.footprint() for p in self._of(*(custom.over or custom.beside))]
         for _ in range(self._drawn(expected)):
             asset_id = self._picked(category)
@@ -214,8 +215,7 @@ class _Dressing:
                 asset_id = self._picked(category, self.library.rows[support.asset_id]["style"])
                 if not asset_id:
                     break
-                facing, centred = category in known.facing, category in known.centred
-                backed = category in known.backed
+                facing, centred, backed = (way in cards()[category].lies for way in ("facing", "centred", "backed"))
                 place = laying.lay(self.rng, self.library[asset_id], number, facing=facing, centred=centred, backed=backed)
                 if place is not None:
                     self._add(category, asset_id, *place, support=support.object_id)

@@ -1,4 +1,4 @@
-"""What made homes hold beside their furniture: manifests/calibration/things.yaml."""
+"""What made homes hold beside their furniture: by room in manifests/calibration/things.yaml, by thing on the categories' cards."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+
+from pipeline.card import Hangs, cards
 
 PATH = Path(__file__).resolve().parents[2] / "manifests" / "calibration" / "things.yaml"
 Rates = Mapping[str, Mapping[str, float]]
@@ -27,27 +29,14 @@ class RugCustom:
 
 
 @dataclass(frozen=True, slots=True)
-class WallCustom:
-    """How a category hangs: height of its middle [m], chance of one more in a row, furniture that it hangs over or beside."""
-
-    middle: float
-    row: float
-    over: tuple[str, ...] = ()
-    beside: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
 class Customs:
     """Shares and expected numbers by layout type; `furniture` by category of furniture."""
 
     rugs: Mapping[str, RugCustom]
     windows: Rates
     walls: Rates
-    hanging: Mapping[str, WallCustom]
+    hanging: Mapping[str, Hangs]
     furniture: Rates
-    centred: frozenset[str]
-    facing: frozenset[str]
-    backed: frozenset[str]
 
     def categories(self) -> frozenset[str]:
         """Return all categories that homes may hold by these customs."""
@@ -57,15 +46,12 @@ class Customs:
 
 @functools.cache
 def load() -> Customs:
-    """Read the manifest."""
-    raw = yaml.safe_load(PATH.read_text(encoding="utf-8"))
+    """Read the manifest and the cards."""
+    raw, known = yaml.safe_load(PATH.read_text(encoding="utf-8")), cards()
     rugs = {kind: _rug(entry) for kind, entry in raw["rugs"].items()}
-    hanging = {
-        name: WallCustom(entry["middle"], entry["row"], tuple(entry.get("over", ())), tuple(entry.get("beside", ())))
-        for name, entry in raw["hanging"].items()
-    }
-    places = (frozenset(raw[name]) for name in ("centred", "facing", "backed"))
-    return Customs(rugs, raw["windows"], raw["walls"], hanging, raw["furniture"], *places)
+    hanging = {name: c.hangs for name, c in known.items() if c.hangs}
+    furniture = {name: c.holds for name, c in known.items() if c.holds}
+    return Customs(rugs, raw["windows"], raw["walls"], hanging, furniture)
 
 
 def _rug(entry: Mapping[str, Any]) -> RugCustom:

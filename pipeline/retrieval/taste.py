@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.card import cards
 from pipeline.retrieval.index import AssetIndex, Match
 
 Floats = NDArray[np.float64]
@@ -15,28 +16,12 @@ STEP, MOST_STEPS = 30.0, 2.0  # how far off a finish has to be to count once [CI
 
 FinishOf = Callable[[str], Floats]  # CIELAB (3,) of an asset, NaN where it has none
 
-# Categories whose finishes go together in a room, and those from which the room's is drawn, the first that the library has.
+# Groups of categories whose finishes go together in a room (`finish` of their cards), and those from which the room's is drawn, the first that the library has.
 TIMBER, KITCHEN, SOFT = "timber", "kitchen", "soft"
 SOURCES: Mapping[str, tuple[str, ...]] = {
     TIMBER: ("sideboard", "cabinet", "tv_stand", "wardrobe", "desk", "dining_table"),
     KITCHEN: ("kitchen_cabinet", "sink_cabinet"),
     SOFT: ("multi_seat_sofa", "loveseat_sofa", "armchair"),
-}
-GROUPS: Mapping[str, str] = {
-    **dict.fromkeys(
-        ("nightstand", "wardrobe", "cabinet", "sideboard", "bookshelf", "shelf", "tv_stand", "wine_cabinet", "shoe_cabinet"), TIMBER
-    ),
-    **dict.fromkeys(("desk", "dressing_table", "dining_table", "coffee_table", "corner_side_table", "round_end_table"), TIMBER),
-    **dict.fromkeys(("kitchen_cabinet", "sink_cabinet", "wall_cabinet", "tall_unit"), KITCHEN),
-    **dict.fromkeys(("multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa", "chaise_longue_sofa", "armchair"), SOFT),
-}
-# Of these all that are drafted nearest to one of those in a room, within so far of it [m], are one model: the arranger brings them to it.
-SETS: Mapping[str, tuple[tuple[str, ...], float]] = {
-    "dining_chair": (("dining_table",), 2.5),
-    "chinese_chair": (("dining_table",), 2.5),
-    "barstool": (("dining_table", "kitchen_cabinet"), 2.0),
-    "nightstand": (("double_bed", "single_bed", "kids_bed"), 3.5),
-    "corner_side_table": (("multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa"), 3.0),
 }
 
 
@@ -71,9 +56,11 @@ def sets(categories: Sequence[str], positions: Floats) -> list[list[int]]:
     """Return the groups (indices, two or more each) of proposals at `positions` (P, 3) [m] that are to be one model."""
     groups: dict[tuple[str, int], list[int]] = {}
     for k, category in enumerate(categories):
-        partners, reach = SETS.get(category, ((), 0.0))
-        near = [(float(np.linalg.norm(positions[j, :2] - positions[k, :2])), j) for j, other in enumerate(categories) if other in partners]
-        if near and min(near)[0] <= reach:
+        of = cards()[category].set if category in cards() else None
+        if of is None:
+            continue
+        near = [(float(np.linalg.norm(positions[j, :2] - positions[k, :2])), j) for j, other in enumerate(categories) if other in of.at]
+        if near and min(near)[0] <= of.within:
             groups.setdefault((category, min(near)[1]), []).append(k)
     return [group for group in groups.values() if len(group) > 1]
 
@@ -104,7 +91,7 @@ def tasteful(
             continue
         far = favoured.distance(shelf, asked[k : k + 1], shapes[k : k + 1])[0]
         best = np.argsort(far, kind="stable")[: s.shortlist]
-        finish = taste.finishes.get(GROUPS.get(category, ""))
+        finish = taste.finishes.get(cards()[category].finish if category in cards() else "")
         off = np.zeros(len(best))
         if finish is not None:
             off = np.array([np.linalg.norm(finish_of(index.asset_ids[shelf[j]]) - finish) for j in best])

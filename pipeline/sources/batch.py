@@ -174,7 +174,7 @@ def read_partnet(task: LibraryTask, found: Found) -> LibraryRows:
             categories = candidates(found.path, named, kinds)
             shape = oriented(read_household(root, found.path, found.source_id, task.limits.max_texture), categories)
         else:
-            models = sorted({name for kind in kinds.categories.values() for name in kind.partnet})
+            models = sorted({name for kind in kinds.categories.values() for name in kind.names.partnet})
             shape = read_shape(root.sub(found.path), found.source_id, task.limits.max_texture, models, named)
             categories = kinds.from_partnet(shape.model_cat) or ((shape.model_cat,) if shape.model_cat in kinds.categories else ())
         own = task.spreads.get(shape.model_cat)

@@ -1,20 +1,16 @@
-"""Sizes of furniture by category, from manifests/calibration/sizes.yaml; taxonomy sizes where that has none."""
+"""Sizes of furniture by category, as log-normal distributions."""
 
 from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 
-from pipeline import taxonomy
+from pipeline.card import cards
 
-PATH = Path(__file__).resolve().parents[2] / "manifests" / "calibration" / "sizes.yaml"
-SPREAD = 0.15  # relative deviation assumed where only a mean is known
 LEAST_SPREAD = 0.08  # relative; a narrower one would refuse what is merely unusual
 
 
@@ -35,15 +31,5 @@ class SizeStatistics:
 
 @functools.cache
 def sizes() -> Mapping[str, SizeStatistics]:
-    """Return the statistics of every category that has any."""
-    raw = yaml.safe_load(PATH.read_text(encoding="utf-8")) if PATH.is_file() else {}
-    table = raw.get("categories", {})
-    found = {}
-    for category in taxonomy.load().categories.values():
-        if category.name in table:
-            entry = table[category.name]
-            found[category.name] = SizeStatistics(np.array(entry["mean"]), np.array(entry["std"]), int(entry.get("n", 0)))
-        elif category.size:
-            mean = np.array(category.size)
-            found[category.name] = SizeStatistics(mean, SPREAD * mean)
-    return found
+    """Return the statistics of every category."""
+    return {name: SizeStatistics(np.array(c.size.mean), np.array(c.size.std), c.size.n) for name, c in cards().items()}

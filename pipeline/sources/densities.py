@@ -6,6 +6,8 @@ foam and frame 90); metal furniture is tube and sheet, so its closed volumes wei
 
 from __future__ import annotations
 
+from pipeline.card import cards
+
 MATERIALS: dict[str, float] = {
     "cloth": 90.0,
     "rough cloth": 90.0,
@@ -36,17 +38,6 @@ KINDS: dict[str, float] = {
     "textile": 120.0,
     "other": 300.0,
 }
-CATEGORIES: dict[str, float] = {  # of things that are unlike their kind
-    "cup": 2300.0,
-    "plate": 2300.0,
-    "bowl": 1800.0,
-    "vase": 1800.0,
-    "toilet": 450.0,  # cast hollow
-    "bathtub": 350.0,  # acrylic or steel over foam and a frame
-    "microwave": 900.0,
-    "washing_machine": 1100.0,  # drum, motor and ballast
-    "laptop": 1300.0,
-}
 DEFAULT = 500.0
 UPHOLSTERED = 220.0  # least of chairs and stools: what is soft has a frame in it
 SOFT = frozenset({"bed", "sofa"})  # mostly filling, whatever the frame's material
@@ -59,8 +50,9 @@ BOARD = 0.018  # [m] thickness of the boards of such a block
 
 def density(super_category: str, material: str, category: str = "") -> float:
     """Return the density for a model of our category and super-category whose source names `material` ("" when it does not)."""
-    if category in CATEGORIES:
-        return CATEGORIES[category]
+    own = cards()[category].density if category in cards() else None
+    if own is not None:
+        return own
     if super_category in SOFT:
         return min(MATERIALS.get(material.lower(), 1e9), KINDS[super_category])
     found = MATERIALS.get(material.lower(), KINDS.get(super_category, DEFAULT))

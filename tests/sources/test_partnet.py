@@ -331,7 +331,7 @@ def test_several_categories_share_object_and_split(tmp_path):
         assert (np.abs(np.array(row["size"]) - mean) < 4 * std + 0.3).all()
 
 
-@pytest.mark.parametrize("category", sorted(c.name for c in taxonomy.load().categories.values() if c.partnet))
+@pytest.mark.parametrize("category", sorted(c.name for c in taxonomy.load().categories.values() if c.names.partnet))
 def test_metric_scale_recovers_a_mean_object(category):
     """An object of a category's mean proportions, normalised to any size, gets that category's mean size back."""
     mean = sizes()[category].mean

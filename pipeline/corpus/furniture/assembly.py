@@ -5,8 +5,9 @@ from __future__ import annotations
 import functools
 
 from pipeline import seeds
+from pipeline.card import cards
 from pipeline.corpus.furniture import finishes
-from pipeline.corpus.furniture.builders import BUILDERS
+from pipeline.corpus.furniture.builders import builder
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.furniture.finishes import Scheme
 from pipeline.corpus.furniture.shape import Shape, fitted, frozen
@@ -19,9 +20,7 @@ def scheme_of(model: Model) -> Scheme:
 
 def main_material(model: Model) -> str:
     """Return 3D-FUTURE's word for the main material."""
-    from pipeline.corpus.furniture.builders import MATERIALS
-
-    word = MATERIALS.get(model.category, "")
+    word = cards()[model.category].corpus.material
     scheme = scheme_of(model)
     if word == "soft":
         return "Leather" if scheme.soft.name.removesuffix("_2") in finishes.LEATHERS else "Cloth"
@@ -32,5 +31,5 @@ def main_material(model: Model) -> str:
 def shape_of(model: Model) -> Shape:
     """Return the shape of a model, its box exactly `model.size`; static models have their movers fixed."""
     rng = seeds.generator(model.seed, "corpus.furniture.shape")
-    shape = fitted(BUILDERS[model.category](rng, model.form, model.size, scheme_of(model)), model.size)
+    shape = fitted(builder(model.category)(rng, model.form, model.size, scheme_of(model)), model.size)
     return shape if model.articulated else frozen(shape)

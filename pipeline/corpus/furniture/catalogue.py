@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from pipeline import seeds, taxonomy
 from pipeline.corpus.furniture import sizes
-from pipeline.corpus.furniture.lines import LINES, OTHER_SUPER_CATEGORY, SUPER_CATEGORIES, Form, Line
-from pipeline.corpus.furniture.styles import MANNERS, SUITED
+from pipeline.corpus.furniture.lines import OTHER_SUPER_CATEGORY, SUPER_CATEGORIES, Form, Line, lines
+from pipeline.corpus.furniture.styles import MANNERS
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,7 @@ def catalogue(seed: int, size: float = 1.0) -> Catalogue:
     """Return the models of a seed. `size` scales their number: 1 gives more than 650 static and 350 articulated ones."""
     future: list[Model] = []
     partnet: list[Model] = []
-    for category, line in LINES.items():
+    for category, line in lines().items():
         future += _models(seed, category, line, max(1, round(line.static * size)), articulated=False)
         if line.moving:
             partnet += _models(seed, category, line, max(1, round(line.moving * size)), articulated=True)
@@ -80,7 +80,7 @@ def _models(seed: int, category: str, line: Line, count: int, *, articulated: bo
     rng = seeds.generator(seed, "corpus.furniture", library, category)
     entry = taxonomy.load().categories[category]
     forms = _turns(rng, [f for f in line.forms if not (articulated and f.still)], count)
-    styles = [_style(rng, f"{category}.{form.name}") for form in forms]
+    styles = [_style(rng, form) for form in forms]
     boxes = sizes.draw(rng, sizes.load()[category], count, [form.round for form in forms])
     _raise(forms, boxes)
     models = []
@@ -100,7 +100,7 @@ def _models(seed: int, category: str, line: Line, count: int, *, articulated: bo
                 form=kind.name,
                 future_name=kind.future,
                 super_category=SUPER_CATEGORIES.get(entry.super, OTHER_SUPER_CATEGORY),
-                partnet_category=entry.partnet[0] if articulated else "",
+                partnet_category=entry.names.partnet[0] if articulated else "",
                 seed=int(rng.integers(2**31)),
             )
         )
@@ -117,11 +117,10 @@ def _raise(forms: Sequence[Form], boxes: NDArray[np.float64]) -> None:
                 boxes[[k, j], 2] = boxes[[j, k], 2]
 
 
-def _style(rng: np.random.Generator, form: str) -> str:
+def _style(rng: np.random.Generator, form: Form) -> str:
     """Draw a style by its share, among those that suit the form."""
-    names = SUITED.get(form, tuple(MANNERS))
-    shares = np.array([MANNERS[name].share for name in names])
-    return str(rng.choice(names, p=shares / shares.sum()))
+    shares = np.array([MANNERS[name].share for name in form.styles])
+    return str(rng.choice(form.styles, p=shares / shares.sum()))
 
 
 def _turns(rng: np.random.Generator, forms: Sequence[Form], count: int) -> list[Form]:

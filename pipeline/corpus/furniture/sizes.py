@@ -5,15 +5,14 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import ndtri
 
-PATH = Path(__file__).resolve().parents[3] / "manifests" / "calibration" / "sizes.yaml"
+from pipeline.card import cards
+
 TAIL = float(ndtri(0.95))
 MOST_SKEWED = 1.2
 """Largest shape parameter of the log-normal; beyond it a handful of draws cannot show the spread."""
@@ -38,10 +37,11 @@ class SizeStatistics:
 
 @functools.cache
 def load() -> Mapping[str, SizeStatistics]:
-    """Read manifests/calibration/sizes.yaml: statistics by category."""
-    raw = yaml.safe_load(PATH.read_text(encoding="utf-8"))["categories"]
-    axes = {name: {k: np.array(entry[k], float) for k in ("mean", "std", "p05", "p95")} for name, entry in raw.items()}
-    return {name: SizeStatistics(**axes[name], models=int(entry["n"])) for name, entry in raw.items()}
+    """Return the statistics on the categories' cards."""
+    return {
+        name: SizeStatistics(np.array(s.mean), np.array(s.std), np.array(s.p05), np.array(s.p95), s.n)
+        for name, s in ((name, card.size) for name, card in cards().items())
+    }
 
 
 def draw(rng: np.random.Generator, statistics: SizeStatistics, count: int, rounds: Sequence[bool] = ()) -> NDArray[np.float64]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 
@@ -86,42 +86,9 @@ ORIENTAL = ("New Chinese", "Chinoiserie", "Ming Qing")
 CLASSIC = ("European", "European Classic", "Neoclassical", "American Country")
 PLAIN = ("Modern", "Nordic", "Minimalist", "Japanese", "Others", "Korean")
 
-# Forms that belong to some styles only, by "category.form".
-SUITED: Mapping[str, tuple[str, ...]] = {
-    "chinese_chair.official": ORIENTAL,
-    "chinese_chair.rose": ORIENTAL,
-    "chinese_chair.horseshoe": ORIENTAL,
-    "multi_seat_sofa.chesterfield": (*CLASSIC, "Vintage/Retro", "Industrial"),
-    "loveseat_sofa.chesterfield": (*CLASSIC, "Vintage/Retro", "Industrial"),
-    "armchair.chesterfield": (*CLASSIC, "Vintage/Retro", "Industrial"),
-    "multi_seat_sofa.camelback": CLASSIC,
-    "loveseat_sofa.camelback": CLASSIC,
-    "multi_seat_sofa.frame": ("Nordic", "Japanese", "New Chinese", "Southeast Asia", "Vintage/Retro", "Ming Qing", "Chinoiserie"),
-    "loveseat_sofa.frame": ("Nordic", "Japanese", "New Chinese", "Southeast Asia", "Vintage/Retro", "Ming Qing", "Chinoiserie"),
-    "armchair.frame": ("Nordic", "Japanese", "New Chinese", "Southeast Asia", "Vintage/Retro", "Ming Qing", "Chinoiserie"),
-    "double_bed.canopy": (*CLASSIC, "Southeast Asia", "Chinoiserie", "Ming Qing", "New Chinese"),
-    "double_bed.sleigh": (*CLASSIC, "Korean"),
-    "double_bed.metal": ("Industrial", "Vintage/Retro", "Korean", "Kids", "Mediterranean"),
-    "single_bed.metal": ("Industrial", "Vintage/Retro", "Korean", "Kids", "Mediterranean"),
-    "double_bed.platform": ("Japanese", "Minimalist", "Modern", "Nordic", "Others"),
-    "double_bed.tufted": (*CLASSIC, "Light Luxury", "Korean", "Vintage/Retro"),
-    "dining_chair.medallion": (*CLASSIC, "Korean"),
-    "dining_chair.wishbone": ("Nordic", "Japanese", "New Chinese", "Mediterranean", "Southeast Asia", "Others"),
-    "dining_chair.shell": ("Modern", "Nordic", "Minimalist", "Light Luxury", "Vintage/Retro", "Kids", "Industrial", "Others"),
-    "dining_chair.cafe": ("Industrial", "Vintage/Retro", "Mediterranean", "Korean"),
-    "lounge_chair.lounger": ("Modern", "Vintage/Retro", "Industrial", "Light Luxury", "Others"),
-    "lounge_chair.wing": (*CLASSIC, "Vintage/Retro", "Light Luxury", "Nordic"),
-    "lounge_chair.rattan": ("Southeast Asia", "Mediterranean", "Nordic", "Japanese", "Vintage/Retro"),
-    "dining_table.farm": ("American Country", "Mediterranean", "European", "Industrial", "Korean"),
-    "pendant_lamp.chandelier": (*CLASSIC, "Light Luxury", "Mediterranean", "Korean"),
-    "pendant_lamp.lantern": (*ORIENTAL, "Japanese", "Southeast Asia", "Kids"),
-    "pendant_lamp.sputnik": ("Vintage/Retro", "Light Luxury", "Modern", "Industrial"),
-    "ceiling_lamp.crystal": (*CLASSIC, "Light Luxury"),
-    "ceiling_lamp.frame": (*ORIENTAL, "Japanese"),
-    "stool.drum": (*ORIENTAL, "Southeast Asia", "Mediterranean"),
-    "corner_side_table.ming": ORIENTAL,
-    "coffee_table.ming": ORIENTAL,
-    "chaise_longue_sofa.recamier": (*CLASSIC, "Light Luxury", "Korean"),
-    "kids_bed.car": ("Kids", "Modern"),
-    "pendant_lamp.cage": ("Industrial", "Vintage/Retro", "American Country"),
-}
+GROUPS: Mapping[str, tuple[str, ...]] = {"oriental": ORIENTAL, "classic": CLASSIC}
+
+
+def suited(styles: Sequence[str]) -> tuple[str, ...]:
+    """Return the styles that a form comes in, with the words for several spelt out; all where its card names none."""
+    return tuple(s for name in styles for s in GROUPS.get(name, (name,))) or tuple(MANNERS)

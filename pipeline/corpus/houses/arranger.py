@@ -7,35 +7,20 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from pipeline.card import cards
 from pipeline.corpus.houses.deal import Deal
 from pipeline.corpus.houses.rates import Rates
 from pipeline.corpus.houses.records import Model
 from pipeline.corpus.houses.space import Space, Spot, against, ahead, box_of, shifted
 from pipeline.corpus.houses.stock import Stock
 
-# Free depth before a front that opens or is sat at [m].
-FRONTS = {
-    "wardrobe": 0.65,
-    "children_cabinet": 0.55,
-    "cabinet": 0.5,
-    "sideboard": 0.5,
-    "shoe_cabinet": 0.5,
-    "bookshelf": 0.5,
-    "wine_cabinet": 0.5,
-    "shelf": 0.4,
-    "tv_stand": 0.5,
-    "dressing_table": 0.7,
-    "desk": 0.75,
-    "refrigerator": 0.75,
-    "washing_machine": 0.6,
-    "toilet": 0.5,
-    "vanity": 0.55,
-    "bathtub": 0.45,
-    "shower": 0.45,
-    "armchair": 0.4,
-    "lounge_chair": 0.4,
-}
 LAMP_DROP = 0.02
+
+
+def free_front(category: str, default: float) -> float:
+    """Return the free depth before a front that opens or is sat at [m]."""
+    front = cards()[category].corpus.front
+    return default if front is None else front
 
 
 class Arranger:
@@ -79,7 +64,7 @@ class Arranger:
 
     def at_wall(self, category: str, *, corner: float = 0.6, sides: Sequence[int] | None = None, tries: int = 3) -> bool:
         """Put a piece of the category with its back to a wall, its front free; smaller models after a failure."""
-        front = FRONTS.get(category, 0.35)
+        front = free_front(category, 0.35)
         width = math.inf
         for _ in range(tries):
             model = self.pick(category, width=width)
@@ -94,7 +79,7 @@ class Arranger:
     def pair_at_wall(self, table: str, chair: str) -> bool:
         """Put a desk or dressing table to a wall and a chair ("none": none) before it that faces it."""
         seat = self.pick(chair)
-        front = max(FRONTS[table], seat.size[1] + 0.15 if seat else 0.0)
+        front = max(free_front(table, 0.0), seat.size[1] + 0.15 if seat else 0.0)
         width = math.inf
         for _ in range(4):
             desk = self.pick(table, width=width)
@@ -122,7 +107,7 @@ class Arranger:
         model = self.pick(category)
         if model is None:
             return False
-        spot = against(self.rng, self.space, model, front=FRONTS.get(category, 0.0) if front is None else front, corner=0.85)
+        spot = against(self.rng, self.space, model, front=free_front(category, 0.0) if front is None else front, corner=0.85)
         if spot is None:
             return False
         if category in {"armchair", "lounge_chair", "lazy_sofa", "chaise_longue_sofa"} and self.chance(0.8):

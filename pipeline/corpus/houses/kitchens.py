@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pipeline.corpus.houses.arranger import FRONTS, Arranger
+from pipeline.corpus.houses.arranger import Arranger, free_front
 from pipeline.corpus.houses.records import Model
 from pipeline.corpus.houses.space import ahead, on_side
 
@@ -59,7 +59,7 @@ def run(arranger: Arranger, wanted: list[str]) -> list[str]:
             continue
         s = a + at + model.size[0] / 2 if forward else b - at - model.size[0] / 2
         spot = on_side(space, i, s, model.size[1], 0.004)
-        if not space.try_add(model, spot, keep=[ahead(spot, model.size[1], FRONTS.get(category, 0.65), model.size[0])]):
+        if not space.try_add(model, spot, keep=[ahead(spot, model.size[1], free_front(category, 0.65), model.size[0])]):
             left.append(category)
             continue
         placed.append((model, s))

@@ -21,7 +21,7 @@ class Model(Protocol):
 
     @property
     def category(self) -> str:
-        """A name of manifests/taxonomy.yaml."""
+        """A card of manifests/categories."""
 
     @property
     def size(self) -> tuple[float, float, float]:

@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from pipeline.card import cards
 from pipeline.corpus.houses import walkable_grid
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.rates import load as load_rates
@@ -25,23 +26,6 @@ MARGIN = 0.01
 TRIES = 6
 LOWEST, HIGHEST = 0.03, 1.75
 """Surfaces within these heights above the support's foot are used [m]."""
-FACING = frozenset(
-    {
-        "laptop",
-        "keyboard",
-        "printer",
-        "toaster",
-        "coffee_machine",
-        "table_lamp",
-        "safe",
-        "storage_box",
-        "basket",
-        "book",
-        "camera",
-        "briefcase",
-    }
-)
-"""Things with a front, which look where their support looks."""
 HUNG_AT = 1.35
 """Underside of pictures and mirrors [m]."""
 
@@ -60,7 +44,7 @@ def add_small_things(arranger: Arranger, openings: Sequence[Opening], kind: str)
         if arranger.chance(share):
             arranger.on_wall(category, HUNG_AT)
     for index in range(len(items)):
-        wanted = rates["furniture"].get(items[index].model.category)
+        wanted = cards()[items[index].model.category].corpus.holds
         if wanted:
             load(arranger, index, wanted)
 
@@ -99,7 +83,7 @@ def _place(
 ) -> Item | None:
     """Return the thing on one of the support's surfaces, or None where it found no room in a few tries."""
     w, d, h = model.size
-    turn = float(rng.normal(0, 0.1) if model.category in FACING else rng.uniform(-math.pi, math.pi))
+    turn = float(rng.normal(0, 0.1) if cards()[model.category].corpus.facing else rng.uniform(-math.pi, math.pi))
     x0, y0, x1, y1 = box_of(0, 0, turn, w, d)
     tops = surfaces.tops
     slack = np.minimum(tops[:, 2] - tops[:, 0] - (x1 - x0), tops[:, 3] - tops[:, 1] - (y1 - y0)) - 2 * MARGIN

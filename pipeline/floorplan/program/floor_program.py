@@ -87,7 +87,7 @@ Pieces = Annotated[int, Field(ge=0, le=MAX_PIECES)]
 class Things(Model):
     """How many of one category, or of a group such as `any_chair`: at least `min`, at most `max`; both alike: exactly; 0: none."""
 
-    category: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$", description="a category of manifests/taxonomy.yaml, or a group")]
+    category: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$", description="a category of manifests/categories, or a group")]
     min: Pieces = 0
     max: Pieces | None = None
 

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 
+from pipeline.card import cards
 from pipeline.sources.articulated.shape import ArticulatedShape, ShapePart
 from pipeline.sources.meshes.mesh_solids import Part
 
 Floats = NDArray[np.float64]
-PATH = Path(__file__).resolve().parents[3] / "manifests" / "calibration" / "signs.yaml"
 CLEAR = 0.9  # opacity below which a door is glazed
 LEAF = 0.05  # share of the front from which on what slides along it is a door
 FLAT = 5.0  # a piece this much wider than thick, both ways, is a board
+# Sizes that furniture has whatever its category, our estimates: median [m] and standard deviation of the logarithm.
+KNOWN: Mapping[str, tuple[float, float]] = {
+    "leaf_width": (0.42, 0.35),  # of a hinged door
+    "drawer_height": (0.19, 0.45),  # of a drawer's front
+    "handle_length": (0.15, 0.50),  # of a bar handle
+    "board": (0.018, 0.30),  # thickness of the carcass's boards
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,12 +36,6 @@ class Signs:
     glass: bool
     covered: float
     grip: float | None
-
-
-@functools.cache
-def _expected() -> Mapping[str, Any]:
-    table: Mapping[str, Any] = yaml.safe_load(PATH.read_text(encoding="utf-8"))
-    return table
 
 
 def signs(shape: ArticulatedShape, base: Sequence[Part]) -> Signs:
@@ -63,19 +60,19 @@ def signs(shape: ArticulatedShape, base: Sequence[Part]) -> Signs:
 
 def log_likelihood(found: Signs, category: str, scale: float) -> float:
     """Return how well the signs suit a category at `scale` [m per unit], up to a constant that all categories share."""
-    known, entry = _expected()["known"], _entry(category)
+    entry = cards()[category].signs
     total = 0.0
-    for name, (median, spread) in known.items():
+    for name, (median, spread) in KNOWN.items():
         values = [v for v in found.sizes[name] if v > 0]
         if values:
             total -= 0.5 * ((math.log(float(np.median(values)) * scale) - math.log(median)) / spread) ** 2
-    total += math.log(entry["doors"] if found.doors else 1 - entry["doors"])
-    total += math.log(entry["drawers"] if found.drawers else 1 - entry["drawers"])
-    total += _normal(found.covered, *entry["covered"])
+    total += math.log(entry.doors if found.doors else 1 - entry.doors)
+    total += math.log(entry.drawers if found.drawers else 1 - entry.drawers)
+    total += _normal(found.covered, *entry.covered)
     if found.doors:
-        total += math.log(entry["glass"] if found.glass else 1 - entry["glass"])
+        total += math.log(entry.glass if found.glass else 1 - entry.glass)
     if found.grip is not None:
-        total += _normal(found.grip, *entry["grip"])
+        total += _normal(found.grip, *entry.grip)
     return total
 
 
@@ -83,11 +80,6 @@ def _sliding(shape: ArticulatedShape) -> list[float]:
     """Return the areas, seen from the front, of what slides along the front: doors that have no class of their own."""
     extents = [np.ptp(shape.bodies[j.child].points(), axis=0) for j in shape.joints if j.type == "prismatic" and abs(j.axis[0]) > 0.8]
     return [float(e[0] * e[2]) for e in extents]
-
-
-def _entry(category: str) -> Mapping[str, Any]:
-    entry: Mapping[str, Any] = _expected()["categories"].get(category) or _expected()["default"]
-    return entry
 
 
 def _normal(value: float, mean: float, spread: float) -> float:

@@ -28,12 +28,11 @@ Floats = NDArray[np.float64]
 CATEGORIES = "categories.csv"
 SNAP = 0.01  # [rad] an angle this near to a right one is one
 FURNITURE = "StorageFurniture"
-# Words of everyday language for PartNet's model categories and for ours.
+# Words of everyday language for PartNet's model categories; those for ours stand on their cards.
 SYNONYMS = {
     "fridge": "Refrigerator", "freezer": "Refrigerator", "washer": "WashingMachine", "bin": "TrashCan", "trashcan": "TrashCan",
     "cupboard": FURNITURE, "cabinet": FURNITURE, "drawers": FURNITURE, "drawer": FURNITURE, "dresser": FURNITURE, "chest": FURNITURE,
-    "counter": "kitchen_cabinet", "closet": "wardrobe", "armoire": "wardrobe", "bedside": "nightstand", "commode": "cabinet",
-    "bookcase": "bookshelf", "shelf": "bookshelf", "console": "sideboard", "buffet": "sideboard", "stove": "Oven", "cooker": "Oven", "wc": "Toilet",
+    "stove": "Oven", "cooker": "Oven", "wc": "Toilet",
 }  # fmt: skip
 
 
@@ -65,7 +64,7 @@ def candidates(file: str, named: str, taxonomy: Taxonomy) -> tuple[str, ...]:
         found = _meant(word, taxonomy)
         if found:
             return found
-    return () if named else tuple(c.name for c in taxonomy.categories.values() if c.partnet)
+    return () if named else tuple(c.name for c in taxonomy.categories.values() if c.names.partnet)
 
 
 def _tokens(file: str) -> list[str]:
@@ -76,8 +75,9 @@ def _tokens(file: str) -> list[str]:
 
 def _meant(word: str, taxonomy: Taxonomy) -> tuple[str, ...]:
     plain = re.sub(r"[^a-z]+", "_", word.lower()).strip("_")
-    by_name = {c: c for c in taxonomy.names} | {m.lower(): m for e in taxonomy.categories.values() for m in e.partnet}
-    wanted = by_name.get(plain) or by_name.get(plain.replace("_", "")) or SYNONYMS.get(plain) or SYNONYMS.get(plain.removesuffix("s"))
+    by_name = {c: c for c in taxonomy.names} | {m.lower(): m for e in taxonomy.categories.values() for m in e.names.partnet}
+    meant = SYNONYMS | {w: c.name for c in taxonomy.categories.values() for w in c.names.files}
+    wanted = by_name.get(plain) or by_name.get(plain.replace("_", "")) or meant.get(plain) or meant.get(plain.removesuffix("s"))
     if wanted is None:
         return ()
     return (wanted,) if wanted in taxonomy.categories else taxonomy.from_partnet(wanted)

@@ -5,17 +5,12 @@ Facts of the peers' published configurations: bedrooms have 21 classes, living a
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-SOFAS = ("multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa", "lazy_sofa", "chaise_longue_sofa")
-BED_LABELS: Mapping[str, str] = {
-    **dict.fromkeys(SOFAS, "sofa"),
-    **dict.fromkeys(("dining_chair", "lounge_chair", "chinese_chair"), "chair"),
-    **dict.fromkeys(("corner_side_table", "dining_table", "round_end_table"), "table"),
-    "sideboard": "cabinet",
-}
-LIVING_LABELS: Mapping[str, str] = {"sideboard": "console_table", "children_cabinet": "cabinet", "barstool": "stool"}
+from pipeline.card import cards
+
 BED_CLASSES = (
     "armchair", "bookshelf", "cabinet", "ceiling_lamp", "chair", "children_cabinet", "coffee_table", "desk", "double_bed",
     "dressing_chair", "dressing_table", "kids_bed", "nightstand", "pendant_lamp", "shelf", "single_bed", "sofa", "stool", "table",
@@ -31,18 +26,23 @@ BEDS = frozenset({"double_bed", "single_bed", "kids_bed"})
 LEAST, HIGHEST, LOWEST = 3, 4.0, -0.005  # objects; [m] their top and bottom
 
 
+@functools.cache
+def _labels(label_set: str) -> Mapping[str, str]:
+    return {name: card.names.peers[label_set] for name, card in cards().items() if label_set in card.names.peers}
+
+
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """One data set: rooms whose type contains `word`; `labels` maps our categories to classes where the names differ.
+    """One data set: rooms whose type contains `word`.
 
-    `most` objects and `side` [m] of the floor's bounds are what its filters allow; `reach` [m] is half the side of the
+    `label_set`: under which the cards of our categories name their classes there (names.peers) where these differ. `most` objects and `side` [m] of the floor's bounds are what its filters allow; `reach` [m] is half the side of the
     square that its floor masks show.
     """
 
     name: str
     word: str
     classes: tuple[str, ...]
-    labels: Mapping[str, str]
+    label_set: str
     most: int
     side: float
     reach: float
@@ -50,12 +50,12 @@ class Kind:
 
     def label(self, category: str) -> str | None:
         """Return the class of one of our categories, or None."""
-        named = self.labels.get(category, category)
+        named = _labels(self.label_set).get(category, category)
         return named if named in self.classes else None
 
     def categories(self, label: str) -> tuple[str, ...]:
         """Return our categories that have this class."""
-        other = tuple(c for c, named in self.labels.items() if named == label)
+        other = tuple(c for c, named in _labels(self.label_set).items() if named == label)
         return other if label in _FOREIGN else (label, *other)
 
 
@@ -63,10 +63,10 @@ _FOREIGN = frozenset({"sofa", "chair", "table", "console_table"})  # classes tha
 KINDS: Mapping[str, Kind] = {
     kind.name: kind
     for kind in (
-        Kind("bedroom", "bed", BED_CLASSES, BED_LABELS, 13, 6.0, 3.1, BEDS),
-        Kind("livingroom", "living", LIVING_CLASSES, LIVING_LABELS, 21, 12.0, 6.2),
-        Kind("diningroom", "dining", LIVING_CLASSES, LIVING_LABELS, 21, 12.0, 6.2),
-        Kind("library", "library", LIBRARY_CLASSES, LIVING_LABELS, 10_000, 6.0, 3.1),
+        Kind("bedroom", "bed", BED_CLASSES, "bedroom", 13, 6.0, 3.1, BEDS),
+        Kind("livingroom", "living", LIVING_CLASSES, "living", 21, 12.0, 6.2),
+        Kind("diningroom", "dining", LIVING_CLASSES, "living", 21, 12.0, 6.2),
+        Kind("library", "library", LIBRARY_CLASSES, "living", 10_000, 6.0, 3.1),
     )
 }
 

@@ -21,8 +21,6 @@ from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
 
-SEATS = frozenset({"dining_chair", "lounge_chair", "dressing_chair", "chinese_chair", "barstool", "stool", "armchair"})
-TABLES = frozenset({"dining_table", "desk", "dressing_table", "coffee_table", "corner_side_table"})
 MIN_SIZE = 0.01  # [m]
 STANDING, TALL = 0.1, 1.0  # [m] a lamp whose foot is lower and that is higher hangs from no ceiling
 BELOW = 0.05  # [m] under the floor: rounding of the source
@@ -187,8 +185,7 @@ def overlapping(objects: list[Placed], limits: FrontFilters, taxonomy: Taxonomy)
         for j in near.get(i, ()):
             if j not in kept:
                 continue
-            pair = {objects[i].category, objects[j].category}
-            tucked = bool(pair & SEATS) and bool(pair & TABLES)
+            tucked = {taxonomy.categories[objects[k].category].tuck for k in (i, j)} == {"seat", "table"}
             most = limits.max_overlap_tucked if tucked else limits.max_overlap
             share = round(shared_volume(objects[i], objects[j]), 2)
             share = round(shared_shape(objects[i], objects[j]), 2) if share > most else share

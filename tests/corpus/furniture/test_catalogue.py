@@ -7,13 +7,13 @@ import pytest
 from pipeline import taxonomy
 from pipeline.corpus.furniture import sizes
 from pipeline.corpus.furniture.catalogue import catalogue
-from pipeline.corpus.furniture.lines import LINES
+from pipeline.corpus.furniture.lines import lines
 from pipeline.seeds import generator
 
 
 def test_every_category_of_the_taxonomy_has_static_models():
     made = catalogue(0)
-    assert set(made.future_by_category()) == set(taxonomy.load().categories) == set(LINES) == set(sizes.load())
+    assert set(made.future_by_category()) == set(taxonomy.load().categories) == set(lines()) == set(sizes.load())
 
 
 def test_numbers_at_size_one():
@@ -27,7 +27,7 @@ def test_size_scales_the_number_of_models():
     small, big = catalogue(0, 0.25), catalogue(0, 2.0)
     assert len(small.future) == pytest.approx(0.25 * len(catalogue(0).future), rel=0.35)
     assert len(big.partnet) == 2 * len(catalogue(0).partnet)
-    assert set(small.future_by_category()) == set(LINES)
+    assert set(small.future_by_category()) == set(lines())
 
 
 def test_ids_are_unique_and_of_the_sources_kind():
@@ -51,12 +51,12 @@ def test_sizes_lie_between_the_bounds():
     known = sizes.load()
     for model in (*catalogue(0).future, *catalogue(1).partnet):
         statistics = known[model.category]
-        form = next(f for f in LINES[model.category].forms if f.name == model.form)
+        form = next(f for f in lines()[model.category].forms if f.name == model.form)
         for axis in (0, 2) if form.round else (0, 1) if form.upright else (0, 1, 2):
             assert sizes.LEAST * statistics.p05[axis] - 1e-3 <= model.size[axis] <= sizes.MOST * statistics.p95[axis] + 1e-3
 
 
-@pytest.mark.parametrize("category", sorted(LINES))
+@pytest.mark.parametrize("category", sorted(lines()))
 @pytest.mark.parametrize("count", [8, 40])
 def test_draws_keep_mean_and_spread_whatever_their_number(category, count):
     statistics = sizes.load()[category]
@@ -94,5 +94,5 @@ def test_same_seed_same_models_other_seed_other_models():
 def test_forms_come_equally_often():
     for category, count in Counter(m.category for m in catalogue(0).future).items():
         forms = Counter(m.form for m in catalogue(0).future if m.category == category)
-        if all(f.least_height == 0 for f in LINES[category].forms):
-            assert max(forms.values()) - min(forms.values()) <= 1 or count < len(LINES[category].forms)
+        if all(f.least_height == 0 for f in lines()[category].forms):
+            assert max(forms.values()) - min(forms.values()) <= 1 or count < len(lines()[category].forms)

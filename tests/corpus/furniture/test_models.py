@@ -6,7 +6,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.assembly import shape_of
 from pipeline.corpus.furniture.catalogue import catalogue
-from pipeline.corpus.furniture.lines import LINES
+from pipeline.corpus.furniture.lines import lines
 
 
 def models():
@@ -59,7 +59,7 @@ def test_carcasses_are_hollow():
 
 
 def test_every_form_is_built():
-    assert {(m.category, m.form) for m in models()} == {(c, f.name) for c, line in LINES.items() for f in line.forms}
+    assert {(m.category, m.form) for m in models()} == {(c, f.name) for c, line in lines().items() for f in line.forms}
 
 
 def test_static_models_do_not_move():

@@ -11,10 +11,10 @@ from pipeline.corpus.furniture import bent, patterns, texture
 from pipeline.corpus.furniture.assembly import scheme_of, shape_of
 from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.corpus.furniture.finishes import Finish
-from pipeline.corpus.furniture.lines import LINES
+from pipeline.corpus.furniture.lines import lines
 from pipeline.corpus.furniture.shape import frozen, pieces
 from pipeline.corpus.furniture.solids import Solid, box, cushion, merged, normals, pillow, topology
-from pipeline.corpus.furniture.styles import MANNERS, SUITED
+from pipeline.corpus.furniture.styles import MANNERS
 from pipeline.corpus.furniture.wavefront import corners_of
 from pipeline.seeds import generator
 
@@ -101,7 +101,7 @@ def chosen():
     return tuple(made)
 
 
-HERE = {c for c, line in LINES.items() if not line.moving}
+HERE = {c for c, line in lines().items() if not line.moving}
 
 
 def test_there_are_enough_models_of_every_category():
@@ -114,11 +114,10 @@ def test_there_are_enough_models_of_every_category():
 
 
 def test_forms_and_styles_suit_each_other():
-    names = {f"{c}.{f.name}" for c, line in LINES.items() for f in line.forms}
-    assert set(SUITED) <= names, set(SUITED) - names
+    forms = {(c, f.name): f for c, line in lines().items() for f in line.forms}
+    assert {s for f in forms.values() for s in f.styles} == set(MANNERS)
     for model in catalogue(1).future:
-        allowed = SUITED.get(f"{model.category}.{model.form}")
-        assert allowed is None or model.style in allowed or model.form == LINES[model.category].forms[0].name
+        assert model.style in forms[model.category, model.form].styles or model.form == lines()[model.category].forms[0].name
     assert {m.style for m in catalogue(0).future} == set(MANNERS)
     assert len(MANNERS) == 19
     assert sum(m.share for m in MANNERS.values()) == pytest.approx(1)
