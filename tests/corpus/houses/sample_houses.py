@@ -63,7 +63,9 @@ def stock() -> Stock:
             if category.super == "kitchen":  # units come in widths
                 w = (0.4, 0.6, 0.8, 0.9)[k]
             size = (round(w * float(stretch[0]), 3), round(d * float(stretch[1]), 3), h)
-            models.append(Box(f"{category.name}-{k}", category.name, size, ("Modern", "Nordic")[k % 2], category.super, category.names.future[0]))
+            models.append(
+                Box(f"{category.name}-{k}", category.name, size, ("Modern", "Nordic")[k % 2], category.super, category.names.future[0])
+            )
     return Stock(models, faces)
 
 

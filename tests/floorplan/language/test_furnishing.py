@@ -12,7 +12,7 @@ from pipeline.errors import RefusedError
 from pipeline.floorplan import complete, parse
 from pipeline.floorplan.language.attaching import Mention, attach, read_furniture
 from pipeline.floorplan.program.floor_program import FloorProgram, Furniture, RoomReq, Things
-from pipeline.floorplan.program.furniture import lexicon, meant, members
+from pipeline.floorplan.program.furniture import lexicon, meant, members, natural
 
 
 def said(prompt):
@@ -184,12 +184,13 @@ def test_wishes_without_rooms_are_the_homes():
 
 def test_the_lexicon_names_every_category_in_every_language():
     data = lexicon()
-    known = set(taxonomy.load().names)
+    known, rooms = taxonomy.load().names, set(taxonomy.load().plan_rooms)
     for name in known:
         assert {k for k, forms in data["names"][name].items() if forms} == {"en", "de", "es", "zh"}, name
-        assert data["natural"][name]
-    assert all(set(group) <= known for group in data["groups"].values())
-    assert all(set(banned) <= known for banned in data["never"].values())
+        assert natural(name)
+    assert all(rooms.issuperset((*card.usual, *card.never)) for card in taxonomy.load().categories.values())
+    assert all(group and set(group) <= set(known) for group in data["groups"].values())
+    assert {group for card in taxonomy.load().categories.values() for group in card.groups} <= set(data["groups"])
     assert members("any_bed") == ("double_bed", "single_bed", "kids_bed")
     assert members("unicorn") == ()
     assert all(isinstance(form, str) for listed in data["words"].values() for form in listed)
