@@ -5,7 +5,7 @@ import pytest
 
 from pipeline.floorplan.program.completion import complete
 from pipeline.floorplan.program.floor_program import FloorProgram, RoomReq
-from pipeline.floorplan.search import anneal, grid, layout, slicing
+from pipeline.floorplan.search import anneal, grid, layout, slicing, trees
 from pipeline.floorplan.search.storeys import storey
 from pipeline.floorplan.search.trees import Effort, Outline, Trees
 
@@ -77,7 +77,8 @@ def test_annealing_keeps_the_outline_and_whole_rooms_and_is_repeatable():
         assert found[0][4] > 5  # proposals were accepted
 
 
-def test_annealing_never_returns_worse_than_its_start_and_longer_is_better():
+def test_annealing_never_returns_worse_than_its_start_and_longer_is_better(monkeypatch):
+    monkeypatch.setattr(trees, "SLICES", 4)  # a tree that is barely searched leaves something to gain
     gains = []
     for seed in range(4):
         request, cells, rng = start(seed)

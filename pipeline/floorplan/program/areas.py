@@ -72,7 +72,7 @@ def usual_area(room: RoomReq, program: FloorProgram) -> float:
 
 def _halls(program: FloorProgram, rooms: Sequence[RoomReq], target: list[float], free: Sequence[bool]) -> None:
     """Give free hallways their share of what the other rooms of their storeys take, and wall enough for their doors."""
-    doors = Counter(i for k in program.links if k.kind != "wall" for i in (k.a, k.b))
+    doors = Counter(i for k in program.links if k.opens for i in (k.a, k.b))
     for level in {r.level for r in rooms}:
         halls = [i for i, r in enumerate(rooms) if r.type == "hallway" and r.area.target is None and free[i] and r.level == level]
         others = sum(t for r, t in zip(rooms, target, strict=True) if r.type not in {"hallway", *OUTSIDE} and r.level == level)

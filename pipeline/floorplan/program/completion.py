@@ -11,6 +11,7 @@ from pipeline.floorplan.program.links import connect, is_forbidden, resolve
 
 UPSTAIRS = {"bedroom", "bathroom", "playroom"}
 BESIDE = {"bathroom", "wc", "closet", "balcony", "storage", "utility", "hallway", "office"}  # lie on the storey of what they are joined to
+FEW = 6  # rooms, below which an irregular outline has one corner cut out and not two
 HUBLESS = {"living_room", "family_room", "studio_room", "hallway", "entry"}
 
 
@@ -23,8 +24,16 @@ def complete(program: FloorProgram) -> FloorProgram:
     names(program)
     storeys(program)
     program = _join(program)
-    program = program.model_copy(update={"entrance": _entrance(program)})
+    program = _bent(program.model_copy(update={"entrance": _entrance(program)}))
     return allot(with_areas(spread(program)))
+
+
+def _bent(program: FloorProgram) -> FloorProgram:
+    """Give a home that is to be irregular an outline that is: one notched room is not seen from afar."""
+    if not program.nonrect or program.footprint.stated:
+        return program
+    outline = program.footprint.model_copy(update={"shape": "L" if len(program.rooms) < FEW else "T", "corners": "chamfered"})
+    return program.model_copy(update={"footprint": outline, "nonrect": max(program.nonrect, len(program.rooms) // 4)})
 
 
 def _expand(program: FloorProgram) -> tuple[RoomReq, ...]:
@@ -141,7 +150,7 @@ def _add_circulation(program: FloorProgram) -> tuple[RoomReq, ...]:
     ground = [r for r in rooms if r.level == 0]
     if any(r.type in {"hallway", "entry"} for r in ground):
         return program.rooms
-    joined = {i for k in resolve(program) for i in (k.a, k.b) if k.kind != "wall"}
+    joined = {i for k in resolve(program) for i in (k.a, k.b) if k.opens}
     hanging = [r for r in ground if r.type in {"bedroom", "bathroom", "office", "library", "media_room", "playroom", "wc", "gym"}]
     owned = {k.b for k in resolve(program)} | {k.a for k in resolve(program)}
     del joined
@@ -182,7 +191,7 @@ def _join(program: FloorProgram) -> FloorProgram:
 def _barred(program: FloorProgram) -> bool:
     """Whether a link that nobody stated joins what may not be joined, or a room can only be reached through one to be avoided."""
     rooms = {r.id: r for r in program.rooms}
-    if any(not k.stated and k.kind != "wall" and is_forbidden(program, rooms[k.a], rooms[k.b]) for k in program.links):
+    if any(not k.stated and k.opens and is_forbidden(program, rooms[k.a], rooms[k.b]) for k in program.links):
         return True
     root = _entrance(program).into or ""
     ways = [f for f in program.forbids if f.what == "through" and f.avoid]
@@ -195,7 +204,7 @@ def _entrance(program: FloorProgram) -> Entrance:
         into = program.select(program.entrance.into)[0].id
         return program.entrance.model_copy(update={"into": into})
     ground = [r for r in program.rooms if r.level == 0]
-    order = ("entry", "living_room", "hallway", "studio_room", "family_room", "kitchen", "dining_room", "office")
+    order = ("entry", "hallway", "living_room", "studio_room", "family_room", "kitchen", "dining_room", "office")
     for kind in order:
         for room in ground:
             if room.type == kind:

@@ -106,7 +106,7 @@ def _forbidden(program: FloorProgram) -> None:
         for k in program.links:
             ends = {k.a, k.b}
             hit = any({a.id, b.id} == ends for a in rooms for b in others if a.id != b.id)
-            if hit and (f.what == "adjacent" or (f.what == "connected" and k.kind != "wall") or (f.what == "open" and k.kind == "open")):
+            if hit and (f.what == "adjacent" or (f.what == "connected" and k.opens) or (f.what == "open" and k.kind == "open")):
                 words = cited(program, f"forbids.{f.what}.{f.a}", f"links.{k.a}-{k.b}", f"links.{k.b}-{k.a}")
                 raise ImpossibleError(f"{k.a} and {k.b} are to be joined and kept apart", "keep one of the two", words)
 
@@ -161,7 +161,7 @@ def _degrees(program: FloorProgram) -> None:
         if relation.kind != "degree":
             continue
         for room in program.select(relation.a):
-            joined = [k for k in program.links if room.id in {k.a, k.b} and k.kind != "wall"]
+            joined = [k for k in program.links if room.id in {k.a, k.b} and k.opens]
             if len(joined) > relation.value:
                 fields = [f"links.{x}" for k in joined for x in (f"{k.a}-{k.b}", f"{k.b}-{k.a}")]
                 words = cited(program, f"relations.degree.{room.id}", *fields)
@@ -203,7 +203,7 @@ def reach(program: FloorProgram, root: str, avoid: frozenset[str]) -> set[str]:
             continue
         for k in program.links:
             other = k.b if k.a == here else (k.a if k.b == here else None)
-            if other is None or other in found or other in avoid or k.kind == "wall":
+            if other is None or other in found or other in avoid or not k.opens:
                 continue
             private = kinds[here] == "balcony" or (kinds[here] == "bedroom" and kinds[other] not in PRIVATE)
             if private and here != root and not k.stated:

@@ -40,7 +40,7 @@ def nearness(asked: Sequence[Distance], links: Sequence[Link]) -> list[Nearness]
     """Return the distances that the graph of links breaks. Rooms that nothing joins yet are far apart."""
     beside: dict[str, set[str]] = {}
     for link in links:
-        if link.kind != "wall":
+        if link.opens:
             beside.setdefault(link.a, set()).add(link.b)
             beside.setdefault(link.b, set()).add(link.a)
     broken = []

@@ -131,13 +131,18 @@ class RoomReq(Model):
 
 
 class Link(Model):
-    """Two rooms that are joined: by a door, an open front, a portal, any of these, or only a common wall."""
+    """Two rooms that are joined: by a door, an open front, a portal, or only a common wall; "any" are rooms that lie next to each other."""
 
     a: Selector
     b: Selector
     kind: LinkKind = "door"
     quant: Literal["each", "some"] = "each"
     stated: bool = False
+
+    @property
+    def opens(self) -> bool:
+        """Whether one gets through: what is only said to lie next to each other has a wall in common, and doors elsewhere."""
+        return self.kind not in {"wall", "any"}
 
 
 class Forbid(Model):
@@ -253,7 +258,7 @@ class FloorProgram(Model):
     """A request for a home. Every field is optional; `total_area` [m2] counts neither balconies nor garages.
 
     `furniture` are wishes for every room that is furnished. `only` closes the list of rooms: nothing is added that was not named. `nonrect` is the least number of rooms that are not
-    rectangles. `irregular` widens what an outline may look like.
+    rectangles; one or more give an outline that nobody stated cut-out and chamfered corners.
     """
 
     version: Literal[1] = 1

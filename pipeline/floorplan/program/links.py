@@ -30,7 +30,17 @@ PARENTS: dict[str, tuple[str, ...]] = {
 ANY_HUB = ("hallway", "entry", "living_room", "family_room", "studio_room", "dining_room", "kitchen", "office", "staircase")
 # Who stands for a group of joined rooms when the group is attached to the rest.
 FRONT = (*HUBS, "library", "media_room", "playroom", "gym", "meeting_room", "sunroom", "utility", "bedroom", "storage", "closet")
-OPENABLE = {"door", "open", "portal", "any"}
+BELONGING = {
+    "balcony",
+    "closet",
+    "storage",
+    "utility",
+    "garage",
+    "sunroom",
+    "kitchen",
+    "dining_room",
+    "wc",
+}  # are entered from what they lie next to
 BUDGET = 600  # sets of links that are tried before `hops` relations are given up
 
 
@@ -46,9 +56,11 @@ def resolve(program: FloorProgram) -> tuple[Link, ...]:
                 pairs.append((one, partners[k % len(partners)] if len(partners) == len(ones) else partners[0]))
         for one, other in pairs[:1] if link.quant == "some" else pairs:
             key = (min(one.id, other.id), max(one.id, other.id))
+            between = any(r.kind == "between" and r.a == one.id and other.id in {r.b, r.c} for r in program.relations)
+            kind = "door" if link.kind == "any" and between else link.kind  # one walks through what lies between
             old = found.get(key)
-            if old is None or (old.kind in {"any", "wall"} and link.kind not in {"any", "wall"}):
-                found[key] = link.model_copy(update={"a": one.id, "b": other.id, "quant": "each"})
+            if old is None or (link.opens and not old.opens):
+                found[key] = link.model_copy(update={"a": one.id, "b": other.id, "kind": kind, "quant": "each"})
     return tuple(found.values())
 
 
@@ -65,14 +77,30 @@ def connect(program: FloorProgram) -> tuple[Link, ...]:
     root = _root(program, stated)
     distant = distances(program)
     found = _complete(program, stated, root, distant, set())
-    return found if found is not None else _complete(program, stated, root, (), set()) or stated
+    return _settled(program, found if found is not None else _complete(program, stated, root, (), set()) or stated)
+
+
+def _settled(program: FloorProgram, links: Sequence[Link]) -> tuple[Link, ...]:
+    """Say what joins rooms that are to lie next to each other: the door that is there already, one between rooms that one walks through, else no more than the wall."""
+    kinds = {r.id: r.type for r in program.rooms}
+    doors = {frozenset((k.a, k.b)): k for k in links if k.opens}
+    stated = {frozenset((k.a, k.b)) for k in links if k.stated}
+    made: list[Link] = []
+    for link in links:
+        pair = frozenset((link.a, link.b))
+        if doors.get(pair, link) is not link:
+            continue  # a door needs the wall
+        walked = all(kinds[i] in HUBS and DEFAULTS[kinds[i]].through for i in pair)
+        kind = "door" if link.kind == "any" and walked else link.kind
+        made.append(link.model_copy(update={"kind": kind, "stated": pair in stated}))
+    return tuple(made)
 
 
 def _complete(
     program: FloorProgram, links: tuple[Link, ...], root: str, distant: Sequence[Distance], seen: set[frozenset[tuple[str, str, bool]]]
 ) -> tuple[Link, ...] | None:
     """Return the first completion that keeps rooms far enough apart. Links only bring rooms nearer: a set that fails is left at once."""
-    key = frozenset((k.a, k.b, k.kind == "wall") for k in links)
+    key = frozenset((k.a, k.b, k.opens) for k in links)
     if key in seen or len(seen) >= BUDGET or nearness(distant, links):
         return None
     seen.add(key)
@@ -119,7 +147,7 @@ def _groups(program: FloorProgram, links: Sequence[Link]) -> list[frozenset[str]
     # of a bathroom's doors the one to the most public room counts
     for link in sorted(links, key=lambda k: min(rank.get(kinds[k.a], 99), rank.get(kinds[k.b], 99))):
         ends = {link.a, link.b} & set(dead)
-        if link.kind in OPENABLE and not ends & used:
+        if link.opens and not ends & used:
             kept.append(link)
             used |= ends
     return components([r.id for r in program.rooms], kept)
@@ -135,7 +163,7 @@ def components(ids: Sequence[str], links: Iterable[Link]) -> list[frozenset[str]
         return i
 
     for link in links:
-        if link.kind in OPENABLE:
+        if link.opens:
             parent[find(link.a)] = find(link.b)
     groups: dict[str, set[str]] = {}
     for i in ids:
@@ -151,7 +179,7 @@ def _root(program: FloorProgram, links: Sequence[Link]) -> str:
             return stated[0].id
     degree = {r.id: sum(r.id in {k.a, k.b} for k in links) for r in program.rooms}
     ground = [r for r in program.rooms if not r.level] or list(program.rooms)
-    for kind in ("living_room", "studio_room", "entry", "hallway", *HUBS):
+    for kind in ("entry", "hallway", "living_room", "studio_room", *HUBS):
         same = [r for r in ground if r.type == kind]
         if same:
             return max(same, key=lambda r: degree[r.id]).id
@@ -174,8 +202,13 @@ def _order(room: RoomReq) -> int:
 
 def _hosted(program: FloorProgram, front: RoomReq, main: frozenset[str], links: Sequence[Link]) -> Iterator[Link]:
     """Yield the links by which a room may hang on one of `main`, the usual one first."""
+    beside = {k.b if k.a == front.id else k.a for k in links if not k.opens and front.id in {k.a, k.b}}
     second = front.type == "kitchen" and front.role not in {"", "primary"}  # a kitchen of somebody's own stands by itself
-    for wanted in PARENTS["bedroom"][1:] if second else PARENTS.get(front.type, ANY_HUB):
+    usual = PARENTS["bedroom"][1:] if second else PARENTS.get(front.type, ANY_HUB)
+    if front.type in BELONGING:
+        near = {r.type for r in program.rooms if r.id in beside}
+        usual = tuple(sorted(usual, key=lambda t: t not in near))
+    for wanted in usual:
         hosts = [r for r in program.rooms if r.type == wanted and r.id in main and _meet(r, front)]
         hosts = [h for h in hosts if not _is_full(program, h, links) and not is_forbidden(program, h, front)]
         hosts = [h for h in hosts if h.type != "hallway" or h.level == front.level or front.type == "staircase"] or hosts
@@ -183,6 +216,7 @@ def _hosted(program: FloorProgram, front: RoomReq, main: frozenset[str], links: 
             hosts = [h for h in hosts if not _has(program, h, front.type, links)] or hosts
         if wanted == "hallway":
             hosts = sorted(hosts, key=lambda h: _load(h, links))
+        hosts = sorted(hosts, key=lambda h: h.id not in beside)
         for host in hosts:
             yield Link(a=host.id, b=front.id, kind="open" if "staircase" in {front.type, host.type} else "door")
 
@@ -198,7 +232,7 @@ def _has(program: FloorProgram, host: RoomReq, kind: str, links: Sequence[Link])
 
 def _is_full(program: FloorProgram, room: RoomReq, links: Sequence[Link]) -> bool:
     """Whether a `degree` relation or the type leaves no room for another opening."""
-    load = sum(room.id in {k.a, k.b} for k in links if k.kind in OPENABLE)
+    load = sum(room.id in {k.a, k.b} for k in links if k.opens)
     asked = [r.value for r in program.relations if r.kind == "degree" and _covers(program, r.a, room)]
     if asked:
         return load >= min(asked)

@@ -115,7 +115,7 @@ def place(
     site = Site({r.room_id: r for r in rooms}, [], [], [], max(shell.inner_wall, shell.outer_wall), shell.ceiling)
     requests = {r.id: r for r in program.rooms}
     wide = [k for k in program.links if k.kind in {"open", "portal"}]
-    narrow = [k for k in program.links if k.kind in {"door", "any"}]
+    narrow = [k for k in program.links if k.kind == "door"]
     for link in wide:
         if not _wide(site, [r for r in runs if set(r.rooms) == {link.a, link.b}], link.kind, {link.a, link.b}, requests):
             return None

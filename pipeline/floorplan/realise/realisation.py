@@ -183,7 +183,7 @@ def _depths(program: FloorProgram) -> dict[str, int]:
         room = frontier.pop(0)
         for k in program.links:
             other = k.b if k.a == room else (k.a if k.b == room else None)
-            if other is not None and k.kind != "wall" and other not in depth:
+            if other is not None and k.opens and other not in depth:
                 depth[other] = depth[room] + 1
                 frontier.append(other)
     return {r.id: depth.get(r.id, 99) for r in program.rooms}

@@ -63,7 +63,7 @@ def sides(program: FloorProgram) -> float:
 
 def wall_for(kind: str, door: float, small: bool, beside: float) -> int:
     """Return the straight wall [cells] that a link of that kind needs; `beside` [m] as `sides` returns it."""
-    if kind == "wall":
+    if kind in {"wall", "any"}:
         return 2
     if kind == "open":
         return cells((1.1 if small else OPEN_FRONT) + beside)
@@ -95,7 +95,7 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
         if k.a in index and k.b in index:
             a, b = index[k.a], index[k.b]
             need[a, b] = need[b, a] = wall_for(k.kind, door, min(target[a], target[b]) < 7.0, sides(program))
-            if k.kind != "wall":
+            if k.opens:
                 link[a, b] = link[b, a] = 1
     here = program.model_copy(update={"rooms": rooms})
     ban, apart, order = _relations(here, index)

@@ -90,9 +90,9 @@ def test_rooms_in_free_words(prompt, rooms):
         ("living room, kitchen, bedroom; a balcony off the bedroom", ("balcony", "bedroom"), "door"),
         ("one bedroom with its own bathroom, living room, kitchen", ("bathroom", "bedroom"), "door"),
         ("The kitchen leads into the utility room. Bedroom, living room, bathroom.", ("kitchen", "utility"), "door"),
-        ("The dining room lies between the kitchen and the living room; two bedrooms, bathroom", ("dining_room", "kitchen"), "any"),
+        ("The dining room lies between the kitchen and the living room; two bedrooms, bathroom", ("dining_room", "kitchen"), "door"),
         ("The living room opens onto a terrace. One bedroom, kitchen, bath.", ("balcony", "living_room"), "door"),
-        ("kitchen next to the dining room, living room, bedroom, bathroom", ("dining_room", "kitchen"), "any"),
+        ("kitchen next to the dining room, living room, bedroom, bathroom", ("dining_room", "kitchen"), "door"),
         ("From the kitchen you get into the pantry. One bedroom, bathroom, lounge.", ("kitchen", "storage"), "door"),
     ],
 )
