@@ -10,11 +10,10 @@ from typing import Any, Literal
 
 import yaml
 
-from pipeline import params
+from pipeline import params, yaml_text
 from pipeline.errors import ContentError
 
 FOLDER = Path(__file__).resolve().parent.parent / "manifests" / "categories"
-LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the one in C is ten times as fast
 LAST = 1_000_000
 Triple = tuple[float, float, float]
 
@@ -193,7 +192,7 @@ def cards() -> Mapping[str, Category]:
 def _card(path: Path) -> Category:
     file = f"manifests/categories/{path.name}"
     try:
-        raw: Any = LOADER(path.read_text(encoding="utf-8")).get_single_data()
+        raw: Any = yaml_text.parse(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         raise ContentError(f"cannot read {file}: {str(error).splitlines()[0]}", "compare it with the files beside it") from error
     if not isinstance(raw, Mapping):

@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 
 import yaml
 
+from pipeline import yaml_text
 from pipeline.errors import ContentError
 
 # Every section of params.yaml: a misspelt one shall not pass as one more.
@@ -47,7 +48,7 @@ def read(path: Path, preset: str | None = None) -> Tree:
     Raises ContentError when the file is missing, is not YAML, or names an unknown preset.
     """
     try:
-        tree = yaml.safe_load(path.read_text(encoding="utf-8"))
+        tree = yaml_text.parse(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         msg = f"cannot read {path}: {str(error).splitlines()[0]}"
         raise ContentError(msg, "restore it with `git checkout params.yaml`") from error

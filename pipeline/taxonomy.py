@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pipeline.card import LOADER, Category, cards
+from pipeline import yaml_text
+from pipeline.card import Category, cards
 
 PATH = Path(__file__).resolve().parent.parent / "manifests" / "taxonomy.yaml"
 
@@ -71,7 +72,7 @@ def normalise(name: str) -> str:
 @functools.cache
 def load() -> Taxonomy:
     """Read the cards and manifests/taxonomy.yaml."""
-    raw = LOADER(PATH.read_text(encoding="utf-8")).get_single_data()
+    raw = yaml_text.parse(PATH.read_text(encoding="utf-8"))
     essentials = {kind: tuple(tuple(group) for group in groups) for kind, groups in raw["essentials"].items()}
     unwanted = {kind: tuple(names) for kind, names in raw["unwanted"].items()}
     styles, materials = ({n.lower(): n for n in raw[key]} for key in ("styles", "materials"))

@@ -6,6 +6,7 @@ cannot be met; 130 interrupted. Whatever goes wrong is one line on stderr: `sfge
 
 from __future__ import annotations
 
+import gc
 import importlib
 import os
 import sys
@@ -278,8 +279,13 @@ def factory_root() -> Path:
 
 
 def stage(name: str) -> Any:
-    """Import what a command does; heavy packages come with it."""
-    return importlib.import_module(f"stages.{name}")
+    """Import what a command does; heavy packages come with it, of which nothing is ever garbage: collecting waits until they are there."""
+    gc.disable()
+    try:
+        return importlib.import_module(f"stages.{name}")
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def run(arguments: Sequence[str]) -> int:

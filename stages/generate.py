@@ -53,7 +53,7 @@ def main(
     listen(None)
     if isinstance(outcome, Empty):
         raise outcome.error
-    with open_or_create(out, header, factory.shelf()) as dataset:
+    with open_or_create(out, header, factory.shelf) as dataset:
         if dataset.missing():
             progress.phase("writing the assets")
             assumed = assumptions(program) if source is None else []

@@ -35,7 +35,7 @@ def main(root: Path) -> None:
     named = {**factory.digests, "prompts": digest([request.prompt for request in asked])}
     header = Header(seed, len(asked), factory.shard_size, factory.licence, named)
     progress = Progress(len(asked), "postopt")
-    with open_or_create(root / "data" / "shards", header, factory.shelf(), discard=True) as dataset:
+    with open_or_create(root / "data" / "shards", header, factory.shelf, discard=True) as dataset:
         recipe = Recipe(partial(open_factory, root, seed), partial(first_drafts, root))
         tally = fill(dataset, recipe, lambda index: asked[index], workers=cores(), progress=progress)
     progress.close()

@@ -43,7 +43,7 @@ def main(
         return try_one(root, seed, order.asked(only))
     header = Header(seed, count, factory.shard_size, factory.licence, {**factory.digests, "prompts": order.digest()})
     workers = workers or cores()
-    with open_or_create(folder, header, factory.shelf()) as dataset:
+    with open_or_create(folder, header, factory.shelf) as dataset:
         if dataset.missing():
             warm_up(progress, root)
         again = shlex.join(
@@ -67,7 +67,7 @@ def repair(root: Path, *, folder: Path, prompts: Path | None = None, workers: in
     """Make again what is broken or missing of a dataset, by the checkout that made it; returns the exit code of `main`."""
     header = read_header(folder)
     progress = Progress(0, "homes", voice=voice)
-    with open_or_create(folder, header, open_factory(root, header.seed).shelf()) as dataset:
+    with open_or_create(folder, header, open_factory(root, header.seed).shelf) as dataset:
         for name in forget_altered(dataset, FAILURES):
             progress.say(f"{name} is made again")
     return main(root, count=header.count, out=folder, seed=header.seed, workers=workers, prompts=prompts, voice=voice)

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import yaml
-
+from pipeline import yaml_text
 from pipeline.card import Hangs, cards
 
 PATH = Path(__file__).resolve().parents[2] / "manifests" / "calibration" / "things.yaml"
@@ -47,7 +46,7 @@ class Customs:
 @functools.cache
 def load() -> Customs:
     """Read the manifest and the cards."""
-    raw, known = yaml.safe_load(PATH.read_text(encoding="utf-8")), cards()
+    raw, known = yaml_text.parse(PATH.read_text(encoding="utf-8")), cards()
     rugs = {kind: _rug(entry) for kind, entry in raw["rugs"].items()}
     hanging = {name: c.hangs for name, c in known.items() if c.hangs}
     furniture = {name: c.holds for name, c in known.items() if c.holds}

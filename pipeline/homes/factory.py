@@ -7,6 +7,7 @@ again where they fail; the whole home is then judged, and what the judge faults 
 from __future__ import annotations
 
 import functools
+import gc
 import json
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -327,6 +328,7 @@ class Factory:
         tell("made", home.index)
         return Outcome(home, work.certificate, rows, exported)
 
+    @functools.cached_property
     def shelf(self) -> AssetShelf:
         """Return the shelf of this machine from which datasets take their assets."""
         return AssetShelf(self.library, self.digests["code"])
@@ -376,4 +378,6 @@ def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
 @functools.lru_cache(maxsize=1)
 def open_factory(root: Path, seed: int) -> Factory:
     """Return this process's factory for the checkout at `root`: models and library are loaded once."""
-    return load_factory(root, params.read(root / "params.yaml"), seed)
+    factory = load_factory(root, params.read(root / "params.yaml"), seed)
+    gc.freeze()  # modules, models and library stay: looking through them for garbage again and again costs a tenth of all time
+    return factory

@@ -188,9 +188,7 @@ def make_chunk(recipe: Recipe, chunk: Chunk) -> Batch:
     homes = tuple(gather(chunk.shard, [home]) for home in brought)
     if recipe.shelve:
         with factory.timed("library"):
-            shelf = factory.shelf()
-            for asset_id in sorted({row["asset_id"] for home in homes for row in home.rows["objects"]}):
-                shelf.entry(asset_id)
+            factory.shelf.stock(row["asset_id"] for home in homes for row in home.rows["objects"])
     retries = sum(row["what"] in {"room", "home"} for home in homes for row in home.rows["rejects"])
     return Batch(homes, tuple(o for o in outcomes if isinstance(o, Empty)), dict(factory.seconds), retries)
 

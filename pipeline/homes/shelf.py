@@ -33,6 +33,7 @@ class AssetShelf:
     def __init__(self, library: Library, code: str, folder: Path | None = None) -> None:
         self.library = library
         self.folder = (folder or cache_folder()) / "assets" / digest([code, *map(version, WRITERS)])[:16]
+        self._stocked: set[str] = set()
 
     def entry(self, asset_id: str) -> Path:
         """Return the folder of an asset's files, after writing it where it is missing or broken."""
@@ -46,6 +47,12 @@ class AssetShelf:
                 if not whole(place, seal):  # another process may have written it meanwhile
                     self._write(asset_id, place, seal)
         return place
+
+    def stock(self, asset_ids: Iterable[str]) -> None:
+        """See that assets have their entries; each is looked at once, since that costs as much as reading it."""
+        for asset_id in sorted(set(asset_ids) - self._stocked):
+            self.entry(asset_id)
+            self._stocked.add(asset_id)
 
     def tables(self, asset_ids: Sequence[str]) -> Mapping[Table, Iterable[Mapping[str, Any]]]:
         """Return the rows of assets and asset_joints that describe these assets, files as they lie in a dataset."""

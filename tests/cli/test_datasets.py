@@ -37,6 +37,7 @@ class Paper:
         self.seconds[part] = 1.0
         yield
 
+    @property
     def shelf(self):
         return made.Shelf(Path("shelf"))
 

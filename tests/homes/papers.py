@@ -33,6 +33,7 @@ class Paper:
         self.die, self.hang, self.die_once, self.stumble, self.nap = die, hang, die_once, stumble, nap
         self.shard = SimpleNamespace(home_seconds=2.0)
 
+    @property
     def shelf(self):
         return made.Shelf(self.folder / "shelf")
 

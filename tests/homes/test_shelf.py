@@ -57,6 +57,14 @@ def test_what_is_broken_is_written_anew_and_what_is_whole_is_not(written, shelve
     assert written == ["chair", "chair"]
 
 
+def test_what_was_stocked_is_looked_at_once(written, shelved, monkeypatch):
+    looked = []
+    monkeypatch.setattr(shelved, "entry", looked.append)
+    shelved.stock(["table", "chair", "table"])
+    shelved.stock(["chair"])
+    assert looked == ["chair", "table"]
+
+
 def test_the_oldest_versions_make_room(tmp_path):
     for k, name in enumerate(("old", "older", "new")):
         (tmp_path / name).mkdir()

@@ -94,6 +94,10 @@ class Shelf:
             (place / "textures" / "wood.png").write_bytes(asset_id.encode() * 10)
         return place
 
+    def stock(self, asset_ids):
+        for asset_id in asset_ids:
+            self.entry(asset_id)
+
     def tables(self, asset_ids):
         return {ASSETS: [{**{c.name: value(c, 0) for c in ASSETS.columns}, "asset_id": a} for a in asset_ids]}
 

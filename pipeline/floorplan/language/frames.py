@@ -15,8 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import yaml
-
+from pipeline import yaml_text
 from pipeline.errors import ContentError
 from pipeline.floorplan.language.marks import ENDS, Mark, Words, sentences_of
 
@@ -56,7 +55,7 @@ class Atom:
 @functools.cache
 def frames() -> tuple[Frame, ...]:
     """Return all frames in the order in which they are tried. Raises ContentError for one that is none."""
-    rows = yaml.safe_load(FILE.read_text(encoding="utf-8"))
+    rows = yaml_text.parse(FILE.read_text(encoding="utf-8"))
     return tuple(_frame(row) for group in rows.values() for row in group)
 
 

@@ -17,6 +17,7 @@ from typing import Any, get_args
 import yaml
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from pipeline import yaml_text
 from pipeline.errors import ContentError
 from pipeline.floorplan.language.text import INFINITIVE, Compounds, Plurals, Verbs, bare, fold, forms, words
 from pipeline.floorplan.program.floor_program import RoomType, Style
@@ -26,7 +27,6 @@ FOLDER = Path(__file__).resolve().parents[3] / "manifests" / "lexicon"
 Language = str  # the name of a file there
 LANGUAGES: tuple[Language, ...] = tuple(sorted(p.stem for p in FOLDER.glob("??.yaml")))
 Phrases = Mapping[str | int | float, str]
-LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the one in C is eight times as fast
 STRONG = frozenset({"room", "suite", "home"})
 
 
@@ -308,7 +308,7 @@ def lexicon(language: Language) -> Lexicon:
     """Return the lexicon of a language. Raises ContentError when its file is not as described."""
     path = FOLDER / f"{language}.yaml"
     try:
-        raw = LOADER(path.read_text(encoding="utf-8")).get_single_data()
+        raw = yaml_text.parse(path.read_text(encoding="utf-8"))
         entries = _Entries.model_validate(raw)
         for key in entries.rooms:
             if not {part.split("/")[0] for part in key.split("+")} <= set(get_args(RoomType)):
@@ -360,7 +360,7 @@ def lexicon(language: Language) -> Lexicon:
 @functools.cache
 def unread() -> frozenset[str]:
     """Return words of languages that are not read, and that look like none of those that are."""
-    return frozenset(split(LOADER((FOLDER / "others.yaml").read_text(encoding="utf-8")).get_single_data()["others"]))
+    return frozenset(split(yaml_text.parse((FOLDER / "others.yaml").read_text(encoding="utf-8"))["others"]))
 
 
 def _signs(entries: _Entries, lex: Lexicon) -> dict[str, frozenset[str]]:

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from pipeline import taxonomy
-from pipeline.card import LOADER, cards
+from pipeline import taxonomy, yaml_text
+from pipeline.card import cards
 from pipeline.floorplan.program.floor_program import FloorProgram, Furniture, RoomReq, Things
 
 LEXICON = Path(__file__).resolve().parents[3] / "manifests" / "lexicon" / "furniture.yaml"
@@ -20,7 +20,7 @@ SLACK = 1.1  # areas may turn out this much larger than their target
 @functools.cache
 def lexicon() -> Mapping[str, Any]:
     """Read the words of furniture: those of categories stand on their cards, of groups and of all around them in the lexicon."""
-    found: dict[str, Any] = LOADER(LEXICON.read_text(encoding="utf-8")).get_single_data()
+    found: dict[str, Any] = yaml_text.parse(LEXICON.read_text(encoding="utf-8"))
     names = {name: card.words for name, card in cards().items() if card.words}
     groups = {group: tuple(name for name, card in cards().items() if group in card.groups) for group in found["groups"]}
     return found | {"names": found["groups"] | names, "groups": groups}
