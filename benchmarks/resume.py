@@ -41,7 +41,7 @@ def stamps(folder: Path) -> dict[str, tuple[int, int]]:
     files = [
         p
         for p in folder.rglob("*")
-        if p.is_file() and ".parts" not in p.parts and any(n in p.relative_to(folder).as_posix() for n in names)
+        if p.is_file() and not {".parts", ".claims", ".staging"} & {*p.parts} and any(n in p.relative_to(folder).as_posix() for n in names)
     ]
     return {p.relative_to(folder).as_posix(): (p.stat().st_mtime_ns, p.stat().st_ino) for p in files}
 

@@ -5,17 +5,18 @@ import sys
 import torch
 from torch.utils.data import DataLoader
 
-from sfgen.torch import HomeDataset, collate
+from sfgen.torch import HomeStream, collate
 
 
 def main(folder: str) -> None:
     """Learn, very briefly, the size of an object from its category."""
-    data = HomeDataset(folder)
+    data = HomeStream(folder)
     model = torch.nn.Embedding(len(data.categories), 3)
     optimiser = torch.optim.Adam(model.parameters(), lr=0.1)
     for epoch in range(3):
         total, count = 0.0, 0
-        for batch in DataLoader(data, batch_size=8, shuffle=True, collate_fn=collate):
+        data.set_epoch(epoch)
+        for batch in DataLoader(data, batch_size=8, collate_fn=collate):
             real = batch["objects"]  # (b, n): which of the padded places hold an object
             error = (model(batch["category"]) - batch["size"])[real].square()
             optimiser.zero_grad()

@@ -13,8 +13,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sfgen.dataset import Dataset, DatasetError, load
-    from sfgen.homes import Home, Joint, Opening, PlacedObject, Room
+    from sfgen.dataset import Dataset, load
+    from sfgen.homes import DatasetError, Home, Joint, Opening, PlacedObject, Room
 
 __all__ = ["Dataset", "DatasetError", "Home", "Joint", "Opening", "PlacedObject", "Room", "load"]
 __version__ = "0.1.0"
@@ -25,5 +25,5 @@ def __getattr__(name: str) -> Any:
     if name not in __all__:
         msg = f"module 'sfgen' has no attribute {name!r}"
         raise AttributeError(msg)
-    module = import_module("sfgen.dataset" if name in {"Dataset", "DatasetError", "load"} else "sfgen.homes")
+    module = import_module("sfgen.dataset" if name in {"Dataset", "load"} else "sfgen.homes")
     return getattr(module, name)

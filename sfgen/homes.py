@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, field, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
+import pyarrow as pa
 from numpy.typing import NDArray
+
+from sfgen.place import Place
 
 Record = TypeVar("Record")
 Floats = NDArray[np.float64]
+
+
+class DatasetError(ValueError):
+    """A folder that is no dataset, or one with a file missing or broken; the message says which and what to do."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,7 +107,7 @@ class Joint:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Home:
-    """One home. `scene` is its whole row of the scenes table; `usd` the path of its stage, None where there is none."""
+    """One home. `scene` is its whole row of the scenes table; `usd` the path (or address) of its stage, None where there is none."""
 
     scene_id: str
     index: int
@@ -111,7 +118,18 @@ class Home:
     openings: tuple[Opening, ...]
     objects: tuple[PlacedObject, ...]
     joints: tuple[Joint, ...]
-    usd: Path | None
+    usd: Path | str | None
+    place: Place = field(repr=False)
+
+    def stage(self) -> Path | str:
+        """Return the path of the home's stage, after a look whether it and the assets that it refers to are there. Raises DatasetError."""
+        files = [self.scene["usd"], *sorted({f"assets/{o.asset_id}/{o.asset_id}.usda" for o in self.objects})]
+        missing = next((file for file in files if not file or not self.place.exists(file)), None)
+        if missing is not None or self.usd is None:
+            what = f"{self.place.path(missing)} is missing" if missing else "it was made without stages"
+            msg = f"{self.scene_id} has no stage that can be opened ({what}); copy the dataset again, with usd/ and assets/"
+            raise DatasetError(msg)
+        return self.usd
 
     @property
     def program(self) -> dict[str, Any] | None:
@@ -127,14 +145,27 @@ class Home:
         return tuple(j for j in self.joints if j.object_id == object_id)
 
 
-def record(cls: type[Record], row: dict[str, Any]) -> Record:
-    """Build a record from a table row; columns that it does not know are left out, and older datasets lack some."""
-    return cls(**{f.name: _value(f.name, row[f.name]) for f in fields(cls) if f.name in row})  # type: ignore[arg-type]
+def records(cls: type[Record], rows: pa.Table) -> list[Record]:
+    """Build records from rows of a table; columns that they do not know are left out."""
+    columns = {f.name: _values(rows.column(f.name)) for f in fields(cls) if f.name in rows.column_names}  # type: ignore[arg-type]
+    return [cls(**dict(zip(columns, row, strict=True))) for row in zip(*columns.values(), strict=True)]
 
 
-def _value(name: str, value: Any) -> Any:
-    if not isinstance(value, list):
-        return value
-    if name in {"rooms", "after"}:
-        return tuple(value)
-    return np.array(value, np.float32 if name == "latent" else np.float64)
+def require_columns(rows: pa.Table, cls: type[Any], path: str) -> None:
+    """Raise DatasetError for a table that lacks columns which the records need: another program's file, or another version's."""
+    needed = [f.name for f in fields(cls) if f.default is MISSING] if cls is not Home else ["index", "split", "prompt", "usd", "program"]
+    lacking = [name for name in ("scene_id", *needed) if name not in rows.column_names]
+    if lacking:
+        msg = f"{path} has no column {', '.join(lacking)}: it is not a table of this format; copy the dataset again"
+        raise DatasetError(msg)
+
+
+def _values(column: pa.ChunkedArray) -> list[Any]:
+    kind = column.type
+    if pa.types.is_fixed_size_list(kind) and column.null_count == 0:
+        flat = np.concatenate([chunk.flatten().to_numpy(zero_copy_only=False) for chunk in column.chunks] or [np.empty(0)])
+        return list(flat.reshape(-1, kind.list_size))
+    values: list[Any] = column.to_pylist()
+    if pa.types.is_fixed_size_list(kind) or (pa.types.is_list(kind) and not pa.types.is_string(kind.value_type)):
+        return [None if value is None else np.array(value, np.float64) for value in values]
+    return list(map(tuple, values)) if pa.types.is_list(kind) else values

@@ -8,12 +8,19 @@ from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
+from pipeline import taxonomy
 from pipeline.errors import ContentError
-from pipeline.manifest import sha256
+from pipeline.manifest import digest, sha256
 from pipeline.shards.layout import HEADER
 from schemas.table import SCHEMA_VERSION
 
-FORMAT = "sfgen-dataset-1"
+FORMAT = "sfgen-dataset-2"
+
+
+def everything() -> dict[str, list[str]]:
+    """Return what homes may hold: every category and every room type, in an order that a dataset keeps."""
+    known = taxonomy.load()
+    return {"categories": list(known.categories), "room_types": sorted({*known.plan_rooms, *known.layout_types})}
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +29,7 @@ class Header:
 
     Homes have the indices 0 ... count - 1; shard k holds those from k * `shard_size` on. `digests` names everything
     else that a home depends on: params, weights, library, code, prompts. `licence` is the one that binds the whole.
+    `vocabulary` lists all `categories` and `room_types` that may occur, so that class numbers do not hang on what does.
     """
 
     seed: int
@@ -29,6 +37,7 @@ class Header:
     shard_size: int
     licence: str
     digests: Mapping[str, str] = field(default_factory=dict)
+    vocabulary: Mapping[str, list[str]] = field(default_factory=everything)
     schema_version: str = SCHEMA_VERSION
     format: str = FORMAT
 
@@ -47,13 +56,18 @@ class Header:
 
     def differences(self, other: Header) -> list[str]:
         """Return what differs, in words: `seed 1, not 2`."""
-        mine, theirs = ({**h.to_json(), **{f"digest of {k}": v[:12] for k, v in h.digests.items()}} for h in (self, other))
-        names = [n for n in {**mine, **theirs} if n != "digests" and mine.get(n) != theirs.get(n)]
+        long = {"digests", "vocabulary"}
+        mine, theirs = (
+            {k: v for k, v in h.to_json().items() if k not in long}
+            | {f"digest of {k}": v[:12] for k, v in {**h.digests, "vocabulary": digest(h.vocabulary)}.items()}
+            for h in (self, other)
+        )
+        names = [n for n in {**mine, **theirs} if mine.get(n) != theirs.get(n)]
         return [f"{name} {mine.get(name)}, not {theirs.get(name)}" for name in names]
 
 
 def read_header(folder: Path) -> Header:
-    """Read a dataset's header. Raises ContentError when it is missing, broken, or of another format."""
+    """Read a dataset's header. Raises ContentError when it is missing, broken, or of another format or schema version."""
     path = folder / HEADER
     remedy = "give a folder that `sfgen shard`, `sfgen generate` or `dvc repro` made"
     try:
@@ -66,8 +80,19 @@ def read_header(folder: Path) -> Header:
     if not isinstance(data, dict) or data.get("format") != FORMAT or data.keys() != names:
         raise ContentError(f"{path} does not describe a dataset of format {FORMAT}", remedy)
     header = Header(**data)
+    if header.schema_version != SCHEMA_VERSION:
+        raise ContentError(
+            f"{folder} has tables of version {header.schema_version}, and this release of sfgen reads {SCHEMA_VERSION}",
+            "use the release that made it",
+        )
     numbers = (header.seed, header.count, header.shard_size)
-    if not all(type(n) is int for n in numbers) or header.count < 1 or header.shard_size < 1 or not isinstance(header.digests, dict):
+    if (
+        not all(type(n) is int for n in numbers)
+        or header.count < 1
+        or header.shard_size < 1
+        or not isinstance(header.digests, dict)
+        or not isinstance(header.vocabulary, dict)
+    ):
         raise ContentError(f"{path} holds numbers that cannot be (seed, count, shard_size = {numbers})", remedy)
     return header
 

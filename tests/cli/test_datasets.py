@@ -84,7 +84,7 @@ def test_shard_makes_a_dataset_in_the_working_directory(factory, capsys):
     assert [h.index for h in sfgen.load("datasets/3")] == list(range(10))
     assert factory.asked == [(i, "") for i in range(10)]
     assert "10 homes in datasets/3" in capsys.readouterr().out
-    assert sorted(p.name for p in Path("datasets/3/assets").iterdir()) == ["asset_0", "assets.parquet"]
+    assert sorted(p.name for p in Path("datasets/3/assets").iterdir()) == ["asset_0", "asset_1", "assets.parquet"]
     assert run("verify", "--quick", "datasets/3") == 0
 
 

@@ -7,10 +7,14 @@ import sys
 from dataclasses import fields
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 
 import sfgen
-from pipeline.shards import TABLES
+from pipeline.errors import ContentError
+from pipeline.shards import TABLES, check, header
+from schemas.table import SCHEMA_VERSION
+from sfgen import dataset
 from sfgen.homes import Joint, Opening, PlacedObject, Room
 
 
@@ -62,7 +66,9 @@ def test_tables_and_header(dataset_folder):
     assert homes.header["seed"] == 5
     assert homes.table("scenes").num_rows == 10
     assert homes.table("rejects")["reason"].to_pylist() == ["too_crowded"] * 2
-    assert homes.categories() == ("bed", "stove")
+    assert {"double_bed", "oven"} < set(homes.categories())
+    assert homes[2:5].categories() == homes.split("nothing").categories() == homes.categories()
+    assert {"bedroom", "kitchen", "gym"} < set(homes.room_types())
     assert "10 homes" in repr(homes)
     with pytest.raises(sfgen.DatasetError, match="tables are"):
         homes.table("chairs")
@@ -86,11 +92,11 @@ def test_shards_that_are_not_committed_are_not_seen(tmp_path, dataset_folder):
     assert len(sfgen.load(folder)) == 0
 
 
-@pytest.mark.parametrize("text", [None, "", "[]", json.dumps({"format": "sfgen-dataset-99"})])
+@pytest.mark.parametrize("text", [None, "", "[]", json.dumps({"format": "sfgen-dataset-99"}), json.dumps({"format": "sfgen-dataset-2"})])
 def test_what_is_no_dataset_is_named(tmp_path, text):
     if text is not None:
         (tmp_path / "dataset.json").write_text(text)
-    with pytest.raises(sfgen.DatasetError, match=r"dataset\.json"):
+    with pytest.raises(sfgen.DatasetError, match=r"dataset\.json|tables of version None"):
         sfgen.load(tmp_path)
 
 
@@ -115,3 +121,64 @@ def test_empty_indices_are_told(tmp_path):
     dataset = sfgen.load(tmp_path / "set")
     assert [home.index for home in dataset] == [0, 2, 3, 8, 9]
     assert dataset.empty() == dict.fromkeys((1, 4, 5, 6, 7), "refused")
+
+
+def test_another_version_of_the_tables_is_named(tmp_path, dataset_folder):
+    folder = shutil.copytree(dataset_folder, tmp_path / "copy")
+    header = json.loads((folder / "dataset.json").read_text())
+    (folder / "dataset.json").write_text(json.dumps({**header, "schema_version": "1"}))
+    with pytest.raises(sfgen.DatasetError, match="tables of version 1, and this release of sfgen reads 2"):
+        sfgen.load(folder)
+    with pytest.raises(ContentError, match="tables of version 1, and this release of sfgen reads 2"):
+        check(folder)
+
+
+def test_facts_that_loaders_and_factory_share_are_the_same():
+    assert (dataset.FORMAT, dataset.SCHEMA_VERSION) == (header.FORMAT, SCHEMA_VERSION)
+    assert set(dataset.TABLES) == set(TABLES)
+
+
+@pytest.mark.parametrize("name", ["shard-notes.json", "shard-00009.json", "notes.txt"])
+def test_foreign_commits_are_named(tmp_path, dataset_folder, name):
+    folder = shutil.copytree(dataset_folder, tmp_path / "copy")
+    (folder / "commits" / name).write_text("{}")
+    with pytest.raises(sfgen.DatasetError, match=name):
+        sfgen.load(folder)
+
+
+def test_another_programs_table_is_named(tmp_path, dataset_folder):
+    folder = shutil.copytree(dataset_folder, tmp_path / "copy")
+    path = folder / "objects" / "shard-00000.parquet"
+    pq.write_table(pq.read_table(path).drop_columns(["yaw", "size"]), path)
+    with pytest.raises(sfgen.DatasetError, match="has no column yaw, size"):
+        sfgen.load(folder)[0]
+
+
+def test_a_stage_whose_assets_were_deleted_is_named(tmp_path, dataset_folder):
+    folder = shutil.copytree(dataset_folder, tmp_path / "copy")
+    assert sfgen.load(folder)[0].stage().is_file()
+    shutil.rmtree(folder / "assets" / "asset_0")
+    assert sfgen.load(folder)[0].rooms  # the tables alone can be read
+    with pytest.raises(sfgen.DatasetError, match=r"assets/asset_0/asset_0\.usda is missing"):
+        sfgen.load(folder)[0].stage()
+
+
+def test_a_dataset_at_an_address_is_read_as_one_in_a_folder(dataset_folder):
+    import fsspec
+
+    fsspec.filesystem("memory").put(str(dataset_folder), "/bucket/made", recursive=True)
+    there, here = sfgen.load("memory://bucket/made"), sfgen.load(dataset_folder)
+    assert [h.scene_id for h in there] == [h.scene_id for h in here]
+    np.testing.assert_array_equal(there[4].objects[1].position, here[4].objects[1].position)
+    assert there[4].stage() == "memory://bucket/made/usd/shard-00001/s5_00000004.usdc"
+    with pytest.raises(sfgen.DatasetError, match="is not a dataset"):
+        sfgen.load("memory://bucket/nothing")
+
+
+def test_a_shard_is_read_once_in_any_order_of_its_neighbours(dataset_folder, monkeypatch):
+    homes, read = sfgen.load(dataset_folder), []
+    real = homes._read
+    monkeypatch.setattr(homes, "_read", lambda table, number, *columns: read.append((table, number)) or real(table, number, *columns))
+    for i in (9, 0, 5, 3, 8, 1, 4):
+        assert homes[i].index == i
+    assert len(read) == len(set(read)) == 15

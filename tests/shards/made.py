@@ -61,7 +61,7 @@ def home(index, seed=5):
                 object_id=f"thing_{i}",
                 room_id=f"room_{i % 2}",
                 asset_id=f"asset_{i % 2}",
-                category=("bed", "stove")[i % 2],
+                category=("double_bed", "oven")[i % 2],
             )
             for i in range(1 + index % 3)
         ],

@@ -31,7 +31,9 @@ def stamps(folder):
     """Place and time of every file of a committed shard."""
     names = {c.stem for c in commits(folder)}
     files = [
-        p for p in folder.rglob("*") if p.is_file() and any(n in str(p.relative_to(folder)) for n in names) and ".parts" not in p.parts
+        p
+        for p in folder.rglob("*")
+        if p.is_file() and any(n in str(p.relative_to(folder)) for n in names) and not {".parts", ".claims", ".staging"} & {*p.parts}
     ]
     return {p: (p.stat().st_mtime_ns, p.stat().st_ino) for p in files}
 

@@ -1,0 +1,45 @@
+"""Where a dataset lies: a folder of this machine, or of any file system that fsspec knows (s3://, gs://, memory:// ...)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, BinaryIO
+
+
+class Place:
+    """A folder, and the files below it by their names relative to it."""
+
+    def __init__(self, path: str | Path) -> None:
+        self.name = str(path)
+        self._system: Any = None
+        if "://" in self.name:
+            from fsspec.core import url_to_fs
+
+            self._system, self._root = url_to_fs(self.name)
+
+    def open(self, name: str) -> BinaryIO:
+        """Open a file to read. Raises OSError."""
+        file: BinaryIO = self._system.open(f"{self._root}/{name}", "rb") if self._system else (Path(self.name) / name).open("rb")
+        return file
+
+    def read(self, name: str) -> bytes:
+        """Return a file's bytes. Raises OSError."""
+        with self.open(name) as file:
+            return file.read()
+
+    def names(self, folder: str) -> list[str]:
+        """Return the names of what lies in a folder, sorted; none where there is no such folder."""
+        try:
+            if self._system:
+                return sorted(p.rstrip("/").rpartition("/")[2] for p in self._system.ls(f"{self._root}/{folder}", detail=False))
+            return sorted(p.name for p in (Path(self.name) / folder).iterdir())
+        except FileNotFoundError:
+            return []
+
+    def exists(self, name: str) -> bool:
+        """Tell whether a file or folder is there."""
+        return bool(self._system.exists(f"{self._root}/{name}")) if self._system else (Path(self.name) / name).exists()
+
+    def path(self, name: str) -> Path | str:
+        """Return the path of a file, or its address where it is not on this machine."""
+        return f"{self.name.rstrip('/')}/{name}" if self._system else Path(self.name) / name
