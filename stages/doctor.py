@@ -19,7 +19,7 @@ from pipeline.sources.settings import PreprocessSettings
 from stages.runner import run
 
 # (package, what it is for): what the factory cannot do without, then what some commands want
-NEEDED = ("numpy", "pyarrow", "torch", "scipy", "trimesh", "shapely", "usd-core", "numba", "pydantic", "safetensors", "dask", "distributed", "dvc")  # fmt: skip
+NEEDED = ("numpy", "pyarrow", "torch", "scipy", "shapely", "usd-core", "numba", "pydantic", "safetensors", "dask", "distributed", "dvc")  # fmt: skip
 WANTED = (("mitsuba", "path-traced views"), ("mujoco", "tests in a physics engine"))
 
 # (path, what it is, the command that makes it), in the order in which the stages make them

@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / ".ci"))
 import reference  # noqa: E402
 
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 COMMANDS = {c.callback.__name__: c for c in cli.app.registered_commands}
 TARGETS = set(re.findall(r"(?m)^([a-z]+):.*## ", (ROOT / "Makefile").read_text()))
 
@@ -65,6 +65,13 @@ def test_columns_are_those_of_the_schemas():
 def test_links_lead_somewhere(page):
     for target in re.findall(r"\]\((?!https?:)([^)#]+)", page.read_text(encoding="utf-8")):
         assert (page.parent / target).exists(), target
+
+
+def test_files_that_contributors_are_sent_to_exist():
+    named = [span for span in code(ROOT / "CONTRIBUTING.md") if re.fullmatch(r"[\w./]+/[\w.]+\.(py|yaml|md)", span)]
+    places = (ROOT, ROOT / "pipeline" / "sources")
+    assert len(named) > 10
+    assert [span for span in named if not any((place / span).exists() for place in places)] == []
 
 
 def test_changelog_has_the_version():

@@ -143,7 +143,7 @@ def anneal(  # noqa: PLR0912 - compiled
     n = spec.target.size
     grid = start.copy()
     trial = start.copy()
-    values = np.zeros(12)
+    values = np.zeros(weights.size)
     areas = np.zeros(n)
     shape = np.zeros((n, 4))
     kept = np.zeros((n, 4))
