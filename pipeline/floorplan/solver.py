@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline import seeds
 from pipeline.entities.plan import Plan
@@ -15,7 +14,7 @@ from pipeline.floorplan.program.consistency import check
 from pipeline.floorplan.program.floor_program import FloorProgram, RoomReq
 from pipeline.floorplan.realise.realisation import build
 from pipeline.floorplan.search import anneal
-from pipeline.floorplan.search.energy import TERMS, area, useful_area
+from pipeline.floorplan.search.energy import Terms, area, useful_area
 from pipeline.floorplan.search.grid import Labels
 from pipeline.floorplan.search.stairwell import rectangle
 from pipeline.floorplan.search.storeys import Storey, founded, storey
@@ -35,11 +34,11 @@ HOT, COLD, PENALTY = 1.2, 0.01, 40.0
 
 
 class Solution(NamedTuple):
-    """A plan, what finding it took, and its twelve energy terms (12,), summed over storeys."""
+    """A plan, what finding it took, and its energy terms, summed over storeys."""
 
     plan: Plan
     effort: Effort
-    terms: NDArray[np.float64]
+    terms: Terms
 
 
 def solve(program: FloorProgram, seed: int, keys: tuple[int, ...] = ()) -> Plan:
@@ -73,13 +72,13 @@ def search(program: FloorProgram, seed: int, keys: tuple[int, ...] = ()) -> Solu
     )
 
 
-def _attempt(program: FloorProgram, rng: np.random.Generator, attempt: int, effort: Effort) -> tuple[Plan, NDArray[np.float64]] | None:
+def _attempt(program: FloorProgram, rng: np.random.Generator, attempt: int, effort: Effort) -> tuple[Plan, Terms] | None:
     ease = sum(attempt >= k for k in EASE)
     requests = [storey(program, level, None, ease) for level in range(program.storeys)]
     outline = _outline(program, requests, rng, ease)
     length = LENGTHS[min(attempt, len(LENGTHS) - 1)]
     solved: list[tuple[Storey, Labels]] = []
-    terms = np.zeros(len(TERMS))
+    terms: list[Terms] = []
     stair: tuple[int, int, int, int] | None = None
     for level in range(program.storeys):
         request = requests[level] if stair is None else storey(program, level, stair, ease)
@@ -89,7 +88,7 @@ def _attempt(program: FloorProgram, rng: np.random.Generator, attempt: int, effo
         grid = made[0]
         if attempt < BOLD and (_slotted(grid) or (solved and _hangs(grid, solved[-1]))):
             return None
-        terms += made[1]
+        terms.append(made[1])
         if program.storeys > 1 and stair is None:
             stair = rectangle(grid, next(i for i, r in enumerate(request.rooms) if r.type == "staircase"))
             if stair is None:
@@ -99,16 +98,14 @@ def _attempt(program: FloorProgram, rng: np.random.Generator, attempt: int, effo
     return None if plan is None else (plan, _as_built(terms, plan, solved))
 
 
-def _as_built(terms: NDArray[np.float64], plan: Plan, storeys: list[tuple[Storey, Labels]]) -> NDArray[np.float64]:
-    """Return the terms with those of areas taken from the plan itself: its walls have left the raster."""
+def _as_built(terms: list[Terms], plan: Plan, storeys: list[tuple[Storey, Labels]]) -> Terms:
+    """Return the terms, summed over the storeys; those of areas are taken from the plan itself: its walls have left the raster."""
     areas = {r.room_id: r.area for r in plan.rooms}
-    found = terms.copy()
-    found[[TERMS.index("area"), TERMS.index("useful_area")]] = 0.0
-    for request, _ in storeys:
-        spec, made = request.spec, np.array([areas[r.id] for r in request.rooms])
-        found[TERMS.index("area")] += area(made, spec.target, spec.heed)
-        found[TERMS.index("useful_area")] += useful_area(made, spec.useful)
-    return found
+    built = [(request.spec, np.array([areas[r.id] for r in request.rooms])) for request, _ in storeys]
+    return Terms(*(float(sum(values)) for values in zip(*terms, strict=True)))._replace(
+        area=sum(area(made, spec.target, spec.heed) for spec, made in built),
+        useful_area=sum(useful_area(made, spec.useful) for spec, made in built),
+    )
 
 
 def _outline(program: FloorProgram, requests: list[Storey], rng: np.random.Generator, ease: int = 0) -> Outline:
@@ -145,7 +142,7 @@ def _slotted(grid: Labels) -> bool:
 
 def _storey_grid(
     request: Storey, program: FloorProgram, outline: Outline, rng: np.random.Generator, length: int, effort: Effort
-) -> tuple[Labels, NDArray[np.float64]] | None:
+) -> tuple[Labels, Terms] | None:
     """Return a grid without violations: the best of several annealing runs, each from one of the best slicing trees; and its terms."""
     starts: list[tuple[float, Labels]] = []
     trees = Trees(request, program, outline)
@@ -161,7 +158,7 @@ def _storey_grid(
     fixed = np.zeros(n + 1, np.int64)
     if request.spec.stair_room >= 0:
         fixed[request.spec.stair_room] = 1
-    best: tuple[Labels, NDArray[np.float64]] | None = None
+    best: tuple[Labels, Terms] | None = None
     least, most = np.inf, PROPOSALS * n * min(length, LONGEST)
     for _, cells in sorted(starts, key=lambda s: s[0])[:RUNS]:
         draws = rng.random((int(DRAWN * most), anneal.DRAWS))

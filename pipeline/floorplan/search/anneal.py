@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.search.energy import Spec, terms, together, tree
+from pipeline.floorplan.search.energy import Spec, Terms, terms, together, tree, weighted
 from pipeline.floorplan.search.grid import Labels, Measures, empty, measure
 from pipeline.geometry.compiled import compiled
 
@@ -89,7 +89,7 @@ def propose(grid: Labels, n: int, fixed: Ints, draws: Floats, k: int, touched: I
     return True
 
 
-def score(grid: Labels, spec: Spec, weights: Floats, penalty: float) -> tuple[float, float, Floats]:
+def score(grid: Labels, spec: Spec, weights: Terms, penalty: float) -> tuple[float, float, Terms]:
     """Return (energy with the penalty, hard violation, the twelve terms) of a grid."""
     fixed = np.zeros(spec.target.size + 1, np.int64)
     _, soft, hard, values, _, _ = run(grid, spec, weights, fixed, np.zeros((0, DRAWS)), 1.0, 1.0, penalty, 1)
@@ -97,8 +97,8 @@ def score(grid: Labels, spec: Spec, weights: Floats, penalty: float) -> tuple[fl
 
 
 def run(
-    start: Labels, spec: Spec, weights: Floats, fixed: Ints, draws: Floats, hot: float, cold: float, penalty: float, most: int
-) -> tuple[Labels, float, float, Floats, int, int]:
+    start: Labels, spec: Spec, weights: Terms, fixed: Ints, draws: Floats, hot: float, cold: float, penalty: float, most: int
+) -> tuple[Labels, float, float, Terms, int, int]:
     """Anneal from `start` with at most one proposal per row of `draws`; see `anneal`. Scratch space is made here."""
     out = empty(spec.target.size, start.shape[0] - 2, start.shape[1] - 2)
     return anneal(start, spec, tree(spec.link, spec.root), out, weights, fixed, draws, hot, cold, penalty, most)
@@ -115,27 +115,19 @@ def _copy(source: Labels, target: Labels, out: Measures, touched: Ints) -> None:
 
 
 @compiled
-def _weighted(values: Floats, weights: Floats) -> float:
-    total = 0.0
-    for k in range(values.size):
-        total += values[k] * weights[k]
-    return total
-
-
-@compiled
 def anneal(  # noqa: PLR0912 - compiled
     start: Labels,
     spec: Spec,
     edges: Ints,
     out: Measures,
-    weights: Floats,
+    weights: Terms,
     fixed: Ints,
     draws: Floats,
     hot: float,
     cold: float,
     penalty: float,
     most: int,
-) -> tuple[Labels, float, float, Floats, int, int]:
+) -> tuple[Labels, float, float, Terms, int, int]:
     """Anneal from `start` until `most` proposals are evaluated or the draws are spent; return the best plan: grid, energy, hard violation (0: all hold), terms, moves accepted and evaluated.
 
     The violation's weight grows from a quarter of `penalty` to all of it; the best state is the one of least (violation, energy).
@@ -143,20 +135,19 @@ def anneal(  # noqa: PLR0912 - compiled
     n = spec.target.size
     grid = start.copy()
     trial = start.copy()
-    values = np.zeros(weights.size)
     areas = np.zeros(n)
     shape = np.zeros((n, 4))
     kept = np.zeros((n, 4))
     touched = np.ones(n + 1, np.int64)
     measure(grid, n, out)
     exact = n > 0  # a plain True is a type of its own: `terms` would be compiled twice
-    hard = terms(grid, out, spec, edges, values, areas, shape, touched, exact)
-    soft = _weighted(values, weights) + together(out, spec.near)
+    values, hard = terms(grid, out, spec, edges, areas, shape, touched, exact)
+    soft = weighted(values, weights) + together(out, spec.near)
     if hard < np.inf:
         _settle(shape, kept, touched)
     best = grid.copy()
     best_soft, best_hard = soft, hard
-    best_values = values.copy()
+    best_values = values
     accepted, evaluated = 0, 0
     for k in range(draws.shape[0]):
         if evaluated == most:
@@ -170,25 +161,24 @@ def anneal(  # noqa: PLR0912 - compiled
         measure(trial, n, out)
         # the draw says how much worse the proposal may be; most fall at the first, cheap look
         bound = np.inf if hard == np.inf else soft + weight * hard - heat * np.log(draws[k, 7] + 1e-300)
-        new_hard, new_soft, united = np.inf, np.inf, together(out, spec.near)
+        new_hard, new_soft, new_values, united = np.inf, np.inf, values, together(out, spec.near)
         for look in range(2):
-            new_hard = terms(trial, out, spec, edges, values, areas, shape, touched, look == 1)
-            new_soft = _weighted(values, weights) + united
+            new_values, new_hard = terms(trial, out, spec, edges, areas, shape, touched, look == 1)
+            new_soft = weighted(new_values, weights) + united
             if new_hard == np.inf or new_soft + weight * new_hard > bound:
                 new_hard = np.inf
                 break
         if new_hard < np.inf:
             _copy(trial, grid, out, touched)
             _settle(shape, kept, touched)
-            soft, hard = new_soft, new_hard
+            soft, hard, values = new_soft, new_hard, new_values
             accepted += 1
             if hard < best_hard - 1e-12 or (hard <= best_hard and soft < best_soft):
                 for y in range(grid.shape[0]):
                     for x in range(grid.shape[1]):
                         best[y, x] = grid[y, x]
                 best_soft, best_hard = soft, hard
-                for i in range(12):
-                    best_values[i] = values[i]
+                best_values = values
         else:
             _copy(grid, trial, out, touched)
             _settle(kept, shape, touched)

@@ -19,21 +19,42 @@ from pipeline.geometry.compiled import compiled
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
-TERMS = (
-    "circulation",
-    "area",
-    "squareness",
-    "convexity",
-    "simplicity",
-    "exterior",
-    "corner_light",
-    "alignment",
-    "useful_area",
-    "min_width",
-    "stair_fit",
-    "stair_snug",
+
+class Terms(NamedTuple):
+    """A number for each term: its value in a plan, or its weight.
+
+    A new term is a function below, a line here, in WEIGHTS and in `terms`, and its knob in `program.floor_program.Style`.
+    """
+
+    circulation: float
+    area: float
+    squareness: float
+    convexity: float
+    simplicity: float
+    exterior: float
+    corner_light: float
+    alignment: float
+    useful_area: float
+    min_width: float
+    stair_fit: float
+    stair_snug: float
+
+
+TERMS = Terms._fields
+WEIGHTS = Terms(
+    circulation=5.0,
+    area=24.0,
+    squareness=1.6,
+    convexity=40.0,
+    simplicity=2.4,
+    exterior=2.0,
+    corner_light=1.0,
+    alignment=0.5,
+    useful_area=10.0,
+    min_width=0.5,
+    stair_fit=12.0,
+    stair_snug=8.0,
 )
-WEIGHTS = (5.0, 24.0, 1.6, 40.0, 2.4, 2.0, 1.0, 0.5, 10.0, 0.5, 12.0, 8.0)
 TONGUE = 0.76  # m between inner faces: no part of a room is narrower
 TOGETHER = 12.0  # weight of what belongs together, beside the twelve
 SPLIT = 4.5  # m2 charged when a room falls apart at a neck; the legacy solver charges 45 in its units of 0.25 m2 x 0.4
@@ -93,6 +114,21 @@ def tree(link: Ints, root: int) -> Ints:
                 queue[tail] = b
                 tail += 1
     return found[:size]
+
+
+@compiled
+def weighted(values: Terms, weights: Terms) -> float:
+    """Return the sum of terms times weights."""
+    total = 0.0
+    for k in range(len(values)):
+        total += values[k] * weights[k]
+    return total
+
+
+@compiled
+def missed(own: float, whole: float) -> float:
+    """Return (own share of the whole - 1)^2: the form of the terms 6, 7 and 9."""
+    return (own / whole - 1.0) ** 2 * 4.0
 
 
 @compiled
@@ -177,7 +213,7 @@ def exterior(walls: Ints, habitable: Ints) -> float:
     for i in range(n):
         whole += walls[i, n]
         own += walls[i, n] * habitable[i]
-    return (own / max(whole, 1) - 1.0) ** 2 * 4.0
+    return missed(own, max(whole, 1))
 
 
 @compiled
@@ -187,7 +223,7 @@ def corner_light(outline_corners: Ints, habitable: Ints) -> float:
     for i in range(habitable.size):
         whole += outline_corners[i]
         own += outline_corners[i] * habitable[i]
-    return (own / max(whole, 1) - 1.0) ** 2 * 4.0
+    return missed(own, max(whole, 1))
 
 
 @compiled
@@ -203,12 +239,12 @@ def alignment(columns: Ints, rows: Ints) -> float:
 
 @compiled
 def useful_area(areas: Floats, useful: Ints) -> float:
-    """Term 9: (1 - share of the area that is useful)^2."""
+    """Term 9: (share of the area that is useful - 1)^2."""
     own, whole = 0.0, 0.0
     for i in range(areas.size):
         own += areas[i] * useful[i]
         whole += areas[i]
-    return (1.0 - own / max(whole, 1e-9)) ** 2 * 4.0
+    return missed(own, max(whole, 1e-9))
 
 
 @compiled
@@ -298,9 +334,9 @@ def room_shape(grid: Labels, out: Measures, spec: Spec, i: int, shape: Floats) -
 
 @compiled
 def terms(
-    grid: Labels, out: Measures, spec: Spec, edges: Ints, values: Floats, areas: Floats, shape: Floats, stale: Ints, exact: bool
-) -> float:
-    """Write the twelve terms to `values` (12,) and inner areas to `areas` (n,); return the hard violation (0: none).
+    grid: Labels, out: Measures, spec: Spec, edges: Ints, areas: Floats, shape: Floats, stale: Ints, exact: bool
+) -> tuple[Terms, float]:
+    """Return the terms and the hard violation (0: none); write inner areas to `areas` (n,).
 
     `shape` (n, 4) keeps what `room_shape` found; only rooms that `stale` (n+1,) marks are looked at again, and
     those of more than four corners only if `exact`: else terms and violation are lower bounds. Infinity when a room is not one simple piece.
@@ -308,7 +344,7 @@ def terms(
     n = spec.target.size
     for i in range(n):
         if not simple(out, i):
-            return np.inf
+            return Terms(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), np.inf
     hard = 0.0
     bent = 0
     for i in range(n):
@@ -323,26 +359,29 @@ def terms(
         bent += out.corners[i, 1] > 0
     if bent < spec.nonrect:
         hard += 0.3 * (spec.nonrect - bent)
-    values[0] = circulation(out, edges)
-    values[1] = area(areas, spec.target, spec.heed)
-    values[2] = squareness(out.box, spec.square)
-    values[3] = convexity(shape, out.cells)
-    values[4] = simplicity(out.corners, n)
-    values[5] = exterior(out.walls, spec.habitable)
-    values[6] = corner_light(out.outline_corners, spec.habitable)
-    values[7] = alignment(out.columns, out.rows)
-    values[8] = useful_area(areas, spec.useful)
-    values[9] = min_width(shape)
-    values[10], values[11] = 0.0, 0.0
+    fit, snug = 0.0, 0.0
     room = spec.flight[0]
     if room >= 0:
         rectangle = float(spec.flight[1] * spec.flight[2])
         w, h = out.box[room, 2] - out.box[room, 0], out.box[room, 3] - out.box[room, 1]
         both = overlap(w, h, spec.flight[1], spec.flight[2])
-        values[10] = n * stair_fit(both, rectangle)
-        values[11] = n * stair_snug(both, rectangle, float(w * h))
+        fit, snug = n * stair_fit(both, rectangle), n * stair_snug(both, rectangle, float(w * h))
         hard += 0.5 * out.corners[room, 1]  # storeys share the staircase: a rectangle
-    return hard + violations(out, spec, areas)
+    values = Terms(
+        circulation=circulation(out, edges),
+        area=area(areas, spec.target, spec.heed),
+        squareness=squareness(out.box, spec.square),
+        convexity=convexity(shape, out.cells),
+        simplicity=simplicity(out.corners, n),
+        exterior=exterior(out.walls, spec.habitable),
+        corner_light=corner_light(out.outline_corners, spec.habitable),
+        alignment=alignment(out.columns, out.rows),
+        useful_area=useful_area(areas, spec.useful),
+        min_width=min_width(shape),
+        stair_fit=fit,
+        stair_snug=snug,
+    )
+    return values, hard + violations(out, spec, areas)
 
 
 @compiled

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.search.energy import TOGETHER
+from pipeline.floorplan.search.energy import TOGETHER, Terms, missed, stair_fit, stair_snug
 from pipeline.geometry.compiled import compiled
 
 Ints = NDArray[np.int64]
@@ -62,7 +62,7 @@ class Wishes(NamedTuple):
     near: Floats  # (k, 3) rooms a, b that belong together, and how much
     wanted: Floats  # (m,) areas up to wall centre lines [cells], and
     heed: Floats  # (n,) what missing them costs, for rooms whose area is flexible
-    weights: Floats  # (12,) of the terms of `energy`
+    weights: Terms
     unit: float  # side of a cell [m]
 
 
@@ -83,9 +83,9 @@ def leaning(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: 
             corners += _corners(rect, a, width, height, n)
         own += gross[a] * useful[a]
         whole += gross[a]
-    total = 4.0 * weights[5] * (lit / max(wall, 1) - 1.0) ** 2
-    total += 4.0 * weights[6] * (corners / (4.0 + m - n) - 1.0) ** 2
-    total += 4.0 * weights[8] * (1.0 - own / whole) ** 2
+    total = weights.exterior * missed(lit, max(wall, 1))
+    total += weights.corner_light * missed(corners, 4.0 + m - n)
+    total += weights.useful_area * missed(own, whole)
     travel = np.zeros((n, 4))
     detours = 0.0
     for k in range(edges.shape[0]):
@@ -103,7 +103,7 @@ def leaning(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: 
             length += ahead + back
         if straight > 0.0:
             detours += (length / straight - 1.0) ** 2
-    return float(total + 4.0 * weights[0] * detours / max(n - 1, 1))
+    return float(total + 4.0 * weights.circulation * detours / max(n - 1, 1))
 
 
 @compiled
@@ -129,7 +129,7 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
     """
     pairs, far = wishes.pairs, wishes.far
     outside, corner, least, square, heed, wanted = wishes.outside, wishes.corner, wishes.least, wishes.square, wishes.heed, wishes.wanted
-    wide, narrow = wishes.wide, wishes.weights[9] * wishes.unit * wishes.unit
+    wide, narrow = wishes.wide, wishes.weights.min_width * wishes.unit * wishes.unit
     total = 0.0
     diagonal = (width * width + height * height) ** 0.5
     m = rect.shape[0]
@@ -210,13 +210,13 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
         own = float((rect[stair_room, 2] - rect[stair_room, 0]) * (rect[stair_room, 3] - rect[stair_room, 1]))
         whole = float((stair[2] - stair[0]) * (stair[3] - stair[1]))
         gap = max(0, -w) + max(0, -h)
-        total += n * (2.0 * (both / whole - 1.0) ** 2 + (both / (own + whole - both) - 1.0) ** 2) + 12.0 * gap / diagonal
+        total += n * (2.0 * stair_fit(both, whole) + stair_snug(both, whole, own)) + 12.0 * gap / diagonal
     elif flight[0] >= 0:
         w, h = rect[flight[0], 2] - rect[flight[0], 0], rect[flight[0], 3] - rect[flight[0], 1]
         both = float(min(max(w, h), flight[1]) * min(w, h, flight[2]))
         whole = float(flight[1] * flight[2])
-        total += n * (weights[10] * (both / whole - 1.0) ** 2 + weights[11] * (both / (w * h + whole - both) - 1.0) ** 2)
-    total += weights[7] * aligned(rect)
+        total += n * (weights.stair_fit * stair_fit(both, whole) + weights.stair_snug * stair_snug(both, whole, float(w * h)))
+    total += weights.alignment * aligned(rect)
     if total > most:
         return float(total)
     return float(total) + leaning(rect, width, height, n, gross, wishes)

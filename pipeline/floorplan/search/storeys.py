@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pipeline.floorplan.program.daylight import YIELDS, daylit
 from pipeline.floorplan.program.defaults import DEFAULTS, OUTSIDE
 from pipeline.floorplan.program.floor_program import FloorProgram, RoomReq
-from pipeline.floorplan.search.energy import TERMS, WEIGHTS, Spec
+from pipeline.floorplan.search.energy import TERMS, WEIGHTS, Spec, Terms
 from pipeline.floorplan.search.grid import Halves
 
 UNIT = 0.25  # side of a cell [m]
@@ -39,7 +39,7 @@ class Storey:
     level: int
     rooms: tuple[RoomReq, ...]
     spec: Spec
-    weights: NDArray[np.float64]
+    weights: Terms
     gross: NDArray[np.float64]
     gross_low: NDArray[np.float64]
     gross_high: NDArray[np.float64]
@@ -72,10 +72,9 @@ def wall_for(kind: str, door: float, small: bool, beside: float) -> int:
     return cells(door + beside)
 
 
-def weights_of(program: FloorProgram) -> NDArray[np.float64]:
-    """Return the twelve weights: defaults times two to the power of the knobs."""
-    knobs = np.array([getattr(program.style, name) for name in TERMS], dtype=float)
-    return np.asarray(np.array(WEIGHTS) * np.exp2(knobs))
+def weights_of(program: FloorProgram, factor: float = 1.0) -> Terms:
+    """Return the weights: defaults times two to the power of the knobs, and a factor on all."""
+    return Terms(*(getattr(WEIGHTS, name) * 2.0 ** getattr(program.style, name) * factor for name in TERMS))
 
 
 def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, int] | None = None, ease: int = 0) -> Storey:
@@ -153,7 +152,7 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
     for i, r in enumerate(rooms):
         if r.type in {"hallway", "entry"} and not r.area.stated:
             gross_low[i], gross_high[i] = gross[i] * 0.75, gross[i] * (1.9 if ease else 1.3)
-    return Storey(level, rooms, spec, weights_of(program) * SOFTER[min(ease, len(SOFTER) - 1)], gross, gross_low, gross_high, clear)
+    return Storey(level, rooms, spec, weights_of(program, SOFTER[min(ease, len(SOFTER) - 1)]), gross, gross_low, gross_high, clear)
 
 
 def founded(program: FloorProgram) -> FloorProgram:
