@@ -8,6 +8,7 @@ from pipeline.floorplan.program.floor_program import FloorProgram, Style
 from pipeline.floorplan.realise import trace
 from pipeline.floorplan.search import energy, grid
 from pipeline.floorplan.search.anneal import score
+from pipeline.floorplan.search.spec import Spec
 from pipeline.floorplan.search.storeys import weights_of
 
 UNIT = 0.25
@@ -87,10 +88,10 @@ def test_inner_area_is_that_of_the_faces():
 def test_circulation_counts_detours_only():
     chain = np.array([[0, 1, 0], [1, 0, 1], [0, 1, 0]])
     straight = measured(labels("aabbcc", "aabbcc", n=3), 3)
-    assert energy.circulation(straight, energy.tree(chain, 0)) == 0.0
+    assert energy.circulation(straight, tree(chain, 0)) == 0.0
     # c lies above a and is reached through b: right 2, then left 1, and up 1.5
     bent = measured(labels("aabb", "ccbb", n=3), 3)
-    travel = energy.circulation(bent, energy.tree(chain, 0))
+    travel = energy.circulation(bent, tree(chain, 0))
     # a (1, .5) -> wall (2, .5) -> b (3, 1) -> wall (2, 1.5) -> c (1, 1.5): right 2, left 2, up 1
     assert travel == pytest.approx(4.0 * ((5 / 3 - 1) ** 2 + 0.0) / 2)
 
@@ -161,7 +162,7 @@ def test_a_staircase_is_a_rectangle_and_measured_against_its_flights():
 
 def spec(n, **changes):
     zeros, ones = np.zeros(n, np.int64), np.ones(n, np.int64)
-    base = energy.Spec(
+    base = Spec(
         UNIT, 0, np.full(n, 1.0), np.zeros(n), np.full(n, 99.0), np.array([0.0, 99.0]), ones, ones, ones, ones, ones, ones, zeros,
         np.zeros((n, n), np.int64), np.zeros((n, n), np.int64), np.zeros((n, n), np.int64), zeros, zeros, zeros, np.zeros((n, n)), np.zeros((n, n)),
         -1, np.zeros(4, np.int64), 0, HALF, np.ones(n), np.array([-1, 0, 0]), np.zeros((0, 3), np.int64), np.zeros((0, 3)),

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.search.energy import Spec, Terms, terms, together, tree, weighted
+from pipeline.floorplan.search.energy import Terms, terms, together, weighted
 from pipeline.floorplan.search.grid import Labels, Measures, empty, measure
+from pipeline.floorplan.search.spec import Spec, tree
 from pipeline.geometry.compiled import compiled
 
 Floats = NDArray[np.float64]

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.search.grid import Halves, Labels, Measures, ell_opening, hull_area, inner_area, notch_width, opening, simple
+from pipeline.floorplan.search.grid import Labels, Measures, ell_opening, hull_area, inner_area, notch_width, opening, simple
+from pipeline.floorplan.search.spec import Spec
 from pipeline.geometry.compiled import compiled
 
 Ints = NDArray[np.int64]
@@ -58,62 +59,6 @@ WEIGHTS = Terms(
 TONGUE = 0.76  # m between inner faces: no part of a room is narrower
 TOGETHER = 12.0  # weight of what belongs together, beside the twelve
 SPLIT = 4.5  # m2 charged when a room falls apart at a neck; the legacy solver charges 45 in its units of 0.25 m2 x 0.4
-
-
-class Spec(NamedTuple):
-    """One storey's request in numbers, for n rooms. `unit` is the cell's side [m]."""
-
-    unit: float
-    root: int  # the room from which walks start
-    target: Floats  # (n,) wanted inner areas [m2]
-    low: Floats  # (n,) least and
-    high: Floats  # (n,) largest inner area [m2]
-    total: Floats  # (2,) bounds of the sum over `inside` [m2]
-    inside: Ints  # (n,) counts for the total
-    least: Ints  # (n,) wanted least width [cells]
-    strict: Ints  # (n,) a square of this side must fit somewhere (everywhere, for circulation)
-    square: Ints  # (n,) 1: a square shape is wanted
-    habitable: Ints  # (n,)
-    useful: Ints  # (n,)
-    corridor: Ints  # (n,) 1: must be `strict` wide everywhere
-    link: Ints  # (n, n) 1: joined by an opening
-    need: Ints  # (n, n) straight common wall that is required [cells]
-    ban: Ints  # (n, n) 1: must not share a wall
-    outside: Ints  # (n,) straight outside wall that is required [cells]
-    outside_sum: Ints  # (n,) outside wall in all that is required [cells]
-    corner: Ints  # (n,) 1: must own a corner of the outline
-    apart: Floats  # (n, n) least distance of centroids / diagonal
-    order: Floats  # (n, n) area[a] >= order * area[b]
-    stair_room: int  # index of the staircase, or -1
-    stair: Ints  # (4,) its rectangle x0, y0, x1, y1 [cells]
-    nonrect: int  # at least so many rooms that are not rectangles
-    half: Halves  # half the thickness of walls [m]
-    heed: Floats  # (n,) how much the wanted area counts
-    flight: Ints  # (3,) index of the staircase or -1, longer and shorter side of what its flights take [cells]
-    between: Ints  # (k, 3) room a lies between b and c: seen from its centroid, theirs lie in opposite halves
-    near: Floats  # (k, 3) rooms a, b that belong together (members of a zone), and how much
-
-
-def tree(link: Ints, root: int) -> Ints:
-    """Return rows (room, parent) of the breadth-first tree of links from `root`, the root left out."""
-    n = link.shape[0]
-    found = np.full((max(n - 1, 0), 2), -1, np.int64)
-    queue = np.empty(n, np.int64)
-    seen = np.zeros(n, np.int64)
-    queue[0] = root
-    seen[root] = 1
-    head, tail, size = 0, 1, 0
-    while head < tail:
-        a = queue[head]
-        head += 1
-        for b in range(n):
-            if link[a, b] > 0 and seen[b] == 0:
-                seen[b] = 1
-                found[size, 0], found[size, 1] = b, a
-                size += 1
-                queue[tail] = b
-                tail += 1
-    return found[:size]
 
 
 @compiled

@@ -43,7 +43,7 @@ def _corners(rect: Ints, room: int, width: int, height: int, n: int) -> int:
 
 
 class Wishes(NamedTuple):
-    """What the layout of n rooms is scored by; names as in `energy.Spec`, `square` are weights."""
+    """What the layout of n rooms is scored by; names as in `Spec`, `square` are weights."""
 
     pairs: Ints  # (k, 4) the rooms of which something is asked together: both, and their rows of `need` and `ban`
     far: Floats  # (k,) their row of `apart`

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from pipeline.floorplan.program.daylight import YIELDS, daylit
 from pipeline.floorplan.program.defaults import DEFAULTS, OUTSIDE
 from pipeline.floorplan.program.floor_program import FloorProgram, RoomReq
-from pipeline.floorplan.search.energy import TERMS, WEIGHTS, Spec, Terms
+from pipeline.floorplan.search.energy import TERMS, WEIGHTS, Terms
 from pipeline.floorplan.search.grid import Halves
+from pipeline.floorplan.search.spec import Spec
 
 UNIT = 0.25  # side of a cell [m]
 FRAME = 0.105  # wall beside the frame of an opening [m]

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from pipeline.floorplan.program.floor_program import FloorProgram
 from pipeline.floorplan.search import slicing
-from pipeline.floorplan.search.energy import tree
 from pipeline.floorplan.search.grid import Labels
 from pipeline.floorplan.search.layout import Wishes
+from pipeline.floorplan.search.spec import tree
 from pipeline.floorplan.search.stairwell import stamp
 from pipeline.floorplan.search.storeys import Storey
 
