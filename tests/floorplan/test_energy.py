@@ -8,7 +8,7 @@ from pipeline.floorplan.program.floor_program import FloorProgram, Style
 from pipeline.floorplan.realise import trace
 from pipeline.floorplan.search import energy, grid
 from pipeline.floorplan.search.anneal import score
-from pipeline.floorplan.search.spec import Spec
+from pipeline.floorplan.search.spec import Spec, tree
 from pipeline.floorplan.search.storeys import weights_of
 
 UNIT = 0.25
