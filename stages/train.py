@@ -68,7 +68,7 @@ def lead(root: Path, job: Job, settings: TrainSettings) -> None:
             if step.done % settings.validate_every == 0 or last:
                 by_level = checked()
             if step.done % 10 == 0 or last:
-                bar.set_postfix(geometry=f"{step.geometry:.3f}", shape=f"{step.shape:.3f}", refresh=False)
+                bar.set_postfix(loss=f"{step.loss:.3f}", geometry=f"{step.geometry:.3f}", refresh=False)
                 log.step(step, by_level)
     inventory = fit(job.inventory, holdings(job.sets.train, job.header), trainer.settings.inventory, trainer.seed)
     save_weights(root / WEIGHTS, job.header, {"denoiser": trainer.average, "inventory": inventory})

@@ -14,8 +14,8 @@ from safetensors.torch import save
 from torch import Tensor, nn
 
 from pipeline.diffusion.codec import Normalisation
-from pipeline.diffusion.denoiser import Denoiser
 from pipeline.diffusion.inventory import Inventory
+from pipeline.diffusion.set_transformer import SetTransformer
 from pipeline.diffusion.settings import ModelSettings
 from pipeline.errors import ContentError
 from pipeline.manifest import canonical, write_bytes
@@ -36,9 +36,9 @@ class Header:
     inventory_width: int
 
 
-def build_net(header: Header) -> Denoiser:
+def build_net(header: Header) -> SetTransformer:
     """Build the net that a header describes."""
-    return Denoiser(header.norm, len(header.layouts), header.model)
+    return SetTransformer(header.norm, len(header.layouts), header.model)
 
 
 def build_inventory(header: Header) -> Inventory:
@@ -53,7 +53,7 @@ def save_weights(path: Path, header: Header, nets: Mapping[str, nn.Module]) -> N
     write_bytes(path, save(dict(sorted(tensors.items())), {"layout": text}))
 
 
-def load_weights(path: Path) -> tuple[Denoiser, Inventory, Header]:
+def load_weights(path: Path) -> tuple[SetTransformer, Inventory, Header]:
     """Read a layout model. Raises ContentError when the file is missing, truncated, of another format, or holds what is no number."""
     tensors, value = _read(path, "layout")
     try:
@@ -73,7 +73,7 @@ def load_weights(path: Path) -> tuple[Denoiser, Inventory, Header]:
     if broken:
         raise ContentError(f"{path} holds values that are no numbers ({broken[0]} ...)", REMEDY)
     denoiser, inventory = nets["denoiser"].eval(), nets["inventory"].eval()
-    assert isinstance(denoiser, Denoiser)
+    assert isinstance(denoiser, SetTransformer)
     assert isinstance(inventory, Inventory)
     return denoiser, inventory, header
 

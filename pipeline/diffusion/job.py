@@ -15,10 +15,10 @@ from pipeline import tables, taxonomy
 from pipeline.diffusion.batch import stacked
 from pipeline.diffusion.checkpoint import Header, load_checkpoint, load_weights
 from pipeline.diffusion.codec import Codec, Normalisation
-from pipeline.diffusion.denoiser import Denoiser
 from pipeline.diffusion.inventory import Holdings, Inventory, begun, counts_of, room_features
 from pipeline.diffusion.process_group import ProcessGroup
 from pipeline.diffusion.rooms import Example, Sets, layout_weights, sets_of, stacked_classes, stacked_rows, sweeps_by_asset
+from pipeline.diffusion.set_transformer import SetTransformer
 from pipeline.diffusion.settings import TrainSettings
 from pipeline.diffusion.training import Rooms, Trainer
 from pipeline.errors import ContentError
@@ -53,7 +53,7 @@ def open_job(root: Path, settings: TrainSettings, seed: int, group: ProcessGroup
     torch.set_num_threads(threads)
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
     sets, header = load(root, settings)
-    start: Denoiser | None = None
+    start: SetTransformer | None = None
     if settings.start == "released":
         start, inventory, header = released(root / RELEASED, header)
         tune = settings.tune
@@ -72,7 +72,7 @@ def open_job(root: Path, settings: TrainSettings, seed: int, group: ProcessGroup
     return Job(trainer, data, checked, sets, header, inventory, key)
 
 
-def released(path: Path, wanted: Header) -> tuple[Denoiser, Inventory, Header]:
+def released(path: Path, wanted: Header) -> tuple[SetTransformer, Inventory, Header]:
     """Read the released weights. Raises ContentError when their vocabulary or shape is not that of the data and params.yaml.
 
     Their normalisation is kept: with another the same numbers would mean other rooms.

@@ -11,7 +11,7 @@ from typing import Any, Self
 
 from pipeline.diffusion.training import Step
 
-COLUMNS = ("step", "loss", "shape", "rate")
+COLUMNS = ("step", "loss", "geometry", "shape", "rate")
 
 
 class LiveLog:
@@ -43,7 +43,7 @@ class LiveLog:
 
     def step(self, step: Step, by_level: dict[str, dict[str, float]]) -> None:
         """Write one row, and the validation losses as they stand."""
-        values = [step.done, round(step.geometry, 6), round(step.shape, 6), round(step.rate, 8)]
+        values = [step.done, round(step.loss, 6), round(step.geometry, 6), round(step.shape, 6), round(step.rate, 8)]
         self.writer.writerow(values)
         self.file.flush()
         if self.live is None:

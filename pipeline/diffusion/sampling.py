@@ -114,7 +114,7 @@ class Sampler:
 
     def _batch(self, rooms: RoomBatch, classes: Tensor, keys: Sequence[Key]) -> Tensor:
         """Sample one padded batch: x0 (batch, slots, 40) of objects of `classes` (batch, slots)."""
-        device = self.net.slot.weight.device
+        device = self.net.codec.mean.device
         rooms, classes = rooms.to(device), classes.to(device)
         code, ones = self.net.floor_code(rooms, classes), torch.ones(len(keys), device=device)
         guide = Guide(rooms, classes, self.library, openable_classes(self.header.norm.classes).to(device), self.settings)

@@ -16,10 +16,10 @@ from torch import Tensor
 from pipeline import seeds
 from pipeline.diffusion.batch import BUCKETS, Objects, RoomBatch, bucket_of, moved_objects, moved_rooms, reflections
 from pipeline.diffusion.checkpoint import Header, build_net
-from pipeline.diffusion.denoiser import Denoiser
 from pipeline.diffusion.loss import Draw, denoising_loss, draw
 from pipeline.diffusion.optimiser import Optimiser
 from pipeline.diffusion.process_group import ALONE, ProcessGroup
+from pipeline.diffusion.set_transformer import SetTransformer
 from pipeline.diffusion.settings import TrainSettings
 
 EARLY = 0.5  # weight of the loss of all passes but the last
@@ -27,9 +27,10 @@ LEVELS = (-3.0, -1.0, 0.5, 2.0, 4.0, 6.0)  # lambda at which validation asks
 
 
 class Step(NamedTuple):
-    """What one step reports: the number of steps done, the terms of the loss, the learning rate."""
+    """What one step reports: the number of steps done, the loss that it minimised, the last pass's terms of it, the learning rate."""
 
     done: int
+    loss: float
     geometry: float
     shape: float
     rate: float
@@ -56,7 +57,7 @@ class Trainer:
         per_epoch: int,
         device: torch.device,
         group: ProcessGroup = ALONE,
-        start: Denoiser | None = None,
+        start: SetTransformer | None = None,
     ) -> None:
         with torch.random.fork_rng(devices=[]):
             torch.manual_seed(seeds.key(seed, "denoiser-init") % 2**63)
@@ -111,13 +112,13 @@ class Trainer:
             total = total + EARLY * (early.geometry.mean() + s.latent_weight * early.shape.mean())
         rate = self.rate(self.done)
         total.backward()
-        terms = self.group.averaged(list(self.net.parameters()), torch.stack([geometry, shape]).detach())
+        terms = self.group.averaged(list(self.net.parameters()), torch.stack([total, geometry, shape]).detach())
         torch.nn.utils.clip_grad_norm_(self.net.parameters(), s.clip)
         self.optimiser.step(rate)
         self._follow()
         self.done += 1
-        mean_geometry, mean_shape = terms.tolist()
-        return Step(self.done, mean_geometry, mean_shape, rate)
+        loss, mean_geometry, mean_shape = terms.tolist()
+        return Step(self.done, loss, mean_geometry, mean_shape, rate)
 
     def groups(self) -> dict[str, dict[str, Tensor]]:
         """Return everything that a checkpoint holds."""

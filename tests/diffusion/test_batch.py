@@ -4,8 +4,8 @@ import torch
 from pipeline.diffusion.batch import Objects, bucket_of, moved_objects, moved_rooms, reflections, stacked
 from pipeline.diffusion.codec import Codec
 from pipeline.diffusion.constraints import articulated_collision
-from pipeline.diffusion.denoiser import polygon_area
 from pipeline.diffusion.relations import boxes_of, pair_relations, wall_relations
+from pipeline.diffusion.set_transformer import polygon_area
 from tests.diffusion.small_world import make_context
 
 

@@ -3,7 +3,7 @@ import torch
 
 from pipeline.diffusion.batch import moved_rooms, stacked
 from pipeline.diffusion.codec import CHANNELS, YAW, Codec
-from pipeline.diffusion.denoiser import Denoiser
+from pipeline.diffusion.set_transformer import SetTransformer
 from pipeline.diffusion.settings import ModelSettings
 from tests.diffusion.small_world import LAYOUTS
 
@@ -11,7 +11,7 @@ from tests.diffusion.small_world import LAYOUTS
 @pytest.fixture(scope="module", params=[1, 2])
 def net(norm, request):
     torch.manual_seed(0)
-    made = Denoiser(norm, len(LAYOUTS), ModelSettings(width=32, passes=request.param, layers=1, relation=8)).eval()
+    made = SetTransformer(norm, len(LAYOUTS), ModelSettings(width=32, passes=request.param, layers=1, relation=8)).eval()
     with torch.no_grad():  # zero-initialised heads would make any test of equivariance pass
         for p in made.parameters():
             if p.abs().max() == 0:

@@ -54,6 +54,32 @@ def same(a, b):
     )
 
 
+class Centring:
+    """A denoiser that is no network at all: whatever the noise, it expects everything in the middle of the room, as large as its class is in the mean."""
+
+    def __init__(self, codec):
+        self.codec = codec
+
+    def floor_code(self, rooms, classes):
+        return None
+
+    def __call__(self, x, classes, level, rooms, code=None):
+        return (torch.zeros_like(x),)
+
+    def expected(self, x, classes, level, rooms, code=None):
+        return torch.zeros_like(x)
+
+
+def test_another_denoiser_can_take_the_place_of_the_network(weights):
+    ours = sampler(weights, eta=0.0)
+    made = replace(ours, net=Centring(ours.net.codec)).sample_rooms([make_context(0, n_target=3)], [(0, 0, 0)])[0]
+    known = ours.header.norm
+    assert len(made) == 3
+    for p in made:
+        mean = np.array(known.mean[known.classes.index(p.category)])
+        assert np.linalg.norm(p.position[:2] - (make_context(0).centre + mean[:2])) < 0.1
+
+
 def test_a_room_does_not_know_who_shares_its_batch(weights):
     s = sampler(weights, Shelf())
     rooms = [make_context(i, n_target=3 + i % 4) for i in range(18)]  # batches of four to sixteen rooms

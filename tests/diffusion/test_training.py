@@ -106,7 +106,7 @@ def test_bad_weights_are_named(header, data, tmp_path, spoil):
 def test_it_learns(header, data):
     settings = replace(SETTINGS, steps=50, objects=128)
     steps = list(train(Trainer(0, header, settings, 50, 3, CPU), data))
-    early, late = (sum(s.geometry for s in part) for part in (steps[:10], steps[-10:]))
+    early, late = (sum(s.loss for s in part) for part in (steps[:10], steps[-10:]))
     assert late < 0.9 * early
 
 

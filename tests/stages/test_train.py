@@ -92,7 +92,7 @@ def test_it_reports_what_it_learnt_from(root):
     assert report["steps"] == 4
     assert report["val"]["lambda 2"]["geometry"] > 0
     rows = (root / "plots/loss.csv").read_text().splitlines()
-    assert rows[0].startswith("step,loss,shape")
+    assert rows[0].startswith("step,loss,geometry,shape")
     assert rows[-1].startswith("4,")
 
 
