@@ -25,6 +25,7 @@ class NewtonEngine:
 
     def __init__(self, stage: Path, plan: dict[str, Any]) -> None:
         builder = newton.ModelBuilder(up_axis=newton.Axis.Z)
+        newton.solvers.SolverMuJoCo.register_custom_attributes(builder)  # several contacts a pair of meshes: the scene asks for them
         found = builder.add_usd(str(stage), load_visual_shapes=False)
         self.model = builder.finalize(device="cpu")
         self.solver = newton.solvers.SolverMuJoCo(self.model, use_mujoco_cpu=True, njmax=8000, nconmax=8000)

@@ -37,7 +37,7 @@ class Cut:
 class Prism:
     """A convex upright solid: `polygon` (n, 2) counter-clockwise, from z = `bottom` to `top`."""
 
-    kind: Literal["wall", "lintel", "sill"]
+    kind: Literal["wall", "lintel", "sill", "floor", "ceiling"]
     polygon: NDArray[np.float64]
     bottom: float
     top: float

@@ -44,7 +44,8 @@ def door_of(size: Size, *, entrance: bool) -> Asset:
     panel = _span("leaf", (LEAF_GAP, LEAF_GAP + leaf.width), (-side * LEAF_THICKNESS, 0.0), (leaf.bottom, leaf.top), 1)
     handles = _handles(leaf)
     mass = LEAF_DENSITY * leaf.width * LEAF_THICKNESS * (leaf.top - leaf.bottom)
-    moving = solid_link("leaf", (panel, *handles), (panel, *handles), mass)
+    levers = tuple(h for h in handles if h.name.endswith("lever"))  # what a hand presses; their necks are behind them
+    moving = solid_link("leaf", (panel, *handles), (panel, *levers), mass)
     hinge = Joint("hinge", "revolute", 0, 1, np.array([0.0, 0.0, float(side)]), np.zeros(3), 0.0, leaf.angle, "hinge_door")
     return Asset(
         asset_id="door",

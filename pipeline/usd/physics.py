@@ -17,8 +17,12 @@ LEAST_INERTIA = 1e-7  # engines divide by it [kg m2]
 
 
 def convert_scene(layer: Sdf.Layer, name: str = "PhysicsScene") -> Sdf.PrimSpec:
-    """Write the scene beside the default prim, so that a reference to the home brings no second one."""
-    spec = prim(layer, name, "PhysicsScene")
+    """Write the scene beside the default prim, so that a reference to the home brings no second one.
+
+    Several contacts for a pair of meshes, as PhysX and MuJoCo have them anyway: on one point, Newton's default, no cup stands still.
+    """
+    spec = prim(layer, name, "PhysicsScene", ["MjcSceneAPI"])
+    attribute(spec, "mjc:flag:multiccd", "bool", True, uniform=True)
     attribute(spec, "physics:gravityDirection", "vector3f", Gf.Vec3f(0, 0, -1))
     attribute(spec, "physics:gravityMagnitude", "float", GRAVITY)
     return spec

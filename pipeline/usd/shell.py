@@ -13,22 +13,25 @@ from shapely.geometry import Polygon
 
 from pipeline.entities.asset import Asset, Material, Mesh
 from pipeline.entities.plan import Plan, Room
+from pipeline.geometry.masonry import masonry
 from pipeline.geometry.tiling import convex_pieces
-from pipeline.geometry.walls import SLAB, Panel, Shell, outer_panels, reveals, room_panels
+from pipeline.geometry.walls import SLAB, Panel, Prism, Shell, outer_panels, reveals, room_panels
 from pipeline.rendering import fittings, palette
 from pipeline.usd.articulation import convert_asset
 from pipeline.usd.layer import attribute, label, prim
 from pipeline.usd.material import Palette, bind
-from pipeline.usd.mesh import convert_mesh, convert_polygons, flat_normals
+from pipeline.usd.mesh import convert_box, convert_mesh, convert_polygons, flat_normals
 from pipeline.usd.physics import convert_collider, hide
 from pipeline.usd.text import cast, group, mould, placed, shaped
 
 MATERIALS = "/World/Materials"  # where a home's own parts find theirs
 SHAPE = ("points", "extent", "normals")  # what each prism has of its own
+PLACE = ("xformOp:translate", "xformOp:orient", "xformOp:scale", "xformOpOrder")  # what each box has
+EXACT = 1e-6  # [m, m2] by which a rectangle's corners may be off
 
 
 def room_text(parent: str, plan: Plan, room: Room, shells: Mapping[int, Shell], materials: Palette) -> str:
-    """Return a room: floor and ceiling slabs in convex pieces that one sees and walks on, and its wall faces.
+    """Return a room as one sees it: floor and ceiling slabs and its wall faces; what collides is the storey's (`walls_text`).
 
     A staircase has its floor on its lowest storey, its ceiling on the highest, faces on all; `shells` holds the storeys' walls.
     """
@@ -50,12 +53,10 @@ def room_text(parent: str, plan: Plan, room: Room, shells: Mapping[int, Shell], 
 
 
 def walls_text(parent: str, plan: Plan, level: int, shell: Shell, materials: Palette) -> str:
-    """Return a storey's wall solids (colliders, one convex piece each), facade, jambs, thresholds and steps."""
+    """Return a storey's solids (colliders, one box or convex piece each), facade, jambs, thresholds and steps."""
     path = f"{parent}/level_{level}"
-    solids = []
-    for i, solid in enumerate(shell.prisms):
-        form = _solid(len(solid.polygon), materials.path(palette.PLASTER))
-        solids.append(cast(form, f"{path}/solids/{solid.kind}_{i:03d}", _prism_shape(solid.polygon, solid.bottom, solid.top)))
+    plaster = materials.path(palette.PLASTER)
+    solids = [_solid(f"{path}/solids/{solid.kind}_{i:03d}", solid, plaster) for i, solid in enumerate(masonry(plan, level, shell))]
     parts = [placed((0.0, 0.0, level * plan.storey_height)), cast(group(schema="Scope"), f"{path}/solids", "".join(solids))]
     parts.append(_panels(f"{path}/facade", outer_panels(shell), palette.FACADE, materials))
     faces = [panel for cut in shell.cuts for panel in reveals(cut)]
@@ -67,7 +68,7 @@ def walls_text(parent: str, plan: Plan, level: int, shell: Shell, materials: Pal
             parts.append(_slab(f"{path}/{name}", cut.quad, (-SLAB, 0.0), palette.threshold(plan, cut.opening), materials, "floor"))
     if shell.stairs:
         steps = (
-            _slab(f"{path}/stairs/{step.kind}_{i:02d}", step.polygon, (step.bottom, step.top), palette.STEP, materials)
+            _slab(f"{path}/stairs/{step.kind}_{i:02d}", step.polygon, (step.bottom, step.top), palette.STEP, materials, collides=True)
             for i, step in enumerate(shell.stairs)
         )
         parts.append(cast(_scope("stairs", "Scope"), f"{path}/stairs", "".join(steps)))
@@ -163,10 +164,30 @@ def _room(kind: str) -> str:
     return mould(convert)
 
 
-@functools.lru_cache(maxsize=256)
-def _solid(corners: int, material: str) -> str:
-    """Return the mould of a prism that collides and is not seen."""
+def _solid(path: str, solid: Prism, material: str) -> str:
+    """Return a solid that collides and is not seen, as a cube where it is a box: engines know nothing better."""
+    low, high = solid.bottom, solid.top
+    p = solid.polygon
+    if len(p) == 4 and np.allclose(p[0] + p[2], p[1] + p[3], atol=EXACT) and abs((p[1] - p[0]) @ (p[3] - p[0])) < EXACT:
+        size = (*(float(np.linalg.norm(p[k] - p[0])) for k in (1, 3)), high - low)
+        yaw = float(np.arctan2(*(p[1] - p[0])[::-1]))
+        return cast(_block_form(material), path, placed((*p.mean(axis=0), (low + high) / 2), yaw, size))
+    return cast(_prism_form(len(p), material), path, _prism_shape(p, low, high))
 
+
+@functools.lru_cache(maxsize=256)
+def _block_form(material: str) -> str:
+    def convert(layer: Sdf.Layer) -> None:
+        made = convert_box(layer, "Mould", np.zeros(3), np.ones(3))
+        hide(made)
+        convert_collider(made)
+        bind(made, material)
+
+    return mould(convert, PLACE)
+
+
+@functools.lru_cache(maxsize=256)
+def _prism_form(corners: int, material: str) -> str:
     def convert(layer: Sdf.Layer) -> None:
         made = convert_mesh(layer, "Mould", _prism(corners), None)
         hide(made)
@@ -177,18 +198,21 @@ def _solid(corners: int, material: str) -> str:
 
 
 def _slab(
-    path: str, polygon: NDArray[np.float64], heights: tuple[float, float], material: Material, materials: Palette, name: str = ""
-) -> str:
-    """Return a prism that is seen and collides, labelled as `name`."""
-    return cast(_slab_form(len(polygon), material, materials.path(material), name), path, _prism_shape(polygon, *heights))
+    path: str, polygon: NDArray[np.float64], heights: tuple[float, float], material: Material, materials: Palette, name: str = "",
+    *, collides: bool = False,
+) -> str:  # fmt: skip
+    """Return a prism that is seen, labelled as `name`."""
+    form = _slab_form(len(polygon), material, materials.path(material), name, collides=collides)
+    return cast(form, path, _prism_shape(polygon, *heights))
 
 
 @functools.lru_cache(maxsize=256)
-def _slab_form(corners: int, material: Material, path: str, name: str) -> str:
+def _slab_form(corners: int, material: Material, path: str, name: str, *, collides: bool) -> str:
     def convert(layer: Sdf.Layer) -> None:
         made = convert_mesh(layer, "Mould", _prism(corners), material.base_color)
         bind(made, path)
-        convert_collider(made)
+        if collides:
+            convert_collider(made)
         if name:
             label(made, "class", [name])
 

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from pipeline.sources.meshes.mesh_solids import convex
 from pipeline.sources.meshes.near_boxes import CORNERS
-from pipeline.sources.meshes.touching import fewer, simpler
+from pipeline.sources.meshes.touching import Felt, fewer, simpler
 
 
 def block(low, high):
     return convex(np.array(low) + CORNERS * (np.array(high, float) - np.array(low)), 1.0)
+
+
+def even(tolerance):
+    """The same everywhere."""
+    return lambda points, normals: np.full(len(points), tolerance)
 
 
 def ring(count, inner, outer, height):
@@ -25,7 +31,7 @@ def ring(count, inner, outer, height):
 
 def test_a_ring_has_fewer_staves_and_stays_hollow():
     staves = ring(40, 0.036, 0.04, 0.09)
-    found = fewer(staves, 0.005)
+    found = fewer(staves, even(0.005))
     assert 4 < len(found) <= 12
     for piece in found:  # no point of a face is further inwards than the tolerance
         faces = piece.hull[piece.faces]
@@ -35,11 +41,40 @@ def test_a_ring_has_fewer_staves_and_stays_hollow():
 
 def test_boards_of_a_box_stay_apart_and_those_in_line_become_one():
     side, floor = block((0, 0, 0), (0.02, 0.4, 0.5)), block((0.02, 0, 0), (0.5, 0.4, 0.02))
-    assert len(fewer([side, floor], 0.005)) == 2
-    assert len(fewer([floor, block((0.5, 0, 0), (0.9, 0.4, 0.02))], 0.005)) == 1
+    assert len(fewer([side, floor], even(0.005))) == 2
+    assert len(fewer([floor, block((0.5, 0, 0), (0.9, 0.4, 0.02))], even(0.005))) == 1
 
 
 def test_what_is_small_is_changed_less():
     thin = [block((0, 0, 0), (0.1, 0.1, 0.004)), block((0.02, 0.02, 0.004), (0.03, 0.03, 0.007))]
-    assert len(simpler(thin, 0.005)) == 2
-    assert len(simpler(thin, 0.03)) == 1
+    assert len(simpler(thin, Felt())) == 2
+    assert len(simpler(thin, Felt(0.03, 0.03, 0.03))) == 1
+
+
+def test_a_cup_is_true_from_without_and_holds_something_within():
+    floor = block((-0.025, -0.025, 0), (0.025, 0.025, 0.006))
+    found = simpler([*ring(24, 0.036, 0.04, 0.09), floor], Felt(vessel=True))
+    assert len(found) <= 8
+    for piece in found:
+        assert np.linalg.norm(piece.hull[:, :2], axis=1).max() < 0.04 + 1e-9
+        assert (ConvexHull(piece.hull).equations @ [0.02, 0.0, 0.03, 1.0]).max() > 0
+
+
+def test_what_is_closed_is_a_disc():
+    (found,) = simpler(ring(24, 0.036, 0.04, 0.09), Felt(closed=True))
+    assert found.hull_volume > 0.95 * np.pi * 0.04**2 * 0.09
+
+
+def test_legs_are_one_block_where_no_hand_comes_and_legs_elsewhere():
+    legs = [block((x, y, 0), (x + 0.04, y + 0.04, 0.15)) for x in (0, 0.5) for y in (0, 0.4)]
+    bottom, back = block((0, 0, 0.15), (0.54, 0.44, 0.17)), block((0, 0.42, 0.17), (0.54, 0.44, 0.6))
+    assert len(simpler([*legs, bottom, back], Felt(under=0.2))) == 2
+    assert len(simpler([*legs, bottom, back], Felt())) == 6
+
+
+def test_what_lies_within_other_pieces_is_not_felt():
+    rails = [block((0, 0, 0.2), (0.03, 2, 0.4)), block((1.37, 0, 0.2), (1.4, 2, 0.4))]
+    mattress = block((0.03, 0, 0.25), (1.37, 2, 0.4))
+    (whole,) = simpler([*rails, mattress], Felt(sides=0.06, down=0.15))
+    assert np.allclose([whole.hull.min(axis=0), whole.hull.max(axis=0)], [[0, 0, 0.2], [1.4, 2, 0.4]])
+    assert len(simpler([*rails, mattress], Felt())) == 3

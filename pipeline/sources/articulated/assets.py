@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.entities.asset import Asset, Joint, Mesh, PartBox
+from pipeline.entities.asset import Asset, Joint, Link, Mesh, PartBox
 from pipeline.geometry.prerequisites import ordered
 from pipeline.sources.articulated.fitting import fitted
 from pipeline.sources.articulated.metric_scale import Fit
@@ -18,6 +18,7 @@ from pipeline.sources.articulated.shape_reader import unused
 from pipeline.sources.densities import density
 from pipeline.sources.meshes.colliders import POCKET, Solids, bodies_solids, link, matter_volume, solids
 from pipeline.sources.meshes.inertials import Inertial, inertia_flaw, joined, mass_flaw
+from pipeline.sources.meshes.touching import LEFT_ALONE, UNDER, felt
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
 from pipeline.taxonomy import Taxonomy
@@ -49,13 +50,25 @@ def assets(
     matter = bodies_solids([(body.name, body.collisions) for body in bodies], limits, tolerance)
     middle = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
     for number, fit in enumerate(fits):
-        kind = taxonomy.categories[fit.category].super
-        links, weighed = [], []
+        kind, how = taxonomy.categories[fit.category].super, felt(fit.category, small=False, opens=True)
+        under = min([UNDER, *(float((body.points()[:, 2] - middle[2]).min()) * fit.scale for body in bodies[1:])])
+        links: list[Link] = []
+        weighed = []
         for body, solid in zip(bodies, matter, strict=True):
             real = solid.scaled(middle, fit.scale)
             stated, note = _stated(body, real, middle, fit, kind)
             weighed += note
-            links.append(link(body.name, _metric(body, middle, fit.scale), real, density(kind, "", fit.category), kind, stated))
+            links.append(
+                link(
+                    body.name,
+                    _metric(body, middle, fit.scale),
+                    real,
+                    density(kind, "", fit.category),
+                    kind,
+                    stated,
+                    how if links else replace(how, under=under, down=LEFT_ALONE),
+                )
+            )
         asset = Asset(
             f"{SHORT[shape.source]}_{stem}_{fit.category}", fit.category, np.round(extent * fit.scale, 4),
             tuple(links), tuple(_joint(j, middle, fit.scale) for j in shape.joints), tuple(shape.palette.materials),

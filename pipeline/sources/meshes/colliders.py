@@ -15,7 +15,7 @@ from pipeline.sources.meshes.inertials import Inertial
 from pipeline.sources.meshes.merging import merged
 from pipeline.sources.meshes.mesh_solids import Part, convex, dissected, mass_properties
 from pipeline.sources.meshes.near_boxes import boxed
-from pipeline.sources.meshes.touching import TOUCHED, simpler
+from pipeline.sources.meshes.touching import Felt, simpler
 from pipeline.sources.settings import ModelLimits
 
 Floats = NDArray[np.float64]
@@ -107,9 +107,9 @@ def link(
     density: float,
     kind: str = "",
     stated: Inertial | float | None = None,
-    felt: float = TOUCHED,
+    how: Felt | None = None,
 ) -> Link:
-    """Return the link [m, kg] of visual meshes and solids; `kind` is the super-category, `felt` how true its colliders are [m].
+    """Return the link [m, kg] of visual meshes and solids; `kind` is the super-category, `how` truly it is felt.
 
     It weighs what is `stated`, a mass alone or with its inertia, else what its matter does at one `density` [kg/m3].
     """
@@ -122,7 +122,7 @@ def link(
     if 0 < mass < MINIMUM:
         inertia = inertia * (MINIMUM / mass)
     least = 1e-6 * np.eye(3)  # engines refuse inertias of thin parts that round to zero
-    colliders = tuple(_piece(k, p) for k, p in enumerate(simpler(matter.pieces, felt)))
+    colliders = tuple(_piece(k, p) for k, p in enumerate(simpler(matter.pieces, how or Felt())))
     return Link(name, tuple(visuals), colliders, round(max(mass, MINIMUM), 5), np.round(com, 6), np.round(inertia, 9) + least)
 
 

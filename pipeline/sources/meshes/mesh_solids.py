@@ -283,7 +283,7 @@ def hull(points: Floats) -> tuple[Floats, Ints, float] | None:
         except (QhullError, ValueError):
             return None
     if len(found.vertices) > MAX_HULL:
-        chosen = _extremes(found.points[found.vertices])
+        chosen = extremes(found.points[found.vertices])
         try:
             found = ConvexHull(chosen)
         except QhullError:
@@ -300,7 +300,7 @@ def hull(points: Floats) -> tuple[Floats, Ints, float] | None:
     return np.asarray(corners), faces[order], float(found.volume)
 
 
-def _extremes(points: Floats) -> Floats:
+def extremes(points: Floats) -> Floats:
     """Return at most MAX_HULL of the points: those furthest along the axes and along evenly spread directions."""
     k = np.arange(MAX_HULL - 6) + 0.5
     polar, turn = np.arccos(1 - 2 * k / (MAX_HULL - 6)), np.pi * (1 + 5**0.5) * k

@@ -7,73 +7,161 @@ keeps its hollow, with fewer staves; bevels, beads and shallow frames go; a bloc
 from __future__ import annotations
 
 import heapq
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combined
+from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combined, extremes
 
 Floats = NDArray[np.float64]
+Allowed = Callable[[Floats, Floats], Floats]  # points (P, 3), normals (P, 3) there -> how far each may be off (P,) [m]
 
+STAVES = 4  # pieces between the same heights that are taken for a ring
 MOST = 250  # pieces of a link beyond which it is left as it is
-SAMPLES = (3, 12)  # points along a side of the hull's triangles, coarse first
+SAMPLES = (0, 2, 8)  # intervals along a side of the hull's triangles, coarse first; 0: their middles
 SHARE = 0.15  # of the least extent of a link: what its touched surface may be off by at most, however small it is
-TOUCHED, HUNG = (
-    0.005,
-    0.03,
-)  # [m] how far a collider's surface may be off where hands and things come; out of reach, flat on walls or floors, leaves
-Offer = tuple[float, int, int]
+UP = 0.7  # upward part of the normal of a face on which things lie
+TOUCHED = 0.005  # [m] how far a collider's surface may be off where hands and things come
+BUMPED = 0.02  # ... where a robot comes with its body at most: the sides of furniture that does not open
+LEFT_ALONE = 0.15  # ... what hangs at a ceiling or flat on a wall to be looked at, and leaves
+ANY = 10.0  # [m]
+HOLLOW, DEEP = 0.1, 0.25  # shares of a vessel's width and height that it may be off within, up to BUMPED
+UNDER = 0.2  # [m] above the floor below which furniture's legs and plinths are one block: no hand comes there
+POT = 0.4  # share of a plant's height up to which it is as hard as other things
+Offer = tuple[float, float, int, int]
 
 
-def simpler(pieces: Sequence[Part], tolerance: float) -> tuple[Part, ...]:
-    """Return convex pieces [m] as few as they can be felt for the same by, within `tolerance` [m]."""
+@dataclass(frozen=True, slots=True)
+class Felt:
+    """How far a surface may be off [m]: where things lie (faces upwards), at the sides, from below; `yielding` grows with height to LEFT_ALONE.
+
+    What is `closed` is not reached into: the staves of a ring are one disc. Lower than `under` [m] only what faces upwards is felt.
+    A `vessel` is felt from without; within it is but hollow.
+    """
+
+    up: float = TOUCHED
+    sides: float = TOUCHED
+    down: float = TOUCHED
+    yielding: bool = False
+    closed: bool = False
+    under: float = 0.0
+    vessel: bool = False
+
+
+ALONE = Felt(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE)
+FELT = MappingProxyType(
+    {
+        **dict.fromkeys(("curtain", "blind", "picture", "mirror", "clock", "wall_lamp", "rug", "bath_mat"), ALONE),
+        **dict.fromkeys(("ceiling_lamp", "pendant_lamp"), ALONE),
+        "throw": Felt(0.05, 0.05, 0.05),
+        **dict.fromkeys(("plant", "potted_herb"), Felt(LEFT_ALONE, TOUCHED, LEFT_ALONE, yielding=True, closed=True)),
+        **dict.fromkeys(
+            ("vase", "bottle", "canister", "candle", "kettle", "toilet", "table_lamp", "floor_lamp"), Felt(BUMPED, closed=True)
+        ),
+    }
+)
+
+
+def felt(category: str, *, small: bool, opens: bool) -> Felt:
+    """Return how truly a thing of a category is felt; hands come to what is small and to what opens, bodies to other furniture."""
+    return FELT.get(category, Felt(vessel=True) if small else Felt() if opens else Felt(TOUCHED, BUMPED, under=UNDER, down=LEFT_ALONE))
+
+
+def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
+    """Return convex pieces [m] as few as they can be felt for the same by."""
     if not pieces:
         return ()
     points = np.concatenate([p.hull for p in pieces])
-    least = SHARE * float(np.ptp(points, axis=0).min()) if tolerance <= TOUCHED else tolerance
-    return fewer(pieces, min(tolerance, least))
+    low, high = points.min(axis=0), points.max(axis=0)
+    least = SHARE * float((high - low).min())
+    stand = np.concatenate([p.hull[:, :2] for p in pieces if p.hull[:, 2].min() < low[2] + TOUCHED])
+    middle, hollow = (
+        (stand.min(axis=0) + stand.max(axis=0)) / 2,
+        min(HOLLOW * float((high - low)[:2].min()), DEEP * float(high[2] - low[2]), BUMPED),
+    )
+    below = [p for p in pieces if p.hull[:, 2].max() <= low[2] + how.under]
+    if len(below) > 1:
+        pieces = [*(p for p in pieces if p.hull[:, 2].max() > low[2] + how.under), combined(below)]
+    if how.closed:
+        pieces = discs(pieces)
+
+    def allowed(at: Floats, normals: Floats) -> Floats:
+        tolerance = np.where(normals[:, 2] > UP, how.up, np.where(normals[:, 2] < -UP, how.down, how.sides))
+        if how.yielding:
+            share = np.clip((at[:, 2] - low[2]) / (POT * (high[2] - low[2])), 0, 1)
+            tolerance = np.maximum(tolerance, share * LEFT_ALONE)
+        if how.vessel:
+            away = ((at[:, :2] - middle) * normals[:, :2]).sum(axis=1)
+            within = (normals[:, 2] > UP) | (away < 0) & (normals[:, 2] > -UP)
+            tolerance = np.where(within, np.maximum(tolerance, hollow), tolerance)
+        tolerance = np.where(tolerance <= TOUCHED, np.minimum(tolerance, least), tolerance)
+        return np.asarray(np.where((at[:, 2] < low[2] + how.under) & (normals[:, 2] <= UP), ANY, tolerance))
+
+    return fewer(pieces, allowed, max(how.up, how.sides), sectors=how.vessel)
 
 
-def fewer(pieces: Sequence[Part], tolerance: float) -> tuple[Part, ...]:
-    """Return convex pieces [m] merged, cheapest pairs first, as long as no surface point goes further than `tolerance` [m] from where it was."""
-    if not 2 <= len(pieces) <= MOST or tolerance <= 0:
+def discs(pieces: Sequence[Part]) -> list[Part]:
+    """Return the pieces with the staves of each ring, all of them between the same heights, as one."""
+    rings: dict[tuple[int, int], list[Part]] = {}
+    for piece in pieces:
+        z = piece.hull[:, 2]
+        rings.setdefault((round(z.min() / TOUCHED), round(z.max() / TOUCHED)), []).append(piece)
+    return [disc for ring in rings.values() for disc in (ring if len(ring) < STAVES else [combined(ring)])]
+
+
+def fewer(pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, sectors: bool = False) -> tuple[Part, ...]:
+    """Return convex pieces [m] merged as long as no surface point goes further from where it was than is `allowed` there.
+
+    All at once where that may be, else pairs that change least first, or the largest groups (`sectors`), which take the staves of a
+    ring in sectors as long as may be. Pieces whose boxes are more than `apart` [m] from each other are no pair.
+    """
+    if not 2 <= len(pieces) <= MOST:
         return tuple(pieces)
+    planes = [_planes(p.hull) for p in pieces]
+    if _deviation(np.concatenate([p.hull for p in pieces]), planes, allowed) is not None:
+        return (combined(pieces),)
+    groups = _merged(pieces, planes, allowed, apart, largest=sectors)
+    return tuple(pieces[g[0]] if len(g) == 1 else combined([pieces[k] for k in g]) for g in groups)
+
+
+def _merged(pieces: Sequence[Part], planes: Sequence[Floats], allowed: Allowed, apart: float, *, largest: bool) -> list[list[int]]:
     groups = [[k] for k in range(len(pieces))]
     alive = [True] * len(pieces)
-    planes = [_planes(p.hull) for p in pieces]
     hulls = [p.hull for p in pieces]
-    volumes = [p.hull_volume for p in pieces]
     boxes = [np.array([p.hull.min(axis=0), p.hull.max(axis=0)]) for p in pieces]
+    every = np.array(boxes)
 
     def offer(i: int, j: int) -> Offer | None:
-        if (boxes[i][0] > boxes[j][1] + tolerance).any() or (boxes[j][0] > boxes[i][1] + tolerance).any():
+        if (boxes[i][0] > boxes[j][1] + apart).any() or (boxes[j][0] > boxes[i][1] + apart).any():
             return None
-        away = _deviation(
-            np.concatenate([hulls[i], hulls[j]]), volumes[i] + volumes[j], [planes[k] for k in groups[i] + groups[j]], tolerance
-        )
-        return None if away is None else (round(away, 7), i, j)
+        members = groups[i] + groups[j]
+        low, high = np.minimum(boxes[i][0], boxes[j][0]), np.maximum(boxes[i][1], boxes[j][1])
+        others = np.flatnonzero(((every[:, 0] <= high) & (every[:, 1] >= low)).all(axis=1)).tolist()  # what lies within those is not felt
+        near = [planes[k] for k in (*members, *(k for k in others if k not in members))]
+        share = _deviation(np.concatenate([hulls[i], hulls[j]]), near, allowed)
+        return None if share is None else (-len(members) if largest else 0, round(share, 5), i, j)
 
     heap = [found for i in range(len(pieces)) for j in range(i + 1, len(pieces)) if (found := offer(i, j))]
     heapq.heapify(heap)
     while heap:
-        _, i, j = heapq.heappop(heap)
+        _, _, i, j = heapq.heappop(heap)
         if not (alive[i] and alive[j]):
             continue
         alive[i] = alive[j] = False
         points = np.concatenate([hulls[i], hulls[j]])
-        made = ConvexHull(points)
         groups.append(groups[i] + groups[j])
-        hulls.append(points[made.vertices])
-        volumes.append(float(made.volume))
+        hulls.append(points[ConvexHull(points).vertices])
         boxes.append(np.array([points.min(axis=0), points.max(axis=0)]))
         alive.append(True)
         new = len(groups) - 1
         for k in range(new):
             if alive[k] and (found := offer(k, new)):
                 heapq.heappush(heap, found)
-    return tuple(pieces[g[0]] if len(g) == 1 else combined([pieces[k] for k in g]) for g, lives in zip(groups, alive, strict=True) if lives)
+    return [g for g, lives in zip(groups, alive, strict=True) if lives]
 
 
 def _planes(points: Floats) -> Floats:
@@ -81,35 +169,42 @@ def _planes(points: Floats) -> Floats:
     return np.unique(ConvexHull(points).equations.round(9), axis=0)
 
 
-def _deviation(points: Floats, held: float, planes: Sequence[Floats], tolerance: float) -> float | None:
-    """Return how far the hull of points (N, 3) is from pieces (their planes, at most `held` in volume); None beyond the tolerance."""
+def _deviation(points: Floats, planes: Sequence[Floats], allowed: Allowed) -> float | None:
+    """Return how far the hull of points (N, 3) is from pieces (their planes), as a share of what is allowed; None beyond that."""
     try:
         hull = ConvexHull(points)
     except (QhullError, ValueError):
         return None
-    if (len(hull.vertices) > MAX_HULL and tolerance <= TOUCHED) or hull.volume - held > tolerance * hull.area:
-        return None
-    corners = points[hull.simplices]
+    if len(hull.vertices) > MAX_HULL:
+        kept = ConvexHull(extremes(points[hull.vertices]))
+        if _away(points[hull.vertices], [kept.equations], np.full(len(hull.vertices), TOUCHED)) > 1.0:
+            return None
+        points, hull = kept.points, kept
+    corners, normals = points[hull.simplices], hull.equations[:, :3]
     worst = 0.0
     for count in SAMPLES:
-        worst = _away(_spread(corners, count), planes, tolerance / 4)
-        if worst > tolerance:
+        at = _spread(corners, count) if count else corners.mean(axis=1)
+        tolerance = allowed(at, np.repeat(normals, len(at) // len(corners), axis=0))
+        worst = _away(at, planes, tolerance)
+        if worst > 1.0:
             return None
     return worst
 
 
 def _spread(corners: Floats, count: int) -> Floats:
-    """Return points (P, 3) spread over triangles (F, 3, 3), `count` intervals along a side."""
+    """Return points (F P, 3) spread over triangles (F, 3, 3), `count` intervals along a side."""
     u, v = (k.ravel() for k in np.meshgrid(np.arange(count + 1), np.arange(count + 1), indexing="ij"))
     inside = u + v <= count
     weights = np.stack([u, v, count - u - v], axis=1)[inside] / count
     return np.asarray(np.einsum("pk,fkd->fpd", weights, corners).reshape(-1, 3))
 
 
-def _away(points: Floats, planes: Sequence[Floats], enough: float) -> float:
-    """Return how far the worst of points (P, 3) is from the nearest piece, by the planes of its faces; below `enough` it is not looked at closely."""
+def _away(points: Floats, planes: Sequence[Floats], tolerance: Floats) -> float:
+    """Return the worst of the ways of points (P, 3) to the nearest piece, by the planes of its faces, in tolerances (P,); a quarter is not looked at closely."""
     away = np.full(len(points), np.inf)
     for plane in planes:
-        left = np.flatnonzero(away > enough)
+        left = np.flatnonzero(away > tolerance / 4)
+        if not len(left):
+            break
         away[left] = np.minimum(away[left], (points[left] @ plane[:, :3].T + plane[:, 3]).max(axis=1))
-    return float(np.maximum(away, 0.0).max())
+    return float((np.maximum(away, 0.0) / tolerance).max())

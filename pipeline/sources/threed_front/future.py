@@ -11,7 +11,7 @@ from pipeline.entities.asset import Asset, Mesh
 from pipeline.sources.densities import density
 from pipeline.sources.guarded import Folder, read_json
 from pipeline.sources.meshes.colliders import POCKET, Ints, link, solids
-from pipeline.sources.meshes.touching import HUNG, TOUCHED
+from pipeline.sources.meshes.touching import felt
 from pipeline.sources.meshes.visual_meshes import Palette, read_obj, visual
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
@@ -23,7 +23,6 @@ from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
 Notes = list[tuple[str, str]]
-LEAVES = frozenset({"plant"})  # categories whose outline gives way: their colliders may be as coarse as those out of reach
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,9 +107,9 @@ def read_model(
             visuals.append(mesh)
             collisions.append((points, group.faces))
     known = taxonomy.categories[category]
-    kind, hung = known.super, known.mount == "ceiling" or known.fixed or category in LEAVES or (known.mount == "wall" and not known.layout)
+    kind, how = known.super, felt(category, small=known.loose, opens=False)
     matter = solids("base", collisions, limits, POCKET * float(np.linalg.norm(size)) if cut else None)
-    base = link("base", visuals, matter, density(kind, info.material, category), kind, felt=HUNG if hung else TOUCHED)
+    base = link("base", visuals, matter, density(kind, info.material, category), kind, how=how)
     if not base.visuals or not base.colliders:
         raise SourceError("not_obj", info.model_id, "has no face with an area")
     asset = Asset(
