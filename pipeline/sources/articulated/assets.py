@@ -50,8 +50,10 @@ def assets(
     matter = bodies_solids([(body.name, body.collisions) for body in bodies], limits, tolerance)
     middle = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
     for number, fit in enumerate(fits):
-        kind, how = taxonomy.categories[fit.category].super, felt(fit.category, small=False, opens=True)
-        under = min([UNDER, *(float((body.points()[:, 2] - middle[2]).min()) * fit.scale for body in bodies[1:])])
+        category = taxonomy.categories[fit.category]
+        kind, how = category.super, felt(category, opens=True)
+        lowest = min([UNDER, *(float((body.points()[:, 2] - middle[2]).min()) * fit.scale for body in bodies[1:])])
+        below = how if category.loose else replace(how, down=LEFT_ALONE, under=lowest)
         links: list[Link] = []
         weighed = []
         for body, solid in zip(bodies, matter, strict=True):
@@ -66,7 +68,7 @@ def assets(
                     density(kind, "", fit.category),
                     kind,
                     stated,
-                    how if links else replace(how, under=under, down=LEFT_ALONE),
+                    how if links else below,
                 )
             )
         asset = Asset(

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
+from pipeline.card import Category
 from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combined, extremes
 
 Floats = NDArray[np.float64]
@@ -27,6 +28,7 @@ SHARE = 0.15  # of the least extent of a link: what its touched surface may be o
 UP = 0.7  # upward part of the normal of a face on which things lie
 TOUCHED = 0.005  # [m] how far a collider's surface may be off where hands and things come
 BUMPED = 0.02  # ... where a robot comes with its body at most: the sides of furniture that does not open
+SOFT = 0.05  # ... a blanket with its fringe
 LEFT_ALONE = 0.15  # ... what hangs at a ceiling or flat on a wall to be looked at, and leaves
 ANY = 10.0  # [m]
 HOLLOW, DEEP = 0.1, 0.25  # shares of a vessel's width and height that it may be off within, up to BUMPED
@@ -52,23 +54,21 @@ class Felt:
     vessel: bool = False
 
 
-ALONE = Felt(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE)
-FELT = MappingProxyType(
+FELT = MappingProxyType(  # by what cards say
     {
-        **dict.fromkeys(("curtain", "blind", "picture", "mirror", "clock", "wall_lamp", "rug", "bath_mat"), ALONE),
-        **dict.fromkeys(("ceiling_lamp", "pendant_lamp"), ALONE),
-        "throw": Felt(0.05, 0.05, 0.05),
-        **dict.fromkeys(("plant", "potted_herb"), Felt(LEFT_ALONE, TOUCHED, LEFT_ALONE, yielding=True, closed=True)),
-        **dict.fromkeys(
-            ("vase", "bottle", "canister", "candle", "kettle", "toilet", "table_lamp", "floor_lamp"), Felt(BUMPED, closed=True)
-        ),
+        "seen": Felt(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE),
+        "soft": Felt(SOFT, SOFT, SOFT),
+        "yielding": Felt(LEFT_ALONE, TOUCHED, LEFT_ALONE, yielding=True, closed=True),
+        "closed": Felt(BUMPED, closed=True),
     }
 )
 
 
-def felt(category: str, *, small: bool, opens: bool) -> Felt:
-    """Return how truly a thing of a category is felt; hands come to what is small and to what opens, bodies to other furniture."""
-    return FELT.get(category, Felt(vessel=True) if small else Felt() if opens else Felt(TOUCHED, BUMPED, under=UNDER, down=LEFT_ALONE))
+def felt(category: Category, *, opens: bool) -> Felt:
+    """Return how truly a thing of a category is felt: hands come to what is small and to what opens, bodies to other furniture."""
+    if category.felt:
+        return FELT[category.felt]
+    return Felt(vessel=True) if category.loose else Felt() if opens else Felt(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER)
 
 
 def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:

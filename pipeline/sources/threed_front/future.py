@@ -107,7 +107,7 @@ def read_model(
             visuals.append(mesh)
             collisions.append((points, group.faces))
     known = taxonomy.categories[category]
-    kind, how = known.super, felt(category, small=known.loose, opens=False)
+    kind, how = known.super, felt(known, opens=False)
     matter = solids("base", collisions, limits, POCKET * float(np.linalg.norm(size)) if cut else None)
     base = link("base", visuals, matter, density(kind, info.material, category), kind, how=how)
     if not base.visuals or not base.colliders:
