@@ -11,13 +11,16 @@ import itertools
 import json
 import os
 import platform
+import re
 import secrets
 import shutil
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+from pipeline.shards.disk import sync
 
 BEAT = 5.0  # seconds between two signs of life
 PATIENCE = 60.0  # seconds without one after which an owner on another machine counts as gone
@@ -92,6 +95,7 @@ class Claims:
         path = self.folder / OWNERS / self.token
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(json.dumps(who) + "\n")
+        sync(path)
 
     def _live(self, beat: float) -> None:
         while not self._ended.wait(beat):
@@ -104,12 +108,12 @@ class Claims:
 
     def _lives(self, token: str, claim: Path | None) -> bool:
         """Tell whether the owner of a token is at work; a claim without one yet is judged by its age."""
-        if token == RELEASED:
+        if token == RELEASED or (not token and not self.others()):
             return False
         path = self.folder / OWNERS / token if token else claim
         try:
             assert path is not None
-            text = path.read_text()
+            text = path.read_text(errors="replace")
         except OSError:
             return False
         if token and _died(text):
@@ -137,18 +141,28 @@ def _create(path: Path, text: str) -> None:
 
 
 def _read(path: Path) -> str:
+    """Return the token in a claim; "" where it is not signed yet, or a power cut has torn it."""
     try:
-        return path.read_text()
+        text = path.read_text(errors="replace")
     except FileNotFoundError:
         return RELEASED
+    return text if re.fullmatch(f"[0-9a-f]{{16}}|{RELEASED}", text) else ""
 
 
-def _machine() -> str:
-    """Return what two processes share that can see each other: the boot of the kernel and the table of processes."""
+def _machine() -> dict[str, str]:
+    """Return the names of this machine, of its kernel's boot and of the table of processes that this one can see; "" for what is not told."""
+    return {
+        "host": platform.node() + _told(lambda: Path("/etc/machine-id").read_text().strip()),
+        "boot": _told(lambda: Path("/proc/sys/kernel/random/boot_id").read_text().strip()),
+        "processes": _told(lambda: str(Path("/proc/self/ns/pid").readlink())),
+    }
+
+
+def _told(read: Callable[[], str]) -> str:
     try:
-        return Path("/proc/sys/kernel/random/boot_id").read_text().strip() + str(Path("/proc/self/ns/pid").readlink())
+        return read()
     except OSError:
-        return platform.node()
+        return ""
 
 
 def _birth(pid: int) -> str:
@@ -163,11 +177,11 @@ def _birth(pid: int) -> str:
 
 
 def _died(text: str) -> bool:
-    """Tell whether an owner was a process of this machine that is no more; what cannot be known is no."""
+    """Tell whether an owner was a process of this machine that is no more, or the machine has been started again; what cannot be known is no."""
     try:
-        who = json.loads(text.splitlines()[0])
-        if who["machine"] != _machine():
-            return False
+        who, here = json.loads(text.splitlines()[0]), _machine()
+        if who["machine"] != here:
+            return bool(who["machine"]["host"] == here["host"] and who["machine"]["boot"] != here["boot"])
         os.kill(who["pid"], 0)
     except ProcessLookupError:
         return True

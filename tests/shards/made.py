@@ -102,13 +102,13 @@ class Shelf:
         return {ASSETS: [{**{c.name: value(c, 0) for c in ASSETS.columns}, "asset_id": a} for a in asset_ids]}
 
 
-def opened(folder, header=HEADER, **how):
-    return open_or_create(Path(folder), header, Shelf(Path(folder).parent / "shelf"), **how)
+def opened(folder, header=HEADER, shelf=None, **how):
+    return open_or_create(Path(folder), header, Shelf(shelf or Path(folder).parent / "shelf"), **how)
 
 
-def fill(folder, header=HEADER, nap=0.0, numbers=None, without=()):
+def fill(folder, header=HEADER, nap=0.0, numbers=None, without=(), shelf=None):
     """Make what is missing of a dataset; returns the numbers of the shards that were made."""
-    with opened(folder, header) as dataset:
+    with opened(folder, header, shelf) as dataset:
         missing = [n for n in dataset.missing() if numbers is None or n in numbers]
         for number in missing:
             while not committed(dataset, number):

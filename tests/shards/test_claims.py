@@ -10,6 +10,8 @@ import pytest
 
 from pipeline.shards.claims import Claims
 
+FAR = {"host": "elsewhere", "boot": "1", "processes": "1"}
+
 
 @pytest.fixture
 def claims(tmp_path):
@@ -62,7 +64,7 @@ def test_who_leaves_gives_up_its_claims(claims):
 def pretend(folder, token, **who):
     """Write what an owner on another machine, or a dead one on this, would have left."""
     (folder / "owners").mkdir(parents=True, exist_ok=True)
-    (folder / "owners" / token).write_text(json.dumps({"machine": "elsewhere", "pid": 1, "born": "1", **who}) + "\n")
+    (folder / "owners" / token).write_text(json.dumps({"machine": FAR, "pid": 1, "born": "1", **who}) + "\n")
     (folder / "a.0").write_text(token)
 
 
@@ -75,11 +77,13 @@ def test_a_process_of_this_machine_that_is_dead_is_known_at_once(tmp_path, claim
     assert one.take("a")
     pretend(one.folder, "reborn", **{**mine, "born": "1"})  # its number belongs to another process now
     assert one.others() == []
+    pretend(one.folder, "unplugged", machine={**mine["machine"], "boot": "before"})
+    assert one.others() == []
 
 
 def test_another_machine_is_given_up_when_it_keeps_silent(tmp_path, claims):
     one = claims(patience=0.3)
-    pretend(one.folder, "far", machine="elsewhere")
+    pretend(one.folder, "far", machine=FAR)
     assert not one.take("a")
     for _ in range(4):
         time.sleep(0.15)
@@ -99,10 +103,16 @@ def test_signs_of_life_are_given(claims):
 
 
 def test_a_claim_that_was_never_signed_expires(claims):
-    one = claims(patience=0.2)
+    one, _other = claims(patience=0.2), claims()
     one.folder.joinpath("a.0").touch()
     assert not one.take("a")
     time.sleep(0.3)
+    assert one.take("a")
+
+
+def test_alone_an_unsigned_claim_is_nobodys(claims):
+    one = claims()
+    one.folder.joinpath("a.0").touch()  # torn by a power cut
     assert one.take("a")
 
 
