@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -114,7 +114,7 @@ class Asset:
     """A piece of furniture or an appliance. Link 0 is the base; `joints` are ordered parents first.
 
     `size` (3,) [m] is the full extent (w, d, h) = (x, y, z) of the box with all joints at 0. Fixed joints of the
-    source are already merged into their parent links.
+    source are already merged into their parent links. `derived` keeps what was computed from it (see `geometry.kept`), as long as it lives.
     """
 
     asset_id: str
@@ -130,6 +130,7 @@ class Asset:
     super_category: str = ""
     textures: dict[str, bytes] = field(default_factory=dict)
     parts: tuple[PartBox, ...] = ()
+    derived: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
     def articulated(self) -> bool:

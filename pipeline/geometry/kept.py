@@ -1,4 +1,4 @@
-"""What is derived from an asset alone, computed once and kept while the process lives; from other things, while they are in use."""
+"""What is derived from an asset alone, computed once and kept while the asset is; from other things, while they are in use."""
 
 from __future__ import annotations
 
@@ -13,18 +13,15 @@ P = ParamSpec("P")
 
 
 def kept(make: Callable[[Asset], T]) -> Callable[[Asset], T]:
-    """Let `make` run once per asset.
-
-    Keyed by identity: an asset holds arrays and has no hash. The asset is kept too, so that its id is never used again.
-    """
-    known: dict[int, tuple[Asset, T]] = {}
+    """Let `make` run once per asset; the result lies with the asset and goes with it."""
+    name = f"{make.__module__}.{make.__qualname__}"
 
     @functools.wraps(make)
     def found(asset: Asset) -> T:
-        entry = known.get(id(asset))
-        if entry is None:
-            entry = known[id(asset)] = (asset, make(asset))
-        return entry[1]
+        if name not in asset.derived:
+            asset.derived[name] = make(asset)
+        result: T = asset.derived[name]
+        return result
 
     return found
 

@@ -105,6 +105,12 @@ def levels(plan: Plan) -> list[int]:
     return sorted({room.level for room in plan.rooms})
 
 
+@recent(256)
+def floor_pieces(room: Room) -> list[NDArray[np.float64]]:
+    """Tile a room's floor with convex polygons (n, 2)."""
+    return convex_pieces(Polygon(room.polygon))
+
+
 @recent(64)
 def shell(plan: Plan, level: int) -> Shell:
     """Build the wall solids of one storey: what lies between the rooms (staircases from below too) and the outer edge, less the openings."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,8 +11,7 @@ from shapely.geometry import Polygon
 from pipeline.entities.asset import Material
 from pipeline.entities.plan import Plan
 from pipeline.geometry.stairs import seen
-from pipeline.geometry.tiling import convex_pieces
-from pipeline.geometry.walls import Shell
+from pipeline.geometry.walls import Shell, floor_pieces
 from pipeline.rendering import palette
 
 WALL = (0.20, 0.21, 0.24)
@@ -38,35 +36,39 @@ class Soup:
 
 def building(plan: Plan, level: int, shell: Shell) -> Soup:
     """Return one storey's floors, thresholds, cut walls and windows as triangles; heights above the storey's floor."""
+    paved = [_paved(piece, palette.floor(room.type)) for room in plan.rooms if room.level == level for piece in floor_pieces(room)]
     quads: list[tuple[NDArray[np.float64], tuple[float, float, float], float]] = []
-    for room in plan.rooms:
-        if room.level == level:
-            material = palette.floor(room.type)
-            for piece in convex_pieces(Polygon(room.polygon)):
-                base = pale(material)
-                quads.extend((ring, shaded(base, 1 + GRAIN * shade), 0.0) for ring, shade in pattern(piece, material))
+    parts = sum(len(faces) for faces, _ in paved)
     for step in seen(plan, level):
         grey = np.interp(step.top, (-plan.storey_height, 0.0, plan.storey_height), (0.45, 0.95, 1.05))
-        quads.append((step.polygon, shaded(pale(palette.STEP), float(grey) + STEP_GRAIN * (len(quads) % 2)), min(step.top, WALL_TOP - 0.1)))
+        odd = (parts + len(quads)) % 2
+        quads.append((step.polygon, shaded(pale(palette.STEP), float(grey) + STEP_GRAIN * odd), min(step.top, WALL_TOP - 0.1)))
     for cut in shell.cuts:
         if cut.bottom > 0.05 or cut.opening.kind == "window":
             quads.append((cut.quad, WINDOW, WALL_TOP))
         else:
             quads.append((cut.quad, pale(palette.threshold(plan, cut.opening)), 0.0))
     quads.extend((prism.polygon, WALL, WALL_TOP) for prism in shell.prisms if prism.kind == "wall")
-    corners = np.array([len(ring) - 2 for ring, *_ in quads])
-    colours = np.repeat(np.array([colour for _, colour, _ in quads], np.float32), corners, axis=0)
-    faces = fans([ring for ring, *_ in quads], np.array([z for *_, z in quads]))
+    for ring, colour, z in quads:
+        faces = fans(ring[None], z)
+        paved.append((faces, np.tile(np.array(colour, np.float32), (len(faces), 1))))
+    faces, colours = (np.concatenate(column) for column in zip(*paved, strict=True))
     return Soup(faces, colours, np.zeros(len(faces), np.int32))
 
 
-def fans(rings: Sequence[NDArray[np.float64]], heights: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Triangulate convex rings (n, 2), each at its height [m]: triangles (T, 3, 3), n - 2 for each, in their order."""
-    size = np.array([len(ring) for ring in rings])
-    first = np.repeat(np.cumsum(size) - size, size - 2)  # of each triangle's ring
-    number = np.arange(len(first)) - np.repeat(np.cumsum(size - 2) - (size - 2), size - 2) + 1
-    points = np.column_stack([np.concatenate(rings), np.repeat(heights, size)])
-    return np.stack([points[first], points[first + number], points[first + number + 1]], axis=1)
+def _paved(piece: NDArray[np.float64], material: Material) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
+    """Return a piece of floor as triangles (T, 3, 3) and their colours (T, 3)."""
+    rings, shades = pattern(piece, material)
+    colours = np.minimum(1.0, np.array(pale(material)) * (1 + GRAIN * shades[:, None])).astype(np.float32)
+    return fans(rings, 0.0), np.repeat(colours, rings.shape[1] - 2, axis=0)
+
+
+def fans(rings: NDArray[np.float64], height: float) -> NDArray[np.float64]:
+    """Triangulate convex rings (K, n, 2) at a height [m]: triangles (K (n - 2), 3, 3), n - 2 for each, in their order."""
+    points = np.full((*rings.shape[:2], 3), height)
+    points[..., :2] = rings
+    corners = [(0, k, k + 1) for k in range(1, rings.shape[1] - 1)]
+    return points[:, corners].reshape(-1, 3, 3)
 
 
 def pale(material: Material) -> tuple[float, float, float]:
@@ -75,24 +77,22 @@ def pale(material: Material) -> tuple[float, float, float]:
     return red, green, blue
 
 
-def pattern(piece: NDArray[np.float64], material: Material) -> list[tuple[NDArray[np.float64], float]]:
-    """Cut an axis-parallel rectangle into planks or tiles, each with a shade in [-1, 1]; other shapes stay whole."""
+def pattern(piece: NDArray[np.float64], material: Material) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Cut an axis-parallel rectangle into planks or tiles: rings (K, n, 2) and their shades (K,) in [-1, 1]; other shapes stay whole."""
     (x0, y0), (x1, y1) = piece.min(axis=0), piece.max(axis=0)
     rectangle = len(piece) == 4 and abs((x1 - x0) * (y1 - y0) - Polygon(piece).area) < 1e-6
     if not rectangle or material.name == palette.CONCRETE.name:
-        return [(piece, 0.0)]
+        return piece[None], np.zeros(1)
     length, width = PLANK if material.name in WOOD else TILE
-    out = []
-    for row in range(int(np.floor(y0 / width)), int(np.ceil(y1 / width))):
-        shift = length * ((row * 7) % 5) / 5 if material.name in WOOD else 0.0
-        for column in range(int(np.floor((x0 - shift) / length)), int(np.ceil((x1 - shift) / length))):
-            a, b = max(x0, column * length + shift), min(x1, (column + 1) * length + shift)
-            c, d = max(y0, row * width), min(y1, (row + 1) * width)
-            if b - a > 1e-6 and d - c > 1e-6:
-                # A fixed scramble of (row, column): planks differ, runs do not.
-                shade = ((row * 73856093) ^ (column * 19349663)) % 9 / 4 - 1
-                out.append((np.array([[a, c], [b, c], [b, d], [a, d]]), shade))
-    return out
+    rows = np.arange(int(np.floor(y0 / width)), int(np.ceil(y1 / width)))[:, None]
+    shift = length * ((rows * 7) % 5) / 5 if material.name in WOOD else np.zeros((len(rows), 1))
+    columns = np.arange(int(np.floor((x0 - length) / length)), int(np.ceil(x1 / length)))[None]
+    a, b = np.maximum(x0, columns * length + shift), np.minimum(x1, (columns + 1) * length + shift)
+    c, d = (v + np.zeros_like(a) for v in (np.maximum(y0, rows * width), np.minimum(y1, (rows + 1) * width)))
+    # A fixed scramble of (row, column): planks differ, runs do not.
+    shades = ((rows * 73856093) ^ (columns * 19349663)) % 9 / 4 - 1
+    real = (b - a > 1e-6) & (d - c > 1e-6)
+    return np.stack([a, c, b, c, b, d, a, d], axis=-1)[real].reshape(-1, 4, 2), shades[real]
 
 
 def shaded(colour: tuple[float, float, float], factor: float) -> tuple[float, float, float]:

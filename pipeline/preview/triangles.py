@@ -8,13 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import Polygon
 
 from pipeline.entities.asset import Asset, Material
 from pipeline.entities.home import Home
 from pipeline.geometry.stairs import Step, seen
-from pipeline.geometry.tiling import convex_pieces
-from pipeline.geometry.walls import Panel, Shell, outer_panels, reveals, room_panels, shell
+from pipeline.geometry.walls import Panel, Shell, floor_pieces, outer_panels, reveals, room_panels, shell
 from pipeline.preview.building import pattern, shaded
 from pipeline.rendering import fittings, palette
 from pipeline.rendering.pose import asset_triangles, opened, placement_transform
@@ -81,9 +79,9 @@ def _building(home: Home, level: int, built: Shell, heaps: Heaps, cut_height: Cu
     for room in home.plan.rooms:
         if room.level == level:
             material = palette.floor(room.type)
-            for piece in convex_pieces(Polygon(room.polygon)):
-                for ring, shade in pattern(piece, material):
-                    plank = replace(material, base_color=shaded(material.base_color, 1 + GRAIN * shade))
+            for piece in floor_pieces(room):
+                for ring, shade in zip(*pattern(piece, material), strict=True):
+                    plank = replace(material, base_color=shaded(material.base_color, 1 + GRAIN * float(shade)))
                     _paint(heaps, plank, _flat(ring, 0.0))
         if level in home.plan.levels_of(room):
             _panels(heaps, palette.wall(room.type), room_panels(room, built.cuts), cut_height)

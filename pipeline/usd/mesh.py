@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf, Vt
 
 from pipeline.entities.asset import Mesh
+from pipeline.geometry.compiled import compiled
 from pipeline.rendering.normals import smooth_normals
 from pipeline.usd.layer import attribute, place, prim, vec3s
 
@@ -73,11 +76,27 @@ def convert_polygons(
 
 def flat_normals(points: NDArray[np.floating], counts: NDArray[np.int32], indices: NDArray[np.int32]) -> NDArray[np.float64]:
     """Return the unit normal (F, 3) of each polygon, by Newell's sum over its edges; upwards where it has no area."""
-    corners = np.asarray(points, np.float64)[indices]
-    starts = np.cumsum(counts) - counts
-    after = np.arange(len(indices)) + 1
-    after[starts + counts - 1] = starts
-    corners = corners - np.repeat(corners[starts], counts, axis=0)
-    total = np.add.reduceat(np.cross(corners, corners[after]), starts, axis=0)
-    length = np.linalg.norm(total, axis=1, keepdims=True)
-    return np.where(length > 1e-15, total / np.maximum(length, 1e-15), [0.0, 0.0, 1.0])
+    return _normals(np.ascontiguousarray(points, np.float64), counts, indices)
+
+
+@compiled
+def _normals(points: NDArray[np.float64], counts: NDArray[np.int32], indices: NDArray[np.int32]) -> NDArray[np.float64]:
+    found = np.zeros((len(counts), 3))
+    start = 0
+    for f in range(len(counts)):
+        first = points[indices[start]]
+        x, y, z = 0.0, 0.0, 0.0
+        for k in range(counts[f]):
+            a, b = points[indices[start + k]], points[indices[start + (k + 1) % counts[f]]]
+            ax, ay, az = a[0] - first[0], a[1] - first[1], a[2] - first[2]
+            bx, by, bz = b[0] - first[0], b[1] - first[1], b[2] - first[2]
+            x += ay * bz - az * by
+            y += az * bx - ax * bz
+            z += ax * by - ay * bx
+        length = math.sqrt(x * x + y * y + z * z)
+        if length > 1e-15:
+            found[f, 0], found[f, 1], found[f, 2] = x / length, y / length, z / length
+        else:
+            found[f, 2] = 1.0
+        start += counts[f]
+    return found

@@ -9,13 +9,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf
-from shapely.geometry import Polygon
 
 from pipeline.entities.asset import Asset, Material, Mesh
 from pipeline.entities.plan import Plan, Room
 from pipeline.geometry.masonry import masonry
-from pipeline.geometry.tiling import convex_pieces
-from pipeline.geometry.walls import SLAB, Panel, Prism, Shell, outer_panels, reveals, room_panels
+from pipeline.geometry.walls import SLAB, Panel, Prism, Shell, floor_pieces, outer_panels, reveals, room_panels
 from pipeline.rendering import fittings, palette
 from pipeline.usd.articulation import convert_asset
 from pipeline.usd.layer import attribute, label, prim
@@ -36,7 +34,7 @@ def room_text(parent: str, plan: Plan, room: Room, shells: Mapping[int, Shell], 
     A staircase has its floor on its lowest storey, its ceiling on the highest, faces on all; `shells` holds the storeys' walls.
     """
     path = f"{parent}/{room.room_id}"
-    pieces = convex_pieces(Polygon(room.polygon))
+    pieces = floor_pieces(room)
     storeys = plan.levels_of(room)
     under = (len(storeys) - 1) * plan.storey_height + room.height
     parts = [placed((0.0, 0.0, room.level * plan.storey_height))]
@@ -129,7 +127,10 @@ def _fitting(asset: Asset, name: str) -> Fitting:
 def prism_points(polygon: NDArray[np.float64], bottom: float, top: float) -> NDArray[np.float64]:
     """Return the corners (2n, 3) of an upright prism over a polygon (n, 2), the lower ones first."""
     n = len(polygon)
-    return np.concatenate([np.column_stack([polygon, np.full(n, z)]) for z in (bottom, top)])
+    points = np.empty((2 * n, 3))
+    points[:n, :2] = points[n:, :2] = polygon
+    points[:n, 2], points[n:, 2] = bottom, top
+    return points
 
 
 @functools.cache

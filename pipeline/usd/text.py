@@ -68,12 +68,12 @@ def shaped(points: NDArray[np.floating], normals: NDArray[np.floating], interpol
 
 def numbers(values: Sequence[float]) -> str:
     """Return a tuple of numbers that reads back to the same bits."""
-    return f"({', '.join(repr(float(v)) for v in values)})"
+    return str((*map(float, values),))
 
 
 def rows_of(values: NDArray[np.float32]) -> str:
     """Return an array (n, k) as tuples."""
-    return f"[{', '.join(str(tuple(row)) for row in values.tolist())}]"
+    return str([*map(tuple, values.tolist())])
 
 
 def quoted(text: str) -> str:
