@@ -1,35 +1,95 @@
-"""The factory's vocabulary: the cards of its categories, layout types, and the names that other people give them."""
+"""The factory's vocabulary: the cards of its categories, types of rooms, and the names that other people give them."""
 
 from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from pipeline import yaml_text
+from pipeline import params, yaml_text
 from pipeline.card import Category, cards
 
-PATH = Path(__file__).resolve().parent.parent / "manifests" / "taxonomy.yaml"
+PATH = Path(__file__).resolve().parent.parent / "manifests" / "rooms.yaml"
+
+
+@dataclass(frozen=True, slots=True)
+class RoomType:
+    """What a room of a plan is like unless the request says otherwise.
+
+    `area` [m2] between inner wall faces, `width` [m] the least clear width, `exterior` whether it needs an outside wall, `window` whether it
+    gets windows where it has one, `habitable` whether daylight matters (energy terms 6 and 7), `useful` whether its area counts as useful
+    (term 9), `through` whether one may walk through it to another room, `square` whether a square shape is wanted (term 3).
+    `furnished_as` is the layout type, "": it stays empty; `unwanted` what it has not, though others furnished so have.
+    """
+
+    area: float
+    width: float
+    exterior: bool = False
+    window: bool = False
+    habitable: bool = False
+    useful: bool = True
+    through: bool = False
+    square: bool = True
+    furnished_as: str = ""
+    unwanted: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Rug:
+    """A rug of `category` lies in a `share` of rooms: under, across the foot of, or before one of these; or in the middle."""
+
+    category: str
+    share: float
+    under: tuple[str, ...] = ()
+    across: tuple[str, ...] = ()
+    before: tuple[str, ...] = ()
+    middle: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """A room as the layout model furnishes it: 3D-FRONT's types that are so, of which categories it `needs` one of each group.
+
+    What made ones hold besides: a rug, shares of rooms with things at all windows, expected numbers on the walls.
+    """
+
+    front: tuple[str, ...]
+    needs: tuple[tuple[str, ...], ...] = ()
+    rug: Rug | None = None
+    windows: Mapping[str, float] = field(default_factory=dict)
+    walls: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Rooms:
+    """manifests/rooms.yaml. `empty` are 3D-FRONT's types that are read, but not furnished; `styles` and `materials` 3D-FUTURE's."""
+
+    types: Mapping[str, RoomType]
+    layouts: Mapping[str, Layout]
+    empty: tuple[str, ...]
+    styles: tuple[str, ...]
+    materials: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Taxonomy:
-    """Categories by name and the maps of room types.
+    """Categories by name, types of rooms, and `front_rooms`: the layout type of each of 3D-FRONT's, None for one that stays empty.
 
-    `essentials` lists per layout type groups of categories; a room needs one of each group to serve as that room;
-    `unwanted` per type of a plan's room what is not put there.
     `styles` and `materials` map lower case to the spelling.
     """
 
     categories: Mapping[str, Category]
-    layout_types: tuple[str, ...]
-    essentials: Mapping[str, tuple[tuple[str, ...], ...]]
-    unwanted: Mapping[str, tuple[str, ...]]
+    types: Mapping[str, RoomType]
+    layouts: Mapping[str, Layout]
     front_rooms: Mapping[str, str | None]
-    plan_rooms: Mapping[str, str | None]
     styles: Mapping[str, str]
     materials: Mapping[str, str]
+
+    @property
+    def layout_types(self) -> tuple[str, ...]:
+        """Names of the layout model's types of rooms, in order."""
+        return tuple(self.layouts)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -71,18 +131,8 @@ def normalise(name: str) -> str:
 
 @functools.cache
 def load() -> Taxonomy:
-    """Read the cards and manifests/taxonomy.yaml."""
-    raw = yaml_text.parse(PATH.read_text(encoding="utf-8"))
-    essentials = {kind: tuple(tuple(group) for group in groups) for kind, groups in raw["essentials"].items()}
-    unwanted = {kind: tuple(names) for kind, names in raw["unwanted"].items()}
-    styles, materials = ({n.lower(): n for n in raw[key]} for key in ("styles", "materials"))
-    return Taxonomy(
-        cards(),
-        tuple(raw["layout_types"]),
-        essentials,
-        unwanted,
-        raw["front_rooms"],
-        raw["plan_rooms"],
-        styles,
-        materials,
-    )
+    """Read the cards and manifests/rooms.yaml."""
+    rooms = params.build(Rooms, yaml_text.parse(PATH.read_text(encoding="utf-8")), "rooms", "manifests/rooms.yaml")
+    front: dict[str, str | None] = {name: kind for kind, layout in rooms.layouts.items() for name in layout.front}
+    styles, materials = ({n.lower(): n for n in names} for names in (rooms.styles, rooms.materials))
+    return Taxonomy(cards(), rooms.types, rooms.layouts, {**front, **dict.fromkeys(rooms.empty)}, styles, materials)

@@ -65,7 +65,6 @@ from pipeline.corpus.furniture.assembly import shape_of
 from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.floorplan import parse
 from pipeline.floorplan.program.furniture import impossible, members, natural
-from pipeline.homes import customs
 from pipeline.sources import masses
 from pipeline.sources.articulated.household import candidates
 from pipeline.sources.atiss.labels import KINDS
@@ -84,7 +83,7 @@ for prompt in ("a flat with a bedroom with two hope chests", "Wohnung mit einem 
     assert [(c.category, c.min) for r in rooms for c in r.furniture.counts] == [("hope_chest", 2)], prompt
 assert natural("hope_chest") == ("bedroom",) and impossible("wc", "hope_chest") and not impossible("bedroom", "hope_chest")
 assert "hope_chest" in members("any_cabinet")
-assert customs.load().furniture["hope_chest"] == {"candle": 0.4, "incense_burner": 0.5} and customs.load().furniture["sideboard"]["incense_burner"] == 0.1
+assert card.cards()["hope_chest"].holds == {"candle": 0.4, "incense_burner": 0.5} and card.cards()["sideboard"].holds["incense_burner"] == 0.1
 made = catalogue(0)
 new = [m for m in (*made.future, *made.partnet) if m.category == "hope_chest"]
 assert len(new) == 6 and {m.future_name for m in new} == {"Hope Chest"} and {m.partnet_category for m in new} == {"", "HopeChest"}

@@ -36,11 +36,8 @@ from pipeline.sources.threed_front.future import read_model, read_model_info
 
 MARKS = ("<!-- counts: made by benchmarks/pictures/library.py -->\n", "<!-- end of counts -->\n")
 SHEETS = {
-    "beds": ("double_bed", "single_bed", "kids_bed"),
     "chairs": ("dining_chair", "lounge_chair", "dressing_chair", "chinese_chair", "barstool", "stool"),
     "sofas": ("multi_seat_sofa", "loveseat_sofa", "armchair", "l_shaped_sofa", "lazy_sofa", "chaise_longue_sofa"),
-    "tables": ("dining_table", "desk", "dressing_table"),
-    "small_tables": ("coffee_table", "corner_side_table", "round_end_table"),
     "cabinets": (
         "bookshelf",
         "shelf",
@@ -53,33 +50,12 @@ SHEETS = {
         "children_cabinet",
         "shoe_cabinet",
     ),
-    "lamps": ("pendant_lamp", "ceiling_lamp", "floor_lamp", "wall_lamp", "table_lamp"),
-    "things": (
-        "plant",
-        "vase",
-        "rug",
-        "curtain",
-        "pillow",
-        "picture",
-        "mirror",
-        "clock",
-        "cup",
-        "plate",
-        "bowl",
-        "book",
-        "book_stack",
-        "basket",
-    ),
 }
 OPEN_SHEETS = {
     "open_furniture": ("wardrobe", "nightstand", "cabinet", "sideboard", "desk", "tv_stand", "wine_cabinet", "shoe_cabinet"),
     "open_kitchen_bath": (
         *("kitchen_cabinet", "tall_unit", "sink_cabinet", "refrigerator", "oven", "dishwasher", "microwave", "washing_machine"),
         *("toilet", "vanity", "trash_can"),
-    ),
-    "open_things": (
-        *("laptop", "phone", "camera", "printer", "toaster", "coffee_machine", "kitchen_pot", "bucket", "storage_box", "suitcase"),
-        *("briefcase", "safe", "drawer_organiser", "room_door"),
     ),
 }
 OPEN = 0.7  # of the range of every joint

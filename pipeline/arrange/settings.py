@@ -34,7 +34,7 @@ class SeparateSettings:
 class ThingsSettings:
     """Small things on and in finished furniture."""
 
-    rate: float = 1.0  # factor on the expected numbers on the cards in manifests/categories and in manifests/calibration/things.yaml; 0: no small things
+    rate: float = 1.0  # factor on the expected numbers on the cards in manifests/categories and in manifests/rooms.yaml; 0: no small things
     hidden: float = 0.1  # weight of a place in a drawer or behind a door, beside 1 of an open one
     margin: float = 0.01  # distance from edges and from each other [m]
     tries: int = 8  # places that are tried per thing

@@ -62,11 +62,6 @@ class Reference:
     defects: Mapping[str, tuple[int, int]]
     relations: Mapping[str, tuple[float, ...]]
 
-    @property
-    def labelled(self) -> frozenset[str]:
-        """Labels of any kind of room: what the peers count as an object at all."""
-        return frozenset(label for kind in self.classes.values() for label in kind.counts)
-
     def counted(self, category: str) -> bool:
         """Whether the peers have a label for the category in any kind of room."""
         return any(kind.label(category) for kind in self.classes.values())

@@ -130,10 +130,6 @@ class Model:
         """Whether nothing of it ever moves."""
         return not self.joints and len(self.grounded) == len(self.bodies)
 
-    def joint_to(self, body: int) -> Joint | None:
-        """Return the joint that carries a body, None for a root."""
-        return next((joint for joint in self.joints if joint.child == body), None)
-
     def surfaces(self) -> list[Surface]:
         """Return the surfaces of all bodies."""
         return [surface for body in self.bodies for surface in body.surfaces]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.geometry.convex import clipped_areas, gaps
+from pipeline.geometry.convex import clipped_areas
 
 Floats = NDArray[np.float64]
 
@@ -24,14 +24,6 @@ def footprints(position: Floats, yaw: Floats, size: Floats) -> Floats:
 def overlap_areas(a: Floats, b: Floats) -> Floats:
     """Return the area (P,) [m2] shared by P pairs of convex polygons (P, V, 2), counter-clockwise."""
     return clipped_areas(np.ascontiguousarray(a, np.float64), np.ascontiguousarray(b, np.float64))
-
-
-def separations(a: Floats, b: Floats) -> Floats:
-    """Return the gap (P,) [m] between P pairs of convex polygons by the separating axis theorem; negative is a depth.
-
-    Exact as a depth and as a verdict (disjoint or not); for disjoint polygons a lower bound of the distance.
-    """
-    return gaps(np.ascontiguousarray(a, np.float64), np.ascontiguousarray(b, np.float64))
 
 
 def volumes(size: Floats) -> Floats:

@@ -174,12 +174,3 @@ def _labelled(mask: Mask) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
         for j in range(columns):
             found[i, j] = max(labels[(i + 1) * wide + j + 1], 0)
     return found, sizes
-
-
-def largest_component(mask: Mask) -> Mask:
-    """Return the largest 4-connected part of a mask (the first of equal ones)."""
-    labels, sizes = components(mask)
-    if len(sizes) == 1:
-        return mask.copy()
-    largest: Mask = labels == 1 + int(np.argmax(sizes[1:]))
-    return largest

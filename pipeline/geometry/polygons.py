@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from pipeline.geometry.compiled import compiled
@@ -77,26 +76,3 @@ def excess(shape: Floats, polygon: Floats) -> float:
         wall[3, 0], wall[3, 1] = x1 + nx, y1 + ny
         worst = max(worst, -gap(shape, wall))
     return worst
-
-
-@compiled
-def excesses(shapes: Floats, polygon: Floats) -> Floats:
-    """Return `excess` of N shapes (N, V, 2) -> (N,) [m]."""
-    found = np.empty(shapes.shape[0])
-    for k in range(shapes.shape[0]):
-        found[k] = excess(shapes[k], polygon)
-    return found
-
-
-def contains_points(points: Floats, polygon: Floats) -> NDArray[np.bool_]:
-    """Tell which points (N, 2) are in a polygon, its boundary included."""
-    found: NDArray[np.bool_] = shapely.intersects_xy(shapely.Polygon(polygon), points[:, 0], points[:, 1])
-    return found
-
-
-def inside_ratios(shapes: Floats, polygon: Floats) -> Floats:
-    """Return the share (N,) of the area of convex shapes (N, V, 2) that is in a polygon; 1 for a degenerate shape."""
-    drawn = shapely.polygons(shapes)
-    area = shapely.area(drawn)
-    shared = shapely.area(shapely.intersection(drawn, shapely.Polygon(polygon)))
-    return np.where(area > 1e-12, shared / np.maximum(area, 1e-12), 1.0)

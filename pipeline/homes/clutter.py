@@ -16,9 +16,9 @@ from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Room
 from pipeline.geometry.prisms import solid
 from pipeline.geometry.walls import Leaf, leaves
-from pipeline.homes import customs
 from pipeline.homes.library import Library
 from pipeline.homes.request import layout_type
+from pipeline.taxonomy import Layout, Rug
 
 Floats = NDArray[np.float64]
 
@@ -77,18 +77,19 @@ class _Dressing:
         """Lay the rug, dress windows and walls, then lay things on and in the furniture."""
         if not self.furniture:
             return []
-        known = customs.load()
+        known = taxonomy.load().layouts.get(self.kind, Layout(()))
         laying = Laying(self.room.polygon, self.furniture, self.library, self.settings, self.touch)
-        if self.kind in known.rugs and self.rng.random() < known.rugs[self.kind].share * self.settings.rate:
-            self._rug(known.rugs[self.kind])
-        if self.kind in known.windows or self.kind in known.walls:
+        if known.rug and self.rng.random() < known.rug.share * self.settings.rate:
+            self._rug(known.rug)
+        if known.windows or known.walls:
             hanging = self._hanging(laying)
-            self._windows(hanging, known.windows.get(self.kind, {}))
-            for category, expected in known.walls.get(self.kind, {}).items():
-                self._walls(hanging, category, expected, known.hanging[category])
+            self._windows(hanging, known.windows)
+            for category, expected in known.walls.items():
+                if custom := cards()[category].hangs:
+                    self._walls(hanging, category, expected, custom)
             laying.fix([p for p in self.found if p.position[2] > self.floor])
         for number, support in enumerate(self.furniture):
-            self._load(laying, number, support, known)
+            self._load(laying, number, support)
         return self.found
 
     def _add(self, category: str, asset_id: str, position: Floats, yaw: float, scale: Floats | None = None, support: str = "") -> None:
@@ -116,7 +117,7 @@ class _Dressing:
 
     # -- floor -------------------------------------------------------------------------------------------------------
 
-    def _rug(self, custom: customs.RugCustom) -> None:
+    def _rug(self, custom: Rug) -> None:
         drawn = {asset_id for _ in range(RUGS_TRIED) if (asset_id := self._picked(custom.category))}
         supers = taxonomy.load().categories
         clear = [
@@ -133,7 +134,7 @@ class _Dressing:
                 self._add(custom.category, asset_id, np.array([*position, self.floor]), yaw, scale)
                 return
 
-    def _rug_places(self, custom: customs.RugCustom, size: Floats) -> list[tuple[float, float, float]]:
+    def _rug_places(self, custom: Rug, size: Floats) -> list[tuple[float, float, float]]:
         """Return middles and directions (x, y, yaw) for a rug of `size`, the best first."""
         places = [(float(p.position[0]), float(p.position[1]), p.yaw) for p in self._of(*custom.under)]
         places += [self._ahead(p, -under * float(p.size[1])) for p in self._of(*custom.across) for under in UNDER_BED]
@@ -209,8 +210,8 @@ class _Dressing:
 
     # -- furniture ---------------------------------------------------------------------------------------------------
 
-    def _load(self, laying: Laying, number: int, support: Placement, known: customs.Customs) -> None:
-        for category, expected in known.furniture.get(support.category, {}).items():
+    def _load(self, laying: Laying, number: int, support: Placement) -> None:
+        for category, expected in cards()[support.category].holds.items():
             for _ in range(self._drawn(expected)):
                 asset_id = self._picked(category, self.library.rows[support.asset_id]["style"])
                 if not asset_id:
@@ -219,8 +220,3 @@ class _Dressing:
                 place = laying.lay(self.rng, self.library[asset_id], number, facing=facing, centred=centred, backed=backed)
                 if place is not None:
                     self._add(category, asset_id, *place, support=support.object_id)
-
-
-def placeable() -> frozenset[str]:
-    """Return the categories of small things that homes may hold."""
-    return customs.load().categories()

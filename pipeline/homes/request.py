@@ -55,12 +55,12 @@ class RoomJob:
 
     def essentials(self, taxonomy: Taxonomy) -> tuple[tuple[str, ...], ...]:
         """Return the groups of categories of which the room needs one thing each; a stated number of objects may be too small for them."""
-        groups = taxonomy.essentials.get(self.layout_type, ()) if self.count is None else ()
+        groups = taxonomy.layouts[self.layout_type].needs if self.count is None and self.layout_type in taxonomy.layouts else ()
         return tuple(group for group in groups if not set(group) <= set(self.unwanted(taxonomy)))
 
     def unwanted(self, taxonomy: Taxonomy) -> tuple[str, ...]:
         """Return what is not put into rooms of the plan's type, though rooms of the same layout type have it: no tub into a WC."""
-        return taxonomy.unwanted.get(self.room.type, ())
+        return taxonomy.types[self.room.type].unwanted if self.room.type in taxonomy.types else ()
 
     @property
     def bounds(self) -> tuple[int | None, int | None]:
@@ -84,4 +84,6 @@ def layout_type(room: Room, plan: Plan, taxonomy: Taxonomy) -> str | None:
         largest = max((r for r in plan.rooms if r.type in LIVING), key=lambda r: r.area)
         if "dining" in room.functions or (not told and room.room_id == largest.room_id and room.area >= TABLE):
             return "living_dining_room"
-    return room.type if room.type in taxonomy.layout_types else taxonomy.plan_rooms.get(room.type)
+    if room.type in taxonomy.layouts:
+        return room.type
+    return (taxonomy.types[room.type].furnished_as or None) if room.type in taxonomy.types else None

@@ -21,14 +21,6 @@ def by_room(rows: Iterable[Row]) -> dict[tuple[str, str], list[Row]]:
     return grouped
 
 
-def by_scene(rows: Iterable[Row]) -> dict[str, list[Row]]:
-    """Group rows by scene_id, in order of appearance."""
-    grouped: dict[str, list[Row]] = {}
-    for row in rows:
-        grouped.setdefault(row["scene_id"], []).append(row)
-    return grouped
-
-
 def boxes(objects: Sequence[Row]) -> Boxes:
     """Return the boxes of objects."""
     position = np.array([o["position"] for o in objects], float).reshape(-1, 3)

@@ -20,7 +20,7 @@ FORMAT = "sfgen-dataset-2"
 def everything() -> dict[str, list[str]]:
     """Return what homes may hold: every category and every room type, in an order that a dataset keeps."""
     known = taxonomy.load()
-    return {"categories": list(known.categories), "room_types": sorted({*known.plan_rooms, *known.layout_types})}
+    return {"categories": list(known.categories), "room_types": sorted({*known.types, *known.layout_types})}
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from pxr import Ar, Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics, UsdUtils
+from pxr import Ar, Gf, Tf, Usd, UsdGeom, UsdPhysics, UsdUtils
 
 from pipeline.errors import ContentError
 
@@ -98,8 +98,3 @@ def _joint_faults(joint: UsdPhysics.Joint, cache: UsdGeom.XformCache) -> Iterato
     identity = Gf.Matrix4d(1.0)
     if max(abs(difference[i][j] - identity[i][j]) for i in range(4) for j in range(4)) > TOLERANCE:
         yield f"{path} has disjointed frames"
-
-
-def layer_is_relative(layer: Sdf.Layer) -> bool:
-    """Tell whether a layer refers to nothing by an absolute path."""
-    return not any(name.startswith("/") or "://" in name for name in layer.GetCompositionAssetDependencies())

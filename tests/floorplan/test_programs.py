@@ -25,7 +25,7 @@ def program(*rooms, **more):
 
 
 def test_every_room_type_has_defaults_and_a_place_in_the_taxonomy():
-    assert set(RoomType.__args__) == set(DEFAULTS) == set(taxonomy.load().plan_rooms)
+    assert set(RoomType.__args__) == set(DEFAULTS) == set(taxonomy.load().types)
     assert len(DEFAULTS) == 24
 
 

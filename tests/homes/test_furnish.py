@@ -19,7 +19,7 @@ def job(layout_type, count=None, wishes=()):
 def test_a_room_is_to_hold_what_makes_it_that_room():
     words = taxonomy.load()
     asked = category_bounds(job("kitchen"), words)
-    assert [d.categories for d in asked] == list(words.essentials["kitchen"])
+    assert [d.categories for d in asked] == list(words.layouts["kitchen"].needs)
     assert all(d.least == 1 for d in asked)
     assert category_bounds(job("hallway"), words) == ()
 

@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from pipeline.card import cards
 from pipeline.geometry.polygons import boundary_distance
-from pipeline.homes import customs
-from pipeline.homes.clutter import placeable
 from pipeline.homes.request import Request
 from pipeline.taxonomy import load
 from pipeline.verify import verify_home
@@ -50,7 +49,7 @@ def test_things_lie_on_furniture_of_their_room(stocked, outcomes):
         placed = {p.object_id: p for p in outcome.home.placements}
         for p in things(outcome):
             assert placed[p.support].room_id == p.room_id
-            assert p.category in customs.load().furniture[placed[p.support].category]
+            assert p.category in cards()[placed[p.support].category].holds
             assert np.array_equal(p.scale, np.ones(3))
             assert np.array_equal(p.position, np.round(p.position, 4))
         assert not verify_home(outcome.home, stocked.library, stocked.verify).faults(stocked.verify.policy)
@@ -100,8 +99,10 @@ def test_curtains_hang_before_windows_and_nothing_else_does(outcomes):
 
 def test_what_lies_on_furniture_can_be_taken_away():
     words = load()
-    assert all(words.categories[name].loose for wanted in customs.load().furniture.values() for name in wanted)
+    assert all(words.categories[name].loose for card in cards().values() for name in card.holds)
     assert not words.categories["rug"].loose
-    assert not any(words.categories[name].layout for name in placeable())
+    besides = {name for room in words.layouts.values() for name in (*room.windows, *room.walls, *([room.rug.category] if room.rug else []))}
+    assert besides
+    assert not any(words.categories[name].layout for name in besides)
     assert not words.categories["curtain"].loose
     assert not words.categories["room_door"].loose

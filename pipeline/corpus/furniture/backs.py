@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.corpus.furniture.bent import arc, band, curve, lean, prism, tube
 from pipeline.corpus.furniture.finishes import Finish, Scheme, cane
 from pipeline.corpus.furniture.shape import Piece, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, box, circle, cushion, rod, slab
+from pipeline.corpus.furniture.solids import Solid, beam, box, circle, rod, slab
 from pipeline.corpus.furniture.upholstery import padded
 
 
@@ -149,8 +149,3 @@ def crest(frame: Frame, steps: int = 6) -> list[Solid]:
     )
     rise = frame.high - frame.low
     return band(path, 0.8 * frame.thick, (frame.low + 0.8 * rise, frame.high))
-
-
-def shoulders(frame: Frame, thick: float) -> Solid:
-    """Return an upholstered back with rounded shoulders as one solid."""
-    return cushion((-frame.x, frame.x), (frame.y - thick / 2, frame.y + thick / 2), (frame.low, frame.high), 0.45 * thick, 3)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -213,13 +212,3 @@ def opening(number: int, gap: WallOpening, walls: Sequence[Wall], angle: float) 
     ends = np.array([[at, gap.low / 100], [at, gap.high / 100]]) if wall.vertical else np.array([[gap.low / 100, at], [gap.high / 100, at]])
     swing = None if gap.swing_room is None else Swing(f"room_{gap.swing_room}", gap.hinge, angle)
     return Opening(f"opening_{number}", gap.kind, tuple(f"room_{r}" for r in gap.rooms), ends, gap.height, gap.sill, swing)
-
-
-def leaf_corner(gap: Opening, into: tuple[float, float]) -> tuple[float, float, float, float]:
-    """Return the rectangle that the swinging leaf sweeps, in plan [m]. `into` is the unit normal of the side it opens to."""
-    assert gap.swing is not None
-    (ax, ay), (bx, by) = gap.segment.tolist()
-    w = math.hypot(bx - ax, by - ay)
-    corners = [(ax, ay), (bx, by), (ax + into[0] * w, ay + into[1] * w), (bx + into[0] * w, by + into[1] * w)]
-    xs, ys = zip(*corners, strict=True)
-    return (min(xs), min(ys), max(xs), max(ys))

@@ -49,7 +49,7 @@ def meant(things: Things, kind: str) -> tuple[str, ...]:
 def furnished(kind: str) -> bool:
     """Whether rooms of a type are furnished at all."""
     known = taxonomy.load()
-    return kind in known.layout_types or known.plan_rooms.get(kind) is not None
+    return kind in known.layouts or (kind in known.types and known.types[kind].furnished_as != "")
 
 
 def natural(selector: str) -> tuple[str, ...]:

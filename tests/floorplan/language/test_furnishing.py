@@ -184,7 +184,7 @@ def test_wishes_without_rooms_are_the_homes():
 
 def test_the_lexicon_names_every_category_in_every_language():
     data = lexicon()
-    known, rooms = taxonomy.load().names, set(taxonomy.load().plan_rooms)
+    known, rooms = taxonomy.load().names, set(taxonomy.load().types)
     for name in known:
         assert {k for k, forms in data["names"][name].items() if forms} == {"en", "de", "es", "zh"}, name
         assert natural(name)
