@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pipeline import params, yaml_text
+from pipeline import params, style, yaml_text
 from pipeline.card import Category, cards
 
 PATH = Path(__file__).resolve().parent.parent / "manifests" / "rooms.yaml"
@@ -63,12 +63,11 @@ class Layout:
 
 @dataclass(frozen=True, slots=True)
 class Rooms:
-    """manifests/rooms.yaml. `empty` are 3D-FRONT's types that are read, but not furnished; `styles` and `materials` 3D-FUTURE's."""
+    """manifests/rooms.yaml. `empty` are 3D-FRONT's types that are read, but not furnished; `materials` 3D-FUTURE's."""
 
     types: Mapping[str, RoomType]
     layouts: Mapping[str, Layout]
     empty: tuple[str, ...]
-    styles: tuple[str, ...]
     materials: tuple[str, ...]
 
 
@@ -134,5 +133,5 @@ def load() -> Taxonomy:
     """Read the cards and manifests/rooms.yaml."""
     rooms = params.build(Rooms, yaml_text.parse(PATH.read_text(encoding="utf-8")), "rooms", "manifests/rooms.yaml")
     front: dict[str, str | None] = {name: kind for kind, layout in rooms.layouts.items() for name in layout.front}
-    styles, materials = ({n.lower(): n for n in names} for names in (rooms.styles, rooms.materials))
+    styles, materials = ({n.lower(): n for n in names} for names in (style.load().styles, rooms.materials))
     return Taxonomy(cards(), rooms.types, rooms.layouts, {**front, **dict.fromkeys(rooms.empty)}, styles, materials)

@@ -8,13 +8,14 @@ from typing import Literal
 
 import numpy as np
 
-from pipeline.corpus.furniture.styles import MANNERS, Manner
+from pipeline import style
+from pipeline.corpus.furniture.styles import MANNERS
+from pipeline.style import Color, StyleSpec
 
 Pattern = Literal[
     "plain", "grain", "weave", "speckle", "leather", "boucle", "velvet", "brushed", "concrete", "marble", "terrazzo", "stripe", "check", "floral",
     "cane", "knit", "leaf", "rug_border", "rug_diamonds", "rug_stripes", "art_blocks", "art_hills", "art_circles", "art_lines", "dial",
 ]  # fmt: skip
-Color = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,91 +51,13 @@ class Scheme:
     second: Finish
     material: str
     style: str
-    manner: Manner
+    manner: StyleSpec
     timber: Finish
     stone: Finish
 
 
-WOODS: Mapping[str, Color] = {
-    "oak": (0.47, 0.30, 0.16),
-    "walnut": (0.19, 0.095, 0.05),
-    "beech": (0.58, 0.37, 0.20),
-    "ash": (0.62, 0.47, 0.31),
-    "cherry": (0.36, 0.14, 0.07),
-    "teak": (0.38, 0.20, 0.09),
-    "wenge": (0.07, 0.04, 0.03),
-    "birch": (0.68, 0.52, 0.35),
-    "grey_oak": (0.33, 0.28, 0.23),
-    "rosewood": (0.20, 0.06, 0.035),
-    "smoked_oak": (0.12, 0.075, 0.045),
-    "reclaimed": (0.30, 0.19, 0.11),
-    "mahogany": (0.22, 0.055, 0.03),
-    "huanghuali": (0.36, 0.15, 0.05),
-    "ebony": (0.035, 0.022, 0.018),
-    "hinoki": (0.66, 0.47, 0.28),
-    "whitewashed": (0.66, 0.61, 0.53),
-    "bamboo": (0.58, 0.41, 0.18),
-    "rattan": (0.48, 0.29, 0.12),
-}
-LACQUERS: Mapping[str, Color] = {
-    "white": (0.80, 0.80, 0.78),
-    "ivory": (0.74, 0.68, 0.56),
-    "light_grey": (0.50, 0.50, 0.50),
-    "anthracite": (0.055, 0.06, 0.065),
-    "sage": (0.27, 0.34, 0.25),
-    "navy": (0.03, 0.06, 0.13),
-    "dusty_blue": (0.22, 0.33, 0.43),
-    "terracotta": (0.46, 0.17, 0.09),
-    "mustard": (0.55, 0.35, 0.06),
-    "blush": (0.62, 0.36, 0.32),
-    "black": (0.02, 0.02, 0.022),
-    "mint": (0.38, 0.57, 0.46),
-    "greige": (0.50, 0.45, 0.38),
-    "emerald": (0.015, 0.12, 0.075),
-    "rust": (0.30, 0.10, 0.04),
-    "barn_red": (0.30, 0.045, 0.035),
-    "aqua": (0.20, 0.50, 0.52),
-    "gold_leaf": (0.60, 0.43, 0.16),
-    "lacquer_red": (0.36, 0.02, 0.015),
-    "jade": (0.06, 0.25, 0.16),
-    "sky": (0.30, 0.55, 0.75),
-    "lemon": (0.75, 0.60, 0.14),
-    "coral": (0.70, 0.24, 0.16),
-}
-FABRICS: Mapping[str, Color] = {
-    "linen": (0.56, 0.49, 0.39),
-    "grey_cloth": (0.28, 0.28, 0.29),
-    "charcoal": (0.07, 0.07, 0.075),
-    "cream_cloth": (0.70, 0.64, 0.53),
-    "blue_cloth": (0.08, 0.15, 0.28),
-    "green_velvet": (0.04, 0.14, 0.09),
-    "rust_cloth": (0.42, 0.13, 0.05),
-    "pink_cloth": (0.56, 0.29, 0.27),
-    "ochre_cloth": (0.50, 0.30, 0.06),
-    "teal_cloth": (0.04, 0.22, 0.24),
-    "taupe_cloth": (0.33, 0.26, 0.20),
-    "snow_cloth": (0.76, 0.74, 0.70),
-    "indigo_cloth": (0.035, 0.055, 0.14),
-    "grey_velvet": (0.22, 0.23, 0.25),
-    "wine_velvet": (0.20, 0.02, 0.03),
-    "plum_cloth": (0.17, 0.05, 0.10),
-    "jade_cloth": (0.10, 0.28, 0.19),
-    "lilac_cloth": (0.48, 0.38, 0.55),
-    "mint_cloth": (0.36, 0.58, 0.46),
-    "coral_cloth": (0.66, 0.22, 0.15),
-}
-LEATHERS: Mapping[str, Color] = {"cognac": (0.30, 0.11, 0.035), "black_leather": (0.02, 0.019, 0.018), "cream_leather": (0.62, 0.54, 0.42)}
-METALS: Mapping[str, Color] = {
-    "steel": (0.55, 0.55, 0.56),
-    "black_metal": (0.025, 0.025, 0.027),
-    "brass": (0.62, 0.42, 0.15),
-    "bronze": (0.16, 0.10, 0.06),
-    "white_metal": (0.76, 0.76, 0.75),
-    "gunmetal": (0.09, 0.09, 0.10),
-    "copper": (0.56, 0.26, 0.14),
-    "gold": (0.70, 0.50, 0.18),
-}
-
+COLOURS = style.load().colours
+WOODS, LACQUERS, FABRICS, LEATHERS, METALS = (COLOURS[kind] for kind in ("woods", "lacquers", "fabrics", "leathers", "metals"))
 CLOTH_GROUNDS: Color = (0.72, 0.68, 0.60)  # the light thread of striped, checked and flowered cloth
 
 CERAMIC = Finish("ceramic", (0.86, 0.86, 0.85), 0.12, density=2300)

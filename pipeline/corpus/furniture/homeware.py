@@ -9,12 +9,13 @@ import math
 import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, lean, tube, turns
-from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Color, Finish, Scheme, shade
+from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, shade
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, pillow, revolve, ring, rod, slab
 from pipeline.corpus.furniture.storage import Size, pick
 from pipeline.corpus.furniture.tableware import glaze
 from pipeline.corpus.furniture.wall_decor import INKS, bordered
+from pipeline.style import Color
 
 SCREEN = Finish("screen", (0.008, 0.009, 0.011), 0.08, density=1200)
 SHELL = Finish("shell", (0.02, 0.02, 0.022), 0.35, density=1100)

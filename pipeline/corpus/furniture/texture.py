@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture import patterns
-from pipeline.corpus.furniture.finishes import Color, Finish
+from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.shape import Piece
+from pipeline.style import Color
 
 FINEST = 256.0  # [pixels per metre]
 LARGEST = 320  # pixels a side; a model too large for that at FINEST gets fewer per metre

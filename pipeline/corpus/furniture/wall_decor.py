@@ -7,10 +7,11 @@ import math
 import numpy as np
 
 from pipeline.corpus.furniture.bent import turns
-from pipeline.corpus.furniture.finishes import FABRICS, MIRROR, PAPER, Color, Finish, Pattern, Scheme, shade
+from pipeline.corpus.furniture.finishes import FABRICS, MIRROR, PAPER, Finish, Pattern, Scheme, shade
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab
 from pipeline.corpus.furniture.storage import Size, pick
+from pipeline.style import Color
 
 INKS: tuple[tuple[Color, Color], ...] = (
     ((0.75, 0.70, 0.60), (0.05, 0.08, 0.14)),

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from pipeline import taxonomy, yaml_text
+from pipeline import style, taxonomy, yaml_text
 from pipeline.card import cards
 from pipeline.floorplan.program.floor_program import FloorProgram, Furniture, RoomReq, Things
 
@@ -23,7 +23,8 @@ def lexicon() -> Mapping[str, Any]:
     found: dict[str, Any] = yaml_text.parse(LEXICON.read_text(encoding="utf-8"))
     names = {name: card.words for name, card in cards().items() if card.words}
     groups = {group: tuple(name for name, card in cards().items() if group in card.groups) for group in found["groups"]}
-    return found | {"names": found["groups"] | names, "groups": groups}
+    looks = {name: made.words for name, made in style.load().styles.items() if made.words}
+    return found | {"names": found["groups"] | names, "groups": groups, "styles": looks}
 
 
 def members(selector: str) -> tuple[str, ...]:
