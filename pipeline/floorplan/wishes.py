@@ -6,7 +6,8 @@ import dataclasses
 from collections.abc import Mapping
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language.attaching import Mention, attach, mentioned, read_furniture
+from pipeline.floorplan.language.attaching import Mention, attach, mentioned
+from pipeline.floorplan.language.furnishing import read_furniture
 from pipeline.floorplan.language.parser import bounded, understand_rooms
 from pipeline.floorplan.program.consistency import ImpossibleError, check_furniture
 from pipeline.floorplan.program.floor_program import Evidence, FloorProgram, RoomReq

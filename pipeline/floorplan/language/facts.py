@@ -1,15 +1,12 @@
-"""What is known while a prompt is read: its rooms, the facts about them, the sentence at hand, and the program as it is put together."""
+"""What is known while a prompt is read: its rooms, and the facts about them."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from typing import Any
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.marks import Mark, Words
 from pipeline.floorplan.language.phrases import Element
-from pipeline.floorplan.language.text import spread
 from pipeline.floorplan.program.floor_program import MAX_ROOMS
 
 MOST = MAX_ROOMS + 1
@@ -32,6 +29,7 @@ class Named:
     open_slot: bool = False
     whole: bool = False  # one of a count of all such rooms: "a two-bedroom flat"
     extra: bool = False  # "another bathroom": none of those named in front
+    secondary: bool = False  # beside the main one: "次卧"
     index: int = 0
     stated: bool = True
     span: tuple[int, int] | None = None  # the words that named it first, as tokens
@@ -80,12 +78,20 @@ class Inventory:
         """Whether a room belongs to another one."""
         return room_id in self.belongings
 
+    def zone(self, name: str) -> list[str]:
+        """Return the rooms that the name of a zone means."""
+        return [r.id for r in self.rooms if r.type in ZONES.get(name, ()) or (r.type == "bedroom" and r.role == name)]
 
+
+GROUND_FLOOR = 0
 HALLS = {"hallway", "entry"}
-GROUPS = {"no_ensuite", "door", "leads", "open", "near", "wall", "ban", "avoid", "away", "no_through"}
 SOCIAL = {"kitchen", "dining_room", "living_room", "family_room"}
-PERSONAL = {"bathroom", "wc", "closet", "balcony", "office", "storage", "sunroom"}
+PERSONAL = {"bathroom", "wc", "closet", "balcony", "office", "storage", "sunroom"}  # what a bedroom may have of its own
+PRIVATE = {"balcony", "garage", "bathroom", "wc", "closet", "storage", "utility", "bedroom"}  # nothing stands open to these
+ZONES = {"bedroom": ("bedroom",), "living": ("living_room", "dining_room", "family_room"), "work": ("office", "meeting_room")}
 ROLES = {"primary", "guest", "child"}  # said by an adjective
+FRONT = {"door", "near", "open", "wall", "from", "ensuite", "cmp", "via"}  # relations to one room, behind which a list begins anew
+GROUPS = {"no_ensuite", "door", "leads", "open", "near", "wall", "ban", "avoid", "away", "no_through"}  # may be said of all rooms
 Group = tuple[str, ...]
 
 
@@ -139,97 +145,3 @@ class Reading:
         self.understood(element.first, element.last)
         if a or b:
             self.facts.append(Fact(what, tuple(dict.fromkeys(a)), tuple(dict.fromkeys(b)), value, element.first, element.last))
-
-
-class Clause(ABC):
-    """One sentence while it is read from left to right: what the words so far are about, and what its readers ask of each other."""
-
-    def __init__(self, state: Reading, sentence: list[Element]) -> None:
-        self.state, self.sentence = state, sentence
-        self.stock = state.inventory
-        self.run: list[Element] = []  # the list of phrases in front of the next cue
-        self.subject: Group = ()
-        self.latest: Group = ()
-        self.objects: Group = ()
-        self.waiting: tuple[Element, Group] | None = None  # a cue in front of its subject: "next to the kitchen lies ..."
-        self.negative: Element | None = None
-        self.way: Fact | None = None  # the last way that was said
-        self.verb = self.relative = self.single = False
-        self.only: Element | None = None
-        self.factor: Element | None = None
-        self.owner = ""
-        self.owning = ""
-        first = next((e for e in sentence if e.kind in {"np", "level", "zone", "every"}), None)
-        self.forward = first is not None and first.kind == "level"
-        self.level: int | None = None
-        self.left_out: Group = ()  # "except the guest room, each has ..."
-        self.wing: tuple[Element, list[str]] | None = None  # words for a wing in front of its rooms
-
-    def negated(self, k: int) -> bool:
-        """Whether a negation stands just in front of the element at k."""
-        return any(x.kind == "neg" for x in self.sentence[max(0, k - 3) : k])
-
-    @abstractmethod
-    def push(self, k: int, e: Element, ids: Group) -> None:
-        """Take a group into the list in front of the next cue."""
-
-    @abstractmethod
-    def after(self, k: int, cue: str, left: Group) -> tuple[Group, int]:
-        """Return the rooms named after a cue, and where reading goes on."""
-
-    @abstractmethod
-    def point(self, e: Element, k: int, but: Group) -> Group:
-        """Return the rooms that a pronoun stands for."""
-
-    def give(self, things: Group, owners: Group, e: Element) -> None:
-        """Let rooms belong to others."""
-        self.stock.belongings.update(things)
-        self.state.say("own", things, owners, e)
-
-
-class Draft:
-    """The program while it is put together, as plain data for pydantic."""
-
-    def __init__(self, heard: Words) -> None:
-        self.prompt, self.tokens = heard.prompt, heard.tokens
-        self.links: dict[tuple[str, str], dict[str, Any]] = {}
-        self.forbids: list[dict[str, Any]] = []
-        self.relations: list[dict[str, Any]] = []
-        self.evidence: list[dict[str, Any]] = []
-        self.zones: list[dict[str, Any]] = []
-        self.fields: dict[str, Any] = {}
-
-    def cite(self, first: int, last: int, field: str) -> None:
-        """Note that `field` was read from tokens[first:last]."""
-        start, end = spread(self.tokens[first:last] or self.tokens[first : first + 1])
-        made = {"start": start, "end": end, "text": self.prompt[start:end], "field": field}
-        if made not in self.evidence[-40:]:
-            self.evidence.append(made)
-
-    def link(self, a: str, b: str, kind: str, fact: Fact) -> None:
-        """Add a link, or sharpen the one there is."""
-        if a == b:
-            return
-        key = (min(a, b), max(a, b))
-        old = self.links.get(key)
-        if old is None or (old["kind"] in {"any", "wall"} and kind not in {"any", "wall"}):
-            self.links[key] = {"a": a, "b": b, "kind": kind, "stated": True}
-        self.cite(fact.first, fact.last, f"links.{a}-{b}")
-
-    def linked(self, a: str) -> set[str]:
-        """Return the rooms that a room is joined to by an opening."""
-        return {k[1] if k[0] == a else k[0] for k, v in self.links.items() if a in k and v["kind"] != "wall"}
-
-    def relate(self, kind: str, a: str, b: str | None, value: float, fact: Fact, c: str | None = None) -> None:
-        """Add a relation once."""
-        made = {"kind": kind, "a": a, "b": b, "value": value} | ({"c": c} if c else {})
-        if made not in self.relations:
-            self.relations.append(made)
-            self.cite(fact.first, fact.last, f"relations.{kind}.{a}")
-
-    def forbid(self, what: str, a: str, b: str | None, avoid: str | None, first: int, last: int) -> None:
-        """Add a prohibition once."""
-        made = {"what": what, "a": a, "b": b, "avoid": avoid}
-        if made not in self.forbids:
-            self.forbids.append(made)
-            self.cite(first, last, f"forbids.{what}.{a}")

@@ -96,14 +96,15 @@ def _names(mark: Mark, signs: Mapping[str, frozenset[str]]) -> frozenset[str]:
     """Return all that an atom may call a mark."""
     own = {mark.kind, f"{mark.kind}/{mark.value}"}
     if mark.kind == "room":
+        own |= set() if mark.plural else {"lone"}
         own.add("room/" + mark.value.partition("/")[0])
     elif mark.kind == "num":
         own |= {"zero"} if not mark.number else {"two"} if mark.number == 2.0 else set()
         own |= {"many"} if mark.number > 1.0 else set()
     elif mark.kind == "size" and mark.number < 1.0:
         own.add("small")
-    elif mark.kind == "pron" and mark.number > 1.0:
-        own.add("some")
+    elif mark.kind == "pron":
+        own |= ({"some"} if mark.number > 1.0 else set()) | ({"some_of"} if mark.value == "some" else set())
     elif mark.kind == "amount":
         own |= {"bounded"} if mark.bound in {"least", "most"} else set()
         own |= {name for name, least in HOMES.items() if mark.value == "area" and mark.number >= least}
@@ -240,6 +241,8 @@ def _changed(mark: Mark, change: str) -> Mark:
         return replace(mark, total=True)
     if change == "bedroom":
         return replace(mark, kind="room", value=f"bedroom/{mark.value}", number=0.0)
+    if change == "room":
+        return replace(mark, kind="room")
     kind, _, value = change.partition("/")
     number = max(mark.number, 1.0) if kind == "num" else mark.number
     return replace(mark, kind=kind, value=value, number=number) if change else mark

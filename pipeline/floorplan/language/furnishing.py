@@ -7,43 +7,40 @@ room a wish means is settled afterwards (`attaching.py`), when the rooms and the
 from __future__ import annotations
 
 import bisect
+import functools
+import re
+import unicodedata
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language.lexicon import STRONG, Language
+from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG
 from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.marks import listen, segment
-from pipeline.floorplan.language.spelling import detect
-from pipeline.floorplan.language.vocabulary import (
-    COMMAS,
-    FIGURES,
-    HAN_DIGITS,
-    LEADING,
-    MOST,
-    ROOMS,
-    STOPS,
-    mended,
-    numbers,
-    phrases,
-    words,
-)
+from pipeline.floorplan.language.spelling import detect, resolve
+from pipeline.floorplan.language.text import HAN
 from pipeline.floorplan.program.furniture import lexicon
 
-
-def named(prompt: str) -> tuple[Language | None, frozenset[int], frozenset[int]]:
-    """Return the language of a prompt (None where it is none that is read), where words for rooms and homes begin, and which are not their first."""
-    try:
-        language = detect(prompt)
-    except RefusedError:
-        return None, frozenset(), frozenset()
-    heard = listen(prompt, language)
-    rooms = [m for m in segment(heard) if m.kind in STRONG]
-    starts, inner = ([heard.tokens[k].start for m in rooms for k in range(m.first + skip, m.last)] for skip in (0, 1))
-    return language, frozenset(starts), frozenset(inner)
-
-
+WORD = re.compile(rf"\d+(?:[.,]\d+)?|[{HAN}]|[^\W\d_{HAN}]+(?:'[^\W\d_]+)?|[%.,;:!?()\n+&、。;,!?]")
+STOPS = frozenset(".;!?\n。;!?")
+COMMAS = STOPS | {",", "、"}
+ENDINGS = ("en", "es", "as", "os", "em", "e", "n", "s", "a", "o")  # of plurals, cases and genders
+FIGURES = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
+HAN_DIGITS = {c: k for k, c in enumerate("零一二三四五六七八九")} | {"两": 2, "俩": 2}
+MOST = 1e6  # of any amount
+NEAR, FAR, OWNED = 5, 7, 14  # words in which "everywhere", "free" and an owner are looked for
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """A word, folded (no accents, lower case), its stem, and its place in the prompt."""
+
+    text: str
+    stem: str
+    start: int
+    end: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,295 +61,339 @@ class Claim:
     inward: bool = False
 
 
+@functools.lru_cache(maxsize=8192)
+def _stem(word: str) -> str:
+    for _ in range(2 if word.isalpha() else 0):
+        word = word.removesuffix(next((e for e in ENDINGS if word.endswith(e) and len(word) - len(e) >= 3), ""))
+    return word
+
+
+def words(text: str) -> list[Word]:
+    """Split a text; Chinese into single characters. Hyphens part words."""
+    found = []
+    for match in WORD.finditer(text):
+        lower = unicodedata.normalize("NFKC", match.group()).lower().replace("ß", "ss")
+        folded = "".join(c for c in unicodedata.normalize("NFD", lower) if not unicodedata.combining(c))
+        found.append(Word(folded, _stem(folded), match.start(), match.end()))
+    return found
+
+
+@functools.cache
+def _numbers() -> Mapping[str, int]:
+    """Return the number words of all languages; articles are none."""
+    articles = {w.text for kind in ("one", "article") for form in lexicon()["words"][kind] for w in words(form)}
+    single = ((w, node[""]) for language in LANGUAGES for w, node in spoken(language).trie.items() if w.isascii() and "" in node)
+    return {w: int(m.number) for w, m in single if m.kind == "num" and w not in articles and m.number.is_integer()}
+
+
+@functools.cache
+def _phrases() -> Mapping[str, tuple[tuple[tuple[str, ...], str, str, bool], ...]]:
+    """Return by first stem: (stems, kind, name, whether an owner is needed), the longest first."""
+    data = lexicon()
+    listed = [("name", name, form) for name, forms in data["names"].items() for some in forms.values() for form in some]
+    listed += [("small", form, form) for form in data["small"]]
+    listed += [("look", name, form) for name, some in data["styles"].items() for form in some]
+    listed += [(kind, str(form), str(form)) for kind, some in data["words"].items() for form in some if form != "-"]
+    listed += [("owner", name, form) for name, some in data["owners"].items() for form in some]
+    table: dict[str, list[tuple[tuple[str, ...], str, str, bool]]] = {}
+    for kind, name, form in listed:
+        stems = tuple(w.stem for w in words(form.removeprefix("@")))
+        table.setdefault(stems[0], []).append((stems, kind, name, form.startswith("@")))
+    return {k: tuple(sorted(v, key=lambda p: -len(p[0]))) for k, v in table.items()}
+
+
+@functools.cache
+def _stems() -> frozenset[str]:
+    return frozenset(s for entries in _phrases().values() for entry in entries for s in entry[0])
+
+
+@functools.cache
+def _called(name: str, language: str) -> frozenset[str]:
+    """Return the first stems of what a language calls a thing."""
+    return frozenset(words(form.removeprefix("@"))[0].stem for form in lexicon()["names"].get(name, {}).get(language, ()))
+
+
 class Scan:
     """Reads claims from left to right."""
 
     def __init__(self, prompt: str) -> None:
         self.prompt = prompt
         self.claims: list[Claim] = []
-        self.language, self.rooms, self.inner = named(prompt)
-        self.words = mended(words(prompt), self.language)
+        try:
+            self.language = detect(prompt)
+        except RefusedError:
+            self.language = ""
+        lex = spoken(self.language) if self.language else None
+        self.rooms: dict[int, bool] = {}  # where the words of rooms' names begin, and whether they are their first
+        self.words = words(prompt)
+        if lex is not None:
+            heard = listen(prompt, self.language)
+            for m in segment(heard):
+                self.rooms |= {heard.tokens[k].start: k == m.first for k in range(m.first, m.last)} if m.kind in STRONG else {}
+        if lex is not None and "characters" not in lex.traits:
+            self.words = [w for word in self.words for w in self._mended(word)]
         stems, storeys = [w.stem for w in self.words], set(lexicon()["storeys"])
         self.there = [
             [
                 (len(p), kind, name, owned)
-                for p, kind, name, owned in phrases().get(stem, ())
+                for p, kind, name, owned in _phrases().get(stem, ())
                 if tuple(stems[k : k + len(p)]) == p
                 and (len(p) > 1 or self.words[k].text not in storeys)
-                and not (kind == "name" and len(p) == 1 and (self._room(k, name) or self._common(k, name)))
+                and not (kind == "name" and len(p) == 1 and self._other(k, name))
             ]
             for k, stem in enumerate(stems)
         ]
         self.stops = [-1, *(k for k, w in enumerate(self.words) if w.text in STOPS)]
         self.negated = False  # "no TV or armchairs": the negation goes on
 
-    def _room(self, k: int, name: str) -> bool:
-        """Whether word k names a room, and the prompt's language does not call that furniture so: "Büro" is no "buró"."""
-        if self.language is None or self.words[k].start not in self.rooms:
-            return False
-        if "characters" not in spoken(self.language).traits and self.words[k].start in self.inner:
-            return True  # "a walk-in wardrobe"
-        forms = lexicon()["names"][name].get(self.language, ())
-        return not any(words(form.removeprefix("@"))[0].stem == self.words[k].stem for form in forms)
+    def _mended(self, word: Word) -> Iterator[Word]:
+        """Yield a word with its typing errors repaired."""
+        known = not word.text.isalpha() or word.text in spoken(self.language).vocabulary or word.stem in _stems()
+        parts = (word.text,) if known else resolve(word.text, self.language, every=True)
+        yield from [word] if parts == (word.text,) else (Word(p, _stem(p), word.start, word.end) for p in parts)
 
-    def _common(self, k: int, name: str) -> bool:
-        """Whether word k is a word of the prompt's language that only looks like furniture of another: "never" and "nevera"."""
-        if self.language is None or self.words[k].text not in spoken(self.language).vocabulary:
-            return False
-        forms = lexicon()["names"][name].get(self.language, ())
-        return not any(words(form.removeprefix("@"))[0].stem == self.words[k].stem for form in forms)
+    def _other(self, k: int, name: str) -> bool:
+        """Whether word k names a room, or is another word of the prompt's language: "Büro" is no "buró", "never" no "nevera"."""
+        word = self.words[k]
+        if not self.language or word.stem in _called(name, self.language):
+            return (
+                "characters" not in spoken(self.language or LANGUAGES[0]).traits and self.rooms.get(word.start) is False
+            )  # "a walk-in wardrobe"
+        return word.start in self.rooms or word.text in spoken(self.language).vocabulary
 
     def phrase(self, k: int, *kinds: str) -> tuple[int, str]:
         """Return (length, name) of the longest phrase of those kinds at word k, (0, "") where there is none."""
-        if not 0 <= k < len(self.words):
-            return 0, ""
-        for length, kind, name, owned in self.there[k]:
-            if kind in kinds and (not owned or self._owned(k, name)):
-                return length, name
-        return 0, ""
+        here = self.there[k] if 0 <= k < len(self.words) else ()
+        return next(((size, name) for size, kind, name, owned in here if kind in kinds and (not owned or self._owned(k, name))), (0, ""))
+
+    def length(self, k: int, *kinds: str) -> int:
+        """Return the length of the longest phrase of those kinds at word k."""
+        return self.phrase(k, *kinds)[0]
+
+    def text(self, k: int) -> str:
+        """Return word k, "" beyond the ends."""
+        return self.words[k].text if 0 <= k < len(self.words) else ""
 
     def _owned(self, k: int, name: str) -> bool:
         """Whether a room that has such things is named before word k in the same clause, or right after it."""
-        near = range(max(0, k - 14), k)
-        stop = max((j for j in near if self.words[j].text in STOPS), default=-1)
-        owner = max((j for j in near if j > stop and self._owner(j, name)), default=None)
-        # "a bedroom with a wardrobe" has one; "a bedroom, a bathroom and a wardrobe" are three rooms
-        if owner is not None:
-            between = self.prompt[self.words[owner].end : self.words[k].start]
-            bracket = between.rfind("(") > between.rfind(")")
-            if bracket or any(self.phrase(j, "with")[0] for j in range(owner + 1, k)):
-                return True
-        return any(self.phrase(j, "in")[0] and any(self._owner(j + d, name) for d in (1, 2, 3)) for j in (k + 1,))
 
-    def _owner(self, k: int, name: str) -> bool:
-        if not 0 <= k < len(self.words):
-            return False
-        return any(kind == "owner" and of == name for _, kind, of, _ in self.there[k])
+        def owner(j: int) -> bool:
+            return 0 <= j < len(self.words) and any(kind == "owner" and of == name for _, kind, of, _ in self.there[j])
+
+        stop = self.stops[bisect.bisect_left(self.stops, k) - 1]
+        at = max((j for j in range(max(stop + 1, k - OWNED), k) if owner(j)), default=None)
+        if at is not None:  # "a bedroom with a wardrobe" has one; "a bedroom, a bathroom and a wardrobe" are three rooms
+            between = self.prompt[self.words[at].end : self.words[k].start]
+            if between.rfind("(") > between.rfind(")") or any(self.length(j, "with") for j in range(at + 1, k)):
+                return True
+        return bool(self.length(k + 1, "in")) and any(owner(k + d) for d in (2, 3, 4))
 
     def number(self, k: int) -> tuple[int, float | None]:
         """Return (length, value) of a numeral at word k; of "8 to 10" only the first is read here."""
-        if not 0 <= k < len(self.words):
-            return 0, None
-        text = self.words[k].text
+        text = self.text(k)
         if FIGURES.fullmatch(text):
             return 1, min(float(text.replace(",", ".")), MOST)
-        if text in numbers():
-            tens = numbers()[text]
-            ones = numbers().get(self.words[k + 1].text, 0) if tens >= 20 and k + 1 < len(self.words) else 0
+        if text in _numbers():
+            tens = _numbers()[text]
+            ones = _numbers().get(self.text(k + 1), 0) if tens >= 20 else 0
             return (2, float(tens + ones)) if 0 < ones < 10 else (1, float(tens))
-        return self._han(k)
-
-    def _han(self, k: int) -> tuple[int, float | None]:
         run = ""
-        while k + len(run) < len(self.words) and self.words[k + len(run)].text in {*HAN_DIGITS, "十"}:
-            run += self.words[k + len(run)].text
-        if not run:
-            return 0, None
+        while (char := self.text(k + len(run))) in HAN_DIGITS or char == "十":
+            run += char
         if "十" in run:
-            tens, _, ones = run.partition("十")
-            return len(run), float(10 * HAN_DIGITS.get(tens, 1) + HAN_DIGITS.get(ones, 0))
-        return len(run), min(float("".join(str(HAN_DIGITS[c]) for c in run)), MOST)
+            tens_of, _, ones_of = run.partition("十")
+            return len(run), float(10 * HAN_DIGITS.get(tens_of, 1) + HAN_DIGITS.get(ones_of, 0))
+        return len(run), min(float("".join(str(HAN_DIGITS[c]) for c in run)), MOST) if run else None
 
     def amount(self, k: int) -> tuple[int, int, int | None] | None:
         """Return (length, least, most) of an amount at word k: bounds, ranges, articles, negations."""
-        size, _ = self.phrase(k, "least", "most", "exactly", "between")
-        bound = next((b for b in ("least", "most", "exactly", "between") if self.phrase(k, b)[0]), "")
-        if bound:  # 至少放三件
-            size += self.phrase(k + size, "with", "article")[0]
-        length, value = self.number(k + size)
+        bound = next((b for b in ("least", "most", "exactly", "between") if self.length(k, b)), "")
+        at = k + self.length(k, "least", "most", "exactly", "between")
+        at += self.length(at, "with", "article") if bound else 0  # 至少放三件
+        length, value = self.number(at)
         if value is None:
-            if not bound and (none := self.phrase(k, "none")[0]):
-                return none + self._filler(k + none), 0, 0
-            if not bound and (one := self.phrase(k, "one")[0]):
-                return one + self._filler(k + one), 1, None
-            return None
-        k2 = k + size + length
-        first, last = int(value), int(value)
-        joint, _ = self.phrase(k2, "to")
-        further, upper = (
-            self.number(k2 + joint) if joint and (bound == "between" or self.words[k2].text not in {"and", "und", "y", "a"}) else (0, None)
-        )
-        hyphen = not joint and k2 < len(self.words) and "-" in self.prompt[self.words[k2 - 1].end : self.words[k2].start]
-        if hyphen:
-            further, upper = self.number(k2)
+            none, one = (0, 0) if bound else (self.length(k, "none"), self.length(k, "one"))
+            size = none or one
+            return (size + self._filler(k + size), 0 if none else 1, 0 if none else None) if size else None
+        at += length
+        first = last = int(value)
+        joint = self.length(at, "to") if bound == "between" or not self.length(at, "and") else 0
+        hyphen = not joint and at < len(self.words) and "-" in self.prompt[self.words[at - 1].end : self.words[at].start]
+        further, upper = self.number(at + joint) if joint or hyphen else (0, None)
         if upper is not None:
-            last, k2, bound = int(upper), k2 + joint + further, "between"
-        k2 += self._filler(k2)
-        if not bound and length == 1 and self.words[k].text == "一" and upper is None:
-            return k2 - k, 1, None  # "一张书桌" is "a desk"
+            last, at, bound = int(upper), at + joint + further, "between"
+        at += self._filler(at)
+        if not bound and length == 1 and self.text(k) == "一":
+            return at - k, 1, None  # "一张书桌" is "a desk"
         least, most = {"least": (first, None), "most": (0, first)}.get(bound, (first, last))
-        return k2 - k, least, most
+        return at - k, least, most
 
     def _filler(self, k: int) -> int:
         """Return how many words of measure, size or style stand at word k before a thing's name."""
         length = 0
-        while (step := self.phrase(k + length, "measure", "size", "of")[0]) and length < 4:
+        while (step := self.length(k + length, "measure", "size", "of")) and length < 4:
             length += step
-        if k + length < len(self.words) and self.words[k + length].text in {"of", "de"}:
-            length += 1
-        return length
+        return length + (self.text(k + length) in {"of", "de"})
 
     def run(self) -> list[Claim]:
         """Return all claims."""
         k = 0
         while k < len(self.words):
-            if self.words[k].text in STOPS:
-                self.negated = False
-            if self._idle(k):
+            text = self.text(k)
+            self.negated = self.negated and text not in STOPS
+            if self.there[k] or text in _numbers() or text in HAN_DIGITS or text in "十百" or text[0].isdigit():
+                k += self.length(k, "small") or self._share(k) or self._things(k) or self._look(k) or 1
+            else:
                 k += 1
-                continue
-            k += self.phrase(k, "small")[0] or self._share(k) or self._things(k) or self._look(k) or 1
         return self.claims
 
-    def _idle(self, k: int) -> bool:
-        """Whether no wish begins at word k: it is no numeral and begins no phrase."""
-        text = self.words[k].text
-        return not self.there[k] and text not in numbers() and text not in HAN_DIGITS and text not in "十百" and not text[0].isdigit()
-
     def _put(self, kind: Kind, first: int, last: int, name: str = "", least: int = 0, most: int | None = None, value: float = 0.0) -> int:
-        start, end = self.words[first].start, self.words[last - 1].end
+        """Note a claim; return its length in words. "Eight pieces, everything nordic": what a comma parts is said of something else."""
         begin = self.stops[bisect.bisect_left(self.stops, first) - 1] + 1
-        near = [*range(max(begin, first - 5), first), *range(last, min(last + 4, len(self.words)))]
-        # "eight pieces, everything nordic": what a comma parts is said of something else
-        left = max((j for j in near if j < first and self.words[j].text in COMMAS), default=-1)
-        right = next((j for j in near if j >= last and self.words[j].text in COMMAS), len(self.words))
-        home = any(self.phrase(j, "home")[0] for j in near if left < j < right)
-        self.claims.append(Claim(kind, start, end, name, least, most, value, home, bool(self.phrase(last, "in")[0])))
+        left = next((j for j in range(first - 1, max(begin, first - NEAR) - 1, -1) if self.text(j) in COMMAS), max(begin, first - NEAR) - 1)
+        right = next((j for j in range(last, last + NEAR - 1) if self.text(j) in COMMAS), last + NEAR - 1)
+        home = any(self.length(j, "home") for j in (*range(left + 1, first), *range(last, right)))
+        start, end = self.words[first].start, self.words[last - 1].end
+        self.claims.append(Claim(kind, start, end, name, least, most, value, home, bool(self.length(last, "in"))))
         return last - first
 
     def _share(self, k: int) -> int:
-        """Read "70 % free", "at least seventy per cent of the floor free", "空地70%"."""
-        size = self.phrase(k, "least", "exactly")[0]
-        if self.prompt.startswith("百分之", self.words[k].start):
-            length, value = self.number(k + 3)
-            end = k + 3 + length
-        else:
-            size += self.phrase(k + size, "article")[0] if size else 0
-            length, value = self.number(k + size)
-            if value is None and (half := self.phrase(k + size, "half")[0]):
-                length, value, percent = half, 50.0, 0
-            else:
-                percent = self.phrase(k + size + length, "percent")[0] if value is not None else 0
-                half = 0
-            if not (percent or half):
-                return self._free_first(k)
-            end = k + size + length + percent
-        if value is None:
+        """Read "70 % free", "at least seventy per cent of the floor free", "空地70%", "free: 70 %"."""
+        if free := self.length(k, "free"):
+            for j in range(k + free, min(k + free + NEAR, len(self.words))):
+                length, value = self.number(j)
+                if value is not None and (percent := self.length(j + length, "percent")):
+                    return self._put("walkable", k, j + length + percent, value=value / 100)
+                if self.text(j) in COMMAS:
+                    break
             return 0
-        for j in range(end, min(end + 7, len(self.words))):
-            if self.words[j].text in COMMAS:
+        at = k + self.length(k, "least", "exactly")
+        at += self.length(at, "article") if at > k else 0
+        fraction = self.prompt.startswith("百分之", self.words[k].start)
+        length, value = self.number(k + 3 if fraction else at)
+        half = self.length(at, "half") if value is None else 0
+        percent = 0 if value is None or fraction else self.length(at + length, "percent")
+        if not (half or percent or (fraction and value is not None)):
+            return 0
+        end = k + 3 + length if fraction else at + length + half + percent
+        for j in range(end, min(end + FAR, len(self.words))):
+            if self.text(j) in COMMAS:
                 break
-            if free := self.phrase(j, "free")[0]:
-                while extra := self.phrase(j + free, "free")[0]:
-                    free += extra
-                tail = j + free
-                for extra_word in ("floor", "space", "area", "boden", "flache", "bodenflache", "suelo"):
-                    if tail < len(self.words) and self.words[tail].text == extra_word:
-                        tail += 1
-                        break
-                return self._put("walkable", k, tail, value=value / 100)
-        return 0
-
-    def _free_first(self, k: int) -> int:
-        free = self.phrase(k, "free")[0]
-        if not free:
-            return 0
-        for j in range(k + free, min(k + free + 5, len(self.words))):
-            if self.words[j].text in COMMAS:
-                return 0
-            length, value = self.number(j)
-            if value is not None and (percent := self.phrase(j + length, "percent")[0]):
-                return self._put("walkable", k, j + length + percent, value=value / 100)
+            if self.length(j, "free"):
+                while step := self.length(j, "free", "floor"):
+                    j += step  # noqa: PLW2901 - reading goes on
+                return self._put("walkable", k, j, value=0.5 if value is None else value / 100)
         return 0
 
     def _things(self, k: int) -> int:
         """Read an amount of pieces, of things that open, or of a category."""
         read = self.amount(k)
         start, least, most = read or (0, 1, None)
-        negative = read is not None and most == 0 and least == 0
-        at = k + start
-        looks = 0
-        if read and not negative:
-            looks = self.phrase(at, "look")[0]
-        opening = self._opening(at)
-        if read and opening and not negative:
-            # so many at least: nobody minds one more
-            return self._put("openable", k, at + opening, least=least)
-        pieces = self.phrase(at + looks, "pieces")[0]
-        if read and pieces and not negative and self.words[at + looks].text != "a":
-            if looks:
-                self._style_at(at, looks)
+        at, counted = k + start, read is not None and most != 0
+        looks = self.length(at, "look") if counted else 0
+        if counted and (opening := self._opening(at)):
+            return self._put("openable", k, at + opening, least=least)  # so many at least: nobody minds one more
+        pieces = self.length(at + looks, "pieces") if counted else 0
+        if pieces and self.text(at + looks) != "a":
+            self._style_at(at, looks)
             return self._after("pieces", k, at + looks + pieces, "", least, most)
         name_at, length, name = self._name(at)
         if not length:
             return 0
-        if read is None:
-            if self.negated and self.phrase(k - 1, "and")[0]:
-                least, most = 0, 0
-            else:
-                plural = self.words[name_at + length - 1].text.endswith("s") and self.words[name_at + length - 1].text[0].isascii()
-                least = 2 if plural and not self._shown_with_s(name, name_at + length - 1) else 1
+        if read is None and self.negated and self.length(k - 1, "and"):
+            least, most = 0, 0
+        elif read is None:
+            last = self.text(name_at + length - 1)
+            shown = any(
+                words(f)[-1].text == last for some in lexicon()["names"].get(name, {}).values() for f in some
+            )  # "drawers", "lavavajillas"
+            least = 2 if last.endswith("s") and last[0].isascii() and not shown else 1
         self.negated = most == 0
-        if name_at > at:
-            self._style_at(at, name_at - at)
+        self._style_at(at, name_at - at)
         return self._after("count", k, name_at + length, name, least, most)
-
-    def _shown_with_s(self, name: str, k: int) -> bool:
-        """Whether a name ends with s in its plain form ("chaise longues" does not, "drawers" and "lavavajillas" do)."""
-        text = self.words[k].text
-        forms = lexicon()["names"].get(name, {})
-        return any(words(f)[-1].text == text for listed in forms.values() for f in listed)
 
     def _after(self, kind: Kind, first: int, last: int, name: str, least: int, most: int | None) -> int:
         """Add bounds that follow: "four chairs or more"."""
-        if more := self.phrase(last, "more")[0]:
-            return self._put(kind, first, last + more, name, least, None)
-        if fewer := self.phrase(last, "fewer")[0]:
-            return self._put(kind, first, last + fewer, name, 0, most)
-        return self._put(kind, first, last, name, least, most)
+        more, fewer = self.length(last, "more"), self.length(last, "fewer")
+        return self._put(kind, first, last + (more or fewer), name, 0 if fewer and not more else least, None if more else most)
 
     def _opening(self, k: int) -> int:
-        things = self.phrase(k, "things")[0]
-        opens = self.phrase(k + things, "opens")[0]
-        if opens:
-            tail = k + things + opens
-            return things + opens + (self.phrase(tail, "things")[0] or self.phrase(tail, "pieces")[0])
-        return 0
+        things = self.length(k, "things")
+        opens = self.length(k + things, "opens")
+        return things + opens + self.length(k + things + opens, "things", "pieces") if opens else 0
 
     def _name(self, k: int) -> tuple[int, int, str]:
         """Return (place, length, name) of a thing at word k or after a style."""
-        for skip in (0, self.phrase(k, "look")[0]):
-            length, name = self.phrase(k + skip, "name")
-            if length and not self._part_of_a_room(k + skip, length) and self.phrase(k + skip, "small")[0] <= length:
-                return k + skip, length, name
+        for at in (k, k + self.length(k, "look")):
+            length, name = self.phrase(at, "name")
+            if length and not self._part_of_a_room(at, length) and self.length(at, "small") <= length:
+                return at, length, name
         return k, 0, ""
 
     def _part_of_a_room(self, k: int, length: int) -> bool:
-        """Whether a thing's name is part of a room's: "tv room", "walk-in wardrobe"."""
-        after = self.words[k + length].text if k + length < len(self.words) else ""
-        before = [w.text for w in self.words[max(0, k - 2) : k]]
-        if self.words[k].text in {"bed", "beds"} and FIGURES.fullmatch(after):
-            return True  # "bed 2 11 sqm"
-        return (
-            after in ROOMS | LEADING
-            or (after != "" and after in "间房室" and "\u3400" <= self.words[k].text <= "\u9fff")
-            or before == ["walk", "in"]
-        )
+        """Whether a thing's name is part of a room's: "tv room", "walk-in wardrobe", "bed 2 11 sqm"."""
+        after, numbered = self.text(k + length), self.text(k) in {"bed", "beds"} and FIGURES.fullmatch(self.text(k + length)) is not None
+        room = after in lexicon()["words"]["rooms"] or (after != "" and after in "间房室" and self.text(k) > "\u3400")
+        return numbered or room or [self.text(k - 2), self.text(k - 1)] == ["walk", "in"]
 
     def _look(self, k: int) -> int:
         """Read a style: "in nordic style", "estilo nórdico", "北欧风格"."""
-        lead = self.phrase(k, "in", "with")[0]
-        for skip in (lead, 0):
-            j = k + skip
-            before = self.phrase(j, "style")[0]
-            length, name = self.phrase(j + before, "look")
-            after = self.phrase(j + before + length, "style")[0] if length else 0
-            if not length or (skip and not (before or after)):
-                continue
-            return self._put("style", k if skip else j, j + before + length + after, name)
+        lead = self.length(k, "in", "with")
+        for at in (k + lead, k):
+            before = self.length(at, "style")
+            length, name = self.phrase(at + before, "look")
+            after = self.length(at + before + length, "style") if length else 0
+            if length and (at == k or before or after):
+                return self._put("style", k, at + before + length + after, name)
         return 0
 
     def _style_at(self, k: int, length: int) -> None:
         found, name = self.phrase(k, "look")
-        if found == length:
+        if length and found == length:
             self.claims.append(Claim("style", self.words[k].start, self.words[k + length - 1].end, name))
+
+
+def read_furniture(prompt: str) -> tuple[str, list[Claim]]:
+    """Return the prompt without its wishes for furniture (blanks in their place, so that places hold), and the wishes."""
+    scan = Scan(prompt)
+    claims = scan.run()
+    if not claims:
+        return prompt, claims
+    text = list(prompt)
+    for w, gone in zip(scan.words, _blank(scan, claims), strict=True):
+        if gone:
+            text[w.start : w.end] = " " * (w.end - w.start)
+    return "".join(text), claims
+
+
+def _blank(scan: Scan, claims: Sequence[Claim]) -> list[bool]:
+    """Tell which words go: the wishes, what joins them, and what leads to them."""
+    inside = iter(sorted((c.start, c.end) for c in claims))
+    start, end = next(inside)
+    gone = []
+    for w in scan.words:
+        while w.start >= end and (following := next(inside, None)) is not None:
+            start, end = following
+        gone.append(start <= w.start < end)
+    for c in (c for c in claims if c.home):  # "everywhere" belongs to the wish for the whole home that it stands by
+        for j, w in enumerate(scan.words):
+            if c.start - 40 < w.start < c.end + 40 and (step := scan.length(j, "home")):
+                gone[j : j + step] = [True] * step
+    blank, k = list(gone), 0
+    while k < len(gone):
+        if not gone[k]:
+            k += 1
+            continue
+        last = j = k
+        while j < len(gone) and (gone[j] or (step := scan.length(j, "and", "with", "article"))):  # on over what joins two wishes
+            last, j = (j, j + 1) if gone[j] else (last, j + step)
+        blank[k : last + 1] = [True] * (last + 1 - k)
+        lead = next((n for n in (3, 2, 1) if k - n >= 0 and scan.length(k - n, "with") == n), 0)
+        join = scan.length(last + 1, "and") if scan.text(last + 1) not in STOPS else 0
+        shared = join and any(scan.length(i, "own_rooms") for i in range(last + 1 + join, last + 4 + join))
+        if lead and shared:  # a room of the same owner follows: the "and" goes, else the "with"
+            blank[last + 1 : last + 1 + join] = [True] * join
+        elif lead:
+            blank[k - lead : k] = [True] * lead
+        k = last + 1
+    return blank

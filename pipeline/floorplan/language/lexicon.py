@@ -1,7 +1,7 @@
 """The closed vocabulary of a language: phrases and what they mean, from `manifests/lexicon/*.yaml`.
 
-A phrase is a run of folded words (`text.fold`). Sections give its kind; the longest phrase wins, earlier sections first. Language-free code
-reads meanings only: a language is this data and, where word order or inflection differ, one module of rules.
+A phrase is a run of folded words (`text.fold`). Sections give its kind; the longest phrase wins, earlier sections first. Code reads meanings
+only: a language is this data. Where word order or inflection differ, its `traits` say so.
 """
 
 from __future__ import annotations
@@ -15,19 +15,33 @@ from pathlib import Path
 from typing import Any, get_args
 
 import yaml
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
 from pipeline import yaml_text
 from pipeline.errors import ContentError
-from pipeline.floorplan.language.text import INFINITIVE, Compounds, Plurals, Verbs, bare, fold, forms, words
+from pipeline.floorplan.language.inflection import INFINITIVE, Compounds, Plurals, Verbs, forms
+from pipeline.floorplan.language.text import bare, fold, words
 from pipeline.floorplan.program.floor_program import RoomType, Style
 from pipeline.floorplan.program.furniture import lexicon as furniture
 
 FOLDER = Path(__file__).resolve().parents[3] / "manifests" / "lexicon"
 Language = str  # the name of a file there
 LANGUAGES: tuple[Language, ...] = tuple(sorted(p.stem for p in FOLDER.glob("??.yaml")))
-Phrases = Mapping[str | int | float, str]
 STRONG = frozenset({"room", "suite", "home"})
+SECTIONS = {  # section of a file -> kind of mark, the sections that win first
+    "ignored": "ignored", "corrections": "fix", "enough": "enough", "wings": "wing", "zones": "zone", "activities": "activity", "rooms": "room",
+    "suites": "suite", "homes": "home", "flags": "flag", "owners": "owner", "entrances": "enter", "outside": "outside", "needless": "needless",
+    "negators": "neg", "pronouns": "pron", "everything": "every", "levels": "level", "comparisons": "cmp", "factors": "factor", "passages": "via",
+    "cues": "cue", "conjugated": "", "reciprocal": "reciprocal", "numerals": "num", "ordinals": "ord", "units": "unit", "determiners": "det",
+    "adjectives": "adj", "sizes": "size", "bounds": "bound", "but": "but", "joiners": "join", "times": "times", "lengths": "long",
+    "relatives": "relative", "verbs": "verb", "classifiers": "clf", "styles": "look", "fillers": "fill", "adverbs": "adverb",
+}  # fmt: skip
+REPAIRED = {"room", "suite", "home", "num", "unit", "level", "zone"}  # kinds whose words are worth a repair
+CUES = {"door", "leads", "open", "near", "away", "between", "avoid"}
+FUNCTION = {"cue", "neg", "det", "pron", "adj", "size", "cmp", "factor", "bound", "join", "flag", "relative", "every", "owner", "via", "enter", "room"}  # fmt: skip
+COMMON = 0.15  # how much farther words are that are only known not to be errors
+FARTHER = {True: 0.05, False: 0.1}  # words that build sentences, and those that mean nothing
+CHOICES = re.compile(r"\[([^\]]*)\]|([^\[]+)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,9 +62,14 @@ class _Look(BaseModel):
     knobs: dict[str, int]
     nonrect: int = 0
 
+    @model_validator(mode="after")
+    def _known(self) -> _Look:
+        Style.model_validate(self.knobs)
+        return self
+
 
 class _Entries(BaseModel):
-    """One file of `manifests/lexicon`: comma-separated phrases by section and meaning."""
+    """One file of `manifests/lexicon`: how the language is written, and comma-separated phrases by section and meaning."""
 
     model_config = ConfigDict(extra="forbid")
     language: Language
@@ -62,58 +81,26 @@ class _Entries(BaseModel):
     spellings: dict[str, str] = {}  # other spellings of words
     sounds: tuple[tuple[str, str], ...] = ()  # what is written, and how it sounds
     homophones: dict[str, str] = {}  # characters that are written for one another
-    rooms: dict[str, str]
-    suites: dict[str, str] = {}
-    homes: dict[str, str]
-    kitchen_diner: str = ""
-    functions: dict[str, str] = {}
-    numerals: dict[float, str]
-    ordinals: dict[int, str] = {}
-    units: dict[str, str]
-    bounds: dict[str, str]
-    range: dict[str, str]
-    cues: dict[str, str]
-    reciprocal: str = ""
-    passages: dict[str, str] = {}
-    frames: dict[str, str] = {}
-    negators: str
-    needless: str = ""
-    corrections: str = ""
-    enough: str = ""
-    but: str = ""
-    determiners: dict[str, str]
-    pronouns: dict[str, str] = {}
-    everything: str = ""
-    zones: dict[str, str] = {}
-    wings: dict[str, str] = {}
-    activities: dict[str, str] = {}
-    adjectives: dict[str, str] = {}
-    sizes: dict[float, str] = {}
-    owners: dict[str, str] = {}
-    levels: dict[int, str] = {}
-    entrances: str = ""
-    outside: str = ""
-    comparisons: dict[str, str] = {}
-    factors: dict[float, str] = {}
-    times: str = ""
-    lengths: str = ""
-    styles: list[_Look] = []
-    flags: dict[str, str] = {}
-    joiners: dict[str, str]
-    verbs: str = ""
-    conjugated: dict[str, str] = {}
-    relatives: str = ""
-    adverbs: str = ""
-    classifiers: str = ""
     endings: str = ""
-    signs: dict[str, str] = {}
     abbreviations: str = ""
-    fillers: str = ""
-    ignored: str = ""
+    range: dict[str, str] = {}
+    frames: dict[str, str] = {}
+    signs: dict[str, str] = {}  # closed classes of words that frames and readers know
     common: str = ""
+    looks: tuple[_Look, ...] = ()
+    phrases: dict[str, dict[Any, str]]  # by section and meaning
 
-
-CHOICES = re.compile(r"\[([^\]]*)\]|([^\[]+)")
+    @model_validator(mode="before")
+    @classmethod
+    def _sorted(cls, raw: dict[str, Any]) -> dict[str, Any]:
+        """Put the sections of phrases in the order in which they win."""
+        looks = raw.get("styles", [])
+        found = raw | {"styles": {k: look.get("words", "") for k, look in enumerate(looks)}}
+        sections = {s: found[s] if isinstance(found[s], dict) else {"": found[s]} for s in SECTIONS if s in found}
+        types = {part.split("/")[0] for key in sections["rooms"] for part in key.split("+")} - set(get_args(RoomType))
+        if types:
+            raise ValueError(f"no room type is called {', '.join(sorted(types))}: use the types of docs/floorplan.md")
+        return {k: v for k, v in raw.items() if k not in SECTIONS} | {"phrases": sections, "looks": looks}
 
 
 def split(text: str) -> Iterator[str]:
@@ -124,6 +111,10 @@ def split(text: str) -> Iterator[str]:
             yield from map("".join, itertools.product(*parts))
         else:
             yield phrase
+
+
+def _folded(text: str) -> frozenset[str]:
+    return frozenset(fold(w) for w in split(text))
 
 
 @dataclass
@@ -148,8 +139,13 @@ class Lexicon:
     range_to: frozenset[str] = frozenset()
     bounds: Mapping[str, str] = field(default_factory=dict)
     joins: frozenset[str] = frozenset()
-    signs: Mapping[str, frozenset[str]] = field(default_factory=dict)  # words -> the closed classes that frames know them by
+    signs: Mapping[str, frozenset[str]] = field(default_factory=dict)  # words -> the closed classes that they belong to
+    classes: Mapping[str, frozenset[str]] = field(default_factory=dict)  # the same, by class
     tenses: Mapping[str, str] = field(default_factory=dict)  # forms of verbs -> the form that the phrases are made of
+
+    def sign(self, name: str) -> frozenset[str]:
+        """Return the words of a closed class."""
+        return self.classes.get(name, frozenset())
 
     def find(self, texts: list[str], start: int) -> tuple[int, Meaning, bool] | None:
         """Return (end, meaning, whether "only" was skipped) of the longest phrase at a word, adverbs inside it skipped."""
@@ -162,7 +158,7 @@ class Lexicon:
                 if "" in node:
                     best = (at, node[""], only)
             elif at > start and word in self.adverbs:
-                only = only or word in ONLY
+                only = only or word in self.sign("only")
                 at += 1
             elif word in {"-", "/"} and at > start:
                 at += 1
@@ -171,81 +167,25 @@ class Lexicon:
         return best
 
 
-ONLY = frozenset({"only", "nur", "solo", "solamente", "只", "仅", "ausschliesslich", "unicamente"})
-
-
-def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:  # noqa: C901, PLR0912, PLR0915 - one loop per section
+def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:
     """Return every phrase with its meaning, the sections that win first."""
-
-    def flat(kind: str, entry: str) -> Iterator[tuple[str, Meaning]]:
-        return ((p, Meaning(kind)) for p in split(entry))
-
-    def keyed(kind: str, entry: Mapping[Any, str]) -> Iterator[tuple[str, Meaning]]:
+    for section, entry in e.phrases.items():
         for key, phrases in entry.items():
-            number = float(key) if isinstance(key, (int, float)) else 0.0
+            kind, value, number = SECTIONS[section], str(key), float(key) if isinstance(key, (int, float)) else 0.0
+            if section == "conjugated":
+                kind, _, value = value.partition(" ")
+            elif section == "units":
+                value, factor = value.split()
+                number = float(factor)
             for p in split(phrases):
-                yield p, Meaning(kind, str(key), number)
-
-    yield from flat("ignored", e.ignored)
-    yield from flat("fix", e.corrections)
-    yield from flat("enough", e.enough)
-    yield from keyed("wing", e.wings)
-    yield from keyed("zone", e.zones)
-    yield from keyed("activity", e.activities)
-    for key, phrases in e.rooms.items():
-        for p in split(phrases):
-            for form, many in forms(e.plurals, p):
-                yield form, Meaning("room", key, plural=many)
-    for p in split(e.kitchen_diner):
-        yield p, Meaning("room", "kitchen/diner")
-    for key, phrases in e.suites.items():
-        for p in split(phrases):
-            for form, many in forms(e.plurals, p):
-                yield form, Meaning("suite", key, plural=many)
-    for key, phrases in e.homes.items():
-        for p in split(phrases):
-            for form, _ in forms(e.plurals, p):
-                yield form, Meaning("home", key)
-    yield from keyed("flag", e.flags)
-    yield from keyed("owner", e.owners)
-    yield from flat("enter", e.entrances)
-    yield from flat("outside", e.outside)
-    yield from flat("needless", e.needless)
-    yield from flat("neg", e.negators)
-    yield from keyed("pron", e.pronouns)
-    yield from flat("every", e.everything)
-    yield from keyed("level", e.levels)
-    yield from keyed("cmp", e.comparisons)
-    yield from keyed("factor", e.factors)
-    yield from keyed("via", e.passages)
-    yield from keyed("cue", e.cues)
-    for key, phrases in e.conjugated.items():
-        kind, _, value = key.partition(" ")
-        yield from ((form, Meaning(kind, value)) for p in split(phrases) if kind != "known" for form in e.verbs_of.conjugated(p))
-    yield from flat("reciprocal", e.reciprocal)
-    yield from keyed("num", e.numerals)
-    if e.compounds.tens:
-        yield from ((w, Meaning("num", str(n), float(n))) for w, n in e.compounds.numbers(e.numerals))
-    yield from keyed("ord", e.ordinals)
-    for key, phrases in e.units.items():
-        quantity, factor = key.split()
-        for p in split(phrases):
-            yield p, Meaning("unit", quantity, float(factor))
-    yield from keyed("det", e.determiners)
-    yield from keyed("adj", e.adjectives)
-    yield from keyed("size", e.sizes)
-    yield from keyed("bound", e.bounds)
-    yield from flat("but", e.but)
-    yield from keyed("join", e.joiners)
-    yield from flat("times", e.times)
-    yield from flat("long", e.lengths)
-    yield from flat("relative", e.relatives)
-    yield from flat("verb", e.verbs)
-    yield from flat("clf", e.classifiers)
-    for k, look in enumerate(e.styles):
-        yield from ((p, Meaning("look", str(k))) for p in split(look.words))
-    yield from flat("fill", e.fillers)
-    yield from flat("adverb", e.adverbs)
+                if section == "conjugated":
+                    yield from ((form, Meaning(kind, value)) for form in e.verbs_of.conjugated(p) if kind != "known")
+                elif kind in STRONG:
+                    yield from ((form, Meaning(kind, value, plural=many and kind != "home")) for form, many in forms(e.plurals, p))
+                else:
+                    yield p, Meaning(kind, value, number)
+        if section == "numerals" and e.compounds.tens:
+            yield from ((w, Meaning("num", str(n), float(n))) for w, n in e.compounds.numbers(entry))
 
 
 def _spellings(phrase: str, contracted: Mapping[str, str]) -> Iterable[tuple[str, ...]]:
@@ -262,38 +202,13 @@ def _spellings(phrase: str, contracted: Mapping[str, str]) -> Iterable[tuple[str
 
 def _misheard(e: _Entries) -> Iterator[tuple[str, Meaning]]:
     """Return the names of rooms as they are written when one character is taken for another of the same sound."""
-    for phrase, meaning in _meanings(e):
+    for phrase, meaning in _meanings(e) if e.homophones else ():
         for k, char in enumerate(phrase if meaning.kind == "room" and 1 < len(phrase) < 4 else ""):
             yield from ((phrase[:k] + wrong + phrase[k + 1 :], meaning) for wrong in e.homophones.get(char, ""))
             if k and len(phrase) == 3:  # two exchanged: "卫间生"
                 yield phrase[: k - 1] + char + phrase[k - 1] + phrase[k + 1 :], meaning
             if k + 1 < len(phrase):  # one twice: "客客厅"
                 yield phrase[:k] + char + phrase[k:], meaning
-
-
-REPAIRED = {"room", "suite", "home", "num", "unit", "level", "zone"}  # kinds whose words are worth a repair
-CUES = {"door", "leads", "open", "near", "away", "between", "avoid"}
-FUNCTION = {
-    "cue",
-    "neg",
-    "det",
-    "pron",
-    "adj",
-    "size",
-    "cmp",
-    "factor",
-    "bound",
-    "join",
-    "flag",
-    "relative",
-    "every",
-    "owner",
-    "via",
-    "enter",
-    "room",
-}
-COMMON = 0.15  # words that are only known not to be errors
-FARTHER = {True: 0.05, False: 0.1}  # words that build sentences, and those that mean nothing
 
 
 def _things(language: Language, rule: Plurals) -> set[str]:
@@ -308,69 +223,59 @@ def lexicon(language: Language) -> Lexicon:
     """Return the lexicon of a language. Raises ContentError when its file is not as described."""
     path = FOLDER / f"{language}.yaml"
     try:
-        raw = yaml_text.parse(path.read_text(encoding="utf-8"))
-        entries = _Entries.model_validate(raw)
-        for key in entries.rooms:
-            if not {part.split("/")[0] for part in key.split("+")} <= set(get_args(RoomType)):
-                raise ContentError(f"{path.name}: no room type is called {key!r}", "use the types of docs/floorplan.md")
-        for look in entries.styles:
-            Style.model_validate(look.knobs)
-    except (OSError, yaml.YAMLError, ValidationError) as error:
-        raise ContentError(f"{path.name}: {str(error).splitlines()[0]}", "restore the file from the repository") from error
-    verbs = entries.verbs_of
+        entries = _Entries.model_validate(yaml_text.parse(path.read_text(encoding="utf-8")))
+    except (OSError, yaml.YAMLError, ValidationError, KeyError, AttributeError, TypeError) as error:
+        raise ContentError(f"{path.name}: {' '.join(str(error).splitlines()[:3])}", "restore the file from the repository") from error
+    verbs, phrases = entries.verbs_of, entries.phrases
     infinitives = sorted(
-        {p.split()[0] for phrases in entries.conjugated.values() for p in split(phrases) if INFINITIVE.fullmatch(p.split()[0])}
+        {p.split()[0] for entry in phrases.get("conjugated", {}).values() for p in split(entry) if INFINITIVE.fullmatch(p.split()[0])}
     )
     made = Lexicon(language, entries.name, entries.traits, tenses=verbs.canonical(infinitives) | entries.spellings)
-    made.compounds, made.sounds = entries.compounds, entries.sounds
+    made.compounds, made.sounds, made.looks = entries.compounds, entries.sounds, entries.looks
+    made.adverbs, made.abbreviations = _folded(phrases.get("adverbs", {}).get("", "")), _folded(entries.abbreviations)
+    made.endings = tuple(sorted(split(entries.endings), key=len, reverse=True))
+    made.range_from, made.range_to = (_folded(entries.range.get(side, "")) for side in ("from", "to"))
+    made.bounds = {" ".join(words(p)): key for key, entry in phrases["bounds"].items() for p in split(entry)}
+    made.joins = frozenset((",", *(w for entry in phrases["joiners"].values() for w in _folded(entry))))
+    signs: dict[str, set[str]] = {}
+    for sign, entry in entries.signs.items():
+        for text in (" ".join(_told(spelt, made)) for p in split(entry) for spelt in _spellings(p, verbs.contracted)):
+            signs.setdefault(text, set()).add(sign)
+    made.signs = {text: frozenset(named) for text, named in signs.items()}
+    made.classes = {sign: frozenset(t for t, named in signs.items() if sign in named) for sign in entries.signs}
     made.vocabulary.update(made.tenses, (fold(w) for verb in infinitives for w in (verb, *verbs.present(verb), *verbs.further(verb))))
+    _learn(made, entries)
+    return made
+
+
+def _learn(made: Lexicon, entries: _Entries) -> None:
+    """Put all phrases into a lexicon, and sort its words by how near a typing error must be to them."""
     targets: set[str] = set()
-    others: dict[str, float] = {}
+    others = _brackets(entries, made)
     for phrase, meaning in _meanings(entries):
-        for spelt in _spellings(phrase, verbs.contracted):
+        for spelt in _spellings(phrase, entries.verbs_of.contracted):
             _insert(made.trie, _told(spelt, made), meaning)
             made.vocabulary.update(spelt)
             if meaning.kind in REPAIRED or (meaning.kind == "cue" and meaning.value in CUES):
                 targets.update(w for w in spelt if w.isalpha() and len(w) >= 4)
             for w in spelt:
                 others[w] = min(FARTHER[meaning.kind in FUNCTION], others.get(w, 1.0))
-    for wrong, meaning in _misheard(entries) if entries.homophones else ():
+    for wrong, meaning in _misheard(entries):
         _insert(made.trie, words(wrong), meaning)
     made.vocabulary.update(w for p in split(entries.common) for w in words(p))
-    blocked = {w for p in split(entries.fillers) if " " not in p for w in words(p)}
-    named = {w for phrases in entries.rooms.values() for p in split(phrases.replace("|", ",")) for w in words(p)}
+    blocked = {w for p in split(entries.phrases.get("fillers", {}).get("", "")) if " " not in p for w in words(p)}
+    named = {w for entry in entries.phrases["rooms"].values() for p in split(entry.replace("|", ",")) for w in words(p)}
     made.targets = tuple(sorted(targets - blocked, key=lambda w: (w not in named, w)))  # names of rooms first
-    made.adverbs = frozenset(fold(w) for w in split(entries.adverbs))
-    made.endings = tuple(sorted(split(entries.endings), key=len, reverse=True))
-    made.abbreviations = frozenset(fold(w) for w in split(entries.abbreviations))
-    made.looks = tuple(entries.styles)
-    made.range_from = frozenset(fold(w) for w in split(entries.range.get("from", "")))
-    made.range_to = frozenset(fold(w) for w in split(entries.range.get("to", "")))
-    made.bounds = {" ".join(words(p)): key for key, phrases in entries.bounds.items() for p in split(phrases)}
-    made.joins = frozenset((",", *(fold(w) for phrases in entries.joiners.values() for w in split(phrases))))
-    made.signs = _signs(entries, made)
-    others |= _brackets(entries, made)
     others |= {w: COMMON for w in made.vocabulary if w not in others}
-    others = dict.fromkeys(_things(language, entries.plurals), FARTHER[True]) | others
+    others = dict.fromkeys(_things(made.language, entries.plurals), FARTHER[True]) | others
     spared = set(made.targets)
     made.others = {w: far for w, far in others.items() if w not in spared and w.isalpha()}
-    return made
 
 
 @functools.cache
 def unread() -> frozenset[str]:
     """Return words of languages that are not read, and that look like none of those that are."""
     return frozenset(split(yaml_text.parse((FOLDER / "others.yaml").read_text(encoding="utf-8"))["others"]))
-
-
-def _signs(entries: _Entries, lex: Lexicon) -> dict[str, frozenset[str]]:
-    """Return the classes that the words of frames belong to."""
-    signs: dict[str, set[str]] = {}
-    for sign, phrases in entries.signs.items():
-        for p in split(phrases):
-            for spelt in _spellings(p, entries.verbs_of.contracted):
-                signs.setdefault(" ".join(_told(spelt, lex)), set()).add(sign)
-    return {text: frozenset(named) for text, named in signs.items()}
 
 
 def _brackets(entries: _Entries, lex: Lexicon) -> dict[str, float]:

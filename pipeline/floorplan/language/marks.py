@@ -25,7 +25,6 @@ PUNCTUATION = {
 ENDS = {"stop", "line"}  # kinds of marks that end a sentence
 ARROWS = {"<->", "->", "=>", "→"}
 FOREIGN = STRONG | {"num", "adj", "cue"}  # what a word of another language may mean in a mixed prompt
-USUAL_HEIGHT = 15.0  # a length from here on, said of a room or a home, is an area ("60 metros")
 
 
 @dataclass(slots=True)
@@ -95,7 +94,7 @@ def segment(heard: Words) -> list[Mark]:
                 made.append(mark)
         else:
             i += 1
-    return _slim(_halves(_numbers(_articles(made, heard), heard)))
+    return _settled(_halves(_numbers(_articles(made, heard), heard)), heard)
 
 
 def _articles(marks: list[Mark], heard: Words) -> list[Mark]:
@@ -238,109 +237,22 @@ def _halves(marks: Sequence[Mark]) -> list[Mark]:
     return made
 
 
-def _slim(marks: Sequence[Mark]) -> list[Mark]:
-    """Read "a narrow three-bedroom townhouse" as a home on a narrow plot; a narrow room is only that."""
-    made = list(marks)
+def _settled(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Settle what depends on words far off: narrow plots, floors counted from the ground floor, studies where there are bedrooms."""
+    lex, made = heard.lexicon, list(marks)
+    ground = "floors_from_one" in lex.traits and any(m.kind == "level" and lex.sign("ground") & set(m.text.split()) for m in marks)
+    bedrooms = any(m.kind == "room" and m.value.startswith("bedroom") for m in marks)
     for k, mark in enumerate(marks):
-        if mark.kind == "adj" and mark.value == "slim":
-            ahead = [m.kind for m in marks[k + 1 : k + 5] if m.kind not in {"adj", "num", "look", "size"}]
-            if ahead[:1] == ["home"] or ahead[:2] == ["room", "home"] or (k and marks[k - 1].kind == "home"):
-                made[k] = replace(mark, kind="flag", value="narrow")
+        ahead = [m.kind for m in marks[k + 1 : k + 5] if m.kind not in {"adj", "num", "look", "size"}] if mark.value == "slim" else []
+        if ahead[:1] == ["home"] or ahead[:2] == ["room", "home"] or (mark.value == "slim" and k and marks[k - 1].kind == "home"):
+            made[k] = replace(mark, kind="flag", value="narrow")  # "a narrow three-bedroom townhouse": a narrow room is only that
+        elif mark.kind == "level" and ground:  # with a ground floor, the first floor is the one above
+            shifted = (n for n in (1, 2) if any(mark.text.endswith(t) for t in lex.sign(f"floor_{n}")))
+            made[k] = replace(mark, value=str(next(shifted, mark.value)))
+        elif mark.kind == "every" and any(m.kind == "room" and m.text == mark.text.rsplit(" ", 1)[-1] for m in marks[:k]):
+            made[k] = replace(
+                mark, kind="room", value="bedroom", plural=True
+            )  # "todas las habitaciones" where so many were counted by that word
+        elif mark.kind == "home" and k and bedrooms and mark.text in lex.sign("study"):
+            made[k] = replace(mark, kind="room", value="office")
     return made
-
-
-def _elliptic(marks: Sequence[Mark], k: int, lex: Lexicon) -> list[Mark]:
-    """Return the marks from k with the unit that was said before: "at least 12 m² but no more than 15"."""
-    bounded = lex.bounds.get(marks[k].text) in {"least", "most"} and k + 1 < len(marks) and marks[k + 1].kind == "num"
-    if not bounded:
-        return []
-    unit = next((marks[j] for j in range(k - 1, -1, -1) if marks[j].kind in {"unit", "room", "home"}), None)
-    alone = k + 2 >= len(marks) or marks[k + 2].kind in {"comma", "but", "stop", "join", "line"}
-    if unit is None or unit.kind != "unit" or not alone:
-        return []
-    return [marks[k], marks[k + 1], replace(unit, first=marks[k + 1].last, last=marks[k + 1].last)]
-
-
-def measured(marks: Sequence[Mark], heard: Words) -> list[Mark]:
-    """Put amounts together: "at least 18 m²", "10 to 12 m²", "4 x 5 m", "seven square metres or more"."""
-    made: list[Mark] = []
-    k = 0
-    while k < len(marks):
-        if (
-            k + 1 < len(marks)
-            and marks[k].kind == "num"
-            and marks[k + 1].kind == "times"
-            and len(marks[k + 1].text) > ("characters" not in heard.lexicon.traits)
-            and not (k + 2 < len(marks) and marks[k + 2].kind == "num")
-        ):
-            made.append(Mark("factor", "", marks[k].number, False, marks[k].first, marks[k + 1].last, marks[k].text))
-            k += 2
-            continue
-        found = _amount(marks, k, heard.lexicon)
-        said = [] if found else _elliptic(marks, k, heard.lexicon)
-        if said and (short := _amount(said, 0, heard.lexicon)):
-            found = short[0], k + 2
-        if found is None:
-            made.append(marks[k])
-            k += 1
-        else:
-            mark, end = found
-            mark.first, mark.last = marks[k].first, marks[end - 1].last
-            mark.text = " ".join(heard.texts[mark.first : mark.last])
-            made.append(mark)
-            k = end
-    return made
-
-
-def _amount(marks: Sequence[Mark], k: int, lex: Lexicon) -> tuple[Mark, int] | None:  # noqa: C901, PLR0912 - one branch per case: a grammar
-    bound, i, ranged, total = "", k, False, False
-    while i < len(marks) and (
-        marks[i].text in lex.bounds
-        or marks[i].text in lex.range_from
-        or (i > k and marks[i].kind in {"fill", "det"} and marks[i].value in {"", "indefinite"})
-    ):
-        if marks[i].text in lex.bounds:
-            bound = {"least": "least", "or_more": "least", "most": "most", "or_less": "most"}.get(
-                lex.bounds[marks[i].text], bound or "about"
-            )
-        ranged = ranged or marks[i].text in lex.range_from
-        total = total or (marks[i].kind == "flag" and marks[i].value == "total")
-        i += 1
-        if i - k > 4:
-            return None
-    if i >= len(marks) or marks[i].kind != "num":
-        return None
-    low, i = marks[i].number, i + 1
-    high = side = None
-    unit = None
-    if i + 1 < len(marks) and marks[i].kind in {"hyphen", "dash"} and marks[i + 1].kind == "unit":
-        i += 1
-    if i < len(marks) and marks[i].kind == "unit":
-        unit, i = marks[i], i + 1
-    if i + 1 < len(marks) and marks[i + 1].kind == "num" and marks[i].kind != "comma":
-        after = marks[i + 2] if i + 2 < len(marks) else None
-        same = after is not None and after.kind == "unit" and (unit is None or after.value == unit.value)
-        joins = marks[i].kind == "dash" or marks[i].text in lex.range_to
-        crossed = marks[i].kind == "times" or marks[i].text in {"x", "by", "por"}
-        if same and after is not None and ((joins and (marks[i + 1].number > low or (ranged and low > 0))) or crossed):
-            if crossed:
-                side, low = min(low, marks[i + 1].number), low * marks[i + 1].number
-            else:
-                low, high = sorted((low, marks[i + 1].number))
-            unit, i = after, i + 3
-    if unit is None:
-        return None
-    if i + 1 < len(marks) and marks[i].value == "total" and lex.bounds.get(marks[i + 1].text) in {"or_less", "or_more", "most", "least"}:
-        total, i = True, i + 1  # "50 m2 in total at most"
-    compared = unit.value == "share" and i < len(marks) and marks[i].kind in {"cmp", "adj", "size"}  # "30 % larger than"
-    behind = lex.bounds.get(marks[i].text, "about") if i < len(marks) and not compared else "about"
-    added = i + 1 < len(marks) and marks[i].text == "+" and marks[i + 1].kind in {"room", "suite", "det", "adj", "size", "pron"}
-    if behind != "about" and not added and not (i + 1 < len(marks) and marks[i + 1].kind == "num"):
-        bound, i = ("least" if behind in {"or_more", "least"} else "most"), i + 1
-    factor, value = unit.number, unit.value
-    if side is not None and value == "length":
-        return Mark("amount", "area", low * factor * factor, bound=bound, side=side * factor), i
-    if value == "length" and factor >= 0.3 and low * factor >= USUAL_HEIGHT:
-        value, factor = "area", (1.0 if factor == 1.0 else 0.092903)
-    top = None if high is None else high * factor
-    return Mark("amount", value, low * factor, high=top, bound=bound, total=total), i

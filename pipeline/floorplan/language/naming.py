@@ -1,39 +1,43 @@
-"""Which rooms noun phrases and pronouns name: new ones, and those that were named before."""
+"""Which rooms phrases and pronouns name: those that numbers and articles introduce, and those that were named before."""
 
 from __future__ import annotations
 
-from pipeline.floorplan.language.facts import SOCIAL, Group, Named, Reading
-from pipeline.floorplan.language.phrases import Element
+from pipeline.floorplan.language.facts import Group, Named, Reading
+from pipeline.floorplan.language.phrases import Element, backward, heads
+from pipeline.floorplan.language.text import spread
+from pipeline.floorplan.program.consistency import ImpossibleError
+from pipeline.floorplan.program.floor_program import MAX_ROOMS, Evidence
 
 ALONE = {"living_room", "kitchen", "dining_room", "hallway", "entry", "utility", "garage", "staircase", "family_room", "studio_room"}
 PLURAL_NAMES = {"staircase", "closet", "storage"}  # their plural often means one
 THEIRS = {"child", "guest", "elder", "staff", "carer"}  # who has a room of another name than just a bedroom
-ROLES = {"primary", "guest", "child", "elder", "staff", "carer", "shared", "ensuite"}
+ROLES = {"primary", *THEIRS, "shared", "ensuite"}
 
 
-def listed(sentence: list[Element], k: int, room: Named) -> bool:
-    """Whether a phrase spells out a count in front of a colon or a bracket: "three bedrooms: a master, two for the kids"."""
-    for j in range(k - 1, -1, -1):
-        e = sentence[j]
-        if e.kind in {"colon", "open"}:
-            return any(room.id in x.ids and len(x.ids) > 1 for x in sentence[:j])
-    return False
+def _role(e: Element) -> str:
+    return e.role if e.role in ROLES else ""
 
 
-def conjoined(sentence: list[Element], k: int) -> bool:
-    """Whether the same kind of room was counted in the same list, so that this one comes on top."""
-    kind = sentence[k].type
-    for e in reversed(sentence[:k]):
-        if e.kind in {"cue", "colon", "open", "verb", "comma"}:
-            return False
-        if e.kind == "np" and e.type == kind:
-            return True
-    return False
+def _many(e: Element) -> bool:
+    return e.plural or bool(e.det & {"all", "both", "each"}) or (e.number or 0) > 1
 
 
-def repeated(sentence: list[Element], k: int) -> bool:
-    """Whether a room of the type was named earlier in the sentence."""
-    return any(e.kind == "np" and e.type == sentence[k].type for e in sentence[:k])
+def _word(e: Element) -> str:
+    return e.text.rsplit(maxsplit=1)[-1]
+
+
+def _landing(room: Named) -> bool:
+    """Whether a hallway is the one at the head of the stairs: "the hall" is another."""
+    return room.role == "landing"
+
+
+def count_of(state: Reading, text: str) -> int:
+    """Return how many "the other two" are; 0 where no number is said."""
+    found = (state.heard.lexicon.trie.get(w, {}).get("") for w in text.split())
+    return next(
+        (int(m.number) for m in found if m is not None and m.kind == "num"),
+        2 if state.heard.lexicon.sign("pair") & set(text.split()) else 0,
+    )
 
 
 def close(room: Named, role: str, surface: str, level: int | None = None) -> Named:
@@ -45,82 +49,98 @@ def close(room: Named, role: str, surface: str, level: int | None = None) -> Nam
     return room
 
 
+def _listed(sentence: list[Element], k: int, room: Named) -> bool:
+    """Whether a phrase spells out a count in front of a colon or a bracket: "three bedrooms: a master, two for the kids"."""
+    j = next((j for j in range(k - 1, -1, -1) if sentence[j].kind in {"colon", "open"}), 0)
+    return any(room.id in x.ids and len(x.ids) > 1 for x in sentence[:j])
+
+
+def _before(sentence: list[Element], k: int, *breaks: str) -> Element | None:
+    """Return the phrase of the same type in front of k, with none of the kinds that break a list between."""
+    for e in reversed(sentence[:k]):
+        if e.kind in breaks:
+            return None
+        if e.kind == "np" and e.type == sentence[k].type:
+            return e
+    return None
+
+
 def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[str]:
     """Return the ids of the rooms that the phrase k names; make those that are missing."""
-    e = sentence[k]
-    if not e.ids:
-        e.ids = [r.id for r in _named(state, sentence, k, level)]
-    if level is not None:
-        for room in (state.inventory.get(i) for i in e.ids):
-            room.level = level if room.level is None and not e.definite else room.level
-    for room in (state.inventory.get(i) for i in e.ids):
+    e, stock = sentence[k], state.inventory
+    e.ids = e.ids or [r.id for r in _named(state, sentence, k, level)]
+    for room in (stock.get(i) for i in e.ids):
+        if level is not None and room.level is None and not e.definite:
+            room.level = level
         room.span = room.span or (e.first, e.last)
         room.functions |= e.functions
-        if e.size != 1.0:
-            room.size = e.size
+        room.size = e.size if e.size != 1.0 else room.size
     return e.ids
 
 
-def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911, PLR0912 - one answer per kind of phrase
-    e, stock = sentence[k], state.inventory
-    same = [r for r in stock.of(e.type) if e.role == "landing" or not is_landing(r)]
-    role = e.role if e.role in ROLES else ""
+def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per kind of phrase
+    e, stock, role = sentence[k], state.inventory, _role(sentence[k])
+    same = [r for r in stock.of(e.type) if e.role == "landing" or not _landing(r)]
     if e.suite:
         return _suites(state, sentence, k, role, level)
     suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), None) if e.type == "bedroom" and not role else None
     if suites and not e.ordinal and e.number is None:
         return [stock.get(i) for i in suites]
-    if e.type == "hallway" and e.definite:
-        word = e.text.rsplit(maxsplit=1)[-1]
-        halls = [r for r in stock.rooms if r.type in {"hallway", "entry"} and word in r.surface.split()]
-        if halls:
-            return halls[:1]
+    if (
+        e.type == "hallway"
+        and e.definite
+        and (halls := [r for r in stock.rooms if r.type in {"hallway", "entry"} and _word(e) in r.surface.split()])
+    ):
+        return halls[:1]
     if e.part:
-        free = [r for r in same if r.open_slot] or same
-        total = int(e.number or 0)
-        while len(same) < max(total, e.part):
-            free.append(stock.add(e.type, "", e.text, level, open_slot=True))
-            same = stock.of(e.type)
-        return [close(r, role, e.text) for r in free[: e.part]]
+        _fill(state, e, max(int(e.number or 0), e.part))
+        same = stock.of(e.type)
+        return [close(r, role, e.text) for r in ([r for r in same if r.open_slot] or same)[: e.part]]
     if "another" in e.det and not e.definite:
-        return [stock.add(e.type, role, e.text, level, open_slot=(e.number or 1) > 1) for _ in range(int(e.number or 1))]
+        return _new(state, e, int(e.number or 1), role, level)
     if e.index:
         return [_indexed(state, e, role, level)]
     if e.ordinal:
         return _ordinal(state, e, role, level)
     if "other" in e.det:
         return _others(state, sentence, k, role, level)
-    if role:
-        found = _by_role(state, sentence, k, role, level)
-        if found:
-            return found
-    elif same:
-        return _known(state, sentence, k, level)
-    count = int(e.number or (2 if "both" in e.det or (e.plural and e.type not in PLURAL_NAMES) else 1))
-    return [stock.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
+    found = _by_role(state, sentence, k, role, level) if role else _known(state, sentence, k, level) if same else []
+    return found or _new(state, e, int(e.number or (2 if "both" in e.det or (e.plural and e.type not in PLURAL_NAMES) else 1)), role, level)
+
+
+def _new(state: Reading, e: Element, count: int, role: str, level: int | None) -> list[Named]:
+    made = [state.inventory.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
+    for room in made if e.role == "landing" else ():
+        room.role = "landing"
+    return made
+
+
+def _fill(state: Reading, e: Element, count: int) -> None:
+    """Add rooms of a phrase's type that nothing is said of yet until there are so many."""
+    while len(state.inventory.of(e.type)) < count:
+        state.inventory.add(e.type, "", e.text, None, open_slot=True)
 
 
 def _others(state: Reading, sentence: list[Element], k: int, role: str, level: int | None) -> list[Named]:
     """Return "the other two bedrooms": those that nothing was said of, new ones where they are too few."""
     e, stock = sentence[k], state.inventory
     same = stock.of(e.type)
-    last = {i for g in state.past[-1:] for i in g} | {i for x in sentence[:k] for i in x.ids} | set(state.topic)
-    rest = [r for r in same if r.open_slot] or [r for r in same if r.id not in last] or ([] if len(same) == 1 else same[-1:])
-    many = e.plural or (e.number or 0) > 1
+    told = {i for g in state.past[-1:] for i in g} | {i for x in sentence[:k] for i in x.ids} | set(state.topic)
+    rest = [r for r in same if r.open_slot] or [r for r in same if r.id not in told] or ([] if len(same) == 1 else same[-1:])
     if e.number is not None and e.type == "bedroom":
-        told = last | {g[0] for g in state.past if len(g) == 1}
+        told |= {g[0] for g in state.past if len(g) == 1}
         rest = [r for r in rest if r.open_slot or r.id not in told]
-        while len(rest) < e.number:
-            rest.append(stock.add(e.type, role, e.text, level))
-    return (rest if many else [close(r, "", e.text) for r in rest[:1]]) or [stock.add(e.type, role, e.text, level)]
+        rest += [stock.add(e.type, role, e.text, level) for _ in range(int(e.number) - len(rest))]
+    return (rest if _many(e) else [close(r, "", e.text) for r in rest[:1]]) or [stock.add(e.type, role, e.text, level)]
 
 
 def fresh(state: Reading, e: Element, level: int | None, owner: str) -> list[str]:
     """Return a room that somebody has of their own: one that was only counted, or a new one."""
-    role = e.role if e.role in ROLES else ""
-    theirs = [r for r in state.inventory.of(e.type) if r.role == owner and e.type == "bedroom"]
-    slots = theirs or [r for r in state.inventory.of(e.type) if r.open_slot and not r.role and (level is None or r.level in {None, level})]
-    room = close(slots[0], role, e.text) if slots else state.inventory.add(e.type, role, e.text, level)
+    same = state.inventory.of(e.type)
+    slots = [r for r in same if r.role == owner and e.type == "bedroom"] or [
+        r for r in same if r.open_slot and not r.role and (level is None or r.level in {None, level})
+    ]
+    room = close(slots[0], _role(e), e.text) if slots else state.inventory.add(e.type, _role(e), e.text, level)
     e.ids = [room.id]
     return e.ids
 
@@ -131,26 +151,22 @@ def _suites(state: Reading, sentence: list[Element], k: int, role: str, level: i
     same = [r for r in stock.of("bedroom") if r.role == role] if role else []
     if same and not e.introduces:
         return same
-    slots = [r for r in stock.of("bedroom") if r.open_slot and not r.role and (r.whole or e.definite or listed(sentence, k, r))]
+    slots = [r for r in stock.of("bedroom") if r.open_slot and not r.role and (r.whole or e.definite or _listed(sentence, k, r))]
     made = [close(r, role, e.text) for r in slots[:count]]
     return made + [stock.add("bedroom", role, e.text, level) for _ in range(count - len(made))]
 
 
 def _indexed(state: Reading, e: Element, role: str, level: int | None) -> Named:
-    stock = state.inventory
-    for room in stock.of(e.type):
-        if room.index == e.index:
-            return room
-    free = [r for r in stock.of(e.type) if not r.index and r.open_slot]
-    room = free[0] if free else stock.add(e.type, role, e.text, level)
+    same = state.inventory.of(e.type)
+    known = [r for r in same if r.index == e.index] or [r for r in same if not r.index and r.open_slot]
+    room = known[0] if known else state.inventory.add(e.type, role, e.text, level)
     room.index, room.open_slot = e.index, False
     return room
 
 
 def _ordinal(state: Reading, e: Element, role: str, level: int | None) -> list[Named]:
-    stock = state.inventory
-    same = stock.of(e.type)
-    if e.text[:1] in {"次", "侧"} and same:  # "次卧": a bedroom beside the main one, which nobody else has
+    stock, same = state.inventory, state.inventory.of(e.type)
+    if e.secondary and same:  # "次卧": a bedroom beside the main one, which nobody else has
         here = [r for r in same if r.surface == e.text and not r.open_slot] or [r for r in same if r.open_slot and not r.role]
         if here or all(r.role for r in same):
             return [close(here[0], role, e.text)] if here else [stock.add(e.type, role, e.text, level)]
@@ -161,9 +177,38 @@ def _ordinal(state: Reading, e: Element, role: str, level: int | None) -> list[N
     if any(r.whole for r in same):
         state.say("beyond", tuple(r.id for r in same), (), e, float(e.ordinal))
         return same[-1:]
-    while len(stock.of(e.type)) < e.ordinal - 1:
-        stock.add(e.type, "", e.text, level, open_slot=True)
+    _fill(state, e, e.ordinal - 1)
     return [stock.add(e.type, role, e.text, level)]
+
+
+def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: int | None) -> list[Named]:
+    """Return the rooms of a role; one that was only counted may take it."""
+    e, same, many = sentence[k], state.inventory.of(sentence[k].type), _many(sentence[k])
+    found = [r for r in same if r.role == role]
+    bare_nouns = "bare_nouns" in state.heard.lexicon.traits
+    if found and (many or not e.introduces):
+        return found if many else found[:1]
+    plain = [
+        r for r in same if not r.role and not state.inventory.owned(r.id) and not (r.extra and r.span is not None and r.span[0] > e.first)
+    ]
+    if e.type == "bathroom":
+        slots = [r for r in same if r.open_slot and not r.role]
+        known = slots or (plain if len(plain) == 1 and (e.definite or (bare_nouns and not e.det and e.number is None)) else [])
+        return [close(known[0], role, e.text)] if known and role not in {"ensuite", "primary"} else []
+    if e.type != "bedroom":
+        return [close(plain[0], role, e.text)] if plain and e.definite and _before(sentence, k) is None else []
+    slots = [
+        r
+        for r in plain
+        if r.open_slot
+        and (e.definite or r.whole or _listed(sentence, k, r) or _before(sentence, k, "cue", "colon", "open", "verb", "comma") is None)
+        and (e.definite or r.whole or bare_nouns or not _counted_later(sentence, k, r))  # "maid's room, two bedrooms"
+        and ((e.definite and level is None) or r.level is None or r.level == level)  # counted on another storey: others
+        and not (role == "primary" and r.secondary)
+    ]
+    if slots:
+        return [close(r, role, e.text) for r in slots[: int(e.number or len(slots)) if many else 1]]
+    return [close(plain[0], role, e.text)] if len(plain) == 1 == len(same) and e.definite and not many else []
 
 
 def _counted_later(sentence: list[Element], k: int, room: Named) -> bool:
@@ -176,131 +221,170 @@ def _counted_later(sentence: list[Element], k: int, room: Named) -> bool:
     return False
 
 
-def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: int | None) -> list[Named]:  # noqa: PLR0911 - one branch per case: a grammar
-    """Return the rooms of a role; one that was only counted may take it."""
-    e, stock = sentence[k], state.inventory
-    same = stock.of(e.type)
-    found = [r for r in same if r.role == role]
-    many = e.plural or bool(e.det & {"all", "both", "each"}) or (e.number or 0) > 1
-    if found and not (e.introduces and not many):
-        return found if many or len(found) == 1 else found[:1]
-    if e.type == "bathroom":
-        if role in {"ensuite", "primary"}:
-            return []
-        slots = [r for r in same if r.open_slot and not r.role]
-        plain = [r for r in same if not r.role and not state.inventory.owned(r.id)]
-        if slots:
-            return [close(slots[0], role, e.text)]
-        bare = "bare_nouns" in state.heard.lexicon.traits and not e.det and e.number is None  # no articles there
-        return [close(plain[0], role, e.text)] if (e.definite or bare) and len(plain) == 1 else []
-    if e.type != "bedroom":
-        plain = [r for r in same if not r.role]
-        return [close(plain[0], role, e.text)] if plain and e.definite and not repeated(sentence, k) else []
-    slots = [
-        r
-        for r in same
-        if r.open_slot
-        and not r.role
-        and (e.definite or r.whole or listed(sentence, k, r) or not conjoined(sentence, k))
-        and not (r.extra and r.span is not None and r.span[0] > e.first)  # "the main bedroom ...; two more bedrooms"
-        and not (role == "primary" and r.surface[:1] in {"次", "侧"})
-        and (
-            e.definite or r.whole or "bare_nouns" in state.heard.lexicon.traits or not _counted_later(sentence, k, r)
-        )  # "maid's room, two bedrooms"
-        and ((e.definite and level is None) or r.level is None or r.level == level)  # counted on another storey: others
-    ]
-    if many and slots:
-        count = int(e.number or len(slots))
-        return [close(r, role, e.text) for r in slots[:count]]
-    if slots:
-        return [close(slots[0], role, e.text)]
-    plain = [r for r in same if not r.role and not (r.extra and r.span is not None and r.span[0] > e.first)]
-    if len(plain) == 1 and len(same) == 1 and e.definite and not many:
-        return [close(plain[0], role, e.text)]
-    return []
-
-
-LANDINGS = {"landing", "rellano", "descansillo", "galerie", "treppenabsatz"}
-
-
-def is_landing(room: Named) -> bool:
-    """Whether a hallway is the one at the head of the stairs: "the hall" is another."""
-    return room.type == "hallway" and bool(LANDINGS & set(room.surface.split()))
-
-
-def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: C901, PLR0911, PLR0912 - one branch per case: a grammar
+def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per case
     """Return the rooms that a phrase without role points at, where there are such rooms."""
     e, stock = sentence[k], state.inventory
+    bare_nouns = "bare_nouns" in state.heard.lexicon.traits
     same = [r for r in stock.of(e.type) if not (r.extra and r.span is not None and r.span[0] > e.first)]
-    same = [r for r in same if e.role == "landing" or not is_landing(r)]
-    if not e.plural and not e.number and e.type in {"bathroom", "bedroom"}:  # "... a bath; further a guest bath"
+    same = [r for r in same if e.role == "landing" or not _landing(r)]
+    if not _many(e) and e.type in {"bathroom", "bedroom"}:  # "... a bath; further a guest bath"
         same = [r for r in same if not (r.role in ROLES and r.span is not None and r.span[0] > e.last)]
-    if e.type == "bedroom" and not (
-        e.plural or e.number or e.det & {"all", "both", "each", "other"}
-    ):  # "das Kinderzimmer ..., das Schlafzimmer ..."
-        same = [r for r in same if r.role not in THEIRS or e.text.rsplit(maxsplit=1)[-1] in r.surface.split()]
-    if not same:  # "..., another bath" comes later
-        return [stock.add(e.type, "", e.text, level)]
+    if e.type == "bedroom" and not _many(e) and "other" not in e.det:  # "das Kinderzimmer ..., das Schlafzimmer ..."
+        same = [r for r in same if r.role not in THEIRS or _word(e) in r.surface.split()]
     if level is not None:
         here = [r for r in same if r.level in {None, level}]
-        if not here and not e.definite and not e.plural:
-            return [stock.add(e.type, "", e.text, level)]
-        same = here or same
-    many = e.plural or bool(e.det & {"all", "both", "each"}) or (e.number or 0) > 1
-    if not many and len(same) > 1 and e.adjectives & {"largest", "smallest"}:
-        return same[:1] if "largest" in e.adjectives else same[-1:]
-    if many:
-        number = int(e.number or (2 if "both" in e.det and e.type == "bedroom" else 0))
-        if number > len(same) and all(not r.whole for r in same) and e.definite:
-            while len(stock.of(e.type)) < number:
-                stock.add(e.type, "", e.text, level, open_slot=True)
-            same = stock.of(e.type)
-        elif number > len(same):
-            state.say("beyond", tuple(r.id for r in same), (), e, float(number))
-        elif 0 < number < len(same):
-            last = [r for g in state.past[-1:] for r in (stock.get(i) for i in g) if r.type == e.type]
-            loose = [r for r in same if r.open_slot]
-            return last if len(last) == number else (loose if len(loose) >= number else same)[:number]
-        return same
-    if (
-        not e.det
-        and e.type == "bathroom"
-        and "bare_nouns" not in state.heard.lexicon.traits
-        and all(stock.owned(r.id) or r.role == "ensuite" for r in same)
-    ):
-        return [stock.add(e.type, "", e.text, level)]  # "a master with en suite, ..., bathroom"
-    if not e.det and (_repeated_bare(sentence, k) or (e.type == "storage" and all(e.text != r.surface for r in same))):
+        same = here if here or (not e.definite and not e.plural) else same
+    if not same:  # "..., another bath" comes later, or it is on another storey
         return [stock.add(e.type, "", e.text, level)]
-    if len(same) > 1 and "bare_nouns" in state.heard.lexicon.traits and not e.det and e.number is None and all(r.open_slot for r in same):
+    if not _many(e) and len(same) > 1 and e.adjectives & {"largest", "smallest"}:
+        return same[:1] if "largest" in e.adjectives else same[-1:]
+    if _many(e):
+        return _several(state, e, same)
+    owned = e.type == "bathroom" and not bare_nouns and all(stock.owned(r.id) or r.role == "ensuite" for r in same)
+    other = e.type == "storage" and all(e.text != r.surface for r in same)
+    if not e.det and (owned or other or _repeated(state, sentence, k)):
+        return [stock.add(e.type, "", e.text, level)]  # "a master with en suite, ..., bathroom", "bedroom, bedroom, bath"
+    if len(same) > 1 and bare_nouns and not e.det and e.number is None and all(r.open_slot for r in same):
         return same  # no plural there: "两间卧室 ... 卧室都朝走廊"
     if len(same) > 1:
         if e.number == 1 and (loose := [r for r in same if r.open_slot and not r.role]):
             return [close(loose[0], "", e.text)]  # "one bedroom ..., the other ..."
-        word = e.text.rsplit(maxsplit=1)[-1]
-        same = [r for r in same if word in r.surface.split()] or same
+        same = [r for r in same if _word(e) in r.surface.split()] or same
         recent = [r for r in same if any(r.id in x.ids for x in sentence[:k])]
-        plain = [r for r in same if not r.role]
-        return (recent[-1:] if e.definite and recent else plain or same)[:1]
-    return same[:1]
+        return (recent[-1:] if e.definite and recent else [r for r in same if not r.role] or same)[:1]
+    return same
 
 
-def _repeated_bare(sentence: list[Element], k: int) -> bool:
+def _several(state: Reading, e: Element, same: list[Named]) -> list[Named]:
+    """Return "the two bedrooms" of those that are known."""
+    stock, number = state.inventory, int(e.number or (2 if "both" in e.det and e.type == "bedroom" else 0))
+    if number > len(same) and e.definite and not any(r.whole for r in same):
+        _fill(state, e, number)
+        return stock.of(e.type)
+    if number > len(same):
+        state.say("beyond", tuple(r.id for r in same), (), e, float(number))
+    if 0 < number < len(same):
+        last = [r for g in state.past[-1:] for r in map(stock.get, g) if r.type == e.type]
+        loose = [r for r in same if r.open_slot]
+        return last if len(last) == number else (loose if len(loose) >= number else same)[:number]
+    return same
+
+
+def _repeated(state: Reading, sentence: list[Element], k: int) -> bool:
     """Whether a list names the same kind of room again: "bedroom, bedroom, bath"."""
     ahead = sentence[k + 1] if k + 1 < len(sentence) else None
-    han = sentence[k].text[:1] >= "\u3400"  # "一间书房,书房远离卧室"
-    if sentence[k].type in ALONE or (ahead is not None and (ahead.kind in {"verb", "neg"} or (han and ahead.kind == "cue"))):
+    bare_nouns = "bare_nouns" in state.heard.lexicon.traits  # "一间书房,书房远离卧室"
+    said = ahead is not None and (ahead.kind in {"verb", "neg"} or (ahead.kind in {"cue", "flag", "cmp"} and bare_nouns))
+    if sentence[k].type in ALONE or said:
         return False
     for j in range(k - 1, -1, -1):
         e = sentence[j]
-        if e.kind == "np":
-            if e.type == sentence[k].type:
-                spoken = k + 1 < len(sentence) and sentence[k + 1].kind in {"cue", "verb", "neg", "flag", "cmp"}  # Chinese has no articles
-                return not (spoken and sentence[k - 1].kind == "comma") and (
-                    not j or sentence[j - 1].kind not in {"cue", "enter", "det", "cmp"}
-                )
-        elif e.kind not in {"comma", "and", "amount", "open", "close"}:
+        if e.kind == "np" and e.type == sentence[k].type:
+            spoken = ahead is not None and ahead.kind in {"cue", "flag", "cmp"} and sentence[k - 1].kind == "comma"
+            return not spoken and (not j or sentence[j - 1].kind not in {"cue", "enter", "det", "cmp"})
+        if e.kind not in {"np", "comma", "and", "amount", "open", "close"}:
             return False
     return False
+
+
+# what numbers and articles introduce
+
+
+def introduce(state: Reading, sentences: list[list[Element]]) -> None:
+    """Make the rooms that numbers and indefinite articles introduce: whole counts first, so that later words may tell them apart."""
+    for whole in (True, False):
+        for sentence in sentences:
+            first = next((e for e in sentence if e.kind in {"np", "level", "zone", "every"}), None)
+            level = int(first.value) if first is not None and first.kind == "level" else None
+            suites = False  # "a suite: ... a bedroom": the suite's own
+            for k, e in enumerate(sentence):
+                if e.kind == "level" and (not (level is None and k) or heads(sentence, k)):
+                    level = int(e.value)
+                suites = suites or (e.kind == "np" and e.suite)
+                theirs = e.suite or (suites and e.type == "bedroom" and e.number is None)
+                if e.kind == "np" and e.introduces and not e.ids and not theirs and _whole(sentence, k) == whole:
+                    _few(state, e)
+                    made = _count_all(state, e) if whole else _introduced(state, sentence, k, backward(sentence, k, level))
+                    e.ids = [r.id for r in made]
+
+
+def _few(state: Reading, e: Element) -> None:
+    """Refuse more rooms than a program holds, with the words."""
+    if (e.number or 0) > MAX_ROOMS:
+        start, end = spread(state.heard.tokens[max(e.first - 1, 0) : e.last])
+        words = [Evidence(start=start, end=end, text=state.heard.prompt[start:end], field="rooms")]
+        raise ImpossibleError(f"{e.number:g} {e.type.replace('_', ' ')}s are asked for", f"ask for {MAX_ROOMS} rooms at most", words)
+
+
+def _whole(sentence: list[Element], k: int) -> bool:
+    """Whether the number of a phrase is the count of all such rooms: "a two-bedroom flat", "three baths in total"."""
+    e = sentence[k]
+    if e.compound and not e.role:
+        return True
+    near = [*sentence[k + 1 : k + 2], *(sentence[max(0, k - 1) : k] if e.type == "bedroom" and not e.role else [])]
+    return any(x.kind == "flag" and x.value == "total" for x in near) and e.number is not None and not e.amounts
+
+
+def _count_all(state: Reading, e: Element) -> list[Named]:
+    stock, count = state.inventory, int(e.number or 1)
+    while len(stock.of(e.type)) < count:
+        room = stock.add(e.type, "", e.text, None, open_slot=True)
+        room.whole, room.span = True, (e.first, e.last)
+    return stock.of(e.type)[:count]
+
+
+def _introduced(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911, PLR0912 - one answer per case
+    """Return the rooms of a phrase with a number or an indefinite article."""
+    e, stock, role = sentence[k], state.inventory, _role(sentence[k])
+    count = int(e.number or (2 if e.plural and e.type not in PLURAL_NAMES else 1))
+    same = stock.of(e.type)
+    slots = [r for r in same if r.open_slot and (level is None or r.level in {None, level}) and not r.role]
+    told = [r for r in slots if r.whole or _listed(sentence, k, r)]
+    if e.number is not None and not role and "another" not in e.det and count > len(same) and any(r.whole for r in same):
+        state.say("beyond", tuple(r.id for r in same), (), e, float(count))
+        return same
+    before = [x for x in sentence[:k] if x.kind in {"np", "cue", "comma", "and", "pron"}][-2:]
+    had = (
+        len(before) > 1
+        and (before[1].kind, before[1].value) == ("cue", "has")
+        and (before[0].type == "bedroom" or before[0].kind == "pron")
+    )
+    if slots and e.type == "bathroom" and count == 1 and had and not any(r.id in x.ids for r in slots for x in sentence[:k]):
+        return []  # "three baths. Two of the bedrooms have an en suite": of those that were counted
+    if slots and k > 1 and sentence[k - 1].kind == "verb" and (sentence[k - 2].kind, sentence[k - 2].value) == ("pron", "one"):
+        return [close(slots[0], role, e.text)]  # "four bedrooms, one of which is a guest room"
+    if "another" in e.det:
+        bare = "bare_nouns" in state.heard.lexicon.traits  # "三间卧室：大儿子一间，小女儿一间": the second of theirs
+        if role and e.type == "bedroom" and len(told) >= count and (bare or not all(r.whole for r in told)):
+            return [close(r, role, e.text) for r in told[:count]]
+    elif role and role != "ensuite":
+        here = [r for r in same if r.role == role]
+        if here and len(here) == count:
+            return here
+        if len(told) >= count and e.type != "bathroom":
+            return [close(r, role, e.text) for r in told[:count]]
+    elif not role and slots and not _contrasted(sentence, k):
+        if len(slots) == count == len(same) and count > 1:
+            return slots
+        known = all(r.whole for r in slots) or (e.number is not None and count < len(slots) and len(slots) > 1)
+        if known and count <= len(slots) and _before(sentence, k, "cue", "colon", "open", "verb", "comma") is None:
+            return [close(r, "", e.text, level) for r in slots[:count]]
+    once = count == 1 and e.number is None and not role and e.type in ALONE and "another" not in e.det
+    if once and same and _before(sentence, k) is None and not (e.role == "landing" and not any(map(_landing, same))):
+        return same[:1]
+    made = _new(state, e, count, role, level)
+    for room in made:
+        room.extra, room.span, room.secondary = "another" in e.det, (e.first, e.last), e.secondary
+    return made
+
+
+def _contrasted(sentence: list[Element], k: int) -> bool:
+    """Whether a count is told apart from the one in front by an adjective: "3 hab dobles, 1 hab individual"."""
+    before = _before(sentence, k)
+    return before is not None and bool(before.said) and bool(sentence[k].said) and not before.said & sentence[k].said
+
+
+# pronouns
 
 
 def point(state: Reading, before: list[Element], e: Element, but: Group) -> Group:  # noqa: PLR0911 - one answer per pronoun
@@ -308,50 +392,31 @@ def point(state: Reading, before: list[Element], e: Element, but: Group) -> Grou
     here = [tuple(x.ids) for x in before if x.kind in {"np", "zone", "owner"} and x.ids]
     heard = [*state.past, *here]
     if e.value == "it":
-        if here and but:
-            return next((g for g in reversed(heard) if not set(g) & set(but)), ())
         if but:
-            return next((g for g in reversed(state.past) if not set(g) & set(but)), ())
+            return next((g for g in reversed(heard if here else state.past) if not set(g) & set(but)), ())
         return here[0] if here else (state.topic or (state.past[-1] if state.past else ()))
+    pair: Group = next((g for g in reversed(heard) if len(g) == 2), ())
+    single = tuple(dict.fromkeys(i for g in reversed(heard) for i in g if i not in but))
     if e.value == "pair":  # "in between"
         if not here and len(state.topic) == 2:
             return state.topic
         twins: Group = next((g for g in reversed(heard) if len(g) == 2 and not all(map(state.inventory.owned, g))), ())
-        if any(x.kind == "zone" for x in before) or (not twins and sum(not set(g) <= set(but) for g in here) > 2):
-            return ()
-        return twins or tuple(dict.fromkeys(i for g in reversed(heard) for i in g if i not in but))[:2]
+        several = any(x.kind == "zone" for x in before) or (not twins and sum(not set(g) <= set(but) for g in here) > 2)
+        return () if several else twins or single[:2]
     if e.value == "both":
-        pair: Group = next((g for g in reversed(heard) if len(g) == 2), ())
-        single = dict.fromkeys(i for g in reversed(heard) for i in g if i not in but)
-        return pair if pair and pair == heard[-1] else (tuple(single)[:2] if len(single) > 1 else pair)
+        return pair if (pair and pair == heard[-1]) or len(single) < 2 else single[:2]
     plural: Group = next((g for g in reversed(heard) if len(g) > 1), heard[-1] if heard else ())
-    if e.value == "group" and len(plural) == 1 and not plural[0].startswith("*"):
-        kind = state.inventory.get(plural[0]).type
-        same = [i for g in heard for i in g if not i.startswith("*") and state.inventory.get(i).type == kind]
-        plural = tuple(dict.fromkeys(same))
-    if e.value in {"one", "rest", "some"} and plural and not plural[0].startswith("*"):
-        return _part(state, e, plural)
-    return plural
-
-
-def _part(state: Reading, e: Element, plural: Group) -> Group:
-    """Return one of a group, or those of it that nothing was said of yet."""
+    if not plural or plural[0].startswith("*"):
+        return plural
     kind = state.inventory.get(plural[0]).type
+    if e.value == "group" and len(plural) == 1:
+        same = [i for g in heard for i in g if i[0] not in "*<" and state.inventory.get(i).type == kind]
+        return tuple(dict.fromkeys(same))
     free = [r for r in state.inventory.of(kind) if r.open_slot]
-    if e.value != "one":
+    if e.value in {"rest", "some"}:
         return tuple(r.id for r in free) or plural
-    count = int(e.number or 1)
-    for room in free[:count]:
-        room.open_slot = False
-    return tuple(r.id for r in free[:count])
-
-
-def and_follows(sentence: list[Element], comma: Element) -> bool:
-    """Whether a comma parts a list of social rooms that an "and" closes: "open-plan living, dining and kitchen area"."""
-    k = next(i for i, x in enumerate(sentence) if x is comma)
-    for x in sentence[k + 1 :]:
-        if x.kind == "and":
-            return True
-        if x.kind != "comma" and not (x.kind == "np" and x.type in SOCIAL):
-            return False
-    return False
+    if e.value == "one":
+        for room in free[: int(e.number or 1)]:
+            room.open_slot = False
+        return tuple(r.id for r in free[: int(e.number or 1)])
+    return plural

@@ -2,38 +2,20 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
+from pipeline.floorplan.language.lexicon import Lexicon
 from pipeline.floorplan.language.marks import Mark, Words
 
 PREMODIFIERS = {"det", "num", "ord", "adj", "size", "clf", "times"}
-DROPPED = {
-    "fill",
-    "adverb",
-    "word",
-    "clf",
-    "hyphen",
-    "bullet",
-    "unit",
-    "times",
-    "dash",
-    "num",
-    "ignored",
-    "bound",
-    "ord",
-    "long",
-    "enough",
-    "fix",
-    "activity",
-}
+DROPPED = {"fill", "adverb", "clf", "hyphen", "bullet", "unit", "times", "dash", "num", "ignored", "bound", "ord", "long", "enough", "fix", "activity"}  # fmt: skip
+ROLES = {"primary", "guest", "child", "shared"}  # said by an adjective
+HEADS = {"room", "suite"}
+ENDS = {"comma", "join", "clf", "stop", "open", "close", "slash"}
 MOST_INDEX = 12
 LONGEST = 150  # marks of a sentence; a longer one is read in parts, cut at commas
-ALSO = {"also", "tambien", "ademas", "y ademas", "ausserdem", "und ausserdem", "dazu", "zudem", "ferner"}  # begin a new part of a list
-WITH = {"mit", "with", "con"}
-OTHERS = {"two": 2.0, "beiden": 2.0, "zwei": 2.0, "dos": 2.0, "three": 3.0, "drei": 3.0, "tres": 3.0}  # "the other two bedrooms"
-RELATIVES = {"der", "die", "das", "dem", "den", "that"}
+SHORT = 48  # characters: a prompt of such lines is a list
 
 
 @dataclass(slots=True)
@@ -58,7 +40,9 @@ class Element:
     size: float = 1.0
     amounts: list[Mark] = field(default_factory=list)
     suite: bool = False
+    secondary: bool = False
     compound: bool = False  # "a two-bedroom flat": the number is the whole count
+    removes: bool = False  # a negation of what was there
     functions: set[str] = field(default_factory=set)
     only: bool = False
     banned: bool = False
@@ -78,33 +62,52 @@ class Element:
         return self.number is not None or bool(self.det & {"indefinite", "another"})
 
 
+def heads(sentence: list[Element], k: int) -> bool:
+    """Whether the level at k opens a new part of a sentence: "living room, kitchen, and upstairs two bedrooms"."""
+    after = next((x for x in sentence[k + 1 :] if x.kind not in {"det", "flag"}), None)
+    return k > 0 and sentence[k - 1].kind in {"comma", "and"} and after is not None and after.kind in {"np", "colon"}
+
+
+def backward(sentence: list[Element], k: int, level: int | None) -> int | None:
+    """Return the storey of a phrase: of the level named before it, or behind it where sentences name levels behind."""
+    parted = False
+    for j, e in enumerate(sentence[k + 1 :] if level is None else (), k + 1):
+        if e.kind == "level":
+            return None if heads(sentence, j) else int(e.value)
+        parted = parted or e.kind == "comma"
+        if e.kind in {"cue", "colon"} or (e.kind == "verb" and parted):  # "four bedrooms, the guest room is downstairs"
+            break
+    return level
+
+
 def sentences(marks: Sequence[Mark], heard: Words) -> list[list[Element]]:
     """Return the elements of each sentence."""
     found: list[list[Mark]] = [[]]
     for k, mark in enumerate(marks):
-        if mark.kind == "line":
-            kind = _line(marks, k, heard)
-            if kind == "stop":
-                found.append([])
-            elif kind == "comma":
-                found[-1].append(Mark("comma", "", 0.0, False, mark.first, mark.last, ","))
-        elif mark.kind == "stop":
-            numbered = len(found[-1]) > 0 and found[-1][-1].kind == "num" and found[-1][-1].value == "figure" and _starts(marks, k - 1)
-            if numbered:
-                found[-1].pop()
-                if found[-1]:
-                    found[-1].append(Mark("comma", "", 0.0, False, mark.first, mark.last, ","))
-            else:
-                found.append([])
-        elif mark.kind == "comma" and len(found[-1]) > LONGEST:
+        here = found[-1]
+        line = _line(marks, k, heard) if mark.kind == "line" else ""
+        if (
+            mark.kind == "stop"
+            and here
+            and (here[-1].kind, here[-1].value) == ("num", "figure")
+            and (k < 2 or marks[k - 2].kind in {"line", "comma"})
+        ):
+            here.pop()  # "1. kitchen"
+            here += [replace(mark, kind="comma", text=",")] if here else []
+        elif line == "comma":
+            here.append(replace(mark, kind="comma", text=","))
+        elif line == "stop" or mark.kind == "stop" or (mark.kind == "comma" and len(here) > LONGEST):
             found.append([])
-        else:
-            found[-1].append(mark)
-    return [e for e in (_elements(s) for s in found if s) if e]
+        elif mark.kind != "line":
+            here.append(mark)
+    return [e for e in (_elements(s, heard.lexicon) for s in found if s) if e]
 
 
-def _starts(marks: Sequence[Mark], k: int) -> bool:
-    return k == 0 or marks[k - 1].kind in {"line", "comma"}
+def settle(found: list[list[Element]]) -> None:
+    """Settle what phrases mean that depends on others."""
+    _kitchenette(found)
+    for sentence in found:
+        _parted(sentence)
 
 
 def _line(marks: Sequence[Mark], k: int, heard: Words) -> str:
@@ -115,188 +118,143 @@ def _line(marks: Sequence[Mark], k: int, heard: Words) -> str:
         return ""
     if after.kind == "line":
         return "stop"
-    place = heard.tokens[after.first].start
-    initial = heard.prompt[place]
-    short = _short(heard.prompt)
-    return "comma" if after.kind in {"bullet", "num"} or short or initial.isupper() or initial > "\u2e80" else ""
+    initial = heard.prompt[heard.tokens[after.first].start]
+    listed = after.kind in {"bullet", "num"} or max(map(len, heard.prompt.splitlines())) < SHORT
+    return "comma" if listed or initial.isupper() or initial > "\u2e80" else ""
 
 
-@functools.lru_cache(maxsize=4)
-def _short(prompt: str) -> bool:
-    """Whether a prompt is a list: no line of it is long."""
-    return max(map(len, prompt.splitlines())) < 48
-
-
-def _elements(marks: list[Mark]) -> list[Element]:
+def _elements(marks: list[Mark], lex: Lexicon) -> list[Element]:
     """Return the elements of one sentence."""
     made: list[Element] = []
     pre: list[Mark] = []
     k = 0
-    after_numbers = _postposed(marks)
+    postposed = _postposed(marks)
     while k < len(marks):
         mark = marks[k]
-        if mark.kind in {"room", "suite"}:
-            compound = k + 1 < len(marks) and marks[k + 1].kind == "home"
-            heads = _heads(mark)
-            for head in heads[:-1]:
-                made += [_phrase(head, pre, compound), Element("and", "", mark.first, mark.first, "")]
-                made[-2].adjectives.update({"combined"} if head.value != "bedroom" else ())
-                pre = [p for p in pre if p.kind != "num"]
-            phrase = _phrase(heads[-1], pre, compound)
-            k = _behind(marks, k + 1, phrase, after_numbers)
-            while len(heads) > 1 and k < len(marks) and marks[k].kind == "amount":
-                made[-2 * len(heads) + 2].amounts.append(marks[k])
-                k += 1
-            made.append(phrase)
+        if mark.kind in HEADS:
+            k = _phrases(marks, k, pre, made, lex, postposed)
             pre = []
             continue
-        if mark.kind == "pron" and _heads_phrase(marks, k + 1) and marks[k + 1].value != "bathroom/ensuite":
-            mark = _as_determiner(mark)
+        if mark.kind == "pron" and _heads_phrase(marks, k + 1) and marks[k + 1].value != "bathroom/ensuite":  # "one bath", "the others"
+            determines = {"rest": "other", "both": "both", "group": "all"}.get(mark.value, "definite")
+            mark = replace(mark, kind="num", value="", number=1.0) if mark.value == "one" else replace(mark, kind="det", value=determines)
+        behind = bool(made) and made[-1].kind in {"np", "home"} and not pre and mark.kind == "amount"
         if mark.kind == "home":
-            pre, sized = [p for p in pre if p.kind != "amount"], [p for p in pre if p.kind == "amount"]
-            made += [*_loose(pre), _plain(mark)]
-            made[-1].amounts += sized
+            made += [*_loose([p for p in pre if p.kind != "amount"], None, lex), _plain(mark, lex)]
+            made[-1].amounts += [p for p in pre if p.kind == "amount"]
             pre = []
-            k += 1
-            continue
-        behind = bool(made) and made[-1].kind in {"np", "home"} and not pre and not _ahead(marks, k)
-        if mark.kind == "amount" and behind and mark.value in {"area", "length"}:
+        elif behind and mark.value in {"area", "length"} and not _ahead(marks, k, lex):
             made[-1].amounts.append(mark)
         elif mark.kind in PREMODIFIERS or (mark.kind == "amount" and mark.value == "area"):
             pre.append(mark)
         elif mark.kind in {"fill", "adverb", "look", "hyphen", "dash"} and pre:
-            if mark.kind == "look":
-                made.append(_plain(mark))
+            made += [_plain(mark, lex)] if mark.kind == "look" else []
         else:
-            made += _loose(pre, mark)
+            made += _loose(pre, mark, lex)
             pre = []
-            if mark.kind not in DROPPED or mark.kind == "word":
-                made.append(_plain(mark))
+            made += [_plain(mark, lex)] if mark.kind not in DROPPED else []
         k += 1
-    return made + _loose(pre)
+    return made + _loose(pre, None, lex)
 
 
-def _ahead(marks: Sequence[Mark], k: int) -> bool:
+def _ahead(marks: Sequence[Mark], k: int, lex: Lexicon) -> bool:
     """Whether the amount at k is said of the room that follows: "mit 25 m² großem Wohnzimmer"."""
-    if not _heads_phrase(marks, k + 1) or marks[k].kind != "amount":
-        return False
-    return marks[k + 1].kind == "size" or marks[k].text.split()[0] in WITH
+    return _heads_phrase(marks, k + 1) and (marks[k + 1].kind == "size" or marks[k].text.split()[0] in lex.sign("with"))
 
 
 def _heads_phrase(marks: Sequence[Mark], k: int) -> bool:
     """Whether a room's name follows, with nothing between but what stands in front of one."""
-    while k < len(marks) and marks[k].kind in {"num", "ord", "adj", "size"}:
-        k += 1
-    return k < len(marks) and marks[k].kind in {"room", "suite"}
-
-
-def _as_determiner(mark: Mark) -> Mark:
-    """Read "one bath", "they both", "the others" in front of a room as what determines it."""
-    if mark.value == "one":
-        return replace(mark, kind="num", value="", number=1.0)
-    return replace(mark, kind="det", value={"rest": "other", "both": "both", "group": "all"}.get(mark.value, "definite"))
-
-
-def _heads(mark: Mark) -> list[Mark]:
-    """Return one head per room of a double name: "lounge diner" is a living room and, open to it, a dining room."""
-    return [replace(mark, value=part) for part in mark.value.split("+")] if mark.kind == "room" else [mark]
+    return next((m.kind in HEADS for m in marks[k:] if m.kind not in {"num", "ord", "adj", "size"}), False)
 
 
 def _postposed(marks: Sequence[Mark]) -> bool:
     """Whether numbers stand behind what they count, as in "卧室两间、卫生间一间"."""
-    kinds = [m.kind for m in marks if m.kind in {"room", "num", "clf"}]
-    first = next((k for k, x in enumerate(kinds) if x == "room"), None)
-    return first == 0 and kinds[1:3] == ["num", "clf"]
+    return [m.kind for m in marks if m.kind in {"room", "num", "clf"}][:3] == ["room", "num", "clf"]
 
 
-def _loose(pre: Sequence[Mark], ahead: Mark | None = None) -> list[Element]:
+def _loose(pre: Sequence[Mark], ahead: Mark | None, lex: Lexicon) -> list[Element]:
+    """Return what stood in front of no room: "two baths, one en suite", "ein Bad, das vom Flur erreichbar ist"."""
     owned = ahead is not None and ahead.kind == "owner"  # "four bedrooms, two for the kids"
     kept = {"amount", "adj"} if owned else {"amount", "adj", "det"}
-    made = [_plain(m) for m in pre if m.kind in kept or (m.kind == "num" and (m.value == "1.0" or owned))]
+    made = [_plain(m, lex) for m in pre if m.kind in kept or (m.kind == "num" and (m.value == "1" or owned))]
     for e in made:
-        if e.kind == "num":  # "two baths, one en suite"
+        if e.kind == "num":
             e.kind, e.value = "pron", "one"
-        elif e.kind == "det" and e.text in RELATIVES:  # "ein Bad, das vom Flur erreichbar ist"
+        elif e.kind == "det" and e.text in lex.sign("relates"):
             e.kind = "relative"
     return made
 
 
-def _plain(mark: Mark) -> Element:
+def _plain(mark: Mark, lex: Lexicon) -> Element:
     kind = "and" if mark.kind == "slash" else mark.kind
     if mark.kind == "join":
-        kind = "comma" if mark.text in ALSO else mark.value
-    return Element(kind, mark.value, mark.first, mark.last, mark.text, number=mark.number, only=mark.only, mark=mark)
+        kind = "comma" if mark.text in lex.sign("also") else mark.value
+    removes = mark.kind == "neg" and mark.text in lex.sign("removes")
+    return Element(kind, mark.value, mark.first, mark.last, mark.text, number=mark.number, only=mark.only, removes=removes, mark=mark)
 
 
-def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool) -> Element:  # noqa: C901, PLR0912 - one branch per case: a grammar
+def _phrases(marks: list[Mark], k: int, pre: list[Mark], made: list[Element], lex: Lexicon, postposed: bool) -> int:
+    """Append the phrase whose head is at k, one for each room of a double name: "lounge diner"; return where reading goes on."""
+    mark, front = marks[k], pre
+    compound = k + 1 < len(marks) and marks[k + 1].kind == "home"
+    names = mark.value.split("+") if mark.kind == "room" else [mark.value]
+    for part in names[:-1]:
+        made += [_phrase(replace(mark, value=part), front, compound, lex), Element("and", "", mark.first, mark.first, "")]
+        made[-2].adjectives.update({"combined"} if part != "bedroom" else ())
+        front = [p for p in front if p.kind != "num"]
+    phrase = _phrase(replace(mark, value=names[-1]), front, compound, lex)
+    k = _behind(marks, k + 1, phrase, postposed)
+    while len(names) > 1 and k < len(marks) and marks[k].kind == "amount":
+        made[-2 * len(names) + 2].amounts.append(marks[k])
+        k += 1
+    made.append(phrase)
+    return k
+
+
+def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool, lex: Lexicon) -> Element:
     """Put a noun phrase together from its head and what stands in front of it."""
     kind, _, role = mark.value.partition("/") if mark.kind == "room" else ("bedroom", "", mark.value)
-    made = Element(
-        "np",
-        "",
-        mark.first,
-        mark.last,
-        mark.text,
-        type=kind,
-        role=role,
-        plural=mark.plural,
-        suite=mark.kind == "suite",
-        compound=compound,
-        mark=mark,
-        functions=set(mark.functions) | ({"dining"} if role == "diner" else set()),
-    )
-    if role in {"diner", "corner"}:
-        made.role = ""
+    made = Element("np", "", mark.first, mark.last, mark.text, type=kind, plural=mark.plural, compound=compound, mark=mark)
+    made.suite, made.secondary = mark.kind == "suite", mark.text in lex.sign("second_bedroom")
+    made.functions = {*mark.functions, *(["dining"] if role == "diner" else [])}
+    made.role = "" if role in {"diner", "corner"} else role
     for part in pre:
-        if part.kind == "num" or (part.kind == "det" and part.value == "another"):
-            if part.kind == "num" and part.number == int(part.number) and part.number > 0:
-                made.number = part.number
-            made.banned = made.banned or (part.kind == "num" and part.number == 0)
-            made.det.update({"another"} if part.kind == "det" else ())
+        if part.kind == "num":
+            made.banned = made.banned or part.number == 0
+            made.number = part.number if part.number == int(part.number) and part.number > 0 else made.number
+        elif part.kind == "det" and part.value == "partitive" and made.number is not None:
+            made.part, made.number = int(made.number), None
         elif part.kind == "det":
-            if part.value == "partitive":
-                if made.number is None:
-                    made.det.add("definite")
-                    continue
-                made.part, made.number = int(made.number), None
-            made.det.add(part.value)
+            made.det.add("definite" if part.value == "partitive" else part.value)
+            numbers = [
+                m.number for w in part.text.split() if (m := lex.trie.get(w, {}).get("")) is not None and m.kind == "num" and m.number > 1
+            ]
             if part.value == "other" and made.number is None:
-                made.number = next((OTHERS[w] for w in part.text.split() if w in OTHERS), None)
+                made.number = numbers[0] if numbers else 2.0 if lex.sign("pair") & set(part.text.split()) else None
         elif part.kind == "ord":
             made.ordinal = int(part.number)
         elif part.kind == "adj":
             made.adjectives.add(part.value)
             made.said.add(part.text)
-            if (
-                part.value in {"primary", "guest", "child", "shared"}
-                and not made.role
-                and kind in {"bedroom", "bathroom", "kitchen", "office"}
-            ):
+            if part.value in ROLES and not made.role and kind in {"bedroom", "bathroom", "kitchen", "office"}:
                 made.role = part.value
         elif part.kind == "size":
             made.size = part.number
-            made.adjectives.add("sized")
         elif part.kind == "amount":
             made.amounts.append(part)
-    if made.role == "shared" and kind != "bathroom":
-        made.role = ""
+    made.role = "" if made.role == "shared" and kind != "bathroom" else made.role
     return made
 
 
-def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> int:  # noqa: PLR0912 - one branch per case: a grammar
+def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> int:
     """Read what belongs to a noun phrase behind its head: adjectives, an index, a number, areas; return where reading goes on."""
     while k < len(marks):
-        mark = marks[k]
-        if mark.kind == "det" and mark.value == "own" and not _heads_phrase(marks, k + 1):
-            phrase.det.add("own")
-            phrase.last = mark.last
-        elif mark.kind == "post":
+        mark, ahead = marks[k], marks[k + 1] if k + 1 < len(marks) else None
+        if mark.kind == "post" or (mark.kind == "det" and mark.value == "own" and not _heads_phrase(marks, k + 1)):
             if mark.value in {"own", "another"}:
                 phrase.det.add(mark.value)
-            elif mark.value in {"primary", "guest", "child", "shared"}:
+            elif mark.value in {*ROLES, "ensuite"}:
                 phrase.role = phrase.role or mark.value
-            elif mark.value == "ensuite":
-                phrase.role = "ensuite"
             else:
                 phrase.adjectives.add(mark.value)
                 phrase.said.add(mark.text)
@@ -304,38 +262,51 @@ def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> 
         elif mark.kind == "size" and mark.value == "post":
             phrase.size = mark.number
         elif mark.kind == "num" and _counts(marks, k, phrase, postposed):
-            value = int(mark.number)
-            clf = k + 1 < len(marks) and marks[k + 1].kind == "clf"
-            if clf or phrase.plural or (k and marks[k - 1].kind in {"colon", "times"}):
-                phrase.number = float(value)
+            counted = ahead is not None and ahead.kind == "clf"
+            if counted or phrase.plural or marks[k - 1].kind in {"colon", "times"}:
+                phrase.number = mark.number
             else:
-                phrase.index = value
-            k += 1 if clf else 0
-        elif (
-            mark.kind in {"colon", "times"}
-            and k + 1 < len(marks)
-            and marks[k + 1].kind == "num"
-            and (mark.kind == "times" or _ends(marks, k + 2))
-        ) or mark.kind == "clf":
-            pass
-        else:
+                phrase.index = int(mark.number)
+            k += counted
+        elif mark.kind in {"colon", "times"} and ahead is not None and ahead.kind == "num":
+            if mark.kind == "colon" and k + 2 < len(marks) and marks[k + 2].kind not in ENDS:
+                return k
+        elif mark.kind != "clf":
             return k
         k += 1
     return k
 
 
-def _ends(marks: Sequence[Mark], k: int) -> bool:
-    return k >= len(marks) or marks[k].kind in {"comma", "join", "clf", "stop", "open", "close", "slash"}
-
-
 def _counts(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> bool:
     """Whether the number at k belongs to the phrase in front of it rather than to what follows."""
-    if phrase.number is not None and not postposed:
+    number = marks[k].number
+    if (phrase.number is not None and not postposed) or number != int(number) or not 0 < number <= MOST_INDEX:
         return False
-    if marks[k].number != int(marks[k].number) or not 0 < marks[k].number <= MOST_INDEX:
-        return False
-    after = marks[k + 1].kind if k + 1 < len(marks) else "stop"
+    after, further = (marks[j].kind if j < len(marks) else "stop" for j in (k + 1, k + 2))
     if after == "clf":
-        further = marks[k + 2].kind if k + 2 < len(marks) else "stop"
-        return postposed or further not in {"room", "suite", "adj", "size"}
-    return marks[k].value == "figure" and (_ends(marks, k + 1) or after in {"colon", "amount", "verb", "cue", "level", "line"})
+        return postposed or further not in {*HEADS, "adj", "size"}
+    return marks[k].value == "figure" and (after in ENDS or after in {"colon", "amount", "verb", "cue", "level", "line"})
+
+
+def _kitchenette(found: list[list[Element]]) -> None:
+    """Let the kitchenette of a studio be a function of its one room, not a kitchen of its own."""
+    everything = [e for s in found for e in s]
+    one = any((e.kind == "home" and e.value) or e.type == "studio_room" or (e.value == "rooms" and e.number == 1) for e in everything)
+    if one and not any(e.type == "bedroom" and not e.banned for e in everything):
+        for e in everything:
+            if e.kind == "np" and e.mark is not None and e.mark.value == "kitchen/corner":
+                e.kind = "corner"
+
+
+def _parted(sentence: list[Element]) -> None:
+    """Read "three bathrooms, two en suite" as "two of them en suite", and "twice a bedroom" as one that is there."""
+    for k in range(len(sentence) - 1, 0, -1):
+        e, before = sentence[k], sentence[k - 2] if k > 1 and sentence[k - 1].kind in {"comma", "open"} else None
+        several = (
+            before is not None and before.kind == "np" and before.type == e.type == "bathroom" and (e.number or 1) < (before.number or 1)
+        )
+        if several and e.role == "ensuite" and not e.det:
+            sentence[k : k + 1] = [Element("pron", "one", e.first, e.first, e.text, number=e.number), replace(e, number=None)]
+        near = next((x for x in reversed(sentence[:k]) if x.kind not in {"relative", "det", "word"}), None)
+        if e.kind == "np" and "indefinite" in e.det and e.number is None and near is not None and near.kind in {"factor", "cmp"}:
+            e.det = (e.det - {"indefinite"}) | {"definite"}

@@ -30,59 +30,24 @@ def revise(marks: Sequence[Mark], heard: Words) -> Revised:
     Raises ImpossibleError where two counts contradict each other ("three bedrooms but only two"), with both.
     """
     _negative(marks, heard)
-    made = _corrected(_changed(_not_towards(answered(marks))))
-    made = _content(made)
+    made = _corrected(list(_told(marks, heard)))
     _contradicted(made, heard)
     return _chosen(_few(made))
 
 
-EARLIER = {
-    "zuerst",
-    "urspruenglich",
-    "anfangs",
-    "erst",
-    "originally",
-    "first",
-    "initially",
-    "primero",
-    "originalmente",
-    "inicialmente",
-    "原",
-    "本",
-    "起",
-}
-NOW = {"jetzt", "nun", "now", "ahora", "现 在", "doch"}
-
-
-def answered(marks: Sequence[Mark]) -> list[Mark]:
-    """Read "Balkon: nein" as none."""
-    said = {"nein", "no", "none", "keiner", "keine", "ninguno"}
-    return [
-        replace(m, kind="neg") if m.kind in {"fix", "fill", "word"} and m.text in said and k and marks[k - 1].kind == "colon" else m
-        for k, m in enumerate(marks)
-    ]
-
-
-def _changed(marks: Sequence[Mark]) -> list[Mark]:
-    """Read "first we wanted three baths, now only two" as a correction."""
+def _told(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+    """Tell "Balkon: nein" from a correction, and find the corrections of "first we wanted three baths, now only two"."""
     made, before = list(marks), False
     for k, mark in enumerate(made):
-        before = (before or bool(EARLIER & set(mark.text.split()))) and mark.kind not in ENDS
-        if before and mark.text in NOW and mark.kind not in {"fix", "room", "home"}:
+        said = set(mark.text.split())
+        before = (before or bool(heard.lexicon.sign("earlier") & said)) and mark.kind not in ENDS
+        between = k and k + 1 < len(made) and made[k - 1].kind == made[k + 1].kind == "room"
+        if mark.kind in {"fix", "fill", "word"} and mark.text in heard.lexicon.sign("nope") and k and made[k - 1].kind == "colon":
+            made[k] = replace(mark, kind="neg")
+        elif mark.kind == "fix" and between and mark.text in heard.lexicon.sign("not_towards"):  # 不对 between two rooms
+            made[k] = replace(mark, kind="neg", text="不")
+        elif before and mark.text in heard.lexicon.sign("now") and mark.kind not in {"fix", *NAMED}:
             made[k] = replace(mark, kind="fix")
-    return made
-
-
-def _not_towards(marks: Sequence[Mark]) -> list[Mark]:
-    """Read 不对 between two rooms as "not towards", elsewhere it takes back what was said."""
-    made: list[Mark] = []
-    for k, mark in enumerate(marks):
-        ahead = marks[k + 1].kind if k + 1 < len(marks) else ""
-        if mark.kind == "fix" and mark.text == "不 对" and ahead == "room" and made and made[-1].kind == "room":
-            middle = mark.first + 1
-            made += [replace(mark, kind="neg", last=middle, text="不"), replace(mark, kind="fill", first=middle, text="对")]
-        else:
-            made.append(mark)
     return made
 
 
@@ -90,139 +55,96 @@ def _counted(marks: Sequence[Mark], k: int) -> int | None:
     """Return the place of the room that the number at k counts; in front of it or, as in Chinese, behind."""
     if marks[k].kind != "num":
         return None
-    j = k + 1
-    while j < len(marks) and marks[j].kind in INNER:
-        j += 1
+    j = next((j for j in range(k + 1, len(marks)) if marks[j].kind not in INNER), len(marks))
     if j < len(marks) and marks[j].kind in NAMED:
         return j
     return k - 1 if k and marks[k - 1].kind in NAMED else None
 
 
-def _same(a: Mark, b: Mark | None) -> bool:
-    """Whether two rooms are of one type, or the second is not named."""
-    return b is None or a.value.partition("/")[0] == b.value.partition("/")[0]
-
-
 def _earlier(marks: Sequence[Mark], k: int, room: Mark | None) -> tuple[int, int] | None:
-    """Return the places of the last number before k, and of what it counts."""
-    for j in range(k - 1, -1, -1):
-        place = _counted(marks, j)
-        if place is not None and place < k and _same(marks[place], room):
-            return j, place
-    return None
+    """Return the places of the last number, or "a", before k, and of what it counts."""
 
+    def same(place: int) -> bool:
+        return room is None or marks[place].value.partition("/")[0] == room.value.partition("/")[0]
 
-def _indefinite(marks: Sequence[Mark], k: int, room: Mark | None) -> tuple[int, int] | None:
-    """Return the places of "a bedroom" before k."""
-    for j in range(k - 1, 0, -1):
-        if marks[j].kind in NAMED and _same(marks[j], room):
-            article = marks[j - 1]
-            return (j - 1, j) if (article.kind, article.value) in {("det", "indefinite"), ("pron", "one")} else None
-    return None
-
-
-def _set(marks: list[Mark], place: tuple[int, int], number: float) -> None:
-    """Put another number in front of a room."""
-    k, room = place
-    marks[k] = replace(marks[k], kind="num", value="", number=number)
-    marks[room] = replace(marks[room], plural=number > 1)
+    numbers = ((j, place) for j in range(k - 1, -1, -1) if (place := _counted(marks, j)) is not None and place < k and same(place))
+    articles = (
+        (j - 1, j)
+        for j in range(k - 1, 0, -1)
+        if marks[j].kind in NAMED and same(j) and (marks[j - 1].kind, marks[j - 1].value) in {("det", "indefinite"), ("pron", "one")}
+    )
+    return next(numbers, None) or next(articles, None)
 
 
 def _corrected(marks: list[Mark]) -> list[Mark]:
+    """Carry out "no, make that two" and "three are enough": the second number holds."""
     k = 0
     while k < len(marks):
-        if marks[k].kind == "fix":
-            j = k + 1
-            while j < len(marks) and marks[j].kind in LIGHT and j - k < 6:
-                j += 1
-            after = marks[j] if j < len(marks) else None
-            if after is not None and after.kind == "amount":
-                old = next((i for i in range(k - 1, -1, -1) if marks[i].kind == "amount" and marks[i].value == after.value), None)
-                if old is not None:
-                    marks[old] = after
-                    del marks[k : j + 1]
-                    continue
-            elif after is not None and (after.kind == "num" or (after.kind, after.value) == ("pron", "one")):
-                after = after if after.kind == "num" else replace(after, kind="num", value="1.0", number=1.0)
-                marks[j] = after
-                room = _counted(marks, j)
-                name = marks[room] if room is not None and room > j else None
-                place = _earlier(marks, k, name) or _indefinite(marks, k, name)
-                if place is not None:
-                    _set(marks, place, after.number)
-                    end = (room if name is not None and room is not None else j) + 1
-                    while end < len(marks) and marks[end].kind == "clf":
-                        end += 1
-                    start = k
-                    while start and marks[start - 1].kind in {
-                        "neg",
-                        "comma",
-                        "hyphen",
-                        "dash",
-                        "but",
-                        "fill",
-                    }:  # "un dormitorio, no, mejor dos"
-                        start -= 1
-                    del marks[start:end]
-                    k = start
-                    continue
-            del marks[k]
+        kind = marks[k].kind
+        if kind == "fix":
+            j = next((j for j in range(k + 1, min(k + 7, len(marks))) if marks[j].kind not in LIGHT), len(marks))
+        elif kind == "enough":
+            near = (*range(k - 1, max(-1, k - 6), -1), *range(k + 1, min(len(marks), k + 4)))
+            j = next((j for j in near if marks[j].kind == "num"), len(marks))
+        else:
+            k += 1
             continue
-        k += 1
-    return marks
-
-
-def _content(marks: list[Mark]) -> list[Mark]:
-    """Read "we thought of four bedrooms but three are enough": the second number holds."""
-    k = 0
-    while k < len(marks):
-        if marks[k].kind == "enough":
-            near = [j for j in (*range(k - 1, max(-1, k - 6), -1), *range(k + 1, min(len(marks), k + 4))) if marks[j].kind == "num"]
-            if near:
-                j = near[0]
-                room = _counted(marks, j)
-                name = marks[room] if room is not None and room > j and marks[room].kind == "room" else None
-                place = _earlier(marks, j, name)
-                if place is not None:
-                    _set(marks, place, marks[j].number)
-                    first, last = min(j, k), max(j, k, room if name is not None and room is not None else 0)
-                    del marks[first : last + 1]
-                    k = first
-                    continue
-            marks[k] = replace(marks[k], kind="verb")
-        k += 1
+        after = marks[j] if j < len(marks) else None
+        if after is not None and (after.kind, after.value) == ("pron", "one"):
+            after = marks[j] = replace(after, kind="num", value="1", number=1.0)
+        if after is not None and after.kind == "amount":
+            old = next((i for i in range(k - 1, -1, -1) if marks[i].kind == "amount" and marks[i].value == after.value), None)
+            if old is not None:
+                marks[old] = after
+                del marks[k : j + 1]
+                continue
+        if after is not None and after.kind == "num":
+            room = _counted(marks, j)
+            named = room if room is not None and room > j and marks[room].kind == "room" else None
+            place = _earlier(marks, min(j, k), marks[named] if named is not None else None)
+            if place is not None:
+                marks[place[0]] = replace(marks[place[0]], kind="num", value="", number=after.number)
+                marks[place[1]] = replace(marks[place[1]], plural=after.number > 1)
+                start, end = min(j, k), max(j, k, named or 0) + 1
+                while end < len(marks) and marks[end].kind == "clf":
+                    end += 1
+                while start and marks[start - 1].kind in {
+                    "neg",
+                    "comma",
+                    "hyphen",
+                    "dash",
+                    "but",
+                    "fill",
+                }:  # "un dormitorio, no, mejor dos"
+                    start -= 1
+                del marks[start:end]
+                k = start
+                continue
+        marks[k : k + 1] = [] if kind == "fix" else [replace(marks[k], kind="verb")]
     return marks
 
 
 def _contradicted(marks: Sequence[Mark], heard: Words) -> None:
     """Refuse "three bedrooms but only two": one of the counts is wrong, and nobody said which."""
     for k, said in enumerate(marks):
-        mark = replace(said, number=1.0) if (said.kind, said.value) == ("pron", "one") else said
-        if not mark.number or mark.kind not in {"num", "pron"}:
+        one = (said.kind, said.value) == ("pron", "one")
+        number = 1.0 if one else said.number if said.kind == "num" else 0.0
+        before = next((m for m in reversed(marks[max(0, k - 5) : k]) if m.kind not in {"verb", "fill", "flag", "adverb", "det"}), None)
+        if not number or before is None or before.kind != "but":
             continue
-        before = k - 1
-        while before >= 0 and marks[before].kind in {"verb", "fill", "flag", "adverb", "det"} and k - before < 5:
-            before -= 1
-        lead = [m for m in marks[max(before, 0) : k] if m.kind == "but"]
-        if not lead:
+        room = _counted([*marks[:k], replace(said, kind="num"), *marks[k + 1 :]], k)
+        named = marks[room] if room is not None and room > k else None
+        end = (room if named is not None and room is not None else k) + 1
+        end = next((i for i in range(end, len(marks)) if marks[i].kind not in {"clf", "fill"}), len(marks))
+        goes_on = end < len(marks) and marks[end].kind not in {*ENDS, "comma"}
+        if goes_on or (one and named is None) or (named is not None and ("/" in named.value or named.kind != "room")):
             continue
-        room = _counted([*marks[:k], replace(mark, kind="num"), *marks[k + 1 :]], k)
-        name = marks[room] if room is not None and room > k else None
-        if mark.kind == "pron" and name is None:
-            continue
-        if name is not None and ("/" in name.value or name.kind != "room"):
-            continue
-        end = (room if name is not None and room is not None else k) + 1
-        while end < len(marks) and marks[end].kind in {"clf", "fill"}:
-            end += 1
-        if end < len(marks) and marks[end].kind not in {*ENDS, "comma"}:
-            continue
-        place = _earlier(marks, k, name)
-        if place is not None and marks[place[0]].number != mark.number and marks[place[1]].kind == "room":
+        place = _earlier(marks, k, named)
+        if place is not None and marks[place[0]].number not in {0.0, number} and marks[place[1]].kind == "room":
             words = [_cited(heard, marks, *sorted(place)), _cited(heard, marks, k, end - 1)]
             what = marks[place[1]].value.partition("/")[0].replace("_", " ")
             raise ImpossibleError(
-                f"{marks[place[0]].number:g} {what}s are asked for, and then {mark.number:g}", "keep one of the two counts", words
+                f"{marks[place[0]].number:g} {what}s are asked for, and then {number:g}", "keep one of the two counts", words
             )
 
 
@@ -234,7 +156,7 @@ def _negative(marks: Sequence[Mark], heard: Words) -> None:
         minus = mark.kind in {"num", "amount"} and place > 1 and heard.prompt[place - 1] in "-−" and heard.prompt[place - 2] == " "
         lead = k and marks[k - 1].kind in {"cue", "fill", "bound", "of", "det", "verb"}
         none = mark.kind == "amount" and not mark.number and mark.value in {"area", "rooms"}
-        empty = mark.kind == "unit" and mark.value == "rooms" and k and marks[k - 1].kind == "neg" and not named
+        empty = (mark.kind, mark.value) == ("unit", "rooms") and k and marks[k - 1].kind == "neg" and not named
         if (minus and lead) or none or empty:
             words = _cited(heard, marks, k - 1 if empty else k, k)
             text = ("-" if minus else "") + words.text
@@ -248,52 +170,43 @@ def _cited(heard: Words, marks: Sequence[Mark], first: int, last: int) -> Eviden
 
 def _few(marks: list[Mark]) -> list[Mark]:
     """Read "two or three bedrooms" and "2-3 bedrooms" as the smaller of both, which every home that fits has."""
-    k = 0
-    while k + 2 < len(marks):
+    for k in range(len(marks) - 3, -1, -1):
         a, between, b = marks[k : k + 3]
         joined = (between.kind == "join" and between.value in {"or", "to"}) or between.kind in {"dash", "hyphen", "to"}
         place = _counted(marks, k + 2) if a.kind == b.kind == "num" and joined and a.number < b.number else None
         if place is not None and place > k + 2 and marks[place].kind == "room":
             del marks[k + 1 : k + 3]
-        k += 1
     return marks
 
 
 def _chosen(marks: list[Mark]) -> Revised:
     """Of "a study or a guest room" take the first; the second stands aside."""
     aside: list[Mark] = []
-    k = 0
     negated = False
+    k = 0
     while k < len(marks):
         mark = marks[k]
-        negated = (
-            negated or mark.kind in {"neg", "except"} or (mark.kind == "cue" and mark.value in {"except", "avoid", "away"})
-        ) and mark.kind not in ENDS
-        if mark.kind == "join" and mark.value == "or" and not negated and k and marks[k - 1].kind in {"room", "suite"}:
-            j = k + 1
-            while j < len(marks) and marks[j].kind in CHOICE:
-                j += 1
-            open_ends = j < len(marks) and marks[j].kind in {"room", "suite"} and not _pointed(marks, k - 1) and not _pointed(marks, j)
-            if open_ends and not _ahead(marks, j + 1):
-                aside += marks[k : j + 1]
-                del marks[k : j + 1]
-                continue
+        denied = mark.kind in {"neg", "except"} or (mark.kind == "cue" and mark.value in {"except", "avoid", "away"})
+        negated = (negated or denied) and mark.kind not in ENDS
         k += 1
+        if (mark.kind, mark.value) != ("join", "or") or negated or k < 2 or marks[k - 2].kind not in {"room", "suite"}:
+            continue
+        j = next((j for j in range(k, len(marks)) if marks[j].kind not in CHOICE), len(marks))
+        if j == len(marks) or marks[j].kind not in {"room", "suite"} or _pointed(marks, k - 2) or _pointed(marks, j):
+            continue
+        ahead = next((m for m in marks[j + 1 :] if m.kind not in {"verb", "flag"}), None)
+        if ahead is None or ahead.kind not in {"neg", "needless", "cmp"}:  # "a kitchen or a bathroom must not lie beside it"
+            aside += marks[k - 1 : j + 1]
+            del marks[k - 1 : j + 1]
+            k -= 1
     return Revised(marks, aside)
 
 
 def _pointed(marks: Sequence[Mark], k: int) -> bool:
-    """Whether the room at k was named before: it has a definite article, or a cue leads to it."""
+    """Whether the room at k was named before: it has a definite article, or a relation leads to it."""
     j = k - 1
     while j >= 0 and marks[j].kind in CHOICE:
         if marks[j].kind == "det" and marks[j].value not in {"indefinite", "another", "some"}:
             return True
         j -= 1
     return j >= 0 and marks[j].kind == "cue" and marks[j].value not in {"has", "in"}
-
-
-def _ahead(marks: Sequence[Mark], k: int) -> bool:
-    """Whether something is said of both rooms, as of "a kitchen or a bathroom must not lie beside it"."""
-    while k < len(marks) and marks[k].kind in {"verb", "flag"}:
-        k += 1
-    return k < len(marks) and marks[k].kind in {"neg", "needless", "cmp"}

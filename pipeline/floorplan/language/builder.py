@@ -1,0 +1,347 @@
+"""What was read → the program: its rooms, amounts, storeys, outline, style, evidence, and the words that nothing was made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from pipeline.errors import RefusedError
+from pipeline.floorplan.language.facts import HALLS, Fact, Named, Reading
+from pipeline.floorplan.language.joints import Draft, join
+from pipeline.floorplan.language.marks import Mark
+from pipeline.floorplan.language.naming import ROLES
+from pipeline.floorplan.language.phrases import Element
+from pipeline.floorplan.program.consistency import ImpossibleError
+from pipeline.floorplan.program.defaults import DEFAULTS
+from pipeline.floorplan.program.floor_program import MAX_ROOMS, FloorProgram, Style
+
+ABOUT = 0.1  # "about 75 m2" allows this much either way
+SAME = 0.02  # two totals that differ by less are one, said twice
+MOST_STOREYS, MOST_PEOPLE, MOST_COUNTED = 3, 8, 9
+PANORAMA = 8.5  # outside wall of a living room with panoramic glazing [m]
+LUXURY = 1.3
+NARROW = {"min_aspect": 1.5, "max_aspect": 2.1}
+OUTLINES: Mapping[str, dict[str, Any]] = {"shape_l": {"shape": "L"}, "shape_t": {"shape": "T"}, "rectangle": {"shape": "rectangle"}, "narrow": NARROW, "chamfered": {"corners": "chamfered"}}  # fmt: skip
+SHELL = {"ceiling": ("ceiling",), "walls": ("inner_wall", "outer_wall"), "inner_walls": ("inner_wall",), "outer_walls": ("outer_wall",)}
+LIMITS = {"ceiling": (1.8, 8.0), "inner_wall": (0.05, 0.6), "outer_wall": (0.05, 0.6)}  # [m]
+SMALL = {"wc", "hallway", "entry", "storage", "closet", "balcony", "staircase", "bathroom", "utility"}  # not meant by "every room at least"
+LIVED = {"living_room", "bedroom", "office", "dining_room", "playroom", "library", "studio_room", "family_room"}
+GROUND = {"living_room", "kitchen", "dining_room", "garage", "entry", "wc", "utility"}
+SORTS = {
+    "storage",
+    "balcony",
+    "wc",
+    "utility",
+    "closet",
+    "garage",
+    "hallway",
+    "entry",
+    "office",
+    "family_room",
+    "playroom",
+}  # of many names
+RELATIONS = {"door", "leads", "open", "near", "wall", "away", "apart", "between", "avoid", "ensuite"}
+SAYING = {"word", "cmp", "factor", "amount", "ord", "owner", "level", "room", "suite", "enter", "outside", "except", "pron"}  # never idle
+LEADING = {"num", "ord", "adj", "size", "det", "clf", "times", "amount", "fill", "look"}  # in front of a room
+
+
+def assemble(state: Reading, parsed: list[list[Element]], marks: Sequence[Mark]) -> FloorProgram:
+    """Return the program of what was read; nothing is filled in."""
+    draft, stock = Draft(state.heard), state.inventory
+    _count(draft, state)
+    _studio(draft, state)
+    for kind, e in state.banned:
+        if not (kind in SORTS and any(r.surface and r.surface != e.text for r in stock.of(kind))):  # "no cellar but a pantry"
+            draft.forbid("room_type", kind, None, None, Fact("ban", (), (), 0.0, e.first, e.last))
+    for fact in (f for f in state.facts if f.what == "beyond"):  # "a two-bedroom flat ... the third bedroom"
+        rooms = [stock.get(i) for i in fact.a]
+        what = f"{len(rooms)} {rooms[0].type.replace('_', ' ')}s are asked for, and then {fact.value:g}"
+        draft.refuse(what, "keep one of the two counts", [(fact.first, fact.last), *(r.span for r in rooms)])
+    join(draft, state)
+    _amounts(draft, state)
+    _whole(draft, state)
+    _style(draft, state)
+    evidence = [*_named(parsed, state), *draft.evidence]
+    return FloorProgram.model_validate(
+        {
+            **draft.fields,
+            "rooms": [_room(r) for r in stock.rooms],
+            "links": list(draft.links.values()),
+            "forbids": draft.forbids,
+            "relations": draft.relations,
+            "zones": draft.zones,
+            "language": state.heard.lexicon.language,
+            "evidence": evidence,
+            "unparsed": [{"start": s, "end": e, "text": draft.prompt[s:e]} for s, e in _rest(state, evidence, marks)],
+        }
+    )
+
+
+def _room(room: Named) -> dict[str, Any]:
+    area: dict[str, Any] = {"min": room.low, "max": room.high, "target": room.target}
+    stated = any(v is not None for v in area.values())
+    if not stated and room.size != 1.0:
+        area["target"] = round(DEFAULTS[room.type].area * room.size, 2)
+    same = ("id", "stated", "type", "level", "exterior_length", "window", "min_width")
+    role = room.role if room.role in ROLES - {"ensuite"} else ""
+    return {
+        **{f: getattr(room, f) for f in same},
+        "role": role,
+        "functions": tuple(sorted(room.functions)),
+        "area": {**area, "stated": stated},
+    }
+
+
+def _named(parsed: list[list[Element]], state: Reading) -> list[dict[str, Any]]:
+    """Return the evidence for the rooms themselves."""
+    known, cited = {r.id for r in state.inventory.rooms}, Draft(state.heard)
+    for e in (e for s in parsed for e in s if e.ids and e.kind in {"np", "pron", "det"} and e.last > e.first):
+        for i in (i for i in e.ids if i in known):
+            cited.cite(e.first, e.last, f"rooms.{i}")
+    return cited.evidence
+
+
+def _rest(state: Reading, evidence: Sequence[Mapping[str, Any]], marks: Sequence[Mark]) -> Iterator[tuple[int, int]]:
+    """Yield what nothing was made of: words that are in no vocabulary, and words that say something and stand in no evidence."""
+    tokens = state.heard.tokens
+    cited = {k for e in evidence for k, t in enumerate(tokens) if e["start"] <= t.start and t.end <= e["end"]} | state.used
+    for k, mark in enumerate(marks):
+        if mark.last > mark.first and not cited & set(range(mark.first, mark.last)) and _says(state, marks, k, cited):
+            yield tokens[mark.first].start, tokens[mark.last - 1].end
+
+
+def _says(state: Reading, marks: Sequence[Mark], k: int, cited: set[int]) -> bool:
+    """Whether the mark at k says something by itself: what stands in front of a room that was read does not."""
+    mark = marks[k]
+    if mark.kind == "cue":
+        return mark.value in RELATIONS and mark.text not in state.heard.lexicon.sign("quiet")
+    pointing = mark.kind == "det" and mark.value in {"each", "other", "own", "another"}
+    if not (mark.kind in SAYING or pointing) or (mark.kind == "pron" and mark.value in {"it", "one"}):
+        return False
+    head = next((m for m in marks[k + 1 :] if m.kind not in LEADING), mark)
+    described = head.kind == "home" or (head.kind in {"room", "suite"} and bool(cited & set(range(head.first, head.last))))
+    return not (mark.kind in {"ord", "det"} and described)
+
+
+# how many rooms
+
+
+def _count(draft: Draft, state: Reading) -> None:
+    """Make as many rooms as a number of rooms says: "a three-room flat", counted as people do where the language is spoken."""
+    stock = state.inventory
+    if state.rooms is None:
+        told = state.people is None or state.studio is not None or any(stock.of(k) for k in ("bedroom", "studio_room"))
+        if state.people is not None and not told:  # a bedroom for two, and one for each of the others: nobody stated these
+            for _ in range(max(1, min(int(state.people.number), MOST_PEOPLE) - 1)):
+                stock.add("bedroom", "", "", None).stated = False
+            draft.cite(state.people.first, state.people.last, "rooms")
+        return
+    count, mark = state.rooms
+    draft.cite(mark.first, mark.last, "rooms")
+    if count > MAX_ROOMS:
+        raise RefusedError(f"{count} rooms are asked for", f"ask for {MAX_ROOMS} at most")
+    lex = state.heard.lexicon
+    if "counts_living_rooms" in lex.traits and count <= MOST_COUNTED and not any(mark.text.endswith(t) for t in lex.sign("all_rooms")):
+        _living_rooms(draft, state, count, mark)
+    elif count > 1:
+        while len(stock.rooms) < count:
+            stock.add(next((k for k in ("living_room", "kitchen", "bathroom") if not stock.of(k)), "bedroom"), "", "room", None)
+        draft.fields["only"] = True
+
+
+def _living_rooms(draft: Draft, state: Reading, count: int, mark: Mark) -> None:
+    """Count rooms to live and sleep in: three are a living room and two bedrooms; one is a studio."""
+    stock = state.inventory
+    beds = [r for r in stock.of("bedroom") if r.stated]
+    if len(beds) > count:
+        what = f"{len(beds)} bedrooms are asked for in a home of {count} rooms"
+        draft.refuse(what, "keep one of the two counts", [(mark.first, mark.last), *(r.span for r in beds)])
+    if count == 1 and not stock.of("bedroom"):
+        state.studio = state.studio or (state.homes[0] if state.homes else None)
+        if not stock.of("studio_room") and not stock.of("living_room"):
+            stock.add("studio_room", "", "studio", None)
+        return
+    if "living_room" not in {kind for kind, _ in state.banned} and not stock.of("living_room") and not stock.of("studio_room"):
+        stock.add("living_room", "", "", None)
+    while sum(r.type in LIVED for r in stock.rooms) < count:
+        stock.add("bedroom", "", "", None, open_slot=True)
+
+
+def _studio(draft: Draft, state: Reading) -> None:
+    """Make a studio without a named main room one room to live and sleep in."""
+    stock, home = state.inventory, state.studio
+    if home is not None and not stock.of("studio_room") and not stock.of("bedroom"):
+        living = stock.of("living_room")
+        room = living[0] if living else stock.add("studio_room", "", "studio", 0)
+        room.type, room.span = "studio_room", room.span or (home.first, home.last)
+        if not stock.of("kitchen"):
+            room.functions.add("cooking")
+    beds = [r for r in stock.of("bedroom") if r.open_slot or r.stated]
+    if home is not None and len(beds) > 1:
+        spans = [(home.first, home.last), *(r.span for r in beds)]
+        draft.refuse(f"a studio is one room, and {len(beds)} bedrooms are asked for", "ask for a flat", spans)
+    for room in stock.of("studio_room"):
+        room.functions |= {"living", "sleeping"}
+
+
+# amounts
+
+
+def _amounts(draft: Draft, state: Reading) -> None:
+    """Attach areas, widths and heights."""
+    for mark, ids in state.amounts:
+        rooms = [state.inventory.get(i) for i in ids or () if i[0] != "*"]
+        if ids == ("*",):
+            rooms = [r for r in state.inventory.rooms if r.type not in SMALL or mark.bound == "most"]
+        if mark.value == "area" and mark.number > 0:
+            for k, room in enumerate(rooms):
+                _area(draft, mark, room, k)
+            if not rooms:
+                _total(draft, mark)
+        elif mark.value in SHELL:
+            for field in SHELL[mark.value]:
+                draft.cite(mark.first, mark.last, f"shell.{field}")
+                low, high = LIMITS[field]
+                if not low <= mark.number <= high:
+                    what = f"{field.replace('_', ' ')} of {mark.number:g} m"
+                    draft.refuse(what, f"ask for {low:g} to {high:g} m", [(mark.first, mark.last)], f"shell.{field}")
+                draft.fields["shell"] = {**draft.fields.get("shell", {}), field: mark.number, "stated": True}
+        elif mark.value in {"length", "doors", "corridors"}:
+            _length(draft, mark, rooms)
+
+
+def _range(mark: Mark) -> dict[str, float]:
+    if mark.high is not None:
+        return {"min": mark.number, "max": mark.high}
+    return {{"least": "min", "most": "max"}.get(mark.bound, "target"): mark.number}
+
+
+def _area(draft: Draft, mark: Mark, room: Named, k: int) -> None:
+    box = {"target": mark.parts[min(k, len(mark.parts) - 1)]} if mark.parts else _range(mark)
+    room.low, room.high, room.target = box.get("min", room.low), box.get("max", room.high), box.get("target", room.target)
+    room.min_width = mark.side if mark.side is not None else room.min_width
+    draft.cite(mark.first, mark.last, f"rooms.{room.id}.area")
+    if room.low is not None and room.high is not None and room.low > room.high:
+        what = f"{room.id} is to have at least {room.low:g} and at most {room.high:g} m²"
+        raise ImpossibleError(what, "keep one of the two", draft.cited(f"rooms.{room.id}.area"))
+
+
+def _total(draft: Draft, mark: Mark) -> None:
+    box = _range(mark)
+    if "target" in box:
+        box |= {"min": box["target"] * (1 - ABOUT), "max": box["target"] * (1 + ABOUT)}
+    old = draft.fields.get("total_area", {})
+    draft.cite(mark.first, mark.last, "total_area")
+    low = max((x for x in (old.get("min"), box.get("min")) if x is not None), default=None)
+    high = min((x for x in (old.get("max"), box.get("max")) if x is not None), default=None)
+    if low is not None and high is not None and low > high * (1 + SAME):
+        raise ImpossibleError("two total areas are asked for", "keep one of the two", draft.cited("total_area"))
+    draft.fields["total_area"] = {**(old or box), "min": low, "max": high, "stated": True}
+
+
+def _length(draft: Draft, mark: Mark, rooms: Sequence[Named]) -> None:
+    value, access = mark.number, draft.fields.setdefault("accessibility", {})
+    if mark.value == "doors" and 0.6 <= value <= 1.2:
+        access["min_door"] = max(value, 0.7)
+        draft.cite(mark.first, mark.last, "accessibility.min_door")
+    elif mark.value == "corridors" or any(r.type in HALLS for r in rooms):
+        if 0.7 <= value <= 3.0:
+            access["min_corridor"] = max(value, 0.8)
+            draft.cite(mark.first, mark.last, "accessibility.min_corridor")
+    elif 1.0 <= value <= 20.0:
+        for room in rooms:
+            room.min_width = value
+            draft.cite(mark.first, mark.last, f"rooms.{room.id}.min_width")
+
+
+# the whole home
+
+
+def _whole(draft: Draft, state: Reading) -> None:
+    """Read what concerns the whole home."""
+    stock, flags, fields = state.inventory, state.flags, draft.fields
+    _levels(state)
+    storeys = max(state.storeys[0] if state.storeys else 1, *(r.level + 1 for r in stock.rooms if r.level is not None), 1)
+    said = [(state.storeys[1].first, state.storeys[1].last)] if state.storeys else []
+    for first, last in said:
+        draft.cite(first, last, "storeys")
+    if storeys > MOST_STOREYS:
+        draft.refuse(f"{storeys} storeys are asked for", f"ask for {MOST_STOREYS} at most", said, "storeys")
+    single = [
+        e
+        for e in (flags.get("single"), *state.homes)
+        if e is not None and (e.kind == "flag" or e.text in state.heard.lexicon.sign("bungalow"))
+    ]
+    above = [(e.first, e.last) for e in state.levels if e.value != "0"] or said
+    if storeys > 1 and single and above:
+        draft.refuse(
+            "a home of one storey has nothing upstairs", "ask for two storeys", [(single[0].first, single[0].last), *above], "storeys"
+        )
+    fields["storeys"] = storeys
+    for room in stock.rooms if storeys == 1 else ():
+        room.level = 0
+
+    def told(flag: str, field: str) -> bool:
+        if flag in flags:
+            draft.cite(flags[flag].first, flags[flag].last, field)
+        return flag in flags
+
+    fields |= {"only": True} if stock.rooms and told("closed", "only") else {}
+    fields |= {"scale": LUXURY} if told("luxury", "scale") else {}
+    if "no_hall" in flags:
+        draft.forbid("room_type", "hallway", None, None, Fact("ban", (), (), 0.0, flags["no_hall"].first, flags["no_hall"].last))
+    for flag, made in OUTLINES.items():
+        if told(flag, "footprint"):
+            fields["footprint"] = {**fields.get("footprint", {}), **made, "stated": True}
+    access = fields.setdefault("accessibility", {})
+    for flag in ("wheelchair", "step_free", "single"):
+        access |= {"step_free": True} if told(flag, "accessibility.step_free") else {}
+    if "wheelchair" in flags:
+        access |= {"min_door": max(access.get("min_door", 0.9), 0.9), "min_corridor": max(access.get("min_corridor", 1.2), 1.2)}
+    for room in stock.of("living_room")[:1]:
+        room.exterior_length = PANORAMA if told("panorama", f"rooms.{room.id}.exterior_length") else None
+    _entrance(draft, state)
+
+
+def _levels(state: Reading) -> None:
+    """Put zones, and what is spoken of as the rest, on their storey."""
+    rooms = state.inventory.rooms
+    if (state.storeys or (1,))[0] > 1 and all(r.level for r in rooms):
+        for room in rooms:  # "front room, kitchen, two bedrooms and a bathroom above": not all of the list
+            room.level = None if room.type in GROUND else room.level
+    for name, level in sorted(state.heights.items(), key=lambda h: h[0] == "*"):
+        zone = set(state.zones[name][0] or state.inventory.zone(name)) if name in state.zones else set()
+        for room in rooms:
+            if room.id in zone or (name == "*" and room.level is None and room.type != "staircase"):
+                room.level = level
+
+
+def _entrance(draft: Draft, state: Reading) -> None:
+    entrance: dict[str, Any] = {}
+    if state.entrance:
+        into, e = state.entrance
+        entrance = {"into": into, "stated": True}
+        draft.cite(e.first, e.last, "entrance.into")
+    if state.outside:
+        owner, e = state.outside
+        stock = state.inventory
+        owners = [r.id for kind in ("kitchen", "bedroom") for r in stock.of(kind) if r.role in {"elder", "guest", "staff", "carer"}]
+        if separate := (owners or [owner])[0]:
+            entrance["separate"] = [separate]
+            draft.cite(e.first, e.last, "entrance.separate")
+    draft.fields["entrance"] = entrance
+
+
+def _style(draft: Draft, state: Reading) -> None:
+    """Set the style's knobs from words of mood and light."""
+    knobs: dict[str, int] = {}
+    for e in state.looks:
+        look = state.heard.lexicon.looks[int(e.value)]
+        knobs |= {knob: value for knob, value in look.knobs.items() if abs(value) > abs(knobs.get(knob, 0))}
+        if look.nonrect:
+            draft.fields["nonrect"] = look.nonrect
+        draft.cite(e.first, e.last, "style")
+    if {"wheelchair", "step_free", "single"} & set(state.flags):
+        knobs.setdefault("min_width", 2)
+    if knobs:
+        draft.fields["style"] = Style.model_validate(knobs).model_dump()

@@ -1,0 +1,335 @@
+"""One sentence while it is read from left to right: what its words so far are about, who stands in front of a relation and who behind it."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable
+
+from pipeline.floorplan.language.facts import FRONT, HALLS, PRIVATE, SOCIAL, Fact, Group, Reading
+from pipeline.floorplan.language.naming import name, point
+from pipeline.floorplan.language.phrases import Element, heads
+
+LIGHT = {"det", "size", "adj", "verb", "word", "flag"}  # between a relation and its room
+WIDE = {"leads", "between", "chain", "avoid", "except"}  # relations to lists
+STANDINS = {"it", "both", "group", "one", "rest", "some", "each", "all", "self", "pair"}
+LISTING = {"comma", "and", "or"}
+
+
+def known(group: Group) -> Group:
+    """Return the rooms of a group, without "all rooms" and zones."""
+    return tuple(i for i in group if not i.startswith("*"))
+
+
+def ids_of(phrases: Iterable[Element]) -> Group:
+    """Return the rooms of phrases, each once."""
+    return tuple(dict.fromkeys(i for x in phrases for i in x.ids))
+
+
+class Clause:
+    """The state of reading one sentence."""
+
+    def __init__(self, state: Reading, sentence: list[Element]) -> None:
+        self.state, self.sentence = state, sentence
+        self.stock = state.inventory
+        self.run: list[Element] = []  # the list of phrases in front of the next relation
+        self.subject: Group = ()
+        self.latest: Group = ()
+        self.objects: Group = ()
+        self.waiting: tuple[Element, Group] | None = None  # a relation in front of its subject: "next to the kitchen lies ..."
+        self.negative: Element | None = None
+        self.way: Fact | None = None  # the last way that was said
+        self.verb = self.relative = self.single = False
+        self.has_verb = any(e.kind == "verb" for e in sentence)
+        self.only: Element | None = None
+        self.factor: Element | None = None
+        self.owner = self.owning = ""
+        first = next((e for e in sentence if e.kind in {"np", "level", "zone", "every"}), None)
+        self.forward = first is not None and first.kind == "level"  # storeys stand in front of their rooms
+        self.level: int | None = None
+        self.left_out: Group = ()  # "except the guest room, each has ..."
+        self.wing: tuple[Element, list[str]] | None = None  # words for a wing in front of its rooms
+
+    def near(self, k: int) -> Element | None:
+        """Return the element at k, None beyond the ends."""
+        return self.sentence[k] if 0 <= k < len(self.sentence) else None
+
+    def ahead(self, k: int, *skipped: str) -> Element | None:
+        """Return the first element from k on that is of no skipped kind."""
+        return next((x for x in self.sentence[k:] if x.kind not in skipped), None)
+
+    def says(self, e: Element, sign: str) -> bool:
+        """Whether a word of an element belongs to a closed class."""
+        return bool(self.state.heard.lexicon.sign(sign) & set(e.text.split()))
+
+    def types(self, group: Group) -> set[str]:
+        """Return the types of the rooms of a group."""
+        return {self.stock.get(i).type for i in group if i[0] not in "*<"}
+
+    def negated(self, k: int) -> bool:
+        """Whether a negation stands just in front of the element at k."""
+        return any(x.kind == "neg" for x in self.sentence[max(0, k - 3) : k])
+
+    def give(self, things: Group, owners: Group, e: Element) -> None:
+        """Let rooms belong to others."""
+        self.stock.belongings.update(things)
+        self.state.say("own", things, owners, e)
+
+    def measures(self, e: Element) -> None:
+        """Note the areas of a phrase."""
+        for mark in e.amounts:
+            self.state.understood(mark.first, mark.last)
+            self.state.amounts.append((mark, tuple(e.ids)))
+        e.amounts = []
+
+    def goes_on(self, rooms: Group, objects: Group = (), subject: Group = ()) -> None:
+        """Set what is spoken of behind a relation."""
+        self.latest, self.objects, self.subject = rooms, objects or rooms, subject or rooms
+        self.run, self.verb, self.relative = [], False, False
+
+    def stands_for(self, e: Element, ids: Group) -> None:
+        """Let an element that is no phrase be the list in front of the next relation."""
+        e.ids, self.latest = list(ids), ids
+        self.run = [Element("np", "", e.first, e.last, e.text, ids=list(ids))]
+        self.state.understood(e.first, e.last)
+
+    def push(self, k: int, e: Element, ids: Group) -> None:
+        """Take a group into the list in front of the next relation."""
+        before = next((x for x in reversed(self.sentence[:k]) if x.kind not in {"det", "size", "adj"}), None)
+        if before is None or not self.run or before.kind not in {*LISTING, "np", "amount", "open", "close"}:
+            self.run = []
+            self.verb = self.single = False
+        elif self.objects and set(ids_of(self.run)) == set(self.objects):
+            self.run = []  # what was given to somebody is no part of a new list
+        self.run.append(e)
+        e.ids, self.latest = list(ids), ids
+        if self.wing is not None:
+            self.wing[1].extend(ids)
+        if self.waiting and not set(ids) <= set(self.waiting[1]):
+            self.subject = tuple(dict.fromkeys((*self.subject, *ids)))
+        self.subject = self.subject or ids
+
+    def storey(self, k: int) -> int | None:
+        """Return the storey that is said of the phrase at k."""
+        if self.sentence[k].role == "landing":
+            return 1
+        if self.forward:
+            return self.level
+        for j, e in enumerate(self.sentence[k + 1 :], k + 1):
+            if e.kind == "level":
+                return None if heads(self.sentence, j) else int(e.value)
+            if e.kind not in {"np", "det", *LISTING}:
+                return None
+        return None
+
+    def named(self, k: int) -> Group:
+        """Return the rooms of the phrase at k."""
+        return tuple(name(self.state, self.sentence, k, self.storey(k)))
+
+    def point(self, e: Element, k: int, but: Group) -> Group:
+        """Return the rooms that a pronoun stands for: after "but" the subject still, as an object what is not the subject `but`."""
+        same = self.subject if e.value == "it" and k and self.sentence[k - 1].kind == "but" else ()
+        return same or point(self.state, self.sentence[:k], e, but)
+
+    # who stands in front
+
+    def place(self, e: Element) -> int:
+        """Return where an element stands."""
+        return next((i for i, x in enumerate(self.sentence) if x is e), 0)
+
+    def coordinate(self) -> bool:
+        """Whether the last two phrases in front of a relation are joined by more than a comma; one alone is."""
+        ends = [self.place(x) for x in self.run[-2:]]
+        return len(ends) < 2 or any(x.kind in {"and", "or"} for x in self.sentence[ends[0] : ends[1]])
+
+    def listed(self) -> Group:
+        """Return the rooms in front of a comparison: the last phrase, with those that an "and" joins to it."""
+        return ids_of(self.run if self.coordinate() else self.run[-1:])
+
+    def subjects(self, k: int, e: Element) -> Group:  # noqa: PLR0911 - one answer per case
+        """Return who stands in front of a relation: the phrase, the list in front of a verb, or what the clause is about."""
+        before = self.near(k - 1)
+        if not self.run:
+            cue = next((x for x in reversed(self.sentence[:k]) if x.kind == "cue"), None)
+            chained = before is not None and before.kind == "np" and cue is not None and cue.value == e.value == "near"
+            if self.objects and self.relative != chained and not (self.relative and "verb_last" in self.state.heard.lexicon.traits):
+                return self.objects  # "away from the bedroom, which is next to ...", "X next to Y next to Z"
+            return self.subject
+        last = self.run[-1]
+        comma = before is not None and before.kind == "comma"
+        if before is not None and before.kind in LISTING and self.objects and set(self.objects) == set(ids_of(self.run)):
+            cue_at = max((i for i, x in enumerate(self.sentence[:k]) if x.kind == "cue"), default=0)
+            if not any(x.kind in LISTING for x in self.sentence[cue_at + 1 : self.place(last)]):
+                return self.subject  # "a guest room with its own bath, away from ..."
+        alone = (
+            (before is not None and before.kind == "open")  # "a garage (joined to the hall)"
+            or self.relative
+            or (comma and len(self.run) > 1 and not self.verb)
+            or (e.value in {"door", "leads"} and self.says(e, "with") and not last.plural)  # "a kitchen and a hall with a door to ..."
+            or (self.single and len(self.run) > 1 and not last.plural)
+            or not self.coordinate()  # "study downstairs, all bedrooms upstairs, garage connected to ...": commas part statements
+        )
+        if alone:
+            return tuple(last.ids)
+        if e.value == "avoid" and self.objects:
+            return self.subject
+        verbal = (
+            self.verb
+            or e.value in {"leads", "away", "apart", "wall"}
+            or self.says(e, "finite")
+            or any(self.says(x, "finite") for x in self.sentence[self.place(last) + 1 : k])
+            or any(x.det & {"both", "all"} for x in self.run)
+        )
+        if verbal:
+            return ids_of(self.run)
+        return self._tail() if e.value == "door" else tuple(last.ids)
+
+    def _tail(self) -> Group:
+        """Return the phrases at the end of the list that "and" joins."""
+        tail = self.run[-1:]
+        for a, b in itertools.pairwise(reversed(self.run)):
+            between = [x.kind for x in self.sentence[self.place(b) + 1 : self.place(a)]]
+            if "comma" in between or "and" not in between:
+                break
+            tail.insert(0, b)
+        return ids_of(tail)
+
+    # who stands behind
+
+    def after(self, k: int, cue: str, left: Group) -> tuple[Group, int]:
+        """Return the rooms named after a relation, and where reading goes on."""
+        group: list[str] = []
+        end, joined = k, ""
+        first = last = None
+        while (e := self.near(k)) is not None:
+            if e.kind == "np":
+                if (
+                    e.banned
+                    or (group and not joined)
+                    or (first is not None and not self._continues(k, cue, joined, first, left, len(group)))
+                ):
+                    break
+                ids = name(self.state, self.sentence, k, self.level if self.forward else None)
+                self.state.understood(e.first, e.last)
+                self.measures(e)
+                if "largest" in e.adjectives and cue != "cmp":
+                    self.state.say("largest", tuple(ids), tuple(r.id for r in self.stock.of(e.type)), e)
+                group += [i for i in ids if i not in group and i not in left]
+                if e.type in SOCIAL and (j := self.written_as_one(k, e)):  # "around a kitchen-living room"
+                    self.state.say("merge", (*ids, *self.named(j)), (), e)
+                first, last, joined, end = first or e, e, "", k + 1
+            elif not group and (found := self._standin(k, e, left)) is not None:
+                return found
+            elif e.kind == "cue" and e.value in {"in", "leads"} and joined and cue in WIDE and not (joined == "comma" and self.relative):
+                joined = "and"  # "leads to the bath and into the kitchen"
+            elif group and (e.value == "has" or e.kind == "to") and cue == "leads" and self.says(self.sentence[end - 2], "connect"):
+                joined = "and"  # "connects the kitchen with the garage"
+            elif e.kind in LISTING:
+                if not group and e.kind == "comma":
+                    break
+                joined = "comma" if e.kind == "comma" and joined != "and" else "and"
+            elif e.kind == "open" and last is not None and [x.kind for x in self.sentence[k + 1 : k + 3]] == ["amount", "close"]:
+                last.amounts += [
+                    x.mark for x in self.sentence[k + 1 : k + 2] if x.mark is not None
+                ]  # "the kitchen (9 m2), the bath (5 m2)"
+                self.measures(last)
+                k += 2
+            elif not self._passed(e, bool(group), joined, cue):
+                break
+            k += 1
+        return tuple(group), end
+
+    def _passed(self, e: Element, named: bool, joined: str, cue: str) -> bool:
+        """Whether an element may stand inside the list behind a relation."""
+        if e.kind in {"det", "size", "adj", "word", "owner", "relative"}:
+            return True
+        if e.kind == "colon":
+            return not named and cue == "leads"
+        return (e.kind in {"verb", "open"} and not named) or (e.kind == "to" and (not named or bool(joined)))
+
+    def _standin(self, k: int, e: Element, left: Group) -> tuple[Group, int] | None:
+        """Return the rooms that a pronoun, a zone, people or "everything" behind a relation stand for; None for other elements."""
+        ahead = self.near(k + 1)
+        phrase = ahead is not None and ahead.kind == "np"
+        if e.kind in {"pron", "det"} and e.value in STANDINS and not (e.kind == "det" and phrase):
+            if e.value == "self":
+                self.state.say("itself", left, (), e)
+                return (), k + 1
+            found = self.point(e, k, left)
+            self.state.understood(e.first, e.last)
+            return tuple(i for i in found if i not in left), k + 1
+        if e.kind == "owner" and not phrase and (ahead is None or ahead.kind != "word"):  # "next to the parents'"
+            theirs = [r.id for r in self.stock.of("bedroom") if r.role == e.value and r.id not in left]
+            self.state.understood(e.first, e.last)
+            e.ids = theirs or [self.stock.add("bedroom", e.value, e.text, None).id]
+            return tuple(e.ids), k + 1
+        if e.kind == "zone":
+            self.zone(k, e)
+            return tuple(e.ids), k + 1
+        if e.kind == "every":
+            self.state.understood(e.first, e.last)
+            return ("*",), k + 1
+        return None
+
+    def zone(self, k: int, e: Element) -> None:
+        """Take the rooms of a zone into the list."""
+        self.state.understood(e.first, e.last)
+        members = self.stock.zone(e.value)
+        e.ids = members or [f"*zone_{e.value}"]
+        self.state.zones.setdefault(e.value, (tuple(members), e))
+        self.push(k, e, tuple(e.ids))
+
+    def written_as_one(self, k: int, e: Element) -> int:
+        """Return the place of the room that is written as one with that at k, "kitchen/living", "salón-cocina"; 0 for none."""
+        j = next((j for j, x in enumerate(self.sentence[k + 1 : k + 3], k + 1) if x.kind == "np"), 0)
+        if not j or self.sentence[j].type not in SOCIAL - {e.type}:
+            return 0
+        tokens = self.state.heard.tokens
+        between = self.state.heard.prompt[tokens[e.last - 1].end : tokens[self.sentence[j].first].start]
+        return j if between in {"/", "-", "–", "/-"} else 0
+
+    def _continues(self, k: int, cue: str, joined: str, first: Element, left: Group, count: int) -> bool:  # noqa: PLR0911 - one answer per case
+        """Whether a list after a relation goes on with the phrase at k, or a new statement begins there."""
+        e = self.sentence[k]
+        ahead = self.ahead(k + 1, "det", "amount", "adj", "flag", "word")
+        again = bool(e.ids) or (e.definite and not e.plural and (e.type, e.text, e.role) == (first.type, first.text, first.role))
+        if joined and again and not first.plural and first.type == e.type:
+            return False  # "A by B, and B by C"
+        if cue == "between" and joined == "and" and count == 1:
+            return True
+        if (cue == "open" and e.type in PRIVATE and not e.definite) or (
+            cue == "cmp" and ((joined == "comma" and e.amounts) or "equal" in e.adjectives)
+        ):
+            return False  # "a kitchen open to the living room and a terrace": nothing stands open to these
+        if ahead is not None and self._starts(ahead, cue):
+            return False
+        if cue == "leads" and joined == "comma":
+            if self.types(left) == {"bedroom"} and e.type in SOCIAL:
+                return False  # a bedroom leads to its bath, and the list of rooms goes on
+            halls = bool(self.types(self.latest or self.subject) & HALLS)
+            if self.relative and e.introduces and first.definite and not halls:
+                return False  # "a living room that opens to the kitchen, one bedroom and one bath"
+            if e.number is not None and first.number is None and not any(x.kind == "and" for x in self.sentence[k:]):
+                return False
+        if cue in WIDE:
+            return cue != "between"
+        if joined == "comma":
+            return cue == "door" and first.definite and e.definite and self._ends_list(k)
+        if cue in FRONT and e.introduces:
+            return "indefinite" in first.det and cue == "near"
+        return e.definite or not first.definite or cue == "open"
+
+    def _starts(self, ahead: Element, cue: str) -> bool:
+        """Whether what follows a phrase makes it the subject of a statement of its own."""
+        if ahead.kind == "but":  # "the kitchen, however, does not"
+            rest = [x.kind for x in self.sentence[self.place(ahead) + 1 :] if x.kind not in {"verb", "word"}]
+            return rest[:1] == ["neg"] and rest[1:2] in ([], ["comma"])
+        if ahead.kind == "cue":
+            return ahead.value != "except" and (ahead.value != "has" or self.says(ahead, "having")) and cue != "avoid"
+        return ahead.kind in {"verb", "cmp", "neg", "factor"}
+
+    def _ends_list(self, k: int) -> bool:
+        """Whether what stands from k on is the end of a list of known rooms: "..., the kitchen and the bath"."""
+        rest = self.sentence[k:]
+        rooms = [x for x in rest if x.kind == "np"]
+        plain = all(x.kind in {"np", "det", "adj", "size", "comma", "and"} for x in rest)
+        return plain and all(x.definite and not x.banned for x in rooms) and len(rooms) > 1 and any(x.kind == "and" for x in rest)

@@ -1,0 +1,558 @@
+"""What the words for relations say: who is joined to whom, who has what, how one gets from room to room, sizes against each other."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+
+from pipeline.floorplan.language.clause import LIGHT, LISTING, Clause, ids_of, known
+from pipeline.floorplan.language.facts import HALLS, PERSONAL, SOCIAL, Fact, Group
+from pipeline.floorplan.language.naming import name
+from pipeline.floorplan.language.phrases import Element
+
+MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two rooms at the end: "kitchen and bath adjacent"
+DENIED = {"near": "ban", "wall": "ban", "away": "near", "open": "not_open", "avoid": "avoid"}  # what "not" makes of a relation
+HOSTS = {"living_room", "family_room", "studio_room", "dining_room", "kitchen", "hallway", "entry", "office", "garage", "media_room", "bathroom"}  # fmt: skip
+NO_PARTS = {"bedroom", "living_room", "family_room", "garage"}  # nothing that another room has
+SECLUDED = {"storage", "closet", "wc", "bathroom", "balcony", "utility"}  # "X in Y": X opens off Y
+LIKE = 0.15  # two rooms are alike where they differ by less
+
+
+def relate(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911, PLR0912, C901 - one answer per kind of relation
+    """Read one relation; return where to go on."""
+    if e.value == "has":
+        return has(c, k, e)
+    if e.value == "except":
+        return excepted(c, k, e)
+    if e.value.startswith("thru"):
+        return through(c, k, e)
+    if e.value == "by":
+        return by_way_of(c, k, e)
+    if e.value == "between" and (after := door_between(c, k, e)):
+        return after
+    if e.value == "from" and c.says(e, "there") and (there := known(c.objects or (c.latest if k else ()) or (c.state.past or [()])[-1])):
+        c.state.understood(e.first, e.last)
+        c.goes_on(there if len(there) == 1 else c.state.topic)
+        c.objects = ()
+        return k + 1
+    c.relative = c.relative or bool(c.state.heard.lexicon.sign("relative_cue") & set(e.text.split()[:3]))  # "que da al"
+    left, group, j = _sides(c, k, e)
+    if not group:
+        return _alone(c, k, e)
+    if e.value == "in":
+        if not left and (held := _holding(c, e, group, j)):
+            return held
+        if (k and c.sentence[k - 1].kind == "and") or not _inside(c, left, group):
+            c.latest, c.run = group, [x for x in c.sentence[k:j] if x.kind == "np"][-1:]
+            return j
+    if c.sentence[j - 1].kind == "zone" and e.value in {"door", "in"}:
+        return j
+    c.state.understood(e.first, e.last)
+    behind = c.near(j)
+    only = e.only or c.only is not None or c.says(e, "only") or (behind is not None and behind.value == "only")
+    if e.value == "chain":
+        left = c.objects or left
+    if e.value == "from" and left and behind is not None and behind.value == "leads" and _ends(c, j + 1):
+        j += 1  # "the bath one reaches from the hall"
+    elif e.value == "from" and _leads_on(c, j):
+        c.goes_on(group)
+        c.objects = ()
+        return j
+    if (
+        not left
+        and e.value in {"leads", "door"}
+        and (c.says(e, "entered") or e.value == "leads")
+        and _first(c, k)
+        and c.types(group) <= HALLS
+    ):
+        return enter(c, e, group, j)  # "se entra a un vestíbulo ..."
+    door = k > 0 and c.sentence[k - 1].value == "doors"
+    if not left and door and e.value == "leads" and len(group) == 2:  # "a door connects the office and the kitchen"
+        c.state.say("door", group[:1], group[1:], e)
+        return j
+    if not left and c.negative is not None and c.waiting is not None and c.waiting[0].value == "from":
+        left, c.waiting = c.waiting[1], None  # "from the kitchen no door may lead into the bedroom"
+    if not left or _inverted(c, k, j):
+        c.waiting = (e, group)
+        c.subject, c.latest, c.run, c.verb = (), group, [], False
+        return j
+    _emit(c, e, left, group)
+    if only and e.value in {"door", "from"}:
+        c.state.say("only", left, (), e)
+    c.only = None
+    c.goes_on(group, subject=left)
+    return j
+
+
+def _sides(c: Clause, k: int, e: Element) -> tuple[Group, Group, int]:
+    """Return who stands in front of a relation, who behind it, and where reading goes on."""
+    ahead = c.near(k + 1)
+    first = k == 0 or c.sentence[k - 1].kind in LISTING
+    left = () if ahead is not None and ahead.value == "pair" and first else c.subjects(k, e)  # "dazwischen liegt das Bad"
+    wide = ahead is not None and ahead.kind == "np" and (len(left) > 2 or (len(left) > 1 and ahead.definite))
+    group, j = c.after(k + 1, "leads" if e.value == "door" and c.says(e, "to_many") else e.value, () if wide else left)
+    if group and not left and k == 0 and [x.kind for x in c.sentence[j : j + 2]] == ["comma", "cue"] and not c.has_verb:
+        left = c.state.topic  # "The dining room ...; open to the kitchen, with a door to the hall"
+    return tuple(i for i in left if i not in group), group, j
+
+
+def _ends(c: Clause, k: int) -> bool:
+    ahead = c.near(k)
+    return ahead is None or ahead.kind in {"comma", "and"}
+
+
+def _first(c: Clause, k: int) -> bool:
+    return not any(x.kind in {"np", "pron", "level"} for x in c.sentence[:k])
+
+
+def _leads_on(c: Clause, j: int) -> bool:
+    """Whether "from the garage" goes on with "you get into ..."."""
+    ahead = c.ahead(j, "verb", "det", "flag", "adj", "word", "pron")
+    return ahead is not None and ahead.kind == "cue" and ahead.value == "leads"
+
+
+def _inside(c: Clause, left: Group, group: Group) -> bool:
+    """Whether "X in Y" means that X opens off Y, as a cupboard in the hall does."""
+    kinds, hosts = c.types(left), c.types(group)
+    if not kinds or not hosts:
+        return False
+    return kinds == {"balcony"} or hosts <= HALLS or (kinds <= SECLUDED and hosts <= {*HALLS, "bedroom", "kitchen", "utility"})
+
+
+def _inverted(c: Clause, k: int, j: int) -> bool:
+    """Whether the subject follows: "off the foyer are a wc and the living room", "next to the kitchen, a pantry"."""
+    behind = c.near(j)
+    before = any(x.kind in {"np", "pron", "every", "zone", "home"} for x in c.sentence[:k])
+    if before and (c.run or not (c.sentence[k - 1].kind in LISTING and behind is not None and behind.kind == "verb")):
+        return False
+    return any(x.kind == "np" and not x.banned for x in c.sentence[j:])
+
+
+def _holding(c: Clause, e: Element, group: Group, j: int) -> int:
+    """Read "in the corridor are three bedrooms and a bath": what is named next hangs on it; 0 where nothing does."""
+    verb = next((i for i in range(j, min(j + 6, len(c.sentence))) if c.sentence[i].kind == "verb"), None)
+    if len(group) != 1 or verb is None or any(x.kind in {"np", "cue", "neg"} for x in c.sentence[j:verb]):
+        return 0
+    ahead, hosts = c.ahead(verb + 1, *LIGHT), c.types(group)
+    usual = PERSONAL if hosts == {"bedroom"} else {"balcony", "storage", "utility"}
+    if ahead is None or ahead.kind != "np" or ahead.banned or not (hosts <= HALLS or ahead.type in usual):
+        return 0
+    things, end = c.after(verb + 1, "leads", group)
+    if things:
+        c.state.say("own" if hosts == {"bedroom"} and len(things) == 1 else "door", things, group * len(things), e)
+        c.goes_on(things, subject=group)
+    return end if things else 0
+
+
+def _alone(c: Clause, k: int, e: Element) -> int:
+    """Read a relation that nothing follows: "next to each other", "kitchen and bath adjacent"."""
+    ahead = c.near(k + 1)
+    mutual = ahead is not None and ahead.kind == "reciprocal"
+    rest = next((x for x in c.sentence[k + 1 :] if x.kind not in {"det", "verb"} and x.value != "doors"), None)
+    ends = rest is None or rest.kind in {"comma", "but", "close"}  # "cocina y salón comunicados por una puerta corredera"
+    rooms = ids_of(c.run) or c.subject
+    pair = ends and e.value in MUTUAL and not c.says(e, "into") and len(rooms) > 1 and "*" not in rooms and c.coordinate()
+    if (mutual or pair or (e.value == "wall" and rooms)) and e.text != "by":
+        reciprocal(c, e)
+        return k + 1 + mutual
+    if e.value == "between" and rest is None and e.text in c.state.heard.lexicon.sign("amid"):
+        c.state.understood(e.first, e.last)  # "... as a buffer in between" points back at what was said
+    return k + 1
+
+
+def reciprocal(c: Clause, e: Element) -> None:
+    """Read "next to each other", "the two bedrooms must not share a wall with one another"."""
+    rooms = c.latest if len(c.latest) > 1 and e.value != "open" else ids_of(c.run)
+    rooms = rooms if len(rooms) > 1 else c.subject
+    away = e.value in {"away", "apart"}
+    if c.negative is None and not away:
+        c.state.say("merge" if e.value == "open" else e.value, rooms, (), e)
+        c.subject = c.latest = rooms
+        return
+    denied = c.negative is not None and e.value in {"door", "open"}
+    c.negative = None
+    if denied:
+        c.state.say("not_connected" if e.value == "door" else "not_open", rooms[:1], rooms[1:], e)
+        return
+    c.state.say("ban", rooms, rooms, e)
+    if away:
+        c.state.say("away", rooms[:1], rooms[1:], e)
+
+
+def _emit(c: Clause, e: Element, left: Group, group: Group) -> None:
+    """Record a relation between rooms, or that there is none."""
+    cue = "door" if e.value in {"from", "chain", "in"} else e.value
+    kinds = c.types((*left, *group))
+    if cue == "apart":  # a kitchen apart from the living room has a door; a bedroom apart from it lies away
+        if kinds <= {"bathroom", "wc"}:
+            return  # two rooms instead of one
+        if c.negative is not None and kinds <= SOCIAL:
+            c.negative, cue = None, "open"  # "the kitchen is not separated from the living room"
+        else:
+            cue = "not_open" if kinds <= SOCIAL else "away"
+    if c.negative is not None:
+        left, c.negative = _none(c, left), None
+        what = (
+            "avoid"
+            if cue == "door" and c.says(e, "through")
+            else "ban"
+            if cue == "door" and c.says(e, "at")
+            else DENIED.get(cue, "not_connected")
+        )
+        c.state.say(what, left, group, e)
+        if cue in {"leads", "door"} and what == "not_connected":
+            c.way = Fact(cue, left, group)  # "not to the living room but to the hall"
+    elif cue == "ensuite":
+        c.give(left, group, e)
+    else:
+        c.state.say(cue, left, group, e)
+        c.way = c.state.facts[-1] if cue in {"leads", "door"} and c.state.facts else c.way
+
+
+def _none(c: Clause, left: Group) -> Group:
+    """Return all rooms of the kind that "no bedroom" names."""
+    named = c.run[-1] if c.run and c.negative is not None and 0 <= c.run[-1].first - c.negative.last < 2 else None
+    if named is None or named.definite or len(left) != 1:
+        return left
+    return tuple(r.id for r in c.stock.of(named.type)) or left
+
+
+def complete(c: Clause) -> None:
+    """Give a relation that stood in front of its subject what followed."""
+    assert c.waiting is not None
+    (cue, group), c.waiting = c.waiting, None
+    rooms = tuple(i for i in c.subject if i not in group)
+    if cue.value == "ensuite":
+        if not rooms:  # "an en suite to the bedroom": the words themselves are the room
+            bath = Element("np", "", cue.first, cue.last, cue.text, type="bathroom", role="ensuite")
+            rooms = (c.stock.add(bath.type, bath.role, bath.text, None).id,)
+        c.give(rooms, group, cue)
+    elif rooms and c.negative:
+        c.state.say("ban" if cue.value in {"near", "wall"} else "not_connected", rooms, group, cue)
+    elif rooms:
+        c.state.say("door" if cue.value == "from" else cue.value, rooms, group, cue)
+        if c.only or cue.only:
+            c.state.say("only", rooms, (), cue)
+
+
+# what rooms have
+
+
+def has(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one answer per kind of owner
+    """Read "X with its own bathroom", "the living room has a terrace": rooms that hang on the one named before."""
+    before = next((x for x in reversed(c.sentence[:k]) if x.kind in {"np", "home", "pron", "every", "det", "level"}), None)
+    at = next((j for j in range(k + 1, len(c.sentence)) if c.sentence[j].kind not in {*LIGHT, "amount"}), None)
+    thing = c.sentence[at] if at is not None and c.sentence[at].kind == "np" else None
+    owners = _owners(c, k, e, before, thing)
+    if not owners:
+        return k + 1
+    kind = c.stock.get(owners[0]).type
+    negative, c.negative = c.negated(k), None
+    if kind == "bedroom":
+        return k + 1 if negative else _give(c, k, e, owners)
+    if thing is None or at is None or kind not in HOSTS or len(owners) > 1 or thing.banned or negative:
+        return k + 1
+    if kind == "kitchen" and thing.mark is not None and thing.mark.value == "dining_room/corner":  # "a kitchen with dining area"
+        c.stock.get(owners[0]).functions.add("dining")
+        c.state.understood(thing.first, thing.last)
+        return at + 1
+    if thing.type == "balcony" and kind in {"bathroom", "hallway"}:
+        return k + 1  # "两室一厨一卫带阳台": the home has it
+    if kind == "hallway" and thing.type == "bedroom" and not thing.definite:  # "a corridor with two bedrooms and a bathroom"
+        group, j = c.after(at, "leads", owners)
+        c.state.say("door", group, owners, e)
+        c.latest, c.run = group, [thing]
+        return j
+    if thing.type in NO_PARTS or (thing.ids and thing.definite):
+        return k + 1
+    ids = c.named(at)
+    c.state.understood(e.first, thing.last)
+    opened = thing.type in {"kitchen", "dining_room"} and kind in {*SOCIAL, "studio_room"}
+    c.state.say("open" if opened else "door", ids, owners, e)
+    c.measures(thing)
+    c.latest, c.run, c.subject, c.objects = ids, [thing], c.subject or owners, ids
+    return at + 1
+
+
+def _owners(c: Clause, k: int, e: Element, before: Element | None, thing: Element | None) -> Group:
+    """Return who has what follows: the phrase in front, or the list in front of a verb; nobody where the home has it."""
+    if before is None or before.kind == "home" or not (c.run or c.subject):
+        return ()
+    own = thing is not None and "own" in thing.det
+    if before.kind == "level" and (c.forward or not c.run or not own):
+        return ()
+    if before.value == "it" and c.state.homes and before.ids and all(i[0] != "*" and c.stock.get(i).whole for i in before.ids):
+        return ()  # "a one-bedroom flat. It needs a study": the flat
+    if c.run and c.sentence[k - 1].kind == "comma" and not c.verb:
+        alone = len(c.run) == 1 and c.run[0].number is None and not c.run[0].suite
+        told = (own and c.run[-1].type == "bedroom") or (c.says(e, "having") and len(c.run) == 1)
+        bracket = next((x.kind for x in reversed(c.sentence[:k]) if x.kind in {"open", "close"}), "") == "open"
+        if not (told or bracket or (alone and "bare_nouns" in c.state.heard.lexicon.traits)):
+            return ()
+    near = c.sentence[k - 1]
+    if not c.run and near.kind == "np" and near.ids and set(near.ids) <= set(c.objects) and c.says(e, "with"):
+        return known(tuple(near.ids))  # "the living room leads to a hall with two bedrooms"
+    owners = known(tuple(c.run[-1].ids) if c.run else c.subject)
+    if len(c.run) > 1 and (c.verb or c.says(e, "having")) and not any(x.part for x in c.run):
+        listed = known(ids_of(c.run))
+        owners = listed if c.types(listed) == {"bedroom"} else owners
+    return owners
+
+
+def _give(c: Clause, k: int, e: Element, owners: Group) -> int:
+    """Give bedrooms what follows: bathrooms, closets, balconies, as many as there are owners."""
+    j, end, joined = k + 1, k + 1, ""
+    given: Group = ()
+    while (x := c.near(j)) is not None:
+        if x.kind == "np" and x.type == "bedroom" and not given and not x.ids and any(y.suite for y in c.sentence[:k]):
+            x.ids, joined, end = list(owners), "", j + 1  # "each suite has a bedroom of 18 m², its own bathroom ..."
+            c.state.understood(x.first, x.last)
+            c.measures(x)
+        elif x.kind == "np":
+            if x.banned or x.type not in PERSONAL or (given and not joined) or not _theirs(c, j, owners, bool(given), joined):
+                break
+            ids = _things(c, j, owners)
+            c.state.understood(e.first, e.last)
+            c.state.understood(x.first, x.last)
+            c.give(ids, owners, x)
+            c.measures(x)
+            given, joined, end = ids, "", j + 1
+        elif x.kind in LISTING:
+            joined = "comma" if x.kind == "comma" and joined != "and" else "and"
+        elif x.kind == "amount" and not given and x.mark is not None and x.value in {"area", "length"}:
+            c.state.amounts.append((x.mark, owners))
+            c.state.understood(x.first, x.last)
+            end, joined = j + 1, ""
+        elif x.kind not in LIGHT - {"verb"} and x.value != "has":
+            break
+        j += 1
+    if given:
+        c.latest, c.subject, c.objects, c.verb = given, owners, given, False
+        c.run = [Element("np", "", e.first, e.last, "", ids=list(given), type=c.stock.get(given[0]).type)]
+    return end
+
+
+def _theirs(c: Clause, j: int, owners: Group, given: bool, joined: str) -> bool:
+    """Whether the room at j is the owners' own, and not one of the home's that a list goes on with."""
+    x, own = c.sentence[j], "own" in c.sentence[j].det
+    after = c.near(j + 1)
+    both = after is not None and after.value in {"both", "all"} and not own and _ends(c, j + 2)  # "two bedrooms with a bath for both"
+    number = x.number or 1
+    if (
+        x.role in {"shared", "guest"}
+        or x.definite
+        or number > len(owners)
+        or (both and len(owners) > 1)
+        or (len(owners) > 2 and 1 < number < len(owners))
+    ):
+        return False
+    placed = c.ahead(j + 1, "amount", "relative", "flag", "word")
+    if given and not own and placed is not None and placed.kind == "cue" and placed.value in {"door", "from"}:
+        return False  # "with a closet and a bath that one enters by the closet"
+    if joined == "comma" and not own:
+        rest = next((y for y in c.sentence[j + 1 :] if not (y.kind in {"comma", "det"} or (y.kind == "np" and y.type in PERSONAL))), None)
+        return rest is not None and rest.kind == "and"  # "with a bath, closet and balcony"
+    return not joined or own or not ("another" in x.det or x.number is not None or x.type == "wc")
+
+
+def _things(c: Clause, j: int, owners: Group) -> Group:
+    """Return one room for each owner: those that were counted first, then new ones."""
+    x = c.sentence[j]
+    ids = list(x.ids)
+    role = x.role if x.role == "primary" and len(owners) == 1 else ""
+    slots = [r for r in c.stock.of(x.type) if r.open_slot and r.id not in ids and not c.stock.owned(r.id)]
+    while len(ids) < len(owners):
+        if slots:
+            room = slots.pop(0)
+            room.open_slot, room.surface = False, x.text
+        else:
+            room = c.stock.add(x.type, role, x.text, c.stock.get(owners[0]).level)
+        ids.append(room.id)
+    x.ids = ids[: len(owners)] if x.type == "bathroom" else ids
+    for room in (c.stock.get(i) for i in x.ids):
+        room.size = x.size if x.size != 1.0 else room.size
+    return tuple(x.ids)
+
+
+# ways
+
+
+def excepted(c: Clause, k: int, e: Element) -> int:
+    """Read "all rooms but the pantry open off the hall": those that are left out, and who goes on."""
+    group, j = c.after(k + 1, "except", ())
+    if not group:
+        return max(j, k + 1)
+    c.state.say("except", group, (), e)
+    c.left_out = group
+    each = next((x for x in c.sentence[:k] if x.kind == "every" or (x.kind == "np" and set(x.ids) > set(group))), None)
+    if each is not None and not any(x.kind == "cue" for x in c.sentence[:k]):
+        each.ids = [i for i in each.ids if i not in group]
+        c.run, c.latest, c.subject = [each], tuple(each.ids), tuple(each.ids)
+        return max(j, k + 1)
+    said = c.state.facts[-2] if len(c.state.facts) > 1 else None
+    if said is not None and said.what in {"door", "leads", "own"} and set(group) < set(said.a):  # "all open onto the hall but the main one"
+        c.state.facts[-2] = replace(said, a=tuple(i for i in said.a if i not in group))
+    c.run, c.latest = [x for x in c.sentence[k:j] if x.kind == "np"][-1:], group
+    return max(j, k + 1)
+
+
+def through(c: Clause, k: int, e: Element) -> int:
+    """Read "you pass through the dining room to reach the kitchen", and what must not be so."""
+    first, j = c.after(k + 1, "door", ())
+    while first and (x := c.near(j)) is not None and x.kind in {"verb", "comma"}:
+        j += 1
+    second, j = c.after(j, "leads" if e.value == "thru" else "door", first) if first else ((), k + 1)
+    left = tuple(i for i in (c.run[-1].ids if c.run else c.subject) if i not in first)
+    if first and not second and left and e.value == "thru":  # "浴室得穿过衣帽间才能到"
+        second = left
+    if not second:
+        return max(j, k + 1)
+    things, hosts = (second, first) if e.value == "thru" else (first, second)
+    if c.waiting is not None and c.waiting[0].value in {"from", "leads"}:  # "from the bedroom through the closet into the bath"
+        c.state.say("door", first, c.waiting[1], c.waiting[0])
+        c.waiting = None
+    c.state.say("avoid" if c.negative is not None or e.value == "thru_not" else "door", things, hosts, e)
+    c.negative = None
+    c.goes_on(things)
+    return j
+
+
+def by_way_of(c: Clause, k: int, e: Element) -> int:
+    """Read "the garage is connected to the kitchen via a utility room": the way that was just said leads through it."""
+    said = c.state.facts[-1] if c.state.facts else None
+    if said is None or said.what not in {"door", "leads"} or not said.b or c.run:
+        return k + 1
+    group, j = c.after(k + 1, "door", (*said.a, *said.b))
+    if group:
+        c.state.facts.pop()
+        c.state.say("door", said.a, group, e)
+        c.state.say("door", group, said.b, e)
+        c.latest, c.objects, c.run = group, group, []
+    return max(j, k + 1)
+
+
+def door_between(c: Clause, k: int, e: Element) -> int:
+    """Read "a door between kitchen and bathroom"; return 0 where no door is spoken of."""
+    group, j = c.after(k + 1, "between", ()) if any(x.value == "doors" for x in c.sentence) else ((), 0)
+    near = [*c.sentence[max(0, k - 2) : k], *c.sentence[j : j + 4]]
+    if len(group) != 2 or c.negative or not any(x.value == "doors" for x in near):
+        return 0
+    wide = any(x.kind == "adj" and x.value == "open" for x in near)  # "an open doorway between kitchen and dining room"
+    c.state.say("open" if wide else "door", group[:1], group[1:], e)
+    return j
+
+
+def enter(c: Clause, e: Element, group: Group, j: int) -> int:
+    """Let a room be the one that one enters, and what follows go on from there: "into the hall", ", then a hall"."""
+    group = known(group)
+    if not group:
+        return j
+    into, then = c.near(j), next((i for i, x in enumerate(c.sentence[j : j + 2]) if c.says(x, "then")), None)
+    further: Group = group[1:] if len(group) == 2 else ()
+    if then is not None or (into is not None and into.kind == "cue" and into.value in {"in", "leads"} and c.says(e, "by")):
+        further, j = c.after(j + 1 + (then or 0), "door", group)
+    c.state.understood(e.first, e.last)
+    c.state.entrance = c.state.entrance or (group[0], e)
+    if further:
+        c.state.say("door", further, group[:1], e)
+    c.goes_on(further or group)
+    c.waiting = None
+    return j
+
+
+# sizes
+
+
+def factor(c: Clause, k: int, e: Element) -> int:
+    """Note a factor; "twice the living room" compares at once."""
+    c.factor = e
+    ahead = c.ahead(k + 1, "relative", "det")
+    return compare(c, k, e) if ahead is not None and ahead.kind == "np" else k + 1
+
+
+def compare(c: Clause, k: int, e: Element) -> int:
+    """Read "at least 1.5 times as large as the largest bedroom"."""
+    left = c.listed() or c.subject or c.latest
+    if e.value == "alike":
+        rooms = c.latest if len(c.latest) > 1 else ids_of(c.run)
+        c.state.say("area_equal", known(rooms if len(rooms) > 1 else c.subject), (), e, LIKE)
+        return k + 1
+    right, j = c.after(k + 1, "cmp", left)
+    ahead = next((x for x in c.sentence[k + 1 : j] if x.kind == "np"), None)
+    if ahead is not None and "largest" in ahead.adjectives:
+        right = tuple(r.id for r in c.stock.of(ahead.type))
+    behind = c.near(j)
+    if c.factor is None and behind is not None and behind.kind == "factor":
+        c.factor, j = behind, j + 1
+    value = (c.factor.number or 1.0) if c.factor else 1.0
+    if left and right:
+        c.state.understood(e.first, e.last)
+        c.state.understood(*((c.factor.first, c.factor.last) if c.factor else (e.first, e.last)))
+        turned = (e.value == "smaller") != (value < 1.0)
+        a, b = (right, left) if turned != (c.negative is not None) else (left, right)  # "half the size of", "not larger than"
+        if e.value == "equal":
+            c.state.say("area_equal", (*a, *b), (), e, LIKE)
+        for x in a if e.value != "equal" else ():
+            c.state.say("area_order", (x,), tuple(i for i in b if i != x), e, 1.0 / value if value < 1.0 else value)
+        c.negative = None
+    c.factor, c.latest, c.run = None, right, []
+    return max(j, k + 1)
+
+
+def merge(c: Clause, k: int, e: Element) -> None:
+    """Read "open kitchen/living room" and "combined kitchen and living room"; an open kitchen alone is open to where one lives."""
+    listed = list(e.ids)
+    written_on = "bare_nouns" in c.state.heard.lexicon.traits  # "客厅餐厅厨房" needs no comma
+    joined = written_on
+    for i, x in enumerate(c.sentence[k + 1 :], k + 1):
+        if x.kind == "np" and joined and x.type in SOCIAL and not x.banned:
+            listed += c.named(i)
+            joined = written_on
+        elif x.kind == "and" or (x.kind == "comma" and e.type in SOCIAL and _closes(c, i)) or (x.value == "has" and len(listed) == 1):
+            joined = True
+        else:
+            break
+    if len(set(listed)) < 2 and e.mark is not None and e.last > e.mark.last and k > 1 and c.sentence[k - 1].kind == "and":
+        listed += [i for i in c.sentence[k - 2].ids if c.sentence[k - 2].type in SOCIAL]  # "cocina y salón abiertos"
+    if len(set(listed)) > 1 and e.type in SOCIAL:
+        c.state.say("merge", tuple(listed), (), e)
+    elif e.type == "kitchen":
+        c.state.say("open_kitchen", tuple(e.ids), (), e)
+
+
+def _closes(c: Clause, k: int) -> bool:
+    """Whether a comma parts a list of social rooms that an "and" closes: "open-plan living, dining and kitchen area"."""
+    rest = [x for x in c.sentence[k + 1 :] if x.kind not in {"comma", "det"}]
+    end = next((i for i, x in enumerate(rest) if not (x.kind == "np" and x.type in SOCIAL and "closed" not in x.adjectives)), len(rest))
+    return [x.kind for x in rest[end : end + 2]] == ["and", "np"] and rest[end + 1].type in SOCIAL
+
+
+def merge_after(c: Clause, k: int, e: Element) -> None:
+    """Read "open plan: living, dining, kitchen": what is named behind the words."""
+    social = [j for j, x in enumerate(c.sentence) if j >= k and x.kind == "np" and x.type in SOCIAL]
+    listed = tuple(i for j in social for i in name(c.state, c.sentence, j, None))
+    if len(listed) > 1:
+        c.state.say("merge", listed, (), e)
+
+
+def no_door(c: Clause) -> None:
+    """Read "no door between kitchen and bedroom", "no walk-through bedrooms"; the words are taken out."""
+    ends = [-1, *(k for k, e in enumerate(c.sentence) if e.kind in {"comma", "but"}), len(c.sentence)]
+    for first, last in itertools.pairwise(ends):
+        part = c.sentence[first + 1 : last]
+        none = next((j for j, e in enumerate(part) if e.kind in {"neg", "used"}), None)
+        if none is None:
+            continue
+        flag = next((e for e in part if e.value == "thoroughfare"), None)
+        rooms = [k for k in range(first + 1, last) if c.sentence[k].kind == "np"]
+        door = next((e for e in part[none + 1 : none + 4] if e.value == "doors" or (e.kind == "cue" and c.says(e, "a_door"))), None)
+        if flag is not None:
+            named = [f"*{c.sentence[k].type}" if c.sentence[k].banned or not c.sentence[k].definite else c.named(k)[0] for k in rooms]
+            c.state.say("no_through", tuple(named) or ("*bedroom",), (), flag)
+        elif door is not None and len(rooms) == 2:
+            a, b = (tuple(name(c.state, c.sentence, k, None)) for k in rooms)
+            c.state.say("not_connected", a, b, door)
+        else:
+            continue
+        c.sentence[first + 1 : last] = []
+        return

@@ -1,0 +1,449 @@
+"""Reads sentences from left to right: what each kind of element says about the rooms around it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from pipeline.floorplan.language import relations
+from pipeline.floorplan.language.clause import Clause, ids_of, known
+from pipeline.floorplan.language.extents import attach, measures_home, share
+from pipeline.floorplan.language.facts import GROUND_FLOOR, PERSONAL, ROLES, SOCIAL, Reading
+from pipeline.floorplan.language.naming import count_of, fresh
+from pipeline.floorplan.language.phrases import Element, backward, heads
+from pipeline.floorplan.language.relations import LIKE, complete, enter, merge, merge_after, no_door, relate
+
+ONE_THAT = {"in", "ensuite", "near", "door"}  # what tells the second of "one bathroom for guests and one inside the master"
+
+
+def read(state: Reading, sentence: list[Element]) -> None:
+    """Read one sentence."""
+    c = Clause(state, sentence)
+    no_door(c)
+    k = 0
+    while k < len(c.sentence):
+        e = c.sentence[k]
+        k = READERS[e.kind](c, k, e) if e.kind in READERS else k + 1
+    if c.waiting:
+        complete(c)
+    _close_wing(c)
+    state.topic = known(c.subject) or state.topic
+    state.past = [*state.past, *(tuple(e.ids) for e in c.sentence if e.ids and e.kind == "np")][-12:]
+
+
+# each reads one kind of element and returns where reading goes on
+
+
+def _np(c: Clause, k: int, e: Element) -> int:
+    if e.banned:
+        return _ban(c, k, e)
+    c.state.understood(e.first, e.last)
+    before = c.near(k - 1)
+    said = before is not None and before.kind in {"np", "pron"} and not e.det and e.number is None
+    if e.role == "ensuite" and e.type == "bathroom" and not e.ids and said:  # "one of them en suite"
+        c.state.say("ensuite", (), c.latest, e)
+        return k + 1
+    own = "own" in e.det or (bool(c.owning) and bool(c.run) and not e.det)
+    if c.owner and not e.ids and own and e.type in {"bedroom", "bathroom", "kitchen"}:
+        level = c.storey(k)
+        ids = tuple(fresh(c.state, e, backward(c.sentence, k, None) if level is None else level, c.owner))
+    else:
+        ids = c.named(k)
+    if c.left_out and e.det & {"each", "all"} and set(ids) > set(c.left_out):
+        ids = tuple(i for i in ids if i not in c.left_out)
+    _own(c, e, ids)
+    for mark in e.amounts:
+        c.state.understood(mark.first, mark.last)
+        whole = (e.compound and mark.last <= e.first) or measures_home(c, k, mark, tuple(e.ids))
+        c.state.amounts.append((mark, None if whole else ids))
+    c.push(k, e, ids)
+    _described(c, k, e, ids)
+    return k + 1
+
+
+def _described(c: Clause, k: int, e: Element, ids: tuple[str, ...]) -> None:
+    """Record what adjectives say of rooms."""
+    same = tuple(r.id for r in c.stock.of(e.type))
+    if e.adjectives & {"open", "combined"} and "closed_plan" not in c.state.flags:
+        merge(c, k, e)
+    elif e.type in SOCIAL and (j := c.written_as_one(k, e)):
+        c.state.say("merge", (*ids, *c.named(j)), (), e)
+    if "closed" in e.adjectives and e.type == "kitchen":
+        c.state.say("closed", ids, (), e)
+    if e.suite:
+        c.state.say("suite", ids, (), e)
+    for what in e.adjectives & {"largest", "smallest"} if not c.factor else ():
+        c.state.say(what, ids, same, e)
+    if "smaller" in e.adjectives:
+        c.state.say("area_order", tuple(i for i in same if i not in ids)[:1], ids, e, 1.0)
+    if "equal" in e.adjectives and len(ids) > 1:
+        c.state.say("area_equal", ids, (), e, LIKE)
+
+
+def _own(c: Clause, e: Element, ids: tuple[str, ...]) -> None:
+    """Read "grandparents with their own bedroom, bathroom and small kitchen": what follows in the list is theirs."""
+    room = c.stock.get(ids[0]) if c.owner else None
+    if room is None:
+        return
+    if room.type == "bedroom" and "own" in e.det:
+        room.role = room.role or c.owner
+        c.owning = room.id
+    elif c.owning and c.waiting is None and room.type == "bathroom" and not room.role and not c.stock.owned(room.id):
+        c.give(ids, (c.owning,), e)
+    elif c.owning and room.type == "kitchen":
+        room.role = c.stock.get(c.owning).role
+        c.state.say("door", ids, (c.owning,), e)
+
+
+def _ban(c: Clause, k: int, e: Element) -> int:
+    c.state.understood(e.first, e.last)
+    if e.role == "ensuite":
+        c.state.say("no_ensuite", tuple(r.id for r in c.stock.of("bathroom")) or ("*bathroom",), (), e)
+    elif not (e.type == "bedroom" and e.role) and not (e.type == "kitchen" and e.mark is not None and "/" in e.mark.value):
+        c.state.banned.append((e.type, e))  # "no guest room" leaves the other bedrooms, "no kitchen-diner" a kitchen
+    return k + 1
+
+
+def _home(c: Clause, k: int, e: Element) -> int:
+    c.state.understood(e.first, e.last)
+    c.state.homes.append(e)
+    if e.value and c.state.studio is None:
+        c.state.studio = e
+    for mark in e.amounts:
+        attach(c, k, mark, home=True)
+    c.run = []
+    return k + 1
+
+
+def _amount(c: Clause, k: int, e: Element) -> int:
+    if e.mark is not None:
+        attach(c, k, e.mark)
+    return k + 1
+
+
+def _owner(c: Clause, k: int, e: Element) -> int:
+    c.state.understood(e.first, e.last)
+    before = c.near(k - 1)
+    if before is not None and before.kind == "pron" and before.value == "one":
+        _cast(c, before, e.value)
+    c.owner, c.owning = e.value, ""
+    return k + 1
+
+
+def _cast(c: Clause, who: Element, role: str) -> None:
+    """Give bedrooms that have no user yet theirs."""
+    for room in (c.stock.get(i) for i in who.ids):
+        room.role = room.role or (role if room.type == "bedroom" else "")
+
+
+def _verb(c: Clause, k: int, e: Element) -> int:
+    before = next((x for x in reversed(c.sentence[:k]) if x.kind not in {"word", "flag"}), None)
+    if before is not None and before.kind in {"and", "comma"} and c.subject and c.objects:
+        c.run = []  # "the bedroom has a bath and is ...": the subject goes on
+    c.verb, c.single = True, c.says(e, "singular")
+    return k + 1
+
+
+def _relative(c: Clause, k: int, e: Element) -> int:
+    c.relative = not c.says(e, "where")
+    c.state.understood(e.first, e.last)
+    return k + 1
+
+
+def _neg(c: Clause, k: int, e: Element) -> int:
+    c.negative = e
+    ahead = c.near(k + 1)
+    if ahead is not None and ahead.kind == "to" and c.way is not None:  # "has access to the terrace but not to the living room"
+        group, j = c.after(k + 2, "leads", c.way.a)
+        if group and known(c.way.a):
+            c.state.say("not_connected", c.way.a, group, e)
+            c.negative = None
+            return j
+    return k + 1
+
+
+def _comma(c: Clause, k: int, _: Element) -> int:
+    ahead = c.near(k + 1)
+    if c.negative is not c.sentence[k - 1] and (ahead is None or ahead.kind not in {"cue", "cmp", "or", "neg"}):
+        c.negative = None
+    if c.waiting and c.subject and c.waiting[0].value != "from" and (c.verb or c.waiting[0].value == "between"):
+        rest = c.sentence[k + 1 :]  # "on both sides of the corridor lie two bedrooms, the kitchen and the bath"
+        plain = all(x.kind in {"np", "det", "size", "adj", "amount", "comma", "and"} for x in rest) and any(x.kind == "and" for x in rest)
+        if not plain:
+            complete(c)
+    return k + 1
+
+
+def _and(c: Clause, k: int, _: Element) -> int:
+    ahead = [x.kind for x in c.sentence[k + 1 : k + 3]]
+    if ahead[:1] == ["verb"] or ahead == ["np", "verb"]:
+        c.negative = None  # "must not be open and should have a door to the hall"
+    return k + 1
+
+
+def _but(c: Clause, k: int, _: Element) -> int:
+    c.negative = None  # "not open, but next to the dining room"
+    return k + 1
+
+
+def _no_bath(c: Clause, k: int, e: Element) -> int:
+    c.state.say("no_ensuite", ("*bathroom",), c.named(k + 1), e)
+    return k + 2
+
+
+def _no_own(c: Clause, k: int, e: Element) -> int:
+    rooms = tuple(i for i in known(c.subject or c.latest) if c.stock.get(i).type == "bedroom")
+    c.state.say("no_ensuite", ("*bathroom",), rooms, e)
+    return k + 1
+
+
+def _adj(c: Clause, k: int, e: Element) -> int:
+    before, ahead = c.near(k - 1), c.near(k + 1)
+    kind = before.kind if before is not None else ""
+    if before is not None and (kind, before.value) == ("pron", "one") and e.value in ROLES:
+        _cast(c, before, e.value)  # "four bedrooms, uno de ellos para invitados"
+    if e.value == "equal" and kind in {"det", "verb", "pron"} and len(c.latest) > 1:
+        c.state.say("area_equal", c.latest, (), e, LIKE)
+    social = tuple(i for x in c.run for i in known(tuple(x.ids)) if c.stock.get(i).type in SOCIAL)
+    alone = len(social) == len(ids_of(c.run))
+    if (
+        e.value in {"open", "combined"}
+        and len(social) > 1
+        and not c.negated(k)
+        and (kind in {"np", "reciprocal", "open"} or (kind == "verb" and alone))
+    ):
+        c.state.say("merge", social, (), e)  # "living and dining room open"
+    elif e.value == "open" and c.negative is not None and c.types(social) == {"kitchen"}:
+        c.state.say("closed", social, (), e)  # "the kitchen should not be open"
+        c.negative = None
+    ends = ahead is None or ahead.kind in {"comma", "and"}
+    if e.value in {"largest", "smallest"} and len(c.latest) == 1 and (c.verb or (kind == "np" and ends)):  # "客厅最大"
+        c.state.say(f"{e.value}_of_all", c.latest, (), e)
+    return k + 1
+
+
+def _enter(c: Clause, k: int, e: Element) -> int:
+    start, ahead = k + 1, c.sentence[k + 1 : k + 3]
+    if len(ahead) > 1 and ahead[1].kind == "cue" and (ahead[0].kind == "home" or ahead[0].value in {"it", "group"}):
+        start += 2  # "you enter it through the hall"
+    group, j = c.after(start, "enter", ())
+    return max(enter(c, e, group or c.latest, j if group else k + 1), k + 1)
+
+
+def _outside(c: Clause, k: int, e: Element) -> int:
+    c.state.understood(e.first, e.last)
+    here = [i for i in known((*c.latest, *c.subject)) if c.stock.get(i).type not in {"bathroom", "wc", "closet"}]
+    c.state.outside = (c.owning or next(iter(here), ""), e)
+    return k + 1
+
+
+def _via(c: Clause, k: int, e: Element) -> int:
+    """Read "the only way into the bathroom is through the bedroom"."""
+    things, j = c.after(k + 1, "via", ())
+    hosts, j = c.after(j, "via", things)
+    if things and hosts:
+        c.state.say("door", things, hosts, e)
+        c.state.say("only", things, (), e)
+    return max(j, k + 1)
+
+
+def _level(c: Clause, k: int, e: Element) -> int:
+    """Put rooms on a storey: those named before it, or, where it comes first, those that follow."""
+    c.state.understood(e.first, e.last)
+    c.state.levels.append(e)
+    ahead = c.near(k + 1)
+    if c.forward or heads(c.sentence, k) or ("*" in c.latest and ahead is not None and ahead.kind == "colon"):
+        c.state.heights |= {"*": int(e.value)} if "*" in c.latest and not c.forward else {}
+        c.forward, c.level, c.run = True, int(e.value), []
+        return k + 1
+    owners = c.subject if c.objects and c.latest == c.objects else ()  # "a guest room with bath, downstairs"
+    for room in (c.stock.get(i) for i in known((*c.latest, *owners))):
+        room.level = int(e.value)
+    c.state.heights |= {i.removeprefix("*zone_"): int(e.value) for i in c.latest if i.startswith("*")}
+    if ahead is not None and ahead.kind == "comma":
+        c.run = []
+    return k + 1
+
+
+def _wing(c: Clause, k: int, e: Element) -> int:
+    """Read "the bedrooms in one wing": they are a zone."""
+    c.state.understood(e.first, e.last)
+    before, ahead = c.near(k - 1), c.ahead(k + 1, "det", "colon", "verb", "pron")
+    if (before is None or before.kind in {"comma", "colon", "and"}) and ahead is not None and ahead.kind == "np":
+        _close_wing(c)  # "on one side the bedrooms, on the other kitchen and living room"
+        c.wing = (e, [])
+    else:
+        _settle(c, e, ids_of(c.run))
+    c.run = []
+    return k + 1
+
+
+def _close_wing(c: Clause) -> None:
+    """Make a zone of the rooms that were named behind the words for a wing."""
+    if c.wing is not None:
+        (e, ids), c.wing = c.wing, None
+        _settle(c, e, tuple(dict.fromkeys(ids)))
+
+
+def _settle(c: Clause, e: Element, ids: tuple[str, ...]) -> None:
+    if not ids or all(i.startswith("*") for i in ids):
+        c.state.wings += tuple(i.removeprefix("*zone_") for i in ids if i != "*")
+        return
+    made = next((n for n, (members, _) in c.state.zones.items() if members and set(members) == set(ids)), None)
+    made = made or ("bedroom" if c.types(ids) == {"bedroom"} else f"wing_{len(c.state.wings) + 1}")
+    c.state.zones.setdefault(made, (ids, e))
+    c.state.wings += (made,)
+
+
+def _zone(c: Clause, k: int, e: Element) -> int:
+    c.zone(k, e)
+    return k + 1
+
+
+def _pron(c: Clause, k: int, e: Element) -> int:
+    """Read a pronoun: the rooms that it stands for are spoken of next."""
+    ahead = c.ahead(k + 1, "det", "verb")
+    if e.value == "rest" and ahead is not None and ahead.kind in {"level", "colon"}:
+        return _every(c, k, e)
+    if e.value == "group" and e.text in c.state.heard.lexicon.sign("each") and _one_each(c, c.near(k - 1), e):
+        return k + 1
+    told = ahead is not None and (ahead.kind in {"owner", "level"} or (ahead.kind == "cue" and ahead.value in ONE_THAT))
+    like = c.run[-1] if c.run and k and c.sentence[k - 1].kind in {"and", "comma"} else None
+    if e.value == "one" and told and like is not None and like.ids and (like.number == 1.0 or "indefinite" in like.det):
+        room = c.stock.add(c.stock.get(like.ids[0]).type, "", e.text, None)  # "one bathroom for guests and one inside the master"
+        level = ahead is not None and ahead.kind == "level"
+        run = c.run
+        c.stands_for(e, (room.id,))
+        c.run, c.subject = run if level else [], (room.id,)
+        return k + 1
+    if e.value == "which" and known(c.latest):
+        group: tuple[str, ...] = c.latest  # "from the hall, which also gives access to ..."
+        c.objects = ()
+    elif e.value == "group" and len(c.run) > 1 and c.says(e, "every"):
+        group = ids_of(c.run)
+    else:
+        group = c.point(e, k, c.subject if e.value == "it" and (c.objects or c.run) else ())
+    spoken = [i for g in (c.subject, *reversed(c.state.past)) for i in known(g)]
+    bed = next((i for i in spoken if c.stock.get(i).type == "bedroom"), None)
+    if e.value == "rest" and bed is not None and (count := count_of(c.state, e.text)):
+        group = _others(c, count)
+    if e.value in {"group", "both"} and set(group) > set(c.left_out):
+        group = tuple(i for i in group if i not in c.left_out)
+    e.ids = list(group)
+    if group:
+        c.stands_for(e, group)
+        c.subject = group if e.value != "it" or not c.subject else c.subject
+    return k + 1
+
+
+def _others(c: Clause, count: int) -> tuple[str, ...]:
+    """Return so many bedrooms that nothing was said of, new ones where they are too few."""
+    spoken = {i for x in c.sentence for i in x.ids} | {i for g in c.state.past[-1:] for i in g}
+    beds = c.stock.of("bedroom")
+    free = [r for r in beds if r.open_slot] or [r for r in beds if r.id not in spoken]
+    while len(free) < count:
+        free.append(c.stock.add("bedroom", "", "other", None))
+    return tuple(r.id for r in free[:count])
+
+
+def _det(c: Clause, k: int, e: Element) -> int:
+    """Read "both", "each", "all", "the other" where no room follows."""
+    before, ahead = c.near(k - 1), c.near(k + 1)
+    kind = ahead.kind if ahead is not None else ""
+    behind = c.ahead(k + 1, "verb")
+    if e.value == "each" and kind in {"", "comma", "close"} and _one_each(c, before, e):
+        return k + 1
+    if e.value == "other" and behind is not None and behind.kind in {"level", "colon"}:
+        return _every(c, k, e)
+    if e.value == "all" and before is not None and before.kind == "every":
+        return k + 1
+    if e.value == "all" and c.run and kind != "np":
+        again = c.run[-1].det & {"all", "each"} and before is c.run[-1]  # "..., 所有卧室都从走廊进出"
+        group = tuple(c.run[-1].ids) if again else ids_of(c.run)
+        if again or len(c.run) > 1:  # "kitchen, two bedrooms, bath - all off the hall"
+            c.stands_for(e, group)
+            c.subject = group
+            return k + 1
+    if e.value in {"other", "both", "each", "all"} and kind != "np":
+        value = {"other": "rest", "both": "both"}.get(e.value, "group")
+        e.kind, e.value = "pron", value
+        return _pron(c, k, e)
+    return k + 1
+
+
+def _one_each(c: Clause, before: Element | None, e: Element) -> bool:
+    """Read "three bedrooms. And a bathroom for each."."""
+    owners = next((g for g in reversed(c.state.past) if len(g) > 1 and c.types(g) == {"bedroom"}), ())
+    if before is None or before.kind != "np" or len(c.latest) != 1 or not owners or not c.types(c.latest) <= PERSONAL:
+        return False
+    thing = c.stock.get(c.latest[0])
+    c.give((thing.id, *(c.stock.add(thing.type, "", e.text, None).id for _ in owners[1:])), owners, e)
+    return True
+
+
+def _every(c: Clause, k: int, e: Element) -> int:
+    """Read "every room", "the rest": all rooms."""
+    c.state.understood(e.first, e.last)
+    c.push(k, e, ("*",))
+    return k + 1
+
+
+def _flag(c: Clause, k: int, e: Element) -> int:
+    """Read one flag."""
+    c.state.understood(e.first, e.last)
+    c.state.flags.setdefault(e.value, e)
+    before = c.near(k - 1)
+    last = c.state.facts[-1] if c.state.facts else None
+    if e.value == "daylight":
+        return _windows(c, k, e)
+    if e.value == "ends" and len(c.latest) == 2 and before is not None and before.kind in {"np", "verb", "det", "word", "cue", "home"}:
+        c.state.say("away", c.latest[:1], c.latest[1:], e)
+    elif e.value == "too" and last is not None:  # "..., ebenso das Bad"
+        ahead = c.near(k + 1)
+        rooms = c.named(k + 1) if ahead is not None and ahead.kind == "np" else c.listed()
+        c.state.say(last.what, rooms, last.b, e)
+    elif e.value == "only":
+        c.only = e
+        if last is not None and last.what in {"door", "leads"} and before is not None and before.kind == "np":
+            c.state.say("only", last.a, (), e)
+    elif e.value == "each_floor" and len(known(c.latest)) == 1:  # "a toilet on each floor": one more for every storey but the first
+        room = c.stock.get(c.latest[0])
+        room.level, storeys = GROUND_FLOOR, c.state.storeys[0] if c.state.storeys else 2
+        for level in range(1, storeys):
+            c.stock.add(room.type, "", e.text, level)
+        c.state.levels.append(Element("level", str(storeys - 1), e.first, e.last, e.text))
+    elif e.value == "row" and len(c.run) > 1:
+        c.state.say("door", ids_of(c.run), (), e)
+    elif e.value == "open_plan" and c.negated(k):
+        c.state.flags["closed_plan"], c.negative = e, None
+    elif e.value == "open_plan":
+        social = tuple(i for i in known(ids_of(c.run)) if c.stock.get(i).type in SOCIAL)
+        if len(social) > 1:
+            c.state.say("merge", social, (), e)
+            return share(c, k, social)
+        merge_after(c, k + 1, e)
+    return k + 1
+
+
+def _windows(c: Clause, k: int, e: Element) -> int:
+    """Read "no windows in the bedroom", "the bath needs daylight"; return where to go on."""
+    rooms, j, negative = known(c.latest or c.subject), k + 1, c.negated(k)
+    ahead = c.near(j)
+    if ahead is not None and ahead.kind == "cue" and ahead.value == "in" and (negative or not c.run):
+        named, end = c.after(j + 1, "in", ())
+        rooms, j = (named, end) if named else (rooms, j)
+    if rooms:
+        c.state.say("no_window" if negative else "window", rooms, (), e)
+    c.negative = None
+    return j
+
+
+def _corner(c: Clause, k: int, e: Element) -> int:
+    c.state.understood(e.first, e.last)
+    return k + 1
+
+
+READERS: Mapping[str, Callable[[Clause, int, Element], int]] = {
+    "np": _np, "corner": _corner, "home": _home, "amount": _amount, "owner": _owner, "verb": _verb, "relative": _relative, "neg": _neg, "comma": _comma, "and": _and, "but": _but,
+    "no_bath": _no_bath, "no_own": _no_own, "adj": _adj, "enter": _enter, "outside": _outside, "via": _via, "level": _level, "wing": _wing, "zone": _zone,
+    "pron": _pron, "det": _det, "every": _every, "flag": _flag, "cue": relate, "factor": relations.factor, "cmp": relations.compare,
+}  # fmt: skip
