@@ -6,8 +6,9 @@ import itertools
 from collections.abc import Iterable
 
 from pipeline.floorplan.language.facts import FRONT, HALLS, PRIVATE, SOCIAL, Fact, Group, Reading
-from pipeline.floorplan.language.naming import name, point
+from pipeline.floorplan.language.naming import name
 from pipeline.floorplan.language.phrases import Element, heads
+from pipeline.floorplan.language.pronouns import point
 
 LIGHT = {"det", "size", "adj", "verb", "word", "flag"}  # between a relation and its room
 WIDE = {"leads", "between", "chain", "avoid", "except"}  # relations to lists
@@ -60,6 +61,11 @@ class Clause:
     def says(self, e: Element, sign: str) -> bool:
         """Whether a word of an element belongs to a closed class."""
         return bool(self.state.heard.lexicon.sign(sign) & set(e.text.split()))
+
+    def ends(self, k: int) -> bool:
+        """Whether a part of the sentence ends in front of k."""
+        ahead = self.near(k)
+        return ahead is None or ahead.kind in {"comma", "and"}
 
     def types(self, group: Group) -> set[str]:
         """Return the types of the rooms of a group."""

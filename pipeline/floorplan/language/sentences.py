@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from pipeline.floorplan.language import relations
 from pipeline.floorplan.language.clause import Clause, ids_of, known
-from pipeline.floorplan.language.extents import attach, measures_home, share
 from pipeline.floorplan.language.facts import GROUND_FLOOR, PERSONAL, ROLES, SOCIAL, Reading
-from pipeline.floorplan.language.naming import count_of, fresh
-from pipeline.floorplan.language.phrases import Element, backward, heads
-from pipeline.floorplan.language.relations import LIKE, complete, enter, merge, merge_after, no_door, relate
+from pipeline.floorplan.language.naming import fresh
+from pipeline.floorplan.language.phrases import Element, backward
+from pipeline.floorplan.language.places import level, wing, zone
+from pipeline.floorplan.language.pronouns import count_of
+from pipeline.floorplan.language.relations import complete, enter, merge, merge_after, no_door, relate
+from pipeline.floorplan.language.sizes import LIKE, attach, compare, factor, measures_home, share
 
 ONE_THAT = {"in", "ensuite", "near", "door"}  # what tells the second of "one bathroom for guests and one inside the master"
 
@@ -25,7 +26,7 @@ def read(state: Reading, sentence: list[Element]) -> None:
         k = READERS[e.kind](c, k, e) if e.kind in READERS else k + 1
     if c.waiting:
         complete(c)
-    _close_wing(c)
+    close_wing(c)
     state.topic = known(c.subject) or state.topic
     state.past = [*state.past, *(tuple(e.ids) for e in c.sentence if e.ids and e.kind == "np")][-12:]
 
@@ -246,59 +247,6 @@ def _via(c: Clause, k: int, e: Element) -> int:
     return max(j, k + 1)
 
 
-def _level(c: Clause, k: int, e: Element) -> int:
-    """Put rooms on a storey: those named before it, or, where it comes first, those that follow."""
-    c.state.understood(e.first, e.last)
-    c.state.levels.append(e)
-    ahead = c.near(k + 1)
-    if c.forward or heads(c.sentence, k) or ("*" in c.latest and ahead is not None and ahead.kind == "colon"):
-        c.state.heights |= {"*": int(e.value)} if "*" in c.latest and not c.forward else {}
-        c.forward, c.level, c.run = True, int(e.value), []
-        return k + 1
-    owners = c.subject if c.objects and c.latest == c.objects else ()  # "a guest room with bath, downstairs"
-    for room in (c.stock.get(i) for i in known((*c.latest, *owners))):
-        room.level = int(e.value)
-    c.state.heights |= {i.removeprefix("*zone_"): int(e.value) for i in c.latest if i.startswith("*")}
-    if ahead is not None and ahead.kind == "comma":
-        c.run = []
-    return k + 1
-
-
-def _wing(c: Clause, k: int, e: Element) -> int:
-    """Read "the bedrooms in one wing": they are a zone."""
-    c.state.understood(e.first, e.last)
-    before, ahead = c.near(k - 1), c.ahead(k + 1, "det", "colon", "verb", "pron")
-    if (before is None or before.kind in {"comma", "colon", "and"}) and ahead is not None and ahead.kind == "np":
-        _close_wing(c)  # "on one side the bedrooms, on the other kitchen and living room"
-        c.wing = (e, [])
-    else:
-        _settle(c, e, ids_of(c.run))
-    c.run = []
-    return k + 1
-
-
-def _close_wing(c: Clause) -> None:
-    """Make a zone of the rooms that were named behind the words for a wing."""
-    if c.wing is not None:
-        (e, ids), c.wing = c.wing, None
-        _settle(c, e, tuple(dict.fromkeys(ids)))
-
-
-def _settle(c: Clause, e: Element, ids: tuple[str, ...]) -> None:
-    if not ids or all(i.startswith("*") for i in ids):
-        c.state.wings += tuple(i.removeprefix("*zone_") for i in ids if i != "*")
-        return
-    made = next((n for n, (members, _) in c.state.zones.items() if members and set(members) == set(ids)), None)
-    made = made or ("bedroom" if c.types(ids) == {"bedroom"} else f"wing_{len(c.state.wings) + 1}")
-    c.state.zones.setdefault(made, (ids, e))
-    c.state.wings += (made,)
-
-
-def _zone(c: Clause, k: int, e: Element) -> int:
-    c.zone(k, e)
-    return k + 1
-
-
 def _pron(c: Clause, k: int, e: Element) -> int:
     """Read a pronoun: the rooms that it stands for are spoken of next."""
     ahead = c.ahead(k + 1, "det", "verb")
@@ -444,6 +392,6 @@ def _corner(c: Clause, k: int, e: Element) -> int:
 
 READERS: Mapping[str, Callable[[Clause, int, Element], int]] = {
     "np": _np, "corner": _corner, "home": _home, "amount": _amount, "owner": _owner, "verb": _verb, "relative": _relative, "neg": _neg, "comma": _comma, "and": _and, "but": _but,
-    "no_bath": _no_bath, "no_own": _no_own, "adj": _adj, "enter": _enter, "outside": _outside, "via": _via, "level": _level, "wing": _wing, "zone": _zone,
-    "pron": _pron, "det": _det, "every": _every, "flag": _flag, "cue": relate, "factor": relations.factor, "cmp": relations.compare,
+    "no_bath": _no_bath, "no_own": _no_own, "adj": _adj, "enter": _enter, "outside": _outside, "via": _via, "level": level, "wing": wing, "zone": zone,
+    "pron": _pron, "det": _det, "every": _every, "flag": _flag, "cue": relate, "factor": factor, "cmp": compare,
 }  # fmt: skip

@@ -1,15 +1,17 @@
-"""Which room, or the home, an amount measures."""
+"""Sizes: which room, or the home, an amount measures, and rooms against each other."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from pipeline.floorplan.language.clause import Clause, known
+from pipeline.floorplan.language.clause import Clause, ids_of, known
 from pipeline.floorplan.language.facts import Group
 from pipeline.floorplan.language.marks import Mark
+from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.program.defaults import DEFAULTS
 
 NAMED = {"doors", "corridors", "ceiling", "walls", "inner_walls", "outer_walls"}  # what a length may measure besides rooms
+LIKE = 0.15  # two rooms are alike where they differ by less
 HUGE, LARGE, MORE, LISTED = 5.0, 2.5, 1.6, 1.3  # times the usual area of the room in front: from there on an area is the home's
 
 
@@ -88,3 +90,39 @@ def share(c: Clause, k: int, rooms: Group) -> int:
     c.state.understood(mark.first, mark.last)
     c.state.amounts.append((replace(mark, parts=parts), rooms))
     return k + 1 + (near[0] is c.near(k + 1))
+
+
+def factor(c: Clause, k: int, e: Element) -> int:
+    """Note a factor; "twice the living room" compares at once."""
+    c.factor = e
+    ahead = c.ahead(k + 1, "relative", "det")
+    return compare(c, k, e) if ahead is not None and ahead.kind == "np" else k + 1
+
+
+def compare(c: Clause, k: int, e: Element) -> int:
+    """Read "at least 1.5 times as large as the largest bedroom"."""
+    left = c.listed() or c.subject or c.latest
+    if e.value == "alike":
+        rooms = c.latest if len(c.latest) > 1 else ids_of(c.run)
+        c.state.say("area_equal", known(rooms if len(rooms) > 1 else c.subject), (), e, LIKE)
+        return k + 1
+    right, j = c.after(k + 1, "cmp", left)
+    ahead = next((x for x in c.sentence[k + 1 : j] if x.kind == "np"), None)
+    if ahead is not None and "largest" in ahead.adjectives:
+        right = tuple(r.id for r in c.stock.of(ahead.type))
+    behind = c.near(j)
+    if c.factor is None and behind is not None and behind.kind == "factor":
+        c.factor, j = behind, j + 1
+    value = (c.factor.number or 1.0) if c.factor else 1.0
+    if left and right:
+        c.state.understood(e.first, e.last)
+        c.state.understood(*((c.factor.first, c.factor.last) if c.factor else (e.first, e.last)))
+        turned = (e.value == "smaller") != (value < 1.0)
+        a, b = (right, left) if turned != (c.negative is not None) else (left, right)  # "half the size of", "not larger than"
+        if e.value == "equal":
+            c.state.say("area_equal", (*a, *b), (), e, LIKE)
+        for x in a if e.value != "equal" else ():
+            c.state.say("area_order", (x,), tuple(i for i in b if i != x), e, 1.0 / value if value < 1.0 else value)
+        c.negative = None
+    c.factor, c.latest, c.run = None, right, []
+    return max(j, k + 1)
