@@ -8,7 +8,7 @@ from pipeline.floorplan.language.clause import Clause, ids_of, known
 from pipeline.floorplan.language.facts import GROUND_FLOOR, PERSONAL, ROLES, SOCIAL, Reading
 from pipeline.floorplan.language.naming import fresh
 from pipeline.floorplan.language.phrases import Element, backward
-from pipeline.floorplan.language.places import level, wing, zone
+from pipeline.floorplan.language.places import close_wing, level, wing, zone
 from pipeline.floorplan.language.pronouns import count_of
 from pipeline.floorplan.language.relations import complete, enter, merge, merge_after, no_door, relate
 from pipeline.floorplan.language.sizes import LIKE, attach, compare, factor, measures_home, share
