@@ -29,7 +29,7 @@ def wing(c: Clause, k: int, e: Element) -> int:
     c.state.understood(e.first, e.last)
     before, ahead = c.near(k - 1), c.ahead(k + 1, "det", "colon", "verb", "pron")
     if (before is None or before.kind in {"comma", "colon", "and"}) and ahead is not None and ahead.kind == "np":
-        _close_wing(c)  # "on one side the bedrooms, on the other kitchen and living room"
+        close_wing(c)  # "on one side the bedrooms, on the other kitchen and living room"
         c.wing = (e, [])
     else:
         _settle(c, e, ids_of(c.run))
@@ -37,7 +37,7 @@ def wing(c: Clause, k: int, e: Element) -> int:
     return k + 1
 
 
-def _close_wing(c: Clause) -> None:
+def close_wing(c: Clause) -> None:
     """Make a zone of the rooms that were named behind the words for a wing."""
     if c.wing is not None:
         (e, ids), c.wing = c.wing, None
