@@ -120,7 +120,8 @@ class Sampler:
         guide = Guide(rooms, classes, self.library, openable_classes(self.header.norm.classes).to(device), self.settings)
 
         def expect(x: Tensor, level: float) -> Tensor:
-            return self.net.expected(x, classes, level * ones, rooms, code)
+            with torch.inference_mode():
+                return self.net.expected(x, classes, level * ones, rooms, code)
 
         def steer(x0: Tensor, level: float) -> Tensor:
             return guide.steer(self.net.codec, x0, level)

@@ -148,8 +148,8 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
             off = (dx * dx + dy * dy) ** 0.5 / diagonal
             if off < far[k]:
                 total += 6.0 + 50.0 * (far[k] - off)
-    if total > most:
-        return float(total)
+        if total > most:
+            return float(total)
     for a in range(n):
         w, h = rect[a, 2] - rect[a, 0], rect[a, 3] - rect[a, 1]
         short, long = min(w, h), max(w, h)
@@ -178,8 +178,8 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
                 total += 8.0 + 7.0 * (outside[a] - best) / outside[a]
         if corner[a] > 0 and _corners(rect, a, width, height, n) == 0:
             total += 12.0
-    if total > most:
-        return float(total)
+        if total > most:
+            return float(total)
     for k in range(wishes.between.shape[0]):
         a, b, c = wishes.between[k, 0], wishes.between[k, 1], wishes.between[k, 2]
         ahead = 0.0
