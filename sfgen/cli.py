@@ -86,6 +86,7 @@ def shard(
     only: Annotated[
         int | None, typer.Option(min=0, help="Make the home of this index alone and write nothing: shows what is wrong with it.")
     ] = None,
+    memory: Annotated[int, typer.Option(min=600, help="Memory of a worker in MiB; with more, more of the library stays read.")] = 700,
     quiet: Quiet = False,
     json: Machine = False,
 ) -> int:
@@ -99,6 +100,7 @@ def shard(
     root = factory_root()
     begin("homes", voice(quiet=quiet, json=json))
     options = {"out": out, "seed": seed, "workers": workers, "prompts": prompts, "scheduler": scheduler, "strict": strict, "only": only}
+    options["memory"] = memory
     code: int = stage("shard").main(root, count=count, **options, voice=voice(quiet=quiet, json=json))
     return code
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from pipeline.errors import SfgenError, UsageError
 from pipeline.execution import Progress, Voice, cores
 from pipeline.homes.factory import open_factory
+from pipeline.homes.library import MEMORY
 from pipeline.homes.order import read_order
 from pipeline.homes.outcomes import Empty
 from pipeline.homes.production import FAILURES, Recipe, Tally, fill
@@ -29,16 +30,21 @@ def main(
     scheduler: str | None = None,
     strict: bool = False,
     only: int | None = None,
+    memory: int = MEMORY,
     voice: Voice = "plain",
 ) -> int:
-    """Fill the folder `out` (by default datasets/<seed>) with `count` homes; returns the exit code: 1 when some could not be made."""
+    """Fill the folder `out` (by default datasets/<seed>) with `count` homes; returns the exit code: 1 when some could not be made.
+
+    `memory` [MiB] is what a worker may take.
+    """
     progress = Progress(count, "homes", voice=voice)
     order = read_order(prompts, seed, progress, strict=strict)
     folder = out or Path("datasets") / str(seed)
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"{folder} is not a folder", "give a folder that is new, empty, or holds this very dataset")
     progress.say("reading the layout model and the library")
-    factory = open_factory(root, seed)
+    opened = partial(open_factory, root, seed, memory)
+    factory = opened()
     if only is not None:
         return try_one(root, seed, order.asked(only))
     header = Header(seed, count, factory.shard_size, factory.licence, {**factory.digests, "prompts": order.digest()})
@@ -51,7 +57,7 @@ def main(
         )
         tally = fill(
             dataset,
-            Recipe(partial(open_factory, root, seed), shelve=scheduler is None),
+            Recipe(opened, shelve=scheduler is None),
             order.asked,
             workers=workers,
             scheduler=scheduler,

@@ -61,7 +61,7 @@ def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], fact
                 job,
                 home.in_room(job.room_id),
                 tuple(lost.get(f"{home.scene_id}/{job.room_id}#0", ())),
-                taste_of(job, factory.seed, factory.index, factory.library),
+                taste_of(job, factory.seed, factory.index, factory.library.finish),
             )
             for job in jobs
         )

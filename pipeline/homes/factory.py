@@ -34,7 +34,7 @@ from pipeline.homes.clutter import small_things
 from pipeline.homes.exports import files_of
 from pipeline.homes.finish import finish
 from pipeline.homes.furnish import Draft, furnish
-from pipeline.homes.library import Library
+from pipeline.homes.library import MEMORY, Library, kept_within
 from pipeline.homes.outcomes import Empty, Outcome
 from pipeline.homes.request import Request, RoomJob, layout_type
 from pipeline.homes.rows import home_rows, reject_row
@@ -156,7 +156,7 @@ class Factory:
     def draft(self, jobs: Sequence[RoomJob]) -> list[Draft]:
         """Furnish a batch of rooms: diffusion and retrieval, nothing moved yet."""
         with self.timed("sample"):
-            return furnish(jobs, self.sampler, self.index, taxonomy.load(), self.library)
+            return furnish(jobs, self.sampler, self.index, taxonomy.load(), self.library.finish)
 
     def first_drafts(self, requests: Sequence[Request]) -> list[HomeDraft]:
         """Return the first attempt at each home that can be: what the stage `sample` writes."""
@@ -375,9 +375,15 @@ def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
     )
 
 
+def open_factory(root: Path, seed: int, memory: int = MEMORY) -> Factory:
+    """Return this process's factory for the checkout at `root`, loaded once; as much of the library stays read as fits into `memory` [MiB]."""
+    factory = _loaded_factory(root, seed)
+    factory.library.kept = kept_within(memory)
+    return factory
+
+
 @functools.lru_cache(maxsize=1)
-def open_factory(root: Path, seed: int) -> Factory:
-    """Return this process's factory for the checkout at `root`: models and library are loaded once."""
+def _loaded_factory(root: Path, seed: int) -> Factory:
     factory = load_factory(root, params.read(root / "params.yaml"), seed)
     gc.freeze()  # modules, models and library stay: looking through them for garbage again and again costs a tenth of all time
     return factory

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,12 +10,10 @@ import numpy as np
 from pipeline import seeds
 from pipeline.diffusion.context import CategoryBounds, Proposal, RoomContext
 from pipeline.diffusion.sampling import Sampler
-from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 from pipeline.homes.request import RoomJob
 from pipeline.homes.rounding import rounded
 from pipeline.retrieval.anchor import anchored
-from pipeline.retrieval.finish import finish_of
 from pipeline.retrieval.index import AssetIndex, Match
 from pipeline.retrieval.taste import FinishOf, Taste, draw_finishes, draw_style, tasteful
 from pipeline.taxonomy import Taxonomy
@@ -31,8 +29,8 @@ class Draft:
     taste: Taste = field(default_factory=Taste)
 
 
-def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxonomy: Taxonomy, assets: Mapping[str, Asset]) -> list[Draft]:
-    """Return what the layout model places in each room, as `assets` of the library.
+def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxonomy: Taxonomy, finish_of: FinishOf) -> list[Draft]:
+    """Return what the layout model places in each room, as assets of the library with the finishes that `finish_of` tells.
 
     Draws are keyed by (seed, home, room, attempt) alone, so a room does not depend on which rooms share its batch.
     """
@@ -40,16 +38,16 @@ def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxono
     keys = [(job.index, job.number, job.attempt) for job in jobs]
     proposals = sampler.sample_rooms(contexts, keys)
     return [
-        retrieve(job, context, found, index, taxonomy, assets, taste_of(job, sampler.seed, index, assets))
+        retrieve(job, context, found, index, taxonomy, finish_of, taste_of(job, sampler.seed, index, finish_of))
         for job, context, found in zip(jobs, contexts, proposals, strict=True)
     ]
 
 
-def taste_of(job: RoomJob, seed: int, index: AssetIndex, assets: Mapping[str, Asset]) -> Taste:
+def taste_of(job: RoomJob, seed: int, index: AssetIndex, finish_of: FinishOf) -> Taste:
     """Draw the taste of a room: the style is its home's, or the one that is wished for; the finishes are its own. Tries share it."""
     wish = job.furniture.style or ""
     style = wish or draw_style(seeds.generator(seed, "style", job.index), index)
-    finishes = draw_finishes(seeds.generator(seed, "finish", job.index, job.number), index, style, lambda a: finish_of(assets[a]))
+    finishes = draw_finishes(seeds.generator(seed, "finish", job.index, job.number), index, style, finish_of)
     return Taste(style, bool(wish), finishes)
 
 
@@ -70,7 +68,7 @@ def retrieve(
     proposals: Sequence[Proposal],
     index: AssetIndex,
     taxonomy: Taxonomy,
-    assets: Mapping[str, Asset],
+    finish_of: FinishOf,
     taste: Taste,
 ) -> Draft:
     """Replace each proposal by the nearest asset that suits the taste, standing on the floor, hanging from the ceiling, or at its wall.
@@ -79,7 +77,7 @@ def retrieve(
     """
     if not proposals:
         return Draft(job, (), taste=taste)
-    matches = _matches(job, index, taste, proposals, lambda a: finish_of(assets[a]))
+    matches = _matches(job, index, taste, proposals, finish_of)
     placements: list[Placement] = []
     lost: list[str] = []
     for number, (proposal, match) in enumerate(zip(proposals, matches, strict=True)):

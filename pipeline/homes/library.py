@@ -7,29 +7,38 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from pipeline import tables
 from pipeline.entities.asset import Asset
 from pipeline.entities.files import load_asset
 from pipeline.errors import ContentError
 from pipeline.manifest import digest
+from pipeline.retrieval.finish import finish_of
 from schemas.assets import ASSET_JOINTS, ASSETS
 
-KEPT = 128 << 20  # bytes of asset files that stay in memory, read
+MEMORY = 700  # of a process that makes homes [MiB]
+BESIDE = 660  # of that, what modules, models, tables and the homes in the making take, measured [MiB]
+READ = 1.5  # bytes in memory for a byte of an asset file, and what is derived from it, measured
+DERIVED = 8  # assets of which what was derived is kept, for each that is kept whole: it is a quarter as large, and costs ten times as much
 
 
 class Library(Mapping[str, Asset]):
     """Assets by id. `rows` are the assets table's rows by id, `joints` those of asset_joints.
 
-    What is read stays in memory up to `kept` bytes of files; then what was not asked for the longest goes.
+    What is read stays in memory up to `kept` bytes of files; then what was not asked for the longest goes, and later what was derived from it.
     """
 
-    def __init__(self, folder: Path, rows: list[dict[str, Any]], joints: list[dict[str, Any]], kept: int = KEPT) -> None:
+    def __init__(self, folder: Path, rows: list[dict[str, Any]], joints: list[dict[str, Any]], kept: int = 0) -> None:
         self.folder = folder
         self.joints = joints
         self.rows = {row["asset_id"]: row for row in rows}
-        self.kept = kept
+        self.kept = kept or kept_within(MEMORY)
         self._loaded: OrderedDict[str, tuple[Asset, int]] = OrderedDict()
         self._bytes = 0
+        self._derived: OrderedDict[str, dict[str, Any]] = OrderedDict()  # of assets that went
+        self._finishes: dict[str, NDArray[np.float64]] = {}
         self._shelves: dict[str, list[str]] = {}
         for asset_id in sorted(self.rows):
             self._shelves.setdefault(self.rows[asset_id]["category"], []).append(asset_id)
@@ -49,10 +58,15 @@ class Library(Mapping[str, Asset]):
         if not path.is_file():
             raise ContentError(f"asset file {path} is missing", "run `dvc repro preprocess`")
         asset, size = load_asset(path), path.stat().st_size
+        asset.derived.update(self._derived.pop(asset_id, {}))
         self._loaded[asset_id] = asset, size
         self._bytes += size
         while self._bytes > self.kept and len(self._loaded) > 1:
-            self._bytes -= self._loaded.popitem(last=False)[1][1]
+            oldest, (gone, size) = self._loaded.popitem(last=False)
+            self._bytes -= size
+            self._derived[oldest] = gone.derived
+        while len(self._derived) > DERIVED * len(self._loaded):
+            self._derived.popitem(last=False)
         return asset
 
     def __iter__(self) -> Iterator[str]:
@@ -61,6 +75,12 @@ class Library(Mapping[str, Asset]):
     def __len__(self) -> int:
         return len(self.rows)
 
+    def finish(self, asset_id: str) -> NDArray[np.float64]:
+        """Return the finish (3,) of an asset (see `finish_of`): so many are looked at for each that is placed that they are kept apart."""
+        if asset_id not in self._finishes:
+            self._finishes[asset_id] = finish_of(self[asset_id])
+        return self._finishes[asset_id]
+
     def of(self, category: str) -> list[str]:
         """Return the ids of a category's assets, sorted."""
         return self._shelves.get(category, [])
@@ -68,3 +88,8 @@ class Library(Mapping[str, Asset]):
     def digest(self) -> str:
         """Return the digest of all asset files, from the sums in the table."""
         return digest({row["asset_id"]: row["sha256"] for row in self.rows.values()})
+
+
+def kept_within(memory: int) -> int:
+    """Return the bytes of asset files that a process of `memory` [MiB] may keep, read; a few at least."""
+    return max(8 << 20, int((memory - BESIDE) * (1 << 20) / READ))

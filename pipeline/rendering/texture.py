@@ -64,7 +64,7 @@ def _sampled(texels: NDArray[np.uint8], uv: NDArray[np.float32], faces: NDArray[
     return found
 
 
-@functools.lru_cache(maxsize=128)
+@functools.lru_cache(maxsize=16)
 def _texels(blob: bytes) -> NDArray[np.uint8] | None:
     """Decode a texture (H, W, 3), encoded as it is; None where it is no picture."""
     try:

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset
-from pipeline.geometry.kept import kept
 from pipeline.rendering.pose import asset_triangles
 from pipeline.rendering.texture import face_colours
 
@@ -18,14 +17,8 @@ WHITE = TO_XYZ.sum(axis=1)  # D65
 UNKNOWN = np.full(3, np.nan)
 
 
-@kept
 def finish_of(asset: Asset) -> Floats:
-    """Return an asset's finish. It depends on the asset alone and is kept while the process lives."""
-    return make_finish(asset)
-
-
-def make_finish(asset: Asset) -> Floats:
-    """Compute the CIELAB colour (3,) of the cell of colours with the largest area; NaN for an asset without surface."""
+    """Return the CIELAB colour (3,) of the cell of colours with the largest area; NaN for an asset without surface."""
     corners, _ = asset_triangles(asset)
     if not len(corners):
         return UNKNOWN

@@ -70,8 +70,8 @@ def factory(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(shard, "cores", lambda: 1)
     paper = Paper(3)
-    monkeypatch.setattr(shard, "open_factory", lambda _root, seed: setattr(paper, "seed", seed) or paper)
-    monkeypatch.setattr(generate, "open_factory", lambda _root, seed: setattr(paper, "seed", seed) or paper)
+    monkeypatch.setattr(shard, "open_factory", lambda _root, seed, *_: setattr(paper, "seed", seed) or paper)
+    monkeypatch.setattr(generate, "open_factory", lambda _root, seed, *_: setattr(paper, "seed", seed) or paper)
     return paper
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pipeline.entities.asset import Asset, Link, Material, Mesh
-from pipeline.retrieval.finish import make_finish
+from pipeline.retrieval.finish import finish_of as computed
 from pipeline.retrieval.index import AssetIndex
 from pipeline.retrieval.taste import TIMBER, Taste, draw_finishes, draw_style, sets, tasteful
 from tests.geometry.furniture import box
@@ -89,7 +89,7 @@ def test_the_finish_is_the_colour_of_most_of_the_surface():
     big, small = box((0, 0, 0), (1, 1, 1)), replace(box((0, 0, 1), (0.1, 0.1, 1.1)), material=1)
     link = Link("base", (big, small), (big, small), 1.0, np.zeros(3), np.eye(3))
     asset = Asset("a", "desk", np.ones(3), (link,), (), (wood, steel), "test", "a", "CC0-1.0")
-    lightness, red, yellow = make_finish(asset)
+    lightness, red, yellow = computed(asset)
     assert (lightness, red > 0, yellow > 0) == (pytest.approx(56.3, abs=3.0), True, True)
     empty = replace(link, visuals=(Mesh("none", np.zeros((0, 3), np.float32), np.zeros((0, 3), np.int32)),))
-    assert np.isnan(make_finish(replace(asset, links=(empty,)))).all()
+    assert np.isnan(computed(replace(asset, links=(empty,)))).all()
