@@ -19,10 +19,10 @@ Room = tuple[Home, str]  # a home, and the room of it that is shown
 
 
 def alone(home: Home, room_id: str) -> Home:
-    """Return the home that is left when one room is cut out of it."""
+    """Return the home that is left when one room is cut out of it, with its windows: sources draw doors in different ways, and leaves would tell."""
     room = replace(home.plan.room(room_id), level=0)
     lift = np.array([0.0, 0.0, home.plan.room(room_id).level * home.plan.storey_height])
-    openings = tuple(replace(o, level=0) for o in home.plan.openings if room_id in o.rooms)
+    openings = tuple(replace(o, level=0) for o in home.plan.openings if o.kind == "window" and room_id in o.rooms)
     placed = tuple(replace(p, position=p.position - lift) for p in home.in_room(room_id))
     return replace(home, plan=replace(home.plan, rooms=(room,), openings=openings, entrance=room_id), placements=placed)
 
@@ -40,7 +40,7 @@ def lineup(
     told: list[tuple[str, Image.Image]] = []
     for kind in (kind for kind in TYPES if real.get(kind) and made.get(kind)):
         row = [
-            (name, top_view(alone(*room), assets, CELL))
+            (name, top_view(alone(*room), assets, CELL, reaches=False))
             for name, rooms in (("real", real), ("made", made))
             for room in spread(rng, rooms[kind])
         ]

@@ -23,8 +23,8 @@ BACKGROUND = (0.955, 0.955, 0.945)
 SAMPLES = 2  # per pixel and axis
 
 
-def top_view(home: Home, assets: Mapping[str, Asset], size: int = 1024) -> Image.Image:
-    """Draw every storey side by side; the longer side of the image has `size` pixels."""
+def top_view(home: Home, assets: Mapping[str, Asset], size: int = 1024, *, reaches: bool = True) -> Image.Image:
+    """Draw every storey side by side; the longer side of the image has `size` pixels. `reaches`: with how far doors and drawers of furniture open."""
     shells = [shell(home.plan, level) for level in levels(home.plan)]
     bounds = np.array([s.outline.bounds for s in shells])
     low, high = bounds[:, :2].min(axis=0) - MARGIN, bounds[:, 2:].max(axis=0) + MARGIN
@@ -33,11 +33,13 @@ def top_view(home: Home, assets: Mapping[str, Asset], size: int = 1024) -> Image
     width, height = (max(16, round(s * scale)) for s in (high - low))
     image = Image.new("RGB", (width * len(shells), height))
     for i, (level, built) in enumerate(zip(levels(home.plan), shells, strict=True)):
-        image.paste(_storey(home, assets, level, built, top_down(low, high, SAMPLES * width, SAMPLES * height)), (i * width, 0))
+        image.paste(
+            _storey(home, assets, level, built, top_down(low, high, SAMPLES * width, SAMPLES * height), reaches=reaches), (i * width, 0)
+        )
     return image
 
 
-def _storey(home: Home, assets: Mapping[str, Asset], level: int, built: Shell, view: View) -> Image.Image:
+def _storey(home: Home, assets: Mapping[str, Asset], level: int, built: Shell, view: View, *, reaches: bool) -> Image.Image:
     ids = {room.room_id for room in home.plan.rooms if room.level == level}
     placed = [p for p in home.placements if p.room_id in ids and p.asset_id in assets]
     elevation = level * home.plan.storey_height
@@ -57,7 +59,7 @@ def _storey(home: Home, assets: Mapping[str, Asset], level: int, built: Shell, v
 
     line = max(2, view.width // 900)
     draw_openings(draw, built, project, line)
-    for placement in standing:
+    for placement in standing if reaches else ():
         draw_reach(draw, placement, assets[placement.asset_id], project, line)
     for placement in hanging:
         draw.line(project(placement.footprint()[[0, 1, 2, 3, 0]]), fill=(150, 150, 150), width=line)
