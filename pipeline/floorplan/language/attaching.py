@@ -5,7 +5,7 @@ from __future__ import annotations
 import bisect
 import functools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NoReturn
 
 from pipeline.floorplan.language.furnishing import STOPS, Claim, Scan
@@ -39,14 +39,16 @@ def attach(program: FloorProgram, claims: Sequence[Claim], prompt: str, mentions
     evidence = []
     for claim in claims:
         every = tuple(r.id for r in program.rooms) if claim.home and claim.kind in {"pieces", "openable"} else ()
-        for room in every or place.of(claim) or ("",):
-            made.setdefault(room, []).append(claim)
+        rooms = every or place.of(claim) or ("",)
+        one = replace(claim, least=1) if claim.plural and len(rooms) > 1 else claim  # "two bedrooms with wardrobes"
+        for room in rooms:
+            made.setdefault(room, []).append(one)
             where = f"rooms.{room}.furniture" if room else "furniture"
             field = f"{where}.{claim.name if claim.kind == 'count' else claim.kind}"
             evidence.append(Evidence(start=claim.start, end=claim.end, text=prompt[claim.start : claim.end], field=field))
-    rooms = [r.model_copy(update={"furniture": combined(made[r.id], prompt, r.id)}) if r.id in made else r for r in program.rooms]
+    furnished = [r.model_copy(update={"furniture": combined(made[r.id], prompt, r.id)}) if r.id in made else r for r in program.rooms]
     own = combined(made[""], prompt, "the home") if "" in made else program.furniture
-    return program.model_copy(update={"rooms": tuple(rooms), "furniture": own, "evidence": (*program.evidence, *evidence)})
+    return program.model_copy(update={"rooms": tuple(furnished), "furniture": own, "evidence": (*program.evidence, *evidence)})
 
 
 def mentioned(program: FloorProgram) -> list[Mention]:

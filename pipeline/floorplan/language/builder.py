@@ -41,7 +41,23 @@ SORTS = {
     "playroom",
 }  # of many names
 RELATIONS = {"door", "leads", "open", "near", "wall", "away", "apart", "between", "avoid", "ensuite"}
-SAYING = {"word", "cmp", "factor", "amount", "ord", "owner", "level", "room", "suite", "enter", "outside", "except", "pron"}  # never idle
+SAYING = {
+    "word",
+    "cmp",
+    "factor",
+    "amount",
+    "ord",
+    "owner",
+    "level",
+    "room",
+    "suite",
+    "enter",
+    "outside",
+    "except",
+    "pron",
+    "neg",
+    "num",
+}  # never idle
 LEADING = {"num", "ord", "adj", "size", "det", "clf", "times", "amount", "fill", "look"}  # in front of a room
 
 
@@ -120,7 +136,7 @@ def _says(state: Reading, marks: Sequence[Mark], k: int, cited: set[int]) -> boo
         return False
     head = next((m for m in marks[k + 1 :] if m.kind not in LEADING), mark)
     described = head.kind == "home" or (head.kind in {"room", "suite"} and bool(cited & set(range(head.first, head.last))))
-    return not (mark.kind in {"ord", "det"} and described)
+    return not (mark.kind in {"ord", "det", "num"} and described)
 
 
 # how many rooms
@@ -145,7 +161,9 @@ def _count(draft: Draft, state: Reading) -> None:
         _living_rooms(draft, state, count, mark)
     elif count > 1:
         while len(stock.rooms) < count:
-            stock.add(next((k for k in ("living_room", "kitchen", "bathroom") if not stock.of(k)), "bedroom"), "", "room", None)
+            stock.add(
+                next((k for k in ("living_room", "kitchen", "bathroom") if not stock.of(k)), "bedroom"), "", "room", None
+            ).stated = False
         draft.fields["only"] = True
 
 

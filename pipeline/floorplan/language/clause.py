@@ -71,6 +71,13 @@ class Clause:
         """Return the types of the rooms of a group."""
         return {self.stock.get(i).type for i in group if i[0] not in "*<"}
 
+    def deny(self) -> bool:
+        """Take the negation that is open, if there is one: what is said next is what it rules out."""
+        e, self.negative = self.negative, None
+        if e is not None:
+            self.state.understood(e.first, e.last)
+        return e is not None
+
     def negated(self, k: int) -> bool:
         """Whether a negation stands just in front of the element at k."""
         return any(x.kind == "neg" for x in self.sentence[max(0, k - 3) : k])

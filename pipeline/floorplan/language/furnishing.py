@@ -11,7 +11,7 @@ import functools
 import re
 import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from pipeline.errors import RefusedError
@@ -59,6 +59,7 @@ class Claim:
     value: float = 0.0
     home: bool = False
     inward: bool = False
+    plural: bool = False  # "armchairs": nobody counted them
 
 
 @functools.lru_cache(maxsize=8192)
@@ -310,7 +311,9 @@ class Scan:
             least = 2 if last.endswith("s") and last[0].isascii() and not shown else 1
         self.negated = most == 0
         self._style_at(at, name_at - at)
-        return self._after("count", k, name_at + length, name, least, most)
+        size = self._after("count", k, name_at + length, name, least, most)
+        self.claims[-1] = replace(self.claims[-1], plural=read is None and least > 1)
+        return size
 
     def _after(self, kind: Kind, first: int, last: int, name: str, least: int, most: int | None) -> int:
         """Add bounds that follow: "four chairs or more"."""
@@ -390,7 +393,8 @@ def _blank(scan: Scan, claims: Sequence[Claim]) -> list[bool]:
         blank[k : last + 1] = [True] * (last + 1 - k)
         lead = next((n for n in (3, 2, 1) if k - n >= 0 and scan.length(k - n, "with") == n), 0)
         join = scan.length(last + 1, "and") if scan.text(last + 1) not in STOPS else 0
-        shared = join and any(scan.length(i, "own_rooms") for i in range(last + 1 + join, last + 4 + join))
+        told = scan.number(last + 1 + join)[1] is not None  # "two bedrooms with wardrobes and one bathroom": nobody's own
+        shared = join and not told and any(scan.length(i, "own_rooms") for i in range(last + 1 + join, last + 4 + join))
         if lead and shared:  # a room of the same owner follows: the "and" goes, else the "with"
             blank[last + 1 : last + 1 + join] = [True] * join
         elif lead:

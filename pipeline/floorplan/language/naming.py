@@ -60,6 +60,8 @@ def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> 
     """Return the ids of the rooms that the phrase k names; make those that are missing."""
     e, stock = sentence[k], state.inventory
     e.ids = e.ids or [r.id for r in _named(state, sentence, k, level)]
+    for mark in e.taken:
+        state.understood(mark.first, mark.last)
     for room in (stock.get(i) for i in e.ids):
         if level is not None and room.level is None and not e.definite:
             room.level = level
@@ -157,6 +159,10 @@ def _indexed(state: Reading, e: Element, role: str, level: int | None) -> Named:
 
 def _ordinal(state: Reading, e: Element, role: str, level: int | None) -> list[Named]:
     stock, same = state.inventory, state.inventory.of(e.type)
+    if e.secondary and (e.number or 1) > 1:  # "次卧两间"
+        slots = [r for r in same if r.open_slot and not r.role][: int(e.number or 1)]
+        made = [close(r, role, e.text) for r in slots]
+        return made + [stock.add(e.type, role, e.text, level) for _ in range(int(e.number or 1) - len(made))]
     if e.secondary and same:  # "次卧": a bedroom beside the main one, which nobody else has
         here = [r for r in same if r.surface == e.text and not r.open_slot] or [r for r in same if r.open_slot and not r.role]
         if here or all(r.role for r in same):

@@ -47,6 +47,7 @@ class Element:
     only: bool = False
     banned: bool = False
     ids: list[str] = field(default_factory=list)
+    taken: list[Mark] = field(default_factory=list)  # what stands in front of its head and behind it
     mark: Mark | None = None
 
     @property
@@ -92,7 +93,7 @@ def sentences(marks: Sequence[Mark], heard: Words) -> list[list[Element]]:
             and (here[-1].kind, here[-1].value) == ("num", "figure")
             and (k < 2 or marks[k - 2].kind in {"line", "comma"})
         ):
-            here.pop()  # "1. kitchen"
+            here.pop().kind = "fill"  # "1. kitchen"
             here += [replace(mark, kind="comma", text=",")] if here else []
         elif line == "comma":
             here.append(replace(mark, kind="comma", text=","))
@@ -214,7 +215,7 @@ def _phrases(marks: list[Mark], k: int, pre: list[Mark], made: list[Element], le
 def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool, lex: Lexicon) -> Element:
     """Put a noun phrase together from its head and what stands in front of it."""
     kind, _, role = mark.value.partition("/") if mark.kind == "room" else ("bedroom", "", mark.value)
-    made = Element("np", "", mark.first, mark.last, mark.text, type=kind, plural=mark.plural, compound=compound, mark=mark)
+    made = Element("np", "", mark.first, mark.last, mark.text, type=kind, plural=mark.plural, compound=compound, mark=mark, taken=list(pre))
     made.suite, made.secondary = mark.kind == "suite", mark.text in lex.sign("second_bedroom")
     made.functions = {*mark.functions, *(["dining"] if role == "diner" else [])}
     made.role = "" if role in {"diner", "corner"} else role
@@ -273,6 +274,7 @@ def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> 
                 return k
         elif mark.kind != "clf":
             return k
+        phrase.taken.append(mark)
         k += 1
     return k
 
@@ -293,8 +295,9 @@ def _kitchenette(found: list[list[Element]]) -> None:
     everything = [e for s in found for e in s]
     one = any((e.kind == "home" and e.value) or e.type == "studio_room" or (e.value == "rooms" and e.number == 1) for e in everything)
     if one and not any(e.type == "bedroom" and not e.banned for e in everything):
-        for e in everything:
-            if e.kind == "np" and e.mark is not None and e.mark.value == "kitchen/corner":
+        for k, e in enumerate(everything):
+            had = k > 1 and e.size < 1.0 and (everything[k - 1].kind, everything[k - 1].value) == ("cue", "has")  # "with a small kitchen"
+            if e.kind == "np" and e.type == "kitchen" and (had or (e.mark is not None and e.mark.value == "kitchen/corner")):
                 e.kind = "corner"
 
 

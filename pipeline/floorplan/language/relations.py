@@ -163,7 +163,7 @@ def reciprocal(c: Clause, e: Element) -> None:
         c.subject = c.latest = rooms
         return
     denied = c.negative is not None and e.value in {"door", "open"}
-    c.negative = None
+    c.deny()
     if denied:
         c.state.say("not_connected" if e.value == "door" else "not_open", rooms[:1], rooms[1:], e)
         return
@@ -180,11 +180,13 @@ def _emit(c: Clause, e: Element, left: Group, group: Group) -> None:
         if kinds <= {"bathroom", "wc"}:
             return  # two rooms instead of one
         if c.negative is not None and kinds <= SOCIAL:
-            c.negative, cue = None, "open"  # "the kitchen is not separated from the living room"
+            c.deny()
+            cue = "open"  # "the kitchen is not separated from the living room"
         else:
             cue = "not_open" if kinds <= SOCIAL else "away"
     if c.negative is not None:
-        left, c.negative = _none(c, left), None
+        left = _none(c, left)
+        c.deny()
         what = (
             "avoid"
             if cue == "door" and c.says(e, "through")
@@ -220,7 +222,7 @@ def complete(c: Clause) -> None:
             bath = Element("np", "", cue.first, cue.last, cue.text, type="bathroom", role="ensuite")
             rooms = (c.stock.add(bath.type, bath.role, bath.text, None).id,)
         c.give(rooms, group, cue)
-    elif rooms and c.negative:
+    elif rooms and c.deny():
         c.state.say("ban" if cue.value in {"near", "wall"} else "not_connected", rooms, group, cue)
     elif rooms:
         c.state.say("door" if cue.value == "from" else cue.value, rooms, group, cue)
@@ -265,8 +267,7 @@ def through(c: Clause, k: int, e: Element) -> int:
     if c.waiting is not None and c.waiting[0].value in {"from", "leads"}:  # "from the bedroom through the closet into the bath"
         c.state.say("door", first, c.waiting[1], c.waiting[0])
         c.waiting = None
-    c.state.say("avoid" if c.negative is not None or e.value == "thru_not" else "door", things, hosts, e)
-    c.negative = None
+    c.state.say("avoid" if c.deny() or e.value == "thru_not" else "door", things, hosts, e)
     c.goes_on(things)
     return j
 
@@ -369,5 +370,6 @@ def no_door(c: Clause) -> None:
             c.state.say("not_connected", a, b, door)
         else:
             continue
+        c.state.understood(part[0].first, part[-1].last)
         c.sentence[first + 1 : last] = []
         return

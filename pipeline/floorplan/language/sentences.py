@@ -157,7 +157,7 @@ def _neg(c: Clause, k: int, e: Element) -> int:
         group, j = c.after(k + 2, "leads", c.way.a)
         if group and known(c.way.a):
             c.state.say("not_connected", c.way.a, group, e)
-            c.negative = None
+            c.deny()
             return j
     return k + 1
 
@@ -215,7 +215,7 @@ def _adj(c: Clause, k: int, e: Element) -> int:
         c.state.say("merge", social, (), e)  # "living and dining room open"
     elif e.value == "open" and c.negative is not None and c.types(social) == {"kitchen"}:
         c.state.say("closed", social, (), e)  # "the kitchen should not be open"
-        c.negative = None
+        c.deny()
     ends = ahead is None or ahead.kind in {"comma", "and"}
     if e.value in {"largest", "smallest"} and len(c.latest) == 1 and (c.verb or (kind == "np" and ends)):  # "客厅最大"
         c.state.say(f"{e.value}_of_all", c.latest, (), e)
@@ -362,7 +362,8 @@ def _flag(c: Clause, k: int, e: Element) -> int:
     elif e.value == "row" and len(c.run) > 1:
         c.state.say("door", ids_of(c.run), (), e)
     elif e.value == "open_plan" and c.negated(k):
-        c.state.flags["closed_plan"], c.negative = e, None
+        c.state.flags["closed_plan"] = e
+        c.deny()
     elif e.value == "open_plan":
         social = tuple(i for i in known(ids_of(c.run)) if c.stock.get(i).type in SOCIAL)
         if len(social) > 1:
@@ -381,7 +382,7 @@ def _windows(c: Clause, k: int, e: Element) -> int:
         rooms, j = (named, end) if named else (rooms, j)
     if rooms:
         c.state.say("no_window" if negative else "window", rooms, (), e)
-    c.negative = None
+    c.deny()
     return j
 
 
@@ -391,7 +392,7 @@ def _corner(c: Clause, k: int, e: Element) -> int:
 
 
 READERS: Mapping[str, Callable[[Clause, int, Element], int]] = {
-    "np": _np, "corner": _corner, "home": _home, "amount": _amount, "owner": _owner, "verb": _verb, "relative": _relative, "neg": _neg, "comma": _comma, "and": _and, "but": _but,
+    "np": _np, "corner": _corner, "used": _corner, "home": _home, "amount": _amount, "owner": _owner, "verb": _verb, "relative": _relative, "neg": _neg, "comma": _comma, "and": _and, "but": _but,
     "no_bath": _no_bath, "no_own": _no_own, "adj": _adj, "enter": _enter, "outside": _outside, "via": _via, "level": level, "wing": wing, "zone": zone,
     "pron": _pron, "det": _det, "every": _every, "flag": _flag, "cue": relate, "factor": factor, "cmp": compare,
 }  # fmt: skip

@@ -123,6 +123,6 @@ def compare(c: Clause, k: int, e: Element) -> int:
             c.state.say("area_equal", (*a, *b), (), e, LIKE)
         for x in a if e.value != "equal" else ():
             c.state.say("area_order", (x,), tuple(i for i in b if i != x), e, 1.0 / value if value < 1.0 else value)
-        c.negative = None
+        c.deny()
     c.factor, c.latest, c.run = None, right, []
     return max(j, k + 1)
