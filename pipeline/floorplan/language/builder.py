@@ -134,6 +134,9 @@ def _says(state: Reading, marks: Sequence[Mark], k: int, cited: set[int]) -> boo
     pointing = mark.kind == "det" and mark.value in {"each", "other", "own", "another"}
     if not (mark.kind in SAYING or pointing) or (mark.kind == "pron" and mark.value in {"it", "one"}):
         return False
+    ahead = marks[k + 1] if k + 1 < len(marks) else None
+    if mark.kind == "num" and ahead is not None and ahead.kind in {"owner", "fill", "word", "verb"}:  # "three generations", "two kids"
+        return False
     head = next((m for m in marks[k + 1 :] if m.kind not in LEADING), mark)
     described = head.kind == "home" or (head.kind in {"room", "suite"} and bool(cited & set(range(head.first, head.last))))
     return not (mark.kind in {"ord", "det", "num"} and described)

@@ -292,8 +292,9 @@ class Scan:
         start, least, most = read or (0, 1, None)
         at, counted = k + start, read is not None and most != 0
         looks = self.length(at, "look") if counted else 0
-        if counted and (opening := self._opening(at)):
-            return self._put("openable", k, at + opening, least=least)  # so many at least: nobody minds one more
+        named = at + self.length(at, "things")
+        if counted and (opens := self.length(named, "opens")):  # so many at least: nobody minds one more
+            return self._put("openable", k, named + opens + self.length(named + opens, "things", "pieces"), least=least)
         pieces = self.length(at + looks, "pieces") if counted else 0
         if pieces and self.text(at + looks) != "a":
             self._style_at(at, looks)
@@ -319,11 +320,6 @@ class Scan:
         """Add bounds that follow: "four chairs or more"."""
         more, fewer = self.length(last, "more"), self.length(last, "fewer")
         return self._put(kind, first, last + (more or fewer), name, 0 if fewer and not more else least, None if more else most)
-
-    def _opening(self, k: int) -> int:
-        things = self.length(k, "things")
-        opens = self.length(k + things, "opens")
-        return things + opens + self.length(k + things + opens, "things", "pieces") if opens else 0
 
     def _name(self, k: int) -> tuple[int, int, str]:
         """Return (place, length, name) of a thing at word k or after a style."""

@@ -17,6 +17,8 @@ SLACK = 1.06  # a target lies this far inside a one-sided bound
 
 def with_areas(program: FloorProgram) -> FloorProgram:
     """Return the program with a target area for each room and for the whole; what was stated is not moved."""
+    if program.total_area.target is not None and all(r.area.target is not None for r in program.rooms):
+        return program  # it was completed before: going over it once more would move areas again
     rooms = list(program.rooms)
     free = [not r.area.stated for r in rooms]
     target = [_first_guess(r, rooms, program.scale) for r in rooms]

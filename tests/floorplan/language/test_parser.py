@@ -8,9 +8,10 @@ import pytest
 import yaml
 
 from pipeline.errors import RefusedError, UsageError
-from pipeline.floorplan import parse
+from pipeline.floorplan import complete, parse
 from pipeline.floorplan.language.lexicon import FOLDER
 from pipeline.floorplan.language.parser import LONGEST, understand
+from pipeline.floorplan.program.floor_program import FloorProgram
 
 CASES = yaml.safe_load(Path("manifests/prompts/benchmark.yaml").read_text(encoding="utf-8"))
 
@@ -251,3 +252,23 @@ def test_numbers_beyond_measure_are_refused(prompt):
 def test_what_but_leads_on_is_still_about_the_subject():
     said = "A flat with a bedroom. The bathroom should be reachable from the living room, not through the bedroom, but it should share a wall with it."
     assert ("bathroom", "bedroom") in links(parse(said), "wall")
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "Four bedrooms of the same size, a large kitchen, two bathrooms.",
+        "2 floors, 130 m2. Ground floor: kitchen, living room, WC, garage. Upper floor: three bedrooms, two baths.",
+        "Five bedrooms in a flat of 30 m2 with kitchen and bath.",
+    ],
+)
+def test_a_program_that_is_completed_again_or_loaded_stays_as_it_is(prompt):
+    program = complete(understand(prompt))
+    assert complete(program) == program
+    assert complete(FloorProgram.model_validate_json(program.model_dump_json())) == program
+
+
+def test_things_stay_in_the_clause_of_their_room():
+    rooms = {r.id: r.furniture for r in understand("Two bedrooms, one with a double bed and the other with a single bed and a desk.").rooms}
+    assert [t.category for t in rooms["bed"].counts] == ["double_bed"]
+    assert [t.category for t in rooms["bed_2"].counts] == ["single_bed", "desk"]
