@@ -35,6 +35,23 @@ def test_french_is_read(prompt, said):
     assert parse(prompt).language == "fr"
 
 
+FURNISHED = [
+    ("Une chambre avec un lit double et deux tables de chevet, une cuisine avec lave-vaisselle.",
+     {"bed": {"double_bed": (1, None), "nightstand": (2, 2)}, "kitchen": {"dishwasher": (1, None)}}),
+    ("Salon avec canapé d'angle, deux fauteuils et une table basse, chambre avec armoire et commode.",
+     {"living": {"l_shaped_sofa": (1, None), "armchair": (2, 2), "coffee_table": (1, None)}, "bed": {"wardrobe": (1, None), "cabinet": (1, None)}}),
+    ("Chambre avec un lit et un tabouret, au moins quatre chaises dans la salle à manger.",
+     {"bed": {"any_bed": (1, None), "stool": (1, None)}, "dining": {"any_chair": (4, None)}}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("prompt", "said"), FURNISHED, ids=[p[:40] for p, _ in FURNISHED])
+def test_french_furniture_is_on_the_cards(prompt, said):
+    made = parse(prompt)
+    assert {r.id: {c.category: (c.min, c.max) for c in r.furniture.counts} for r in made.rooms if r.furniture.counts} == said
+    assert not made.unparsed
+
+
 def test_a_french_family_has_bedrooms():
     assert sum(r.type == "bedroom" for r in parse("Une maison pour une famille de quatre personnes.").rooms) == 3
 
