@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.item import Item
+from pipeline.arrange.item import Item, other_wall
 from pipeline.arrange.lore import Lore
 from pipeline.geometry.compiled import compiled
 from pipeline.relations.frames import SIDES
@@ -77,7 +77,7 @@ def _off(near: Floats) -> float:
 
 def _bond(anchor: int, near: Floats, other: Item, item: Item) -> Bond:
     over, local = bool(near[5] == OVER), near[2:5].copy()
-    same_wall = not item.habit.must or math.cos(local[2]) > 0.7  # a TV stand opposite stays at its own wall
+    same_wall = not (item.habit.must and other_wall(local[2]))  # a TV stand opposite stays at its own wall
     return Bond(anchor, local, over or (same_wall and _gap(local, other, item) <= ADJOINS), over)
 
 

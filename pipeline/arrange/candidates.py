@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import mode_poses
 from pipeline.arrange.exact import ACROSS, height
-from pipeline.arrange.item import Item, turned, wrapped
+from pipeline.arrange.item import Item, other_wall, turned, wrapped
 from pipeline.arrange.lore import Lore
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
@@ -79,7 +79,7 @@ def at_anchor_poses(
     modes = mode_poses(anchor, at, item, target, lore)
     if item.habit.must:
         across = [
-            at_wall(item, np.insert(m, 2, target[2]), walls, ACROSS, settings.turn_cost) if turned(m[2], at[3]) > 0.8 else m for m in modes
+            at_wall(item, np.insert(m, 2, target[2]), walls, ACROSS, settings.turn_cost) if other_wall(m[2] - at[3]) else m for m in modes
         ]
         modes = np.array([m[[0, 1, -1]] for m in across if m is not None]).reshape(-1, 3)
     if not len(modes):
@@ -109,14 +109,14 @@ def _along_walls(item: Item, target: Floats, walls: Sequence[Edge], neighbours: 
     for edge in walls:
         if edge.length < 2 * w + 2 * SEAM:
             continue
-        wished = float((target[:2] - edge.start) @ edge.along)
+        wished = float(edge.along_of(target[:2]))
         stops = [
             np.arange(w + SEAM, edge.length - w, STRIDE),
             np.array([w + SEAM, edge.length - w - SEAM, wished, wished - 0.05, wished + 0.05]),
         ]
         if len(neighbours):
-            near = (neighbours - edge.start) @ edge.inward
-            s = ((neighbours - edge.start) @ edge.along)[near.min(1) < 2 * d]
+            near = edge.off(neighbours)
+            s = edge.along_of(neighbours)[near.min(1) < 2 * d]
             stops += [s.min(1) - w - SEAM, s.max(1) + w + SEAM]
         stops += [np.array([opening.start - w - SEAM, opening.end + w + SEAM]) for opening in edge.openings]
         places = np.concatenate(stops)
@@ -131,9 +131,7 @@ def _along_walls(item: Item, target: Floats, walls: Sequence[Edge], neighbours: 
 def _at_wall(item: Item, pose: Floats, walls: Sequence[Edge]) -> bool:
     """Whether an object has its back at a wall."""
     back = pose[:2] + np.array([-math.sin(pose[3]), math.cos(pose[3])]) * item.half[1]
-    return any(
-        turned(edge.yaw, float(pose[3])) < 0.1 and abs(float((back - edge.start) @ edge.inward)) <= 2 * item.habit.gap[2] for edge in walls
-    )
+    return any(turned(edge.yaw, float(pose[3])) < 0.1 and abs(float(edge.off(back))) <= 2 * item.habit.gap[2] for edge in walls)
 
 
 def hides(item: Item, pose: Floats, walls: Sequence[Edge]) -> bool:
@@ -147,8 +145,8 @@ def _window_cost(item: Item, poses: Floats, walls: Sequence[Edge]) -> Floats:
     for edge in walls:
         openings = [opening for opening in edge.openings if hides_window(item, opening) and item.habit.kind != "bed"]
         if openings and turned(edge.yaw, float(poses[0, 3])) < 0.1:
-            near = (poses[:, :2] - edge.start) @ edge.inward < item.half[1] + 0.3
-            cost += near * opening_cost(item, (poses[:, :2] - edge.start) @ edge.along, openings)
+            near = edge.off(poses[:, :2]) < item.half[1] + 0.3
+            cost += near * opening_cost(item, edge.along_of(poses[:, :2]), openings)
     return cost
 
 

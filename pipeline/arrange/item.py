@@ -16,6 +16,8 @@ from pipeline.entities.home import Placement
 
 Floats = NDArray[np.float64]
 
+OTHER_WALL = 0.8  # turn from which two things stand at different walls [rad]
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Item:
@@ -61,3 +63,8 @@ def turned(a: Floats | float, b: float) -> Floats:
     difference = np.abs(np.asarray(a, float) - b) % (2 * math.pi)
     smaller: Floats = np.minimum(difference, 2 * math.pi - difference)
     return smaller
+
+
+def other_wall(turn: float) -> bool:
+    """Whether two things that are turned so far from each other [rad] stand at different walls."""
+    return bool(turned(turn, 0.0) > OTHER_WALL)

@@ -77,7 +77,7 @@ def _wall_of(item: Item, walls: Sequence[Edge]) -> Edge | None:
     """Return the wall at which a unit is drafted."""
     best: tuple[float, Edge] | None = None
     for edge in walls:
-        s, off = float((item.wished[:2] - edge.start) @ edge.along), float((item.wished[:2] - edge.start) @ edge.inward)
+        s, off = float(edge.along_of(item.wished[:2])), float(edge.off(item.wished[:2]))
         beyond = max(0.0, -s, s - edge.length)
         cost = abs(off - float(item.half[1])) + beyond + 0.5 * float(turned(edge.yaw, float(item.wished[3])))
         if edge.length > 2 * item.half[0] and cost < (best[0] if best else STRAY):
@@ -90,7 +90,7 @@ def _stretches(edge: Edge, depth: float, site: Site, taken: Sequence[Floats]) ->
     cuts = [(opening.start - DOORWAY, opening.end + DOORWAY) for opening in edge.openings if not opening.window]
     swung = [site.swung.polygon(k) for k in range(len(site.swung))]
     for outline, margin in [*((o, DOORWAY) for o in swung), *((o, SEAM) for o in taken)]:
-        s, off = (outline - edge.start) @ edge.along, (outline - edge.start) @ edge.inward
+        s, off = edge.along_of(outline), edge.off(outline)
         if off.min() < depth and off.max() > 0.02:
             cuts.append((float(s.min()) - margin, float(s.max()) + margin))
     found, at = [], BACK
@@ -127,7 +127,7 @@ def _fill(
 
 
 def _apart(stretch: Stretch, item: Item) -> float:
-    s = float((item.wished[:2] - stretch.edge.start) @ stretch.edge.along)
+    s = float(stretch.edge.along_of(item.wished[:2]))
     return max(0.0, stretch.low - s, s - stretch.high)
 
 
@@ -144,7 +144,7 @@ def _lay(stretch: Stretch, items: Sequence[Item], poses: dict[int, Floats], site
 
 
 def _place(item: Item, edge: Edge) -> float:
-    return float((item.wished[:2] - edge.start) @ edge.along)
+    return float(edge.along_of(item.wished[:2]))
 
 
 def _tall(item: Item) -> bool:
@@ -193,7 +193,7 @@ def _packed(widths: Sequence[float], wished: Sequence[float], low: float, high: 
 def _before(stretch: Stretch, order: Sequence[int], items: Sequence[Item], poses: dict[int, Floats]) -> Floats:
     """Return the outline (4, 2) of a run and the floor that its doors need."""
     edge = stretch.edge
-    s = [float((poses[i][:2] - edge.start) @ edge.along) for i in order]
+    s = [float(edge.along_of(poses[i][:2])) for i in order]
     low, high = s[0] - float(items[order[0]].half[0]), s[-1] + float(items[order[-1]].half[0])
     deep = max(2 * float(items[i].half[1]) for i in order) + BACK + AHEAD
     return np.array([edge.start + a * edge.along + b * edge.inward for a, b in ((low, 0.0), (high, 0.0), (high, deep), (low, deep))])
@@ -229,11 +229,11 @@ def _hang(items: Sequence[Item], walls: Sequence[Edge], runs: list[list[int]], p
 
 
 def _place_of(pose: Floats, edge: Edge) -> float:
-    return float((pose[:2] - edge.start) @ edge.along)
+    return float(edge.along_of(pose[:2]))
 
 
 def _at(pose: Floats, edge: Edge, item: Item) -> bool:
-    off = float((pose[:2] - edge.start) @ edge.inward)
+    off = float(edge.off(pose[:2]))
     return abs(off - float(item.half[1])) < 0.2 and 0.0 < _place_of(pose, edge) < edge.length
 
 

@@ -39,6 +39,16 @@ class Edge:
         x, y = self.start + s * self.along + off * self.inward
         return np.array([x, y, z, self.yaw])
 
+    def along_of(self, points: Floats) -> Floats:
+        """Return how far along the wall points (..., 2) lie [m]."""
+        s: Floats = (points - self.start) @ self.along
+        return s
+
+    def off(self, points: Floats) -> Floats:
+        """Return how far before the wall points (..., 2) lie [m]."""
+        off: Floats = (points - self.start) @ self.inward
+        return off
+
 
 def edges(site: Site) -> list[Edge]:
     """Return the walls of a room."""
@@ -81,7 +91,7 @@ def at_wall(item: Item, pose: Floats, walls: Sequence[Edge], reach: float, turn_
     for edge in walls:
         if edge.length < 2 * w:
             continue
-        s, off = float((pose[:2] - edge.start) @ edge.along), float((pose[:2] - edge.start) @ edge.inward)
+        s, off = float(edge.along_of(pose[:2])), float(edge.off(pose[:2]))
         gap = off - d
         turn = float(turned(edge.yaw, float(pose[3])))
         if turn > math.radians(100) or gap > reach + FAR:
@@ -102,7 +112,7 @@ def in_corner(pose: Floats, item: Item, walls: Sequence[Edge]) -> Floats:
     gaps = []
     for edge in walls:
         away = float(edge.inward @ ahead)
-        s, off = float((pose[:2] - edge.start) @ edge.along), float((pose[:2] - edge.start) @ edge.inward)
+        s, off = float(edge.along_of(pose[:2])), float(edge.off(pose[:2]))
         if abs(away) > SQUARELY and 0.0 < s < edge.length and abs(off - float(item.half[0])) < CORNER:
             gaps.append((off - float(item.half[0]) - item.habit.corner, away))
     if not gaps:
