@@ -13,7 +13,7 @@ import numpy as np
 
 from pipeline import seeds
 from pipeline.corpus.furniture import texture, wavefront
-from pipeline.corpus.furniture.assembly import shape_of
+from pipeline.corpus.furniture.assembly import main_material, shape_of
 from pipeline.corpus.furniture.catalogue import Model
 
 # 3D-FUTURE's themes that fit parametric furniture; half of the real records have none.
@@ -37,7 +37,7 @@ def info(model: Model) -> dict[str, str | None]:
         "category": model.future_name,
         "style": model.style,
         "theme": THEMES[model.seed % len(THEMES)],
-        "material": model.material,
+        "material": main_material(model),
     }
 
 

@@ -35,13 +35,6 @@ class Model:
     seed: int
 
     @property
-    def material(self) -> str:
-        """Return 3D-FUTURE's word for the main material."""
-        from pipeline.corpus.furniture.assembly import main_material
-
-        return main_material(self)
-
-    @property
     def articulated(self) -> bool:
         """Whether the model is of the articulated library."""
         return bool(self.partnet_category)
