@@ -161,7 +161,7 @@ def fit(net: Inventory, held: Holdings, settings: InventorySettings, seed: int) 
     return net.eval()
 
 
-@torch.no_grad()
+@torch.inference_mode()
 def draw_inventories(
     net: Inventory, features: Tensor, layout: Tensor, asks: Sequence[Ask], uniform: NDArray[np.float64]
 ) -> list[NDArray[np.int64]]:

@@ -10,7 +10,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Gf, Sdf, Vt
+from pxr import Gf, Sdf, Vt, Work
+
+Work.SetConcurrencyLimit(1)  # a layer is written in some milliseconds: handing them to threads costs more than it brings
 
 VALUE_TYPES = {
     name: getattr(Sdf.ValueTypeNames, attribute)
