@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from pipeline.entities.plan import Plan
+from pipeline.geometry.kept import recent
 from pipeline.geometry.tiling import convex_pieces
 from pipeline.geometry.walls import SLAB, Cut, Prism, Shell
 
@@ -69,11 +70,19 @@ def _spanned(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray
 
 def _solid(quad: NDArray[np.float64], bottom: float, top: float, built: Shell) -> bool:
     """Whether nothing but wall is in the quad (4, 2) between two heights."""
-    holes = [Polygon(cut.quad) for cut in built.cuts if cut.bottom < top - EVEN and cut.top > bottom + EVEN]
-    filled = [Polygon(cut.quad) for cut in built.cuts if not (cut.bottom < top - EVEN and cut.top > bottom + EVEN)]
-    wall = shapely.union_all([built.region, *filled]).buffer(2 * EVEN, join_style="mitre")
+    wall, holes = _wall_between(built, bottom, top)
     around = Polygon(quad)
-    return bool(wall.covers(around)) and not any(hole.intersection(around).area > EVEN for hole in holes)
+    return bool(wall.covers(around)) and not bool((shapely.area(shapely.intersection(holes, around)) > EVEN).any())
+
+
+@recent(16)
+def _wall_between(built: Shell, bottom: float, top: float) -> tuple[shapely.Geometry, NDArray[np.object_]]:
+    """Return what is wall between two heights, a little wider, and the holes there."""
+    quads = np.array([Polygon(cut.quad) for cut in built.cuts], np.object_)
+    open_there = np.array([cut.bottom < top - EVEN and cut.top > bottom + EVEN for cut in built.cuts], np.bool_)
+    wall = shapely.union_all([built.region, *quads[~open_there]]).buffer(2 * EVEN, join_style="mitre")
+    shapely.prepare(wall)
+    return wall, quads[open_there]
 
 
 def _floor(plan: Plan, level: int, built: Shell) -> Iterator[Prism]:
