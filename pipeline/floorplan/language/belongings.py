@@ -65,7 +65,7 @@ def _owners(c: Clause, k: int, e: Element, before: Element | None, thing: Elemen
     if not c.run and near.kind == "np" and near.ids and set(near.ids) <= set(c.objects) and c.says(e, "with"):
         return known(tuple(near.ids))  # "the living room leads to a hall with two bedrooms"
     owners = known(tuple(c.run[-1].ids) if c.run else c.subject)
-    if len(c.run) > 1 and (c.verb or c.says(e, "having")) and not any(x.part for x in c.run):
+    if len(c.run) > 1 and (c.verb or c.says(e, "having") or c.says(e, "every")) and not any(x.part for x in c.run):
         listed = known(ids_of(c.run))
         owners = listed if c.types(listed) == {"bedroom"} else owners
     return owners

@@ -158,7 +158,7 @@ class Clause:
         """Return the rooms in front of a comparison: the last phrase, with those that an "and" joins to it."""
         return ids_of(self.run if self.coordinate() else self.run[-1:])
 
-    def subjects(self, k: int, e: Element) -> Group:  # noqa: PLR0911 - one answer per case
+    def subjects(self, k: int, e: Element) -> Group:
         """Return who stands in front of a relation: the phrase, the list in front of a verb, or what the clause is about."""
         before = self.near(k - 1)
         if not self.run:
@@ -183,8 +183,6 @@ class Clause:
         )
         if alone:
             return tuple(last.ids)
-        if e.value == "avoid" and self.objects:
-            return self.subject
         verbal = (
             self.verb
             or e.value in {"leads", "away", "apart", "wall"}

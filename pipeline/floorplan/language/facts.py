@@ -129,6 +129,7 @@ class Reading:
     storeys: tuple[int, Mark] | None = None
     rooms: tuple[int, Mark] | None = None  # "a three-room flat"
     people: Mark | None = None  # how many live there
+    parted: str = ""  # of which type of room one was spoken of apart
     topic: Group = ()  # what the last sentence was about
     past: list[Group] = field(default_factory=list)  # groups named in earlier sentences, the latest last
     used: set[int] = field(default_factory=set)

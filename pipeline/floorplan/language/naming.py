@@ -86,6 +86,7 @@ def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -
     ):
         return halls[:1]
     if e.part:
+        state.parted = e.type
         _fill(state, e, max(int(e.number or 0), e.part))
         same = stock.of(e.type)
         return [close(r, role, e.text) for r in ([r for r in same if r.open_slot] or same)[: e.part]]

@@ -37,6 +37,7 @@ def point(state: Reading, before: list[Element], e: Element, but: Group) -> Grou
     if not plural or plural[0].startswith("*"):
         return plural
     kind = state.inventory.get(plural[0]).type
+    kind = state.parted if e.value == "rest" and any(r.open_slot for r in state.inventory.of(state.parted)) else kind
     if e.value == "group" and len(plural) == 1:
         same = [i for g in heard for i in g if i[0] not in "*<" and state.inventory.get(i).type == kind]
         return tuple(dict.fromkeys(same))
@@ -44,6 +45,7 @@ def point(state: Reading, before: list[Element], e: Element, but: Group) -> Grou
     if e.value in {"rest", "some"}:
         return tuple(r.id for r in free) or plural
     if e.value == "one":
+        state.parted = kind
         for room in free[: int(e.number or 1)]:
             room.open_slot = False
         return tuple(r.id for r in free[: int(e.number or 1)])

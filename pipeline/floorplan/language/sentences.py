@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 from pipeline.floorplan.language.clause import Clause, ids_of, known
 from pipeline.floorplan.language.facts import GROUND_FLOOR, PERSONAL, ROLES, SOCIAL, Reading
@@ -50,7 +51,7 @@ def _np(c: Clause, k: int, e: Element) -> int:
     else:
         ids = c.named(k)
     if c.left_out and e.det & {"each", "all"} and set(ids) > set(c.left_out):
-        ids = tuple(i for i in ids if i not in c.left_out)
+        ids, c.run = tuple(i for i in ids if i not in c.left_out), []
     _own(c, e, ids)
     for mark in e.amounts:
         c.state.understood(mark.first, mark.last)
@@ -223,7 +224,9 @@ def _adj(c: Clause, k: int, e: Element) -> int:
 
 
 def _enter(c: Clause, k: int, e: Element) -> int:
-    start, ahead = k + 1, c.sentence[k + 1 : k + 3]
+    start, ahead, before = k + 1, c.sentence[k + 1 : k + 3], c.near(k - 1)
+    if before is not None and before.kind == "np" and before.definite and c.run:  # "al baño se entra por el pasillo"
+        return relate(c, k, replace(e, kind="cue", value="door"))
     if len(ahead) > 1 and ahead[1].kind == "cue" and (ahead[0].kind == "home" or ahead[0].value in {"it", "group"}):
         start += 2  # "you enter it through the hall"
     group, j = c.after(start, "enter", ())
@@ -252,8 +255,6 @@ def _pron(c: Clause, k: int, e: Element) -> int:
     ahead = c.ahead(k + 1, "det", "verb")
     if e.value == "rest" and ahead is not None and ahead.kind in {"level", "colon"}:
         return _every(c, k, e)
-    if e.value == "group" and e.text in c.state.heard.lexicon.sign("each") and _one_each(c, c.near(k - 1), e):
-        return k + 1
     told = ahead is not None and (ahead.kind in {"owner", "level"} or (ahead.kind == "cue" and ahead.value in ONE_THAT))
     like = c.run[-1] if c.run and k and c.sentence[k - 1].kind in {"and", "comma"} else None
     if e.value == "one" and told and like is not None and like.ids and (like.number == 1.0 or "indefinite" in like.det):
@@ -263,19 +264,14 @@ def _pron(c: Clause, k: int, e: Element) -> int:
         c.stands_for(e, (room.id,))
         c.run, c.subject = run if level else [], (room.id,)
         return k + 1
-    if e.value == "which" and known(c.latest):
-        group: tuple[str, ...] = c.latest  # "from the hall, which also gives access to ..."
-        c.objects = ()
-    elif e.value == "group" and len(c.run) > 1 and c.says(e, "every"):
-        group = ids_of(c.run)
+    if e.value == "group" and len(c.run) > 1 and c.says(e, "every"):
+        group: tuple[str, ...] = ids_of(c.run)
     else:
         group = c.point(e, k, c.subject if e.value == "it" and (c.objects or c.run) else ())
     spoken = [i for g in (c.subject, *reversed(c.state.past)) for i in known(g)]
     bed = next((i for i in spoken if c.stock.get(i).type == "bedroom"), None)
-    if e.value == "rest" and bed is not None and (count := count_of(c.state, e.text)):
+    if e.value == "rest" and bed is not None and c.state.parted in {"", "bedroom"} and (count := count_of(c.state, e.text)):
         group = _others(c, count)
-    if e.value in {"group", "both"} and set(group) > set(c.left_out):
-        group = tuple(i for i in group if i not in c.left_out)
     e.ids = list(group)
     if group:
         c.stands_for(e, group)
@@ -359,8 +355,6 @@ def _flag(c: Clause, k: int, e: Element) -> int:
         for level in range(1, storeys):
             c.stock.add(room.type, "", e.text, level)
         c.state.levels.append(Element("level", str(storeys - 1), e.first, e.last, e.text))
-    elif e.value == "row" and len(c.run) > 1:
-        c.state.say("door", ids_of(c.run), (), e)
     elif e.value == "open_plan" and c.negated(k):
         c.state.flags["closed_plan"] = e
         c.deny()
