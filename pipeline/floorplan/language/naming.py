@@ -195,11 +195,12 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
         return [close(known[0], role, e.text)] if known and role not in {"ensuite", "primary"} else []
     if e.type != "bedroom":
         return [close(plain[0], role, e.text)] if plain and e.definite and _before(sentence, k) is None else []
+    listed = _before(sentence, k, "cue", "colon", "open", "verb", "comma")  # "two bedrooms and a guest room": none of the two
     slots = [
         r
         for r in plain
         if r.open_slot
-        and (e.definite or r.whole or _listed(sentence, k, r) or _before(sentence, k, "cue", "colon", "open", "verb", "comma") is None)
+        and (e.definite or r.whole or _listed(sentence, k, r) or listed is None or r.id not in listed.ids)
         and (e.definite or r.whole or bare_nouns or not _counted_later(sentence, k, r))  # "maid's room, two bedrooms"
         and ((e.definite and level is None) or r.level is None or r.level == level)  # counted on another storey: others
         and not (role == "primary" and r.secondary)
