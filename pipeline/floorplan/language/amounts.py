@@ -50,49 +50,9 @@ def _copied(unit: Mark, behind: Mark) -> Mark:
 def amounts(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Return the marks with amounts put together."""
     made = list(marks)
-    for step in (_plus, _tabled, _shared, _crossed, _plain):
+    for step in (_shared, _crossed, _plain):
         made = step(made, heard)
     return _sides(_dealt(measured(made, heard)))
-
-
-def _bound(heard: Words, value: str, like: Mark) -> Mark:
-    """Return a mark of a limit in front of the figure `like`."""
-    text = next(t for t, v in heard.lexicon.bounds.items() if v == value)
-    return Mark("bound", value, 0.0, False, like.first, like.first, text)
-
-
-def _plus(marks: list[Mark], heard: Words) -> list[Mark]:
-    """Read "14+ m²" as at least 14 m², and "minimum size kitchen: 14 m²" with the limit in front of the figure."""
-    made: list[Mark] = []
-    for k, mark in enumerate(marks):
-        if mark.text == "+" and _kind(marks, k - 1) == "num" and k + 1 < len(marks) and _unit(marks[k + 1]):
-            made.insert(len(made) - 1, _bound(heard, "least", made[-1]))
-        else:
-            made.append(mark)
-    for k in range(len(made) - 4):
-        kinds = [m.kind for m in made[k + 1 : k + 5]]
-        if heard.lexicon.bounds.get(made[k].text) in {"least", "most"} and kinds == ["room", "colon", "num", "unit"]:
-            made[k : k + 3] = [made[k + 1], replace(made[k], first=made[k + 2].last, last=made[k + 2].last)]
-    return made
-
-
-def _tabled(marks: list[Mark], _: Words) -> list[Mark]:
-    """Read "hall 5, bath 7 (all in m²)", "areas in m²: hall 5, bath 7" as areas."""
-    lone = [
-        k for k, m in enumerate(marks) if _unit(m) and m.first < m.last and _kind(marks, k - 1) not in {"num", "dash", "join", "hyphen"}
-    ]
-    figures = {
-        k
-        for k, m in enumerate(marks)
-        if (m.kind, m.value) == ("num", "figure") and _kind(marks, k - 1) in {"room", "colon"} and _kind(marks, k + 1) in CLOSERS
-    }
-    if len(lone) != 1 or len(figures) < 2 or _kind(marks, lone[0] + 1) == "num":
-        return marks
-    made: list[Mark] = []
-    for k, mark in enumerate(marks):
-        made.append(replace(mark, kind="fill", value="") if k == lone[0] else mark)
-        made += [_copied(marks[lone[0]], mark)] if k in figures else []
-    return made
 
 
 def _parted(mark: Mark) -> bool:
@@ -337,18 +297,3 @@ class _Amount:
         if behind != "about" and not added and _kind(marks, i + 1) != "num":
             self.bound, i = BOUNDS[behind], i + 1
         return i
-
-
-def by_storey(marks: list[Mark]) -> list[Mark]:
-    """Read "ground floor 70 m2: ... upper floor 60 m2: ..." as a home of 130."""
-    places = [k for k, m in enumerate(marks) if (m.kind, m.value) == ("amount", "area") and _heading(marks, k)]
-    if len(places) < 2:
-        return marks
-    total = replace(marks[places[0]], number=sum(marks[k].number for k in places), total=True)
-    return [total if k == places[0] else m for k, m in enumerate(marks) if k == places[0] or k not in places]
-
-
-def _heading(marks: Sequence[Mark], k: int) -> bool:
-    """Whether the amount at k belongs to a storey in front of a list."""
-    level = marks[k - 1] if k and marks[k - 1].kind not in {"open", "bound", "comma", "dash", "colon"} else marks[k - 2] if k > 1 else None
-    return level is not None and level.kind == "level" and _kind(marks, k + 1) in {"colon", "close", "comma", "line", "cue"}

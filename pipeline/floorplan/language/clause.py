@@ -40,7 +40,6 @@ class Clause:
         self.negative: Element | None = None
         self.way: Fact | None = None  # the last way that was said
         self.verb = self.relative = self.single = False
-        self.has_verb = any(e.kind == "verb" for e in sentence)
         self.only: Element | None = None
         self.factor: Element | None = None
         self.owner = self.owning = ""
@@ -324,23 +323,13 @@ class Clause:
         if cue in WIDE:
             return cue != "between"
         if joined == "comma":
-            return cue == "door" and first.definite and e.definite and self._ends_list(k)
+            return False
         if cue in FRONT and e.introduces:
             return "indefinite" in first.det and cue == "near"
         return e.definite or not first.definite or cue == "open"
 
     def _starts(self, ahead: Element, cue: str) -> bool:
         """Whether what follows a phrase makes it the subject of a statement of its own."""
-        if ahead.kind == "but":  # "the kitchen, however, does not"
-            rest = [x.kind for x in self.sentence[self.place(ahead) + 1 :] if x.kind not in {"verb", "word"}]
-            return rest[:1] == ["neg"] and rest[1:2] in ([], ["comma"])
         if ahead.kind == "cue":
             return ahead.value != "except" and (ahead.value != "has" or self.says(ahead, "having")) and cue != "avoid"
         return ahead.kind in {"verb", "cmp", "neg", "factor"}
-
-    def _ends_list(self, k: int) -> bool:
-        """Whether what stands from k on is the end of a list of known rooms: "..., the kitchen and the bath"."""
-        rest = self.sentence[k:]
-        rooms = [x for x in rest if x.kind == "np"]
-        plain = all(x.kind in {"np", "det", "adj", "size", "comma", "and"} for x in rest)
-        return plain and all(x.definite and not x.banned for x in rooms) and len(rooms) > 1 and any(x.kind == "and" for x in rest)

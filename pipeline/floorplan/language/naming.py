@@ -201,23 +201,12 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
         for r in plain
         if r.open_slot
         and (e.definite or r.whole or _listed(sentence, k, r) or listed is None or r.id not in listed.ids)
-        and (e.definite or r.whole or bare_nouns or not _counted_later(sentence, k, r))  # "maid's room, two bedrooms"
         and ((e.definite and level is None) or r.level is None or r.level == level)  # counted on another storey: others
         and not (role == "primary" and r.secondary)
     ]
     if slots:
         return [close(r, role, e.text) for r in slots[: int(e.number or len(slots)) if many else 1]]
     return [close(plain[0], role, e.text)] if len(plain) == 1 == len(same) and e.definite and not many else []
-
-
-def _counted_later(sentence: list[Element], k: int, room: Named) -> bool:
-    """Whether a room is one of a number that comes later in the list that the phrase at k stands in."""
-    for e in sentence[k + 1 :]:
-        if e.kind not in {"np", "comma", "and", "det"}:
-            return False
-        if room.id in e.ids and e.number is not None:
-            return True
-    return False
 
 
 def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per case

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pydantic import ValidationError
 
 from pipeline.errors import RefusedError, UsageError
-from pipeline.floorplan.language.amounts import amounts, by_storey
+from pipeline.floorplan.language.amounts import amounts
 from pipeline.floorplan.language.attaching import attach
 from pipeline.floorplan.language.builder import assemble
 from pipeline.floorplan.language.facts import Reading
@@ -51,7 +51,7 @@ def understand(prompt: str) -> FloorProgram:
 def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     """Return what a prompt says of rooms, and no more; `plain` is it without its wishes for furniture, all else in its place."""
     heard = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
-    revised = revise(by_storey(amounts(segment(heard), heard)), heard)
+    revised = revise(amounts(segment(heard), heard), heard)
     said = framed(revised.marks, heard)
     for mark in (m for m in said if m.kind == "homes"):
         start, end = spread(heard.tokens[mark.first : mark.last + 1])

@@ -89,8 +89,6 @@ def _sides(c: Clause, k: int, e: Element) -> tuple[Group, Group, int]:
     left = () if ahead is not None and ahead.value == "pair" and first else c.subjects(k, e)  # "dazwischen liegt das Bad"
     wide = ahead is not None and ahead.kind == "np" and (len(left) > 2 or (len(left) > 1 and ahead.definite))
     group, j = c.after(k + 1, "leads" if e.value == "door" and c.says(e, "to_many") else e.value, () if wide else left)
-    if group and not left and k == 0 and [x.kind for x in c.sentence[j : j + 2]] == ["comma", "cue"] and not c.has_verb:
-        left = c.state.topic  # "The dining room ...; open to the kitchen, with a door to the hall"
     return tuple(i for i in left if i not in group), group, j
 
 
