@@ -21,11 +21,11 @@ from pipeline.baselines.job import NETS, Job, open_job, run_digest, trainer
 from pipeline.baselines.settings import BaselineSettings
 from pipeline.baselines.training import Trainer, train
 from pipeline.diffusion.settings import SampleSettings, TrainSettings
+from pipeline.entry import run
 from pipeline.experiments.baselines import Maker, cases_of, compared
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.manifest import digest, write_json
 from pipeline.relations import files
-from stages.runner import run
 
 
 def main(root: Path) -> None:

@@ -23,8 +23,8 @@ from pipeline.corpus.house_files import write_houses
 from pipeline.corpus.houses import corruption
 from pipeline.corpus.partnet_writer import write_partnet
 from pipeline.corpus.settings import CorpusSettings
+from pipeline.entry import run
 from pipeline.execution import cores, track
-from stages import runner
 
 RAW = Path("data/raw")
 BATCH = 10
@@ -114,4 +114,4 @@ def _partnet(models: Sequence[Model], folder: Path) -> Done:
 
 
 if __name__ == "__main__":
-    runner.run(main)
+    run(main)

@@ -12,11 +12,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from pipeline import params
+from pipeline.entry import run
 from pipeline.errors import ContentError
 from pipeline.execution import Voice, cores
 from pipeline.sources.recognition import front_at, partnet_at, peers_at
 from pipeline.sources.settings import PreprocessSettings
-from stages.runner import run
 
 # (package, what it is for): what the factory cannot do without, then what some commands want
 NEEDED = ("numpy", "pyarrow", "torch", "scipy", "shapely", "usd-core", "numba", "pydantic", "safetensors", "dask", "distributed", "dvc")  # fmt: skip

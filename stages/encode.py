@@ -17,6 +17,7 @@ from tqdm import tqdm
 
 from pipeline import params, seeds, tables
 from pipeline.entities.files import load_asset
+from pipeline.entry import run
 from pipeline.errors import ContentError
 from pipeline.latents.fidelity import rebuilt, two_samples
 from pipeline.latents.ranking import self_ranking
@@ -27,7 +28,6 @@ from pipeline.latents.vae import PointVae, chamfer
 from pipeline.latents.weights import load_vae, save_vae
 from pipeline.manifest import write_json
 from schemas.assets import ASSETS, LATENTS
-from stages.runner import run
 
 Row = dict[str, Any]
 RELEASED = "weights/vae.safetensors"

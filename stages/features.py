@@ -12,6 +12,7 @@ import numpy as np
 import torch
 
 from pipeline import params, seeds, taxonomy
+from pipeline.entry import run
 from pipeline.features import net as nets
 from pipeline.features.training import train
 from pipeline.metrics.harm import HARMS
@@ -19,7 +20,6 @@ from pipeline.metrics.layout_features import summaries
 from pipeline.metrics.relations import furniture
 from pipeline.metrics.views import STATES, views_of
 from pipeline.relations.split import rooms_of
-from stages import runner
 
 ROOMS = 6000  # training rooms, each as it is and harmed
 EPOCHS = 12
@@ -49,4 +49,4 @@ def main(root: Path) -> None:
 
 
 if __name__ == "__main__":
-    runner.run(main)
+    run(main)

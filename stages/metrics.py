@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline import params, seeds, tables, taxonomy
+from pipeline.entry import run
 from pipeline.execution import cores, map_jobs, track
 from pipeline.experiments import paper_tables
 from pipeline.experiments.dataset import dataset_figures, reject_counts
@@ -28,7 +29,6 @@ from schemas.objects import OBJECTS
 from schemas.openings import OPENINGS
 from schemas.rooms import ROOMS
 from schemas.scenes import SCENES
-from stages import runner
 
 LIVED_IN = ("living_dining_room", "living_room", "bedroom", "dining_room", "kitchen", "kids_room", "study")
 
@@ -37,7 +37,7 @@ def main(root: Path) -> None:
     """Measure, and write metrics/metrics.json, plots/ and report/."""
     tree = params.read(root / "params.yaml")
     settings, seed = params.section(MetricsSettings, tree, "metrics"), tree["seed"]
-    parts: list[Callable[[], Any]] = [partial(run, root, seed, settings, family) for family in paper_tables.families(settings)]
+    parts: list[Callable[[], Any]] = [partial(run_family, root, seed, settings, family) for family in paper_tables.families(settings)]
     parts.append(partial(plans, root, settings))
     found = map_jobs(partial(measure, parts), range(len(parts)), workers=min(cores(), len(parts)))
     *families, plan = (made for _, made in sorted(track(found, len(parts), "metrics", unit="experiment"), key=itemgetter(0)))
@@ -77,7 +77,7 @@ def measure(parts: Sequence[Callable[[], Any]], number: int) -> Any:
     return parts[number]()
 
 
-def run(root: Path, seed: int, settings: MetricsSettings, family: Sequence[Condition]) -> dict[str, Trial]:
+def run_family(root: Path, seed: int, settings: MetricsSettings, family: Sequence[Condition]) -> dict[str, Trial]:
     """Run the conditions of one family, which share their drafts; return them by name."""
     named = (SCENES, ROOMS, OPENINGS)
     source = {t.name: tables.read(root / "data" / "tables" / f"{t.name}.parquet", t) for t in named}
@@ -101,4 +101,4 @@ def plans(root: Path, settings: MetricsSettings) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    runner.run(main)
+    run(main)

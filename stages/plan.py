@@ -6,6 +6,7 @@ import json
 import sys
 from pathlib import Path
 
+from pipeline.entry import announce_compiling
 from pipeline.errors import RefusedError, UsageError
 from pipeline.experiments.prompt_file import read_prompts
 from pipeline.experiments.prompts import measured, report
@@ -17,7 +18,6 @@ from pipeline.floorplan.imports import program_of, read_own, told
 from pipeline.floorplan.program.assumptions import assumptions, notes
 from pipeline.homes.soundness import require_sound
 from pipeline.manifest import write_bytes, write_json
-from stages.runner import announce_compiling
 
 STDOUT = "-"
 

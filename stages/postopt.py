@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline import params, tables
+from pipeline.entry import run
 from pipeline.execution import Progress, cores
 from pipeline.homes.drafts import drafts_of
 from pipeline.homes.factory import Factory, open_factory
@@ -23,7 +24,6 @@ from schemas.openings import OPENINGS
 from schemas.rejects import REJECTS
 from schemas.rooms import ROOMS
 from schemas.scenes import SCENES
-from stages import runner
 
 
 def main(root: Path) -> None:
@@ -59,4 +59,4 @@ def samples(root: Path) -> dict[str, list[dict[str, Any]]]:
 
 
 if __name__ == "__main__":
-    runner.run(main)
+    run(main)

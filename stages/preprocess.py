@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline import params, taxonomy
+from pipeline.entry import run
 from pipeline.errors import ContentError
 from pipeline.execution import cores, track
 from pipeline.relations import files, learning
@@ -28,7 +29,6 @@ from pipeline.sources.threed_front.house import HouseRows
 from pipeline.sources.threed_front.mirrored import add_mirrored
 from pipeline.sources.threed_front.model_hints import hints
 from pipeline.sources.threed_front.walkable_share import Walker
-from stages.runner import run
 
 
 def main(root: Path) -> None:

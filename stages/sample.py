@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 
 from pipeline import params, tables
+from pipeline.entry import run
 from pipeline.execution import cores, map_jobs, track
 from pipeline.homes.drafts import draft_rows
 from pipeline.homes.factory import open_factory
@@ -18,7 +19,6 @@ from schemas.openings import OPENINGS
 from schemas.rejects import REJECTS
 from schemas.rooms import ROOMS
 from schemas.scenes import SCENES
-from stages import runner
 
 
 def main(root: Path) -> None:
@@ -46,4 +46,4 @@ def draft(root: Path, seed: int, requests: tuple[Request, ...]) -> tuple[list[Ho
 
 
 if __name__ == "__main__":
-    runner.run(main)
+    run(main)

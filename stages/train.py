@@ -23,8 +23,8 @@ from pipeline.diffusion.process_group import ProcessGroup, gathered
 from pipeline.diffusion.rooms import Sets
 from pipeline.diffusion.settings import TrainSettings
 from pipeline.diffusion.training import Trainer, train, validation
+from pipeline.entry import run
 from pipeline.manifest import write_json
-from stages.runner import run
 
 
 def main(root: Path) -> None:

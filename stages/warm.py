@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from pipeline.entry import run
 from pipeline.homes.warmth import warm
-from stages import runner
 
 
 def main(root: Path) -> None:
@@ -17,4 +17,4 @@ def main(root: Path) -> None:
 
 
 if __name__ == "__main__":
-    runner.run(main)
+    run(main)

@@ -188,7 +188,7 @@ def test_doctor_says_what_is_there(sfgen):
 
 
 def test_stages_explain_their_errors_too(tmp_path):
-    program = "from stages.runner import run\nfrom pipeline.errors import RefusedError\ndef main(root):\n    raise RefusedError('a\\nb', 'c')\nrun(main)"
+    program = "from pipeline.entry import run\nfrom pipeline.errors import RefusedError\ndef main(root):\n    raise RefusedError('a\\nb', 'c')\nrun(main)"
     answer = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
     assert (answer.returncode, answer.stdout, answer.stderr) == (3, "", "sfgen: a b; c\n")
 

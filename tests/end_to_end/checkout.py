@@ -34,7 +34,7 @@ PROMPTS = (
     "A studio of about 30 m2: one main room for living and sleeping, plus a separate bathroom.",
 )
 # One process a stage, as DVC has it, and one core: the tests share theirs.
-RUN = "import os, sys; os.cpu_count = lambda: 1; os.sched_getaffinity = lambda _: {{0}}; from pathlib import Path; from stages import {0}, runner; runner.ROOT = Path(sys.argv[1]); runner.run({0}.main)"
+RUN = "import os, sys; os.cpu_count = lambda: 1; os.sched_getaffinity = lambda _: {{0}}; from pathlib import Path; from pipeline import entry; from stages import {0}; entry.ROOT = Path(sys.argv[1]); entry.run({0}.main)"
 
 
 def write_params(root, changes=SMALL):

@@ -12,10 +12,9 @@ import checkout
 import pytest
 import yaml
 
-from pipeline import tables
+from pipeline import entry, tables
 from schemas.rejects import REJECTS
 from sfgen import cli
-from stages import runner
 
 
 def snapshot(folder):
@@ -48,10 +47,10 @@ def stage(capsys, monkeypatch):
     monkeypatch.delenv("SFGEN_DEBUG", raising=False)
 
     def run(root, name):
-        monkeypatch.setattr(runner, "ROOT", root)
+        monkeypatch.setattr(entry, "ROOT", root)
         code = 0
         try:
-            runner.run(importlib.import_module(f"stages.{name}").main)
+            entry.run(importlib.import_module(f"stages.{name}").main)
         except SystemExit as end:
             code = end.code
         return SimpleNamespace(returncode=code, stderr=capsys.readouterr().err)
