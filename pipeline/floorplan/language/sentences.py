@@ -188,14 +188,9 @@ def _but(c: Clause, k: int, _: Element) -> int:
 
 
 def _no_bath(c: Clause, k: int, e: Element) -> int:
-    c.state.say("no_ensuite", ("*bathroom",), c.named(k + 1), e)
-    return k + 2
-
-
-def _no_own(c: Clause, k: int, e: Element) -> int:
-    rooms = tuple(i for i in known(c.subject or c.latest) if c.stock.get(i).type == "bedroom")
-    c.state.say("no_ensuite", ("*bathroom",), rooms, e)
-    return k + 1
+    said = tuple(i for i in known(c.subject or c.latest) if c.stock.get(i).type == "bedroom")
+    c.state.say("no_ensuite", ("*bathroom",), c.named(k + 1) if e.kind == "no_bath" else said, e)
+    return k + 1 + (e.kind == "no_bath")
 
 
 def _adj(c: Clause, k: int, e: Element) -> int:
@@ -294,7 +289,8 @@ def _det(c: Clause, k: int, e: Element) -> int:
     before, ahead = c.near(k - 1), c.near(k + 1)
     kind = ahead.kind if ahead is not None else ""
     behind = c.ahead(k + 1, "verb")
-    if e.value == "each" and kind in {"", "comma", "close"} and _one_each(c, before, e):
+    each = e.value == "each" and kind in {"", "comma", "close"} and _one_each(c, before, e)
+    if each or (e.value == "another" and kind == "pron" and _one_more(c, e)):
         return k + 1
     if e.value == "other" and behind is not None and behind.kind in {"level", "colon"}:
         return _every(c, k, e)
@@ -321,6 +317,15 @@ def _one_each(c: Clause, before: Element | None, e: Element) -> bool:
         return False
     thing = c.stock.get(c.latest[0])
     c.give((thing.id, *(c.stock.add(thing.type, "", e.text, None).id for _ in owners[1:])), owners, e)
+    return True
+
+
+def _one_more(c: Clause, e: Element) -> bool:
+    """Read "The master has its own bath, the kids' rooms share another one."."""
+    like = next((g for g in reversed(c.state.past) if len(g) == 1 and not c.types(g) & c.types(c.subject)), ())
+    if not like or not c.types(like) <= PERSONAL:
+        return False
+    c.stands_for(e, (c.stock.add(c.stock.get(like[0]).type, "", e.text, None).id,))
     return True
 
 
@@ -387,6 +392,6 @@ def _corner(c: Clause, k: int, e: Element) -> int:
 
 READERS: Mapping[str, Callable[[Clause, int, Element], int]] = {
     "np": _np, "corner": _corner, "used": _corner, "home": _home, "amount": _amount, "owner": _owner, "verb": _verb, "relative": _relative, "neg": _neg, "comma": _comma, "and": _and, "but": _but,
-    "no_bath": _no_bath, "no_own": _no_own, "adj": _adj, "enter": _enter, "outside": _outside, "via": _via, "level": level, "wing": wing, "zone": zone,
+    "no_bath": _no_bath, "no_own": _no_bath, "adj": _adj, "enter": _enter, "outside": _outside, "via": _via, "level": level, "wing": wing, "zone": zone,
     "pron": _pron, "det": _det, "every": _every, "flag": _flag, "cue": relate, "factor": factor, "cmp": compare,
 }  # fmt: skip
