@@ -21,12 +21,11 @@ PROMPT = "a two-bedroom apartment with an open kitchen"
 
 def homes(count: int) -> None:
     """Make homes from the prior, in batches as `sfgen shard` does, and print CPU seconds by part."""
-    from pipeline import params
-    from pipeline.homes.factory import load_factory
+    from pipeline.homes.factory import open_factory
     from pipeline.homes.outcomes import Outcome
     from pipeline.homes.request import Request
 
-    factory = load_factory(ROOT, params.read(ROOT / "params.yaml"), 17)
+    factory = open_factory(ROOT, 17)
     for _ in range(2):  # compiles and reads assets; then a home alone, of a process that has made one
         factory.seconds.clear()
         factory.make([Request(10_000)])
@@ -43,6 +42,7 @@ def homes(count: int) -> None:
     for part, seconds in factory.seconds.items():
         print(f"  {part:10s} {seconds / count:8.3f}")
     print(f"  {'all':10s} {total / count:8.3f}")
+    print(f"memory, at most: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MiB")
     rooms = sum(len(o.rows["rooms"]) for o in made)
     tries = sum(row["attempts"] for o in made for row in o.rows["scenes"])
     size = sum(len(data) for o in made for data in o.files.values()) / 1e6
