@@ -13,8 +13,9 @@ from pipeline.usd.layer import apply, attribute, label, prim, relationship
 from pipeline.usd.physics import quaternion
 from pipeline.usd.resistance import Resistance
 
-HINGE_STOP = (1e3, 10.0)  # stiffness and damping of the limits in Newton, whose own are so soft that a push goes 18 % past them
-SLIDE_STOP = (1e5, 1e3)
+# Newton's limits: its own are so soft that a push goes 18 % past them. Springs of 120 rad/s, damped so that nothing bounces back; Newton
+# holds a twentieth of that against a push (1 - dmax of MuJoCo's default impedance), hence the factor on the inertia.
+STOP = (120.0**2 / 0.05, 2 * 120.0 / 0.05)  # stiffness and damping [1/s2, 1/s]
 AXES = {"X": (1, 0, 0), "Y": (0, 1, 0), "Z": (0, 0, 1)}
 
 
@@ -40,8 +41,8 @@ def convert_joint(scope: Sdf.PrimSpec, prim_name: str, joint: Joint, parent: Sdf
     if math.isfinite(joint.lower) and math.isfinite(joint.upper):
         attribute(spec, "physics:lowerLimit", "float", joint.lower * unit)
         attribute(spec, "physics:upperLimit", "float", joint.upper * unit)
-        for name, value in zip(("limitStiffness", "limitDamping"), HINGE_STOP if hinge else SLIDE_STOP, strict=True):
-            attribute(spec, f"newton:{name}", "float", value)  # Newton reads them by name; PhysX does not know them
+        for name, value in zip(("limitStiffness", "limitDamping"), STOP, strict=True):
+            attribute(spec, f"newton:{name}", "float", value * held.inertia)  # Newton reads them by name; PhysX does not know them
     attribute(spec, "newton:armature", "float", held.armature)  # this and friction: PhysX, Newton and MuJoCo
     attribute(spec, "newton:friction", "float", held.friction)
     drive = "angular" if hinge else "linear"
@@ -49,7 +50,7 @@ def convert_joint(scope: Sdf.PrimSpec, prim_name: str, joint: Joint, parent: Sdf
     attribute(spec, f"drive:{drive}:physics:type", "token", "force", uniform=True)
     attribute(spec, f"drive:{drive}:physics:stiffness", "float", held.stiffness / unit)
     attribute(spec, f"drive:{drive}:physics:damping", "float", held.damping / unit)
-    attribute(spec, f"drive:{drive}:physics:targetPosition", "float", held.target * unit)
+    attribute(spec, f"drive:{drive}:physics:targetPosition", "float", 0.0)
     attribute(spec, f"drive:{drive}:physics:targetVelocity", "float", 0.0)
     label(spec, "part", [joint.part_class])
     return spec

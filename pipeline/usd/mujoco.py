@@ -76,6 +76,5 @@ def _convert_joint(spec: Sdf.PrimSpec, source: Sdf.PrimSpec) -> None:
     attribute(spec, "newton:damping", "float", source.attributes[f"{said}damping"].default)
     if stiffness := source.attributes[f"{said}stiffness"].default:
         attribute(spec, "mjc:stiffness", "double", stiffness, uniform=True)
-        attribute(spec, "mjc:springref", "double", source.attributes[f"{said}targetPosition"].default, uniform=True)
     for attribute_name, values in zip(("mjc:solreflimit", "mjc:solimplimit"), STOP, strict=True):
         attribute(spec, attribute_name, "double[]", Vt.DoubleArray(values), uniform=True)

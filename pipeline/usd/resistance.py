@@ -21,18 +21,19 @@ HINGE_FRICTION, SLIDE_FRICTION = 0.1, 1.5  # ... at most [N m, N]: a push opens 
 HOLD = 1.3  # dry friction on top, in multiples of what gravity does to a closed flap or lid, so that it stays closed
 # Inertia of the works behind knobs and buttons [kg m2, kg]: nothing beside a door's own, but it keeps feathers from racing.
 HINGE_ARMATURE, SLIDE_ARMATURE = 0.002, 0.05
-BUTTON = 0.3  # [N] with which a button's spring lies at its stop; twice as much when it is pressed down
+BUTTON = 0.6  # [N] of a button's spring when it is pressed down, ...
+SAG = 0.03  # ... and at most this share of its way down it lies by its own weight; springs rest at 0: Newton takes no target beyond a limit
 
 
 @dataclass(frozen=True, slots=True)
 class Resistance:
-    """`damping` [N m s/rad or N s/m], `friction` [N m or N], `armature` [kg m2 or kg]; a spring of `stiffness` [N/m] at rest at `target` [m]."""
+    """`damping` [N m s/rad or N s/m], `friction` [N m or N], `armature` [kg m2 or kg], a spring's `stiffness` [N/m]; `inertia` is what all of it holds, works included."""
 
     damping: float
     friction: float
     armature: float
+    inertia: float
     stiffness: float = 0.0
-    target: float = 0.0
 
 
 def resistance(asset: Asset, joint_index: int) -> Resistance:
@@ -40,15 +41,16 @@ def resistance(asset: Asset, joint_index: int) -> Resistance:
     joint = asset.joints[joint_index]
     links = [asset.links[i] for i in moved_links(asset, joint_index)]
     mass = sum(link.mass for link in links)
-    held = HOLD * max(0.0, gravity_load(asset, joint_index))
+    load = max(0.0, gravity_load(asset, joint_index))
     if joint.type == "prismatic":
         damping = min(SLIDE_DAMPING, DECAY * (mass + SLIDE_ARMATURE))
         if joint.part_class == "slider_button" and 0 < joint.upper < np.inf:
-            return Resistance(damping, 0.0, SLIDE_ARMATURE, (BUTTON + held) / joint.upper, -joint.upper)
-        return Resistance(damping, min(SLIDE_FRICTION, SLIDE_DRAG * GRAVITY * mass) + held, SLIDE_ARMATURE)
+            return Resistance(damping, 0.0, SLIDE_ARMATURE, mass + SLIDE_ARMATURE, max(BUTTON, load / SAG) / joint.upper)
+        return Resistance(damping, min(SLIDE_FRICTION, SLIDE_DRAG * GRAVITY * mass) + HOLD * load, SLIDE_ARMATURE, mass + SLIDE_ARMATURE)
     away = [link.com - joint.origin for link in links]
     arms = [r - (r @ joint.axis) * joint.axis for r in away]
     inertia = sum(float(joint.axis @ k.inertia @ joint.axis + k.mass * (r @ r)) for k, r in zip(links, arms, strict=True))
     torque = GRAVITY * float(np.linalg.norm(sum((k.mass * r for k, r in zip(links, arms, strict=True)), np.zeros(3))))
-    damping = min(HINGE_DAMPING, DECAY * (inertia + HINGE_ARMATURE))
-    return Resistance(damping, min(HINGE_FRICTION, HINGE_DRAG * torque) + held, HINGE_ARMATURE)
+    inertia += HINGE_ARMATURE
+    damping = min(HINGE_DAMPING, DECAY * inertia)
+    return Resistance(damping, min(HINGE_FRICTION, HINGE_DRAG * torque) + HOLD * load, HINGE_ARMATURE, inertia)

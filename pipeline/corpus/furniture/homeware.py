@@ -264,7 +264,7 @@ def pen_cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
 
 
 def alarm_clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build an alarm clock: a round one on two feet, or a box with figures."""
+    """Build an alarm clock: a round one on four feet, or a box with figures."""
     w, d, h = size
     face = Finish("dial", (0.82, 0.81, 0.78), 0.5, pattern="dial", density=900, second=(0.03, 0.03, 0.03))
     if form == "box":
@@ -277,7 +277,7 @@ def alarm_clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
     z = h - r
     case = slab(circle(r, 20), (0.0, 0.7 * d)).turned("x", math.pi / 2).moved((0, 0.35 * d, z))
     dial = slab(circle(0.88 * r, 20), (0.0, 0.004)).turned("x", math.pi / 2).moved((0, -0.35 * d, z))
-    feet = [rod((s * 0.6 * r, 0, 0.0), (s * 0.45 * r, 0, z - 0.8 * r), 0.006, n=6) for s in (-1, 1)]
+    feet = [rod((s * 0.6 * r, t * 0.3 * d, 0.0), (s * 0.45 * r, t * 0.2 * d, z - 0.8 * r), 0.006, n=6) for s in (-1, 1) for t in (-1, 1)]
     return Shape(pieces("case", [case, *feet], scheme.handle) + pieces("dial", dial, face))
 
 

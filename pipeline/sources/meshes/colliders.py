@@ -122,7 +122,8 @@ def link(
     if 0 < mass < MINIMUM:
         inertia = inertia * (MINIMUM / mass)
     least = 1e-6 * np.eye(3)  # engines refuse inertias of thin parts that round to zero
-    colliders = tuple(_piece(k, p) for k, p in enumerate(simpler(matter.pieces, how or Felt())))
+    how = how or Felt()
+    colliders = tuple(_piece(k, p, how.box) for k, p in enumerate(simpler(matter.pieces, how)))
     return Link(name, tuple(visuals), colliders, round(max(mass, MINIMUM), 5), np.round(com, 6), np.round(inertia, 9) + least)
 
 
@@ -138,6 +139,6 @@ def _hollowed(part: Part, kind: str) -> Part:
     return replace(part, volume=min(part.volume, part.area * BOARD))
 
 
-def _piece(number: int, part: Part) -> Mesh:
-    hull, faces = boxed(part.hull, part.faces)
+def _piece(number: int, part: Part, near: float) -> Mesh:
+    hull, faces = boxed(part.hull, part.faces, near)
     return Mesh(f"piece_{number:03d}", hull.astype(np.float32), faces.astype(np.int32))

@@ -18,6 +18,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 NEAR = 0.005  # [m] that a box may stand out beyond what it replaces: less than a fingertip feels
+LOWER = 2e-4  # [m] that it may reach below
 SHARE = 0.05  # of its diagonal that it may at most: a small key stays what it is
 ALIKE, ACROSS = 0.999, 0.05  # cosine of normals that are one, and of those that are square to each other
 CORNERS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
@@ -26,8 +27,10 @@ FACES: Ints = np.array(
 )
 
 
-def boxed(hull: Floats, faces: Ints) -> tuple[Floats, Ints]:
-    """Return a convex hull (vertices (V, 3) [m], faces (F, 3) outwards), or the box around it where no point of that is further than NEAR away.
+def boxed(hull: Floats, faces: Ints, near: float = NEAR) -> tuple[Floats, Ints]:
+    """Return a convex hull (vertices (V, 3) [m], faces (F, 3) outwards), or the box around it where no point of that is further than `near` away.
+
+    It reaches no lower than the hull, lest what stands on that is pushed up.
 
     How far a convex body is from points of a box is greatest at one of its corners, and no more than from there to the nearest vertex.
     """
@@ -38,8 +41,10 @@ def boxed(hull: Floats, faces: Ints) -> tuple[Floats, Ints]:
         local = hull @ R.T
         low, high = local.min(axis=0), local.max(axis=0)
         corners = low + CORNERS * (high - low)
+        if (corners @ R)[:, 2].min() < hull[:, 2].min() - LOWER:
+            continue
         away = float(cdist(corners, local).min(axis=1).max())
-        if away <= min(NEAR, SHARE * float(np.linalg.norm(high - low))):
+        if away <= min(near, SHARE * float(np.linalg.norm(high - low))):
             found.append((round(away, 9), corners @ R))
     return (min(found, key=lambda f: f[0])[1], FACES) if found else (hull, faces)
 

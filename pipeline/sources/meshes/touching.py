@@ -16,11 +16,15 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
 from pipeline.card import Category
-from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combined, extremes
+from pipeline.geometry.compiled import compiled
+from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combined, convex, extremes
+from pipeline.sources.meshes.near_boxes import NEAR
 
 Floats = NDArray[np.float64]
 Allowed = Callable[[Floats, Floats], Floats]  # points (P, 3), normals (P, 3) there -> how far each may be off (P,) [m]
 
+SOLE = 0.8  # share of its outline that a soft thing lies on
+ROOMY = 50.0  # boards across each other: their box holds so many times what they do, and no hull of theirs is looked at
 STAVES = 4  # pieces between the same heights that are taken for a ring
 MOST = 250  # pieces of a link beyond which it is left as it is
 SAMPLES = (0, 2, 8)  # intervals along a side of the hull's triangles, coarse first; 0: their middles
@@ -28,6 +32,7 @@ SHARE = 0.15  # of the least extent of a link: what its touched surface may be o
 UP = 0.7  # upward part of the normal of a face on which things lie
 TOUCHED = 0.005  # [m] how far a collider's surface may be off where hands and things come
 BUMPED = 0.02  # ... where a robot comes with its body at most: the sides of furniture that does not open
+PADDED = 0.03  # ... the rounded edges of cushions and mattresses, whose boxes bear things on a level top
 SOFT = 0.05  # ... a blanket with its fringe
 LEFT_ALONE = 0.15  # ... what hangs at a ceiling or flat on a wall to be looked at, and leaves
 ANY = 10.0  # [m]
@@ -42,7 +47,7 @@ class Felt:
     """How far a surface may be off [m]: where things lie (faces upwards), at the sides, from below; `yielding` grows with height to LEFT_ALONE.
 
     What is `closed` is not reached into: the staves of a ring are one disc. Lower than `under` [m] only what faces upwards is felt.
-    A `vessel` is felt from without; within it is but hollow.
+    A `vessel` is felt from without; within it is but hollow. What is `soft` lies flat. Boxes may stand out by `box` [m] at their corners.
     """
 
     up: float = TOUCHED
@@ -52,12 +57,14 @@ class Felt:
     closed: bool = False
     under: float = 0.0
     vessel: bool = False
+    soft: bool = False
+    box: float = NEAR
 
 
 FELT = MappingProxyType(  # by what cards say
     {
         "seen": Felt(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE),
-        "soft": Felt(SOFT, SOFT, SOFT),
+        "soft": Felt(SOFT, SOFT, SOFT, soft=True),
         "yielding": Felt(LEFT_ALONE, TOUCHED, LEFT_ALONE, yielding=True, closed=True),
         "closed": Felt(BUMPED, closed=True),
     }
@@ -68,7 +75,7 @@ def felt(category: Category, *, opens: bool) -> Felt:
     """Return how truly a thing of a category is felt: hands come to what is small and to what opens, bodies to other furniture."""
     if category.felt:
         return FELT[category.felt]
-    return Felt(vessel=True) if category.loose else Felt() if opens else Felt(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER)
+    return Felt(vessel=True) if category.loose else Felt() if opens else Felt(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, box=PADDED)
 
 
 def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
@@ -86,6 +93,8 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
     below = [p for p in pieces if p.hull[:, 2].max() <= low[2] + how.under]
     if len(below) > 1:
         pieces = [*(p for p in pieces if p.hull[:, 2].max() > low[2] + how.under), combined(below)]
+    if how.soft:
+        pieces = [_flat(combined(pieces))]
     if how.closed:
         pieces = discs(pieces)
 
@@ -102,6 +111,15 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
         return np.asarray(np.where((at[:, 2] < low[2] + how.under) & (normals[:, 2] <= UP), ANY, tolerance))
 
     return fewer(pieces, allowed, max(how.up, how.sides), sectors=how.vessel)
+
+
+def _flat(part: Part) -> Part:
+    """Return a soft thing as it lies: its outline, drawn in a little, on what bears it."""
+    sole = part.hull.copy()
+    middle = (sole.min(axis=0) + sole.max(axis=0)) / 2
+    sole[:, :2] = middle[:2] + SOLE * (sole[:, :2] - middle[:2])
+    sole[:, 2] = part.hull[:, 2].min()
+    return convex(np.concatenate([part.hull, sole]), part.volume) or part
 
 
 def discs(pieces: Sequence[Part]) -> list[Part]:
@@ -133,13 +151,16 @@ def _merged(pieces: Sequence[Part], planes: Sequence[Floats], allowed: Allowed, 
     alive = [True] * len(pieces)
     hulls = [p.hull for p in pieces]
     boxes = [np.array([p.hull.min(axis=0), p.hull.max(axis=0)]) for p in pieces]
+    volumes = [p.hull_volume for p in pieces]
     every = np.array(boxes)
 
     def offer(i: int, j: int) -> Offer | None:
         if (boxes[i][0] > boxes[j][1] + apart).any() or (boxes[j][0] > boxes[i][1] + apart).any():
             return None
-        members = groups[i] + groups[j]
         low, high = np.minimum(boxes[i][0], boxes[j][0]), np.maximum(boxes[i][1], boxes[j][1])
+        if apart < LEFT_ALONE and float((high - low).prod()) > ROOMY * (volumes[i] + volumes[j]):
+            return None
+        members = groups[i] + groups[j]
         others = np.flatnonzero(((every[:, 0] <= high) & (every[:, 1] >= low)).all(axis=1)).tolist()  # what lies within those is not felt
         near = [planes[k] for k in (*members, *(k for k in others if k not in members))]
         share = _deviation(np.concatenate([hulls[i], hulls[j]]), near, allowed)
@@ -154,7 +175,9 @@ def _merged(pieces: Sequence[Part], planes: Sequence[Floats], allowed: Allowed, 
         alive[i] = alive[j] = False
         points = np.concatenate([hulls[i], hulls[j]])
         groups.append(groups[i] + groups[j])
-        hulls.append(points[ConvexHull(points).vertices])
+        made = ConvexHull(points)
+        hulls.append(points[made.vertices])
+        volumes.append(float(made.volume))
         boxes.append(np.array([points.min(axis=0), points.max(axis=0)]))
         alive.append(True)
         new = len(groups) - 1
@@ -200,11 +223,28 @@ def _spread(corners: Floats, count: int) -> Floats:
 
 
 def _away(points: Floats, planes: Sequence[Floats], tolerance: Floats) -> float:
-    """Return the worst of the ways of points (P, 3) to the nearest piece, by the planes of its faces, in tolerances (P,); a quarter is not looked at closely."""
-    away = np.full(len(points), np.inf)
-    for plane in planes:
-        left = np.flatnonzero(away > tolerance / 4)
-        if not len(left):
+    """Return the worst of the ways of points (P, 3) to the nearest piece, by the planes of its faces, in tolerances (P,)."""
+    start = np.cumsum([0, *map(len, planes)])
+    return float(_worst(np.ascontiguousarray(points), np.ascontiguousarray(tolerance, np.float64), np.concatenate(planes), start))
+
+
+@compiled
+def _worst(points: Floats, tolerance: Floats, planes: Floats, start: NDArray[np.int64]) -> float:
+    """See `_away`: the planes (N, 4) of piece k are from start[k] on. A quarter is not looked at closely, nor what comes after a point beyond 1."""
+    worst = 0.0
+    for i in range(len(points)):
+        x, y, z = points[i]
+        best = np.inf
+        for k in range(len(start) - 1):
+            out = -np.inf
+            for j in range(start[k], start[k + 1]):
+                out = max(out, planes[j, 0] * x + planes[j, 1] * y + planes[j, 2] * z + planes[j, 3])
+                if out >= best:
+                    break
+            best = min(best, out)
+            if best <= tolerance[i] / 4:
+                break
+        worst = max(worst, best / tolerance[i])
+        if worst > 1.0:
             break
-        away[left] = np.minimum(away[left], (points[left] @ plane[:, :3].T + plane[:, 3]).max(axis=1))
-    return float((np.maximum(away, 0.0) / tolerance).max())
+    return worst
