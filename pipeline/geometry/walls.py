@@ -5,6 +5,7 @@ Everything is in world plan coordinates (x, y) [m]; z is measured from the floor
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -254,17 +255,18 @@ def _ring_panels(owner: str, ring: NDArray[np.float64], cuts: tuple[Cut, ...], h
         if length < 1e-6:
             continue
         along = (b - a) / length
-        start = 0.0
+        start, before = 0.0, (0.0, 0.0)  # heights at which what stands beside a panel ends: its edge has corners there too
         for t0, t1, k in _touching(a, along, length, sides):
-            bottom, top = spans[k]
             if t0 > start + 1e-6:
-                panels.append(Panel(owner, _wall(a + start * along, a + t0 * along, 0.0, height)))
+                panels.append(Panel(owner, _wall(a + start * along, a + t0 * along, 0.0, height, before, spans[k])))
+            bottom, top = spans[k]
             for z0, z1 in ((0.0, bottom), (top, height)):
                 if z1 - z0 > 1e-3:
                     panels.append(Panel(owner, _wall(a + t0 * along, a + t1 * along, z0, z1)))
-            start = max(start, t1)
+            if t1 > start:
+                start, before = t1, spans[k]
         if length > start + 1e-6:
-            panels.append(Panel(owner, _wall(a + start * along, b, 0.0, height)))
+            panels.append(Panel(owner, _wall(a + start * along, b, 0.0, height, before)))
     return panels
 
 
@@ -279,9 +281,12 @@ def _touching(
     return sorted((float(low[k]), float(high[k]), int(k)) for k in np.flatnonzero((offset < 2e-3) & (high - low > 1e-3)))
 
 
-def _wall(a: NDArray[np.float64], b: NDArray[np.float64], z0: float, z1: float) -> NDArray[np.float64]:
-    """Return the upright rectangle over a → b, counter-clockwise for one who stands on the left of a → b."""
-    return np.array([[*b, z0], [*a, z0], [*a, z1], [*b, z1]])
+def _wall(
+    a: NDArray[np.float64], b: NDArray[np.float64], z0: float, z1: float, at_a: Sequence[float] = (), at_b: Sequence[float] = ()
+) -> NDArray[np.float64]:
+    """Return the upright rectangle over a → b, counter-clockwise for one who stands on the left of a → b, with corners at more heights on either edge."""
+    up, down = ([z for z in heights if z0 + 1e-3 < z < z1 - 1e-3] for heights in (at_a, at_b))
+    return np.array([[*b, z0], [*a, z0], *([*a, z] for z in up), [*a, z1], [*b, z1], *([*b, z] for z in reversed(down))])
 
 
 def _lift(polygon: NDArray[np.float64], z: float) -> NDArray[np.float64]:

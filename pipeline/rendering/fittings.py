@@ -18,6 +18,7 @@ from pipeline.rendering.palette import ENTRANCE_LEAF, GLASS, JAMB, LEAF, METAL, 
 LINING = 0.003  # thickness of the door frame's lining, inside the gap around the leaf [m]
 POST = 0.05  # how deep the frame's colliders reach into the wall: PhysX dislikes convex pieces as thin as the lining [m]
 CASING = (0.06, 0.012)  # width and thickness of the trim around a door [m]
+SEAM = 1e-4  # between its boards [m]
 HANDLE_HEIGHT = 1.02  # [m]
 LEAF_DENSITY = 320.0  # hollow-core door [kg/m3]
 
@@ -127,7 +128,7 @@ def _casing(leaf: Leaf) -> tuple[Mesh, ...]:
         boards = (
             _span("hinge", (-wide, 0), y, (0, top + wide), 0),
             _span("lock", (leaf.clear, leaf.clear + wide), y, (0, top + wide), 0),
-            _span("top", (0, leaf.clear), y, (top, top + wide), 0),
+            _span("top", (SEAM, leaf.clear - SEAM), y, (top, top + wide), 0),
         )
         parts.append(joined(f"casing_{name}", boards))
     return tuple(parts)

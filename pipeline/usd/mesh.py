@@ -7,17 +7,23 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf, Vt
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from pipeline.entities.asset import Mesh
 from pipeline.geometry.compiled import compiled
 from pipeline.rendering.normals import smooth_normals
 from pipeline.usd.layer import attribute, place, prim, vec3s
 
+APART = 2e-5  # [m] between points of parts that meet
+
 
 def convert_mesh(parent: Sdf.PrimSpec, name: str, mesh: Mesh, color: tuple[float, float, float] | None) -> Sdf.PrimSpec:
     """Write a mesh; `color` (linear) is for viewers that know no materials; None for what is not to be seen."""
     points, faces, uv = welded(mesh)
     smooth = smooth_normals(points.astype(np.float64), faces) if color is not None else None
+    rows, faces = parted(points if uv is None else np.concatenate([points, uv], axis=1), faces)
+    points, uv = rows[:, :3], None if uv is None else rows[:, 3:]
     spec = convert_polygons(parent, name, points, np.full(len(faces), 3, np.int32), faces.ravel(), color, smooth)
     if uv is not None:
         values, index = np.unique(uv, axis=0, return_inverse=True)
@@ -33,12 +39,43 @@ def welded(mesh: Mesh) -> tuple[NDArray[np.float32], NDArray[np.int32], NDArray[
     rows = points if mesh.uv is None else np.concatenate([points, np.asarray(mesh.uv, np.float32)], axis=1)
     kept, index = np.unique(rows + np.float32(0), axis=0, return_inverse=True)
     if len(kept) == len(rows):
-        return points, faces, None if mesh.uv is None else rows[:, 3:]
-    faces = index.reshape(-1).astype(np.int32)[faces]
-    faces = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])]
-    used, faces_flat = np.unique(faces, return_inverse=True)
-    kept = kept[used]
-    return kept[:, :3], faces_flat.reshape(-1, 3).astype(np.int32), None if mesh.uv is None else kept[:, 3:]
+        kept = rows
+    else:
+        faces = index.reshape(-1).astype(np.int32)[faces]
+        faces = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])]
+        used, faces_flat = np.unique(faces, return_inverse=True)
+        kept, faces = kept[used], faces_flat.reshape(-1, 3).astype(np.int32)
+    return kept[:, :3], faces, None if mesh.uv is None else kept[:, 3:]
+
+
+def parted(rows: NDArray[np.float32], faces: NDArray[np.int32]) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+    """Return rows (V, 3 and more), points first, and faces (F, 3) so that every point has one fan of faces about it: a manifold.
+
+    Boards of one mesh may meet in an edge or a corner. Each gets points of its own there, APART from the others', towards its own middle.
+    """
+    count = len(faces)
+    ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    corner = np.arange(3 * count).reshape(count, 3)  # of each face; those that edges join between two faces are one point
+    held = np.concatenate([corner[:, [0, 1]], corner[:, [1, 2]], corner[:, [2, 0]]])
+    turned = ends[:, 0] > ends[:, 1]
+    ends[turned], held[turned] = ends[turned][:, ::-1], held[turned][:, ::-1]
+    code = ends[:, 0].astype(np.int64) * (int(faces.max(initial=0)) + 1) + ends[:, 1]
+    order = np.argsort(code, kind="stable")
+    _, first, times = np.unique(code[order], return_index=True, return_counts=True)
+    one, other = order[first[times == 2]], order[first[times == 2] + 1]
+    joined = coo_array((np.ones(2 * len(one), bool), (held[one].ravel(), held[other].ravel())), shape=(3 * count, 3 * count))
+    fans, fan = connected_components(joined, directed=False)
+    if fans == len(np.unique(faces)):
+        return rows, faces
+    owner = np.zeros(fans, np.int64)
+    owner[fan] = faces.ravel()
+    split = np.bincount(owner, minlength=len(rows))[owner] > 1
+    made = rows[owner]
+    middle = np.stack([np.bincount(fan, np.repeat(rows[faces, k].mean(axis=1), 3)) for k in range(3)], axis=1) / np.bincount(fan)[:, None]
+    away = middle - made[:, :3]
+    away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
+    made[split, :3] += (APART * away[split]).astype(np.float32)
+    return made, fan.reshape(count, 3).astype(np.int32)
 
 
 def convert_box(parent: Sdf.PrimSpec, name: str, low: NDArray[np.floating], high: NDArray[np.floating]) -> Sdf.PrimSpec:

@@ -13,7 +13,7 @@ from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.countertop import bail, lugs
 from pipeline.corpus.furniture.finishes import DARK_GLASS, GRAPHITE, LEATHERS, PLASTIC, PLASTIC_WHITE, STEEL, Finish, Scheme, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, door, knob, lid
-from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Shape, pieces, staves
+from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Piece, Shape, pieces, staves
 from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab, stack
 from pipeline.corpus.furniture.storage import Size, pick
 
@@ -181,8 +181,8 @@ def briefcase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     made += pieces("upper_rim", rim, finish)
     movers = [lid("lid", made, (0.0, y[1], half + 0.003), math.radians(110))]
     # the handle hangs against the front and is folded out
-    reach, wide = 0.036, min(0.07, 0.2 * w)
     z = half - 0.03
+    reach, wide = min(0.036, z - 0.02), min(0.07, 0.2 * w)  # it hangs clear of what the case lies on
     hoop = [box((s * wide - 0.006, s * wide + 0.006), (y[0] - 0.016, y[0] - 0.003), (z - reach, z), 0.002) for s in (-1, 1)]
     hoop.append(box((-wide - 0.006, wide + 0.006), (y[0] - 0.018, y[0] - 0.003), (z - reach - 0.014, z - reach), 0.003))
     movers.append(
@@ -208,16 +208,16 @@ def suitcase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     ]
     shell += [box((x[0] + t, x[1] - t), (middle, y[1] - face), (a, a + t)) for a in (z[0], z[1] - t)]
     base = pieces("rear", shell, finish)
-    wheels = []
-    for sx in (-1, 1):
-        for tread in (y[0] + 0.03, y[1] - 0.03):
-            wheels += [
-                s.turned("y", math.pi / 2).moved((sx * 0.4 * w, tread, wheel / 2))
-                for s in revolve([(wheel / 2, -0.008), (wheel / 2, 0.008)], 12)
-            ]
-    base += pieces("wheels", [tyre for tyre in wheels if tyre.bounds()[0, 1] > middle], PLASTIC)
-    forks = [box((sx * 0.4 * w - 0.012, sx * 0.4 * w + 0.012), (y[1] - 0.055, y[1] - 0.012), (wheel + 0.0005, z[0])) for sx in (-1, 1)]
-    base += pieces("forks", forks, PLASTIC)
+    tyre = [s.turned("y", math.pi / 2) for s in revolve([(wheel / 2, -0.008), (wheel / 2, 0.008)], 12)]
+
+    def castors(tread: float, lift: float) -> tuple[Piece, ...]:
+        """Return two wheels below a shell, `lift` [m] off the floor, and what holds them."""
+        xs = [s * 0.4 * w for s in (-1, 1)]
+        wheels = [s.moved((x, tread, wheel / 2 + lift)) for x in xs for s in tyre]
+        forks = [box((x - 0.012, x + 0.012), (tread - 0.0215, tread + 0.0215), (wheel + lift + 0.0005, z[0])) for x in xs]
+        return pieces("wheels", wheels, PLASTIC) + pieces("forks", forks, PLASTIC)
+
+    base += castors(y[1] - 0.0335, 0.0)
     base += pieces("tubes", [rod((s * 0.2 * w, y[1] - 0.02, z[1]), (s * 0.2 * w, y[1] - 0.02, h - 0.014), 0.006) for s in (-1, 1)], STEEL)
     base += pieces("pull", box((-0.22 * w, 0.22 * w), (y[1] - 0.034, y[1] - 0.006), (h - 0.014, h), 0.004), PLASTIC, "line_fixed_handle")
     front = [
@@ -226,7 +226,7 @@ def suitcase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
         box((x[1] - t, x[1]), (y[0] + face, middle - 0.003), z),
     ]
     front += [box((x[0] + t, x[1] - t), (y[0] + face, middle - 0.003), (a, a + t)) for a in (z[0], z[1] - t)]
-    made = pieces("front", front, finish)
+    made = pieces("front", front, finish) + castors(y[0] + 0.0335, 5e-4)  # which turn with it
     grooves = [
         box((x[0] + (k + 0.5) * w / 7 - 0.008, x[0] + (k + 0.5) * w / 7 + 0.008), (y[0] - 0.003, y[0]), (z[0] + 0.03, z[1] - 0.03))
         for k in range(7)

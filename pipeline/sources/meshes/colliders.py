@@ -123,7 +123,9 @@ def link(
         inertia = inertia * (MINIMUM / mass)
     least = 1e-6 * np.eye(3)  # engines refuse inertias of thin parts that round to zero
     how = how or Felt()
-    colliders = tuple(_piece(k, p, how.box) for k, p in enumerate(simpler(matter.pieces, how)))
+    pieces = simpler(matter.pieces, how)
+    floor = min((float(p.hull[:, 2].min()) for p in pieces), default=0.0)
+    colliders = tuple(_piece(k, p, how.box, floor) for k, p in enumerate(pieces))
     return Link(name, tuple(visuals), colliders, round(max(mass, MINIMUM), 5), np.round(com, 6), np.round(inertia, 9) + least)
 
 
@@ -139,6 +141,6 @@ def _hollowed(part: Part, kind: str) -> Part:
     return replace(part, volume=min(part.volume, part.area * BOARD))
 
 
-def _piece(number: int, part: Part, near: float) -> Mesh:
-    hull, faces = boxed(part.hull, part.faces, near)
+def _piece(number: int, part: Part, near: float, floor: float) -> Mesh:
+    hull, faces = boxed(part.hull, part.faces, near, floor)
     return Mesh(f"piece_{number:03d}", hull.astype(np.float32), faces.astype(np.int32))

@@ -27,10 +27,10 @@ FACES: Ints = np.array(
 )
 
 
-def boxed(hull: Floats, faces: Ints, near: float = NEAR) -> tuple[Floats, Ints]:
+def boxed(hull: Floats, faces: Ints, near: float = NEAR, floor: float = -np.inf) -> tuple[Floats, Ints]:
     """Return a convex hull (vertices (V, 3) [m], faces (F, 3) outwards), or the box around it where no point of that is further than `near` away.
 
-    It reaches no lower than the hull, lest what stands on that is pushed up.
+    It reaches no lower than `floor` [m], on which the thing stands, lest it is pushed up.
 
     How far a convex body is from points of a box is greatest at one of its corners, and no more than from there to the nearest vertex.
     """
@@ -41,7 +41,7 @@ def boxed(hull: Floats, faces: Ints, near: float = NEAR) -> tuple[Floats, Ints]:
         local = hull @ R.T
         low, high = local.min(axis=0), local.max(axis=0)
         corners = low + CORNERS * (high - low)
-        if (corners @ R)[:, 2].min() < hull[:, 2].min() - LOWER:
+        if (corners @ R)[:, 2].min() < floor - LOWER:
             continue
         away = float(cdist(corners, local).min(axis=1).max())
         if away <= min(near, SHARE * float(np.linalg.norm(high - low))):

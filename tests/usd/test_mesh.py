@@ -1,0 +1,32 @@
+"""Meshes that another validator takes: each corner once, one fan of faces about it."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+
+from pipeline.rendering.boxes import box, joined
+from pipeline.usd.mesh import APART, parted, welded
+
+
+def edges(faces):
+    """How often each edge, of the points' places, is used."""
+    return Counter(tuple(sorted(map(int, e))) for f in faces for e in ((f[0], f[1]), (f[1], f[2]), (f[2], f[0])))
+
+
+def test_boxes_that_meet_in_an_edge_have_corners_of_their_own():
+    mesh = joined("boards", (box("a", (0, 0, 0), (1, 1, 1)), box("b", (1, 1, 0), (2, 2, 1))))
+    points, faces, _ = welded(mesh)
+    assert max(edges(faces).values()) == 4
+    rows, made = parted(points, faces)
+    assert set(edges(made).values()) == {2}
+    assert len(np.unique(rows, axis=0)) == len(rows) == 16
+    assert np.abs(rows[made] - points[faces]).max() <= APART
+
+
+def test_what_is_whole_stays_as_it_is():
+    points, faces, _ = welded(box("a", (0, 0, 0), (1, 1, 1)))
+    rows, made = parted(points, faces)
+    assert rows is points
+    assert made is faces
