@@ -15,6 +15,7 @@ def main(folder: str, seconds: float = 1.0) -> None:
     """Step the first home."""
     home = next(h for h in sfgen.load(folder) if h.usd)
     builder = newton.ModelBuilder()
+    newton.solvers.SolverMuJoCo.register_custom_attributes(builder)  # several contacts a pair of meshes, as the scene asks
     builder.add_usd(str(home.usd))
     model = builder.finalize(device="cpu")
     solver = newton.solvers.SolverMuJoCo(model, use_mujoco_cpu=True)  # on a GPU leave both out
