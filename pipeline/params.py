@@ -134,6 +134,8 @@ def _hints(cls: Hashable) -> dict[str, Any]:
 
 def convert(hint: Any, value: Any, where: str, file: str = FILE) -> Any:  # noqa: PLR0911 - one return per kind of type
     """Convert one YAML value to the annotated type, or raise ContentError naming the key."""
+    if type(value) is hint and hint is not float:  # the most of them
+        return value
     origin, args = typing.get_origin(hint), typing.get_args(hint)
     if origin in {types.UnionType, typing.Union}:
         if value is None and type(None) in args:

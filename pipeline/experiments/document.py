@@ -29,7 +29,6 @@ from schemas.openings import OPENINGS
 from schemas.rooms import ROOMS
 from schemas.scenes import SCENES
 
-LEAD = "Made by sfgen from the embedded corpus. Every figure was measured in the run that wrote this page; intervals are 95 %."
 SHOWN = 24  # top views on the page
 
 RECORDS = "benchmarks/records"  # figures that are too dear for `make run`, each with its commit and command
@@ -69,7 +68,14 @@ def write_report(
     ]
     if found := _json(root / "metrics" / "calibration.json"):
         chapters.insert(-1, _calibration(folder, found))
-    write_bytes(folder / "index.html", render("Homes for robots", LEAD, chapters).encode())
+    write_bytes(folder / "index.html", render("Homes for robots", _lead(root), chapters).encode())
+
+
+def _lead(root: Path) -> str:
+    """Say what the homes were made from: how many houses, and under which licence, as the tables have it."""
+    licences = tables.read_arrow(root / "data" / "tables" / f"{SCENES.name}.parquet", SCENES)["licence"].to_pylist()
+    from_what = f"{len(licences)} houses ({', '.join(sorted(set(licences)))})"
+    return f"Made by sfgen from {from_what}. Every figure was measured in the run that wrote this page; intervals are 95 %."
 
 
 def lineups(root: Path, folder: Path, homes: Sequence[Home], factory: Factory, settings: MetricsSettings) -> list[Picture]:
