@@ -33,7 +33,7 @@ def kill(times: int, scratch: Path) -> tuple[int, int]:
     command = [sys.executable, str(ROOT / "tests" / "shards" / "made.py"), str(folder), "0.02"]
     while kills < times:
         run = subprocess.Popen(command, env={**os.environ, "PYTHONPATH": str(ROOT)})
-        time.sleep(rng.uniform(0.2, 2.0))
+        time.sleep(rng.uniform(0.3, 4.0))
         if run.poll() is None:
             kills += 1
             run.send_signal(signal.SIGKILL)

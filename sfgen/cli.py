@@ -181,17 +181,22 @@ def export(
 def verify(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a dataset.", show_default=False)],
     quick: Annotated[bool, typer.Option("--quick", help="Leave out opening every stage with USD.")] = False,
+    reproduce: Annotated[int, typer.Option(min=0, help="Make so many of its homes again, and say what comes out otherwise here.")] = 0,
+    prompts: Annotated[Path | None, typer.Option(help="With --reproduce: the file that it was made with, if it was.")] = None,
     quiet: Quiet = False,
     json: Machine = False,
-) -> None:
+) -> int:
     """Check a dataset: every sha256, row, id, reference and stage; the first wrong thing is named.
 
     \b
     Example:
       sfgen verify data/shards
+      sfgen verify data/shards --quick --reproduce 4
     """
     root = factory_root()
-    stage("verify").main(root, folder=folder, quick=quick, voice=voice(quiet=quiet, json=json))
+    how = voice(quiet=quiet, json=json)
+    code: int = stage("verify").main(root, folder=folder, quick=quick, reproduce=reproduce, prompts=prompts, voice=how)
+    return code
 
 
 @app.command()

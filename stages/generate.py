@@ -18,6 +18,7 @@ from pipeline.floorplan.wishes import with_wishes
 from pipeline.homes.delivery import deliveries, report
 from pipeline.homes.factory import open_factory
 from pipeline.homes.outcomes import Empty
+from pipeline.homes.reproduction import made_with
 from pipeline.homes.request import Request
 from pipeline.homes.soundness import require_sound
 from pipeline.homes.warmth import warm_up
@@ -46,7 +47,7 @@ def main(
     progress.phase("reading the layout model and the library")
     factory = open_factory(root, seed)
     asked = digest([wish.prompt, wish.program, wish.plan])
-    header = Header(seed, 1, factory.shard_size, factory.licence, {**factory.digests, "prompts": asked})
+    header = Header(seed, 1, factory.shard_size, factory.licence, {**factory.digests, "prompts": asked}, made_with())
     warm_up(progress, root)
     listen(lambda note: progress.phase(note[0]))
     (outcome,) = factory.make([wish])  # before the folder is touched: a request may yet be refused

@@ -14,6 +14,7 @@ from pipeline.execution import Progress, cores
 from pipeline.homes.drafts import drafts_of
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.production import Recipe, fill
+from pipeline.homes.reproduction import made_with
 from pipeline.homes.request import Request
 from pipeline.homes.settings import DatasetSettings, requests_of
 from pipeline.homes.work import HomeDraft
@@ -33,7 +34,7 @@ def main(root: Path) -> None:
     asked = requests_of(params.section(DatasetSettings, tree, "dataset"), root, seed)
     factory = open_factory(root, seed)
     named = {**factory.digests, "prompts": digest([request.prompt for request in asked])}
-    header = Header(seed, len(asked), factory.shard_size, factory.licence, named)
+    header = Header(seed, len(asked), factory.shard_size, factory.licence, named, made_with())
     progress = Progress(len(asked), "postopt")
     with open_or_create(root / "data" / "shards", header, factory.shelf, discard=True) as dataset:
         recipe = Recipe(partial(open_factory, root, seed), partial(first_drafts, root))

@@ -14,6 +14,7 @@ from pipeline.homes.library import MEMORY
 from pipeline.homes.order import read_order
 from pipeline.homes.outcomes import Empty
 from pipeline.homes.production import FAILURES, Recipe, Tally, fill
+from pipeline.homes.reproduction import made_with
 from pipeline.homes.request import Request
 from pipeline.homes.warmth import warm_up
 from pipeline.shards import Header, forget_altered, open_or_create, read_header
@@ -47,7 +48,7 @@ def main(
     factory = opened()
     if only is not None:
         return try_one(root, seed, order.asked(only))
-    header = Header(seed, count, factory.shard_size, factory.licence, {**factory.digests, "prompts": order.digest()})
+    header = Header(seed, count, factory.shard_size, factory.licence, {**factory.digests, "prompts": order.digest()}, made_with())
     workers = workers or cores()
     with open_or_create(folder, header, factory.shelf) as dataset:
         if dataset.missing():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from pipeline.execution import Progress, Voice, track
@@ -13,8 +13,8 @@ from pipeline.shards.layout import table_path
 from pipeline.tables import read
 
 
-def main(_root: Path, *, folder: Path, quick: bool = False, voice: Voice = "plain") -> None:
-    """Check every digest, row and reference, then (unless `quick`) open every stage with USD."""
+def main(root: Path, *, folder: Path, quick: bool = False, reproduce: int = 0, prompts: Path | None = None, voice: Voice = "plain") -> int:
+    """Check every digest, row and reference, then (unless `quick`) open every stage with USD; make `reproduce` homes again."""
     files = Progress(0, "files", unit="shard", voice=voice)
     summary = check(folder, files.at)
     files.close()
@@ -25,11 +25,34 @@ def main(_root: Path, *, folder: Path, quick: bool = False, voice: Voice = "plai
             check_stage(path)
     if voice == "json":
         files.summary(dataset=str(folder), **asdict(summary))
-        return
+        return again(root, folder, reproduce, prompts, files)
     rows = ", ".join(f"{count} {table}" for table, count in summary.rows.items() if table != "scenes")
     size = f"{summary.files} files, {summary.bytes / 1e6:.1f} MB"
     empty = f", {summary.empty} stay empty (see rejects)" if summary.empty else ""
     sys.stdout.write(f"{folder} is whole: {summary.homes} homes in {summary.shards} shards{empty} ({rows}; {size})\n")
+    return again(root, folder, reproduce, prompts, files)
+
+
+def again(root: Path, folder: Path, count: int, prompts: Path | None, progress: Progress) -> int:
+    """Make homes of a dataset again, say on stderr what comes out otherwise here, and why that may be; returns the exit code."""
+    if not count:
+        return 0
+    from pipeline.homes.factory import open_factory
+    from pipeline.homes.order import asked_of
+    from pipeline.homes.reproduction import chosen, differing, made_with
+
+    header = read_header(folder)
+    factory = open_factory(root, header.seed)
+    asked = asked_of(root, header, prompts)
+    here = replace(header, digests={**header.digests, **factory.digests}, versions=made_with())
+    for difference in header.differences(here):
+        sys.stderr.write(f"sfgen: it was made with {difference}\n")
+    indices = chosen(header, count)
+    found = differing(folder, header, factory, asked, indices)
+    for line in found:
+        sys.stderr.write(f"sfgen: {line}\n")
+    progress.say(f"{len(indices) - len(found)} of {len(indices)} homes come out the same, byte for byte")
+    return 1 if found else 0
 
 
 def stages(folder: Path) -> Iterator[Path]:

@@ -6,6 +6,8 @@ import os
 import sys
 from pathlib import Path
 
+# The instructions that every x86-64 machine of the last ten years has: with wider ones sums come out in other last bits.
+PINNED = {"ATEN_CPU_CAPABILITY": "avx2", "MKL_CBWR": "AVX2", "ONEDNN_MAX_CPU_ISA": "AVX2"}
 THREADS = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
@@ -46,6 +48,17 @@ def _quota(group: Path) -> list[float]:
         except (OSError, ValueError):  # no such file, or "max"
             continue
     return []
+
+
+def pin_instructions(system: Path = Path("/")) -> None:
+    """Hold numeric libraries to PINNED where the machine has AVX2 and nobody has said otherwise; to be called before they are loaded."""
+    try:
+        told = (system / "proc/cpuinfo").read_text(encoding="utf-8")
+    except OSError:
+        return
+    if " avx2 " in told.replace("\n", " "):
+        for name, value in PINNED.items():
+            os.environ.setdefault(name, value)
 
 
 def single_thread() -> None:

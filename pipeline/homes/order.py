@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pipeline.errors import RefusedError
+from pipeline import params
+from pipeline.errors import RefusedError, UsageError
 from pipeline.execution import Progress
 from pipeline.floorplan import request
 from pipeline.homes.request import Request
+from pipeline.homes.settings import DatasetSettings, requests_of
 from pipeline.manifest import digest
-from pipeline.shards import Mix, read_mix
+from pipeline.shards import Header, Mix, read_mix
 
 SHOWN = 5  # prompts that cannot be met which are named at the start
 
@@ -53,3 +55,15 @@ def read_order(prompts: Path | None, seed: int, progress: Progress, *, strict: b
     if len(errors) > SHOWN:
         progress.say(f"and those of {len(errors) - SHOWN} other prompts")
     return Order(seed, mix, programs)
+
+
+def asked_of(root: Path, header: Header, prompts: Path | None) -> Callable[[int], Request]:
+    """Return what the homes of a dataset were asked to be: by `prompts`, by nobody, or by params.yaml. Raises UsageError where none of these fits."""
+    order = read_order(prompts, header.seed, Progress(0, "homes", voice="quiet"), strict=False)
+    if header.digests.get("prompts") == order.digest():
+        return order.asked
+    tree = params.read(root / "params.yaml")
+    listed = requests_of(params.section(DatasetSettings, tree, "dataset"), root, header.seed)
+    if prompts is None and header.digests.get("prompts") == digest([request.prompt for request in listed]):
+        return lambda index: listed[index]
+    raise UsageError("the dataset was asked for in other words", "give the file of its prompts with --prompts, as it was")

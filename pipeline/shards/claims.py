@@ -185,6 +185,8 @@ def _died(text: str) -> bool:
         os.kill(who["pid"], 0)
     except ProcessLookupError:
         return True
-    except (OSError, ValueError, LookupError, TypeError):  # not ours to signal, or a file that is being written
+    except (ValueError, LookupError, TypeError):  # torn by a power cut; or being written, by who has no claims yet
+        return True
+    except OSError:  # not ours to signal
         return False
     return bool(_birth(who["pid"]) != who["born"])

@@ -29,6 +29,7 @@ class Header:
 
     Homes have the indices 0 ... count - 1; shard k holds those from k * `shard_size` on. `digests` names everything
     else that a home depends on: params, weights, library, code, prompts. `licence` is the one that binds the whole.
+    `versions` are those of what computes: the last bits of a number hang on packages and on the processor's instructions.
     `vocabulary` lists all `categories` and `room_types` that may occur, so that class numbers do not hang on what does.
     """
 
@@ -37,6 +38,7 @@ class Header:
     shard_size: int
     licence: str
     digests: Mapping[str, str] = field(default_factory=dict)
+    versions: Mapping[str, str] = field(default_factory=dict)
     vocabulary: Mapping[str, list[str]] = field(default_factory=everything)
     schema_version: str = SCHEMA_VERSION
     format: str = FORMAT
@@ -56,9 +58,9 @@ class Header:
 
     def differences(self, other: Header) -> list[str]:
         """Return what differs, in words: `seed 1, not 2`."""
-        long = {"digests", "vocabulary"}
+        long = {"digests", "versions", "vocabulary"}
         mine, theirs = (
-            {k: v for k, v in h.to_json().items() if k not in long}
+            {**{k: v for k, v in h.to_json().items() if k not in long}, **h.versions}
             | {f"digest of {k}": v[:12] for k, v in {**h.digests, "vocabulary": digest(h.vocabulary)}.items()}
             for h in (self, other)
         )

@@ -5,10 +5,11 @@ import subprocess
 import sys
 import threading
 import time
+from types import SimpleNamespace
 
 import pytest
 
-from pipeline.shards.claims import Claims
+from pipeline.shards.claims import PATIENCE, Claims
 
 FAR = {"host": "elsewhere", "boot": "1", "processes": "1"}
 
@@ -63,6 +64,7 @@ def test_who_leaves_gives_up_its_claims(claims):
 
 def pretend(folder, token, **who):
     """Write what an owner on another machine, or a dead one on this, would have left."""
+    assert len(token) == 16
     (folder / "owners").mkdir(parents=True, exist_ok=True)
     (folder / "owners" / token).write_text(json.dumps({"machine": FAR, "pid": 1, "born": "1", **who}) + "\n")
     (folder / "a.0").write_text(token)
@@ -73,40 +75,51 @@ def test_a_process_of_this_machine_that_is_dead_is_known_at_once(tmp_path, claim
     mine = json.loads((one.folder / "owners" / one.token).read_text())
     done = subprocess.Popen([sys.executable, "-c", ""])
     done.wait()
-    pretend(one.folder, "dead", machine=mine["machine"], pid=done.pid)
+    pretend(one.folder, "deaddeaddeaddead", machine=mine["machine"], pid=done.pid)
     assert one.take("a")
-    pretend(one.folder, "reborn", **{**mine, "born": "1"})  # its number belongs to another process now
+    pretend(one.folder, "beefbeefbeefbeef", **{**mine, "born": "1"})  # its number belongs to another process now
     assert one.others() == []
-    pretend(one.folder, "unplugged", machine={**mine["machine"], "boot": "before"})
+    pretend(one.folder, "cafecafecafecafe", machine={**mine["machine"], "boot": "before"})
     assert one.others() == []
 
 
-def test_another_machine_is_given_up_when_it_keeps_silent(tmp_path, claims):
-    one = claims(patience=0.3)
-    pretend(one.folder, "far", machine=FAR)
+@pytest.fixture
+def clock(monkeypatch):
+    """The seconds that claims go by: [now]."""
+    now = [0.0]
+    monkeypatch.setattr("pipeline.shards.claims.time", SimpleNamespace(monotonic=lambda: now[0], sleep=time.sleep))
+    return now
+
+
+def test_another_machine_is_given_up_when_it_keeps_silent(claims, clock):
+    one = claims()
+    pretend(one.folder, "fafafafafafafafa", machine=FAR)
     assert not one.take("a")
     for _ in range(4):
-        time.sleep(0.15)
-        with (one.folder / "owners" / "far").open("a") as file:
+        clock[0] += PATIENCE - 1
+        with (one.folder / "owners" / "fafafafafafafafa").open("a") as file:
             file.write(".")
         assert not one.take("a")
-    time.sleep(0.4)
+    clock[0] += PATIENCE + 1
     assert one.take("a")
 
 
 def test_signs_of_life_are_given(claims):
     one = claims(beat=0.05)
     path = one.folder / "owners" / one.token
-    size = path.stat().st_size
-    time.sleep(0.4)
-    assert path.stat().st_size > size
+    size, end = path.stat().st_size, time.monotonic() + 30
+    while path.stat().st_size == size:
+        assert time.monotonic() < end
+        time.sleep(0.05)
 
 
-def test_a_claim_that_was_never_signed_expires(claims):
-    one, _other = claims(patience=0.2), claims()
+def test_a_claim_that_was_never_signed_expires(claims, clock):
+    one, other = claims(), claims()
     one.folder.joinpath("a.0").touch()
     assert not one.take("a")
-    time.sleep(0.3)
+    clock[0] += PATIENCE + 1
+    with (one.folder / "owners" / other.token).open("a") as file:
+        file.write(".")  # the other lives; it is not known whether the claim is its own
     assert one.take("a")
 
 
