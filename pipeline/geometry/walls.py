@@ -21,6 +21,7 @@ from pipeline.geometry.tiling import convex_pieces, polygons
 
 LEAF_THICKNESS = 0.04  # [m]
 LEAF_GAP = 0.005  # between leaf and jamb, lintel, floor [m]: the leaf is 1 cm narrower and lower than its opening
+SEAM = 2e-5  # [m]
 SLAB = 0.10  # thickness of floors and ceilings; walls rise this far above the ceiling, which makes rooms light-tight [m]
 
 
@@ -162,7 +163,7 @@ def outer_panels(built: Shell) -> list[Panel]:
         turned = shapely.geometry.polygon.orient(part, -1.0)
         for ring in (turned.exterior, *turned.interiors):
             panels.extend(_ring_panels("", np.asarray(ring.coords)[:-1], built.cuts, top))
-    panels.extend(Panel("", _lift(p.polygon, p.top)) for p in built.prisms if p.kind != "sill")
+    panels.extend(Panel("", _lift(_drawn_in(p.polygon), p.top)) for p in built.prisms if p.kind != "sill")
     return panels
 
 
@@ -287,6 +288,12 @@ def _wall(
     """Return the upright rectangle over a → b, counter-clockwise for one who stands on the left of a → b, with corners at more heights on either edge."""
     up, down = ([z for z in heights if z0 + 1e-3 < z < z1 - 1e-3] for heights in (at_a, at_b))
     return np.array([[*b, z0], [*a, z0], *([*a, z] for z in up), [*a, z1], [*b, z1], *([*b, z] for z in reversed(down))])
+
+
+def _drawn_in(polygon: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a polygon (n, 2) with its corners SEAM towards its middle: tops of walls that meet in a corner have points of their own there."""
+    inward = polygon.mean(axis=0) - polygon
+    return np.asarray(polygon + SEAM * inward / np.linalg.norm(inward, axis=1, keepdims=True))
 
 
 def _lift(polygon: NDArray[np.float64], z: float) -> NDArray[np.float64]:
