@@ -58,7 +58,7 @@ def main(
         )
         tally = fill(
             dataset,
-            Recipe(opened, shelve=scheduler is None),
+            Recipe(opened, shelve=scheduler is None, digests=factory.digests),
             order.asked,
             workers=workers,
             scheduler=scheduler,

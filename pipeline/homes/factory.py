@@ -382,6 +382,11 @@ def open_factory(root: Path, seed: int, memory: int = MEMORY) -> Factory:
     return factory
 
 
+def forget_factory() -> None:
+    """Let this process load its factory again when it is next opened: files have changed."""
+    _loaded_factory.cache_clear()
+
+
 @functools.lru_cache(maxsize=1)
 def _loaded_factory(root: Path, seed: int) -> Factory:
     factory = load_factory(root, params.read(root / "params.yaml"), seed)

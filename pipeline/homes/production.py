@@ -18,7 +18,7 @@ from typing import Any
 from pipeline import tables
 from pipeline.errors import ContentError, SfgenError
 from pipeline.execution import Lost, Progress, map_jobs
-from pipeline.homes.factory import Factory
+from pipeline.homes.factory import Factory, forget_factory
 from pipeline.homes.outcomes import Empty, Outcome
 from pipeline.homes.request import Request
 from pipeline.homes.work import HomeDraft
@@ -71,12 +71,30 @@ class Batch:
 class Recipe:
     """What a worker needs to make chunks: how to open the factory, and the first drafts, where a stage has made them.
 
-    With `shelve` it also puts the assets on its machine's shelf, from which the dataset takes them.
+    With `shelve` it also puts the assets on its machine's shelf, from which the dataset takes them. `digests` are what the dataset
+    says that homes are made of: a worker that has loaded something else loads again, or refuses.
     """
 
     opened: Callable[[], Factory]
     drafts: Callable[[Factory, Sequence[Request]], list[HomeDraft]] | None = None
     shelve: bool = True
+    digests: Mapping[str, str] = field(default_factory=dict)
+
+    def factory(self) -> Factory:
+        """Open the factory that the dataset is to be made with. Raises ContentError where there is another."""
+        factory = self.opened()
+        if stale := self._others(factory):
+            forget_factory()
+            factory = self.opened()
+            if "code" in stale or (stale := self._others(factory)):  # code that is loaded stays
+                raise ContentError(
+                    f"a worker has other {', '.join(stale)} than the command",
+                    "give it the same checkout, models and data, and start it again",
+                )
+        return factory
+
+    def _others(self, factory: Factory) -> list[str]:
+        return sorted(name for name, value in self.digests.items() if factory.digests.get(name) != value)
 
 
 @dataclass
@@ -180,7 +198,7 @@ def chunks(dataset: Dataset, missing: Sequence[int], asked: Callable[[int], Requ
 
 def make_chunk(recipe: Recipe, chunk: Chunk) -> Batch:
     """Make one chunk: the step that workers run."""
-    factory = recipe.opened()
+    factory = recipe.factory()
     factory.seconds.clear()
     first = recipe.drafts(factory, chunk.requests) if recipe.drafts else None
     outcomes = attempt(factory, chunk.requests, first)

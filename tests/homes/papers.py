@@ -34,6 +34,12 @@ class Paper:
         self.shard = SimpleNamespace(home_seconds=2.0)
 
     @property
+    def digests(self):
+        """What lies in the folder now."""
+        path = self.folder / "weights"
+        return {"weights": path.read_text() if path.exists() else ""}
+
+    @property
     def shelf(self):
         return made.Shelf(self.folder / "shelf")
 

@@ -15,8 +15,9 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 import papers
 
+from pipeline.errors import ContentError
 from pipeline.execution import Progress
-from pipeline.homes.production import Recipe, fill
+from pipeline.homes.production import Chunk, Recipe, fill, make_chunk
 from pipeline.shards import check, open_or_create
 
 ROOT = Path(__file__).parents[2]
@@ -108,6 +109,17 @@ def test_a_run_that_is_killed_keeps_the_chunks_that_were_done(tmp_path):
     assert tally.resumed >= 1
     assert tally.homes == 10 - tally.resumed
     assert papers.made.snapshot(tmp_path / "cut") == papers.made.snapshot(tmp_path / "whole")
+
+
+def test_a_worker_with_other_weights_loads_them_again_or_refuses(tmp_path):
+    opened = functools.lru_cache(functools.partial(papers.open_paper, str(tmp_path)))
+    request = (papers.request(0),)
+    (tmp_path / "weights").write_text("new")
+    assert make_chunk(Recipe(opened, digests={"weights": "new"}), Chunk(0, request)).homes
+    with pytest.raises(ContentError, match="other weights than the command"):
+        make_chunk(Recipe(opened, digests={"weights": "newer"}), Chunk(0, request))
+    with pytest.raises(ContentError, match="other code"):
+        make_chunk(Recipe(opened, digests={"code": "x"}), Chunk(0, request))
 
 
 def command(folder, count, workers=1, nap=0.15):
