@@ -18,6 +18,8 @@ from pipeline.retrieval.index import AssetIndex, Match
 from pipeline.retrieval.taste import FinishOf, Taste, draw_finishes, draw_style, tasteful
 from pipeline.taxonomy import Taxonomy
 
+FREE_CHOICE = 2  # tries of a room in which any category of an essential group will do
+
 
 @dataclass(frozen=True, slots=True)
 class Draft:
@@ -57,9 +59,19 @@ def category_bounds(job: RoomJob, taxonomy: Taxonomy) -> tuple[CategoryBounds, .
     What is wished for of a group, none of it too, stands. What rooms of the plan's type do not want stays out, unless it is wished for.
     """
     wished = {c for bounds in job.category_bounds for c in bounds.categories}
-    groups = tuple(CategoryBounds(group, 1) for group in job.essentials(taxonomy) if not wished.intersection(group))
+    groups = [
+        bounds for group in job.essentials(taxonomy) if not wished.intersection(group) for bounds in _essential(group, job.attempt % 100)
+    ]
     unwanted = tuple(c for c in job.unwanted(taxonomy) if c not in wished)
     return (*job.category_bounds, *groups, *([CategoryBounds(unwanted, 0, 0)] if unwanted else []))
+
+
+def _essential(group: tuple[str, ...], attempt: int) -> list[CategoryBounds]:
+    """Ask for one thing of a group; later tries insist on one category after the other: where no double bed finds a place a single one may."""
+    if attempt < FREE_CHOICE or len(group) == 1:
+        return [CategoryBounds(group, 1)]
+    chosen = group[(attempt - FREE_CHOICE + 1) % len(group)]
+    return [CategoryBounds((chosen,), 1), CategoryBounds(tuple(c for c in group if c != chosen), 0, 0)]
 
 
 def retrieve(

@@ -43,3 +43,13 @@ def test_no_tub_stands_in_a_wc_unless_it_is_wished_for():
     assert CategoryBounds(("shower", "bathtub"), 0, 0) in category_bounds(wc, words)
     asked = category_bounds(replace(wc, furniture=job("bathroom", wishes=[CategoryBounds(("shower",), 1)]).furniture), words)
     assert CategoryBounds(("bathtub",), 0, 0) in asked
+
+
+def test_later_tries_insist_on_another_bed():
+    words = taxonomy.load()
+    (group,) = words.layouts["bedroom"].needs
+    asked = [category_bounds(replace(job("bedroom"), attempt=attempt), words) for attempt in (0, 1, 2, 3, 103)]
+    assert asked[0] == asked[1] == (CategoryBounds(group, 1),)
+    assert [a[0].categories for a in asked[2:4]] == [("single_bed",), ("kids_bed",)]
+    assert all(CategoryBounds(tuple(c for c in group if c not in a[0].categories), 0, 0) in a for a in asked[2:])
+    assert asked[4] == asked[3]
