@@ -86,16 +86,21 @@ class Claims:
                 if last := not self.others():
                     shutil.rmtree(self.folder, ignore_errors=True)
         except OSError:  # a full disk: who ends cannot stay for that
-            (self.folder / OWNERS / self.token).unlink(missing_ok=True)
             return False
+        finally:  # interrupted too: a process that goes on is not at work any more
+            (self.folder / OWNERS / self.token).unlink(missing_ok=True)
         return last
 
     def _register(self) -> None:
         who = {"machine": _machine(), "pid": os.getpid(), "born": _birth(os.getpid())}
         path = self.folder / OWNERS / self.token
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(who) + "\n")
-        sync(path)
+        try:
+            path.write_text(json.dumps(who) + "\n")
+            sync(path)
+        except BaseException:  # nobody will leave for it
+            path.unlink(missing_ok=True)
+            raise
 
     def _live(self, beat: float) -> None:
         while not self._ended.wait(beat):

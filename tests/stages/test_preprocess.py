@@ -1,6 +1,7 @@
 """The stage on tiny folders: tables with their schemas, splits by house, the same bytes whatever the workers, clear errors."""
 
 import re
+from pathlib import Path
 
 import pytest
 import yaml
@@ -24,6 +25,9 @@ ALL = (SCENES, ROOMS, OPENINGS, OBJECTS, ASSETS, ASSET_JOINTS, ASSET_PARTS, REJE
 ID = re.compile(r"^[a-z][a-z0-9_]*$")
 
 
+VERIFY = params.read(Path(__file__).resolve().parents[2] / "params.yaml")["verify"]  # the robot that rooms are measured for
+
+
 def checkout(root, houses=6, **settings):
     front, partnet = root / "data/raw/3d-front", root / "data/raw/partnet"
     making.write_library(front)
@@ -39,7 +43,7 @@ def checkout(root, houses=6, **settings):
 
 def write_params(root, **settings):
     (root / "params.yaml").write_text(
-        yaml.safe_dump({"preset": "quick", "presets": {"quick": {}}, "preprocess": {"workers": 1, **settings}})
+        yaml.safe_dump({"preset": "quick", "presets": {"quick": {}}, "verify": VERIFY, "preprocess": {"workers": 1, **settings}})
     )
 
 
