@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from pipeline.errors import ContentError, SfgenError, UsageError
 from pipeline.execution.machine import single_thread
-from pipeline.execution.queue import STRIKES, Lost, Queue, Task
+from pipeline.execution.queue import Lost, Queue, Task
 
 J = TypeVar("J")
 R = TypeVar("R")
@@ -36,7 +36,9 @@ def run_on_cluster(step: Callable[[J], R], queue: Queue[J], scheduler: str) -> I
         completed = as_completed([], loop=client.loop)
 
         def refill() -> None:
-            window = IN_FLIGHT * max(1, sum(client.nthreads().values()))
+            # a dead worker's waiting jobs are blamed with the one at work: while there are suspects, none waits at a worker
+            each = 1 if queue.suspects or any(t.strikes for t in tasks.values()) else IN_FLIGHT
+            window = each * max(1, sum(client.nthreads().values()))
             while len(tasks) < window and (task := queue.next()):
                 future = client.submit(_guarded, step, task.job, retries=RETRIES, pure=False)
                 tasks[future.key] = task
@@ -49,8 +51,8 @@ def run_on_cluster(step: Callable[[J], R], queue: Queue[J], scheduler: str) -> I
                 answers: list[Any] = []
                 try:
                     answers.append(future.result())
-                except KilledWorker:  # the scheduler has given it to several workers already
-                    answers += filter(None, [queue.strike(task, "died", STRIKES)])
+                except KilledWorker:
+                    answers += filter(None, [queue.strike(task, "died")])
                 future.release()
                 refill()
                 for answer in answers:

@@ -46,9 +46,14 @@ class Queue(Generic[J]):
         """Give a task back that was not begun."""
         self._again.appendleft(task)
 
-    def strike(self, task: Task[J], how: str, count: int = 1) -> Lost | None:
-        """Take back a task that cost `count` workers: in pieces, once more, or (returned) not again."""
-        strikes = task.strikes + count
+    @property
+    def suspects(self) -> bool:
+        """Whether something waits that a worker died of."""
+        return any(task.strikes for task in self._again)
+
+    def strike(self, task: Task[J], how: str) -> Lost | None:
+        """Take back a task that cost a worker: in pieces, once more, or (returned) not again."""
+        strikes = task.strikes + 1
         pieces = self._split(task.job) if self._split else []
         if len(pieces) > 1:
             self._again.extend(Task(piece, min(strikes, STRIKES - 1)) for piece in pieces)
