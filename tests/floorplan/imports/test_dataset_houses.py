@@ -8,7 +8,7 @@ from pipeline.floorplan.document import PlanDocument
 from pipeline.floorplan.imports import program_of, read_own_json, told
 from pipeline.homes.request import layout_type
 from pipeline.homes.soundness import UnsoundError, check_sound, closed_rooms
-from tests.floorplan.own import procthor_houses
+from tests.floorplan.imports import procthor_houses
 from tests.judging import SETTINGS
 from tests.sources import front_houses
 
