@@ -41,10 +41,11 @@ def commits(folder):
 
 
 def stamps(folder):
-    """Place and time of every file of a committed shard."""
+    """Place and time of every file of a committed shard; its parts and claims are working files, which a kill may leave."""
     names = [c.stem for c in commits(folder)]
+    working = {".parts", ".claims"}
     files = [
-        p for p in folder.rglob("*") if p.is_file() and ".parts" not in p.parts and any(n in str(p.relative_to(folder)) for n in names)
+        p for p in folder.rglob("*") if p.is_file() and not working & set(p.parts) and any(n in str(p.relative_to(folder)) for n in names)
     ]
     return {p: (p.stat().st_mtime_ns, p.stat().st_ino) for p in files}
 
