@@ -102,7 +102,7 @@ def _storeys(program: FloorProgram) -> tuple[RoomReq, ...]:
     stated = [k for k in program.links if k.stated]
     for room in program.rooms:
         top = program.storeys - 1
-        beside = {r.level for k in stated if room.id in {k.a, k.b} for r in program.rooms if r.id in {k.a, k.b} and r.level is not None}
+        beside = {r.level for k in stated if room.id in k.ends for r in program.rooms if r.id in k.ends and r.level is not None}
         usual = beside.pop() if len(beside) == 1 and room.type in BESIDE else (1 if room.type in UPSTAIRS else 0)
         level = room.level if room.level is not None else usual
         rooms.append(room.model_copy(update={"level": 0 if room.type == "staircase" else min(level, top)}))
@@ -150,11 +150,10 @@ def _add_circulation(program: FloorProgram) -> tuple[RoomReq, ...]:
     ground = [r for r in rooms if r.level == 0]
     if any(r.type in {"hallway", "entry"} for r in ground):
         return program.rooms
-    joined = {i for k in resolve(program) for i in (k.a, k.b) if k.opens}
+    links = resolve(program)
     hanging = [r for r in ground if r.type in {"bedroom", "bathroom", "office", "library", "media_room", "playroom", "wc", "gym"}]
-    owned = {k.b for k in resolve(program)} | {k.a for k in resolve(program)}
-    del joined
-    suites = {k.a if k.b == r.id else k.b for k in resolve(program) for r in hanging if r.type == "bathroom" and r.id in {k.a, k.b}}
+    owned = {i for k in links for i in k.ends}
+    suites = {k.beyond(r.id) for k in links for r in hanging if r.type == "bathroom"}
     loose = [r for r in hanging if r.id not in owned or r.id in suites]
     beds = [r for r in ground if r.type == "bedroom"]
     wanted = len(loose) >= 3 and len(beds) >= 2 and "hallway" not in never

@@ -79,7 +79,7 @@ def storeys(program: FloorProgram) -> None:
         ones, others = program.select(k.a), program.select(k.b)
         meet = any(a.level == b.level or "staircase" in {a.type, b.type} for a in ones for b in others)
         if k.stated and ones and others and not meet:
-            words = cited(program, f"links.{k.a}-{k.b}", f"links.{k.b}-{k.a}", f"rooms.{k.a}", f"rooms.{k.b}")
+            words = cited(program, *k.fields, f"rooms.{k.a}", f"rooms.{k.b}")
             raise ImpossibleError(f"{k.a} and {k.b} are to be joined and lie on different storeys", "put both on one storey", words)
 
 
@@ -104,10 +104,9 @@ def _forbidden(program: FloorProgram) -> None:
             continue
         others = program.select(f.b) if f.b else ()
         for k in program.links:
-            ends = {k.a, k.b}
-            hit = any({a.id, b.id} == ends for a in rooms for b in others if a.id != b.id)
+            hit = any({a.id, b.id} == k.ends for a in rooms for b in others if a.id != b.id)
             if hit and (f.what == "adjacent" or (f.what == "connected" and k.opens) or (f.what == "open" and k.kind == "open")):
-                words = cited(program, f"forbids.{f.what}.{f.a}", f"links.{k.a}-{k.b}", f"links.{k.b}-{k.a}")
+                words = cited(program, f"forbids.{f.what}.{f.a}", *k.fields)
                 raise ImpossibleError(f"{k.a} and {k.b} are to be joined and kept apart", "keep one of the two", words)
 
 
@@ -161,9 +160,9 @@ def _degrees(program: FloorProgram) -> None:
         if relation.kind != "degree":
             continue
         for room in program.select(relation.a):
-            joined = [k for k in program.links if room.id in {k.a, k.b} and k.opens]
+            joined = [k for k in program.links if room.id in k.ends and k.opens]
             if len(joined) > relation.value:
-                fields = [f"links.{x}" for k in joined for x in (f"{k.a}-{k.b}", f"{k.b}-{k.a}")]
+                fields = [x for k in joined for x in k.fields]
                 words = cited(program, f"relations.degree.{room.id}", *fields)
                 raise ImpossibleError(
                     f"{room.id} is to have {relation.value:g} door{'s' * (relation.value != 1)} and is joined to {len(joined)} rooms",
@@ -202,7 +201,7 @@ def reach(program: FloorProgram, root: str, avoid: frozenset[str]) -> set[str]:
         if here in avoid or (here != root and kinds[here] in {"bathroom", "wc"}):
             continue
         for k in program.links:
-            other = k.b if k.a == here else (k.a if k.b == here else None)
+            other = k.beyond(here)
             if other is None or other in found or other in avoid or not k.opens:
                 continue
             private = kinds[here] == "balcony" or (kinds[here] == "bedroom" and kinds[other] not in PRIVATE)
@@ -215,7 +214,7 @@ def reach(program: FloorProgram, root: str, avoid: frozenset[str]) -> set[str]:
 
 def _distances(program: FloorProgram) -> None:
     for asked, made in nearness(distances(program), program.links):
-        fields = [f"links.{x}" for k in program.links if {asked.a, asked.b} == {k.a, k.b} for x in (f"{k.a}-{k.b}", f"{k.b}-{k.a}")]
+        fields = [x for k in program.links if {asked.a, asked.b} == k.ends for x in k.fields]
         words = cited(program, f"relations.hops.{asked.selector}", *fields)
         raise ImpossibleError(
             f"hops: {asked.a} and {asked.b} are to be at least {asked.least:g} openings apart and lie {made} apart",

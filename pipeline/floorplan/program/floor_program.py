@@ -144,6 +144,20 @@ class Link(Model):
         """Whether one gets through: what is only said to lie next to each other has a wall in common, and doors elsewhere."""
         return self.kind not in {"wall", "any"}
 
+    @property
+    def ends(self) -> frozenset[Selector]:
+        """The two that are joined, in no order."""
+        return frozenset((self.a, self.b))
+
+    @property
+    def fields(self) -> tuple[str, str]:
+        """What evidence calls the link: a request may have named its ends in either order."""
+        return f"links.{self.a}-{self.b}", f"links.{self.b}-{self.a}"
+
+    def beyond(self, room: Selector) -> Selector | None:
+        """Return the other end, seen from `room`; None where the link does not join it."""
+        return self.b if self.a == room else self.a if self.b == room else None
+
 
 class Forbid(Model):
     """Something that must not be: a room type, a common wall, an opening, an open front, or a way that leads through `avoid`."""

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from pipeline.floorplan.program.defaults import DEFAULTS, HUBS
 from pipeline.floorplan.program.distance import Distance, distances, nearness
-from pipeline.floorplan.program.floor_program import FloorProgram, Link, RoomReq
+from pipeline.floorplan.program.floor_program import FloorProgram, Link, Relation, RoomReq
 
 PARENTS: dict[str, tuple[str, ...]] = {
     "living_room": ("entry", "hallway", "dining_room", "kitchen"),
@@ -56,12 +56,18 @@ def resolve(program: FloorProgram) -> tuple[Link, ...]:
                 pairs.append((one, partners[k % len(partners)] if len(partners) == len(ones) else partners[0]))
         for one, other in pairs[:1] if link.quant == "some" else pairs:
             key = (min(one.id, other.id), max(one.id, other.id))
-            between = any(r.kind == "between" and r.a == one.id and other.id in {r.b, r.c} for r in program.relations)
+            between = any(_passes(r, one.id, other.id) or _passes(r, other.id, one.id) for r in program.relations)
             kind = "door" if link.kind == "any" and between else link.kind  # one walks through what lies between
+            made = link.model_copy(update={"a": one.id, "b": other.id, "kind": kind, "quant": "each"})
             old = found.get(key)
-            if old is None or (link.opens and not old.opens):
-                found[key] = link.model_copy(update={"a": one.id, "b": other.id, "kind": kind, "quant": "each"})
+            if old is None or (made.opens and not old.opens):
+                found[key] = made
     return tuple(found.values())
+
+
+def _passes(relation: Relation, room: str, side: str) -> bool:
+    """Whether `room` is said to lie between `side` and another one."""
+    return relation.kind == "between" and relation.a == room and side in {relation.b, relation.c}
 
 
 def _meet(a: RoomReq, b: RoomReq) -> bool:
@@ -83,16 +89,15 @@ def connect(program: FloorProgram) -> tuple[Link, ...]:
 def _settled(program: FloorProgram, links: Sequence[Link]) -> tuple[Link, ...]:
     """Say what joins rooms that are to lie next to each other: the door that is there already, one between rooms that one walks through, else no more than the wall."""
     kinds = {r.id: r.type for r in program.rooms}
-    doors = {frozenset((k.a, k.b)): k for k in links if k.opens}
-    stated = {frozenset((k.a, k.b)) for k in links if k.stated}
+    doors = {k.ends: k for k in links if k.opens}
+    stated = {k.ends for k in links if k.stated}
     made: list[Link] = []
     for link in links:
-        pair = frozenset((link.a, link.b))
-        if doors.get(pair, link) is not link:
+        if doors.get(link.ends, link) is not link:
             continue  # a door needs the wall
-        walked = all(kinds[i] in HUBS and DEFAULTS[kinds[i]].through for i in pair)
+        walked = all(kinds[i] in HUBS and DEFAULTS[kinds[i]].through for i in link.ends)
         kind = "door" if link.kind == "any" and walked else link.kind
-        made.append(link.model_copy(update={"kind": kind, "stated": pair in stated}))
+        made.append(link.model_copy(update={"kind": kind, "stated": link.ends in stated}))
     return tuple(made)
 
 
@@ -134,7 +139,7 @@ def _unusual(program: FloorProgram, fronts: Sequence[RoomReq], main: frozenset[s
     for front in fronts:
         for host in hosts:
             if _meet(host, front):
-                yield Link(a=host.id, b=front.id, kind="open" if "staircase" in {front.type, host.type} else "door")
+                yield _opening(host, front)
 
 
 def _groups(program: FloorProgram, links: Sequence[Link]) -> list[frozenset[str]]:
@@ -146,7 +151,7 @@ def _groups(program: FloorProgram, links: Sequence[Link]) -> list[frozenset[str]
     used: set[str] = set()
     # of a bathroom's doors the one to the most public room counts
     for link in sorted(links, key=lambda k: min(rank.get(kinds[k.a], 99), rank.get(kinds[k.b], 99))):
-        ends = {link.a, link.b} & set(dead)
+        ends = link.ends & set(dead)
         if link.opens and not ends & used:
             kept.append(link)
             used |= ends
@@ -177,7 +182,7 @@ def _root(program: FloorProgram, links: Sequence[Link]) -> str:
         stated = program.select(program.entrance.into)
         if stated:
             return stated[0].id
-    degree = {r.id: sum(r.id in {k.a, k.b} for k in links) for r in program.rooms}
+    degree = {r.id: _load(r, links) for r in program.rooms}
     ground = [r for r in program.rooms if not r.level] or list(program.rooms)
     for kind in ("entry", "hallway", "living_room", "studio_room", *HUBS):
         same = [r for r in ground if r.type == kind]
@@ -202,7 +207,7 @@ def _order(room: RoomReq) -> int:
 
 def _hosted(program: FloorProgram, front: RoomReq, main: frozenset[str], links: Sequence[Link]) -> Iterator[Link]:
     """Yield the links by which a room may hang on one of `main`, the usual one first."""
-    beside = {k.b if k.a == front.id else k.a for k in links if not k.opens and front.id in {k.a, k.b}}
+    beside = {k.beyond(front.id) for k in links if not k.opens}
     second = front.type == "kitchen" and front.role not in {"", "primary"}  # a kitchen of somebody's own stands by itself
     usual = PARENTS["bedroom"][1:] if second else PARENTS.get(front.type, ANY_HUB)
     if front.type in BELONGING:
@@ -218,21 +223,26 @@ def _hosted(program: FloorProgram, front: RoomReq, main: frozenset[str], links: 
             hosts = sorted(hosts, key=lambda h: _load(h, links))
         hosts = sorted(hosts, key=lambda h: h.id not in beside)
         for host in hosts:
-            yield Link(a=host.id, b=front.id, kind="open" if "staircase" in {front.type, host.type} else "door")
+            yield _opening(host, front)
+
+
+def _opening(host: RoomReq, front: RoomReq) -> Link:
+    """Return the usual link of two rooms: stairs stand open, all others get a door."""
+    return Link(a=host.id, b=front.id, kind="open" if "staircase" in {front.type, host.type} else "door")
 
 
 def _load(room: RoomReq, links: Sequence[Link]) -> int:
-    return sum(room.id in {k.a, k.b} for k in links)
+    return sum(room.id in k.ends for k in links)
 
 
 def _has(program: FloorProgram, host: RoomReq, kind: str, links: Sequence[Link]) -> bool:
-    mates = {k.b if k.a == host.id else k.a for k in links if host.id in {k.a, k.b}}
+    mates = {k.beyond(host.id) for k in links}
     return any(r.type == kind and r.id in mates for r in program.rooms)
 
 
 def _is_full(program: FloorProgram, room: RoomReq, links: Sequence[Link]) -> bool:
     """Whether a `degree` relation or the type leaves no room for another opening."""
-    load = sum(room.id in {k.a, k.b} for k in links if k.opens)
+    load = _load(room, [k for k in links if k.opens])
     asked = [r.value for r in program.relations if r.kind == "degree" and _covers(program, r.a, room)]
     if asked:
         return load >= min(asked)

@@ -182,7 +182,7 @@ def _depths(program: FloorProgram) -> dict[str, int]:
     while frontier:
         room = frontier.pop(0)
         for k in program.links:
-            other = k.b if k.a == room else (k.a if k.b == room else None)
+            other = k.beyond(room)
             if other is not None and k.opens and other not in depth:
                 depth[other] = depth[room] + 1
                 frontier.append(other)
