@@ -58,7 +58,7 @@ def asset_stage(ids: list[str], folder: Path) -> Path:
     from pipeline.usd.layer import read_layer, save
     from pipeline.usd.mesh import convert_mesh
     from pipeline.usd.physics import convert_collider, convert_scene
-    from pipeline.usd.text import cast, group
+    from pipeline.usd.prim_templates import cast, group
 
     assets = [load_asset(ROOT / "data" / "assets" / f"{name}.safetensors") for name in ids]
     write_library(assets, folder / "assets")

@@ -43,7 +43,7 @@ def rooms_of(jobs: Sequence[RoomJob], things: Sequence[Sequence[object]]) -> Roo
 def made(factory: Factory, jobs: Sequence[RoomJob], seconds: dict[str, float]) -> dict[str, Rooms]:
     """Furnish rooms: drafts unguided and guided, finished; adds CPU seconds by set."""
     from pipeline import taxonomy
-    from pipeline.homes.finish import finish
+    from pipeline.homes.room_finishing import finish
 
     sets: dict[str, Rooms] = {}
     drafts = []
@@ -53,7 +53,7 @@ def made(factory: Factory, jobs: Sequence[RoomJob], seconds: dict[str, float]) -
         seconds[name] = seconds.get(name, 0.0) + time.process_time() - start
         sets[name] = rooms_of(jobs, [draft.placements for draft in drafts])
     start = time.process_time()
-    results = [finish(d, factory.library, factory.index, factory.lore, factory.postopt, factory.verify, taxonomy.load()) for d in drafts]
+    results = [finish(d, factory.library, factory.index, factory.learnt, factory.postopt, factory.verify, taxonomy.load()) for d in drafts]
     seconds["finished"] = seconds.get("finished", 0.0) + time.process_time() - start
     return sets | {"finished": rooms_of(jobs, [result.placements for result in results])}
 

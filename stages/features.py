@@ -15,8 +15,8 @@ from pipeline import params, seeds, taxonomy
 from pipeline.entry import run
 from pipeline.features import net as nets
 from pipeline.features.training import train
-from pipeline.metrics.harm import HARMS
 from pipeline.metrics.layout_features import summaries
+from pipeline.metrics.perturbations import HARMS
 from pipeline.metrics.relations import furniture
 from pipeline.metrics.views import STATES, views_of
 from pipeline.relations.split import rooms_of

@@ -9,19 +9,19 @@ from pathlib import Path
 
 from pipeline.entities.home import Home
 from pipeline.execution import Progress, Voice, single_thread
-from pipeline.execution.notes import listen
+from pipeline.execution.messages import listen
 from pipeline.floorplan import FloorProgram, describe, plan_json, request
 from pipeline.floorplan.draw.drawing import svg
 from pipeline.floorplan.imports import program_of, read_own, told
 from pipeline.floorplan.program.assumptions import assumptions, notes
 from pipeline.floorplan.wishes import with_wishes
-from pipeline.homes.delivery import deliveries, report
 from pipeline.homes.factory import open_factory
+from pipeline.homes.furniture_report import deliveries, report
+from pipeline.homes.jit_warmup import warm_up
 from pipeline.homes.outcomes import Empty
 from pipeline.homes.reproduction import made_with
 from pipeline.homes.request import Request
 from pipeline.homes.soundness import require_sound
-from pipeline.homes.warmth import warm_up
 from pipeline.manifest import digest
 from pipeline.shards import Header, add_part, commit_shard, gather, open_or_create, require_prompt
 
@@ -54,7 +54,7 @@ def main(
     listen(None)
     if isinstance(outcome, Empty):
         raise outcome.error
-    with open_or_create(out, header, factory.shelf) as dataset:
+    with open_or_create(out, header, factory.asset_cache) as dataset:
         if dataset.missing():
             progress.phase("writing the assets")
             assumed = assumptions(program) if source is None else []

@@ -13,11 +13,11 @@ from pipeline.entry import run
 from pipeline.execution import Progress, cores
 from pipeline.homes.drafts import drafts_of
 from pipeline.homes.factory import Factory, open_factory
+from pipeline.homes.home_state import HomeDraft
 from pipeline.homes.production import Recipe, fill
 from pipeline.homes.reproduction import made_with
 from pipeline.homes.request import Request
 from pipeline.homes.settings import DatasetSettings, requests_of
-from pipeline.homes.work import HomeDraft
 from pipeline.manifest import digest, write_json
 from pipeline.shards import Header, open_or_create
 from schemas.objects import OBJECTS
@@ -36,7 +36,7 @@ def main(root: Path) -> None:
     named = {**factory.digests, "prompts": digest([request.prompt for request in asked])}
     header = Header(seed, len(asked), factory.shard_size, factory.licence, named, made_with())
     progress = Progress(len(asked), "postopt")
-    with open_or_create(root / "data" / "shards", header, factory.shelf, discard=True) as dataset:
+    with open_or_create(root / "data" / "shards", header, factory.asset_cache, discard=True) as dataset:
         recipe = Recipe(partial(open_factory, root, seed), partial(first_drafts, root))
         tally = fill(dataset, recipe, lambda index: asked[index], workers=cores(), progress=progress)
     progress.close()

@@ -10,13 +10,13 @@ from pathlib import Path
 from pipeline.errors import SfgenError, UsageError
 from pipeline.execution import Progress, Voice, cores
 from pipeline.homes.factory import open_factory
+from pipeline.homes.jit_warmup import warm_up
 from pipeline.homes.library import MEMORY
-from pipeline.homes.order import read_order
 from pipeline.homes.outcomes import Empty
 from pipeline.homes.production import FAILURES, Recipe, Tally, fill
+from pipeline.homes.prompt_mix import read_order
 from pipeline.homes.reproduction import made_with
 from pipeline.homes.request import Request
-from pipeline.homes.warmth import warm_up
 from pipeline.shards import Header, forget_altered, open_or_create, read_header
 
 
@@ -50,7 +50,7 @@ def main(
         return try_one(root, seed, order.asked(only))
     header = Header(seed, count, factory.shard_size, factory.licence, {**factory.digests, "prompts": order.digest()}, made_with())
     workers = workers or cores()
-    with open_or_create(folder, header, factory.shelf) as dataset:
+    with open_or_create(folder, header, factory.asset_cache) as dataset:
         if dataset.missing():
             warm_up(progress, root)
         again = shlex.join(
@@ -58,7 +58,7 @@ def main(
         )
         tally = fill(
             dataset,
-            Recipe(opened, shelve=scheduler is None, digests=factory.digests),
+            Recipe(opened, cache_assets=scheduler is None, digests=factory.digests),
             order.asked,
             workers=workers,
             scheduler=scheduler,
@@ -74,7 +74,7 @@ def repair(root: Path, *, folder: Path, prompts: Path | None = None, workers: in
     """Make again what is broken or missing of a dataset, by the checkout that made it; returns the exit code of `main`."""
     header = read_header(folder)
     progress = Progress(0, "homes", voice=voice)
-    with open_or_create(folder, header, open_factory(root, header.seed).shelf) as dataset:
+    with open_or_create(folder, header, open_factory(root, header.seed).asset_cache) as dataset:
         for name in forget_altered(dataset, FAILURES):
             progress.say(f"{name} is made again")
     return main(root, count=header.count, out=folder, seed=header.seed, workers=workers, prompts=prompts, voice=voice)

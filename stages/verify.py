@@ -38,7 +38,7 @@ def again(root: Path, folder: Path, count: int, prompts: Path | None, progress: 
     if not count:
         return 0
     from pipeline.homes.factory import open_factory
-    from pipeline.homes.order import asked_of
+    from pipeline.homes.prompt_mix import asked_of
     from pipeline.homes.reproduction import chosen, differing, made_with
 
     header = read_header(folder)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from pipeline.entry import run
-from pipeline.homes.warmth import warm
+from pipeline.homes.jit_warmup import warm
 
 
 def main(root: Path) -> None:

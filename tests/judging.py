@@ -5,7 +5,7 @@ from pathlib import Path
 
 from pipeline import params
 from pipeline.arrange import Site
-from pipeline.homes.finish import MARGIN
+from pipeline.homes.room_finishing import MARGIN
 from pipeline.verify import VerifySettings
 
 SETTINGS = params.section(VerifySettings, params.read(Path(__file__).parents[1] / "params.yaml"), "verify")

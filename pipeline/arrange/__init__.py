@@ -1,8 +1,8 @@
 """Post-optimisation: walkable area (algorithm 2 of the paper), relations made exact, and what is left of collisions separated."""
 
 from pipeline.arrange.hanging import Hanging, Window
-from pipeline.arrange.lore import Lore
-from pipeline.arrange.room import Arranged, post_optimise
+from pipeline.arrange.learnt_relations import LearntRelations
+from pipeline.arrange.postoptimisation import Arranged, post_optimise
 from pipeline.arrange.rugs import lay_rug
 from pipeline.arrange.separate import Reject, Separated, separate
 from pipeline.arrange.settings import PostoptSettings, SeparateSettings, ThingsSettings, WalkableSettings
@@ -15,7 +15,7 @@ __all__ = [
     "Controlled",
     "Hanging",
     "Laying",
-    "Lore",
+    "LearntRelations",
     "PostoptSettings",
     "Reject",
     "SeparateSettings",

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.item import Item, other_wall
-from pipeline.arrange.lore import Lore
+from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.geometry.compiled import compiled
 from pipeline.relations.frames import SIDES
 
@@ -41,21 +41,23 @@ class Bond:
     over: bool
 
 
-def find_bond(i: int, items: Sequence[Item], wished: Floats, poses: Floats, lore: Lore) -> Bond | None:
+def find_bond(i: int, items: Sequence[Item], wished: Floats, poses: Floats, learnt: LearntRelations) -> Bond | None:
     """Return the bond of item `i`, wished at a pose (4,), to one of those that are larger, at their `poses` (N, 4) or where they were wished."""
     item = items[i]
     larger = [j for j, other in enumerate(items) if other.mount == "floor" and (other.area, -j) > (item.area, -i)]
     alike = [j for j in larger if items[j].placement.category == item.placement.category]
-    others = _best_bond(item, [j for j in larger if j not in alike], items, wished, poses, lore)
-    return others or _best_bond(item, alike, items, wished, poses, lore)  # chairs go with their table, not with each other
+    others = _best_bond(item, [j for j in larger if j not in alike], items, wished, poses, learnt)
+    return others or _best_bond(item, alike, items, wished, poses, learnt)  # chairs go with their table, not with each other
 
 
-def _best_bond(item: Item, anchors: Sequence[int], items: Sequence[Item], wished: Floats, poses: Floats, lore: Lore) -> Bond | None:
+def _best_bond(
+    item: Item, anchors: Sequence[int], items: Sequence[Item], wished: Floats, poses: Floats, learnt: LearntRelations
+) -> Bond | None:
     """Return the strongest and nearest bond of an item to one of some anchors."""
     best: tuple[float, Bond] | None = None
     for j in anchors:
         other = items[j]
-        found = lore.modes(other.placement.category, item.placement.category)
+        found = learnt.modes(other.placement.category, item.placement.category)
         if found is None:
             continue
         table, strength = found
@@ -89,9 +91,9 @@ def at_anchor(pose: Floats, local: Floats) -> Floats:
     )
 
 
-def mode_poses(anchor: Item, at: Floats, item: Item, wished: Floats, lore: Lore) -> Floats:
+def mode_poses(anchor: Item, at: Floats, item: Item, wished: Floats, learnt: LearntRelations) -> Floats:
     """Return the poses (K, 3) x, y, yaw of an item in each mode at an anchor that stands at (x, y, z, yaw): those nearest to `wished`."""
-    found = lore.modes(anchor.placement.category, item.placement.category)
+    found = learnt.modes(anchor.placement.category, item.placement.category)
     if found is None:
         return np.zeros((0, 3))
     table = found[0]
@@ -174,13 +176,15 @@ def nearest(table: Floats, anchor: Floats, half: Floats, member: Floats, own: Fl
     return best
 
 
-def broken(bonds: Sequence[Bond | None], items: Sequence[Item], poses: Floats, there: NDArray[np.bool_], lore: Lore) -> list[int]:
+def broken(
+    bonds: Sequence[Bond | None], items: Sequence[Item], poses: Floats, there: NDArray[np.bool_], learnt: LearntRelations
+) -> list[int]:
     """Return the objects that stand and have lost what they were bound to: the anchor is gone, or they are off every mode at it."""
     lost = []
     for i, bond in enumerate(bonds):
         if bond is None or not there[i]:
             continue
-        found = lore.modes(items[bond.anchor].placement.category, items[i].placement.category)
+        found = learnt.modes(items[bond.anchor].placement.category, items[i].placement.category)
         if not there[bond.anchor] or found is None:
             lost.append(i)
             continue

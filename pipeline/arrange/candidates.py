@@ -10,11 +10,11 @@ import shapely
 from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import mode_poses
-from pipeline.arrange.exact import ACROSS, height
 from pipeline.arrange.item import Item, other_wall, turned, wrapped
-from pipeline.arrange.lore import Lore
+from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
+from pipeline.arrange.snapping import ACROSS, height
 from pipeline.arrange.walls import Edge, at_wall, hides_window, opening_cost
 
 Floats = NDArray[np.float64]
@@ -70,13 +70,13 @@ def everywhere(item: Item, target: Floats, walls: Sequence[Edge], site: Site, se
 
 
 def at_anchor_poses(
-    item: Item, target: Floats, anchor: Item, at: Floats, walls: Sequence[Edge], lore: Lore, settings: SeparateSettings
+    item: Item, target: Floats, anchor: Item, at: Floats, walls: Sequence[Edge], learnt: LearntRelations, settings: SeparateSettings
 ) -> tuple[Floats, Floats]:
     """Return poses of a member in every mode at its anchor, which stands at `at` (4,), and a little along and out of them.
 
     What belongs to a wall, and stands across the room from its anchor, is at the wall behind the mode.
     """
-    modes = mode_poses(anchor, at, item, target, lore)
+    modes = mode_poses(anchor, at, item, target, learnt)
     if item.habit.must:
         across = [
             at_wall(item, np.insert(m, 2, target[2]), walls, ACROSS, settings.turn_cost) if other_wall(m[2] - at[3]) else m for m in modes

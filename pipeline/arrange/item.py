@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.lore import Habit, Lore
+from pipeline.arrange.learnt_relations import Habit, LearntRelations
 from pipeline.arrange.shapes import Shape, shape
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
@@ -44,10 +44,10 @@ class Item:
         return replace(self.placement, position=np.round(pose[:3], 4) + 0.0, yaw=wrapped(float(pose[3])))
 
 
-def make_item(placement: Placement, assets: Mapping[str, Asset], lore: Lore, access_depth: float) -> Item:
+def make_item(placement: Placement, assets: Mapping[str, Asset], learnt: LearntRelations, access_depth: float) -> Item:
     """Prepare a placement."""
     wished = np.array([*placement.position, placement.yaw])
-    habit = lore.habit(placement.category)
+    habit = learnt.habit(placement.category)
     made = shape(assets[placement.asset_id], placement.scale, access_depth, habit.access)
     return Item(placement, made, habit, wished, np.asarray(placement.size[:2]) / 2)
 

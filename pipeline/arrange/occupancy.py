@@ -15,7 +15,7 @@ from pipeline.arrange.site import Site
 from pipeline.arrange.world import composed, free_poses, make_world, put
 from pipeline.geometry.free_space import FreeSpace
 from pipeline.geometry.prisms import Prisms
-from pipeline.geometry.standing import stand_pose
+from pipeline.geometry.stance import stand_pose
 
 Floats = NDArray[np.float64]
 

@@ -15,14 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import Bond, broken
-from pipeline.arrange.exact import exact_poses
 from pipeline.arrange.item import Item, make_item
-from pipeline.arrange.lore import Lore
+from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.occupancy import Occupancy
 from pipeline.arrange.runs import lay_runs
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.settling import Draft, settle_all
 from pipeline.arrange.site import Site
+from pipeline.arrange.snapping import exact_poses
 from pipeline.arrange.walls import edges
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
@@ -75,26 +75,26 @@ def separate(
     site: Site,
     placements: Sequence[Placement],
     assets: Mapping[str, Asset],
-    lore: Lore,
+    learnt: LearntRelations,
     settings: SeparateSettings | None = None,
     smaller: Smaller | None = None,
     *,
     keep_count: bool = False,
 ) -> Separated:
-    """Separate the objects of one room; `lore` is what the training tables know of relations.
+    """Separate the objects of one room; `learnt` is what the training tables know of relations.
 
     `smaller` finds smaller assets for what does not fit; with `keep_count` a room that loses an object has failed.
     """
     settings = settings or SeparateSettings()
-    asked = [make_item(p, assets, lore, settings.access_depth) for p in placements]
+    asked = [make_item(p, assets, learnt, settings.access_depth) for p in placements]
     items = list(asked)
     losses = [0] * len(items)
     first: list[int] = []
     best: dict[int, Placement] = {}
     least: tuple[float, float] | None = None
     for number in range(max(1, settings.rounds)):
-        occupancy, sound, bonds = _arranged(site, items, first, lore, settings, number)
-        apart = broken(bonds, items, occupancy.poses, occupancy.there, lore)
+        occupancy, sound, bonds = _arranged(site, items, first, learnt, settings, number)
+        apart = broken(bonds, items, occupancy.poses, occupancy.there, learnt)
         there = {i: items[i].at(occupancy.poses[i]) for i in np.flatnonzero(occupancy.there).tolist()}
         lost = [i for i in range(len(items)) if i not in there]
         score = _score(there, items, BROKEN * len(apart) + UNREACHED * len(occupancy.unreached))
@@ -108,7 +108,7 @@ def separate(
                 losses[i] += 1
             # To be the first and still find no place, or none at the anchor, is to be too large.
             crowded = [i for i in (*lost, *apart) if losses[i] > (i in lost)]
-            changed = _exchange(items, crowded, assets, lore, settings, smaller)
+            changed = _exchange(items, crowded, assets, learnt, settings, smaller)
             if not (lost or changed or hidden):
                 break
         first = [*lost, *(i for i in hidden if number and i not in lost), *(i for i in first if i not in (*lost, *hidden))]
@@ -116,14 +116,14 @@ def separate(
 
 
 def _arranged(
-    site: Site, items: list[Item], first: Sequence[int], lore: Lore, settings: SeparateSettings, number: int
+    site: Site, items: list[Item], first: Sequence[int], learnt: LearntRelations, settings: SeparateSettings, number: int
 ) -> tuple[Occupancy, bool, list[Bond | None]]:
     """Arrange a room once; return who stands where, whether the floor is sound (looked at for each group after round 0), the bonds."""
     walls = edges(site)
     runs, laid = lay_runs(items, walls, site)
-    poses, bonds = exact_poses(items, site, walls, lore, settings, laid)
+    poses, bonds = exact_poses(items, site, walls, learnt, settings, laid)
     occupancy = Occupancy(site, items, settings, [i for i, bond in enumerate(bonds) if bond is not None])
-    settle_all(occupancy, Draft(poses, bonds, runs, walls, lore), first, careful=number > 0, bulk=number <= 1)
+    settle_all(occupancy, Draft(poses, bonds, runs, walls, learnt), first, careful=number > 0, bulk=number <= 1)
     if number > 0:
         return occupancy, True, bonds
     found = occupancy.out_of_reach()
@@ -152,20 +152,27 @@ def _score(placed: Mapping[int, Placement], items: Sequence[Item], faults: float
 
 
 def _exchange(
-    items: list[Item], crowded: Sequence[int], assets: Mapping[str, Asset], lore: Lore, settings: SeparateSettings, smaller: Smaller
+    items: list[Item],
+    crowded: Sequence[int],
+    assets: Mapping[str, Asset],
+    learnt: LearntRelations,
+    settings: SeparateSettings,
+    smaller: Smaller,
 ) -> bool:
     """Exchange objects for smaller assets, and with each all that are of one model with it; tell whether any was."""
     changed = False
     for name in sorted({items[i].placement.asset_id for i in crowded}):
         alike = [i for i, item in enumerate(items) if item.placement.asset_id == name]
-        made = {i: _exchanged(items[i], assets, lore, settings, smaller) for i in alike}
+        made = {i: _exchanged(items[i], assets, learnt, settings, smaller) for i in alike}
         for i, item in made.items():
             items[i] = item or items[i]
             changed |= item is not None
     return changed
 
 
-def _exchanged(item: Item, assets: Mapping[str, Asset], lore: Lore, settings: SeparateSettings, smaller: Smaller) -> Item | None:
+def _exchanged(
+    item: Item, assets: Mapping[str, Asset], learnt: LearntRelations, settings: SeparateSettings, smaller: Smaller
+) -> Item | None:
     """Return the item as a smaller asset of its category, by at least a tenth, wished where it was; None if there is none."""
     now = item.placement
     match = smaller(now.asset_id, 0.9 * float(now.size[0] * now.size[1]))
@@ -173,4 +180,4 @@ def _exchanged(item: Item, assets: Mapping[str, Asset], lore: Lore, settings: Se
         return None
     size = assets[match.asset_id].size * match.scale
     now = replace(now, asset_id=match.asset_id, size=size, scale=match.scale, retrieval_distance=match.distance)
-    return replace(make_item(now, assets, lore, settings.access_depth), wished=item.wished)
+    return replace(make_item(now, assets, learnt, settings.access_depth), wished=item.wished)

@@ -12,7 +12,7 @@ from pipeline.arrange.bonds import Bond, at_anchor
 from pipeline.arrange.candidates import ALONE, at_anchor_poses, everywhere, hides, near_by
 from pipeline.arrange.groups import Group, group_of, groups
 from pipeline.arrange.item import wrapped
-from pipeline.arrange.lore import Lore
+from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.occupancy import Occupancy
 from pipeline.arrange.walls import Edge
 from pipeline.arrange.world import FREE, conflicts, put
@@ -31,7 +31,7 @@ class Draft:
     bonds: Sequence[Bond | None]
     runs: Sequence[Sequence[int]]
     walls: Sequence[Edge]
-    lore: Lore
+    learnt: LearntRelations
 
     def pose(self, i: int) -> Floats:
         """Return the exact pose of an object."""
@@ -106,7 +106,7 @@ def _beside(occupancy: Occupancy, draft: Draft, i: int, group: Group, poses: Flo
     if bond is None or bond.over:
         return None
     found, costs = at_anchor_poses(
-        occupancy.items[i], poses[i], occupancy.items[bond.anchor], poses[bond.anchor], draft.walls, draft.lore, occupancy.settings
+        occupancy.items[i], poses[i], occupancy.items[bond.anchor], poses[bond.anchor], draft.walls, draft.learnt, occupancy.settings
     )
     others = np.zeros(len(occupancy.items), np.bool_)
     others[group.members[group.members != i]] = True
@@ -169,7 +169,7 @@ def _near(occupancy: Occupancy, draft: Draft, i: int) -> tuple[Floats, Floats]:
     if bond is None or bond.over or not occupancy.there[bond.anchor]:
         return poses, costs
     anchor = occupancy.items[bond.anchor]
-    beside, cost = at_anchor_poses(item, target, anchor, occupancy.poses[bond.anchor], draft.walls, draft.lore, occupancy.settings)
+    beside, cost = at_anchor_poses(item, target, anchor, occupancy.poses[bond.anchor], draft.walls, draft.learnt, occupancy.settings)
     if not len(beside):
         return poses, costs
     poses, costs = np.concatenate([beside, poses]), np.concatenate([cost, np.where(costs > 0.05, costs + ALONE, costs)])

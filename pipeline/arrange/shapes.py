@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Joint
 from pipeline.geometry.convex import hull
-from pipeline.geometry.kept import kept
 from pipeline.geometry.kinematics import OPENERS, facing, handle_point
+from pipeline.geometry.memo import kept
 from pipeline.geometry.prisms import Prisms, Sweep, prism, solid, stacked
 
 Floats = NDArray[np.float64]

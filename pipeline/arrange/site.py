@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.plan import Opening, Plan
+from pipeline.geometry.door_sweeps import leaf_sweep
 from pipeline.geometry.free_space import PASSABLE, Floor, FreeSpace, bare_floor, free_space
-from pipeline.geometry.leaves import leaf_sweep
 from pipeline.geometry.prisms import Prisms, stacked
 from pipeline.geometry.robot import Robot
 from pipeline.geometry.walls import leaves

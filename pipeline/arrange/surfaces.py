@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pipeline import taxonomy
 from pipeline.entities.asset import Asset, Link
 from pipeline.geometry.convex import hull
-from pipeline.geometry.kept import kept
+from pipeline.geometry.memo import kept
 from pipeline.geometry.prisms import Prisms, solid
 
 Floats = NDArray[np.float64]

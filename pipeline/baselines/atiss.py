@@ -12,7 +12,7 @@ import math
 import torch
 from torch import Tensor, nn
 
-from pipeline.baselines import logistics
+from pipeline.baselines import logistic_mixture as logistics
 from pipeline.baselines.rooms import BOX, Furniture, Outlines
 from pipeline.baselines.scaling import PLACE, SIZE, Found, Scaling
 from pipeline.baselines.settings import BaselineSettings

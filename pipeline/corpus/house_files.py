@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from pipeline.corpus import reference
+from pipeline.corpus import front_statistics
 from pipeline.corpus.calibration.tally import HouseTally, tally
 from pipeline.corpus.front_writer import DIALECTS, scene_json
 from pipeline.corpus.furniture.catalogue import catalogue
@@ -31,5 +31,5 @@ def write_houses(folder: Path, seed: int, settings: CorpusSettings, indices: ran
             litter = corruption.litter(rng, house)
         scene = scene_json(house, dialect, rng, litter)
         (folder / f"{house.uid}.json").write_text(json.dumps(scene, separators=(",", ":")), encoding="utf-8")
-        tallies.append(tally(house, scene, reference.load()))
+        tallies.append(tally(house, scene, front_statistics.load()))
     return tallies

@@ -2,7 +2,7 @@
 
 from pipeline.execution.jobs import map_jobs
 from pipeline.execution.machine import cores, pin_instructions, single_thread
-from pipeline.execution.notes import tell
+from pipeline.execution.messages import tell
 from pipeline.execution.progress import Progress, Voice, track
 from pipeline.execution.queue import Lost
 

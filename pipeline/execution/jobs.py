@@ -7,7 +7,7 @@ from typing import TypeVar, overload
 
 from pipeline.errors import ContentError
 from pipeline.execution.machine import single_thread
-from pipeline.execution.notes import Note, listen
+from pipeline.execution.messages import Note, listen
 from pipeline.execution.queue import Lost, Queue, Split
 
 J = TypeVar("J")

@@ -18,7 +18,7 @@ from typing import Any, NoReturn, TypeVar
 
 from pipeline.errors import ContentError
 from pipeline.execution.machine import single_thread
-from pipeline.execution.notes import Note, listen
+from pipeline.execution.messages import Note, listen
 from pipeline.execution.queue import STRIKES, Lost, Queue, Task
 
 J = TypeVar("J")

@@ -26,7 +26,7 @@ from pipeline.metrics.layout_features import features
 from pipeline.metrics.rows import Row
 from pipeline.metrics.two_samples import forest_accuracy
 from pipeline.relations.arrangement import Arrangement, RoomOpening, arranged
-from pipeline.relations.known import Relations
+from pipeline.relations.model import Relations
 
 Furnish = Callable[[Sequence[RoomContext]], list[list[Proposal]]]
 Json = dict[str, Any]

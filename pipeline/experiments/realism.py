@@ -13,14 +13,14 @@ from pipeline import seeds, tables, taxonomy
 from pipeline.experiments.rooms import FIRST
 from pipeline.features import inception, net
 from pipeline.homes.rows import Row
-from pipeline.metrics.harm import HARMS, Harm, spoilt
 from pipeline.metrics.layout_features import features
 from pipeline.metrics.novelty import novelty
+from pipeline.metrics.perturbations import HARMS, Harm, spoilt
 from pipeline.metrics.relations import compare, furniture
 from pipeline.metrics.two_samples import forest_accuracy
 from pipeline.metrics.views import STATES, Embed, compare_views
 from pipeline.relations.arrangement import Arrangement, from_rows
-from pipeline.relations.known import Relations
+from pipeline.relations.model import Relations
 from pipeline.relations.split import rooms_of
 from schemas.objects import OBJECTS
 from schemas.openings import OPENINGS

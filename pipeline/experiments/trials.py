@@ -10,9 +10,9 @@ from pipeline.diffusion.settings import Articulation
 from pipeline.entities.home import Placement
 from pipeline.experiments.rooms import room_home
 from pipeline.homes.factory import Factory
-from pipeline.homes.finish import RoomResult, finish
 from pipeline.homes.furnish import Draft
 from pipeline.homes.request import RoomJob
+from pipeline.homes.room_finishing import RoomResult, finish
 from pipeline.homes.rows import Row, object_row, room_row
 from pipeline.homes.violations import violations
 from pipeline.verify import verify_home
@@ -86,7 +86,7 @@ def _finished(factory: Factory, asked: Sequence[Draft], drafts: Drafts) -> tuple
     for attempt in range(factory.shard.room_attempts):
         for i, draft in pending:
             result = _cleared(
-                factory, finish(draft, factory.library, factory.index, factory.lore, factory.postopt, factory.verify, taxonomy.load())
+                factory, finish(draft, factory.library, factory.index, factory.learnt, factory.postopt, factory.verify, taxonomy.load())
             )
             first.setdefault(i, result)
             if i not in best or result.rank() > best[i].rank():

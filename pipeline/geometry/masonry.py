@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from pipeline.entities.plan import Plan
-from pipeline.geometry.kept import recent
+from pipeline.geometry.memo import recent
 from pipeline.geometry.tiling import convex_pieces
 from pipeline.geometry.walls import SLAB, Cut, Prism, Shell
 

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from pipeline.entities.asset import Asset, Joint, Link
 from pipeline.geometry.compiled import compiled
 from pipeline.geometry.convex import hull
-from pipeline.geometry.kept import kept
 from pipeline.geometry.kinematics import joint_motion, joint_range, moved_links
+from pipeline.geometry.memo import kept
 
 Floats = NDArray[np.float64]
 

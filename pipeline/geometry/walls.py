@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from shapely.geometry import LineString, Polygon
 
 from pipeline.entities.plan import Opening, Plan, Room
-from pipeline.geometry.kept import recent
+from pipeline.geometry.memo import recent
 from pipeline.geometry.stairs import Step, steps
 from pipeline.geometry.tiling import convex_pieces, polygons
 

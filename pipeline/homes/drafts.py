@@ -9,9 +9,9 @@ from pipeline.entities.home import Home
 from pipeline.floorplan.program.floor_program import FloorProgram
 from pipeline.homes.factory import Factory
 from pipeline.homes.furnish import Draft, taste_of
+from pipeline.homes.home_state import HomeDraft
 from pipeline.homes.request import Request
 from pipeline.homes.rows import Row, homes_of, object_row, opening_row, reject_row, room_row, scene_row
-from pipeline.homes.work import HomeDraft
 from pipeline.shards import scene_id
 
 NO_ASSET = "no_asset"

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from pipeline import floorplan, params, seeds, tables, taxonomy
-from pipeline.arrange import Lore, PostoptSettings
+from pipeline.arrange import LearntRelations, PostoptSettings
 from pipeline.diffusion.sampling import Sampler
 from pipeline.diffusion.settings import SampleSettings
 from pipeline.entities.home import Home, Placement
@@ -30,19 +30,19 @@ from pipeline.floorplan.language import parse
 from pipeline.floorplan.program.floor_program import Furniture
 from pipeline.floorplan.program.furniture import meant, needed, plain
 from pipeline.floorplan.program.priors import PriorSettings
+from pipeline.homes.asset_cache import AssetCache
 from pipeline.homes.clutter import small_things
 from pipeline.homes.exports import files_of
-from pipeline.homes.finish import finish
 from pipeline.homes.furnish import Draft, furnish
+from pipeline.homes.home_state import HomeDraft, Work
 from pipeline.homes.library import MEMORY, Library, kept_within
 from pipeline.homes.outcomes import Empty, Outcome
 from pipeline.homes.request import Request, RoomJob, layout_type
+from pipeline.homes.room_finishing import finish
 from pipeline.homes.rows import home_rows, reject_row
 from pipeline.homes.settings import ShardSettings
-from pipeline.homes.shelf import AssetShelf
 from pipeline.homes.soundness import closed_rooms
 from pipeline.homes.violations import Violation, violations
-from pipeline.homes.work import HomeDraft, Work
 from pipeline.manifest import digest, sha256_file
 from pipeline.relations import files as relation_files
 from pipeline.retrieval.index import AssetIndex
@@ -57,7 +57,7 @@ PLANS = 8  # plans of one attempt that the judge may find unsound
 
 @dataclass(frozen=True)
 class Factory:
-    """Everything that making homes needs, loaded once per process. `lore` is what the training tables know of relations; `seconds` sums CPU seconds by part."""
+    """Everything that making homes needs, loaded once per process. `learnt` is what the training tables know of relations; `seconds` sums CPU seconds by part."""
 
     seed: int
     sampler: Sampler
@@ -68,7 +68,7 @@ class Factory:
     verify: VerifySettings
     prior: PriorSettings
     digests: Mapping[str, str]
-    lore: Lore
+    learnt: LearntRelations
     seconds: dict[str, float] = field(default_factory=dict)
 
     @property
@@ -213,7 +213,7 @@ class Factory:
         work.pending.remove(job)
         work.tries += 1
         with self._charged(work), self.timed("postopt"):
-            result = finish(draft, self.library, self.index, self.lore, self.postopt, self.verify, taxonomy.load())
+            result = finish(draft, self.library, self.index, self.learnt, self.postopt, self.verify, taxonomy.load())
         before = work.results.get(job.room_id)
         work.rejects.extend(reject_row(scene_id(self.seed, job.index), job.room_id, job.attempt, r) for r in result.rejects)
         if before is None or result.rank() > before.rank():
@@ -329,9 +329,9 @@ class Factory:
         return Outcome(home, work.certificate, rows, exported)
 
     @functools.cached_property
-    def shelf(self) -> AssetShelf:
-        """Return the shelf of this machine from which datasets take their assets."""
-        return AssetShelf(self.library, self.digests["code"])
+    def asset_cache(self) -> AssetCache:
+        """Return the asset cache of this machine from which datasets take their assets."""
+        return AssetCache(self.library, self.digests["code"])
 
 
 def told_count(wish: Furniture, rng: np.random.Generator) -> int | None:
@@ -371,7 +371,7 @@ def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
             "relations": sha256_file(relations),
             "weights": sha256_file(weights),
         },
-        Lore(relation_files.load(relations)),
+        LearntRelations(relation_files.load(relations)),
     )
 
 

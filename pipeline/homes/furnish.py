@@ -13,9 +13,9 @@ from pipeline.diffusion.sampling import Sampler
 from pipeline.entities.home import Placement
 from pipeline.homes.request import RoomJob
 from pipeline.homes.rounding import rounded
-from pipeline.retrieval.anchor import anchored
 from pipeline.retrieval.index import AssetIndex, Match
 from pipeline.retrieval.taste import FinishOf, Taste, draw_finishes, draw_style, tasteful
+from pipeline.retrieval.wall_alignment import anchored
 from pipeline.taxonomy import Taxonomy
 
 FREE_CHOICE = 2  # tries of a room in which any category of an essential group will do

@@ -15,7 +15,7 @@ from pipeline.entities.asset import Asset
 from pipeline.entities.files import load_asset
 from pipeline.errors import ContentError
 from pipeline.manifest import digest
-from pipeline.retrieval.finish import finish_of
+from pipeline.retrieval.surface_colour import finish_of
 from schemas.assets import ASSET_JOINTS, ASSETS
 
 MEMORY = 700  # of a process that makes homes [MiB]

@@ -19,9 +19,9 @@ from pipeline import tables
 from pipeline.errors import ContentError, SfgenError
 from pipeline.execution import Lost, Progress, map_jobs
 from pipeline.homes.factory import Factory, forget_factory
+from pipeline.homes.home_state import HomeDraft
 from pipeline.homes.outcomes import Empty, Outcome
 from pipeline.homes.request import Request
-from pipeline.homes.work import HomeDraft
 from pipeline.shards import (
     EMPTY,
     TABLES,
@@ -71,13 +71,13 @@ class Batch:
 class Recipe:
     """What a worker needs to make chunks: how to open the factory, and the first drafts, where a stage has made them.
 
-    With `shelve` it also puts the assets on its machine's shelf, from which the dataset takes them. `digests` are what the dataset
+    With `cache_assets` it also puts the assets into its machine's cache, from which the dataset takes them. `digests` are what the dataset
     says that homes are made of: a worker that has loaded something else loads again, or refuses.
     """
 
     opened: Callable[[], Factory]
     drafts: Callable[[Factory, Sequence[Request]], list[HomeDraft]] | None = None
-    shelve: bool = True
+    cache_assets: bool = True
     digests: Mapping[str, str] = field(default_factory=dict)
 
     def factory(self) -> Factory:
@@ -204,9 +204,9 @@ def make_chunk(recipe: Recipe, chunk: Chunk) -> Batch:
     outcomes = attempt(factory, chunk.requests, first)
     brought = [(o.rows(factory.seed), {}) if isinstance(o, Empty) else (o.rows, o.files) for o in outcomes]
     homes = tuple(gather(chunk.shard, [home]) for home in brought)
-    if recipe.shelve:
+    if recipe.cache_assets:
         with factory.timed("library"):
-            factory.shelf.stock(row["asset_id"] for home in homes for row in home.rows["objects"])
+            factory.asset_cache.stock(row["asset_id"] for home in homes for row in home.rows["objects"])
     retries = sum(row["what"] in {"room", "home"} for home in homes for row in home.rows["rejects"])
     return Batch(homes, tuple(o for o in outcomes if isinstance(o, Empty)), dict(factory.seconds), retries)
 

@@ -10,9 +10,9 @@ import numpy as np
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Opening, Plan, Room, Swing
-from pipeline.homes.finish import RoomResult
 from pipeline.homes.reasons import REASONS
 from pipeline.homes.request import layout_type
+from pipeline.homes.room_finishing import RoomResult
 from pipeline.manifest import sha256
 from pipeline.taxonomy import Taxonomy
 from pipeline.verify import Certificate

@@ -16,7 +16,7 @@ from pipeline import taxonomy
 from pipeline.metrics.intervals import Rate, bootstrap, rate
 from pipeline.metrics.rules import CHAIRS, RULES, TABLES, Rule, backs, frames_of, of
 from pipeline.relations.arrangement import Arrangement, arranged
-from pipeline.relations.known import PairRelation, Relations
+from pipeline.relations.model import PairRelation, Relations
 from pipeline.relations.modes import held
 
 Json = dict[str, Any]

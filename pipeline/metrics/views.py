@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.metrics.harm import HARMS
+from pipeline.metrics.perturbations import HARMS
 from pipeline.metrics.two_samples import frechet, kernel_distance, linear_accuracy
 from pipeline.relations.arrangement import Arrangement
 from pipeline.rendering.plan_view import SIZE, plan_view

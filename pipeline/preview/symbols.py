@@ -12,8 +12,8 @@ from PIL import ImageDraw
 
 from pipeline.entities.asset import Asset, Joint
 from pipeline.entities.home import Placement
-from pipeline.geometry.kept import kept
 from pipeline.geometry.kinematics import joint_motion
+from pipeline.geometry.memo import kept
 from pipeline.geometry.tiling import polygons
 from pipeline.geometry.walls import Cut, Leaf, Shell
 from pipeline.rendering.pose import placement_transform

@@ -8,7 +8,7 @@ from typing import Any
 
 from pipeline.errors import ContentError
 from pipeline.manifest import write_bytes
-from pipeline.relations.known import PairRelation, Relations, WallRelation, relations
+from pipeline.relations.model import PairRelation, Relations, WallRelation, relations
 from pipeline.relations.modes import Mode, Span
 
 VERSION = 1

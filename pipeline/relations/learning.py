@@ -14,7 +14,7 @@ from pipeline.relations import walls
 from pipeline.relations.arrangement import Arrangement
 from pipeline.relations.clusters import entropy, split
 from pipeline.relations.frames import ALONG, NORMAL, OVER, SIDES, Boxes, Frames, measured, relate, wrapped
-from pipeline.relations.known import PairRelation, Relations, relations
+from pipeline.relations.model import PairRelation, Relations, relations
 from pipeline.relations.modes import Mode, Span, held
 
 Floats = NDArray[np.float64]

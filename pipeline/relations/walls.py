@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pipeline.relations.arrangement import Arrangement
 from pipeline.relations.clusters import split
-from pipeline.relations.known import WallRelation
+from pipeline.relations.model import WallRelation
 from pipeline.relations.modes import METRES, RADIANS, Span
 
 Floats = NDArray[np.float64]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset
 from pipeline.geometry.compiled import compiled
-from pipeline.geometry.kept import kept
+from pipeline.geometry.memo import kept
 from pipeline.rendering.pose import asset_triangles
 from pipeline.rendering.raster import AMBIENT, LIGHT, Frame, View, fill_triangle, render, top_down
 from pipeline.rendering.texture import display, face_colours

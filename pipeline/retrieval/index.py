@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.errors import ContentError
+from pipeline.retrieval.box_merging import merged_boxes
 from pipeline.retrieval.settings import RetrievalSettings
-from pipeline.retrieval.sweeps import merged_boxes
 
 Row = Mapping[str, Any]
 

@@ -5,17 +5,17 @@ from pipeline.shards.content import ShardContent, gather
 from pipeline.shards.dataset import Dataset, add_part, commit_shard, committed, forget_altered, open_or_create
 from pipeline.shards.header import Header, code_digest, read_header
 from pipeline.shards.layout import EMPTY, TABLES, file_path, scene_id, shard_name
-from pipeline.shards.library import Shelf
+from pipeline.shards.library import AssetSource
 from pipeline.shards.mix import Mix, read_mix, require_prompt
 
 __all__ = [
     "EMPTY",
     "TABLES",
+    "AssetSource",
     "Dataset",
     "Header",
     "Mix",
     "ShardContent",
-    "Shelf",
     "Summary",
     "add_part",
     "check",

@@ -35,7 +35,7 @@ from pipeline.shards.layout import (
     shard_name,
     table_path,
 )
-from pipeline.shards.library import Shelf, adopt, settle
+from pipeline.shards.library import AssetSource, adopt, settle
 from pipeline.shards.parts import FILES, Part, indices_of, join, part_place, parts_there, write_part
 from pipeline.shards.seal import SEAL, is_sealed, seal
 
@@ -46,7 +46,7 @@ class Dataset:
 
     folder: Path
     header: Header
-    shelf: Shelf
+    source: AssetSource
     claims: Claims
     done: set[int] = field(default_factory=set)  # shards that were seen to be committed
 
@@ -73,7 +73,7 @@ class Dataset:
 
 
 @contextmanager
-def open_or_create(folder: Path, header: Header, shelf: Shelf, *, discard: bool = False) -> Iterator[Dataset]:
+def open_or_create(folder: Path, header: Header, source: AssetSource, *, discard: bool = False) -> Iterator[Dataset]:
     """Open a dataset for writing: create it, or resume an equal one, beside others that do so. Once all shards are there it is sealed.
 
     A dataset of full shards may grow: the same header with a larger count resumes it. With `discard`, an unequal
@@ -90,13 +90,13 @@ def open_or_create(folder: Path, header: Header, shelf: Shelf, *, discard: bool 
         claims = Claims(folder / CLAIMS)
     except OSError as error:
         raise UsageError(f"cannot make the folder {folder} ({error.strerror})", "give a place that you may write to") from error
-    dataset = Dataset(folder, header, shelf, claims)
+    dataset = Dataset(folder, header, source, claims)
     try:
         with claims.alone("open"):
             _prepare(dataset, discard=discard)
         yield dataset
         if not dataset.missing() and read_header(folder) == header and not is_sealed(folder, header):
-            settle(folder, shelf, dataset.staging, assets_of_all(dataset))
+            settle(folder, source, dataset.staging, assets_of_all(dataset))
             seal(folder, header, dataset.staging)
     finally:
         shutil.rmtree(dataset.staging, ignore_errors=True)
@@ -207,7 +207,7 @@ def _commit(dataset: Dataset, number: int) -> None:
         path.parent.mkdir(parents=True)
         pq.write_table(data, path, compression="zstd", store_schema=True)
         if table == "objects":
-            adopt(folder, dataset.shelf, dataset.staging, set(data["asset_id"].to_pylist()))
+            adopt(folder, dataset.source, dataset.staging, set(data["asset_id"].to_pylist()))
     for part in parts:
         for family in sorted((part.folder / FILES).glob("*")):
             place = staging / family.name / name

@@ -1,6 +1,6 @@
-"""The asset library of a dataset: the assets that its homes use, hard-linked from a shelf that all datasets of a machine share.
+"""The asset library of a dataset: the assets that its homes use, hard-linked from a cache that all datasets of a machine share.
 
-It grows with the shards: a shard's assets are there before the shard is. When all shards are, it is settled: held against the shelf
+It grows with the shards: a shard's assets are there before the shard is. When all shards are, it is settled: held against the cache
 to the last byte, described by its tables, and committed.
 """
 
@@ -20,7 +20,7 @@ from pipeline.shards.layout import ASSETS, commit_path
 from schemas.table import Table
 
 
-class Shelf(Protocol):
+class AssetSource(Protocol):
     """Where a dataset's assets come from."""
 
     def entry(self, asset_id: str) -> Path:
@@ -30,14 +30,14 @@ class Shelf(Protocol):
         """Return the tables that describe assets."""
 
 
-def adopt(folder: Path, shelf: Shelf, staging: Path, asset_ids: Iterable[str]) -> None:
+def adopt(folder: Path, source: AssetSource, staging: Path, asset_ids: Iterable[str]) -> None:
     """Bring the assets that are not there yet into the library of the dataset in `folder`."""
     missing = [a for a in sorted(asset_ids) if not (folder / ASSETS / a).exists()]
     (folder / ASSETS).mkdir(exist_ok=True)
     for asset_id in missing:
         place = staging / ASSETS / asset_id
         shutil.rmtree(place, ignore_errors=True)
-        shutil.copytree(shelf.entry(asset_id), place, copy_function=link)
+        shutil.copytree(source.entry(asset_id), place, copy_function=link)
         record(place, asset_id, {})
         try:
             place.rename(folder / ASSETS / asset_id)
@@ -50,18 +50,18 @@ def adopt(folder: Path, shelf: Shelf, staging: Path, asset_ids: Iterable[str]) -
         sync(folder)
 
 
-def settle(folder: Path, shelf: Shelf, staging: Path, asset_ids: set[str]) -> None:
-    """Make the library exactly these assets, as the shelf has them, and commit it."""
+def settle(folder: Path, source: AssetSource, staging: Path, asset_ids: set[str]) -> None:
+    """Make the library exactly these assets, as the cache has them, and commit it."""
     (folder / ASSETS).mkdir(exist_ok=True)
     files: dict[str, Entry] = {}
     for asset_id in sorted(asset_ids):
         place = folder / ASSETS / asset_id
-        wanted = record(shelf.entry(asset_id), asset_id, {}, flush=False)
+        wanted = record(source.entry(asset_id), asset_id, {}, flush=False)
         if place.exists() and (wanted.altered(place) or {p for p in place.rglob("*") if p.is_file()} != {place / p for p in wanted.files}):
             shutil.rmtree(place)
-        adopt(folder, shelf, staging, [asset_id])
+        adopt(folder, source, staging, [asset_id])
         files |= {f"{ASSETS}/{asset_id}/{path}": entry for path, entry in wanted.files.items()}
-    for table, rows in shelf.tables(sorted(asset_ids)).items():
+    for table, rows in source.tables(sorted(asset_ids)).items():
         path = staging / "tables" / f"{table.name}.parquet"
         path.parent.mkdir(parents=True, exist_ok=True)
         pq.write_table(table.from_rows(rows), path, compression="zstd", store_schema=True)

@@ -16,8 +16,8 @@ from pipeline.usd.layer import read_layer, save
 from pipeline.usd.lights import lamp, sky
 from pipeline.usd.material import Palette
 from pipeline.usd.physics import convert_scene
+from pipeline.usd.prim_templates import cast, group, mould, placed, quoted
 from pipeline.usd.shell import MATERIALS, door_texts, room_text, walls_text, window_texts
-from pipeline.usd.text import cast, group, mould, placed, quoted
 
 
 def write_home(home: Home, assets: Mapping[str, Asset], path: Path, library: str = "../../assets") -> Path:

@@ -10,7 +10,7 @@ from shapely.geometry import Polygon
 
 from pipeline.entities.plan import Room
 from pipeline.usd.layer import attribute, prim
-from pipeline.usd.text import cast, mould, placed
+from pipeline.usd.prim_templates import cast, mould, placed
 
 DOME_INTENSITY = 600.0
 LAMP_INTENSITY = 4000.0

@@ -9,7 +9,7 @@ from pxr import Gf, Sdf
 
 from pipeline.entities.asset import Material
 from pipeline.usd.layer import apply, attribute, identifiers, label, prim, relationship
-from pipeline.usd.text import cast, group, mould
+from pipeline.usd.prim_templates import cast, group, mould
 
 FRICTION = (0.7, 0.6)  # static, dynamic: dry wood, painted board
 SLIPPERY = (0.35, 0.3)  # metal, glass, glazed tiles

@@ -20,7 +20,7 @@ from pipeline.usd.layer import attribute, label, prim
 from pipeline.usd.material import Palette, bind
 from pipeline.usd.mesh import convert_box, convert_mesh, convert_polygons, flat_normals
 from pipeline.usd.physics import convert_collider, hide
-from pipeline.usd.text import cast, group, mould, placed, shaped
+from pipeline.usd.prim_templates import cast, group, mould, placed, shaped
 
 MATERIALS = "/World/Materials"  # where a home's own parts find theirs
 SHAPE = ("points", "extent", "normals")  # what each prism has of its own

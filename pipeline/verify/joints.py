@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
 from pipeline.geometry.contact import first_hits, group_boxes, wall_excesses
+from pipeline.geometry.door_sweeps import leaf_handles, leaf_sweep
 from pipeline.geometry.free_space import FreeSpace
 from pipeline.geometry.kinematics import facing, handle_point, joint_range, moved_links, rotation
-from pipeline.geometry.leaves import leaf_handles, leaf_sweep
 from pipeline.geometry.polygons import contains
 from pipeline.geometry.prisms import Prisms, Sweep, stacked
 from pipeline.geometry.robot import Robot
-from pipeline.geometry.standing import stand_pose
+from pipeline.geometry.stance import stand_pose
 from pipeline.geometry.walls import Leaf, leaves
 from pipeline.verify.bodies import Bodies
 from pipeline.verify.carrying import Carrier, riders, way

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from pipeline.arrange import Lore
+from pipeline.arrange import LearntRelations
 from pipeline.entities.home import Placement
-from pipeline.relations.known import PairRelation, WallRelation, relations
+from pipeline.relations.model import PairRelation, WallRelation, relations
 from pipeline.relations.modes import Mode, Span
 
 
@@ -49,7 +49,7 @@ RELATIONS = relations(
         wall("dining_table", 0.1),
     ],
 )
-LORE = Lore(RELATIONS)
+LORE = LearntRelations(RELATIONS)
 
 
 def drafted(asset, x, y, yaw=0.0, number=0, z=0.0):

@@ -1,6 +1,6 @@
 import torch
 
-from pipeline.baselines import logistics
+from pipeline.baselines import logistic_mixture as logistics
 from pipeline.baselines.atiss import Autoregressive, loss, sample
 from pipeline.baselines.training import Trainer
 from tests.diffusion.small_world import CLASSES, LAYOUTS

@@ -10,7 +10,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent / "houses"))
 from sample_houses import Box, house, stock
 
-from pipeline.corpus import reference
+from pipeline.corpus import front_statistics
 from pipeline.corpus.calibration import figures
 from pipeline.corpus.calibration.tally import HouseTally, RoomTally, relate, tally
 from pipeline.corpus.front_writer import scene_json
@@ -20,7 +20,7 @@ from pipeline.corpus.houses.records import House, Item
 from pipeline.entities.plan import Plan, Room
 from pipeline.seeds import generator
 
-KNOWN = reference.load()
+KNOWN = front_statistics.load()
 NOTHING = {"furniture": [], "mesh": [], "scene": {"room": []}}
 
 
@@ -92,11 +92,11 @@ def test_the_peers_filters_leave_out_what_they_would():
 
 def test_intervals_hold_what_they_are_made_of():
     values = KNOWN.relations["dining_chair from the table's centre"]
-    low, high = reference.bootstrap(values)
+    low, high = front_statistics.bootstrap(values)
     assert min(values) < low < np.mean(values) < high < max(values)
-    low, high = reference.bootstrap_share(30, 334)
+    low, high = front_statistics.bootstrap_share(30, 334)
     assert low < 30 / 334 < high
-    low, high = reference.from_range(10, 16.82, 8.5, 24.96)
+    low, high = front_statistics.from_range(10, 16.82, 8.5, 24.96)
     assert 12 < low < 16.82 < high < 21
 
 

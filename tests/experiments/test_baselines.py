@@ -4,7 +4,7 @@ import pytest
 from pipeline import seeds
 from pipeline.diffusion.context import Proposal, RoomContext
 from pipeline.experiments.baselines import Case, asked, drafted, figures, holds, liveable, success
-from pipeline.relations.known import Relations
+from pipeline.relations.model import Relations
 
 OPENS = {"nightstand": True, "chair": False}
 

@@ -19,7 +19,7 @@ from pipeline.experiments.realism import Beside, alike, beside, embeddings, real
 from pipeline.experiments.rooms import FIRST
 from pipeline.homes.rows import object_row, room_row, scene_row
 from pipeline.manifest import canonical
-from pipeline.metrics.harm import spoilt
+from pipeline.metrics.perturbations import spoilt
 from pipeline.relations import learning
 from pipeline.report.page import render
 from pipeline.report.realism import VOID, realism_section

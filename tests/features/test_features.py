@@ -12,7 +12,7 @@ from pipeline.errors import ContentError
 from pipeline.features import inception
 from pipeline.features import net as nets
 from pipeline.features.training import train
-from pipeline.metrics.harm import spoilt
+from pipeline.metrics.perturbations import spoilt
 from pipeline.metrics.views import STATES, compare_views, views_of
 from tests.relations.making import bedrooms
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pipeline import seeds
-from pipeline.arrange import Lore, PostoptSettings
+from pipeline.arrange import LearntRelations, PostoptSettings
 from pipeline.diffusion.context import Proposal
 from pipeline.diffusion.settings import SampleSettings
 from pipeline.entities.files import save_asset
@@ -16,7 +16,7 @@ from pipeline.floorplan.program.priors import PriorSettings
 from pipeline.homes.factory import Factory
 from pipeline.homes.library import Library
 from pipeline.homes.settings import ShardSettings
-from pipeline.relations.known import relations
+from pipeline.relations.model import relations
 from pipeline.retrieval.index import AssetIndex
 from tests.judging import SETTINGS
 
@@ -121,7 +121,7 @@ def factory_of(library):
     latents = [{"asset_id": a, "latent": np.full(32, i, np.float32)} for i, a in enumerate(sorted(library))]
     index = AssetIndex.from_tables(library.rows.values(), latents)
     shard = ShardSettings(homes=4, chunk=2, preview=0)
-    return Factory(3, Rules(3), index, library, shard, PostoptSettings(), SETTINGS, PriorSettings(), {}, Lore(relations([], [])))
+    return Factory(3, Rules(3), index, library, shard, PostoptSettings(), SETTINGS, PriorSettings(), {}, LearntRelations(relations([], [])))
 
 
 @pytest.fixture(scope="session")

@@ -40,8 +40,8 @@ class Paper:
         return {"weights": path.read_text() if path.exists() else ""}
 
     @property
-    def shelf(self):
-        return made.Shelf(self.folder / "shelf")
+    def asset_cache(self):
+        return made.AssetSource(self.folder / "cache")
 
     @contextmanager
     def timed(self, part):
@@ -70,7 +70,7 @@ class Paper:
 
 
 def open_paper(folder, **asked):
-    (Path(folder) / "shelf").mkdir(exist_ok=True)
+    (Path(folder) / "cache").mkdir(exist_ok=True)
     return Paper(folder, **asked)
 
 
@@ -80,6 +80,6 @@ if __name__ == "__main__":
     from pipeline.shards import open_or_create
 
     out, count = Path(sys.argv[1]), int(sys.argv[4])
-    with open_or_create(out, replace(HEADER, count=count), made.Shelf(out.parent / "shelf")) as dataset:
+    with open_or_create(out, replace(HEADER, count=count), made.AssetSource(out.parent / "cache")) as dataset:
         recipe = Recipe(functools.partial(open_paper, str(out.parent), nap=float(sys.argv[2])))
         fill(dataset, recipe, request, workers=int(sys.argv[3]), progress=Progress(count, "homes"))

@@ -26,7 +26,7 @@ ROOT = Path(__file__).parents[2]
 def filled(folder, workers=1, scheduler=None, **asked):
     """Fill a dataset with made-up homes; returns the tally."""
     recipe = Recipe(functools.partial(papers.open_paper, str(folder.parent), **asked))
-    with open_or_create(folder, papers.HEADER, papers.made.Shelf(folder.parent / "shelf")) as dataset:
+    with open_or_create(folder, papers.HEADER, papers.made.AssetSource(folder.parent / "cache")) as dataset:
         return fill(
             dataset,
             recipe,

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from pipeline.metrics import novelty, relations
-from pipeline.metrics.harm import HARMS, jittered, spoilt, swapped, turned
 from pipeline.metrics.layout_features import features
+from pipeline.metrics.perturbations import HARMS, jittered, spoilt, swapped, turned
 from pipeline.metrics.rules import RULES, backs
 from pipeline.metrics.two_samples import forest_accuracy, frechet, kernel_distance, linear_accuracy
 from pipeline.relations import learning

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from pipeline.entities.asset import Asset, Link, Material, Mesh
-from pipeline.retrieval.finish import finish_of as computed
 from pipeline.retrieval.index import AssetIndex
+from pipeline.retrieval.surface_colour import finish_of as computed
 from pipeline.retrieval.taste import TIMBER, Taste, draw_finishes, draw_style, sets, tasteful
 from tests.geometry.furniture import box
 

@@ -23,7 +23,7 @@ def record(scratch):
     claims._machine = lambda: {**machine(), "boot": "before the power cut"}
     try:
         with powercut.Recorder(folder.parent).at_work() as recorder:
-            with made.opened(folder, HEADER, scratch / "shelf") as dataset:
+            with made.opened(folder, HEADER, scratch / "source") as dataset:
                 for number in (0, 1):
                     for index in HEADER.indices(number):
                         dataset.take(number, index)
@@ -54,7 +54,7 @@ def faults(state, promised, whole, scratch):
         if "whole" in promised and "or is at work" not in str(error):  # the names of claims that were removed may be back
             found.append(f"verify complains: {error}")
     try:
-        made.fill(folder, HEADER, shelf=scratch / "shelf")
+        made.fill(folder, HEADER, source=scratch / "source")
     except ContentError as error:
         return found, str(error)
     except Exception as error:  # noqa: BLE001 - what the user would get to see as a traceback

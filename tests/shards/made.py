@@ -80,7 +80,7 @@ def shard(number, header=HEADER, without=()):
     return gather(number, (empty(i, header.seed) if i in without else home(i, header.seed) for i in header.indices(number)))
 
 
-class Shelf:
+class AssetSource:
     """Two assets in a folder of their own."""
 
     def __init__(self, folder):
@@ -102,13 +102,13 @@ class Shelf:
         return {ASSETS: [{**{c.name: value(c, 0) for c in ASSETS.columns}, "asset_id": a} for a in asset_ids]}
 
 
-def opened(folder, header=HEADER, shelf=None, **how):
-    return open_or_create(Path(folder), header, Shelf(shelf or Path(folder).parent / "shelf"), **how)
+def opened(folder, header=HEADER, source=None, **how):
+    return open_or_create(Path(folder), header, AssetSource(source or Path(folder).parent / "source"), **how)
 
 
-def fill(folder, header=HEADER, nap=0.0, numbers=None, without=(), shelf=None):
+def fill(folder, header=HEADER, nap=0.0, numbers=None, without=(), source=None):
     """Make what is missing of a dataset; returns the numbers of the shards that were made."""
-    with opened(folder, header, shelf) as dataset:
+    with opened(folder, header, source) as dataset:
         missing = [n for n in dataset.missing() if numbers is None or n in numbers]
         for number in missing:
             while not committed(dataset, number):

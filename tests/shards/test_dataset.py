@@ -198,7 +198,7 @@ def test_the_library_holds_what_the_homes_use_and_shares_its_files(folder):
     made.fill(folder, replace(made.HEADER, count=8))
     assert sorted(p.name for p in (folder / "assets").iterdir()) == ["asset_0", "asset_1", "assets.parquet"]
     shared = Path("asset_1/textures/wood.png")
-    assert (folder / "assets" / shared).stat().st_ino == (folder.parent / "shelf" / shared).stat().st_ino
+    assert (folder / "assets" / shared).stat().st_ino == (folder.parent / "source" / shared).stat().st_ino
     assert check(folder).homes == 5
 
 

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.corpus import reference as known
+from pipeline.corpus import front_statistics as known
 from pipeline.corpus.calibration.tally import HouseTally, RoomTally
+from pipeline.corpus.front_statistics import Classes, Reference
 from pipeline.corpus.furniture import sizes
 from pipeline.corpus.houses.records import Model
-from pipeline.corpus.reference import Classes, Reference
 
 TOTAL_VARIATION, RELATIVE = 0.05, 0.10
 HISTOGRAM = ((1, 3), (4, 6), (7, 9), (10, 12), (13, 15), (16, 99))

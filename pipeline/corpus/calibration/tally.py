@@ -12,8 +12,8 @@ import numpy as np
 from shapely.geometry import Polygon
 from shapely.ops import unary_union
 
+from pipeline.corpus.front_statistics import Reference
 from pipeline.corpus.houses.records import House, Item
-from pipeline.corpus.reference import Reference
 
 Json = Mapping[str, Any]
 STANDING = 0.3

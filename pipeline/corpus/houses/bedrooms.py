@@ -8,7 +8,7 @@ import numpy as np
 
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.records import Model
-from pipeline.corpus.houses.space import Spot, ahead, back_gap, box_of, on_side, shifted
+from pipeline.corpus.houses.room_occupancy import Spot, ahead, back_gap, box_of, on_side, shifted
 
 FARTHEST_TV = 1.2
 """Most free floor between a bed's foot and the TV stand [m]."""

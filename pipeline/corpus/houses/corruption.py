@@ -14,7 +14,7 @@ import numpy as np
 from shapely.geometry import Point, Polygon
 
 from pipeline import taxonomy
-from pipeline.corpus import reference
+from pipeline.corpus import front_statistics
 from pipeline.corpus.houses.records import House, Item, Model
 from pipeline.corpus.houses.stock import Stock
 from pipeline.seeds import generator
@@ -53,7 +53,7 @@ class Litter:
 
 def litter(rng: np.random.Generator, house: House) -> Litter:
     """Draw the litter of a house's file."""
-    known = reference.load().defects
+    known = front_statistics.load().defects
     children = len(house.items) + sum(o.kind not in {"open", "portal"} for o in house.plan.openings)
     rates = {name: count / (of - count) for name, (count, of) in known.items()}
     dangling, invalid, surplus = (int(rng.poisson(rates[name] * children)) for name in ("dangling", "invalid", "surplus"))
@@ -63,7 +63,7 @@ def litter(rng: np.random.Generator, house: House) -> Litter:
 
 def in_centimetres(seed: int, models: Sequence[Model]) -> frozenset[str]:
     """Return the ids of the models whose files are in centimetres: at the release's rate, one at least."""
-    count, of = reference.load().defects["centimetres"]
+    count, of = front_statistics.load().defects["centimetres"]
     number = max(1, round(count / of * len(models)))
     chosen = generator(seed, "mess", "centimetres").choice(len(models), size=min(number, len(models)), replace=False)
     return frozenset(models[int(k)].model_id for k in chosen)

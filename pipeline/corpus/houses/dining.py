@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.rates import load
 from pipeline.corpus.houses.records import Model
-from pipeline.corpus.houses.space import Spot, box_of, shifted
+from pipeline.corpus.houses.room_occupancy import Spot, box_of, shifted
 
 CHAIRS = {"two": 2, "four": 4, "six": 6, "eight": 8}
 ACROSS = 0.6

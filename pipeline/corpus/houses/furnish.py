@@ -8,12 +8,12 @@ import numpy as np
 
 from pipeline import taxonomy
 from pipeline.corpus.houses import bedrooms, dining, kitchens, living, rates, small_rooms, small_things, walkable_grid
-from pipeline.corpus.houses.agenda import KINDS
 from pipeline.corpus.houses.arranger import Arranger
-from pipeline.corpus.houses.deal import Deal
 from pipeline.corpus.houses.records import Item
-from pipeline.corpus.houses.space import Space
+from pipeline.corpus.houses.room_occupancy import Space
+from pipeline.corpus.houses.room_sampling import KINDS
 from pipeline.corpus.houses.stock import Stock
+from pipeline.corpus.houses.stratified_draws import Deal
 from pipeline.entities.plan import Plan
 from pipeline.seeds import generator
 

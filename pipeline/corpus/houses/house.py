@@ -7,11 +7,11 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.corpus import reference
+from pipeline.corpus import front_statistics
 from pipeline.corpus.houses import furnish, rates
-from pipeline.corpus.houses.agenda import BLOCK, CORRIDORS, KINDS, agenda
 from pipeline.corpus.houses.planner import make_plan
 from pipeline.corpus.houses.records import House, Item
+from pipeline.corpus.houses.room_sampling import BLOCK, CORRIDORS, KINDS, agenda
 from pipeline.corpus.houses.stock import Stock
 from pipeline.entities.plan import Plan
 from pipeline.seeds import generator, key
@@ -24,7 +24,7 @@ def make_house(seed: int, index: int, stock: Stock) -> House:
     plan = make_plan(rng, wanted.rooms)
     style = furnish.style_of(rng, stock)
     rich = set(chosen(plan, wanted.rooms))
-    beyond, bare = reference.load().beyond, rates.load()["bare"]
+    beyond, bare = front_statistics.load().beyond, rates.load()["bare"]
     items: list[Item] = []
     empty = []
     seen: Counter[str] = Counter()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pipeline.corpus.houses.arranger import Arranger, free_front
 from pipeline.corpus.houses.records import Model
-from pipeline.corpus.houses.space import ahead, on_side
+from pipeline.corpus.houses.room_occupancy import ahead, on_side
 
 FRONT = 0.75
 """Free floor before a run: an open door and a cook [m]."""

@@ -9,7 +9,7 @@ import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from pipeline.corpus.houses.space import Side, _distance, inside_intervals
+from pipeline.corpus.houses.room_occupancy import Side, _distance, inside_intervals
 from pipeline.entities.plan import Opening, Plan, Room
 
 Point = tuple[float, float, float]

@@ -17,7 +17,7 @@ from pipeline.corpus.houses import walkable_grid
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.rates import load as load_rates
 from pipeline.corpus.houses.records import Item, Model, Rect, wrap
-from pipeline.corpus.houses.space import Side, against, box_of, meets
+from pipeline.corpus.houses.room_occupancy import Side, against, box_of, meets
 from pipeline.corpus.houses.stock import Surfaces
 from pipeline.entities.plan import Opening
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from pipeline.corpus.houses.records import Item, Rect
-from pipeline.corpus.houses.space import LOW, Space
+from pipeline.corpus.houses.room_occupancy import LOW, Space
 
 CELL = 0.1
 WAY = 0.3

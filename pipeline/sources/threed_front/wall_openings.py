@@ -1,6 +1,6 @@
 """Doors and windows of a 3D-FRONT house from geometry: the file's own lists do not say which rooms they join.
 
-What the evidence gives (`front_holes`, `front_reveals`) is put between rooms: on each side of the wall, the first outline met
+What the evidence gives (`opening_evidence`, `reveals`) is put between rooms: on each side of the wall, the first outline met
 within `reach` of the opening's centre.
 """
 

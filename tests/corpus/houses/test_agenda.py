@@ -6,20 +6,20 @@ import numpy as np
 import pytest
 from sample_houses import house
 
-from pipeline.corpus import reference
+from pipeline.corpus import front_statistics
 from pipeline.corpus.houses import rates
-from pipeline.corpus.houses.agenda import BLOCK, KINDS, MOST_PRIVATE, agenda, chances
-from pipeline.corpus.houses.deal import Deal
 from pipeline.corpus.houses.room_list import PRIVATE
+from pipeline.corpus.houses.room_sampling import BLOCK, KINDS, MOST_PRIVATE, agenda, chances
+from pipeline.corpus.houses.stratified_draws import Deal
 
 
 def test_furnished_rooms_come_in_the_observed_shares_and_types():
     rooms = [agenda(3, index).rooms for index in range(10 * BLOCK)]
-    wanted = np.array(reference.load().furnished_rooms) / sum(reference.load().furnished_rooms)
+    wanted = np.array(front_statistics.load().furnished_rooms) / sum(front_statistics.load().furnished_rooms)
     counted = Counter(len(r) for r in rooms)
     assert [counted[n + 1] / len(rooms) for n in range(len(wanted))] == pytest.approx(wanted.tolist(), abs=0.01)
     types = Counter(t for r in rooms for t in r)
-    known = reference.load().room_types
+    known = front_statistics.load().room_types
     for name in ("MasterBedroom", "LivingDiningRoom", "LivingRoom", "Library", "DiningRoom"):
         assert types[name] / len(rooms) == pytest.approx(known[name.lower()] / 5727, abs=0.06), name
     assert all(sum(t in PRIVATE for t in r) <= MOST_PRIVATE for r in rooms)

@@ -10,10 +10,10 @@ from shapely.geometry import LineString, Point, Polygon
 
 from pipeline import taxonomy
 from pipeline.corpus.houses import walkable_grid
-from pipeline.corpus.houses.agenda import agenda
 from pipeline.corpus.houses.house import make_house
 from pipeline.corpus.houses.planner import make_plan
-from pipeline.corpus.houses.space import Space
+from pipeline.corpus.houses.room_occupancy import Space
+from pipeline.corpus.houses.room_sampling import agenda
 from pipeline.manifest import digest
 from pipeline.seeds import generator
 

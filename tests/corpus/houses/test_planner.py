@@ -6,8 +6,8 @@ from sample_houses import houses
 from shapely.geometry import LineString, Point, Polygon
 
 from pipeline.corpus.houses import room_list
-from pipeline.corpus.houses.agenda import agenda
 from pipeline.corpus.houses.planner import make_plan, passable
+from pipeline.corpus.houses.room_sampling import agenda
 from pipeline.seeds import generator
 
 PLANS = [make_plan(generator(1, "test-plan", k), agenda(1, k).rooms) for k in range(40)]

@@ -15,10 +15,10 @@ import yaml
 from benchmarks.language import faults, recorded
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan import complete
-from pipeline.floorplan.ask import request
 from pipeline.floorplan.language import llm
 from pipeline.floorplan.language.llm import Server, UnansweredError, ask, configured
 from pipeline.floorplan.program.consistency import check
+from pipeline.floorplan.prompt import request
 
 GOOD = json.dumps(
     {

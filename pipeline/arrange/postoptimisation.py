@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from pipeline.arrange.lore import Lore
+from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.separate import Reject, Separated, Smaller, separate
 from pipeline.arrange.settings import PostoptSettings
 from pipeline.arrange.site import Site
@@ -37,7 +37,7 @@ def post_optimise(
     site: Site,
     placements: Sequence[Placement],
     assets: Mapping[str, Asset],
-    lore: Lore,
+    learnt: LearntRelations,
     settings: PostoptSettings,
     smaller: Smaller,
     *,
@@ -64,7 +64,7 @@ def post_optimise(
                 break
             exchanges += len(controlled.exchanges)
             current = controlled.placements
-        result = separate(site, current, assets, lore, settings.separate, smaller, keep_count=keep_count)
+        result = separate(site, current, assets, learnt, settings.separate, smaller, keep_count=keep_count)
         rejects += result.rejects
         current = result.placements
         if target is None:

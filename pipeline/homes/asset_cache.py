@@ -27,8 +27,8 @@ MOST = 2 << 30  # bytes of all versions together
 WRITERS = ("usd-core", "numpy", "pillow")  # packages that an asset's bytes pass through
 
 
-class AssetShelf:
-    """The shelf of a library; `code` is the digest of the code that writes assets."""
+class AssetCache:
+    """The cached files of a library; `code` is the digest of the code that writes assets."""
 
     def __init__(self, library: Library, code: str, folder: Path | None = None) -> None:
         self.library = library

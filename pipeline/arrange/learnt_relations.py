@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pipeline import taxonomy
 from pipeline.relations.frames import REFERENCES, SIDES
-from pipeline.relations.known import PairRelation, Relations
+from pipeline.relations.model import PairRelation, Relations
 from pipeline.relations.modes import Mode, Span
 
 Floats = NDArray[np.float64]
@@ -53,7 +53,7 @@ class Habit:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Lore:
+class LearntRelations:
     """The relations, answers kept."""
 
     known: Relations

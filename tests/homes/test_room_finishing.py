@@ -4,7 +4,7 @@ from types import SimpleNamespace
 import pytest
 
 from pipeline import taxonomy
-from pipeline.homes import finish as finishing
+from pipeline.homes import room_finishing as finishing
 from tests.geometry.furniture import one_room
 from tests.judging import SETTINGS
 

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from pipeline.homes import shelf
-from pipeline.homes.shelf import AssetShelf, make_room, whole
+from pipeline.homes import asset_cache
+from pipeline.homes.asset_cache import AssetCache, make_room, whole
 
 
 class Library(SimpleNamespace):
@@ -25,43 +25,43 @@ def written(monkeypatch):
         (folder / f"{asset}.usda").write_text(f"#usda 1.0 {asset}")
         found.append(asset)
 
-    monkeypatch.setattr(shelf, "write_asset", write)
+    monkeypatch.setattr(asset_cache, "write_asset", write)
     return found
 
 
 @pytest.fixture
-def shelved(tmp_path):
+def cached(tmp_path):
     names = ("chair", "table")
-    return AssetShelf(Library(rows={a: {"sha256": a * 16} for a in names}, joints=[]), "code", tmp_path)
+    return AssetCache(Library(rows={a: {"sha256": a * 16} for a in names}, joints=[]), "code", tmp_path)
 
 
-def test_of_all_that_want_an_asset_at_once_one_writes_it(written, shelved):
+def test_of_all_that_want_an_asset_at_once_one_writes_it(written, cached):
     with ThreadPoolExecutor(8) as pool:
-        places = list(pool.map(shelved.entry, ["chair", "table"] * 8))
+        places = list(pool.map(cached.entry, ["chair", "table"] * 8))
     assert sorted(written) == ["chair", "table"]
     assert len(set(places)) == 2
     assert all((place / f"{name}.usda").is_file() for place, name in zip(places, ["chair", "table"] * 8, strict=True))
-    assert not list(shelved.folder.glob(".tmp-*"))
+    assert not list(cached.folder.glob(".tmp-*"))
 
 
-def test_what_is_broken_is_written_anew_and_what_is_whole_is_not(written, shelved):
-    place = shelved.entry("chair")
+def test_what_is_broken_is_written_anew_and_what_is_whole_is_not(written, cached):
+    place = cached.entry("chair")
     assert whole(place, place.with_suffix(".json"))
     assert (place / "chair.usda").stat().st_mode & 0o222 == 0
-    shelved.entry("chair")
+    cached.entry("chair")
     assert written == ["chair"]
     (place / "chair.usda").chmod(0o644)
     (place / "chair.usda").write_text("something else")
     assert not whole(place, place.with_suffix(".json"))
-    assert (shelved.entry("chair") / "chair.usda").read_text() == "#usda 1.0 chair"
+    assert (cached.entry("chair") / "chair.usda").read_text() == "#usda 1.0 chair"
     assert written == ["chair", "chair"]
 
 
-def test_what_was_stocked_is_looked_at_once(written, shelved, monkeypatch):
+def test_what_was_stocked_is_looked_at_once(written, cached, monkeypatch):
     looked = []
-    monkeypatch.setattr(shelved, "entry", looked.append)
-    shelved.stock(["table", "chair", "table"])
-    shelved.stock(["chair"])
+    monkeypatch.setattr(cached, "entry", looked.append)
+    cached.stock(["table", "chair", "table"])
+    cached.stock(["chair"])
     assert looked == ["chair", "table"]
 
 

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.arrange import Lore, separate
+from pipeline.arrange import LearntRelations, separate
 from pipeline.arrange.bonds import broken, find_bond, nearest
 from pipeline.arrange.item import make_item
 from pipeline.entities.plan import Opening, Plan
 from pipeline.relations.arrangement import Thing
-from pipeline.relations.known import WallRelation, relations
+from pipeline.relations.model import WallRelation, relations
 from pipeline.relations.modes import Span
 from pipeline.verify import Policy, verify_home
 from tests.arrange.known import LORE, RELATIONS, drafted, mode, pair
@@ -123,9 +123,11 @@ def test_a_wardrobe_does_not_hide_a_window():
 
 def test_a_lamp_over_a_table_hangs_from_the_ceiling():
     """Whatever height it was drafted at: a bond says where in plan."""
-    lore = Lore(relations([pair("dining_table", "ceiling_lamp", mode("over", (0.0, 0.0, 0.0), ("middle", 0.0, 0.0, 0.0), 0.0))], []))
+    learnt = LearntRelations(
+        relations([pair("dining_table", "ceiling_lamp", mode("over", (0.0, 0.0, 0.0), ("middle", 0.0, 0.0, 0.0), 0.0))], [])
+    )
     wished = [drafted(ASSETS["table"], 2.5, 2.0), drafted(ASSETS["lamp"], 2.6, 2.1, z=1.9, number=1)]
-    table, lamp = separate(site(room(), "room"), wished, ASSETS, lore).placements
+    table, lamp = separate(site(room(), "room"), wished, ASSETS, learnt).placements
     assert lamp.position[2] == pytest.approx(2.7 - 0.3)
     assert abs(lamp.position[0] - table.position[0]) < 0.2
 
@@ -169,7 +171,7 @@ def test_what_belongs_into_corners_goes_into_the_corner_that_it_is_near():
         for side in ("left", "right")
     ]
     walls = [*(w for found in RELATIONS.walls.values() for w in found), *sides]
-    snug = Lore(relations(list(RELATIONS.pairs.values()), walls))
+    snug = LearntRelations(relations(list(RELATIONS.pairs.values()), walls))
     wished = [drafted(CABINET, 0.62, 3.7)]
     plan = room()
     (loose,) = separate(site(plan, "room"), wished, {CABINET.asset_id: CABINET}, LORE).placements

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.corpus import reference
+from pipeline.corpus import front_statistics
 from pipeline.corpus.houses import rates
-from pipeline.corpus.houses.deal import Deal
 from pipeline.corpus.houses.room_list import PRIVATE
+from pipeline.corpus.houses.stratified_draws import Deal
 from pipeline.seeds import generator
 
 BLOCK = 32
@@ -77,7 +77,7 @@ def _block(seed: int, block: int) -> tuple[Agenda, ...]:
 
 def _numbers(rng: np.random.Generator) -> list[int]:
     """Return how many rooms each house of a block furnishes: the observed shares, evenly."""
-    houses = np.array(reference.load().furnished_rooms, float)
+    houses = np.array(front_statistics.load().furnished_rooms, float)
     edges = np.cumsum(houses) / houses.sum()
     marks = (np.arange(BLOCK) + rng.random()) / BLOCK
     return [int(n) + 1 for n in rng.permutation(np.searchsorted(edges, marks))]

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 
 from pipeline.entities.home import Placement
 from pipeline.entities.plan import Plan
-from pipeline.homes.finish import RoomResult
 from pipeline.homes.furnish import Draft
 from pipeline.homes.outcomes import Empty
 from pipeline.homes.request import Request, RoomJob
+from pipeline.homes.room_finishing import RoomResult
 from pipeline.homes.rows import Row
 from pipeline.verify import Certificate
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import Bond, at_anchor, find_bond
 from pipeline.arrange.item import Item
-from pipeline.arrange.lore import Lore
+from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
 from pipeline.arrange.walls import FAR, Edge, at_wall, in_corner, square
@@ -24,7 +24,7 @@ ON_TOP = 0.4  # what is drafted this near to the top of what it is bound over st
 
 
 def exact_poses(
-    items: Sequence[Item], site: Site, walls: Sequence[Edge], lore: Lore, settings: SeparateSettings, fixed: dict[int, Floats]
+    items: Sequence[Item], site: Site, walls: Sequence[Edge], learnt: LearntRelations, settings: SeparateSettings, fixed: dict[int, Floats]
 ) -> tuple[Floats, list[Bond | None]]:
     """Return the exact pose (N, 4) of each object and its bond; `fixed` are poses that stand already, of kitchen units.
 
@@ -37,7 +37,7 @@ def exact_poses(
             poses[i] = fixed[i]
             continue
         for wished in (items[i].wished, _alone(items[i], site, walls, settings)):  # who has come to a wall may find its anchor there
-            bond = find_bond(i, items, wished, poses, lore)
+            bond = find_bond(i, items, wished, poses, learnt)
             found = None if bond is None else _bound(items[i], bond, items, poses, site, walls, settings)
             bonds[i], poses[i] = (bond, found) if found is not None else (None, wished)
             if found is not None:

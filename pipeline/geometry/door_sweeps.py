@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.geometry.kept import recent
+from pipeline.geometry.memo import recent
 from pipeline.geometry.prisms import BULGE, STEPS, Sweep, covering, stacked
 from pipeline.geometry.walls import LEAF_THICKNESS, Leaf
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from pipeline import seeds
-from pipeline.retrieval.anchor import anchored
-from pipeline.retrieval.sweeps import merged_boxes, volume
+from pipeline.retrieval.box_merging import merged_boxes, volume
+from pipeline.retrieval.wall_alignment import anchored
 
 
 @pytest.mark.parametrize("most", [1, 2, 4])

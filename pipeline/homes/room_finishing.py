@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from pipeline.arrange import Lore, PostoptSettings, Site, post_optimise
+from pipeline.arrange import LearntRelations, PostoptSettings, Site, post_optimise
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 from pipeline.floorplan.program.furniture import meant
@@ -91,7 +91,7 @@ def finish(
     draft: Draft,
     assets: Mapping[str, Asset],
     index: AssetIndex,
-    lore: Lore,
+    learnt: LearntRelations,
     settings: PostoptSettings,
     verify: VerifySettings,
     taxonomy: Taxonomy,
@@ -101,7 +101,7 @@ def finish(
     site = Site.of(job.plan, job.room_id, replace(verify.robot, radius=verify.robot.radius + MARGIN), verify.cell)
     rejects: list[Reject] = [("object", "no_asset", category) for category in draft.lost]
     smaller = index.favouring(draft.taste.style, wished=draft.taste.wished).smaller
-    arranged = post_optimise(site, placements, assets, lore, settings, smaller, target=job.walkable, keep_count=job.bounds[0] is not None)
+    arranged = post_optimise(site, placements, assets, learnt, settings, smaller, target=job.walkable, keep_count=job.bounds[0] is not None)
     placements = tuple(rounded(p) for p in arranged.placements)
     rejects += [("object", r.reason, f"{r.object_id}: {r.detail}") for r in arranged.rejects]
     free = arranged.ratio

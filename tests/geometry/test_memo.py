@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from pipeline.geometry.kept import recent
+from pipeline.geometry.memo import recent
 
 
 class Thing:
