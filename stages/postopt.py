@@ -13,7 +13,7 @@ from pipeline.entry import run
 from pipeline.execution import Progress, cores
 from pipeline.homes.drafts import drafts_of
 from pipeline.homes.factory import Factory, open_factory
-from pipeline.homes.home_state import HomeDraft
+from pipeline.homes.furnish import HomeDraft
 from pipeline.homes.production import Recipe, fill
 from pipeline.homes.reproduction import made_with
 from pipeline.homes.request import Request
@@ -34,7 +34,7 @@ def main(root: Path) -> None:
     asked = requests_of(params.section(DatasetSettings, tree, "dataset"), root, seed)
     factory = open_factory(root, seed)
     named = {**factory.digests, "prompts": digest([request.prompt for request in asked])}
-    header = Header(seed, len(asked), factory.shard_size, factory.licence, named, made_with())
+    header = Header(seed, len(asked), factory.shard.homes, factory.shard.licence, named, made_with())
     progress = Progress(len(asked), "postopt")
     with open_or_create(root / "data" / "shards", header, factory.asset_cache, discard=True) as dataset:
         recipe = Recipe(partial(open_factory, root, seed), partial(first_drafts, root))

@@ -10,7 +10,7 @@ from pipeline.entry import run
 from pipeline.execution import cores, map_jobs, track
 from pipeline.homes.drafts import draft_rows
 from pipeline.homes.factory import open_factory
-from pipeline.homes.home_state import HomeDraft
+from pipeline.homes.furnish import HomeDraft
 from pipeline.homes.request import Request
 from pipeline.homes.settings import DatasetSettings, requests_of
 from pipeline.manifest import write_json

@@ -48,7 +48,7 @@ def main(
     factory = opened()
     if only is not None:
         return try_one(root, seed, order.asked(only))
-    header = Header(seed, count, factory.shard_size, factory.licence, {**factory.digests, "prompts": order.digest()}, made_with())
+    header = Header(seed, count, factory.shard.homes, factory.shard.licence, {**factory.digests, "prompts": order.digest()}, made_with())
     workers = workers or cores()
     with open_or_create(folder, header, factory.asset_cache) as dataset:
         if dataset.missing():

@@ -10,7 +10,8 @@ from pipeline.diffusion.settings import Articulation
 from pipeline.entities.home import Placement
 from pipeline.experiments.rooms import room_home
 from pipeline.homes.factory import Factory
-from pipeline.homes.furnish import Draft
+from pipeline.homes.furnish import Draft, draft_rooms
+from pipeline.homes.life import RoomTries
 from pipeline.homes.request import RoomJob
 from pipeline.homes.room_finishing import RoomResult, finish
 from pipeline.homes.rows import Row, object_row, room_row
@@ -59,7 +60,7 @@ class Drafts:
         """Return a draft of each job."""
         fresh = [job for job in jobs if _key(job) not in self._made]
         if fresh:
-            self._made |= zip(map(_key, fresh), self._factory.draft(fresh), strict=True)
+            self._made |= zip(map(_key, fresh), draft_rooms(self._factory, fresh), strict=True)
         return [replace(self._made[_key(job)], job=job) for job in jobs]
 
 
@@ -80,22 +81,17 @@ def trial(factory: Factory, jobs: Sequence[RoomJob], condition: Condition, draft
 
 def _finished(factory: Factory, asked: Sequence[Draft], drafts: Drafts) -> tuple[list[RoomResult], list[RoomResult]]:
     """Take rooms to the end: return the first try of each, and the best of as many tries as a room of a home has."""
+    rooms = [RoomTries(draft.job) for draft in asked]
     first: dict[int, RoomResult] = {}
     best: dict[int, RoomResult] = {}
     pending = list(enumerate(asked))
-    for attempt in range(factory.shard.room_attempts):
+    while pending:
         for i, draft in pending:
-            result = _cleared(
-                factory, finish(draft, factory.library, factory.index, factory.learnt, factory.postopt, factory.verify, taxonomy.load())
-            )
-            first.setdefault(i, result)
-            if i not in best or result.rank() > best[i].rank():
-                best[i] = result
-        pending = [(i, draft) for i, draft in pending if best[i].failure]
-        if not pending or attempt + 1 == factory.shard.room_attempts:
-            break
-        redrawn = drafts.of([replace(draft.job, attempt=attempt + 1) for _, draft in pending])
-        pending = [(i, draft) for (i, _), draft in zip(pending, redrawn, strict=True)]
+            result = finish(draft, factory.library, factory.index, factory.learnt, factory.postopt, factory.verify, taxonomy.load())
+            best[i] = rooms[i].keep(_cleared(factory, result))
+            first.setdefault(i, best[i])
+        failed = [i for i, _ in pending if best[i].failure and rooms[i].again(factory.shard.room_attempts)]
+        pending = list(zip(failed, drafts.of([rooms[i].job for i in failed]), strict=True))
     return [first[i] for i in range(len(asked))], [best[i] for i in range(len(asked))]
 
 

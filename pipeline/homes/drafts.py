@@ -7,10 +7,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
 from pipeline.floorplan.program.floor_program import FloorProgram
-from pipeline.homes.factory import Factory
-from pipeline.homes.furnish import Draft, taste_of
-from pipeline.homes.home_state import HomeDraft
+from pipeline.homes.furnish import Draft, HomeDraft, taste_of
+from pipeline.homes.planning import room_jobs
 from pipeline.homes.request import Request
+from pipeline.homes.resources import Resources
 from pipeline.homes.rows import Row, homes_of, object_row, opening_row, reject_row, room_row, scene_row
 from pipeline.shards import scene_id
 
@@ -42,7 +42,7 @@ def draft_rows(drafts: Iterable[HomeDraft], seed: int, assets: Mapping[str, Asse
     return rows
 
 
-def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], factory: Factory) -> list[HomeDraft]:
+def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], resources: Resources) -> list[HomeDraft]:
     """Rebuild the first drafts of those of `requests` that have rows."""
     homes = {home.index: home for home in homes_of(tables)}
     lost: dict[str, list[str]] = {}
@@ -55,13 +55,13 @@ def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], fact
             continue
         home = homes[request.index]
         program = FloorProgram.model_validate_json(home.program)
-        jobs = factory.jobs(home.plan, request.index, 0, {room.id: room.furniture for room in program.rooms})
+        jobs = room_jobs(resources, home.plan, request.index, 0, {room.id: room.furniture for room in program.rooms})
         drafts = tuple(
             Draft(
                 job,
                 home.in_room(job.room_id),
                 tuple(lost.get(f"{home.scene_id}/{job.room_id}#0", ())),
-                taste_of(job, factory.seed, factory.index, factory.library.finish),
+                taste_of(job, resources.seed, resources.index, resources.library.finish),
             )
             for job in jobs
         )

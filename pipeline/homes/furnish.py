@@ -8,10 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pipeline import seeds
+from pipeline import taxonomy as categories
 from pipeline.diffusion.context import CategoryBounds, Proposal, RoomContext
 from pipeline.diffusion.sampling import Sampler
 from pipeline.entities.home import Placement
-from pipeline.homes.request import RoomJob
+from pipeline.entities.plan import Plan
+from pipeline.homes.request import Request, RoomJob
+from pipeline.homes.resources import Resources
 from pipeline.homes.rounding import rounded
 from pipeline.retrieval.index import AssetIndex, Match
 from pipeline.retrieval.taste import FinishOf, Taste, draw_finishes, draw_style, tasteful
@@ -31,13 +34,30 @@ class Draft:
     taste: Taste = field(default_factory=Taste)
 
 
+@dataclass(frozen=True, slots=True)
+class HomeDraft:
+    """The first attempt at a home: its plan, and a draft of each room that is furnished."""
+
+    request: Request
+    prompt: str
+    program: str
+    plan: Plan
+    drafts: tuple[Draft, ...]
+
+
+def draft_rooms(resources: Resources, jobs: Sequence[RoomJob]) -> list[Draft]:
+    """Furnish a batch of rooms with what is loaded, timed as "sample"; nothing is moved yet."""
+    with resources.timed("sample"):
+        return furnish(jobs, resources.sampler, resources.index, categories.load(), resources.library.finish)
+
+
 def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxonomy: Taxonomy, finish_of: FinishOf) -> list[Draft]:
     """Return what the layout model places in each room, as assets of the library with the finishes that `finish_of` tells.
 
     Draws are keyed by (seed, home, room, attempt) alone, so a room does not depend on which rooms share its batch.
     """
     contexts = [RoomContext.of(job.plan, job.room_id, job.layout_type, job.count, category_bounds(job, taxonomy)) for job in jobs]
-    keys = [(job.index, job.number, job.attempt) for job in jobs]
+    keys = [(job.index, job.number, job.draw) for job in jobs]
     proposals = sampler.sample_rooms(contexts, keys)
     return [
         retrieve(job, context, found, index, taxonomy, finish_of, taste_of(job, sampler.seed, index, finish_of))
@@ -59,9 +79,7 @@ def category_bounds(job: RoomJob, taxonomy: Taxonomy) -> tuple[CategoryBounds, .
     What is wished for of a group, none of it too, stands. What rooms of the plan's type do not want stays out, unless it is wished for.
     """
     wished = {c for bounds in job.category_bounds for c in bounds.categories}
-    groups = [
-        bounds for group in job.essentials(taxonomy) if not wished.intersection(group) for bounds in _essential(group, job.attempt % 100)
-    ]
+    groups = [bounds for group in job.essentials(taxonomy) if not wished.intersection(group) for bounds in _essential(group, job.attempt)]
     unwanted = tuple(c for c in job.unwanted(taxonomy) if c not in wished)
     return (*job.category_bounds, *groups, *([CategoryBounds(unwanted, 0, 0)] if unwanted else []))
 

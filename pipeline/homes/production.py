@@ -19,7 +19,7 @@ from pipeline import tables
 from pipeline.errors import ContentError, SfgenError
 from pipeline.execution import Lost, Progress, map_jobs
 from pipeline.homes.factory import Factory, forget_factory
-from pipeline.homes.home_state import HomeDraft
+from pipeline.homes.furnish import HomeDraft
 from pipeline.homes.outcomes import Empty, Outcome
 from pipeline.homes.request import Request
 from pipeline.shards import (

@@ -11,6 +11,7 @@ from pipeline.floorplan.program.furniture import meant
 from pipeline.taxonomy import Taxonomy
 
 LIVING = frozenset({"living_room", "family_room"})
+MOST_ATTEMPTS = 100  # tries of a room under one plan
 TABLE = 18.0  # [m2] of a living room in which one dines, though nobody said so
 
 
@@ -32,8 +33,8 @@ class Request:
 class RoomJob:
     """One room to furnish; equal to nothing but itself.
 
-    `index` is the home's, `number` the room's position in the plan, `attempt` counts from 0: with the seed they key
-    every random draw. `count` is the number of objects that the sampler is told, `walkable` the share of free floor,
+    `index` is the home's, `number` the room's position in the plan; `plan_attempt` and, within one plan, `attempt` count from 0.
+    `count` is the number of objects that the sampler is told, `walkable` the share of free floor,
     `furniture` all that is wished for.
     """
 
@@ -42,10 +43,16 @@ class RoomJob:
     layout_type: str
     index: int
     number: int
+    plan_attempt: int = 0
     attempt: int = 0
     count: int | None = None
     walkable: float | None = None
     furniture: Furniture = field(default_factory=Furniture)
+
+    @property
+    def draw(self) -> int:
+        """Number of the try among all of the room's: with seed, index and number it keys every random draw, so that none is made twice."""
+        return self.plan_attempt * MOST_ATTEMPTS + self.attempt
 
     @property
     def category_bounds(self) -> tuple[CategoryBounds, ...]:

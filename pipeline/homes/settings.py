@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pipeline.errors import ContentError
-from pipeline.homes.request import Request
+from pipeline.homes.request import MOST_ATTEMPTS, Request
 from pipeline.shards import read_mix
 
 
@@ -18,9 +18,14 @@ class ShardSettings:
     chunk: int = 16  # homes that are sampled together
     room_attempts: int = 5  # tries of one room before the best of them is taken
     home_attempts: int = 8  # plans tried for one index before it stays empty
+    plan_draws: int = 8  # drawings of one of them that the judge may find unsound
     home_seconds: float = 300.0  # CPU seconds that one home may take, and seconds that a worker may keep silent [s]
     licence: str = "CC0-1.0"  # of what is made; with research-only assets, name theirs
     preview: int = 768  # side of the top views [px]
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.room_attempts <= MOST_ATTEMPTS:
+            raise ContentError(f"shard.room_attempts is {self.room_attempts}", f"give 1 to {MOST_ATTEMPTS} in params.yaml")
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,7 +48,8 @@ def test_no_tub_stands_in_a_wc_unless_it_is_wished_for():
 def test_later_tries_insist_on_another_bed():
     words = taxonomy.load()
     (group,) = words.layouts["bedroom"].needs
-    asked = [category_bounds(replace(job("bedroom"), attempt=attempt), words) for attempt in (0, 1, 2, 3, 103)]
+    tries = [(0, 0), (0, 1), (0, 2), (0, 3), (1, 3)]
+    asked = [category_bounds(replace(job("bedroom"), plan_attempt=plan, attempt=attempt), words) for plan, attempt in tries]
     assert asked[0] == asked[1] == (CategoryBounds(group, 1),)
     assert [a[0].categories for a in asked[2:4]] == [("single_bed",), ("kids_bed",)]
     assert all(CategoryBounds(tuple(c for c in group if c not in a[0].categories), 0, 0) in a for a in asked[2:])

@@ -10,9 +10,9 @@ from pipeline.floorplan import plan_json
 from pipeline.floorplan.imports import program_of, read_own_json
 from pipeline.floorplan.program.floor_program import FloorProgram
 from pipeline.floorplan.wishes import with_wishes
-from pipeline.homes.factory import told_count
 from pipeline.homes.furniture_report import deliveries, report
 from pipeline.homes.outcomes import Empty
+from pipeline.homes.planning import told_count
 from pipeline.homes.request import Request
 from pipeline.seeds import generator
 
