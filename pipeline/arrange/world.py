@@ -146,15 +146,19 @@ def meets_door(world: World, a0: int, a1: int, tolerance: float) -> bool:
 @compiled
 def collide(world: World, i: int, j: int, tolerance: float) -> bool:
     """Tell whether two placed objects break a hard rule: a body in the other's body or where its parts move."""
-    a, b, box = world.start[i], world.start[j], world.box
-    if (
-        min(box[i, 2], box[j, 2]) - max(box[i, 0], box[j, 0]) <= tolerance
-        or min(box[i, 3], box[j, 3]) - max(box[i, 1], box[j, 1]) <= tolerance
-    ):
+    a, b, box, flat = world.start[i], world.start[j], world.box, world.flat
+    if _apart(box[i], box[j], tolerance):
         return False
-    if meet(world, a[0], a[1], b[0], b[2], tolerance):  # bodies and keeps lie one behind the other
-        return True
-    return meet(world, a[1], a[2], b[0], b[1], tolerance)
+    for k in range(a[0], a[2]):  # bodies and keeps lie one behind the other
+        if not _apart(flat[k], box[j], tolerance) and meet(world, k, k + 1, b[0], b[2] if k < a[1] else b[1], tolerance):
+            return True
+    return False
+
+
+@compiled
+def _apart(a: Floats, b: Floats, tolerance: float) -> bool:
+    """Tell whether two boxes in plan (4,) share at most `tolerance` along some axis."""
+    return bool(min(a[2], b[2]) - max(a[0], b[0]) <= tolerance or min(a[3], b[3]) - max(a[1], b[1]) <= tolerance)
 
 
 @compiled
@@ -242,6 +246,7 @@ def free_poses(
     found = np.full(poses.shape[0], np.inf)
     own = np.empty((members.shape[0], 4))
     have = 0
+    last = FREE  # what was in the way of the pose before is likely to be in the way of this one
     for k in range(first, poses.shape[0]):
         if have >= wanted:
             return found, k
@@ -255,7 +260,9 @@ def free_poses(
             continue
         for m in range(members.shape[0]):
             put(world, members[m], own[m])
-            if blocker(world, members[m], others, tolerance) != FREE:
+            if last < 0 or not collide(world, members[m], last, tolerance):
+                last = blocker(world, members[m], others, tolerance)
+            if last != FREE:
                 free = False
                 break
         if not free:
