@@ -22,17 +22,33 @@ YIELDS = (
     "dining_room",
 )
 
+FEW = 2  # edges of a room that do not matter for planarity
+SMALLEST = 9  # edges of the smallest graph that cannot be drawn without crossings, K3,3
+
 
 def is_flat(links: Sequence[Link], outside: Collection[str]) -> bool:
     """Whether rooms can be drawn so that linked ones touch and those of `outside` lie at the outline."""
-    rooms = {i for k in links for i in (k.a, k.b)}
-    if len(links) < max(len(rooms), 3):
-        return True  # hardly a ring of rooms: nothing is enclosed
-    import networkx as nx
+    edges = core([*((k.a, k.b) for k in links), *((i, "") for i in outside)])
+    if len(edges) < SMALLEST:
+        return True
+    import networkx as nx  # seldom needed, and as slow to load as a home is to plan
 
-    graph = nx.Graph([(k.a, k.b) for k in links])
-    graph.add_edges_from((i, "") for i in outside)
-    return bool(nx.check_planarity(graph)[0])
+    return bool(nx.check_planarity(nx.Graph(edges))[0])
+
+
+def core(edges: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return a smaller graph that is planar just when this one is: ends of one edge are left out, those of two become an edge between their neighbours."""
+    beside: dict[str, set[str]] = {}
+    for a, b in edges:
+        if a != b:
+            beside.setdefault(a, set()).add(b)
+            beside.setdefault(b, set()).add(a)
+    while (thin := next((room for room, near in beside.items() if len(near) <= FEW), None)) is not None:
+        near = sorted(beside.pop(thin))
+        for other in near:
+            beside[other].discard(thin)
+            beside[other].update(n for n in near if n != other)
+    return [(a, b) for a, near in beside.items() for b in sorted(near) if a < b]
 
 
 def daylit(links: Sequence[Link], must: Sequence[str], wish: Sequence[tuple[str, str]]) -> set[str]:
