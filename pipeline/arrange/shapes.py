@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Joint
 from pipeline.geometry.convex import hull
-from pipeline.geometry.kinematics import OPENERS, facing, handle_point
+from pipeline.geometry.kinematics import OPENERS, grips
 from pipeline.geometry.memo import kept
 from pipeline.geometry.prisms import Prisms, Sweep, prism, solid, stacked
 
@@ -73,16 +73,16 @@ def make_shape(asset: Asset, scale: Floats, access_depth: float, access: str) ->
     origin = np.zeros(3)
     body = made.rest.placed(origin, 0.0, scale)
     keep = stacked([p for sweep, j in zip(made.sweeps, asset.joints, strict=True) for p in _coarse(sweep, j)]).placed(origin, 0.0, scale)
-    grips = tuple(
-        Grip(handle_point(asset, k)[:2] * scale[:2], facing(asset, k), made.sweeps[k].prisms.placed(origin, 0.0, scale))
-        for k, j in enumerate(asset.joints)
+    held = tuple(
+        Grip(point[:2] * scale[:2], heading, sweep.prisms.placed(origin, 0.0, scale))
+        for (point, heading), sweep, j in zip(grips(asset), made.sweeps, asset.joints, strict=True)
         if j.part_class in OPENERS
     )
-    places = _access(stacked([g.swept for g in grips]), asset, scale, access_depth)
+    places = _access(stacked([g.swept for g in held]), asset, scale, access_depth)
     if not len(places) and access:
         places = _approach(asset.size * scale, access_depth / 2, sides=access == "sides")
     points = body.corners.reshape(-1, 2) if len(body) else np.zeros((1, 2))
-    return Shape(body, keep, places, grips, hull(np.ascontiguousarray(points)))
+    return Shape(body, keep, places, held, hull(np.ascontiguousarray(points)))
 
 
 def _coarse(sweep: Sweep, joint: Joint) -> list[Prisms]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -120,7 +120,7 @@ class Asset:
     asset_id: str
     category: str
     size: NDArray[np.float64]
-    links: tuple[Link, ...]
+    links: Sequence[Link]
     joints: tuple[Joint, ...]
     materials: tuple[Material, ...]
     source: str
@@ -128,7 +128,7 @@ class Asset:
     licence: str
     style: str = ""
     super_category: str = ""
-    textures: dict[str, bytes] = field(default_factory=dict)
+    textures: Mapping[str, bytes] = field(default_factory=dict)
     parts: tuple[PartBox, ...] = ()
     derived: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 

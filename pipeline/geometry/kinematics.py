@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Joint, JointType, Link
+from pipeline.geometry.memo import kept
 
 HANDLES = ("line_fixed_handle", "round_fixed_handle", "hinge_handle")  # part classes that a hand takes hold of
 OPENERS = ("hinge_door", "slider_drawer", "hinge_lid", "slider_lid")  # part classes that open something
@@ -156,6 +157,12 @@ def facing(asset: Asset, joint_index: int) -> NDArray[np.float64]:
     flat = opening_direction(asset, joint_index)[:2]
     length = float(np.linalg.norm(flat))
     return flat / length if length > 0.5 else np.array([0.0, -1.0])
+
+
+@kept
+def grips(asset: Asset) -> tuple[tuple[NDArray[np.float64], NDArray[np.float64]], ...]:
+    """Return `handle_point` and `facing` of every joint."""
+    return tuple((handle_point(asset, k), facing(asset, k)) for k in range(len(asset.joints)))
 
 
 def _middle(points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,9 +1,11 @@
-"""The library of assets on disk: files are read when first asked for, and kept."""
+"""The library of assets on disk: files are read when first asked for; meshes and textures are let go before the rest, and read again when somebody looks at them."""
 
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline import tables
-from pipeline.entities.asset import Asset
+from pipeline.entities.asset import Asset, Link
 from pipeline.entities.files import load_asset
 from pipeline.errors import ContentError
 from pipeline.manifest import digest
@@ -21,13 +23,14 @@ from schemas.assets import ASSET_JOINTS, ASSETS
 MEMORY = 700  # of a process that makes homes [MiB]
 BESIDE = 660  # of that, what modules, models, tables and the homes in the making take, measured [MiB]
 READ = 1.5  # bytes in memory for a byte of an asset file, and what is derived from it, measured
-DERIVED = 8  # assets of which what was derived is kept, for each that is kept whole: it is a quarter as large, and costs ten times as much
+LEAN = 8  # assets that are kept without meshes, for each that is kept whole: with what was derived they are a quarter as large, and are asked for all the time
 
 
 class Library(Mapping[str, Asset]):
     """Assets by id. `rows` are the assets table's rows by id, `joints` those of asset_joints.
 
-    What is read stays in memory up to `kept` bytes of files; then what was not asked for the longest goes, and later what was derived from it.
+    Meshes and textures stay in memory up to `kept` bytes of files; then those that were not looked at the longest go, and later the rest of an asset
+    with what was derived from it.
     """
 
     def __init__(self, folder: Path, rows: list[dict[str, Any]], joints: list[dict[str, Any]], kept: int = 0) -> None:
@@ -35,9 +38,9 @@ class Library(Mapping[str, Asset]):
         self.joints = joints
         self.rows = {row["asset_id"]: row for row in rows}
         self.kept = kept or kept_within(MEMORY)
-        self._loaded: OrderedDict[str, tuple[Asset, int]] = OrderedDict()
+        self._whole: OrderedDict[str, tuple[Asset, int]] = OrderedDict()  # as read, and the bytes of its file
         self._bytes = 0
-        self._derived: OrderedDict[str, dict[str, Any]] = OrderedDict()  # of assets that went
+        self._lean: OrderedDict[str, Asset] = OrderedDict()
         self._finishes: dict[str, NDArray[np.float64]] = {}
         self._shelves: dict[str, list[str]] = {}
         for asset_id in sorted(self.rows):
@@ -49,24 +52,28 @@ class Library(Mapping[str, Asset]):
         return cls(files, tables.read(folder / "assets.parquet", ASSETS), tables.read(folder / "asset_joints.parquet", ASSET_JOINTS))
 
     def __getitem__(self, asset_id: str) -> Asset:
-        if asset_id in self._loaded:
-            self._loaded.move_to_end(asset_id)
-            return self._loaded[asset_id][0]
-        if asset_id not in self.rows:
-            raise KeyError(asset_id)
+        if asset_id in self._lean:
+            self._lean.move_to_end(asset_id)
+            return self._lean[asset_id]
+        read = partial(self._read, asset_id)
+        asset = self._lean[asset_id] = replace(read(), links=_Links(read), textures=_Textures(read))
+        while len(self._lean) > LEAN * len(self._whole):
+            self._lean.popitem(last=False)
+        return asset
+
+    def _read(self, asset_id: str) -> Asset:
+        """Return an asset with its meshes, from the file unless it is still there."""
+        if asset_id in self._whole:
+            self._whole.move_to_end(asset_id)
+            return self._whole[asset_id][0]
         path = self.folder / self.rows[asset_id]["file"]
         if not path.is_file():
             raise ContentError(f"asset file {path} is missing", "run `dvc repro preprocess`")
         asset, size = load_asset(path), path.stat().st_size
-        asset.derived.update(self._derived.pop(asset_id, {}))
-        self._loaded[asset_id] = asset, size
+        self._whole[asset_id] = asset, size
         self._bytes += size
-        while self._bytes > self.kept and len(self._loaded) > 1:
-            oldest, (gone, size) = self._loaded.popitem(last=False)
-            self._bytes -= size
-            self._derived[oldest] = gone.derived
-        while len(self._derived) > DERIVED * len(self._loaded):
-            self._derived.popitem(last=False)
+        while self._bytes > self.kept and len(self._whole) > 1:
+            self._bytes -= self._whole.popitem(last=False)[1][1]
         return asset
 
     def __iter__(self) -> Iterator[str]:
@@ -93,3 +100,35 @@ class Library(Mapping[str, Asset]):
 def kept_within(memory: int) -> int:
     """Return the bytes of asset files that a process of `memory` [MiB] may keep, read; a few at least."""
     return max(8 << 20, int((memory - BESIDE) * (1 << 20) / READ))
+
+
+class _Links(Sequence[Link]):
+    """An asset's links, as `read` gives them."""
+
+    def __init__(self, read: Callable[[], Asset]) -> None:
+        self._read = read
+
+    def __getitem__(self, index: Any) -> Any:
+        return self._read().links[index]
+
+    def __iter__(self) -> Iterator[Link]:
+        return iter(self._read().links)
+
+    def __len__(self) -> int:
+        return len(self._read().links)
+
+
+class _Textures(Mapping[str, bytes]):
+    """An asset's textures, as `read` gives them."""
+
+    def __init__(self, read: Callable[[], Asset]) -> None:
+        self._read = read
+
+    def __getitem__(self, name: str) -> bytes:
+        return self._read().textures[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._read().textures)
+
+    def __len__(self) -> int:
+        return len(self._read().textures)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from io import BytesIO
 from types import ModuleType
 from typing import Any
@@ -94,7 +95,7 @@ def _shape(mi: ModuleType, name: str, mesh: Mesh, vertices: NDArray[np.float64],
     return made
 
 
-def _surface(mi: ModuleType, material: Material, textures: dict[str, bytes]) -> dict[str, Any]:
+def _surface(mi: ModuleType, material: Material, textures: Mapping[str, bytes]) -> dict[str, Any]:
     """Return the scattering of a material: diffuse where rough, else glossy; what one sees through is thin."""
     color: dict[str, Any] = {"type": "rgb", "value": list(material.base_color)}
     if material.texture is not None and material.texture in textures:

@@ -14,7 +14,7 @@ from pipeline.entities.home import Home
 from pipeline.geometry.contact import first_hits, group_boxes, wall_excesses
 from pipeline.geometry.door_sweeps import leaf_handles, leaf_sweep
 from pipeline.geometry.free_space import FreeSpace
-from pipeline.geometry.kinematics import facing, handle_point, joint_range, moved_links, rotation
+from pipeline.geometry.kinematics import grips, joint_range, moved_links, rotation
 from pipeline.geometry.polygons import contains
 from pipeline.geometry.prisms import Prisms, Sweep, stacked
 from pipeline.geometry.robot import Robot
@@ -50,8 +50,9 @@ def check_joints(
             hits = _way(made, g, index, asset, moved[index], turn, held, settings)
             hits[(hits < 0) & (wall_excesses(moved[index].corners, moved[index].count, room) > settings.wall)] = -2
             clear_upper, clear, blocker = _progress(made.solids[g].sweeps[index], moved[index], hits, home)
-            grip = placement.position + turn @ (handle_point(asset, index) * placement.scale)
-            heading = turn[:2, :2] @ facing(asset, index)
+            handle, way = grips(asset)[index]
+            grip = placement.position + turn @ (handle * placement.scale)
+            heading = turn[:2, :2] @ way
             lower, upper = joint_range(joint)
             # Where the robot stands, it stands clear of the doors that it has opened before.
             opened = stacked([moved[index], *(m for m, j in zip(moved, asset.joints, strict=True) if j.name in joint.after)])

@@ -1,5 +1,6 @@
 """What stays in memory of a library: assets up to a bound of bytes, those that were asked for last; and what was derived from them."""
 
+import dataclasses
 import gc
 import weakref
 
@@ -21,26 +22,27 @@ def library(tmp_path):
     return made
 
 
-def test_the_asset_that_was_not_asked_for_the_longest_goes(library):
-    first = library["a"]
-    library["b"]
-    assert library["a"] is first
-    library["c"]
-    assert library["a"] is first
-    again = library["b"]
-    library["c"]
-    assert library["b"] is again
-    assert library["a"] is not first
-    assert np.array_equal(library["a"].links[0].visuals[0].vertices, first.links[0].visuals[0].vertices)
-
-
-def test_what_was_derived_from_an_asset_outlives_its_meshes(library):
-    shape = solid(library["a"])
-    meshes = weakref.ref(library["a"].links[0].visuals[0].vertices)
-    library["b"], library["c"]
+def test_meshes_that_were_not_looked_at_the_longest_go(library):
+    kept = {name: weakref.ref(library[name].links[0].visuals[0].vertices) for name in "ab"}
+    assert library["a"].links[0].visuals[0].vertices is kept["a"]()
+    assert library["c"].links
     gc.collect()
-    assert meshes() is None
+    assert [kept[name]() is None for name in "ab"] == [False, True]
+    assert library["b"] is library["b"]
+    assert np.array_equal(library["b"].links[0].visuals[0].vertices, furniture.cupboard("b").links[0].visuals[0].vertices)
+
+
+def test_what_was_derived_from_an_asset_outlives_its_meshes(library, monkeypatch):
+    shape = solid(library["a"])
+    assert library["b"].links
+    assert library["c"].links
+    monkeypatch.setattr(type(library), "_read", lambda *_: pytest.fail("read again"))
     assert solid(library["a"]) is shape
+
+
+def test_textures_are_read_when_they_are_asked_for(tmp_path):
+    made = library_of(tmp_path, [dataclasses.replace(furniture.cupboard("a"), textures={"wood.png": b"grain"})])
+    assert dict(made["a"].textures) == {"wood.png": b"grain"}
 
 
 def test_the_finish_is_read_once(library, monkeypatch):
