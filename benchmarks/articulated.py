@@ -8,7 +8,6 @@ checkout, as `PYTHONPATH=<it> python benchmarks/articulated.py`, compares.
 
 from __future__ import annotations
 
-import dataclasses
 import resource
 import sys
 import tempfile
@@ -17,8 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.sources import batch
-from pipeline.sources.batch import LibraryTask
+from pipeline.sources.articulated.objects import Found
+from pipeline.sources.articulated.source import ObjectTask, read_object
 from pipeline.sources.settings import ModelLimits
 from tests.sources import mobility
 
@@ -26,12 +25,6 @@ OBJECTS = 60
 TRIANGLES = (5_000, 20_000, 60_000, 150_000, 300_000)  # of an object, by turns
 TWICE = 1.6  # by what drawing faces from both sides makes them more
 LICENCE = "CC0-1.0"
-
-
-def task(source: Path, place: Path) -> LibraryTask:
-    """Return the task of reading a folder, with a cache where this version has one."""
-    more = {"cache": place / "cache"} if "cache" in {f.name for f in dataclasses.fields(LibraryTask)} else {}
-    return LibraryTask(source, place / "assets", ModelLimits(), LICENCE, **more)
 
 
 def triangles(folder: Path) -> int:
@@ -52,10 +45,10 @@ def main(count: int) -> None:
             four = sum(len(faces) for link in make(rng, n=4) for _, faces in link.meshes) * TWICE
             fine = max(1, round(4 * np.sqrt(TRIANGLES[k // len(names) % len(TRIANGLES)] / four)))
             folder = mobility.write(source, f"{k:05d}", category, make(rng, n=fine), k)
-            found = batch.Found(folder.name, folder.name)
+            found = Found(folder.name, folder.name)
             children = resource.getrusage(resource.RUSAGE_CHILDREN)
             start = time.process_time()
-            made = batch.read_partnet(task(source, Path(place)), found)
+            made = read_object(ObjectTask(source, Path(place) / "assets", ModelLimits(), LICENCE), found)
             after = resource.getrusage(resource.RUSAGE_CHILDREN)
             spent.append(time.process_time() - start + after.ru_utime + after.ru_stime - children.ru_utime - children.ru_stime)
             lost += not made.assets

@@ -19,15 +19,18 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from pipeline import params, taxonomy
-from pipeline.sources import batch
-from pipeline.sources.batch import HouseTask, LibraryRows, LibraryTask
+from pipeline.sources.articulated.objects import objects_in
+from pipeline.sources.articulated.source import ObjectTask, read_object
+from pipeline.sources.library_rows import LibraryRows
 from pipeline.sources.settings import PreprocessSettings
+from pipeline.sources.threed_front import source
 from pipeline.sources.threed_front.model_hints import hints
-from pipeline.sources.threed_front.walkable_share import Walker
+from pipeline.sources.walkable_share import Walker
 
 ROOT = Path(__file__).resolve().parents[1]
 SIZE = 2_000_000  # bytes of a house file
 HOUSES = 300
+LICENCE = "CC0-1.0"
 WARM = 30  # houses after which memory is taken as the level to stay at
 T = TypeVar("T")
 R = TypeVar("R")
@@ -84,31 +87,29 @@ def main(count: int) -> None:
     """Read everything once and print figures."""
     tree = params.read(ROOT / "params.yaml")
     settings = params.section(PreprocessSettings, tree, "preprocess")
-    front = ROOT / settings.front
-    sources = batch.house_files(front)
+    front, partnet = (ROOT / path for key in ("front", "partnet") if (path := settings.sources.get(key)))
+    files_of_corpus = source.house_files(front)
     with tempfile.TemporaryDirectory() as place:
-        houses = Path(place) / batch.HOUSES
+        houses = Path(place) / source.HOUSES
         houses.mkdir()
         for k in range(count):
-            tree = json.loads((front / sources[k % len(sources)]).read_text(encoding="utf-8"))
+            tree = json.loads((front / files_of_corpus[k % len(files_of_corpus)]).read_text(encoding="utf-8"))
             (houses / f"{tree['uid']}-{k}.json").write_text(padded(tree, SIZE), encoding="utf-8")
-        files = batch.house_files(Path(place))
+        files = source.house_files(Path(place))
         mean = sum((Path(place) / f).stat().st_size for f in files) / len(files)
         print(f"{count} houses of {mean / 1e6:.2f} MB")
-        said = hints((batch.house_records(front, f) for f in sources), taxonomy.load())
-        infos, _ = batch.future_models(front, said)
+        said = hints((source.house_records(front, f) for f in files_of_corpus), taxonomy.load())
+        infos, _ = source.future_models(front, said)
         library = LibraryRows()
-        task = LibraryTask(front, Path(place) / "assets", settings.models, settings.front_licence, said)
-        measured("3D-FUTURE models", partial(batch.read_future, task), infos, library.add)
-        if settings.partnet:
-            partnet = ROOT / settings.partnet
-            task = LibraryTask(partnet, Path(place) / "assets", settings.models, settings.partnet_licence)
-            measured("PartNet objects", partial(batch.read_partnet, task), batch.partnet_objects(partnet)[:40])
-        measured("records of houses", partial(batch.house_records, Path(place)), files)
-        house = HouseTask(Path(place), library.models, settings.filters, settings.front_licence, Walker.of(tree))
-        measured("houses, the first", partial(batch.read_front, house), files[:WARM])
+        task = source.ModelTask(front, Path(place) / "assets", settings.models, LICENCE, said)
+        measured("3D-FUTURE models", partial(source.read_future, task), infos, library.add)
+        objects = ObjectTask(partnet, Path(place) / "assets", settings.models, LICENCE)
+        measured("PartNet objects", partial(read_object, objects), objects_in(partnet)[:40])
+        measured("records of houses", partial(source.house_records, Path(place)), files)
+        house = source.HouseTask(Path(place), library.models, settings.filters, LICENCE, Walker.of(tree))
+        measured("houses, the first", partial(source.read_front, house), files[:WARM])
         before = peak()
-        measured("houses, the rest", partial(batch.read_front, house), files[WARM:])
+        measured("houses, the rest", partial(source.read_front, house), files[WARM:])
         print(f"peak memory {before:.0f} MiB after {WARM} houses, {peak():.0f} MiB after {count}")
 
 

@@ -69,21 +69,23 @@ def read(path: Path, preset: str | None = None) -> Tree:
     return merge(tree, presets[name] or {}, f"presets.{name}")
 
 
-def rewritten(text: str, changes: Mapping[tuple[str, str], str | None]) -> str:
-    """Return params.yaml's text with other values for keys (section, key) of its sections; comments and order stay.
+def rewritten(text: str, changes: Mapping[tuple[str, ...], str | None]) -> str:
+    """Return params.yaml's text with other values for keys, each given by its path of names from the section on; comments and order stay.
 
     Raises ContentError for a key that does not stand in a line of its own there.
     """
     lines = text.splitlines(keepends=True)
-    for (name, key), value in changes.items():
-        start = next((i for i, line in enumerate(lines) if re.match(rf"{name}:(\s|$)", line)), len(lines))
-        end = next((i for i in range(start + 1, len(lines)) if re.match(r"[^\s#]", lines[i])), len(lines))
-        spot = next((i for i in range(start + 1, end) if re.match(rf"  {key}:(\s|$)", lines[i])), None)
-        if spot is None:
-            raise ContentError(f"params.yaml: key {name}.{key} has no line", "restore it with `git checkout params.yaml`")
-        comment = re.search(r"\s#\s.*$", lines[spot].rstrip("\n"))
+    for path, value in changes.items():
+        start, end = -1, len(lines)
+        for depth, name in enumerate(path):
+            inside = range(start + 1, end)
+            found = next((i for i in inside if re.match(rf"{'  ' * depth}{name}:(\s|$)", lines[i])), None)
+            if found is None:
+                raise ContentError(f"params.yaml: key {'.'.join(path)} has no line", "restore it with `git checkout params.yaml`")
+            start, end = found, next((i for i in inside if i > found and re.match(rf" {{0,{2 * depth}}}[^\s#]", lines[i])), end)
+        comment = re.search(r"\s#\s.*$", lines[start].rstrip("\n"))
         said = "null" if value is None else value if re.fullmatch(r"[\w./][\w./-]*", value) else json.dumps(value, ensure_ascii=False)
-        lines[spot] = f"  {key}: {said}{comment.group() if comment else ''}\n"
+        lines[start] = f"{'  ' * (len(path) - 1)}{path[-1]}: {said}{comment.group() if comment else ''}\n"
     return "".join(lines)
 
 

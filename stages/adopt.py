@@ -10,10 +10,12 @@ from pipeline import params
 from pipeline.errors import UsageError
 from pipeline.manifest import write_bytes
 from pipeline.sources import inventory
-from pipeline.sources.recognition import LICENCES, Source, recognised
+from pipeline.sources.registry import SOURCES, recognised
 from pipeline.sources.settings import PreprocessSettings
+from pipeline.sources.source import Listing
 
 EMBEDDED = "embedded"
+OURS = "CC0-1.0"  # of the embedded corpus
 MADE = "LicenseRef-research-only"  # what is made of research-only furniture may not be more than that
 
 
@@ -24,38 +26,40 @@ def main(root: Path, paths: Sequence[Path]) -> None:
         if len(paths) > 1:
             raise UsageError("--use embedded goes with no other --use", "give it alone")
         plain = PreprocessSettings()
-        changes: dict[tuple[str, str], str | None] = {
-            ("preprocess", key): getattr(plain, key)
-            for key in ("front", "partnet", "peers", "front_licence", "partnet_licence", "peers_licence")
-        }
-        save(root, params.rewritten(text, {**changes, ("shard", "licence"): "CC0-1.0"}))
-        for key in LICENCES:
-            (root / inventory.FOLDER / f"{key}.csv").unlink(missing_ok=True)
+        changes: dict[tuple[str, ...], str | None] = {("shard", "licence"): OURS}
+        for source in SOURCES:
+            path = plain.sources.get(source.key)
+            changes[("preprocess", "sources", source.key)] = path
+            changes[("preprocess", "licences", source.key)] = OURS if path else source.licence
+            (root / inventory.FOLDER / f"{source.key}.csv").unlink(missing_ok=True)
+        save(root, params.rewritten(text, changes))
         sys.stdout.write("the embedded corpus is in use; `dvc repro` makes what follows from it\n")
         return
     found = chosen(paths)
     changes = {("shard", "licence"): MADE}
-    for source in found:
-        changes |= {("preprocess", source.key): written(root, source.root), ("preprocess", f"{source.key}_licence"): LICENCES[source.key]}
-    if {source.key for source in found} & {"front", "peers"} == {"front"}:  # its houses, no longer somebody's rooms
-        changes[("preprocess", "peers")] = None
-        (root / inventory.FOLDER / "peers.csv").unlink(missing_ok=True)
+    for source in SOURCES:
+        if source.key in found:
+            changes[("preprocess", "sources", source.key)] = written(root, found[source.key].root)
+            changes[("preprocess", "licences", source.key)] = source.licence
+        elif source.replaces & found.keys():  # the houses that are named, no longer what somebody made of them
+            changes[("preprocess", "sources", source.key)] = None
+            (root / inventory.FOLDER / f"{source.key}.csv").unlink(missing_ok=True)
     text = params.rewritten(text, changes)
-    for source in found:
-        files = inventory.write(root / inventory.FOLDER / f"{source.key}.csv", inventory.scan(source))
-        sys.stdout.write(f"+ {source.key}: {source}; {files} files in {inventory.FOLDER / source.key}.csv\n")
+    for key, listing in found.items():
+        files = inventory.write(root / inventory.FOLDER / f"{key}.csv", inventory.scan(listing))
+        sys.stdout.write(f"+ {key}: {listing}; {files} files in {inventory.FOLDER / key}.csv\n")
     save(root, text)
     sys.stdout.write("params.yaml names them, with their licences; `dvc repro` reads them\n")
 
 
-def chosen(paths: Sequence[Path]) -> list[Source]:
-    """Return the one source of each kind. Raises UsageError when two of a kind are given."""
-    found: dict[str, Source] = {}
-    for source in (s for path in paths for s in recognised(path)):
-        other = found.setdefault(source.key, source)
-        if other.root != source.root:
-            raise UsageError(f"{other.root} and {source.root} are both {source.key} data", "give one of them")
-    return list(found.values())
+def chosen(paths: Sequence[Path]) -> dict[str, Listing]:
+    """Return the one source of each kind, by key. Raises UsageError when two of a kind are given."""
+    found: dict[str, Listing] = {}
+    for listing in (s for path in paths for s in recognised(path)):
+        other = found.setdefault(listing.key, listing)
+        if other.root != listing.root:
+            raise UsageError(f"{other.root} and {listing.root} are both {listing.key} data", "give one of them")
+    return found
 
 
 def written(root: Path, path: Path) -> str:

@@ -15,7 +15,7 @@ from pipeline import params
 from pipeline.entry import run
 from pipeline.errors import ContentError
 from pipeline.execution import Voice, cores
-from pipeline.sources.recognition import front_at, partnet_at, peers_at
+from pipeline.sources.registry import SOURCES, named
 from pipeline.sources.settings import PreprocessSettings
 
 # (package, what it is for): what the factory cannot do without, then what some commands want
@@ -83,18 +83,18 @@ def packages() -> Iterator[str]:
 def sources(root: Path) -> Iterator[str]:
     """Yield what lies in the folders that stage `preprocess` reads."""
     settings = params.section(PreprocessSettings, params.read(root / "params.yaml"), "preprocess")
-    describe = {"front": front_at, "partnet": partnet_at, "peers": peers_at}
-    named = {"front": settings.front, "partnet": settings.partnet} | ({"peers": settings.peers} if settings.peers else {})
-    for key, path in named.items():
+    used = {source.key: path for source, path in named(settings.sources)}
+    for source in SOURCES:
+        path = used.get(source.key)
         if path is None:
-            yield f"+ {key}: none, by params.yaml"
+            yield f"+ {source.key}: none, by params.yaml"
         elif not (root / path).is_dir():
-            yield f"- {key}: {path} is missing; `dvc repro corpus` makes the embedded data, `sfgen doctor --use PATH` names yours"
+            yield f"- {source.key}: {path} is missing; `dvc repro corpus` makes the embedded data, `sfgen doctor --use PATH` names yours"
         else:
             try:
-                yield f"+ {key}: {describe[key](root / path)}"
+                yield f"+ {source.key}: {source.list(root / path, settings)}"
             except (OSError, ContentError) as error:
-                yield f"- {key}: {path} cannot be read ({error})"
+                yield f"- {source.key}: {path} cannot be read ({error})"
 
 
 def made(root: Path) -> Iterator[str]:

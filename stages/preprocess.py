@@ -1,4 +1,4 @@
-"""DVC stage `preprocess`: 3D-FRONT, 3D-FUTURE and PartNet folders to tables and assets. Nothing here knows which copies they are.
+"""DVC stage `preprocess`: the sources that params.yaml names to tables and assets. Nothing here knows which they are.
 
 Reads data/raw/ (or the user's copies), writes data/tables/*.parquet, data/tables/relations.json (how things stand to each other) and data/assets/*.safetensors.
 """
@@ -6,93 +6,63 @@ Reads data/raw/ (or the user's copies), writes data/tables/*.parquet, data/table
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
-from pipeline import params, taxonomy
+from pipeline import params
 from pipeline.entry import run
 from pipeline.errors import ContentError
-from pipeline.execution import cores, track
+from pipeline.execution import cores
 from pipeline.relations import files, learning
 from pipeline.relations.split import rooms_of
-from pipeline.sources import batch, inventory
-from pipeline.sources.articulated import proportions
-from pipeline.sources.articulated.household import named_categories
-from pipeline.sources.atiss.reader import PeersTask, kinds_of, peers_houses, read_peers
-from pipeline.sources.batch import Found, HouseTask, LibraryRows, LibraryTask
-from pipeline.sources.guarded import Folder
-from pipeline.sources.recognition import front_at, partnet_at, peers_at
+from pipeline.sources import inventory
+from pipeline.sources.library_rows import LibraryRows
+from pipeline.sources.registry import named
 from pipeline.sources.settings import PreprocessSettings
 from pipeline.sources.sink import write_houses, write_library
-from pipeline.sources.threed_front.house import HouseRows
+from pipeline.sources.source import Listing, Reading, Source
 from pipeline.sources.threed_front.mirrored import add_mirrored
-from pipeline.sources.threed_front.model_hints import hints
-from pipeline.sources.threed_front.walkable_share import Walker
+from pipeline.sources.walkable_share import Walker
+
+Used = list[tuple[Source, Listing, Reading]]
 
 
 def main(root: Path) -> None:
     """Read the sources that section `preprocess` of params.yaml names."""
     tree = params.read(root / "params.yaml")
     settings = params.section(PreprocessSettings, tree, "preprocess")
-    walker = Walker.of(tree)
-    workers = settings.workers or cores()
-    needed = () if settings.peers else (batch.HOUSES,) if settings.filters.keep_without_model else (batch.HOUSES, batch.MODELS)
-    front = folder(root, "front", settings.front, needed)
-    inventory.require_listed(root, front, front_at)
-    partnet = folder(root, "partnet", settings.partnet, ()) if settings.partnet else None
-    objects = batch.partnet_objects(partnet) if partnet else []
-    if partnet:
-        inventory.require_listed(root, partnet, lambda path: partnet_at(path, objects))
-    peers = folder(root, "peers", settings.peers, ()) if settings.peers else None
-    if peers:
-        inventory.require_listed(root, peers, peers_at)
-    library = read_library(root, front, partnet, objects, settings, workers)
-    step, task, houses = homes(front, peers, library, settings, walker)
+    used = list(sources(root, settings, Walker.of(tree)))
+    required = not settings.filters.keep_without_model and not any(source.replaces for source, _, _ in used)
+    library = read_library(root / "data" / "assets", used, required=required)
+    houses = (house for source, listing, reading in used if reading.houses for house in source.houses(listing, reading, library))
     out = root / "data" / "tables"
-    read = track(batch.each(step, task, houses, workers), len(houses), "houses", unit="house")
-    summary = write_houses(out, read, library, peers or front)
+    summary = write_houses(out, houses, library, places(used))
     library.assets += add_mirrored(root / "data" / "assets", library.assets, summary.assets)
     write_library(out, library, summary)
     files.save(out / "relations.json", learning.fit(rooms_of(out, "train")))
     sys.stdout.writelines(f"{line}\n" for line in summary.lines())
 
 
-def homes(
-    front: Path, peers: Path | None, library: LibraryRows, settings: PreprocessSettings, walker: Walker
-) -> tuple[Callable[[Any, Any], HouseRows], Any, Sequence[Any]]:
-    """Return how a house is read, what each of them needs, and the houses: 3D-FRONT files, or the peers' cached rooms."""
-    if peers:
-        kinds = kinds_of(peers)
-        return (
-            read_peers,
-            PeersTask(peers, kinds, library.models, settings.filters, settings.peers_licence, walker),
-            peers_houses(peers, kinds),
-        )
-    return batch.read_front, HouseTask(front, library.models, settings.filters, settings.front_licence, walker), batch.house_files(front)
+def sources(root: Path, settings: PreprocessSettings, walker: Walker) -> Iterator[tuple[Source, Listing, Reading]]:
+    """Yield the sources in use, what lies there, and how each is read."""
+    used = named(settings.sources)
+    replaced = {key for source, _ in used for key in source.replaces}
+    for source, path in used:
+        houses = source.key not in replaced
+        listing = source.list(root / path, settings, houses=houses)
+        inventory.require_listed(root, listing)
+        licence = settings.licences.get(source.key, source.licence)
+        yield source, listing, Reading(settings, licence, root / "data" / "assets", walker, settings.workers or cores(), houses)
 
 
-def read_library(
-    root: Path, front: Path, partnet: Path | None, objects: Sequence[Found], settings: PreprocessSettings, workers: int
-) -> LibraryRows:
-    """Read all models, those of `partnet` being `objects`, write their assets, and remove assets of earlier runs."""
-    out = root / "data" / "assets"
+def read_library(out: Path, used: Used, *, required: bool) -> LibraryRows:
+    """Read all models, write their assets, and remove assets of earlier runs. Raises ContentError where models are `required` and none is usable."""
     library = LibraryRows()
-    houses = [] if settings.peers else batch.house_files(front)
-    said = hints(track(batch.each(batch.house_records, front, houses, workers), len(houses), "records", unit="house"), taxonomy.load())
-    if (front / batch.MODELS).is_dir():  # `folder` has seen to it, but where rooms can do without
-        infos, library.rejects = batch.future_models(front, said)
-        task = LibraryTask(front, out, settings.models, settings.front_licence, said)
-        for made in track(batch.each(batch.read_future, task, infos, workers), len(infos), "models", unit="model"):
+    for source, listing, reading in used:
+        for made in source.models(listing, reading):
             library.add(made)
-    if partnet:
-        categories = named_categories(Folder.at(partnet))
-        spreads = proportions.spreads(batch.each(proportions.drawn, partnet, [found.path for found in objects], workers))
-        task = LibraryTask(partnet, out, settings.models, settings.partnet_licence, categories=categories, spreads=spreads)
-        for made in track(batch.each(batch.read_partnet, task, objects, workers), len(objects), "articulated", unit="object"):
-            library.add(made)
-    if not library.assets and not settings.peers and not settings.filters.keep_without_model:
-        raise ContentError(f"{front} gives no usable model", "check the folders in section preprocess of params.yaml")
+    if required and not library.assets:
+        raise ContentError(f"{places(used)} gives no usable model", "check the folders in section preprocess of params.yaml")
     kept = {row["file"] for row in library.assets}
     for path in out.glob("*.safetensors"):
         if path.name not in kept:
@@ -100,14 +70,9 @@ def read_library(
     return library
 
 
-def folder(root: Path, key: str, path: str, parts: Iterable[str]) -> Path:
-    """Return a source folder. Raises ContentError naming the key of params.yaml when it, or a part of it, is missing."""
-    found = root / path
-    for part in (found, *(found / p for p in parts)):
-        if not part.is_dir():
-            remedy = "name the folder of the data with `sfgen doctor --use PATH`, or make the embedded corpus with `dvc repro corpus`"
-            raise ContentError(f"preprocess.{key}: {part} is {'no folder' if part.exists() else 'missing'}", remedy)
-    return found
+def places(used: Used) -> str:
+    """Say where the sources lie."""
+    return ", ".join(str(listing.root) for _, listing, _ in used)
 
 
 if __name__ == "__main__":

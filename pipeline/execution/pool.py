@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import multiprocessing
 import os
 import signal
@@ -62,14 +63,24 @@ class _Worker:
 
 
 def run_on_processes(
-    step: Callable[[J], R], queue: Queue[J], workers: int, note: Callable[[Note], object] | None, silence: float
+    step: Callable[[J], R],
+    queue: Queue[J],
+    workers: int,
+    note: Callable[[Note], object] | None,
+    silence: float,
+    *,
+    start: Any = PROCESSES,
 ) -> Iterator[tuple[J, R | Lost]]:
-    """Run the queue's jobs on `workers` processes; each gets its next job before the result of its last is handed on."""
+    """Run the queue's jobs on `workers` processes; each gets its next job before the result of its last is handed on.
+
+    `start` is the context of multiprocessing by which they start.
+    """
     crew: list[_Worker] = []
     stillborn = 0  # workers in a row that died before they could begin
     with tempfile.TemporaryDirectory(prefix="sfgen-") as scratch:  # what a killed worker leaves behind goes with it
+        recruit = functools.partial(_start, start, step, scratch)
         try:
-            while _employ(crew, queue, step, scratch, workers):
+            while _employ(crew, queue, recruit, workers):
                 for worker in _heard(crew, silence):
                     task = worker.task
                     kind, answer = _message(worker)
@@ -83,7 +94,7 @@ def run_on_processes(
                     if kind == FAILED:
                         raise answer
                     if kind == DONE:
-                        _employ(crew, queue, step, scratch, workers)
+                        _employ(crew, queue, recruit, workers)
                         yield task.job, answer
                         continue
                     crew.remove(worker)
@@ -105,12 +116,12 @@ def run_on_processes(
                 worker.stop()
 
 
-def _employ(crew: list[_Worker], queue: Queue[J], step: Callable[[J], R], scratch: str, workers: int) -> bool:
+def _employ(crew: list[_Worker], queue: Queue[J], recruit: Callable[[], _Worker], workers: int) -> bool:
     """Give every idle worker a task, and start more while there is more to do; False when nothing is at work."""
     idle = [worker for worker in crew if worker.task is None]
     while (idle or len(crew) < workers) and (task := queue.next()):
         if not idle:
-            crew.append(_start(step, scratch))
+            crew.append(recruit())
             idle.append(crew[-1])
         worker = idle.pop()
         if not worker.give(task):  # it died while it had nothing to do
@@ -120,9 +131,9 @@ def _employ(crew: list[_Worker], queue: Queue[J], step: Callable[[J], R], scratc
     return any(worker.task for worker in crew)
 
 
-def _start(step: Callable[[J], R], scratch: str) -> _Worker:
-    ours, theirs = PROCESSES.Pipe()
-    process = PROCESSES.Process(target=_serve, args=(theirs, step, scratch), daemon=True)
+def _start(context: Any, step: Callable[[J], R], scratch: str) -> _Worker:
+    ours, theirs = context.Pipe()
+    process = context.Process(target=_serve, args=(theirs, step, scratch), daemon=True)
     process.start()
     theirs.close()  # so that the death of the process ends the pipe
     return _Worker(process, ours)

@@ -9,12 +9,12 @@ from __future__ import annotations
 import csv
 import io
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from pipeline.errors import ContentError
 from pipeline.manifest import write_bytes
-from pipeline.sources.recognition import Source
+from pipeline.sources.source import Listing
 
 FOLDER = Path("manifests/inventories")
 HEADER = ("path", "size", "mtime_ns")
@@ -24,7 +24,7 @@ SHOWN = 3  # differences that a message names
 Entry = tuple[str, int, int]
 
 
-def scan(source: Source) -> Iterator[Entry]:
+def scan(source: Listing) -> Iterator[Entry]:
     """Yield the files of a source that readers may open, sorted by path."""
     for part in sorted(source.parts):
         yield from _files(source.root, source.root / part)
@@ -86,7 +86,7 @@ def differences(listed: Iterable[Entry], there: Iterable[Entry]) -> list[str]:
     return [f"{path} {what}" for path, what in sorted(found)]
 
 
-def require_match(path: Path, source: Source) -> None:
+def require_match(path: Path, source: Listing) -> None:
     """Raise ContentError, naming the first differences, when a source is not what its inventory lists."""
     changed = differences(read(path), scan(source))
     if changed:
@@ -97,11 +97,10 @@ def require_match(path: Path, source: Source) -> None:
         )
 
 
-def require_listed(root: Path, path: Path, describe: Callable[[Path], Source]) -> None:
+def require_listed(root: Path, source: Listing) -> None:
     """Raise ContentError when a copy is not what its inventory in the checkout `root` lists.
 
     What stage corpus made, under data/raw, is DVC's to watch.
     """
-    if not path.resolve().is_relative_to((root / "data" / "raw").resolve()):
-        source = describe(path)
+    if not source.root.resolve().is_relative_to((root / "data" / "raw").resolve()):
         require_match(root / FOLDER / f"{source.key}.csv", source)

@@ -1,17 +1,69 @@
-"""Rows of assets, asset_joints and asset_parts."""
+"""What models give: asset files, and rows of assets, asset_joints and asset_parts."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from pipeline.entities.asset import Asset
+from pipeline.entities.files import save_asset
 from pipeline.geometry.kinematics import handle_point, sweep_box
 from pipeline.sources.densities import density
-from pipeline.sources.reasons import Row
+from pipeline.sources.identity import split_of
+from pipeline.sources.masses import held
+from pipeline.sources.reasons import Row, SourceError, reject
 
 STEPS = 9  # positions of a joint's range whose boxes are united
+
+
+@dataclass(slots=True)
+class LibraryRows:
+    """Rows of models; `models` is what houses need to know of each, by its id in the source."""
+
+    assets: list[Row] = field(default_factory=list)
+    joints: list[Row] = field(default_factory=list)
+    parts: list[Row] = field(default_factory=list)
+    rejects: list[Row] = field(default_factory=list)
+    models: dict[str, Any] = field(default_factory=dict)
+
+    def add(self, other: LibraryRows) -> None:
+        """Append what another gave."""
+        self.assets += other.assets
+        self.joints += other.joints
+        self.parts += other.parts
+        self.rejects += other.rejects
+        self.models.update(other.models)
+
+    def keep(self, folder: Path, asset: Asset, scale: Scale, material: str = "", matter: str = "") -> None:
+        """Write an asset into `folder`, and its rows; `matter` is the material by which its density was chosen.
+
+        A mass by volume is held to what such things weigh; a URDF to scale may state its own.
+        """
+        asset, heavier = (asset, 1.0) if asset.source == "urdf" else held(asset)
+        file = f"{asset.asset_id}.safetensors"
+        digest = save_asset(folder / file, asset)
+        split = split_of(asset.source_id)
+        self.assets.append(
+            asset_row(asset, material=material, matter=matter, split=split, scale=scale, file=file, sha256=digest, heavier=heavier)
+        )
+        self.joints += joint_rows(asset)
+        self.parts += part_rows(asset)
+
+    def guarded(self, where: str, work: Callable[[], None]) -> LibraryRows:
+        """Do the work on one model; what goes wrong in it becomes a reject of it."""
+        try:
+            work()
+        except SourceError as error:
+            self.rejects.append(reject("model", where, error.code, f"{error.where}: {error.detail}"))
+        except MemoryError:
+            raise  # the budget's business
+        except Exception as error:  # noqa: BLE001 - one bad file of thousands must not end the run; the table tells
+            self.rejects.append(reject("model", where, "internal", f"{type(error).__name__}: {error}"))
+        return self
 
 
 @dataclass(frozen=True, slots=True)

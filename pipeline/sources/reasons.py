@@ -21,6 +21,9 @@ REASONS: dict[str, Reason] = {
     "not_obj": Reason("model", "quarantined", "the mesh file cannot be read: empty, truncated, bad numbers or indices, no faces"),
     "not_urdf": Reason("model", "quarantined", "the URDF is not XML, has a DTD or entities, or is not a tree of links"),
     "bad_number": Reason("house, model, object", "dropped", "a number that is not finite or not a number (of a file: quarantined)"),
+    "out_of_time": Reason("house, model", "quarantined", "reading took more processor time than a file may cost (preprocess.budget)"),
+    "out_of_memory": Reason("house, model", "quarantined", "reading took more memory than a file may cost (preprocess.budget)"),
+    "reader_died": Reason("house, model", "quarantined", "the process that read the file ended, and so did others that tried again"),
     "internal": Reason("house, model", "quarantined", "the reader failed in a way it does not know; please report it"),
     # houses
     "no_rooms": Reason("house", "dropped", "no usable room is left"),

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
+
+from pipeline.sources.budget import Budget
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +42,9 @@ class ModelLimits:
 class PreprocessSettings:
     """Where the sources are and how they are read. Paths are relative to the checkout, or absolute; null: none."""
 
-    front: str = "data/raw/3d-front"
-    partnet: str | None = "data/raw/partnet"
-    peers: str | None = None
-    front_licence: str = "CC0-1.0"
-    partnet_licence: str = "CC0-1.0"
-    peers_licence: str = "LicenseRef-3D-FRONT-3D-FUTURE"
+    sources: Mapping[str, str | None] = field(default_factory=lambda: {"front": "data/raw/3d-front", "partnet": "data/raw/partnet"})
+    licences: Mapping[str, str] = field(default_factory=dict)  # by source; one without is under the licence of real copies
     workers: int = 0  # processes; 0: one per core
+    budget: Budget = field(default_factory=Budget)
     filters: FrontFilters = FrontFilters()
     models: ModelLimits = ModelLimits()

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from pipeline import tables
 from pipeline.errors import ContentError
-from pipeline.sources.batch import LibraryRows, numbered
-from pipeline.sources.threed_front.house import HouseRows
+from pipeline.sources.house_rows import HouseRows, numbered
+from pipeline.sources.library_rows import LibraryRows
 from schemas.assets import ASSET_JOINTS, ASSET_PARTS, ASSETS
 from schemas.objects import OBJECTS
 from schemas.openings import OPENINGS
@@ -56,7 +56,7 @@ class Summary:
             yield f"  {what} {reason}: {count}"
 
 
-def write_houses(folder: Path, houses: Iterable[HouseRows], library: LibraryRows, source: Path) -> Summary:
+def write_houses(folder: Path, houses: Iterable[HouseRows], library: LibraryRows, source: str) -> Summary:
     """Write scenes, rooms, openings, objects and rejects, those of `library` first, and return the counts of the houses.
 
     Raises ContentError, naming `source`, and writes nothing where no house is usable.

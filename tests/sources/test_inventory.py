@@ -4,7 +4,7 @@ import pytest
 
 from pipeline.errors import ContentError
 from pipeline.sources import inventory
-from pipeline.sources.recognition import Source
+from pipeline.sources.source import Listing
 
 
 @pytest.fixture
@@ -13,7 +13,7 @@ def source(tmp_path):
         path = tmp_path / "data" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(name)
-    return Source("front", tmp_path / "data", ("b", "a"), ())
+    return Listing("front", tmp_path / "data", ("b", "a"), ())
 
 
 def test_it_lists_what_is_read_and_nothing_else(source):

@@ -260,7 +260,7 @@ def test_files_that_are_no_npz(tmp_path):
 
 
 def test_a_folder_of_something_else_is_named(tmp_path):
-    with pytest.raises(ContentError, match=r"preprocess\.peers"):
+    with pytest.raises(ContentError, match=r"preprocess\.sources\.peers"):
         kinds_of(tmp_path)
     write_stats(tmp_path / STATS, {"class_labels": ["cat", "dog"]})
     with pytest.raises(ContentError, match="classes"):

@@ -3,7 +3,9 @@ import json
 import pytest
 
 from pipeline.errors import ContentError, UsageError
-from pipeline.sources.recognition import partnet_at, recognised
+from pipeline.sources.articulated.source import Articulated
+from pipeline.sources.registry import recognised
+from pipeline.sources.settings import PreprocessSettings
 
 HOUSE = "3D-FRONT/0a1b2c3d-0000-4000-8000-0123456789ab.json"
 INFO = "3D-FUTURE-model/model_info.json"
@@ -91,6 +93,6 @@ def test_urdfs_by_themselves_count_with_their_folders(tmp_path):
         (tmp_path / file).write_text("<robot/>")
     (tmp_path / "away").mkdir()
     (tmp_path / "c" / "linked").symlink_to(tmp_path.parent)
-    found = partnet_at(tmp_path)
+    found = Articulated().list(tmp_path, PreprocessSettings())
     assert found.parts == ("a", "c")
     assert found.counts[0] == ("objects", 4)  # the link is one, to be refused

@@ -7,10 +7,11 @@ import pytest
 
 from pipeline import params
 from pipeline.errors import ContentError, UsageError
-from pipeline.sources import batch, inventory, recognition
+from pipeline.sources import inventory
+from pipeline.sources.articulated import source as articulated
 from pipeline.sources.atiss.files import BOXES, STATS, stats, write_stats
 from pipeline.sources.atiss.labels import KINDS
-from pipeline.sources.recognition import recognised
+from pipeline.sources.registry import recognised
 from stages import adopt, doctor, preprocess
 from tests.sources import making
 from tests.sources.test_recognition import front, partnet
@@ -33,8 +34,8 @@ def test_copies_are_named_with_inventory_and_licence_and_nothing_else_changes(ro
     before = (root / "params.yaml").read_text().splitlines()
     copies = front(tmp_path / "my data"), partnet(tmp_path / "objects")
     adopt.main(root, copies)
-    assert (section(root)["front"], section(root)["partnet"]) == tuple(str(c) for c in copies)
-    assert "LicenseRef" in section(root)["front_licence"]
+    assert (section(root)["sources"]["front"], section(root)["sources"]["partnet"]) == tuple(str(c) for c in copies)
+    assert "LicenseRef" in section(root)["licences"]["front"]
     assert params.read(root / "params.yaml")["shard"]["licence"] == adopt.MADE
     after = (root / "params.yaml").read_text().splitlines()
     changed = [(a, b) for a, b in zip(before, after, strict=True) if a != b]
@@ -105,8 +106,8 @@ def cached(root):
 def test_rooms_of_the_peers_have_an_inventory_too(root, tmp_path, capsys):
     rooms = cached(tmp_path / "rooms")
     adopt.main(root, [rooms])
-    assert section(root)["peers"] == str(rooms)
-    assert "LicenseRef" in section(root)["peers_licence"]
+    assert section(root)["sources"]["peers"] == str(rooms)
+    assert "LicenseRef" in section(root)["licences"]["peers"]
     assert "1 rooms, 1 houses" in capsys.readouterr().out
     assert "+ peers: " in "\n".join(doctor.sources(root))
     making.write_library(root / "data/raw/3d-front")
@@ -123,7 +124,7 @@ def test_rooms_of_the_peers_have_an_inventory_too(root, tmp_path, capsys):
 def test_houses_of_3d_front_take_the_place_of_cached_rooms(root, tmp_path):
     adopt.main(root, [cached(tmp_path / "rooms")])
     adopt.main(root, [front(tmp_path / "copy")])
-    assert section(root)["peers"] is None
+    assert section(root)["sources"]["peers"] is None
     assert not (root / inventory.FOLDER / "peers.csv").exists()
 
 
@@ -145,8 +146,7 @@ def test_a_folder_of_objects_is_walked_once(root, tmp_path, monkeypatch):
     making.write_library(root / "data/raw/3d-front")
     making.write_house(root / "data/raw/3d-front", making.two_rooms())
     walks = []
-    look = batch.partnet_objects
-    monkeypatch.setattr(batch, "partnet_objects", lambda path: walks.append(path) or look(path))
-    monkeypatch.setattr(recognition, "partnet_objects", lambda path: walks.append(path) or look(path))
+    look = articulated.objects_in
+    monkeypatch.setattr(articulated, "objects_in", lambda path: walks.append(path) or look(path))
     preprocess.main(root)
     assert len(walks) == 1

@@ -7,7 +7,8 @@ from pipeline import tables
 from pipeline.errors import UsageError
 from pipeline.sources import inventory
 from pipeline.sources.atiss.files import BOXES
-from pipeline.sources.recognition import peers_at
+from pipeline.sources.atiss.source import Atiss
+from pipeline.sources.settings import PreprocessSettings
 from schemas.objects import OBJECTS
 from schemas.rejects import REJECTS
 from schemas.rooms import ROOMS
@@ -49,7 +50,7 @@ def test_split_is_ours(made):
 def test_round_trip_through_the_tables(made, capsys):
     before = {(o["source_id"].split("/")[0], o["category"]): o for o in read(made, OBJECTS)}
     write_params(made, peers="peers", front="data/raw/3d-front")
-    inventory.write(made / inventory.FOLDER / "peers.csv", inventory.scan(peers_at(made / "peers")))
+    inventory.write(made / inventory.FOLDER / "peers.csv", inventory.scan(Atiss().list(made / "peers", PreprocessSettings())))
     preprocess.main(made)
     assert "12 houses, 12 rooms" in capsys.readouterr().out
     after = {(o["source_id"].split("/")[0], o["category"]): o for o in read(made, OBJECTS)}

@@ -41,7 +41,13 @@ def checkout(root, houses=6, **settings):
     return root
 
 
+KEYS = {"front": "data/raw/3d-front", "partnet": "data/raw/partnet", "peers": None}
+
+
 def write_params(root, **settings):
+    """`front`, `partnet` and `peers` are where these sources lie."""
+    where = {key: settings.pop(key, path) for key, path in KEYS.items()}
+    settings = {"sources": where, "licences": dict.fromkeys(("front", "partnet"), "CC0-1.0"), **settings}
     (root / "params.yaml").write_text(
         yaml.safe_dump({"preset": "quick", "presets": {"quick": {}}, "verify": VERIFY, "preprocess": {"workers": 1, **settings}})
     )
@@ -133,7 +139,7 @@ def test_without_partnet(tmp_path):
 @pytest.mark.parametrize("front", ["nowhere", "params.yaml", "data/raw"])
 def test_wrong_folder_names_key_and_remedy(tmp_path, front):
     root = checkout(tmp_path, houses=1, front=front)
-    with pytest.raises(ContentError, match=r"preprocess\.front"):
+    with pytest.raises(ContentError, match=r"preprocess\.sources\.front"):
         main(root)
     assert not (root / "data/tables").exists()
 

@@ -21,17 +21,18 @@ from pipeline.errors import ContentError
 from pipeline.sources.atiss.files import BOXES, ENDS, STATS, CachedRoom, read_classes, read_room
 from pipeline.sources.atiss.labels import Kind, kind_of
 from pipeline.sources.guarded import Folder
+from pipeline.sources.house_rows import HouseRows
 from pipeline.sources.identity import slug
 from pipeline.sources.reasons import SourceError, reject
 from pipeline.sources.settings import FrontFilters
 from pipeline.sources.threed_front.floors import outline
 from pipeline.sources.threed_front.furniture import MIN_SIZE, Model, Placed
 from pipeline.sources.threed_front.future_scale import LONGEST, likeliest
-from pipeline.sources.threed_front.house import HouseRows, rows_of
+from pipeline.sources.threed_front.house import rows_of
 from pipeline.sources.threed_front.house_file import NO_TURN, ONE, Child, HouseFile, RoomRecord
 from pipeline.sources.threed_front.poses import Pose, to_ours
 from pipeline.sources.threed_front.rows import ReadRoom
-from pipeline.sources.threed_front.walkable_share import Walker
+from pipeline.sources.walkable_share import Walker
 
 Floats = NDArray[np.float64]
 House = tuple[str, tuple[tuple[str, str], ...]]  # its id, and (folder of the kind, folder of the room) of each room
@@ -62,7 +63,9 @@ def kinds_of(source: Path) -> dict[str, Kind]:
             raise ContentError(f"{path} lists classes that are none of the peers' four sets", "give the file that came with the rooms")
         found[name] = kind
     if not found:
-        raise ContentError(f"preprocess.peers: {source} has no {STATS}", "name the folder with the cached rooms, or the one above it")
+        raise ContentError(
+            f"preprocess.sources.peers: {source} has no {STATS}", "name the folder with the cached rooms, or the one above it"
+        )
     return found
 
 
@@ -89,6 +92,8 @@ def read_peers(task: PeersTask, house: House) -> HouseRows:
             rooms.append(_room(cached, task, task.kinds[name], rooms, rows))
         except SourceError as error:
             rows.rejects.append(reject("room", folder, error.code, error.detail))
+        except MemoryError:
+            raise  # the budget's business
         except Exception as error:  # noqa: BLE001 - one bad file of thousands must not end the run; the table tells
             rows.rejects.append(reject("house", uid, "internal", f"{type(error).__name__}: {error}"))
     if not any(room.objects for room in rooms):

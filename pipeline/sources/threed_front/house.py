@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
@@ -15,6 +14,7 @@ from shapely.geometry import Polygon
 from pipeline.entities.plan import Opening, Room
 from pipeline.manifest import sha256
 from pipeline.sources.guarded import MAX_JSON, Folder, parse_json
+from pipeline.sources.house_rows import HouseRows
 from pipeline.sources.identity import slug
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import FrontFilters
@@ -26,7 +26,7 @@ from pipeline.sources.threed_front.house_file import HouseFile, RoomRecord, defe
 from pipeline.sources.threed_front.opening_evidence import MESHES, OpeningEvidence, from_furniture, from_mesh
 from pipeline.sources.threed_front.poses import to_ours, yaw_and_tilt
 from pipeline.sources.threed_front.rows import ReadRoom, object_row, opening_row, room_row, scene_row
-from pipeline.sources.threed_front.walkable_share import Walker
+from pipeline.sources.walkable_share import Walker
 from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
@@ -38,22 +38,6 @@ WALLS = frozenset({"WallInner", "WallOuter"})
 AREA_TOLERANCE = 0.15  # of the room's size in the file, up to which floors of it differ by their strips under doors
 SWITCH = 1.1  # [m] above the floor: walls are cut here to see where they stand
 INNER_WALL, OUTER_WALL = 0.12, 0.24  # [m] 3D-FRONT's usual thicknesses, where no reveal tells
-
-
-@dataclass(slots=True)
-class HouseRows:
-    """What a house gives; all lists are empty but `rejects` when it is left out. `name` is that of its file.
-
-    `content` is a digest of its rooms and furniture, wherever its file lies and whatever it is called; "" where nobody needs it.
-    """
-
-    name: str = ""
-    scenes: list[Row] = field(default_factory=list)
-    rooms: list[Row] = field(default_factory=list)
-    openings: list[Row] = field(default_factory=list)
-    objects: list[Row] = field(default_factory=list)
-    rejects: list[Row] = field(default_factory=list)
-    content: str = ""
 
 
 def read_house(

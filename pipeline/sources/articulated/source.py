@@ -1,0 +1,110 @@
+"""PartNet-Mobility, GAPartNet and other people's URDFs as a source of models: a folder of objects, however deep."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+
+from pipeline import taxonomy
+from pipeline.sources.articulated import proportions
+from pipeline.sources.articulated.assets import assets
+from pipeline.sources.articulated.household import candidates, named_categories, oriented, read_household
+from pipeline.sources.articulated.objects import Found, objects_in
+from pipeline.sources.articulated.partnet import URDFS, read_shape
+from pipeline.sources.articulated.proportions import Proportions
+from pipeline.sources.batch import Batch
+from pipeline.sources.folders import require_folders
+from pipeline.sources.guarded import Folder
+from pipeline.sources.library_rows import LibraryRows, Scale
+from pipeline.sources.reasons import reject
+from pipeline.sources.settings import ModelLimits, PreprocessSettings
+from pipeline.sources.source import Listing, Reading, Source
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectTask:
+    """What every object is read with.
+
+    `categories`: by id, those that the user named; `spreads`: by model category, what its objects' proportions are.
+    """
+
+    source: Path
+    out: Path
+    limits: ModelLimits
+    licence: str
+    categories: Mapping[str, str] = field(default_factory=dict)
+    spreads: Mapping[str, Proportions] = field(default_factory=dict)
+
+
+class Articulated(Source):
+    """See `pipeline.sources.source.Source`."""
+
+    key = "partnet"
+    licence = "LicenseRef-PartNet-Mobility"
+    expected = "folders of PartNet-Mobility or GAPartNet objects"
+    replaces: frozenset[str] = frozenset()
+
+    def recognise(self, folder: Path) -> Path | None:
+        """Return the folder that holds all objects; of a folder that is one of a set, the set is meant."""
+        base = folder.parent if _is_object(folder) else folder
+        names = [found.path for found in objects_in(base)]
+        if not names:
+            return None
+        while all("/" in name for name in names) and len({name.split("/", 1)[0] for name in names}) == 1:
+            base, names = base / names[0].split("/", 1)[0], [name.split("/", 1)[1] for name in names]
+        return base
+
+    def list(self, root: Path, _settings: PreprocessSettings, *, houses: bool = True) -> Listing:  # noqa: ARG002 - it has none
+        """Describe a folder below which objects with a URDF lie; of a URDF by itself all of its folder counts as read."""
+        require_folders(self.key, root)
+        objects = objects_in(root)
+        paths = [PurePosixPath(found.path) for found in objects]
+        folders = {path.parent if path.suffix == ".urdf" else path for path in paths if not (root / path).is_symlink()}
+        names = sorted(folder.as_posix() for folder in folders if folders.isdisjoint(folder.parents))
+        recut = sum((root / name / URDFS[0][0]).is_file() for name in names)
+        counts = (("objects", len(paths)), ("of them with GAPartNet's parts", recut))
+        return Listing(self.key, root, tuple(names), counts, items=tuple(objects))
+
+    def models(self, listing: Listing, reading: Reading) -> Iterator[LibraryRows]:
+        """Read the proportions of all objects, then the objects."""
+        drawn = Batch("extent", proportions.drawn, listing.root, [found.path for found in listing.items], lambda *_: None)
+        task = ObjectTask(
+            listing.root,
+            reading.assets,
+            reading.settings.models,
+            reading.licence,
+            named_categories(Folder.at(listing.root)),
+            proportions.spreads(reading.each(drawn)),
+        )
+        yield from reading.each(Batch("object", read_object, task, listing.items, _no_object))
+
+
+def read_object(task: ObjectTask, found: Found) -> LibraryRows:
+    """Read one articulated object and write an asset file for each category that it serves."""
+    made = LibraryRows()
+
+    def work() -> None:
+        kinds, root = taxonomy.load(), Folder.at(task.source)
+        named = task.categories.get(found.source_id) or task.categories.get(found.path) or ""
+        if found.path.lower().endswith(".urdf"):
+            categories = candidates(found.path, named, kinds)
+            shape = oriented(read_household(root, found.path, found.source_id, task.limits.max_texture), categories)
+        else:
+            models = sorted({name for kind in kinds.categories.values() for name in kind.names.partnet})
+            shape = read_shape(root.sub(found.path), found.source_id, task.limits.max_texture, models, named)
+            categories = kinds.from_partnet(shape.model_cat) or ((shape.model_cat,) if shape.model_cat in kinds.categories else ())
+        own = task.spreads.get(shape.model_cat)
+        for asset, fit, rejects in assets(shape, found.stem, categories, kinds, task.limits, task.licence, own):
+            made.keep(task.out, asset, Scale(fit.scale, fit.category if fit.fitted else "file", fit.rms))
+            made.rejects += rejects
+
+    return made.guarded(found.source_id, work)
+
+
+def _no_object(found: Found, reason: str, detail: str) -> LibraryRows:
+    return LibraryRows(rejects=[reject("model", found.source_id, reason, detail)])
+
+
+def _is_object(folder: Path) -> bool:
+    return (folder / "meta.json").is_file() or any((folder / name).is_file() for name, _ in URDFS)
