@@ -51,10 +51,19 @@ def source(name, values, width):
 
 
 def dae(
-    *, size=(1.0, 1.0, 1.0), kind="triangles", node="", asset="<up_axis>Z_UP</up_axis>", diffuse=RED, more="", image="wood.png", nodes=None
+    *,
+    size=(1.0, 1.0, 1.0),
+    kind="triangles",
+    node="",
+    asset="<up_axis>Z_UP</up_axis>",
+    diffuse=RED,
+    more="",
+    image="wood.png",
+    nodes=None,
+    uvs=4,
 ):
-    """A file of one box. `node` are transforms of the node that shows it, `nodes` other nodes in its place."""
-    mesh = source("p", corners(size), 3) + source("n", [[0, 0, 1]], 3) + source("t", [[0, 0], [1, 0], [1, 1], [0, 1]], 2)
+    """A file of one box. `node` are transforms of the node that shows it, `nodes` other nodes in its place, `uvs` how many there are."""
+    mesh = source("p", corners(size), 3) + source("n", [[0, 0, 1]], 3) + source("t", [[0, 0], [1, 0], [1, 1], [0, 1]] * (uvs // 4), 2)
     mesh += f'<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>{primitive(kind)}'
     bind = '<bind_material><technique_common><instance_material symbol="symbol" target="#red"/></technique_common></bind_material>'
     shown = nodes or f'<node id="n0">{node}<instance_geometry url="#box">{bind}</instance_geometry></node>'

@@ -94,6 +94,7 @@ OBJS = {  # content of raw_model.obj -> reason
     "index_zero": (BOX.encode() + b"f 0 1 2\n", "not_obj"),
     "index_huge": (BOX.encode() + b"f 1 2 " + b"9" * 400 + b"\n", "not_obj"),
     "many_vertices": (b"v 0 0 0\n" * 1_500_000 + b"f 1 2 3\n", "too_large"),
+    "many_uvs": (BOX.encode() + b"vt 0 0\n" * 4_000_000, "too_large"),
     "many_groups": (BOX.encode() + b"".join(b"g %d\nf 1 2 3\n" % k for k in range(5000)), "too_large"),
     "one_long_face": (BOX.encode() + b"f" + b" 1" * 4_000_000 + b"\n", "too_large"),
     "binary": (bytes(range(256)) * 64, "not_obj"),
@@ -259,6 +260,13 @@ DAES = {  # content of a mesh of a URDF by itself -> reason
         collada.dae(
             nodes="".join(f'<node id="n{k}"><instance_node url="#n{k + 1}"/><instance_node url="#n{k + 1}"/></node>' for k in range(60))
             + '<node id="n60"><instance_geometry url="#box"/></node>'
+        ),
+        "too_large",
+    ),
+    "uvs_again_and_again": (
+        collada.dae(
+            nodes='<node><instance_geometry url="#box"/></node>' * 100,
+            uvs=20_000,
         ),
         "too_large",
     ),

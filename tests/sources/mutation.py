@@ -22,7 +22,7 @@ from pipeline.sources.settings import FrontFilters, ModelLimits
 from pipeline.sources.threed_front.source import HouseTask, ModelTask, future_models, house_files, read_front, read_future
 from tests.sources import collada, making
 from tests.sources.reading import WALKER
-from tests.sources.test_gltf_file import glb
+from tests.sources.test_scene_file import glb
 
 LIMIT = Budget(seconds=2.0, mebibytes=256)
 NUMBERS = (b"nan", b"-1", b"0", b"1e308", b"-1e400", b"4294967295", b"99999999999999999999", b"1e-320", b"2147483648", b"0x7f")

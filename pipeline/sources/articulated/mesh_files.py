@@ -13,9 +13,9 @@ from pipeline.sources.articulated.shape import Note
 from pipeline.sources.articulated.urdf import Shape
 from pipeline.sources.guarded import Folder
 from pipeline.sources.meshes.collada_file import MAX_DAE, parse_dae
-from pipeline.sources.meshes.gltf_file import MAX_GLB, GltfMaterial, parse_glb
 from pipeline.sources.meshes.obj_file import MAX_OBJ, MtlMaterial, ObjFile, ObjGroup, parse_obj
-from pipeline.sources.meshes.primitives import MAX_STL, parse_stl, primitive
+from pipeline.sources.meshes.primitives import primitive
+from pipeline.sources.meshes.scene_file import MAX_SCENE, SceneMaterial, parse_scene
 from pipeline.sources.reasons import SourceError
 
 Floats = NDArray[np.float64]
@@ -31,7 +31,7 @@ class MeshFiles:
         self.folder, self.base, self.notes = folder, base, notes
         self.files: dict[str, ObjFile | None] = {}
         # By mesh file and name, where a file brings its own.
-        self.materials: dict[str, dict[str, GltfMaterial] | dict[str, MtlMaterial]] = {}
+        self.materials: dict[str, dict[str, SceneMaterial] | dict[str, MtlMaterial]] = {}
         self.total = 0
         self._places: dict[str, str] = {}
 
@@ -85,14 +85,12 @@ class MeshFiles:
         suffix = path.lower().rsplit(".", 1)[-1]
         if suffix == "obj":
             return parse_obj(self.folder.read(path, MAX_OBJ, self.base), path)
-        if suffix == "glb":
-            file, self.materials[mesh] = parse_glb(self.folder.read(path, MAX_GLB, self.base), path)
+        if suffix in {"glb", "stl"}:
+            file, self.materials[mesh] = parse_scene(self.folder.read(path, MAX_SCENE, self.base), suffix, path)
             return file
         if suffix == "dae":
             file, self.materials[mesh] = parse_dae(self.folder.read(path, MAX_DAE, self.base), path)
             return file
-        if suffix == "stl":
-            return _plain(*parse_stl(self.folder.read(path, MAX_STL, self.base), path))
         self.folder.path(path, self.base)  # a path that leaves the folder is refused whatever it names
         raise SourceError("missing_file", path, f"is of a kind that is not read ({suffix[:10]})")
 

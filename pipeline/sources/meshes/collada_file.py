@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.sources.meshes.collada_materials import Elements, material
-from pipeline.sources.meshes.obj_file import MAX_COORDINATE, MAX_FACES, MAX_GROUPS, MAX_VERTICES, MtlMaterial, ObjFile, ObjGroup
+from pipeline.sources.meshes.obj_file import MAX_COORDINATE, MAX_FACES, MAX_GROUPS, MAX_UVS, MAX_VERTICES, MtlMaterial, ObjFile, ObjGroup
 from pipeline.sources.meshes.xml_file import xml_root
 from pipeline.sources.reasons import SourceError
 
@@ -133,8 +133,8 @@ class _Reader:
             faces, uv_faces = faces[:, ::-1], uv_faces[:, ::-1]
         start, start_uv = self.counts[0], self.counts[1]
         self.counts = [start + len(points), start_uv + len(uvs), self.counts[2] + len(faces)]
-        if self.counts[0] > MAX_VERTICES or self.counts[2] > MAX_FACES or len(self.groups) >= MAX_GROUPS:
-            raise SourceError("too_large", self.where, f"has {self.counts[0]} vertices and {self.counts[2]} faces")
+        if (np.array(self.counts) > (MAX_VERTICES, MAX_UVS, MAX_FACES)).any() or len(self.groups) >= MAX_GROUPS:
+            raise SourceError("too_large", self.where, "has {} vertices, {} uvs and {} faces".format(*self.counts))
         self.vertices.append(points)
         self.uvs.append(uvs)
         symbol = primitive.get("material", "")

@@ -23,6 +23,7 @@ MAX_OBJ = 64 << 20  # bytes
 MAX_MTL = 4 << 20
 MAX_CORNERS = 3_000_000  # face corners of one file
 MAX_VERTICES = 500_000
+MAX_UVS = 1_000_000
 MAX_FACES = 1_000_000
 MAX_GROUPS = 2048
 MAX_MATERIALS = 4096  # of one file; later ones are not read
@@ -68,12 +69,12 @@ def parse_obj(data: bytes, where: str) -> ObjFile:
         raise SourceError("not_obj", where, "is empty")
     if b"\x00" in data[:4096] or data[:2] == b"\x1f\x8b" or data.lstrip()[:1] == b"<":
         raise SourceError("not_obj", where, "is no text of an OBJ file")
-    counts = data.count(b"\nv "), data.count(b"\nf ")
-    if counts[0] > MAX_VERTICES or counts[1] > MAX_FACES:
-        raise SourceError("too_large", where, f"has {counts[0]} vertices and {counts[1]} faces")
+    counts = data.count(b"\nv "), data.count(b"\nf "), data.count(b"\nvt")
+    if counts[0] > MAX_VERTICES or counts[1] > MAX_FACES or counts[2] > MAX_UVS:
+        raise SourceError("too_large", where, f"has {counts[0]} vertices, {counts[1]} faces and {counts[2]} uvs")
     v_lines, vt_lines, blocks, library = _sorted_lines(data, where)
-    if len(v_lines) > MAX_VERTICES or len(blocks) > MAX_GROUPS:
-        raise SourceError("too_large", where, f"{len(v_lines)} vertices in {len(blocks)} groups")
+    if len(v_lines) > MAX_VERTICES or len(vt_lines) > MAX_UVS or len(blocks) > MAX_GROUPS:
+        raise SourceError("too_large", where, f"{len(v_lines)} vertices and {len(vt_lines)} uvs in {len(blocks)} groups")
     vertices = _numbers(v_lines, 3, where)
     uvs = _numbers(vt_lines, 2, where) if vt_lines else np.zeros((0, 2))
     if len(vertices) and np.abs(vertices).max() > MAX_COORDINATE:

@@ -1,0 +1,99 @@
+"""glTF (.glb) and STL files as meshes, for URDFs whose meshes are of those kinds: trimesh reads them, what it makes is checked here.
+
+OBJ and COLLADA have readers of our own. trimesh joins the groups of an OBJ by material, puts vertices in an order of its own and passes over lines
+that are broken, where 3D-FUTURE and PartNet need group and material, the file's own order and a refusal; its COLLADA (by pycollada) leaves out strips
+and fans, which axis is up and the unit, and opens textures itself, wherever their paths lead.
+"""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.sources.meshes.obj_file import MAX_COORDINATE, MAX_FACES, MAX_GROUPS, MAX_VERTICES, ObjFile, ObjGroup
+from pipeline.sources.meshes.textures import MAX_PIXELS
+from pipeline.sources.reasons import SourceError
+
+Floats = NDArray[np.float64]
+MAX_SCENE = 64 << 20  # bytes
+COMPRESSED = (b"KHR_draco_mesh_compression", b"EXT_meshopt_compression")
+
+
+@dataclass(frozen=True, slots=True)
+class SceneMaterial:
+    """Linear base colour (4,), roughness, and the base colour's image as PNG or b"" without one."""
+
+    color: tuple[float, float, float, float]
+    roughness: float
+    image: bytes
+
+
+def parse_scene(data: bytes, suffix: str, where: str) -> tuple[ObjFile, dict[str, SceneMaterial]]:
+    """Return the triangles of a "glb" or "stl" file, a group per mesh that its scene shows, and its materials by name.
+
+    Raises SourceError `not_obj`, `bad_number` or `too_large`, naming `where`.
+    """
+    import trimesh  # half a second that most objects do without
+
+    if any(name in data for name in COMPRESSED):
+        raise SourceError("not_obj", where, "is compressed")
+    if suffix == "stl" and data[:5] == b"solid" and b"facet" in data[:1000] and b"endsolid" not in data[-200:]:
+        raise SourceError("not_obj", where, "is a truncated STL file")  # whose whole facets would be read
+    try:
+        scene = trimesh.load_scene(io.BytesIO(data), file_type=suffix, process=False)
+        shown = [(np.asarray(T, np.float64), scene.geometry[name]) for T, name in map(scene.graph.get, scene.graph.nodes_geometry)]
+        return _collected(shown, where)
+    except (MemoryError, SourceError):
+        raise
+    except Exception as error:  # trimesh promises no kind of error for what is broken
+        raise SourceError("not_obj", where, f"cannot be read ({type(error).__name__}: {str(error)[:60]})") from error
+
+
+def _collected(shown: list[tuple[Floats, Any]], where: str) -> tuple[ObjFile, dict[str, SceneMaterial]]:
+    """Return meshes (T (4, 4), trimesh) as one file; a mirrored one has its faces turned."""
+    if len(shown) > MAX_GROUPS:
+        raise SourceError("too_large", where, f"shows {len(shown)} meshes")
+    vertices, uvs, groups = [np.zeros((0, 3))], [np.zeros((0, 2))], []
+    materials: dict[str, SceneMaterial] = {}
+    names: dict[int, str] = {}
+    counts = np.zeros(3, np.int64)  # vertices, uvs, faces
+    for T, mesh in shown:
+        points, faces = np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64)
+        uv, material = getattr(mesh.visual, "uv", None), getattr(mesh.visual, "material", None)
+        uv = np.zeros((0, 2)) if uv is None or len(uv) != len(points) else np.asarray(uv, np.float64)[:, :2]
+        start, start_uv = counts[:2].tolist()
+        counts += len(points), len(uv), len(faces)
+        if counts[0] > MAX_VERTICES or counts[2] > MAX_FACES:
+            raise SourceError("too_large", where, f"has {counts[0]} vertices and {counts[2]} faces")
+        with np.errstate(invalid="ignore", over="ignore"):  # looked at in the next line
+            points = points @ T[:3, :3].T + T[:3, 3]
+        if not np.isfinite(points).all() or np.abs(points).max(initial=0) > MAX_COORDINATE or not np.isfinite(uv).all():
+            raise SourceError("bad_number", where, "has coordinates that are not finite, or absurd")
+        if len(faces) and (faces.min() < 0 or faces.max() >= len(points)):
+            raise SourceError("not_obj", where, "indexes vertices that are not there")
+        faces = faces[:, ::-1] if np.linalg.det(T[:3, :3]) < 0 else faces
+        name = names.setdefault(id(material), str(len(names))) if hasattr(material, "baseColorFactor") else ""
+        if name and name not in materials:
+            materials[name] = _material(material)
+        vertices.append(points)
+        uvs.append(uv)
+        groups.append(ObjGroup("", name, faces + start, faces + start_uv if len(uv) else np.full_like(faces, -1)))
+    if not counts[2]:
+        raise SourceError("not_obj", where, "has no triangles")
+    return ObjFile(np.concatenate(vertices), np.concatenate(uvs), tuple(groups), ""), materials
+
+
+def _material(material: Any) -> SceneMaterial:
+    color = np.ones(4) if material.baseColorFactor is None else np.asarray(material.baseColorFactor, np.float64) / 255
+    r, g, b, a = np.clip(np.nan_to_num(color, nan=0.8), 0, 1).tolist()
+    rough = 1.0 if material.roughnessFactor is None else float(material.roughnessFactor)
+    image, out = material.baseColorTexture, io.BytesIO()
+    if image is not None and image.width * image.height <= MAX_PIXELS:
+        image.convert("RGBA" if "A" in image.getbands() else "RGB").save(out, "PNG", optimize=False, compress_level=6)
+    return SceneMaterial(
+        (r, g, b, a if material.alphaMode == "BLEND" else 1.0), min(max(rough, 0.0), 1.0) if np.isfinite(rough) else 0.6, out.getvalue()
+    )
