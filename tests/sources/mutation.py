@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import trimesh  # noqa: F401 - to load it is no part of what a file costs
 
 from pipeline.sources.articulated.objects import objects_in
 from pipeline.sources.articulated.source import ObjectTask, read_object

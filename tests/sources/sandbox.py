@@ -106,6 +106,8 @@ def main():
     """Serve."""
     import tempfile
 
+    import trimesh  # noqa: F401 - to load it is no part of what a file costs
+
     from tests.sources import making, reading
 
     with tempfile.TemporaryDirectory() as folder:  # the first reading loads tables that the idle process has as well
