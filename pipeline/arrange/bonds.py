@@ -177,9 +177,14 @@ def nearest(table: Floats, anchor: Floats, half: Floats, member: Floats, own: Fl
 
 
 def broken(
-    bonds: Sequence[Bond | None], items: Sequence[Item], poses: Floats, there: NDArray[np.bool_], learnt: LearntRelations
+    bonds: Sequence[Bond | None],
+    items: Sequence[Item],
+    poses: Floats,
+    there: NDArray[np.bool_],
+    learnt: LearntRelations,
+    most: float = KEPT,
 ) -> list[int]:
-    """Return the objects that stand and have lost what they were bound to: the anchor is gone, or they are off every mode at it."""
+    """Return the objects that stand and have lost what they were bound to: the anchor is gone, or they are off every mode at it, by `most` [m]."""
     lost = []
     for i, bond in enumerate(bonds):
         if bond is None or not there[i]:
@@ -189,6 +194,6 @@ def broken(
             lost.append(i)
             continue
         near = nearest(found[0], poses[bond.anchor][FLAT], items[bond.anchor].half, poses[i][FLAT], items[i].half)
-        if near[0] > KEPT or near[1] > TURNED:
+        if near[0] > most or near[1] > TURNED:
             lost.append(i)
     return lost

@@ -14,7 +14,7 @@ from pipeline.arrange.item import Item, other_wall, turned, wrapped
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
-from pipeline.arrange.snapping import ACROSS, height
+from pipeline.arrange.snapping import ACROSS, FACING, height
 from pipeline.arrange.walls import Edge, at_wall, hides_window, opening_cost
 
 Floats = NDArray[np.float64]
@@ -39,19 +39,25 @@ def near_by(
 
     `neighbours` (M, 4, 2) are the outlines of what stands, with which it may be flush.
     """
-    found, costs = [target[None]], [_window_cost(item, target[None], walls)]
+    found, costs = [target[None]], [_opening_cost(item, target[None], walls)]
     if item.mount != "wall":
         off = OFF_WALL * item.habit.backed if item.habit.wants and _at_wall(item, target, walls) else 0.0
         angles = np.arange(WAYS) * (2 * math.pi / WAYS) + target[3]
         ring = np.stack([np.cos(angles), np.sin(angles)], 1)
         shifts = np.concatenate([r * ring for r in RINGS])
         found.append(_made(target[:2] + shifts, np.full(len(shifts), target[3]), target[2]))
-        costs.append(np.linalg.norm(shifts, axis=1) + off + _window_cost(item, found[-1], walls))
+        costs.append(np.linalg.norm(shifts, axis=1) + off + _opening_cost(item, found[-1], walls))
     if item.habit.wants:
         poses, cost = _along_walls(item, target, walls, neighbours)
         found.append(poses)
         costs.append(cost + settings.turn_cost * turned(poses[:, 3], float(target[3])))
     return _sorted(item, np.concatenate(found), np.concatenate(costs), site)
+
+
+def round_walls(item: Item, target: Floats, walls: Sequence[Edge], site: Site, settings: SeparateSettings) -> tuple[Floats, Floats]:
+    """Return poses (C, 4) along all the walls, and their costs (C,), the cheapest first: for what takes along who stands across from it."""
+    poses, cost = _along_walls(item, target, walls, np.zeros((0, 4, 2)))
+    return _sorted(item, poses, cost + settings.turn_cost * turned(poses[:, 3], float(target[3])), site)
 
 
 def everywhere(item: Item, target: Floats, walls: Sequence[Edge], site: Site, settings: SeparateSettings) -> tuple[Floats, Floats]:
@@ -79,7 +85,8 @@ def at_anchor_poses(
     modes = mode_poses(anchor, at, item, target, learnt)
     if item.habit.must:
         across = [
-            at_wall(item, np.insert(m, 2, target[2]), walls, ACROSS, settings.turn_cost) if other_wall(m[2] - at[3]) else m for m in modes
+            at_wall(item, np.insert(m, 2, target[2]), walls, ACROSS, settings.turn_cost, FACING) if other_wall(m[2] - at[3]) else m
+            for m in modes
         ]
         modes = np.array([m[[0, 1, -1]] for m in across if m is not None]).reshape(-1, 3)
     if not len(modes):
@@ -135,15 +142,19 @@ def _at_wall(item: Item, pose: Floats, walls: Sequence[Edge]) -> bool:
 
 
 def hides(item: Item, pose: Floats, walls: Sequence[Edge]) -> bool:
-    """Whether an object at a pose (4,) hides a window."""
-    return bool(_window_cost(item, pose[None], walls)[0] > 0.0)
+    """Whether an object at a pose (4,) hides a window, or leans on a wall that is not there."""
+    return bool(_opening_cost(item, pose[None], walls)[0] > 0.0)
 
 
-def _window_cost(item: Item, poses: Floats, walls: Sequence[Edge]) -> Floats:
-    """Return what hiding a window costs at poses with the target's yaw."""
+def _opening_cost(item: Item, poses: Floats, walls: Sequence[Edge]) -> Floats:
+    """Return what standing before openings costs at poses with the target's yaw: windows are not hidden, and what belongs to a wall needs one."""
     cost = np.zeros(len(poses))
     for edge in walls:
-        openings = [opening for opening in edge.openings if hides_window(item, opening) and item.habit.kind != "bed"]
+        openings = [
+            opening
+            for opening in edge.openings
+            if (hides_window(item, opening) and item.habit.kind != "bed") or (item.habit.must and not opening.window)
+        ]
         if openings and turned(edge.yaw, float(poses[0, 3])) < 0.1:
             near = edge.off(poses[:, :2]) < item.half[1] + 0.3
             cost += near * opening_cost(item, edge.along_of(poses[:, :2]), openings)

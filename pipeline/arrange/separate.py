@@ -7,14 +7,14 @@ is started over with an eye on the floor at every step, those first that found n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.bonds import Bond, broken
+from pipeline.arrange.bonds import REACH, Bond, broken
 from pipeline.arrange.item import Item, make_item
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.occupancy import Occupancy
@@ -45,6 +45,7 @@ class Found(Protocol):
 
 
 BROKEN, UNREACHED = 0.6, 0.3  # a broken relation, and what a robot cannot open, beside 1 for a lost object of no size
+ALWAYS = 0.95  # share of the training examples from which on nothing else is known of a category than that it is there
 HIDDEN_ROUNDS = 3  # rounds that are spent on what a robot cannot open and no relation holds there
 Smaller = Callable[[str, float], Found | None]  # (asset_id, area [m2]) -> the closest asset with a smaller footprint
 
@@ -90,19 +91,25 @@ def separate(
     items = list(asked)
     losses = [0] * len(items)
     first: list[int] = []
+    led: frozenset[int] = frozenset()
     best: dict[int, Placement] = {}
+    astray: list[int] = []
     least: tuple[float, float] | None = None
     for number in range(max(1, settings.rounds)):
-        occupancy, sound, bonds = _arranged(site, items, first, learnt, settings, number)
+        occupancy, sound, bonds = _arranged(site, items, first, led, learnt, settings, number)
         apart = broken(bonds, items, occupancy.poses, occupancy.there, learnt)
         there = {i: items[i].at(occupancy.poses[i]) for i in np.flatnonzero(occupancy.there).tolist()}
         lost = [i for i in range(len(items)) if i not in there]
         score = _score(there, items, BROKEN * len(apart) + UNREACHED * len(occupancy.unreached))
         if (sound or number == settings.rounds - 1) and (least is None or score < least):
             best, least = there, score
+            astray = [
+                i for i in broken(bonds, items, occupancy.poses, occupancy.there, learnt, REACH) if _only_there(items, bonds[i], i, learnt)
+            ]
         hidden = [i for i in occupancy.unreached if number == 0 or (bonds[i] is None and number < HIDDEN_ROUNDS)]
         if sound and not (lost or apart or hidden):
             break
+        led = frozenset(apart)
         if number and smaller is not None:
             for i in (*lost, *apart):
                 losses[i] += 1
@@ -111,19 +118,40 @@ def separate(
             changed = _exchange(items, crowded, assets, learnt, settings, smaller)
             if not (lost or changed or hidden):
                 break
-        first = [*lost, *(i for i in hidden if number and i not in lost), *(i for i in first if i not in (*lost, *hidden))]
+        first = [
+            *lost,
+            *sorted(led),
+            *(i for i in hidden if number and i not in lost),
+            *(i for i in first if i not in (*lost, *led, *hidden)),
+        ]
+    for i in () if keep_count else astray:
+        del best[i]
     return _separated(asked, best, keep_count=keep_count)
 
 
+def _only_there(items: Sequence[Item], bond: Bond | None, i: int, learnt: LearntRelations) -> bool:
+    """Whether things like item `i` stand nowhere else than beside their anchors: one at the foot of its bed is better left out."""
+    if bond is None or not bond.rigid:
+        return False
+    pair = learnt.known.pair(items[bond.anchor].placement.category, items[i].placement.category)
+    return pair is not None and pair.share >= ALWAYS
+
+
 def _arranged(
-    site: Site, items: list[Item], first: Sequence[int], learnt: LearntRelations, settings: SeparateSettings, number: int
+    site: Site,
+    items: list[Item],
+    first: Sequence[int],
+    led: Collection[int],
+    learnt: LearntRelations,
+    settings: SeparateSettings,
+    number: int,
 ) -> tuple[Occupancy, bool, list[Bond | None]]:
     """Arrange a room once; return who stands where, whether the floor is sound (looked at for each group after round 0), the bonds."""
     walls = edges(site)
     runs, laid = lay_runs(items, walls, site)
     poses, bonds = exact_poses(items, site, walls, learnt, settings, laid)
     occupancy = Occupancy(site, items, settings, [i for i, bond in enumerate(bonds) if bond is not None])
-    settle_all(occupancy, Draft(poses, bonds, runs, walls, learnt), first, careful=number > 0, bulk=number <= 1)
+    settle_all(occupancy, Draft(poses, bonds, runs, walls, learnt, led), first, careful=number > 0, bulk=number <= 1)
     if number > 0:
         return occupancy, True, bonds
     found = occupancy.out_of_reach()

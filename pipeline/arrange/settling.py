@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import Bond, at_anchor
-from pipeline.arrange.candidates import ALONE, at_anchor_poses, everywhere, hides, near_by
+from pipeline.arrange.candidates import ALONE, at_anchor_poses, everywhere, hides, near_by, round_walls
 from pipeline.arrange.groups import Group, group_of, groups
-from pipeline.arrange.item import wrapped
+from pipeline.arrange.item import Item, wrapped
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.occupancy import Occupancy
 from pipeline.arrange.walls import Edge
@@ -25,13 +25,17 @@ OPENS = 1.5  # what opens is placed as if it were so many times as large
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """The exact `poses` (N, 4) of a room's objects, their `bonds`, the kitchen `runs`, the room's walls, what is known of relations."""
+    """The exact `poses` (N, 4) of a room's objects, their `bonds`, the kitchen `runs`, the room's walls, what is known of relations.
+
+    `led` are those who did not come to stand at their anchors: the two are sought a place together.
+    """
 
     poses: Floats
     bonds: Sequence[Bond | None]
     runs: Sequence[Sequence[int]]
     walls: Sequence[Edge]
     learnt: LearntRelations
+    led: Collection[int] = ()
 
     def pose(self, i: int) -> Floats:
         """Return the exact pose of an object."""
@@ -45,8 +49,8 @@ def settle_all(occupancy: Occupancy, draft: Draft, first: Sequence[int], *, care
     `careful`: the floor must hang together with each group that is added. `bulk`: those that are free where they belong come first, all at once.
     """
     pairs, alone = conflicts(occupancy.world, draft.poses, occupancy.settings.touch)
-    whole = groups(occupancy.items, draft.poses, draft.bonds, draft.runs)
-    made, strays, poses = _fitted(occupancy, draft, whole, pairs)
+    made, strays, poses = _fitted(occupancy, draft, groups(occupancy.items, draft.poses, draft.bonds, draft.runs), pairs)
+    leading = _led(occupancy.items, draft, made, poses)
     if not np.array_equal(poses, draft.poses):
         draft = replace(draft, poses=poses)
         pairs, alone = conflicts(occupancy.world, poses, occupancy.settings.touch)
@@ -56,18 +60,46 @@ def settle_all(occupancy: Occupancy, draft: Draft, first: Sequence[int], *, care
         member[group.members] = number
     clash = pairs & (member[:, None] != member[None]) & (member >= 0)[:, None] & (member >= 0)[None]
     order = sorted(range(len(made)), key=lambda k: _rank(occupancy, made[k], draft, first))
-    free = [k for k in order if bulk and not (at_fault[made[k].members].any() or clash[made[k].members].any())]
+    bound = {i for group in leading.values() for i in group.members.tolist()}
+    stays = [k for k in order if bound.isdisjoint(made[k].members.tolist())]
+    free = [k for k in stays if bulk and not (at_fault[made[k].members].any() or clash[made[k].members].any())]
     for k in free:
         occupancy.stand(made[k], draft.poses[made[k].first])
     if careful and free and occupancy.out_of_reach() != frozenset():
         for k in free:
             occupancy.leave(made[k])
         free = []
-    order = [k for k in order if k not in set(free)]
-    for k in order:
-        strays += _settle_group(occupancy, draft, made[k], careful=careful)
+    for group in leading.values():
+        found = round_walls(occupancy.items[group.first], draft.pose(group.first), draft.walls, occupancy.site, occupancy.settings)
+        _put(occupancy, group, *found, careful=careful)
+    for k in (k for k in order if k not in set(free)):
+        left = [i for i in made[k].members.tolist() if not occupancy.there[i]]
+        whole = len(left) == len(made[k].members)
+        strays += _settle_group(occupancy, draft, made[k], careful=careful) if whole else left
     for i in sorted(strays, key=lambda i: (-occupancy.items[i].area, i)):
         _settle_one(occupancy, draft, i, careful=careful)
+
+
+def _led(items: Sequence[Item], draft: Draft, made: Sequence[Group], poses: Floats) -> dict[int, Group]:
+    """Return, by the number of its anchor's group, the group that is sought a wall as one for each who is `led`.
+
+    Who belongs to a wall across from the anchor leads it: a sofa goes where there is a wall for its screen.
+    """
+    across = {b.anchor: i for i, b in enumerate(draft.bonds) if b is not None and not b.rigid and items[i].habit.must}
+    found: dict[int, Group] = {}
+    for anchor in sorted({bond.anchor for i in draft.led if (bond := draft.bonds[i]) is not None}):
+        at = next((k for k, group in enumerate(made) if group.first == anchor), None)
+        lead = across.get(anchor)
+        bond = None if lead is None else draft.bonds[lead]
+        if at is None:
+            continue
+        if lead is not None and bond is not None and not items[anchor].habit.must:
+            together = poses.copy()
+            together[lead, [0, 1, 3]] = at_anchor(poses[anchor], bond.local)
+            found[at] = group_of([lead, *made[at].members.tolist()], together)
+        elif items[anchor].habit.wants:
+            found[at] = made[at]
+    return found
 
 
 def _rank(occupancy: Occupancy, group: Group, draft: Draft, first: Sequence[int]) -> tuple[int, int, int, float, int]:
@@ -154,6 +186,8 @@ def _target(occupancy: Occupancy, draft: Draft, i: int) -> Floats:
         return draft.pose(i)
     now, then = occupancy.poses[bond.anchor], draft.poses[bond.anchor]
     if np.allclose(now, then, atol=1e-3):
+        return draft.pose(i)
+    if not bond.rigid:  # its own wall is as good as any other across from there
         return draft.pose(i)
     x, y, yaw = at_anchor(now, bond.local)
     return np.array([x, y, draft.poses[i, 2], wrapped(float(yaw))])

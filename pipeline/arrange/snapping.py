@@ -19,6 +19,7 @@ Floats = NDArray[np.float64]
 
 LOOSE = 0.3  # a wall may take a bound object this far from the place at its anchor [m]
 ACROSS = 2.0  # and this far what stands across the room from its anchor: a TV stand goes to the wall behind it
+FACING = math.radians(45)  # of walls across the room those count that face the anchor, to this turn
 HUNG = (0.9, 1.4, 1.6)  # least height of what hangs on walls, and the usual ones [m above the floor]
 ON_TOP = 0.4  # what is drafted this near to the top of what it is bound over stands on it [m]
 
@@ -39,7 +40,7 @@ def exact_poses(
         for wished in (items[i].wished, _alone(items[i], site, walls, settings)):  # who has come to a wall may find its anchor there
             bond = find_bond(i, items, wished, poses, learnt)
             found = None if bond is None else _bound(items[i], bond, items, poses, site, walls, settings)
-            bonds[i], poses[i] = (bond, found) if found is not None else (None, wished)
+            bonds[i], poses[i] = (bond, wished) if found is None else (bond, found)
             if found is not None:
                 break
     return poses, bonds
@@ -48,7 +49,7 @@ def exact_poses(
 def _bound(
     item: Item, bond: Bond, items: Sequence[Item], poses: Floats, site: Site, walls: Sequence[Edge], settings: SeparateSettings
 ) -> Floats | None:
-    """Return the pose at the anchor, the back at the wall where it belongs to one; None where wall and anchor do not agree."""
+    """Return the pose at the anchor, the back at the wall where it belongs to one; None where no wall is where its anchor wants it."""
     x, y, yaw = at_anchor(poses[bond.anchor], bond.local)
     pose = np.array([x, y, height(item, site, float(item.wished[2])), yaw])
     if bond.over:
@@ -59,9 +60,9 @@ def _bound(
         return pose
     if item.mount != "floor" or not item.habit.must:
         return pose
-    found = at_wall(item, pose, walls, LOOSE if bond.rigid else ACROSS, settings.turn_cost)
     if not bond.rigid:
-        return found
+        return at_wall(item, pose, walls, ACROSS, settings.turn_cost, FACING)
+    found = at_wall(item, pose, walls, LOOSE, settings.turn_cost)
     if found is None:
         return pose
     back = np.array([-math.sin(found[3]), math.cos(found[3])])

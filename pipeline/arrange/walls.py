@@ -20,6 +20,7 @@ BEFORE_HOLE = 0.8  # cost of leaning on a wall that is not there [m]
 ABOVE_SILL = 0.4  # what rises no more than this above a window's sill may stand before it [m]
 CORNER = 0.3  # a side this near to a wall is nearly in the corner [m]
 SQUARELY = 0.99  # cosine of the angle at which a side faces a wall
+ANY_WALL = math.radians(100)  # a turn that goes on to the next wall, not to the one behind
 FAR = 1.0  # what belongs to a wall is put to one that is no farther; what would rather, within the wall_reach of the settings [m]
 
 
@@ -80,10 +81,10 @@ def opening_cost(item: Item, s: Floats, openings: Sequence[EdgeOpening]) -> Floa
     return cost
 
 
-def at_wall(item: Item, pose: Floats, walls: Sequence[Edge], reach: float, turn_cost: float) -> Floats | None:
+def at_wall(item: Item, pose: Floats, walls: Sequence[Edge], reach: float, turn_cost: float, most: float = ANY_WALL) -> Floats | None:
     """Return the nearest pose (x, y, z, yaw) with the back to a wall, in the gap that is usual; None where none is within `reach` [m].
 
-    Turning counts `turn_cost` metres per radian.
+    Turning counts `turn_cost` metres per radian; by more than `most` [rad] nothing is turned.
     """
     w, d = item.half
     low, usual, high = item.habit.gap
@@ -94,7 +95,7 @@ def at_wall(item: Item, pose: Floats, walls: Sequence[Edge], reach: float, turn_
         s, off = float(edge.along_of(pose[:2])), float(edge.off(pose[:2]))
         gap = off - d
         turn = float(turned(edge.yaw, float(pose[3])))
-        if turn > math.radians(100) or gap > reach + FAR:
+        if turn > most or gap > reach + FAR:
             continue
         stop = min(max(s, w + low), edge.length - w - low)
         moved = math.hypot(stop - s, gap - usual)

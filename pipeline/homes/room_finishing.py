@@ -101,7 +101,8 @@ def finish(
     site = Site.of(job.plan, job.room_id, replace(verify.robot, radius=verify.robot.radius + MARGIN), verify.cell)
     rejects: list[Reject] = [("object", "no_asset", category) for category in draft.lost]
     smaller = index.favouring(draft.taste.style, wished=draft.taste.wished).smaller
-    arranged = post_optimise(site, placements, assets, learnt, settings, smaller, target=job.walkable, keep_count=job.bounds[0] is not None)
+    counted = job.bounds[0] is not None or bool(job.furniture.counts)
+    arranged = post_optimise(site, placements, assets, learnt, settings, smaller, target=job.walkable, keep_count=counted)
     placements = tuple(rounded(p) for p in arranged.placements)
     rejects += [("object", r.reason, f"{r.object_id}: {r.detail}") for r in arranged.rejects]
     free = arranged.ratio

@@ -186,3 +186,26 @@ def test_a_television_that_strayed_goes_to_the_wall_across_from_the_sofa():
     assert abs(local(tv, sofa)[0]) < 0.15
     assert abs(math.remainder(tv.yaw - sofa.yaw - math.pi, math.tau)) < 1e-3
     assert tv.position[1] == pytest.approx(0.2, abs=0.05)
+
+
+def test_sofa_and_television_go_together_where_no_wall_is_before_the_sofa():
+    """The wall across from the sofa is too far; alone the television would stay at a wall beside it, out of sight."""
+    wished = [
+        drafted(ASSETS["sofa"], 2.5, 8.4),
+        drafted(ASSETS["tv"], 0.3, 5.5, math.pi / 2, number=1),
+        drafted(ASSETS["low_table"], 2.5, 7.3, number=2),
+    ]
+    sofa, tv, low = arranged(wished, room(5.0, 9.0))
+    assert abs(local(tv, sofa)[0]) < 0.15
+    assert abs(math.remainder(tv.yaw - sofa.yaw - math.pi, math.tau)) < 1e-3
+    assert local(low, sofa)[1] == pytest.approx(-(0.45 + 0.25 + 0.45), abs=0.1)
+    back = tv.position[:2] + 0.2 * np.array([-math.sin(tv.yaw), math.cos(tv.yaw)])
+    assert min(*back, 5.0 - back[0], 9.0 - back[1]) < 0.05
+
+
+@pytest.mark.parametrize("keep", [False, True])
+def test_a_nightstand_without_a_place_at_its_bed_is_left_out_unless_the_number_is_asked_for(keep):
+    wished = [drafted(ASSETS["bed"], 1.0, 2.95), *(drafted(ASSETS["nightstand"], x, 3.7, number=k) for k, x in ((1, 0.2), (2, 1.8)))]
+    found = separate(site(room(2.0, 4.0), "room"), wished, ASSETS, LORE, keep_count=keep)
+    assert len(found.placements) == (3 if keep else 1)
+    assert sum(reject.reason == "unplaceable" for reject in found.rejects) == (0 if keep else 2)

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 import pytest
 
 from pipeline import taxonomy
+from pipeline.floorplan.program.floor_program import Furniture
 from pipeline.homes import room_finishing as finishing
 from tests.geometry.furniture import one_room
 from tests.judging import SETTINGS
@@ -21,7 +22,7 @@ def test_the_arranger_has_the_robot_and_the_raster_of_the_judge(monkeypatch, cha
         raise SeenError(site)
 
     monkeypatch.setattr(finishing, "post_optimise", stop)
-    job = SimpleNamespace(plan=one_room(), room_id="room", walkable=None, bounds=(None, None))
+    job = SimpleNamespace(plan=one_room(), room_id="room", walkable=None, bounds=(None, None), furniture=Furniture())
     draft = SimpleNamespace(job=job, placements=(), lost=(), taste=SimpleNamespace(style="", wished=False))
     index = SimpleNamespace(favouring=lambda _style, *, wished: SimpleNamespace(smaller=wished))
     settings = replace(SETTINGS, cell=0.08, robot=replace(SETTINGS.robot, **change))
