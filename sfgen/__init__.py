@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sfgen.dataset import Dataset, load
-    from sfgen.homes import DatasetError, Home, Joint, Opening, PlacedObject, Room
+    from sfgen.homes import Home, Joint, Opening, PlacedObject, Room
+    from sfgen.place import DatasetError
 
 __all__ = ["Dataset", "DatasetError", "Home", "Joint", "Opening", "PlacedObject", "Room", "load"]
 __version__ = "0.1.0"

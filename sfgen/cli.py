@@ -179,24 +179,41 @@ def export(
 
 @app.command()
 def verify(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a dataset.", show_default=False)],
+    folder: Annotated[str, typer.Argument(metavar="DATASET", help="Folder of a dataset, or its address (s3://...).", show_default=False)],
     quick: Annotated[bool, typer.Option("--quick", help="Leave out opening every stage with USD.")] = False,
     reproduce: Annotated[int, typer.Option(min=0, help="Make so many of its homes again, and say what comes out otherwise here.")] = 0,
     prompts: Annotated[Path | None, typer.Option(help="With --reproduce: the file that it was made with, if it was.")] = None,
     quiet: Quiet = False,
     json: Machine = False,
 ) -> int:
-    """Check a dataset: every sha256, row, id, reference and stage; the first wrong thing is named.
+    """Check a dataset: every sha256, row, id, reference and stage; the first wrong thing is named. Stages need the factory, the rest does not.
 
     \b
     Example:
       sfgen verify data/shards
       sfgen verify data/shards --quick --reproduce 4
     """
-    root = factory_root()
-    how = voice(quiet=quiet, json=json)
-    code: int = stage("verify").main(root, folder=folder, quick=quick, reproduce=reproduce, prompts=prompts, voice=how)
-    return code
+    how, local = voice(quiet=quiet, json=json), "://" not in folder
+    if local and not Path(folder).is_dir():
+        raise Complaint(f"{folder} is {'not a folder' if Path(folder).exists() else 'missing'}; give the folder of a dataset", 2)
+    if reproduce or (local and checkout()):
+        root = factory_root()
+        options = {"quick": quick, "reproduce": reproduce, "prompts": prompts}
+        code: int = stage("verify").main(root, folder=Path(folder), **options, voice=how)
+        return code
+    from dataclasses import asdict
+
+    from sfgen.check import check
+
+    begin("files", how)
+    summary = check(folder)
+    if how == "json":
+        import json as form
+
+        typer.echo(form.dumps({"event": "done", "dataset": folder, **asdict(summary)}))
+    else:
+        typer.echo(summary.line(folder) + ("" if quick else "; no stage was opened with USD: that needs a folder, and the factory"))
+    return 0
 
 
 @app.command()
@@ -274,10 +291,16 @@ class Complaint(Exception):  # noqa: N818 - not an error of the program
         super().__init__(text)
 
 
+def checkout() -> Path | None:
+    """Return the checkout that this package lies in; None for a bare wheel."""
+    root = Path(__file__).resolve().parents[1]
+    return root if (root / "dvc.yaml").is_file() and (root / "stages").is_dir() else None
+
+
 def factory_root() -> Path:
     """Return the checkout that this package lies in, and make its code importable. Raises Complaint from a bare wheel."""
-    root = Path(__file__).resolve().parents[1]
-    if not (root / "dvc.yaml").is_file() or not (root / "stages").is_dir():
+    root = checkout()
+    if root is None:
         text = "this command needs the factory, and only the loaders are installed; clone sfgen's repository and type `make run` in it"
         raise Complaint(text, 1)
     if str(root) not in sys.path:

@@ -14,8 +14,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from sfgen.homes import DatasetError, Home, Joint, Opening, PlacedObject, Room, records, require_columns
-from sfgen.place import Place
+from sfgen.homes import Home, Joint, Opening, PlacedObject, Room, records, require_columns
+from sfgen.place import DatasetError, Place
 
 FORMAT = "sfgen-dataset-2"
 SCHEMA_VERSION = "2"
@@ -55,6 +55,10 @@ def read_header(place: Place) -> dict[str, Any]:
     if header.get("schema_version") != SCHEMA_VERSION:
         told = f"{place.name} has tables of version {header.get('schema_version')}, and this release of sfgen reads {SCHEMA_VERSION}"
         msg = f"{told}; use the release of sfgen that made it"
+        raise DatasetError(msg)
+    numbers: list[Any] = [header.get(name) for name in ("seed", "count", "shard_size")]
+    if not all(type(n) is int for n in numbers) or min(numbers[1:]) < 1 or not isinstance(header.get("vocabulary"), dict):
+        msg = f"{place.path('dataset.json')} holds numbers that cannot be (seed, count, shard_size = {numbers}); {AGAIN}"
         raise DatasetError(msg)
     return header
 

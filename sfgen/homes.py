@@ -11,14 +11,10 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from sfgen.place import Place
+from sfgen.place import DatasetError, Place
 
 Record = TypeVar("Record")
 Floats = NDArray[np.float64]
-
-
-class DatasetError(ValueError):
-    """A folder that is no dataset, or one with a file missing or broken; the message says which and what to do."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -6,6 +6,12 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 
+class DatasetError(ValueError):
+    """A folder that is no dataset, or one with a file missing or broken; the message says which and what to do."""
+
+    exit_code = 1  # of a command that it ends
+
+
 class Place:
     """A folder, and the files below it by their names relative to it."""
 
@@ -13,9 +19,14 @@ class Place:
         self.name = str(path)
         self._system: Any = None
         if "://" in self.name:
-            from fsspec.core import url_to_fs
+            try:
+                from fsspec.core import url_to_fs
 
-            self._system, self._root = url_to_fs(self.name)
+                self._system, self._root = url_to_fs(self.name)
+            except (ImportError, ValueError) as error:
+                told = str(error).splitlines()[0]
+                msg = f"{self.name} cannot be reached ({told}); install 'sfgen[remote]' and the package of its kind of place: s3fs, gcsfs, adlfs"
+                raise DatasetError(msg) from error
 
     def open(self, name: str) -> BinaryIO:
         """Open a file to read. Raises OSError."""
@@ -35,6 +46,15 @@ class Place:
             return sorted(p.name for p in (Path(self.name) / folder).iterdir())
         except FileNotFoundError:
             return []
+
+    def files(self) -> dict[str, int]:
+        """Return the length in bytes of every file, by name; -1 of a link that leads nowhere."""
+        if self._system:
+            found = self._system.find(self._root, detail=True)
+            return {path[len(self._root) :].lstrip("/"): entry["size"] for path, entry in found.items()}
+        root = Path(self.name)
+        paths = [path for path in root.rglob("*") if path.is_symlink() or not path.is_dir()]
+        return {path.relative_to(root).as_posix(): path.stat().st_size if path.exists() else -1 for path in paths}
 
     def exists(self, name: str) -> bool:
         """Tell whether a file or folder is there."""

@@ -6,18 +6,19 @@ import shlex
 import sys
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from pipeline.errors import SfgenError, UsageError
 from pipeline.execution import Progress, Voice, cores
-from pipeline.homes.factory import open_factory
+from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.jit_warmup import warm_up
 from pipeline.homes.library import MEMORY
 from pipeline.homes.outcomes import Empty
 from pipeline.homes.production import FAILURES, Recipe, Tally, fill
-from pipeline.homes.prompt_mix import read_order
+from pipeline.homes.prompt_mix import orders, read_order
 from pipeline.homes.reproduction import made_with
 from pipeline.homes.request import Request
-from pipeline.shards import Header, forget_altered, open_or_create, read_header
+from pipeline.shards import Header, forget_altered, identity, open_or_create, read_header, vouches
 
 
 def main(
@@ -48,36 +49,42 @@ def main(
     factory = opened()
     if only is not None:
         return try_one(root, seed, order.asked(only))
-    header = Header(seed, count, factory.shard.homes, factory.shard.licence, {**factory.digests, "prompts": order.digest()}, made_with())
-    workers = workers or cores()
+    header = header_of(factory, seed, count, order.digest())
+    again = shlex.join(["sfgen", "shard", "--count", str(count), "--seed", str(seed), *(["--prompts", str(prompts)] if prompts else [])])
+    recipe = Recipe(opened, cache_assets=scheduler is None, digests=factory.digests)
     with open_or_create(folder, header, factory.asset_cache) as dataset:
         if dataset.missing():
             warm_up(progress, root)
-        again = shlex.join(
-            ["sfgen", "shard", "--count", str(count), "--seed", str(seed), *(["--prompts", str(prompts)] if prompts else [])]
-        )
-        tally = fill(
-            dataset,
-            Recipe(opened, cache_assets=scheduler is None, digests=factory.digests),
-            order.asked,
-            workers=workers,
-            scheduler=scheduler,
-            strict=strict,
-            progress=progress,
-            again=f"{again} --only {{index}}",
-        )
+        where: dict[str, Any] = {"workers": workers or cores(), "scheduler": scheduler}
+        tally = fill(dataset, recipe, order.asked, **where, strict=strict, progress=progress, again=f"{again} --only {{index}}")
     progress.close()
     return tell(tally, header, folder, progress, voice)
 
 
 def repair(root: Path, *, folder: Path, prompts: Path | None = None, workers: int | None = None, voice: Voice = "plain") -> int:
-    """Make again what is broken or missing of a dataset, by the checkout that made it; returns the exit code of `main`."""
-    header = read_header(folder)
-    progress = Progress(0, "homes", voice=voice)
-    with open_or_create(folder, header, open_factory(root, header.seed).asset_cache) as dataset:
+    """Make again what is broken or missing of a dataset, its header too, by the checkout that made it; returns the exit code."""
+    seed, count = identity(folder)
+    factory, progress = open_factory(root, seed), Progress(count, "homes", voice=voice)
+    known = [(header_of(factory, seed, count, words), asked) for words, asked in orders(root, seed, prompts)]
+    there = [header for header, _ in known if vouches(folder, header)] or [read_header(folder)]
+    asked = next((asked for header, asked in known if header == there[0]), None)
+    if asked is None:
+        what = "; ".join(there[0].differences(known[0][0]))
+        raise UsageError(
+            f"{folder} was made otherwise than it would be here ({what})", "use its checkout and models, and give its --prompts"
+        )
+    with open_or_create(folder, there[0], factory.asset_cache) as dataset:
         for name in forget_altered(dataset, FAILURES):
             progress.say(f"{name} is made again")
-    return main(root, count=header.count, out=folder, seed=header.seed, workers=workers, prompts=prompts, voice=voice)
+        recipe = Recipe(partial(open_factory, root, seed), digests=factory.digests)
+        tally = fill(dataset, recipe, asked, workers=workers or cores(), progress=progress)
+    progress.close()
+    return tell(tally, there[0], folder, progress, voice)
+
+
+def header_of(factory: Factory, seed: int, count: int, words: str) -> Header:
+    """Return what a dataset that is made here is; `words` is the digest of what it was asked for."""
+    return Header(seed, count, factory.shard.homes, factory.shard.licence, {**factory.digests, "prompts": words}, made_with())
 
 
 def try_one(root: Path, seed: int, request: Request) -> int:

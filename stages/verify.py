@@ -8,15 +8,16 @@ from dataclasses import asdict, replace
 from pathlib import Path
 
 from pipeline.execution import Progress, Voice, track
-from pipeline.shards import TABLES, check, read_header
+from pipeline.shards import TABLES, read_header
 from pipeline.shards.layout import table_path
 from pipeline.tables import read
+from sfgen.check import check
 
 
 def main(root: Path, *, folder: Path, quick: bool = False, reproduce: int = 0, prompts: Path | None = None, voice: Voice = "plain") -> int:
     """Check every digest, row and reference, then (unless `quick`) open every stage with USD; make `reproduce` homes again."""
     files = Progress(0, "files", unit="shard", voice=voice)
-    summary = check(folder, files.at)
+    summary = check(folder, files.at, {name: table.schema() for name, table in TABLES.items()})
     files.close()
     if not quick:
         from pipeline.usd.check import check_stage
@@ -25,11 +26,8 @@ def main(root: Path, *, folder: Path, quick: bool = False, reproduce: int = 0, p
             check_stage(path)
     if voice == "json":
         files.summary(dataset=str(folder), **asdict(summary))
-        return again(root, folder, reproduce, prompts, files)
-    rows = ", ".join(f"{count} {table}" for table, count in summary.rows.items() if table != "scenes")
-    size = f"{summary.files} files, {summary.bytes / 1e6:.1f} MB"
-    empty = f", {summary.empty} stay empty (see rejects)" if summary.empty else ""
-    sys.stdout.write(f"{folder} is whole: {summary.homes} homes in {summary.shards} shards{empty} ({rows}; {size})\n")
+    else:
+        sys.stdout.write(f"{summary.line(str(folder))}\n")
     return again(root, folder, reproduce, prompts, files)
 
 

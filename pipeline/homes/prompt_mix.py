@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -57,13 +57,19 @@ def read_order(prompts: Path | None, seed: int, progress: Progress, *, strict: b
     return Order(seed, mix, programs)
 
 
+def orders(root: Path, seed: int, prompts: Path | None) -> Iterator[tuple[str, Callable[[int], Request]]]:
+    """Yield what a dataset may have been asked for, each with its digest: `prompts`, or nothing, or the list of params.yaml."""
+    order = read_order(prompts, seed, Progress(0, "homes", voice="quiet"), strict=False)
+    yield order.digest(), order.asked
+    if prompts is None:
+        tree = params.read(root / "params.yaml")
+        listed = requests_of(params.section(DatasetSettings, tree, "dataset"), root, seed)
+        yield digest([request.prompt for request in listed]), listed.__getitem__
+
+
 def asked_of(root: Path, header: Header, prompts: Path | None) -> Callable[[int], Request]:
-    """Return what the homes of a dataset were asked to be: by `prompts`, by nobody, or by params.yaml. Raises UsageError where none of these fits."""
-    order = read_order(prompts, header.seed, Progress(0, "homes", voice="quiet"), strict=False)
-    if header.digests.get("prompts") == order.digest():
-        return order.asked
-    tree = params.read(root / "params.yaml")
-    listed = requests_of(params.section(DatasetSettings, tree, "dataset"), root, header.seed)
-    if prompts is None and header.digests.get("prompts") == digest([request.prompt for request in listed]):
-        return lambda index: listed[index]
+    """Return what the homes of a dataset were asked to be. Raises UsageError where nothing fits."""
+    for words, asked in orders(root, header.seed, prompts):
+        if header.digests.get("prompts") == words:
+            return asked
     raise UsageError("the dataset was asked for in other words", "give the file of its prompts with --prompts, as it was")

@@ -1,12 +1,12 @@
 """A dataset on disk: header, shards that are written whole or not at all, commits, checks, and what each home is asked to be."""
 
-from pipeline.shards.check import Summary, check
 from pipeline.shards.content import ShardContent, gather
 from pipeline.shards.dataset import Dataset, add_part, commit_shard, committed, forget_altered, open_or_create
 from pipeline.shards.header import Header, code_digest, read_header
 from pipeline.shards.layout import EMPTY, TABLES, file_path, scene_id, shard_name
 from pipeline.shards.library import AssetSource
 from pipeline.shards.mix import Mix, read_mix, require_prompt
+from pipeline.shards.seal import identity, vouches
 
 __all__ = [
     "EMPTY",
@@ -16,19 +16,19 @@ __all__ = [
     "Header",
     "Mix",
     "ShardContent",
-    "Summary",
     "add_part",
-    "check",
     "code_digest",
     "commit_shard",
     "committed",
     "file_path",
     "forget_altered",
     "gather",
+    "identity",
     "open_or_create",
     "read_header",
     "read_mix",
     "require_prompt",
     "scene_id",
     "shard_name",
+    "vouches",
 ]

@@ -7,6 +7,8 @@ that they seldom do. What a killed run leaves behind is told apart by one questi
 
 from __future__ import annotations
 
+import errno
+import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -37,7 +39,7 @@ from pipeline.shards.layout import (
 )
 from pipeline.shards.library import AssetSource, adopt, settle
 from pipeline.shards.parts import FILES, Part, indices_of, join, part_place, parts_there, write_part
-from pipeline.shards.seal import SEAL, is_sealed, seal
+from pipeline.shards.seal import SEAL, is_sealed, seal, vouches
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,8 +110,11 @@ def open_or_create(folder: Path, header: Header, source: AssetSource, *, discard
 
 
 def committed(dataset: Dataset, number: int) -> bool:
-    """Tell whether shard `number` is there, with every file of its commit at its full length."""
-    commit = read_commit(dataset.folder, shard_name(number))
+    """Tell whether shard `number` is there: a commit that can be read, with every file at its full length."""
+    try:
+        commit = read_commit(dataset.folder, shard_name(number))
+    except ContentError:
+        return False
     return commit is not None and not commit.damaged(dataset.folder)
 
 
@@ -126,21 +131,27 @@ def forget_altered(dataset: Dataset, retry: frozenset[str] = frozenset()) -> lis
     """
     if dataset.claims.others():
         raise UsageError(f"another run is writing {dataset.folder}", "wait for it")
-    broken = []
-    for name in [*map(shard_name, range(dataset.header.shards)), ASSETS]:
-        try:
-            commit = read_commit(dataset.folder, name)
-        except ContentError:
-            commit = Commit(name, {}, {})
-        if commit is not None and (not commit.files or commit.altered(dataset.folder) or _fails(dataset.folder, commit, retry)):
-            _forget(dataset.folder, name)
-            broken.append(name)
+    names = [*map(shard_name, range(dataset.header.shards)), ASSETS]
+    broken = [name for name in names if _broken(dataset.folder, name, digests=True) or _fails(dataset.folder, name, retry)]
+    for name in broken:
+        _forget(dataset.folder, name)
     dataset.done.clear()
     return broken
 
 
-def _fails(folder: Path, commit: Commit, reasons: frozenset[str]) -> bool:
+def _broken(folder: Path, name: str, *, digests: bool = False) -> bool:
+    """Tell whether a commit is missing, cannot be read, or names a file that is gone, of another length, or (`digests`) not what was written."""
+    try:
+        commit = read_commit(folder, name)
+    except ContentError:
+        return True
+    return commit is None or bool(commit.altered(folder) if digests else commit.damaged(folder))
+
+
+def _fails(folder: Path, name: str, reasons: frozenset[str]) -> bool:
     """Tell whether homes of a shard stay empty for one of the reasons."""
+    commit = read_commit(folder, name)
+    assert commit is not None
     path = next((path for path in commit.files if path.startswith("rejects/")), None)
     rows = pq.ParquetFile(folder / path).read(["what", "reason"]).to_pylist() if path and reasons else []
     return any(row["what"] == "index" and row["reason"] in reasons for row in rows)
@@ -165,10 +176,10 @@ def commit_shard(dataset: Dataset, number: int) -> bool:
     False while another command does so, and where parts turn out to be torn: those are to be made again.
     Raises ContentError when a home is missing that no rejects row accounts for.
     """
-    name = shard_name(number)
-    if committed(dataset, number):
+    name, left = shard_name(number), dataset.todo(number)
+    if committed(dataset, number):  # asked after the parts were looked for: another command that commits removes them
         return True
-    if left := dataset.todo(number):
+    if left:
         raise ContentError(f"{name} lacks the homes {left}", "one scenes row per index, or a rejects row that says why there is none")
     if not dataset.claims.take(f"{name}/commit"):
         return False
@@ -197,23 +208,24 @@ def _drop_torn(dataset: Dataset, number: int) -> list[int]:
 def _commit(dataset: Dataset, number: int) -> None:
     name, folder = shard_name(number), dataset.folder
     parts = [Part(part_place(folder, number, i)) for i in dataset.header.indices(number)]
+    brought = [part.commit() for part in parts]
     staging = dataset.staging / name
     shutil.rmtree(staging, ignore_errors=True)
     rows = {}
     for table in TABLES:
         data = join(parts, table)
         rows[table] = data.num_rows
+        if data.num_rows != sum(commit.rows[table] for commit in brought):  # this one was given up, and who took over removes the parts
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(folder / PARTS / name))
         path = staging / table_path(table, number)
         path.parent.mkdir(parents=True)
         pq.write_table(data, path, compression="zstd", store_schema=True)
         if table == "objects":
             adopt(folder, dataset.source, dataset.staging, set(data["asset_id"].to_pylist()))
-    for part in parts:
-        for family in sorted((part.folder / FILES).glob("*")):
-            place = staging / family.name / name
-            place.mkdir(parents=True, exist_ok=True)
-            for source in sorted((family / name).iterdir()):
-                link(source, place / source.name)  # the part stays whole until the shard is
+    for part, held in zip(parts, brought, strict=True):
+        for file in (f.removeprefix(f"{FILES}/") for f in held.files if f.startswith(f"{FILES}/")):
+            (staging / file).parent.mkdir(parents=True, exist_ok=True)
+            link(part.folder / FILES / file, staging / file)  # the part stays whole until the shard is
     commit = record(staging, name, rows)
     _remove_strangers(folder, name, commit)
     places = {(folder / file).parent for file in commit.files}
@@ -237,6 +249,8 @@ def _remove_strangers(folder: Path, name: str, commit: Commit) -> None:
 
 def _resumes(folder: Path, header: Header, *, discard: bool) -> bool:
     """Tell whether the dataset in `folder` is an equal or a smaller one (True), or there is none, or it is to be discarded (False)."""
+    if vouches(folder, header):  # also when dataset.json is broken, or gone
+        return True
     if not (folder / HEADER).exists():
         if any(p.name not in PASSING for p in folder.iterdir()):
             raise UsageError(f"{folder} holds other files", "give a folder that is new or empty")
@@ -267,14 +281,14 @@ def _prepare(dataset: Dataset, *, discard: bool) -> None:
         if dataset.claims.others():
             raise UsageError(f"another run is writing {folder}", "wait for it, or give another --out")
         _wipe(folder)
-    if not (folder / HEADER).exists() or read_header(folder) != header:
+    text = text_of(header.to_json())
+    if not (folder / HEADER).exists() or (folder / HEADER).read_bytes() != text:
         (folder / commit_path(SEAL)).unlink(missing_ok=True)
-        put(folder / HEADER, text_of(header.to_json()), dataset.staging)
+        put(folder / HEADER, text, dataset.staging)
     for number in dataset.missing():
         if (folder / commit_path(shard_name(number))).exists():
             _forget(folder, shard_name(number))
-    library = read_commit(folder, ASSETS)
-    if library and library.damaged(folder):
+    if (folder / commit_path(ASSETS)).exists() and _broken(folder, ASSETS):
         _forget(folder, ASSETS)
 
 

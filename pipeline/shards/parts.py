@@ -6,6 +6,8 @@ file. It gets its name when all of that is there, and once it has it, it is neve
 
 from __future__ import annotations
 
+import errno
+import os
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +17,7 @@ import pyarrow as pa
 
 from pipeline.errors import ContentError
 from pipeline.manifest import text_of, write_bytes
-from pipeline.shards.commits import read_file, record
+from pipeline.shards.commits import Commit, read_file, record
 from pipeline.shards.content import ShardContent
 from pipeline.shards.layout import EMPTY, PARTS, TABLES, index_of, require_inside, shard_name
 
@@ -37,13 +39,19 @@ class Part:
         with pa.ipc.open_file(path) as reader:
             return reader.read_all()
 
+    def commit(self) -> Commit:
+        """Return what was written. Raises FileNotFoundError where it is gone, ContentError where it is torn."""
+        commit = read_file(self.folder / COMMIT)
+        if commit is None:
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(self.folder))
+        return commit
+
     def whole(self) -> bool:
         """Tell whether it is as it was written; a power cut may have torn it."""
         try:
-            commit = read_file(self.folder / COMMIT)
-        except ContentError:
+            return not self.commit().altered(self.folder)
+        except (ContentError, FileNotFoundError):
             return False
-        return commit is not None and not commit.altered(self.folder)
 
 
 def part_place(folder: Path, number: int, index: int) -> Path:

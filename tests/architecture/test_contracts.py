@@ -46,7 +46,7 @@ def test_contracts_hold(copy):
         ("sfgen/homes.py", "import pipeline.errors", "the loaders stand alone"),
         ("pipeline/verify/__init__.py", "import pipeline.arrange", "judges do not know what they judge"),
         ("pipeline/geometry/__init__.py", "import torch", "torch lives where networks live"),
-        ("pipeline/shards/layout.py", "import pipeline.shards.check", "no circles"),
+        ("pipeline/shards/layout.py", "import pipeline.shards.parts", "no circles"),
     ],
 )
 def test_contracts_bite(copy, module, line, contract):

@@ -48,7 +48,8 @@ def test_closure_knows_packages_and_their_imports(graph):
     assert {
         "stages/verify.py",
         "pipeline/shards/__init__.py",
-        "pipeline/shards/check.py",
+        "pipeline/shards/header.py",
+        "sfgen/check.py",
         "pipeline/errors.py",
         "schemas/table.py",
     } <= files

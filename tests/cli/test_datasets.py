@@ -23,11 +23,11 @@ from sfgen import cli
 class Paper:
     """Stands for the factory: homes are made-up rows, and every request is kept."""
 
-    shard_size, chunk, licence = 4, 4, "CC0-1.0"
+    chunk = 4
 
     def __init__(self, seed, weights="w"):
         self.seed, self.seconds = seed, {}
-        self.shard = SimpleNamespace(home_seconds=300.0)
+        self.shard = SimpleNamespace(home_seconds=300.0, homes=4, licence="CC0-1.0")
         self.digests = {"weights": weights}
         self.asked = []
         self.library = SimpleNamespace(rows={f"asset_{k}": {"style": ""} for k in range(2)})
@@ -38,8 +38,8 @@ class Paper:
         yield
 
     @property
-    def shelf(self):
-        return made.Shelf(Path("shelf"))
+    def asset_cache(self):
+        return made.AssetSource(Path("cache"))
 
     def make(self, requests, first=None):
         assert len(requests) <= self.chunk
@@ -265,3 +265,39 @@ def test_without_weights_make_run_is_named(monkeypatch, tmp_path, capsys, comman
     monkeypatch.setattr(cli, "factory_root", lambda: tmp_path)
     assert run(*command) == ContentError.exit_code
     assert "make run" in capsys.readouterr().err
+
+
+def test_repair_makes_again_what_is_broken_or_gone_byte_for_byte(factory, capsys):
+    """One file of every kind, with a bit of its middle flipped, or gone: the header, seal and commits, tables, stages, previews, the library."""
+    assert run("shard", "--count", 10, "--out", "d", "--seed", 3) == 0
+    whole = made.snapshot("d")
+    kinds = {(name.split("/")[0], Path(name).suffix, name.startswith("commits/shard")): name for name in sorted(whole)}
+    kinds["seal"], kinds["library"] = "commits/dataset.json", "commits/assets.json"
+    for name in sorted(set(kinds.values())):
+        for flipped in (True, False):
+            data = whole[name]
+            Path("d", name).unlink()  # the library's files have another name, in the cache
+            if flipped:
+                middle = len(data) // 2
+                Path("d", name).write_bytes(data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :])
+            assert run("verify", "--quick", "d") == 1, name
+            assert run("repair", "d") == 0, (name, capsys.readouterr().err)
+            assert made.snapshot("d") == whole, name
+    assert len(set(kinds.values())) >= 12
+    assert run("verify", "--quick", "d") == 0
+
+
+def test_repair_refuses_what_was_made_otherwise_and_leaves_it_alone(factory, tmp_path, capsys):
+    (tmp_path / "p.txt").write_text("a studio\n")
+    assert run("shard", "--count", 2, "--out", "d", "--seed", 3, "--prompts", "p.txt") == 0
+    Path("d/objects/shard-00000.parquet").unlink()
+    before = made.snapshot("d")
+    assert run("repair", "d") == 2
+    assert "prompts" in capsys.readouterr().err
+    factory.digests = {"weights": "others"}
+    assert run("repair", "d", "--prompts", "p.txt") == 2
+    assert "weights" in capsys.readouterr().err
+    assert made.snapshot("d") == before
+    factory.digests = {"weights": "w"}
+    assert run("repair", "d", "--prompts", "p.txt") == 0
+    assert run("verify", "--quick", "d") == 0

@@ -78,7 +78,7 @@ def test_version(sfgen):
         (["generate"], "prompt"),
         (["export", "d", "--to", "obj", "--out", "x"], "obj"),
         (["export", "d", "--to", "glb"], "--out"),
-        (["verify"], "DIR"),
+        (["verify"], "DATASET"),
         (["verify", "nowhere"], "nowhere is missing"),
         (["verify", __file__], "not a folder"),
         (["plan"], "prompt"),

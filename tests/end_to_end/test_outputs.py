@@ -10,7 +10,7 @@ import pytest
 import sfgen
 from pipeline import tables, taxonomy
 from pipeline.entities.files import load_asset
-from pipeline.shards import TABLES, check
+from pipeline.shards import TABLES
 from pipeline.usd.check import check_stage
 from schemas.assets import ASSET_JOINTS, ASSET_PARTS, ASSETS, LATENTS
 from schemas.objects import OBJECTS
@@ -18,6 +18,7 @@ from schemas.openings import OPENINGS
 from schemas.rejects import REJECTS
 from schemas.rooms import ROOMS
 from schemas.scenes import SCENES
+from sfgen.check import check
 
 HOMES = checkout.SMALL["dataset"]["homes"]
 SIMULATE = """

@@ -10,7 +10,7 @@ import time
 import checkout
 import pytest
 
-from pipeline.shards import check
+from sfgen.check import check
 
 HOMES = 24  # in shards of 4
 SHARDS = 6

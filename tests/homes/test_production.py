@@ -18,7 +18,8 @@ import papers
 from pipeline.errors import ContentError
 from pipeline.execution import Progress
 from pipeline.homes.production import Chunk, Recipe, fill, make_chunk
-from pipeline.shards import check, open_or_create
+from pipeline.shards import open_or_create
+from sfgen.check import check
 
 ROOT = Path(__file__).parents[2]
 

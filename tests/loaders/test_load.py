@@ -11,10 +11,10 @@ import pyarrow.parquet as pq
 import pytest
 
 import sfgen
-from pipeline.errors import ContentError
-from pipeline.shards import TABLES, check, header
+from pipeline.shards import TABLES, header
 from schemas.table import SCHEMA_VERSION
 from sfgen import dataset
+from sfgen.check import check
 from sfgen.homes import Joint, Opening, PlacedObject, Room
 
 
@@ -129,7 +129,7 @@ def test_another_version_of_the_tables_is_named(tmp_path, dataset_folder):
     (folder / "dataset.json").write_text(json.dumps({**header, "schema_version": "1"}))
     with pytest.raises(sfgen.DatasetError, match="tables of version 1, and this release of sfgen reads 2"):
         sfgen.load(folder)
-    with pytest.raises(ContentError, match="tables of version 1, and this release of sfgen reads 2"):
+    with pytest.raises(sfgen.DatasetError, match="tables of version 1, and this release of sfgen reads 2"):
         check(folder)
 
 

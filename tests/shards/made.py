@@ -1,6 +1,7 @@
 """Rows and files of made-up homes, and a program that makes a dataset of them slowly enough to be killed."""
 
 import hashlib
+import os
 import sys
 import time
 from pathlib import Path
@@ -125,7 +126,12 @@ def fill(folder, header=HEADER, nap=0.0, numbers=None, without=(), source=None):
 
 def snapshot(folder):
     """Every file of a folder: its bytes by its relative path."""
-    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in sorted(Path(folder).rglob("*")) if p.is_file()}
+    found = {}
+    for place, _, names in os.walk(folder):
+        within = os.path.relpath(place, folder)
+        for name in names:
+            found[name if within == "." else f"{within}/{name}"] = Path(place, name).read_bytes()
+    return dict(sorted(found.items()))
 
 
 if __name__ == "__main__":

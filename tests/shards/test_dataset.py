@@ -10,7 +10,10 @@ import made
 import pytest
 
 from pipeline.errors import ContentError, UsageError
-from pipeline.shards import Header, ShardContent, add_part, check, commit_shard, committed, read_header
+from pipeline.shards import Header, ShardContent, add_part, commit_shard, committed, read_header
+from pipeline.shards import dataset as dataset_module
+from sfgen.check import check
+from sfgen.place import DatasetError
 
 
 @pytest.fixture
@@ -112,8 +115,12 @@ def test_a_file_in_the_place_of_the_folder_is_refused(folder):
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "{}", '{"format": "sfgen-dataset-2"}'])
-def test_a_broken_header_is_named(folder, text):
+def test_a_broken_header_is_named_and_that_of_a_whole_dataset_made_again(folder, dataset_folder, text):
     made.fill(folder)
+    (folder / "dataset.json").write_text(text)
+    made.fill(folder)
+    assert made.snapshot(folder) == made.snapshot(dataset_folder)
+    (folder / "commits" / "dataset.json").unlink()  # which knows what it was
     (folder / "dataset.json").write_text(text)
     with pytest.raises(ContentError, match=r"dataset\.json"):
         made.fill(folder)
@@ -121,6 +128,7 @@ def test_a_broken_header_is_named(folder, text):
 
 def test_impossible_numbers_in_a_header_are_named(folder):
     made.fill(folder)
+    (folder / "commits" / "dataset.json").unlink()
     data = json.loads((folder / "dataset.json").read_text())
     (folder / "dataset.json").write_text(json.dumps({**data, "shard_size": 0}))
     with pytest.raises(ContentError, match="cannot be"):
@@ -168,7 +176,7 @@ def test_homes_that_were_made_before_a_kill_are_kept(folder, dataset_folder):
     with made.opened(folder) as dataset:
         for index in (4, 5, 7):
             add_part(dataset, 1, made.gather(1, [made.home(index)]))
-    with pytest.raises(ContentError, match="shard-00000"):
+    with pytest.raises(DatasetError, match="shard-00000"):
         check(folder)
     with made.opened(folder) as dataset:
         assert dataset.todo(1) == [6]
@@ -252,3 +260,39 @@ def test_a_dataset_of_nothing_is_refused(folder, numbers):
 def test_shards_of_a_header():
     header = Header(0, 130, 64, "x")
     assert [len(header.indices(n)) for n in range(header.shards)] == [64, 64, 2]
+
+
+def test_a_shard_that_another_command_commits_just_now_is_not_missed(folder, monkeypatch):
+    with made.opened(folder) as one, made.opened(folder) as other:
+        for index in range(4):
+            add_part(one, 0, made.gather(0, [made.home(index)]))
+        look = dataset_module.parts_there
+
+        def commits_first(*place):
+            monkeypatch.undo()
+            assert commit_shard(other, 0)
+            return look(*place)
+
+        monkeypatch.setattr(dataset_module, "parts_there", commits_first)
+        assert commit_shard(one, 0)
+
+
+@pytest.mark.parametrize("late", ["scenes", "joints"])
+def test_who_was_given_up_while_it_committed_spoils_nothing(folder, dataset_folder, monkeypatch, late):
+    """A command that was suspended for long: another takes over, commits and removes the parts that the first still reads."""
+    with made.opened(folder) as one, made.opened(folder) as other:
+        for index in range(4):
+            add_part(one, 0, made.gather(0, [made.home(index)]))
+        join = dataset_module.join
+
+        def suspended(parts, table):
+            if table == late:
+                monkeypatch.undo()
+                (folder / ".claims" / "owners" / one.claims.token).unlink()
+                assert commit_shard(other, 0)
+            return join(parts, table)
+
+        monkeypatch.setattr(dataset_module, "join", suspended)
+        assert commit_shard(one, 0)
+    made.fill(folder)
+    assert made.snapshot(folder) == made.snapshot(dataset_folder)

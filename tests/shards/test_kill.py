@@ -11,7 +11,7 @@ from pathlib import Path
 import made
 import pytest
 
-from pipeline.shards import check
+from sfgen.check import check
 
 ROOT = Path(__file__).parents[2]
 RENAME, REPLACE = Path.rename, Path.replace

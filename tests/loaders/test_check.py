@@ -1,16 +1,22 @@
 """check names the first thing that is wrong, whatever it is."""
 
 import json
+import random
 import shutil
+import sys
+from pathlib import Path
 
-import made
 import pyarrow.parquet as pq
 import pytest
 
-from pipeline.errors import ContentError, UsageError
 from pipeline.manifest import sha256
-from pipeline.shards import check, read_header
+from pipeline.shards import read_header
 from pipeline.shards.seal import seal
+from sfgen.check import check
+from sfgen.place import DatasetError
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "shards"))
+import made
 
 
 @pytest.fixture
@@ -36,10 +42,34 @@ def test_every_file_is_watched(folder):
             path.unlink()
             if bad is not None:
                 path.write_bytes(bad)
-            with pytest.raises(ContentError, match=path.stem):
+            with pytest.raises(DatasetError, match=path.stem):
                 check(folder)
         path.write_bytes(data)
     assert check(folder).homes == 10
+
+
+def test_any_flipped_bit_is_noticed(folder):
+    """Of every kind of file: the header, the seal, commits, tables, stages, previews, the library's files and its table."""
+    rng = random.Random(0)
+    for name, data in made.snapshot(folder).items():
+        tries = 40 if name in {"dataset.json", "commits/dataset.json"} else 4
+        for place in [0, len(data) - 1, *(rng.randrange(len(data)) for _ in range(tries))]:
+            flipped = data[:place] + bytes([data[place] ^ 1 << rng.randrange(8)]) + data[place + 1 :]
+            (folder / name).unlink()  # the library's files have another name, in the cache
+            (folder / name).write_bytes(flipped)
+            with pytest.raises(DatasetError):
+                check(folder)
+        (folder / name).write_bytes(data)
+    assert check(folder).homes == 10
+
+
+def test_a_dataset_is_checked_at_an_address_as_in_a_folder(folder):
+    fsspec = pytest.importorskip("fsspec")
+    fsspec.filesystem("memory").put(str(folder), "/sets/checked", recursive=True)
+    assert check("memory://sets/checked") == check(folder)
+    fsspec.filesystem("memory").rm("/sets/checked/usd/shard-00001/s5_00000004.usdc")
+    with pytest.raises(DatasetError, match=r"memory://sets/checked/usd/shard-00001/s5_00000004\.usdc is missing"):
+        check("memory://sets/checked")
 
 
 @pytest.mark.parametrize(
@@ -56,7 +86,7 @@ def test_every_file_is_watched(folder):
 def test_a_stranger_is_named(folder, name):
     (folder / name).parent.mkdir(parents=True, exist_ok=True)
     (folder / name).write_text("?")
-    with pytest.raises(ContentError, match=name.rsplit("/", 1)[1]):
+    with pytest.raises(DatasetError, match=name.rsplit("/", 1)[1]):
         check(folder)
 
 
@@ -101,7 +131,7 @@ def rewritten(folder, table, number, change):
 )
 def test_wrong_rows_are_named(folder, table, change, word):
     rewritten(folder, table, 1, change)
-    with pytest.raises(ContentError, match=word):
+    with pytest.raises(DatasetError, match=word):
         check(folder)
 
 
@@ -110,20 +140,17 @@ def test_a_commit_that_points_outside_is_refused(folder):
     forged = json.loads(commit.read_text())
     forged["files"]["../../etc/passwd"] = {"sha256": "0", "bytes": 1}
     commit.write_text(json.dumps(forged))
-    with pytest.raises(ContentError, match="not a plain relative path"):
+    with pytest.raises(DatasetError, match="not a plain relative path"):
         check(folder)
 
 
 def test_an_unfinished_dataset_is_named(tmp_path):
     made.fill(tmp_path / "set", numbers={0, 2})
-    with pytest.raises(ContentError, match="shard-00001"):
+    with pytest.raises(DatasetError, match="shard-00001"):
         check(tmp_path / "set")
 
 
-def test_a_path_of_the_wrong_kind_is_the_users_error(tmp_path, dataset_folder):
-    with pytest.raises(UsageError, match="missing"):
-        check(tmp_path / "nothing")
-    with pytest.raises(UsageError, match="not a folder"):
-        check(dataset_folder / "dataset.json")
-    with pytest.raises(ContentError, match="holds no dataset"):
-        check(tmp_path)
+def test_what_holds_no_dataset_is_named(tmp_path):
+    for path in (tmp_path, tmp_path / "nothing"):
+        with pytest.raises(DatasetError, match="is not a dataset"):
+            check(path)
