@@ -251,8 +251,9 @@ def _resumes(folder: Path, header: Header, *, discard: bool) -> bool:
     """Tell whether the dataset in `folder` is an equal or a smaller one (True), or there is none, or it is to be discarded (False)."""
     if vouches(folder, header):  # also when dataset.json is broken, or gone
         return True
-    if not (folder / HEADER).exists():
-        if any(p.name not in PASSING for p in folder.iterdir()):
+    others = [path for path in folder.iterdir() if path.name not in PASSING]
+    if not (folder / HEADER).exists():  # asked after the others were listed: another command may have made it just now
+        if others:
             raise UsageError(f"{folder} holds other files", "give a folder that is new or empty")
         return False
     try:

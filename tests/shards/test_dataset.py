@@ -262,6 +262,21 @@ def test_shards_of_a_header():
     assert [len(header.indices(n)) for n in range(header.shards)] == [64, 64, 2]
 
 
+def test_a_dataset_that_another_command_begins_just_now_is_joined(folder, monkeypatch):
+    folder.mkdir()
+    look = Path.iterdir
+
+    def begins_first(place):
+        if place == folder:
+            monkeypatch.undo()
+            with made.opened(folder):
+                pass
+        return look(place)
+
+    monkeypatch.setattr(Path, "iterdir", begins_first)
+    assert made.fill(folder) == [0, 1, 2]
+
+
 def test_a_shard_that_another_command_commits_just_now_is_not_missed(folder, monkeypatch):
     with made.opened(folder) as one, made.opened(folder) as other:
         for index in range(4):
