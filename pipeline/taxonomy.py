@@ -48,14 +48,23 @@ class Rug:
 
 
 @dataclass(frozen=True, slots=True)
+class Usual:
+    """One thing of these categories is asked for in a `share` of the rooms that would do without."""
+
+    of: tuple[str, ...]
+    share: float
+
+
+@dataclass(frozen=True, slots=True)
 class Layout:
-    """A room as the layout model furnishes it: 3D-FRONT's types that are so, of which categories it `needs` one of each group.
+    """A room as the layout model furnishes it: 3D-FRONT's types that are so, of which categories it `needs` one of each group, or `usual`ly has one.
 
     What made ones hold besides: a rug, shares of rooms with things at all windows, expected numbers on the walls.
     """
 
     front: tuple[str, ...]
     needs: tuple[tuple[str, ...], ...] = ()
+    usual: tuple[Usual, ...] = ()
     rug: Rug | None = None
     windows: Mapping[str, float] = field(default_factory=dict)
     walls: Mapping[str, float] = field(default_factory=dict)

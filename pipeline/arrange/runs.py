@@ -56,6 +56,7 @@ def lay_runs(items: Sequence[Item], walls: Sequence[Edge], site: Site) -> tuple[
     waiting = floor
     wall = {i: _wall_of(items[i], walls) for i in floor}
     depth = max(2 * float(items[i].half[1]) for i in floor) + BACK
+    wall = _joined(wall, items, _by_use(wall, items, walls), depth, site)
     ordered = _by_use(wall, items, walls)
     for edge in ordered:
         own = [i for i in waiting if wall[i] is edge]
@@ -73,6 +74,22 @@ def _by_use(wall: Mapping[int, Edge | None], items: Sequence[Item], walls: Seque
     return [walls[k] for k in sorted(range(len(walls)), key=lambda k: (-round(length[k], 6), k)) if length[k] > 0]
 
 
+def _joined(
+    wall: Mapping[int, Edge | None], items: Sequence[Item], ordered: Sequence[Edge], depth: float, site: Site
+) -> dict[int, Edge | None]:
+    """Return the walls with each unit that is alone at its own sent to a run with room for it, the longest first."""
+    at = dict(wall)
+    for i in sorted(at, key=lambda i: (items[i].area, i)):
+        if at[i] is None or sum(edge is at[i] for edge in at.values()) > 1:
+            continue
+        for edge in ordered:
+            units = [k for k in at if at[k] is edge]
+            if edge is not at[i] and len(units) > 1 and any(st.room(items) >= 0.0 for st in _stretches(edge, depth, site, (), [*units, i])):
+                at[i] = edge
+                break
+    return at
+
+
 def _wall_of(item: Item, walls: Sequence[Edge]) -> Edge | None:
     """Return the wall at which a unit is drafted."""
     best: tuple[float, Edge] | None = None
@@ -85,8 +102,8 @@ def _wall_of(item: Item, walls: Sequence[Edge]) -> Edge | None:
     return best[1] if best else None
 
 
-def _stretches(edge: Edge, depth: float, site: Site, taken: Sequence[Floats]) -> list[Stretch]:
-    """Return the free pieces of a wall for units of this depth: without doors, their swing, and what stands in the corners."""
+def _stretches(edge: Edge, depth: float, site: Site, taken: Sequence[Floats], units: Sequence[int] = ()) -> list[Stretch]:
+    """Return the free pieces of a wall for units of this depth, each with `units`: without doors, their swing, and what stands in the corners."""
     cuts = [(opening.start - DOORWAY, opening.end + DOORWAY) for opening in edge.openings if not opening.window]
     swung = [site.swung.polygon(k) for k in range(len(site.swung))]
     for outline, margin in [*((o, DOORWAY) for o in swung), *((o, SEAM) for o in taken)]:
@@ -96,7 +113,7 @@ def _stretches(edge: Edge, depth: float, site: Site, taken: Sequence[Floats]) ->
     found, at = [], BACK
     for low, high in [*sorted(cuts), (edge.length - BACK, math.inf)]:
         if low - at > 0.3:
-            found.append(Stretch(edge, at, low))
+            found.append(Stretch(edge, at, low, list(units)))
         at = max(at, high)
     return found
 

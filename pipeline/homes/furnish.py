@@ -56,7 +56,11 @@ def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxono
 
     Draws are keyed by (seed, home, room, attempt) alone, so a room does not depend on which rooms share its batch.
     """
-    contexts = [RoomContext.of(job.plan, job.room_id, job.layout_type, job.count, category_bounds(job, taxonomy)) for job in jobs]
+    bounds = [
+        (*category_bounds(job, taxonomy), *usual_bounds(job, taxonomy, seeds.generator(sampler.seed, "usual", job.index, job.number)))
+        for job in jobs
+    ]
+    contexts = [RoomContext.of(job.plan, job.room_id, job.layout_type, job.count, asked) for job, asked in zip(jobs, bounds, strict=True)]
     keys = [(job.index, job.number, job.draw) for job in jobs]
     proposals = sampler.sample_rooms(contexts, keys)
     return [
@@ -82,6 +86,15 @@ def category_bounds(job: RoomJob, taxonomy: Taxonomy) -> tuple[CategoryBounds, .
     groups = [bounds for group in job.essentials(taxonomy) if not wished.intersection(group) for bounds in _essential(group, job.attempt)]
     unwanted = tuple(c for c in job.unwanted(taxonomy) if c not in wished)
     return (*job.category_bounds, *groups, *([CategoryBounds(unwanted, 0, 0)] if unwanted else []))
+
+
+def usual_bounds(job: RoomJob, taxonomy: Taxonomy, rng: np.random.Generator) -> tuple[CategoryBounds, ...]:
+    """Return what a room like this is asked to hold because most do, on its first tries; nothing where a number of objects, or some of these, is wished for."""
+    marks = {usual: rng.random() for usual in taxonomy.layouts[job.layout_type].usual} if job.layout_type in taxonomy.layouts else {}
+    settled = {c for bounds in job.category_bounds for c in bounds.categories} | set(job.unwanted(taxonomy))
+    if job.count is not None or job.attempt >= FREE_CHOICE:
+        return ()
+    return tuple(CategoryBounds(usual.of, 1) for usual, mark in marks.items() if mark < usual.share and settled.isdisjoint(usual.of))
 
 
 def _essential(group: tuple[str, ...], attempt: int) -> list[CategoryBounds]:

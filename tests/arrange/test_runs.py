@@ -72,3 +72,19 @@ def test_a_run_keeps_clear_of_the_door():
     x, y = door.segment.mean(0)
     wished = [drafted(ASSETS[name], x + 0.5 * k, y + 0.3, math.pi, number=k) for k, name in enumerate(UNITS)]
     assert len(arranged(wished)) == len(UNITS)
+
+
+def test_a_unit_that_is_drafted_alone_at_another_wall_joins_the_run_where_it_has_room():
+    wished = [drafted(ASSETS[name], 0.9 + 0.8 * k, 2.65, number=k) for k, name in enumerate(("sink", "base", "cooker"))]
+    found = arranged([*wished, drafted(ASSETS["fridge"], 4.1, 1.0, -math.pi / 2, number=3)])
+    units = sorted(found.values(), key=lambda p: p.position[0])
+    assert {p.yaw for p in units} == {0.0}
+    for left, right in pairwise(units):
+        assert right.position[0] - left.position[0] - (left.size[0] + right.size[0]) / 2 == pytest.approx(0.002, abs=0.0005)
+
+
+def test_a_unit_that_the_run_has_no_room_for_stays_at_its_wall():
+    wished = [drafted(ASSETS[name], 0.5 + 0.8 * k, 2.65, number=k) for k, name in enumerate(("sink", "base", "cooker", "base", "base"))]
+    found = separate(site(room(), "room"), [*wished, drafted(ASSETS["fridge"], 4.1, 1.0, -math.pi / 2, number=5)], ASSETS, LORE)
+    (fridge,) = (p for p in found.placements if p.asset_id == "fridge")
+    assert fridge.yaw == pytest.approx(-math.pi / 2, abs=1e-4)

@@ -6,7 +6,7 @@ from pipeline import taxonomy
 from pipeline.diffusion.context import CategoryBounds
 from pipeline.entities.plan import Plan, Room
 from pipeline.floorplan.program.floor_program import Furniture
-from pipeline.homes.furnish import category_bounds
+from pipeline.homes.furnish import category_bounds, usual_bounds
 from pipeline.homes.request import RoomJob
 
 
@@ -54,3 +54,19 @@ def test_later_tries_insist_on_another_bed():
     assert [a[0].categories for a in asked[2:4]] == [("single_bed",), ("kids_bed",)]
     assert all(CategoryBounds(tuple(c for c in group if c not in a[0].categories), 0, 0) in a for a in asked[2:])
     assert asked[4] == asked[3]
+
+
+def test_a_share_of_rooms_is_asked_for_what_is_usual():
+    words = taxonomy.load()
+    (usual,) = words.layouts["bedroom"].usual
+    rng = np.random.default_rng(0)
+    asked = [usual_bounds(job("bedroom"), words, rng) for _ in range(400)]
+    assert set(asked) == {(), (CategoryBounds(usual.of, 1),)}
+    assert abs(np.mean([bool(a) for a in asked]) - usual.share) < 0.1
+    for silent in (
+        job("bedroom", count=3),
+        replace(job("bedroom"), attempt=3),
+        job("bedroom", wishes=[CategoryBounds(("wardrobe",), most=0)]),
+        job("hallway"),
+    ):
+        assert not any(usual_bounds(silent, words, rng) for _ in range(20))
