@@ -78,8 +78,8 @@ def command(capsys, monkeypatch, tmp_path):
 @pytest.mark.parametrize(
     ("name", "file", "words"),
     [
-        ("preprocess", "data/raw/3d-front", ("3d-front", "preprocess.front")),
-        ("preprocess", "data/raw/partnet", ("partnet", "preprocess.partnet")),
+        ("preprocess", "data/raw/3d-front", ("3d-front", "preprocess.sources.front")),
+        ("preprocess", "data/raw/partnet", ("partnet", "preprocess.sources.partnet")),
         ("encode", "data/tables/assets.parquet", ("assets.parquet", "dvc repro")),
         ("train", "data/latents/latents.parquet", ("latents.parquet",)),
         ("sample", "models/denoiser.safetensors", ("denoiser.safetensors", "make run")),

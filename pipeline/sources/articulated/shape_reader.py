@@ -19,6 +19,7 @@ from pipeline.sources.articulated.part_classes import Annotation, fixed_class, n
 from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, ShapePart, below
 from pipeline.sources.articulated.urdf import Shape, Urdf, UrdfLink
 from pipeline.sources.guarded import Folder
+from pipeline.sources.meshes.near_boxes import FACES
 from pipeline.sources.meshes.obj_file import MtlMaterial, ObjFile, ObjGroup
 from pipeline.sources.meshes.visual_meshes import Palette, visual
 from pipeline.sources.reasons import SourceError
@@ -230,10 +231,7 @@ def _post(bodies: list[ShapeBody], joints: list[ShapeJoint], hinge: ShapeJoint) 
         hinge.origin + hinge.axis * a + across * (max(reach, 0.0) + b * thick) + side * (c - 0.5) * thick
         for a in (along.min(), along.max()) for b in (0, 1) for c in (0, 1)
     ]  # fmt: skip
-    faces = np.array(
-        [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
-    )
-    return np.array(corners), faces
+    return np.array(corners), FACES
 
 
 def _named(joints: list[ShapeJoint]) -> list[ShapeJoint]:

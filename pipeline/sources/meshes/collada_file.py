@@ -15,7 +15,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.sources.meshes.collada_materials import Elements, material
-from pipeline.sources.meshes.obj_file import MAX_COORDINATE, MAX_FACES, MAX_GROUPS, MAX_UVS, MAX_VERTICES, MtlMaterial, ObjFile, ObjGroup
+from pipeline.sources.meshes.obj_file import (
+    MAX_COORDINATE,
+    MAX_FACES,
+    MAX_GROUPS,
+    MAX_UVS,
+    MAX_VERTICES,
+    MtlMaterial,
+    ObjFile,
+    ObjGroup,
+    fans,
+)
 from pipeline.sources.meshes.xml_file import xml_root
 from pipeline.sources.reasons import SourceError
 
@@ -188,15 +198,7 @@ def _triangles(primitive: Any, width: int) -> Iterator[Ints]:
         counts = _numbers(text, np.int64, where) if primitive.tag == "polylist" else np.array([len(p) for p in lists], np.int64)
         if (counts < 0).any() or counts.sum() > len(whole):
             raise ValueError(f"<{where}> names more corners than it has")
-        yield whole[_fanned(counts)]
-
-
-def _fanned(counts: Ints) -> Ints:
-    """Return (T, 3) positions in the list of corners: each polygon of n corners becomes n - 2 triangles."""
-    starts, inner = np.cumsum(counts) - counts, np.maximum(counts - 2, 0)
-    step = np.arange(int(inner.sum())) - np.repeat(np.cumsum(inner) - inner, inner)
-    first = np.repeat(starts, inner)
-    return np.stack([first, first + step + 1, first + step + 2], axis=1)
+        yield whole[fans(counts)]
 
 
 def _transform(element: Any) -> Floats:

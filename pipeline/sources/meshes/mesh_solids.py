@@ -164,8 +164,7 @@ def _over_edges(faces: Ints) -> Ints:
     _, first, count = np.unique(code[order], return_index=True, return_counts=True)
     pairs = first[count == 2]
     a, b = owner[order[pairs]], owner[order[pairs + 1]]
-    graph = coo_array((np.ones(len(a), bool), (a, b)), shape=(len(faces), len(faces)))
-    return np.asarray(connected_components(graph, directed=False)[1])
+    return _labels(a, b, len(faces))
 
 
 def _once(faces: Ints) -> Ints:
@@ -181,17 +180,15 @@ def _once(faces: Ints) -> Ints:
 
 
 def _owners(faces: Ints, count: int) -> Ints:
-    """Return a label per vertex (count,), the same for vertices that faces connect: the least index of its part."""
-    if not len(faces):
-        return np.zeros(count, np.int64)
-    owner = np.arange(count)
-    while True:
-        least = owner[faces].min(axis=1)
-        before = owner.copy()
-        np.minimum.at(owner, faces.ravel(), np.repeat(least, 3))
-        owner = owner[owner]
-        if (owner == before).all():
-            return owner
+    """Return a label per vertex (count,), the same for vertices that faces connect, in the order of their least index."""
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
+    return _labels(edges[:, 0], edges[:, 1], count)
+
+
+def _labels(a: Ints, b: Ints, count: int) -> Ints:
+    """Return a label for each of `count` things, of which a (N,) and b (N,) are connected."""
+    graph = coo_array((np.ones(len(a), bool), (a, b)), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1])
 
 
 def _hash(grid: Ints) -> Ints:

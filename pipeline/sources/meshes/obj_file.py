@@ -220,7 +220,7 @@ def _group(key: tuple[str, str], lines: list[bytes], vertices: int, uvs: int, wh
     index = np.where(index > 0, index - 1, -1)
     if len(index) and (index[:, 0].min() < 0 or index[:, 0].max() >= vertices or index[:, 1].max() >= uvs):
         raise SourceError("not_obj", where, f"a face of {key[0] or 'the first group'!r} indexes vertices that are not there")
-    corners = _fan(counts)
+    corners = fans(counts)
     triangles = index[corners]
     return ObjGroup(key[0], key[1], triangles[:, :, 0], triangles[:, :, 1])
 
@@ -250,13 +250,9 @@ def _indices(flat: list[bytes], where: str) -> Ints:
     return np.stack([numbers[:, 0], uv], axis=1)
 
 
-def _fan(counts: Ints) -> Ints:
+def fans(counts: Ints) -> Ints:
     """Return (T, 3) positions in the flat list of corners: each polygon of n corners becomes n - 2 triangles."""
-    starts = np.cumsum(counts) - counts
-    if (counts == 3).all():
-        return starts[:, None] + np.arange(3)
-    inner = np.maximum(counts - 2, 0)
-    owner = np.repeat(np.arange(len(counts)), inner)
+    starts, inner = np.cumsum(counts) - counts, np.maximum(counts - 2, 0)
     step = np.arange(int(inner.sum())) - np.repeat(np.cumsum(inner) - inner, inner)
-    first = starts[owner]
+    first = np.repeat(starts, inner)
     return np.stack([first, first + step + 1, first + step + 2], axis=1)
