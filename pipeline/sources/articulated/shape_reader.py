@@ -25,6 +25,7 @@ from pipeline.sources.meshes.visual_meshes import Palette, visual
 from pipeline.sources.reasons import SourceError
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 LIKE = 0.03  # share of the object's diagonal within which the boxes of two sets of meshes of a body agree
 POST = 0.02  # the same for the thickness of the post that stands in for a frame that a door lacks
 
@@ -215,7 +216,7 @@ def _span(bodies: list[ShapeBody]) -> float:
     return float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else 1.0
 
 
-def _post(bodies: list[ShapeBody], joints: list[ShapeJoint], hinge: ShapeJoint) -> tuple[Floats, Floats]:
+def _post(bodies: list[ShapeBody], joints: list[ShapeJoint], hinge: ShapeJoint) -> tuple[Floats, Ints]:
     """Return vertices (8, 3) and faces (12, 3) of a square post along a hinge, on the far side of it from its leaf."""
     points = np.concatenate([bodies[k].points() for k in sorted(below(joints, hinge.child))])
     along = (points - hinge.origin) @ hinge.axis

@@ -26,7 +26,7 @@ MAX_VERTICES = 500_000
 MAX_UVS = 1_000_000
 MAX_FACES = 1_000_000
 MAX_GROUPS = 2048
-MAX_MATERIALS = 4096  # of one file; later ones are not read
+MAX_MATERIALS, MAX_LINES = 4096, 40_000  # of one file of materials; later ones are not read
 MAX_COORDINATE = 1e5  # a mesh that reaches further is nonsense in any unit
 
 
@@ -127,7 +127,7 @@ def parse_mtl(data: bytes) -> dict[str, MtlMaterial]:
     """
     found: dict[str, MtlMaterial] = {}
     name: str | None = None
-    for raw in data.removeprefix(BOM).replace(b"\r", b"\n").split(b"\n"):
+    for raw in data.removeprefix(BOM).replace(b"\r", b"\n").split(b"\n", MAX_LINES)[:MAX_LINES]:
         words = raw.decode("utf-8", "replace").strip().split(None, 1)
         if len(words) < 2:
             continue
