@@ -1,7 +1,7 @@
 """How exactly prompts are read: the share of prompts whose program states what they say, per file, language and half.
 
 `python -m benchmarks.language [--file sentences] [--half held|tuned] [--language en] [--faults] [--typos]`. Ground truth:
-`languages.yaml`, `sentences.yaml`, `speech.yaml`, `fourth.yaml`, `fifth.yaml` and `everyday.yaml` in `manifests/prompts`. With --typos: the share of programs that one typing error leaves as
+`languages.yaml`, `sentences.yaml`, `speech.yaml`, `requests.yaml` and `everyday.yaml` in `manifests/prompts`. With --typos: the share of programs that one typing error leaves as
 they were (`benchmarks/slips.py`). With `--engine llm [--replies FILE]`: read by the language model that SFGEN_LLM_* name; FILE (YAML, a list of
 {prompt, reply}) holds what it has answered before, is read instead of asking, and gets what is new.
 """
@@ -27,7 +27,7 @@ from pipeline.floorplan.program.consistency import check
 from pipeline.floorplan.program.floor_program import Furniture, Range
 
 PROMPTS = Path(__file__).resolve().parents[1] / "manifests" / "prompts"
-FILES = ("languages", "sentences", "speech", "fourth", "fifth", "everyday")
+FILES = ("languages", "sentences", "speech", "requests", "everyday")
 Engine = Callable[[str], FloorProgram]  # prompt -> completed program
 CLOSE = 0.12  # relative error of an area that is still "about" it
 

@@ -131,7 +131,7 @@ class _Place:
         gap = after[0].start - claim.end if after else FAR + 1
         if before and claim.kind != "count" and self.scan.length(self._at(before[-1].end), "dwelling"):
             return ()  # "a two-bedroom flat with 30 pieces": the flat's
-        if (claim.inward and gap <= FAR) or (gap <= CLOSE and self.prompt[claim.end :].startswith("的")):  # "带淋浴的卫生间"
+        if (claim.inward and gap <= FAR) or (gap <= CLOSE and self.scan.length(self._at(claim.end), "of")):  # "带淋浴的卫生间"
             return after[0].ids
         if claim.kind == "style":
             return self._styled(claim, before, after)
@@ -154,7 +154,7 @@ class _Place:
         if before and self._joined(before[-1].end, claim.start):
             own = any(c is not claim and before[-1].end <= c.start < claim.start for c in self.claims)
             led = any(self.scan.length(k, "in", "with", "is") for k in range(self._at(before[-1].end), self._at(claim.start)))
-            if own or led or any(c > "\u3400" for c in self.prompt[claim.start : claim.end]):
+            if own or led or "characters" in self.scan.traits:
                 return before[-1].ids
         if after and not self.prompt[claim.end : after[0].start].strip() and not self.scan.length(self._at(after[0].end), "dwelling"):
             return after[0].ids

@@ -26,7 +26,6 @@ def has(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one answer per
         return k + 1
     if kind == "kitchen" and thing.mark is not None and thing.mark.value == "dining_room/corner":  # "a kitchen with dining area"
         c.stock.get(owners[0]).functions.add("dining")
-        c.state.understood(thing.first, thing.last)
         return at + 1
     if thing.type == "balcony" and kind in {"bathroom", "hallway"}:
         return k + 1  # "两室一厨一卫带阳台": the home has it
@@ -38,7 +37,6 @@ def has(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one answer per
     if thing.type in NO_PARTS or (thing.ids and thing.definite):
         return k + 1
     ids = c.named(at)
-    c.state.understood(e.first, thing.last)
     opened = thing.type in {"kitchen", "dining_room"} and kind in {*SOCIAL, "studio_room"}
     c.state.say("open" if opened else "door", ids, owners, e)
     c.measures(thing)
@@ -78,14 +76,11 @@ def _give(c: Clause, k: int, e: Element, owners: Group) -> int:
     while (x := c.near(j)) is not None:
         if x.kind == "np" and x.type == "bedroom" and not given and not x.ids and any(y.suite for y in c.sentence[:k]):
             x.ids, joined, end = list(owners), "", j + 1  # "each suite has a bedroom of 18 m², its own bathroom ..."
-            c.state.understood(x.first, x.last)
             c.measures(x)
         elif x.kind == "np":
             if x.banned or x.type not in PERSONAL or (given and not joined) or not _theirs(c, j, owners, bool(given), joined):
                 break
             ids = _things(c, j, owners)
-            c.state.understood(e.first, e.last)
-            c.state.understood(x.first, x.last)
             c.give(ids, owners, x)
             c.measures(x)
             given, joined, end = ids, "", j + 1
@@ -93,7 +88,6 @@ def _give(c: Clause, k: int, e: Element, owners: Group) -> int:
             joined = "comma" if x.kind == "comma" and joined != "and" else "and"
         elif x.kind == "amount" and not given and x.mark is not None and x.value in {"area", "length"}:
             c.state.amounts.append((x.mark, owners))
-            c.state.understood(x.first, x.last)
             end, joined = j + 1, ""
         elif x.kind not in LIGHT - {"verb"} and x.value != "has":
             break

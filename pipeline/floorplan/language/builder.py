@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pipeline.errors import RefusedError
@@ -11,6 +11,7 @@ from pipeline.floorplan.language.joints import Draft, join
 from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.naming import ROLES
 from pipeline.floorplan.language.phrases import Element
+from pipeline.floorplan.language.unparsed import unparsed
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.defaults import DEFAULTS
 from pipeline.floorplan.program.floor_program import MAX_ROOMS, FloorProgram, Style
@@ -40,25 +41,6 @@ SORTS = {
     "family_room",
     "playroom",
 }  # of many names
-RELATIONS = {"door", "leads", "open", "near", "wall", "away", "apart", "between", "avoid", "ensuite"}
-SAYING = {
-    "word",
-    "cmp",
-    "factor",
-    "amount",
-    "ord",
-    "owner",
-    "level",
-    "room",
-    "suite",
-    "enter",
-    "outside",
-    "except",
-    "pron",
-    "neg",
-    "num",
-}  # never idle
-LEADING = {"num", "ord", "adj", "size", "det", "clf", "times", "amount", "fill", "look"}  # in front of a room
 
 
 def assemble(state: Reading, parsed: list[list[Element]], marks: Sequence[Mark]) -> FloorProgram:
@@ -88,7 +70,7 @@ def assemble(state: Reading, parsed: list[list[Element]], marks: Sequence[Mark])
             "zones": draft.zones,
             "language": state.heard.lexicon.language,
             "evidence": evidence,
-            "unparsed": [{"start": s, "end": e, "text": draft.prompt[s:e]} for s, e in _rest(state, evidence, marks)],
+            "unparsed": [{"start": s, "end": e, "text": draft.prompt[s:e]} for s, e in unparsed(state, parsed, evidence, marks)],
         }
     )
 
@@ -115,31 +97,6 @@ def _named(parsed: list[list[Element]], state: Reading) -> list[dict[str, Any]]:
         for i in (i for i in e.ids if i in known):
             cited.cite(e.first, e.last, f"rooms.{i}")
     return cited.evidence
-
-
-def _rest(state: Reading, evidence: Sequence[Mapping[str, Any]], marks: Sequence[Mark]) -> Iterator[tuple[int, int]]:
-    """Yield what nothing was made of: words that are in no vocabulary, and words that say something and stand in no evidence."""
-    tokens = state.heard.tokens
-    cited = {k for e in evidence for k, t in enumerate(tokens) if e["start"] <= t.start and t.end <= e["end"]} | state.used
-    for k, mark in enumerate(marks):
-        if mark.last > mark.first and not cited & set(range(mark.first, mark.last)) and _says(state, marks, k, cited):
-            yield tokens[mark.first].start, tokens[mark.last - 1].end
-
-
-def _says(state: Reading, marks: Sequence[Mark], k: int, cited: set[int]) -> bool:
-    """Whether the mark at k says something by itself: what stands in front of a room that was read does not."""
-    mark = marks[k]
-    if mark.kind == "cue":
-        return mark.value in RELATIONS and mark.text not in state.heard.lexicon.sign("quiet")
-    pointing = mark.kind == "det" and mark.value in {"each", "other", "own", "another"}
-    if not (mark.kind in SAYING or pointing) or (mark.kind == "pron" and mark.value in {"it", "one"}):
-        return False
-    ahead = marks[k + 1] if k + 1 < len(marks) else None
-    if mark.kind == "num" and ahead is not None and ahead.kind in {"owner", "fill", "word", "verb"}:  # "three generations", "two kids"
-        return False
-    head = next((m for m in marks[k + 1 :] if m.kind not in LEADING), mark)
-    described = head.kind == "home" or (head.kind in {"room", "suite"} and bool(cited & set(range(head.first, head.last))))
-    return not (mark.kind in {"ord", "det", "num"} and described)
 
 
 # how many rooms
@@ -298,6 +255,8 @@ def _whole(draft: Draft, state: Reading) -> None:
         draft.refuse(
             "a home of one storey has nothing upstairs", "ask for two storeys", [(single[0].first, single[0].last), *above], "storeys"
         )
+    for e in state.levels:
+        draft.cite(e.first, e.last, "storeys")
     fields["storeys"] = storeys
     for room in stock.rooms if storeys == 1 else ():
         room.level = 0

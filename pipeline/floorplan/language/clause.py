@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable
 
-from pipeline.floorplan.language.facts import FRONT, HALLS, PRIVATE, SOCIAL, Fact, Group, Reading
+from pipeline.floorplan.language.facts import FRONT, HALLS, PRIVATE, SOCIAL, Group, Reading
 from pipeline.floorplan.language.naming import name
 from pipeline.floorplan.language.phrases import Element, heads
 from pipeline.floorplan.language.pronouns import point
@@ -38,7 +38,6 @@ class Clause:
         self.objects: Group = ()
         self.waiting: tuple[Element, Group] | None = None  # a relation in front of its subject: "next to the kitchen lies ..."
         self.negative: Element | None = None
-        self.way: Fact | None = None  # the last way that was said
         self.verb = self.relative = self.single = False
         self.only: Element | None = None
         self.factor: Element | None = None
@@ -89,7 +88,6 @@ class Clause:
     def measures(self, e: Element) -> None:
         """Note the areas of a phrase."""
         for mark in e.amounts:
-            self.state.understood(mark.first, mark.last)
             self.state.amounts.append((mark, tuple(e.ids)))
         e.amounts = []
 
@@ -102,7 +100,6 @@ class Clause:
         """Let an element that is no phrase be the list in front of the next relation."""
         e.ids, self.latest = list(ids), ids
         self.run = [Element("np", "", e.first, e.last, e.text, ids=list(ids))]
-        self.state.understood(e.first, e.last)
 
     def push(self, k: int, e: Element, ids: Group) -> None:
         """Take a group into the list in front of the next relation."""
@@ -176,7 +173,9 @@ class Clause:
             (before is not None and before.kind == "open")  # "a garage (joined to the hall)"
             or self.relative
             or (comma and len(self.run) > 1 and not self.verb)
-            or (e.value in {"door", "leads"} and self.says(e, "with") and not last.plural)  # "a kitchen and a hall with a door to ..."
+            or (
+                e.value in {"door", "leads"} and self.says(e, "with") and not last.plural and not self.verb
+            )  # "a kitchen and a hall with a door to ..."
             or (self.single and len(self.run) > 1 and not last.plural)
             or not self.coordinate()  # "study downstairs, all bedrooms upstairs, garage connected to ...": commas part statements
         )
@@ -219,7 +218,6 @@ class Clause:
                 ):
                     break
                 ids = name(self.state, self.sentence, k, self.level if self.forward else None)
-                self.state.understood(e.first, e.last)
                 self.measures(e)
                 if "largest" in e.adjectives and cue != "cmp":
                     self.state.say("largest", tuple(ids), tuple(r.id for r in self.stock.of(e.type)), e)
@@ -265,24 +263,20 @@ class Clause:
                 self.state.say("itself", left, (), e)
                 return (), k + 1
             found = self.point(e, k, left)
-            self.state.understood(e.first, e.last)
             return tuple(i for i in found if i not in left), k + 1
         if e.kind == "owner" and not phrase and (ahead is None or ahead.kind != "word"):  # "next to the parents'"
             theirs = [r.id for r in self.stock.of("bedroom") if r.role == e.value and r.id not in left]
-            self.state.understood(e.first, e.last)
             e.ids = theirs or [self.stock.add("bedroom", e.value, e.text, None).id]
             return tuple(e.ids), k + 1
         if e.kind == "zone":
             self.zone(k, e)
             return tuple(e.ids), k + 1
         if e.kind == "every":
-            self.state.understood(e.first, e.last)
             return ("*",), k + 1
         return None
 
     def zone(self, k: int, e: Element) -> None:
         """Take the rooms of a zone into the list."""
-        self.state.understood(e.first, e.last)
         members = self.stock.zone(e.value)
         e.ids = members or [f"*zone_{e.value}"]
         self.state.zones.setdefault(e.value, (tuple(members), e))

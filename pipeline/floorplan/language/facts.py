@@ -143,6 +143,7 @@ class Reading:
         if what not in GROUPS:
             a, b = (tuple(i for i in g if not i.startswith("*")) for g in (a, b))
         a, b = (("*",) if "*" in g else g for g in (a, b))  # "all rooms are off the hall: kitchen, bath ..."
-        self.understood(element.first, element.last)
+        if what in {"except", "only"}:
+            self.understood(element.first, element.last)
         if a or b:
             self.facts.append(Fact(what, tuple(dict.fromkeys(a)), tuple(dict.fromkeys(b)), value, element.first, element.last))

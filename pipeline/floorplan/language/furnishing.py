@@ -27,7 +27,7 @@ STOPS = frozenset(".;!?\n。;!?")
 COMMAS = STOPS | {",", "、"}
 ENDINGS = ("en", "es", "as", "os", "em", "e", "n", "s", "a", "o")  # of plurals, cases and genders
 FIGURES = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
-HAN_DIGITS = {c: k for k, c in enumerate("零一二三四五六七八九")} | {"两": 2, "俩": 2}
+TEN = 10
 MOST = 1e6  # of any amount
 NEAR, FAR, OWNED = 5, 7, 14  # words in which "everywhere", "free" and an owner are looked for
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
@@ -125,12 +125,15 @@ class Scan:
         except RefusedError:
             self.language = ""
         lex = spoken(self.language) if self.language else None
+        self.traits = lex.traits if lex is not None else frozenset[str]()
         self.rooms: dict[int, bool] = {}  # where the words of rooms' names begin, and whether they are their first
+        self.counted: set[int] = set()  # where a word that rooms are counted by begins: "trois pièces"
         self.words = words(prompt)
         if lex is not None:
             heard = listen(prompt, self.language)
             for m in segment(heard):
                 self.rooms |= {heard.tokens[k].start: k == m.first for k in range(m.first, m.last)} if m.kind in STRONG else {}
+                self.counted |= {heard.tokens[m.first].start} if (m.kind, m.value) == ("unit", "rooms") else set()
         if lex is not None and "characters" not in lex.traits:
             self.words = [w for word in self.words for w in self._mended(word)]
         stems, storeys = [w.stem for w in self.words], set(lexicon()["storeys"])
@@ -198,13 +201,13 @@ class Scan:
             tens = _numbers()[text]
             ones = _numbers().get(self.text(k + 1), 0) if tens >= 20 else 0
             return (2, float(tens + ones)) if 0 < ones < 10 else (1, float(tens))
-        run = ""
-        while (char := self.text(k + len(run))) in HAN_DIGITS or char == "十":
-            run += char
-        if "十" in run:
-            tens_of, _, ones_of = run.partition("十")
-            return len(run), float(10 * HAN_DIGITS.get(tens_of, 1) + HAN_DIGITS.get(ones_of, 0))
-        return len(run), min(float("".join(str(HAN_DIGITS[c]) for c in run)), MOST) if run else None
+        digits, run = lexicon()["digits"], list[int]()
+        while (char := self.text(k + len(run))) in digits:
+            run.append(digits[char])
+        if TEN in run:
+            front, behind = run[: run.index(TEN)], run[run.index(TEN) + 1 :]
+            return len(run), float(TEN * (front or [1])[0] + (behind or [0])[0])
+        return len(run), min(float("".join(map(str, run))), MOST) if run else None
 
     def amount(self, k: int) -> tuple[int, int, int | None] | None:
         """Return (length, least, most) of an amount at word k: bounds, ranges, articles, negations."""
@@ -224,7 +227,7 @@ class Scan:
         if upper is not None:
             last, at, bound = int(upper), at + joint + further, "between"
         at += self._filler(at)
-        if not bound and length == 1 and self.text(k) == "一":
+        if not bound and length == 1 and self.length(k, "one"):
             return at - k, 1, None  # "一张书桌" is "a desk"
         least, most = {"least": (first, None), "most": (0, first)}.get(bound, (first, last))
         return at - k, least, most
@@ -232,9 +235,9 @@ class Scan:
     def _filler(self, k: int) -> int:
         """Return how many words of measure, size or style stand at word k before a thing's name."""
         length = 0
-        while (step := self.length(k + length, "measure", "size", "of")) and length < 4:
+        while self.length(k + length, "name") < 2 and (step := self.length(k + length, "measure", "size")) and length < 4:
             length += step
-        return length + (self.text(k + length) in {"of", "de"})
+        return length + bool(self.length(k + length, "of"))
 
     def run(self) -> list[Claim]:
         """Return all claims."""
@@ -242,7 +245,7 @@ class Scan:
         while k < len(self.words):
             text = self.text(k)
             self.negated = self.negated and text not in STOPS
-            if self.there[k] or text in _numbers() or text in HAN_DIGITS or text in "十百" or text[0].isdigit():
+            if self.there[k] or text in _numbers() or text in lexicon()["digits"] or text[0].isdigit():
                 k += self.length(k, "small") or self._share(k) or self._things(k) or self._look(k) or 1
             else:
                 k += 1
@@ -270,13 +273,13 @@ class Scan:
             return 0
         at = k + self.length(k, "least", "exactly")
         at += self.length(at, "article") if at > k else 0
-        fraction = self.prompt.startswith("百分之", self.words[k].start)
-        length, value = self.number(k + 3 if fraction else at)
+        fraction = self.length(k, "percent_of")
+        length, value = self.number(k + fraction if fraction else at)
         half = self.length(at, "half") if value is None else 0
         percent = 0 if value is None or fraction else self.length(at + length, "percent")
         if not (half or percent or (fraction and value is not None)):
             return 0
-        end = k + 3 + length if fraction else at + length + half + percent
+        end = k + fraction + length if fraction else at + length + half + percent
         for j in range(end, min(end + FAR, len(self.words))):
             if self.text(j) in COMMAS:
                 break
@@ -296,7 +299,7 @@ class Scan:
         if counted and (opens := self.length(named, "opens")):  # so many at least: nobody minds one more
             return self._put("openable", k, named + opens + self.length(named + opens, "things", "pieces"), least=least)
         pieces = self.length(at + looks, "pieces") if counted else 0
-        if pieces and self.text(at + looks) != "a":
+        if pieces and self.text(at + looks) != "a" and self.words[at + looks].start not in self.counted:
             self._style_at(at, looks)
             return self._after("pieces", k, at + looks + pieces, "", least, most)
         name_at, length, name = self._name(at)
@@ -331,9 +334,8 @@ class Scan:
 
     def _part_of_a_room(self, k: int, length: int) -> bool:
         """Whether a thing's name is part of a room's: "tv room", "walk-in wardrobe", "bed 2 11 sqm"."""
-        after, numbered = self.text(k + length), self.text(k) in {"bed", "beds"} and FIGURES.fullmatch(self.text(k + length)) is not None
-        room = after in lexicon()["words"]["rooms"] or (after != "" and after in "间房室" and self.text(k) > "\u3400")
-        return numbered or room or [self.text(k - 2), self.text(k - 1)] == ["walk", "in"]
+        numbered = bool(self.length(k, "numbered")) and FIGURES.fullmatch(self.text(k + length)) is not None
+        return numbered or self.text(k + length) in lexicon()["words"]["rooms"] or self.length(k - 2, "walk_in") > 1
 
     def _look(self, k: int) -> int:
         """Read a style: "in nordic style", "estilo nórdico", "北欧风格"."""

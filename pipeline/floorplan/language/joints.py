@@ -66,14 +66,14 @@ class Draft:
         made = {"kind": kind, "a": a, "b": b, "value": value} | ({"c": c} if c else {})
         if made not in self.relations:
             self.relations.append(made)
-            self.cite(fact.first, fact.last, f"relations.{kind}.{a}")
+        self.cite(fact.first, fact.last, f"relations.{kind}.{a}")
 
     def forbid(self, what: str, a: str, b: str | None, avoid: str | None, fact: Fact) -> None:
         """Add a prohibition once."""
         made = {"what": what, "a": a, "b": b, "avoid": avoid}
         if made not in self.forbids:
             self.forbids.append(made)
-            self.cite(fact.first, fact.last, f"forbids.{what}.{a}")
+        self.cite(fact.first, fact.last, f"forbids.{what}.{a}")
 
 
 def pairs(a: Group, b: Group) -> list[tuple[str, str]]:
@@ -277,7 +277,14 @@ def _denied(draft: Draft, _: Inventory, fact: Fact, __: Sequence[Fact]) -> None:
         draft.forbid("open" if fact.what == "not_open" else "connected", a, b, None, fact)
 
 
+def _sized(draft: Draft, stock: Inventory, fact: Fact, _: Sequence[Fact]) -> None:
+    for a in fact.a:
+        stock.get(a).size = fact.value
+        draft.cite(fact.first, fact.last, f"rooms.{a}.area")
+
+
 RELATED: Mapping[str, Any] = {
+    "size": _sized,
     "between": _between, "only": _only, "largest": _largest, "smallest": _smallest, "largest_of_all": _of_all, "smallest_of_all": _of_all, "area_order": _order,
     "area_equal": _equal, "window": _window, "no_window": _window, "closed": _closed, "not_open": _denied, "not_connected": _denied,
 }  # fmt: skip

@@ -60,8 +60,6 @@ def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> 
     """Return the ids of the rooms that the phrase k names; make those that are missing."""
     e, stock = sentence[k], state.inventory
     e.ids = e.ids or [r.id for r in _named(state, sentence, k, level)]
-    for mark in e.taken:
-        state.understood(mark.first, mark.last)
     for room in (stock.get(i) for i in e.ids):
         if level is not None and room.level is None and not e.definite:
             room.level = level
@@ -74,8 +72,6 @@ def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> 
 def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per kind of phrase
     e, stock, role = sentence[k], state.inventory, _role(sentence[k])
     same = [r for r in stock.of(e.type) if e.role == "landing" or not _landing(r)]
-    if e.suite:
-        return _suites(state, sentence, k, role, level)
     suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), None) if e.type == "bedroom" and not role else None
     if suites and not e.ordinal and e.number is None:
         return [stock.get(i) for i in suites]
@@ -139,17 +135,6 @@ def fresh(state: Reading, e: Element, level: int | None, owner: str) -> list[str
     return e.ids
 
 
-def _suites(state: Reading, sentence: list[Element], k: int, role: str, level: int | None) -> list[Named]:
-    e, stock = sentence[k], state.inventory
-    count = int(e.number or (2 if e.plural else 1))
-    same = [r for r in stock.of("bedroom") if r.role == role] if role else []
-    if same and not e.introduces:
-        return same
-    slots = [r for r in stock.of("bedroom") if r.open_slot and not r.role and (r.whole or e.definite or _listed(sentence, k, r))]
-    made = [close(r, role, e.text) for r in slots[:count]]
-    return made + [stock.add("bedroom", role, e.text, level) for _ in range(count - len(made))]
-
-
 def _indexed(state: Reading, e: Element, role: str, level: int | None) -> Named:
     same = state.inventory.of(e.type)
     known = [r for r in same if r.index == e.index] or [r for r in same if not r.index and r.open_slot]
@@ -164,10 +149,6 @@ def _ordinal(state: Reading, e: Element, role: str, level: int | None) -> list[N
         slots = [r for r in same if r.open_slot and not r.role][: int(e.number or 1)]
         made = [close(r, role, e.text) for r in slots]
         return made + [stock.add(e.type, role, e.text, level) for _ in range(int(e.number or 1) - len(made))]
-    if e.secondary and same:  # "次卧": a bedroom beside the main one, which nobody else has
-        here = [r for r in same if r.surface == e.text and not r.open_slot] or [r for r in same if r.open_slot and not r.role]
-        if here or all(r.role for r in same):
-            return [close(here[0], role, e.text)] if here else [stock.add(e.type, role, e.text, level)]
     if len(same) >= e.ordinal:
         rest = same if e.ordinal == 1 else [r for r in same if r.role != "primary"]
         loose = [r for r in rest if r.open_slot] or rest[-1:]

@@ -29,7 +29,7 @@ def ban(sentence: list[Element]) -> None:
                 _list(sentence, j)
             for i in range(k - 1, -1, -1) if j is None else ():
                 if sentence[i].kind == "np":
-                    sentence[i].banned = True
+                    sentence[i].banned, e.kind = True, "used"
                     if not (i and sentence[i - 1].kind in {"and", "or"}):
                         break
                 elif sentence[i].kind not in {"and", "or", "verb", "neg", "det"}:

@@ -53,13 +53,27 @@ def _bracket(marks: list[Mark], k: int, lex: Lexicon) -> tuple[str, int, int, in
             comma = mark.kind == "comma" and (cue.startswith("thru") or _listing(marks, start or 0, j))
             article = first[0] in lex.sign("article_first") and mark.text.split(" ", 1)[0] in lex.sign("otherwise")
             other = mark.kind == "cue" and mark.value not in {"has", "in", "door"} and end is None
-            again = named and cue == "open" and end is None and _matches(marks, j, first, lex) is not None
+            again = (
+                named
+                and end is None
+                and (
+                    _begins(marks, j, second, cue, lex)
+                    if first[0] in lex.sign("also_and")
+                    else cue == "open" and _matches(marks, j, first, lex) is not None
+                )
+            )
             if (mark.kind in ENDS and not comma) or article or other or again:
                 break
-            if named and end is not None and not _goes_on(marks, end, second):
+            if named and end is not None and not _goes_on(marks, end, second, lex):
                 return cue, start or 0, j, end
             named = named or mark.kind in {*HEADS, "pron", "every", "zone"}
     return None
+
+
+def _begins(marks: list[Mark], k: int, second: tuple[str, ...], cue: str, lex: Lexicon) -> bool:
+    """Whether a bracket with the same second part begins anew at k: "A和B与C相连" is a list and then a bracket."""
+    known = _brackets(lex.language).get(_plain(marks[k].text.split(" ", 1)[0], lex), ())
+    return any(b == second and c == cue and _matches(marks, k, a, lex) is not None for a, b, c in known)
 
 
 def _listing(marks: list[Mark], start: int, k: int) -> bool:
@@ -69,13 +83,13 @@ def _listing(marks: list[Mark], start: int, k: int) -> bool:
     return inside and (marks[k].text == "、" or any(m.kind == "join" for m in marks[k:ahead]))
 
 
-def _goes_on(marks: list[Mark], end: int, second: tuple[str, ...]) -> bool:
+def _goes_on(marks: list[Mark], end: int, second: tuple[str, ...], lex: Lexicon) -> bool:
     """Whether the second part has an object of its own: "ins Bad geht man über den Flur", "卫生间和洗衣房都不能挨着餐厅"."""
     if end >= len(marks):
         return False
-    if second == ("ueber",):
+    if set(second) <= lex.sign("way_through"):
         return marks[end].kind not in ENDS | {"join"}
-    return second[0] >= "\u3400" and marks[end - 1].kind == "cue" and marks[end].kind in HEADS | {"num", "zone"}
+    return "characters" in lex.traits and marks[end - 1].kind == "cue" and marks[end].kind in HEADS | {"num", "zone"}
 
 
 @functools.cache

@@ -146,6 +146,8 @@ def _elements(marks: list[Mark], lex: Lexicon) -> list[Element]:
             pre = []
         elif behind and mark.value in {"area", "length"} and not _ahead(marks, k, lex):
             made[-1].amounts.append(mark)
+        elif mark.kind == "amount" and not pre and [e.kind for e in made[-2:]] == ["np", "colon"] and not made[-2].amounts:
+            made[-2].amounts.append(mark)  # "kitchen: 12 m² dining room: 16 m²"
         elif mark.kind in PREMODIFIERS or (mark.kind == "amount" and mark.value == "area"):
             pre.append(mark)
         elif mark.kind in {"fill", "adverb", "look", "hyphen", "dash"} and pre:
@@ -177,6 +179,7 @@ def _loose(pre: Sequence[Mark], ahead: Mark | None, lex: Lexicon) -> list[Elemen
     """Return what stood in front of no room: "two baths, one en suite", "ein Bad, das vom Flur erreichbar ist"."""
     owned = ahead is not None and ahead.kind == "owner"  # "four bedrooms, two for the kids"
     kept = {"amount", "adj"} if owned else {"amount", "adj", "det"}
+    kept |= {"size"} if ahead is None or ahead.kind in {"comma", "join", "but", "close"} else set()
     made = [_plain(m, lex) for m in pre if m.kind in kept or (m.kind == "num" and (m.value == "1" or owned))]
     for e in made:
         if e.kind == "num":

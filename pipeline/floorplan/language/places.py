@@ -8,7 +8,6 @@ from pipeline.floorplan.language.phrases import Element, heads
 
 def level(c: Clause, k: int, e: Element) -> int:
     """Put rooms on a storey: those named before it, or, where it comes first, those that follow."""
-    c.state.understood(e.first, e.last)
     c.state.levels.append(e)
     ahead = c.near(k + 1)
     if c.forward or heads(c.sentence, k) or ("*" in c.latest and ahead is not None and ahead.kind == "colon"):

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import replace
 
 from pipeline.floorplan.language.belongings import has
-from pipeline.floorplan.language.clause import LIGHT, LISTING, Clause, ids_of, known
-from pipeline.floorplan.language.facts import HALLS, PERSONAL, SOCIAL, Fact, Group
+from pipeline.floorplan.language.clause import LISTING, Clause, ids_of, known
+from pipeline.floorplan.language.facts import HALLS, SOCIAL, Group
 from pipeline.floorplan.language.naming import name
 from pipeline.floorplan.language.phrases import Element
 
@@ -29,7 +28,6 @@ def relate(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911, PLR0912, C90
     if e.value == "between" and (after := door_between(c, k, e)):
         return after
     if e.value == "from" and c.says(e, "there") and (there := known(c.objects or (c.latest if k else ()) or (c.state.past or [()])[-1])):
-        c.state.understood(e.first, e.last)
         c.goes_on(there if len(there) == 1 else c.state.topic)
         c.objects = ()
         return k + 1
@@ -37,15 +35,11 @@ def relate(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911, PLR0912, C90
     left, group, j = _sides(c, k, e)
     if not group:
         return _alone(c, k, e)
-    if e.value == "in":
-        if not left and (held := _holding(c, e, group, j)):
-            return held
-        if (k and c.sentence[k - 1].kind == "and") or not _inside(c, left, group):
-            c.latest, c.run = group, [x for x in c.sentence[k:j] if x.kind == "np"][-1:]
-            return j
+    if e.value == "in" and ((k and c.sentence[k - 1].kind == "and") or not _inside(c, left, group)):
+        c.latest, c.run = group, [x for x in c.sentence[k:j] if x.kind == "np"][-1:]
+        return j
     if c.sentence[j - 1].kind == "zone" and e.value in {"door", "in"}:
         return j
-    c.state.understood(e.first, e.last)
     behind = c.near(j)
     only = e.only or c.only is not None or c.says(e, "only") or (behind is not None and behind.value == "only")
     if e.value == "chain":
@@ -119,22 +113,6 @@ def _inverted(c: Clause, k: int, j: int) -> bool:
     return any(x.kind == "np" and not x.banned for x in c.sentence[j:])
 
 
-def _holding(c: Clause, e: Element, group: Group, j: int) -> int:
-    """Read "in the corridor are three bedrooms and a bath": what is named next hangs on it; 0 where nothing does."""
-    verb = next((i for i in range(j, min(j + 6, len(c.sentence))) if c.sentence[i].kind == "verb"), None)
-    if len(group) != 1 or verb is None or any(x.kind in {"np", "cue", "neg"} for x in c.sentence[j:verb]):
-        return 0
-    ahead, hosts = c.ahead(verb + 1, *LIGHT), c.types(group)
-    usual = PERSONAL if hosts == {"bedroom"} else {"balcony", "storage", "utility"}
-    if ahead is None or ahead.kind != "np" or ahead.banned or not (hosts <= HALLS or ahead.type in usual):
-        return 0
-    things, end = c.after(verb + 1, "leads", group)
-    if things:
-        c.state.say("own" if hosts == {"bedroom"} and len(things) == 1 else "door", things, group * len(things), e)
-        c.goes_on(things, subject=group)
-    return end if things else 0
-
-
 def _alone(c: Clause, k: int, e: Element) -> int:
     """Read a relation that nothing follows: "next to each other", "kitchen and bath adjacent"."""
     ahead = c.near(k + 1)
@@ -175,13 +153,11 @@ def _emit(c: Clause, e: Element, left: Group, group: Group) -> None:
     cue = "door" if e.value in {"from", "chain", "in"} else e.value
     kinds = c.types((*left, *group))
     if cue == "apart":  # a kitchen apart from the living room has a door; a bedroom apart from it lies away
-        if kinds <= {"bathroom", "wc"}:
-            return  # two rooms instead of one
         if c.negative is not None and kinds <= SOCIAL:
             c.deny()
             cue = "open"  # "the kitchen is not separated from the living room"
         else:
-            cue = "not_open" if kinds <= SOCIAL else "away"
+            cue = "not_open" if kinds <= SOCIAL and not any(i[0] == "*" for i in (*left, *group)) else "away"
     if c.negative is not None:
         left = _none(c, left)
         c.deny()
@@ -193,13 +169,10 @@ def _emit(c: Clause, e: Element, left: Group, group: Group) -> None:
             else DENIED.get(cue, "not_connected")
         )
         c.state.say(what, left, group, e)
-        if cue in {"leads", "door"} and what == "not_connected":
-            c.way = Fact(cue, left, group)  # "not to the living room but to the hall"
     elif cue == "ensuite":
         c.give(left, group, e)
     else:
         c.state.say(cue, left, group, e)
-        c.way = c.state.facts[-1] if cue in {"leads", "door"} and c.state.facts else c.way
 
 
 def _none(c: Clause, left: Group) -> Group:
@@ -224,8 +197,6 @@ def complete(c: Clause) -> None:
         c.state.say("ban" if cue.value in {"near", "wall"} else "not_connected", rooms, group, cue)
     elif rooms:
         c.state.say("door" if cue.value == "from" else cue.value, rooms, group, cue)
-        if c.only or cue.only:
-            c.state.say("only", rooms, (), cue)
 
 
 # ways
@@ -243,9 +214,6 @@ def excepted(c: Clause, k: int, e: Element) -> int:
         each.ids = [i for i in each.ids if i not in group]
         c.run, c.latest, c.subject = [each], tuple(each.ids), tuple(each.ids)
         return max(j, k + 1)
-    said = c.state.facts[-2] if len(c.state.facts) > 1 else None
-    if said is not None and said.what in {"door", "leads", "own"} and set(group) < set(said.a):  # "all open onto the hall but the main one"
-        c.state.facts[-2] = replace(said, a=tuple(i for i in said.a if i not in group))
     c.run, c.latest = [x for x in c.sentence[k:j] if x.kind == "np"][-1:], group
     return max(j, k + 1)
 
@@ -256,9 +224,6 @@ def through(c: Clause, k: int, e: Element) -> int:
     while first and (x := c.near(j)) is not None and x.kind in {"verb", "comma"}:
         j += 1
     second, j = c.after(j, "leads" if e.value == "thru" else "door", first) if first else ((), k + 1)
-    left = tuple(i for i in (c.run[-1].ids if c.run else c.subject) if i not in first)
-    if first and not second and left and e.value == "thru":  # "浴室得穿过衣帽间才能到"
-        second = left
     if not second:
         return max(j, k + 1)
     things, hosts = (second, first) if e.value == "thru" else (first, second)
@@ -304,7 +269,6 @@ def enter(c: Clause, e: Element, group: Group, j: int) -> int:
     further: Group = group[1:] if len(group) == 2 else ()
     if then is not None or (into is not None and into.kind == "cue" and into.value in {"in", "leads"} and c.says(e, "by")):
         further, j = c.after(j + 1 + (then or 0), "door", group)
-    c.state.understood(e.first, e.last)
     c.state.entrance = c.state.entrance or (group[0], e)
     if further:
         c.state.say("door", further, group[:1], e)

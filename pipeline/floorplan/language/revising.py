@@ -42,10 +42,9 @@ def _told(marks: Sequence[Mark], heard: Words) -> list[Mark]:
         said = set(mark.text.split())
         before = (before or bool(heard.lexicon.sign("earlier") & said)) and mark.kind not in ENDS
         between = k and k + 1 < len(made) and made[k - 1].kind == made[k + 1].kind == "room"
-        if mark.kind in {"fix", "fill", "word"} and mark.text in heard.lexicon.sign("nope") and k and made[k - 1].kind == "colon":
+        nope = mark.kind in {"fix", "fill", "word"} and mark.text in heard.lexicon.sign("nope") and k and made[k - 1].kind == "colon"
+        if nope or (mark.kind == "fix" and between and mark.text in heard.lexicon.sign("not_towards")):  # 不对 between two rooms
             made[k] = replace(mark, kind="neg")
-        elif mark.kind == "fix" and between and mark.text in heard.lexicon.sign("not_towards"):  # 不对 between two rooms
-            made[k] = replace(mark, kind="neg", text="不")
         elif before and mark.text in heard.lexicon.sign("now") and mark.kind not in {"fix", *NAMED}:
             made[k] = replace(mark, kind="fix")
     return made

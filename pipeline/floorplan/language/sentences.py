@@ -38,7 +38,6 @@ def read(state: Reading, sentence: list[Element]) -> None:
 def _np(c: Clause, k: int, e: Element) -> int:
     if e.banned:
         return _ban(c, k, e)
-    c.state.understood(e.first, e.last)
     before = c.near(k - 1)
     said = before is not None and before.kind in {"np", "pron"} and not e.det and e.number is None
     if e.role == "ensuite" and e.type == "bathroom" and not e.ids and said:  # "one of them en suite"
@@ -54,7 +53,6 @@ def _np(c: Clause, k: int, e: Element) -> int:
         ids, c.run = tuple(i for i in ids if i not in c.left_out), []
     _own(c, e, ids)
     for mark in e.amounts:
-        c.state.understood(mark.first, mark.last)
         whole = (e.compound and mark.last <= e.first) or measures_home(c, k, mark, tuple(e.ids))
         c.state.amounts.append((mark, None if whole else ids))
     c.push(k, e, ids)
@@ -97,7 +95,6 @@ def _own(c: Clause, e: Element, ids: tuple[str, ...]) -> None:
 
 
 def _ban(c: Clause, k: int, e: Element) -> int:
-    c.state.understood(e.first, e.last)
     if e.role == "ensuite":
         c.state.say("no_ensuite", tuple(r.id for r in c.stock.of("bathroom")) or ("*bathroom",), (), e)
     elif not (e.type == "bedroom" and e.role) and not (e.type == "kitchen" and e.mark is not None and "/" in e.mark.value):
@@ -106,7 +103,6 @@ def _ban(c: Clause, k: int, e: Element) -> int:
 
 
 def _home(c: Clause, k: int, e: Element) -> int:
-    c.state.understood(e.first, e.last)
     c.state.homes.append(e)
     if e.value and c.state.studio is None:
         c.state.studio = e
@@ -123,10 +119,6 @@ def _amount(c: Clause, k: int, e: Element) -> int:
 
 
 def _owner(c: Clause, k: int, e: Element) -> int:
-    c.state.understood(e.first, e.last)
-    before = c.near(k - 1)
-    if before is not None and before.kind == "pron" and before.value == "one":
-        _cast(c, before, e.value)
     c.owner, c.owning = e.value, ""
     return k + 1
 
@@ -147,19 +139,11 @@ def _verb(c: Clause, k: int, e: Element) -> int:
 
 def _relative(c: Clause, k: int, e: Element) -> int:
     c.relative = not c.says(e, "where")
-    c.state.understood(e.first, e.last)
     return k + 1
 
 
 def _neg(c: Clause, k: int, e: Element) -> int:
     c.negative = e
-    ahead = c.near(k + 1)
-    if ahead is not None and ahead.kind == "to" and c.way is not None:  # "has access to the terrace but not to the living room"
-        group, j = c.after(k + 2, "leads", c.way.a)
-        if group and known(c.way.a):
-            c.state.say("not_connected", c.way.a, group, e)
-            c.deny()
-            return j
     return k + 1
 
 
@@ -198,8 +182,6 @@ def _adj(c: Clause, k: int, e: Element) -> int:
     kind = before.kind if before is not None else ""
     if before is not None and (kind, before.value) == ("pron", "one") and e.value in ROLES:
         _cast(c, before, e.value)  # "four bedrooms, uno de ellos para invitados"
-    if e.value == "equal" and kind in {"det", "verb", "pron"} and len(c.latest) > 1:
-        c.state.say("area_equal", c.latest, (), e, LIKE)
     social = tuple(i for x in c.run for i in known(tuple(x.ids)) if c.stock.get(i).type in SOCIAL)
     alone = len(social) == len(ids_of(c.run))
     if (
@@ -218,18 +200,23 @@ def _adj(c: Clause, k: int, e: Element) -> int:
     return k + 1
 
 
+def _size(c: Clause, k: int, e: Element) -> int:
+    """Read "the living room should be large"."""
+    before = c.near(k - 1)
+    if e.number is not None and before is not None and before.kind in {"np", "verb", "pron", "bound", "word"} and known(c.latest):
+        c.state.say("size", known(c.latest), (), e, e.number)
+    return k + 1
+
+
 def _enter(c: Clause, k: int, e: Element) -> int:
-    start, ahead, before = k + 1, c.sentence[k + 1 : k + 3], c.near(k - 1)
+    before = c.near(k - 1)
     if before is not None and before.kind == "np" and before.definite and c.run:  # "al baño se entra por el pasillo"
         return relate(c, k, replace(e, kind="cue", value="door"))
-    if len(ahead) > 1 and ahead[1].kind == "cue" and (ahead[0].kind == "home" or ahead[0].value in {"it", "group"}):
-        start += 2  # "you enter it through the hall"
-    group, j = c.after(start, "enter", ())
+    group, j = c.after(k + 1, "enter", ())
     return max(enter(c, e, group or c.latest, j if group else k + 1), k + 1)
 
 
 def _outside(c: Clause, k: int, e: Element) -> int:
-    c.state.understood(e.first, e.last)
     here = [i for i in known((*c.latest, *c.subject)) if c.stock.get(i).type not in {"bathroom", "wc", "closet"}]
     c.state.outside = (c.owning or next(iter(here), ""), e)
     return k + 1
@@ -331,14 +318,12 @@ def _one_more(c: Clause, e: Element) -> bool:
 
 def _every(c: Clause, k: int, e: Element) -> int:
     """Read "every room", "the rest": all rooms."""
-    c.state.understood(e.first, e.last)
     c.push(k, e, ("*",))
     return k + 1
 
 
 def _flag(c: Clause, k: int, e: Element) -> int:
     """Read one flag."""
-    c.state.understood(e.first, e.last)
     c.state.flags.setdefault(e.value, e)
     before = c.near(k - 1)
     last = c.state.facts[-1] if c.state.facts else None
@@ -385,13 +370,8 @@ def _windows(c: Clause, k: int, e: Element) -> int:
     return j
 
 
-def _corner(c: Clause, k: int, e: Element) -> int:
-    c.state.understood(e.first, e.last)
-    return k + 1
-
-
 READERS: Mapping[str, Callable[[Clause, int, Element], int]] = {
-    "np": _np, "corner": _corner, "used": _corner, "home": _home, "amount": _amount, "owner": _owner, "verb": _verb, "relative": _relative, "neg": _neg, "comma": _comma, "and": _and, "but": _but,
-    "no_bath": _no_bath, "no_own": _no_bath, "adj": _adj, "enter": _enter, "outside": _outside, "via": _via, "level": level, "wing": wing, "zone": zone,
+    "np": _np, "home": _home, "amount": _amount, "owner": _owner, "verb": _verb, "relative": _relative, "neg": _neg, "comma": _comma, "and": _and, "but": _but,
+    "no_bath": _no_bath, "no_own": _no_bath, "adj": _adj, "size": _size, "enter": _enter, "outside": _outside, "via": _via, "level": level, "wing": wing, "zone": zone,
     "pron": _pron, "det": _det, "every": _every, "flag": _flag, "cue": relate, "factor": factor, "cmp": compare,
 }  # fmt: skip

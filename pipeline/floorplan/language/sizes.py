@@ -45,7 +45,6 @@ def measures_home(c: Clause, k: int, mark: Mark, ids: Group) -> bool:
 def attach(c: Clause, k: int, mark: Mark, *, home: bool = False) -> None:
     """Attach an amount that stands by itself, or behind the word for the home."""
     state = c.state
-    state.understood(mark.first, mark.last)
     around = c.sentence[max(0, k - 2) : k + 2]
     before, ahead = c.near(k - 1), c.near(k + 1)
     rooms = () if home else tuple(i for i in known(c.latest) if not i.startswith("<"))
@@ -87,7 +86,6 @@ def share(c: Clause, k: int, rooms: Group) -> int:
     whole = usual(c, rooms)
     parts = tuple(round(mark.number * usual(c, (i,)) / whole, 2) for i in rooms)
     c.state.amounts = [(m, ids) for m, ids in c.state.amounts if m is not mark]
-    c.state.understood(mark.first, mark.last)
     c.state.amounts.append((replace(mark, parts=parts), rooms))
     return k + 1 + (near[0] is c.near(k + 1))
 
