@@ -27,8 +27,7 @@ STOPS = frozenset(".;!?\n。;!?")
 COMMAS = STOPS | {",", "、"}
 ENDINGS = ("en", "es", "as", "os", "em", "e", "n", "s", "a", "o")  # of plurals, cases and genders
 FIGURES = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
-TEN = 10
-MOST = 1e6  # of any amount
+TEN, MOST = 10, 1e6  # the highest digit, and the most of any amount
 NEAR, FAR, OWNED = 5, 7, 14  # words in which "everywhere", "free" and an owner are looked for
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
 
