@@ -19,8 +19,8 @@ from pipeline.sources import inventory
 from pipeline.sources.library_rows import LibraryRows
 from pipeline.sources.registry import named
 from pipeline.sources.settings import PreprocessSettings
-from pipeline.sources.sink import write_houses, write_library
 from pipeline.sources.source import Listing, Reading, Source
+from pipeline.sources.table_writer import write_houses, write_library
 from pipeline.sources.threed_front.mirrored import add_mirrored
 from pipeline.sources.walkable_share import Walker
 

@@ -66,7 +66,7 @@ from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.floorplan import parse
 from pipeline.floorplan.program.furniture import impossible, members, natural
 from pipeline.sources import masses
-from pipeline.sources.articulated.household import candidates
+from pipeline.sources.articulated.plain_urdf import candidates
 from pipeline.sources.atiss.labels import KINDS
 from pipeline.sources.category_sizes import sizes
 from pipeline.sources.densities import density

@@ -3,7 +3,7 @@ import pytest
 
 from pipeline.entities.files import load_asset
 from pipeline.sources.meshes.inertials import Inertial, inertia_flaw, joined, mass_flaw
-from tests.sources import test_household as household
+from tests.sources import test_plain_urdf as plain_urdf
 from tests.sources.reading import read
 
 
@@ -94,12 +94,12 @@ def weighed(mass, moments, at="0.3 0 0.4"):
 
 def cupboard(inertial, **more):
     """A kitchen unit whose carcass, drawn with its front to +x, states an inertial."""
-    return household.cupboard(**more).replace('<link name="root">', f'<link name="root">{inertial}')
+    return plain_urdf.cupboard(**more).replace('<link name="root">', f'<link name="root">{inertial}')
 
 
 def test_a_stated_mass_is_used_in_our_frame(tmp_path):
-    household.write(tmp_path, cupboard(weighed(35, (3.0, 2.0, 4.0))))
-    asset, made = household.only(tmp_path)
+    plain_urdf.write(tmp_path, cupboard(weighed(35, (3.0, 2.0, 4.0))))
+    asset, made = plain_urdf.only(tmp_path)
     assert [r["reason"] for r in made.rejects] == ["inertial_used"]
     base = asset.links[0]
     assert base.mass == 35
@@ -109,8 +109,8 @@ def test_a_stated_mass_is_used_in_our_frame(tmp_path):
 
 
 def test_units_of_the_file_are_those_of_its_inertial(tmp_path):
-    household.write(tmp_path, cupboard(weighed(35, (3e6, 2e6, 4e6), "300 0 400"), unit=1000.0))
-    asset, made = household.only(tmp_path)
+    plain_urdf.write(tmp_path, cupboard(weighed(35, (3e6, 2e6, 4e6), "300 0 400"), unit=1000.0))
+    asset, made = plain_urdf.only(tmp_path)
     assert made.reasons == {"inertial_used"}
     assert asset.links[0].inertia == pytest.approx(np.diag([2.0, 3.0, 4.0]), abs=1e-5)
 
@@ -126,11 +126,11 @@ def test_units_of_the_file_are_those_of_its_inertial(tmp_path):
 )
 def test_a_mass_beside_a_placeholder_stays(inertial, tmp_path):
     """Its inertia is that of its volume, brought to the stated mass."""
-    household.write(tmp_path, cupboard(inertial))
-    asset, made = household.only(tmp_path)
+    plain_urdf.write(tmp_path, cupboard(inertial))
+    asset, made = plain_urdf.only(tmp_path)
     assert made.reasons == {"mass_used"}
-    household.write(tmp_path, household.cupboard())
-    plain = household.only(tmp_path)[0].links[0]
+    plain_urdf.write(tmp_path, plain_urdf.cupboard())
+    plain = plain_urdf.only(tmp_path)[0].links[0]
     base = asset.links[0]
     assert base.mass == 35
     assert np.allclose(base.com, plain.com)
@@ -149,11 +149,11 @@ def test_a_mass_beside_a_placeholder_stays(inertial, tmp_path):
     ],
 )
 def test_a_wrong_one_is_made_anew(inertial, tmp_path):
-    household.write(tmp_path, cupboard(inertial))
-    asset, made = household.only(tmp_path)
+    plain_urdf.write(tmp_path, cupboard(inertial))
+    asset, made = plain_urdf.only(tmp_path)
     assert made.reasons == {"inertial_refused"}
-    household.write(tmp_path, household.cupboard())
-    plain, _ = household.only(tmp_path)
+    plain_urdf.write(tmp_path, plain_urdf.cupboard())
+    plain, _ = plain_urdf.only(tmp_path)
     assert asset.links[0].mass == plain.links[0].mass
     assert np.array_equal(asset.links[0].inertia, plain.links[0].inertia)
 
@@ -163,8 +163,8 @@ def test_of_bodies_fixed_together_all_must_say(tmp_path):
     shelf = '<joint name="f" type="fixed"><parent link="root"/><child link="shelf"/><origin xyz="0.3 0 0.3"/></joint></robot>'
     for inertial, reason in (("", "inertial_refused"), (weighed(5, (0.3, 0.15, 0.45), "0 0 0"), "inertial_used")):
         text = cupboard(weighed(35, (3.0, 2.0, 4.0)))
-        household.write(tmp_path, text.replace("</robot>", f'<link name="shelf">{inertial}{board}</link>{shelf}'))
-        asset, made = household.only(tmp_path)
+        plain_urdf.write(tmp_path, text.replace("</robot>", f'<link name="shelf">{inertial}{board}</link>{shelf}'))
+        asset, made = plain_urdf.only(tmp_path)
         assert made.reasons == {reason}
     assert asset.links[0].mass == 40
     assert load_asset(tmp_path / "assets" / made.assets[0]["file"]).links[0].mass == 40

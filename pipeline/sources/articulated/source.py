@@ -9,9 +9,9 @@ from pathlib import Path, PurePosixPath
 from pipeline import taxonomy
 from pipeline.sources.articulated import proportions
 from pipeline.sources.articulated.assets import assets
-from pipeline.sources.articulated.household import candidates, named_categories, oriented, read_household
 from pipeline.sources.articulated.objects import Found, objects_in
 from pipeline.sources.articulated.partnet import URDFS, read_shape
+from pipeline.sources.articulated.plain_urdf import candidates, named_categories, oriented, read_plain_urdf
 from pipeline.sources.articulated.proportions import Proportions
 from pipeline.sources.batch import Batch
 from pipeline.sources.folders import require_folders
@@ -89,7 +89,7 @@ def read_object(task: ObjectTask, found: Found) -> LibraryRows:
         named = task.categories.get(found.source_id) or task.categories.get(found.path) or ""
         if found.path.lower().endswith(".urdf"):
             categories = candidates(found.path, named, kinds)
-            shape = oriented(read_household(root, found.path, found.source_id, task.limits.max_texture), categories)
+            shape = oriented(read_plain_urdf(root, found.path, found.source_id, task.limits.max_texture), categories)
         else:
             models = sorted({name for kind in kinds.categories.values() for name in kind.names.partnet})
             shape = read_shape(root.sub(found.path), found.source_id, task.limits.max_texture, models, named)

@@ -19,12 +19,12 @@ from pipeline.sources.identity import slug
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import FrontFilters
 from pipeline.sources.threed_front import wall_openings
-from pipeline.sources.threed_front.filling import fill
 from pipeline.sources.threed_front.floors import Floor, outline
 from pipeline.sources.threed_front.furniture import Model
 from pipeline.sources.threed_front.house_file import HouseFile, RoomRecord, deferred, parse_house
 from pipeline.sources.threed_front.opening_evidence import MESHES, OpeningEvidence, from_furniture, from_mesh
 from pipeline.sources.threed_front.poses import to_ours, yaw_and_tilt
+from pipeline.sources.threed_front.room_assignment import fill
 from pipeline.sources.threed_front.rows import ReadRoom, object_row, opening_row, room_row, scene_row
 from pipeline.sources.walkable_share import Walker
 from pipeline.taxonomy import Taxonomy

@@ -36,7 +36,7 @@ SYNONYMS = {
 }  # fmt: skip
 
 
-def read_household(root: Folder, file: str, source_id: str, texture_limit: int) -> ArticulatedShape:
+def read_plain_urdf(root: Folder, file: str, source_id: str, texture_limit: int) -> ArticulatedShape:
     """Read the URDF at `file` (relative to `root`), in the frame that it is drawn in. Raises SourceError."""
     base = PurePosixPath(file).parent.as_posix()
     urdf, snapped = _straightened(parse_urdf(root.read(file, MAX_URDF), file))
