@@ -6,6 +6,7 @@ Fitting frame: x along the opening, z up from the floor, y to the left of x; a d
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,6 @@ from pipeline.rendering.boxes import box, joined, solid_link
 from pipeline.rendering.palette import ENTRANCE_LEAF, GLASS, JAMB, LEAF, METAL, WINDOW_FRAME
 
 LINING = 0.003  # thickness of the door frame's lining, inside the gap around the leaf [m]
-POST = 0.05  # how deep the frame's colliders reach into the wall: PhysX dislikes convex pieces as thin as the lining [m]
 CASING = (0.06, 0.012)  # width and thickness of the trim around a door [m]
 SEAM = 1e-4  # between its boards [m]
 HANDLE_HEIGHT = 1.02  # [m]
@@ -40,8 +40,8 @@ def door_of(size: Size, *, entrance: bool) -> Asset:
     """Make the door of a size."""
     leaf = Leaf("door", np.zeros(2), np.array([1.0, 0.0]), np.array([0.0, size[0]]), int(size[0]), *size[1:])
     side = leaf.turn  # +1: the room it swings into lies towards +y
-    # The posts' lining is 3 mm before the wall, which collides itself: the head alone is the frame's collider.
-    frame = solid_link("frame", (*_lining(leaf, LINING), *_casing(leaf)), _lining(leaf, POST)[2:], 12.0)
+    # The lining is 3 mm before walls and lintel, which collide themselves.
+    frame = replace(solid_link("frame", (*_lining(leaf, LINING), *_casing(leaf)), _lining(leaf, LINING), 12.0), colliders=())
     panel = _span("leaf", (LEAF_GAP, LEAF_GAP + leaf.width), (-side * LEAF_THICKNESS, 0.0), (leaf.bottom, leaf.top), 1)
     handles = _handles(leaf)
     mass = LEAF_DENSITY * leaf.width * LEAF_THICKNESS * (leaf.top - leaf.bottom)

@@ -48,8 +48,10 @@ def write_asset(asset: Asset, folder: Path) -> list[Path]:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(blob)
         written.append(folder / name)
-    thumbnail(asset).save(folder / "thumbnail.png")
-    return [*written, folder / "thumbnail.png"]
+    picture = folder / ".thumbs" / "256x256" / f"{asset.asset_id}.usda.png"  # where Omniverse and SimReady look for it
+    picture.parent.mkdir(parents=True, exist_ok=True)
+    thumbnail(asset).save(picture)
+    return [*written, picture]
 
 
 def overlay_path(asset: Asset) -> str:

@@ -78,3 +78,16 @@ def test_what_lies_within_other_pieces_is_not_felt():
     (whole,) = simpler([*rails, mattress], Felt(sides=0.06, down=0.15))
     assert np.allclose([whole.hull.min(axis=0), whole.hull.max(axis=0)], [[0, 0, 0.2], [1.4, 2, 0.4]])
     assert len(simpler([*rails, mattress], Felt())) == 3
+
+
+def test_furniture_that_is_shut_is_a_block_and_open_furniture_keeps_its_boards():
+    sides = [((0, 0, 0), (0.02, 0.4, 0.8)), ((0.58, 0, 0), (0.6, 0.4, 0.8)), ((0, 0.39, 0), (0.6, 0.4, 0.8)), ((0, 0, 0), (0.6, 0.4, 0.02))]
+    boards = [block(*b) for b in (*sides, ((0, 0, 0.78), (0.6, 0.4, 0.8)), ((0.02, 0, 0.4), (0.58, 0.39, 0.42)))]
+    assert len(simpler([*boards, block((0, 0, 0), (0.6, 0.02, 0.8))], Felt(cell=0.02))) == 1
+    assert len(simpler(boards, Felt(cell=0.02))) == 6
+
+
+def test_shelves_on_both_sides_of_a_board_are_one():
+    board = block((0.49, 0, 0), (0.51, 0.4, 1))
+    shelves = [block((0, 0, 0.5), (0.49, 0.4, 0.52)), block((0.51, 0, 0.5), (1, 0.4, 0.52))]
+    assert len(simpler([board, *shelves], Felt())) == 2

@@ -18,7 +18,7 @@ from pipeline.sources.articulated.shape_reader import unused
 from pipeline.sources.densities import density
 from pipeline.sources.meshes.colliders import POCKET, Solids, bodies_solids, link, matter_volume, solids
 from pipeline.sources.meshes.inertials import Inertial, inertia_flaw, joined, mass_flaw
-from pipeline.sources.meshes.touching import LEFT_ALONE, UNDER, felt
+from pipeline.sources.meshes.touching import BUMPED, LEFT_ALONE, UNDER, felt
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
 from pipeline.taxonomy import Taxonomy
@@ -53,7 +53,7 @@ def assets(
         category = taxonomy.categories[fit.category]
         kind, how = category.super, felt(category, opens=True)
         lowest = min([UNDER, *(float((body.points()[:, 2] - middle[2]).min()) * fit.scale for body in bodies[1:])])
-        below = how if category.loose else replace(how, down=LEFT_ALONE, under=lowest)
+        below = how if category.loose else replace(how, sides=BUMPED, down=LEFT_ALONE, under=lowest)
         links: list[Link] = []
         weighed = []
         for body, solid in zip(bodies, matter, strict=True):

@@ -19,13 +19,14 @@ from pipeline.card import Category
 from pipeline.geometry.compiled import compiled
 from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combined, convex, extremes
 from pipeline.sources.meshes.near_boxes import NEAR
+from pipeline.sources.meshes.reach import reached
+from pipeline.sources.meshes.rings import STAVES, is_ring, same_height, sectors
 
 Floats = NDArray[np.float64]
 Allowed = Callable[[Floats, Floats], Floats]  # points (P, 3), normals (P, 3) there -> how far each may be off (P,) [m]
 
 SOLE = 0.8  # share of its outline that a soft thing lies on
 ROOMY = 50.0  # boards across each other: their box holds so many times what they do, and no hull of theirs is looked at
-STAVES = 4  # pieces between the same heights that are taken for a ring
 MOST = 250  # pieces of a link beyond which it is left as it is
 SAMPLES = (0, 2, 8)  # intervals along a side of the hull's triangles, coarse first; 0: their middles
 SHARE = 0.15  # of the least extent of a link: what its touched surface may be off by at most, however small it is
@@ -36,10 +37,13 @@ PADDED = 0.03  # ... the rounded edges of cushions and mattresses, whose boxes b
 SOFT = 0.05  # ... a blanket with its fringe
 LEFT_ALONE = 0.15  # ... what hangs at a ceiling or flat on a wall to be looked at, and leaves
 ANY = 10.0  # [m]
-HOLLOW, DEEP = 0.15, 0.35  # shares of a vessel's width and height that it may be off within, up to BUMPED
+HOLLOW, DEEP = 0.2, 0.35  # shares of a vessel's width and height that it may be off within
 UNDER = 0.2  # [m] above the floor below which furniture's legs and plinths are one block: no hand comes there
+SEAT = 0.4  # [m] the same under a seat, whose legs a robot stands before
+CUSHIONED = frozenset(("bed", "chair", "sofa", "stool"))  # super-categories on which one sits and lies: what things lie on there gives way
+REACH = 0.05  # [m] between pieces that may become one across what lies between them: shelves on both sides of a board
 POT = 0.4  # share of a plant's height up to which it is as hard as other things
-Offer = tuple[float, float, int, int]
+Offer = tuple[float, int, int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +52,7 @@ class Felt:
 
     What is `closed` is not reached into: the staves of a ring are one disc. Lower than `under` [m] only what faces upwards is felt.
     A `vessel` is felt from without; within it is but hollow. What is `soft` lies flat. Boxes may stand out by `box` [m] at their corners.
+    Nothing comes through gaps narrower than `cell` [m]; see `reached`.
     """
 
     up: float = TOUCHED
@@ -59,6 +64,7 @@ class Felt:
     vessel: bool = False
     soft: bool = False
     box: float = NEAR
+    cell: float = 0.01
 
 
 FELT = MappingProxyType(  # by what cards say
@@ -75,7 +81,14 @@ def felt(category: Category, *, opens: bool) -> Felt:
     """Return how truly a thing of a category is felt: hands come to what is small and to what opens, bodies to other furniture."""
     if category.felt:
         return FELT[category.felt]
-    return Felt(vessel=True) if category.loose else Felt() if opens else Felt(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, box=PADDED)
+    if category.loose:
+        return Felt(vessel=True)
+    if opens:
+        return Felt()
+    under = SEAT if category.tuck == "seat" else UNDER
+    if category.super in CUSHIONED:
+        return Felt(BUMPED, SOFT, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED)
+    return Felt(TOUCHED, BUMPED, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED)
 
 
 def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
@@ -83,34 +96,73 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
     if not pieces:
         return ()
     points = np.concatenate([p.hull for p in pieces])
-    low, high = points.min(axis=0), points.max(axis=0)
-    least = SHARE * float((high - low).min())
-    stand = np.concatenate([p.hull[:, :2] for p in pieces if p.hull[:, 2].min() < low[2] + TOUCHED])
-    middle, hollow = (
-        (stand.min(axis=0) + stand.max(axis=0)) / 2,
-        min(HOLLOW * float((high - low)[:2].min()), DEEP * float(high[2] - low[2]), BUMPED),
-    )
-    below = [p for p in pieces if p.hull[:, 2].max() <= low[2] + how.under]
+    low = float(points[:, 2].min())
+    below = [p for p in pieces if p.hull[:, 2].max() <= low + how.under]
     if len(below) > 1:
-        pieces = [*(p for p in pieces if p.hull[:, 2].max() > low[2] + how.under), combined(below)]
+        pieces = [*(p for p in pieces if p.hull[:, 2].max() > low + how.under), combined(below)]
     if how.soft:
         pieces = [_flat(combined(pieces))]
     if how.closed:
         pieces = discs(pieces)
+    return fewer(pieces, _tolerance(pieces, how), max(how.up, how.sides, REACH), rings=how.up <= BUMPED)
+
+
+def _tolerance(pieces: Sequence[Part], how: Felt) -> Allowed:
+    points = np.concatenate([p.hull for p in pieces])
+    low, high = points.min(axis=0), points.max(axis=0)
+    least = SHARE * float((high - low).min())
+    hulls = [p.hull for p in pieces]
+    comes = reached(hulls, [_planes(h) for h in hulls], how.cell) if how.up <= BUMPED else None
+    hollows = _hollows(pieces, how)
 
     def allowed(at: Floats, normals: Floats) -> Floats:
         tolerance = np.where(normals[:, 2] > UP, how.up, np.where(normals[:, 2] < -UP, how.down, how.sides))
         if how.yielding:
             share = np.clip((at[:, 2] - low[2]) / (POT * (high[2] - low[2])), 0, 1)
             tolerance = np.maximum(tolerance, share * LEFT_ALONE)
-        if how.vessel:
-            away = ((at[:, :2] - middle) * normals[:, :2]).sum(axis=1)
-            within = (normals[:, 2] > UP) | (away < 0) & (normals[:, 2] > -UP)
-            tolerance = np.where(within, np.maximum(tolerance, hollow), tolerance)
+        for hollow in hollows:
+            tolerance = np.where(hollow.within(at, normals), np.maximum(tolerance, hollow.depth), tolerance)
         tolerance = np.where(tolerance <= TOUCHED, np.minimum(tolerance, least), tolerance)
-        return np.asarray(np.where((at[:, 2] < low[2] + how.under) & (normals[:, 2] <= UP), ANY, tolerance))
+        away = (at[:, 2] < low[2] + how.under) & (normals[:, 2] <= UP)
+        return np.asarray(np.where(away if comes is None else away | ~comes(at), ANY, tolerance))
 
-    return fewer(pieces, allowed, max(how.up, how.sides), sectors=how.vessel)
+    return allowed
+
+
+@dataclass(frozen=True, slots=True)
+class _Hollow:
+    """The inside of a vessel: its middle (2,), the heights and the radius [m] that it is between, by how much its wall may be off."""
+
+    middle: Floats
+    heights: tuple[float, float]
+    radius: float
+    depth: float
+
+    def within(self, at: Floats, normals: Floats) -> NDArray[np.bool_]:
+        """Return (P,) whether points (P, 3) of faces with normals (P, 3) are of its inside."""
+        away = at[:, :2] - self.middle
+        inside = (np.linalg.norm(away, axis=1) < self.radius) & (at[:, 2] >= self.heights[0]) & (at[:, 2] <= self.heights[1])
+        inwards = (normals[:, 2] > UP) | ((away * normals[:, :2]).sum(axis=1) < 0) & (normals[:, 2] > -UP)
+        return np.asarray(inside & inwards)
+
+
+def _hollows(pieces: Sequence[Part], how: Felt) -> list[_Hollow]:
+    """Return the inside of a vessel, and those of the rings in other things: basins, drums."""
+    rings = [list(pieces)] if how.vessel else [[pieces[k] for k in ring] for ring in same_height(pieces) if is_ring(pieces, ring)]
+    made = []
+    for ring in rings:
+        points = np.concatenate([p.hull for p in ring])
+        low, high = points.min(axis=0), points.max(axis=0)
+        if how.vessel:
+            stand = np.concatenate([p.hull for p in ring if p.hull[:, 2].min() < low[2] + TOUCHED])
+            middle = (stand.min(axis=0) + stand.max(axis=0))[:2] / 2
+        else:
+            middle = (low + high)[:2] / 2
+        depth = min(HOLLOW * float((high - low)[:2].min()), DEEP * float(high[2] - low[2]))
+        made.append(
+            _Hollow(middle, (low[2] - TOUCHED, high[2] + TOUCHED), np.inf if how.vessel else float(np.ptp(points[:, 0])) / 2, depth)
+        )
+    return made
 
 
 def _flat(part: Part) -> Part:
@@ -124,35 +176,44 @@ def _flat(part: Part) -> Part:
 
 def discs(pieces: Sequence[Part]) -> list[Part]:
     """Return the pieces with the staves of each ring, all of them between the same heights, as one."""
-    rings: dict[tuple[int, int], list[Part]] = {}
-    for piece in pieces:
-        z = piece.hull[:, 2]
-        rings.setdefault((round(z.min() / TOUCHED), round(z.max() / TOUCHED)), []).append(piece)
-    return [disc for ring in rings.values() for disc in (ring if len(ring) < STAVES else [combined(ring)])]
+    levels = [[pieces[k] for k in level] for level in same_height(pieces)]
+    return [disc for level in levels for disc in (level if len(level) < STAVES else [combined(level)])]
 
 
-def fewer(pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, sectors: bool = False) -> tuple[Part, ...]:
+def fewer(pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, rings: bool = True) -> tuple[Part, ...]:
     """Return convex pieces [m] merged as long as no surface point goes further from where it was than is `allowed` there.
 
-    All at once where that may be, else pairs that change least first, or the largest groups (`sectors`), which take the staves of a
-    ring in sectors as long as may be. Pieces whose boxes are more than `apart` [m] from each other are no pair.
+    All at once where that may be, else the staves of `rings` in sectors, then pairs, those that change least first. Pieces whose boxes are
+    more than `apart` [m] from each other are no pair.
     """
     if not 2 <= len(pieces) <= MOST:
         return tuple(pieces)
     planes = [_planes(p.hull) for p in pieces]
-    if _deviation(np.concatenate([p.hull for p in pieces]), planes, allowed) is not None:
+    boxes = np.array([[p.hull.min(axis=0), p.hull.max(axis=0)] for p in pieces])
+
+    def share(group: Sequence[int], points: Floats) -> float | None:
+        low, high = points.min(axis=0), points.max(axis=0)
+        others = np.flatnonzero(((boxes[:, 0] <= high) & (boxes[:, 1] >= low)).all(axis=1)).tolist()  # what lies within those is not felt
+        near = [planes[k] for k in (*group, *(k for k in others if k not in group))]
+        return _deviation(points, near, allowed)
+
+    def passes(group: Sequence[int]) -> bool:
+        return share(group, np.concatenate([pieces[k].hull for k in group])) is not None
+
+    if passes(range(len(pieces))):
         return (combined(pieces),)
-    groups = _merged(pieces, planes, allowed, apart, largest=sectors)
+    groups = _merged(pieces, sectors(pieces, passes) if rings else [], share, apart)
     return tuple(pieces[g[0]] if len(g) == 1 else combined([pieces[k] for k in g]) for g in groups)
 
 
-def _merged(pieces: Sequence[Part], planes: Sequence[Floats], allowed: Allowed, apart: float, *, largest: bool) -> list[list[int]]:
-    groups = [[k] for k in range(len(pieces))]
-    alive = [True] * len(pieces)
-    hulls = [p.hull for p in pieces]
-    boxes = [np.array([p.hull.min(axis=0), p.hull.max(axis=0)]) for p in pieces]
-    volumes = [p.hull_volume for p in pieces]
-    every = np.array(boxes)
+def _merged(
+    pieces: Sequence[Part], rings: Sequence[list[int]], share: Callable[[Sequence[int], Floats], float | None], apart: float
+) -> list[list[int]]:
+    """Return groups of pieces by index, merged from the `rings` and the single others; see `fewer`."""
+    groups = [*rings, *([k] for k in range(len(pieces)) if not any(k in ring for ring in rings))]
+    hulls, volumes = (list(v) for v in zip(*(_outer(np.concatenate([pieces[k].hull for k in group])) for group in groups), strict=True))
+    boxes = [np.array([h.min(axis=0), h.max(axis=0)]) for h in hulls]
+    alive = [True] * len(groups)
 
     def offer(i: int, j: int) -> Offer | None:
         if (boxes[i][0] > boxes[j][1] + apart).any() or (boxes[j][0] > boxes[i][1] + apart).any():
@@ -160,31 +221,33 @@ def _merged(pieces: Sequence[Part], planes: Sequence[Floats], allowed: Allowed, 
         low, high = np.minimum(boxes[i][0], boxes[j][0]), np.maximum(boxes[i][1], boxes[j][1])
         if apart < LEFT_ALONE and float((high - low).prod()) > ROOMY * (volumes[i] + volumes[j]):
             return None
-        members = groups[i] + groups[j]
-        others = np.flatnonzero(((every[:, 0] <= high) & (every[:, 1] >= low)).all(axis=1)).tolist()  # what lies within those is not felt
-        near = [planes[k] for k in (*members, *(k for k in others if k not in members))]
-        share = _deviation(np.concatenate([hulls[i], hulls[j]]), near, allowed)
-        return None if share is None else (-len(members) if largest else 0, round(share, 5), i, j)
+        worst = share(groups[i] + groups[j], np.concatenate([hulls[i], hulls[j]]))
+        return None if worst is None else (round(worst, 5), i, j)
 
-    heap = [found for i in range(len(pieces)) for j in range(i + 1, len(pieces)) if (found := offer(i, j))]
+    heap = [found for i in range(len(groups)) for j in range(i + 1, len(groups)) if (found := offer(i, j))]
     heapq.heapify(heap)
     while heap:
-        _, _, i, j = heapq.heappop(heap)
+        _, i, j = heapq.heappop(heap)
         if not (alive[i] and alive[j]):
             continue
         alive[i] = alive[j] = False
-        points = np.concatenate([hulls[i], hulls[j]])
         groups.append(groups[i] + groups[j])
-        made = ConvexHull(points)
-        hulls.append(points[made.vertices])
-        volumes.append(float(made.volume))
-        boxes.append(np.array([points.min(axis=0), points.max(axis=0)]))
+        outer, volume = _outer(np.concatenate([hulls[i], hulls[j]]))
+        hulls.append(outer)
+        volumes.append(volume)
+        boxes.append(np.array([np.minimum(boxes[i][0], boxes[j][0]), np.maximum(boxes[i][1], boxes[j][1])]))
         alive.append(True)
         new = len(groups) - 1
         for k in range(new):
             if alive[k] and (found := offer(k, new)):
                 heapq.heappush(heap, found)
     return [g for g, lives in zip(groups, alive, strict=True) if lives]
+
+
+def _outer(points: Floats) -> tuple[Floats, float]:
+    """Return the corners (N, 3) of a hull and its volume."""
+    made = ConvexHull(points)
+    return points[made.vertices], float(made.volume)
 
 
 def _planes(points: Floats) -> Floats:

@@ -1,0 +1,196 @@
+"""How far colliders' surfaces are from what one sees, where a robot touches: `python benchmarks/surfaces.py [--count N]`.
+
+Both ways, on assets of data/assets, each kind in turn: points on the colliders that lie in no other collider of their link, to the
+nearest triangle that is seen; and points that are seen on handles, moving parts, tops and small things, to the colliders (how far
+outside of all they are). Where nothing comes from outside (pipeline/sources/meshes/reach.py) there is nothing to touch. Largest and 95th percentile [mm] by what is touched; build/surfaces.json keeps every asset's.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections import defaultdict
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from pipeline import taxonomy  # noqa: E402
+from pipeline.card import Category  # noqa: E402
+from pipeline.entities.asset import Asset, Link  # noqa: E402
+from pipeline.entities.files import load_asset  # noqa: E402
+from pipeline.geometry.compiled import compiled  # noqa: E402
+from pipeline.sources.meshes.reach import reached  # noqa: E402
+
+Floats = NDArray[np.float64]
+Reached = Callable[[Floats], NDArray[np.bool_]]
+POINTS = 1500  # on a link, each way
+UP = 0.7  # upward part of the normal of a top
+WITHIN = 5e-4  # [m] inside of another piece: no surface
+HAND, BODY = 0.01, 0.02  # [m] gaps into which no hand, no body comes
+OFF = 0.002  # [m] before a surface
+RIM = 0.01  # [m] below the top of a small thing: what looks up there is its inside
+
+
+def main() -> None:
+    """Measure, print the table."""
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("--count", type=int, default=100)
+    options.add_argument("--assets", type=Path, default=ROOT / "data" / "assets")
+    given = options.parse_args()
+    found: dict[str, list[Floats]] = defaultdict(list)
+    every = {}
+    for path in _chosen(given.assets, given.count):
+        asset = load_asset(path)
+        measured = errors(asset, np.random.default_rng(0))
+        every[asset.asset_id] = {
+            k: [round(1000 * float(v.max()), 2), round(1000 * float(np.quantile(v, 0.95)), 2)] for k, v in measured.items()
+        }
+        for kind, values in measured.items():
+            found[kind].append(values)
+    (ROOT / "build").mkdir(exist_ok=True)
+    (ROOT / "build" / "surfaces.json").write_text(json.dumps(every, indent=1))
+    print(f"{len(every)} assets; mm: 95th percentile of all points, worst asset's 95th percentile, largest")
+    for kind, values in sorted(found.items()):
+        together = 1000 * np.concatenate(values)
+        worst = 1000 * max(float(np.quantile(v, 0.95)) for v in values)
+        print(f"{kind:40s} {np.quantile(together, 0.95):5.1f} {worst:6.1f} {together.max():6.1f}   ({len(values)} assets)")
+
+
+def _chosen(folder: Path, count: int) -> list[Path]:
+    import pyarrow.parquet as pq
+
+    kinds: dict[str, list[str]] = {}
+    for row in pq.read_table(folder.parent / "tables" / "assets.parquet", columns=["asset_id", "category", "articulated"]).to_pylist():
+        kinds.setdefault(f"{row['category']} {row['articulated']}", []).append(row["asset_id"])
+    turns = range(max(map(len, kinds.values())))
+    names = [ids[turn] for turn in turns for _, ids in sorted(kinds.items()) if turn < len(ids)]
+    return [folder / f"{name}.safetensors" for name in names[:count]]
+
+
+def errors(asset: Asset, rng: np.random.Generator) -> dict[str, Floats]:
+    """Return by what is touched how far [m] points of colliders are from what is seen, and what is seen from colliders."""
+    card = taxonomy.load().categories[asset.category]
+    moved = {joint.child for joint in asset.joints}
+    found: dict[str, list[Floats]] = defaultdict(list)
+    for k, link in enumerate(asset.links):
+        if not link.colliders or not link.visuals:
+            continue
+        at, normals, parts = _seen_points(link, rng)
+        away = np.maximum(_outside(at, link), 0.0)
+        points, outwards = _collider_points(link, rng)
+        distance, nearest = _nearest(points, link)
+        comes = reached([c.vertices for c in link.colliders], _planes(link), HAND if asset.articulated or card.loose else BODY)
+        for way, kinds, values in (
+            ("seen, from colliders", _touched(card, k in moved, at, normals, parts, comes), away),
+            ("colliders, from what is seen", _touched(card, k in moved, points, outwards, nearest, comes), distance),
+        ):
+            for kind in set(kinds) - {""}:
+                found[f"{kind}: {way}"].append(values[kinds == kind])
+    return {kind: np.concatenate(values) for kind, values in found.items()}
+
+
+def _touched(card: Category, moves: bool, points: Floats, normals: Floats, parts: NDArray[np.str_], comes: Reached) -> NDArray[np.str_]:
+    """Return (P,) what each point of a link is of."""
+    plain = "small things" if card.loose else "moving parts" if moves else ""
+    kinds = np.full(len(normals), plain, "<U16")
+    if not plain:
+        kinds[(normals[:, 2] > UP)] = "tops"
+    if card.loose and not card.felt:
+        low, high = points.min(axis=0), points.max(axis=0)
+        inwards = ((points - (low + high) / 2)[:, :2] * normals[:, :2]).sum(axis=1) < 0
+        kinds[inwards | (normals[:, 2] > UP) & (points[:, 2] < high[2] - RIM)] = "insides"
+    kinds[np.char.endswith(parts, "handle")] = "handles"
+    kinds[~comes(points + OFF * normals)] = ""
+    return kinds
+
+
+def _spread(triangles: Floats, count: int, rng: np.random.Generator) -> tuple[Floats, Floats, NDArray[np.int64]]:
+    """Return points (count, 3) spread evenly over triangles (F, 3, 3), unit normals there, and whose they are."""
+    cross = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    areas = np.linalg.norm(cross, axis=1)
+    which = rng.choice(len(triangles), count, p=areas / areas.sum())
+    u, v = rng.random((2, count, 1))
+    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+    a, b, c = (triangles[which, k] for k in range(3))
+    return a + u * (b - a) + v * (c - a), cross[which] / areas[which, None], which
+
+
+def _seen_points(link: Link, rng: np.random.Generator) -> tuple[Floats, Floats, NDArray[np.str_]]:
+    triangles = np.concatenate([m.vertices[m.faces] for m in link.visuals]).astype(np.float64)
+    parts = np.concatenate([np.full(len(m.faces), m.part, "<U24") for m in link.visuals])
+    points, normals, which = _spread(triangles, POINTS, rng)
+    return points, normals, parts[which]
+
+
+def _planes(link: Link) -> list[Floats]:
+    from scipy.spatial import ConvexHull
+
+    return [ConvexHull(c.vertices.astype(np.float64)).equations for c in link.colliders]
+
+
+def _outside(points: Floats, link: Link) -> Floats:
+    """Return how far points (P, 3) are outside of all colliders, by the planes of their faces; negative within."""
+    return np.min([(points @ e[:, :3].T + e[:, 3]).max(axis=1) for e in _planes(link)], axis=0)
+
+
+def _collider_points(link: Link, rng: np.random.Generator) -> tuple[Floats, Floats]:
+    """Return points on the surface of all colliders together, and normals."""
+    triangles = np.concatenate([c.vertices[c.faces] for c in link.colliders]).astype(np.float64)
+    owner = np.concatenate([np.full(len(c.faces), k) for k, c in enumerate(link.colliders)])
+    points, normals, which = _spread(triangles, POINTS, rng)
+    free = np.ones(len(points), bool)
+    for k, e in enumerate(_planes(link)):
+        free &= ((points @ e[:, :3].T + e[:, 3]).max(axis=1) > -WITHIN) | (owner[which] == k)
+    return points[free], normals[free]
+
+
+def _nearest(points: Floats, link: Link) -> tuple[Floats, NDArray[np.str_]]:
+    """Return how far points (P, 3) are from the nearest triangle that is seen, and of which part it is."""
+    triangles = np.concatenate([m.vertices[m.faces] for m in link.visuals]).astype(np.float64)
+    parts = np.concatenate([np.full(len(m.faces), m.part, "<U24") for m in link.visuals])
+    distance, which = _to_triangles(np.ascontiguousarray(points), np.ascontiguousarray(triangles))
+    return distance, parts[which]
+
+
+@compiled
+def _to_triangles(points: Floats, triangles: Floats) -> tuple[Floats, NDArray[np.int64]]:
+    """Return the distance (P,) to the nearest of triangles (F, 3, 3), and its index, by the regions of the triangle's plane (Ericson 2005, 5.1.5)."""
+    distance, which = np.full(len(points), np.inf), np.zeros(len(points), np.int64)
+    for i in range(len(points)):
+        for f in range(len(triangles)):
+            a, ab, ac = triangles[f, 0], triangles[f, 1] - triangles[f, 0], triangles[f, 2] - triangles[f, 0]
+            ap = points[i] - a
+            bp, cp = ap - ab, ap - ac
+            d1, d2, d3, d4, d5, d6 = (ab * ap).sum(), (ac * ap).sum(), (ab * bp).sum(), (ac * bp).sum(), (ab * cp).sum(), (ac * cp).sum()
+            va, vb, vc = d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2
+            v, w = 0.0, 0.0
+            if d1 <= 0 and d2 <= 0:
+                pass
+            elif d3 >= 0 and d4 <= d3:
+                v = 1.0
+            elif d6 >= 0 and d5 <= d6:
+                w = 1.0
+            elif vc <= 0 and d1 >= 0 and d3 <= 0:
+                v = d1 / (d1 - d3)
+            elif vb <= 0 and d2 >= 0 and d6 <= 0:
+                w = d2 / (d2 - d6)
+            elif va <= 0 and d4 - d3 >= 0 and d5 - d6 >= 0:
+                w = (d4 - d3) / ((d4 - d3) + (d5 - d6))
+                v = 1.0 - w
+            else:
+                v, w = vb / (va + vb + vc), vc / (va + vb + vc)
+            away = ap - v * ab - w * ac
+            now = (away * away).sum()
+            if now < distance[i]:
+                distance[i], which[i] = now, f
+    return np.sqrt(distance), which
+
+
+if __name__ == "__main__":
+    main()
