@@ -114,7 +114,7 @@ class Asset:
     """A piece of furniture or an appliance. Link 0 is the base; `joints` are ordered parents first.
 
     `size` (3,) [m] is the full extent (w, d, h) = (x, y, z) of the box with all joints at 0. Fixed joints of the
-    source are already merged into their parent links. `derived` keeps what was computed from it (see `geometry.kept`), as long as it lives.
+    source are already merged into their parent links. `derived` keeps what was computed from it (see `geometry.memo`), as long as it lives.
     """
 
     asset_id: str
