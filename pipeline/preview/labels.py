@@ -13,6 +13,7 @@ from shapely.geometry import Polygon
 from pipeline.entities.plan import Room
 
 INK = (38, 40, 46)
+FULL = 0.9999  # share of its bounding box that a rectangle has
 SMALL = 14  # points below which labels are no longer readable, so they are left out [pixels]
 
 
@@ -60,8 +61,9 @@ def _corner(polygon: Polygon, busy: NDArray[np.int32], width: int, height: int) 
     if not (len(xs) and len(ys)):
         return None
     gx, gy = (g.ravel().astype(int) for g in np.meshgrid(xs, ys))
-    inside = shapely.contains(polygon, shapely.box(gx, gy, gx + width, gy + height))
-    gx, gy = gx[inside], gy[inside]
+    if polygon.area < FULL * (right - left) * (bottom - top):  # no rectangle along the axes, in which all of them lie
+        inside = shapely.contains(polygon, shapely.box(gx, gy, gx + width, gy + height))
+        gx, gy = gx[inside], gy[inside]
     if not len(gx):
         return None
     covered = busy[gy + height, gx + width] - busy[gy, gx + width] - busy[gy + height, gx] + busy[gy, gx]
