@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -55,22 +55,28 @@ class Commit:
 
 
 def record(staging: Path, name: str, rows: Mapping[str, int], *, flush: bool = True) -> Commit:
-    """Digest every file below `staging`, and (with `flush`) send it to disk with the folders around it.
-
-    Many files are flushed at once: the disk then writes its journal once for all that wait, not once for each.
-    """
-    folders: list[Path] = []
-    paths: list[Path] = []
-    for place, _, names in os.walk(staging):
-        folders.append(Path(place))
-        paths += [Path(place) / file for file in names]
-    if flush:
-        with ThreadPoolExecutor(FLUSHES) as pool:
-            list(pool.map(sync, paths))
-            list(pool.map(sync, folders))  # after their files
+    """Digest every file below `staging`, and (with `flush`) send it to disk as `flush_all` does."""
+    paths = flush_all(staging) if flush else list(_below(staging))
     entries = map(entry_of, paths)
     files = {path.relative_to(staging).as_posix(): entry for path, entry in zip(paths, entries, strict=True)}
     return Commit(name, dict(sorted(files.items())), rows)
+
+
+def flush_all(folder: Path) -> list[Path]:
+    """Send every file below a folder to disk, with the folders around it, and return the files.
+
+    Many are flushed at once: the disk then writes its journal once for all that wait, not once for each.
+    """
+    paths = list(_below(folder))
+    with ThreadPoolExecutor(FLUSHES) as pool:
+        list(pool.map(sync, paths))
+        list(pool.map(sync, [Path(place) for place, _, _ in os.walk(folder)]))  # after their files
+    return paths
+
+
+def _below(folder: Path) -> Iterator[Path]:
+    for place, _, names in os.walk(folder):
+        yield from (Path(place) / file for file in names)
 
 
 def read_commit(folder: Path, name: str) -> Commit | None:

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 import pyarrow.parquet as pq
 
 from pipeline.manifest import text_of
-from pipeline.shards.commits import Commit, Entry, record
+from pipeline.shards.commits import Commit, Entry, flush_all, record
 from pipeline.shards.disk import link, put, sync
 from pipeline.shards.layout import ASSETS, commit_path
 from schemas.table import Table
@@ -38,7 +38,10 @@ def adopt(folder: Path, source: AssetSource, staging: Path, asset_ids: Iterable[
         place = staging / ASSETS / asset_id
         shutil.rmtree(place, ignore_errors=True)
         shutil.copytree(source.entry(asset_id), place, copy_function=link)
-        record(place, asset_id, {})
+    if missing:
+        flush_all(staging / ASSETS)
+    for asset_id in missing:
+        place = staging / ASSETS / asset_id
         try:
             place.rename(folder / ASSETS / asset_id)
         except OSError:

@@ -34,7 +34,7 @@ def test_every_power_cut_is_recovered_from():
 @pytest.mark.parametrize("writer", [commits, dataset, disk, library])
 def test_a_writer_that_does_not_flush_is_caught(writer, monkeypatch):
     monkeypatch.setattr(writer, "sync", lambda _path: None)
-    _, reported, wrong = crashes.run(60, seed=1)
+    _, reported, wrong = crashes.run(150, seed=1)
     assert wrong or reported
 
 
