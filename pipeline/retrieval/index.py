@@ -74,10 +74,14 @@ class AssetIndex:
     ) -> AssetIndex:
         """Build the index from rows of `assets`, `latents` and `asset_joints`.
 
-        Raises ContentError when an asset has no latent: the tables are then not of one run.
+        Raises ContentError when there is no asset, or one has no latent: the tables are then not of one run.
         """
         settings = settings or RetrievalSettings()
         rows = sorted((a for a in assets if a["split"] in splits or not a["split"]), key=lambda a: str(a["asset_id"]))
+        if not rows:
+            raise ContentError(
+                "the library holds no furniture", "look at data/tables/rejects.parquet for why, then run `dvc repro preprocess` again"
+            )
         known = {r["asset_id"]: r["latent"] for r in latents}
         lost = [r["asset_id"] for r in rows if r["asset_id"] not in known]
         if lost:
@@ -90,9 +94,9 @@ class AssetIndex:
             merged = merged_boxes(np.array(swept.get(row["asset_id"], []), float).reshape(-1, 2, 3), settings.sweep_boxes)
             boxes[i, : len(merged)] = merged
         raw = np.array([known[r["asset_id"]] for r in rows], float).reshape(len(rows), -1)
-        mean = raw.mean(0) if rows else np.zeros(raw.shape[1])
+        mean = raw.mean(0)
         # A latent channel that the encoder does not use must not be blown up by its tiny spread.
-        spread = np.maximum(raw.std(0), 0.05) if rows else np.ones(raw.shape[1])
+        spread = np.maximum(raw.std(0), 0.05)
         names = tuple(str(r["category"]) for r in rows)
         shelves = {name: np.flatnonzero(np.array(names) == name) for name in sorted(set(names))}
         return cls(

@@ -151,3 +151,8 @@ def test_a_library_without_latents_is_named():
         AssetIndex.from_tables(assets, latents[1:], joints)
     with pytest.raises(ContentError, match="'sauna'"):
         AssetIndex.from_tables(assets, latents, joints).row("sauna")
+
+
+def test_a_library_without_furniture_is_named():
+    with pytest.raises(ContentError, match="no furniture"):
+        AssetIndex.from_tables([], [], [])
