@@ -80,6 +80,7 @@ class _Entries(BaseModel):
     verbs_of: Verbs = Verbs()
     spellings: dict[str, str] = {}  # other spellings of words
     sounds: tuple[tuple[str, str], ...] = ()  # what is written, and how it sounds
+    behind: dict[str, dict[str, str]] = {}  # behind a word, how others are read that alone mean something else
     homophones: dict[str, str] = {}  # characters that are written for one another
     endings: str = ""
     abbreviations: str = ""
@@ -126,6 +127,7 @@ class Lexicon:
     traits: frozenset[str] = frozenset()
     compounds: Compounds = field(default_factory=Compounds)
     sounds: tuple[tuple[str, str], ...] = ()
+    behind: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     trie: dict[str, Any] = field(default_factory=dict)
     vocabulary: set[str] = field(default_factory=set)
     targets: tuple[str, ...] = ()
@@ -231,7 +233,7 @@ def lexicon(language: Language) -> Lexicon:
         {p.split()[0] for entry in phrases.get("conjugated", {}).values() for p in split(entry) if INFINITIVE.fullmatch(p.split()[0])}
     )
     made = Lexicon(language, entries.name, entries.traits, tenses=verbs.canonical(infinitives) | entries.spellings)
-    made.compounds, made.sounds, made.looks = entries.compounds, entries.sounds, entries.looks
+    made.compounds, made.sounds, made.looks, made.behind = entries.compounds, entries.sounds, entries.looks, entries.behind
     made.adverbs, made.abbreviations = _folded(phrases.get("adverbs", {}).get("", "")), _folded(entries.abbreviations)
     made.endings = tuple(sorted(split(entries.endings), key=len, reverse=True))
     made.range_from, made.range_to = (_folded(entries.range.get(side, "")) for side in ("from", "to"))

@@ -75,11 +75,8 @@ def listen(prompt: str, language: Language) -> Words:
     tokens = tokenize(prompt)
     written = [fold(t.text) for t in tokens]
     tokens, texts = repair(tokens, lex.compounds.completed(written, lex.vocabulary, lex.joins), lex)
-    texts = [lex.tenses.get(t, OURSELVES.get(t, t) if k and texts[k - 1] == "se" else t) for k, t in enumerate(texts)]
+    texts = [lex.tenses.get(t, lex.behind.get(texts[k - 1], {}).get(t, t) if k else t) for k, t in enumerate(texts)]
     return Words(prompt, tokens, texts, lex)
-
-
-OURSELVES = {"entre": "entra", "pase": "pasa", "parta": "parte"}  # behind Spanish "se"; alone they are other words
 
 
 def segment(heard: Words) -> list[Mark]:
@@ -94,16 +91,17 @@ def segment(heard: Words) -> list[Mark]:
                 made.append(mark)
         else:
             i += 1
-    return _settled(_halves(_numbers(_articles(made, heard), heard)), heard)
+    return _settled(_halves(_numbers(_articles(made, heard), heard), heard), heard)
 
 
 def _articles(marks: list[Mark], heard: Words) -> list[Mark]:
-    """Tell the Spanish article "el" from the pronoun "él" that accents set apart: in front of a name it is the article."""
+    """Tell an article from the pronoun that an accent sets apart ("el" and "él"): in front of a name it is the article."""
     if "accented_pronouns" not in heard.lexicon.traits:
         return marks
     made = list(marks)
     for k, mark in enumerate(marks[:-1]):
-        if mark.text == "el" and mark.kind == "pron" and heard.tokens[mark.first].text == "el" and marks[k + 1].kind in NAMES:
+        plain = mark.kind == "pron" and mark.text in heard.lexicon.sign("accented_pronoun") and heard.tokens[mark.first].text == mark.text
+        if plain and marks[k + 1].kind in NAMES:
             made[k] = replace(mark, kind="det", value="definite")
     return _pointed(made, heard)
 
@@ -113,15 +111,17 @@ def _pointed(marks: list[Mark], heard: Words) -> list[Mark]:
     made: list[Mark] = []
     for k, mark in enumerate(marks):
         made.append(mark)
-        ahead = marks[k + 1] if k + 1 < len(marks) else None
-        accent = heard.tokens[mark.last - 1].text == "él"
+        head, _, last = mark.text.rpartition(" ")
+        ahead = marks[k + 1].kind if k + 1 < len(marks) else "stop"
+        accent = heard.tokens[mark.last - 1].text != last
         if (
             mark.kind == "cue"
-            and mark.text.endswith(" el")
-            and (accent or ahead is None or ahead.kind in {"stop", "comma", "cue", "enter"})
+            and head
+            and last in heard.lexicon.sign("accented_pronoun")
+            and (accent or ahead in {"stop", "comma", "cue", "enter"})
         ):
-            made[-1] = replace(mark, last=mark.last - 1, text=mark.text.removesuffix(" el"))
-            made.append(Mark("pron", "it", 0.0, False, mark.last - 1, mark.last, "el"))
+            made[-1] = replace(mark, last=mark.last - 1, text=head)
+            made.append(Mark("pron", "it", 0.0, False, mark.last - 1, mark.last, last))
     return made
 
 
@@ -213,15 +213,17 @@ def _numbers(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     return made
 
 
-def _halves(marks: Sequence[Mark]) -> list[Mark]:
+def _halves(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     """Read "two and a half baths" and "2.5 baths" as two bathrooms and a WC, as agents count."""
     made: list[Mark] = []
     k = 0
     while k < len(marks):
         mark, ahead = marks[k], marks[k + 1 : k + 4]
         kinds = [m.kind for m in ahead]
-        spoken = kinds == ["join", "det", "room"] and ahead[2].value == "wc" and ahead[2].text.startswith("half")
-        spoken = spoken or (kinds[::2] == ["join", "room"] and ahead[1].text in {"medio", "half"} and ahead[2].value == "bathroom")
+        spoken = kinds == ["join", "det", "room"] and ahead[2].value == "wc" and ahead[2].text.split()[0] in heard.lexicon.sign("half_one")
+        spoken = spoken or (
+            kinds[::2] == ["join", "room"] and ahead[1].text in heard.lexicon.sign("half_one") and ahead[2].value == "bathroom"
+        )
         figure = mark.number % 1 == 0.5 and kinds[:1] == ["room"] and ahead[0].value.startswith("bathroom")
         mark = replace(mark, kind="num") if figure and mark.kind == "factor" and mark.number > 1 else mark  # "one and a half baths"
         if mark.kind == "num" and (spoken or figure):
