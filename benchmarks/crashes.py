@@ -60,6 +60,8 @@ def kill(times: int, scratch: Path) -> tuple[int, int, int]:
                 failed += os.waitstatus_to_exitcode(os.waitpid(command(folder), 0)[1]) != 0
             wrong += made.snapshot(folder) != whole
             shutil.rmtree(folder)
+            if ended % 50 == 0:
+                print(f"{kills} kills over {ended} datasets: {wrong} with other bytes, {failed} commands that failed", flush=True)
     return ended, wrong, failed
 
 
@@ -69,6 +71,8 @@ def main(cuts: int, kills: int) -> int:
     with tempfile.TemporaryDirectory() as place:
         ended, wrong, failed = kill(kills, Path(place))
     print(f"{kills} kills over {ended} datasets: {wrong} with other bytes, {failed} commands that failed", flush=True)
+    if not cuts:
+        return bool(wrong or failed)
     start = time.process_time()
     distinct, reported, faults = crashes.run(cuts, say=told)
     print(f"{cuts} power cuts, {distinct} distinct states: {len(faults)} faults, reported instead of recovered: {reported or 0}")

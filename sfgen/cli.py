@@ -97,6 +97,9 @@ def shard(
       sfgen shard --count 200 --out datasets/mine --seed 7
       sfgen shard --count 1000 --prompts prompts.txt --scheduler tcp://10.0.0.1:8786
     """
+    if out and ":/" in str(out):  # an address; as a path it has lost a slash
+        remedy = "fill a folder of this machine and copy it, `commits/` last; `sfgen verify` and the loaders then read it there"
+        raise Complaint(f"--out {out} is an address, and homes are only written into folders; {remedy}", 2)
     root = factory_root()
     begin("homes", voice(quiet=quiet, json=json))
     options = {"out": out, "seed": seed, "workers": workers, "prompts": prompts, "scheduler": scheduler, "strict": strict, "only": only}

@@ -17,7 +17,7 @@ import shutil
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from pipeline.shards.disk import sync
@@ -66,7 +66,9 @@ class Claims:
         finally:
             for path in self.folder.glob(f"{name}.*"):
                 if _read(path) == self.token:
-                    path.write_text(RELEASED)
+                    with suppress(FileNotFoundError), path.open("r+") as file:  # never made anew: who left last may be sweeping
+                        file.truncate(0)
+                        file.write(RELEASED)
 
     def others(self) -> list[str]:
         """Return the tokens of the others who are at work."""
@@ -77,14 +79,18 @@ class Claims:
         """Remove the claims below a name: what they were about is done."""
         shutil.rmtree(self.folder / name, ignore_errors=True)
 
-    def leave(self) -> bool:
-        """Give up all claims; True when nobody else is at work, and nothing of anyone is left here."""
+    def leave(self, tidy: Callable[[], object] = lambda: None) -> bool:
+        """Give up all claims; True when nobody else was at work: then `tidy` was called, and nothing of anyone is left here.
+
+        Who joins meanwhile waits for the end of that, since the owner's file goes last.
+        """
         self._ended.set()
         try:
             with self.alone("open"):
-                (self.folder / OWNERS / self.token).unlink(missing_ok=True)
                 if last := not self.others():
+                    tidy()
                     shutil.rmtree(self.folder, ignore_errors=True)
+                (self.folder / OWNERS / self.token).unlink(missing_ok=True)
         except OSError:  # a full disk: who ends cannot stay for that
             return False
         finally:  # interrupted too: a process that goes on is not at work any more
@@ -94,10 +100,12 @@ class Claims:
     def _register(self) -> None:
         who = {"machine": _machine(), "pid": os.getpid(), "born": _birth(os.getpid())}
         path = self.folder / OWNERS / self.token
-        path.parent.mkdir(parents=True, exist_ok=True)
         try:
-            path.write_text(json.dumps(who) + "\n")
-            sync(path)
+            while not path.exists():
+                path.parent.mkdir(parents=True, exist_ok=True)
+                with suppress(FileNotFoundError):  # who left last sweeps the folder away, just now
+                    path.write_text(json.dumps(who) + "\n")
+                    sync(path)
         except BaseException:  # nobody will leave for it
             path.unlink(missing_ok=True)
             raise

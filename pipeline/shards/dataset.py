@@ -13,6 +13,7 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import pyarrow.parquet as pq
@@ -102,11 +103,7 @@ def open_or_create(folder: Path, header: Header, source: AssetSource, *, discard
             seal(folder, header, dataset.staging)
     finally:
         shutil.rmtree(dataset.staging, ignore_errors=True)
-        whole = (folder / commit_path(SEAL)).exists()
-        if claims.leave():  # nobody is at work: what was left by those who were killed goes too
-            shutil.rmtree(folder / STAGING, ignore_errors=True)
-            if whole:
-                shutil.rmtree(folder / PARTS, ignore_errors=True)
+        claims.leave(partial(_tidy, folder))
 
 
 def committed(dataset: Dataset, number: int) -> bool:
@@ -291,6 +288,13 @@ def _prepare(dataset: Dataset, *, discard: bool) -> None:
             _forget(folder, shard_name(number))
     if (folder / commit_path(ASSETS)).exists() and _broken(folder, ASSETS):
         _forget(folder, ASSETS)
+
+
+def _tidy(folder: Path) -> None:
+    """Remove what was left by commands that were killed, when nobody is at work."""
+    shutil.rmtree(folder / STAGING, ignore_errors=True)
+    if (folder / commit_path(SEAL)).exists():
+        shutil.rmtree(folder / PARTS, ignore_errors=True)
 
 
 def _forget(folder: Path, name: str) -> None:

@@ -62,7 +62,7 @@ def test_a_killed_run_resumes_to_the_same_bytes(root, tmp_path):
     checkout.write_params(small, QUICK)
     whole, cut = tmp_path / "whole", tmp_path / "cut"
     killed = start(small, cut)
-    end = time.monotonic() + 400
+    end = time.monotonic() + 1200
     while not commits(cut):
         assert time.monotonic() < end
         assert killed.poll() is None

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -42,17 +43,11 @@ def test_one_worker_is_this_process():
 
 
 def test_nothing_listens_on_a_port():
-    """Neither this process nor the workers have a socket that another user of the machine could reach."""
-    before = listening()
-    run = map_jobs(work.square, range(4), workers=2)
-    next(run)
-    assert listening() == before
-    run.close()
-
-
-def listening():
-    lines = [line.split() for name in ("tcp", "tcp6") for line in Path(f"/proc/net/{name}").read_text().splitlines()[1:]]
-    return {(f[1], f[9]) for f in lines if f[3] == "0A"}
+    """Neither the command nor its workers have a socket that another user of the machine could reach."""
+    program = f"import sys; sys.path[:0] = [{str(ROOT)!r}, {str(Path(__file__).parent)!r}]; import work; work.tell_ports()"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout) == [[], [], 1, False]
 
 
 def test_jobs_are_drawn_as_needed():
@@ -117,12 +112,22 @@ def test_the_culprit_in_a_job_is_found_and_the_rest_is_done(tmp_path):
     assert (tmp_path / "begun").read_text().count("7") == 3
 
 
-def test_a_silent_worker_is_replaced_and_one_that_whispers_is_not():
+def test_a_silent_worker_is_replaced():
     results = dict(map_jobs(work.hang_at_two, range(4), workers=2, split=lambda job: [job], silence=1.0))
     assert results == {0: 0, 1: 1, 2: Lost("hung", 3), 3: 3}
-    heard = []
-    assert dict(map_jobs(work.whisper, [5, 6], workers=2, note=heard.append, silence=1.5)) == {5: 5, 6: 6}
-    assert sorted(heard) == [("part", job, part) for job in (5, 6) for part in range(4)]
+
+
+def test_a_worker_that_whispers_is_not(monkeypatch):
+    """By a clock on which longer than `silence` passes in all, and less between two words."""
+    now, heard = [0.0], []
+    monkeypatch.setattr("pipeline.execution.pool.time", SimpleNamespace(monotonic=lambda: now[0]))
+
+    def hear(note):
+        heard.append(note)
+        now[0] += 200.0
+
+    assert dict(map_jobs(work.whisper, [5], workers=2, note=hear, silence=300.0)) == {5: 5}
+    assert heard == [("part", 5, part) for part in range(4)]
 
 
 def test_notes_are_heard_in_this_process_too():
@@ -159,7 +164,8 @@ def test_a_scheduler_that_does_not_answer_is_the_users_error(scheduler, monkeypa
 
 
 def test_a_scheduler_that_dies_is_one_line_at_once(tmp_path, monkeypatch, capfd):
-    monkeypatch.setattr("pipeline.execution.cluster.PATIENCE", "2s")
+    monkeypatch.setattr("pipeline.execution.cluster.PATIENCE", "10s")
+    monkeypatch.setattr("pipeline.execution.cluster.FIRST", 300.0)
     file = tmp_path / "scheduler.json"
     dask = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--no-dashboard", "--port", "0"]
     quiet = {
@@ -173,7 +179,7 @@ def test_a_scheduler_that_dies_is_one_line_at_once(tmp_path, monkeypatch, capfd)
         [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-dashboard"], **quiet
     )
     try:
-        end = time.monotonic() + 60
+        end = time.monotonic() + 300
         while not file.exists():
             assert time.monotonic() < end
             time.sleep(0.05)
@@ -183,7 +189,7 @@ def test_a_scheduler_that_dies_is_one_line_at_once(tmp_path, monkeypatch, capfd)
         began = time.monotonic()
         with pytest.raises(ContentError, match="is gone"):
             list(run)
-        assert time.monotonic() - began < 20
+        assert time.monotonic() - began < 100  # Dask alone waits for two minutes
     finally:
         for process in (scheduler, worker):
             process.kill()
@@ -196,7 +202,7 @@ def test_interrupt_ends_all_workers(tmp_path):
     run = subprocess.Popen(program, env={**os.environ, "PYTHONPATH": str(ROOT)}, start_new_session=True, stderr=subprocess.PIPE, text=True)
     pids = await_pids(tmp_path, 2)
     os.killpg(run.pid, signal.SIGINT)
-    _, said = run.communicate(timeout=120)
+    _, said = run.communicate(timeout=300)
     assert run.returncode == 130
     assert "Traceback" not in said
     assert all(gone(pid) for pid in pids)
@@ -268,7 +274,7 @@ def test_cores_are_those_that_affinity_and_control_groups_leave(tmp_path, monkey
 
 
 def await_pids(folder, count):
-    end = time.monotonic() + 120
+    end = time.monotonic() + 300
     while time.monotonic() < end:
         pids = [int(p.name.removeprefix("pid-")) for p in folder.glob("pid-*")]
         if len(pids) >= count:
@@ -278,7 +284,7 @@ def await_pids(folder, count):
 
 
 def gone(pid):
-    end = time.monotonic() + 15
+    end = time.monotonic() + 120
     while time.monotonic() < end:
         try:
             state = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0]

@@ -1,6 +1,7 @@
 """Steps for the tests of pipeline/execution.py: importable by Dask's workers, and a program to interrupt."""
 
 import functools
+import json
 import os
 import signal
 import sys
@@ -63,7 +64,6 @@ def hang_at_two(job):
 def whisper(job):
     for part in range(4):
         tell("part", job, part)
-        time.sleep(0.7)
     return job
 
 
@@ -85,6 +85,47 @@ def where(job):
 def doze(job):
     time.sleep(0.3)
     return job, os.getpid()
+
+
+def ports():
+    """The sockets of this process and its descendants that wait for somebody."""
+    lines = [line.split() for name in ("tcp", "tcp6") for line in Path(f"/proc/net/{name}").read_text().splitlines()[1:]]
+    waiting = {f"socket:[{f[9]}]": f[1] for f in lines if f[3] == "0A"}
+    parents = {int(p.parent.name): int(told.rpartition(")")[2].split()[1]) for p in Path("/proc").glob("[0-9]*/stat") if (told := _read(p))}
+    ours = {os.getpid()}
+    while more := {pid for pid, parent in parents.items() if parent in ours} - ours:
+        ours |= more
+    held = [_link(link) for pid in ours for link in Path(f"/proc/{pid}/fd").glob("*")]
+    return sorted(waiting[name] for name in held if name in waiting)
+
+
+def _read(path):
+    try:
+        return path.read_text()
+    except OSError:  # the process has ended
+        return ""
+
+
+def _link(path):
+    try:
+        return str(path.readlink())
+    except OSError:
+        return ""
+
+
+def tell_ports():
+    """Tell which ports are open before a run, during it, and when one is opened; and whether others did the work."""
+    import socket
+
+    from pipeline.execution import map_jobs
+
+    before = ports()
+    run = map_jobs(where, range(40), workers=2)
+    pids = {pid for _, (_, pid) in (next(run) for _ in range(30))}
+    during = ports()
+    run.close()
+    with socket.create_server(("127.0.0.1", 0)):
+        sys.stdout.write(json.dumps([before, during, len(ports()), os.getpid() in pids]))
 
 
 def litter(_job):

@@ -1,4 +1,4 @@
-"""Rows and files of made-up homes, and a program that makes a dataset of them slowly enough to be killed."""
+"""Rows and files of made-up homes, and a program that makes a dataset of them and can be told to wait where it shall be killed."""
 
 import hashlib
 import os
@@ -107,15 +107,16 @@ def opened(folder, header=HEADER, source=None, **how):
     return open_or_create(Path(folder), header, AssetSource(source or Path(folder).parent / "source"), **how)
 
 
-def fill(folder, header=HEADER, nap=0.0, numbers=None, without=(), source=None):
-    """Make what is missing of a dataset; returns the numbers of the shards that were made."""
+def fill(folder, header=HEADER, stop=None, numbers=None, without=(), source=None):
+    """Make what is missing of a dataset (at home `stop` it waits for good); returns the numbers of the shards that were made."""
     with opened(folder, header, source) as dataset:
         missing = [n for n in dataset.missing() if numbers is None or n in numbers]
         for number in missing:
             while not committed(dataset, number):
                 for index in dataset.todo(number):
                     if dataset.take(number, index):
-                        time.sleep(nap)
+                        while index == stop:
+                            time.sleep(1)
                         add_part(
                             dataset, number, gather(number, [empty(index, header.seed) if index in without else home(index, header.seed)])
                         )
@@ -135,4 +136,4 @@ def snapshot(folder):
 
 
 if __name__ == "__main__":
-    fill(sys.argv[1], Header(seed=5, count=24, shard_size=4, licence="CC0-1.0"), nap=float(sys.argv[2]))
+    fill(sys.argv[1], Header(seed=5, count=24, shard_size=4, licence="CC0-1.0"), *map(int, sys.argv[2:]))

@@ -5,6 +5,7 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -145,3 +146,26 @@ def test_one_at_a_time_holds_what_is_held_alone(claims):
     for thread in threads:
         thread.join()
     assert seen == [1] * 20
+
+
+def test_who_joins_while_the_last_one_leaves_is_registered(claims, monkeypatch):
+    """The folder of claims is swept away between the making of a new owner's folder and its file."""
+    last, write = claims(), Path.write_text
+
+    def swept(path, text):
+        if path.parent.name == "owners":
+            monkeypatch.undo()
+            assert last.leave()
+        return write(path, text)
+
+    monkeypatch.setattr(Path, "write_text", swept)
+    new = claims()
+    assert (new.folder / "owners" / new.token).exists()
+    assert new.take("a")
+
+
+def test_who_leaves_last_tidies_before_anyone_else_begins(claims):
+    one, other, seen = claims(), claims(), []
+    assert not one.leave(lambda: seen.append("one"))
+    assert other.leave(lambda: seen.append(other.take("open")))
+    assert seen == [True]

@@ -72,7 +72,7 @@ def dripping(handler):
     handler.send_response(200)
     handler.send_header("Content-Length", "500000")
     handler.end_headers()
-    for _ in range(40):
+    for _ in range(4000):
         try:
             handler.wfile.write(b" ")
             handler.wfile.flush()
@@ -83,7 +83,7 @@ def dripping(handler):
 
 def dripping_headers(handler):
     handler.wfile.write(b"HTTP/1.1 200 OK\r\n")
-    for k in range(60):
+    for k in range(4000):
         try:
             handler.wfile.write(f"X-{k}: 1\r\n".encode())
             handler.wfile.flush()
@@ -189,7 +189,7 @@ def test_useless_answers_fall_back_to_the_built_in_parser(serve, caplog, answer,
     began = time.monotonic()
     with caplog.at_level(logging.WARNING):
         program = request(PROMPT, server)
-    assert time.monotonic() - began < 4.0
+    assert time.monotonic() - began < 30.0  # what drips would take three minutes
     assert {r.id for r in program.rooms} == {"bed", "living", "kitchen", "bath"}
     assert "built-in parser" in caplog.text
     assert "secret" not in caplog.text
