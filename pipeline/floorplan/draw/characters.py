@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from pipeline.entities.plan import Plan, Room
-from pipeline.floorplan.draw.marks import bounds, label_point, on_level, storeys
+from pipeline.floorplan.draw.elements import bounds, label_point, on_level, storeys
 from pipeline.floorplan.program.defaults import OUTSIDE
 
 MARGIN = 0.2  # around the outer walls [m]

@@ -10,7 +10,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from pipeline.entities.plan import Plan
-from pipeline.floorplan.draw.marks import Area, Line, Words, marks
+from pipeline.floorplan.draw.elements import Area, Line, Words, marks
 
 FINER = 2  # drawn large and reduced: smooth lines
 

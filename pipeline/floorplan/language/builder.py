@@ -7,10 +7,10 @@ from typing import Any
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.facts import HALLS, Fact, Named, Reading
-from pipeline.floorplan.language.joints import Draft, join
-from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.naming import ROLES
 from pipeline.floorplan.language.phrases import Element
+from pipeline.floorplan.language.room_links import Draft, join
+from pipeline.floorplan.language.tokens import Mark
 from pipeline.floorplan.language.unparsed import unparsed
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.defaults import DEFAULTS

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from pipeline.floorplan.language.lexicon import Lexicon, lexicon
-from pipeline.floorplan.language.marks import Mark, Words
+from pipeline.floorplan.language.tokens import Mark, Words
 
 Bracket = tuple[tuple[str, ...], tuple[str, ...], str]  # "an ... grenzt": two parts and what they mean
 ENDS = {"stop", "line", "colon", "comma"}

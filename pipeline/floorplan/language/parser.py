@@ -14,7 +14,6 @@ from pipeline.floorplan.language.builder import assemble
 from pipeline.floorplan.language.facts import Reading
 from pipeline.floorplan.language.frames import framed
 from pipeline.floorplan.language.furnishing import read_furniture
-from pipeline.floorplan.language.marks import listen, segment
 from pipeline.floorplan.language.naming import introduce
 from pipeline.floorplan.language.negation import ban
 from pipeline.floorplan.language.order import reorder
@@ -23,6 +22,7 @@ from pipeline.floorplan.language.revising import revise
 from pipeline.floorplan.language.sentences import read
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import spread, tokenize
+from pipeline.floorplan.language.tokens import listen, segment
 from pipeline.floorplan.program.completion import complete
 from pipeline.floorplan.program.consistency import ImpossibleError, check
 from pipeline.floorplan.program.floor_program import Evidence, FloorProgram

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from pipeline.floorplan.language.marks import ENDS, Mark, Words
 from pipeline.floorplan.language.text import spread
+from pipeline.floorplan.language.tokens import ENDS, Mark, Words
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import Evidence
 

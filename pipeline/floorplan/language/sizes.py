@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from pipeline.floorplan.language.clause import Clause, ids_of, known
 from pipeline.floorplan.language.facts import Group
-from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.phrases import Element
+from pipeline.floorplan.language.tokens import Mark
 from pipeline.floorplan.program.defaults import DEFAULTS
 
 NAMED = {"doors", "corridors", "ceiling", "walls", "inner_walls", "outer_walls"}  # what a length may measure besides rooms

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from pipeline.floorplan.language.facts import Reading
-from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.phrases import Element
+from pipeline.floorplan.language.tokens import Mark
 
 EMPTY = {"fill", "ignored", "adverb", "verb", "join", "but", "comma", "stop", "line", "colon", "open", "close", "slash", "bullet", "dash", "hyphen", "clf", "times", "relative", "home", "long", "bound", "enough", "fix", "unit", "to", "reciprocal", "look"}  # fmt: skip
 READ = {"used", "no_bath", "no_own", "corner"}  # what was read with its neighbours

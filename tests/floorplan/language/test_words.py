@@ -6,10 +6,10 @@ import yaml
 from pipeline.floorplan.language.amounts import measured
 from pipeline.floorplan.language.inflection import Verbs
 from pipeline.floorplan.language.lexicon import FOLDER, LANGUAGES, lexicon
-from pipeline.floorplan.language.marks import listen, segment
 from pipeline.floorplan.language.parser import parse
 from pipeline.floorplan.language.spelling import distance, resolve, slipped
 from pipeline.floorplan.language.text import clean, fold, tokenize
+from pipeline.floorplan.language.tokens import listen, segment
 
 
 def amounts(text, language="en"):
