@@ -10,20 +10,20 @@ from PIL import Image
 
 from pipeline.preview.sheet import PAPER
 
-COLUMNS, CELL, GAP = 2, 480, 20  # homes a row; the side of each and what is between them [px]
+COLUMNS, CELL, GAP = 2, (480, 410), 20  # homes a row; the size of each and what is between them [px]
 
 
 def main(dataset: Path, folder: Path, scenes: Sequence[str]) -> None:
     """Write homes.png: previews of a dataset, two a row."""
     rows = -(-len(scenes) // COLUMNS)
-    sheet = Image.new("RGB", (COLUMNS * (CELL + GAP) + GAP, rows * (CELL + GAP) + GAP), PAPER)
+    sheet = Image.new("RGB", (COLUMNS * (CELL[0] + GAP) + GAP, rows * (CELL[1] + GAP) + GAP), PAPER)
     for k, scene in enumerate(scenes):
         (found,) = (dataset / "previews").rglob(f"{scene}.png")
         view = Image.open(found).convert("RGB")
-        view.thumbnail((CELL, CELL), Image.Resampling.LANCZOS)
-        x, y = GAP + k % COLUMNS * (CELL + GAP), GAP + k // COLUMNS * (CELL + GAP)
-        sheet.paste(view, (x + (CELL - view.width) // 2, y + (CELL - view.height) // 2))
-    sheet.quantize(192).save(folder / "homes.png", optimize=True)
+        view.thumbnail(CELL, Image.Resampling.LANCZOS)
+        x, y = GAP + k % COLUMNS * (CELL[0] + GAP), GAP + k // COLUMNS * (CELL[1] + GAP)
+        sheet.paste(view, (x + (CELL[0] - view.width) // 2, y + (CELL[1] - view.height) // 2))
+    sheet.save(folder / "homes.png", optimize=True)
 
 
 if __name__ == "__main__":
