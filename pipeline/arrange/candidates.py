@@ -157,7 +157,7 @@ def _opening_cost(item: Item, poses: Floats, walls: Sequence[Edge]) -> Floats:
         ]
         if openings and turned(edge.yaw, float(poses[0, 3])) < 0.1:
             near = edge.off(poses[:, :2]) < item.half[1] + 0.3
-            cost += near * opening_cost(item, edge.along_of(poses[:, :2]), openings)
+            cost[near] += opening_cost(item, edge.along_of(poses[near, :2]), openings)
     return cost
 
 
