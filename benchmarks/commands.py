@@ -1,6 +1,6 @@
 """Several `sfgen shard` commands that join one dataset at random times, against one command that makes it alone.
 
-    python benchmarks/commands.py [homes] [commands]
+    python -m benchmarks.commands [homes] [commands]
 
 Checks that every home is made once and that both datasets are equal byte for byte; says how many cores were busy.
 """
@@ -16,6 +16,8 @@ import time
 from pathlib import Path
 
 import numpy as np
+
+from benchmarks.resume import content
 
 ROOT = Path(__file__).resolve().parents[1]
 SPREAD = 20.0  # within which the commands start [s]
@@ -33,11 +35,6 @@ def made(command: subprocess.Popen[str]) -> int:
     if command.returncode:
         sys.exit(f"sfgen: a command ended with exit code {command.returncode}")
     return int(json.loads(told.splitlines()[-1])["made"])
-
-
-def content(folder: Path) -> dict[str, bytes]:
-    """Every file's bytes."""
-    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
 def main(homes: int, commands: int) -> int:
