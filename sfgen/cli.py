@@ -20,6 +20,8 @@ import typer
 PROMPT_HELP = "What the home shall be, in words."
 SEED_HELP = "Every random choice follows from it."
 
+OUT_HELP = "Folder of the dataset, or an address (s3://...) to which datasets/<seed> goes shard by shard; a killed run resumes. [default: datasets/<seed>]"
+
 app = typer.Typer(
     name="sfgen",
     help="A factory for datasets of homes that robots can use.",
@@ -73,7 +75,7 @@ def generate(
 @app.command()
 def shard(
     count: Annotated[int, typer.Option(min=1, help="Number of homes.", show_default=False)],
-    out: Annotated[Path | None, typer.Option(help="Folder of the dataset; a killed run resumes. [default: datasets/<seed>]")] = None,
+    out: Annotated[str | None, typer.Option(help=OUT_HELP)] = None,
     seed: Seed = 0,
     workers: Annotated[
         int | None, typer.Option(min=1, help="Processes, one thread each; 1 starts none. [default: the cores that may be used]")
@@ -97,12 +99,10 @@ def shard(
       sfgen shard --count 200 --out datasets/mine --seed 7
       sfgen shard --count 1000 --prompts prompts.txt --scheduler tcp://10.0.0.1:8786
     """
-    if out and ":/" in str(out):  # an address; as a path it has lost a slash
-        remedy = "fill a folder of this machine and copy it, `commits/` last; `sfgen verify` and the loaders then read it there"
-        raise Complaint(f"--out {out} is an address, and homes are only written into folders; {remedy}", 2)
     root = factory_root()
     begin("homes", voice(quiet=quiet, json=json))
-    options = {"out": out, "seed": seed, "workers": workers, "prompts": prompts, "scheduler": scheduler, "strict": strict, "only": only}
+    place: dict[str, Any] = {"address": out} if out and "://" in out else {"out": Path(out) if out else None}
+    options = {**place, "seed": seed, "workers": workers, "prompts": prompts, "scheduler": scheduler, "strict": strict, "only": only}
     options["memory"] = memory
     code: int = stage("shard").main(root, count=count, **options, voice=voice(quiet=quiet, json=json))
     return code

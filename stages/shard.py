@@ -18,7 +18,7 @@ from pipeline.homes.production import FAILURES, Recipe, Tally, fill
 from pipeline.homes.prompt_mix import orders, read_order
 from pipeline.homes.reproduction import made_with
 from pipeline.homes.request import Request
-from pipeline.shards import Header, forget_altered, identity, open_or_create, read_header, vouches
+from pipeline.shards import Address, Header, forget_altered, identity, open_or_create, read_header, vouches
 
 
 def main(
@@ -26,6 +26,7 @@ def main(
     *,
     count: int,
     out: Path | None = None,
+    address: str | None = None,
     seed: int = 0,
     workers: int | None = None,
     prompts: Path | None = None,
@@ -37,13 +38,12 @@ def main(
 ) -> int:
     """Fill the folder `out` (by default datasets/<seed>) with `count` homes; returns the exit code: 1 when some could not be made.
 
-    `memory` [MiB] is what a worker may take.
+    What is committed goes to the `address` too (s3://...), where one is given. `memory` [MiB] is what a worker may take.
     """
     progress = Progress(count, "homes", voice=voice)
+    place = Address(address) if address else None
     order = read_order(prompts, seed, progress, strict=strict)
     folder = out or Path("datasets") / str(seed)
-    if folder.exists() and not folder.is_dir():
-        raise UsageError(f"{folder} is not a folder", "give a folder that is new, empty, or holds this very dataset")
     progress.say("reading the layout model and the library")
     opened = partial(open_factory, root, seed, memory)
     factory = opened()
@@ -52,13 +52,13 @@ def main(
     header = header_of(factory, seed, count, order.digest())
     again = shlex.join(["sfgen", "shard", "--count", str(count), "--seed", str(seed), *(["--prompts", str(prompts)] if prompts else [])])
     recipe = Recipe(opened, cache_assets=scheduler is None, digests=factory.digests)
-    with open_or_create(folder, header, factory.asset_cache) as dataset:
+    with open_or_create(folder, header, factory.asset_cache, address=place) as dataset:
         if dataset.missing():
             warm_up(progress, root)
         where: dict[str, Any] = {"workers": workers or cores(), "scheduler": scheduler}
         tally = fill(dataset, recipe, order.asked, **where, strict=strict, progress=progress, again=f"{again} --only {{index}}")
     progress.close()
-    return tell(tally, header, folder, progress, voice)
+    return tell(tally, header, address or str(folder), progress, voice)
 
 
 def repair(root: Path, *, folder: Path, prompts: Path | None = None, workers: int | None = None, voice: Voice = "plain") -> int:
@@ -79,7 +79,7 @@ def repair(root: Path, *, folder: Path, prompts: Path | None = None, workers: in
         recipe = Recipe(partial(open_factory, root, seed), digests=factory.digests)
         tally = fill(dataset, recipe, asked, workers=workers or cores(), progress=progress)
     progress.close()
-    return tell(tally, there[0], folder, progress, voice)
+    return tell(tally, there[0], str(folder), progress, voice)
 
 
 def header_of(factory: Factory, seed: int, count: int, words: str) -> Header:
@@ -96,7 +96,7 @@ def try_one(root: Path, seed: int, request: Request) -> int:
     return 0
 
 
-def tell(tally: Tally, header: Header, folder: Path, progress: Progress, voice: Voice) -> int:
+def tell(tally: Tally, header: Header, place: str, progress: Progress, voice: Voice) -> int:
     """Say what the run came to; returns the exit code."""
     lost = sum(map(len, tally.empty.values()))
     if voice == "json":
@@ -107,7 +107,7 @@ def tell(tally: Tally, header: Header, folder: Path, progress: Progress, voice: 
             "retries": tally.retries,
             "cpu_seconds": tally.seconds,
         }
-        progress.summary(dataset=str(folder), homes=header.count - lost, **figures, empty={k: len(v) for k, v in tally.empty.items()})
+        progress.summary(dataset=place, homes=header.count - lost, **figures, empty={k: len(v) for k, v in tally.empty.items()})
         return 1 if lost else 0
     spent = ", ".join(f"{part} {seconds:.1f}" for part, seconds in sorted(tally.seconds.items(), key=lambda pair: -pair[1]))
     before = f", {tally.resumed} were there before" if tally.resumed else ""
@@ -116,5 +116,5 @@ def tell(tally: Tally, header: Header, folder: Path, progress: Progress, voice: 
         progress.say(f"{tally.homes} made in {progress.seconds:.0f} s{before}, {tally.retries} rooms and homes tried again; CPU s: {spent}")
     for line in tally.lines():
         sys.stderr.write(f"sfgen: {line}\n")
-    sys.stdout.write(f"{header.count - lost} homes in {folder}\n")
+    sys.stdout.write(f"{header.count - lost} homes in {place}\n")
     return SfgenError.exit_code if lost else 0

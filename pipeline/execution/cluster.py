@@ -86,6 +86,11 @@ def _client(scheduler: str) -> Iterator[Any]:
     with dask.config.set({"distributed.comm.timeouts.connect": PATIENCE}):
         try:
             client = Client(**where, timeout=PATIENCE, set_as_default=False)
+        except (TypeError, RuntimeError) as error:  # tls:// without certificates; tcp:// where encryption is required
+            raise UsageError(
+                f"the Dask scheduler at {scheduler} cannot be spoken to as this machine is set up ({str(error).splitlines()[0][:200]})",
+                "give the certificates in Dask's settings (distributed.comm.tls: ca-file, client.cert, client.key)",
+            ) from error
         except (OSError, ValueError, TimeoutError) as error:
             raise UsageError(f"no Dask scheduler answers at {scheduler}", "start one, or leave --scheduler out") from error
         with client:

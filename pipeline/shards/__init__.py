@@ -1,5 +1,6 @@
 """A dataset on disk: header, shards that are written whole or not at all, commits, checks, and what each home is asked to be."""
 
+from pipeline.shards.address import Address
 from pipeline.shards.content import ShardContent, gather
 from pipeline.shards.dataset import Dataset, add_part, commit_shard, committed, forget_altered, open_or_create
 from pipeline.shards.header import Header, code_digest, read_header
@@ -11,6 +12,7 @@ from pipeline.shards.seal import identity, vouches
 __all__ = [
     "EMPTY",
     "TABLES",
+    "Address",
     "AssetSource",
     "Dataset",
     "Header",

@@ -87,14 +87,22 @@ def read_commit(folder: Path, name: str) -> Commit | None:
 def read_file(path: Path) -> Commit | None:
     """Read a commit file, or return None where there is none. Raises ContentError when it is broken."""
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-        files = {k: Entry(str(v["sha256"]), int(v["bytes"])) for k, v in data["files"].items()}
-        rows = {str(k): int(v) for k, v in data["rows"].items()}
+        return parse_commit(path.read_bytes(), path)
     except FileNotFoundError:
         return None
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+    except OSError as error:
+        raise ContentError(f"{path} cannot be read ({error.strerror})", "delete it: the next run makes the shard again") from error
+
+
+def parse_commit(text: bytes, path: Path | str) -> Commit:
+    """Return what a commit file says that was read from `path`. Raises ContentError when it is broken."""
+    try:
+        data = json.loads(text.decode("utf-8"))
+        files = {k: Entry(str(v["sha256"]), int(v["bytes"])) for k, v in data["files"].items()}
+        rows = {str(k): int(v) for k, v in data["rows"].items()}
+        return Commit(str(data["name"]), files, rows)
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise ContentError(f"{path} is not a commit file", "delete it: the next run makes the shard again") from error
-    return Commit(str(data["name"]), files, rows)
 
 
 def entry_of(path: Path) -> Entry:

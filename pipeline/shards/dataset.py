@@ -12,7 +12,7 @@ import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
@@ -20,6 +20,7 @@ import pyarrow.parquet as pq
 
 from pipeline.errors import ContentError, UsageError
 from pipeline.manifest import text_of
+from pipeline.shards.address import Address
 from pipeline.shards.claims import Claims
 from pipeline.shards.commits import Commit, read_commit, record
 from pipeline.shards.content import ShardContent
@@ -51,6 +52,7 @@ class Dataset:
     header: Header
     source: AssetSource
     claims: Claims
+    address: Address | None = None  # where it is to lie as well
     done: set[int] = field(default_factory=set)  # shards that were seen to be committed
 
     @property
@@ -76,31 +78,40 @@ class Dataset:
 
 
 @contextmanager
-def open_or_create(folder: Path, header: Header, source: AssetSource, *, discard: bool = False) -> Iterator[Dataset]:
+def open_or_create(
+    folder: Path, header: Header, source: AssetSource, *, discard: bool = False, address: Address | None = None
+) -> Iterator[Dataset]:
     """Open a dataset for writing: create it, or resume an equal one, beside others that do so. Once all shards are there it is sealed.
 
     A dataset of full shards may grow: the same header with a larger count resumes it. With `discard`, an unequal
-    dataset is deleted first (for folders that DVC owns). Raises UsageError for a folder that holds another dataset or
+    dataset is deleted first (for folders that DVC owns). With an `address`, what is committed goes there too, and what is committed
+    there and not here is fetched. Raises UsageError for a folder that holds another dataset or
     other files; ContentError when dataset.json is broken. Nothing is touched then.
     """
     if header.count < 1 or header.shard_size < 1:
         raise UsageError(f"a dataset of {header.count} homes in shards of {header.shard_size} cannot be", "give numbers from 1 on")
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"{folder} is not a folder", "give a folder that is new, empty, or holds this very dataset")
+    if address and (there := address.header()):
+        there.require_resumable(header, address.name)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         _resumes(folder, header, discard=discard)
         claims = Claims(folder / CLAIMS)
     except OSError as error:
         raise UsageError(f"cannot make the folder {folder} ({error.strerror})", "give a place that you may write to") from error
-    dataset = Dataset(folder, header, source, claims)
+    dataset = Dataset(folder, header, source, claims, address)
     try:
         with claims.alone("open"):
             _prepare(dataset, discard=discard)
+            if address:
+                address.begin(folder, header, dataset.staging)
         yield dataset
         if not dataset.missing() and read_header(folder) == header and not is_sealed(folder, header):
             settle(folder, source, dataset.staging, assets_of_all(dataset))
             seal(folder, header, dataset.staging)
+        if address and is_sealed(folder, header):
+            address.send_all(folder, header)
     finally:
         shutil.rmtree(dataset.staging, ignore_errors=True)
         claims.leave(partial(_tidy, folder))
@@ -190,6 +201,8 @@ def commit_shard(dataset: Dataset, number: int) -> bool:
         return False
     dataset.claims.forget(name)
     shutil.rmtree(dataset.folder / PARTS / name, ignore_errors=True)
+    if dataset.address:
+        dataset.address.send(dataset.folder, name)
     return True
 
 
@@ -259,17 +272,10 @@ def _resumes(folder: Path, header: Header, *, discard: bool) -> bool:
         if discard:
             return False
         raise
-    grown = replace(there, count=header.count)
-    full = there.count % there.shard_size == 0
-    if grown == header and (header.count == there.count or (header.count > there.count and full)):
-        return True
-    if discard:
+    if discard and not there.grows_to(header):
         return False
-    what = "; ".join(there.differences(header))
-    remedy = "give another --out, or the options of the run that made it"
-    if grown == header and header.count > there.count:
-        remedy = f"its last shard is not full, and committed shards are never rewritten: give another --out, or --count {there.count}"
-    raise UsageError(f"{folder} holds another dataset ({what})", remedy)
+    there.require_resumable(header, folder)
+    return True
 
 
 def _prepare(dataset: Dataset, *, discard: bool) -> None:

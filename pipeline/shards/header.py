@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
 from pipeline import taxonomy
-from pipeline.errors import ContentError
+from pipeline.errors import ContentError, UsageError
 from pipeline.manifest import digest, sha256
 from pipeline.shards.layout import HEADER
 from schemas.table import SCHEMA_VERSION
 
 FORMAT = "sfgen-dataset-2"
+REMEDY = "give a folder that `sfgen shard`, `sfgen generate` or `dvc repro` made"
 
 
 def everything() -> dict[str, list[str]]:
@@ -67,24 +68,45 @@ class Header:
         names = [n for n in {**mine, **theirs} if mine.get(n) != theirs.get(n)]
         return [f"{name} {mine.get(name)}, not {theirs.get(name)}" for name in names]
 
+    def grows_to(self, header: Header) -> bool:
+        """Tell whether a dataset of this header may become one of `header`: equal, or larger where the last shard is full."""
+        full = self.count % self.shard_size == 0
+        return replace(self, count=header.count) == header and (header.count == self.count or (header.count > self.count and full))
+
+    def require_resumable(self, header: Header, place: Path | str) -> None:
+        """Raise UsageError where the dataset in `place`, which has this header, cannot become one of `header`."""
+        if self.grows_to(header):
+            return
+        remedy = "give another --out, or the options of the run that made it"
+        if replace(self, count=header.count) == header and header.count > self.count:
+            remedy = f"its last shard is not full, and committed shards are never rewritten: give another --out, or --count {self.count}"
+        raise UsageError(f"{place} holds another dataset ({'; '.join(self.differences(header))})", remedy)
+
 
 def read_header(folder: Path) -> Header:
     """Read a dataset's header. Raises ContentError when it is missing, broken, or of another format or schema version."""
     path = folder / HEADER
-    remedy = "give a folder that `sfgen shard`, `sfgen generate` or `dvc repro` made"
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        return parse_header(path.read_bytes(), path)
     except FileNotFoundError as error:
-        raise ContentError(f"{folder} holds no dataset ({HEADER} is missing)", remedy) from error
-    except (OSError, ValueError) as error:
-        raise ContentError(f"cannot read {path} ({str(error).splitlines()[0]})", remedy) from error
+        raise ContentError(f"{folder} holds no dataset ({HEADER} is missing)", REMEDY) from error
+    except OSError as error:
+        raise ContentError(f"cannot read {path} ({error.strerror})", REMEDY) from error
+
+
+def parse_header(text: bytes, path: Path | str) -> Header:
+    """Return the header that was read from `path`. Raises ContentError when it is broken, or of another format or schema version."""
+    try:
+        data = json.loads(text.decode("utf-8"))
+    except ValueError as error:
+        raise ContentError(f"cannot read {path} ({str(error).splitlines()[0]})", REMEDY) from error
     names = {f.name for f in fields(Header)}
     if not isinstance(data, dict) or data.get("format") != FORMAT or data.keys() != names:
-        raise ContentError(f"{path} does not describe a dataset of format {FORMAT}", remedy)
+        raise ContentError(f"{path} does not describe a dataset of format {FORMAT}", REMEDY)
     header = Header(**data)
     if header.schema_version != SCHEMA_VERSION:
         raise ContentError(
-            f"{folder} has tables of version {header.schema_version}, and this release of sfgen reads {SCHEMA_VERSION}",
+            f"{path} is of tables of version {header.schema_version}, and this release of sfgen reads {SCHEMA_VERSION}",
             "use the release that made it",
         )
     numbers = (header.seed, header.count, header.shard_size)
@@ -95,7 +117,7 @@ def read_header(folder: Path) -> Header:
         or not isinstance(header.digests, dict)
         or not isinstance(header.vocabulary, dict)
     ):
-        raise ContentError(f"{path} holds numbers that cannot be (seed, count, shard_size = {numbers})", remedy)
+        raise ContentError(f"{path} holds numbers that cannot be (seed, count, shard_size = {numbers})", REMEDY)
     return header
 
 

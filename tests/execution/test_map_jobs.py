@@ -145,6 +145,26 @@ def test_a_named_scheduler_is_used(cluster):
     assert dict(map_jobs(work.square, range(5), scheduler=cluster.scheduler_address)) == {i: i * i for i in range(5)}
 
 
+def test_a_scheduler_behind_tls_takes_those_only_who_have_its_certificate(tmp_path):
+    pytest.importorskip("cryptography")
+    import dask
+    from distributed import LocalCluster
+    from distributed.security import Security
+
+    keys, told = Security.temporary(), {"distributed.comm.require-encryption": True}
+    for name in ("ca-file", "client.key", "client.cert"):
+        file = tmp_path / name
+        file.write_text(getattr(keys, f"tls_{name.replace('-', '_').replace('.', '_')}"))
+        told[f"distributed.comm.tls.{name}"] = str(file)
+    how = {"protocol": "tls://", "security": keys, "silence_logs": "CRITICAL", "dashboard_address": None}
+    with LocalCluster(n_workers=1, threads_per_worker=1, processes=True, **how) as made:
+        assert made.scheduler_address.startswith("tls://")
+        with dask.config.set(told):
+            assert dict(map_jobs(work.square, range(3), scheduler=made.scheduler_address)) == {0: 0, 1: 1, 2: 4}
+        with pytest.raises(UsageError, match="certificates"):
+            list(map_jobs(work.square, [0], scheduler=made.scheduler_address))
+
+
 def test_workers_that_join_late_are_all_busy(cluster):
     """The first worker's window of two jobs does not starve those that come while it is at work."""
     pids = set()

@@ -107,9 +107,9 @@ def opened(folder, header=HEADER, source=None, **how):
     return open_or_create(Path(folder), header, AssetSource(source or Path(folder).parent / "source"), **how)
 
 
-def fill(folder, header=HEADER, stop=None, numbers=None, without=(), source=None):
+def fill(folder, header=HEADER, stop=None, numbers=None, without=(), source=None, **how):
     """Make what is missing of a dataset (at home `stop` it waits for good); returns the numbers of the shards that were made."""
-    with opened(folder, header, source) as dataset:
+    with opened(folder, header, source, **how) as dataset:
         missing = [n for n in dataset.missing() if numbers is None or n in numbers]
         for number in missing:
             while not committed(dataset, number):
