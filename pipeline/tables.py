@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+import functools
+import operator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from pipeline.errors import ContentError
@@ -59,21 +62,21 @@ def stream(path: Path, table: Table) -> Iterator[Stream]:
         made.finish()
 
 
-def read(path: Path, table: Table) -> list[dict[str, Any]]:
-    """Read a table as dict rows.
+def read(path: Path, table: Table, only: Mapping[str, Collection[str]] | None = None) -> list[dict[str, Any]]:
+    """Read a table as dict rows; `only` those whose column has one of the values.
 
     Raises ContentError when the file is missing, truncated, or lacks one of the schema's columns.
     """
-    rows: list[dict[str, Any]] = read_arrow(path, table).to_pylist()
+    rows: list[dict[str, Any]] = read_arrow(path, table, only).to_pylist()
     return rows
 
 
-def read_arrow(path: Path, table: Table) -> pa.Table:
+def read_arrow(path: Path, table: Table, only: Mapping[str, Collection[str]] | None = None) -> pa.Table:
     """Read a table as Arrow, columns in the schema's order. Raises ContentError as `read` does."""
     if not path.is_file():
         raise ContentError(f"{path} is missing", "run `make run`, or `dvc repro`, which makes it")
     try:
-        data = pq.ParquetFile(path).read()
+        data = pq.read_table(path, filters=_any_of(table, only), partitioning=None) if only else pq.ParquetFile(path).read()
     except (OSError, pa.ArrowException) as error:
         msg = f"{path} is not a readable Parquet file ({str(error).splitlines()[0]})"
         raise ContentError(msg, "delete it and run `dvc repro` again") from error
@@ -81,3 +84,9 @@ def read_arrow(path: Path, table: Table) -> pa.Table:
     if missing:
         raise ContentError(f"{path} lacks the columns {', '.join(missing)}", "delete it and run `dvc repro` again")
     return data.select([c.name for c in table.columns])
+
+
+def _any_of(table: Table, only: Mapping[str, Collection[str]]) -> Any:
+    schema = table.schema()
+    tests = [pc.field(name).isin(pa.array(sorted(values), schema.field(name).type)) for name, values in only.items()]
+    return functools.reduce(operator.and_, tests)

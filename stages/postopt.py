@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
 
-from pipeline import params, tables
+from pipeline import params
 from pipeline.entry import run
 from pipeline.execution import Progress, cores
+from pipeline.homes.draft_store import read_drafts
 from pipeline.homes.drafts import drafts_of
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.furnish import HomeDraft
@@ -20,11 +19,6 @@ from pipeline.homes.request import Request
 from pipeline.homes.settings import DatasetSettings, requests_of
 from pipeline.manifest import digest, write_json
 from pipeline.shards import Header, open_or_create
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rejects import REJECTS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
 
 
 def main(root: Path) -> None:
@@ -49,14 +43,8 @@ def main(root: Path) -> None:
 
 def first_drafts(root: Path, factory: Factory, requests: Sequence[Request]) -> list[HomeDraft]:
     """Return the drafts that stage `sample` has made of these homes."""
-    return drafts_of(samples(root), requests, factory)
-
-
-@functools.lru_cache(maxsize=1)
-def samples(root: Path) -> dict[str, list[dict[str, Any]]]:
-    """Read the tables of stage `sample`."""
-    folder = root / "data" / "samples"
-    return {t.name: tables.read(folder / f"{t.name}.parquet", t) for t in (SCENES, ROOMS, OPENINGS, OBJECTS, REJECTS)}
+    rows = read_drafts(root / "data" / "samples", factory.seed, [request.index for request in requests])
+    return drafts_of(rows, requests, factory)
 
 
 if __name__ == "__main__":
