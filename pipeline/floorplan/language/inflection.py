@@ -10,7 +10,6 @@ from pydantic import BaseModel, ConfigDict
 from pipeline.floorplan.language.text import fold
 
 SHORTEST = 3  # letters of a part of a compound
-INFINITIVE = re.compile(r"\w+[aeií]r(se)?")
 
 
 class Plurals(BaseModel):
@@ -91,77 +90,62 @@ class Compounds(BaseModel):
 
 
 class Verbs(BaseModel):
-    """The forms of Romance verbs that a description uses, told from their infinitives; each is read as the present of the third person."""
+    """The forms of verbs that a description uses, told from their infinitives; each is read as the present of the third person."""
 
     model_config = ConfigDict(extra="forbid")
-    irregular: dict[str, tuple[str, str, str, str]] = {}  # stem of the present, of the subjunctive, of the future, of the preterite
-    odd: dict[str, tuple[str, str]] = {}  # of the third persons: present, other tenses
-    soft: dict[str, str] = {}  # the last letter of a stem in front of an e
+    ends: dict[str, str] = {}  # of an infinitive -> of the third person of one, the present first; the longest that fits
+    plural: str = ""  # what the forms of many have besides
+    known: dict[str, str] = {}  # of an infinitive -> of forms that are only known not to be errors
+    irregular: dict[str, str] = {}  # infinitive -> all its forms, "one|many" where the plural is another
+    genders: str = ""  # of a participle, the one that is listed first
+    reflexive: str = ""
     twofold: str = ""  # forms that are other words too
     contracted: dict[str, str] = {}  # prepositions with their article in one word
 
-    def present(self, infinitive: str) -> tuple[str, str]:
-        """Return the third persons of the present: "abre", "abren"."""
-        if infinitive in self.odd:
-            one, many = self.odd[infinitive][0].split()
-            return one, many
-        stem = self.irregular.get(infinitive, ("",) * 4)[0] or infinitive[:-2]
-        vowel = "a" if infinitive.endswith("ar") else "e"
-        return stem + vowel, stem + vowel + "n"
+    def infinitive(self, word: str) -> bool:
+        """Whether a word is an infinitive."""
+        return word.endswith(tuple(self.ends))
 
-    def _tenses(self, infinitive: str) -> Iterator[tuple[str, str]]:
-        """Yield (form, form of the present) of the third persons: "abrirán", "abren"."""
-        one, many = self.present(infinitive)
-        if infinitive in self.odd:
-            yield from ((form, many if form.endswith("n") else one) for form in self.odd[infinitive][1].split())
-            return
-        kind, stem = infinitive[-2:], infinitive[:-2]
-        _, wish, future, past = self.irregular.get(infinitive, ("",) * 4)
-        wish = wish or one[:-1]
-        last = wish[-1]
-        regular = {"g": "j"}.get(last, last) if infinitive not in self.irregular else last
-        made = [wish[:-1] + (self.soft.get(last, last) if kind == "ar" else regular) + ("e" if kind == "ar" else "a")]
-        made += [(future or infinitive) + end for end in ("á", "ía")]
-        made += [stem + end for end in (("aba", "ara", "ase") if kind == "ar" else ("ía",))]
-        made += [] if kind == "ar" else [(past or stem) + end.removeprefix("i" if past.endswith("j") else "-") for end in ("iera", "iese")]
-        for form in made:
-            yield form, one
-            yield form + "n", many
+    def forms(self, infinitive: str) -> list[tuple[str, str]]:
+        """Return (of one, of many) for each tense of the third person, the present first: ("abre", "abren"), ("abrirá", "abrirán")."""
+        told = self.irregular.get(infinitive)
+        parted = (form.partition("|") for form in (told.split() if told else _with_ends(infinitive, self.ends)))
+        return [(one, many or one + self.plural) for one, _, many in parted]
 
     def canonical(self, infinitives: Iterable[str]) -> dict[str, str]:
         """Return folded form -> folded form of the present, for every tense of these verbs; words that mean something else besides are left out."""
         made: dict[str, str] = {}
         twofold = set(self.twofold.split())
-        for form, shown in (pair for verb in infinitives for pair in self._tenses(verb)):
-            word = fold(form)
-            if word not in twofold and word != fold(shown):
-                made.setdefault(word, fold(shown))
+        for present, *others in map(self.forms, infinitives):
+            for form, shown in ((fold(f), fold(s)) for pair in others for f, s in zip(pair, present, strict=True)):
+                if form not in twofold and form != shown:
+                    made.setdefault(form, shown)
         return made
 
-    def further(self, infinitive: str) -> Iterator[str]:
-        """Yield the gerund, the participles and the forms of "we" and "I", which are only known not to be errors."""
-        stem, kind = infinitive[:-2], infinitive[-2:]
-        yield stem + ("ando" if kind == "ar" else "iendo")
-        yield from (stem + ("ad" if kind == "ar" else "id") + end for end in ("o", "a", "os", "as"))
-        yield from (self.present(infinitive)[0][:-1] + "o", stem + {"ar": "amos", "er": "emos"}.get(kind, "imos"))
-        yield from (infinitive + end for end in ("emos", "íamos", "se", "lo", "la", "los", "las"))
-        yield stem + ("ábamos" if kind == "ar" else "íamos")
+    def further(self, infinitive: str) -> list[str]:
+        """Return the present, gerunds, participles and forms of "we" and "I", which are only known not to be errors."""
+        return [*self.forms(infinitive)[0], *_with_ends(infinitive, self.known)]
 
     def conjugated(self, phrase: str) -> Iterator[str]:
         """Yield "dar a" as "dar a", "da a", "da al", "se da a", "dan al" ...: the forms that are left, prepositions with their article too."""
         verb, _, rest = phrase.partition(" ")
-        if not verb.endswith(("ar", "er", "ir", "ír")):  # "conectado con": of one or many, of both genders
-            head = next((w for w in phrase.split() if w.endswith("o") and len(w) > 4), "")
-            for end in ("o", "a", "os", "as") if head else ("",):
-                yield from self._joined(phrase.replace(head, head[:-1] + end, 1) if head else phrase)
-            if head == "" and verb.endswith("e"):
-                yield from self.conjugated(phrase.replace(verb, verb + "s", 1))
+        if not self.infinitive(verb):  # "conectado con": of one or many, of both genders
+            first, *others = self.genders.split()
+            head = next((w for w in phrase.split() if w.endswith(first) and len(w) > 4), "")
+            for end in (first, *others) if head else ("",):
+                yield from self._joined(phrase.replace(head, head.removesuffix(first) + end, 1) if head else phrase)
             return
-        for form in (verb, *self.present(verb)):
+        for form in (verb, *self.forms(verb)[0]):
             for end in self._joined(rest):
                 yield f"{form} {end}".strip()
-                yield (f"{form}se {end}" if form == verb else f"se {form} {end}").strip()
+                yield (f"{form}{self.reflexive} {end}" if form == verb else f"{self.reflexive} {form} {end}").strip()
 
     def _joined(self, phrase: str) -> tuple[str, ...]:
         head, _, last = phrase.rpartition(" ")
         return (phrase, f"{head} {self.contracted[last]}".strip()) if last in self.contracted else (phrase,)
+
+
+def _with_ends(infinitive: str, table: Mapping[str, str]) -> list[str]:
+    """Return the forms of a verb that a table of ends gives: those of the longest end that it has."""
+    last = max((end for end in table if infinitive.endswith(end)), key=len, default="")
+    return [infinitive.removesuffix(last) + end for end in table[last].split()] if last else []

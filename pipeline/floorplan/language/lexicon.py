@@ -19,7 +19,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
 from pipeline import yaml_text
 from pipeline.errors import ContentError
-from pipeline.floorplan.language.inflection import INFINITIVE, Compounds, Plurals, Verbs, forms
+from pipeline.floorplan.language.inflection import Compounds, Plurals, Verbs, forms
 from pipeline.floorplan.language.text import bare, fold, words
 from pipeline.floorplan.program.floor_program import RoomType, Style
 from pipeline.floorplan.program.furniture import lexicon as furniture
@@ -229,9 +229,8 @@ def lexicon(language: Language) -> Lexicon:
     except (OSError, yaml.YAMLError, ValidationError, KeyError, AttributeError, TypeError) as error:
         raise ContentError(f"{path.name}: {' '.join(str(error).splitlines()[:3])}", "restore the file from the repository") from error
     verbs, phrases = entries.verbs_of, entries.phrases
-    infinitives = sorted(
-        {p.split()[0] for entry in phrases.get("conjugated", {}).values() for p in split(entry) if INFINITIVE.fullmatch(p.split()[0])}
-    )
+    heads = {p.split()[0] for entry in phrases.get("conjugated", {}).values() for p in split(entry)}
+    infinitives = sorted(filter(verbs.infinitive, heads))
     made = Lexicon(language, entries.name, entries.traits, tenses=verbs.canonical(infinitives) | entries.spellings)
     made.compounds, made.sounds, made.looks, made.behind = entries.compounds, entries.sounds, entries.looks, entries.behind
     made.adverbs, made.abbreviations = _folded(phrases.get("adverbs", {}).get("", "")), _folded(entries.abbreviations)
@@ -245,7 +244,7 @@ def lexicon(language: Language) -> Lexicon:
             signs.setdefault(text, set()).add(sign)
     made.signs = {text: frozenset(named) for text, named in signs.items()}
     made.classes = {sign: frozenset(t for t, named in signs.items() if sign in named) for sign in entries.signs}
-    made.vocabulary.update(made.tenses, (fold(w) for verb in infinitives for w in (verb, *verbs.present(verb), *verbs.further(verb))))
+    made.vocabulary.update(made.tenses, (fold(w) for verb in infinitives for w in verbs.further(verb)))
     _learn(made, entries)
     return made
 
