@@ -80,12 +80,6 @@ def _shared(marks: list[Mark], heard: Words) -> list[Mark]:
                 first = [made[j], _copied(made[k], made[j])]
                 made[rooms[-1] + 1 : k + 1] = [*first, *made[rooms[-1] + 1 : rooms[0] + 1], *made[k - 1 : k + 1]]
                 continue
-            if not rooms or not (
-                made[rooms[0]].plural
-                or _kind(made, rooms[0] + 1) == "num"
-                or any(m.number > 1 for m in made[max(0, rooms[0] - 3) : rooms[0]])
-            ):
-                continue
         for place in places[1:]:
             made.insert(place + 1, _copied(made[k], made[place]))
             k += 1  # noqa: PLW2901 - the unit moves on
@@ -209,17 +203,7 @@ def measured(marks: Sequence[Mark], heard: Words) -> list[Mark]:
     made: list[Mark] = []
     k = 0
     while k < len(marks):
-        long = len(marks[k + 1].text) > ("characters" not in heard.lexicon.traits) if k + 1 < len(marks) else False
-        if marks[k].kind == "num" and _kind(marks, k + 1) == "times" and long and _kind(marks, k + 2) != "num":
-            made.append(replace(marks[k], kind="factor", value="", last=marks[k + 1].last))
-            k += 2
-            continue
         found = _Amount(marks, heard.lexicon).read(k)
-        bounded = found is None and heard.lexicon.bounds.get(marks[k].text) in {"least", "most"} and _kind(marks, k + 1) == "num"
-        unit = next((m for m in reversed(marks[:k]) if m.kind in {"unit", "room", "home"}), None) if bounded else None
-        if unit is not None and unit.kind == "unit" and _kind(marks, k + 2) in {"comma", "but", "stop", "join", "line"}:
-            short = _Amount([*marks[k : k + 2], unit], heard.lexicon).read(0)  # "at least 12 m² but no more than 15"
-            found = (short[0], k + 2) if short else None
         if found is None:
             made.append(marks[k])
             k += 1

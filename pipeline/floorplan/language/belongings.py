@@ -27,8 +27,6 @@ def has(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one answer per
     if kind == "kitchen" and thing.mark is not None and thing.mark.value == "dining_room/corner":  # "a kitchen with dining area"
         c.stock.get(owners[0]).functions.add("dining")
         return at + 1
-    if thing.type == "balcony" and kind in {"bathroom", "hallway"}:
-        return k + 1  # "两室一厨一卫带阳台": the home has it
     if kind == "hallway" and thing.type == "bedroom" and not thing.definite:  # "a corridor with two bedrooms and a bathroom"
         group, j = c.after(at, "leads", owners)
         c.state.say("door", group, owners, e)
@@ -53,12 +51,6 @@ def _owners(c: Clause, k: int, e: Element, before: Element | None, thing: Elemen
         return ()
     if before.value == "it" and c.state.homes and before.ids and all(i[0] != "*" and c.stock.get(i).whole for i in before.ids):
         return ()  # "a one-bedroom flat. It needs a study": the flat
-    if c.run and c.sentence[k - 1].kind == "comma" and not c.verb:
-        alone = len(c.run) == 1 and c.run[0].number is None and not c.run[0].suite
-        told = (own and c.run[-1].type == "bedroom") or (c.says(e, "having") and len(c.run) == 1)
-        bracket = next((x.kind for x in reversed(c.sentence[:k]) if x.kind in {"open", "close"}), "") == "open"
-        if not (told or bracket or (alone and "bare_nouns" in c.state.heard.lexicon.traits)):
-            return ()
     near = c.sentence[k - 1]
     if not c.run and near.kind == "np" and near.ids and set(near.ids) <= set(c.objects) and c.says(e, "with"):
         return known(tuple(near.ids))  # "the living room leads to a hall with two bedrooms"
@@ -78,7 +70,7 @@ def _give(c: Clause, k: int, e: Element, owners: Group) -> int:
             x.ids, joined, end = list(owners), "", j + 1  # "each suite has a bedroom of 18 m², its own bathroom ..."
             c.measures(x)
         elif x.kind == "np":
-            if x.banned or x.type not in PERSONAL or (given and not joined) or not _theirs(c, j, owners, bool(given), joined):
+            if x.banned or x.type not in PERSONAL or (given and not joined) or not _theirs(c, j, owners, joined):
                 break
             ids = _things(c, j, owners)
             c.give(ids, owners, x)
@@ -86,9 +78,6 @@ def _give(c: Clause, k: int, e: Element, owners: Group) -> int:
             given, joined, end = ids, "", j + 1
         elif x.kind in LISTING:
             joined = "comma" if x.kind == "comma" and joined != "and" else "and"
-        elif x.kind == "amount" and not given and x.mark is not None and x.value in {"area", "length"}:
-            c.state.amounts.append((x.mark, owners))
-            end, joined = j + 1, ""
         elif x.kind not in LIGHT - {"verb"} and x.value != "has":
             break
         j += 1
@@ -98,7 +87,7 @@ def _give(c: Clause, k: int, e: Element, owners: Group) -> int:
     return end
 
 
-def _theirs(c: Clause, j: int, owners: Group, given: bool, joined: str) -> bool:
+def _theirs(c: Clause, j: int, owners: Group, joined: str) -> bool:
     """Whether the room at j is the owners' own, and not one of the home's that a list goes on with."""
     x, own = c.sentence[j], "own" in c.sentence[j].det
     after = c.near(j + 1)
@@ -112,9 +101,6 @@ def _theirs(c: Clause, j: int, owners: Group, given: bool, joined: str) -> bool:
         or (len(owners) > 2 and 1 < number < len(owners))
     ):
         return False
-    placed = c.ahead(j + 1, "amount", "relative", "flag", "word")
-    if given and not own and placed is not None and placed.kind == "cue" and placed.value in {"door", "from"}:
-        return False  # "with a closet and a bath that one enters by the closet"
     if joined == "comma" and not own:
         rest = next((y for y in c.sentence[j + 1 :] if not (y.kind in {"comma", "det"} or (y.kind == "np" and y.type in PERSONAL))), None)
         return rest is not None and rest.kind == "and"  # "with a bath, closet and balcony"

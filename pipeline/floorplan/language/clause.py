@@ -46,7 +46,6 @@ class Clause:
         self.forward = first is not None and first.kind == "level"  # storeys stand in front of their rooms
         self.level: int | None = None
         self.left_out: Group = ()  # "except the guest room, each has ..."
-        self.wing: tuple[Element, list[str]] | None = None  # words for a wing in front of its rooms
 
     def near(self, k: int) -> Element | None:
         """Return the element at k, None beyond the ends."""
@@ -111,16 +110,12 @@ class Clause:
             self.run = []  # what was given to somebody is no part of a new list
         self.run.append(e)
         e.ids, self.latest = list(ids), ids
-        if self.wing is not None:
-            self.wing[1].extend(ids)
         if self.waiting and not set(ids) <= set(self.waiting[1]):
             self.subject = tuple(dict.fromkeys((*self.subject, *ids)))
         self.subject = self.subject or ids
 
     def storey(self, k: int) -> int | None:
         """Return the storey that is said of the phrase at k."""
-        if self.sentence[k].role == "landing":
-            return 1
         if self.forward:
             return self.level
         for j, e in enumerate(self.sentence[k + 1 :], k + 1):
@@ -208,7 +203,7 @@ class Clause:
         """Return the rooms named after a relation, and where reading goes on."""
         group: list[str] = []
         end, joined = k, ""
-        first = last = None
+        first = None
         while (e := self.near(k)) is not None:
             if e.kind == "np":
                 if (
@@ -219,12 +214,8 @@ class Clause:
                     break
                 ids = name(self.state, self.sentence, k, self.level if self.forward else None)
                 self.measures(e)
-                if "largest" in e.adjectives and cue != "cmp":
-                    self.state.say("largest", tuple(ids), tuple(r.id for r in self.stock.of(e.type)), e)
                 group += [i for i in ids if i not in group and i not in left]
-                if e.type in SOCIAL and (j := self.written_as_one(k, e)):  # "around a kitchen-living room"
-                    self.state.say("merge", (*ids, *self.named(j)), (), e)
-                first, last, joined, end = first or e, e, "", k + 1
+                first, joined, end = first or e, "", k + 1
             elif not group and (found := self._standin(k, e, left)) is not None:
                 return found
             elif e.kind == "cue" and e.value in {"in", "leads"} and joined and cue in WIDE and not (joined == "comma" and self.relative):
@@ -232,15 +223,7 @@ class Clause:
             elif group and (e.value == "has" or e.kind == "to") and cue == "leads" and self.says(self.sentence[end - 2], "connect"):
                 joined = "and"  # "connects the kitchen with the garage"
             elif e.kind in LISTING:
-                if not group and e.kind == "comma":
-                    break
                 joined = "comma" if e.kind == "comma" and joined != "and" else "and"
-            elif e.kind == "open" and last is not None and [x.kind for x in self.sentence[k + 1 : k + 3]] == ["amount", "close"]:
-                last.amounts += [
-                    x.mark for x in self.sentence[k + 1 : k + 2] if x.mark is not None
-                ]  # "the kitchen (9 m2), the bath (5 m2)"
-                self.measures(last)
-                k += 2
             elif not self._passed(e, bool(group), joined, cue):
                 break
             k += 1
@@ -259,9 +242,6 @@ class Clause:
         ahead = self.near(k + 1)
         phrase = ahead is not None and ahead.kind == "np"
         if e.kind in {"pron", "det"} and e.value in STANDINS and not (e.kind == "det" and phrase):
-            if e.value == "self":
-                self.state.say("itself", left, (), e)
-                return (), k + 1
             found = self.point(e, k, left)
             return tuple(i for i in found if i not in left), k + 1
         if e.kind == "owner" and not phrase and (ahead is None or ahead.kind != "word"):  # "next to the parents'"
@@ -295,9 +275,6 @@ class Clause:
         """Whether a list after a relation goes on with the phrase at k, or a new statement begins there."""
         e = self.sentence[k]
         ahead = self.ahead(k + 1, "det", "amount", "adj", "flag", "word")
-        again = bool(e.ids) or (e.definite and not e.plural and (e.type, e.text, e.role) == (first.type, first.text, first.role))
-        if joined and again and not first.plural and first.type == e.type:
-            return False  # "A by B, and B by C"
         if cue == "between" and joined == "and" and count == 1:
             return True
         if (cue == "open" and e.type in PRIVATE and not e.definite) or (

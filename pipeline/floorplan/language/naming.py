@@ -61,20 +61,15 @@ def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> 
     e, stock = sentence[k], state.inventory
     e.ids = e.ids or [r.id for r in _named(state, sentence, k, level)]
     for room in (stock.get(i) for i in e.ids):
-        if level is not None and room.level is None and not e.definite:
-            room.level = level
         room.span = room.span or (e.first, e.last)
         room.functions |= e.functions
         room.size = e.size if e.size != 1.0 else room.size
     return e.ids
 
 
-def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per kind of phrase
+def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:
     e, stock, role = sentence[k], state.inventory, _role(sentence[k])
     same = [r for r in stock.of(e.type) if e.role == "landing" or not _landing(r)]
-    suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), None) if e.type == "bedroom" and not role else None
-    if suites and not e.ordinal and e.number is None:
-        return [stock.get(i) for i in suites]
     if (
         e.type == "hallway"
         and e.definite
@@ -86,8 +81,6 @@ def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -
         _fill(state, e, max(int(e.number or 0), e.part))
         same = stock.of(e.type)
         return [close(r, role, e.text) for r in ([r for r in same if r.open_slot] or same)[: e.part]]
-    if "another" in e.det and not e.definite:
-        return _new(state, e, int(e.number or 1), role, level)
     if e.index:
         return [_indexed(state, e, role, level)]
     if e.ordinal:
@@ -174,8 +167,6 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
         slots = [r for r in same if r.open_slot and not r.role]
         known = slots or (plain if len(plain) == 1 and (e.definite or (bare_nouns and not e.det and e.number is None)) else [])
         return [close(known[0], role, e.text)] if known and role not in {"ensuite", "primary"} else []
-    if e.type != "bedroom":
-        return [close(plain[0], role, e.text)] if plain and e.definite and _before(sentence, k) is None else []
     listed = _before(sentence, k, "cue", "colon", "open", "verb", "comma")  # "two bedrooms and a guest room": none of the two
     slots = [
         r
@@ -190,7 +181,7 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
     return [close(plain[0], role, e.text)] if len(plain) == 1 == len(same) and e.definite and not many else []
 
 
-def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per case
+def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:
     """Return the rooms that a phrase without role points at, where there are such rooms."""
     e, stock = sentence[k], state.inventory
     bare_nouns = "bare_nouns" in state.heard.lexicon.traits
@@ -203,21 +194,13 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
     if level is not None:
         here = [r for r in same if r.level in {None, level}]
         same = here if here or (not e.definite and not e.plural) else same
-    if not same:  # "..., another bath" comes later, or it is on another storey
-        return [stock.add(e.type, "", e.text, level)]
-    if not _many(e) and len(same) > 1 and e.adjectives & {"largest", "smallest"}:
-        return same[:1] if "largest" in e.adjectives else same[-1:]
     if _many(e):
         return _several(state, e, same)
     owned = e.type == "bathroom" and not bare_nouns and all(stock.owned(r.id) or r.role == "ensuite" for r in same)
     other = e.type == "storage" and all(e.text != r.surface for r in same)
     if not e.det and (owned or other or _repeated(state, sentence, k)):
         return [stock.add(e.type, "", e.text, level)]  # "a master with en suite, ..., bathroom", "bedroom, bedroom, bath"
-    if len(same) > 1 and bare_nouns and not e.det and e.number is None and all(r.open_slot for r in same):
-        return same  # no plural there: "两间卧室 ... 卧室都朝走廊"
     if len(same) > 1:
-        if e.number == 1 and (loose := [r for r in same if r.open_slot and not r.role]):
-            return [close(loose[0], "", e.text)]  # "one bedroom ..., the other ..."
         same = [r for r in same if _word(e) in r.surface.split()] or same
         recent = [r for r in same if any(r.id in x.ids for x in sentence[:k])]
         return (recent[-1:] if e.definite and recent else [r for r in same if not r.role] or same)[:1]
@@ -233,9 +216,8 @@ def _several(state: Reading, e: Element, same: list[Named]) -> list[Named]:
     if number > len(same):
         state.say("beyond", tuple(r.id for r in same), (), e, float(number))
     if 0 < number < len(same):
-        last = [r for g in state.past[-1:] for r in map(stock.get, g) if r.type == e.type]
         loose = [r for r in same if r.open_slot]
-        return last if len(last) == number else (loose if len(loose) >= number else same)[:number]
+        return (loose if len(loose) >= number else same)[:number]
     return same
 
 
@@ -248,9 +230,6 @@ def _repeated(state: Reading, sentence: list[Element], k: int) -> bool:
         return False
     for j in range(k - 1, -1, -1):
         e = sentence[j]
-        if e.kind == "np" and e.type == sentence[k].type:
-            spoken = ahead is not None and ahead.kind in {"cue", "flag", "cmp"} and sentence[k - 1].kind == "comma"
-            return not spoken and (not j or sentence[j - 1].kind not in {"cue", "enter", "det", "cmp"})
         if e.kind not in {"np", "comma", "and", "amount", "open", "close"}:
             return False
     return False
@@ -302,7 +281,7 @@ def _count_all(state: Reading, e: Element) -> list[Named]:
     return stock.of(e.type)[:count]
 
 
-def _introduced(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911, PLR0912 - one answer per case
+def _introduced(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per case
     """Return the rooms of a phrase with a number or an indefinite article."""
     e, stock, role = sentence[k], state.inventory, _role(sentence[k])
     count = int(e.number or (2 if e.plural and e.type not in PLURAL_NAMES else 1))
@@ -322,14 +301,7 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
         return []  # "three baths. Two of the bedrooms have an en suite": of those that were counted
     if slots and k > 1 and sentence[k - 1].kind == "verb" and (sentence[k - 2].kind, sentence[k - 2].value) == ("pron", "one"):
         return [close(slots[0], role, e.text)]  # "four bedrooms, one of which is a guest room"
-    if "another" in e.det:
-        bare = "bare_nouns" in state.heard.lexicon.traits  # "三间卧室：大儿子一间，小女儿一间": the second of theirs
-        if role and e.type == "bedroom" and len(told) >= count and (bare or not all(r.whole for r in told)):
-            return [close(r, role, e.text) for r in told[:count]]
-    elif role and role != "ensuite":
-        here = [r for r in same if r.role == role]
-        if here and len(here) == count:
-            return here
+    if role and role != "ensuite":
         if len(told) >= count and e.type != "bathroom":
             return [close(r, role, e.text) for r in told[:count]]
     elif not role and slots and not _contrasted(sentence, k):
@@ -339,7 +311,7 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
         if known and count <= len(slots) and _before(sentence, k, "cue", "colon", "open", "verb", "comma") is None:
             return [close(r, "", e.text, level) for r in slots[:count]]
     once = count == 1 and e.number is None and not role and e.type in ALONE and "another" not in e.det
-    if once and same and _before(sentence, k) is None and not (e.role == "landing" and not any(map(_landing, same))):
+    if once and same and not (e.role == "landing" and not any(map(_landing, same))):
         return same[:1]
     made = _new(state, e, count, role, level)
     for room in made:

@@ -39,15 +39,7 @@ def ban(sentence: list[Element]) -> None:
 def _negate(sentence: list[Element], k: int, j: int) -> None:
     """Apply the negation at k to the phrase at j."""
     e, phrase, rest = sentence[k], sentence[j], sentence[j + 1 : j + 3]
-    if (
-        len(rest) == 2
-        and phrase.type == "bathroom"
-        and not phrase.definite
-        and rest[0].value in {"in", "has"}
-        and rest[1].type == "bedroom"
-    ):
-        e.kind, phrase.kind, rest[0].kind = "used", "flag", "no_bath"  # "no bath in the master"
-    elif [x.kind for x in rest] == ["neg", "flag"] and rest[1].value == "daylight":
+    if [x.kind for x in rest] == ["neg", "flag"] and rest[1].value == "daylight":
         e.kind = rest[0].kind = "used"  # "no bathroom without a window": all have one
         phrase.det.add("all")
     elif any(m.bound in TURNED for m in phrase.amounts):
@@ -59,10 +51,6 @@ def _negate(sentence: list[Element], k: int, j: int) -> None:
     elif phrase.adjectives & {"open", "combined"} and phrase.type in SOCIAL:
         e.kind = "used"  # "no open kitchen" is a closed one
         phrase.adjectives = (phrase.adjectives - {"open", "combined"}) | {"closed"}
-    elif phrase.type == "bathroom" and "own" in phrase.det:
-        e.kind, phrase.kind = "used", "no_own"
-    elif phrase.type == "hallway" and (phrase.said or phrase.size != 1.0):
-        e.kind = phrase.kind = "used"  # "no narrow corridors" allows others
     elif not phrase.definite or e.removes:
         e.kind = "used"
         _list(sentence, j)
@@ -114,11 +102,7 @@ def _list(sentence: list[Element], j: int) -> None:
         if e.kind in {"comma", "and", "or"}:
             joined = e.kind if joined != "or" else joined
             continue
-        if e.kind == "det":
-            continue
         if e.kind != "np" or not joined or e.number is not None or e.amounts or e.definite or e.det & {"own", "another"}:
-            return
-        if (joined == "and" and "indefinite" in e.det) or e.adjectives & {"open", "combined"}:
             return
         rest = next((x for x in sentence[i + 1 :] if x.kind not in {"np", "comma", "det"}), None)
         if joined == "comma" and not titled and (rest is None or rest.kind != "or"):

@@ -87,12 +87,10 @@ def sentences(marks: Sequence[Mark], heard: Words) -> list[list[Element]]:
     for k, mark in enumerate(marks):
         here = found[-1]
         line = _line(marks, k, heard) if mark.kind == "line" else ""
-        if (
-            mark.kind == "stop"
-            and here
-            and (here[-1].kind, here[-1].value) == ("num", "figure")
-            and (k < 2 or marks[k - 2].kind in {"line", "comma"})
-        ):
+        listed = (
+            (here[-1].kind, here[-1].value) == ("num", "figure") and (k < 2 or marks[k - 2].kind in {"line", "comma"}) if here else False
+        )
+        if mark.kind == "stop" and listed:
             here.pop().kind = "fill"  # "1. kitchen"
             here += [replace(mark, kind="comma", text=",")] if here else []
         elif line == "comma":
@@ -313,6 +311,3 @@ def _parted(sentence: list[Element]) -> None:
         )
         if several and e.role == "ensuite" and not e.det:
             sentence[k : k + 1] = [Element("pron", "one", e.first, e.first, e.text, number=e.number), replace(e, number=None)]
-        near = next((x for x in reversed(sentence[:k]) if x.kind not in {"relative", "det", "word"}), None)
-        if e.kind == "np" and "indefinite" in e.det and e.number is None and near is not None and near.kind in {"factor", "cmp"}:
-            e.det = (e.det - {"indefinite"}) | {"definite"}

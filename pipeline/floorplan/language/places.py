@@ -18,29 +18,15 @@ def level(c: Clause, k: int, e: Element) -> int:
     for room in (c.stock.get(i) for i in known((*c.latest, *owners))):
         room.level = int(e.value)
     c.state.heights |= {i.removeprefix("*zone_"): int(e.value) for i in c.latest if i.startswith("*")}
-    if ahead is not None and ahead.kind == "comma":
-        c.run = []
     return k + 1
 
 
 def wing(c: Clause, k: int, e: Element) -> int:
     """Read "the bedrooms in one wing": they are a zone."""
     c.state.understood(e.first, e.last)
-    before, ahead = c.near(k - 1), c.ahead(k + 1, "det", "colon", "verb", "pron")
-    if (before is None or before.kind in {"comma", "colon", "and"}) and ahead is not None and ahead.kind == "np":
-        close_wing(c)  # "on one side the bedrooms, on the other kitchen and living room"
-        c.wing = (e, [])
-    else:
-        _settle(c, e, ids_of(c.run))
+    _settle(c, e, ids_of(c.run))
     c.run = []
     return k + 1
-
-
-def close_wing(c: Clause) -> None:
-    """Make a zone of the rooms that were named behind the words for a wing."""
-    if c.wing is not None:
-        (e, ids), c.wing = c.wing, None
-        _settle(c, e, tuple(dict.fromkeys(ids)))
 
 
 def _settle(c: Clause, e: Element, ids: tuple[str, ...]) -> None:

@@ -25,12 +25,6 @@ def point(state: Reading, before: list[Element], e: Element, but: Group) -> Grou
         return here[0] if here else (state.topic or (state.past[-1] if state.past else ()))
     pair: Group = next((g for g in reversed(heard) if len(g) == 2), ())
     single = tuple(dict.fromkeys(i for g in reversed(heard) for i in g if i not in but))
-    if e.value == "pair":  # "in between"
-        if not here and len(state.topic) == 2:
-            return state.topic
-        twins: Group = next((g for g in reversed(heard) if len(g) == 2 and not all(map(state.inventory.owned, g))), ())
-        several = any(x.kind == "zone" for x in before) or (not twins and sum(not set(g) <= set(but) for g in here) > 2)
-        return () if several else twins or single[:2]
     if e.value == "both":
         return pair if (pair and pair == heard[-1]) or len(single) < 2 else single[:2]
     plural: Group = next((g for g in reversed(heard) if len(g) > 1), heard[-1] if heard else ())

@@ -189,9 +189,6 @@ def complete(c: Clause) -> None:
     (cue, group), c.waiting = c.waiting, None
     rooms = tuple(i for i in c.subject if i not in group)
     if cue.value == "ensuite":
-        if not rooms:  # "an en suite to the bedroom": the words themselves are the room
-            bath = Element("np", "", cue.first, cue.last, cue.text, type="bathroom", role="ensuite")
-            rooms = (c.stock.add(bath.type, bath.role, bath.text, None).id,)
         c.give(rooms, group, cue)
     elif rooms and c.deny():
         c.state.say("ban" if cue.value in {"near", "wall"} else "not_connected", rooms, group, cue)

@@ -36,17 +36,13 @@ def revise(marks: Sequence[Mark], heard: Words) -> Revised:
 
 
 def _told(marks: Sequence[Mark], heard: Words) -> list[Mark]:
-    """Tell "Balkon: nein" from a correction, and find the corrections of "first we wanted three baths, now only two"."""
-    made, before = list(marks), False
+    """Tell "Balkon: nein" from a correction."""
+    made = list(marks)
     for k, mark in enumerate(made):
-        said = set(mark.text.split())
-        before = (before or bool(heard.lexicon.sign("earlier") & said)) and mark.kind not in ENDS
         between = k and k + 1 < len(made) and made[k - 1].kind == made[k + 1].kind == "room"
         nope = mark.kind in {"fix", "fill", "word"} and mark.text in heard.lexicon.sign("nope") and k and made[k - 1].kind == "colon"
         if nope or (mark.kind == "fix" and between and mark.text in heard.lexicon.sign("not_towards")):  # 不对 between two rooms
             made[k] = replace(mark, kind="neg")
-        elif before and mark.text in heard.lexicon.sign("now") and mark.kind not in {"fix", *NAMED}:
-            made[k] = replace(mark, kind="fix")
     return made
 
 

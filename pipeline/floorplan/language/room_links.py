@@ -91,7 +91,6 @@ def join(draft: Draft, state: Reading) -> None:
     ways = [
         (way, only) for way, only in itertools.pairwise(facts) if only.what == "only" and way.what in {"door", "leads"} and way.a == only.a
     ]
-    _circles(draft, facts, ways)
     for fact in facts:
         if fact.what == "own":
             _belongings(draft, stock, fact, ways)
@@ -112,22 +111,6 @@ def join(draft: Draft, state: Reading) -> None:
     _zones(draft, state)
     for fact in facts:
         _apart(draft, state, fact)
-
-
-def _circles(draft: Draft, facts: Sequence[Fact], ways: Sequence[tuple[Fact, Fact]]) -> None:
-    """Refuse rooms that are to be reached only through themselves or through each other."""
-    for fact in facts:
-        if fact.what == "itself" and fact.a:
-            draft.refuse(f"{fact.a[0]} cannot be reached through itself", "say what it opens off", [(fact.first, fact.last)], "links")
-    hosts = {room: (way.b[0], way) for way, _ in ways if way.what == "door" and len(way.b) == 1 for room in way.a}
-    for start in hosts:
-        seen, here = [start], hosts[start][0]
-        while here in hosts and here not in seen:
-            seen.append(here)
-            here = hosts[here][0]
-        if here == start and len(seen) > 1:
-            spans = [(hosts[n][1].first, hosts[n][1].last) for n in seen]
-            draft.refuse(f"{' and '.join(seen)} are each to be reached only through the other", "say what one opens off", spans, "links")
 
 
 def _belongings(draft: Draft, stock: Inventory, fact: Fact, ways: Sequence[tuple[Fact, Fact]]) -> None:

@@ -9,7 +9,7 @@ from pipeline.floorplan.language.clause import Clause, ids_of, known
 from pipeline.floorplan.language.facts import GROUND_FLOOR, PERSONAL, ROLES, SOCIAL, Reading
 from pipeline.floorplan.language.naming import fresh
 from pipeline.floorplan.language.phrases import Element, backward
-from pipeline.floorplan.language.places import close_wing, level, wing, zone
+from pipeline.floorplan.language.places import level, wing, zone
 from pipeline.floorplan.language.pronouns import count_of
 from pipeline.floorplan.language.relations import complete, enter, merge, merge_after, no_door, relate
 from pipeline.floorplan.language.sizes import LIKE, attach, compare, factor, measures_home, share
@@ -27,7 +27,6 @@ def read(state: Reading, sentence: list[Element]) -> None:
         k = READERS[e.kind](c, k, e) if e.kind in READERS else k + 1
     if c.waiting:
         complete(c)
-    close_wing(c)
     state.topic = known(c.subject) or state.topic
     state.past = [*state.past, *(tuple(e.ids) for e in c.sentence if e.ids and e.kind == "np")][-12:]
 
@@ -130,9 +129,6 @@ def _cast(c: Clause, who: Element, role: str) -> None:
 
 
 def _verb(c: Clause, k: int, e: Element) -> int:
-    before = next((x for x in reversed(c.sentence[:k]) if x.kind not in {"word", "flag"}), None)
-    if before is not None and before.kind in {"and", "comma"} and c.subject and c.objects:
-        c.run = []  # "the bedroom has a bath and is ...": the subject goes on
     c.verb, c.single = True, c.says(e, "singular")
     return k + 1
 
@@ -169,12 +165,6 @@ def _and(c: Clause, k: int, _: Element) -> int:
 def _but(c: Clause, k: int, _: Element) -> int:
     c.negative = None  # "not open, but next to the dining room"
     return k + 1
-
-
-def _no_bath(c: Clause, k: int, e: Element) -> int:
-    said = tuple(i for i in known(c.subject or c.latest) if c.stock.get(i).type == "bedroom")
-    c.state.say("no_ensuite", ("*bathroom",), c.named(k + 1) if e.kind == "no_bath" else said, e)
-    return k + 1 + (e.kind == "no_bath")
 
 
 def _adj(c: Clause, k: int, e: Element) -> int:
@@ -246,10 +236,7 @@ def _pron(c: Clause, k: int, e: Element) -> int:
         c.stands_for(e, (room.id,))
         c.run, c.subject = run if level else [], (room.id,)
         return k + 1
-    if e.value == "group" and len(c.run) > 1 and c.says(e, "every"):
-        group: tuple[str, ...] = ids_of(c.run)
-    else:
-        group = c.point(e, k, c.subject if e.value == "it" and (c.objects or c.run) else ())
+    group = c.point(e, k, c.subject if e.value == "it" and (c.objects or c.run) else ())
     spoken = [i for g in (c.subject, *reversed(c.state.past)) for i in known(g)]
     bed = next((i for i in spoken if c.stock.get(i).type == "bedroom"), None)
     if e.value == "rest" and bed is not None and c.state.parted in {"", "bedroom"} and (count := count_of(c.state, e.text)):
@@ -281,8 +268,6 @@ def _det(c: Clause, k: int, e: Element) -> int:
         return k + 1
     if e.value == "other" and behind is not None and behind.kind in {"level", "colon"}:
         return _every(c, k, e)
-    if e.value == "all" and before is not None and before.kind == "every":
-        return k + 1
     if e.value == "all" and c.run and kind != "np":
         again = c.run[-1].det & {"all", "each"} and before is c.run[-1]  # "..., 所有卧室都从走廊进出"
         group = tuple(c.run[-1].ids) if again else ids_of(c.run)
@@ -329,9 +314,7 @@ def _flag(c: Clause, k: int, e: Element) -> int:
     last = c.state.facts[-1] if c.state.facts else None
     if e.value == "daylight":
         return _windows(c, k, e)
-    if e.value == "ends" and len(c.latest) == 2 and before is not None and before.kind in {"np", "verb", "det", "word", "cue", "home"}:
-        c.state.say("away", c.latest[:1], c.latest[1:], e)
-    elif e.value == "too" and last is not None:  # "..., ebenso das Bad"
+    if e.value == "too" and last is not None:  # "..., ebenso das Bad"
         ahead = c.near(k + 1)
         rooms = c.named(k + 1) if ahead is not None and ahead.kind == "np" else c.listed()
         c.state.say(last.what, rooms, last.b, e)
@@ -372,6 +355,6 @@ def _windows(c: Clause, k: int, e: Element) -> int:
 
 READERS: Mapping[str, Callable[[Clause, int, Element], int]] = {
     "np": _np, "home": _home, "amount": _amount, "owner": _owner, "verb": _verb, "relative": _relative, "neg": _neg, "comma": _comma, "and": _and, "but": _but,
-    "no_bath": _no_bath, "no_own": _no_bath, "adj": _adj, "size": _size, "enter": _enter, "outside": _outside, "via": _via, "level": level, "wing": wing, "zone": zone,
+    "adj": _adj, "size": _size, "enter": _enter, "outside": _outside, "via": _via, "level": level, "wing": wing, "zone": zone,
     "pron": _pron, "det": _det, "every": _every, "flag": _flag, "cue": relate, "factor": factor, "cmp": compare,
 }  # fmt: skip

@@ -27,8 +27,6 @@ def measures_home(c: Clause, k: int, mark: Mark, ids: Group) -> bool:
     rooms = [x for x in c.sentence if x.kind == "np"]
     times = mark.number / usual(c, ids)
     before, behind = c.near(k - 1), c.near(k + 1)
-    if mark.last <= c.sentence[k].first:  # "1BR 1BA 550 sf galley kitchen"
-        return rooms[0].last <= mark.first and times > LARGE
     if mark.total or (behind is not None and behind.value == "total"):
         return True
     if sum(bool(x.amounts) for x in rooms) != 1:
@@ -105,9 +103,6 @@ def compare(c: Clause, k: int, e: Element) -> int:
         c.state.say("area_equal", known(rooms if len(rooms) > 1 else c.subject), (), e, LIKE)
         return k + 1
     right, j = c.after(k + 1, "cmp", left)
-    ahead = next((x for x in c.sentence[k + 1 : j] if x.kind == "np"), None)
-    if ahead is not None and "largest" in ahead.adjectives:
-        right = tuple(r.id for r in c.stock.of(ahead.type))
     behind = c.near(j)
     if c.factor is None and behind is not None and behind.kind == "factor":
         c.factor, j = behind, j + 1

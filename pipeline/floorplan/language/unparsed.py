@@ -11,7 +11,7 @@ from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.tokens import Mark
 
 EMPTY = {"fill", "ignored", "adverb", "verb", "join", "but", "comma", "stop", "line", "colon", "open", "close", "slash", "bullet", "dash", "hyphen", "clf", "times", "relative", "home", "long", "bound", "enough", "fix", "unit", "to", "reciprocal", "look"}  # fmt: skip
-READ = {"used", "no_bath", "no_own", "corner"}  # what was read with its neighbours
+READ = {"used", "corner"}  # what was read with its neighbours
 # flags that hold wherever they stand, and such as only underline what is said
 STRESS = {"total", "only", "closed", "luxury", "wheelchair", "step_free", "single", "no_hall", "shape_l", "shape_t", "rectangle", "narrow", "chamfered"}  # fmt: skip
 POINTING = {"each", "other", "own", "another"}  # determiners that say something

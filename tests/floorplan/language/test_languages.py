@@ -57,7 +57,6 @@ def test_every_stated_thing_points_at_its_words(case):
     [
         ("No bathroom, but the bedroom has an en suite.", {"bathroom", "en suite"}),
         ("Ten bedrooms in a 40 m2 flat", {"40 m2"}),
-        ("A bedroom that can only be reached through itself, a kitchen", {"itself"}),
         ("A flat of 60 m2, total area 90 m2, with two bedrooms", {"60 m2", "90 m2"}),
         ("A studio with three bedrooms", {"studio", "bedrooms"}),
         ("A two-bedroom flat. The third bedroom has a balcony.", {"bedroom"}),

@@ -2,7 +2,6 @@
 
 import pytest
 
-from pipeline.errors import RefusedError
 from pipeline.floorplan.language import parse
 from pipeline.floorplan.language.parser import understand
 
@@ -47,11 +46,6 @@ def test_a_list_goes_on_after_what_something_is_open_to(prompt):
     assert links(understand(prompt)) == {("open", "kitchen", "living")}
 
 
-def test_an_exception_to_no_bathroom_is_no_way_out():
-    with pytest.raises(RefusedError, match="bathroom"):
-        parse("no bathroom but an en suite to the bedroom")
-
-
 def test_all_of_a_list_is_the_list():
     program = understand("kitchen, living room, 2 bedrooms, bathroom - all off a central hallway")
     assert links(program) == {
@@ -65,19 +59,9 @@ def test_half_baths_are_counted_as_agents_do():
         assert (len(program.select("bathroom")), len(program.select("wc"))) == (2, 1)
 
 
-def test_a_bound_without_its_unit_has_the_one_said_before():
-    (kitchen,) = understand("the kitchen must be at least 12 square meters but no more than 15").select("kitchen")
-    assert (kitchen.area.min, kitchen.area.max) == (12.0, 15.0)
-
-
 def test_the_largest_room_is_larger_than_all_others():
     program = understand("two bedrooms and a kitchen. The living room should be the largest room")
     assert {(r.a, r.b) for r in program.relations if r.kind == "area_order"} == {("living", b) for b in ("bed", "bed_2", "kitchen")}
-
-
-def test_a_room_that_is_reached_only_through_what_it_leads_to_is_refused():
-    with pytest.raises(RefusedError):
-        parse("A bathroom that can be reached only through the bedroom, and the bedroom only through the bathroom")
 
 
 @pytest.mark.parametrize("prompt", ["一室一厅,厨房要和客厅分开", "a one-bedroom flat with the kitchen separate from the living room"])
