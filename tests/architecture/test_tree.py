@@ -30,6 +30,17 @@ def test_modules_are_small():
     assert not {n: count for n, count in lines.items() if n.endswith("/__init__.py") and count > 40}
 
 
+def test_functions_are_short():
+    functions = [
+        (name(path), node.name, node.end_lineno - node.lineno + 1)
+        for path in SOURCES
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+    ]
+    assert len(functions) > 1000
+    assert not [found for found in functions if found[2] > 60]
+
+
 def test_no_drawers():
     parts = {part.removesuffix(".py") for p in MODULES for part in p.relative_to(ROOT).parts}
     assert not parts & DRAWERS

@@ -177,22 +177,7 @@ def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     metal = scheme.handle
     squash = np.array([1.0, d / w, 1.0])
     if form == "crystal" or (h > 0.3 and form != "spots"):
-        disc = revolve([(0.5 * w, h - 0.03), (0.5 * w, h - 0.008), (0.47 * w, h)], 28)
-        panel = [box((-w / 2, w / 2), (-w / 2, w / 2), (h - 0.03, h), 0.006)]
-        edged = form in ("square", "frame")
-        made = pieces("plate", [s.scaled(squash) for s in (panel if edged else disc)], metal)
-        rows = 3
-        for k in range(rows):
-            r = 0.47 * w * (1 - 0.3 * k)
-            low = 0.62 * (h - 0.03) * (1 - k / (rows - 1)) if rows > 1 else 0.0
-            count = max(10, int(22 * (1 - 0.3 * k)))
-            rods = []
-            for a in turns(count, 0.1 * k):
-                reach = r / max(abs(math.cos(a)), abs(math.sin(a))) if edged else r
-                x, y = reach * math.cos(a), reach * math.sin(a) * d / w
-                rods.append(rod((x, y, low), (x, y, h - 0.03), 0.007, n=5))
-            made += pieces("drops", rods, CRYSTAL if form == "crystal" else GLOW)
-        return Shape(made)
+        return Shape(_rain(form, size, scheme))
     if form == "disc":
         rim = min(0.4 * h, 0.05)
         made = pieces(
@@ -232,6 +217,28 @@ def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         box((-0.012, 0.012), (-0.42 * d, 0.42 * d), (0.72 * h, 0.84 * h)),
     ]
     return Shape(made + pieces("spokes", bars, metal) + pieces("mount", revolve([(0.08, 0.84 * h), (0.08, h)], 20), metal))
+
+
+def _rain(form: str, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+    """Build rods in tiers that hang from a plate: of crystal, or lit."""
+    w, d, h = size
+    squash = np.array([1.0, d / w, 1.0])
+    disc = revolve([(0.5 * w, h - 0.03), (0.5 * w, h - 0.008), (0.47 * w, h)], 28)
+    panel = [box((-w / 2, w / 2), (-w / 2, w / 2), (h - 0.03, h), 0.006)]
+    edged = form in ("square", "frame")
+    made = pieces("plate", [s.scaled(squash) for s in (panel if edged else disc)], scheme.handle)
+    rows = 3
+    for k in range(rows):
+        r = 0.47 * w * (1 - 0.3 * k)
+        low = 0.62 * (h - 0.03) * (1 - k / (rows - 1)) if rows > 1 else 0.0
+        count = max(10, int(22 * (1 - 0.3 * k)))
+        rods = []
+        for a in turns(count, 0.1 * k):
+            reach = r / max(abs(math.cos(a)), abs(math.sin(a))) if edged else r
+            x, y = reach * math.cos(a), reach * math.sin(a) * d / w
+            rods.append(rod((x, y, low), (x, y, h - 0.03), 0.007, n=5))
+        made += pieces("drops", rods, CRYSTAL if form == "crystal" else GLOW)
+    return made
 
 
 def _lattice(size: Size, scheme: Scheme) -> tuple[Piece, ...]:

@@ -20,65 +20,43 @@ def turned_along(shape: Shape) -> Shape:
     return Shape(tuple(replace(p, solid=p.solid.turned("z", math.pi / 2)) for p in shape.base))
 
 
-def floor_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:  # noqa: PLR0911 - one return per form
+def floor_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a shade on a pole, on three legs, or on an arc, a column of paper, globes on a stem, or a reading lamp."""
     w, d, h = size
     if form in ("arc", "reading") and d > w:
         return turned_along(floor_lamp(rng, form, (d, w, h), scheme))
-    metal = scheme.handle
     r = w / 2
     if form == "arc":
         return Shape(_arc_lamp(rng, size, scheme))
     if form == "paper":
-        foot = [slab(circle(0.86 * r, 24), (0.0, 0.02), 0.003)]
-        rims = [
-            ring(
-                (0.8 * r + 0.12 * r * math.sin(2.4 * k), 0.8 * r + 0.12 * r * math.sin(2.4 * (k + 1))),
-                (0.8 * r + 0.12 * r * math.sin(2.4 * k) - 0.006, 0.8 * r + 0.12 * r * math.sin(2.4 * (k + 1)) - 0.006),
-                (0.02 + k * (h - 0.03) / 6, 0.02 + (k + 1) * (h - 0.03) / 6),
-                18,
-            )
-            for k in range(6)
-        ]
-        hoops_ = [s for z in (h - 0.01,) for s in ring((r, r), (r - 0.012, r - 0.012), (z, z + 0.01), 18)]
-        return Shape(
-            pieces("foot", foot, scheme.timber)
-            + pieces("paper", [s for rim in rims for s in rim], GLOW)
-            + pieces("hoop", hoops_, scheme.timber)
-        )
+        return Shape(_paper_column(size, scheme))
     if form == "globes":
-        made = pieces("foot", revolve([(0.62 * r, 0.0), (0.62 * r, 0.02), (0.014, 0.03), (0.011, h - 0.02)], 20), metal)
-        for k, z in enumerate((0.62, 0.78, 0.93)):
-            q = 0.36 * r
-            a = 2.2 * k + 0.4
-            x, y = (r - q) * math.cos(a), (min(r, d / 2) - q) * math.sin(a)
-            made += shade(rng, scheme, "globe", q, (z * h - q, min(z * h + q, h)), (x, y), 14)
-            u = np.array([x, y]) / max(math.hypot(x, y), 1e-6)
-            made += pieces(
-                "arms", rod((0.01 * u[0], 0.01 * u[1], z * h), (x - q * u[0] * 0.99, y - q * u[1] * 0.99, z * h), 0.006, n=6), metal
-            )
-        return Shape(made)
+        return Shape(_stem_of_globes(rng, size, scheme))
     if form == "reading":
-        q = min(0.5 * d, 0.4 * w)
-        x0 = -w / 2 + q
-        foot = revolve([(q, 0.0), (q, 0.02), (0.014, 0.03), (0.011, 0.86 * h)], 20, (x0, 0.0))
-        arm = tube(curve([(x0, 0, 0.86 * h), (x0 + 0.06 * w, 0, 0.95 * h), (0.1 * w, 0, h - 0.03), (0.32 * w, 0, h - 0.05)], 2), 0.009, 8)
-        q = min(0.2 * w, 0.5 * d)
-        head = shade(rng, scheme, "cone", q, (h - 0.05 - 1.3 * q, h - 0.05), (w / 2 - q, 0.0), 16)
-        return Shape(pieces("foot", foot, metal) + pieces("arm", arm, metal) + head)
+        return Shape(_reading_lamp(rng, size, scheme))
     kind = shade_word(rng, scheme, "globe cage lantern paper crystal mushroom cylinder")
     tall = min(0.26 * h, 0.95 * w)
     made = shade(rng, scheme, kind, r, (h - tall, h))
-    if form == "tripod":
-        top = h - tall
-        ends = [(0.95 * r * math.cos(a), 0.95 * r * math.sin(a)) for a in turns(3, math.pi / 2)]
-        made += pieces("legs", [rod((x, y, 0), (0.03 * x / r, 0.03 * y / r, top - 0.035), 0.011, 0.015, 8) for x, y in ends], scheme.timber)
-        if rng.random() < 0.5:
-            made += pieces("shelf", slab(circle(0.42 * r, 20), (0.42 * top, 0.42 * top + 0.012)), scheme.timber)
-        return Shape(
-            made
-            + pieces("hub", revolve([(0.05, top - 0.035), (0.05, top - 0.02), (0.012, top - 0.012), (0.008, top + 0.3 * tall)], 14), metal)
-        )
+    return Shape(made + (_tripod(rng, size, tall, scheme) if form == "tripod" else _pole(rng, size, tall, scheme)))
+
+
+def _tripod(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> tuple[Piece, ...]:
+    """Build three legs, the hub on them, sometimes a shelf between them; the shade above is `tall`."""
+    w, _, h = size
+    r, metal = w / 2, scheme.handle
+    top = h - tall
+    ends = [(0.95 * r * math.cos(a), 0.95 * r * math.sin(a)) for a in turns(3, math.pi / 2)]
+    made = pieces("legs", [rod((x, y, 0), (0.03 * x / r, 0.03 * y / r, top - 0.035), 0.011, 0.015, 8) for x, y in ends], scheme.timber)
+    if rng.random() < 0.5:
+        made += pieces("shelf", slab(circle(0.42 * r, 20), (0.42 * top, 0.42 * top + 0.012)), scheme.timber)
+    hub = revolve([(0.05, top - 0.035), (0.05, top - 0.02), (0.012, top - 0.012), (0.008, top + 0.3 * tall)], 14)
+    return made + pieces("hub", hub, metal)
+
+
+def _pole(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> tuple[Piece, ...]:
+    """Build a round foot with a pole under a shade that is `tall`, turned where the style likes ornament."""
+    w, _, h = size
+    r, metal = w / 2, scheme.handle
     if scheme.manner.ornament > 0.5:
         steps = [
             (0.6 * r, 0.0),
@@ -93,9 +71,59 @@ def floor_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
             (0.01, h - tall),
             (0.008, h - 0.7 * tall),
         ]
-        return Shape(made + pieces("pole", revolve(steps, 16), scheme.timber if rng.random() < 0.5 else metal))
+        return pieces("pole", revolve(steps, 16), scheme.timber if rng.random() < 0.5 else metal)
     pole = revolve([(0.62 * r, 0.0), (0.62 * r, 0.018), (0.013, 0.028), (0.010, h - 0.7 * tall)], 20)
-    return Shape(made + pieces("pole", pole, metal))
+    return pieces("pole", pole, metal)
+
+
+def _paper_column(size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+    """Build a column of paper in waves on a wooden foot, a hoop at its top."""
+    w, _, h = size
+    r = w / 2
+    foot = [slab(circle(0.86 * r, 24), (0.0, 0.02), 0.003)]
+    rims = [
+        ring(
+            (0.8 * r + 0.12 * r * math.sin(2.4 * k), 0.8 * r + 0.12 * r * math.sin(2.4 * (k + 1))),
+            (0.8 * r + 0.12 * r * math.sin(2.4 * k) - 0.006, 0.8 * r + 0.12 * r * math.sin(2.4 * (k + 1)) - 0.006),
+            (0.02 + k * (h - 0.03) / 6, 0.02 + (k + 1) * (h - 0.03) / 6),
+            18,
+        )
+        for k in range(6)
+    ]
+    hoops_ = [s for z in (h - 0.01,) for s in ring((r, r), (r - 0.012, r - 0.012), (z, z + 0.01), 18)]
+    return (
+        pieces("foot", foot, scheme.timber)
+        + pieces("paper", [s for rim in rims for s in rim], GLOW)
+        + pieces("hoop", hoops_, scheme.timber)
+    )
+
+
+def _stem_of_globes(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+    """Build three lit globes on arms around a stem."""
+    w, d, h = size
+    r, metal = w / 2, scheme.handle
+    made = pieces("foot", revolve([(0.62 * r, 0.0), (0.62 * r, 0.02), (0.014, 0.03), (0.011, h - 0.02)], 20), metal)
+    for k, z in enumerate((0.62, 0.78, 0.93)):
+        q = 0.36 * r
+        a = 2.2 * k + 0.4
+        x, y = (r - q) * math.cos(a), (min(r, d / 2) - q) * math.sin(a)
+        made += shade(rng, scheme, "globe", q, (z * h - q, min(z * h + q, h)), (x, y), 14)
+        u = np.array([x, y]) / max(math.hypot(x, y), 1e-6)
+        made += pieces("arms", rod((0.01 * u[0], 0.01 * u[1], z * h), (x - q * u[0] * 0.99, y - q * u[1] * 0.99, z * h), 0.006, n=6), metal)
+    return made
+
+
+def _reading_lamp(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+    """Build a stem on a foot, a bent arm, a cone at its end."""
+    w, d, h = size
+    metal = scheme.handle
+    q = min(0.5 * d, 0.4 * w)
+    x0 = -w / 2 + q
+    foot = revolve([(q, 0.0), (q, 0.02), (0.014, 0.03), (0.011, 0.86 * h)], 20, (x0, 0.0))
+    arm = tube(curve([(x0, 0, 0.86 * h), (x0 + 0.06 * w, 0, 0.95 * h), (0.1 * w, 0, h - 0.03), (0.32 * w, 0, h - 0.05)], 2), 0.009, 8)
+    q = min(0.2 * w, 0.5 * d)
+    head = shade(rng, scheme, "cone", q, (h - 0.05 - 1.3 * q, h - 0.05), (w / 2 - q, 0.0), 16)
+    return pieces("foot", foot, metal) + pieces("arm", arm, metal) + head
 
 
 def _arc_lamp(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:

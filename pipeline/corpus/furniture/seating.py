@@ -235,48 +235,7 @@ def chinese_chair(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     apron += [box((s * x - 0.006, s * x + 0.006), (-y + 0.02, y - 0.02), (seat - 0.08, seat - board), 0.002) for s in (-1, 1)]
     made += pieces("apron", apron, wood)
     arm = seat + (0.5 if form != "rose" else 0.62) * (h - seat)
-    r = 0.0145
-    upper: list[Solid] = []
-    if form == "horseshoe":
-        bow = arc((0.0, 0.12 * y), x + 0.012, 0.0, math.pi, 10, (0.88 * y) / (x + 0.012))
-        high = np.interp(bow[:, 1], [0.12 * y, y], [arm, h - r])
-        path = np.column_stack([bow, high])
-        start = np.array([x + 0.012, -y, arm - 0.01])
-        upper += tube(np.concatenate([[start], path, [start * np.array([-1, 1, 1])]]), r, 8)
-        upper += [
-            rod(
-                (s * x, t * y, seat),
-                (s * (x + 0.01 * (t < 0)), t * y * (1.0 if t < 0 else 0.55), (arm - 0.01 if t < 0 else arm + 0.1 * (h - arm)) - r),
-                0.014,
-                n=8,
-            )
-            for s in (-1, 1)
-            for t in (-1, 1)
-        ]
-        top = h - 2 * r
-    else:
-        top = h - 0.045 if form == "official" else h - 2 * r
-        upper += [rod((s * x, y, seat), (s * x, y, top), 0.016, 0.014, 10) for s in (-1, 1)]
-        upper += [rod((s * x, -y, seat), (s * x, -y, arm - r), 0.015, n=8) for s in (-1, 1)]
-        upper += [rod((s * x, -y - 0.03, arm), (s * x, y - 0.016, arm + 0.015), r, n=8) for s in (-1, 1)]
-        if form == "official":
-            upper += tube(
-                curve(
-                    [
-                        (-x - 0.03, y, h - 0.04),
-                        (-0.5 * x, y, h - 0.028),
-                        (0, y, h - 0.02),
-                        (0.5 * x, y, h - 0.028),
-                        (x + 0.03, y, h - 0.04),
-                    ],
-                    2,
-                ),
-                0.017,
-                8,
-            )
-        else:
-            upper += [rod((-x, y, h - r), (x, y, h - r), r, n=8)]
-            upper += [rod((-x + 0.016, y, z), (x - 0.016, y, z), 0.009, n=8) for z in (seat + 0.09, seat + 0.62 * (top - seat))]
+    upper, top = (_bow(x, y, seat, arm, h), h - 2 * 0.0145) if form == "horseshoe" else _yoke(form, x, y, seat, arm, h)
     made += pieces("frame", upper, wood)
     splat = box((-0.085, 0.085), (y - 0.007, y + 0.007), (seat, top - 0.004 if form != "rose" else seat + 0.6 * (top - seat)), 0.003)
     made += pieces("splat", splat, wood)
@@ -291,3 +250,54 @@ def chinese_chair(rng: np.random.Generator, form: str, size: Size, scheme: Schem
             0.008,
         )
     return Shape(made)
+
+
+def _bow(x: float, y: float, seat: float, arm: float, h: float) -> list[Solid]:
+    """Build the rail of a horseshoe armchair, which rises to the back, and its posts."""
+    r = 0.0145
+    upper: list[Solid] = []
+    bow = arc((0.0, 0.12 * y), x + 0.012, 0.0, math.pi, 10, (0.88 * y) / (x + 0.012))
+    high = np.interp(bow[:, 1], [0.12 * y, y], [arm, h - r])
+    path = np.column_stack([bow, high])
+    start = np.array([x + 0.012, -y, arm - 0.01])
+    upper += tube(np.concatenate([[start], path, [start * np.array([-1, 1, 1])]]), r, 8)
+    upper += [
+        rod(
+            (s * x, t * y, seat),
+            (s * (x + 0.01 * (t < 0)), t * y * (1.0 if t < 0 else 0.55), (arm - 0.01 if t < 0 else arm + 0.1 * (h - arm)) - r),
+            0.014,
+            n=8,
+        )
+        for s in (-1, 1)
+        for t in (-1, 1)
+    ]
+    return upper
+
+
+def _yoke(form: str, x: float, y: float, seat: float, arm: float, h: float) -> tuple[list[Solid], float]:
+    """Build the posts, arms and top rail of an official's hat chair or a rose chair; returns them with the height of the posts."""
+    r = 0.0145
+    upper: list[Solid] = []
+    top = h - 0.045 if form == "official" else h - 2 * r
+    upper += [rod((s * x, y, seat), (s * x, y, top), 0.016, 0.014, 10) for s in (-1, 1)]
+    upper += [rod((s * x, -y, seat), (s * x, -y, arm - r), 0.015, n=8) for s in (-1, 1)]
+    upper += [rod((s * x, -y - 0.03, arm), (s * x, y - 0.016, arm + 0.015), r, n=8) for s in (-1, 1)]
+    if form == "official":
+        upper += tube(
+            curve(
+                [
+                    (-x - 0.03, y, h - 0.04),
+                    (-0.5 * x, y, h - 0.028),
+                    (0, y, h - 0.02),
+                    (0.5 * x, y, h - 0.028),
+                    (x + 0.03, y, h - 0.04),
+                ],
+                2,
+            ),
+            0.017,
+            8,
+        )
+    else:
+        upper += [rod((-x, y, h - r), (x, y, h - r), r, n=8)]
+        upper += [rod((-x + 0.016, y, z), (x - 0.016, y, z), 0.009, n=8) for z in (seat + 0.09, seat + 0.62 * (top - seat))]
+    return upper, top

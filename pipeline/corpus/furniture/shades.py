@@ -51,19 +51,7 @@ def shade(
     low, high = z
     tall = high - low
     if kind in ("globe", "paper"):
-        squat = 1.0 if kind == "globe" else 0.92
-        steps = [
-            (radius * math.cos(a), low + tall / 2 + tall / 2 * math.sin(a) / math.sin(1.45))
-            for a in np.linspace(-1.45, 1.45, 11 if n > 16 else 8)
-        ]
-        made = pieces("globe", revolve([(r, q * squat + low * (1 - squat)) if kind == "paper" else (r, q) for r, q in steps], n, at), GLOW)
-        if kind == "globe":
-            return (
-                made + pieces("cap", revolve([(0.3 * radius, high - 0.02 * tall), (0.24 * radius, high)], 12, at), scheme.handle)
-                if tall > 0.08 and n > 16
-                else made
-            )
-        return made + pieces("neck", revolve([(0.12 * radius, low + squat * tall), (0.12 * radius, high)], 10, at), scheme.timber)
+        return _ball(scheme, kind, radius, z, at, n)
     if kind == "lantern":
         return _lantern(scheme, radius, z, at)
     if kind == "cage":
@@ -90,6 +78,31 @@ def shade(
     }.get(kind, CLOTH)
     if cover is CLOTH and rng.random() < 0.3:
         cover = Finish("shade_linen", tinted(rng, (0.62, 0.52, 0.38)), 0.9, pattern="weave", density=150)
+    made = pieces("shade", _walls(kind, profile, at, n), cover)
+    return made + _fittings(radius, profile[-1][0], z, at, metal)
+
+
+def _ball(scheme: Scheme, kind: str, radius: float, z: Span, at: Spot, n: int) -> tuple[Piece, ...]:
+    """Build a lit globe with its cap, or a squat ball of paper on a neck."""
+    low, high = z
+    tall = high - low
+    squat = 1.0 if kind == "globe" else 0.92
+    steps = [
+        (radius * math.cos(a), low + tall / 2 + tall / 2 * math.sin(a) / math.sin(1.45))
+        for a in np.linspace(-1.45, 1.45, 11 if n > 16 else 8)
+    ]
+    made = pieces("globe", revolve([(r, q * squat + low * (1 - squat)) if kind == "paper" else (r, q) for r, q in steps], n, at), GLOW)
+    if kind == "globe":
+        return (
+            made + pieces("cap", revolve([(0.3 * radius, high - 0.02 * tall), (0.24 * radius, high)], 12, at), scheme.handle)
+            if tall > 0.08 and n > 16
+            else made
+        )
+    return made + pieces("neck", revolve([(0.12 * radius, low + squat * tall), (0.12 * radius, high)], 10, at), scheme.timber)
+
+
+def _walls(kind: str, profile: list[Spot], at: Spot, n: int) -> list[Solid]:
+    """Build the wall of an open shade around a profile of (radius, height): rings of n sides, or pleats."""
     walls: list[Solid] = []
     for (r0, z0), (r1, z1) in itertools.pairwise(profile):
         if kind == "pleated":
@@ -105,8 +118,14 @@ def shade(
                 walls.append(Solid(v * np.concatenate([grow, grow, np.ones((8, 1))], axis=1) + np.array([*at, 0.0]), stave.faces))
         else:
             walls += ring((r0, r1), (max(r0 - WALL, 0.3 * r0), max(r1 - WALL, 0.3 * r1)), (z0, z1), n, at)
-    made = pieces("shade", walls, cover)
-    top = profile[-1][0]
+    return walls
+
+
+def _fittings(radius: float, top: float, z: Span, at: Spot, metal: Finish) -> tuple[Piece, ...]:
+    """Build the spokes that carry an open shade whose upper rim has radius `top`, its socket and its bulb, where there is room for them."""
+    low, high = z
+    tall = high - low
+    made: tuple[Piece, ...] = ()
     if top > 0.05:  # spokes carry an open shade
         inner = top - 0.5 * WALL
         zt = high - 0.03 * tall - 0.004

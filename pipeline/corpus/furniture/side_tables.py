@@ -10,7 +10,7 @@ from pipeline.corpus.furniture.bent import arc, band, curve, prism, tube, turns
 from pipeline.corpus.furniture.dining_tables import apron, cased_table, fluted_drum, legged, rails, top, top_finish, trumpet
 from pipeline.corpus.furniture.finishes import GLASS, Scheme, cane
 from pipeline.corpus.furniture.legs import draw_kind, inside, leg_finish, legs, pedestal
-from pipeline.corpus.furniture.shape import Shape, pieces
+from pipeline.corpus.furniture.shape import Piece, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, rounded, slab
 from pipeline.corpus.furniture.storage import Size
 
@@ -30,20 +30,7 @@ def coffee_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
             return Shape(shape.base + pieces("shelf", lower, cane(rng) if rng.random() < scheme.manner.cane else scheme.body))
         return shape
     if form == "drum":
-        made = pieces("top", slab(circle(w / 2, 36), (h - 0.026, h), 0.005), top_finish(rng, scheme, stone=1.6))
-        if rng.random() < 0.45:
-            return Shape(made + fluted_drum(0.40 * w, h - 0.026, scheme))
-        hoop = [ring((0.44 * w, 0.44 * w), (0.44 * w - 0.012, 0.44 * w - 0.012), z, 28) for z in ((0.0, 0.014), (h - 0.04, h - 0.026))]
-        rods = [
-            rod(
-                (0.435 * w * math.cos(a), 0.435 * w * math.sin(a), 0.014),
-                (0.435 * w * math.cos(a), 0.435 * w * math.sin(a), h - 0.04),
-                0.005,
-                n=6,
-            )
-            for a in turns(22)
-        ]
-        return Shape(made + pieces("hoops", hoop[0] + hoop[1], scheme.handle) + pieces("rods", rods, scheme.handle))
+        return Shape(_drum(rng, size, scheme))
     if form == "tray":
         rim = ring((w / 2, w / 2), (w / 2 - 0.012, w / 2 - 0.012), (h - 0.05, h), 36)
         made = pieces("rim", rim, scheme.handle) + pieces(
@@ -60,23 +47,7 @@ def coffee_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         low = slab(edge * 0.86, (0.0, 0.03), 0.003)
         return Shape(made + pieces("body", slab(edge * 0.93, (0.03, h - t), 0.003), scheme.front) + pieces("plinth", low, scheme.handle))
     if form == "planks":
-        t, wide = 0.05, 0.5 * w
-        spans = ((-w / 2, -w / 2 + wide + 0.12 * w), (w / 2 - wide - 0.06 * w, w / 2))
-        made = pieces(
-            "top",
-            [
-                slab(rounded(spans[0], (-d / 2, 0.25 * d), 0.02, 3), (h - t, h), 0.005),
-                slab(rounded(spans[1], (-0.3 * d, d / 2), 0.02, 3), (0.68 * h - t, 0.68 * h), 0.005),
-            ],
-            scheme.body,
-        )
-        legs_ = [
-            box((spans[0][0] + 0.03, spans[0][0] + 0.07), (-0.42 * d, 0.18 * d), (0, h - t), 0.004),
-            box((spans[0][1] - 0.05, spans[0][1] - 0.01), (-0.42 * d, -0.302 * d), (0, h - t), 0.004),
-        ]
-        legs_.append(box((spans[1][1] - 0.07, spans[1][1] - 0.03), (-0.22 * d, 0.42 * d), (0, 0.68 * h - t), 0.004))
-        legs_.append(box((spans[1][0] + 0.02, spans[1][0] + 0.06), (0.3 * d, 0.42 * d), (0, 0.68 * h - t), 0.004))
-        return Shape(made + pieces("legs", legs_, scheme.accent))
+        return Shape(_planks(size, scheme))
     t = 0.02
     bars = hoops(w, d, h - t, 0.026)
     material = top_finish(rng, scheme, stone=1.4)
@@ -84,6 +55,47 @@ def coffee_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         pieces("top", slab(rounded((-w / 2, w / 2), (-d / 2, d / 2), 0.01, 3), (h - t, h), 0.003), material)
         + pieces("frame", bars, scheme.handle)
     )
+
+
+def _drum(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+    """Build a round top on a fluted drum, or on hoops with rods between them."""
+    w, _, h = size
+    made = pieces("top", slab(circle(w / 2, 36), (h - 0.026, h), 0.005), top_finish(rng, scheme, stone=1.6))
+    if rng.random() < 0.45:
+        return made + fluted_drum(0.40 * w, h - 0.026, scheme)
+    hoop = [ring((0.44 * w, 0.44 * w), (0.44 * w - 0.012, 0.44 * w - 0.012), z, 28) for z in ((0.0, 0.014), (h - 0.04, h - 0.026))]
+    rods = [
+        rod(
+            (0.435 * w * math.cos(a), 0.435 * w * math.sin(a), 0.014),
+            (0.435 * w * math.cos(a), 0.435 * w * math.sin(a), h - 0.04),
+            0.005,
+            n=6,
+        )
+        for a in turns(22)
+    ]
+    return made + pieces("hoops", hoop[0] + hoop[1], scheme.handle) + pieces("rods", rods, scheme.handle)
+
+
+def _planks(size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+    """Build two planks on posts, one lower than the other."""
+    w, d, h = size
+    t, wide = 0.05, 0.5 * w
+    spans = ((-w / 2, -w / 2 + wide + 0.12 * w), (w / 2 - wide - 0.06 * w, w / 2))
+    made = pieces(
+        "top",
+        [
+            slab(rounded(spans[0], (-d / 2, 0.25 * d), 0.02, 3), (h - t, h), 0.005),
+            slab(rounded(spans[1], (-0.3 * d, d / 2), 0.02, 3), (0.68 * h - t, 0.68 * h), 0.005),
+        ],
+        scheme.body,
+    )
+    legs_ = [
+        box((spans[0][0] + 0.03, spans[0][0] + 0.07), (-0.42 * d, 0.18 * d), (0, h - t), 0.004),
+        box((spans[0][1] - 0.05, spans[0][1] - 0.01), (-0.42 * d, -0.302 * d), (0, h - t), 0.004),
+    ]
+    legs_.append(box((spans[1][1] - 0.07, spans[1][1] - 0.03), (-0.22 * d, 0.42 * d), (0, 0.68 * h - t), 0.004))
+    legs_.append(box((spans[1][0] + 0.02, spans[1][0] + 0.06), (0.3 * d, 0.42 * d), (0, 0.68 * h - t), 0.004))
+    return made + pieces("legs", legs_, scheme.accent)
 
 
 def _ming(size: Size, scheme: Scheme) -> Shape:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,8 +19,17 @@ DRAWS = 8  # uniform numbers that one proposal takes
 LINE, PAIR, SIDE, PART, SWAP = 0.35, 0.60, 0.78, 0.97, 1.0  # cumulative shares of the moves
 
 
+class Schedule(NamedTuple):
+    """The heat at the start and at the end, the weight of a hard violation at the end, and how many proposals are evaluated at most."""
+
+    hot: float
+    cold: float
+    penalty: float
+    most: int
+
+
 @compiled
-def propose(grid: Labels, n: int, fixed: Ints, draws: Floats, k: int, touched: Ints) -> bool:  # noqa: C901, PLR0912, PLR0915 - compiled: calls would cost more
+def propose(grid: Labels, n: int, fixed: Ints, draws: Floats, k: int, touched: Ints) -> bool:
     """Change `grid` in place by one random move, row k of `draws`; False when the draw gives none.
 
     Rooms whose cells changed are marked in `touched` (n+1,).
@@ -42,34 +53,11 @@ def propose(grid: Labels, n: int, fixed: Ints, draws: Floats, k: int, touched: I
         return False
     kind = draws[k, 3]
     if kind >= PART:
-        touched[a] = 1
-        touched[b] = 1
-        for i in range(1, height + 1):
-            for j in range(1, width + 1):
-                if grid[i, j] == a:
-                    grid[i, j] = b
-                elif grid[i, j] == b:
-                    grid[i, j] = a
+        _swap(grid, a, b, touched)
         return True
     sy, sx = (0, 1) if dx == 0 else (1, 0)  # along the wall
-    first, last = 0, 0
-    for way in range(2):
-        step = 1 if way == 0 else -1
-        reach = 0
-        while True:
-            near = grid[y + (reach + step) * sy, x + (reach + step) * sx]
-            far = grid[y + dy + (reach + step) * sy, x + dx + (reach + step) * sx]
-            if near == far or max(near, far) == n or fixed[near] > 0 or fixed[far] > 0:
-                break
-            if kind >= LINE and near != a:
-                break
-            if (LINE <= kind < PAIR or kind >= SIDE) and far != b:
-                break
-            reach += step
-        if way == 0:
-            last = reach
-        else:
-            first = reach
+    last = _reach(grid, n, fixed, kind, (y, x, dy, dx), 1)
+    first = _reach(grid, n, fixed, kind, (y, x, dy, dx), -1)
     if kind >= SIDE and last > first:
         cut = first + 1 + int(draws[k, 4] * (last - first))
         if draws[k, 5] < 0.5:
@@ -90,6 +78,38 @@ def propose(grid: Labels, n: int, fixed: Ints, draws: Floats, k: int, touched: I
     return True
 
 
+@compiled
+def _swap(grid: Labels, a: int, b: int, touched: Ints) -> None:
+    """Let two rooms change places."""
+    touched[a] = 1
+    touched[b] = 1
+    for i in range(1, grid.shape[0] - 1):
+        for j in range(1, grid.shape[1] - 1):
+            if grid[i, j] == a:
+                grid[i, j] = b
+            elif grid[i, j] == b:
+                grid[i, j] = a
+
+
+@compiled
+def _reach(grid: Labels, n: int, fixed: Ints, kind: float, wall: tuple[int, int, int, int], step: int) -> int:
+    """Return how many cells of a wall move with its cell (y, x), whose other side is at (dy, dx) from it, in the direction of `step`."""
+    y, x, dy, dx = wall
+    sy, sx = (0, 1) if dx == 0 else (1, 0)  # along the wall
+    a, b = grid[y, x], grid[y + dy, x + dx]
+    reach = 0
+    while True:
+        near = grid[y + (reach + step) * sy, x + (reach + step) * sx]
+        far = grid[y + dy + (reach + step) * sy, x + dx + (reach + step) * sx]
+        if near == far or max(near, far) == n or fixed[near] > 0 or fixed[far] > 0:
+            return reach
+        if kind >= LINE and near != a:
+            return reach
+        if (LINE <= kind < PAIR or kind >= SIDE) and far != b:
+            return reach
+        reach += step
+
+
 def score(grid: Labels, spec: Spec, weights: Terms, penalty: float) -> tuple[float, float, Terms]:
     """Return (energy with the penalty, hard violation, the twelve terms) of a grid."""
     fixed = np.zeros(spec.target.size + 1, np.int64)
@@ -102,7 +122,7 @@ def run(
 ) -> tuple[Labels, float, float, Terms, int, int]:
     """Anneal from `start` with at most one proposal per row of `draws`; see `anneal`. Scratch space is made here."""
     out = empty(spec.target.size, start.shape[0] - 2, start.shape[1] - 2)
-    return anneal(start, spec, tree(spec.link, spec.root), out, weights, fixed, draws, hot, cold, penalty, most)
+    return anneal(start, spec, tree(spec.link, spec.root), out, weights, fixed, draws, Schedule(hot, cold, penalty, most))
 
 
 @compiled
@@ -116,29 +136,24 @@ def _copy(source: Labels, target: Labels, out: Measures, touched: Ints) -> None:
 
 
 @compiled
-def anneal(  # noqa: PLR0912 - compiled
-    start: Labels,
-    spec: Spec,
-    edges: Ints,
-    out: Measures,
-    weights: Terms,
-    fixed: Ints,
-    draws: Floats,
-    hot: float,
-    cold: float,
-    penalty: float,
-    most: int,
+def _copy_all(source: Labels, target: Labels) -> None:
+    for y in range(source.shape[0]):
+        for x in range(source.shape[1]):
+            target[y, x] = source[y, x]
+
+
+@compiled
+def anneal(
+    start: Labels, spec: Spec, edges: Ints, out: Measures, weights: Terms, fixed: Ints, draws: Floats, schedule: Schedule
 ) -> tuple[Labels, float, float, Terms, int, int]:
     """Anneal from `start` until `most` proposals are evaluated or the draws are spent; return the best plan: grid, energy, hard violation (0: all hold), terms, moves accepted and evaluated.
 
     The violation's weight grows from a quarter of `penalty` to all of it; the best state is the one of least (violation, energy).
     """
+    hot, cold, penalty, most = schedule
     n = spec.target.size
-    grid = start.copy()
-    trial = start.copy()
-    areas = np.zeros(n)
-    shape = np.zeros((n, 4))
-    kept = np.zeros((n, 4))
+    grid, trial, best = start.copy(), start.copy(), start.copy()
+    areas, shape, kept = np.zeros(n), np.zeros((n, 4)), np.zeros((n, 4))
     touched = np.ones(n + 1, np.int64)
     measure(grid, n, out)
     exact = n > 0  # a plain True is a type of its own: `terms` would be compiled twice
@@ -146,7 +161,6 @@ def anneal(  # noqa: PLR0912 - compiled
     soft = weighted(values, weights) + together(out, spec.near)
     if hard < np.inf:
         _settle(shape, kept, touched)
-    best = grid.copy()
     best_soft, best_hard = soft, hard
     best_values = values
     accepted, evaluated = 0, 0
@@ -175,17 +189,14 @@ def anneal(  # noqa: PLR0912 - compiled
             soft, hard, values = new_soft, new_hard, new_values
             accepted += 1
             if hard < best_hard - 1e-12 or (hard <= best_hard and soft < best_soft):
-                for y in range(grid.shape[0]):
-                    for x in range(grid.shape[1]):
-                        best[y, x] = grid[y, x]
+                _copy_all(grid, best)
                 best_soft, best_hard = soft, hard
                 best_values = values
         else:
             _copy(grid, trial, out, touched)
             _settle(kept, shape, touched)
             if hard == np.inf:  # nothing is known of the start yet
-                for i in range(n):
-                    touched[i] = 1
+                touched[:n] = 1
     return best, best_soft, best_hard, best_values, accepted, evaluated
 
 

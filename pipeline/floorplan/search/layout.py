@@ -122,17 +122,31 @@ def aligned(rect: Ints) -> int:
 
 
 @compiled
-def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes, most: float) -> float:  # noqa: C901, PLR0912, PLR0915 - compiled: calls would cost more
+def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes, most: float) -> float:
     """Score a layout of rectangles; leaves from `n` on are voids that must lie in a corner. Smaller is better.
 
     No part is negative: what is beyond `most` already is not looked at further, and only known to be beyond it.
+    Each part adds to the running total that it is given, so that the sum is formed in one order.
     """
-    pairs, far = wishes.pairs, wishes.far
-    outside, corner, least, square, heed, wanted = wishes.outside, wishes.corner, wishes.least, wishes.square, wishes.heed, wishes.wanted
-    wide, narrow = wishes.wide, wishes.weights.min_width * wishes.unit * wishes.unit
-    total = 0.0
     diagonal = (width * width + height * height) ** 0.5
-    m = rect.shape[0]
+    total = _of_pairs(0.0, rect, wishes, diagonal, most)
+    if total > most:
+        return float(total)
+    total = _of_rooms(total, rect, width, height, n, gross, wishes, most)
+    if total > most:
+        return float(total)
+    total = _of_voids(_of_order(total, rect, wishes, diagonal), rect, width, height, n)
+    total = _of_stairs(_of_nearness(total, rect, wishes, diagonal), rect, n, wishes, diagonal)
+    total += wishes.weights.alignment * aligned(rect)
+    if total > most:
+        return float(total)
+    return float(total) + leaning(rect, width, height, n, gross, wishes)
+
+
+@compiled
+def _of_pairs(total: float, rect: Ints, wishes: Wishes, diagonal: float, most: float) -> float:
+    """Add what rooms cost that lack the wall which they are to share, share one that they may not, or are too close."""
+    pairs, far = wishes.pairs, wishes.far
     for k in range(pairs.shape[0]):
         a, b, need = pairs[k, 0], pairs[k, 1], pairs[k, 2]
         across = min(rect[a, 2], rect[b, 2]) - max(rect[a, 0], rect[b, 0])  # negative: a gap
@@ -149,7 +163,15 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
             if off < far[k]:
                 total += 6.0 + 50.0 * (far[k] - off)
         if total > most:
-            return float(total)
+            break
+    return total
+
+
+@compiled
+def _of_rooms(total: float, rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes, most: float) -> float:
+    """Add what rooms cost that are narrow, long, larger or smaller than wanted, or without the outside walls or the corner that they need."""
+    least, square, heed, wanted = wishes.least, wishes.square, wishes.heed, wishes.wanted
+    wide, narrow = wishes.wide, wishes.weights.min_width * wishes.unit * wishes.unit
     for a in range(n):
         w, h = rect[a, 2] - rect[a, 0], rect[a, 3] - rect[a, 1]
         short, long = min(w, h), max(w, h)
@@ -166,20 +188,34 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
         if heed[a] > 0.0:
             off = gross[a] / wanted[a]
             total += heed[a] * (max(off, 1.0 / off) - 1.0)
-        if outside[a] > 0:
-            best = 0
-            if rect[a, 0] == 0 or rect[a, 2] == width:
-                best = h
-            if (rect[a, 1] == 0 or rect[a, 3] == height) and w > best:
-                best = w
-            for v in range(n, m):
-                best = max(best, contact(rect, a, v))
-            if best < outside[a]:
-                total += 8.0 + 7.0 * (outside[a] - best) / outside[a]
-        if corner[a] > 0 and _corners(rect, a, width, height, n) == 0:
+        if wishes.outside[a] > 0:
+            best = _outside(rect, a, width, height, n)
+            if best < wishes.outside[a]:
+                total += 8.0 + 7.0 * (wishes.outside[a] - best) / wishes.outside[a]
+        if wishes.corner[a] > 0 and _corners(rect, a, width, height, n) == 0:
             total += 12.0
         if total > most:
-            return float(total)
+            break
+    return total
+
+
+@compiled
+def _outside(rect: Ints, a: int, width: int, height: int, n: int) -> int:
+    """Return the longest stretch of outside wall of a rectangle [cells], walls to voids included."""
+    w, h = rect[a, 2] - rect[a, 0], rect[a, 3] - rect[a, 1]
+    best = 0
+    if rect[a, 0] == 0 or rect[a, 2] == width:
+        best = h
+    if (rect[a, 1] == 0 or rect[a, 3] == height) and w > best:
+        best = w
+    for v in range(n, rect.shape[0]):
+        best = max(best, contact(rect, a, v))
+    return int(best)
+
+
+@compiled
+def _of_order(total: float, rect: Ints, wishes: Wishes, diagonal: float) -> float:
+    """Add what rooms cost that are not between the two between which they are asked."""
     for k in range(wishes.between.shape[0]):
         a, b, c = wishes.between[k, 0], wishes.between[k, 1], wishes.between[k, 2]
         ahead = 0.0
@@ -188,7 +224,13 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
             ahead += 0.25 * (rect[b, axis] + rect[b, axis + 2] - middle) * (rect[c, axis] + rect[c, axis + 2] - middle)
         if ahead > 0.0:
             total += 6.0 + 20.0 * ahead**0.5 / diagonal
-    for v in range(n, m):
+    return total
+
+
+@compiled
+def _of_voids(total: float, rect: Ints, width: int, height: int, n: int) -> float:
+    """Add what voids cost that are not in a corner, or long."""
+    for v in range(n, rect.shape[0]):
         sides = 0
         if (rect[v, 0] == 0) != (rect[v, 2] == width):
             sides += 1
@@ -197,11 +239,23 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
         total += 15.0 * (2 - sides)
         w, h = rect[v, 2] - rect[v, 0], rect[v, 3] - rect[v, 1]
         total += 0.5 * (max(w, h) / min(w, h) - 1.0)
+    return total
+
+
+@compiled
+def _of_nearness(total: float, rect: Ints, wishes: Wishes, diagonal: float) -> float:
+    """Add the distances of rooms that belong together."""
     for k in range(wishes.near.shape[0]):
         a, b = int(wishes.near[k, 0]), int(wishes.near[k, 1])
         dx = 0.5 * (rect[a, 0] + rect[a, 2] - rect[b, 0] - rect[b, 2])
         dy = 0.5 * (rect[a, 1] + rect[a, 3] - rect[b, 1] - rect[b, 3])
         total += TOGETHER * wishes.near[k, 2] * (dx * dx + dy * dy) ** 0.5 / diagonal
+    return total
+
+
+@compiled
+def _of_stairs(total: float, rect: Ints, n: int, wishes: Wishes, diagonal: float) -> float:
+    """Add what the staircase costs: off its place on the other storey, or too small for its flights."""
     stair, stair_room, flight, weights = wishes.stair, wishes.stair_room, wishes.flight, wishes.weights
     if stair_room >= 0:
         w = min(rect[stair_room, 2], stair[2]) - max(rect[stair_room, 0], stair[0])
@@ -216,7 +270,4 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
         both = float(min(max(w, h), flight[1]) * min(w, h, flight[2]))
         whole = float(flight[1] * flight[2])
         total += n * (weights.stair_fit * stair_fit(both, whole) + weights.stair_snug * stair_snug(both, whole, float(w * h)))
-    total += weights.alignment * aligned(rect)
-    if total > most:
-        return float(total)
-    return float(total) + leaning(rect, width, height, n, gross, wishes)
+    return total

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -86,44 +87,25 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
     """
     rooms = tuple(r for r in program.rooms if r.level == level or (r.type == "staircase" and level < program.storeys))
     index = {r.id: i for i, r in enumerate(rooms)}
-    n = len(rooms)
     target = np.array([r.area.target or DEFAULTS[r.type].area for r in rooms])
     low, high = _bounds(rooms, target, ease)
-    half, door = halves(program), program.accessibility.min_door
-    link, need = np.zeros((n, n), np.int64), np.zeros((n, n), np.int64)
-    for k in program.links:
-        if k.a in index and k.b in index:
-            a, b = index[k.a], index[k.b]
-            need[a, b] = need[b, a] = wall_for(k.kind, door, min(target[a], target[b]) < 7.0, sides(program))
-            if k.opens:
-                link[a, b] = link[b, a] = 1
+    half = halves(program)
+    link, need = _links(program, index, target)
     here = program.model_copy(update={"rooms": rooms})
     ban, apart, order = _relations(here, index)
     clear = np.array([_clear(r, program) for r in rooms])
     outside = _outside(rooms, program, level, ease)
     # a small room cannot be as wide as its type usually is
     least = np.array([cells(min(w, 0.92 * t**0.5 + 2 * half.inner)) for w, t in zip(clear, target, strict=True)])
-    strict = np.maximum((0.8 * least).astype(np.int64), 3)
+    strict = _strict_widths(rooms, least, half, ease)
     corridor = np.array([int(r.type == "hallway") for r in rooms])
-    for i, r in enumerate(rooms):
-        if r.min_width is not None or r.type in {"hallway", "entry"}:
-            strict[i] = least[i]
-        elif ease:
-            strict[i] = min(strict[i], cells(EASED_WIDTH + 2 * half.inner))
-        if r.type == "wc":
-            strict[i] = cells(0.85 + 2 * half.inner)
-    total = np.array([0.0, np.inf])
-    wish = program.total_area
-    if program.storeys == 1 and wish.stated:
-        total[0] = (wish.min or 0.0) * (1 + EDGE)
-        total[1] = (wish.max or np.inf) * (1 - EDGE)
     spec = Spec(
         UNIT,
         _root(program, rooms, index),
         target,
         low,
         high,
-        total,
+        _total(program),
         np.array([int(r.type not in OUTSIDE) for r in rooms]),
         least,
         strict,
@@ -154,6 +136,40 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
         if r.type in {"hallway", "entry"} and not r.area.stated:
             gross_low[i], gross_high[i] = gross[i] * 0.75, gross[i] * (1.9 if ease else 1.3)
     return Storey(level, rooms, spec, weights_of(program, SOFTER[min(ease, len(SOFTER) - 1)]), gross, gross_low, gross_high, clear)
+
+
+def _total(program: FloorProgram) -> NDArray[np.float64]:
+    """Return the bounds of the home's area [m2], where it is stated and on one storey."""
+    wish = program.total_area
+    if program.storeys > 1 or not wish.stated:
+        return np.array([0.0, np.inf])
+    return np.array([(wish.min or 0.0) * (1 + EDGE), (wish.max or np.inf) * (1 - EDGE)])
+
+
+def _links(program: FloorProgram, index: Mapping[str, int], target: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return which rooms open to each other, and the straight wall that each pair is to share [cells], both (n, n)."""
+    n, door = len(index), program.accessibility.min_door
+    link, need = np.zeros((n, n), np.int64), np.zeros((n, n), np.int64)
+    for k in program.links:
+        if k.a in index and k.b in index:
+            a, b = index[k.a], index[k.b]
+            need[a, b] = need[b, a] = wall_for(k.kind, door, min(target[a], target[b]) < 7.0, sides(program))
+            if k.opens:
+                link[a, b] = link[b, a] = 1
+    return link, need
+
+
+def _strict_widths(rooms: Sequence[RoomReq], least: NDArray[np.int64], half: Halves, ease: int) -> NDArray[np.int64]:
+    """Return the widths below which no room may fall [cells]: less than the usual least ones, where nobody stated them."""
+    strict = np.maximum((0.8 * least).astype(np.int64), 3)
+    for i, r in enumerate(rooms):
+        if r.min_width is not None or r.type in {"hallway", "entry"}:
+            strict[i] = least[i]
+        elif ease:
+            strict[i] = min(strict[i], cells(EASED_WIDTH + 2 * half.inner))
+        if r.type == "wc":
+            strict[i] = cells(0.85 + 2 * half.inner)
+    return strict
 
 
 def founded(program: FloorProgram) -> FloorProgram:
