@@ -154,7 +154,7 @@ def path_traced(root: Path, folder: Path, homes: Sequence[Home], seed: int, sett
 
 
 def _trace(root: Path, seed: int, folder: Path, settings: MetricsSettings, home: Home) -> None:
-    from pipeline.preview import path_trace
+    from pipeline.preview.trace import path_trace
 
     (folder / "views").mkdir(parents=True, exist_ok=True)
     size = (settings.gallery_width, settings.gallery_width * 3 // 4)

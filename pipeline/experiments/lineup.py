@@ -10,7 +10,8 @@ from PIL import Image
 
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
-from pipeline.preview import contact_sheet, top_view
+from pipeline.preview.sheet import contact_sheet
+from pipeline.preview.top import top_view
 
 TYPES = ("bedroom", "living_room", "living_dining_room", "dining_room", "kitchen", "bathroom", "kids_room", "study")
 EACH = 5  # rooms of each type and kind

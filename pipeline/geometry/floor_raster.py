@@ -10,12 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from pipeline.geometry.compiled import compiled
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+
+FAR = 1 << 20  # cells: more than any raster has
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,16 +103,7 @@ def standing(free: Mask, radius_cells: float) -> Mask:
     rows, columns = free.shape
     least = (radius_cells + 0.5 - 1e-9) ** 2
     reach = int(np.ceil(radius_cells + 0.5))
-    apart = np.empty((rows, columns))  # to the nearest blocked cell of the same row, squared
-    for i in range(rows):
-        last = -1
-        for j in range(columns):
-            last = last if free[i, j] else j
-            apart[i, j] = (j - last) ** 2
-        last = columns
-        for j in range(columns - 1, -1, -1):
-            last = last if free[i, j] else j
-            apart[i, j] = min(apart[i, j], (last - j) ** 2)
+    apart = _apart(~free, 1)
     found = np.zeros((rows, columns), np.bool_)
     for i in range(rows):
         for j in range(columns):
@@ -124,12 +116,38 @@ def standing(free: Mask, radius_cells: float) -> Mask:
     return found
 
 
+@compiled
 def covered(centres: Mask, radius_cells: float) -> Mask:
-    """Return the cells that a disc covers while its centre runs over `centres`."""
-    if not centres.any():
-        return centres.copy()
-    found: Mask = ndimage.distance_transform_edt(~centres) <= radius_cells + 0.5 + 1e-9
+    """Return the cells that a disc covers while its centre runs over `centres`: a centre is no farther than the radius and half a cell."""
+    rows, columns = centres.shape
+    most = (radius_cells + 0.5 + 1e-9) ** 2
+    reach = int(np.ceil(radius_cells + 0.5))
+    apart = _apart(centres, FAR)
+    found = np.zeros((rows, columns), np.bool_)
+    for i in range(rows):
+        for j in range(columns):
+            for k in range(max(0, i - reach), min(rows, i + reach + 1)):
+                if (k - i) ** 2 + apart[k, j] <= most:
+                    found[i, j] = True
+                    break
     return found
+
+
+@compiled
+def _apart(there: Mask, margin: int) -> Floats:
+    """Return the squared distances to the nearest cell of a mask in the same row; so do cells count that lie `margin` past its ends."""
+    rows, columns = there.shape
+    apart = np.empty((rows, columns))
+    for i in range(rows):
+        last = -margin
+        for j in range(columns):
+            last = j if there[i, j] else last
+            apart[i, j] = (j - last) ** 2
+        last = columns - 1 + margin
+        for j in range(columns - 1, -1, -1):
+            last = j if there[i, j] else last
+            apart[i, j] = min(apart[i, j], (last - j) ** 2)
+    return apart
 
 
 def components(mask: Mask) -> tuple[NDArray[np.int32], NDArray[np.int64]]:

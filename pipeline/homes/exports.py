@@ -9,7 +9,7 @@ from pathlib import Path
 
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
-from pipeline.preview import top_view
+from pipeline.preview.top import top_view
 from pipeline.usd.home import home_layer
 from pipeline.usd.layer import save
 from pipeline.usd.mujoco import home_overlay

@@ -7,8 +7,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf, Vt
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from pipeline.entities.asset import Mesh
 from pipeline.geometry.compiled import compiled
@@ -63,8 +61,8 @@ def parted(rows: NDArray[np.float32], faces: NDArray[np.int32]) -> tuple[NDArray
     order = np.argsort(code, kind="stable")
     _, first, times = np.unique(code[order], return_index=True, return_counts=True)
     one, other = order[first[times == 2]], order[first[times == 2] + 1]
-    joined = coo_array((np.ones(2 * len(one), bool), (held[one].ravel(), held[other].ravel())), shape=(3 * count, 3 * count))
-    fans, fan = connected_components(joined, directed=False)
+    fan = _connected(3 * count, held[one].ravel(), held[other].ravel())
+    fans = int(fan.max(initial=-1)) + 1
     if fans == len(np.unique(faces)):
         return rows, faces
     owner = np.zeros(fans, np.int64)
@@ -76,6 +74,30 @@ def parted(rows: NDArray[np.float32], faces: NDArray[np.int32]) -> tuple[NDArray
     away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
     made[split, :3] += (APART * away[split]).astype(np.float32)
     return made, fan.reshape(count, 3).astype(np.int32)
+
+
+@compiled
+def _connected(count: int, one: NDArray[np.int64], other: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the part (count,) of each of `count` points that pairs of them join, numbered in the order of their first points."""
+    parent = np.arange(count)
+    for k in range(len(one)):
+        a, b = one[k], other[k]
+        while parent[a] != a:
+            parent[a] = parent[parent[a]]
+            a = parent[a]
+        while parent[b] != b:
+            parent[b] = parent[parent[b]]
+            b = parent[b]
+        parent[max(a, b)] = min(a, b)  # a part is known by its first point
+    parts = 0
+    found = np.empty(count, np.int64)
+    for point in range(count):
+        if parent[point] == point:
+            found[point] = parts
+            parts += 1
+        else:
+            found[point] = found[parent[point]]
+    return found
 
 
 def convert_box(parent: Sdf.PrimSpec, name: str, low: NDArray[np.floating], high: NDArray[np.floating]) -> Sdf.PrimSpec:

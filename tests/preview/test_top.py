@@ -8,8 +8,10 @@ from pipeline.entities.asset import Asset, Joint, Material
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Opening, Plan, Room, Swing
 from pipeline.errors import UsageError
-from pipeline.preview import contact_sheet, path_trace, top_view
 from pipeline.preview.denoise import Guides, denoise
+from pipeline.preview.sheet import contact_sheet
+from pipeline.preview.top import top_view
+from pipeline.preview.trace import path_trace
 from pipeline.rendering.boxes import box, solid_link
 
 MARGIN, OUTER = 0.45, 0.24
