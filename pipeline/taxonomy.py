@@ -20,7 +20,7 @@ class RoomType:
     `area` [m2] between inner wall faces, `width` [m] the least clear width, `exterior` whether it needs an outside wall, `window` whether it
     gets windows where it has one, `habitable` whether daylight matters (energy terms 6 and 7), `useful` whether its area counts as useful
     (term 9), `through` whether one may walk through it to another room, `square` whether a square shape is wanted (term 3).
-    `furnished_as` is the layout type, "": it stays empty; `unwanted` what it has not, though others furnished so have.
+    `furnished_as` is the layout type, "": it stays empty; `functions` what it serves as where that may be several things; `unwanted` what it has not, though others furnished so have.
     """
 
     area: float
@@ -32,6 +32,7 @@ class RoomType:
     through: bool = False
     square: bool = True
     furnished_as: str = ""
+    functions: tuple[str, ...] = ()
     unwanted: tuple[str, ...] = ()
 
 
@@ -59,12 +60,13 @@ class Usual:
 class Layout:
     """A room as the layout model furnishes it: 3D-FRONT's types that are so, of which categories it `needs` one of each group, or `usual`ly has one.
 
-    What made ones hold besides: a rug, shares of rooms with things at all windows, expected numbers on the walls.
+    `part` [m2] is the floor that it usually takes of a room that serves as others too. What made ones hold besides: a rug, shares of rooms with things at all windows, expected numbers on the walls.
     """
 
     front: tuple[str, ...]
     needs: tuple[tuple[str, ...], ...] = ()
     usual: tuple[Usual, ...] = ()
+    part: float = 5.0
     rug: Rug | None = None
     windows: Mapping[str, float] = field(default_factory=dict)
     walls: Mapping[str, float] = field(default_factory=dict)
@@ -72,17 +74,18 @@ class Layout:
 
 @dataclass(frozen=True, slots=True)
 class Rooms:
-    """manifests/rooms.yaml. `empty` are 3D-FRONT's types that are read, but not furnished; `materials` 3D-FUTURE's."""
+    """manifests/rooms.yaml. `functions` are the layout types of what rooms may serve as; `empty` are 3D-FRONT's types that are read, but not furnished; `materials` 3D-FUTURE's."""
 
     types: Mapping[str, RoomType]
     layouts: Mapping[str, Layout]
+    functions: Mapping[str, str]
     empty: tuple[str, ...]
     materials: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Taxonomy:
-    """Categories by name, types of rooms, and `front_rooms`: the layout type of each of 3D-FRONT's, None for one that stays empty.
+    """Categories by name, types of rooms, layout types by `functions`, and `front_rooms`: the layout type of each of 3D-FRONT's, None for one that stays empty.
 
     `styles` and `materials` map lower case to the spelling.
     """
@@ -90,6 +93,7 @@ class Taxonomy:
     categories: Mapping[str, Category]
     types: Mapping[str, RoomType]
     layouts: Mapping[str, Layout]
+    functions: Mapping[str, str]
     front_rooms: Mapping[str, str | None]
     styles: Mapping[str, str]
     materials: Mapping[str, str]
@@ -143,4 +147,4 @@ def load() -> Taxonomy:
     rooms = params.build(Rooms, yaml_text.parse(PATH.read_text(encoding="utf-8")), "rooms", "manifests/rooms.yaml")
     front: dict[str, str | None] = {name: kind for kind, layout in rooms.layouts.items() for name in layout.front}
     styles, materials = ({n.lower(): n for n in names} for names in (style.load().styles, rooms.materials))
-    return Taxonomy(cards(), rooms.types, rooms.layouts, {**front, **dict.fromkeys(rooms.empty)}, styles, materials)
+    return Taxonomy(cards(), rooms.types, rooms.layouts, rooms.functions, {**front, **dict.fromkeys(rooms.empty)}, styles, materials)

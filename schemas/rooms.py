@@ -11,7 +11,7 @@ ROOMS = Table(
         Column("scene_id", pa.string(), "the home"),
         Column("room_id", pa.string(), "unique in the home"),
         Column("type", pa.string(), "room type, see manifests/rooms.yaml"),
-        Column("layout_type", pa.string(), "the room type that the layout model is conditioned on"),
+        Column("layout_type", pa.string(), "room type of the layout model; with a + between them those of a room that serves as several"),
         Column("role", pa.string(), "primary, guest, child ...; empty where there is none"),
         Column("level", pa.int32(), "storey, from 0"),
         Column("height", pa.float64(), "ceiling height", "m"),

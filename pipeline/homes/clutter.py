@@ -17,7 +17,7 @@ from pipeline.entities.plan import Room
 from pipeline.geometry.prisms import solid
 from pipeline.geometry.walls import Leaf, leaves
 from pipeline.homes.library import Library
-from pipeline.homes.request import layout_type
+from pipeline.homes.request import PARTS, layout_type
 from pipeline.taxonomy import Layout, Rug
 
 Floats = NDArray[np.float64]
@@ -67,7 +67,8 @@ class _Dressing:
             touch,
             doors,
         )
-        self.kind = layout_type(room, home.plan, taxonomy.load()) or ""
+        kinds = (layout_type(room, home.plan, taxonomy.load()) or "").split(PARTS)
+        self.layouts = [taxonomy.load().layouts.get(kind, Layout(())) for kind in kinds]
         self.furniture = home.in_room(room.room_id)
         self.floor = home.plan.elevation(room.room_id)
         self.found: list[Placement] = []
@@ -77,10 +78,11 @@ class _Dressing:
         """Lay the rug, dress windows and walls, then lay things on and in the furniture."""
         if not self.furniture:
             return []
-        known = taxonomy.load().layouts.get(self.kind, Layout(()))
+        known = self.layouts[0]
         laying = Laying(self.room.polygon, self.furniture, self.library, self.settings, self.touch)
-        if known.rug and self.rng.random() < known.rug.share * self.settings.rate:
-            self._rug(known.rug)
+        for rug in (layout.rug for layout in self.layouts):
+            if rug and self.rng.random() < rug.share * self.settings.rate:
+                self._rug(rug)
         if known.windows or known.walls:
             hanging = self._hanging(laying)
             self._windows(hanging, known.windows)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
@@ -55,7 +56,9 @@ def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], reso
             continue
         home = homes[request.index]
         program = FloorProgram.model_validate_json(home.program)
-        jobs = room_jobs(resources, home.plan, request.index, 0, {room.id: room.furniture for room in program.rooms})
+        served = {room.id: room.functions for room in program.rooms}
+        plan = replace(home.plan, rooms=tuple(replace(room, functions=served.get(room.room_id, ())) for room in home.plan.rooms))
+        jobs = room_jobs(resources, plan, request.index, 0, {room.id: room.furniture for room in program.rooms})
         drafts = tuple(
             Draft(
                 job,
@@ -65,5 +68,5 @@ def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], reso
             )
             for job in jobs
         )
-        made.append(HomeDraft(request, home.prompt, home.program, home.plan, drafts))
+        made.append(HomeDraft(request, home.prompt, home.program, plan, drafts))
     return made

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+import shapely
 
 from pipeline import seeds
 from pipeline import taxonomy as categories
@@ -13,6 +15,7 @@ from pipeline.diffusion.context import CategoryBounds, Proposal, RoomContext
 from pipeline.diffusion.sampling import Sampler
 from pipeline.entities.home import Placement
 from pipeline.entities.plan import Plan
+from pipeline.homes.parts import parted
 from pipeline.homes.request import Request, RoomJob
 from pipeline.homes.resources import Resources
 from pipeline.homes.rounding import rounded
@@ -21,6 +24,7 @@ from pipeline.retrieval.taste import FinishOf, Taste, draw_finishes, draw_style,
 from pipeline.retrieval.wall_alignment import anchored
 from pipeline.taxonomy import Taxonomy
 
+PART = 1000  # between the numbers of a room's parts: more than homes have rooms
 FREE_CHOICE = 2  # tries of a room in which any category of an essential group will do
 
 
@@ -56,17 +60,34 @@ def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxono
 
     Draws are keyed by (seed, home, room, attempt) alone, so a room does not depend on which rooms share its batch.
     """
-    bounds = [
-        (*category_bounds(job, taxonomy), *usual_bounds(job, taxonomy, seeds.generator(sampler.seed, "usual", job.index, job.number)))
-        for job in jobs
-    ]
-    contexts = [RoomContext.of(job.plan, job.room_id, job.layout_type, job.count, asked) for job, asked in zip(jobs, bounds, strict=True)]
-    keys = [(job.index, job.number, job.draw) for job in jobs]
-    proposals = sampler.sample_rooms(contexts, keys)
+    rooms = [_parts(job, taxonomy, seeds.generator(sampler.seed, "usual", job.index, job.number)) for job in jobs]
+    contexts = [part for parts in rooms for part in parts]
+    keys = [(job.index, job.number + PART * k, job.draw) for job, parts in zip(jobs, rooms, strict=True) for k in range(len(parts))]
+    proposals = iter(sampler.sample_rooms(contexts, keys))
     return [
-        retrieve(job, context, found, index, taxonomy, finish_of, taste_of(job, sampler.seed, index, finish_of))
-        for job, context, found in zip(jobs, contexts, proposals, strict=True)
+        retrieve(
+            job, [p for _ in parts for p in next(proposals)], index, taxonomy, finish_of, taste_of(job, sampler.seed, index, finish_of)
+        )
+        for job, parts in zip(jobs, rooms, strict=True)
     ]
+
+
+def _parts(job: RoomJob, taxonomy: Taxonomy, rng: np.random.Generator) -> list[RoomContext]:
+    """Return a room, or the parts of one that serves as several, each as the layout model is asked for it."""
+    whole = RoomContext.of(job.plan, job.room_id, job.layout_type)
+    parts = parted(whole, [(kind, taxonomy.layouts[kind].part) for kind in job.kinds]) if len(job.kinds) > 1 else [whole]
+    counts = _shared(job.count, [shapely.Polygon(part.polygon).area for part in parts])
+    kinds = [part.layout_type for part in parts]
+    asked = [(*category_bounds(job, kind, kinds, taxonomy), *usual_bounds(job, kind, taxonomy, rng)) for kind in kinds]
+    return [replace(part, n_target=n, category_bounds=b) for part, n, b in zip(parts, counts, asked, strict=True)]
+
+
+def _shared(count: int | None, areas: Sequence[float]) -> list[int | None]:
+    """Share a told number of objects among parts by their areas [m2]; None to each where none is told."""
+    if count is None:
+        return [None] * len(areas)
+    passed = np.round(count * np.cumsum(areas) / sum(areas)).astype(int)
+    return [int(n) for n in np.diff(passed, prepend=0)]
 
 
 def taste_of(job: RoomJob, seed: int, index: AssetIndex, finish_of: FinishOf) -> Taste:
@@ -77,37 +98,48 @@ def taste_of(job: RoomJob, seed: int, index: AssetIndex, finish_of: FinishOf) ->
     return Taste(style, bool(wish), finishes)
 
 
-def category_bounds(job: RoomJob, taxonomy: Taxonomy) -> tuple[CategoryBounds, ...]:
-    """Return what a room is to hold: what is wished for, and of each group of its type's essentials one thing.
+def category_bounds(job: RoomJob, kind: str, kinds: Sequence[str], taxonomy: Taxonomy) -> tuple[CategoryBounds, ...]:
+    """Return what a room, or the part of layout type `kind` of one whose parts are of `kinds`, is to hold: what is wished for, and of each group of the type's essentials one thing.
 
     What is wished for of a group, none of it too, stands. What rooms of the plan's type do not want stays out, unless it is wished for.
     """
     wished = {c for bounds in job.category_bounds for c in bounds.categories}
-    groups = [bounds for group in job.essentials(taxonomy) if not wished.intersection(group) for bounds in _essential(group, job.attempt)]
+    needed = Counter(job.essentials_of(kind, taxonomy))
+    groups = [b for group, least in needed.items() if not wished.intersection(group) for b in _essential(group, least, job.attempt)]
     unwanted = tuple(c for c in job.unwanted(taxonomy) if c not in wished)
-    return (*job.category_bounds, *groups, *([CategoryBounds(unwanted, 0, 0)] if unwanted else []))
+    own = [
+        bounds if _host(bounds, kinds, taxonomy) == kind else replace(bounds, least=0, most=bounds.most and 0)
+        for bounds in job.category_bounds
+    ]
+    return (*own, *groups, *([CategoryBounds(unwanted, 0, 0)] if unwanted else []))
 
 
-def usual_bounds(job: RoomJob, taxonomy: Taxonomy, rng: np.random.Generator) -> tuple[CategoryBounds, ...]:
+def _host(bounds: CategoryBounds, kinds: Sequence[str], taxonomy: Taxonomy) -> str:
+    """Return the part, by its layout type, in which what is wished for usually stands; the first of them where it stands nowhere."""
+    usual = [room for c in bounds.categories for room in taxonomy.categories[c].usual]
+    places = [kind for room in usual for kind in kinds if room == kind or taxonomy.types[room].furnished_as == kind or room in kind]
+    return places[0] if places else kinds[0]
+
+
+def usual_bounds(job: RoomJob, kind: str, taxonomy: Taxonomy, rng: np.random.Generator) -> tuple[CategoryBounds, ...]:
     """Return what a room like this is asked to hold because most do, on its first tries; nothing where a number of objects, or some of these, is wished for."""
-    marks = {usual: rng.random() for usual in taxonomy.layouts[job.layout_type].usual} if job.layout_type in taxonomy.layouts else {}
+    marks = {usual: rng.random() for usual in taxonomy.layouts[kind].usual} if kind in taxonomy.layouts else {}
     settled = {c for bounds in job.category_bounds for c in bounds.categories} | set(job.unwanted(taxonomy))
     if job.count is not None or job.attempt >= FREE_CHOICE:
         return ()
     return tuple(CategoryBounds(usual.of, 1) for usual, mark in marks.items() if mark < usual.share and settled.isdisjoint(usual.of))
 
 
-def _essential(group: tuple[str, ...], attempt: int) -> list[CategoryBounds]:
-    """Ask for one thing of a group; later tries insist on one category after the other: where no double bed finds a place a single one may."""
+def _essential(group: tuple[str, ...], least: int, attempt: int) -> list[CategoryBounds]:
+    """Ask for so many things of a group; later tries insist on one category after the other: where no double bed finds a place a single one may."""
     if attempt < FREE_CHOICE or len(group) == 1:
-        return [CategoryBounds(group, 1)]
+        return [CategoryBounds(group, least)]
     chosen = group[(attempt - FREE_CHOICE + 1) % len(group)]
-    return [CategoryBounds((chosen,), 1), CategoryBounds(tuple(c for c in group if c != chosen), 0, 0)]
+    return [CategoryBounds((chosen,), least), CategoryBounds(tuple(c for c in group if c != chosen), 0, 0)]
 
 
 def retrieve(
     job: RoomJob,
-    context: RoomContext,
     proposals: Sequence[Proposal],
     index: AssetIndex,
     taxonomy: Taxonomy,
@@ -120,6 +152,7 @@ def retrieve(
     """
     if not proposals:
         return Draft(job, (), taste=taste)
+    context = RoomContext.of(job.plan, job.room_id, job.layout_type)
     matches = _matches(job, index, taste, proposals, finish_of)
     placements: list[Placement] = []
     lost: list[str] = []

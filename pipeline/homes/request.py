@@ -12,7 +12,12 @@ from pipeline.taxonomy import Taxonomy
 
 LIVING = frozenset({"living_room", "family_room"})
 MOST_ATTEMPTS = 100  # tries of a room under one plan
-TABLE = 18.0  # [m2] of a living room in which one dines, though nobody said so
+TABLE, SPACIOUS = (
+    18.0,
+    24.0,
+)  # [m2] of a living room in which one dines, though nobody said so: where no kitchen has the floor, and in any case
+EAT_IN, BREAKFAST = 10.0, 12.0  # [m2] of a kitchen in which one does: where the living room is not spacious, and in any case
+PARTS = "+"  # between the layout types of a room that serves as several
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +39,7 @@ class RoomJob:
     """One room to furnish; equal to nothing but itself.
 
     `index` is the home's, `number` the room's position in the plan; `plan_attempt` and, within one plan, `attempt` count from 0.
+    `layout_type` names the layout types of a room's parts, with a "+" between them.
     `count` is the number of objects that the sampler is told, `walkable` the share of free floor,
     `furniture` all that is wished for.
     """
@@ -55,6 +61,11 @@ class RoomJob:
         return self.plan_attempt * MOST_ATTEMPTS + self.attempt
 
     @property
+    def kinds(self) -> tuple[str, ...]:
+        """The layout types of the room's parts: mostly one."""
+        return tuple(self.layout_type.split(PARTS))
+
+    @property
     def category_bounds(self) -> tuple[CategoryBounds, ...]:
         """What is wished for by category, as the sampler takes it."""
         kind = self.room.type
@@ -62,7 +73,11 @@ class RoomJob:
 
     def essentials(self, taxonomy: Taxonomy) -> tuple[tuple[str, ...], ...]:
         """Return the groups of categories of which the room needs one thing each; a stated number of objects may be too small for them."""
-        groups = taxonomy.layouts[self.layout_type].needs if self.count is None and self.layout_type in taxonomy.layouts else ()
+        return tuple(group for kind in self.kinds for group in self.essentials_of(kind, taxonomy))
+
+    def essentials_of(self, kind: str, taxonomy: Taxonomy) -> tuple[tuple[str, ...], ...]:
+        """Return the groups that a part of this layout type needs."""
+        groups = taxonomy.layouts[kind].needs if self.count is None and kind in taxonomy.layouts else ()
         return tuple(group for group in groups if not set(group) <= set(self.unwanted(taxonomy)))
 
     def unwanted(self, taxonomy: Taxonomy) -> tuple[str, ...]:
@@ -82,15 +97,31 @@ class RoomJob:
 
 
 def layout_type(room: Room, plan: Plan, taxonomy: Taxonomy) -> str | None:
-    """Return the room type that the layout model knows this room as, or None when it stays empty.
+    """Return the room type that the layout model knows this room as, or None when it stays empty; "bedroom+living_room" for one that serves as both."""
+    if room.type not in taxonomy.types:
+        return room.type if room.type in taxonomy.layouts else None
+    own = taxonomy.types[room.type].functions
+    if not own:
+        return room.type if room.type in taxonomy.layouts else taxonomy.types[room.type].furnished_as or None
+    functions = {*own, *room.functions, *(["dining"] if _dines(room, plan) else [])}
+    if {"living", "dining"} <= functions:
+        functions = functions - {"living", "dining"} | {"living and dining"}
+    return PARTS.join(kind for name, kind in taxonomy.functions.items() if name in functions)
 
-    A living room is where one dines if somebody said so; where a home has no other place for it, its largest is, if it has floor for a table.
-    """
-    if room.type in LIVING:
-        told = any(r.type == "dining_room" or "dining" in r.functions for r in plan.rooms)
-        largest = max((r for r in plan.rooms if r.type in LIVING), key=lambda r: r.area)
-        if "dining" in room.functions or (not told and room.room_id == largest.room_id and room.area >= TABLE):
-            return "living_dining_room"
-    if room.type in taxonomy.layouts:
-        return room.type
-    return (taxonomy.types[room.type].furnished_as or None) if room.type in taxonomy.types else None
+
+def _dines(room: Room, plan: Plan) -> bool:
+    """Whether one dines in a room though nobody said so: in large kitchens, and where a home has no other place for it in the room that has the floor for it."""
+    if room.type == "kitchen" and room.area >= BREAKFAST:
+        return True
+    if any(r.type == "dining_room" or "dining" in r.functions for r in plan.rooms):
+        return False
+    living, kitchen = (
+        max((r for r in plan.rooms if r.type in types), key=lambda r: r.area, default=None) for types in (LIVING, {"kitchen"})
+    )
+    if living and living.area >= SPACIOUS:
+        return room is living
+    if kitchen and kitchen.area >= EAT_IN:
+        return room is kitchen
+    if living and living.area >= TABLE:
+        return room is living
+    return room.type == "studio_room" and room.area >= SPACIOUS

@@ -16,21 +16,25 @@ def job(layout_type, count=None, wishes=()):
     return RoomJob(plan, "room", layout_type, 0, 0, count=count, furniture=Furniture.model_validate({"counts": counts}))
 
 
+def bounds(job, words):
+    return category_bounds(job, job.layout_type, job.kinds, words)
+
+
 def test_a_room_is_to_hold_what_makes_it_that_room():
     words = taxonomy.load()
-    asked = category_bounds(job("kitchen"), words)
+    asked = bounds(job("kitchen"), words)
     assert [d.categories for d in asked] == list(words.layouts["kitchen"].needs)
     assert all(d.least == 1 for d in asked)
-    assert category_bounds(job("hallway"), words) == ()
+    assert bounds(job("hallway"), words) == ()
 
 
 def test_a_stated_number_of_things_is_not_crowded_by_essentials():
-    assert category_bounds(job("kitchen", count=2), taxonomy.load()) == ()
+    assert bounds(job("kitchen", count=2), taxonomy.load()) == ()
 
 
 def test_a_wish_takes_the_place_of_an_essential():
     none = CategoryBounds(("oven",), most=0)
-    asked = category_bounds(job("kitchen", wishes=[none]), taxonomy.load())
+    asked = bounds(job("kitchen", wishes=[none]), taxonomy.load())
     assert [d for d in asked if "oven" in d.categories] == [none]
     assert any(d.least == 1 and "sink_cabinet" in d.categories for d in asked)
 
@@ -39,9 +43,9 @@ def test_no_tub_stands_in_a_wc_unless_it_is_wished_for():
     words = taxonomy.load()
     bath, wc = (replace(job("bathroom", wishes=w), plan=Plan((replace(job("bathroom").room, type=kind),), (), "room"))
                 for kind, w in (("bathroom", ()), ("wc", ())))  # fmt: skip
-    assert CategoryBounds(("shower", "bathtub"), 1) in category_bounds(bath, words)
-    assert CategoryBounds(("shower", "bathtub"), 0, 0) in category_bounds(wc, words)
-    asked = category_bounds(replace(wc, furniture=job("bathroom", wishes=[CategoryBounds(("shower",), 1)]).furniture), words)
+    assert CategoryBounds(("shower", "bathtub"), 1) in bounds(bath, words)
+    assert CategoryBounds(("shower", "bathtub"), 0, 0) in bounds(wc, words)
+    asked = bounds(replace(wc, furniture=job("bathroom", wishes=[CategoryBounds(("shower",), 1)]).furniture), words)
     assert CategoryBounds(("bathtub",), 0, 0) in asked
 
 
@@ -49,7 +53,7 @@ def test_later_tries_insist_on_another_bed():
     words = taxonomy.load()
     (group,) = words.layouts["bedroom"].needs
     tries = [(0, 0), (0, 1), (0, 2), (0, 3), (1, 3)]
-    asked = [category_bounds(replace(job("bedroom"), plan_attempt=plan, attempt=attempt), words) for plan, attempt in tries]
+    asked = [bounds(replace(job("bedroom"), plan_attempt=plan, attempt=attempt), words) for plan, attempt in tries]
     assert asked[0] == asked[1] == (CategoryBounds(group, 1),)
     assert [a[0].categories for a in asked[2:4]] == [("single_bed",), ("kids_bed",)]
     assert all(CategoryBounds(tuple(c for c in group if c not in a[0].categories), 0, 0) in a for a in asked[2:])
@@ -60,7 +64,7 @@ def test_a_share_of_rooms_is_asked_for_what_is_usual():
     words = taxonomy.load()
     (usual,) = words.layouts["bedroom"].usual
     rng = np.random.default_rng(0)
-    asked = [usual_bounds(job("bedroom"), words, rng) for _ in range(400)]
+    asked = [usual_bounds(job("bedroom"), "bedroom", words, rng) for _ in range(400)]
     assert set(asked) == {(), (CategoryBounds(usual.of, 1),)}
     assert abs(np.mean([bool(a) for a in asked]) - usual.share) < 0.1
     for silent in (
@@ -69,4 +73,19 @@ def test_a_share_of_rooms_is_asked_for_what_is_usual():
         job("bedroom", wishes=[CategoryBounds(("wardrobe",), most=0)]),
         job("hallway"),
     ):
-        assert not any(usual_bounds(silent, words, rng) for _ in range(20))
+        assert not any(usual_bounds(silent, silent.layout_type, words, rng) for _ in range(20))
+
+
+def test_what_is_wished_for_stands_in_the_part_where_it_usually_does():
+    words = taxonomy.load()
+    wishes = [CategoryBounds(("wardrobe",), 1), CategoryBounds(("coffee_table",), 1, 2), CategoryBounds(("stool",), 0, 0)]
+    studio = job("bedroom+living_room", wishes=wishes)
+    asked = {kind: category_bounds(studio, kind, studio.kinds, words) for kind in studio.kinds}
+    assert CategoryBounds(("wardrobe",), 1) in asked["bedroom"]
+    assert CategoryBounds(("wardrobe",), 0) in asked["living_room"]
+    assert CategoryBounds(("coffee_table",), 1, 2) in asked["living_room"]
+    assert all(CategoryBounds(("stool",), 0, 0) in bounds for bounds in asked.values())
+    (bed,) = words.layouts["bedroom"].needs
+    assert CategoryBounds(bed, 1) in asked["bedroom"]
+    assert CategoryBounds(bed, 1) not in asked["living_room"]
+    assert bed in studio.essentials(words)

@@ -1,4 +1,4 @@
-"""Where one dines: where somebody said so, else in the largest living room that has the floor for it."""
+"""Where one dines: where somebody said so, else in the room that has the floor for it; and what a room of several uses is furnished as."""
 
 import numpy as np
 import pytest
@@ -19,9 +19,14 @@ def room(name, kind, area, functions=()):
         ([room("a", "living_room", 17)], ["living_room"]),
         ([room("a", "living_room", 17, ("dining",))], ["living_dining_room"]),
         ([room("a", "living_room", 30), room("b", "dining_room", 10)], ["living_room", "dining_room"]),
-        ([room("a", "living_room", 30), room("b", "kitchen", 17, ("cooking", "dining"))], ["living_room", "kitchen"]),
+        ([room("a", "living_room", 30), room("b", "kitchen", 17, ("cooking", "dining"))], ["living_room", "kitchen+dining_room"]),
         ([room("a", "living_room", 20), room("b", "family_room", 24)], ["living_room", "living_dining_room"]),
         ([room("a", "living_room", 30, ("dining",)), room("b", "dining_room", 10)], ["living_dining_room", "dining_room"]),
+        ([room("a", "living_room", 20), room("b", "kitchen", 11)], ["living_room", "kitchen+dining_room"]),
+        ([room("a", "living_room", 26), room("b", "kitchen", 11)], ["living_dining_room", "kitchen"]),
+        ([room("a", "living_room", 30, ("dining", "cooking"))], ["living_dining_room+kitchen"]),
+        ([room("a", "studio_room", 20), room("b", "kitchen", 5)], ["living_room+bedroom", "kitchen"]),
+        ([room("a", "studio_room", 30, ("cooking",))], ["living_dining_room+bedroom+kitchen"]),
         ([room("a", "garage", 20), room("b", "sunroom", 20)], [None, "living_room"]),
     ],
 )

@@ -32,7 +32,7 @@ def flat(s: Sketch, beds: int) -> FloorProgram:
     """Draw a contemporary flat: bedrooms off a hallway, an entry or the living room; the kitchen open, apart or behind the dining room."""
     s.room("living", "living_room", 20.0 + 3.0 * beds)
     hub = _hub(s, beds)
-    s.room("kitchen", "kitchen", 9.5 + 1.2 * beds)
+    s.room("kitchen", "kitchen", 7.0 + 0.6 * beds)
     draw = s.rng.random()
     if beds >= 2 and draw < 0.2:
         s.room("dining", "dining_room", 12.5)
@@ -93,9 +93,9 @@ def corridor(s: Sketch, beds: int) -> FloorProgram:
     s.room("hall", "hallway")
     s.off("hall", "living", "living_room", 20.0 + 1.5 * beds)
     if s.odds(0.6):
-        s.off("hall", "kitchen", "kitchen", 9.5 + 0.8 * beds)
+        s.off("hall", "kitchen", "kitchen", 7.5 + 0.5 * beds)
     else:
-        s.off("living", "kitchen", "kitchen", 9.0 + 0.8 * beds)
+        s.off("living", "kitchen", "kitchen", 7.0 + 0.5 * beds)
     if s.odds(0.25):
         s.link("living", "kitchen") if s.links[-1].a == "hall" else s.link("hall", "kitchen")
     s.bedrooms("hall", beds, 15.0, 11.5)
@@ -112,7 +112,7 @@ def corridor(s: Sketch, beds: int) -> FloorProgram:
 def open_plan(s: Sketch, beds: int) -> FloorProgram:
     """Draw a North American home: living, dining and kitchen in one; a primary suite with walk-in closet; the garage behind the laundry."""
     s.room("living", "living_room", 24.0 + 2.0 * beds)
-    s.room("kitchen", "kitchen", 13.0 + 0.8 * beds)
+    s.room("kitchen", "kitchen", 9.5 + 0.5 * beds)
     s.link("living", "kitchen", "open")
     if s.odds(0.55):
         s.room("dining", "dining_room", 13.0)
@@ -183,9 +183,9 @@ def hall_less(s: Sketch, beds: int) -> FloorProgram:
     if s.odds(0.4):
         s.room("dining", "dining_room", 11.0)
         s.link("living", "dining", "open", "portal")
-        s.off("dining", "kitchen", "kitchen", 9.5)
+        s.off("dining", "kitchen", "kitchen", 7.5)
     else:
-        s.room("kitchen", "kitchen", 9.5)
+        s.room("kitchen", "kitchen", 8.0)
         s.link("living", "kitchen", "door", "open")
     s.off("kitchen" if s.odds(0.3) else "living", "bath", "bathroom", 4.2, 0.14)
     if beds >= 3 and s.odds(0.5):
@@ -202,7 +202,7 @@ def shared(s: Sketch, beds: int) -> FloorProgram:
     s.room("hall", "hallway")
     for k in range(beds):
         s.off("hall", f"bed_{k + 1}", "bedroom", 14.0, 0.1)
-    s.off("hall", "kitchen", "kitchen", 17.0, functions=("cooking", "dining"))
+    s.off("hall", "kitchen", "kitchen", 15.0, functions=("cooking", "dining"))
     s.off("hall", "bath", "bathroom", 5.5, 0.12)
     s.off("hall", "wc", "wc", 2.0, 0.1)
     if beds >= 4:

@@ -75,7 +75,7 @@ def _realise(
         if room.type == "staircase" and request.level > 0:
             continue  # one room with its lowest level
         polygon = np.round(at[wall_lines.corner_lines(found, corners[i])] + trace.insets(corners[i], sides[i], spec.half), 3)
-        rooms.append(Room(room.id, room.type, polygon, request.level, program.shell.ceiling, room.role))
+        rooms.append(Room(room.id, room.type, polygon, request.level, program.shell.ceiling, room.role, functions=room.functions))
     runs += _runs(request, trace.walls(grid, n), rooms, found, at)
 
 
