@@ -214,6 +214,8 @@ class Clause:
                     break
                 ids = name(self.state, self.sentence, k, self.level if self.forward else None)
                 self.measures(e)
+                if "largest" in e.adjectives and cue != "cmp":
+                    self.state.say("largest", tuple(ids), tuple(r.id for r in self.stock.of(e.type)), e)
                 group += [i for i in ids if i not in group and i not in left]
                 first, joined, end = first or e, "", k + 1
             elif not group and (found := self._standin(k, e, left)) is not None:

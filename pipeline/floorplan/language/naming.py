@@ -67,9 +67,12 @@ def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> 
     return e.ids
 
 
-def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:
+def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per kind of phrase
     e, stock, role = sentence[k], state.inventory, _role(sentence[k])
     same = [r for r in stock.of(e.type) if e.role == "landing" or not _landing(r)]
+    suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), None) if e.type == "bedroom" and not role else None
+    if suites and not e.ordinal and e.number is None:
+        return [stock.get(i) for i in suites]
     if (
         e.type == "hallway"
         and e.definite

@@ -15,17 +15,16 @@ from pipeline.floorplan.language.facts import Reading
 from pipeline.floorplan.language.frames import framed
 from pipeline.floorplan.language.furnishing import read_furniture
 from pipeline.floorplan.language.naming import introduce
-from pipeline.floorplan.language.negation import ban
 from pipeline.floorplan.language.order import reorder
 from pipeline.floorplan.language.phrases import sentences, settle
-from pipeline.floorplan.language.revising import revise
+from pipeline.floorplan.language.revising import ban, choose, refuse
 from pipeline.floorplan.language.sentences import read
 from pipeline.floorplan.language.spelling import detect
-from pipeline.floorplan.language.text import spread, tokenize
+from pipeline.floorplan.language.text import tokenize
 from pipeline.floorplan.language.tokens import listen, segment
 from pipeline.floorplan.program.completion import complete
-from pipeline.floorplan.program.consistency import ImpossibleError, check
-from pipeline.floorplan.program.floor_program import Evidence, FloorProgram
+from pipeline.floorplan.program.consistency import check
+from pipeline.floorplan.program.floor_program import FloorProgram
 
 LONGEST = 20_000  # characters
 MOST_WORDS = 2_500  # and Chinese characters: reading takes time in proportion to them
@@ -51,12 +50,8 @@ def understand(prompt: str) -> FloorProgram:
 def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     """Return what a prompt says of rooms, and no more; `plain` is it without its wishes for furniture, all else in its place."""
     heard = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
-    revised = revise(amounts(segment(heard), heard), heard)
-    said = framed(revised.marks, heard)
-    for mark in (m for m in said if m.kind == "homes"):
-        start, end = spread(heard.tokens[mark.first : mark.last + 1])
-        words = Evidence(start=start, end=end, text=prompt[start:end], field="rooms")
-        raise ImpossibleError(f"{mark.number:g} homes are asked for", "ask for one home at a time", [words])
+    said = framed(choose(amounts(segment(heard), heard)), heard)
+    refuse(said, heard)
     marks = reorder([m for m in said if m.kind != "people"], heard)
     parsed = sentences(marks, heard)
     everything = [e for s in parsed for e in s]
@@ -72,7 +67,7 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     for sentence in parsed:
         read(state, sentence)
     try:
-        return assemble(state, parsed, [*marks, *(replace(m, kind="word") for m in revised.aside)])
+        return assemble(state, parsed, marks)
     except ValidationError as error:  # a number beyond what a program may hold
         fault = error.errors()[0]
         where = ".".join(map(str, fault["loc"]))

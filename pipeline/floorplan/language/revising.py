@@ -1,200 +1,60 @@
-"""What a prompt takes back or leaves open: "one bedroom, no, make that two", "four, but three are enough", "a study or a guest room"."""
+"""What a prompt rules out, and which of "A or B" holds. Counts that it takes back ("one bedroom, no, make that two") are frames."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
+from pipeline.floorplan.language.facts import SOCIAL
+from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.text import spread
 from pipeline.floorplan.language.tokens import ENDS, Mark, Words
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import Evidence
 
-LIGHT = {"fill", "adverb", "comma", "det", "hyphen", "dash", "bound", "verb", "adj", "colon", "word", "open", "close", "bullet", "but"}
-INNER = {"adj", "size", "clf", "adverb", "look", "fill"}  # may stand between a number and its room
-NAMED = {"room", "suite", "home"}
 CHOICE = {"num", "det", "adj", "size", "clf", "times"}
+HEADS = {"room", "suite"}
+CONFLICTS = {
+    "homes": ("{} homes are asked for", "ask for one home at a time"),
+    "conflict": ("two counts are asked for: {!r}", "keep one of them"),
+}
+RELATIONS = {"near", "door", "open", "wall", "away", "apart", "leads", "between"}
+TURNED = {"least": "most", "most": "least"}
+NAMES = {"bedroom", "living_room", "kitchen"}  # what a home has, not a room that is ruled out
 
 
-@dataclass(slots=True)
-class Revised:
-    """The marks that hold, and the words that were left aside: the second of two rooms of which one is wanted."""
-
-    marks: list[Mark]
-    aside: list[Mark] = field(default_factory=list)
-
-
-def revise(marks: Sequence[Mark], heard: Words) -> Revised:
-    """Return the marks with corrections carried out and of every "A or B" the first.
-
-    Raises ImpossibleError where two counts contradict each other ("three bedrooms but only two"), with both.
-    """
-    _negative(marks, heard)
-    made = _corrected(list(_told(marks, heard)))
-    _contradicted(made, heard)
-    return _chosen(_few(made))
-
-
-def _told(marks: Sequence[Mark], heard: Words) -> list[Mark]:
-    """Tell "Balkon: nein" from a correction."""
-    made = list(marks)
-    for k, mark in enumerate(made):
-        between = k and k + 1 < len(made) and made[k - 1].kind == made[k + 1].kind == "room"
-        nope = mark.kind in {"fix", "fill", "word"} and mark.text in heard.lexicon.sign("nope") and k and made[k - 1].kind == "colon"
-        if nope or (mark.kind == "fix" and between and mark.text in heard.lexicon.sign("not_towards")):  # 不对 between two rooms
-            made[k] = replace(mark, kind="neg")
-    return made
-
-
-def _counted(marks: Sequence[Mark], k: int) -> int | None:
-    """Return the place of the room that the number at k counts; in front of it or, as in Chinese, behind."""
-    if marks[k].kind != "num":
-        return None
-    j = next((j for j in range(k + 1, len(marks)) if marks[j].kind not in INNER), len(marks))
-    if j < len(marks) and marks[j].kind in NAMED:
-        return j
-    return k - 1 if k and marks[k - 1].kind in NAMED else None
-
-
-def _earlier(marks: Sequence[Mark], k: int, room: Mark | None) -> tuple[int, int] | None:
-    """Return the places of the last number, or "a", before k, and of what it counts."""
-
-    def same(place: int) -> bool:
-        return room is None or marks[place].value.partition("/")[0] == room.value.partition("/")[0]
-
-    numbers = ((j, place) for j in range(k - 1, -1, -1) if (place := _counted(marks, j)) is not None and place < k and same(place))
-    articles = (
-        (j - 1, j)
-        for j in range(k - 1, 0, -1)
-        if marks[j].kind in NAMED and same(j) and (marks[j - 1].kind, marks[j - 1].value) in {("det", "indefinite"), ("pron", "one")}
-    )
-    return next(numbers, None) or next(articles, None)
-
-
-def _corrected(marks: list[Mark]) -> list[Mark]:
-    """Carry out "no, make that two" and "three are enough": the second number holds."""
-    k = 0
-    while k < len(marks):
-        kind = marks[k].kind
-        if kind == "fix":
-            j = next((j for j in range(k + 1, min(k + 7, len(marks))) if marks[j].kind not in LIGHT), len(marks))
-        elif kind == "enough":
-            near = (*range(k - 1, max(-1, k - 6), -1), *range(k + 1, min(len(marks), k + 4)))
-            j = next((j for j in near if marks[j].kind == "num"), len(marks))
-        else:
-            k += 1
-            continue
-        after = marks[j] if j < len(marks) else None
-        if after is not None and (after.kind, after.value) == ("pron", "one"):
-            after = marks[j] = replace(after, kind="num", value="1", number=1.0)
-        if after is not None and after.kind == "amount":
-            old = next((i for i in range(k - 1, -1, -1) if marks[i].kind == "amount" and marks[i].value == after.value), None)
-            if old is not None:
-                marks[old] = after
-                del marks[k : j + 1]
-                continue
-        if after is not None and after.kind == "num":
-            room = _counted(marks, j)
-            named = room if room is not None and room > j and marks[room].kind == "room" else None
-            place = _earlier(marks, min(j, k), marks[named] if named is not None else None)
-            if place is not None:
-                marks[place[0]] = replace(marks[place[0]], kind="num", value="", number=after.number)
-                marks[place[1]] = replace(marks[place[1]], plural=after.number > 1)
-                start, end = min(j, k), max(j, k, named or 0) + 1
-                while end < len(marks) and marks[end].kind == "clf":
-                    end += 1
-                while start and marks[start - 1].kind in {
-                    "neg",
-                    "comma",
-                    "hyphen",
-                    "dash",
-                    "but",
-                    "fill",
-                }:  # "un dormitorio, no, mejor dos"
-                    start -= 1
-                del marks[start:end]
-                k = start
-                continue
-        marks[k : k + 1] = [] if kind == "fix" else [replace(marks[k], kind="verb")]
-    return marks
-
-
-def _contradicted(marks: Sequence[Mark], heard: Words) -> None:
-    """Refuse "three bedrooms but only two": one of the counts is wrong, and nobody said which."""
-    for k, said in enumerate(marks):
-        one = (said.kind, said.value) == ("pron", "one")
-        number = 1.0 if one else said.number if said.kind == "num" else 0.0
-        before = next((m for m in reversed(marks[max(0, k - 5) : k]) if m.kind not in {"verb", "fill", "flag", "adverb", "det"}), None)
-        if not number or before is None or before.kind != "but":
-            continue
-        room = _counted([*marks[:k], replace(said, kind="num"), *marks[k + 1 :]], k)
-        named = marks[room] if room is not None and room > k else None
-        end = (room if named is not None and room is not None else k) + 1
-        end = next((i for i in range(end, len(marks)) if marks[i].kind not in {"clf", "fill"}), len(marks))
-        goes_on = end < len(marks) and marks[end].kind not in {*ENDS, "comma"}
-        if goes_on or (one and named is None) or (named is not None and ("/" in named.value or named.kind != "room")):
-            continue
-        place = _earlier(marks, k, named)
-        if place is not None and marks[place[0]].number not in {0.0, number} and marks[place[1]].kind == "room":
-            words = [_cited(heard, marks, *sorted(place)), _cited(heard, marks, k, end - 1)]
-            what = marks[place[1]].value.partition("/")[0].replace("_", " ")
-            raise ImpossibleError(
-                f"{marks[place[0]].number:g} {what}s are asked for, and then {number:g}", "keep one of the two counts", words
-            )
-
-
-def _negative(marks: Sequence[Mark], heard: Words) -> None:
-    """Refuse "-3 bedrooms", "0 m2", "0 rooms" and "no rooms": nothing has so many or is so large."""
-    named = any(m.kind in {"room", "suite"} for m in marks)
+def refuse(marks: Sequence[Mark], heard: Words) -> None:
+    """Refuse several homes, two counts of one thing, and amounts that nothing has: "-3 bedrooms", "0 m2", "no rooms"."""
+    named = any(m.kind in HEADS for m in marks)
     for k, mark in enumerate(marks):
         place = heard.tokens[mark.first].start if mark.first < len(heard.tokens) else 0
         minus = mark.kind in {"num", "amount"} and place > 1 and heard.prompt[place - 1] in "-−" and heard.prompt[place - 2] == " "
         lead = k and marks[k - 1].kind in {"cue", "fill", "bound", "of", "det", "verb"}
         none = mark.kind == "amount" and not mark.number and mark.value in {"area", "rooms"}
         empty = (mark.kind, mark.value) == ("unit", "rooms") and k and marks[k - 1].kind == "neg" and not named
-        if (minus and lead) or none or empty:
-            words = _cited(heard, marks, k - 1 if empty else k, k)
-            text = ("-" if minus else "") + words.text
-            raise ImpossibleError(f"no home has {text!r}", "ask for numbers above zero", [words])
+        if mark.kind in CONFLICTS or (minus and lead) or none or empty:
+            start, end = spread(heard.tokens[marks[k - 1 if empty else k].first : max(mark.last, mark.first + 1)])
+            words = Evidence(start=start, end=end, text=heard.prompt[start:end], field="rooms")
+            what, advice = CONFLICTS.get(mark.kind, ("no home has {!r}", "ask for numbers above zero"))
+            said = f"{mark.number:g}" if mark.kind == "homes" else ("-" if minus else "") + words.text
+            raise ImpossibleError(what.format(said), advice, [words])
 
 
-def _cited(heard: Words, marks: Sequence[Mark], first: int, last: int) -> Evidence:
-    start, end = spread(heard.tokens[marks[first].first : max(marks[last].last, marks[first].first + 1)])
-    return Evidence(start=start, end=end, text=heard.prompt[start:end], field="rooms")
-
-
-def _few(marks: list[Mark]) -> list[Mark]:
-    """Read "two or three bedrooms" and "2-3 bedrooms" as the smaller of both, which every home that fits has."""
-    for k in range(len(marks) - 3, -1, -1):
-        a, between, b = marks[k : k + 3]
-        joined = (between.kind == "join" and between.value in {"or", "to"}) or between.kind in {"dash", "hyphen", "to"}
-        place = _counted(marks, k + 2) if a.kind == b.kind == "num" and joined and a.number < b.number else None
-        if place is not None and place > k + 2 and marks[place].kind == "room":
-            del marks[k + 1 : k + 3]
-    return marks
-
-
-def _chosen(marks: list[Mark]) -> Revised:
-    """Of "a study or a guest room" take the first; the second stands aside."""
-    aside: list[Mark] = []
+def choose(marks: Sequence[Mark]) -> list[Mark]:
+    """Of "a study or a guest room" take the first; the second is no more than words."""
+    made = list(marks)
     negated = False
-    k = 0
-    while k < len(marks):
-        mark = marks[k]
+    for k, mark in enumerate(made):
         denied = mark.kind in {"neg", "except"} or (mark.kind == "cue" and mark.value in {"except", "avoid", "away"})
         negated = (negated or denied) and mark.kind not in ENDS
-        k += 1
-        if (mark.kind, mark.value) != ("join", "or") or negated or k < 2 or marks[k - 2].kind not in {"room", "suite"}:
+        j = next((j for j in range(k + 1, len(made)) if made[j].kind not in CHOICE), len(made) - 1)
+        choice = (mark.kind, mark.value) == ("join", "or") and k and made[k - 1].kind in HEADS and made[j].kind in HEADS
+        if negated or not choice or _pointed(made, k - 1) or _pointed(made, j):
             continue
-        j = next((j for j in range(k, len(marks)) if marks[j].kind not in CHOICE), len(marks))
-        if j == len(marks) or marks[j].kind not in {"room", "suite"} or _pointed(marks, k - 2) or _pointed(marks, j):
-            continue
-        ahead = next((m for m in marks[j + 1 :] if m.kind not in {"verb", "flag"}), None)
+        ahead = next((m for m in made[j + 1 :] if m.kind not in {"verb", "flag"}), None)
         if ahead is None or ahead.kind not in {"neg", "needless", "cmp"}:  # "a kitchen or a bathroom must not lie beside it"
-            aside += marks[k - 1 : j + 1]
-            del marks[k - 1 : j + 1]
-            k -= 1
-    return Revised(marks, aside)
+            made[k : j + 1] = [replace(m, kind="word") for m in made[k : j + 1]]
+    return made
 
 
 def _pointed(marks: Sequence[Mark], k: int) -> bool:
@@ -205,3 +65,107 @@ def _pointed(marks: Sequence[Mark], k: int) -> bool:
             return True
         j -= 1
     return j >= 0 and marks[j].kind == "cue" and marks[j].value not in {"has", "in"}
+
+
+def ban(sentence: list[Element]) -> None:
+    """Mark the noun phrases that are ruled out, and turn bounds that a negation turns."""
+    for k, e in enumerate(sentence):
+        if e.kind == "neg":
+            j = _target(sentence, k + 1)
+            if j is not None:
+                _negate(sentence, k, j)
+                continue
+            _any(sentence, k)
+            if k + 1 == len(sentence) or sentence[k + 1].kind in {"comma", "close", "but"}:
+                _behind(sentence, k)
+        elif e.kind == "needless":
+            start = max((i + 1 for i in range(k) if sentence[i].kind in {"comma", "but"}), default=0)
+            j = None if any(x.kind == "np" for x in sentence[start:k]) else _target(sentence, k + 1)
+            if j is not None:  # "no es necesario un balcón"
+                e.kind = "used"
+                _list(sentence, j)
+            for i in range(k - 1, -1, -1) if j is None else ():
+                if sentence[i].kind == "np":
+                    sentence[i].banned, e.kind = True, "used"
+                    if not (i and sentence[i - 1].kind in {"and", "or"}):
+                        break
+                elif sentence[i].kind not in {"and", "or", "verb", "neg", "det"}:
+                    break
+
+
+def _negate(sentence: list[Element], k: int, j: int) -> None:
+    """Apply the negation at k to the phrase at j."""
+    e, phrase, rest = sentence[k], sentence[j], sentence[j + 1 : j + 3]
+    if [x.kind for x in rest] == ["neg", "flag"] and rest[1].value == "daylight":
+        e.kind = rest[0].kind = "used"  # "no bathroom without a window": all have one
+        phrase.det.add("all")
+    elif any(m.bound in TURNED for m in phrase.amounts):
+        e.kind = "used"
+        for m in phrase.amounts:
+            m.bound = TURNED.get(m.bound, m.bound)
+    elif _related(sentence, j):
+        _any(sentence, k)  # "no kitchen next to the bedroom"
+    elif phrase.adjectives & {"open", "combined"} and phrase.type in SOCIAL:
+        e.kind = "used"  # "no open kitchen" is a closed one
+        phrase.adjectives = (phrase.adjectives - {"open", "combined"}) | {"closed"}
+    elif not phrase.definite or e.removes:
+        e.kind = "used"
+        _list(sentence, j)
+
+
+def _target(sentence: list[Element], k: int) -> int | None:
+    """Return the noun phrase that a negation in front of k rules out; None where it turns a relation or says nothing of rooms."""
+    for j, e in enumerate(sentence[k:], k):
+        if e.kind == "np":
+            return None if e.number is not None and any(x.kind == "colon" for x in sentence[k:j]) else j
+        colon = e.kind == "colon" and all(x.kind in {"verb", "word"} for x in sentence[k:j])  # "not needed: balcony, garage"
+        if e.kind not in {"verb", "adj", "det", "owner", "size", "word", "relative"} and not colon and (e.kind, e.value) != ("cue", "has"):
+            return None
+    return None
+
+
+def _any(sentence: list[Element], k: int) -> None:
+    """Let "a bedroom" behind a negated relation mean any bedroom, not a new one: "must not be reached through a bedroom"."""
+    cue = False
+    for e in sentence[k + 1 :]:
+        if e.kind in {"comma", "but"}:
+            return
+        cue = cue or (e.kind == "cue" and e.value in RELATIONS)
+        if cue and e.kind == "np" and "indefinite" in e.det and e.number is None:
+            e.det = {"all"}
+
+
+def _behind(sentence: list[Element], k: int) -> None:
+    """Mark what a negation behind it rules out: "Kinderzimmer gibt es keine", "balcony: no"; not what it says of a room that is counted."""
+    e = next((x for x in reversed(sentence[:k]) if x.kind not in {"verb", "colon", "det", "word"}), None)
+    if e is not None and e.kind == "np":
+        e.banned = e.number is None and not e.definite and not e.amounts
+        sentence[k].kind = "used" if e.banned else "neg"
+
+
+def _related(sentence: list[Element], j: int) -> bool:
+    """Whether a relation follows at once, which is what is negated."""
+    e = next((x for x in sentence[j + 1 :] if x.kind != "verb"), None)
+    return e is not None and e.kind == "cue" and e.value in RELATIONS
+
+
+def _list(sentence: list[Element], j: int) -> None:
+    """Mark a list under one negation: "no balcony, garage or cellar"."""
+    sentence[j].banned = True
+    joined = ""
+    titled = next((x.kind for x in reversed(sentence[:j]) if x.kind in {"colon", "neg", "used"}), "") == "colon"
+    for i in range(j + 1, len(sentence)):
+        e = sentence[i]
+        if e.kind in {"comma", "and", "or"}:
+            joined = e.kind if joined != "or" else joined
+            continue
+        if e.kind != "np" or not joined or e.number is not None or e.amounts or e.definite or e.det & {"own", "another"}:
+            return
+        rest = next((x for x in sentence[i + 1 :] if x.kind not in {"np", "comma", "det"}), None)
+        if joined == "comma" and not titled and (rest is None or rest.kind != "or"):
+            return
+        told = sentence[i + 1] if i + 1 < len(sentence) and sentence[i + 1].kind in {"cue", "verb", "neg"} and joined != "or" else None
+        had = next((x for x in sentence[i + 1 :] if x.kind == "np"), None)
+        if told is not None and not (told.value == "has" and had is not None and had.type in NAMES):
+            return  # it has a statement of its own, unless it is the home that has what follows
+        e.banned, joined = True, ""

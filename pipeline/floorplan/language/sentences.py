@@ -129,6 +129,9 @@ def _cast(c: Clause, who: Element, role: str) -> None:
 
 
 def _verb(c: Clause, k: int, e: Element) -> int:
+    before = next((x for x in reversed(c.sentence[:k]) if x.kind not in {"word", "flag"}), None)
+    if before is not None and before.kind in {"and", "comma"} and c.subject and c.objects:
+        c.run = []  # "the bedroom has a bath and is ...": the subject goes on
     c.verb, c.single = True, c.says(e, "singular")
     return k + 1
 
