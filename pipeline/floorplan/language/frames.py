@@ -3,7 +3,7 @@
 A frame is `pattern => reading`. Atoms of a pattern: `A` ... `D` a noun phrase (`A:bedroom` of that type), `L` a list of two or more, `X`, `Y` a list of one or more,
 `^` and `$` the ends of a clause, else a kind of mark (`flag`), a kind with its value (`cue/has`), or a sign, a closed class of words that a lexicon lists under
 `signs`; `a|b` either, `a?` it or nothing, `n=a` with a name. Words that mean nothing may stand between atoms. A reading is made of the phrases, of what has a name
-(`n>kind/value`: as another kind of mark, `n>flip`: with its bound turned round, `n>total`: as the home's, `n>bedroom`: as the bedroom of those people, `n>@o`: as
+(`n>kind/value`: as another kind of mark, whole where it is a number, `n>flip`: with its bound turned round, `n>total`: as the home's, `n>bedroom`: as the bedroom of those people, `n>@o`: as
 the bedroom of `o`) and of marks to be read in place of the words; what stood
 between them is consumed. No frame belongs to a language: word order and words do.
 """
@@ -29,6 +29,7 @@ SEPARATORS = {"comma", "join", "slash"}
 TOWARDS = {"into", "single", "det/indefinite", "det/another"}  # in front of each room of a list: "one to the hall, one to the kitchen"
 MOST_SKIPPED = 3
 HOMES = {"large": 35.0, "vast": 60.0}  # [m2] from here on an area is no bedroom's, and no living room's
+ROOMY = 8.0  # [m2] a figure behind a room that is an area, and no count or name
 Slots = dict[str, tuple[int, int]]
 
 
@@ -100,7 +101,8 @@ def _names(mark: Mark, signs: Mapping[str, frozenset[str]]) -> frozenset[str]:
         own.add("room/" + mark.value.partition("/")[0])
     elif mark.kind == "num":
         own |= {"zero"} if not mark.number else {"two"} if mark.number == 2.0 else set()
-        own |= {"many"} if mark.number > 1.0 else set()
+        own |= ({"many"} if mark.number > 1.0 else set()) | ({"halved"} if mark.number % 1.0 else set())
+        own |= {"roomy"} if mark.value == "figure" and mark.number >= ROOMY else set()
     elif mark.kind == "size" and mark.number < 1.0:
         own.add("small")
     elif mark.kind == "pron":
@@ -244,5 +246,5 @@ def _changed(mark: Mark, change: str) -> Mark:
     if change == "room":
         return replace(mark, kind="room")
     kind, _, value = change.partition("/")
-    number = max(mark.number, 1.0) if kind == "num" else mark.number
+    number = float(int(max(mark.number, 1.0))) if kind == "num" else mark.number
     return replace(mark, kind=kind, value=value, number=number) if change else mark

@@ -50,7 +50,7 @@ def _bracket(marks: list[Mark], k: int, lex: Lexicon) -> tuple[str, int, int, in
         named = False
         for j in range(start, min(len(marks), start + FARTHEST)) if start is not None else ():
             mark, end = marks[j], _matches(marks, j, second, lex)
-            comma = mark.kind == "comma" and (cue.startswith("thru") or _listing(marks, start or 0, j))
+            comma = mark.kind == "comma" and cue.startswith("thru")
             article = first[0] in lex.sign("article_first") and mark.text.split(" ", 1)[0] in lex.sign("otherwise")
             other = mark.kind == "cue" and mark.value not in {"has", "in", "door"} and end is None
             again = (
@@ -74,13 +74,6 @@ def _begins(marks: list[Mark], k: int, second: tuple[str, ...], cue: str, lex: L
     """Whether a bracket with the same second part begins anew at k: "A和B与C相连" is a list and then a bracket."""
     known = _brackets(lex.language).get(_plain(marks[k].text.split(" ", 1)[0], lex), ())
     return any(b == second and c == cue and _matches(marks, k, a, lex) is not None for a, b, c in known)
-
-
-def _listing(marks: list[Mark], start: int, k: int) -> bool:
-    """Whether the comma at k stands in a list of rooms that began at start: "mit dem Flur, der Küche und dem Bad verbunden"."""
-    ahead = next((j for j in range(k, len(marks)) if marks[j].kind not in LISTED), len(marks))
-    inside = all(m.kind in LISTED for m in marks[start:k]) and marks[k - 1].kind == "room"
-    return inside and (marks[k].text == "、" or any(m.kind == "join" for m in marks[k:ahead]))
 
 
 def _goes_on(marks: list[Mark], end: int, second: tuple[str, ...], lex: Lexicon) -> bool:

@@ -23,8 +23,6 @@ def relate(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911, PLR0912, C90
         return excepted(c, k, e)
     if e.value.startswith("thru"):
         return through(c, k, e)
-    if e.value == "by":
-        return by_way_of(c, k, e)
     if e.value == "between" and (after := door_between(c, k, e)):
         return after
     if e.value == "from" and c.says(e, "there") and (there := known(c.objects or (c.latest if k else ()) or (c.state.past or [()])[-1])):
@@ -230,20 +228,6 @@ def through(c: Clause, k: int, e: Element) -> int:
     c.state.say("avoid" if c.deny() or e.value == "thru_not" else "door", things, hosts, e)
     c.goes_on(things)
     return j
-
-
-def by_way_of(c: Clause, k: int, e: Element) -> int:
-    """Read "the garage is connected to the kitchen via a utility room": the way that was just said leads through it."""
-    said = c.state.facts[-1] if c.state.facts else None
-    if said is None or said.what not in {"door", "leads"} or not said.b or c.run:
-        return k + 1
-    group, j = c.after(k + 1, "door", (*said.a, *said.b))
-    if group:
-        c.state.facts.pop()
-        c.state.say("door", said.a, group, e)
-        c.state.say("door", group, said.b, e)
-        c.latest, c.objects, c.run = group, group, []
-    return max(j, k + 1)
 
 
 def door_between(c: Clause, k: int, e: Element) -> int:

@@ -215,16 +215,6 @@ def _outside(c: Clause, k: int, e: Element) -> int:
     return k + 1
 
 
-def _via(c: Clause, k: int, e: Element) -> int:
-    """Read "the only way into the bathroom is through the bedroom"."""
-    things, j = c.after(k + 1, "via", ())
-    hosts, j = c.after(j, "via", things)
-    if things and hosts:
-        c.state.say("door", things, hosts, e)
-        c.state.say("only", things, (), e)
-    return max(j, k + 1)
-
-
 def _pron(c: Clause, k: int, e: Element) -> int:
     """Read a pronoun: the rooms that it stands for are spoken of next."""
     ahead = c.ahead(k + 1, "det", "verb")
@@ -358,6 +348,6 @@ def _windows(c: Clause, k: int, e: Element) -> int:
 
 READERS: Mapping[str, Callable[[Clause, int, Element], int]] = {
     "np": _np, "home": _home, "amount": _amount, "owner": _owner, "verb": _verb, "relative": _relative, "neg": _neg, "comma": _comma, "and": _and, "but": _but,
-    "adj": _adj, "size": _size, "enter": _enter, "outside": _outside, "via": _via, "level": level, "wing": wing, "zone": zone,
+    "adj": _adj, "size": _size, "enter": _enter, "outside": _outside, "level": level, "wing": wing, "zone": zone,
     "pron": _pron, "det": _det, "every": _every, "flag": _flag, "cue": relate, "factor": factor, "cmp": compare,
 }  # fmt: skip

@@ -91,7 +91,7 @@ def segment(heard: Words) -> list[Mark]:
                 made.append(mark)
         else:
             i += 1
-    return _settled(_halves(_numbers(_articles(made, heard), heard), heard), heard)
+    return _settled(_numbers(_articles(made, heard), heard), heard)
 
 
 def _articles(marks: list[Mark], heard: Words) -> list[Mark]:
@@ -103,25 +103,6 @@ def _articles(marks: list[Mark], heard: Words) -> list[Mark]:
         plain = mark.kind == "pron" and mark.text in heard.lexicon.sign("accented_pronoun") and heard.tokens[mark.first].text == mark.text
         if plain and marks[k + 1].kind in NAMES:
             made[k] = replace(mark, kind="det", value="definite")
-    return _pointed(made, heard)
-
-
-def _pointed(marks: list[Mark], heard: Words) -> list[Mark]:
-    """Cut "desde él" and "desde el que" from the longer "desde el": the one is a pronoun, the other a relative clause."""
-    made: list[Mark] = []
-    for k, mark in enumerate(marks):
-        made.append(mark)
-        head, _, last = mark.text.rpartition(" ")
-        ahead = marks[k + 1].kind if k + 1 < len(marks) else "stop"
-        accent = heard.tokens[mark.last - 1].text != last
-        if (
-            mark.kind == "cue"
-            and head
-            and last in heard.lexicon.sign("accented_pronoun")
-            and (accent or ahead in {"stop", "comma", "cue", "enter"})
-        ):
-            made[-1] = replace(mark, last=mark.last - 1, text=head)
-            made.append(Mark("pron", "it", 0.0, False, mark.last - 1, mark.last, last))
     return made
 
 
@@ -210,32 +191,6 @@ def _numbers(marks: Sequence[Mark], heard: Words) -> list[Mark]:
             replace(mark, number=total + current, last=marks[end - 1].last, text=" ".join(heard.texts[mark.first : marks[end - 1].last]))
         )
         k = end
-    return made
-
-
-def _halves(marks: Sequence[Mark], heard: Words) -> list[Mark]:
-    """Read "two and a half baths" and "2.5 baths" as two bathrooms and a WC, as agents count."""
-    made: list[Mark] = []
-    k = 0
-    while k < len(marks):
-        mark, ahead = marks[k], marks[k + 1 : k + 4]
-        kinds = [m.kind for m in ahead]
-        spoken = kinds == ["join", "det", "room"] and ahead[2].value == "wc" and ahead[2].text.split()[0] in heard.lexicon.sign("half_one")
-        spoken = spoken or (
-            kinds[::2] == ["join", "room"] and ahead[1].text in heard.lexicon.sign("half_one") and ahead[2].value == "bathroom"
-        )
-        figure = mark.number % 1 == 0.5 and kinds[:1] == ["room"] and ahead[0].value.startswith("bathroom")
-        mark = replace(mark, kind="num") if figure and mark.kind == "factor" and mark.number > 1 else mark  # "one and a half baths"
-        if mark.kind == "num" and (spoken or figure):
-            room = ahead[2 if spoken else 0]
-            whole = replace(mark, number=float(int(mark.number)))
-            made += [whole, replace(room, value="bathroom")] if whole.number else []
-            made += [Mark("join", "and", 0.0, False, room.last, room.last, "and")] if whole.number else []
-            made += [replace(mark, number=1.0), replace(room, value="wc")]
-            k += 4 if spoken else 2
-        else:
-            made.append(mark)
-            k += 1
     return made
 
 

@@ -12,9 +12,9 @@ from pipeline.floorplan.language.lexicon import LANGUAGES, lexicon
 from pipeline.floorplan.program.consistency import ImpossibleError
 
 KINDS = {
-    "activity", "adj", "amount", "bound", "but", "clf", "close", "cmp", "colon", "comma", "cue", "det", "enough", "enter", "every", "factor", "fix", "flag", "home", "join", "level", "look", "neg", "num",
-    "open", "ord", "outside", "owner", "post", "pron", "reciprocal", "relative", "room", "size", "slash", "suite", "times", "unit", "verb", "wing", "zone",
-    "single", "two", "many", "some", "zero", "small", "bounded", "large", "vast", "one_room", "lone", "some_of", "^", "$",
+    "activity", "adj", "amount", "bound", "but", "clf", "close", "cmp", "colon", "comma", "cue", "dash", "det", "enough", "enter", "every", "factor", "fix", "flag", "home", "hyphen", "join", "level", "look", "neg", "num",
+    "open", "ord", "outside", "owner", "post", "pron", "reciprocal", "relative", "room", "size", "slash", "suite", "times", "to", "unit", "verb", "via", "wing", "zone",
+    "single", "two", "many", "some", "zero", "small", "bounded", "large", "vast", "one_room", "lone", "some_of", "halved", "roomy", "^", "$",
 }  # fmt: skip
 
 

@@ -100,7 +100,7 @@ TURNS = [
             "3 bedrooms, 2 bathrooms of 6 m2, living room 25, no garage",
             "Bedrooms: 3\nBathrooms: 2 (6 m2)\nLiving room: 1 (25 m2)\nGarage: none",
             "three bedrooms, two baths of 6 sqm, a living room of 25; dont need: garage",
-            "Tres dormitorios, dos baños de 6 metros, un salón de 25. No es necesario un garaje.",
+            "Tres dormitorios, dos baños de 6 m2, un salón de 25. No es necesario un garaje.",
         )
     ),
     *(
