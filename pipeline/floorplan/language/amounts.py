@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from pipeline.floorplan.language.lexicon import Lexicon
-from pipeline.floorplan.language.tokens import Mark, Words
+from pipeline.floorplan.language.marks import Mark, Words
 
 FEET, SQUARE_FEET = 0.3048, 0.092903
 USUAL_HEIGHT = 15.0  # a length from here on, said of a room or a home, is an area ("60 metros")

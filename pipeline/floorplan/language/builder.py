@@ -1,4 +1,4 @@
-"""What was read → the program: its rooms, amounts, storeys, outline, style, evidence, and the words that nothing was made of."""
+"""What was read → the program: its rooms, amounts, storeys, outline, style, and evidence."""
 
 from __future__ import annotations
 
@@ -7,11 +7,10 @@ from typing import Any
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.facts import HALLS, Fact, Named, Reading
+from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.naming import ROLES
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.room_links import Draft, join
-from pipeline.floorplan.language.tokens import Mark
-from pipeline.floorplan.language.unparsed import unparsed
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.defaults import DEFAULTS
 from pipeline.floorplan.program.floor_program import MAX_ROOMS, FloorProgram, Style
@@ -43,7 +42,7 @@ SORTS = {
 }  # of many names
 
 
-def assemble(state: Reading, parsed: list[list[Element]], marks: Sequence[Mark]) -> FloorProgram:
+def assemble(state: Reading, parsed: list[list[Element]]) -> FloorProgram:
     """Return the program of what was read; nothing is filled in."""
     draft, stock = Draft(state.heard), state.inventory
     _count(draft, state)
@@ -59,7 +58,6 @@ def assemble(state: Reading, parsed: list[list[Element]], marks: Sequence[Mark])
     _amounts(draft, state)
     _whole(draft, state)
     _style(draft, state)
-    evidence = [*_named(parsed, state), *draft.evidence]
     return FloorProgram.model_validate(
         {
             **draft.fields,
@@ -69,8 +67,7 @@ def assemble(state: Reading, parsed: list[list[Element]], marks: Sequence[Mark])
             "relations": draft.relations,
             "zones": draft.zones,
             "language": state.heard.lexicon.language,
-            "evidence": evidence,
-            "unparsed": [{"start": s, "end": e, "text": draft.prompt[s:e]} for s, e in unparsed(state, parsed, evidence, marks)],
+            "evidence": [*_named(parsed, state), *draft.evidence],
         }
     )
 

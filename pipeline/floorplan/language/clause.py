@@ -6,9 +6,8 @@ import itertools
 from collections.abc import Iterable
 
 from pipeline.floorplan.language.facts import FRONT, HALLS, PRIVATE, SOCIAL, Group, Reading
-from pipeline.floorplan.language.naming import name
+from pipeline.floorplan.language.naming import name, point
 from pipeline.floorplan.language.phrases import Element, heads
-from pipeline.floorplan.language.pronouns import point
 
 LIGHT = {"det", "size", "adj", "verb", "word", "flag"}  # between a relation and its room
 WIDE = {"leads", "between", "chain", "avoid", "except"}  # relations to lists

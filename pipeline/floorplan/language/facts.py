@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from pipeline.errors import RefusedError
+from pipeline.floorplan.language.marks import Mark, Words
 from pipeline.floorplan.language.phrases import Element
-from pipeline.floorplan.language.tokens import Mark, Words
 from pipeline.floorplan.program.floor_program import MAX_ROOMS
 
 MOST = MAX_ROOMS + 1

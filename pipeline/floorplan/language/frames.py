@@ -17,7 +17,7 @@ from pathlib import Path
 
 from pipeline import yaml_text
 from pipeline.errors import ContentError
-from pipeline.floorplan.language.tokens import ENDS, Mark, Words, sentences_of
+from pipeline.floorplan.language.marks import ENDS, Mark, Words, sentences_of
 
 FILE = Path(__file__).resolve().parents[3] / "manifests" / "lexicon" / "frames.yaml"
 PHRASES, LISTS = frozenset("ABCD"), frozenset("LXY")

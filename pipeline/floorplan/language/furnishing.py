@@ -17,9 +17,9 @@ from typing import Literal
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG
 from pipeline.floorplan.language.lexicon import lexicon as spoken
+from pipeline.floorplan.language.marks import listen, segment
 from pipeline.floorplan.language.spelling import detect, resolve
 from pipeline.floorplan.language.text import HAN
-from pipeline.floorplan.language.tokens import listen, segment
 from pipeline.floorplan.program.furniture import lexicon
 
 WORD = re.compile(rf"\d+(?:[.,]\d+)?|[{HAN}]|[^\W\d_{HAN}]+(?:'[^\W\d_]+)?|[%.,;:!?()\n+&、。;,!?]")

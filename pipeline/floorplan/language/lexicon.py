@@ -19,8 +19,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
 from pipeline import yaml_text
 from pipeline.errors import ContentError
-from pipeline.floorplan.language.inflection import Compounds, Plurals, Verbs, forms
-from pipeline.floorplan.language.text import bare, fold, words
+from pipeline.floorplan.language.text import Compounds, Plurals, Verbs, bare, fold, forms, words
 from pipeline.floorplan.program.floor_program import RoomType, Style
 from pipeline.floorplan.program.furniture import lexicon as furniture
 

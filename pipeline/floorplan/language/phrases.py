@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from pipeline.floorplan.language.lexicon import Lexicon
-from pipeline.floorplan.language.tokens import Mark, Words
+from pipeline.floorplan.language.marks import Mark, Words
 
 PREMODIFIERS = {"det", "num", "ord", "adj", "size", "clf", "times"}
 DROPPED = {"fill", "adverb", "clf", "hyphen", "bullet", "unit", "times", "dash", "num", "ignored", "bound", "ord", "long", "enough", "fix", "activity"}  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 
-from pipeline.floorplan.language.belongings import has
+from pipeline.floorplan.language.attributes import has
 from pipeline.floorplan.language.clause import LISTING, Clause, ids_of, known
 from pipeline.floorplan.language.facts import HALLS, SOCIAL, Group
 from pipeline.floorplan.language.naming import name

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from pipeline.floorplan.language.facts import SOCIAL
+from pipeline.floorplan.language.marks import ENDS, Mark, Words
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.text import spread
-from pipeline.floorplan.language.tokens import ENDS, Mark, Words
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import Evidence
 

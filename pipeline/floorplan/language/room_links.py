@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NoReturn
 
 from pipeline.floorplan.language.facts import HALLS, Fact, Group, Inventory, Named, Reading
+from pipeline.floorplan.language.marks import Words
 from pipeline.floorplan.language.text import spread
-from pipeline.floorplan.language.tokens import Words
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import Evidence
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
+from pipeline.floorplan.language.attributes import LIKE, attach, compare, factor, level, measures_home, share, wing, zone
 from pipeline.floorplan.language.clause import Clause, ids_of, known
 from pipeline.floorplan.language.facts import GROUND_FLOOR, PERSONAL, ROLES, SOCIAL, Reading
-from pipeline.floorplan.language.naming import fresh
+from pipeline.floorplan.language.naming import count_of, fresh
 from pipeline.floorplan.language.phrases import Element, backward
-from pipeline.floorplan.language.places import level, wing, zone
-from pipeline.floorplan.language.pronouns import count_of
 from pipeline.floorplan.language.relations import complete, enter, merge, merge_after, no_door, relate
-from pipeline.floorplan.language.sizes import LIKE, attach, compare, factor, measures_home, share
 
 ONE_THAT = {"in", "ensuite", "near", "door"}  # what tells the second of "one bathroom for guests and one inside the master"
 

@@ -4,12 +4,11 @@ import pytest
 import yaml
 
 from pipeline.floorplan.language.amounts import measured
-from pipeline.floorplan.language.inflection import Verbs
 from pipeline.floorplan.language.lexicon import FOLDER, LANGUAGES, lexicon
+from pipeline.floorplan.language.marks import listen, segment
 from pipeline.floorplan.language.parser import parse
 from pipeline.floorplan.language.spelling import distance, resolve, slipped
-from pipeline.floorplan.language.text import clean, fold, tokenize
-from pipeline.floorplan.language.tokens import listen, segment
+from pipeline.floorplan.language.text import Verbs, clean, fold, tokenize
 
 
 def amounts(text, language="en"):
