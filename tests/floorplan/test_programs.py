@@ -118,6 +118,23 @@ def test_completion_adds_what_a_dwelling_needs_and_says_so():
     assert made.entrance.into == by_type["hallway"].id
 
 
+@pytest.mark.parametrize(
+    ("named", "added"),
+    [
+        ((), {"studio_room", "kitchen", "bathroom"}),
+        (("balcony",), {"studio_room", "kitchen", "bathroom"}),
+        (("library", "media_room"), {"living_room", "bedroom", "kitchen", "bathroom"}),
+        (("hallway",), {"living_room", "bedroom", "kitchen", "bathroom"}),
+        (("garage", "studio_room"), {"kitchen", "bathroom"}),
+    ],
+)
+def test_a_home_of_many_rooms_is_no_studio(named, added):
+    rooms = [room(f"r{k}", kind) for k, kind in enumerate(("kitchen", *named))]
+    made = {r.type for r in complete(program(*rooms)).rooms}
+    assert added <= made
+    assert ("studio_room" in made) == ("studio_room" in {*named, *added})
+
+
 def test_a_closed_list_stays_closed():
     made = complete(program(room("studio", "studio_room"), room("bath", "bathroom"), only=True))
     assert [r.id for r in made.rooms] == ["studio", "bath"]

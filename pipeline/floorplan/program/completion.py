@@ -12,6 +12,8 @@ from pipeline.floorplan.program.links import connect, is_forbidden, resolve
 UPSTAIRS = {"bedroom", "bathroom", "playroom"}
 BESIDE = {"bathroom", "wc", "closet", "balcony", "storage", "utility", "hallway", "office"}  # lie on the storey of what they are joined to
 FEW = 6  # rooms, below which an irregular outline has one corner cut out and not two
+# rooms of homes in which nobody sleeps where they live
+BEYOND_ONE_ROOM = {"dining_room", "hallway", "garage", "playroom", "library", "media_room", "gym", "staircase", "workshop"}
 HUBLESS = {"living_room", "family_room", "studio_room", "hallway", "entry"}
 
 
@@ -84,9 +86,12 @@ def _add_missing(program: FloorProgram) -> tuple[RoomReq, ...]:
 
     if not program.only and not work:
         if not types & {"living_room", "family_room", "studio_room"} and "living" not in functions:
-            social = "bedroom" in types and not (program.select("bedroom")[3:] and "kitchen" in types)
-            if social or "bedroom" not in types:
-                add("living_room" if "bedroom" in types else "studio_room", "living" if "bedroom" in types else "studio")
+            if "bedroom" not in types and (types & BEYOND_ONE_ROOM or len(program.select("bathroom")) > 1):
+                add("bedroom", "bed")
+            if "bedroom" not in types:
+                add("studio_room", "studio")
+            elif not (program.select("bedroom")[3:] and "kitchen" in types):
+                add("living_room", "living")
         if "kitchen" not in types and "cooking" not in functions:
             add("kitchen", "kitchen")
         if "bathroom" not in types:
