@@ -1,7 +1,7 @@
 """Assets as USD, written once on a machine and linked into every dataset that uses them.
 
 An entry is a folder named after the asset and the digest of its file, beside a commit file that vouches for its bytes. What the
-bytes depend on besides (the code, the libraries that write) names the folder above; the oldest of those go when there is too much.
+bytes depend on besides (the code that writes, its libraries) names the folder above; the oldest of those go when there is too much.
 """
 
 from __future__ import annotations
@@ -18,21 +18,28 @@ from typing import Any
 
 from pipeline.homes.library import Library
 from pipeline.manifest import digest, write_json
+from pipeline.shards import code_digest
 from pipeline.shards.commits import read_file, record
 from pipeline.usd.library import write_asset
 from schemas.assets import ASSET_JOINTS, ASSETS
 from schemas.table import Table
 
 MOST = 2 << 30  # bytes of all versions together
-WRITERS = ("usd-core", "numpy", "pillow")  # packages that an asset's bytes pass through
+WRITERS = ("usd-core", "numpy", "pillow", "numba")  # packages that an asset's bytes pass through
+ROOT = Path(__file__).resolve().parents[2]
+CODE = (  # what `write_asset` runs and reads of the checkout: no other change of it writes all assets again
+    *(f"pipeline/{name}" for name in ("entities", "geometry", "rendering", "usd", "__init__.py")),
+    *(f"pipeline/{name}.py" for name in ("card", "errors", "params", "style", "taxonomy", "yaml_text")),
+    *(f"manifests/{name}" for name in ("categories", "rooms.yaml", "styles.yaml")),
+)
 
 
 class AssetCache:
-    """The cached files of a library; `code` is the digest of the code that writes assets."""
+    """The cached files of a library, in `folder` or where this machine keeps them."""
 
-    def __init__(self, library: Library, code: str, folder: Path | None = None) -> None:
+    def __init__(self, library: Library, folder: Path | None = None) -> None:
         self.library = library
-        self.folder = (folder or cache_folder()) / "assets" / digest([code, *map(version, WRITERS)])[:16]
+        self.folder = (folder or cache_folder()) / "assets" / digest([code_digest(ROOT, CODE), *map(version, WRITERS)])[:16]
         self._stocked: set[str] = set()
 
     def entry(self, asset_id: str) -> Path:

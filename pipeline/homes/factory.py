@@ -64,7 +64,7 @@ class Factory(Resources):
     @functools.cached_property
     def asset_cache(self) -> AssetCache:
         """Return the asset cache of this machine from which datasets take their assets."""
-        return AssetCache(self.library, self.digests["code"])
+        return AssetCache(self.library)
 
 
 def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:

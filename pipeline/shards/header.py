@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
@@ -121,8 +121,8 @@ def parse_header(text: bytes, path: Path | str) -> Header:
     return header
 
 
-def code_digest(root: Path) -> str:
-    """Return the digest of the code that homes depend on: everything under schemas/, pipeline/ and manifests/."""
-    found = [p for part in ("schemas", "pipeline", "manifests") for p in (root / part).rglob("*") if p.is_file()]
+def code_digest(root: Path, parts: Iterable[str] = ("schemas", "pipeline", "manifests")) -> str:
+    """Return the digest of code by the folders and files of the checkout at `root` that hold it; by default of all that homes depend on."""
+    found = [p for part in parts for p in (root / part, *(root / part).rglob("*")) if p.is_file()]
     kept = sorted((p.relative_to(root).as_posix(), p) for p in found if "__pycache__" not in p.parts)
     return sha256("\n".join(f"{name} {sha256(path.read_bytes())}" for name, path in kept).encode())

@@ -7,6 +7,8 @@ import grimp
 import pytest
 import yaml
 
+from pipeline.homes import asset_cache
+
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / ".ci"))
 import deps  # noqa: E402
@@ -53,6 +55,13 @@ def test_closure_knows_packages_and_their_imports(graph):
         "schemas/table.py",
     } <= files
     assert "stages/shard.py" not in files
+
+
+def test_the_asset_cache_is_named_after_all_code_that_writes_assets(graph):
+    listed = [Path(d) for d in asset_cache.CODE]
+    assert all((ROOT / d).exists() for d in listed)
+    needed = deps.closure(graph, "pipeline.usd.library")
+    assert not [f for f in needed if not any(d == Path(f) or d in Path(f).parents for d in listed)]
 
 
 def test_shortest_names_whole_folders():

@@ -32,7 +32,7 @@ def written(monkeypatch):
 @pytest.fixture
 def cached(tmp_path):
     names = ("chair", "table")
-    return AssetCache(Library(rows={a: {"sha256": a * 16} for a in names}, joints=[]), "code", tmp_path)
+    return AssetCache(Library(rows={a: {"sha256": a * 16} for a in names}, joints=[]), tmp_path)
 
 
 def test_of_all_that_want_an_asset_at_once_one_writes_it(written, cached):
