@@ -115,19 +115,6 @@ def _closes(c: Clause, k: int, mark: Mark, rooms: Group) -> bool:
     return (len(named) > 2 and times > LISTED) or (home and times > MORE) or (len(named) > 1 and times > LARGE)
 
 
-def share(c: Clause, k: int, rooms: Group) -> int:
-    """Deal the area of one open space, said beside the words for it at k, out to its rooms; return where reading goes on."""
-    near = [x for x in (c.near(k + 1), c.near(k - 1)) if x is not None and x.kind == "amount" and x.value == "area" and x.mark is not None]
-    if not near or near[0].mark is None:
-        return k + 1
-    mark = near[0].mark
-    whole = usual(c, rooms)
-    parts = tuple(round(mark.number * usual(c, (i,)) / whole, 2) for i in rooms)
-    c.state.amounts = [(m, ids) for m, ids in c.state.amounts if m is not mark]
-    c.state.amounts.append((replace(mark, parts=parts), rooms))
-    return k + 1 + (near[0] is c.near(k + 1))
-
-
 def factor(c: Clause, k: int, e: Element) -> int:
     """Note a factor; "twice the living room" compares at once."""
     c.factor = e

@@ -78,7 +78,6 @@ class _Entries(BaseModel):
     compounds: Compounds = Compounds()
     verbs_of: Verbs = Verbs()
     spellings: dict[str, str] = {}  # other spellings of words
-    sounds: tuple[tuple[str, str], ...] = ()  # what is written, and how it sounds
     behind: dict[str, dict[str, str]] = {}  # behind a word, how others are read that alone mean something else
     homophones: dict[str, str] = {}  # characters that are written for one another
     endings: str = ""
@@ -125,7 +124,6 @@ class Lexicon:
     name: str = ""
     traits: frozenset[str] = frozenset()
     compounds: Compounds = field(default_factory=Compounds)
-    sounds: tuple[tuple[str, str], ...] = ()
     behind: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     trie: dict[str, Any] = field(default_factory=dict)
     vocabulary: set[str] = field(default_factory=set)
@@ -231,7 +229,7 @@ def lexicon(language: Language) -> Lexicon:
     heads = {p.split()[0] for entry in phrases.get("conjugated", {}).values() for p in split(entry)}
     infinitives = sorted(filter(verbs.infinitive, heads))
     made = Lexicon(language, entries.name, entries.traits, tenses=verbs.canonical(infinitives) | entries.spellings)
-    made.compounds, made.sounds, made.looks, made.behind = entries.compounds, entries.sounds, entries.looks, entries.behind
+    made.compounds, made.looks, made.behind = entries.compounds, entries.looks, entries.behind
     made.adverbs, made.abbreviations = _folded(phrases.get("adverbs", {}).get("", "")), _folded(entries.abbreviations)
     made.endings = tuple(sorted(split(entries.endings), key=len, reverse=True))
     made.range_from, made.range_to = (_folded(entries.range.get(side, "")) for side in ("from", "to"))

@@ -136,8 +136,7 @@ def _mark(heard: Words, i: int) -> Mark:  # noqa: PLR0911 - one branch per case:
     if text in PUNCTUATION:
         kind = PUNCTUATION[text]
         return Mark("join", "and", 0.0, False, i, i + 1, text) if kind == "and" else Mark(kind, "", 0.0, False, i, i + 1, text)
-    stem = inflected(text, lex)
-    if stem is not None:
+    if (stem := inflected(text, lex)) is not None:
         return _meant(heard, i, i + 1, stem, only=False)
     for other in LANGUAGES:
         if other != lex.language:
@@ -260,27 +259,13 @@ def _bracket(marks: list[Mark], k: int, lex: Lexicon) -> tuple[str, int, int, in
             comma = mark.kind == "comma" and cue.startswith("thru")
             article = first[0] in lex.sign("article_first") and mark.text.split(" ", 1)[0] in lex.sign("otherwise")
             other = mark.kind == "cue" and mark.value not in {"has", "in", "door"} and end is None
-            again = (
-                named
-                and end is None
-                and (
-                    _begins(marks, j, second, cue, lex)
-                    if first[0] in lex.sign("also_and")
-                    else cue == "open" and _matches(marks, j, first, lex) is not None
-                )
-            )
+            again = named and end is None and cue == "open" and _matches(marks, j, first, lex) is not None
             if (mark.kind in BREAKS and not comma) or article or other or again:
                 break
             if named and end is not None and not _goes_on(marks, end, second, lex):
                 return cue, start or 0, j, end
             named = named or mark.kind in {*HEADS, "pron", "every", "zone"}
     return None
-
-
-def _begins(marks: list[Mark], k: int, second: tuple[str, ...], cue: str, lex: Lexicon) -> bool:
-    """Whether a bracket with the same second part begins anew at k: "A和B与C相连" is a list and then a bracket."""
-    known = _brackets(lex.language).get(_plain(marks[k].text.split(" ", 1)[0], lex), ())
-    return any(b == second and c == cue and _matches(marks, k, a, lex) is not None for a, b, c in known)
 
 
 def _goes_on(marks: list[Mark], end: int, second: tuple[str, ...], lex: Lexicon) -> bool:
@@ -323,7 +308,7 @@ def _matches(marks: list[Mark], k: int, wanted: tuple[str, ...], lex: Lexicon) -
 
 
 def _verbs_last(marks: list[Mark], heard: Words) -> Iterator[Mark]:
-    """Yield the marks with plurals that only articles tell, with "hat" in front of what is had, and articles out of prepositions."""
+    """Yield the marks with plurals that only articles tell, and articles out of prepositions."""
     made, lex = list(marks), heard.lexicon
     for k in range(len(made)):
         mark, ahead = made[k], made[k + 1] if k + 1 < len(made) else None
@@ -337,28 +322,10 @@ def _verbs_last(marks: list[Mark], heard: Words) -> Iterator[Mark]:
             made[k + 1] = replace(ahead, plural=mark.text in lex.sign("plural_article"))
         if mark.kind == "det" and mark.text in lex.sign("to_be") and (ahead is None or ahead.kind in BREAKS | {"join"}):
             made[k] = replace(mark, kind="verb", value="")  # "sollen verbunden sein"
-        _final(made, k, lex)
     for k, mark in enumerate(made):
         if mark.kind in HEADS and k and made[k - 1].kind == "cue" and made[k - 1].text.rsplit(" ", 1)[-1] in lex.sign("with_article"):
             yield Mark("det", "definite", 0.0, False, mark.first, mark.first, "")  # "ins Bad" means a bathroom that is known
         yield mark
-
-
-def _final(made: list[Mark], k: int, lex: Lexicon) -> None:
-    """Put a "hat" at the end of a clause in front of what is had: "eines, das ein eigenes Bad hat"."""
-    ahead = made[k + 1].kind if k + 1 < len(made) else "stop"
-    if (
-        made[k].text not in lex.sign("having_last")
-        or ahead not in {"comma", "stop", "join", "line"}
-        or not k
-        or made[k - 1].kind not in HEADS
-    ):
-        return
-    start = k - 1
-    while start and made[start - 1].kind in {"det", "num", "adj", "size", "ord", "clf"}:
-        start -= 1
-    if not start or made[start - 1].kind != "cue" or made[start - 1].value == "has":  # not "eine Wand mit dem Wohnzimmer haben"
-        made.insert(start, made.pop(k))
 
 
 def _behind(marks: Sequence[Mark], lex: Lexicon) -> list[Mark]:

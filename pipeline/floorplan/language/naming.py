@@ -26,11 +26,6 @@ def _word(e: Element) -> str:
     return e.text.rsplit(maxsplit=1)[-1]
 
 
-def _landing(room: Named) -> bool:
-    """Whether a hallway is the one at the head of the stairs: "the hall" is another."""
-    return room.role == "landing"
-
-
 def close(room: Named, role: str, surface: str, level: int | None = None) -> Named:
     """Take a room that was only counted: its role, name and storey are known now."""
     room.open_slot = False
@@ -69,7 +64,7 @@ def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> 
 
 def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per kind of phrase
     e, stock, role = sentence[k], state.inventory, _role(sentence[k])
-    same = [r for r in stock.of(e.type) if e.role == "landing" or not _landing(r)]
+    same = stock.of(e.type)
     suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), None) if e.type == "bedroom" and not role else None
     if suites and not e.ordinal and e.number is None:
         return [stock.get(i) for i in suites]
@@ -95,10 +90,7 @@ def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -
 
 
 def _new(state: Reading, e: Element, count: int, role: str, level: int | None) -> list[Named]:
-    made = [state.inventory.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
-    for room in made if e.role == "landing" else ():
-        room.role = "landing"
-    return made
+    return [state.inventory.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
 
 
 def _fill(state: Reading, e: Element, count: int) -> None:
@@ -189,7 +181,6 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
     e, stock = sentence[k], state.inventory
     bare_nouns = "bare_nouns" in state.heard.lexicon.traits
     same = [r for r in stock.of(e.type) if not (r.extra and r.span is not None and r.span[0] > e.first)]
-    same = [r for r in same if e.role == "landing" or not _landing(r)]
     if not _many(e) and e.type in {"bathroom", "bedroom"}:  # "... a bath; further a guest bath"
         same = [r for r in same if not (r.role in ROLES and r.span is not None and r.span[0] > e.last)]
     if e.type == "bedroom" and not _many(e) and "other" not in e.det:  # "das Kinderzimmer ..., das Schlafzimmer ..."
@@ -314,7 +305,7 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
         if known and count <= len(slots) and _before(sentence, k, "cue", "colon", "open", "verb", "comma") is None:
             return [close(r, "", e.text, level) for r in slots[:count]]
     once = count == 1 and e.number is None and not role and e.type in ALONE and "another" not in e.det
-    if once and same and not (e.role == "landing" and not any(map(_landing, same))):
+    if once and same:
         return same[:1]
     made = _new(state, e, count, role, level)
     for room in made:

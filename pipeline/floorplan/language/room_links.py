@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, NoReturn
 
 from pipeline.floorplan.language.facts import HALLS, Fact, Group, Inventory, Named, Reading
@@ -102,8 +102,8 @@ def join(draft: Draft, state: Reading) -> None:
             continue
         if fact.what in KINDS:
             _linked(draft, stock, fact, facts)
-        elif fact.what in RELATED:
-            RELATED[fact.what](draft, stock, fact, facts)
+        else:
+            _related(draft, stock, fact, facts)
     _ordered(draft)
     for fact in facts:
         _everything(draft, stock, fact, facts)
@@ -192,14 +192,46 @@ def _linked(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact]) -
         draft.link(a, b, "open" if "staircase" in kinds and fact.what != "wall" else kind, fact)
 
 
-# each writes one kind of fact
+def _related(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact]) -> None:
+    """Write what a fact says of rooms beside links."""
+    a, what = fact.a[0] if fact.a else "", fact.what
+    if what == "only":
+        _only(draft, stock, fact, facts)
+    elif what == "between" and len(fact.b) > 1:
+        for room, end in itertools.product(fact.a, fact.b):
+            draft.link(room, end, "any", fact)
+            draft.relate("between", room, fact.b[0], 1.0, fact, fact.b[1])
+    elif what in {"window", "no_window"}:
+        _window(draft, stock, fact)
+    elif what in {"not_open", "not_connected", "closed"}:
+        others = [r.id for kind in MERGE_ORDER for r in stock.of(kind) if r.id not in fact.a] if what == "closed" else fact.b
+        for room, other in itertools.product(fact.a, others):
+            draft.forbid("connected" if what == "not_connected" else "open", room, other, None, fact)
+    elif what == "size":
+        for room in map(stock.get, fact.a):
+            room.size = fact.value
+            draft.cite(fact.first, fact.last, f"rooms.{room.id}.area")
+    elif what == "largest" and a:
+        draft.relate("largest", a, stock.get(a).type, 1.0, fact)
+    else:
+        for larger, smaller in _sizes(stock, fact):
+            draft.relate("area_equal" if what == "area_equal" else "area_order", larger, smaller, fact.value or 1.0, fact)
 
 
-def _between(draft: Draft, _: Inventory, fact: Fact, __: Sequence[Fact]) -> None:
-    for a in fact.a if len(fact.b) > 1 else ():
-        for b in fact.b:
-            draft.link(a, b, "any", fact)
-        draft.relate("between", a, fact.b[0], 1.0, fact, fact.b[1])
+def _sizes(stock: Inventory, fact: Fact) -> list[tuple[str, str]]:
+    """Return which room is larger than which, or as large, by a fact."""
+    if fact.what == "area_equal":
+        return list(itertools.combinations(fact.a, 2))
+    if fact.what == "area_order":
+        return list(itertools.product(fact.a, fact.b))
+    if fact.what == "smallest":
+        return [(b, fact.a[0]) for b in fact.b if b != fact.a[0]]
+    if fact.what not in {"largest_of_all", "smallest_of_all"}:
+        return []
+    mine, smallest = stock.get(fact.a[0]), fact.what == "smallest_of_all"
+    others = [r for r in stock.rooms if r.id != mine.id and r.stated and (r.type not in ASIDE or smallest)]
+    pairs = [(mine.id, r.id) for r in others if mine.type != "bedroom" or r.type == "bedroom"]
+    return [(b, a) for a, b in pairs] if smallest else pairs
 
 
 def _only(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact]) -> None:
@@ -214,63 +246,13 @@ def _only(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact]) -> 
         draft.relate("degree", a, None, doors + len(behind - set(fact.a)), fact)
 
 
-def _largest(draft: Draft, stock: Inventory, fact: Fact, _: Sequence[Fact]) -> None:
-    for a in fact.a[:1]:
-        draft.relate("largest", a, stock.get(a).type, 1.0, fact)
-
-
-def _smallest(draft: Draft, _: Inventory, fact: Fact, __: Sequence[Fact]) -> None:
-    for b in (b for b in fact.b if b != fact.a[0]):
-        draft.relate("area_order", b, fact.a[0], 1.0, fact)
-
-
-def _of_all(draft: Draft, stock: Inventory, fact: Fact, _: Sequence[Fact]) -> None:
-    mine, smallest = stock.get(fact.a[0]), fact.what == "smallest_of_all"
-    others = [r for r in stock.rooms if r.id != mine.id and r.stated and (r.type not in ASIDE or smallest)]
-    for other in (r for r in others if mine.type != "bedroom" or r.type == "bedroom"):
-        draft.relate("area_order", *((other.id, mine.id) if smallest else (mine.id, other.id)), 1.0, fact)
-
-
-def _order(draft: Draft, _: Inventory, fact: Fact, __: Sequence[Fact]) -> None:
-    for a, b in itertools.product(fact.a, fact.b):
-        draft.relate("area_order", a, b, fact.value, fact)
-
-
-def _equal(draft: Draft, _: Inventory, fact: Fact, __: Sequence[Fact]) -> None:
-    for a, b in itertools.combinations(fact.a, 2):
-        draft.relate("area_equal", a, b, fact.value, fact)
-
-
-def _window(draft: Draft, stock: Inventory, fact: Fact, _: Sequence[Fact]) -> None:
+def _window(draft: Draft, stock: Inventory, fact: Fact) -> None:
     wish = "required" if fact.what == "window" else "forbidden"
     for a in fact.a:
         draft.cite(fact.first, fact.last, f"rooms.{a}.window")
         if stock.get(a).window not in {"auto", wish}:
             raise ImpossibleError(f"{a} is to have a window and to have none", "keep one of the two", draft.cited(f"rooms.{a}.window"))
         stock.get(a).window = wish
-
-
-def _closed(draft: Draft, stock: Inventory, fact: Fact, _: Sequence[Fact]) -> None:
-    for room in (r for kind in MERGE_ORDER for r in stock.of(kind) if r.id not in fact.a):
-        draft.forbid("open", fact.a[0], room.id, None, fact)
-
-
-def _denied(draft: Draft, _: Inventory, fact: Fact, __: Sequence[Fact]) -> None:
-    for a, b in itertools.product(fact.a, fact.b):
-        draft.forbid("open" if fact.what == "not_open" else "connected", a, b, None, fact)
-
-
-def _sized(draft: Draft, stock: Inventory, fact: Fact, _: Sequence[Fact]) -> None:
-    for a in fact.a:
-        stock.get(a).size = fact.value
-        draft.cite(fact.first, fact.last, f"rooms.{a}.area")
-
-
-RELATED: Mapping[str, Any] = {
-    "size": _sized,
-    "between": _between, "only": _only, "largest": _largest, "smallest": _smallest, "largest_of_all": _of_all, "smallest_of_all": _of_all, "area_order": _order,
-    "area_equal": _equal, "window": _window, "no_window": _window, "closed": _closed, "not_open": _denied, "not_connected": _denied,
-}  # fmt: skip
 
 
 def _ordered(draft: Draft) -> None:

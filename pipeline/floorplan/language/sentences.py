@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from pipeline.floorplan.language.attributes import LIKE, attach, compare, factor, level, measures_home, share, wing, zone
+from pipeline.floorplan.language.attributes import LIKE, attach, compare, factor, level, measures_home, wing, zone
 from pipeline.floorplan.language.clause import Clause, ids_of, known
-from pipeline.floorplan.language.facts import GROUND_FLOOR, PERSONAL, ROLES, SOCIAL, Reading
+from pipeline.floorplan.language.facts import GROUND_FLOOR, PERSONAL, SOCIAL, Reading
 from pipeline.floorplan.language.naming import count_of, fresh
 from pipeline.floorplan.language.phrases import Element, backward
 from pipeline.floorplan.language.relations import complete, enter, merge, merge_after, no_door, relate
@@ -120,12 +120,6 @@ def _owner(c: Clause, k: int, e: Element) -> int:
     return k + 1
 
 
-def _cast(c: Clause, who: Element, role: str) -> None:
-    """Give bedrooms that have no user yet theirs."""
-    for room in (c.stock.get(i) for i in who.ids):
-        room.role = room.role or (role if room.type == "bedroom" else "")
-
-
 def _verb(c: Clause, k: int, e: Element) -> int:
     before = next((x for x in reversed(c.sentence[:k]) if x.kind not in {"word", "flag"}), None)
     if before is not None and before.kind in {"and", "comma"} and c.subject and c.objects:
@@ -148,11 +142,8 @@ def _comma(c: Clause, k: int, _: Element) -> int:
     ahead = c.near(k + 1)
     if c.negative is not c.sentence[k - 1] and (ahead is None or ahead.kind not in {"cue", "cmp", "or", "neg"}):
         c.negative = None
-    if c.waiting and c.subject and c.waiting[0].value != "from" and (c.verb or c.waiting[0].value == "between"):
-        rest = c.sentence[k + 1 :]  # "on both sides of the corridor lie two bedrooms, the kitchen and the bath"
-        plain = all(x.kind in {"np", "det", "size", "adj", "amount", "comma", "and"} for x in rest) and any(x.kind == "and" for x in rest)
-        if not plain:
-            complete(c)
+    if c.waiting and c.subject and c.waiting[0].value == "between":
+        complete(c)
     return k + 1
 
 
@@ -171,8 +162,6 @@ def _but(c: Clause, k: int, _: Element) -> int:
 def _adj(c: Clause, k: int, e: Element) -> int:
     before, ahead = c.near(k - 1), c.near(k + 1)
     kind = before.kind if before is not None else ""
-    if before is not None and (kind, before.value) == ("pron", "one") and e.value in ROLES:
-        _cast(c, before, e.value)  # "four bedrooms, uno de ellos para invitados"
     social = tuple(i for x in c.run for i in known(tuple(x.ids)) if c.stock.get(i).type in SOCIAL)
     alone = len(social) == len(ids_of(c.run))
     if (
@@ -326,7 +315,7 @@ def _flag(c: Clause, k: int, e: Element) -> int:
         social = tuple(i for i in known(ids_of(c.run)) if c.stock.get(i).type in SOCIAL)
         if len(social) > 1:
             c.state.say("merge", social, (), e)
-            return share(c, k, social)
+            return k + 1
         merge_after(c, k + 1, e)
     return k + 1
 

@@ -52,8 +52,6 @@ def resolve(word: str, language: Language, *, every: bool = False) -> tuple[str,
     lex = lexicon(language)
     if len(word) > LONGEST or len(word) < 3 or "\u3400" <= word[0] <= "\u9fff":
         return (word,)
-    if lex.sounds and (alike := _alike(language).get(sound(word, lex.sounds))):
-        return (alike,)
     stem = _stem(word, lex)
     if stem:
         return (stem,)
@@ -68,8 +66,6 @@ def resolve(word: str, language: Language, *, every: bool = False) -> tuple[str,
         return parts
     if near:
         return (near,)
-    if parts := _mended(word, lex):
-        return parts
     for ending in lex.endings:  # mistyped and inflected
         if word.endswith(ending) and len(word) - len(ending) >= SHORTEST + 1:
             near, _ = _nearest(word[: -len(ending)], language, every)
@@ -78,32 +74,11 @@ def resolve(word: str, language: Language, *, every: bool = False) -> tuple[str,
     return (word,)
 
 
-def sound(word: str, sounds: Sequence[tuple[str, str]]) -> str:
-    """Return how a word sounds, near enough: "vaño" and "baño", "cosina" and "cocina" alike."""
-    for written, heard in sounds:
-        word = word.replace(written, heard)
-    return word
-
-
-@functools.cache
-def _alike(language: Language) -> dict[str, str]:
-    """Return the words worth a repair by their sound, where only one sounds so."""
-    lex = lexicon(language)
-    made: dict[str, str] = {}
-    for target in lex.targets:
-        heard = sound(target, lex.sounds)
-        made[heard] = "" if heard in made else target
-    return made
-
-
 def inflected(word: str, lex: Lexicon) -> Meaning | None:
     """Return what the uninflected form of a word means by itself: "kleine" is "klein"."""
-    for ending in lex.endings:
-        if word.endswith(ending) and len(word) - len(ending) >= SHORTEST - 1:
-            found: Meaning | None = lex.trie.get(word[: -len(ending)], {}).get("")
-            if found is not None:
-                return found
-    return None
+    stems = (word.removesuffix(e) for e in lex.endings if word.endswith(e) and len(word) - len(e) >= SHORTEST - 1)
+    found = (lex.trie.get(stem, {}).get("") for stem in stems)
+    return next((meaning for meaning in found if meaning is not None), None)
 
 
 def _stem(word: str, lex: Lexicon) -> str:
@@ -140,15 +115,6 @@ def _speaks(word: str, lex: Lexicon) -> bool:
     return meaning is not None and meaning.kind in TINY
 
 
-def _mended(word: str, lex: Lexicon) -> tuple[str, ...]:
-    """Split "onebedrom": a known word and a mistyped name of a room."""
-    for cut in range(SHORTEST - 1, len(word) - SHORTEST) if len(word) <= LONGEST - 10 else ():
-        for a, b in ((word[:cut], word[cut:]), (word[-cut:], word[:-cut])):
-            if a in lex.vocabulary and _speaks(a, lex) and len(b) > SHORTEST and (near := _nearest(b, lex.language, every=False)[0]):
-                return (a, near) if word.startswith(a) else (near, a)
-    return ()
-
-
 @functools.cache
 def _strong(language: Language) -> frozenset[str]:
     return frozenset(lexicon(language).targets)
@@ -163,7 +129,7 @@ def _nearest(word: str, language: Language, every: bool) -> tuple[str, float]:
         for target, letters, far in shelves.get(size, ()):
             if (mask ^ letters).bit_count() > 2 * allowed or (far and not every):  # an edit changes two letters at most
                 continue
-            cost = _far(word, target) + far if far else _cost(word, target, allowed)
+            cost = _cost(word, target, far)
             if cost < least:
                 best, least, tied = target, cost, False
             elif cost == least and target != best:
@@ -173,35 +139,31 @@ def _nearest(word: str, language: Language, every: bool) -> tuple[str, float]:
     return best, least
 
 
-def _cost(word: str, target: str, allowed: int) -> float:
-    """Return how far a known word is: edits, usual slips cheaper, another first letter dearer; 9 where it is too far."""
-    most = 1 if len(target) < LONG - 1 else allowed
-    if len(word) < LONG and most == 2 and sorted(word) != sorted(target):
-        most = 1
-    gap = distance(word, target, most) if most > 1 else (1 if slipped(word, target) else 2)
-    if gap > most or (min(len(word), len(target)) <= SHORTEST and not _slip(word, target) and not _dropped(word, target)):
+def _cost(word: str, target: str, far: float) -> float:
+    """Return how far a known word is: edits, usual slips cheaper, another first letter dearer; 9 where it is too far.
+
+    `far`: how much farther it is than the name of a room, 0 for those; only they may be two errors away.
+    """
+    short, swapped = min(len(word), len(target)), sorted(word) == sorted(target)
+    two = not far and len(target) >= LONG - 1 and (len(word) >= LONG or swapped)
+    gap = distance(word, target, 2 if two else 1)
+    usual, other = swapped or _slip(word, target), word[0] != target[0]
+    if gap > 1 + two or (short <= SHORTEST and not usual) or (short < SHORTEST - 1 and not swapped):
         return 9.0
-    other = word[0] != target[0]
-    if other and (gap > 1 or len(word) < 6):
+    near = (word[0], target[0]) in NEIGHBOURS or (far and swapped and short >= SHORTEST)
+    if other and (gap > 1 or (len(word) < 6 and not near)):
         return 9.0
-    return gap - (0.3 if _slip(word, target) or _dropped(word, target) else 0.0) + (0.2 if other else 0.0)
+    return gap - (0.3 if usual else 0.0) + (0.2 if other else 0.0) + far
 
 
-def _far(word: str, target: str) -> float:
-    """Return how far a word is that is neither a room nor a number: one error, in short words a usual one."""
-    short = min(len(word), len(target))
-    swap = sorted(word) == sorted(target)
-    if short < SHORTEST - 1 or (word[0] != target[0] and not (swap and short > SHORTEST - 1)) or not slipped(word, target):
-        return 9.0
-    slip = _slip(word, target) or _dropped(word, target)
-    if (short < SHORTEST and not swap and len(word) == len(target)) or (short <= SHORTEST and not slip):
-        return 9.0
-    return (0.7 if slip and len(word) >= SHORTEST else 1.0) + (0.1 if word[0] != target[0] else 0.0)
-
-
-def _dropped(word: str, target: str) -> bool:
-    """Whether a letter inside or at the end was left out."""
-    return len(word) + 1 == len(target) and any(target[:k] + target[k + 1 :] == word for k in range(1, len(target)))
+def _slip(word: str, target: str) -> bool:
+    """Whether one usual error parts two words: a letter left out, doubled, or a neighbouring key."""
+    if len(word) == len(target):
+        wrong = [(a, b) for a, b in zip(word, target, strict=True) if a != b]
+        return len(wrong) == 1 and wrong[0] in NEIGHBOURS
+    longer, shorter = sorted((word, target), key=len, reverse=True)
+    gone = [k for k in range(len(longer)) if longer[:k] + longer[k + 1 :] == shorter]
+    return any((k and longer is target) or longer[k] in longer[max(0, k - 1) : k] + longer[k + 1 : k + 2] for k in gone)
 
 
 def _letters(word: str) -> int:
@@ -220,31 +182,6 @@ def _shelves(language: Language) -> dict[int, list[tuple[str, int, float]]]:
     for target, far in (*((t, 0.0) for t in lex.targets), *sorted(lex.others.items())):
         made.setdefault(len(target), []).append((target, _letters(target), far))
     return made
-
-
-def _slip(word: str, target: str) -> bool:
-    """Whether the error is a usual one: swapped, doubled or neighbouring keys."""
-    if sorted(word) == sorted(target):
-        return True
-    if len(word) != len(target):
-        longer, shorter = sorted((word, target), key=len, reverse=True)
-        return any(
-            longer[:k] + longer[k + 1 :] == shorter and longer[k] in longer[max(0, k - 1) : k] + longer[k + 1 : k + 2]
-            for k in range(len(longer))
-        )
-    wrong = [(a, b) for a, b in zip(word, target, strict=True) if a != b]
-    return len(wrong) == 1 and wrong[0] in NEIGHBOURS
-
-
-def slipped(a: str, b: str) -> bool:
-    """Whether two different words are one letter apart: changed, missing, added, or exchanged with its neighbour."""
-    if abs(len(a) - len(b)) > 1:
-        return False
-    k = next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
-    if len(a) == len(b):
-        return a[k + 1 :] == b[k + 1 :] or (a[k : k + 2] == b[k : k + 2][::-1] and a[k + 2 :] == b[k + 2 :])
-    longer, shorter = (a, b) if len(a) > len(b) else (b, a)
-    return longer[k + 1 :] == shorter[k:]
 
 
 def distance(a: str, b: str, most: int) -> int:
