@@ -204,13 +204,13 @@ def _related(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact]) 
     elif what in {"window", "no_window"}:
         _window(draft, stock, fact)
     elif what in {"not_open", "not_connected", "closed"}:
-        others = [r.id for kind in MERGE_ORDER for r in stock.of(kind) if r.id not in fact.a] if what == "closed" else fact.b
+        others = tuple(r.id for kind in MERGE_ORDER for r in stock.of(kind) if r.id not in fact.a) if what == "closed" else fact.b
         for room, other in itertools.product(fact.a, others):
             draft.forbid("connected" if what == "not_connected" else "open", room, other, None, fact)
     elif what == "size":
-        for room in map(stock.get, fact.a):
-            room.size = fact.value
-            draft.cite(fact.first, fact.last, f"rooms.{room.id}.area")
+        for room in fact.a:
+            stock.get(room).size = fact.value
+            draft.cite(fact.first, fact.last, f"rooms.{room}.area")
     elif what == "largest" and a:
         draft.relate("largest", a, stock.get(a).type, 1.0, fact)
     else:
