@@ -19,7 +19,10 @@ Floats = NDArray[np.float64]
 REST, OPEN, SHUT, LEFT = 5.0, 2.5, 2.0, 0.5  # [s] at rest; pushing; pushing back; left alone
 AFTER = 1.5  # [s] by which a joint waits for those that must be open before it
 SAMPLE = 0.25  # [s] between looks at what lies about
-AJAR = 0.05  # share of its range at which a joint counts as shut
+PACE, LEAST = (
+    1.0,
+    0.2,
+)  # [s] in which a hand that meets nothing moves a joint over its range, throwing no drawer open; [m/s, rad/s] its least
 
 
 class Engine(Protocol):
@@ -61,13 +64,13 @@ def _trial(engine: Engine, plan: dict[str, Any]) -> dict[str, Any]:
     opened, closed, left = (np.full(len(joints), np.nan) for _ in range(3))
     for group in plan["groups"]:
         members, before = np.array(group["joints"], int), np.array(group["before"], int)
-        reached, back, stays = _push(engine, push, members, before)
+        reached, back, stays = _push(engine, push, np.maximum(upper / PACE, LEAST), members, before)
         opened[members], closed[members], left[members] = reached[members], back[members], stays[members]
     engine.reset()
+    hand = _Hand(engine, np.maximum(upper / PACE, LEAST))
     together = np.zeros(len(joints))
     for _ in range(round((OPEN + AFTER) / engine.dt)):
-        engine.step(push)
-        together = np.fmax(together, engine.positions())
+        together = np.fmax(together, hand.push(push))
     wide, _ = _rest(engine, push, fresh=False)
     return {
         "steps_per_second": speed,
@@ -81,26 +84,44 @@ def _trial(engine: Engine, plan: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _push(engine: Engine, push: Floats, members: NDArray[np.int64], before: NDArray[np.int64]) -> tuple[Floats, Floats, Floats]:
+class _Hand:
+    """Pushes joints (J,) that move more slowly than `pace` (J,) [rad/s or m/s]."""
+
+    def __init__(self, engine: Engine, pace: Floats) -> None:
+        self.engine, self.pace, self.last = engine, pace, engine.positions()
+        self.speed = np.zeros_like(pace)
+
+    def push(self, force: Floats) -> Floats:
+        """Advance by a step under what of forces (J,) is needed to keep pace; return the positions (J,)."""
+        slow = ~(np.sign(force) * self.speed > self.pace)
+        self.engine.step(np.where(slow, force, 0.0))
+        now = self.engine.positions()
+        self.speed, self.last = (now - self.last) / self.engine.dt, now
+        return now
+
+
+def _push(
+    engine: Engine, push: Floats, pace: Floats, members: NDArray[np.int64], before: NDArray[np.int64]
+) -> tuple[Floats, Floats, Floats]:
     """Return how far joints (J,) come under their push, how far from shut they are after the push back, and when left alone."""
     engine.reset()
+    hand = _Hand(engine, pace)
     force = np.zeros(len(push))
     reached = np.zeros(len(push))
     if len(before):
         force[before] = push[before]
         for _ in range(round(AFTER / engine.dt)):
-            engine.step(force)
+            hand.push(force)
     force[members] = push[members]
     for _ in range(round(OPEN / engine.dt)):
-        engine.step(force)
-        reached = np.fmax(reached, engine.positions())
+        reached = np.fmax(reached, hand.push(force))
     force[members] = -push[members]
     for _ in range(round(SHUT / engine.dt)):
-        engine.step(force)
+        hand.push(force)
     back = engine.positions()
     force[members] = 0.0
     for _ in range(round(LEFT / engine.dt)):
-        engine.step(force)
+        hand.push(force)
     return reached, back, engine.positions()
 
 

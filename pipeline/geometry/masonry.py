@@ -1,7 +1,7 @@
 """The building as what things bump into and stand on: as few convex solids as may be.
 
-Rooms are shown one by one, but to an engine a storey has one floor, a ceiling per height, and walls whose lintels and sills run on
-through the wall between them. Solids may overlap: nothing of them moves.
+Rooms are shown one by one, but to an engine a storey has one floor, a ceiling per height, and walls whose lintels run on through the
+wall between them. A window is wall: it does not open, and nothing stands in it. Solids may overlap: nothing of them moves.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from shapely.geometry import Polygon
 
 from pipeline.entities.plan import Plan
 from pipeline.geometry.memo import recent
-from pipeline.geometry.tiling import convex_pieces
+from pipeline.geometry.tiling import convex_cover, convex_pieces
 from pipeline.geometry.walls import SLAB, Cut, Prism, Shell
 
 EVEN = 1e-3  # [m] within which lintels run on, and floors and ceilings cover
 
 
 def masonry(plan: Plan, level: int, built: Shell) -> list[Prism]:
-    """Return all solids of a storey [m above its floor]: walls, lintels, sills, its floor, its ceilings."""
-    made = [p for p in built.prisms if p.kind == "wall"]
-    doors = [cut for cut in built.cuts if built.top - cut.top > EVEN]
-    windows = [cut for cut in built.cuts if cut.bottom > EVEN]
-    made += _bands("lintel", doors, built, lambda cut: (cut.top, built.top))
-    made += _bands("sill", windows, built, lambda cut: (0.0, cut.bottom))
+    """Return all solids of a storey [m above its floor]: walls, lintels, what is below an opening, its floor, its ceilings."""
+    windows = [Polygon(cut.quad) for cut in built.cuts if cut.opening.kind == "window"]
+    others = [cut for cut in built.cuts if cut.opening.kind != "window"]
+    made = [Prism("wall", piece, 0.0, built.top) for piece in convex_cover(_whole(shapely.union_all([built.region, *windows])))]
+    made += _bands("lintel", [cut for cut in others if built.top - cut.top > EVEN], built, lambda cut: (cut.top, built.top))
+    made += _bands("sill", [cut for cut in others if cut.bottom > EVEN], built, lambda cut: (0.0, cut.bottom))
     return [*made, *_floor(plan, level, built), *_ceilings(plan, level)]
 
 
@@ -79,7 +79,9 @@ def _solid(quad: NDArray[np.float64], bottom: float, top: float, built: Shell) -
 def _wall_between(built: Shell, bottom: float, top: float) -> tuple[shapely.Geometry, NDArray[np.object_]]:
     """Return what is wall between two heights, a little wider, and the holes there."""
     quads = np.array([Polygon(cut.quad) for cut in built.cuts], np.object_)
-    open_there = np.array([cut.bottom < top - EVEN and cut.top > bottom + EVEN for cut in built.cuts], np.bool_)
+    open_there = np.array(
+        [cut.opening.kind != "window" and cut.bottom < top - EVEN and cut.top > bottom + EVEN for cut in built.cuts], np.bool_
+    )
     wall = shapely.union_all([built.region, *quads[~open_there]]).buffer(2 * EVEN, join_style="mitre")
     shapely.prepare(wall)
     return wall, quads[open_there]

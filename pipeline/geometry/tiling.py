@@ -1,4 +1,4 @@
-"""Convex tilings of plan polygons: rectangles where all edges are axis-parallel, merged triangles elsewhere."""
+"""Convex tilings and covers of plan polygons: rectangles where all edges are axis-parallel, merged triangles elsewhere."""
 
 from __future__ import annotations
 
@@ -15,6 +15,14 @@ def convex_pieces(region: Polygon | MultiPolygon) -> list[NDArray[np.float64]]:
     pieces: list[NDArray[np.float64]] = []
     for part in polygons(region):
         pieces.extend(_rectangles(part) if _rectilinear(part) else _merged_triangles(part))
+    return pieces
+
+
+def convex_cover(region: Polygon | MultiPolygon) -> list[NDArray[np.float64]]:
+    """Return convex polygons (n, 2), counter-clockwise, whose union is `region` [m]: fewer than tile it, for they may overlap."""
+    pieces: list[NDArray[np.float64]] = []
+    for part in polygons(region):
+        pieces.extend(_cover(part) if _rectilinear(part) else _merged_triangles(part))
     return pieces
 
 
@@ -35,18 +43,61 @@ def _rectilinear(part: Polygon) -> bool:
 
 def _rectangles(part: Polygon) -> list[NDArray[np.float64]]:
     """Tile an axis-parallel polygon greedily: at each free grid cell, the larger of the row-first and column-first run."""
-    points = np.concatenate(_rings(part))
-    xs, ys = _ticks(points[:, 0]), _ticks(points[:, 1])
-    cx, cy = np.meshgrid((xs[1:] + xs[:-1]) / 2, (ys[1:] + ys[:-1]) / 2, indexing="ij")
-    free = shapely.contains_xy(part, cx, cy)
+    xs, ys, free = _cells(part)
     rectangles: list[NDArray[np.float64]] = []
     while free.any():
         i, j = map(int, np.argwhere(free)[0])
         runs = [_grow(free, i, j, rows_first=True), _grow(free, i, j, rows_first=False)]
         i1, j1 = max(runs, key=lambda e: (xs[e[0]] - xs[i]) * (ys[e[1]] - ys[j]))
         free[i:i1, j:j1] = False
-        rectangles.append(np.array([[xs[i], ys[j]], [xs[i1], ys[j]], [xs[i1], ys[j1]], [xs[i], ys[j1]]]))
+        rectangles.append(_rectangle(xs, ys, (i, j, i1, j1)))
     return rectangles
+
+
+def _cells(part: Polygon) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Return the x and the y of an axis-parallel polygon's corners, and which cells between them (X - 1, Y - 1) are inside."""
+    points = np.concatenate(_rings(part))
+    xs, ys = _ticks(points[:, 0]), _ticks(points[:, 1])
+    cx, cy = np.meshgrid((xs[1:] + xs[:-1]) / 2, (ys[1:] + ys[:-1]) / 2, indexing="ij")
+    return xs, ys, shapely.contains_xy(part, cx, cy)
+
+
+def _rectangle(xs: NDArray[np.float64], ys: NDArray[np.float64], block: tuple[int, int, int, int]) -> NDArray[np.float64]:
+    i, j, i1, j1 = block
+    return np.array([[xs[i], ys[j]], [xs[i1], ys[j]], [xs[i1], ys[j1]], [xs[i], ys[j1]]])
+
+
+def _cover(part: Polygon) -> list[NDArray[np.float64]]:
+    """Cover an axis-parallel polygon greedily by rectangles that cannot grow: each time the one over most of what is left."""
+    xs, ys, inside = _cells(part)
+    blocks = sorted({block for cell in np.argwhere(inside) for block in _grown(inside, *map(int, cell))})
+    area = np.diff(xs)[:, None] * np.diff(ys)
+    left = np.where(inside, area, 0.0)
+    chosen = []
+    while left.any():
+        i, j, i1, j1 = block = max(blocks, key=lambda b: round(float(left[b[0] : b[2], b[1] : b[3]].sum()), 9))
+        left[i:i1, j:j1] = 0.0
+        chosen.append(_rectangle(xs, ys, block))
+    return chosen
+
+
+def _grown(inside: NDArray[np.bool_], i: int, j: int) -> list[tuple[int, int, int, int]]:
+    """Return the blocks (i, j, i1, j1; ends exclusive) about a cell that grow along the rows first, and along the columns first."""
+    found = []
+    for turned in (False, True):
+        grid, a, b = (inside.T, j, i) if turned else (inside, i, j)
+        a0, a1 = a, a + 1
+        while a0 > 0 and grid[a0 - 1, b]:
+            a0 -= 1
+        while a1 < grid.shape[0] and grid[a1, b]:
+            a1 += 1
+        b0, b1 = b, b + 1
+        while b0 > 0 and grid[a0:a1, b0 - 1].all():
+            b0 -= 1
+        while b1 < grid.shape[1] and grid[a0:a1, b1].all():
+            b1 += 1
+        found.append((b0, a0, b1, a1) if turned else (a0, b0, a1, b1))
+    return found
 
 
 def _ticks(values: NDArray[np.float64]) -> NDArray[np.float64]:

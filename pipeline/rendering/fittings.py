@@ -62,7 +62,7 @@ def door_of(size: Size, *, entrance: bool) -> Asset:
 
 
 def window(cut: Cut) -> tuple[Asset, NDArray[np.float64], float]:
-    """Make the window of an opening: frame, mullion, glass; static, one block to what touches it. Position and yaw as for a door."""
+    """Make the window of an opening: frame, mullion, glass; static, to look at: the wall about it collides. Position and yaw as for a door."""
     a, b = (cut.quad[0] + cut.quad[3]) / 2, (cut.quad[1] + cut.quad[2]) / 2
     return window_of(window_size(cut)), a, float(np.arctan2(*(b - a)[::-1]))
 
@@ -92,7 +92,7 @@ def window_of(size: Size) -> Asset:
         asset_id="window",
         category="window",
         size=np.array([width, 2 * depth, z1]),
-        links=(solid_link("frame", tuple(parts), (box("block", (0, -depth, z0), (width, depth, z1)),), 30.0),),
+        links=(replace(solid_link("frame", tuple(parts), tuple(parts), 30.0), colliders=()),),
         joints=(),
         materials=(WINDOW_FRAME, GLASS),
         source="fitting",

@@ -49,6 +49,12 @@ def loose(asset: Asset) -> bool:
     return known is not None and known.loose
 
 
+def untouched(asset: Asset) -> bool:
+    """Whether an asset is there to be looked at alone: what hangs on a wall or at a ceiling, and rugs, over which doors and wheels pass."""
+    known = taxonomy.load().categories.get(asset.category)
+    return known is not None and known.felt == "seen" and not known.loose
+
+
 def convert_asset(root: Sdf.PrimSpec, asset: Asset, materials: Sequence[Sdf.Path]) -> None:
     """Write all links, and where anything moves the joints, under `root`."""
     names, free = link_names(asset), loose(asset)
@@ -79,9 +85,10 @@ def convert_asset(root: Sdf.PrimSpec, asset: Asset, materials: Sequence[Sdf.Path
 
 def _convert_pieces(spec: Sdf.PrimSpec, link: Link, asset: Asset, materials: Sequence[Sdf.Path], *, weigh: bool) -> None:
     """Write visuals and colliders; a collider that is the very mesh that one sees, and no box, is one prim with it."""
-    weights = [volume(c) for c in link.colliders]
-    shares = {_key(c): link.mass * w / sum(weights) if weigh else None for c, w in zip(link.colliders, weights, strict=True)}
-    boxes = {_key(c) for c in link.colliders if _is_box(c)}
+    colliders = () if untouched(asset) else link.colliders
+    weights = [volume(c) for c in colliders]
+    shares = {_key(c): link.mass * w / sum(weights) if weigh else None for c, w in zip(colliders, weights, strict=True)}
+    boxes = {_key(c) for c in colliders if _is_box(c)}
     seen: set[tuple[bytes, bytes]] = set()
     visual_names = identifiers(m.name for m in link.visuals)
     for name, mesh in zip(visual_names, link.visuals, strict=True):
@@ -96,7 +103,7 @@ def _convert_pieces(spec: Sdf.PrimSpec, link: Link, asset: Asset, materials: Seq
         if key in shares and key not in seen | boxes:
             seen.add(key)
             convert_collider(made, shares[key])
-    hidden = {_key(c): c for c in link.colliders if _key(c) not in seen}
+    hidden = {_key(c): c for c in colliders if _key(c) not in seen}
     for name, (key, mesh) in zip(identifiers((f"{c.name}_collider" for c in hidden.values()), visual_names), hidden.items(), strict=True):
         if key in boxes:
             made = convert_box(spec, name, mesh.vertices.min(axis=0), mesh.vertices.max(axis=0))

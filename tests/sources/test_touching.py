@@ -7,7 +7,7 @@ from scipy.spatial import ConvexHull
 
 from pipeline.sources.meshes.mesh_solids import convex
 from pipeline.sources.meshes.near_boxes import CORNERS
-from pipeline.sources.meshes.touching import Felt, fewer, simpler
+from pipeline.sources.meshes.touching import FELT, Felt, fewer, simpler
 
 
 def block(low, high):
@@ -91,3 +91,35 @@ def test_shelves_on_both_sides_of_a_board_are_one():
     board = block((0.49, 0, 0), (0.51, 0.4, 1))
     shelves = [block((0, 0, 0.5), (0.49, 0.4, 0.52)), block((0.51, 0, 0.5), (1, 0.4, 0.52))]
     assert len(simpler([board, *shelves], Felt())) == 2
+
+
+def test_a_frame_becomes_one_with_what_it_holds():
+    rails = [
+        block(*b)
+        for b in (((0, 0, 0), (0.02, 1, 0.1)), ((0.98, 0, 0), (1, 1, 0.1)), ((0, 0, 0), (1, 0.02, 0.1)), ((0, 0.98, 0), (1, 1, 0.1)))
+    ]
+    filling = block((0.02, 0.02, 0), (0.98, 0.98, 0.09))
+    knob = block((0.4, -0.2, 0.02), (0.6, -0.1, 0.08))
+    assert sorted(len(p.hull) for p in fewer([*rails, filling, knob], even(0.012))) == [8, 8]
+
+
+def test_what_is_only_seen_is_one_piece():
+    boards = [block((x, 0, 0), (x + 0.1, 0.02, 1)) for x in (0, 2)]
+    assert len(simpler(boards, FELT["seen"])) == 1
+
+
+def test_soft_things_lie_flat_however_round_they_are():
+    turn = np.random.default_rng(0).normal(size=(400, 3))
+    ball = convex(turn / np.linalg.norm(turn, axis=1)[:, None] * [0.2, 0.15, 0.05], 1.0)
+    (lies,) = simpler([ball], FELT["soft"])
+    sole = lies.hull[lies.hull[:, 2] < lies.hull[:, 2].min() + 1e-6]
+    assert np.ptp(sole[:, 0]) > 0.25
+    assert np.ptp(sole[:, 1]) > 0.19
+
+
+def test_cushions_have_level_tops():
+    swell = convex(
+        np.array([(x, y, 0.1 - 0.02 * (x * x + y * y)) for x in np.linspace(-1, 1, 7) for y in np.linspace(-1, 1, 7)] + [(0, 0, 0)]), 1.0
+    )
+    (found,) = simpler([swell], Felt(up=0.035, lift=0.05))
+    assert np.ptp(found.hull[found.hull[:, 2] > 0.1 - 1e-9][:, :2], axis=0).min() > 1.9

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pipeline.entities.asset import Asset, Joint, Link, Mesh, PartBox
 from pipeline.geometry.prerequisites import ordered
 from pipeline.sources.articulated.fitting import fitted
+from pipeline.sources.articulated.hidden_boards import without_hidden
 from pipeline.sources.articulated.metric_scale import Fit
 from pipeline.sources.articulated.proportions import Proportions
 from pipeline.sources.articulated.shape import ArticulatedShape, ShapeBody, ShapeJoint, ShapePart
@@ -71,9 +72,10 @@ def assets(
                     how if links else below,
                 )
             )
+        shown = links if category.loose else without_hidden(links, shape.joints)
         asset = Asset(
             f"{SHORT[shape.source]}_{stem}_{fit.category}", fit.category, np.round(extent * fit.scale, 4),
-            tuple(links), tuple(_joint(j, middle, fit.scale) for j in shape.joints), tuple(shape.palette.materials),
+            tuple(shown), tuple(_joint(j, middle, fit.scale) for j in shape.joints), tuple(shape.palette.materials),
             shape.source, shape.source_id, licence, "", kind, dict(shape.palette.textures),
             tuple(_part(p, middle, fit.scale) for p in shape.parts),
         )  # fmt: skip

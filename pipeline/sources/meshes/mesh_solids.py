@@ -297,10 +297,10 @@ def hull(points: Floats) -> tuple[Floats, Ints, float] | None:
     return np.asarray(corners), faces[order], float(found.volume)
 
 
-def extremes(points: Floats) -> Floats:
-    """Return at most MAX_HULL of the points: those furthest along the axes and along evenly spread directions."""
-    k = np.arange(MAX_HULL - 6) + 0.5
-    polar, turn = np.arccos(1 - 2 * k / (MAX_HULL - 6)), np.pi * (1 + 5**0.5) * k
+def extremes(points: Floats, most: int = MAX_HULL) -> Floats:
+    """Return at most so many of the points: those furthest along the axes and along evenly spread directions."""
+    k = np.arange(most - 6) + 0.5
+    polar, turn = np.arccos(1 - 2 * k / (most - 6)), np.pi * (1 + 5**0.5) * k
     directions = np.stack([np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1)
     directions = np.concatenate([np.eye(3), -np.eye(3), directions])
     return np.asarray(points[np.unique(np.argmax(points @ directions.T, axis=0))])

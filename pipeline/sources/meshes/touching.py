@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -25,25 +25,29 @@ from pipeline.sources.meshes.rings import STAVES, is_ring, same_height, sectors
 Floats = NDArray[np.float64]
 Allowed = Callable[[Floats, Floats], Floats]  # points (P, 3), normals (P, 3) there -> how far each may be off (P,) [m]
 
+CORNERS = 12  # of the outline that a soft thing lies on, at most
 SOLE = 0.8  # share of its outline that a soft thing lies on
 ROOMY = 50.0  # boards across each other: their box holds so many times what they do, and no hull of theirs is looked at
 MOST = 250  # pieces of a link beyond which it is left as it is
 SAMPLES = (0, 2, 8)  # intervals along a side of the hull's triangles, coarse first; 0: their middles
 SHARE = 0.15  # of the least extent of a link: what its touched surface may be off by at most, however small it is
 UP = 0.7  # upward part of the normal of a face on which things lie
+LEVEL = 0.95  # ... on which they lie on cushions: an edge that slopes more bears nothing
 TOUCHED = 0.005  # [m] how far a collider's surface may be off where hands and things come
 BUMPED = 0.02  # ... where a robot comes with its body at most: the sides of furniture that does not open
 PADDED = 0.03  # ... the rounded edges of cushions and mattresses, whose boxes bear things on a level top
+GIVES = 0.035  # ... what one sits and lies on
 SOFT = 0.05  # ... a blanket with its fringe
-LEFT_ALONE = 0.15  # ... what hangs at a ceiling or flat on a wall to be looked at, and leaves
+LEFT_ALONE = 0.15  # ... from underneath, and leaves
+HELD = 0.02  # ... the outside of small things that no hand goes into
 ANY = 10.0  # [m]
-HOLLOW, DEEP = 0.2, 0.35  # shares of a vessel's width and height that it may be off within
+HOLLOW, DEEP = 0.25, 0.45  # shares of a vessel's width and height that it may be off within
 UNDER = 0.2  # [m] above the floor below which furniture's legs and plinths are one block: no hand comes there
 SEAT = 0.4  # [m] the same under a seat, whose legs a robot stands before
 CUSHIONED = frozenset(("bed", "chair", "sofa", "stool"))  # super-categories on which one sits and lies: what things lie on there gives way
 REACH = 0.05  # [m] between pieces that may become one across what lies between them: shelves on both sides of a board
 POT = 0.4  # share of a plant's height up to which it is as hard as other things
-Offer = tuple[float, int, int]
+Offer = tuple[float, tuple[int, ...]]  # how much changes, who becomes one
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +55,8 @@ class Felt:
     """How far a surface may be off [m]: where things lie (faces upwards), at the sides, from below; `yielding` grows with height to LEFT_ALONE.
 
     What is `closed` is not reached into: the staves of a ring are one disc. Lower than `under` [m] only what faces upwards is felt.
-    A `vessel` is felt from without; within it is but hollow. What is `soft` lies flat. Boxes may stand out by `box` [m] at their corners.
+    A `vessel` is felt from without; within it is but hollow. What is `soft` lies flat. What nobody touches is one piece, `whole`.
+    Things lie on what faces upwards by `level`; what is less than `lift` [m] below the top of a piece is drawn up to it. Boxes may stand out by `box` [m] at their corners.
     Nothing comes through gaps narrower than `cell` [m]; see `reached`.
     """
 
@@ -63,13 +68,16 @@ class Felt:
     under: float = 0.0
     vessel: bool = False
     soft: bool = False
+    whole: bool = False
+    level: float = UP
+    lift: float = 0.0
     box: float = NEAR
     cell: float = 0.01
 
 
 FELT = MappingProxyType(  # by what cards say
     {
-        "seen": Felt(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE),
+        "seen": Felt(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE, whole=True),
         "soft": Felt(SOFT, SOFT, SOFT, soft=True),
         "yielding": Felt(LEFT_ALONE, TOUCHED, LEFT_ALONE, yielding=True, closed=True),
         "closed": Felt(BUMPED, closed=True),
@@ -79,6 +87,8 @@ FELT = MappingProxyType(  # by what cards say
 
 def felt(category: Category, *, opens: bool) -> Felt:
     """Return how truly a thing of a category is felt: hands come to what is small and to what opens, bodies to other furniture."""
+    if category.felt == "closed" and category.loose:
+        return replace(FELT["closed"], sides=HELD, down=HELD)
     if category.felt:
         return FELT[category.felt]
     if category.loose:
@@ -87,7 +97,7 @@ def felt(category: Category, *, opens: bool) -> Felt:
         return Felt()
     under = SEAT if category.tuck == "seat" else UNDER
     if category.super in CUSHIONED:
-        return Felt(BUMPED, SOFT, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED)
+        return Felt(GIVES, SOFT, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED, level=LEVEL, lift=PADDED)
     return Felt(TOUCHED, BUMPED, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED)
 
 
@@ -95,6 +105,8 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
     """Return convex pieces [m] as few as they can be felt for the same by."""
     if not pieces:
         return ()
+    if how.whole:
+        return (combined(pieces),)
     points = np.concatenate([p.hull for p in pieces])
     low = float(points[:, 2].min())
     below = [p for p in pieces if p.hull[:, 2].max() <= low + how.under]
@@ -104,7 +116,15 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
         pieces = [_flat(combined(pieces))]
     if how.closed:
         pieces = discs(pieces)
-    return fewer(pieces, _tolerance(pieces, how), max(how.up, how.sides, REACH), rings=how.up <= BUMPED)
+    made = fewer(pieces, _tolerance(pieces, how), max(how.up, how.sides, REACH), rings=how.up < SOFT)
+    return tuple(_levelled(p, how.lift) for p in made) if how.lift else made
+
+
+def _levelled(part: Part, lift: float) -> Part:
+    """Return a cushion with a level top: what lies on a swell rolls, where a real one gives way."""
+    top = float(part.hull[:, 2].max())
+    upper = part.hull[part.hull[:, 2] > top - lift]
+    return convex(np.concatenate([part.hull, np.column_stack([upper[:, :2], np.full(len(upper), top)])]), part.volume) or part
 
 
 def _tolerance(pieces: Sequence[Part], how: Felt) -> Allowed:
@@ -112,18 +132,18 @@ def _tolerance(pieces: Sequence[Part], how: Felt) -> Allowed:
     low, high = points.min(axis=0), points.max(axis=0)
     least = SHARE * float((high - low).min())
     hulls = [p.hull for p in pieces]
-    comes = reached(hulls, [_planes(h) for h in hulls], how.cell) if how.up <= BUMPED else None
+    comes = reached(hulls, [_planes(h) for h in hulls], how.cell) if how.up < SOFT else None
     hollows = _hollows(pieces, how)
 
     def allowed(at: Floats, normals: Floats) -> Floats:
-        tolerance = np.where(normals[:, 2] > UP, how.up, np.where(normals[:, 2] < -UP, how.down, how.sides))
+        tolerance = np.where(normals[:, 2] > how.level, how.up, np.where(normals[:, 2] < -UP, how.down, how.sides))
         if how.yielding:
             share = np.clip((at[:, 2] - low[2]) / (POT * (high[2] - low[2])), 0, 1)
             tolerance = np.maximum(tolerance, share * LEFT_ALONE)
         for hollow in hollows:
             tolerance = np.where(hollow.within(at, normals), np.maximum(tolerance, hollow.depth), tolerance)
         tolerance = np.where(tolerance <= TOUCHED, np.minimum(tolerance, least), tolerance)
-        away = (at[:, 2] < low[2] + how.under) & (normals[:, 2] <= UP)
+        away = (at[:, 2] < low[2] + how.under) & (normals[:, 2] <= how.level)
         return np.asarray(np.where(away if comes is None else away | ~comes(at), ANY, tolerance))
 
     return allowed
@@ -167,11 +187,11 @@ def _hollows(pieces: Sequence[Part], how: Felt) -> list[_Hollow]:
 
 def _flat(part: Part) -> Part:
     """Return a soft thing as it lies: its outline, drawn in a little, on what bears it."""
-    sole = part.hull.copy()
-    middle = (sole.min(axis=0) + sole.max(axis=0)) / 2
-    sole[:, :2] = middle[:2] + SOLE * (sole[:, :2] - middle[:2])
-    sole[:, 2] = part.hull[:, 2].min()
-    return convex(np.concatenate([part.hull, sole]), part.volume) or part
+    turns = 2 * np.pi * np.arange(CORNERS) / CORNERS
+    around = part.hull[np.unique(np.argmax(part.hull[:, :2] @ [np.cos(turns), np.sin(turns)], axis=0))]
+    middle = (part.hull.min(axis=0) + part.hull.max(axis=0)) / 2
+    sole = np.column_stack([middle[:2] + SOLE * (around[:, :2] - middle[:2]), np.full(len(around), part.hull[:, 2].min())])
+    return convex(np.concatenate([extremes(part.hull, MAX_HULL - len(sole)), sole]), part.volume) or part
 
 
 def discs(pieces: Sequence[Part]) -> list[Part]:
@@ -214,34 +234,51 @@ def _merged(
     hulls, volumes = (list(v) for v in zip(*(_outer(np.concatenate([pieces[k].hull for k in group])) for group in groups), strict=True))
     boxes = [np.array([h.min(axis=0), h.max(axis=0)]) for h in hulls]
     alive = [True] * len(groups)
+    looked: dict[tuple[int, ...], float | None] = {}
+
+    def worst_of(members: tuple[int, ...]) -> float | None:
+        if members not in looked:
+            looked[members] = share([k for g in members for k in groups[g]], np.concatenate([hulls[g] for g in members]))
+        return looked[members]
 
     def offer(i: int, j: int) -> Offer | None:
         if (boxes[i][0] > boxes[j][1] + apart).any() or (boxes[j][0] > boxes[i][1] + apart).any():
             return None
         low, high = np.minimum(boxes[i][0], boxes[j][0]), np.maximum(boxes[i][1], boxes[j][1])
-        if apart < LEFT_ALONE and float((high - low).prod()) > ROOMY * (volumes[i] + volumes[j]):
+        pair = (i, j)
+        if (worst := None if _roomy(low, high, volumes[i] + volumes[j], apart) else worst_of(pair)) is not None:
+            return round(worst, 5), pair
+        all_boxes = np.array(boxes)  # a frame is no pair, but it is with what it holds
+        within = (all_boxes[:, 0] >= low - TOUCHED).all(axis=1) & (all_boxes[:, 1] <= high + TOUCHED).all(axis=1) & np.array(alive)
+        held = tuple(np.flatnonzero(within).tolist())
+        if len(held) == len(pair) or _roomy(low, high, sum(volumes[g] for g in held), apart) or (worst := worst_of(held)) is None:
             return None
-        worst = share(groups[i] + groups[j], np.concatenate([hulls[i], hulls[j]]))
-        return None if worst is None else (round(worst, 5), i, j)
+        return round(worst, 5), held
 
     heap = [found for i in range(len(groups)) for j in range(i + 1, len(groups)) if (found := offer(i, j))]
     heapq.heapify(heap)
     while heap:
-        _, i, j = heapq.heappop(heap)
-        if not (alive[i] and alive[j]):
+        _, members = heapq.heappop(heap)
+        if not all(alive[g] for g in members):
             continue
-        alive[i] = alive[j] = False
-        groups.append(groups[i] + groups[j])
-        outer, volume = _outer(np.concatenate([hulls[i], hulls[j]]))
+        outer, volume = _outer(np.concatenate([hulls[g] for g in members]))
+        for g in members:
+            alive[g] = False
+        groups.append([k for g in members for k in groups[g]])
         hulls.append(outer)
         volumes.append(volume)
-        boxes.append(np.array([np.minimum(boxes[i][0], boxes[j][0]), np.maximum(boxes[i][1], boxes[j][1])]))
+        boxes.append(np.array([outer.min(axis=0), outer.max(axis=0)]))
         alive.append(True)
         new = len(groups) - 1
         for k in range(new):
             if alive[k] and (found := offer(k, new)):
                 heapq.heappush(heap, found)
     return [g for g, lives in zip(groups, alive, strict=True) if lives]
+
+
+def _roomy(low: Floats, high: Floats, held: float, apart: float) -> bool:
+    """Whether a box holds so little that no hull is looked at; what nobody touches may be as roomy as it likes."""
+    return apart < LEFT_ALONE and float((high - low).prod()) > ROOMY * held
 
 
 def _outer(points: Floats) -> tuple[Floats, float]:
@@ -263,13 +300,15 @@ def _deviation(points: Floats, planes: Sequence[Floats], allowed: Allowed) -> fl
         return None
     if len(hull.vertices) > MAX_HULL:
         kept = ConvexHull(extremes(points[hull.vertices]))
-        if _away(points[hull.vertices], [kept.equations], np.full(len(hull.vertices), TOUCHED)) > 1.0:
+        left = points[hull.vertices]
+        off = np.minimum(*(allowed(left, np.tile(way, (len(left), 1))) for way in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0))))
+        if _away(left, [kept.equations], np.clip(off, TOUCHED, BUMPED)) > 1.0:
             return None
         points, hull = kept.points, kept
     corners, normals = points[hull.simplices], hull.equations[:, :3]
     worst = 0.0
     for count in SAMPLES:
-        at = _spread(corners, count) if count else corners.mean(axis=1)
+        at = spread(corners, count) if count else corners.mean(axis=1)
         tolerance = allowed(at, np.repeat(normals, len(at) // len(corners), axis=0))
         worst = _away(at, planes, tolerance)
         if worst > 1.0:
@@ -277,7 +316,7 @@ def _deviation(points: Floats, planes: Sequence[Floats], allowed: Allowed) -> fl
     return worst
 
 
-def _spread(corners: Floats, count: int) -> Floats:
+def spread(corners: Floats, count: int) -> Floats:
     """Return points (F P, 3) spread over triangles (F, 3, 3), `count` intervals along a side."""
     u, v = (k.ravel() for k in np.meshgrid(np.arange(count + 1), np.arange(count + 1), indexing="ij"))
     inside = u + v <= count

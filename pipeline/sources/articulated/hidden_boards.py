@@ -1,0 +1,94 @@
+"""Boards that nobody can touch, drawers being where they are: backs and rails behind fronts, sides along a drawer's own.
+
+What a robot feels of a chest is its top, its fronts and their handles; whatever lies in a drawer is held by the drawer's boards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
+
+from pipeline.entities.asset import Link
+from pipeline.sources.articulated.shape import ShapeJoint
+from pipeline.sources.meshes.reach import reached
+from pipeline.sources.meshes.touching import LEFT_ALONE, TOUCHED, UP, spread
+
+Floats = NDArray[np.float64]
+
+DRAWER = "slider_drawer"
+BESIDE = 0.025  # [m] between the outside of a carcass and the drawers in it, at its sides
+BEHIND = 0.04  # [m] from a drawer's back to the carcass's at most
+BOARD = 0.025  # [m] thickness of a drawer's back at most
+FEWEST = 4  # pieces of a drawer that has one
+SAMPLES = 12  # intervals along a side of a board's triangles
+OFF = 0.002  # [m] before a surface
+HAND = 0.01  # [m] gaps into which no hand comes
+
+
+def without_hidden(links: Sequence[Link], joints: Sequence[ShapeJoint]) -> list[Link]:
+    """Return the links, their colliders without boards that are not felt: shut drawers are, doors are not, for what is behind them is."""
+    drawers = [joint for joint in joints if joint.part_class == DRAWER and joint.parent == 0]
+    if not drawers:
+        return list(links)
+    base = without_covered(links[0], [links[joint.child] for joint in drawers])
+    backs = {joint.child: without_back(links[joint.child], joint, base) for joint in drawers}
+    return [base, *(backs.get(k, link) for k, link in enumerate(links[1:], 1))]
+
+
+def without_covered(base: Link, drawers: Sequence[Link]) -> Link:
+    """Return a carcass without the boards whose outsides the other boards and the drawers all but have."""
+    hulls = [np.asarray(c.vertices, np.float64) for link in (base, *drawers) for c in link.colliders]
+    planes = [ConvexHull(h).equations for h in hulls]
+    comes = reached(hulls, planes, HAND)
+    kept = set(range(len(hulls)))
+    boards = range(len(base.colliders))
+    for k in sorted(boards, key=lambda k: (round(float(np.ptp(hulls[k], axis=0).prod()), 9), k)):
+        at, normals = _surface(hulls[k])
+        felt = comes(at + OFF * normals)
+        at, normals = at[felt], normals[felt]
+        allowed = np.where(normals[:, 2] > UP, TOUCHED, np.where(normals[:, 2] < -UP, LEFT_ALONE, BESIDE))
+        if (_away(at, [planes[i] for i in kept - {k}]) <= allowed).all():
+            kept.discard(k)
+    return replace(base, colliders=tuple(base.colliders[k] for k in boards if k in kept))
+
+
+def without_back(drawer: Link, joint: ShapeJoint, base: Link) -> Link:
+    """Return a drawer without the board at its inner end, where the carcass has one behind it; the others end where it began.
+
+    Even a drawer that is pulled out has it in the carcass; what slides back stops at the carcass's own.
+    """
+    along = joint.axis / float(np.linalg.norm(joint.axis))
+    depths = [np.asarray(c.vertices, np.float64) @ along for c in drawer.colliders]
+    end = min(float(d.min()) for d in depths)
+    backs = [k for k, d in enumerate(depths) if d.max() < end + BOARD]
+    walls = [ConvexHull(np.asarray(c.vertices, np.float64)).equations for c in base.colliders]
+    if len(backs) != 1 or len(drawer.colliders) < FEWEST:
+        return drawer
+    points, _ = _surface(np.asarray(drawer.colliders[backs[0]].vertices, np.float64))
+    behind = points[points @ along < end + OFF]
+    if not len(behind) or (_away(behind, walls) > BEHIND).any():
+        return drawer
+    inner = float(depths[backs[0]].max())
+    ended = (
+        replace(c, vertices=(c.vertices + np.maximum(inner - d, 0.0)[:, None] * along).astype(np.float32))
+        for k, (c, d) in enumerate(zip(drawer.colliders, depths, strict=True))
+        if k != backs[0]
+    )
+    return replace(drawer, colliders=tuple(ended))
+
+
+def _away(points: Floats, planes: Sequence[Floats]) -> Floats:
+    """Return how far points (P, 3) are from the nearest of convex pieces, by the planes (F, 4) of their faces."""
+    return np.asarray(np.min([(points @ e[:, :3].T + e[:, 3]).max(axis=1) for e in planes], axis=0))
+
+
+def _surface(points: Floats) -> tuple[Floats, Floats]:
+    """Return points (P, 3) spread over the hull of points (N, 3), and the normals there."""
+    hull = ConvexHull(points)
+    corners = points[hull.simplices]
+    at = spread(corners, SAMPLES)
+    return at, np.repeat(hull.equations[:, :3], len(at) // len(corners), axis=0)
