@@ -25,6 +25,7 @@ OUTLINES: Mapping[str, dict[str, Any]] = {"shape_l": {"shape": "L"}, "shape_t": 
 SHELL = {"ceiling": ("ceiling",), "walls": ("inner_wall", "outer_wall"), "inner_walls": ("inner_wall",), "outer_walls": ("outer_wall",)}
 LIMITS = {"ceiling": (1.8, 8.0), "inner_wall": (0.05, 0.6), "outer_wall": (0.05, 0.6)}  # [m]
 SMALL = {"wc", "hallway", "entry", "storage", "closet", "balcony", "staircase", "bathroom", "utility"}  # not meant by "every room at least"
+STRANGERS = {"guest", "elder", "carer", "staff"}  # whose bedrooms are beside those of the people who live there
 LIVED = {"living_room", "bedroom", "office", "dining_room", "playroom", "library", "studio_room", "family_room"}
 GROUND = {"living_room", "kitchen", "dining_room", "garage", "entry", "wc", "utility"}
 SORTS = {
@@ -103,11 +104,8 @@ def _count(draft: Draft, state: Reading) -> None:
     """Make as many rooms as a number of rooms says: "a three-room flat", counted as people do where the language is spoken."""
     stock = state.inventory
     if state.rooms is None:
-        told = state.people is None or state.studio is not None or any(stock.of(k) for k in ("bedroom", "studio_room"))
-        if state.people is not None and not told:  # a bedroom for two, and one for each of the others: nobody stated these
-            for _ in range(max(1, min(int(state.people.number), MOST_PEOPLE) - 1)):
-                stock.add("bedroom", "", "", None).stated = False
-            draft.cite(state.people.first, state.people.last, "rooms")
+        if state.people is not None and state.studio is None:
+            _bedrooms(draft, state, state.people)
         return
     count, mark = state.rooms
     draft.cite(mark.first, mark.last, "rooms")
@@ -122,6 +120,18 @@ def _count(draft: Draft, state: Reading) -> None:
                 next((k for k in ("living_room", "kitchen", "bathroom") if not stock.of(k)), "bedroom"), "", "room", None
             ).stated = False
         draft.fields["only"] = True
+
+
+def _bedrooms(draft: Draft, state: Reading, people: Mark) -> None:
+    """Add the bedrooms that so many people take, of which nobody stated how many there are: one for each who shares a flat, else one for two and one for each of the others."""
+    stock = state.inventory
+    if stock.of("studio_room") or any(r.role not in {"child", *STRANGERS} for r in stock.of("bedroom")):
+        return
+    beside = {"children": 1, "sharers": 0}.get(people.value, -1)
+    wanted = max(1, min(int(people.number) + beside, MOST_PEOPLE - 1))
+    for _ in range(wanted - sum(r.role == "child" for r in stock.of("bedroom"))):
+        stock.add("bedroom", "", "", None).stated = False
+    draft.cite(people.first, people.last, "rooms")
 
 
 def _living_rooms(draft: Draft, state: Reading, count: int, mark: Mark) -> None:

@@ -29,6 +29,7 @@ ENDINGS = ("en", "es", "as", "os", "em", "e", "n", "s", "a", "o")  # of plurals,
 FIGURES = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
 TEN, MOST = 10, 1e6  # the highest digit, and the most of any amount
 NEAR, FAR, OWNED = 5, 7, 14  # words in which "everywhere", "free" and an owner are looked for
+TABLES, CHAIRS, MOST_SEATS = {"dining_table", "any_table"}, "any_chair", 16
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
 
 
@@ -316,7 +317,16 @@ class Scan:
         self._style_at(at, name_at - at)
         size = self._after("count", k, name_at + length, name, least, most)
         self.claims[-1] = replace(self.claims[-1], plural=read is None and least > 1)
-        return size
+        return size + (self._seats(k + size) if name in TABLES and most != 0 else 0)
+
+    def _seats(self, k: int) -> int:
+        """Read for how many a table is, as chairs: "for six people"."""
+        lead = self.length(k, "in")
+        length, value = self.number(k + lead) if lead else (0, None)
+        people = self.length(k + lead + length, "seated")
+        if value is None or value > MOST_SEATS or not (people or self.text(k + lead + length) in {"", *COMMAS}):
+            return 0
+        return self._put("count", k, k + lead + length + people, CHAIRS, int(value))
 
     def _after(self, kind: Kind, first: int, last: int, name: str, least: int, most: int | None) -> int:
         """Add bounds that follow: "four chairs or more"."""

@@ -80,11 +80,14 @@ def _add_missing(program: FloorProgram) -> tuple[RoomReq, ...]:
 
     def add(kind: str, name: str) -> None:
         if kind not in types and kind not in never:
-            used = {r.id for r in rooms}
-            rooms.append(RoomReq.model_validate({"id": name if name not in used else f"{name}_x", "type": kind, "stated": False}))
+            rooms.append(RoomReq.model_validate({"id": _name(name, rooms), "type": kind, "stated": False}))
             types.add(kind)
 
     if not program.only and not work:
+        roles = {r.role for r in rooms if r.type == "bedroom"}
+        if len(roles) == 1 and roles < {"child", "guest", "elder", "carer", "staff"}:  # of others than those whose home it is
+            types.discard("bedroom")
+            add("bedroom", "bed")
         if not types & {"living_room", "family_room", "studio_room"} and "living" not in functions:
             if "bedroom" not in types and (types & BEYOND_ONE_ROOM or len(program.select("bathroom")) > 1):
                 add("bedroom", "bed")
