@@ -9,7 +9,6 @@ from __future__ import annotations
 import bisect
 import functools
 import re
-import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -19,28 +18,16 @@ from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG
 from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.marks import listen, segment
 from pipeline.floorplan.language.spelling import detect, resolve
-from pipeline.floorplan.language.text import HAN
+from pipeline.floorplan.language.text import Stemmed, stem, stemmed
 from pipeline.floorplan.program.furniture import lexicon
 
-WORD = re.compile(rf"\d+(?:[.,]\d+)?|[{HAN}]|[^\W\d_{HAN}]+(?:'[^\W\d_]+)?|[%.,;:!?()\n+&、。;,!?]")
 STOPS = frozenset(".;!?\n。;!?")
 COMMAS = STOPS | {",", "、"}
-ENDINGS = ("en", "es", "as", "os", "em", "e", "n", "s", "a", "o")  # of plurals, cases and genders
 FIGURES = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
 TEN, MOST = 10, 1e6  # the highest digit, and the most of any amount
 NEAR, FAR, OWNED = 5, 7, 14  # words in which "everywhere", "free" and an owner are looked for
 TABLES, CHAIRS, MOST_SEATS = {"dining_table", "any_table"}, "any_chair", 16
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
-
-
-@dataclass(frozen=True, slots=True)
-class Word:
-    """A word, folded (no accents, lower case), its stem, and its place in the prompt."""
-
-    text: str
-    stem: str
-    start: int
-    end: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,27 +49,10 @@ class Claim:
     plural: bool = False  # "armchairs": nobody counted them
 
 
-@functools.lru_cache(maxsize=8192)
-def _stem(word: str) -> str:
-    for _ in range(2 if word.isalpha() else 0):
-        word = word.removesuffix(next((e for e in ENDINGS if word.endswith(e) and len(word) - len(e) >= 3), ""))
-    return word
-
-
-def words(text: str) -> list[Word]:
-    """Split a text; Chinese into single characters. Hyphens part words."""
-    found = []
-    for match in WORD.finditer(text):
-        lower = unicodedata.normalize("NFKC", match.group()).lower().replace("ß", "ss")
-        folded = "".join(c for c in unicodedata.normalize("NFD", lower) if not unicodedata.combining(c))
-        found.append(Word(folded, _stem(folded), match.start(), match.end()))
-    return found
-
-
 @functools.cache
 def _numbers() -> Mapping[str, int]:
     """Return the number words of all languages; articles are none."""
-    articles = {w.text for kind in ("one", "article") for form in lexicon()["words"][kind] for w in words(form)}
+    articles = {w.text for kind in ("one", "article") for form in lexicon()["words"][kind] for w in stemmed(form)}
     single = ((w, node[""]) for language in LANGUAGES for w, node in spoken(language).trie.items() if w.isascii() and "" in node)
     return {w: int(m.number) for w, m in single if m.kind == "num" and w not in articles and m.number.is_integer()}
 
@@ -98,7 +68,7 @@ def _phrases() -> Mapping[str, tuple[tuple[tuple[str, ...], str, str, bool], ...
     listed += [("owner", name, form) for name, some in data["owners"].items() for form in some]
     table: dict[str, list[tuple[tuple[str, ...], str, str, bool]]] = {}
     for kind, name, form in listed:
-        stems = tuple(w.stem for w in words(form.removeprefix("@")))
+        stems = tuple(w.stem for w in stemmed(form.removeprefix("@")))
         table.setdefault(stems[0], []).append((stems, kind, name, form.startswith("@")))
     return {k: tuple(sorted(v, key=lambda p: -len(p[0]))) for k, v in table.items()}
 
@@ -111,7 +81,7 @@ def _stems() -> frozenset[str]:
 @functools.cache
 def _called(name: str, language: str) -> frozenset[str]:
     """Return the first stems of what a language calls a thing."""
-    return frozenset(words(form.removeprefix("@"))[0].stem for form in lexicon()["names"].get(name, {}).get(language, ()))
+    return frozenset(stemmed(form.removeprefix("@"))[0].stem for form in lexicon()["names"].get(name, {}).get(language, ()))
 
 
 class Scan:
@@ -128,7 +98,7 @@ class Scan:
         self.traits = lex.traits if lex is not None else frozenset[str]()
         self.rooms: dict[int, bool] = {}  # where the words of rooms' names begin, and whether they are their first
         self.counted: set[int] = set()  # where a word that rooms are counted by begins: "trois pièces"
-        self.words = words(prompt)
+        self.words = stemmed(prompt)
         if lex is not None:
             heard = listen(prompt, self.language)
             for m in segment(heard):
@@ -150,11 +120,11 @@ class Scan:
         self.stops = [-1, *(k for k, w in enumerate(self.words) if w.text in STOPS)]
         self.negated = False  # "no TV or armchairs": the negation goes on
 
-    def _mended(self, word: Word) -> Iterator[Word]:
+    def _mended(self, word: Stemmed) -> Iterator[Stemmed]:
         """Yield a word with its typing errors repaired."""
         known = not word.text.isalpha() or word.text in spoken(self.language).vocabulary or word.stem in _stems()
         parts = (word.text,) if known else resolve(word.text, self.language, every=True)
-        yield from [word] if parts == (word.text,) else (Word(p, _stem(p), word.start, word.end) for p in parts)
+        yield from [word] if parts == (word.text,) else (Stemmed(p, stem(p), word.start, word.end) for p in parts)
 
     def _other(self, k: int, name: str) -> bool:
         """Whether word k names a room, or is another word of the prompt's language: "Büro" is no "buró", "never" no "nevera"."""
@@ -310,7 +280,7 @@ class Scan:
         elif read is None:
             last = self.text(name_at + length - 1)
             shown = any(
-                words(f)[-1].text == last for some in lexicon()["names"].get(name, {}).values() for f in some
+                stemmed(f)[-1].text == last for some in lexicon()["names"].get(name, {}).values() for f in some
             )  # "drawers", "lavavajillas"
             least = 2 if last.endswith("s") and last[0].isascii() and not shown else 1
         self.negated = most == 0
