@@ -106,13 +106,13 @@ def standing(free: Mask, radius_cells: float) -> Mask:
     apart = _apart(~free, 1)
     found = np.zeros((rows, columns), np.bool_)
     for i in range(rows):
+        if min(i + 1, rows - i) ** 2 < least:
+            continue
         for j in range(columns):
-            stands = apart[i, j] >= least and min(i + 1, rows - i) ** 2 >= least
-            for k in range(max(0, i - reach), min(rows, i + reach + 1)):
-                if not stands:
-                    break
-                stands = (k - i) ** 2 + apart[k, j] >= least
-            found[i, j] = stands
+            found[i, j] = True
+        for k in range(max(0, i - reach), min(rows, i + reach + 1)):  # row by row, many cells at once
+            for j in range(columns):
+                found[i, j] &= (k - i) ** 2 + apart[k, j] >= least
     return found
 
 
@@ -125,11 +125,9 @@ def covered(centres: Mask, radius_cells: float) -> Mask:
     apart = _apart(centres, FAR)
     found = np.zeros((rows, columns), np.bool_)
     for i in range(rows):
-        for j in range(columns):
-            for k in range(max(0, i - reach), min(rows, i + reach + 1)):
-                if (k - i) ** 2 + apart[k, j] <= most:
-                    found[i, j] = True
-                    break
+        for k in range(max(0, i - reach), min(rows, i + reach + 1)):
+            for j in range(columns):
+                found[i, j] |= (k - i) ** 2 + apart[k, j] <= most
     return found
 
 

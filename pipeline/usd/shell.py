@@ -169,7 +169,7 @@ def _solid(path: str, solid: Prism, material: str) -> str:
     """Return a solid that collides and is not seen, as a cube where it is a box: engines know nothing better."""
     low, high = solid.bottom, solid.top
     p = solid.polygon
-    if len(p) == 4 and np.allclose(p[0] + p[2], p[1] + p[3], atol=EXACT) and abs((p[1] - p[0]) @ (p[3] - p[0])) < EXACT:
+    if len(p) == 4 and float(np.abs(p[0] + p[2] - p[1] - p[3]).max()) < EXACT and abs((p[1] - p[0]) @ (p[3] - p[0])) < EXACT:
         size = (*(float(np.linalg.norm(p[k] - p[0])) for k in (1, 3)), high - low)
         yaw = float(np.arctan2(*(p[1] - p[0])[::-1]))
         return cast(_block_form(material), path, placed((*p.mean(axis=0), (low + high) / 2), yaw, size))
