@@ -29,6 +29,7 @@ CORNER = 0.6  # a gap to a corner that is narrower is closed [m]: half of all re
 AHEAD = 0.65  # of a run is kept free for its own doors where another meets it in a corner [m]
 HUNG_AT = 1.45  # usual underside of wall units above the floor [m]
 LEAST_AIR = 0.4  # from base units to wall units [m]
+NEXT, IN_LINE = 0.1, 0.12  # units of a run are no farther apart, and their fronts no farther out of line [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +67,22 @@ def lay_runs(items: Sequence[Item], walls: Sequence[Edge], site: Site) -> tuple[
         waiting = _fill(waiting, items, _stretches(edge, depth, site, taken), poses, runs, taken, site) if waiting else []
     _hang(items, walls, runs, poses, site)
     return runs, poses
+
+
+def torn(runs: Sequence[Sequence[int]], items: Sequence[Item], poses: Floats, there: NDArray[np.bool_]) -> list[int]:
+    """Return the units of runs of several that stand at `poses` (N, 4), and beside no other unit."""
+    units = [i for run in runs for i in run if there[i]]
+    laid = {i for run in runs if len(run) > 1 for i in run}
+    return [i for i in units if i in laid and not any(k != i and _beside(items, poses, i, k) for k in units)]
+
+
+def _beside(items: Sequence[Item], poses: Floats, i: int, k: int) -> bool:
+    """Whether unit k stands beside unit i under the same front line."""
+    c, s = math.cos(poses[i, 3]), math.sin(poses[i, 3])
+    dx, dy = poses[k, :2] - poses[i, :2]
+    gap = abs(c * dx + s * dy) - float(items[i].half[0] + items[k].half[0])
+    line = s * dx - c * dy + float(items[k].half[1] - items[i].half[1])
+    return bool(gap <= NEXT and abs(line) <= IN_LINE and turned(poses[k, 3], float(poses[i, 3])) < 0.01)
 
 
 def _by_use(wall: Mapping[int, Edge | None], items: Sequence[Item], walls: Sequence[Edge]) -> list[Edge]:

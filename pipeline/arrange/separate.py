@@ -18,7 +18,7 @@ from pipeline.arrange.bonds import REACH, Bond, broken
 from pipeline.arrange.item import Item, make_item
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.occupancy import Occupancy
-from pipeline.arrange.runs import lay_runs
+from pipeline.arrange.runs import lay_runs, torn
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.settling import Draft, settle_all
 from pipeline.arrange.site import Site
@@ -96,11 +96,12 @@ def separate(
     astray: list[int] = []
     least: tuple[float, float] | None = None
     for number in range(max(1, settings.rounds)):
-        occupancy, sound, bonds = _arranged(site, items, first, led, learnt, settings, number)
+        occupancy, sound, bonds, runs = _arranged(site, items, first, led, learnt, settings, number)
         apart = broken(bonds, items, occupancy.poses, occupancy.there, learnt)
         there = {i: items[i].at(occupancy.poses[i]) for i in np.flatnonzero(occupancy.there).tolist()}
         lost = [i for i in range(len(items)) if i not in there]
-        score = _score(there, items, BROKEN * len(apart) + UNREACHED * len(occupancy.unreached))
+        faults = len(apart) + len(torn(runs, items, occupancy.poses, occupancy.there))
+        score = _score(there, items, BROKEN * faults + UNREACHED * len(occupancy.unreached))
         if (sound or number == settings.rounds - 1) and (least is None or score < least):
             best, least = there, score
             astray = [
@@ -119,7 +120,7 @@ def separate(
             if not (lost or changed or hidden):
                 break
         first = [
-            *lost,
+            *(i for i in lost if items[i].mount != "wall"),  # a wall unit in the way of the run below it waits
             *sorted(led),
             *(i for i in hidden if number and i not in lost),
             *(i for i in first if i not in (*lost, *led, *hidden)),
@@ -145,18 +146,18 @@ def _arranged(
     learnt: LearntRelations,
     settings: SeparateSettings,
     number: int,
-) -> tuple[Occupancy, bool, list[Bond | None]]:
-    """Arrange a room once; return who stands where, whether the floor is sound (looked at for each group after round 0), the bonds."""
+) -> tuple[Occupancy, bool, list[Bond | None], list[list[int]]]:
+    """Arrange a room once; return who stands where, whether the floor is sound (looked at for each group after round 0), the bonds, the kitchen runs."""
     walls = edges(site)
     runs, laid = lay_runs(items, walls, site)
     poses, bonds = exact_poses(items, site, walls, learnt, settings, laid)
     occupancy = Occupancy(site, items, settings, [i for i, bond in enumerate(bonds) if bond is not None])
     settle_all(occupancy, Draft(poses, bonds, runs, walls, learnt, led), first, careful=number > 0, bulk=number <= 1)
     if number > 0:
-        return occupancy, True, bonds
+        return occupancy, True, bonds, runs
     found = occupancy.out_of_reach()
     occupancy.unreached = found or frozenset()
-    return occupancy, found is not None, bonds
+    return occupancy, found is not None, bonds, runs
 
 
 def _separated(asked: Sequence[Item], best: Mapping[int, Placement], *, keep_count: bool) -> Separated:

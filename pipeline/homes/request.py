@@ -104,7 +104,7 @@ def layout_type(room: Room, plan: Plan, taxonomy: Taxonomy) -> str | None:
     if not own:
         return room.type if room.type in taxonomy.layouts else taxonomy.types[room.type].furnished_as or None
     functions = {*own, *room.functions, *(["dining"] if _dines(room, plan) else [])}
-    if {"living", "dining"} <= functions:
+    if {"living", "dining"} <= functions and "sleeping" not in functions:  # no part of a studio is as large as rooms that are both
         functions = functions - {"living", "dining"} | {"living and dining"}
     return PARTS.join(kind for name, kind in taxonomy.functions.items() if name in functions)
 

@@ -9,6 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pipeline.arrange import separate
+from pipeline.arrange.item import make_item
+from pipeline.arrange.runs import torn
 from pipeline.verify import Policy, verify_home
 from tests.arrange.known import LORE, drafted
 from tests.geometry.furniture import block, home, one_room
@@ -88,3 +90,25 @@ def test_a_unit_that_the_run_has_no_room_for_stays_at_its_wall():
     found = separate(site(room(), "room"), [*wished, drafted(ASSETS["fridge"], 4.1, 1.0, -math.pi / 2, number=5)], ASSETS, LORE)
     (fridge,) = (p for p in found.placements if p.asset_id == "fridge")
     assert fridge.yaw == pytest.approx(-math.pi / 2, abs=1e-4)
+
+
+def narrow():
+    return one_room(np.array([[0.0, 0.0], [3.1, 0.0], [3.1, 3.0], [0.0, 3.0]]))
+
+
+def test_a_wall_unit_that_is_in_the_way_does_not_tear_a_run():
+    wished = [drafted(ASSETS[name], 0.4 + 0.8 * k, 2.6, number=k) for k, name in enumerate(("fridge", "sink", "base", "cooker"))]
+    wished.append(drafted(ASSETS["hung"], 0.2, 2.5, math.pi / 2, z=1.45, number=4))  # at the next wall, where the refrigerator stands
+    found = separate(site(narrow(), "room"), wished, ASSETS, LORE).placements
+    units = sorted((p for p in found if p.asset_id != "hung"), key=lambda p: p.position[0])
+    assert len(units) == 4
+    for left, right in pairwise(units):
+        assert right.position[0] - left.position[0] - (left.size[0] + right.size[0]) / 2 == pytest.approx(0.002, abs=0.0005)
+
+
+@pytest.mark.parametrize(("apart", "yaw", "lone"), [(0.002, 0.0, 0), (0.3, 0.0, 2), (0.002, math.pi / 2, 2)])
+def test_units_without_a_neighbour_are_torn_from_their_run(apart, yaw, lone):
+    items = [make_item(drafted(ASSETS["base"], 0.0, 0.0, number=k), ASSETS, LORE, 0.5) for k in range(2)]
+    poses = np.array([[1.0, 2.7, 0.0, 0.0], [1.8 + apart, 2.7, 0.0, yaw]])
+    assert len(torn([[0, 1]], items, poses, np.ones(2, bool))) == lone
+    assert torn([[0], [1]], items, poses, np.ones(2, bool)) == []

@@ -26,7 +26,7 @@ def room(name, kind, area, functions=()):
         ([room("a", "living_room", 26), room("b", "kitchen", 11)], ["living_dining_room", "kitchen"]),
         ([room("a", "living_room", 30, ("dining", "cooking"))], ["living_dining_room+kitchen"]),
         ([room("a", "studio_room", 20), room("b", "kitchen", 5)], ["living_room+bedroom", "kitchen"]),
-        ([room("a", "studio_room", 30, ("cooking",))], ["living_dining_room+bedroom+kitchen"]),
+        ([room("a", "studio_room", 30, ("cooking",))], ["living_room+bedroom+kitchen+dining_room"]),
         ([room("a", "garage", 20), room("b", "sunroom", 20)], [None, "living_room"]),
     ],
 )
