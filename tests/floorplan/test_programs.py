@@ -12,7 +12,7 @@ from pipeline.errors import ContentError, RefusedError
 from pipeline.floorplan import complete, describe, json_schema, parse, prior, solve
 from pipeline.floorplan.program.consistency import check, reach
 from pipeline.floorplan.program.defaults import DEFAULTS
-from pipeline.floorplan.program.floor_program import FloorProgram, Forbid, Link, Range, Relation, RoomReq, RoomType
+from pipeline.floorplan.program.floor_program import FloorProgram, Forbid, Furniture, Link, Range, Relation, RoomReq, RoomType, Things
 from pipeline.floorplan.program.priors import TYPES, PriorSettings
 
 
@@ -133,6 +133,15 @@ def test_a_home_of_many_rooms_is_no_studio(named, added):
     made = {r.type for r in complete(program(*rooms)).rooms}
     assert added <= made
     assert ("studio_room" in made) == ("studio_room" in {*named, *added})
+
+
+def test_a_kitchen_with_a_dining_table_is_one_to_dine_in():
+    wish = Furniture(counts=(Things(category="any_table", min=1), Things(category="any_chair", min=6)))
+    made = complete(program(room("kitchen", "kitchen", furniture=wish), room("bed", "bedroom")))
+    kitchen = next(r for r in made.rooms if r.id == "kitchen")
+    assert kitchen.functions == ("dining",)
+    assert kitchen.area.target > complete(program(room("kitchen", "kitchen"), room("bed", "bedroom"))).rooms[0].area.target
+    assert complete(made) == made
 
 
 def test_a_closed_list_stays_closed():

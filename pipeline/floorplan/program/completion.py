@@ -6,7 +6,7 @@ from pipeline.floorplan.program.areas import with_areas
 from pipeline.floorplan.program.consistency import names, reach, storeys
 from pipeline.floorplan.program.distance import distances, nearness
 from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, RoomReq, Shell
-from pipeline.floorplan.program.furniture import allot, spread
+from pipeline.floorplan.program.furniture import allot, meant, spread
 from pipeline.floorplan.program.links import connect, is_forbidden, resolve
 
 UPSTAIRS = {"bedroom", "bathroom", "playroom"}
@@ -14,6 +14,7 @@ BESIDE = {"bathroom", "wc", "closet", "balcony", "storage", "utility", "hallway"
 FEW = 6  # rooms, below which an irregular outline has one corner cut out and not two
 # rooms of homes in which nobody sleeps where they live
 BEYOND_ONE_ROOM = {"dining_room", "hallway", "garage", "playroom", "library", "media_room", "gym", "staircase", "workshop"}
+TABLED = {"kitchen", "living_room", "family_room"}  # in which one may dine
 HUBLESS = {"living_room", "family_room", "studio_room", "hallway", "entry"}
 
 
@@ -27,7 +28,18 @@ def complete(program: FloorProgram) -> FloorProgram:
     storeys(program)
     program = _join(program)
     program = _bent(program.model_copy(update={"entrance": _entrance(program)}))
-    return allot(with_areas(spread(program)))
+    return allot(with_areas(_with_dining(spread(program))))
+
+
+def _with_dining(program: FloorProgram) -> FloorProgram:
+    """Let rooms in which somebody wants a dining table be rooms in which one dines, with the floor for it."""
+
+    def dines(room: RoomReq) -> bool:
+        asked = [meant(c, room.type) for c in room.furniture.counts if c.min]
+        return room.type in TABLED and "dining" not in room.functions and any(set(names) == {"dining_table"} for names in asked)
+
+    rooms = [r.model_copy(update={"functions": (*r.functions, "dining")}) if dines(r) else r for r in program.rooms]
+    return program.model_copy(update={"rooms": tuple(rooms)})
 
 
 def _bent(program: FloorProgram) -> FloorProgram:
