@@ -161,6 +161,8 @@ def _list(sentence: list[Element], j: int) -> None:
             continue
         if e.kind != "np" or not joined or e.number is not None or e.amounts or e.definite or e.det & {"own", "another"}:
             return
+        if (joined == "and" and "indefinite" in e.det) or e.adjectives & {"open", "combined"}:
+            return  # "no balcony and a garage"
         rest = next((x for x in sentence[i + 1 :] if x.kind not in {"np", "comma", "det"}), None)
         if joined == "comma" and not titled and (rest is None or rest.kind != "or"):
             return
