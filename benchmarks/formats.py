@@ -66,7 +66,7 @@ def from_usd(path: Path) -> Reading:
     joints, bodies = {}, {}
     for prim in stage.Traverse():
         name = tuple(str(prim.GetPath()).split("/")[3:])
-        matrix = UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(0) if prim.IsA(UsdGeom.Xformable) else None
+        matrix: Any = UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(0) if prim.IsA(UsdGeom.Xformable) else None
         if prim.HasAPI(UsdPhysics.RigidBodyAPI):
             api = UsdPhysics.MassAPI(prim)
             R = np.array((_turned(api.GetPrincipalAxesAttr().Get()) * matrix.ExtractRotationMatrix()).GetTranspose())
@@ -236,10 +236,10 @@ def main(count: int) -> None:
             worst: dict[str, float] = defaultdict(float)
             spent, bodies, joints = 0.0, 0, 0
             for home in homes:
-                before = time.process_time()
-                path = export_home(folder, home.usd, home.scene_id)
+                before, usd = time.process_time(), Path(str(home.usd))
+                path = export_home(folder, usd, home.scene_id)
                 spent += time.process_time() - before
-                stage = from_usd(home.usd)
+                stage = from_usd(usd)
                 bodies, joints = bodies + len(stage.bodies), joints + len(stage.joints)
                 for key, value in deviations(stage, reader(path)).items():
                     worst[key] = max(worst[key], value)

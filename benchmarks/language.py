@@ -59,7 +59,7 @@ def faults(case: Mapping[str, Any], engine: Engine | None = None) -> list[str]:
 
 
 def _rooms(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
-    made = Counter(r.type for r in program.rooms if r.stated)
+    made: Counter[str] = Counter(r.type for r in program.rooms if r.stated)
     wanted: Counter[str] = Counter(case["rooms"])
     if made != wanted:
         yield f"rooms: more {dict(made - wanted)}, fewer {dict(wanted - made)}"
@@ -92,7 +92,7 @@ def _links(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
         )
         if here < (count[0] if count else 1):
             yield f"link {a}-{b} {kind}: {here}"
-    made = Counter((min(p), max(p)) for k in stated if k.kind != "wall" for p in [(kinds[k.a], kinds[k.b])])
+    made: Counter[tuple[str, str]] = Counter((min(p), max(p)) for k in stated if k.kind != "wall" for p in [(kinds[k.a], kinds[k.b])])
     if "links" in case and made - wanted:
         yield f"links not asked for: {dict(made - wanted)}"
 

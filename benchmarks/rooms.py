@@ -43,13 +43,14 @@ def rooms_of(jobs: Sequence[RoomJob], things: Sequence[Sequence[object]]) -> Roo
 def made(factory: Factory, jobs: Sequence[RoomJob], seconds: dict[str, float]) -> dict[str, Rooms]:
     """Furnish rooms: drafts unguided and guided, finished; adds CPU seconds by set."""
     from pipeline import taxonomy
+    from pipeline.homes.furnish import draft_rooms
     from pipeline.homes.room_finishing import finish
 
     sets: dict[str, Rooms] = {}
     drafts = []
     for name, sampler in (("unguided", factory.sampler.unguided()), ("guided", factory.sampler)):
         start = time.process_time()
-        drafts = replace(factory, sampler=sampler).draft(jobs)
+        drafts = draft_rooms(replace(factory, sampler=sampler), jobs)
         seconds[name] = seconds.get(name, 0.0) + time.process_time() - start
         sets[name] = rooms_of(jobs, [draft.placements for draft in drafts])
     start = time.process_time()

@@ -56,10 +56,10 @@ def main() -> None:
     (ROOT / "build").mkdir(exist_ok=True)
     (ROOT / "build" / "surfaces.json").write_text(json.dumps(every, indent=1))
     print(f"{len(every)} assets; mm: 95th percentile of all points, worst asset's 95th percentile, largest")
-    for kind, values in sorted(found.items()):
-        together = 1000 * np.concatenate(values)
-        worst = 1000 * max(float(np.quantile(v, 0.95)) for v in values)
-        print(f"{kind:40s} {np.quantile(together, 0.95):5.1f} {worst:6.1f} {together.max():6.1f}   ({len(values)} assets)")
+    for kind, parts in sorted(found.items()):
+        together = 1000 * np.concatenate(parts)
+        worst = 1000 * max(float(np.quantile(v, 0.95)) for v in parts)
+        print(f"{kind:40s} {np.quantile(together, 0.95):5.1f} {worst:6.1f} {together.max():6.1f}   ({len(parts)} assets)")
 
 
 def _chosen(folder: Path, count: int) -> list[Path]:
@@ -85,7 +85,9 @@ def errors(asset: Asset, rng: np.random.Generator) -> dict[str, Floats]:
         away = np.maximum(_outside(at, link), 0.0)
         points, outwards = _collider_points(link, rng)
         distance, nearest = _nearest(points, link)
-        comes = reached([c.vertices for c in link.colliders], _planes(link), HAND if asset.articulated or card.loose else BODY)
+        comes = reached(
+            [c.vertices.astype(np.float64) for c in link.colliders], _planes(link), HAND if asset.articulated or card.loose else BODY
+        )
         for way, kinds, values in (
             ("seen, from colliders", _touched(card, k in moved, at, normals, parts, comes), away),
             ("colliders, from what is seen", _touched(card, k in moved, points, outwards, nearest, comes), distance),
@@ -136,7 +138,8 @@ def _planes(link: Link) -> list[Floats]:
 
 def _outside(points: Floats, link: Link) -> Floats:
     """Return how far points (P, 3) are outside of all colliders, by the planes of their faces; negative within."""
-    return np.min([(points @ e[:, :3].T + e[:, 3]).max(axis=1) for e in _planes(link)], axis=0)
+    away: Floats = np.min([(points @ e[:, :3].T + e[:, 3]).max(axis=1) for e in _planes(link)], axis=0)
+    return away
 
 
 def _collider_points(link: Link, rng: np.random.Generator) -> tuple[Floats, Floats]:

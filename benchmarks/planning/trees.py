@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, Footprint, Link, LinkKind, Range, RoomReq
+from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, Footprint, Link, LinkKind, RoomReq
 
 LEAST_SIDE = 1.55  # of a rectangle, walls included [m]
 WALL = 0.16  # of thickness, roughly [m]
@@ -48,7 +48,8 @@ def program(rng: np.random.Generator) -> FloorProgram:
     rooms = []
     for i in range(n):
         kind = _type(rng, int(degree[i]), bool(outside[i]), float(sizes[i]), wild, i == drawn.into or i in drawn.exits)
-        rooms.append(RoomReq(id=f"r{i}", type=kind, area=Range(target=round(float(sizes[i]), 2), stated=True)))
+        area = {"target": round(float(sizes[i]), 2), "stated": True}
+        rooms.append(RoomReq.model_validate({"id": f"r{i}", "type": kind, "area": area}))
     low, high = drawn.boxes[:, :2].min(axis=0), drawn.boxes[:, 2:].max(axis=0)
     aspect = float((high - low).max() / (high - low).min())
     shape = Footprint(min_aspect=1.0, max_aspect=round(max(1.6, 1.05 * aspect), 2))
