@@ -21,6 +21,7 @@ from pipeline.geometry.prisms import Prisms, prism, solid, stacked
 Floats = NDArray[np.float64]
 UNIT = np.ones(3)
 BACKED = 0.3  # share of a surface's depth, from its back, that is for what lies there
+HEADROOM = 0.01  # above what a drawer carries [m]: a bottle that fits to the millimetre wedges under the worktop as the drawer jolts
 WOBBLE = 0.1  # spread of the yaw of what has a front [rad]
 
 
@@ -161,10 +162,11 @@ class Laying:
         return all(self._rides(rest, support, bearer, k) for k in carrying)
 
     def _rides(self, rest: Prisms, support: int, bearer: Asset, joint: int) -> bool:
-        """Tell whether a thing comes out with the drawer that it lies in."""
+        """Tell whether a thing comes out with the drawer that it lies in, with some room above it."""
         placement, moving = self.furniture[support], bearer.joints[joint]
         way = rotation(np.array([0.0, 0.0, 1.0]), placement.yaw) @ moving.axis * moving.upper
-        ends = [[np.column_stack([rest.polygon(i), np.full(rest.count[i], z)]) for z in rest.z[i]] for i in range(len(rest))]
+        heights = rest.z + np.array([0.0, HEADROOM])
+        ends = [[np.column_stack([rest.polygon(i), np.full(rest.count[i], z)]) for z in heights[i]] for i in range(len(rest))]
         out = stacked([p for own in ends if (p := prism(np.concatenate([*own, *(e + way for e in own)]))) is not None])
         body = self.solids[support].rest.placed(placement.position, placement.yaw, placement.scale)
         still = ~np.isin(body.part, moved_links(bearer, joint))

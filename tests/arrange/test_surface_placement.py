@@ -11,7 +11,7 @@ from pipeline.arrange import Laying, ThingsSettings
 from pipeline.arrange.surfaces import make_surfaces
 from pipeline.entities.home import Placement
 from pipeline.verify import Policy, verify_home
-from tests.geometry.furniture import LIBRARY, SQUARE, asset, box, chest, cupboard, home, link, placed
+from tests.geometry.furniture import LIBRARY, SQUARE, asset, block, box, chest, cupboard, home, link, placed
 from tests.judging import SETTINGS
 
 EVERYWHERE = ThingsSettings(hidden=1.0, tries=12)
@@ -83,6 +83,17 @@ def test_drawers_are_used_as_often_as_they_are_told_to():
 
     assert inside(0.0) == 0
     assert inside(0.2) < inside(5.0)
+
+
+@pytest.mark.parametrize(("tall", "fits"), [(0.32, True), (0.335, False)])
+def test_what_rides_in_a_drawer_has_room_above_it(tall, fits):
+    """The drawer's floor is .34 m under the carcass' top."""
+    things = {**LIBRARY, "bottle": block("bottle", "bottle", (0.06, 0.06, tall))}
+    rng = np.random.default_rng(0)
+    furniture = [placed("tray_chest", 2.0, 2.6)]
+    room = Laying(SQUARE, furniture, things, ThingsSettings(hidden=50.0, tries=12), 0.0005)
+    places = [room.lay(rng, things["bottle"], 0, facing=False) for _ in range(12)]
+    assert any(place is not None and abs(place[0][2] - 0.14) < 0.01 for place in places) == fits
 
 
 def test_nothing_is_laid_where_a_lid_would_meet_the_wall_or_another_joint_sweeps():
