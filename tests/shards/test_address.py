@@ -134,14 +134,11 @@ def test_a_real_object_store_takes_it(tmp_path, monkeypatch):
     server.start()
     try:
         host, port = server.get_host_and_port()
-        monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{host}:{port}")
-        monkeypatch.setenv("FSSPEC_S3_ENDPOINT_URL", f"http://{host}:{port}")
-        fsspec.config.conf.setdefault("s3", {})["endpoint_url"] = f"http://{host}:{port}"
+        monkeypatch.setitem(fsspec.config.conf, "s3", {"endpoint_url": f"http://{host}:{port}"})
         fsspec.filesystem("s3").mkdir("homes")
         made.fill(tmp_path / "first", numbers={1}, address=Address("s3://homes/set"))
         assert made.fill(tmp_path / "second", address=Address("s3://homes/set")) == [0, 2]
         assert commit_path(shard_name(2)) in made.snapshot(tmp_path / "second")
         assert check("s3://homes/set") == check(str(tmp_path / "second"))
     finally:
-        fsspec.config.conf.pop("s3", None)
         server.stop()
