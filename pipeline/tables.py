@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import functools
-import operator
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -62,21 +60,24 @@ def stream(path: Path, table: Table) -> Iterator[Stream]:
         made.finish()
 
 
-def read(path: Path, table: Table, only: Mapping[str, Collection[str]] | None = None) -> list[dict[str, Any]]:
-    """Read a table as dict rows; `only` those whose column has one of the values.
+def read(path: Path, table: Table, scenes: Collection[str] | None = None) -> list[dict[str, Any]]:
+    """Read a table as dict rows, of these scenes where some are given.
 
     Raises ContentError when the file is missing, truncated, or lacks one of the schema's columns.
     """
-    rows: list[dict[str, Any]] = read_arrow(path, table, only).to_pylist()
+    rows: list[dict[str, Any]] = read_arrow(path, table, scenes).to_pylist()
     return rows
 
 
-def read_arrow(path: Path, table: Table, only: Mapping[str, Collection[str]] | None = None) -> pa.Table:
+def read_arrow(path: Path, table: Table, scenes: Collection[str] | None = None) -> pa.Table:
     """Read a table as Arrow, columns in the schema's order. Raises ContentError as `read` does."""
     if not path.is_file():
         raise ContentError(f"{path} is missing", "run `make run`, or `dvc repro`, which makes it")
     try:
-        data = pq.read_table(path, filters=_any_of(table, only), partitioning=None) if only else pq.ParquetFile(path).read()
+        if scenes is None:
+            data = pq.ParquetFile(path).read()
+        else:
+            data = pq.read_table(path, filters=pc.field("scene_id").isin(pa.array(sorted(scenes), pa.string())), partitioning=None)
     except (OSError, pa.ArrowException) as error:
         msg = f"{path} is not a readable Parquet file ({str(error).splitlines()[0]})"
         raise ContentError(msg, "delete it and run `dvc repro` again") from error
@@ -85,8 +86,3 @@ def read_arrow(path: Path, table: Table, only: Mapping[str, Collection[str]] | N
         raise ContentError(f"{path} lacks the columns {', '.join(missing)}", "delete it and run `dvc repro` again")
     return data.select([c.name for c in table.columns])
 
-
-def _any_of(table: Table, only: Mapping[str, Collection[str]]) -> Any:
-    schema = table.schema()
-    tests = [pc.field(name).isin(pa.array(sorted(values), schema.field(name).type)) for name, values in only.items()]
-    return functools.reduce(operator.and_, tests)

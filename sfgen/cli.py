@@ -9,6 +9,7 @@ from __future__ import annotations
 import gc
 import importlib
 import os
+import re
 import sys
 from collections.abc import Sequence
 from enum import StrEnum
@@ -99,6 +100,8 @@ def shard(
       sfgen shard --count 200 --out datasets/mine --seed 7
       sfgen shard --count 1000 --prompts prompts.txt --scheduler tcp://10.0.0.1:8786
     """
+    if out and re.match(r"[a-z][a-z0-9+]+:/(?!/)", out):
+        raise Complaint(f"{out} is an address that lacks a slash; write {out.replace(':/', '://', 1)}, or ./{out} for a folder", 2)
     root = factory_root()
     begin("homes", voice(quiet=quiet, json=json))
     place: dict[str, Any] = {"address": out} if out and "://" in out else {"out": Path(out) if out else None}

@@ -119,6 +119,7 @@ def test_shard_asks_for_what_the_file_says(factory, tmp_path):
         ({}, ["--prompts", "."], 2),
         ({}, ["--scheduler", "nowhere.json"], 2),
         ({}, ["--out", "s3://bucket/homes"], 2),
+        ({}, ["--out", "s3:/bucket/homes"], 2),
     ],
 )
 def test_shard_refuses_in_one_line_and_loses_nothing(factory, tmp_path, capsys, files, arguments, code):
