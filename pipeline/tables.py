@@ -85,4 +85,3 @@ def read_arrow(path: Path, table: Table, scenes: Collection[str] | None = None) 
     if missing:
         raise ContentError(f"{path} lacks the columns {', '.join(missing)}", "delete it and run `dvc repro` again")
     return data.select([c.name for c in table.columns])
-
