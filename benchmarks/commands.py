@@ -17,8 +17,6 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.resume import content
-
 ROOT = Path(__file__).resolve().parents[1]
 SPREAD = 20.0  # within which the commands start [s]
 
@@ -35,6 +33,11 @@ def made(command: subprocess.Popen[str]) -> int:
     if command.returncode:
         sys.exit(f"sfgen: a command ended with exit code {command.returncode}")
     return int(json.loads(told.splitlines()[-1])["made"])
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    """Return every file's bytes."""
+    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
 def main(homes: int, commands: int) -> int:

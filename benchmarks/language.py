@@ -1,8 +1,7 @@
 """How exactly prompts are read: the share of prompts whose program states what they say, per file, language and half.
 
-`python -m benchmarks.language [--file sentences] [--half held|tuned] [--language en] [--faults] [--typos]`. Ground truth:
-`languages.yaml`, `sentences.yaml`, `speech.yaml`, `requests.yaml` and `everyday.yaml` in `manifests/prompts`. With --typos: the share of programs that one typing error leaves as
-they were (`benchmarks/slips.py`). With `--engine llm [--replies FILE]`: read by the language model that SFGEN_LLM_* name; FILE (YAML, a list of
+`python -m benchmarks.language [--file sentences] [--half held|tuned] [--language en] [--faults]`. Ground truth:
+`languages.yaml`, `sentences.yaml`, `speech.yaml`, `requests.yaml` and `everyday.yaml` in `manifests/prompts`. With `--engine llm [--replies FILE]`: read by the language model that SFGEN_LLM_* name; FILE (YAML, a list of
 {prompt, reply}) holds what it has answered before, is read instead of asking, and gets what is new.
 """
 
@@ -19,7 +18,6 @@ from typing import Any
 
 import yaml
 
-from benchmarks import slips
 from pipeline.errors import RefusedError
 from pipeline.floorplan import FloorProgram, complete, parse
 from pipeline.floorplan.language import llm
@@ -199,16 +197,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--half", choices=("held", "tuned"))
     parser.add_argument("--language")
     parser.add_argument("--faults", action="store_true")
-    parser.add_argument("--typos", action="store_true")
     parser.add_argument("--engine", choices=("rules", "llm"), default="rules")
     parser.add_argument("--replies", type=Path)
     asked = parser.parse_args(arguments)
     known = yaml.safe_load(asked.replies.read_text(encoding="utf-8")) if asked.replies and asked.replies.exists() else []
     replies = {row["prompt"]: row["reply"] for row in known}
     engine = recorded(replies, llm.configured()) if asked.engine == "llm" else None
-    if asked.typos:
-        cases = [c for f in FILES if asked.file in (None, f) for c in load(f) if asked.language in (None, c["id"][:2])]
-        return slips.main(cases, asked.faults)
     exact: Counter[tuple[str, str, str]] = Counter()
     count: Counter[tuple[str, str, str]] = Counter()
     spent = 0.0

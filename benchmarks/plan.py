@@ -1,10 +1,9 @@
-"""Floor plans, measured; the figures stand in docs/ and in the report: `python -m benchmarks.plan` (scores, times, diversity, a sample of failures), or one of them by name.
+"""Floor plans, measured; the figures stand in docs/ and in the report: `python -m benchmarks.plan` (scores, times, a sample of failures), or one of them by name.
 
 python -m benchmarks.plan scores --count 5          the 20 prompts on 5 seeds, against the bars
 python -m benchmarks.plan times --count 200         CPU ms for 5, 8 and 12 rooms
-python -m benchmarks.plan failures --count 10000    programs of the prior, and of an independent generator; 1,000 and more are kept in
-                                                    benchmarks/records/failures.json; one that was stopped goes on with --start
-python -m benchmarks.plan diversity --count 100     one program, many seeds
+python -m benchmarks.plan failures --count 10000    programs of the prior, and of an independent generator; 1,000 and more are kept
+                                                    in benchmarks/records/failures.json
 python -m benchmarks.plan knobs --count 120         every knob against its own term; tables over 100 seeds and more are kept in benchmarks/records/knobs.json
 """
 
@@ -13,7 +12,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-COUNTS = {"scores": 5, "times": 200, "failures": 200, "diversity": 100, "knobs": 12}
+COUNTS = {"scores": 5, "times": 200, "failures": 200, "knobs": 12}
 
 
 def main(arguments: list[str]) -> int:
@@ -37,14 +36,14 @@ def main(arguments: list[str]) -> int:
 
 def run(what: str, count: int, chosen: argparse.Namespace) -> int:
     """Run one measurement; return the number of failures."""
-    from benchmarks.planning import diversity, failures, knobs, scores, times
+    from benchmarks.planning import failures, knobs, scores, times
 
     if what == "failures":
         return failures.main(count, chosen.start, tuple(chosen.source or failures.SOURCES), chosen.jobs)
     if what == "knobs":
         knobs.main(count, chosen.start)
     else:
-        {"scores": scores, "times": times, "diversity": diversity}[what].main(count)
+        {"scores": scores, "times": times}[what].main(count)
     return 0
 
 

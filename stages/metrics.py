@@ -14,11 +14,13 @@ from pipeline.execution import cores, map_jobs, track
 from pipeline.experiments import paper_tables
 from pipeline.experiments.dataset import dataset_figures, reject_counts
 from pipeline.experiments.document import write_report
-from pipeline.experiments.plans import plan_table, read_benchmark
+from pipeline.experiments.prompt_file import read_prompts
+from pipeline.experiments.prompts import measured
 from pipeline.experiments.realism import beside, embeddings, realism_table
 from pipeline.experiments.rooms import spread, test_rooms
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.experiments.trials import Condition, Drafts, Trial, trial
+from pipeline.floorplan import parse
 from pipeline.homes.factory import open_factory
 from pipeline.homes.request import RoomJob
 from pipeline.homes.rows import Row
@@ -97,7 +99,7 @@ def _rooms(source: Mapping[str, Sequence[Row]], settings: MetricsSettings, condi
 
 def plans(root: Path, settings: MetricsSettings) -> dict[str, Any]:
     """Score the floor plans of the benchmark's prompts."""
-    return plan_table(read_benchmark((root / "manifests/prompts/benchmark.yaml").read_text(encoding="utf-8")), settings.plan_seeds)
+    return measured(read_prompts(root / "manifests/prompts/benchmark.yaml"), settings.plan_seeds, lambda case: parse(case["prompt"]))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Failures to find a plan: programs of the prior, and programs read off plans of an independent generator.
 
 A refusal, a crash and whatever the audit finds are failures alike. Nothing stops the run: each is printed with its seed and reason.
-A run of LEAST programs or more is kept in benchmarks/records/failures.json as it goes; one that was stopped goes on with `--start`.
+A run of LEAST programs or more is kept in benchmarks/records/failures.json.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import multiprocessing
 import sys
 import time
 import traceback
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from typing import Any
 
@@ -22,53 +22,31 @@ from pipeline.floorplan import FloorProgram, complete, prior, solve
 
 SOURCES: dict[str, Callable[[np.random.Generator], FloorProgram]] = {"prior": prior, "trees": trees.program}
 RECORD = "failures.json"
-COMMAND = "python -m benchmarks.plan failures"
 LEAST = 1000  # programs of a run that is kept
 CHUNK = 250  # programs between two lines of progress
-Json = dict[str, Any]
 Attempt = tuple[float, list[str]]
 
 
 def main(count: int, start: int = 0, sources: tuple[str, ...] = tuple(SOURCES), jobs: int = 2) -> int:
     """Solve programs number `start` to `start + count` of each source in `jobs` processes; print what failed, return how many did."""
-    commit = record.commit()
     failed = 0
     for source in sources:
         spent: list[float] = []
-        known = record.read(RECORD)
-        follows = any(r["start"] + r["count"] == start for r in known.get("sources", {}).get(source, ()))
-        run: Json = {"start": start, "count": 0, "cpu_s": 0.0, "slowest_s": 0.0, "commit": commit, "failures": []}
+        faults: list[dict[str, Any]] = []
         for number, (seconds, bad) in enumerate(attempts(source, start, count, jobs), start):
             spent.append(seconds)
             if bad:
-                run["failures"].append({"seed": number, "why": bad})
+                faults.append({"seed": number, "why": bad})
                 print(f"  {source} {number}: {'; '.join(bad)}", flush=True)
-            run |= {"count": len(spent), "cpu_s": round(sum(spent), 1), "slowest_s": round(max(spent), 2)}
             if len(spent) % CHUNK == 0 or len(spent) == count:
-                print(f"... {source}: {number + 1}, {len(run['failures'])} failed", file=sys.stderr, flush=True)
-                if count >= LEAST or follows:
-                    record.write(RECORD, kept(known, source, run))
-        print(f"{source}: {len(run['failures'])} of {count} failed; CPU ms mean {1e3 * np.mean(spent):.0f}", end="")
+                print(f"... {source}: {number + 1}, {len(faults)} failed", file=sys.stderr, flush=True)
+        if count >= LEAST:
+            figures = {"start": start, "count": count, "cpu_s": round(sum(spent), 1), "slowest_s": round(max(spent), 2), "failures": faults}
+            record.write(RECORD, record.read(RECORD) | {source: record.told("failures", count, figures)})
+        print(f"{source}: {len(faults)} of {count} failed; CPU ms mean {1e3 * np.mean(spent):.0f}", end="")
         print(f", p50 {1e3 * np.median(spent):.0f}, p99 {1e3 * np.percentile(spent, 99):.0f}, max {1e3 * max(spent):.0f}", flush=True)
-        failed += len(run["failures"])
+        failed += len(faults)
     return failed
-
-
-def kept(known: Mapping[str, Any], source: str, run: Json) -> Json:
-    """Return the record with a run added: runs of its source that end before it stay, and one of the same commit that it goes on grows."""
-    runs = [r for r in known.get("sources", {}).get(source, ()) if r["start"] + r["count"] <= run["start"]]
-    last = runs[-1] if runs else None
-    if last and last["commit"] == run["commit"] and last["start"] + last["count"] == run["start"]:
-        run = last | {
-            "count": last["count"] + run["count"],
-            "cpu_s": round(last["cpu_s"] + run["cpu_s"], 1),
-            "slowest_s": max(last["slowest_s"], run["slowest_s"]),
-            "failures": [*last["failures"], *run["failures"]],
-        }
-        runs.pop()
-    sources = {**known.get("sources", {}), source: [*runs, run]}
-    most = max(sum(r["count"] for r in found) for found in sources.values())
-    return {"command": f"{COMMAND} --count {most}", "sources": sources}
 
 
 def attempts(source: str, start: int, count: int, jobs: int) -> Iterator[Attempt]:

@@ -35,7 +35,11 @@ def write(name: str, figures: Mapping[str, Any]) -> None:
     (RECORDS / name).write_text(json.dumps(figures, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
+def told(what: str, count: int, figures: Any) -> dict[str, Any]:
+    """Return figures of one measurement with the command and the commit that made them."""
+    return {"command": f"python -m benchmarks.plan {what} --count {count}", "commit": commit(), "figures": figures}
+
+
 def keep(what: str, count: int, figures: Any) -> None:
     """Put the figures of one measurement into benchmarks/records/planning.json, beside those of the others."""
-    told = {"command": f"python -m benchmarks.plan {what} --count {count}", "commit": commit(), "figures": figures}
-    write("planning.json", read("planning.json") | {what: told})
+    write("planning.json", read("planning.json") | {what: told(what, count, figures)})

@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 
 from benchmarks.planning import record
-from pipeline.floorplan import FloorProgram, parse, solve
+from pipeline.experiments.prompt_file import read_prompts
+from pipeline.experiments.prompts import SCORES, measured
+from pipeline.floorplan import FloorProgram, parse
 from pipeline.floorplan.program.floor_program import Entrance, Link, Range, RoomReq
-from pipeline.metrics.plan_scores import s_constraint, score
+from pipeline.metrics.plan_scores import s_constraint
 
 CASES = Path(__file__).resolve().parents[2] / "manifests" / "prompts" / "benchmark.yaml"
-NAMES = ("node", "constraint", "edge", "strict_node", "strict_edge", "presence", "adjacency", "constraints", "success")
-
-
-def cases() -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = yaml.safe_load(CASES.read_text(encoding="utf-8"))
-    return found
 
 
 def truth(case: Mapping[str, Any]) -> FloorProgram:
@@ -51,7 +45,7 @@ def ceiling(case: Mapping[str, Any], program: FloorProgram) -> float:
 
 def main(seeds: int) -> None:
     """Print both tables: means over prompts and seeds, and the spread of each score over seeds; keep them in benchmarks/records/planning.json."""
-    every = cases()
+    every = read_prompts(CASES)
     figures: dict[str, Any] = {}
     tops = [ceiling(c, parse(c["prompt"])) for c in every]
     kinds = (
@@ -59,28 +53,20 @@ def main(seeds: int) -> None:
         ("truth", "given the ground-truth rooms, links and areas", truth),
     )
     for key, title, make in kinds:
-        table, spent = np.empty((seeds, len(every), len(NAMES))), []
-        for j, case in enumerate(every):
-            program = make(case)
-            for seed in range(seeds):
-                start = time.process_time()
-                plan = solve(program, seed)
-                spent.append(time.process_time() - start)
-                found = score(plan, case)
-                table[seed, j] = [float(getattr(found, name)) for name in NAMES]
-                if not found.success and make is not truth:
-                    print(f"  {case['id']} seed {seed}: P {found.presence:.3f} A {found.adjacency:.3f} C {found.constraints:.3f}")
-        print(f"{seeds * len(every)} plans, {title}; {1e3 * np.mean(spent):.0f} CPU ms each")
-        figures[key] = {
-            "plans": table[..., 0].size,
-            "successes": int(table[:, :, NAMES.index("success")].sum()),
-            "cpu_s": float(np.mean(spent)),
-        }
-        for k, name in enumerate(NAMES):
-            each = table[:, :, k].mean(axis=1)
+        found = measured(every, seeds, make)
+        runs = [row["runs"] for row in found["prompts"]]
+        for row in found["prompts"]:
+            for run in row["runs"]:
+                if not run["strict"] and make is not truth:
+                    print(f"  {row['id']} seed {run['seed']}: P {run['presence']:.3f} A {run['adjacency']:.3f} C {run['constraints']:.3f}")
+        spent = found["mean"]["cpu_seconds"]
+        print(f"{found['plans']} plans, {title}; {1e3 * spent:.0f} CPU ms each")
+        figures[key] = {"plans": found["plans"], "successes": int(sum(run["strict"] for own in runs for run in own)), "cpu_s": spent}
+        for name in SCORES:
+            table = np.array([[run[name] for run in own] for own in runs])  # prompts, seeds
+            each = table.mean(axis=0)
             figures[key][name] = [round(float(v), 4) for v in (each.mean(), each.min(), each.max())]
-            print(
-                f"  {name:12s} {each.mean():.4f}   seeds {each.min():.4f} to {each.max():.4f}; prompts from {table[:, :, k].mean(axis=0).min():.3f}"
-            )
+            worst = table.mean(axis=1).min()
+            print(f"  {name:12s} {each.mean():.4f}   seeds {each.min():.4f} to {each.max():.4f}; prompts from {worst:.3f}")
     print(f"S_constraint of exact default areas, prompt alone: {np.mean(tops):.4f}")
     record.keep("scores", seeds, figures | {"ceiling": round(float(np.mean(tops)), 4)})

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from pipeline.errors import RefusedError, SfgenError
-from pipeline.floorplan import request, solve
+from pipeline.floorplan import FloorProgram, request, solve
 from pipeline.metrics.plan_scores import checked, score
 
 Json = dict[str, Any]
@@ -26,17 +26,27 @@ NAMES = {
 }
 
 
-def measured(cases: Sequence[Mapping[str, Any]], seeds: int) -> Json:
+def asked(case: Mapping[str, Any]) -> FloorProgram:
+    """Return what the words of a case ask for."""
+    return request(case["prompt"])
+
+
+def measured(cases: Sequence[Mapping[str, Any]], seeds: int, program: Callable[[Mapping[str, Any]], FloorProgram] = asked) -> Json:
     """Return every run's scores and seconds, their means and the spread over seeds; a refused prompt scores 0 throughout.
 
-    `spread` is the standard deviation over seeds of what it stands beside; `seconds` is wall time from prompt to plan.
+    `spread` is the standard deviation over seeds of what it stands beside; `seconds` is wall time from prompt to plan. `program` makes of a case
+    what is solved.
     """
     rows = []
     for case in cases:
-        runs = [_run(case, seed) for seed in range(seeds)]
+        runs = [_run(case, seed, program) for seed in range(seeds)]
         rows.append({"id": case["id"], "prompt": case["prompt"], "scored": bool(scored(case)), "runs": runs, **_summary(runs)})
     by_seed = [
-        {k: float(np.mean([row["runs"][s][k] for row in rows if k in row["runs"][s]])) for k in (*SCORES, "seconds") if _any(rows, s, k)}
+        {
+            k: float(np.mean([row["runs"][s][k] for row in rows if k in row["runs"][s]]))
+            for k in (*SCORES, "seconds", "cpu_seconds")
+            if _any(rows, s, k)
+        }
         for s in range(seeds)
     ]
     failed = sum(run["refused"] is not None for row in rows for run in row["runs"])
@@ -47,12 +57,12 @@ def _any(rows: Sequence[Json], seed: int, key: str) -> bool:
     return any(key in row["runs"][seed] for row in rows)
 
 
-def _run(case: Mapping[str, Any], seed: int) -> Json:
+def _run(case: Mapping[str, Any], seed: int, program: Callable[[Mapping[str, Any]], FloorProgram]) -> Json:
     start, spent = time.perf_counter(), time.process_time()
     refused = None
     plan = None
     try:
-        plan = solve(request(case["prompt"]), seed)
+        plan = solve(program(case), seed)
     except SfgenError as error:
         if not isinstance(error, RefusedError):
             raise
@@ -76,7 +86,7 @@ def scored(case: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _summary(runs: Sequence[Mapping[str, Any]]) -> Json:
-    keys = [k for k in (*SCORES, "seconds") if runs and k in runs[0]]
+    keys = [k for k in (*SCORES, "seconds", "cpu_seconds") if runs and k in runs[0]]
     return {
         "mean": {k: round(float(np.mean([r[k] for r in runs])), 4) for k in keys},
         "spread": {k: round(float(np.std([r[k] for r in runs])), 4) for k in keys},

@@ -19,7 +19,7 @@ def planning_section(planning: Json, failures: Json, knobs: Json, falls: Callabl
     whether a knob's own term falls as it is turned.
     """
     rows = [*_scores(planning.get("scores")), *_times(planning.get("times"))]
-    rows += [*_failures(failures), *_diversity(planning.get("diversity")), *_knobs(knobs, falls)]
+    rows += [*_failures(failures), *_knobs(knobs, falls)]
     if not rows:
         return None
     text = (
@@ -78,25 +78,11 @@ def _times(told: Json | None) -> list[list[str]]:
 def _failures(told: Json) -> list[list[str]]:
     names = {"prior": "programs of the prior", "trees": "programs of an independent generator"}
     rows = []
-    for source, runs in told.get("sources", {}).items():
-        count = sum(r["count"] for r in runs)
-        failed = sum(len(r["failures"]) for r in runs)
-        commits = ", ".join(dict.fromkeys(r["commit"] for r in runs))
-        row = {"command": told["command"], "commit": commits}
-        spent = f"{1e3 * sum(r['cpu_s'] for r in runs) / max(count, 1):.0f} CPU ms each"
-        peer = "about 80 % of single rooms crash"
-        rows.append(_row(f"failures, {names.get(source, source)}", "-", peer, "0 of 10,000", f"{failed} of {count:,}; {spent}", row))
+    for source, run in told.items():
+        found = run["figures"]
+        ours = f"{len(found['failures'])} of {found['count']:,}; {1e3 * found['cpu_s'] / max(found['count'], 1):.0f} CPU ms each"
+        rows.append(_row(f"failures, {names.get(source, source)}", "-", "about 80 % of single rooms crash", "0 of 10,000", ours, run))
     return rows
-
-
-def _diversity(told: Json | None) -> list[list[str]]:
-    if not told:
-        return []
-    asked = "at most 0.6, at least 10"
-    return [
-        _row(f"diversity, {r['program']}: IoU, wall graphs", "-", "-", asked, f"{r['iou']:.2f}, {r['graphs']}", told)
-        for r in told["figures"]
-    ]
 
 
 def _knobs(knobs: Json, falls: Callable[[Json], bool]) -> list[list[str]]:

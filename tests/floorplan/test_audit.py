@@ -180,47 +180,21 @@ def test_outside_walls_are_no_thinner_than_those_between_rooms():
         solve(FloorProgram(shell=Shell(inner_wall=0.3, outer_wall=0.2), **rooms), 0)
 
 
-def test_a_stopped_count_of_failures_goes_on_where_it_was_stopped():
-    """Runs of one commit that follow each other are one; a run replaces what it measures again, and leaves other sources alone."""
-
-    def run(start, count, commit="a", bad=()):
-        found = [{"seed": k, "why": ["refused: x"]} for k in bad]
-        return {"start": start, "count": count, "cpu_s": 1.0 * count, "slowest_s": float(start + 1), "commit": commit, "failures": found}
-
-    first = failures.kept({}, "prior", run(0, 500, bad=(3,)))
-    whole = failures.kept(first, "prior", run(500, 250, bad=(600,)))
-    assert whole["sources"]["prior"] == [run(0, 750, bad=(3, 600)) | {"slowest_s": 501.0}]
-    assert len(failures.kept(first, "prior", run(500, 250, commit="b"))["sources"]["prior"]) == 2
-    assert failures.kept(whole, "prior", run(0, 10))["sources"]["prior"] == [run(0, 10)]
-    assert failures.kept(whole, "trees", run(0, 10))["sources"] == {"prior": whole["sources"]["prior"], "trees": [run(0, 10)]}
-
-
 def test_processes_give_what_one_gives():
     assert [bad for _, bad in failures.attempts("trees", 0, 3, 2)] == [bad for _, bad in failures.attempts("trees", 0, 3, 1)]
 
 
-def test_small_samples_leave_the_record_alone_and_long_ones_grow_it(monkeypatch, tmp_path):
+def test_small_samples_leave_the_record_alone(monkeypatch, tmp_path):
     monkeypatch.setattr(failures.record, "RECORDS", tmp_path)
     monkeypatch.setattr(failures, "LEAST", 4)
-    monkeypatch.setattr(failures, "CHUNK", 2)
     monkeypatch.setattr(
         failures,
         "attempts",
         lambda source, start, count, jobs: iter([(0.1, ["fault: x"] if k == 5 else []) for k in range(start, start + count)]),
     )
-
-    def runs():
-        found = failures.record.read(failures.RECORD).get("sources", {}).get("trees", [])
-        return [(r["start"], r["count"], [f["seed"] for f in r["failures"]]) for r in found]
-
-    for start, count, after in (
-        (0, 3, []),
-        (0, 4, [(0, 4, [])]),
-        (0, 3, [(0, 4, [])]),
-        (4, 3, [(0, 7, [5])]),
-        (7, 5, [(0, 12, [5])]),
-        (3, 3, [(0, 12, [5])]),
-    ):
-        failures.main(count, start, ("trees",))
-        assert runs() == after
-    assert failures.record.read(failures.RECORD)["command"].endswith("--count 12")
+    failures.main(3, 3, ("trees",))
+    assert failures.record.read(failures.RECORD) == {}
+    failures.main(4, 3, ("trees",))
+    found = failures.record.read(failures.RECORD)["trees"]
+    assert [f["seed"] for f in found["figures"]["failures"]] == [5]
+    assert found["command"].endswith("--count 4")

@@ -9,12 +9,12 @@ SCORES = {
 PLANNING = {
     "scores": {**TOLD, "figures": {"prompt": SCORES, "truth": {**SCORES, "constraint": [0.991, 0.991, 0.991]}, "ceiling": 0.946}},
     "times": {**TOLD, "figures": [{"rooms": 5, "bar_ms": 40, "mean_ms": 24.8, "p99_ms": 41.2, "proposals": 169, "runs": 2}]},
-    "diversity": {**TOLD, "figures": [{"program": "8 rooms", "rooms": 8, "iou": 0.3, "graphs": 39}]},
 }
-RUN = {"start": 0, "count": 9000, "cpu_s": 900.0, "slowest_s": 4.0, "commit": "abc", "failures": [{"seed": 3, "why": ["refused: x"]}]}
 FAILURES = {
-    "command": "python -m benchmarks.plan failures",
-    "sources": {"prior": [RUN, RUN | {"count": 1000, "cpu_s": 0.0, "commit": "def", "failures": []}]},
+    "prior": {
+        **TOLD,
+        "figures": {"start": 0, "count": 10000, "cpu_s": 900.0, "slowest_s": 4.0, "failures": [{"seed": 3, "why": ["refused: x"]}]},
+    }
 }
 KNOBS = {"seeds": 40, "terms": {"area": {"ends": [-1, 0.1]}, "alignment": {"ends": [1, 0.1]}}}
 
@@ -27,8 +27,7 @@ def test_every_figure_has_its_row_and_command():
     assert rows["S_constraint given rooms and areas"][4] == "0.991"
     assert rows["S_constraint from the prompt"][3:5] == ["0.936: 0.01 below exact defaults", "0.943 (seeds 0.940-0.950)"]
     assert rows["CPU ms, 5 rooms: mean, p99"][4].startswith("25, 41; 2 runs, 169 proposals")
-    assert rows["failures, programs of the prior"][4:] == ["1 of 10,000; 90 CPU ms each", FAILURES["command"], "abc, def"]
-    assert rows["diversity, 8 rooms: IoU, wall graphs"][4] == "0.30, 39"
+    assert rows["failures, programs of the prior"][4:] == ["1 of 10,000; 90 CPU ms each", TOLD["command"], "abc"]
     assert rows["knobs that move their term monotonically"][4] == "1 of 2; not alignment"
 
 

@@ -1,9 +1,12 @@
 """Turns of speech, each in several wordings: ways, noes, people, counts, sizes. A case fails where its program states anything else."""
 
+import random
+import re
+
 import pytest
 
 from benchmarks.language import FILES, faults, load
-from benchmarks.slips import tried
+from pipeline.errors import RefusedError
 from pipeline.floorplan import parse
 
 HALL = {"hallway": 1, "living_room": 1, "kitchen": 1, "bathroom": 1}
@@ -129,10 +132,24 @@ def test_what_was_looked_at_is_still_read(name):
     assert len(wrong) <= 0.08 * len(cases), wrong
 
 
+def slips(prompt, rng):
+    """The prompt with two letters of a word swapped, with one left out, with one doubled; shorter words become other ones."""
+    for wrong in (lambda w, k: w[:k] + w[k + 1] + w[k] + w[k + 2 :], lambda w, k: w[:k] + w[k + 1 :], lambda w, k: w[:k] + w[k] + w[k:]):
+        word = rng.choice(list(re.finditer(r"[^\W\d_]{4,}", prompt)))
+        yield prompt[: word.start()] + wrong(word[0], rng.randrange(1, len(word[0]) - 1)) + prompt[word.end() :]
+
+
+def said(prompt):
+    try:
+        return parse(prompt).model_dump(exclude={"evidence", "unparsed"})
+    except RefusedError:
+        return None
+
+
 def test_one_typing_error_changes_few_programs():
-    """One error of each kind in a quarter of the prompts; measured over all of them: 97.7 %."""
-    stayed = [same for *_, same in tried(load("languages")[::2])]
-    assert len(stayed) > 150
+    cases = [c["prompt"] for c in load("languages")[::2] if c["id"][:2] in {"en", "de", "es"}]
+    stayed = [said(wrong) == said(prompt) for k, prompt in enumerate(cases) for wrong in slips(prompt, random.Random(k))]
+    assert len(stayed) > 75
     assert sum(stayed) >= 0.94 * len(stayed)
 
 
