@@ -94,12 +94,8 @@ def loss(net: Autoregressive, rooms: Outlines, things: Furniture, rng: torch.Gen
 
 
 @torch.no_grad()
-def sample(net: Autoregressive, rooms: Outlines, rng: torch.Generator, counts: Tensor | None = None) -> Found:
-    """Furnish rooms, object by object, until each is done or full.
-
-    `counts` (B,) forces numbers, -1 for none: the end is taken from the choices before that number, and is the only one
-    at it. The paper of ATISS has no such control; in a model that has an end it costs nothing.
-    """
+def sample(net: Autoregressive, rooms: Outlines, rng: torch.Generator) -> Found:
+    """Furnish rooms, object by object, until each is done or full."""
     slots, classes, batch = net.settings.slots, len(net.scaling.classes), len(rooms)
     floor = net.floor(rooms)
     kinds, boxes = torch.zeros(batch, slots, dtype=torch.long), torch.zeros(batch, slots, BOX)
@@ -107,11 +103,7 @@ def sample(net: Autoregressive, rooms: Outlines, rng: torch.Generator, counts: T
     going = torch.ones(batch, dtype=torch.bool)
     for k in range(slots):
         code = net.next(floor, kinds, values, there)
-        logits = net.classes(code)
-        if counts is not None:
-            logits[(counts >= 0) & (counts > k), -1] = -torch.inf
-            going &= (counts < 0) | (counts > k)
-        chosen = torch.multinomial(logits.softmax(-1), 1, generator=rng)[:, 0]
+        chosen = torch.multinomial(net.classes(code).softmax(-1), 1, generator=rng)[:, 0]
         going &= chosen < classes
         if not going.any():
             break

@@ -22,7 +22,7 @@ Guide = Callable[[Tensor, int, float], Tensor]  # mean (B, N, D), level t, varia
 
 
 class Denoiser(nn.Module):
-    """Predicts v or eps of slots (B, N, D) at levels t (B,)."""
+    """Predicts v of slots (B, N, D) at levels t (B,)."""
 
     def __init__(self, scaling: Scaling, layouts: int, settings: BaselineSettings) -> None:
         super().__init__()
@@ -44,10 +44,9 @@ class Denoiser(nn.Module):
         return found
 
 
-def clean(target: str, raw: Tensor, x: Tensor, alpha: Tensor | float, sigma: Tensor | float) -> Tensor:
-    """Return x0 from what the net predicts: v = alpha eps - sigma x0, or eps."""
-    found: Tensor = alpha * x - sigma * raw if target == "v" else (x - sigma * raw) / alpha
-    return found
+def clean(raw: Tensor, x: Tensor, alpha: Tensor | float, sigma: Tensor | float) -> Tensor:
+    """Return x0 from what the net predicts, v = alpha eps - sigma x0."""
+    return alpha * x - sigma * raw
 
 
 def loss(net: Denoiser, levels: Levels, rooms: Outlines, things: Furniture, rng: torch.Generator) -> Tensor:
@@ -58,7 +57,7 @@ def loss(net: Denoiser, levels: Levels, rooms: Outlines, things: Furniture, rng:
     if not net.settings.iou_weight:
         return total
     alpha, sigma = levels.alpha[t][:, None, None], levels.sigma[t][:, None, None]
-    expected = clean(net.settings.target, raw, x, alpha, sigma)
+    expected = clean(raw, x, alpha, sigma)
     return total + net.settings.iou_weight * (levels.alpha[t] ** 2 * upright_overlap(net.scaling, expected)).mean()
 
 
@@ -76,7 +75,7 @@ def denoising(net: Denoiser, levels: Levels, raw: Tensor, x0: Tensor, noise: Ten
     An error of v weighs alpha^2, as DiffuScene has it: it is then the error of eps.
     """
     alpha, sigma = levels.alpha[t][:, None, None], levels.sigma[t][:, None, None]
-    error = alpha * (raw - alpha * noise + sigma * x0) if net.settings.target == "v" else raw - noise
+    error = alpha * (raw - alpha * noise + sigma * x0)
     boxes, classes, latents = (error**2).split([BOX, net.scaling.empty + 1 - BOX, net.scaling.channels - net.scaling.empty - 1], -1)
     total: Tensor = boxes.mean() + classes.mean() + latents.mean()
     return total
@@ -112,7 +111,7 @@ def sample(net: Denoiser, rooms: Outlines, rng: torch.Generator, guide: Guide | 
     x = torch.randn((len(rooms), s.slots, net.scaling.channels), generator=rng)
     for t, following in zip(stops, [*stops[1:], 0], strict=True):
         alpha, sigma, after, left = (float(v) for v in (levels.alpha[t], levels.sigma[t], levels.alpha[following], levels.sigma[following]))
-        x0 = clean(s.target, net(x, torch.full((len(rooms),), t), floor), x, alpha, sigma).clamp(-1, 1)
+        x0 = clean(net(x, torch.full((len(rooms),), t), floor), x, alpha, sigma).clamp(-1, 1)
         kept = (alpha / after) ** 2  # product of 1 - beta between the two
         mean = after * (1 - kept) / sigma**2 * x0 + kept**0.5 * left**2 / sigma**2 * x
         variance = left**2 / sigma**2 * (1 - kept)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,6 @@ from pipeline.baselines.settings import BaselineSettings
 from pipeline.baselines.training import Loss, Trainer
 from pipeline.diffusion.rooms import Sets, layout_weights, sets_of
 from pipeline.errors import ContentError
-from pipeline.manifest import digest, sha256_file
 from schemas.assets import LATENTS
 from schemas.objects import OBJECTS
 from schemas.openings import OPENINGS
@@ -44,7 +43,6 @@ class Job:
     tables: Mapping[str, list[dict[str, Any]]]
     layouts: tuple[str, ...]
     opens: Tensor
-    key: str  # digest of the inputs
 
 
 def open_job(root: Path, settings: BaselineSettings) -> Job:
@@ -57,10 +55,8 @@ def open_job(root: Path, settings: BaselineSettings) -> Job:
         raise ContentError("data/tables has no furnished room of split train", "raise corpus.houses in params.yaml")
     held = furniture(sets.train, len(words.names), settings.slots)
     rooms = outlines([e.floor for e in sets.train], [e.layout for e in sets.train], settings.points)
-    files = [f"data/tables/{n}.parquet" for n in INPUTS] + ["data/latents/latents.parquet"]
-    key = digest({name: sha256_file(root / name) for name in files})
     weights = torch.from_numpy(layout_weights(sets.train))
-    return Job(rooms, held, weights, Scaling.of(held, words.names), sets, read, words.layout_types, openable(words.names), key)
+    return Job(rooms, held, weights, Scaling.of(held, words.names), sets, read, words.layout_types, openable(words.names))
 
 
 def openable(classes: tuple[str, ...]) -> Tensor:
@@ -82,23 +78,6 @@ def trainer(name: str, job: Job, settings: BaselineSettings, seed: int) -> Train
     }
     loss: Loss = losses[name]
     return Trainer(name, net, loss, settings, seed)
-
-
-def run_digest(name: str, job: Job, settings: BaselineSettings, seed: int) -> str:
-    """Return the digest of what a training run hangs on; what only sampling or the comparison reads is no part of it."""
-    later = (
-        "checkpoint_every",
-        "rooms",
-        "count_rooms",
-        "counts",
-        "sample_batch",
-        "steps",
-        "quantity_below",
-        "articulation_below",
-        "quantity_scale",
-        "articulation_scale",
-    )
-    return digest([name, {k: v for k, v in asdict(settings).items() if k not in later}, job.key, seed])
 
 
 def _with_levels(loss: Any, levels: Levels, net: nn.Module, rooms: Outlines, things: Furniture, rng: torch.Generator) -> Tensor:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,11 +13,10 @@ import torch
 from pipeline.diffusion.checkpoint import save_weights
 from pipeline.diffusion.context import Proposal, RoomContext
 from pipeline.diffusion.inventory import begun, fit
-from pipeline.diffusion.job import holdings, inputs, load, rooms_of
+from pipeline.diffusion.job import holdings, load, rooms_of
 from pipeline.diffusion.sampling import Sampler
 from pipeline.diffusion.settings import SampleSettings, TrainSettings
 from pipeline.diffusion.training import Trainer, train
-from pipeline.manifest import digest, write_json
 
 PROBE = 12  # steps whose cost says how many the seconds hold
 CPU = torch.device("cpu")
@@ -32,17 +30,7 @@ class Trained(NamedTuple):
 
 
 def trained(root: Path, folder: Path, settings: TrainSettings, sample: SampleSettings, seconds: float, seed: int) -> Trained:
-    """Train both nets from scratch for so many CPU seconds, reading not counted; the number of steps hangs on the machine.
-
-    What stands in `folder` is taken if it was trained on the same data by the same settings.
-    """
-    key, weights, note = (
-        digest([asdict(settings), inputs(root, settings), seconds, seed]),
-        folder / "ours.safetensors",
-        folder / "ours.cost.json",
-    )
-    if note.is_file() and (found := json.loads(note.read_text(encoding="utf-8")))["key"] == key:
-        return Trained(Sampler.load(weights, sample, seed), found["cost"])
+    """Train both nets from scratch for so many CPU seconds, reading not counted; the number of steps hangs on the machine."""
     sets, header = load(root, settings)
     data, held = rooms_of(sets.train, header, CPU), holdings(sets.train, header)
     start = time.process_time()
@@ -59,8 +47,8 @@ def trained(root: Path, folder: Path, settings: TrainSettings, sample: SampleSet
         "steps": total,
         "cpu_seconds": round(time.process_time() - start, 1),
     }
+    weights = folder / "ours.safetensors"
     save_weights(weights, header, nets)
-    write_json(note, {"key": key, "cost": cost})
     return Trained(Sampler.load(weights, sample, seed), cost)
 
 

@@ -23,7 +23,7 @@ class Found(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Scaling:
-    """Least and greatest values of the training rooms; they travel with the weights.
+    """Least and greatest values of the training rooms.
 
     `low`, `high`: of centre and size (6,) [m]. `latent`: one pair for all latents. Peers measure x and y as the rooms
     stand; here in all four quarter turns, so that what is augmented is not clipped.

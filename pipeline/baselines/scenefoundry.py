@@ -58,28 +58,26 @@ class Constraints:
     settings: BaselineSettings
     counts: Tensor
     opens: Tensor
-    articulation: bool = True
 
-    def descent(self, x: Tensor, t: int | None = None) -> Tensor:
-        """Return -lambda grad phi (B, N, D) at slots x; with a level, of the terms that act there."""
+    def descent(self, x: Tensor) -> Tensor:
+        """Return -lambda grad phi (B, N, D) at slots x."""
         s, at = self.settings, x.detach()
         found = torch.zeros_like(at)
-        if bool((self.counts >= 0).any()) and (t is None or t < s.quantity_below):
+        if bool((self.counts >= 0).any()):
             empty = at[..., self.scaling.empty].requires_grad_()
             with torch.enable_grad():
                 (slope,) = torch.autograd.grad(quantity(empty, self.counts).sum(), empty)
             found[..., self.scaling.empty] = -s.quantity_scale * slope
-        if self.articulation and (t is None or t < s.articulation_below):
-            boxes = at[..., :BOX].clone().requires_grad_()
-            with torch.enable_grad():
-                phi = articulated_collision(self.scaling.metric(boxes), self.scaling.occupied(at), self.opens[self.scaling.labels(at)])
-                (slope,) = torch.autograd.grad(phi.sum(), boxes)
-            found[..., :BOX] = -s.articulation_scale * slope
+        boxes = at[..., :BOX].clone().requires_grad_()
+        with torch.enable_grad():
+            phi = articulated_collision(self.scaling.metric(boxes), self.scaling.occupied(at), self.opens[self.scaling.labels(at)])
+            (slope,) = torch.autograd.grad(phi.sum(), boxes)
+        found[..., :BOX] = -s.articulation_scale * slope
         return found
 
-    def __call__(self, mean: Tensor, t: int, variance: float) -> Tensor:
+    def __call__(self, mean: Tensor, _t: int, variance: float) -> Tensor:
         """Return what one step of algorithm 1 adds to the mean: -lambda Sigma grad phi, taken at the mean."""
-        return variance * self.descent(mean, t)
+        return variance * self.descent(mean)
 
 
 def loss(net: Denoiser, levels: Levels, rooms: Outlines, things: Furniture, opens: Tensor, rng: torch.Generator) -> Tensor:
@@ -91,7 +89,7 @@ def loss(net: Denoiser, levels: Levels, rooms: Outlines, things: Furniture, open
     _, t, noise, x = noised(net, levels, things, rng)
     raw = net(x, t, net.floor(rooms))
     alpha, sigma = levels.alpha[t][:, None, None], levels.sigma[t][:, None, None]
-    expected = clean(net.settings.target, raw.detach(), x, alpha, sigma).clamp(-1, 1)
+    expected = clean(raw.detach(), x, alpha, sigma).clamp(-1, 1)
     counts, s = (things.classes < len(net.scaling.classes)).sum(1), net.settings
     learnt = replace(s, quantity_scale=s.train_quantity_scale, articulation_scale=s.train_articulation_scale)
     shift = levels.variance[t][:, None, None] * Constraints(net.scaling, learnt, counts, opens).descent(expected)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,13 +16,11 @@ class BaselineSettings:
     points: int = 64  # points of a room's outline
     slots: int = 24  # most objects in a room
     timesteps: int = 1000  # T
-    target: Literal["v", "eps"] = "v"  # what the denoiser predicts
     batch: int = 64  # rooms per training step
     learning_rate: float = 1e-3  # at the start; it falls to zero along a cosine while the seconds are spent
     clip: float = 10.0  # gradient norm
     ema: float = 0.995  # of the weights that are sampled from
     iou_weight: float = 0.1  # DiffuScene: weight of the boxes' mean overlap in the loss
-    checkpoint_every: float = 60.0  # CPU seconds
     rooms: int = 150  # rooms of the split that each baseline furnishes
     count_rooms: int = 40  # rooms per asked number
     counts: tuple[int, ...] = (5, 8, 12, 16)  # N_target
@@ -33,5 +30,3 @@ class BaselineSettings:
     articulation_scale: float = 20.0  # SceneFoundry: lambda gamma_2
     train_quantity_scale: float = 200.0  # the same in eq. 1
     train_articulation_scale: float = 2.0
-    quantity_below: int = 1001  # noise levels below which phi_quantity acts; T + 1: all, as printed
-    articulation_below: int = 1001  # the same for phi_articoll

@@ -1,4 +1,4 @@
-"""Training for a stated number of CPU seconds, the same for every baseline; resumable."""
+"""Training for a stated number of CPU seconds, the same for every baseline."""
 
 from __future__ import annotations
 
@@ -59,31 +59,8 @@ class Trainer:
         self.spent += time.process_time() - start
         return Step(self.done, self.spent, float(value.detach()))
 
-    def groups(self) -> dict[str, dict[str, Tensor]]:
-        """Return everything that a checkpoint holds."""
-        moments = {f"{i}.{kind}": value for i, entry in self.adam.state_dict()["state"].items() for kind, value in entry.items()}
-        return {"net": dict(self.net.state_dict()), "average": dict(self.average.state_dict()), "moments": moments}
 
-    def restore(self, done: int, spent: float, groups: dict[str, dict[str, Tensor]]) -> None:
-        """Continue from a checkpoint."""
-        self.net.load_state_dict(groups["net"])
-        self.average.load_state_dict(groups["average"])
-        state: dict[int, dict[str, Tensor]] = {}
-        for key, value in groups.get("moments", {}).items():
-            index, kind = key.split(".", 1)
-            state.setdefault(int(index), {})[kind] = value
-        self.adam.load_state_dict({**self.adam.state_dict(), "state": state})
-        self.done, self.spent = done, spent
-
-
-def train(
-    trainer: Trainer, outlines: Outlines, furniture: Furniture, weights: Tensor, save: Callable[[Trainer], None] | None = None
-) -> Iterator[Step]:
-    """Train until the seconds are spent, yielding each step; `save` is called now and then, and at the end."""
-    saved = trainer.spent
+def train(trainer: Trainer, outlines: Outlines, furniture: Furniture, weights: Tensor) -> Iterator[Step]:
+    """Train until the seconds are spent, yielding each step."""
     while trainer.spent < trainer.settings.seconds:
         yield trainer.step(outlines, furniture, weights)
-        over = trainer.spent >= trainer.settings.seconds
-        if save and (over or trainer.spent - saved >= trainer.settings.checkpoint_every):
-            save(trainer)
-            saved = trainer.spent

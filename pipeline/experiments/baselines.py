@@ -6,11 +6,9 @@ come from PartNet, for made and real rooms alike, and its extended state is the 
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,7 +17,6 @@ from pipeline import seeds
 from pipeline.baselines.settings import BaselineSettings
 from pipeline.diffusion.context import Proposal, RoomContext
 from pipeline.diffusion.rooms import context_of
-from pipeline.manifest import digest, write_json
 from pipeline.metrics import articulation, category, collision, relations
 from pipeline.metrics.intervals import bootstrap, rate
 from pipeline.metrics.layout_features import features
@@ -47,13 +44,6 @@ class Case(NamedTuple):
     context: RoomContext
     real: list[Proposal]
     name: str
-
-
-class Maker(NamedTuple):
-    """A model that furnishes rooms; `key` changes with whatever changes what it makes."""
-
-    key: str
-    furnish: Furnish
 
 
 def cases_of(tables: Mapping[str, Sequence[Row]], split: str, layouts: Sequence[str], classes: Sequence[str], slots: int) -> list[Case]:
@@ -91,23 +81,14 @@ def holds(case: Case, count: int) -> bool:
     return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2 >= FLOOR * count
 
 
-def drafted(path: Path, key: str, furnish: Furnish, rooms: Sequence[RoomContext]) -> Drafts:
-    """Furnish rooms, or take what stands at `path` if it is of the same key: a comparison that was cut off goes on."""
-    if path.is_file():
-        found = json.loads(path.read_text(encoding="utf-8"))
-        if found["key"] == key:
-            return Drafts([[_thing(row) for row in room] for room in found["rooms"]], found["seconds"])
+def drafted(furnish: Furnish, rooms: Sequence[RoomContext]) -> Drafts:
+    """Furnish rooms."""
     start = time.process_time()
-    made = furnish(rooms)
-    seconds = time.process_time() - start
-    listed = [[[p.category, *p.position.tolist(), p.yaw, *p.size.tolist()] for p in room] for room in made]
-    write_json(path, {"key": key, "seconds": seconds, "rooms": listed})
-    return Drafts(made, seconds)
+    return Drafts(furnish(rooms), time.process_time() - start)
 
 
 def compared(
-    folder: Path,
-    makers: Mapping[str, Maker],
+    makers: Mapping[str, Furnish],
     cases: Sequence[Case],
     opens: Mapping[str, bool],
     settings: BaselineSettings,
@@ -117,11 +98,8 @@ def compared(
     """Furnish rooms with every model, and return their figures beside those of the real rooms; `opens` says which classes count as articulated."""
     shown = spread(cases, settings.rooms)
 
-    def drafts(name: str, label: str, rooms: Sequence[RoomContext]) -> Drafts:
-        return drafted(folder / f"{label}.json", digest([makers[name].key, [str(r) for r in rooms]]), makers[name].furnish, rooms)
-
-    found = {name: drafts(name, name, [case.context for case in shown]) for name in makers}
-    counted = {name: {n: drafts(name, f"{name}_{n}", asked(cases, n, settings.count_rooms)) for n in settings.counts} for name in COUNTING}
+    found = {name: drafted(furnish, [case.context for case in shown]) for name, furnish in makers.items()}
+    counted = {name: {n: drafted(makers[name], asked(cases, n, settings.count_rooms)) for n in settings.counts} for name in COUNTING}
     real = [case.real for case in shown]
     rng = seeds.generator(seed, "baselines-bootstrap")
     made_by = {"real": real} | {name: each.rooms for name, each in found.items()}
@@ -200,11 +178,6 @@ def object_rows(drafts: Sequence[Sequence[Proposal]], opens: Mapping[str, bool])
         for number, draft in enumerate(drafts)
         for p in draft
     ]  # fmt: skip
-
-
-def _thing(row: Sequence[Any]) -> Proposal:
-    category, x, y, z, yaw, *size = row
-    return Proposal(category, np.array([x, y, z]), yaw, np.array(size), np.zeros(0, np.float32))
 
 
 def _proposal(row: Row) -> Proposal:

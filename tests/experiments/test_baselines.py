@@ -3,7 +3,7 @@ import pytest
 
 from pipeline import seeds
 from pipeline.diffusion.context import Proposal, RoomContext
-from pipeline.experiments.baselines import Case, asked, drafted, figures, holds, liveable, success
+from pipeline.experiments.baselines import Case, asked, figures, holds, liveable, success
 from pipeline.relations.model import Relations
 
 OPENS = {"nightstand": True, "chair": False}
@@ -73,21 +73,3 @@ def test_relations_and_the_forest_tell_a_jumble_from_the_truth():
     assert found["jumble"]["sca"]["rate"] > 0.9
     assert found["copy"]["sca"]["rate"] <= 0.6
     assert "sca" not in found["real"]
-
-
-def test_drafts_are_kept_until_what_they_hang_on_changes(cases, tmp_path):
-    made = []
-
-    def furnish(rooms):
-        made.append(len(rooms))
-        return [case.real for case in cases]
-
-    path, rooms = tmp_path / "drafts.json", [case.context for case in cases]
-    first, again = drafted(path, "a", furnish, rooms), drafted(path, "a", furnish, rooms)
-    assert made == [3]
-    assert again.seconds == first.seconds
-    for one, other in zip(first.rooms, again.rooms, strict=True):
-        for p, q in zip(one, other, strict=True):
-            assert (p.category, p.yaw, *p.position, *p.size) == (q.category, q.yaw, *q.position, *q.size)
-    drafted(path, "b", furnish, rooms)
-    assert made == [3, 3]
