@@ -111,6 +111,20 @@ def check_walks(program, plan):
             assert any(o.kind == "window" and o.rooms == (r.id,) for o in plan.openings)
 
 
+def test_a_room_has_the_windows_that_its_floor_needs_and_no_more():
+    glass = {}
+    for seed in range(6):
+        plan = solve(FLAT, seed)
+        areas = {r.room_id: (r.type, float(shapely.Polygon(r.polygon).area)) for r in plan.rooms}
+        for o in (o for o in plan.openings if o.kind == "window"):
+            glass.setdefault((seed, *areas[o.rooms[0]], o.rooms[0]), []).append((o.width, o.width * o.height))
+    assert len({kind for _, kind, _, _ in glass}) == 4
+    for (_, kind, area, _), panes in glass.items():
+        assert sum(a for _, a in panes[:-1]) < area / 8, "a wall of windows more than daylight needs"
+        assert all(width < (1.201 if kind == "kitchen" else 2.401) for width, _ in panes)
+    assert np.mean([len(panes) for (_, kind, _, _), panes in glass.items() if kind == "bedroom"]) < 1.3
+
+
 @pytest.mark.parametrize("seed", range(SEEDS))
 def test_programs_of_the_prior_are_planned(seed):
     program = prior(np.random.default_rng(seed))

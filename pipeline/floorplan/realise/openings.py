@@ -28,6 +28,8 @@ SILL, WINDOW_HEIGHT = 0.9, 1.3
 BATH_SILL, BATH_WINDOW = 1.4, 0.8
 LINTEL, LEAST_WINDOW = 0.1, 0.6  # between openings and ceilings; height of a window under a low one [m]
 WIDEST_WINDOW, NARROWEST_WINDOW = 2.4, 0.6
+WIDEST = {"bathroom": 0.7, "wc": 0.7, "utility": 0.7, "kitchen": 1.2}  # of those, and of kitchens, whose walls carry units [m]
+DAYLIGHT = 0.125  # glass that a room has, as a share of its floor: what building codes ask for
 WIDEST_GLASS = 6.0  # of a balcony
 STEP = 0.05  # raster of the places that are tried [m]
 
@@ -240,8 +242,9 @@ def _leaf_fits(site: Site, floor: shapely.Polygon, into: str, segment: Point, hi
 
 
 def _windows(site: Site, room: RoomReq, walls: Sequence[Run], tries: Sequence[tuple[float, float]]) -> None:
-    """Give a room its windows: one per outside stretch, on the longest wall first, three at most.
+    """Give a room its windows, the longest outside stretch first, until its floor has daylight: one per stretch, three at most.
 
+    A wall more with a window is a wall less for a headboard, a wardrobe or a row of wall units.
     A balcony is a loggia: above its parapet it is glass from corner to corner and up to the ceiling.
     `tries` are shares of the wished width, and how far a window of it keeps from the ends of the wall [m].
     """
@@ -249,12 +252,12 @@ def _windows(site: Site, room: RoomReq, walls: Sequence[Run], tries: Sequence[tu
     if not wanted or room.window == "forbidden":
         return
     bath = room.type in {"bathroom", "wc", "utility"}
-    most = 1 if bath else 3
-    placed = 0
+    placed, glass = 0, 0.0
+    enough = 0.0 if bath else np.inf if room.type == "balcony" else DAYLIGHT * float(shapely.Polygon(site.rooms[room.id].polygon).area)
     for run in sorted(walls, key=lambda r: -round(r.length, 3)):
-        if placed >= most or (placed and run.length < 1.6):
+        if placed >= 3 or (placed and (glass >= enough or run.length < 1.6)):
             break
-        width = min(0.55 * run.length, 0.7 if bath else WIDEST_WINDOW)
+        width = min(0.55 * run.length, WIDEST.get(room.type, WIDEST_WINDOW))
         if room.type == "balcony":
             width = min(run.length - 2 * FRAME, WIDEST_GLASS)
         for share, margin in tries:
@@ -268,7 +271,7 @@ def _windows(site: Site, room: RoomReq, walls: Sequence[Run], tries: Sequence[tu
                 site.put(
                     run, Opening(_next_id(site, "window"), "window", run.rooms, segment, round(height, 3), sill, None, run.level), offset
                 )
-                placed += 1
+                placed, glass = placed + 1, glass + size * height
                 break
 
 
