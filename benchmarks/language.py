@@ -27,7 +27,6 @@ from pipeline.floorplan.program.floor_program import Furniture, Range
 PROMPTS = Path(__file__).resolve().parents[1] / "manifests" / "prompts"
 FILES = ("languages", "sentences", "speech", "requests", "everyday")
 Engine = Callable[[str], FloorProgram]  # prompt -> completed program
-CLOSE = 0.12  # relative error of an area that is still "about" it
 
 
 def load(name: str = FILES[0]) -> list[dict[str, Any]]:

@@ -1,10 +1,9 @@
-"""The furniture library in pictures and figures: path-traced contact sheets, and the counts of docs/library.md.
+"""The furniture library in pictures: path-traced contact sheets.
 
-python benchmarks/pictures/library.py FOLDER [--only beds,chairs,counts] [--count 30] [--spp 24] [--cell 200] [--seed 0]
+python benchmarks/pictures/library.py FOLDER [--only sofas,chairs] [--count 30] [--spp 24] [--cell 200] [--seed 0]
 
-One sheet per group of categories goes to FOLDER/images; the tables between the two marks of FOLDER/library.md are made anew.
-All models are written as their files, read back as any 3D-FUTURE model or PartNet-Mobility object is, and rendered; of models
-that open (the sheets open_*) two pictures stand side by side, closed and open.
+One sheet per group of categories goes to FOLDER/images. All models are written as their files, read back as any 3D-FUTURE model or
+PartNet-Mobility object is, and rendered; of models that open (the sheets open_*) two pictures stand side by side, closed and open.
 """
 
 from __future__ import annotations
@@ -12,20 +11,16 @@ from __future__ import annotations
 import argparse
 import tempfile
 import time
-from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
 from PIL import Image
 
 from pipeline import taxonomy
-from pipeline.corpus.furniture.assembly import shape_of
-from pipeline.corpus.furniture.catalogue import Catalogue, Model, catalogue
-from pipeline.corpus.furniture.shape import colliders
+from pipeline.corpus.furniture.catalogue import Model, catalogue
 from pipeline.corpus.future_writer import write_future
 from pipeline.corpus.partnet_writer import write_partnet
-from pipeline.entities.asset import PART_CLASSES, Asset
+from pipeline.entities.asset import Asset
 from pipeline.preview.sheet import contact_sheet
 from pipeline.preview.showroom import portrait
 from pipeline.sources.articulated import assets as articulated
@@ -34,7 +29,6 @@ from pipeline.sources.guarded import Folder
 from pipeline.sources.settings import ModelLimits
 from pipeline.sources.threed_front.future import read_model, read_model_info
 
-MARKS = ("<!-- counts: made by benchmarks/pictures/library.py -->\n", "<!-- end of counts -->\n")
 SHEETS = {
     "chairs": ("dining_chair", "lounge_chair", "dressing_chair", "chinese_chair", "barstool", "stool"),
     "sofas": ("multi_seat_sofa", "loveseat_sofa", "armchair", "l_shaped_sofa", "lazy_sofa", "chaise_longue_sofa"),
@@ -121,77 +115,10 @@ def caption(model: Model) -> str:
     return f"{model.category} {model.form}, {model.style}".replace("_", " ")
 
 
-def counts(library: Catalogue) -> str:
-    """Return the library's counts as Markdown."""
-    everything = (*library.future, *library.partnet)
-    supers = {c: entry.super for c, entry in taxonomy.load().categories.items()}
-    of = {kind: Counter(m.category for m in models) for kind, models in (("static", library.future), ("moving", library.partnet))}
-    forms = {(m.category, m.form) for m in everything}
-    text = [
-        (
-            f"{len(everything):,} models: {len(library.future)} static ones, {len(library.partnet)} that open; {len(forms)} pairs of category and "
-            f"form under {len({m.category for m in everything})} category names, {len({m.style for m in everything})} styles.\n"
-        ),
-        table(("super-category of 3D-FUTURE", "static models"), Counter(m.super_category for m in library.future).most_common()),
-    ]
-    rows = [
-        (c, supers[c], of["static"][c], of["moving"][c], len({m.form for m in everything if m.category == c}))
-        for c in supers
-        if of["static"][c]
-    ]
-    text.append(table(("category", "kind", "static", "that open", "forms"), rows))
-    names = Counter(m.partnet_category for m in library.partnet)
-    text.append(table(("model_cat: GAPartNet's names, BathroomVanity, KitchenSink", "models"), names.most_common()))
-    shapes = [shape_of(m) for m in library.partnet]
-    found = Counter(mover.part_class for shape in shapes for mover in shape.movers)
-    for shape in shapes:
-        found.update(part for mover in shape.movers for part in {p.name: p.part for p in mover.pieces if p.part}.values())
-    text.append(table(("part class", "parts"), [(name, found[name]) for name in PART_CLASSES[:9]]))
-    text.append(table(("", "static", "that open"), figures(library)))
-    return "\n".join(text)
-
-
-def figures(library: Catalogue) -> list[tuple[str, str, str]]:
-    """Return triangles and convex pieces of all models, and what it costs to build and write every sixth."""
-    columns = []
-    for models, write in ((library.future, write_future), (library.partnet, write_partnet)):
-        shapes = [shape_of(m) for m in models]
-        triangles = [sum(len(p.solid.triangles()) for p in s.pieces()) for s in shapes]
-        hulls = [len(colliders(s.base)) + sum(len(colliders(m.pieces)) for m in s.movers) for s in shapes]
-        some = models[::6]
-        shape_of.cache_clear()
-        with tempfile.TemporaryDirectory() as name:
-            start = time.process_time()
-            write(some, Path(name))
-            seconds = time.process_time() - start
-            sizes = [(p.suffix == ".png", p.stat().st_size) for p in Path(name).rglob("*") if p.is_file()]
-        columns.append(
-            (
-                *(f"{np.median(v):,.0f}; {max(v):,}" for v in (triangles, hulls)),
-                *(f"{sum(n for image, n in sizes if image >= least) / len(some) / 1e3:.0f}" for least in (False, True)),
-                f"{100 * seconds / len(some):.1f}",
-            )
-        )
-    names = (
-        "triangles: median; most",
-        "convex pieces: median; most",
-        "KB of files a model",
-        "KB of texture in them",
-        "CPU seconds for 100 models",
-    )
-    return list(zip(names, *columns, strict=True))
-
-
-def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Return a Markdown table."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "".join("| " + " | ".join(str(cell).replace("_", " ") for cell in line) + " |\n" for line in lines)
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--only", default=",".join([*SHEETS, *OPEN_SHEETS, "counts"]))
+    parser.add_argument("--only", default=",".join([*SHEETS, *OPEN_SHEETS]))
     parser.add_argument("--count", type=int, default=30)
     parser.add_argument("--columns", type=int, default=6)
     parser.add_argument("--spp", type=int, default=24)
@@ -200,11 +127,6 @@ def main() -> None:
     given = parser.parse_args()
     (given.folder / "images").mkdir(parents=True, exist_ok=True)
     for name in given.only.split(","):
-        if name == "counts":
-            page = given.folder / "library.md"
-            before, _, rest = page.read_text(encoding="utf-8").partition(MARKS[0])
-            page.write_text(before + MARKS[0] + counts(catalogue(given.seed)) + MARKS[1] + rest.partition(MARKS[1])[2], encoding="utf-8")
-            continue
         start = time.process_time()
         made = pictures(name, given)
         sheet = contact_sheet(made, given.columns, given.cell)

@@ -71,19 +71,8 @@ def read(path: Path) -> list[Entry]:
 
 
 def differences(listed: Iterable[Entry], there: Iterable[Entry]) -> list[str]:
-    """Return what has changed since the inventory was written, a phrase per file, by path."""
-    was = {path: (size, changed) for path, size, changed in listed}
-    found = []
-    for path, size, changed in there:
-        before = was.pop(path, None)
-        if before is None:
-            found.append((path, "is new"))
-        elif before[0] != size:
-            found.append((path, f"had {before[0]} bytes, has {size}"))
-        elif before[1] != changed:
-            found.append((path, "was written again"))
-    found += [(path, "is gone") for path in was]
-    return [f"{path} {what}" for path, what in sorted(found)]
+    """Return the paths that have come, gone or changed since the inventory was written, sorted."""
+    return sorted({path for path, _, _ in set(listed) ^ set(there)})
 
 
 def require_match(path: Path, source: Listing) -> None:
@@ -93,7 +82,8 @@ def require_match(path: Path, source: Listing) -> None:
         more = f" and {len(changed) - SHOWN} more" if len(changed) > SHOWN else ""
         shown = ", ".join(changed[:SHOWN])
         raise ContentError(
-            f"{source.root} is not what {path.name} lists: {shown}{more}", f"take it as it is with `sfgen doctor --use '{source.root}'`"
+            f"{source.root} is not what {path.name} lists: {shown}{more} changed",
+            f"take it as it is with `sfgen doctor --use '{source.root}'`",
         )
 
 

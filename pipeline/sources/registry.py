@@ -29,8 +29,7 @@ def named(paths: Mapping[str, str | None]) -> list[tuple[Source, str]]:
 def recognised(path: Path) -> list[Listing]:
     """Return the sources that lie in `path`, or around it when it is a part of one.
 
-    Raises UsageError for a path that is missing or no folder, ContentError when nothing that is known lies there, or
-    only half of it.
+    Raises UsageError for a path that is missing or no folder, ContentError when nothing that is known lies there.
     """
     if not path.is_dir():
         raise UsageError(f"{path} is {'no folder' if path.exists() else 'missing'}", "give the folder that the data was unpacked to")

@@ -43,9 +43,7 @@ def add(root):
     (root / "a/0.json").write_text("")
 
 
-@pytest.mark.parametrize(
-    ("change", "said"), [(change_size, "a/1.json had 8 bytes"), (change_time, "written again"), (take, "is gone"), (add, "a/0.json is new")]
-)
+@pytest.mark.parametrize(("change", "said"), [(change_size, "a/1.json"), (change_time, "a/1.json"), (take, "a/1.json"), (add, "a/0.json")])
 def test_every_change_stops_and_is_named(source, tmp_path, change, said):
     inventory.write(tmp_path / "i.csv", inventory.scan(source))
     change(source.root)

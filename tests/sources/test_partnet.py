@@ -288,15 +288,13 @@ def test_looks_come_from_the_texture_urdf_where_it_agrees(tmp_path):
     assert not any(shape.palette.materials[m.material].texture for b in shape.bodies for m in b.visuals)
 
 
-@pytest.mark.parametrize("where", ["semantics", "folder", "csv"])
+@pytest.mark.parametrize("where", ["semantics", "folder"])
 def test_category_without_meta(tmp_path, where):
     root = tmp_path / "partnet" / "Oven" if where == "folder" else tmp_path / "partnet"
     folder = making.write_partnet(root)
     (folder / "meta.json").unlink()
     words = {"semantics": "link_2 heavy oven_body\n"}.get(where, "link_2 heavy body\n")
     (folder / "semantics.txt").write_text("link_0 hinge door\n" + words)
-    if where == "csv":
-        (tmp_path / "partnet" / "categories.csv").write_text("id,category\n40000,Oven\n")
     made = read(tmp_path, limits={"fit_rms": 30.0})
     assert [a["category"] for a in made.assets] == ["oven"], made.rejects
 

@@ -110,13 +110,9 @@ def test_an_angle_of_1565_is_a_right_one(tmp_path):
     assert all((np.abs(j.axis) > 1 - 1e-9).any() for j in asset.joints)
 
 
-def test_the_robots_name_is_not_believed_a_csv_is(tmp_path):
+def test_the_robots_name_is_not_believed(tmp_path):
     write(tmp_path, cupboard(robot="microwave"), "things/kitchenCounter.urdf")
     assert only(tmp_path)[0].category == "kitchen_cabinet"
-    (tmp_path / "partnet" / "categories.csv").write_text("id;category\nkitchenCounter;sideboard\n")
-    assert only(tmp_path)[0].category == "sideboard"
-    (tmp_path / "partnet" / "categories.csv").write_text("kitchenCounter, spaceship\n")
-    assert read(tmp_path).reasons == {"unknown_category"}
 
 
 def test_without_a_word_the_size_and_the_fronts_tell(tmp_path):
@@ -138,8 +134,7 @@ def test_a_door_whose_root_joint_turns_gets_a_post(tmp_path):
         '<robot name="r"><link name="root"/><link name="leaf"><visual><origin xyz="0.45 0 1"/><geometry><box size="0.9 0.04 2"/></geometry></visual></link>'
         '<joint name="j" type="revolute"><parent link="root"/><child link="leaf"/><axis xyz="0 0 1"/><limit lower="-1.57" upper="0"/></joint></robot>'
     )
-    write(tmp_path, text, "cabinet/door1.urdf")
-    (tmp_path / "partnet" / "categories.csv").write_text("door1,wardrobe\n")
+    write(tmp_path, text, "wardrobe/door1.urdf")
     asset, made = only(tmp_path, limits={"fit_rms": 30.0})
     assert made.reasons == {"base_made"}
     (joint,) = asset.joints

@@ -12,7 +12,7 @@ from pipeline.corpus import front_statistics as known
 from pipeline.corpus.calibration.tally import HouseTally, RoomTally
 from pipeline.corpus.front_statistics import Classes, Reference
 from pipeline.corpus.furniture import sizes
-from pipeline.corpus.houses.records import Model
+from pipeline.corpus.furniture.catalogue import Model
 
 TOTAL_VARIATION, RELATIVE = 0.05, 0.10
 HISTOGRAM = ((1, 3), (4, 6), (7, 9), (10, 12), (13, 15), (16, 99))

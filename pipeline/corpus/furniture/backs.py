@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.corpus.furniture.bent import arc, band, curve, lean, prism, tube
+from pipeline.corpus.furniture.bent import arc, lean, prism, tube
 from pipeline.corpus.furniture.finishes import Finish, Scheme, cane
 from pipeline.corpus.furniture.shape import Piece, pieces
 from pipeline.corpus.furniture.solids import Solid, beam, box, circle, rod, slab
@@ -132,20 +132,3 @@ def _medallion(frame: Frame) -> tuple[list[Solid], list[Solid]]:
     pad = disc.turned("x", np.pi / 2).moved((0, frame.y, middle))
     feet = [rod((s * 0.62 * x, frame.y, frame.low), (s * 0.62 * x, frame.y, frame.low + 0.21 * rise), 0.015, n=8) for s in (-1, 1)]
     return hoop + feet, [pad]
-
-
-def crest(frame: Frame, steps: int = 6) -> list[Solid]:
-    """Return a curved crest rail that wraps the sitter a little: a band in plan, its ends forward."""
-    bow = 0.28 * frame.x
-    path = curve(
-        [
-            (-frame.x, frame.y - bow),
-            (-0.6 * frame.x, frame.y - 0.3 * bow),
-            (0, frame.y),
-            (0.6 * frame.x, frame.y - 0.3 * bow),
-            (frame.x, frame.y - bow),
-        ],
-        max(1, steps // 4),
-    )
-    rise = frame.high - frame.low
-    return band(path, 0.8 * frame.thick, (frame.low + 0.8 * rise, frame.high))

@@ -17,10 +17,10 @@ from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, hull, 
 from pipeline.corpus.furniture.storage import Size
 
 
-def _oval(rx: float, y: tuple[float, float], z: float, n: int = 24) -> NDArray[np.float64]:
-    """Return an ellipse (n, 3) that spans +-rx and the interval `y` at height `z`."""
+def _oval(rx: float, y: tuple[float, float], z: float) -> NDArray[np.float64]:
+    """Return an ellipse (24, 3) that spans +-rx and the interval `y` at height `z`."""
     ry = (y[1] - y[0]) / 2
-    return np.column_stack([circle(rx, n, (0.0, (y[0] + y[1]) / 2), ry / rx), np.full(n, z)])
+    return np.column_stack([circle(rx, 24, (0.0, (y[0] + y[1]) / 2), ry / rx), np.full(24, z)])
 
 
 def toilet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:

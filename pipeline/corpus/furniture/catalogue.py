@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import uuid
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -46,13 +46,6 @@ class Catalogue:
 
     future: tuple[Model, ...]
     partnet: tuple[Model, ...]
-
-    def future_by_category(self) -> Mapping[str, tuple[Model, ...]]:
-        """Group the static models by category; every category of the taxonomy has at least one."""
-        groups: dict[str, list[Model]] = {}
-        for model in self.future:
-            groups.setdefault(model.category, []).append(model)
-        return {name: tuple(models) for name, models in groups.items()}
 
 
 @functools.lru_cache(maxsize=8)

@@ -15,6 +15,7 @@ from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, pieces, sta
 from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, ring, rod, slab
 from pipeline.corpus.furniture.storage import Size
 
+WIRE = 0.004  # radius of a bail [m]
 COFFEE = Finish("coffee", (0.03, 0.012, 0.006), 0.2, density=1000)
 
 
@@ -180,16 +181,16 @@ def kitchen_pot(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
     return Shape(base, tuple(movers))
 
 
-def bail(radii: tuple[float, float], z: float, centre: tuple[float, float], finish: Finish, wire: float = 0.004) -> Mover:
+def bail(radii: tuple[float, float], z: float, centre: tuple[float, float], finish: Finish) -> Mover:
     """Return a bucket's handle: half a hoop that lies level behind the wall and swings over to the front.
 
     `radii` [m]: half of its width, and how far it reaches back.
     """
     angles = np.linspace(0, math.pi, 8).tolist()
     points = [(centre[0] + radii[0] * math.cos(a), centre[1] + radii[1] * math.sin(a), z) for a in angles]
-    solids: list[Solid] = [rod(a, b, wire, n=6) for a, b in itertools.pairwise(points)]
+    solids: list[Solid] = [rod(a, b, WIRE, n=6) for a, b in itertools.pairwise(points)]
     middle = centre[1] + radii[1] * math.sin(angles[3])
-    solids[3] = rod((centre[0] - 0.05, middle, z), (centre[0] + 0.05, middle, z), 2 * wire, n=8)
+    solids[3] = rod((centre[0] - 0.05, middle, z), (centre[0] + 0.05, middle, z), 2 * WIRE, n=8)
     made = pieces("bail", [s for k, s in enumerate(solids) if k != 3], finish) + pieces("bail_grip", solids[3], PLASTIC)
     return Mover("bail", made, "revolute", (1, 0, 0), (centre[0], centre[1], z), math.pi, "hinge_handle", "handle", UP)
 

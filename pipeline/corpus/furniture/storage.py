@@ -46,11 +46,11 @@ FRONT_TASTES: Mapping[str, tuple[str, str]] = {
 ANY_TASTE = ("slab slab shaker", "bar flat knob edge")
 
 
-def front_style(rng: np.random.Generator, scheme: Scheme, panels: str = "", handles: str = "") -> FrontStyle:
-    """Draw how the fronts of a model look: as its style has it, unless `panels` or `handles` are named."""
+def front_style(rng: np.random.Generator, scheme: Scheme, panels: str = "") -> FrontStyle:
+    """Draw how the fronts of a model look: as its style has it, unless `panels` are named."""
     by_style = FRONT_TASTES.get(scheme.style, ANY_TASTE)
     panel: PanelStyle = pick(rng, panels or by_style[0])  # type: ignore[assignment]
-    handle: HandleStyle = pick(rng, handles or by_style[1])  # type: ignore[assignment]
+    handle: HandleStyle = pick(rng, by_style[1])  # type: ignore[assignment]
     return FrontStyle(panel, handle, scheme.front, scheme.handle)
 
 

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from pipeline.card import cards
+from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.rates import Rates
-from pipeline.corpus.houses.records import Model
 from pipeline.corpus.houses.room_occupancy import Space, Spot, against, ahead, box_of, shifted
 from pipeline.corpus.houses.stock import Stock
 from pipeline.corpus.houses.stratified_draws import Deal

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger
-from pipeline.corpus.houses.records import Model
 from pipeline.corpus.houses.room_occupancy import Spot, ahead, back_gap, box_of, on_side, shifted
 
 FARTHEST_TV = 1.2

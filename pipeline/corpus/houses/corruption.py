@@ -15,7 +15,8 @@ from shapely.geometry import Point, Polygon
 
 from pipeline import taxonomy
 from pipeline.corpus import front_statistics
-from pipeline.corpus.houses.records import House, Item, Model
+from pipeline.corpus.furniture.catalogue import Model
+from pipeline.corpus.houses.records import House, Item
 from pipeline.corpus.houses.stock import Stock
 from pipeline.seeds import generator
 

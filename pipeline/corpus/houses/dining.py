@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
+from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.rates import load
-from pipeline.corpus.houses.records import Model
 from pipeline.corpus.houses.room_occupancy import Spot, box_of, shifted
 
 CHAIRS = {"two": 2, "four": 4, "six": 6, "eight": 8}

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger, free_front
-from pipeline.corpus.houses.records import Model
 from pipeline.corpus.houses.room_occupancy import ahead, on_side
 
 FRONT = 0.75

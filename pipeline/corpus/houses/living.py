@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.dining import furnish_dining_corner
-from pipeline.corpus.houses.records import Model
 from pipeline.corpus.houses.room_occupancy import Side, Space, Spot, ahead, back_gap, box_of, on_side, shifted
 
 SIDE_TABLES = {"none": 0, "one": 1, "two": 2}
-CORNERS = frozenset({"plant", "floor_lamp", "round_end_table"})
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,40 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
 
+from pipeline.corpus.furniture.catalogue import Model
 from pipeline.entities.plan import Plan
 
 Rect = tuple[float, float, float, float]
 """An axis-aligned rectangle (x0, y0, x1, y1) in plan [m, world]."""
-
-
-class Model(Protocol):
-    """What a house needs to know about a model of the furniture catalogue. `size` is (w, d, h) [m], our frame."""
-
-    @property
-    def model_id(self) -> str:
-        """The id that scene files refer to (3D-FUTURE's jid)."""
-
-    @property
-    def category(self) -> str:
-        """A card of manifests/categories."""
-
-    @property
-    def size(self) -> tuple[float, float, float]:
-        """Full extents (w, d, h) [m]."""
-
-    @property
-    def style(self) -> str:
-        """3D-FUTURE's style name, e.g. "Nordic"."""
-
-    @property
-    def super_category(self) -> str:
-        """3D-FUTURE's super-category."""
-
-    @property
-    def future_name(self) -> str:
-        """3D-FUTURE's category string."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.corpus.houses.records import Item, Model, Rect, wrap
+from pipeline.corpus.furniture.catalogue import Model
+from pipeline.corpus.houses.records import Item, Rect, wrap
 from pipeline.entities.plan import Opening, Room
 
 FAR = 50.0
@@ -58,6 +59,12 @@ class Side:
         """Return the nearest and farthest distance of a rectangle from the wall's line, inwards [m]."""
         v = [-(x - self.x) * self.ty + (y - self.y) * self.tx for x, y in ((box[0], box[1]), (box[2], box[3]))]
         return min(v), max(v)
+
+    def away(self, x: float, y: float) -> float:
+        """Return the distance of a point from the wall's segment [m]."""
+        s = (x - self.x) * self.tx + (y - self.y) * self.ty
+        v = -(x - self.x) * self.ty + (y - self.y) * self.tx
+        return math.hypot(v, max(0.0, -s, s - self.length))
 
     def point(self, s: float, v: float) -> tuple[float, float]:
         """Return the point `s` along and `v` in front of the wall."""
@@ -107,10 +114,9 @@ class Space:
         self.number = number
         self.height = room.height
         self.area = room.area
-        self.polygon = [(float(x), float(y)) for x, y in room.polygon]
         self.bounds: Rect = (*(float(v) for v in room.polygon.min(axis=0)), *(float(v) for v in room.polygon.max(axis=0)))  # type: ignore[assignment]
-        self.sides = [_side(p, q) for p, q in zip(self.polygon, self.polygon[1:] + self.polygon[:1], strict=True)]
-        self.solids: list[tuple[Rect, float, float]] = [(r, -FAR, FAR) for r in outside_rects(self.polygon)]
+        self.sides = sides_of(room)
+        self.solids: list[tuple[Rect, float, float]] = [(r, -FAR, FAR) for r in outside_rects([(side.x, side.y) for side in self.sides])]
         self.keeps: list[Rect] = []
         self.sweeps: list[Rect] = []
         self.gaps: list[tuple[Rect, float]] = []
@@ -124,7 +130,7 @@ class Space:
     def _open(self, room_id: str, opening: Opening) -> None:
         """Keep free what an opening needs: the leaf's sweep, a step in front of it, the light of a window."""
         (ax, ay), (bx, by) = opening.segment.tolist()
-        wall = min(range(len(self.sides)), key=lambda i: _distance(self.sides[i], (ax + bx) / 2, (ay + by) / 2))
+        wall = min(range(len(self.sides)), key=lambda i: self.sides[i].away((ax + bx) / 2, (ay + by) / 2))
         side = self.sides[wall]
         low, high = side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
         if opening.kind == "window":
@@ -274,13 +280,11 @@ def inside_intervals(polygon: Sequence[tuple[float, float]], x: float) -> list[t
     return list(zip(crossings[::2], crossings[1::2], strict=True))
 
 
-def _side(p: tuple[float, float], q: tuple[float, float]) -> Side:
-    length = math.hypot(q[0] - p[0], q[1] - p[1])
-    return Side(p[0], p[1], round((q[0] - p[0]) / length), round((q[1] - p[1]) / length), length)
-
-
-def _distance(side: Side, x: float, y: float) -> float:
-    """Distance of a point from a wall's segment [m]."""
-    s = (x - side.x) * side.tx + (y - side.y) * side.ty
-    v = -(x - side.x) * side.ty + (y - side.y) * side.tx
-    return math.hypot(v, max(0.0, -s, s - side.length))
+def sides_of(room: Room) -> list[Side]:
+    """Return the walls of a room as directed sides, interior on the left."""
+    points = [(float(x), float(y)) for x, y in room.polygon]
+    made = []
+    for p, q in zip(points, points[1:] + points[:1], strict=True):
+        length = math.hypot(q[0] - p[0], q[1] - p[1])
+        made.append(Side(p[0], p[1], round((q[0] - p[0]) / length), round((q[1] - p[1]) / length), length))
+    return made

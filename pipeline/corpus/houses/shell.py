@@ -9,7 +9,7 @@ import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from pipeline.corpus.houses.room_occupancy import Side, _distance, inside_intervals
+from pipeline.corpus.houses.room_occupancy import Side, inside_intervals, sides_of
 from pipeline.entities.plan import Opening, Plan, Room
 
 Point = tuple[float, float, float]
@@ -51,16 +51,6 @@ def surfaces(plan: Plan) -> tuple[Surface, ...]:
     return tuple(made)
 
 
-def sides_of(room: Room) -> list[Side]:
-    """Return the walls of a room as directed sides, interior on the left."""
-    points = [(float(x), float(y)) for x, y in room.polygon]
-    made = []
-    for p, q in zip(points, points[1:] + points[:1], strict=True):
-        length = abs(q[0] - p[0]) + abs(q[1] - p[1])
-        made.append(Side(p[0], p[1], round((q[0] - p[0]) / length), round((q[1] - p[1]) / length), length))
-    return made
-
-
 def holes_on(side: Side, plan: Plan, room: Room) -> list[tuple[float, float, float, float]]:
     """Return (low, high, sill, top) of the openings of a room that lie in one of its sides [m]."""
     found = []
@@ -68,7 +58,7 @@ def holes_on(side: Side, plan: Plan, room: Room) -> list[tuple[float, float, flo
         if room.room_id not in opening.rooms:
             continue
         (ax, ay), (bx, by) = opening.segment.tolist()
-        if abs(_distance(side, (ax + bx) / 2, (ay + by) / 2)) > OUTER / 2 + 1e-6 or (abs(bx - ax) > 1e-9) != (side.tx != 0):
+        if side.away((ax + bx) / 2, (ay + by) / 2) > OUTER / 2 + 1e-6 or (abs(bx - ax) > 1e-9) != (side.tx != 0):
             continue
         low, high = side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
         found.append((low, high, opening.sill, opening.sill + opening.height))
@@ -159,7 +149,7 @@ def _reveals(plan: Plan, sides: Sequence[Sequence[Side]], k: int, opening: Openi
     """Return the jambs, head and sill inside a wall, and around doors the frame on the room's face."""
     number = next(i for i, r in enumerate(plan.rooms) if r.room_id == opening.rooms[0])
     (ax, ay), (bx, by) = opening.segment.tolist()
-    side = min(sides[number], key=lambda s: _distance(s, (ax + bx) / 2, (ay + by) / 2))
+    side = min(sides[number], key=lambda s: s.away((ax + bx) / 2, (ay + by) / 2))
     low, high = side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
     thick = INNER if len(opening.rooms) == 2 else OUTER
     z0, z1 = opening.sill, opening.sill + opening.height

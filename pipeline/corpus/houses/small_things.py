@@ -13,12 +13,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from pipeline.card import cards
+from pipeline.corpus.furniture.catalogue import Model
+from pipeline.corpus.furniture.level_tops import Surfaces
 from pipeline.corpus.houses import walkable_grid
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.rates import load as load_rates
-from pipeline.corpus.houses.records import Item, Model, Rect, wrap
+from pipeline.corpus.houses.records import Item, Rect, wrap
 from pipeline.corpus.houses.room_occupancy import Side, against, box_of, meets
-from pipeline.corpus.houses.stock import Surfaces
 from pipeline.entities.plan import Opening
 
 MARGIN = 0.01
@@ -177,12 +178,7 @@ def _wall_of(sides: Sequence[Side], opening: Opening) -> tuple[Side, float, floa
     """Return the wall that holds an opening, and the opening's stretch along it [m]."""
     (ax, ay), (bx, by) = opening.segment.tolist()
 
-    def away(side: Side) -> float:
-        s = ((ax + bx) / 2 - side.x) * side.tx + ((ay + by) / 2 - side.y) * side.ty
-        v = -((ax + bx) / 2 - side.x) * side.ty + ((ay + by) / 2 - side.y) * side.tx
-        return math.hypot(v, max(0.0, -s, s - side.length))
-
-    side = min(sides, key=away)
+    side = min(sides, key=lambda side: side.away((ax + bx) / 2, (ay + by) / 2))
     return side, *side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
 
 

@@ -5,30 +5,14 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Callable, Sequence
-from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pipeline.corpus.houses.records import Model
+from pipeline.corpus.furniture.catalogue import Model
+from pipeline.corpus.furniture.level_tops import Surfaces
 
 STYLE_WEIGHT = 3.0
 """How much likelier a model in the house's own style is taken than another."""
-
-
-class Surfaces(Protocol):
-    """A model's geometry as far as things lie on it, object frame [m].
-
-    `boxes` (n, 2, 3) are the bounds of its solids, `tops` (m, 5) level rectangles (x0, y0, x1, y1, z).
-    """
-
-    @property
-    def boxes(self) -> NDArray[np.float64]:
-        """Bounds of the solids (n, 2, 3)."""
-
-    @property
-    def tops(self) -> NDArray[np.float64]:
-        """Level rectangles (m, 5)."""
 
 
 class Stock:

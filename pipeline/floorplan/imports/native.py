@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+import json
+from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from pipeline.entities.plan import OpeningKind, Swing
 from pipeline.errors import ContentError
@@ -76,41 +77,13 @@ class PlanIn(Loose):
     outer_wall: Length | None = None
     storey_height: Length | None = None
 
-    @model_validator(mode="before")
-    @classmethod
-    def _lists(cls, value: Any) -> Any:
-        """Strict mode takes tuples for tuples only; JSON has lists."""
-        return _tuples(value)
-
-
-def _tuples(value: Any) -> Any:
-    if not isinstance(value, dict):
-        return value
-    made = dict(value)
-    rooms = made.get("rooms")
-    if isinstance(rooms, list):
-        made["rooms"] = [_with(r, "polygon", lambda p: [_tuple(q) for q in p] if isinstance(p, list) else p) for r in rooms]
-    for name in ("openings", "doors", "windows"):
-        if isinstance(made.get(name), list):
-            entries = [_with(o, "segment", lambda s: tuple(_tuple(q) for q in s) if isinstance(s, list) else s) for o in made[name]]
-            made[name] = [_with(o, "at", _tuple) for o in entries]
-    return made
-
-
-def _with(entry: Any, key: str, change: Any) -> Any:
-    return {**entry, key: change(entry[key])} if isinstance(entry, dict) and entry.get(key) is not None else entry
-
-
-def _tuple(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value
-
 
 def native_sketch(document: object) -> Sketch:
     """Read the document. Raises ContentError naming the field that is wrong, RefusedError for counts that no home has."""
     if isinstance(document, dict) and isinstance(document.get("refused"), dict):
         raise refuse("the document is itself a refusal and holds no plan", "plan again with other words")
     try:
-        read = PlanIn.model_validate(document)
+        read = PlanIn.model_validate_json(json.dumps(document))  # as JSON, whose lists are taken for tuples in strict mode
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"]) or "document"

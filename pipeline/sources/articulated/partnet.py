@@ -24,13 +24,13 @@ LOOKS = "mobility_texture_gapartnet.urdf"  # the original meshes with their text
 FROM_PARTNET = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 
-def read_shape(folder: Folder, source_id: str, texture_limit: int, known: Sequence[str] = (), named: str = "") -> ArticulatedShape:
+def read_shape(folder: Folder, source_id: str, texture_limit: int, known: Sequence[str] = ()) -> ArticulatedShape:
     """Read the folder of one object. Raises SourceError for what cannot be used.
 
-    Without a category in meta.json it is `named`, or that of the `known` model categories which the semantics tell.
+    Without a category in meta.json it is that of the `known` model categories which the semantics tell.
     """
     words = semantics(folder)
-    model_cat = named or _model_cat(folder, words, known)
+    model_cat = _model_cat(folder, words, known)
     name, source = next(((n, s) for n, s in URDFS if folder.has(n)), ("", ""))
     if not name:
         for candidate, _ in URDFS:

@@ -1,8 +1,8 @@
 """Other people's furniture: a URDF by itself, in metres more often than not, whose frame and category have to be found.
 
 Read beside what `urdf` tolerates: angles that are nearly right, meshes in folders beside the URDF's own, a door without
-a frame. The robot's name is not believed, for it is often that of another piece; a category comes from a
-categories.csv, else from the file's name and those of its folders, else from the size.
+a frame. The robot's name is not believed, for it is often that of another piece; a category comes from the
+file's name and those of its folders, else from the size.
 """
 
 from __future__ import annotations
@@ -21,11 +21,10 @@ from pipeline.sources.articulated.part_inference import completed
 from pipeline.sources.articulated.shape import ArticulatedShape, below
 from pipeline.sources.articulated.shape_reader import Hints, ShapeReader
 from pipeline.sources.articulated.urdf import MAX_URDF, Urdf, parse_urdf
-from pipeline.sources.guarded import MIB, Folder
+from pipeline.sources.guarded import Folder
 from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
-CATEGORIES = "categories.csv"
 SNAP = 0.01  # [rad] an angle this near to a right one is one
 FURNITURE = "StorageFurniture"
 # Words of everyday language for PartNet's model categories; those for ours stand on their cards.
@@ -46,25 +45,13 @@ def read_plain_urdf(root: Folder, file: str, source_id: str, texture_limit: int)
     return reader.shape("urdf", source_id, "")
 
 
-def named_categories(root: Folder) -> dict[str, str]:
-    """Return {id: category} of the file categories.csv, whose lines are "id,category" or "category id"; {} without it."""
-    if not root.has(CATEGORIES):
-        return {}
-    text = root.read(CATEGORIES, 4 * MIB).decode("utf-8-sig", "replace")
-    pairs = (re.split(r"[,;\t ]+", line.strip(), maxsplit=1) for line in text.splitlines())
-    return {pair[0]: pair[1].strip() for pair in pairs if len(pair) == 2}
-
-
-def candidates(file: str, named: str, taxonomy: Taxonomy) -> tuple[str, ...]:
-    """Return the categories that a file may be, by the name that the user gave or by its path, the file's own name first.
-
-    Without a word that tells, these are all that open.
-    """
-    for word in [named] if named else _tokens(file):
+def candidates(file: str, taxonomy: Taxonomy) -> tuple[str, ...]:
+    """Return the categories that a file may be by its path, the file's own name first; without a word that tells, these are all that open."""
+    for word in _tokens(file):
         found = _meant(word, taxonomy)
         if found:
             return found
-    return () if named else tuple(c.name for c in taxonomy.categories.values() if c.names.partnet)
+    return tuple(c.name for c in taxonomy.categories.values() if c.names.partnet)
 
 
 def _tokens(file: str) -> list[str]:

@@ -11,7 +11,7 @@ from pipeline.sources.articulated import proportions
 from pipeline.sources.articulated.assets import assets
 from pipeline.sources.articulated.objects import Found, objects_in
 from pipeline.sources.articulated.partnet import URDFS, read_shape
-from pipeline.sources.articulated.plain_urdf import candidates, named_categories, oriented, read_plain_urdf
+from pipeline.sources.articulated.plain_urdf import candidates, oriented, read_plain_urdf
 from pipeline.sources.articulated.proportions import Proportions
 from pipeline.sources.batch import Batch
 from pipeline.sources.folders import require_folders
@@ -24,16 +24,12 @@ from pipeline.sources.source import Listing, Reading, Source
 
 @dataclass(frozen=True, slots=True)
 class ObjectTask:
-    """What every object is read with.
-
-    `categories`: by id, those that the user named; `spreads`: by model category, what its objects' proportions are.
-    """
+    """What every object is read with; `spreads`: by model category, what its objects' proportions are."""
 
     source: Path
     out: Path
     limits: ModelLimits
     licence: str
-    categories: Mapping[str, str] = field(default_factory=dict)
     spreads: Mapping[str, Proportions] = field(default_factory=dict)
 
 
@@ -74,7 +70,6 @@ class Articulated(Source):
             reading.assets,
             reading.settings.models,
             reading.licence,
-            named_categories(Folder.at(listing.root)),
             proportions.spreads(reading.each(drawn)),
         )
         yield from reading.each(Batch("object", read_object, task, listing.items, _no_object))
@@ -86,13 +81,12 @@ def read_object(task: ObjectTask, found: Found) -> LibraryRows:
 
     def work() -> None:
         kinds, root = taxonomy.load(), Folder.at(task.source)
-        named = task.categories.get(found.source_id) or task.categories.get(found.path) or ""
         if found.path.lower().endswith(".urdf"):
-            categories = candidates(found.path, named, kinds)
+            categories = candidates(found.path, kinds)
             shape = oriented(read_plain_urdf(root, found.path, found.source_id, task.limits.max_texture), categories)
         else:
             models = sorted({name for kind in kinds.categories.values() for name in kind.names.partnet})
-            shape = read_shape(root.sub(found.path), found.source_id, task.limits.max_texture, models, named)
+            shape = read_shape(root.sub(found.path), found.source_id, task.limits.max_texture, models)
             categories = kinds.from_partnet(shape.model_cat) or ((shape.model_cat,) if shape.model_cat in kinds.categories else ())
         own = task.spreads.get(shape.model_cat)
         for asset, fit, rejects in assets(shape, found.stem, categories, kinds, task.limits, task.licence, own):

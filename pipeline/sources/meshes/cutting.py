@@ -76,11 +76,6 @@ class _Piece:
     depth: float
 
 
-def pocket(vertices: Floats, faces: Ints, tolerance: float) -> float:
-    """Return how deep the deepest pocket of a part is, compared with its hull."""
-    return cut(vertices, faces, tolerance, 1).depth
-
-
 def cut(vertices: Floats, faces: Ints, tolerance: float, most: int) -> Cut:
     """Cut a part (vertices (V, 3), faces (F, 3)) into at most `most` pieces without pockets deeper than `tolerance`."""
     grid = _grid(vertices, faces, tolerance)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from pipeline import taxonomy
-from pipeline.errors import ContentError
 from pipeline.sources.batch import Batch
 from pipeline.sources.folders import below, require_folders
 from pipeline.sources.guarded import Folder
@@ -27,7 +25,6 @@ from pipeline.sources.walkable_share import Walker
 
 HOUSES, MODELS, TEXTURES = "3D-FRONT", "3D-FUTURE-model", "3D-FRONT-texture"
 LEVELS = 2  # folders below the named one in which it is looked for
-HOUSE_NAME = re.compile(r"^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}\.json$")  # houses are named by a uuid4
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,25 +59,9 @@ class ThreedFront(Source):
 
     def recognise(self, folder: Path) -> Path | None:
         """Return the folder with both halves, however the archives were unpacked."""
-        halves: dict[str, Path] = {}
-        around: tuple[Path, ...] = (folder.parent,) if folder.name in {HOUSES, MODELS, TEXTURES} else ()
-        for place in (folder, *below(folder, LEVELS, {HOUSES, MODELS, TEXTURES}), *around):
-            has_houses, has_models = _has_houses(place / HOUSES), (place / MODELS / "model_info.json").is_file()
-            if has_houses and has_models:
-                return place
-            if place not in around:
-                halves |= ({HOUSES: place} if has_houses else {}) | ({MODELS: place} if has_models else {})
-        if (folder / "model_info.json").is_file():
-            halves[MODELS] = folder.parent
-        elif HOUSES not in halves and (other := _misnamed(folder)):
-            raise ContentError(
-                f"{other} holds houses of 3D-FRONT under another name", f"call the folder {HOUSES}, or link it so, with {MODELS} beside it"
-            )
-        elif folder.name == HOUSES and _holds_houses(folder):
-            halves[HOUSES] = folder.parent
-        if halves:
-            raise _half(halves)
-        return None
+        around = (folder.parent,) if folder.name in {HOUSES, MODELS, TEXTURES} else ()
+        places = (folder, *below(folder, LEVELS, {HOUSES, MODELS, TEXTURES}), *around)
+        return next((p for p in places if _has_houses(p / HOUSES) and (p / MODELS / "model_info.json").is_file()), None)
 
     def list(self, root: Path, settings: PreprocessSettings, *, houses: bool = True) -> Listing:
         """Describe a folder of both halves; where other houses are read, or objects without models are kept, one may lack."""
@@ -181,25 +162,3 @@ def _folders(folder: Path) -> Iterator[Path]:
 
 def _has_houses(folder: Path) -> bool:
     return folder.is_dir() and any(folder.glob("*.json"))
-
-
-def _holds_houses(folder: Path) -> bool:
-    return any(HOUSE_NAME.match(p.name) for p in folder.glob("*.json"))
-
-
-def _misnamed(folder: Path) -> Path | None:
-    """Return a folder, this one or one in it, with houses but not their name."""
-    around = (folder, *below(folder, 1, {HOUSES, MODELS, TEXTURES}))
-    return next((f for f in around if f.name != HOUSES and _holds_houses(f)), None)
-
-
-def _half(halves: Mapping[str, Path]) -> ContentError:
-    """Return what to say of houses without models, models without houses, or both far from each other."""
-    if len(halves) == 2:
-        apart = f"{HOUSES} lies in {halves[HOUSES]}, {MODELS} in {halves[MODELS]}"
-        return ContentError(apart, "put both into one folder, by a link if need be")
-    (name, folder), lacking = next(iter(halves.items())), (MODELS if HOUSES in halves else HOUSES)
-    remedy = f"put {lacking} beside it: objects cannot be read without both"
-    if lacking == MODELS:
-        remedy += "; for rooms with boxes alone name the folder in preprocess.sources.front of params.yaml and set preprocess.filters.keep_without_model"
-    return ContentError(f"{folder} holds {name} but no {lacking}", remedy)
