@@ -52,6 +52,7 @@ def faults(case: Mapping[str, Any], engine: Engine | None = None) -> list[str]:
         *_relations(program, case),
         *_shape(program, case),
         *_furnished(program, case),
+        *_unsaid(program, case),
     ]
 
 
@@ -168,6 +169,14 @@ def _furnished(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
     for kind, share in case.get("walkable", ()):
         if not any(f.walkable == share for f in _wishes(program, kind)):
             yield f"walkable in {kind}"
+
+
+def _unsaid(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
+    """Words that nothing can be made of, and that are not listed as such."""
+    listed = "".join(s.text for s in program.unparsed).lower()
+    for word in case.get("unread", ()):
+        if word.lower().replace(" ", "") not in listed.replace(" ", ""):
+            yield f"not said: {word}"
 
 
 def _wishes(program: FloorProgram, kind: str) -> list[Furniture]:

@@ -137,7 +137,7 @@ class _Amount:
         while i < len(self.marks):
             mark = self.marks[i]
             limit, start = self.lex.bounds.get(mark.text), mark.text in self.lex.range_from
-            light = i > k and mark.kind in {"fill", "det"} and mark.value in {"", "indefinite"}
+            light = i > k and mark.kind in {"fill", "det"} and mark.value in {"", "unbuilt", "indefinite"}
             if limit is None and not start and not light:
                 break
             self.bound = BOUNDS.get(limit, self.bound or "about") if limit else self.bound

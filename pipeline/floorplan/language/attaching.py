@@ -131,7 +131,9 @@ class _Place:
         gap = after[0].start - claim.end if after else FAR + 1
         if before and claim.kind != "count" and self.scan.length(self._at(before[-1].end), "dwelling"):
             return ()  # "a two-bedroom flat with 30 pieces": the flat's
-        if (claim.inward and gap <= FAR) or (gap <= CLOSE and self.scan.length(self._at(claim.end), "of")):  # "带淋浴的卫生间"
+        if (claim.inward and gap <= FAR and "," not in self.prompt[claim.end : after[0].start]) or (
+            gap <= CLOSE and self.scan.length(self._at(claim.end), "of")
+        ):  # "带淋浴的卫生间"
             return after[0].ids
         if claim.kind == "style":
             return self._styled(claim, before, after)

@@ -15,6 +15,11 @@ def level(c: Clause, k: int, e: Element) -> int:
     """Put rooms on a storey: those named before it, or, where it comes first, those that follow."""
     c.state.levels.append(e)
     ahead = c.near(k + 1)
+    part = c.part(k)
+    if c.forward and part and (ahead is None or ahead.kind == "comma"):  # "upstairs two bedrooms, the kitchen downstairs"
+        for room in (c.stock.get(i) for i in known(part)):
+            room.level = int(e.value)
+        return k + 1
     if c.forward or heads(c.sentence, k) or ("*" in c.latest and ahead is not None and ahead.kind == "colon"):
         c.state.heights |= {"*": int(e.value)} if "*" in c.latest and not c.forward else {}
         c.forward, c.level, c.run = True, int(e.value), []
@@ -237,7 +242,7 @@ def _theirs(c: Clause, j: int, owners: Group, joined: str) -> bool:
     number = x.number or 1
     if (
         x.role in {"shared", "guest"}
-        or x.definite
+        or (x.definite and (len(owners) > 1 or len(c.stock.of(x.type)) > 1 or x.ids or not c.ends(j + 1)))
         or number > len(owners)
         or (both and len(owners) > 1)
         or (len(owners) > 2 and 1 < number < len(owners))
@@ -252,7 +257,7 @@ def _theirs(c: Clause, j: int, owners: Group, joined: str) -> bool:
 def _things(c: Clause, j: int, owners: Group) -> Group:
     """Return one room for each owner: those that were counted first, then new ones."""
     x = c.sentence[j]
-    ids = list(x.ids)
+    ids = list(x.ids) or [r.id for r in c.stock.of(x.type) if x.definite]
     role = x.role if x.role == "primary" and len(owners) == 1 else ""
     slots = [r for r in c.stock.of(x.type) if r.open_slot and r.id not in ids and not c.stock.owned(r.id)]
     while len(ids) < len(owners):

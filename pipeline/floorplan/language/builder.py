@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -57,6 +58,7 @@ def assemble(state: Reading, parsed: list[list[Element]]) -> FloorProgram:
         draft.refuse(what, "keep one of the two counts", [(fact.first, fact.last), *(r.span for r in rooms)])
     join(draft, state)
     _amounts(draft, state)
+    _scale(draft, state)
     _whole(draft, state)
     _style(draft, state)
     return FloorProgram.model_validate(
@@ -123,11 +125,11 @@ def _count(draft: Draft, state: Reading) -> None:
 
 
 def _bedrooms(draft: Draft, state: Reading, people: Mark) -> None:
-    """Add the bedrooms that so many people take, of which nobody stated how many there are: one for each who shares a flat, else one for two and one for each of the others."""
+    """Add the bedrooms that so many people take, of which nobody stated how many there are: one for each who shares a flat, one for two where so many sleep, else one for two and one for each of the others."""
     stock = state.inventory
     if stock.of("studio_room") or any(r.role not in {"child", *STRANGERS} for r in stock.of("bedroom")):
         return
-    beside = {"children": 1, "sharers": 0}.get(people.value, -1)
+    beside = {"children": 1, "sharers": 0, "sleepers": -int(people.number) // 2}.get(people.value, -1)
     wanted = max(1, min(int(people.number) + beside, MOST_PEOPLE - 1))
     for _ in range(wanted - sum(r.role == "child" for r in stock.of("bedroom"))):
         stock.add("bedroom", "", "", None).stated = False
@@ -155,13 +157,14 @@ def _living_rooms(draft: Draft, state: Reading, count: int, mark: Mark) -> None:
 def _studio(draft: Draft, state: Reading) -> None:
     """Make a studio without a named main room one room to live and sleep in."""
     stock, home = state.inventory, state.studio
-    if home is not None and not stock.of("studio_room") and not stock.of("bedroom"):
+    theirs = [r for r in stock.of("bedroom") if r.role not in STRANGERS]  # "a studio with a guest room" is both
+    if home is not None and not stock.of("studio_room") and not theirs:
         living = stock.of("living_room")
         room = living[0] if living else stock.add("studio_room", "", "studio", 0)
         room.type, room.span = "studio_room", room.span or (home.first, home.last)
         if not stock.of("kitchen"):
             room.functions.add("cooking")
-    beds = [r for r in stock.of("bedroom") if r.open_slot or r.stated]
+    beds = [r for r in theirs if r.open_slot or r.stated]
     if home is not None and len(beds) > 1:
         spans = [(home.first, home.last), *(r.span for r in beds)]
         draft.refuse(f"a studio is one room, and {len(beds)} bedrooms are asked for", "ask for a flat", spans)
@@ -288,6 +291,13 @@ def _whole(draft: Draft, state: Reading) -> None:
     for room in stock.of("living_room")[:1]:
         room.exterior_length = PANORAMA if told("panorama", f"rooms.{room.id}.exterior_length") else None
     _entrance(draft, state)
+
+
+def _scale(draft: Draft, state: Reading) -> None:
+    """Read "a small house": each of its rooms is so, by less."""
+    for e in (e for e in state.homes if e.number):
+        draft.fields["scale"] = round(math.sqrt(e.number or 1.0), 2)
+        draft.cite(e.first, e.last, "scale")
 
 
 def _levels(state: Reading) -> None:

@@ -13,6 +13,7 @@ LIGHT = {"det", "size", "adj", "verb", "word", "flag"}  # between a relation and
 WIDE = {"leads", "between", "chain", "avoid", "except"}  # relations to lists
 STANDINS = {"it", "both", "group", "one", "rest", "some", "each", "all", "self", "pair"}
 LISTING = {"comma", "and", "or"}
+BESIDE = {"near", "wall"}  # what such a relation joins lies on one storey
 
 
 def known(group: Group) -> Group:
@@ -57,6 +58,11 @@ class Clause:
     def says(self, e: Element, sign: str) -> bool:
         """Whether a word of an element belongs to a closed class."""
         return bool(self.state.heard.lexicon.sign(sign) & set(e.text.split()))
+
+    def part(self, k: int) -> Group:
+        """Return the rooms named between the last comma and k."""
+        start = max((j for j, x in enumerate(self.sentence[:k]) if x.kind == "comma"), default=-1)
+        return ids_of(x for x in self.sentence[start + 1 : k] if x.kind == "np") if start >= 0 else ()
 
     def ends(self, k: int) -> bool:
         """Whether a part of the sentence ends in front of k."""
@@ -211,7 +217,8 @@ class Clause:
                     or (first is not None and not self._continues(k, cue, joined, first, left, len(group)))
                 ):
                     break
-                ids = name(self.state, self.sentence, k, self.level if self.forward else None)
+                here = {self.stock.get(i).level for i in known(left)} if cue in BESIDE else set()
+                ids = name(self.state, self.sentence, k, self.level if self.forward else here.pop() if len(here) == 1 else None)
                 self.measures(e)
                 if "largest" in e.adjectives and cue != "cmp":
                     self.state.say("largest", tuple(ids), tuple(r.id for r in self.stock.of(e.type)), e)

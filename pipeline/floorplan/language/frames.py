@@ -4,7 +4,7 @@ A frame is `pattern => reading`. Atoms of a pattern: `A` ... `D` a noun phrase (
 `^` and `$` the ends of a clause, else a kind of mark (`flag`), a kind with its value (`cue/has`), or a sign, a closed class of words that a lexicon lists under
 `signs`; `a|b` either, `a?` it or nothing, `n=a` with a name. Words that mean nothing may stand between atoms. A reading is made of the phrases, of what has a name
 (`n>kind/value`: as another kind of mark, whole where it is a number, `n>flip`: with its bound turned round, `n>total`: as the home's, `n>bedroom`: as the bedroom of those people, `n>@o`: as
-the bedroom of `o`) and of marks to be read in place of the words; what stood
+the bedroom of `o`, `n>=m`: with the number of `m`) and of marks to be read in place of the words; what stood
 between them is consumed. No frame belongs to a language: word order and words do.
 """
 
@@ -23,7 +23,7 @@ FILE = Path(__file__).resolve().parents[3] / "manifests" / "lexicon" / "frames.y
 PHRASES, LISTS = frozenset("ABCD"), frozenset("LXY")
 LEADING = {"det", "num", "ord", "adj", "size", "clf", "times"}  # in front of a head
 HEADS = {"room", "suite"}
-SKIPPED = {"fill", "adverb", "word", "look", "hyphen"}  # between atoms, where no atom names it
+SKIPPED = {"fill", "ignored", "adverb", "word", "look", "hyphen"}  # between atoms, where no atom names it
 CLOSERS = ENDS | {"comma", "close", "but", "open", "colon", "bullet", "dash"}
 SEPARATORS = {"comma", "join", "slash"}
 TOWARDS = {"into", "single", "det/indefinite", "det/another"}  # in front of each room of a list: "one to the hall, one to the kitchen"
@@ -213,8 +213,12 @@ def _read(frame: Frame, marks: Sequence[Mark], start: int, end: int, slots: Slot
         if slot in slots:
             a, b = slots[slot]
             kept = list(_items(marks[a:b])) if slot in LISTS else marks[a:b]
-            said = marks[slots[change[1:]][0]].value if change.startswith("@") else ""
-            yield from (replace(m, value=f"bedroom/{said}") if said else _changed(m, change) for m in kept)
+            other = marks[slots[change[1:]][0]] if change[:1] in {"@", "="} else None
+            if other is None:
+                yield from (_changed(m, change) for m in kept)
+            else:
+                said = {"number": other.number} if change[0] == "=" else {"value": f"bedroom/{other.value}"}
+                yield from (replace(m, **said) for m in kept)
         elif not slot.islower() or "/" in slot or len(slot) > 1:
             what, _, text = atom.partition(":")
             what, _, number = what.partition("=")

@@ -137,8 +137,9 @@ class Scan:
 
     def phrase(self, k: int, *kinds: str) -> tuple[int, str]:
         """Return (length, name) of the longest phrase of those kinds at word k, (0, "") where there is none."""
-        here = self.there[k] if 0 <= k < len(self.words) else ()
-        return next(((size, name) for size, kind, name, owned in here if kind in kinds and (not owned or self._owned(k, name))), (0, ""))
+        return next(
+            ((size, name) for size, kind, name, owned in self._here(k) if kind in kinds and (not owned or self._owned(k, name))), (0, "")
+        )
 
     def length(self, k: int, *kinds: str) -> int:
         """Return the length of the longest phrase of those kinds at word k."""
@@ -148,17 +149,30 @@ class Scan:
         """Return word k, "" beyond the ends."""
         return self.words[k].text if 0 <= k < len(self.words) else ""
 
+    def _here(self, k: int) -> Sequence[tuple[int, str, str, bool]]:
+        """Return the phrases that begin at word k, none beyond the ends."""
+        return self.there[k] if 0 <= k < len(self.words) else ()
+
     def _owned(self, k: int, name: str) -> bool:
         """Whether a room that has such things is named before word k in the same clause, or right after it."""
 
         def owner(j: int) -> bool:
-            return 0 <= j < len(self.words) and any(kind == "owner" and of == name for _, kind, of, _ in self.there[j])
+            return any(kind == "owner" and of == name for _, kind, of, _ in self._here(j))
 
         stop = self.stops[bisect.bisect_left(self.stops, k) - 1]
+        beside = lexicon()["beside"].get(name)
+        if beside and any(
+            (kind, of) == ("name", beside) for j in range(max(stop + 1, k - FAR), k + FAR) for _, kind, of, _ in self._here(j)
+        ):
+            return True  # "a shower instead of a bathtub"
         at = max((j for j in range(max(stop + 1, k - OWNED), k) if owner(j)), default=None)
         if at is not None:  # "a bedroom with a wardrobe" has one; "a bedroom, a bathroom and a wardrobe" are three rooms
             between = self.prompt[self.words[at].end : self.words[k].start]
-            if between.rfind("(") > between.rfind(")") or any(self.length(j, "with") for j in range(at + 1, k)):
+            if (
+                between.rfind("(") > between.rfind(")")
+                or self.length(at + 1, "none")
+                or any(self.length(j, "with") for j in range(at + 1, k))
+            ):
                 return True
         return bool(self.length(k + 1, "in")) and any(owner(k + d) for d in (2, 3, 4))
 
@@ -186,8 +200,9 @@ class Scan:
         at += self.length(at, "with", "article") if bound else 0  # 至少放三件
         length, value = self.number(at)
         if value is None:
-            none, one = (0, 0) if bound else (self.length(k, "none"), self.length(k, "one"))
-            size = none or one
+            none = 0 if bound else self.length(k, "none")
+            one = 0 if bound else self.length(k + none, "one")  # "not a shower"
+            size = none + one
             return (size + self._filler(k + size), 0 if none else 1, 0 if none else None) if size else None
         at += length
         first = last = int(value)
@@ -228,7 +243,7 @@ class Scan:
         right = next((j for j in range(last, last + NEAR - 1) if self.text(j) in COMMAS), last + NEAR - 1)
         home = any(self.length(j, "home") for j in (*range(left + 1, first), *range(last, right)))
         start, end = self.words[first].start, self.words[last - 1].end
-        self.claims.append(Claim(kind, start, end, name, least, most, value, home, bool(self.length(last, "in"))))
+        self.claims.append(Claim(kind, start, end, name, least, most, value, home, self.length(last, "in") > self.length(last, "none")))
         return last - first
 
     def _share(self, k: int) -> int:
@@ -371,7 +386,8 @@ def _blank(scan: Scan, claims: Sequence[Claim]) -> list[bool]:
         lead = next((n for n in (3, 2, 1) if k - n >= 0 and scan.length(k - n, "with") == n), 0)
         join = scan.length(last + 1, "and") if scan.text(last + 1) not in STOPS else 0
         told = scan.number(last + 1 + join)[1] is not None  # "two bedrooms with wardrobes and one bathroom": nobody's own
-        shared = join and not told and any(scan.length(i, "own_rooms") for i in range(last + 1 + join, last + 4 + join))
+        kinds = ("owned",) if scan.text(last + 1) in COMMAS else ("owned", "own_rooms")
+        shared = join and not told and any(scan.length(i, *kinds) for i in range(last + 1 + join, last + 4 + join))
         if lead and shared:  # a room of the same owner follows: the "and" goes, else the "with"
             blank[last + 1 : last + 1 + join] = [True] * join
         elif lead:

@@ -261,7 +261,7 @@ def _learn(made: Lexicon, entries: _Entries) -> None:
     for wrong, meaning in _misheard(entries):
         _insert(made.trie, words(wrong), meaning)
     made.vocabulary.update(w for p in split(entries.common) for w in words(p))
-    blocked = {w for p in split(entries.phrases.get("fillers", {}).get("", "")) if " " not in p for w in words(p)}
+    blocked = {w for entry in entries.phrases.get("fillers", {}).values() for p in split(entry) if " " not in p for w in words(p)}
     named = {w for entry in entries.phrases["rooms"].values() for p in split(entry.replace("|", ",")) for w in words(p)}
     made.targets = tuple(sorted(targets - blocked, key=lambda w: (w not in named, w)))  # names of rooms first
     others |= {w: COMMON for w in made.vocabulary if w not in others}

@@ -98,7 +98,9 @@ def _unparsed(state: Reading, parsed: list[list[Element]], evidence: Sequence[Ev
     places = [{k for k, t in enumerate(tokens) if e.start <= t.start and t.end <= e.end} for e in evidence]
     cited = _consumed(state, parsed, places, evidence)
     for k, mark in enumerate(marks):
-        if mark.last > mark.first and (mark.kind == "word" or not cited & set(range(mark.first, mark.last))) and _says(state, marks, k):
+        if mark.last == mark.first:
+            continue
+        if mark.kind == "word" or (not cited & set(range(mark.first, mark.last)) and (mark.value == "unbuilt" or _says(state, marks, k))):
             start, end = tokens[mark.first].start, tokens[mark.last - 1].end
             yield Span(start=start, end=end, text=state.heard.prompt[start:end])
 

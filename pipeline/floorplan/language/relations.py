@@ -264,7 +264,7 @@ def merge(c: Clause, k: int, e: Element) -> None:
     written_on = "bare_nouns" in c.state.heard.lexicon.traits  # "客厅餐厅厨房" needs no comma
     joined = written_on
     for i, x in enumerate(c.sentence[k + 1 :], k + 1):
-        if x.kind == "np" and joined and x.type in SOCIAL and not x.banned:
+        if x.kind == "np" and joined and x.type in SOCIAL and not x.banned and "closed" not in x.adjectives:
             listed += c.named(i)
             joined = written_on
         elif x.kind == "and" or (x.kind == "comma" and e.type in SOCIAL and _closes(c, i)) or (x.value == "has" and len(listed) == 1):

@@ -85,7 +85,8 @@ def _own(c: Clause, e: Element, ids: tuple[str, ...]) -> None:
         room.role = room.role or c.owner
         c.owning = room.id
     elif c.owning and c.waiting is None and room.type == "bathroom" and not room.role and not c.stock.owned(room.id):
-        c.give(ids, (c.owning,), e)
+        if room.level in {None, c.stock.get(c.owning).level}:  # what is named upstairs later is not theirs
+            c.give(ids, (c.owning,), e)
     elif c.owning and room.type == "kitchen":
         room.role = c.stock.get(c.owning).role
         c.state.say("door", ids, (c.owning,), e)
@@ -173,6 +174,7 @@ def _adj(c: Clause, k: int, e: Element) -> int:
         c.state.say("merge", social, (), e)  # "living and dining room open"
     elif e.value == "open" and c.negative is not None and c.types(social) == {"kitchen"}:
         c.state.say("closed", social, (), e)  # "the kitchen should not be open"
+        c.state.understood(e.first, e.last)
         c.deny()
     ends = ahead is None or ahead.kind in {"comma", "and"}
     if e.value in {"largest", "smallest"} and len(c.latest) == 1 and (c.verb or (kind == "np" and ends)):  # "客厅最大"

@@ -14,7 +14,7 @@ from pipeline.floorplan.language.parser import LONGEST, understand
 from pipeline.floorplan.program.floor_program import FloorProgram
 
 CASES = yaml.safe_load(Path("manifests/prompts/benchmark.yaml").read_text(encoding="utf-8"))
-UNBUILT = {"at the front", "at the back"}  # said, and not built
+UNBUILT = {"at the front", "at the back", "in the middle", "along the wall", "buffer"}  # said, and not built
 
 
 def phrases(language):
