@@ -15,13 +15,17 @@ from pipeline.arrange.surfaces import Surfaces, surfaces
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 from pipeline.geometry.contact import first_hits, group_boxes, wall_excesses
+from pipeline.geometry.convex import hull
 from pipeline.geometry.kinematics import moved_links, rotation
+from pipeline.geometry.memo import kept
 from pipeline.geometry.prisms import Prisms, prism, solid, stacked
 
 Floats = NDArray[np.float64]
 UNIT = np.ones(3)
 BACKED = 0.3  # share of a surface's depth, from its back, that is for what lies there
 HEADROOM = 0.01  # above what a drawer carries [m]: a bottle that fits to the millimetre wedges under the worktop as the drawer jolts
+STEADY = 0.7  # of what rides in a drawer: the way from below its centre of mass to the edge of its foot, as a share of that one's height. By dry friction it then slides before it tips
+FOOT = 0.002  # [m] above its lowest point: what is lower is its foot
 WOBBLE = 0.1  # spread of the yaw of what has a front [rad]
 
 
@@ -159,7 +163,7 @@ class Laying:
             moved = sweep.prisms.placed(position, yaw, UNIT)
             if self.rest.hit(moved, self.touch) or self.laid.hit(moved, self.touch) or self._outside(moved):
                 return False
-        return all(self._rides(rest, support, bearer, k) for k in carrying)
+        return not carrying or (steady(asset) >= STEADY and all(self._rides(rest, support, bearer, k) for k in carrying))
 
     def _rides(self, rest: Prisms, support: int, bearer: Asset, joint: int) -> bool:
         """Tell whether a thing comes out with the drawer that it lies in, with some room above it."""
@@ -182,6 +186,19 @@ class Laying:
         self.laid = self.laid.plus([made.rest.placed(position, yaw, UNIT)])
         if made.sweeps:
             self.laid_sweeps = self.laid_sweeps.plus([s.prisms.placed(position, yaw, UNIT) for s in made.sweeps])
+
+
+@kept
+def steady(asset: Asset) -> float:
+    """Return how far a thing's centre of mass is within the edge of its foot, as a share of its height: it tips where it is held back by more of its weight."""
+    points = np.concatenate([piece.vertices for link in asset.links for piece in link.colliders]).astype(np.float64)
+    low = float(points[:, 2].min())
+    foot = hull(np.ascontiguousarray(np.round(points[points[:, 2] < low + FOOT, :2], 6)))
+    mass = np.array([link.mass for link in asset.links])
+    x, y, z = mass @ np.array([link.com for link in asset.links]) / mass.sum()
+    along = np.roll(foot, -1, 0) - foot
+    within = along[:, 0] * (y - foot[:, 1]) - along[:, 1] * (x - foot[:, 0])
+    return float((within / np.linalg.norm(along, axis=1)).min() / max(z - low, FOOT))
 
 
 def _reach(size: Floats, turn: float) -> tuple[Floats, Floats]:

@@ -61,6 +61,8 @@ def parted(rows: NDArray[np.float32], faces: NDArray[np.int32]) -> tuple[NDArray
     order = np.argsort(code, kind="stable")
     _, first, times = np.unique(code[order], return_index=True, return_counts=True)
     one, other = order[first[times == 2]], order[first[times == 2] + 1]
+    alike = turned[one] == turned[other]  # two boards' rims on each other: faces of one surface run along their edge both ways
+    one, other = one[~alike], other[~alike]
     fan = _connected(3 * count, held[one].ravel(), held[other].ravel())
     fans = int(fan.max(initial=-1)) + 1
     if fans == len(np.unique(faces)):

@@ -88,12 +88,23 @@ def test_drawers_are_used_as_often_as_they_are_told_to():
 @pytest.mark.parametrize(("tall", "fits"), [(0.32, True), (0.335, False)])
 def test_what_rides_in_a_drawer_has_room_above_it(tall, fits):
     """The drawer's floor is .34 m under the carcass' top."""
-    things = {**LIBRARY, "bottle": block("bottle", "bottle", (0.06, 0.06, tall))}
+    assert in_drawer(block("box", "storage_box", (0.25, 0.25, tall))) == fits
+
+
+@pytest.mark.parametrize(("wide", "fits"), [(0.08, True), (0.06, False)])
+def test_what_rides_in_a_drawer_slides_before_it_tips(wide, fits):
+    """A bottle that falls over as the drawer is pulled stays behind and holds it open."""
+    bottle = block("bottle", "bottle", (wide, wide, 0.1))
+    assert in_drawer(replace(bottle, links=(replace(bottle.links[0], com=np.array([0.0, 0.0, 0.05])),))) == fits
+
+
+def in_drawer(thing):
+    """Whether a thing is ever laid in the drawer of a chest."""
     rng = np.random.default_rng(0)
     furniture = [placed("tray_chest", 2.0, 2.6)]
-    room = Laying(SQUARE, furniture, things, ThingsSettings(hidden=50.0, tries=12), 0.0005)
-    places = [room.lay(rng, things["bottle"], 0, facing=False) for _ in range(12)]
-    assert any(place is not None and abs(place[0][2] - 0.14) < 0.01 for place in places) == fits
+    room = Laying(SQUARE, furniture, {**LIBRARY, thing.asset_id: thing}, ThingsSettings(hidden=50.0, tries=12), 0.0005)
+    places = [room.lay(rng, thing, 0, facing=False) for _ in range(12)]
+    return any(place is not None and abs(place[0][2] - 0.14) < 0.01 for place in places)
 
 
 def test_nothing_is_laid_where_a_lid_would_meet_the_wall_or_another_joint_sweeps():

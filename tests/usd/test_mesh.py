@@ -25,6 +25,14 @@ def test_boxes_that_meet_in_an_edge_have_corners_of_their_own():
     assert np.abs(rows[made] - points[faces]).max() <= APART
 
 
+def test_faces_that_run_along_an_edge_the_same_way_are_of_two_surfaces():
+    points = np.array([(0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0)], np.float32)
+    rows, made = parted(points, np.array([(0, 1, 2), (0, 1, 3)], np.int32))
+    assert len(rows) == 6
+    assert not set(made[0]) & set(made[1])
+    assert np.abs(rows[made[0]] - points[[0, 1, 2]]).max() <= APART
+
+
 def test_what_is_whole_stays_as_it_is():
     points, faces, _ = welded(box("a", (0, 0, 0), (1, 1, 1)))
     rows, made = parted(points, faces)

@@ -21,9 +21,6 @@ Floats = NDArray[np.float64]
 
 DRAWER = "slider_drawer"
 BESIDE = 0.025  # [m] between the outside of a carcass and the drawers in it, at its sides
-BEHIND = 0.04  # [m] from a drawer's back to the carcass's at most
-BOARD = 0.025  # [m] thickness of a drawer's back at most
-FEWEST = 4  # pieces of a drawer that has one
 SAMPLES = 12  # intervals along a side of a board's triangles
 OFF = 0.002  # [m] before a surface
 HAND = 0.01  # [m] gaps into which no hand comes
@@ -34,9 +31,7 @@ def without_hidden(links: Sequence[Link], joints: Sequence[ShapeJoint]) -> list[
     drawers = [joint for joint in joints if joint.part_class == DRAWER and joint.parent == 0]
     if not drawers:
         return list(links)
-    base = without_covered(links[0], [links[joint.child] for joint in drawers])
-    backs = {joint.child: without_back(links[joint.child], joint, base) for joint in drawers}
-    return [base, *(backs.get(k, link) for k, link in enumerate(links[1:], 1))]
+    return [without_covered(links[0], [links[joint.child] for joint in drawers]), *links[1:]]
 
 
 def without_covered(base: Link, drawers: Sequence[Link]) -> Link:
@@ -54,31 +49,6 @@ def without_covered(base: Link, drawers: Sequence[Link]) -> Link:
         if (_away(at, [planes[i] for i in kept - {k}]) <= allowed).all():
             kept.discard(k)
     return replace(base, colliders=tuple(base.colliders[k] for k in boards if k in kept))
-
-
-def without_back(drawer: Link, joint: ShapeJoint, base: Link) -> Link:
-    """Return a drawer without the board at its inner end, where the carcass has one behind it; the others end where it began.
-
-    Even a drawer that is pulled out has it in the carcass; what slides back stops at the carcass's own.
-    """
-    along = joint.axis / float(np.linalg.norm(joint.axis))
-    depths = [np.asarray(c.vertices, np.float64) @ along for c in drawer.colliders]
-    end = min(float(d.min()) for d in depths)
-    backs = [k for k, d in enumerate(depths) if d.max() < end + BOARD]
-    walls = [ConvexHull(np.asarray(c.vertices, np.float64)).equations for c in base.colliders]
-    if len(backs) != 1 or len(drawer.colliders) < FEWEST:
-        return drawer
-    points, _ = _surface(np.asarray(drawer.colliders[backs[0]].vertices, np.float64))
-    behind = points[points @ along < end + OFF]
-    if not len(behind) or (_away(behind, walls) > BEHIND).any():
-        return drawer
-    inner = float(depths[backs[0]].max())
-    ended = (
-        replace(c, vertices=(c.vertices + np.maximum(inner - d, 0.0)[:, None] * along).astype(np.float32))
-        for k, (c, d) in enumerate(zip(drawer.colliders, depths, strict=True))
-        if k != backs[0]
-    )
-    return replace(drawer, colliders=tuple(ended))
 
 
 def _away(points: Floats, planes: Sequence[Floats]) -> Floats:

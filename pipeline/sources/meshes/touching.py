@@ -25,8 +25,9 @@ from pipeline.sources.meshes.rings import STAVES, is_ring, same_height, sectors
 Floats = NDArray[np.float64]
 Allowed = Callable[[Floats, Floats], Floats]  # points (P, 3), normals (P, 3) there -> how far each may be off (P,) [m]
 
-CORNERS = 12  # of the outline that a soft thing lies on, at most
+CORNERS = 8  # of the outline that a soft thing lies on, at most
 SOLE = 0.8  # share of its outline that a soft thing lies on
+RISE = 0.12  # share of its height below which it has no other corners: PhysX tilts what all but lies on a rounded edge
 ROOMY = 50.0  # boards across each other: their box holds so many times what they do, and no hull of theirs is looked at
 MOST = 250  # pieces of a link beyond which it is left as it is
 SAMPLES = (0, 2, 8)  # intervals along a side of the hull's triangles, coarse first; 0: their middles
@@ -116,8 +117,20 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
         pieces = [_flat(combined(pieces))]
     if how.closed:
         pieces = discs(pieces)
-    made = fewer(pieces, _tolerance(pieces, how), max(how.up, how.sides, REACH), rings=how.up < SOFT)
+    allowed = _tolerance(pieces, how)
+    made = felt_of(fewer(pieces, allowed, max(how.up, how.sides, REACH), rings=how.up < SOFT), allowed)
     return tuple(_levelled(p, how.lift) for p in made) if how.lift else made
+
+
+def felt_of(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
+    """Return the pieces without those that the others feel the same without: a basin's bottom close above its worktop."""
+    planes = [_planes(p.hull) for p in pieces]
+    kept = set(range(len(pieces)))
+    for k in sorted(kept, key=lambda k: (round(pieces[k].hull_volume, 9), k)):
+        others = [planes[i] for i in sorted(kept - {k})]
+        if others and _deviation(pieces[k].hull, others, allowed) is not None:
+            kept.discard(k)
+    return tuple(pieces[k] for k in sorted(kept))
 
 
 def _levelled(part: Part, lift: float) -> Part:
@@ -190,8 +203,10 @@ def _flat(part: Part) -> Part:
     turns = 2 * np.pi * np.arange(CORNERS) / CORNERS
     around = part.hull[np.unique(np.argmax(part.hull[:, :2] @ [np.cos(turns), np.sin(turns)], axis=0))]
     middle = (part.hull.min(axis=0) + part.hull.max(axis=0)) / 2
-    sole = np.column_stack([middle[:2] + SOLE * (around[:, :2] - middle[:2]), np.full(len(around), part.hull[:, 2].min())])
-    return convex(np.concatenate([extremes(part.hull, MAX_HULL - len(sole)), sole]), part.volume) or part
+    low, high = part.hull[:, 2].min(), part.hull[:, 2].max()
+    sole = np.column_stack([middle[:2] + SOLE * (around[:, :2] - middle[:2]), np.full(len(around), low)])
+    above = part.hull[part.hull[:, 2] > low + RISE * (high - low)]
+    return convex(np.concatenate([extremes(above, MAX_HULL - len(sole)), sole]), part.volume) or part
 
 
 def discs(pieces: Sequence[Part]) -> list[Part]:
@@ -213,7 +228,8 @@ def fewer(pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, r
 
     def share(group: Sequence[int], points: Floats) -> float | None:
         low, high = points.min(axis=0), points.max(axis=0)
-        others = np.flatnonzero(((boxes[:, 0] <= high) & (boxes[:, 1] >= low)).all(axis=1)).tolist()  # what lies within those is not felt
+        beside = ((boxes[:, 0] <= high + apart) & (boxes[:, 1] >= low - apart)).all(axis=1)  # what lies at those is not felt
+        others = np.flatnonzero(beside).tolist()
         near = [planes[k] for k in (*group, *(k for k in others if k not in group))]
         return _deviation(points, near, allowed)
 
