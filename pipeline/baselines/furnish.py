@@ -13,10 +13,11 @@ from pipeline import seeds
 from pipeline.baselines import atiss, diffuscene
 from pipeline.baselines.diffuscene import Denoiser, Guide
 from pipeline.baselines.physcene import Guidance
-from pipeline.baselines.rooms import LATENT, Outlines, outlines
+from pipeline.baselines.rooms import Outlines, outlines
 from pipeline.baselines.scaling import Found, Scaling
 from pipeline.baselines.scenefoundry import Constraints
 from pipeline.baselines.settings import BaselineSettings
+from pipeline.diffusion.codec import LATENT
 from pipeline.diffusion.context import Proposal, RoomContext
 from pipeline.diffusion.floor import floor_tokens
 

@@ -10,11 +10,11 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from pipeline.diffusion.codec import LATENT
 from pipeline.diffusion.floor import KINDS, Floor
 from pipeline.diffusion.rooms import Example
 
 BOX = 8  # centre 3, size 3 [m], cos, sin of the yaw
-LATENT = 32
 
 
 @dataclass(frozen=True, slots=True)

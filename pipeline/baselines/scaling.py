@@ -8,7 +8,8 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from pipeline.baselines.rooms import BOX, LATENT, Furniture
+from pipeline.baselines.rooms import BOX, Furniture
+from pipeline.diffusion.codec import LATENT
 
 PLACE, SIZE, AXIS = slice(0, 3), slice(3, 6), slice(6, 8)
 

@@ -60,21 +60,22 @@ def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxono
 
     Draws are keyed by (seed, home, room, attempt) alone, so a room does not depend on which rooms share its batch.
     """
-    rooms = [_parts(job, taxonomy, seeds.generator(sampler.seed, "usual", job.index, job.number)) for job in jobs]
+    wholes = [RoomContext.of(job.plan, job.room_id, job.layout_type) for job in jobs]
+    rooms = [
+        _parts(job, whole, taxonomy, seeds.generator(sampler.seed, "usual", job.index, job.number))
+        for job, whole in zip(jobs, wholes, strict=True)
+    ]
     contexts = [part for parts in rooms for part in parts]
     keys = [(job.index, job.number + PART * k, job.draw) for job, parts in zip(jobs, rooms, strict=True) for k in range(len(parts))]
     proposals = iter(sampler.sample_rooms(contexts, keys))
     return [
-        retrieve(
-            job, [p for _ in parts for p in next(proposals)], index, taxonomy, finish_of, taste_of(job, sampler.seed, index, finish_of)
-        )
-        for job, parts in zip(jobs, rooms, strict=True)
+        retrieve(job, whole, [p for _ in parts for p in next(proposals)], index, taxonomy, finish_of, sampler.seed)
+        for job, whole, parts in zip(jobs, wholes, rooms, strict=True)
     ]
 
 
-def _parts(job: RoomJob, taxonomy: Taxonomy, rng: np.random.Generator) -> list[RoomContext]:
+def _parts(job: RoomJob, whole: RoomContext, taxonomy: Taxonomy, rng: np.random.Generator) -> list[RoomContext]:
     """Return a room, or the parts of one that serves as several, each as the layout model is asked for it."""
-    whole = RoomContext.of(job.plan, job.room_id, job.layout_type)
     parts = parted(whole, [(kind, taxonomy.layouts[kind].part) for kind in job.kinds]) if len(job.kinds) > 1 else [whole]
     counts = _shared(job.count, [shapely.Polygon(part.polygon).area for part in parts])
     kinds = [part.layout_type for part in parts]
@@ -140,19 +141,20 @@ def _essential(group: tuple[str, ...], least: int, attempt: int) -> list[Categor
 
 def retrieve(
     job: RoomJob,
+    context: RoomContext,
     proposals: Sequence[Proposal],
     index: AssetIndex,
     taxonomy: Taxonomy,
     finish_of: FinishOf,
-    taste: Taste,
+    seed: int,
 ) -> Draft:
-    """Replace each proposal by the nearest asset that suits the taste, standing on the floor, hanging from the ceiling, or at its wall.
+    """Replace each proposal by the nearest asset that suits the room's taste, standing on the floor, hanging from the ceiling, or at its wall.
 
     Object ids carry the room's id and the slot, so they are unique in the home.
     """
+    taste = taste_of(job, seed, index, finish_of)
     if not proposals:
         return Draft(job, (), taste=taste)
-    context = RoomContext.of(job.plan, job.room_id, job.layout_type)
     matches = _matches(job, index, taste, proposals, finish_of)
     placements: list[Placement] = []
     lost: list[str] = []

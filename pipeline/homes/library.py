@@ -56,7 +56,7 @@ class Library(Mapping[str, Asset]):
             self._lean.move_to_end(asset_id)
             return self._lean[asset_id]
         read = partial(self._read, asset_id)
-        asset = self._lean[asset_id] = replace(read(), links=_Links(read), textures=_Textures(read))
+        asset = self._lean[asset_id] = replace(read(), links=_Links(lambda: read().links), textures=_Textures(lambda: read().textures))
         while len(self._lean) > LEAN * len(self._whole):
             self._lean.popitem(last=False)
         return asset
@@ -102,33 +102,25 @@ def kept_within(memory: int) -> int:
     return max(8 << 20, int((memory - BESIDE) * (1 << 20) / READ))
 
 
-class _Links(Sequence[Link]):
-    """An asset's links, as `read` gives them."""
+class _Later:
+    """What an asset holds by key, as `read` gives it whenever somebody looks."""
 
-    def __init__(self, read: Callable[[], Asset]) -> None:
+    def __init__(self, read: Callable[[], Any]) -> None:
         self._read = read
 
-    def __getitem__(self, index: Any) -> Any:
-        return self._read().links[index]
+    def __getitem__(self, key: Any) -> Any:
+        return self._read()[key]
 
-    def __iter__(self) -> Iterator[Link]:
-        return iter(self._read().links)
-
-    def __len__(self) -> int:
-        return len(self._read().links)
-
-
-class _Textures(Mapping[str, bytes]):
-    """An asset's textures, as `read` gives them."""
-
-    def __init__(self, read: Callable[[], Asset]) -> None:
-        self._read = read
-
-    def __getitem__(self, name: str) -> bytes:
-        return self._read().textures[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._read().textures)
+    def __iter__(self) -> Iterator[Any]:
+        return iter(self._read())
 
     def __len__(self) -> int:
-        return len(self._read().textures)
+        return len(self._read())
+
+
+class _Links(_Later, Sequence[Link]):
+    """An asset's links."""
+
+
+class _Textures(_Later, Mapping[str, bytes]):
+    """An asset's textures."""

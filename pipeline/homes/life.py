@@ -91,7 +91,6 @@ class HomeLife:
         else:
             tell("planning", request.index)
             self._draw_plan()
-            self.closed = closed_rooms(self.plan, resources.verify) if request.plan else self.closed
 
     @property
     def state(self) -> State:
@@ -128,6 +127,8 @@ class HomeLife:
         self.rooms = {job.room_id: RoomTries(job) for job in planned.jobs}
         self.waiting = {job.room_id: job for job in planned.jobs}
         self.drafted = {}
+        if self.request.plan:
+            self.closed = closed_rooms(self.plan, self.resources.verify)
 
     def finish(self, draft: Draft) -> None:
         """Arrange the draft of a room that waits for it; keep the better of it and what was there."""
@@ -204,7 +205,7 @@ class HomeLife:
             for object_id, violation in sorted(violating.items()):
                 best = self.rooms[violation.room_id].best
                 assert best is not None
-                self.rejects.append(self._reject(best.draft.job, ("object", violation.reason, f"{object_id}: {violation.detail}")))
+                self._leave_out(best.draft.job, object_id, violation)
             things = tuple(p for p in things if p.object_id not in violating)
 
     def _expel(self, violating: Mapping[str, Violation]) -> None:
@@ -218,8 +219,12 @@ class HomeLife:
             mine = {k: violation for k, violation in sorted(violating.items()) if violation.room_id == room_id}
             left = tries.best = tries.best.without(mine, taxonomy.load())
             for object_id, violation in mine.items():
-                self.rejects.append(self._reject(left.draft.job, ("object", violation.reason, f"{object_id}: {violation.detail}")))
+                self._leave_out(left.draft.job, object_id, violation)
             self._check(left, left)
+
+    def _leave_out(self, job: RoomJob, object_id: str, violation: Violation) -> None:
+        """Write down that an object is not in its room, and why."""
+        self.rejects.append(self._reject(job, ("object", violation.reason, f"{object_id}: {violation.detail}")))
 
     def _reject(self, job: RoomJob, reject: tuple[str, str, str]) -> Row:
         return reject_row(self.name, job.room_id, job.draw, reject)

@@ -10,8 +10,21 @@ from pipeline.relations.frames import relate
 from pipeline.relations.modes import Mode, Nearest, Pose, Span, boxes, nearest
 
 
+class Tendency:
+    """What holds in a `share` of its cases, and by `chance` alone in another."""
+
+    __slots__ = ()
+    share: float
+    chance: float
+
+    @property
+    def strength(self) -> float:
+        """How much more often than by chance it holds."""
+        return self.share - self.chance
+
+
 @dataclass(frozen=True, slots=True)
-class PairRelation:
+class PairRelation(Tendency):
     """How members of one category stand to anchors of another. `cases`: members that share a room with an anchor.
 
     `share` of them are in a mode, `chance` is that of mirrored members.
@@ -24,14 +37,9 @@ class PairRelation:
     share: float
     chance: float
 
-    @property
-    def strength(self) -> float:
-        """How much more often than by chance members are in a mode."""
-        return self.share - self.chance
-
 
 @dataclass(frozen=True, slots=True)
-class WallRelation:
+class WallRelation(Tendency):
     """How things of one category stand to a wall with one of their sides: the gap to it [m], and the turn against it [rad].
 
     `share` of the cases are so, `chance` is the mean share of the other sides.
@@ -44,11 +52,6 @@ class WallRelation:
     cases: int
     share: float
     chance: float
-
-    @property
-    def strength(self) -> float:
-        """How much more often than by chance this side is at a wall."""
-        return self.share - self.chance
 
 
 @dataclass(frozen=True)

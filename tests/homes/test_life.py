@@ -2,7 +2,8 @@ from dataclasses import replace
 
 import pytest
 
-from pipeline.errors import ContentError
+from pipeline.errors import ContentError, RefusedError
+from pipeline.homes import life as lives
 from pipeline.homes.furnish import Draft
 from pipeline.homes.life import HomeLife, RoomTries, State
 from pipeline.homes.request import Request, RoomJob
@@ -38,3 +39,15 @@ def test_a_home_waits_for_drafts_or_is_refused_at_once(factory):
     life = HomeLife(factory, Request(1, f"a bedroom with {most + 1} pieces of furniture and a bathroom"))
     assert life.state is State.REFUSED
     assert f"at most {most}" in str(life.outcome(files=False).error)
+
+
+def test_a_plan_of_ones_own_that_is_refused_is_not_asked_which_rooms_it_closes(factory, monkeypatch):
+    asked = []
+
+    def refuse(*_):
+        raise RefusedError("no plan", "draw another")
+
+    monkeypatch.setattr(lives, "plan_home", refuse)
+    monkeypatch.setattr(lives, "closed_rooms", lambda *_: asked.append(1) or frozenset())
+    assert HomeLife(factory, Request(0, plan="{}")).state is State.REFUSED
+    assert not asked
