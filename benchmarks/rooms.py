@@ -3,7 +3,8 @@
     python benchmarks/rooms.py [rooms] [seeds]
 
 Needs what `make run` leaves: data/ and models/. Drafts are what the layout model draws, without and with guidance; finished
-rooms are what the arranger makes of them. Rates are those of all seeds together, with 95 % intervals.
+rooms are what the arranger makes of them. Rates are those of all seeds together, with 95 % intervals. FID of plan views is measured on
+training floors, against the split: that of the rooms that stand there is its floor, and no other floors than theirs are in the way.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -83,8 +84,15 @@ def main(count: int, seeds: int) -> None:
     sets: dict[str, Rooms] = {"real": truth * seeds}
     seconds: dict[str, float] = {}
     told: dict[str, list[tuple[float, float]]] = {}
+    train = {room.name: furniture(room) for room in real_rooms(folder, "train") if room.layout_type}
+    floors = [(job, row) for job, row in rows_of(test_rooms(source, "train", taxonomy.load().layout_types), source["rooms"])]
+    named = {f"{row['scene_id']}/{row['room_id']}": job for job, row in floors}
+    views: dict[str, list[float]] = {}
     for seed in range(seeds):
-        for name, rooms in made(load_factory(ROOT, tree, seed), jobs, seconds).items():
+        factory = load_factory(ROOT, tree, seed)
+        for name, fid in views_apart(factory, seed, truth, {k: room for k, room in train.items() if room.categories}, named).items():
+            views.setdefault(name, []).append(fid)
+        for name, rooms in made(factory, jobs, seconds).items():
             sets.setdefault(name, []).extend(rooms)
             names = [room.name for room in truth]
             pair = [
@@ -104,7 +112,26 @@ def main(count: int, seeds: int) -> None:
     print("SCA of a random forest on layout features; the same where what is in another body counts as touching it")
     for name, pairs in told.items():
         print(f"  {name:20s} " + "   ".join(f"{np.mean(p):.3f} +- {np.std(p):.3f}" for p in zip(*pairs, strict=True)))
+    print(
+        "FID of plan views, on training floors: " + ", ".join(f"{k} {np.mean(v):.2f} ({min(v):.2f}-{max(v):.2f})" for k, v in views.items())
+    )
     print("CPU ms a room: " + ", ".join(f"{k} {1000 * v / len(jobs) / seeds:.1f}" for k, v in seconds.items()))
+
+
+def views_apart(
+    factory: Factory, seed: int, truth: Rooms, train: Mapping[str, Arrangement], jobs: Mapping[str, RoomJob]
+) -> dict[str, float]:
+    """Return FID of plan views against the split: of training rooms, as many of each type, and of what is made on the same floors; rooms and jobs by name."""
+    from pipeline.experiments.realism import alike, embeddings
+    from pipeline.metrics.two_samples import frechet
+    from pipeline.metrics.views import views_of
+
+    embed = embeddings("")["plan-view net"]
+    real, floors = alike(np.random.default_rng(seed), truth, list(train.values()))
+    sets = {"train": floors}
+    for name, rooms in made(factory, [jobs[room.name] for room in floors], {}).items():
+        sets[name] = [replace(room, openings=floor.openings) for room, floor in zip(rooms, floors, strict=True) if room.categories]
+    return {name: frechet(embed(views_of(real)), embed(views_of(rooms))) for name, rooms in sets.items()}
 
 
 def rows_of(jobs: Sequence[RoomJob], rooms: Sequence[dict[str, object]]) -> list[tuple[RoomJob, dict[str, object]]]:

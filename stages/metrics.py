@@ -69,9 +69,10 @@ def main(root: Path) -> None:
 
 def realism(root: Path, seed: int, settings: MetricsSettings, trials: Mapping[str, Trial]) -> dict[str, Any]:
     """Put what was drafted for the split's floors, and what shipped, beside the rooms that stand there."""
-    drafted = {"unguided": trials[paper_tables.ALL_PLAIN].drafted, "guided": trials[paper_tables.ALL_GUIDED].drafted}
+    plain, guided = trials[paper_tables.ALL_PLAIN], trials[paper_tables.ALL_GUIDED]
+    made = {"unguided": plain.drafted, "guided": guided.drafted, "finished": guided.shipped}
     known = files.load(root / "data" / "tables" / "relations.json")
-    return realism_table(seed, beside(root, settings.split, drafted), known, embeddings(settings.inception))
+    return realism_table(seed, beside(root, settings.split, made), known, embeddings(settings.inception))
 
 
 def measure(parts: Sequence[Callable[[], Any]], number: int) -> Any:

@@ -26,7 +26,7 @@ def families(settings: MetricsSettings) -> list[list[Condition]]:
     """
     made = [[Condition(f"walkable_{tau:.2f}", walkable=tau) for tau in sorted(settings.taus, reverse=True)]]
     made[0] += [Condition("guided")]
-    made += [[Condition(ALL_GUIDED, finished=False)]]  # would share the first family's drafts, but that one takes longest already
+    made += [[Condition(ALL_GUIDED)]]  # would share the first family's drafts, but that one takes longest already
     plain = Condition("plain", articulation="none")
     middle = settings.taus[len(settings.taus) // 2]
     made += [[replace(plain, name="plain_walkable", walkable=middle), plain, replace(plain, name=ALL_PLAIN, finished=False)]]

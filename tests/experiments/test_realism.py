@@ -15,7 +15,7 @@ from pipeline import tables
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Plan, Room
 from pipeline.experiments.lineup import alone, by_type, lineup
-from pipeline.experiments.realism import Beside, alike, beside, embeddings, realism_table
+from pipeline.experiments.realism import Beside, alike, beside, embeddings, realism_table, view_figures
 from pipeline.experiments.rooms import FIRST
 from pipeline.homes.rows import object_row, room_row, scene_row
 from pipeline.manifest import canonical
@@ -103,6 +103,19 @@ def test_what_is_spoilt_is_seen_and_what_is_real_is_not(table):
     )
     assert table["novelty"]["shipped"]["copies"] == 40  # the "shipped" rooms of this test are training rooms
     assert table["novelty"]["guided"]["copies"] == 0
+
+
+def test_what_training_rooms_themselves_reach_stands_beside_and_is_a_mean_over_draws(table, rooms):
+    assert table["relations"]["objects"]["all"]["train"]["n"] == 60
+
+    def fid(*draws):
+        pair = {"train": (rooms.real[:20], rooms.train[:20])}
+        embed = lambda views: views.reshape(len(views), -1)[:, ::997].astype(float)  # noqa: E731
+        return view_figures(np.random.default_rng(0), 0, embed, pair, {}, draws)["made"]["train"]["fid"]
+
+    one, two = ((rooms.real[k : k + 20], rooms.train[k : k + 20]) for k in (0, 20))
+    assert fid(one) != fid(two)
+    assert fid(one, two) == pytest.approx((fid(one) + fid(two)) / 2, abs=1e-3)
 
 
 @pytest.mark.parametrize("train", [0, 2])
