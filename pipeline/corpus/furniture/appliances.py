@@ -13,7 +13,7 @@ from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.finishes import DARK_GLASS, ENAMEL, GLASS, GRAPHITE, PLASTIC, PLASTIC_WHITE, STEEL, Finish, Scheme
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, knob, lid, reach
 from pipeline.corpus.furniture.shape import Mover, Piece, Shape, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, shell, slab
+from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, shell, slab, strips
 from pipeline.corpus.furniture.storage import Size, pick
 
 FRONTS = (ENAMEL, STEEL, GRAPHITE)
@@ -250,13 +250,7 @@ def _top_loader(size: Size, outside: Finish) -> Shape:
     back = y[1] - panel
     base += pieces("console", box(x, (back + 0.004, y[1]), (deck, h), 0.008), outside)
     hole_x, hole_y = (x[0] + 0.07, x[1] - 0.07), (y[0] + 0.07, back - 0.09)
-    strips = [
-        box((x[0], hole_x[0]), (y[0], back), (deck, deck + 0.02), 0.003),
-        box((hole_x[1], x[1]), (y[0], back), (deck, deck + 0.02), 0.003),
-        box(hole_x, (y[0], hole_y[0]), (deck, deck + 0.02), 0.003),
-        box(hole_x, (hole_y[1], back), (deck, deck + 0.02), 0.003),
-    ]
-    base += pieces("deck", strips, outside)
+    base += pieces("deck", strips(x, (y[0], back), hole_x, hole_y, (deck, deck + 0.02), 0.003), outside)
     r = 0.5 * min(hole_x[1] - hole_x[0], hole_y[1] - hole_y[0])
     middle = (0.0, (hole_y[0] + hole_y[1]) / 2)
     base += staves("drum", ring((r, r), (r - 0.01, r - 0.01), (0.2, deck - 0.002), 24, middle), STEEL)

@@ -169,13 +169,7 @@ def lean(solids: Sequence[Solid], at: float, slope: float) -> list[Solid]:
     return [s.moved((0, 0, -at)).mapped(matrix).moved((0, 0, at)) for s in solids]
 
 
-_BLADE = 8  # corners of a leaf's outline
-_BLADE_FACES: tuple[Face, ...] = tuple(
-    [(i, (i + 1) % _BLADE, _BLADE) for i in range(_BLADE)] + [((i + 1) % _BLADE, i, _BLADE + 1) for i in range(_BLADE)]
-)
-
-
-def blades(roots: Points, tips: Points, width: Points | float, *, belly: float = 0.5, thick: float = 0.004, n: int = _BLADE) -> list[Solid]:
+def blades(roots: Points, tips: Points, width: Points | float, *, belly: float = 0.5, thick: float = 0.004, n: int = 8) -> list[Solid]:
     """Return leaves from `roots` (m, 3) to `tips` (m, 3): plane outlines, widest at the share `belly` of their length, faces upwards.
 
     `width` [m], (m,) or one for all. Each is a low double pyramid over its outline, so it is solid and convex. With `n` = 4 the
@@ -191,11 +185,10 @@ def blades(roots: Points, tips: Points, width: Points | float, *, belly: float =
     half = (np.broadcast_to(np.asarray(width, float), (len(roots),)) / 2)[:, None]
     if n == 4:
         stations = [(0.0, 0.0), (belly, 1.0), (1.0, 0.0), (belly, -1.0)]
-        faces: tuple[Face, ...] = tuple([(i, (i + 1) % 4, 4) for i in range(4)] + [((i + 1) % 4, i, 5) for i in range(4)])
     else:
         a, b = 0.45 * belly, belly + 0.62 * (1 - belly)
         stations = [(0.0, 0.0), (a, 0.74), (belly, 1.0), (b, 0.62), (1.0, 0.0), (b, -0.62), (belly, -1.0), (a, -0.74)]
-        faces = _BLADE_FACES
+    faces: tuple[Face, ...] = (*((i, (i + 1) % n, n) for i in range(n)), *(((i + 1) % n, i, n + 1) for i in range(n)))
     ring = [roots + axis * s + side * half * t for s, t in stations]
     middle = roots + axis * belly
     points = np.stack([*ring, middle + up * thick / 2, middle - up * thick / 2], axis=1)

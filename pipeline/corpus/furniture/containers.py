@@ -13,8 +13,9 @@ from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.countertop import bail, lugs
 from pipeline.corpus.furniture.finishes import DARK_GLASS, GRAPHITE, LEATHERS, PLASTIC, PLASTIC_WHITE, STEEL, Finish, Scheme, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, door, knob, lid
+from pipeline.corpus.furniture.panels import frame
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Piece, Shape, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab, stack
+from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab, stack, walls
 from pipeline.corpus.furniture.storage import Size, pick
 
 Interval = tuple[float, float]
@@ -23,13 +24,7 @@ CARDBOARD = Finish("cardboard", (0.40, 0.26, 0.14), 0.9, pattern="speckle", dens
 
 def tray_walls(x: Interval, y: Interval, z: Interval, t: float, bevel: float = 0.0) -> list[Solid]:
     """Return a bottom and four walls of thickness `t` [m] that end at z[1]."""
-    return [
-        box(x, y, (z[0], z[0] + t), bevel),
-        box((x[0], x[0] + t), y, (z[0] + t, z[1]), bevel),
-        box((x[1] - t, x[1]), y, (z[0] + t, z[1]), bevel),
-        box((x[0] + t, x[1] - t), (y[0], y[0] + t), (z[0] + t, z[1]), bevel),
-        box((x[0] + t, x[1] - t), (y[1] - t, y[1]), (z[0] + t, z[1]), bevel),
-    ]
+    return [box(x, y, (z[0], z[0] + t), bevel), *walls(x, y, (z[0] + t, z[1]), t, bevel)]
 
 
 def trash_can(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -71,16 +66,16 @@ def _swing_bin(x: Interval, y: Interval, h: float, finish: Finish, hood: Finish)
     """Return a bin whose hood has a flap at its front: it hangs from its upper edge and is pulled outwards."""
     t, low = 0.009, 0.68 * h
     base = pieces("body", tray_walls(x, y, (0.0, low), t, 0.002), finish)
-    walls = [box((x[0], x[0] + t), y, (low + 0.001, h)), box((x[1] - t, x[1]), y, (low + 0.001, h))]
-    walls.append(box((x[0] + t, x[1] - t), y, (h - t, h), 0.002))
-    walls.append(box((x[0] + t, x[1] - t), (y[1] - t, y[1]), (low + 0.001, h - t)))
+    over = [box((x[0], x[0] + t), y, (low + 0.001, h)), box((x[1] - t, x[1]), y, (low + 0.001, h))]
+    over.append(box((x[0] + t, x[1] - t), y, (h - t, h), 0.002))
+    over.append(box((x[0] + t, x[1] - t), (y[1] - t, y[1]), (low + 0.001, h - t)))
     span = Rect((x[0] + t + 0.003, x[1] - t - 0.003), (low + 0.004, h - t - 0.003), y[0] + 0.001)
     flap = pieces("flap", box(span.x, (span.y, span.y + t), span.z, 0.002), hood, group="flap")
     sign = box((-0.05, 0.05), (span.y - 0.001, span.y), (span.middle[1] - 0.012, span.middle[1] + 0.012))
     flap += pieces("flap_sign", sign, PLASTIC_WHITE, group="flap")
     hinge = (0.0, span.y, span.z[1])
     mover = Mover("flap", flap, "revolute", (-1, 0, 0), hinge, math.radians(75), "hinge_lid", "lid")
-    return Shape(base + pieces("hood", walls, hood), (mover,))
+    return Shape(base + pieces("hood", over, hood), (mover,))
 
 
 def bucket(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -176,9 +171,7 @@ def briefcase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     base = pieces("lower", tray_walls(x, y, (0.0, half), t, 0.002), finish)
     base += pieces("band", box((x[0] - 0.001, x[1] + 0.001), (y[0] - 0.001, y[0]), (half - 0.012, half)), STEEL, group="band")
     made = pieces("upper", box(x, y, (h - t, h), 0.004), finish)
-    rim = [box((x[0], x[0] + t), y, (half + 0.003, h - t)), box((x[1] - t, x[1]), y, (half + 0.003, h - t))]
-    rim += [box((x[0] + t, x[1] - t), (a, a + t), (half + 0.003, h - t)) for a in (y[0], y[1] - t)]
-    made += pieces("upper_rim", rim, finish)
+    made += pieces("upper_rim", walls(x, y, (half + 0.003, h - t), t), finish)
     movers = [lid("lid", made, (0.0, y[1], half + 0.003), math.radians(110))]
     # the handle hangs against the front and is folded out
     z = half - 0.03
@@ -201,12 +194,8 @@ def suitcase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     wheel, t, face = 0.045, 0.01, 0.03  # the faces are thick enough to be rounded
     x, y, z = (-w / 2, w / 2), (-d / 2, d / 2), (wheel + 0.006, h - 0.035)
     middle = 0.0
-    shell = [
-        box(x, (y[1] - face, y[1]), z, 0.009),
-        box((x[0], x[0] + t), (middle, y[1] - face), z),
-        box((x[1] - t, x[1]), (middle, y[1] - face), z),
-    ]
-    shell += [box((x[0] + t, x[1] - t), (middle, y[1] - face), (a, a + t)) for a in (z[0], z[1] - t)]
+    outer, inner = Rect(x, z, 0.0), Rect((x[0] + t, x[1] - t), (z[0] + t, z[1] - t), 0.0)
+    shell = [box(x, (y[1] - face, y[1]), z, 0.009), *frame(outer, inner, (middle, y[1] - face), 0.0)]
     base = pieces("rear", shell, finish)
     tyre = [s.turned("y", math.pi / 2) for s in revolve([(wheel / 2, -0.008), (wheel / 2, 0.008)], 12)]
 
@@ -220,12 +209,7 @@ def suitcase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     base += castors(y[1] - 0.0335, 0.0)
     base += pieces("tubes", [rod((s * 0.2 * w, y[1] - 0.02, z[1]), (s * 0.2 * w, y[1] - 0.02, h - 0.014), 0.006) for s in (-1, 1)], STEEL)
     base += pieces("pull", box((-0.22 * w, 0.22 * w), (y[1] - 0.034, y[1] - 0.006), (h - 0.014, h), 0.004), PLASTIC, "line_fixed_handle")
-    front = [
-        box(x, (y[0], y[0] + face), z, 0.009),
-        box((x[0], x[0] + t), (y[0] + face, middle - 0.003), z),
-        box((x[1] - t, x[1]), (y[0] + face, middle - 0.003), z),
-    ]
-    front += [box((x[0] + t, x[1] - t), (y[0] + face, middle - 0.003), (a, a + t)) for a in (z[0], z[1] - t)]
+    front = [box(x, (y[0], y[0] + face), z, 0.009), *frame(outer, inner, (y[0] + face, middle - 0.003), 0.0)]
     made = pieces("front", front, finish) + castors(y[0] + 0.0335, 5e-4)  # which turn with it
     grooves = [
         box((x[0] + (k + 0.5) * w / 7 - 0.008, x[0] + (k + 0.5) * w / 7 + 0.008), (y[0] - 0.003, y[0]), (z[0] + 0.03, z[1] - 0.03))
@@ -254,14 +238,14 @@ def safe(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     )[int(rng.integers(3))]
     t, stand = min(0.045, 0.14 * w), 0.05
     x, y, z = (-w / 2, w / 2), (-d / 2 + stand, d / 2), (0.02, h)
-    walls = [box((x[0], x[0] + t), y, z, 0.004), box((x[1] - t, x[1]), y, z, 0.004)]
+    solids = [box((x[0], x[0] + t), y, z, 0.004), box((x[1] - t, x[1]), y, z, 0.004)]
     inner = (x[0] + t, x[1] - t)
-    walls += [
+    solids += [
         box(inner, y, (z[0], z[0] + t), 0.003),
         box(inner, y, (z[1] - t, z[1]), 0.003),
         box(inner, (y[1] - t, y[1]), (z[0] + t, z[1] - t)),
     ]
-    base = pieces("walls", walls, finish)
+    base = pieces("walls", solids, finish)
     base += pieces("feet", [box((sx * 0.36 * w - 0.02, sx * 0.36 * w + 0.02), (-0.3 * d, 0.4 * d), (0.0, 0.02)) for sx in (-1, 1)], PLASTIC)
     middle = (z[0] + z[1]) / 2
     if h > 0.35:

@@ -10,6 +10,7 @@ import numpy as np
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.dining_tables import cased_table, legged
 from pipeline.corpus.furniture.finishes import MIRROR, Scheme
+from pipeline.corpus.furniture.panels import Rect, frame
 from pipeline.corpus.furniture.shape import Piece, Shape, joined, moved, pieces
 from pipeline.corpus.furniture.solids import box, revolve, ring
 from pipeline.corpus.furniture.storage import Size, front_style
@@ -88,21 +89,17 @@ def dressing_table(rng: np.random.Generator, form: str, size: Size, scheme: Sche
         r = min(0.47 * tall, 0.4 * w)
         z = h - r
         glass = [s.turned("x", math.pi / 2).moved((0, y, z)) for s in revolve([(0.93 * r, 0.0), (0.93 * r, 0.006)], 28)]
-        frame = [s.turned("x", math.pi / 2).moved((0, y, z)) for s in ring((r, r), (0.93 * r, 0.93 * r), (-0.008, 0.012), 28)]
+        rim = [s.turned("x", math.pi / 2).moved((0, y, z)) for s in ring((r, r), (0.93 * r, 0.93 * r), (-0.008, 0.012), 28)]
         stem = box((-0.02, 0.02), (y + 0.012, y + 0.03), (work, z), 0.003)
-        base = pieces("mirror", glass, MIRROR, group="mirror") + pieces("mirror_frame", frame, scheme.accent, group="mirror")
+        base = pieces("mirror", glass, MIRROR, group="mirror") + pieces("mirror_frame", rim, scheme.accent, group="mirror")
         base += pieces("mirror_stem", stem, scheme.accent)
     else:
         half = min(0.4 * w, 0.45)
-        span, rise, f = (-half, half), (work + 0.03, h), 0.035
-        frame = [
-            box((span[0], span[0] + f), (y, y + 0.024), rise, 0.003),
-            box((span[1] - f, span[1]), (y, y + 0.024), rise, 0.003),
-            box((span[0] + f, span[1] - f), (y, y + 0.024), (rise[0], rise[0] + f), 0.003),
-            box((span[0] + f, span[1] - f), (y, y + 0.024), (rise[1] - f, rise[1]), 0.003),
-        ]
+        outer = Rect((-half, half), (work + 0.03, h), y)
+        pane = Rect((-half + 0.035, half - 0.035), (outer.z[0] + 0.035, h - 0.035), y)
+        rim = frame(outer, pane, (y, y + 0.024), 0.003)
         feet = [box((s * 0.7 * half - 0.02, s * 0.7 * half + 0.02), (y + 0.004, y + 0.02), (work, work + 0.03)) for s in (-1, 1)]
-        glass = [box((span[0] + f, span[1] - f), (y + 0.006, y + 0.014), (rise[0] + f, rise[1] - f))]
-        base = pieces("mirror", glass, MIRROR, group="mirror") + pieces("mirror_frame", frame, scheme.body, group="mirror")
+        glass = [box(pane.x, (y + 0.006, y + 0.014), pane.z)]
+        base = pieces("mirror", glass, MIRROR, group="mirror") + pieces("mirror_frame", rim, scheme.body, group="mirror")
         base += pieces("mirror_feet", feet, scheme.body)
     return joined(table, Shape(base))

@@ -54,11 +54,11 @@ def apron(w: float, d: float, z: tuple[float, float], inset: float, thick: float
     ]
 
 
-def legged(rng: np.random.Generator, size: Size, scheme: Scheme, *, without: str = "", kind: str = "") -> Shape:
-    """Build a top on legs of the style's form (or of that `kind`), joined by rails between them."""
+def legged(rng: np.random.Generator, size: Size, scheme: Scheme, *, without: str = "") -> Shape:
+    """Build a top on legs of the style's form, joined by rails between them."""
     w, d, h = size
     t = float(rng.uniform(0.022, 0.036)) * min(scheme.manner.slim, 1.15)
-    kind = kind or draw_kind(rng, scheme, without + (" bun" if h > 0.3 else ""))
+    kind = draw_kind(rng, scheme, without + (" bun" if h > 0.3 else ""))
     material = top_finish(rng, scheme)
     made = pieces("top", top(outline(rng, scheme, w, d), (h - t, h), scheme), material)
     finish = leg_finish(scheme, kind)

@@ -13,7 +13,7 @@ from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.finishes import CERAMIC, MARBLE, PLASTIC, STEEL, STONE, Finish, Scheme
 from pipeline.corpus.furniture.fronts import reach
 from pipeline.corpus.furniture.shape import Mover, Piece, Shape, joined, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, rod, shell
+from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, rod, shell, strips, walls
 from pipeline.corpus.furniture.storage import Size, front_style
 
 PLINTH = 0.1  # height of a kitchen unit's recessed plinth [m]
@@ -77,34 +77,10 @@ def bowl(
 ) -> tuple[Piece, ...]:
     """Return an open basin under the rectangle `x`, `y`: a bottom and four walls whose rims end at `top` [m]."""
     low = top - depth
-    solids = [
-        box((x[0], x[1]), (y[0], y[1]), (low - wall, low)),
-        box((x[0], x[0] + wall), y, (low, top)),
-        box((x[1] - wall, x[1]), y, (low, top)),
-        box((x[0] + wall, x[1] - wall), (y[0], y[0] + wall), (low, top)),
-        box((x[0] + wall, x[1] - wall), (y[1] - wall, y[1]), (low, top)),
-    ]
+    solids = [box(x, y, (low - wall, low)), *walls(x, y, (low, top), wall)]
     middle = ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2)
     drain = revolve([(0.025, low), (0.022, low + 0.003)], 12, middle)
     return pieces("bowl", solids, finish) + pieces("drain", drain, STEEL)
-
-
-def counter(
-    x: tuple[float, float],
-    y: tuple[float, float],
-    hole_x: tuple[float, float],
-    hole_y: tuple[float, float],
-    z: tuple[float, float],
-    finish: Finish,
-) -> tuple[Piece, ...]:
-    """Return a worktop with a rectangular hole, as four convex strips."""
-    strips = [
-        box((x[0], hole_x[0]), y, z, 0.002),
-        box((hole_x[1], x[1]), y, z, 0.002),
-        box(hole_x, (y[0], hole_y[0]), z, 0.002),
-        box(hole_x, (hole_y[1], y[1]), z, 0.002),
-    ]
-    return pieces("top", strips, finish)
 
 
 def tap(x: float, y: float, z: float, height: float, reach_out: float, finish: Finish) -> Shape:
@@ -143,7 +119,7 @@ def sink_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     half = min(0.3, 0.5 * w - 0.09)
     hole_x, hole_y = (-half, half), (face + 0.09, d / 2 - 0.13)
     z = (body - how.top_thickness, body)
-    top = counter((-w / 2, w / 2), (face - how.nose, d / 2), hole_x, hole_y, z, how.top or STONE)
+    top = pieces("top", strips((-w / 2, w / 2), (face - how.nose, d / 2), hole_x, hole_y, z, 0.002), how.top or STONE)
     top += bowl((hole_x[0], hole_x[1]), hole_y, body - 0.003, 0.17, STEEL)
     return joined(_topless(shape, top), tap(0.0, d / 2 - 0.065, body, h - body, 0.2, scheme.handle))
 
@@ -174,7 +150,7 @@ def vanity(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     half = min(0.26, 0.5 * w - 0.07)
     hole_x, hole_y = (-half, half), (face + 0.06, d / 2 - 0.11)
     z = (body - how.top_thickness, body)
-    new = counter((-w / 2, w / 2), (face - how.overhang, d / 2), hole_x, hole_y, z, top)
+    new = pieces("top", strips((-w / 2, w / 2), (face - how.overhang, d / 2), hole_x, hole_y, z, 0.002), top)
     new += bowl(hole_x, hole_y, body - 0.002, 0.13, CERAMIC)
     return joined(_topless(shape, new), tap(0.0, d / 2 - 0.055, body, h - body, 0.13, scheme.handle))
 

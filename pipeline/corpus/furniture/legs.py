@@ -81,17 +81,9 @@ def _turned(x: float, y: float, sx: float, sy: float, h: float, t: float) -> lis
 def _fluted(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:  # noqa: ARG001 - one signature for all
     if h < 0.12:
         return [beam((x, y, 0), (x, y, h), t, t, 0.55)]
-    angles = np.arange(16) * (2 * math.pi / 16)
-    star = np.where(np.arange(16) % 2 == 0, 1.0, 0.93)[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    low, high = (np.column_stack([np.array([x, y]) + r * t * star, np.full(16, z)]) for r, z in ((0.26, 0.06 * h), (0.44, 0.82 * h)))
+    column = revolve([(0.26 * t, 0.06 * h), (0.44 * t, 0.82 * h)], 8, (x, y))
     foot = revolve([(0.2 * t, 0.0), (0.34 * t, 0.03 * h), (0.3 * t, 0.06 * h)], 12, (x, y))
-    return [*foot, _round_hull(low, high), box((x - 0.54 * t, x + 0.54 * t), (y - 0.54 * t, y + 0.54 * t), (0.82 * h, h), 0.003)]
-
-
-def _round_hull(low: NDArray[np.float64], high: NDArray[np.float64]) -> Solid:
-    """Return the stack of the outer corners of two star-shaped rings, as facets of alternating width."""
-    keep = np.arange(0, len(low), 2)
-    return stack([low[keep], high[keep]])
+    return [*foot, *column, box((x - 0.54 * t, x + 0.54 * t), (y - 0.54 * t, y + 0.54 * t), (0.82 * h, h), 0.003)]
 
 
 def _cabriole(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:

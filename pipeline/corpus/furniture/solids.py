@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+Interval = tuple[float, float]
 Face = tuple[int, ...]
 Vector = Sequence[float] | NDArray[np.float64]
 
@@ -136,7 +137,7 @@ def _stacked(n: int, rings: int) -> tuple[Face, ...]:
     return tuple(faces)
 
 
-def box(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], bevel: float = 0.0) -> Solid:
+def box(x: Interval, y: Interval, z: Interval, bevel: float = 0.0) -> Solid:
     """Return the box over three intervals; a positive `bevel` [m] cuts its twelve edges at 45 degrees."""
     bevel = min(bevel, 0.3 * min(x[1] - x[0], y[1] - y[0], z[1] - z[0]))
     if bevel <= 0:
@@ -148,7 +149,22 @@ def box(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], 
     return stack(rings)
 
 
-def _octagon(x: tuple[float, float], y: tuple[float, float], bevel: float, inset: float) -> NDArray[np.float64]:
+def strips(x: Interval, y: Interval, hole_x: Interval, hole_y: Interval, z: Interval, bevel: float = 0.0) -> list[Solid]:
+    """Return four boxes over `z` around a hole in the rectangle `x`, `y`: those at its sides take all of `y`."""
+    return [
+        box((x[0], hole_x[0]), y, z, bevel),
+        box((hole_x[1], x[1]), y, z, bevel),
+        box(hole_x, (y[0], hole_y[0]), z, bevel),
+        box(hole_x, (hole_y[1], y[1]), z, bevel),
+    ]
+
+
+def walls(x: Interval, y: Interval, z: Interval, t: float, bevel: float = 0.0) -> list[Solid]:
+    """Return four walls of thickness `t` [m] along the inside of the rectangle `x`, `y`."""
+    return strips(x, y, (x[0] + t, x[1] - t), (y[0] + t, y[1] - t), z, bevel)
+
+
+def _octagon(x: Interval, y: Interval, bevel: float, inset: float) -> NDArray[np.float64]:
     """Return a rectangle with cut corners (8, 2), drawn in by `inset` along x and y; its edges keep their directions."""
     x0, x1, y0, y1 = x[0] + inset, x[1] - inset, y[0] + inset, y[1] - inset
     b = bevel * (1 - 0.5 * (inset > 0))
@@ -156,9 +172,7 @@ def _octagon(x: tuple[float, float], y: tuple[float, float], bevel: float, inset
     return np.array(corners)
 
 
-def cushion(
-    x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], radius: float, steps: int = 2, crown: float = 0.0
-) -> Solid:
+def cushion(x: Interval, y: Interval, z: Interval, radius: float, steps: int = 2, crown: float = 0.0) -> Solid:
     """Return a box whose edges and corners are rounded with `radius` [m], `steps` facets to the quarter turn.
 
     With a `crown` [m] the top swells towards its middle by that much; the box stays within `z`.
@@ -194,7 +208,7 @@ def _quarter(steps: int) -> tuple[NDArray[np.float64], list[float], float]:
     return np.stack([np.cos(angles), np.sin(angles)]), np.linspace(0, last, steps + 1).tolist(), math.sin(last)
 
 
-def pillow(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], steps: int = 2) -> Solid:
+def pillow(x: Interval, y: Interval, z: Interval, steps: int = 2) -> Solid:
     """Return a throw pillow: two domes that meet in a sharp seam around a rectangle with soft corners."""
     outline = rounded((x[0], x[1]), (y[0], y[1]), 0.22 * min(x[1] - x[0], y[1] - y[0]), steps)
     centre, middle, half = np.array([(x[0] + x[1]) / 2, (y[0] + y[1]) / 2]), (z[0] + z[1]) / 2, (z[1] - z[0]) / 2
@@ -204,7 +218,7 @@ def pillow(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float
     return stack(rings)
 
 
-def slab(outline: NDArray[np.float64], z: tuple[float, float], bevel: float = 0.0) -> Solid:
+def slab(outline: NDArray[np.float64], z: Interval, bevel: float = 0.0) -> Solid:
     """Return the prism over a convex outline (n, 2), counter-clockwise; `bevel` draws its rims in by a scaling."""
     centre = outline.mean(axis=0)
     reach = float(np.abs(outline - centre).max())
@@ -214,13 +228,13 @@ def slab(outline: NDArray[np.float64], z: tuple[float, float], bevel: float = 0.
     return stack([_at(inner, z[0]), _at(outline, z[0] + bevel), _at(outline, z[1] - bevel), _at(inner, z[1])])
 
 
-def circle(radius: float, n: int = 20, centre: tuple[float, float] = (0.0, 0.0), squash: float = 1.0) -> NDArray[np.float64]:
+def circle(radius: float, n: int = 20, centre: Interval = (0.0, 0.0), squash: float = 1.0) -> NDArray[np.float64]:
     """Return a regular polygon (n, 2) that touches its box on both axes (n a multiple of 4); `squash` scales y."""
     angles = np.arange(n) * (2 * np.pi / n)
     return np.stack([centre[0] + radius * np.cos(angles), centre[1] + radius * squash * np.sin(angles)], axis=1)
 
 
-def rounded(x: tuple[float, float], y: tuple[float, float], radius: float, steps: int = 4) -> NDArray[np.float64]:
+def rounded(x: Interval, y: Interval, radius: float, steps: int = 4) -> NDArray[np.float64]:
     """Return a rectangle's outline with rounded corners (4 * steps + 4, 2), counter-clockwise."""
     radius = min(radius, 0.499 * min(x[1] - x[0], y[1] - y[0]))
     points = []
@@ -253,12 +267,12 @@ def beam(start: Vector, end: Vector, width: float, depth: float, taper: float = 
     return stack([a + ring * taper, b + ring])
 
 
-def revolve(profile: Sequence[tuple[float, float]], n: int = 20, centre: tuple[float, float] = (0.0, 0.0)) -> list[Solid]:
+def revolve(profile: Sequence[Interval], n: int = 20, centre: Interval = (0.0, 0.0)) -> list[Solid]:
     """Return solids of revolution about a vertical axis: `profile` lists (radius, height) upwards.
 
     Convex runs of the profile become one solid each, so that every piece is convex.
     """
-    runs: list[list[tuple[float, float]]] = [[profile[0], profile[1]]]
+    runs: list[list[Interval]] = [[profile[0], profile[1]]]
     for point in profile[2:]:
         (r0, z0), (r1, z1) = runs[-1][-2:]
         if (r1 - r0) * (point[1] - z1) >= (point[0] - r1) * (z1 - z0) - 1e-12:
@@ -284,11 +298,11 @@ def shell(
 
 
 def ring(
-    outer: tuple[float, float],
-    inner: tuple[float, float],
-    z: tuple[float, float],
+    outer: Interval,
+    inner: Interval,
+    z: Interval,
     n: int = 16,
-    centre: tuple[float, float] = (0.0, 0.0),
+    centre: Interval = (0.0, 0.0),
     squash: float = 1.0,
 ) -> list[Solid]:
     """Return a round wall with radii (at the bottom, at the top) `outer` and `inner`, as n staves; `squash` scales y."""

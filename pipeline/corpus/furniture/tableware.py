@@ -12,7 +12,7 @@ import numpy as np
 from pipeline.corpus.furniture.bent import blades, curve, prism, tube
 from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, shade
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, slab
+from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, slab, walls
 from pipeline.corpus.furniture.storage import Size
 
 GLAZES = ("white", "ivory", "sage", "dusty_blue", "terracotta", "anthracite", "mustard", "blush", "navy", "greige")
@@ -191,10 +191,7 @@ def basket(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     else:
         t = 0.012
         x, y = (-w / 2 + 0.006, w / 2 - 0.006), (-d / 2 + 0.006, d / 2 - 0.006)
-        made = [
-            box(x, y, (0, t)), box((x[0], x[0] + t), y, (t, body)), box((x[1] - t, x[1]), y, (t, body)),
-            box((x[0] + t, x[1] - t), (y[0], y[0] + t), (t, body)), box((x[0] + t, x[1] - t), (y[1] - t, y[1]), (t, body)),
-        ]  # fmt: skip
+        made = [box(x, y, (0, t)), *walls(x, y, (t, body), t)]
         rim = [
             box((s * w / 2 - 0.012 - 0.012 * s, s * w / 2 + 0.012 - 0.012 * s), (-d / 2, d / 2), (body, body + 0.015), 0.004)
             for s in (-1, 1)

@@ -8,6 +8,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import turns
 from pipeline.corpus.furniture.finishes import FABRICS, MIRROR, PAPER, Finish, Pattern, Scheme, shade
+from pipeline.corpus.furniture.panels import Rect, frame
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab
 from pipeline.corpus.furniture.storage import Size, pick
@@ -31,12 +32,7 @@ def standing(solids: list[Solid], y: float, z: float) -> list[Solid]:
 def bordered(w: float, h: float, wide: float, y: tuple[float, float], bevel: float = 0.002) -> list[Solid]:
     """Return four boards around a rectangle `w` x `h` whose lower edge is at z = 0."""
     x = w / 2
-    return [
-        box((-x, -x + wide), y, (0.0, h), bevel),
-        box((x - wide, x), y, (0.0, h), bevel),
-        box((-x + wide, x - wide), y, (0.0, wide), bevel),
-        box((-x + wide, x - wide), y, (h - wide, h), bevel),
-    ]
+    return frame(Rect((-x, x), (0.0, h), y[0]), Rect((-x + wide, x - wide), (wide, h - wide), y[0]), y, bevel)
 
 
 def picture(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
