@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.shapes import Shape
-from pipeline.geometry.compiled import compiled
+from pipeline.geometry.compiled import borrowing
 from pipeline.geometry.contact import depth
-from pipeline.geometry.polygons import excess
+from pipeline.geometry.polygons import beyond
 from pipeline.geometry.prisms import Prisms, stacked
 
 Floats = NDArray[np.float64]
@@ -29,6 +29,7 @@ class World(NamedTuple):
     `corners` (P, V, 2), `corner_count` (P,), `z` (P, 2) and `shell` (N, S, 2), `shell_count` (N,) (the body's hull in plan) are in the object's frame;
     `at`, `at_z`, `flat` (P, 4) and `box` (N, 4) are where it was placed last [m].
     The room: `door`, `door_count`, `door_z`, `door_flat` are what its doors sweep; `polygon` (n, 2), `ceiling` (1,) [m].
+    `outline` (S, 2) and `wall` (4, 2) are scratch.
     """
 
     start: Ints
@@ -47,6 +48,8 @@ class World(NamedTuple):
     door_flat: Floats
     polygon: Floats
     ceiling: Floats
+    outline: Floats
+    wall: Floats
 
 
 def make_world(shapes: Sequence[Shape], swung: Prisms, polygon: Floats, ceiling: float) -> World:
@@ -78,10 +81,12 @@ def make_world(shapes: Sequence[Shape], swung: Prisms, polygon: Floats, ceiling:
         swung.boxes(),
         polygon,
         np.array([ceiling]),
+        np.zeros((most, 2)),
+        np.zeros((4, 2)),
     )
 
 
-@compiled
+@borrowing
 def put(world: World, i: int, pose: Floats) -> None:
     """Place object `i` at (x, y, z, yaw)."""
     c, s = math.cos(pose[3]), math.sin(pose[3])
@@ -99,19 +104,18 @@ def put(world: World, i: int, pose: Floats) -> None:
     world.box[i, 0], world.box[i, 1], world.box[i, 2], world.box[i, 3] = left, low, right, high
 
 
-@compiled
+@borrowing
 def leaves_room(world: World, i: int, pose: Floats, tolerance: float) -> bool:
     """Tell whether the outline of object `i` would be beyond the walls at a pose."""
     c, s = math.cos(pose[3]), math.sin(pose[3])
     n = world.shell_count[i]
-    shell = np.empty((n, 2))
     for v in range(n):
-        shell[v, 0] = c * world.shell[i, v, 0] - s * world.shell[i, v, 1] + pose[0]
-        shell[v, 1] = s * world.shell[i, v, 0] + c * world.shell[i, v, 1] + pose[1]
-    return bool(excess(shell, world.polygon) > tolerance)
+        world.outline[v, 0] = c * world.shell[i, v, 0] - s * world.shell[i, v, 1] + pose[0]
+        world.outline[v, 1] = s * world.shell[i, v, 0] + c * world.shell[i, v, 1] + pose[1]
+    return bool(beyond(world.outline[:n], world.polygon, world.wall) > tolerance)
 
 
-@compiled
+@borrowing
 def meet(world: World, a0: int, a1: int, b0: int, b1: int, tolerance: float) -> bool:
     """Tell whether any of the placed prisms a0 .. a1 - 1 is in one of b0 .. b1 - 1 by more than `tolerance` [m]."""
     flat, at_z = world.flat, world.at_z
@@ -128,7 +132,7 @@ def meet(world: World, a0: int, a1: int, b0: int, b1: int, tolerance: float) -> 
     return False
 
 
-@compiled
+@borrowing
 def meets_door(world: World, a0: int, a1: int, tolerance: float) -> bool:
     """Tell whether any of the placed prisms a0 .. a1 - 1 is where a door of the room swings."""
     flat, at_z = world.flat, world.at_z
@@ -143,7 +147,7 @@ def meets_door(world: World, a0: int, a1: int, tolerance: float) -> bool:
     return False
 
 
-@compiled
+@borrowing
 def collide(world: World, i: int, j: int, tolerance: float) -> bool:
     """Tell whether two placed objects break a hard rule: a body in the other's body or where its parts move."""
     a, b, box, flat = world.start[i], world.start[j], world.box, world.flat
@@ -155,13 +159,13 @@ def collide(world: World, i: int, j: int, tolerance: float) -> bool:
     return False
 
 
-@compiled
+@borrowing
 def _apart(a: Floats, b: Floats, tolerance: float) -> bool:
     """Tell whether two boxes in plan (4,) share at most `tolerance` along some axis."""
     return bool(min(a[2], b[2]) - max(a[0], b[0]) <= tolerance or min(a[3], b[3]) - max(a[1], b[1]) <= tolerance)
 
 
-@compiled
+@borrowing
 def blocker(world: World, i: int, others: NDArray[np.bool_], tolerance: float) -> int:
     """Return what is in the way of placed object `i`, whose outline is within the walls: WALL, DOOR, the first of `others`, or FREE."""
     a = world.start[i]
@@ -169,7 +173,7 @@ def blocker(world: World, i: int, others: NDArray[np.bool_], tolerance: float) -
         if world.at_z[k, 1] > world.ceiling[0] + tolerance:
             return WALL
     for k in range(a[1], a[2]):
-        if excess(world.at[k, : world.corner_count[k]], world.polygon) > tolerance:
+        if beyond(world.at[k, : world.corner_count[k]], world.polygon, world.wall) > tolerance:
             return WALL
     if meets_door(world, a[0], a[1], tolerance):
         return DOOR
@@ -179,13 +183,13 @@ def blocker(world: World, i: int, others: NDArray[np.bool_], tolerance: float) -
     return FREE
 
 
-@compiled
+@borrowing
 def hindrance(world: World, i: int, others: NDArray[np.bool_]) -> int:
     """Return how many soft rules placed object `i` breaks: own access places taken or in a wall, another's taken."""
     a = world.start[i]
     broken = 0
     for k in range(a[2], a[3]):
-        taken = excess(world.at[k, : world.corner_count[k]], world.polygon) > SOFT_WALL
+        taken = beyond(world.at[k, : world.corner_count[k]], world.polygon, world.wall) > SOFT_WALL
         for j in range(others.shape[0]):
             if taken:
                 break
@@ -198,13 +202,19 @@ def hindrance(world: World, i: int, others: NDArray[np.bool_]) -> int:
     return broken
 
 
-@compiled
 def conflicts(world: World, poses: Floats, tolerance: float) -> tuple[NDArray[np.bool_], Ints]:
     """Place all N objects; return which pairs (N, N) break a hard rule, and of each (N,) whether WALL or DOOR is in its way, else FREE."""
     n = poses.shape[0]
     pairs = np.zeros((n, n), np.bool_)
     alone = np.full(n, FREE)
-    nobody = np.zeros(n, np.bool_)
+    _conflicts(world, poses, tolerance, np.zeros(n, np.bool_), pairs, alone)
+    return pairs, alone
+
+
+@borrowing
+def _conflicts(world: World, poses: Floats, tolerance: float, nobody: NDArray[np.bool_], pairs: NDArray[np.bool_], alone: Ints) -> None:
+    """Write `pairs` (N, N), which start as False, and `alone` (N,)."""
+    n = poses.shape[0]
     for i in range(n):
         put(world, i, poses[i])
         alone[i] = WALL if leaves_room(world, i, poses[i], tolerance) else blocker(world, i, nobody, tolerance)
@@ -212,10 +222,9 @@ def conflicts(world: World, poses: Floats, tolerance: float) -> tuple[NDArray[np
         for j in range(i):
             pairs[i, j] = collide(world, i, j, tolerance)
             pairs[j, i] = pairs[i, j]
-    return pairs, alone
 
 
-@compiled
+@borrowing
 def composed(pose: Floats, offset: Floats, out: Floats) -> None:
     """Write the pose of a member at `offset` (x, y, z, yaw) in the frame of one at `pose`, rounded as poses are."""
     c, s = math.cos(pose[3]), math.sin(pose[3])
@@ -225,7 +234,6 @@ def composed(pose: Floats, offset: Floats, out: Floats) -> None:
     out[3] = (pose[3] + offset[3] + math.pi) % (2 * math.pi) - math.pi
 
 
-@compiled
 def free_poses(
     world: World,
     members: Ints,
@@ -245,11 +253,20 @@ def free_poses(
     """
     found = np.full(poses.shape[0], np.inf)
     own = np.empty((members.shape[0], 4))
+    return found, int(_free_poses(world, members, offsets, poses, costs, first, wanted, others, tolerance, access_cost, own, found))
+
+
+@borrowing
+def _free_poses(
+    world: World, members: Ints, offsets: Floats, poses: Floats, costs: Floats, first: int, wanted: int, others: NDArray[np.bool_],
+    tolerance: float, access_cost: float, own: Floats, found: Floats,
+) -> int:  # fmt: skip
+    """Write the costs to `found` (C,), return where it stopped; `own` (K, 4) is scratch."""
     have = 0
     last = FREE  # what was in the way of the pose before is likely to be in the way of this one
     for k in range(first, poses.shape[0]):
         if have >= wanted:
-            return found, k
+            return k
         free = True
         for m in range(members.shape[0]):
             composed(poses[k], offsets[m], own[m])
@@ -272,4 +289,4 @@ def free_poses(
             broken += hindrance(world, members[m], others)
         found[k] = costs[k] + access_cost * broken
         have += 1
-    return found, poses.shape[0]
+    return len(poses)

@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.geometry.compiled import compiled
+from pipeline.geometry.compiled import borrowing, compiled
 from pipeline.geometry.convex import gap
-from pipeline.geometry.polygons import excess
+from pipeline.geometry.polygons import beyond
 from pipeline.geometry.prisms import Prisms
 
 Floats = NDArray[np.float64]
@@ -33,7 +33,7 @@ def group_boxes(prisms: Prisms, start: Ints) -> Floats:
     return found
 
 
-@compiled
+@borrowing
 def depth(corners_a: Floats, z_a: Floats, corners_b: Floats, z_b: Floats) -> float:
     """Return how deep two prisms are in each other [m]: the lesser of plan depth and shared height; <= 0 when apart."""
     shared = float(min(z_a[1], z_b[1]) - max(z_a[0], z_b[0]))
@@ -101,13 +101,13 @@ def first_hits(
 @compiled
 def wall_excesses(corners: Floats, count: Ints, polygon: Floats) -> Floats:
     """Return how far (P,) [m] each prism sticks out of a room polygon."""
-    found = np.empty(count.shape[0])
+    found, wall = np.empty(count.shape[0]), np.empty((4, 2))
     for i in range(count.shape[0]):
-        found[i] = excess(corners[i, : count[i]], polygon)
+        found[i] = beyond(corners[i, : count[i]], polygon, wall)
     return found
 
 
-@compiled
+@borrowing
 def _apart(a: Floats, b: Floats, tolerance: float) -> bool:
     """Tell whether two boxes (6,) share at most `tolerance` along some axis."""
     shared = float(min(a[3], b[3]) - max(a[0], b[0]))
@@ -116,7 +116,7 @@ def _apart(a: Floats, b: Floats, tolerance: float) -> bool:
     return bool(shared <= tolerance)
 
 
-@compiled
+@borrowing
 def _flat_apart(a: Floats, b: Floats, tolerance: float) -> bool:
     """Tell whether two plan boxes (4,) share at most `tolerance` along some axis."""
     shared = min(min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1]))

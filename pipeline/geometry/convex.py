@@ -10,12 +10,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.geometry.compiled import compiled
+from pipeline.geometry.compiled import borrowing, compiled
 
 Floats = NDArray[np.float64]
 
 
-@compiled
+@borrowing
 def gap(a: Floats, b: Floats) -> float:
     """Return the largest gap [m] over the edge normals of both polygons; negative: they overlap by that depth."""
     best = -np.inf
@@ -93,7 +93,7 @@ def clipped_areas(a: Floats, b: Floats) -> Floats:
     return found
 
 
-@compiled
+@borrowing
 def distance_to(x: float, y: float, polygon: Floats) -> float:
     """Return the distance [m] from a point to a convex polygon, 0 inside."""
     n = polygon.shape[0]

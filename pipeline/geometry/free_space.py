@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.plan import Opening, Room
-from pipeline.geometry.compiled import compiled
+from pipeline.geometry.compiled import borrowing
 from pipeline.geometry.floor_raster import Mask, Raster, components, covered, fill_all, standing
 from pipeline.geometry.prisms import Prisms
 
@@ -76,7 +76,7 @@ def bare_floor(rooms: Sequence[Room], openings: Sequence[Opening], depth: float,
     return Floor(raster, room, free)
 
 
-@compiled
+@borrowing
 def _label_near(labels: NDArray[np.int32], point: Floats, within: float) -> int:
     """Return the label other than 0 whose cell's centre is nearest to a point (2,), 0 when none is `within`; all in cells."""
     best, found = within * within, 0

@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.geometry.compiled import compiled
+from pipeline.geometry.compiled import borrowing, compiled
 from pipeline.geometry.convex import gap
 
 Floats = NDArray[np.float64]
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 SKIN = 0.05  # thickness given to walls where a shape's crossing is tested [m]; thinner than any wall
 
 
-@compiled
+@borrowing
 def contains(x: float, y: float, polygon: Floats) -> bool:
     """Tell whether a point is in a polygon (even-odd rule)."""
     inside = False
@@ -31,7 +31,7 @@ def contains(x: float, y: float, polygon: Floats) -> bool:
     return inside
 
 
-@compiled
+@borrowing
 def boundary_distance(x: float, y: float, polygon: Floats) -> float:
     """Return the distance [m] from a point to a polygon's boundary."""
     best = np.inf
@@ -52,6 +52,12 @@ def excess(shape: Floats, polygon: Floats) -> float:
 
     The farthest vertex outside, or, where a reflex corner pokes into the shape, the depth to which it does.
     """
+    return beyond(shape, polygon, np.empty((4, 2)))
+
+
+@borrowing
+def beyond(shape: Floats, polygon: Floats, wall: Floats) -> float:
+    """Return `excess`; `wall` (4, 2) is scratch."""
     worst = 0.0
     low_x, low_y, high_x, high_y = np.inf, np.inf, -np.inf, -np.inf
     for i in range(shape.shape[0]):
@@ -60,7 +66,6 @@ def excess(shape: Floats, polygon: Floats) -> float:
         if not contains(x, y, polygon):
             worst = max(worst, boundary_distance(x, y, polygon))
     n = polygon.shape[0]
-    wall = np.empty((4, 2))
     for k in range(n):
         x0, y0 = polygon[k, 0], polygon[k, 1]
         x1, y1 = polygon[(k + 1) % n, 0], polygon[(k + 1) % n, 1]

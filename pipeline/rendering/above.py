@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset
-from pipeline.geometry.compiled import compiled
+from pipeline.geometry.compiled import borrowing
 from pipeline.geometry.memo import kept
 from pipeline.rendering.pose import asset_triangles
 from pipeline.rendering.raster import AMBIENT, LIGHT, Frame, View, fill_triangle, render, top_down
@@ -47,10 +47,12 @@ def draw_roof(
     found = roof(asset)
     pose = np.array([*position, math.cos(yaw), math.sin(yaw)])
     offset = np.array([view.width / 2, view.height / 2]) - view.scale * view.centre[:2] * (1.0, -1.0)
-    _draw(found.faces, found.colours, pose, scale, view.scale, offset, item, TO_LIGHT, AMBIENT, frame.colour, frame.depth, frame.item)
+    scratch = np.empty((3, 3)), np.empty((3, 3), np.float32), np.empty(3, np.uint8)
+    drawn = frame.colour, frame.depth, frame.item
+    _draw(found.faces, found.colours, pose, scale, view.scale, offset, item, TO_LIGHT, AMBIENT, scratch, drawn)
 
 
-@compiled
+@borrowing
 def _draw(
     faces: NDArray[np.float32],
     colours: NDArray[np.float32],
@@ -61,15 +63,16 @@ def _draw(
     item: int,
     light: NDArray[np.float64],
     ambient: float,
-    colour: NDArray[np.uint8],
-    depth: NDArray[np.float32],
-    items: NDArray[np.int32],
+    scratch: tuple[NDArray[np.float64], NDArray[np.float32], NDArray[np.uint8]],
+    drawn: tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.int32]],
 ) -> None:
     """Scale by `size`, turn and move by `pose` (x, y, z, cos, sin), shade and fill triangles.
 
-    A point's pixel is `offset` + `scale` times its (x, -y) [m].
+    A point's pixel is `offset` + `scale` times its (x, -y) [m]. `scratch` has a triangle's corners in the world and
+    in the picture, (3, 3) each, and its colour (3,); `drawn` has what `Frame` has.
     """
-    world, corners, paint = np.empty((3, 3)), np.empty((3, 3), np.float32), np.empty(3, np.uint8)
+    world, corners, paint = scratch
+    colour, depth, items = drawn
     for t in range(faces.shape[0]):
         for k in range(3):
             x, y = faces[t, k, 0] * size[0], faces[t, k, 1] * size[1]
@@ -78,11 +81,12 @@ def _draw(
             world[k, 2] = faces[t, k, 2] * size[2] + pose[2]
             corners[k, 0], corners[k, 1] = offset[0] + scale * world[k, 0], offset[1] - scale * world[k, 1]
             corners[k, 2] = world[k, 2]
-        a, b = world[1] - world[0], world[2] - world[0]
-        normal = np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
-        length = math.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
-        lambert = (normal[0] * light[0] + normal[1] * light[1] + normal[2] * light[2]) / max(length, 1e-12)
-        lambert = min(max(-lambert if normal[2] < 0 else lambert, 0.0), 1.0)  # the side that is seen
+        ax, ay, az = world[1, 0] - world[0, 0], world[1, 1] - world[0, 1], world[1, 2] - world[0, 2]
+        bx, by, bz = world[2, 0] - world[0, 0], world[2, 1] - world[0, 1], world[2, 2] - world[0, 2]
+        nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+        length = math.sqrt(nx**2 + ny**2 + nz**2)
+        lambert = (nx * light[0] + ny * light[1] + nz * light[2]) / max(length, 1e-12)
+        lambert = min(max(-lambert if nz < 0 else lambert, 0.0), 1.0)  # the side that is seen
         for k in range(3):
             paint[k] = np.uint8(min(max(colours[t, k] * (ambient + (1.0 - ambient) * lambert) * 255.0 + 0.5, 0.0), 255.0))
         fill_triangle(corners, paint, item, colour, depth, items)

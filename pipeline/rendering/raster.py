@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from pipeline.geometry.compiled import compiled
+from pipeline.geometry.compiled import borrowing, compiled
 
 LIGHT = np.array([-0.35, -0.45, 0.82])  # towards the light, world frame; from the front left, high up
 AMBIENT = 0.45
@@ -151,7 +151,7 @@ def _plain(colour: tuple[float, float, float], width: int, height: int) -> NDArr
     return filled
 
 
-@compiled
+@borrowing
 def _fill(
     projected: NDArray[np.float32],
     colours: NDArray[np.uint8],
@@ -165,7 +165,7 @@ def _fill(
         fill_triangle(projected[t], colours[t], items[t], colour, depth, item)
 
 
-@compiled
+@borrowing
 def fill_triangle(
     corners: NDArray[np.float32],
     paint: NDArray[np.uint8],

@@ -138,13 +138,14 @@ def test_a_layout_that_is_given_up_is_as_bad_as_that_and_its_score_agrees_with_t
     request, rng = storey(program(), 0), np.random.default_rng(6)
     n, side = len(request.rooms), int(np.ceil(np.sqrt(request.gross.sum())))
     wishes = Trees(request, program(), Outline(side, side, 0)).wishes
+    travel = np.zeros((n, 4))
     for _ in range(40):
         rect = rectangles(rng, request, side)
-        whole = layout.cost(rect, side, side, n, request.gross, wishes, np.inf)
-        assert whole == pytest.approx(layout.cost.py_func(rect, side, side, n, request.gross, wishes, np.inf))
+        whole = layout.cost(rect, side, side, n, request.gross, wishes, np.inf, travel)
+        assert whole == pytest.approx(layout.cost.py_func(rect, side, side, n, request.gross, wishes, np.inf, travel))
         for share in (0.2, 0.6, 0.99):
-            assert share * whole < layout.cost(rect, side, side, n, request.gross, wishes, share * whole) <= whole + 1e-9
-        assert layout.cost(rect, side, side, n, request.gross, wishes, whole) == whole
+            assert share * whole < layout.cost(rect, side, side, n, request.gross, wishes, share * whole, travel) <= whole + 1e-9
+        assert layout.cost(rect, side, side, n, request.gross, wishes, whole, travel) == whole
 
 
 def test_lines_of_a_layout_are_those_of_its_grid():

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pipeline.floorplan.search.energy import Terms, terms, together, weighted
 from pipeline.floorplan.search.grid import Labels, Measures, empty, measure
 from pipeline.floorplan.search.spec import Spec, tree
-from pipeline.geometry.compiled import compiled
+from pipeline.geometry.compiled import borrowing
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -28,7 +28,18 @@ class Schedule(NamedTuple):
     most: int
 
 
-@compiled
+class Scratch(NamedTuple):
+    """What annealing a plan of n rooms works on."""
+
+    grid: Labels  # the plan as it is now, and
+    trial: Labels  # as proposed
+    areas: Floats  # (n,) of the proposal, as `terms` writes them
+    shape: Floats  # (n, 4) likewise, and
+    kept: Floats  # (n, 4) of the plan as it is now
+    touched: Ints  # (n+1,) rooms that differ between the two
+
+
+@borrowing
 def propose(grid: Labels, n: int, fixed: Ints, draws: Floats, k: int, touched: Ints) -> bool:
     """Change `grid` in place by one random move, row k of `draws`; False when the draw gives none.
 
@@ -78,7 +89,7 @@ def propose(grid: Labels, n: int, fixed: Ints, draws: Floats, k: int, touched: I
     return True
 
 
-@compiled
+@borrowing
 def _swap(grid: Labels, a: int, b: int, touched: Ints) -> None:
     """Let two rooms change places."""
     touched[a] = 1
@@ -91,7 +102,7 @@ def _swap(grid: Labels, a: int, b: int, touched: Ints) -> None:
                 grid[i, j] = a
 
 
-@compiled
+@borrowing
 def _reach(grid: Labels, n: int, fixed: Ints, kind: float, wall: tuple[int, int, int, int], step: int) -> int:
     """Return how many cells of a wall move with its cell (y, x), whose other side is at (dy, dx) from it, in the direction of `step`."""
     y, x, dy, dx = wall
@@ -120,12 +131,16 @@ def score(grid: Labels, spec: Spec, weights: Terms, penalty: float) -> tuple[flo
 def run(
     start: Labels, spec: Spec, weights: Terms, fixed: Ints, draws: Floats, hot: float, cold: float, penalty: float, most: int
 ) -> tuple[Labels, float, float, Terms, int, int]:
-    """Anneal from `start` with at most one proposal per row of `draws`; see `anneal`. Scratch space is made here."""
-    out = empty(spec.target.size, start.shape[0] - 2, start.shape[1] - 2)
-    return anneal(start, spec, tree(spec.link, spec.root), out, weights, fixed, draws, Schedule(hot, cold, penalty, most))
+    """Anneal from `start` with at most one proposal per row of `draws`; return the best grid and what `anneal` says of it."""
+    n = spec.target.size
+    out = empty(n, start.shape[0] - 2, start.shape[1] - 2)
+    scratch = Scratch(start.copy(), start.copy(), np.zeros(n), np.zeros((n, 4)), np.zeros((n, 4)), np.ones(n + 1, np.int64))
+    best = start.copy()
+    schedule = Schedule(hot, cold, penalty, most)
+    return best, *anneal(best, spec, tree(spec.link, spec.root), out, scratch, weights, fixed, draws, schedule)
 
 
-@compiled
+@borrowing
 def _copy(source: Labels, target: Labels, out: Measures, touched: Ints) -> None:
     """Copy the boxes of touched rooms, in which all changed cells lie (a loop compiles faster than a slice)."""
     for i in range(touched.size - 1):
@@ -135,26 +150,24 @@ def _copy(source: Labels, target: Labels, out: Measures, touched: Ints) -> None:
                     target[y, x] = source[y, x]
 
 
-@compiled
+@borrowing
 def _copy_all(source: Labels, target: Labels) -> None:
     for y in range(source.shape[0]):
         for x in range(source.shape[1]):
             target[y, x] = source[y, x]
 
 
-@compiled
+@borrowing
 def anneal(
-    start: Labels, spec: Spec, edges: Ints, out: Measures, weights: Terms, fixed: Ints, draws: Floats, schedule: Schedule
-) -> tuple[Labels, float, float, Terms, int, int]:
-    """Anneal from `start` until `most` proposals are evaluated or the draws are spent; return the best plan: grid, energy, hard violation (0: all hold), terms, moves accepted and evaluated.
+    best: Labels, spec: Spec, edges: Ints, out: Measures, scratch: Scratch, weights: Terms, fixed: Ints, draws: Floats, schedule: Schedule
+) -> tuple[float, float, Terms, int, int]:
+    """Anneal from `best` until `most` proposals are evaluated or the draws are spent; leave the best plan there, and return its energy, hard violation (0: all hold), terms, moves accepted and evaluated.
 
     The violation's weight grows from a quarter of `penalty` to all of it; the best state is the one of least (violation, energy).
     """
     hot, cold, penalty, most = schedule
     n = spec.target.size
-    grid, trial, best = start.copy(), start.copy(), start.copy()
-    areas, shape, kept = np.zeros(n), np.zeros((n, 4)), np.zeros((n, 4))
-    touched = np.ones(n + 1, np.int64)
+    grid, trial, areas, shape, kept, touched = scratch
     measure(grid, n, out)
     exact = n > 0  # a plain True is a type of its own: `terms` would be compiled twice
     values, hard = terms(grid, out, spec, edges, areas, shape, touched, exact)
@@ -167,11 +180,11 @@ def anneal(
     for k in range(draws.shape[0]):
         if evaluated == most:
             break
+        if not propose(trial, n, fixed, draws, k, touched):
+            continue
         done = evaluated / most
         heat = hot * (cold / hot) ** done
         weight = penalty * (0.25 + 0.75 * done)
-        if not propose(trial, n, fixed, draws, k, touched):
-            continue
         evaluated += 1
         measure(trial, n, out)
         # the draw says how much worse the proposal may be; most fall at the first, cheap look
@@ -196,11 +209,12 @@ def anneal(
             _copy(grid, trial, out, touched)
             _settle(kept, shape, touched)
             if hard == np.inf:  # nothing is known of the start yet
-                touched[:n] = 1
-    return best, best_soft, best_hard, best_values, accepted, evaluated
+                for i in range(n):
+                    touched[i] = 1
+    return best_soft, best_hard, best_values, accepted, evaluated
 
 
-@compiled
+@borrowing
 def _settle(source: Floats, target: Floats, touched: Ints) -> None:
     """Copy the rows of touched rooms, and mark none."""
     for i in range(source.shape[0]):

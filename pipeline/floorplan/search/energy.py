@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from pipeline.floorplan.search.grid import Labels, Measures, ell_opening, hull_area, inner_area, notch_width, opening, simple
 from pipeline.floorplan.search.spec import Spec
-from pipeline.geometry.compiled import compiled
+from pipeline.geometry.compiled import borrowing
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -61,7 +61,7 @@ TOGETHER = 12.0  # weight of what belongs together, beside the twelve
 SPLIT = 4.5  # m2 charged when a room falls apart at a neck; the legacy solver charges 45 in its units of 0.25 m2 x 0.4
 
 
-@compiled
+@borrowing
 def weighted(values: Terms, weights: Terms) -> float:
     """Return the sum of terms times weights."""
     total = 0.0
@@ -70,13 +70,13 @@ def weighted(values: Terms, weights: Terms) -> float:
     return total
 
 
-@compiled
+@borrowing
 def missed(own: float, whole: float) -> float:
     """Return (own share of the whole - 1)^2: the form of the terms 6, 7 and 9."""
     return (own / whole - 1.0) ** 2 * 4.0
 
 
-@compiled
+@borrowing
 def circulation(out: Measures, edges: Ints) -> float:
     """Term 1: ways from the entrance that double back.
 
@@ -84,7 +84,10 @@ def circulation(out: Measures, edges: Ints) -> float:
     along the tree of links, each hop from centroid to the middle of the common wall to centroid.
     """
     n = out.cells.size - 1
-    travel = np.zeros((n, 4))
+    travel = out.travel
+    for way in range(4):
+        for room in range(n):
+            travel[room, way] = 0.0
     total = 0.0
     for k in range(edges.shape[0]):
         room, parent = edges[k, 0], edges[k, 1]
@@ -106,7 +109,7 @@ def circulation(out: Measures, edges: Ints) -> float:
     return total / max(n - 1, 1) * 4.0
 
 
-@compiled
+@borrowing
 def area(areas: Floats, target: Floats, heed: Floats) -> float:
     """Term 2: mean over rooms of max(q, 1/q) - 1 with q = inner area / target (absolute, unlike the legacy shares).
 
@@ -119,7 +122,7 @@ def area(areas: Floats, target: Floats, heed: Floats) -> float:
     return total / target.size * 4.0
 
 
-@compiled
+@borrowing
 def squareness(box: Ints, square: Ints) -> float:
     """Term 3: mean over square types of max(w/h, h/w) - 1 of bounding boxes."""
     total, count = 0.0, 0
@@ -131,7 +134,7 @@ def squareness(box: Ints, square: Ints) -> float:
     return total / max(count, 1) * 4.0
 
 
-@compiled
+@borrowing
 def convexity(shape: Floats, cells: Ints) -> float:
     """Term 4: mean over rooms of (hull area / area - 1)^2; hull areas in column 0."""
     n = shape.shape[0]
@@ -141,7 +144,7 @@ def convexity(shape: Floats, cells: Ints) -> float:
     return float(total / n * 4.0)
 
 
-@compiled
+@borrowing
 def simplicity(corners: Ints, n: int) -> float:
     """Term 5: mean over rooms of (vertices / 4 - 1)^2; an L-shaped room counts 0.25."""
     total = 0.0
@@ -150,7 +153,7 @@ def simplicity(corners: Ints, n: int) -> float:
     return total / n * 4.0
 
 
-@compiled
+@borrowing
 def exterior(walls: Ints, habitable: Ints) -> float:
     """Term 6: (share of the outline that habitable rooms own - 1)^2."""
     n = habitable.size
@@ -161,7 +164,7 @@ def exterior(walls: Ints, habitable: Ints) -> float:
     return missed(own, max(whole, 1))
 
 
-@compiled
+@borrowing
 def corner_light(outline_corners: Ints, habitable: Ints) -> float:
     """Term 7: (share of the outline's convex corners that habitable rooms own - 1)^2."""
     own, whole = 0, 0
@@ -171,7 +174,7 @@ def corner_light(outline_corners: Ints, habitable: Ints) -> float:
     return missed(own, max(whole, 1))
 
 
-@compiled
+@borrowing
 def alignment(columns: Ints, rows: Ints) -> float:
     """Term 8: number of distinct lines on which walls lie."""
     total = 0
@@ -182,7 +185,7 @@ def alignment(columns: Ints, rows: Ints) -> float:
     return float(total)
 
 
-@compiled
+@borrowing
 def useful_area(areas: Floats, useful: Ints) -> float:
     """Term 9: (share of the area that is useful - 1)^2."""
     own, whole = 0.0, 0.0
@@ -192,7 +195,7 @@ def useful_area(areas: Floats, useful: Ints) -> float:
     return missed(own, max(whole, 1e-9))
 
 
-@compiled
+@borrowing
 def min_width(shape: Floats) -> float:
     """Term 10: area [m2] that squares of half and of the whole wanted width miss (column 1), and a charge per room that splits (2)."""
     total = 0.0
@@ -201,25 +204,25 @@ def min_width(shape: Floats) -> float:
     return total
 
 
-@compiled
+@borrowing
 def overlap(w: int, h: int, long: int, short: int) -> float:
     """Cells that a staircase of w x h shares with the rectangle of its flights, laid into it as well as it goes."""
     return float(min(max(w, h), long) * min(w, h, short))
 
 
-@compiled
+@borrowing
 def stair_fit(both: float, stair: float) -> float:
     """Term 11: (share of the flights' rectangle that the staircase covers - 1)^2."""
     return (both / max(stair, 1.0) - 1.0) ** 2
 
 
-@compiled
+@borrowing
 def stair_snug(both: float, stair: float, own: float) -> float:
     """Term 12: (IoU of staircase and the flights' rectangle - 1)^2."""
     return (both / max(own + stair - both, 1.0) - 1.0) ** 2
 
 
-@compiled
+@borrowing
 def together(out: Measures, near: Floats) -> float:
     """Return what zones ask for, weighted: distances of centroids / diagonal, meant over each zone's pairs."""
     total = 0.0
@@ -233,7 +236,7 @@ def together(out: Measures, near: Floats) -> float:
     return float(TOGETHER * total / (width * width + height * height) ** 0.5)
 
 
-@compiled
+@borrowing
 def room_shape(grid: Labels, out: Measures, spec: Spec, i: int, shape: Floats) -> None:  # noqa: PLR0912 - compiled
     """Write what depends on the cells of room i alone to `shape[i]`: hull [cells], area missed [m2], 1 if it splits, violation."""
     w, h = out.box[i, 2] - out.box[i, 0], out.box[i, 3] - out.box[i, 1]
@@ -277,7 +280,7 @@ def room_shape(grid: Labels, out: Measures, spec: Spec, i: int, shape: Floats) -
                 shape[i, 3] += 0.3 + (cells - reached) / cells
 
 
-@compiled
+@borrowing
 def terms(
     grid: Labels, out: Measures, spec: Spec, edges: Ints, areas: Floats, shape: Floats, stale: Ints, exact: bool
 ) -> tuple[Terms, float]:
@@ -329,7 +332,7 @@ def terms(
     return values, hard + violations(out, spec, areas)
 
 
-@compiled
+@borrowing
 def violations(out: Measures, spec: Spec, areas: Floats) -> float:  # noqa: C901, PLR0912 - a list of independent conditions
     """Hard conditions on walls and areas: 0 when all hold, else roughly the number of violated ones."""
     n = spec.target.size

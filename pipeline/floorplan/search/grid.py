@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.geometry.compiled import compiled
+from pipeline.geometry.compiled import borrowing, compiled
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -39,6 +39,8 @@ class Measures(NamedTuple):
     columns: Ints  # (columns+1,) whether a vertical wall lies there
     rows: Ints  # (rows+1,) whether a horizontal wall lies there
     outline_corners: Ints  # (n+1,) corners of the outline that a room owns
+    stretches: Ints  # (2, columns+1) scratch: the vertical wall above each column line, and how long it is by now
+    travel: Floats  # (n+1, 4) scratch: ways from the entrance
 
 
 def empty(n: int, height: int, width: int) -> Measures:
@@ -56,10 +58,12 @@ def empty(n: int, height: int, width: int) -> Measures:
         np.zeros(width + 1, np.int64),
         np.zeros(height + 1, np.int64),
         np.zeros(m, np.int64),
+        np.zeros((2, width + 1), np.int64),
+        np.zeros((m, 4)),
     )
 
 
-@compiled
+@borrowing
 def _wall(out: Measures, a: int, b: int, more: int, length: int, x: float, y: float) -> None:
     """Record `more` cells of common wall of rooms a and b; the straight stretch is `length` by now, with middle (x, y)."""
     out.walls[a, b] += more
@@ -73,7 +77,7 @@ def _wall(out: Measures, a: int, b: int, more: int, length: int, x: float, y: fl
         out.middle[b, a, 1] = y
 
 
-@compiled
+@borrowing
 def _clear(out: Measures, n: int, height: int, width: int) -> None:
     """Set all counts to zero (loops compile faster than slices)."""
     for i in range(n + 1):
@@ -94,7 +98,7 @@ def _clear(out: Measures, n: int, height: int, width: int) -> None:
         out.rows[y] = 0
 
 
-@compiled
+@borrowing
 def _same_rows(grid: Labels, y: int) -> bool:
     """Whether rows y and y + 1 of the bordered grid are equal."""
     for x in range(1, grid.shape[1] - 1):  # noqa: SIM110 - compiled
@@ -103,13 +107,14 @@ def _same_rows(grid: Labels, y: int) -> bool:
     return True
 
 
-@compiled
+@borrowing
 def measure(grid: Labels, n: int, out: Measures) -> None:
     """Fill `out` from the bordered grid (rows+2, columns+2). Equal rows are taken in one step."""
     height, width = grid.shape[0] - 2, grid.shape[1] - 2
     _clear(out, n, height, width)
-    down_key = np.full(width + 1, -1, np.int64)
-    down_len = np.zeros(width + 1, np.int64)
+    walls, lengths = out.stretches[0], out.stretches[1]
+    for x in range(width + 1):
+        walls[x] = -1
     y = 0
     while y <= height:
         band = 1
@@ -123,10 +128,10 @@ def measure(grid: Labels, n: int, out: Measures) -> None:
             b, d = grid[y, x + 1], grid[y + 1, x + 1]
             if d != c:  # a vertical wall on column line x, beside these rows
                 key = min(c, d) * 64 + max(c, d)
-                down_len[x] = down_len[x] + band if down_key[x] == key else band
-                down_key[x] = key
+                lengths[x] = lengths[x] + band if walls[x] == key else band
+                walls[x] = key
                 out.columns[x] = 1
-                _wall(out, c, d, band, down_len[x], float(x), y + band - 0.5 * down_len[x])
+                _wall(out, c, d, band, lengths[x], float(x), y + band - 0.5 * lengths[x])
                 if c != n:  # the span of room c in these rows ends here
                     first, count = start, (x - start) * band
                     out.cells[c] += count
@@ -138,7 +143,7 @@ def measure(grid: Labels, n: int, out: Measures) -> None:
                     out.box[c, 3] = max(out.box[c, 3], y + band)
                 start = x
             else:
-                down_key[x] = -1
+                walls[x] = -1
             if a != c and (a != b or c != d):  # a horizontal wall on row line y ends here
                 out.rows[y] = 1
                 _wall(out, a, c, row_len, row_len, x - 0.5 * row_len, float(y))
@@ -153,7 +158,7 @@ def measure(grid: Labels, n: int, out: Measures) -> None:
             out.centre[i, 1] /= out.cells[i]
 
 
-@compiled
+@borrowing
 def _corner(out: Measures, a: int, b: int, c: int, d: int, n: int) -> None:
     """Count the corners that meet in a vertex with the four cells a b / c d around it."""
     if a == d and min(abs(b - a), abs(c - a)) > 0:
@@ -173,7 +178,7 @@ def _corner(out: Measures, a: int, b: int, c: int, d: int, n: int) -> None:
             out.corners[own, 1] += 1
 
 
-@compiled
+@borrowing
 def inner_area(out: Measures, room: int, n: int, unit: float, half: Halves) -> float:
     """Area between inner wall faces [m2]: cells less half a wall along each side, corners counted once."""
     outer = out.walls[room, n]
@@ -185,7 +190,7 @@ def inner_area(out: Measures, room: int, n: int, unit: float, half: Halves) -> f
     return float(out.cells[room] * unit * unit - unit * (half.inner * inner + half.outer * outer) + turn * mean * mean)
 
 
-@compiled
+@borrowing
 def simple(out: Measures, room: int) -> bool:
     """Whether the room is one piece without holes that nowhere touches itself (Euler number of a 4-connected region)."""
     return bool(out.cells[room] > 0 and out.pinched[room] == 0 and out.corners[room, 0] - out.corners[room, 1] == 4)
@@ -233,7 +238,7 @@ def _chain(points: Floats, side: float) -> float:
     return area
 
 
-@compiled
+@borrowing
 def notch_width(grid: Labels, room: int, boxes: Ints) -> int:
     """Return the width of what an L-shaped room leaves of its box [cells]."""
     x0, y0, x1, y1 = boxes[room, 0], boxes[room, 1], boxes[room, 2], boxes[room, 3]
@@ -246,7 +251,7 @@ def notch_width(grid: Labels, room: int, boxes: Ints) -> int:
     return int((x1 - x0) - (right - left + 1))
 
 
-@compiled
+@borrowing
 def ell_opening(w: int, h: int, a: int, b: int, side: int) -> tuple[int, int]:
     """Return what `opening` does for an L: a box of w x h cells without a corner of a x b.
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.floorplan.search.energy import TOGETHER, Terms, missed, stair_fit, stair_snug
-from pipeline.geometry.compiled import compiled
+from pipeline.geometry.compiled import borrowing
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 LONG = 1.8  # ratio of sides from which a room that should be square is penalised as a corridor
 
 
-@compiled
+@borrowing
 def contact(rect: Ints, a: int, b: int) -> int:
     """Return the length of the wall that two rectangles share [cells]."""
     if rect[a, 2] == rect[b, 0] or rect[b, 2] == rect[a, 0]:
@@ -26,7 +26,7 @@ def contact(rect: Ints, a: int, b: int) -> int:
     return 0
 
 
-@compiled
+@borrowing
 def _corners(rect: Ints, room: int, width: int, height: int, n: int) -> int:
     """Count the corners of the outline that a rectangle owns: its own corners with the outside, or a void, behind both sides."""
     found = 0
@@ -66,8 +66,8 @@ class Wishes(NamedTuple):
     unit: float  # side of a cell [m]
 
 
-@compiled
-def leaning(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes) -> float:
+@borrowing
+def leaning(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes, travel: Floats) -> float:
     """Return the weighted terms that the topology decides, as `energy` has them: circulation, exterior, corner_light, useful_area."""
     habitable, useful, edges, weights = wishes.habitable, wishes.useful, wishes.edges, wishes.weights
     m = rect.shape[0]
@@ -86,7 +86,9 @@ def leaning(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: 
     total = weights.exterior * missed(lit, max(wall, 1))
     total += weights.corner_light * missed(corners, 4.0 + m - n)
     total += weights.useful_area * missed(own, whole)
-    travel = np.zeros((n, 4))
+    for k in range(n):
+        for way in range(4):
+            travel[k, way] = 0.0
     detours = 0.0
     for k in range(edges.shape[0]):
         room, parent = edges[k, 0], edges[k, 1]
@@ -106,7 +108,7 @@ def leaning(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: 
     return float(total + 4.0 * weights.circulation * detours / max(n - 1, 1))
 
 
-@compiled
+@borrowing
 def aligned(rect: Ints) -> int:
     """Count the lines on which walls lie, as term `alignment` does: every line but the last has a rectangle that starts there."""
     found = 2
@@ -121,8 +123,8 @@ def aligned(rect: Ints) -> int:
     return found
 
 
-@compiled
-def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes, most: float) -> float:
+@borrowing
+def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes, most: float, travel: Floats) -> float:
     """Score a layout of rectangles; leaves from `n` on are voids that must lie in a corner. Smaller is better.
 
     No part is negative: what is beyond `most` already is not looked at further, and only known to be beyond it.
@@ -140,10 +142,10 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
     total += wishes.weights.alignment * aligned(rect)
     if total > most:
         return float(total)
-    return float(total) + leaning(rect, width, height, n, gross, wishes)
+    return float(total) + leaning(rect, width, height, n, gross, wishes, travel)
 
 
-@compiled
+@borrowing
 def _of_pairs(total: float, rect: Ints, wishes: Wishes, diagonal: float, most: float) -> float:
     """Add what rooms cost that lack the wall which they are to share, share one that they may not, or are too close."""
     pairs, far = wishes.pairs, wishes.far
@@ -167,7 +169,7 @@ def _of_pairs(total: float, rect: Ints, wishes: Wishes, diagonal: float, most: f
     return total
 
 
-@compiled
+@borrowing
 def _of_rooms(total: float, rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes, most: float) -> float:
     """Add what rooms cost that are narrow, long, larger or smaller than wanted, or without the outside walls or the corner that they need."""
     least, square, heed, wanted = wishes.least, wishes.square, wishes.heed, wishes.wanted
@@ -199,7 +201,7 @@ def _of_rooms(total: float, rect: Ints, width: int, height: int, n: int, gross: 
     return total
 
 
-@compiled
+@borrowing
 def _outside(rect: Ints, a: int, width: int, height: int, n: int) -> int:
     """Return the longest stretch of outside wall of a rectangle [cells], walls to voids included."""
     w, h = rect[a, 2] - rect[a, 0], rect[a, 3] - rect[a, 1]
@@ -213,7 +215,7 @@ def _outside(rect: Ints, a: int, width: int, height: int, n: int) -> int:
     return int(best)
 
 
-@compiled
+@borrowing
 def _of_order(total: float, rect: Ints, wishes: Wishes, diagonal: float) -> float:
     """Add what rooms cost that are not between the two between which they are asked."""
     for k in range(wishes.between.shape[0]):
@@ -227,7 +229,7 @@ def _of_order(total: float, rect: Ints, wishes: Wishes, diagonal: float) -> floa
     return total
 
 
-@compiled
+@borrowing
 def _of_voids(total: float, rect: Ints, width: int, height: int, n: int) -> float:
     """Add what voids cost that are not in a corner, or long."""
     for v in range(n, rect.shape[0]):
@@ -242,7 +244,7 @@ def _of_voids(total: float, rect: Ints, width: int, height: int, n: int) -> floa
     return total
 
 
-@compiled
+@borrowing
 def _of_nearness(total: float, rect: Ints, wishes: Wishes, diagonal: float) -> float:
     """Add the distances of rooms that belong together."""
     for k in range(wishes.near.shape[0]):
@@ -253,7 +255,7 @@ def _of_nearness(total: float, rect: Ints, wishes: Wishes, diagonal: float) -> f
     return total
 
 
-@compiled
+@borrowing
 def _of_stairs(total: float, rect: Ints, n: int, wishes: Wishes, diagonal: float) -> float:
     """Add what the staircase costs: off its place on the other storey, or too small for its flights."""
     stair, stair_room, flight, weights = wishes.stair, wishes.stair_room, wishes.flight, wishes.weights

@@ -7,11 +7,13 @@ Units: cells of the grid.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.floorplan.search.layout import Wishes, cost
-from pipeline.geometry.compiled import compiled
+from pipeline.geometry.compiled import borrowing
 
 V, H = -2, -3
 DRAWS = 4  # uniform numbers that one proposal takes
@@ -20,7 +22,7 @@ Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
 
-@compiled
+@borrowing
 def lay_out(expr: Ints, gross: Floats, width: int, height: int, rect: Ints, work: Ints, sums: Floats) -> bool:
     """Write the rectangle (x0, y0, x1, y1) of each leaf to `rect` (m, 4); False when a leaf would have no width.
 
@@ -67,7 +69,7 @@ def lay_out(expr: Ints, gross: Floats, width: int, height: int, rect: Ints, work
     return True
 
 
-@compiled
+@borrowing
 def _valid(expr: Ints) -> bool:
     """Whether every prefix holds more operands than operators and no two equal operators stand side by side."""
     operands = 0
@@ -82,7 +84,7 @@ def _valid(expr: Ints) -> bool:
     return True
 
 
-@compiled
+@borrowing
 def _mutate(expr: Ints, draws: Floats) -> bool:
     """Change `expr` in place by one move; False when the result would be no normalised expression."""
     size = expr.size
@@ -118,8 +120,18 @@ def _mutate(expr: Ints, draws: Floats) -> bool:
     return _valid(expr)
 
 
-@compiled
-def search(  # noqa: PLR0912 - compiled: loops instead of slices compile faster
+class Scratch(NamedTuple):
+    """What a search of m leaves, n of them rooms, works on."""
+
+    trial: Ints  # (2m-1,) the proposed expression
+    areas: Floats  # (m,) areas as they are now
+    rect: Ints  # (m, 4) rectangles of the proposal
+    nodes: Ints  # (2m-1, 7) and
+    sums: Floats  # (2m-1,) as `lay_out` wants them
+    travel: Floats  # (n, 4) as `leaning` wants it
+
+
+def search(
     expr: Ints,
     draws: Floats,
     hot: float,
@@ -134,23 +146,38 @@ def search(  # noqa: PLR0912 - compiled: loops instead of slices compile faster
 ) -> tuple[Ints, float]:
     """Anneal the tree and the areas of flexible rooms (between `low` and `high`); return the best rectangles and their cost."""
     m = gross.size
+    best, nodes = np.zeros((m, 4), np.int64), np.zeros((2 * m - 1, 7), np.int64)
+    scratch = Scratch(expr.copy(), gross.copy(), np.zeros((m, 4), np.int64), nodes, np.zeros(2 * m - 1), np.zeros((n, 4)))
+    return best, _search(expr, draws, (hot, cold), (width, height), n, (low, high), wishes, scratch, best)
+
+
+@borrowing
+def _search(  # noqa: PLR0912 - compiled: loops instead of slices compile faster
+    expr: Ints,
+    draws: Floats,
+    heats: tuple[float, float],
+    outline: tuple[int, int],
+    n: int,
+    bounds: tuple[Floats, Floats],
+    wishes: Wishes,
+    scratch: Scratch,
+    best_rect: Ints,
+) -> float:
+    """Write the best rectangles to `best_rect` (m, 4) and return their cost; `expr` ends as the last tree."""
+    hot, cold = heats
+    width, height = outline
+    low, high = bounds
+    trial, areas, rect, nodes, sums, travel = scratch
+    m = areas.size
     if m == 1:
-        only = np.zeros((1, 4), np.int64)
-        only[0, 2], only[0, 3] = width, height
-        return only, cost(only, width, height, n, gross, wishes, np.inf)
-    rect = np.zeros((m, 4), np.int64)
-    best_rect = np.zeros((m, 4), np.int64)
-    work = np.zeros((2 * m - 1, 7), np.int64)
-    sums = np.zeros(2 * m - 1)
+        best_rect[0, 2], best_rect[0, 3] = width, height
+        return cost(best_rect, width, height, n, areas, wishes, np.inf, travel)
     now = 1e9
     best = 1e9
-    trial = expr.copy()
-    areas = gross.copy()
-    if lay_out(expr, areas, width, height, rect, work, sums):
-        now = cost(rect, width, height, n, areas, wishes, np.inf)
+    if lay_out(expr, areas, width, height, rect, nodes, sums):
+        now = cost(rect, width, height, n, areas, wishes, np.inf, travel)
     steps = draws.shape[0]
     for k in range(steps):
-        heat = hot * (cold / hot) ** (k / steps)
         for i in range(expr.size):
             trial[i] = expr[i]
         room = -1
@@ -162,10 +189,11 @@ def search(  # noqa: PLR0912 - compiled: loops instead of slices compile faster
             good = high[room] > low[room]
         else:
             good = _mutate(trial, draws[k])
-        if good and lay_out(trial, areas, width, height, rect, work, sums):
+        if good and lay_out(trial, areas, width, height, rect, nodes, sums):
             # the draw says how much worse the proposal may be
+            heat = hot * (cold / hot) ** (k / steps)
             most = now - heat * np.log(draws[k, 3] + 1e-300)
-            new = cost(rect, width, height, n, areas, wishes, most)
+            new = cost(rect, width, height, n, areas, wishes, most, travel)
             if new <= most:
                 now = new
                 for i in range(expr.size):
@@ -178,4 +206,4 @@ def search(  # noqa: PLR0912 - compiled: loops instead of slices compile faster
                             best_rect[i, j] = rect[i, j]
         if room >= 0:
             areas[room] = old
-    return best_rect, best
+    return best
