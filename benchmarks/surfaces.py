@@ -16,6 +16,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, cKDTree
+from trimesh.triangles import closest_point
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
@@ -24,7 +26,6 @@ from pipeline import taxonomy  # noqa: E402
 from pipeline.card import Category  # noqa: E402
 from pipeline.entities.asset import Asset, Link  # noqa: E402
 from pipeline.entities.files import load_asset  # noqa: E402
-from pipeline.geometry.compiled import compiled  # noqa: E402
 from pipeline.sources.meshes.reach import reached  # noqa: E402
 
 Floats = NDArray[np.float64]
@@ -123,16 +124,19 @@ def _spread(triangles: Floats, count: int, rng: np.random.Generator) -> tuple[Fl
     return a + u * (b - a) + v * (c - a), cross[which] / areas[which, None], which
 
 
-def _seen_points(link: Link, rng: np.random.Generator) -> tuple[Floats, Floats, NDArray[np.str_]]:
+def _seen(link: Link) -> tuple[Floats, NDArray[np.str_]]:
+    """Return the triangles (F, 3, 3) that are seen of a link, and of which part each is."""
     triangles = np.concatenate([m.vertices[m.faces] for m in link.visuals]).astype(np.float64)
-    parts = np.concatenate([np.full(len(m.faces), m.part, "<U24") for m in link.visuals])
+    return triangles, np.concatenate([np.full(len(m.faces), m.part, "<U24") for m in link.visuals])
+
+
+def _seen_points(link: Link, rng: np.random.Generator) -> tuple[Floats, Floats, NDArray[np.str_]]:
+    triangles, parts = _seen(link)
     points, normals, which = _spread(triangles, POINTS, rng)
     return points, normals, parts[which]
 
 
 def _planes(link: Link) -> list[Floats]:
-    from scipy.spatial import ConvexHull
-
     return [ConvexHull(c.vertices.astype(np.float64)).equations for c in link.colliders]
 
 
@@ -155,44 +159,15 @@ def _collider_points(link: Link, rng: np.random.Generator) -> tuple[Floats, Floa
 
 def _nearest(points: Floats, link: Link) -> tuple[Floats, NDArray[np.str_]]:
     """Return how far points (P, 3) are from the nearest triangle that is seen, and of which part it is."""
-    triangles = np.concatenate([m.vertices[m.faces] for m in link.visuals]).astype(np.float64)
-    parts = np.concatenate([np.full(len(m.faces), m.part, "<U24") for m in link.visuals])
-    distance, which = _to_triangles(np.ascontiguousarray(points), np.ascontiguousarray(triangles))
+    triangles, parts = _seen(link)
+    low, high = triangles.min(axis=1), triangles.max(axis=1)
+    corner, _ = cKDTree(triangles.reshape(-1, 3)).query(points)  # no nearest triangle is farther than that
+    distance, which = np.empty(len(points)), np.empty(len(points), np.int64)
+    for i, (point, far) in enumerate(zip(points, corner + 1e-9, strict=True)):
+        near = np.flatnonzero(((low <= point + far) & (point - far <= high)).all(axis=1))
+        away = np.linalg.norm(closest_point(triangles[near], np.broadcast_to(point, (len(near), 3))) - point, axis=1)
+        distance[i], which[i] = away.min(), near[away.argmin()]
     return distance, parts[which]
-
-
-@compiled
-def _to_triangles(points: Floats, triangles: Floats) -> tuple[Floats, NDArray[np.int64]]:
-    """Return the distance (P,) to the nearest of triangles (F, 3, 3), and its index, by the regions of the triangle's plane (Ericson 2005, 5.1.5)."""
-    distance, which = np.full(len(points), np.inf), np.zeros(len(points), np.int64)
-    for i in range(len(points)):
-        for f in range(len(triangles)):
-            a, ab, ac = triangles[f, 0], triangles[f, 1] - triangles[f, 0], triangles[f, 2] - triangles[f, 0]
-            ap = points[i] - a
-            bp, cp = ap - ab, ap - ac
-            d1, d2, d3, d4, d5, d6 = (ab * ap).sum(), (ac * ap).sum(), (ab * bp).sum(), (ac * bp).sum(), (ab * cp).sum(), (ac * cp).sum()
-            va, vb, vc = d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2
-            v, w = 0.0, 0.0
-            if d1 <= 0 and d2 <= 0:
-                pass
-            elif d3 >= 0 and d4 <= d3:
-                v = 1.0
-            elif d6 >= 0 and d5 <= d6:
-                w = 1.0
-            elif vc <= 0 and d1 >= 0 and d3 <= 0:
-                v = d1 / (d1 - d3)
-            elif vb <= 0 and d2 >= 0 and d6 <= 0:
-                w = d2 / (d2 - d6)
-            elif va <= 0 and d4 - d3 >= 0 and d5 - d6 >= 0:
-                w = (d4 - d3) / ((d4 - d3) + (d5 - d6))
-                v = 1.0 - w
-            else:
-                v, w = vb / (va + vb + vc), vc / (va + vb + vc)
-            away = ap - v * ab - w * ac
-            now = (away * away).sum()
-            if now < distance[i]:
-                distance[i], which[i] = now, f
-    return np.sqrt(distance), which
 
 
 if __name__ == "__main__":
