@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -95,3 +97,18 @@ class Plan:
     def elevation(self, room_id: str) -> float:
         """Return the z of the room's floor [m]."""
         return self.room(room_id).level * self.storey_height
+
+
+def hops(openings: Iterable[Iterable[str]], start: str) -> dict[str, int]:
+    """Return how many openings, each between two rooms, lie on the shortest way from `start` to each room that one can reach."""
+    beside = defaultdict(list)
+    for a, b in openings:
+        beside[a].append(b)
+        beside[b].append(a)
+    count, order = {start: 0}, [start]
+    for here in order:
+        for other in beside[here]:
+            if other not in count:
+                count[other] = count[here] + 1
+                order.append(other)
+    return count

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from pipeline.entities.plan import Plan, Room
+from pipeline.entities.plan import Plan, Room, hops
 from pipeline.metrics.plan_graph import edges_of
 
 OUTDOOR = frozenset({"balcony", "garage"})
@@ -65,29 +65,12 @@ class Scene:
 
     def reachable(self, target: Room, avoid: set[str]) -> bool:
         """Whether one can walk from the entrance to a room without entering any of `avoid`."""
-        found, frontier = {self.plan.entrance} - avoid, [self.plan.entrance]
-        while frontier:
-            here = frontier.pop()
-            if here in avoid:
-                continue
-            for edge in self.edges:
-                if here in edge:
-                    (other,) = edge - {here}
-                    if other not in found and other not in avoid:
-                        found.add(other)
-                        frontier.append(other)
-        return target.room_id in found
+        ways = (edge for edge in self.edges if not edge & avoid)
+        return target.room_id not in avoid and target.room_id in hops(ways, self.plan.entrance)
 
     def hops(self, a: Room, b: Room) -> int:
         """Count the openings on the shortest way between two rooms."""
-        seen, ring, count = {a.room_id}, {a.room_id}, 0
-        while ring:
-            if b.room_id in ring:
-                return count
-            ring = {i for e in self.edges if e & ring for i in e} - seen
-            seen |= ring
-            count += 1
-        return 99
+        return hops(self.edges, a.room_id).get(b.room_id, 99)
 
     def outside(self, room: Room) -> float:
         """Length of the room's walls that face the outside [m]."""

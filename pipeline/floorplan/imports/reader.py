@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pipeline.entities.plan import Opening, Plan, Room
+from pipeline.entities.plan import Opening, Plan, Room, hops
 from pipeline.errors import ContentError, UsageError
 from pipeline.floorplan.imports.fitting import Fitted, fit, hang, put_door
 from pipeline.floorplan.imports.front import front_sketch, is_front
@@ -300,15 +300,8 @@ def _rank(kind: str) -> int:
 
 def _depths(fitted: list[Fitted], entrance: str) -> dict[str, int]:
     """Return each reached room's distance from the entrance in openings."""
-    depth, frontier = {entrance: 0}, [entrance]
-    for room in frontier:
-        for f in fitted:
-            if f.opening.kind in PASSAGES and room in f.opening.rooms:
-                for other in f.opening.rooms:
-                    if other not in depth:
-                        depth[other] = depth[room] + 1
-                        frontier.append(other)
-    return depth
+    pairs = (f.opening.rooms for f in fitted if f.opening.kind in PASSAGES)
+    return hops((rooms for rooms in pairs if len(rooms) == 2), entrance)
 
 
 def _fresh(kind: str, fitted: list[Fitted]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from pipeline.entities.plan import hops
 from pipeline.floorplan.program.floor_program import FloorProgram, Link
 
 
@@ -38,26 +39,6 @@ def distances(program: FloorProgram) -> tuple[Distance, ...]:
 
 def nearness(asked: Sequence[Distance], links: Sequence[Link]) -> list[Nearness]:
     """Return the distances that the graph of links breaks. Rooms that nothing joins yet are far apart."""
-    beside: dict[str, set[str]] = {}
-    for link in links:
-        if link.opens:
-            beside.setdefault(link.a, set()).add(link.b)
-            beside.setdefault(link.b, set()).add(link.a)
-    broken = []
-    for distance in asked:
-        made = _openings(beside, distance.a, distance.b)
-        if made is not None and made < distance.least:
-            broken.append(Nearness(distance, made))
-    return broken
-
-
-def _openings(beside: dict[str, set[str]], start: str, end: str) -> int | None:
-    """Return the number of openings on the shortest way, or None where there is no way."""
-    seen, ring, count = {start}, {start}, 0
-    while ring:
-        if end in ring:
-            return count
-        ring = {j for i in ring for j in beside.get(i, ())} - seen
-        seen |= ring
-        count += 1
-    return None
+    pairs = [(link.a, link.b) for link in links if link.opens]
+    found = [(distance, hops(pairs, distance.a).get(distance.b)) for distance in asked]
+    return [Nearness(distance, made) for distance, made in found if made is not None and made < distance.least]

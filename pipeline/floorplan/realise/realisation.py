@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely import Polygon
 
-from pipeline.entities.plan import Plan, Room
+from pipeline.entities.plan import Plan, Room, hops
 from pipeline.floorplan.program.defaults import OUTSIDE
 from pipeline.floorplan.program.floor_program import FloorProgram
 from pipeline.floorplan.realise import trace, wall_lines
@@ -177,13 +177,5 @@ def _face(
 
 def _depths(program: FloorProgram) -> dict[str, int]:
     """Return each room's distance from the entrance in openings."""
-    depth = {program.entrance.into or program.rooms[0].id: 0}
-    frontier = list(depth)
-    while frontier:
-        room = frontier.pop(0)
-        for k in program.links:
-            other = k.beyond(room)
-            if other is not None and k.opens and other not in depth:
-                depth[other] = depth[room] + 1
-                frontier.append(other)
+    depth = hops(((k.a, k.b) for k in program.links if k.opens), program.entrance.into or program.rooms[0].id)
     return {r.id: depth.get(r.id, 99) for r in program.rooms}
