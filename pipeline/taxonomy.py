@@ -58,7 +58,7 @@ class Usual:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """A room as the layout model furnishes it: 3D-FRONT's types that are so, of which categories it `needs` one of each group, or `usual`ly has one.
+    """A room as the layout model furnishes it: 3D-FRONT's types that are so, of which categories it `needs` one of each group, or `usual`ly has one; of the groups in `together` it holds some of each or nothing.
 
     `part` [m2] is the floor that it usually takes of a room that serves as others too. What made ones hold besides: a rug, shares of rooms with things at all windows, expected numbers on the walls.
     """
@@ -66,6 +66,7 @@ class Layout:
     front: tuple[str, ...]
     needs: tuple[tuple[str, ...], ...] = ()
     usual: tuple[Usual, ...] = ()
+    together: tuple[tuple[str, ...], ...] = ()
     part: float = 5.0
     rug: Rug | None = None
     windows: Mapping[str, float] = field(default_factory=dict)

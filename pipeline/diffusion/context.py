@@ -60,7 +60,7 @@ class RoomContext:
     """A room to furnish.
 
     `polygon` (n, 2) [m, world], inner wall faces, counter-clockwise. `n_target` is the exact number of objects that is
-    asked for, or None; `category_bounds` bound the numbers of categories. `elevation` [m] is the z of the floor, `height` [m] that of the ceiling above it.
+    asked for, or None; `category_bounds` bound the numbers of categories; of the groups in `together` it holds some of each, or nothing. `elevation` [m] is the z of the floor, `height` [m] that of the ceiling above it.
     """
 
     layout_type: str
@@ -70,6 +70,7 @@ class RoomContext:
     elevation: float = 0.0
     height: float = 2.7
     category_bounds: tuple[CategoryBounds, ...] = ()
+    together: tuple[tuple[str, ...], ...] = ()
 
     @classmethod
     def of(

@@ -72,18 +72,30 @@ class Inventory(nn.Module):
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """What is asked of one room: the exact number of objects or None, bounds on groups of classes (classes, least, most or None), most objects."""
+    """What is asked of one room: the exact number of objects or None, bounds on groups of classes (classes, least, most or None), most objects.
+
+    `together`: groups of classes of which a room holds some of each or nothing, as far as the rest lets it.
+    """
 
     total: int | None
     bounds: tuple[tuple[tuple[int, ...], int, int | None], ...] = ()
     most: int = 24
+    together: tuple[tuple[int, ...], ...] = ()
 
     @classmethod
-    def of(cls, total: int | None, category_bounds: Sequence[CategoryBounds], classes: Sequence[str], most: int = 24) -> Ask:
+    def of(
+        cls,
+        total: int | None,
+        category_bounds: Sequence[CategoryBounds],
+        classes: Sequence[str],
+        most: int = 24,
+        together: Sequence[Sequence[str]] = (),
+    ) -> Ask:
         """Read what a room context asks for, in class indices. A least number that a total cannot hold is cut by nobody: both are asked."""
         order = {name: k for k, name in enumerate(classes)}
         groups = ((tuple(sorted({order[c] for c in d.categories if c in order})), d.least, d.most) for d in category_bounds)
-        return cls(total, tuple(group for group in groups if group[0]), most)
+        whole = tuple(tuple(order[c] for c in group if c in order) for group in together)
+        return cls(total, tuple(group for group in groups if group[0]), most, whole if all(whole) else ())
 
     def sized(self, usual: int) -> Ask:
         """Return the same with the number `usual` told, where nobody told one and no more than single things, or none, are asked for."""
@@ -97,6 +109,9 @@ class Ask:
         for members, least, most in self.bounds:
             have = counts[:, list(members)].sum(1)
             good &= (have >= least) & (have <= (np.inf if most is None else most))
+        some = [counts[:, list(group)].any(1) for group in self.together]
+        for held in some[1:]:
+            good &= held == some[0]
         return good
 
 
@@ -178,7 +193,8 @@ def draw_inventories(
         return found
     asks = [asks[i] if met[i] else asks[i].sized(int(found[i].sum())) for i in lacking]
     for i, ask, mine in zip(lacking, asks, _drawn(net, about[lacking], layout[lacking], asks, uniform[lacking, 1:]), strict=True):
-        good = np.flatnonzero(ask.met_by(mine) & (mine.sum(1) > 0))
+        good, apart = (np.flatnonzero(a.met_by(mine) & (mine.sum(1) > 0)) for a in (ask, replace(ask, together=())))
+        good = good if len(good) else apart
         usual: NDArray[np.float64] = net.own[:, layout[i]].softmax(-1).double().numpy() @ np.arange(MOST + 1, dtype=float)
         found[i] = mine[good[0]] if len(good) else amended(mine[-1], ask, usual)
     return found

@@ -76,9 +76,9 @@ class Sampler:
                 part = range(start, min(start + self.settings.batch, len(rooms)))
                 padded = filled(part)
                 features = torch.from_numpy(np.stack([room_features(floors[i], rooms[i].height) for i in padded]))
+                told = [rooms[i].n_target if self.settings.quantity else None for i in padded]
                 asks = [
-                    Ask.of(rooms[i].n_target if self.settings.quantity else None, rooms[i].category_bounds, classes, self.slots)
-                    for i in padded
+                    Ask.of(n, rooms[i].category_bounds, classes, self.slots, rooms[i].together) for n, i in zip(told, padded, strict=True)
                 ]
                 uniform = np.stack([seeds.generator(self.seed, "inventory", *keys[i]).random((DRAWS, len(classes))) for i in padded])
                 kinds = torch.tensor([layouts[i] for i in padded])

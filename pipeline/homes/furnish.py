@@ -80,7 +80,10 @@ def _parts(job: RoomJob, whole: RoomContext, taxonomy: Taxonomy, rng: np.random.
     counts = _shared(job.count, [shapely.Polygon(part.polygon).area for part in parts])
     kinds = [part.layout_type for part in parts]
     asked = [(*category_bounds(job, kind, kinds, taxonomy), *usual_bounds(job, kind, taxonomy, rng)) for kind in kinds]
-    return [replace(part, n_target=n, category_bounds=b) for part, n, b in zip(parts, counts, asked, strict=True)]
+    whole_or_none = [taxonomy.layouts[kind].together if kind in taxonomy.layouts else () for kind in kinds]
+    return [
+        replace(part, n_target=n, category_bounds=b, together=t) for part, n, b, t in zip(parts, counts, asked, whole_or_none, strict=True)
+    ]
 
 
 def _shared(count: int | None, areas: Sequence[float]) -> list[int | None]:

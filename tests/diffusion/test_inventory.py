@@ -74,6 +74,22 @@ def test_free_draws_that_meet_a_wish_are_not_distorted(net, rooms):
     assert (drawn(net, rooms, [wish] * 60) == drawn(net, rooms, [Ask(None)] * 60)).all(1).mean() > 0.9
 
 
+def test_what_comes_together_is_there_as_a_whole_or_not_at_all(rooms):
+    either = Inventory(len(CLASSES), len(LAYOUTS), 16)  # none or one of each class, by the toss of a coin
+    with torch.no_grad():
+        either.own[..., 2:] = -30.0
+    bound, pair = (CategoryBounds(("wardrobe",), 0, 1),), (("nightstand",), ("double_bed", "unknown"))
+    ask = Ask.of(None, bound, CLASSES, together=pair)
+    free, asked = drawn(either, rooms, [Ask(None)] * 60), drawn(either, rooms, [ask] * 60)
+    whole = ask.met_by(free)
+    assert 15 < whole.sum() < 45
+    assert (asked[whole] == free[whole]).all()
+    assert ask.met_by(asked).all()
+    assert {tuple(row) for row in asked[:, [NIGHTSTAND, BED]]} == {(0, 0), (1, 1)}
+    never = Ask.of(None, (*bound, CategoryBounds(("nightstand",), 0, 0), CategoryBounds(("double_bed",), 1)), CLASSES, together=pair)
+    assert (drawn(either, rooms, [never] * 20)[:, [NIGHTSTAND, BED]] == [0, 1]).all(), "what is asked for outright goes before"
+
+
 def test_what_no_draw_meets_is_mended():
     usual = np.array([1.0, 2.0, 0.0, 0.0, 0.0, 0.5])
     ask = Ask(6, (((0,), 1, 1), ((2, 3), 2, None)))

@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline import taxonomy
-from pipeline.diffusion.context import CategoryBounds
+from pipeline.diffusion.context import CategoryBounds, RoomContext
 from pipeline.entities.plan import Plan, Room
 from pipeline.floorplan.program.floor_program import Furniture
-from pipeline.homes.furnish import category_bounds, usual_bounds
+from pipeline.homes.furnish import _parts, category_bounds, usual_bounds
 from pipeline.homes.request import RoomJob
 
 
@@ -74,6 +74,15 @@ def test_a_share_of_rooms_is_asked_for_what_is_usual():
         job("hallway"),
     ):
         assert not any(usual_bounds(silent, silent.layout_type, words, rng) for _ in range(20))
+
+
+def test_a_part_is_told_what_comes_together_in_rooms_of_its_kind():
+    words = taxonomy.load()
+    studio = job("living_room+bedroom")
+    whole = RoomContext.of(studio.plan, "room", studio.layout_type)
+    found = {part.layout_type: part.together for part in _parts(studio, whole, words, np.random.default_rng(0))}
+    assert found == {"living_room": words.layouts["living_room"].together, "bedroom": ()}
+    assert ("dining_table",) in found["living_room"]
 
 
 def test_what_is_wished_for_stands_in_the_part_where_it_usually_does():
