@@ -17,6 +17,7 @@ from pipeline import seeds
 from pipeline.baselines.settings import BaselineSettings
 from pipeline.diffusion.context import Proposal, RoomContext
 from pipeline.diffusion.rooms import context_of
+from pipeline.experiments.rooms import spread
 from pipeline.metrics import articulation, category, collision, relations
 from pipeline.metrics.intervals import bootstrap, rate
 from pipeline.metrics.layout_features import features
@@ -67,12 +68,6 @@ def cases_of(tables: Mapping[str, Sequence[Row]], split: str, layouts: Sequence[
         )
         found.append(Case(context, [_proposal(o) for o in own], f"{room['scene_id']}/{room['room_id']}"))
     return found
-
-
-def spread(cases: Sequence[Case], count: int) -> list[Case]:
-    """Return `count` cases, evenly spread over the list."""
-    taken = min(count, len(cases))
-    return [cases[i * len(cases) // taken] for i in range(taken)]
 
 
 def holds(case: Case, count: int) -> bool:

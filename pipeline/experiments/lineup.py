@@ -28,11 +28,6 @@ def alone(home: Home, room_id: str) -> Home:
     return replace(home, plan=replace(home.plan, rooms=(room,), openings=openings, entrance=room_id), placements=placed)
 
 
-def spread(rng: np.random.Generator, rooms: Sequence[Room]) -> list[Room]:
-    """Draw the rooms that are shown."""
-    return [rooms[k] for k in sorted(rng.permutation(len(rooms))[:EACH])]
-
-
 def lineup(
     rng: np.random.Generator, real: Mapping[str, Sequence[Room]], made: Mapping[str, Sequence[Room]], assets: Mapping[str, Asset]
 ) -> tuple[Image.Image, Image.Image] | None:
@@ -43,7 +38,7 @@ def lineup(
         row = [
             (name, top_view(alone(*room), assets, CELL, reaches=False))
             for name, rooms in (("real", real), ("made", made))
-            for room in spread(rng, rooms[kind])
+            for room in (rooms[kind][k] for k in sorted(rng.permutation(len(rooms[kind]))[:EACH]))
         ]
         blank = Image.new("RGB", (CELL, CELL), (244, 244, 241))
         row += [("", blank)] * (2 * EACH - len(row))

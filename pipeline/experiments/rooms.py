@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TypeVar
 
 from pipeline.entities.home import Home, Placement
 from pipeline.errors import ContentError
 from pipeline.homes.request import RoomJob
 from pipeline.homes.rows import Row, plan_of
 
+T = TypeVar("T")
 FIRST = 10_000_000  # home index of the first room: keys that no dataset of homes will ever use
 
 
@@ -34,10 +36,10 @@ def test_rooms(tables: Mapping[str, Sequence[Row]], split: str, layout_types: Se
     return jobs
 
 
-def spread(jobs: Sequence[RoomJob], count: int) -> list[RoomJob]:
-    """Return `count` jobs, evenly spread over the list."""
-    taken = min(count, len(jobs))
-    return [jobs[i * len(jobs) // taken] for i in range(taken)]
+def spread(items: Sequence[T], count: int) -> list[T]:
+    """Return `count` of the items, evenly spread over the list."""
+    taken = min(count, len(items))
+    return [items[i * len(items) // taken] for i in range(taken)]
 
 
 def room_home(job: RoomJob, placements: Sequence[Placement]) -> Home:
