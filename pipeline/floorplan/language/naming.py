@@ -294,7 +294,7 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
     if slots and e.type == "bathroom" and count == 1 and had and not any(r.id in x.ids for r in slots for x in sentence[:k]):
         return []  # "three baths. Two of the bedrooms have an en suite": of those that were counted
     if slots and k > 1 and sentence[k - 1].kind == "verb" and (sentence[k - 2].kind, sentence[k - 2].value) == ("pron", "one"):
-        return [close(slots[0], role, e.text)]  # "four bedrooms, one of which is a guest room"
+        return [close(r, role, e.text) for r in slots[:count]]  # "four bedrooms, one of which is a guest room"
     if role and role != "ensuite":
         if len(told) >= count and e.type != "bathroom":
             return [close(r, role, e.text) for r in told[:count]]
