@@ -42,7 +42,7 @@ class Clause:
         self.only: Element | None = None
         self.factor: Element | None = None
         self.owner = self.owning = ""
-        first = next((e for e in sentence if e.kind in {"np", "level", "zone", "every"}), None)
+        first = next((e for e in sentence if e.kind in {"np", "level", "zone", "every", "pron"} or e.value in {"other", "both", "all"}), None)
         self.forward = first is not None and first.kind == "level"  # storeys stand in front of their rooms
         self.level: int | None = None
         self.left_out: Group = ()  # "except the guest room, each has ..."
@@ -58,6 +58,10 @@ class Clause:
     def says(self, e: Element, sign: str) -> bool:
         """Whether a word of an element belongs to a closed class."""
         return bool(self.state.heard.lexicon.sign(sign) & set(e.text.split()))
+
+    def parted(self) -> bool:
+        """Whether some of a count were told apart, and others are left of it: "one is downstairs, the others upstairs"."""
+        return any(r.open_slot for r in self.stock.of(self.state.parted))
 
     def part(self, k: int) -> Group:
         """Return the rooms named between the last comma and k."""

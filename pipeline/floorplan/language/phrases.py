@@ -151,7 +151,8 @@ def _elements(marks: list[Mark], lex: Lexicon) -> list[Element]:
         elif mark.kind in {"fill", "adverb", "look", "hyphen", "dash"} and pre:
             made += [_plain(mark, lex)] if mark.kind == "look" else []
         else:
-            made += _loose(pre, mark, lex)
+            placed = [m.kind for m in marks[k : k + 2] if m.kind != "verb"][:1] == ["level"]  # "one is downstairs, two are upstairs"
+            made += _loose(pre, mark, lex, placed)
             pre = []
             made += [_plain(mark, lex)] if mark.kind not in DROPPED else []
         k += 1
@@ -173,12 +174,12 @@ def _postposed(marks: Sequence[Mark]) -> bool:
     return [m.kind for m in marks if m.kind in {"room", "num", "clf"}][:3] == ["room", "num", "clf"]
 
 
-def _loose(pre: Sequence[Mark], ahead: Mark | None, lex: Lexicon) -> list[Element]:
+def _loose(pre: Sequence[Mark], ahead: Mark | None, lex: Lexicon, placed: bool = False) -> list[Element]:
     """Return what stood in front of no room: "two baths, one en suite", "ein Bad, das vom Flur erreichbar ist"."""
     owned = ahead is not None and ahead.kind == "owner"  # "four bedrooms, two for the kids"
     kept = {"amount", "adj"} if owned else {"amount", "adj", "det"}
     kept |= {"size"} if ahead is None or ahead.kind in {"comma", "join", "but", "close"} else set()
-    made = [_plain(m, lex) for m in pre if m.kind in kept or (m.kind == "num" and (m.value == "1" or owned))]
+    made = [_plain(m, lex) for m in pre if m.kind in kept or (m.kind == "num" and (m.value == "1" or owned or placed))]
     for e in made:
         if e.kind == "num":
             e.kind, e.value = "pron", "one"

@@ -207,7 +207,7 @@ def _outside(c: Clause, k: int, e: Element) -> int:
 def _pron(c: Clause, k: int, e: Element) -> int:
     """Read a pronoun: the rooms that it stands for are spoken of next."""
     ahead = c.ahead(k + 1, "det", "verb")
-    if e.value == "rest" and ahead is not None and ahead.kind in {"level", "colon"}:
+    if e.value == "rest" and ahead is not None and ahead.kind in {"level", "colon"} and not c.parted():
         return _every(c, k, e)
     told = ahead is not None and (ahead.kind in {"owner", "level"} or (ahead.kind == "cue" and ahead.value in ONE_THAT))
     like = c.run[-1] if c.run and k and c.sentence[k - 1].kind in {"and", "comma"} else None
@@ -248,7 +248,7 @@ def _det(c: Clause, k: int, e: Element) -> int:
     each = e.value == "each" and kind in {"", "comma", "close"} and _one_each(c, before, e)
     if each or (e.value == "another" and kind == "pron" and _one_more(c, e)):
         return k + 1
-    if e.value == "other" and behind is not None and behind.kind in {"level", "colon"}:
+    if e.value == "other" and behind is not None and behind.kind in {"level", "colon"} and not c.parted():
         return _every(c, k, e)
     if e.value == "all" and c.run and kind != "np":
         again = c.run[-1].det & {"all", "each"} and before is c.run[-1]  # "..., 所有卧室都从走廊进出"
