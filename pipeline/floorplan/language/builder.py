@@ -26,6 +26,7 @@ OUTLINES: Mapping[str, dict[str, Any]] = {"shape_l": {"shape": "L"}, "shape_t": 
 SHELL = {"ceiling": ("ceiling",), "walls": ("inner_wall", "outer_wall"), "inner_walls": ("inner_wall",), "outer_walls": ("outer_wall",)}
 LIMITS = {"ceiling": (1.8, 8.0), "inner_wall": (0.05, 0.6), "outer_wall": (0.05, 0.6)}  # [m]
 SMALL = {"wc", "hallway", "entry", "storage", "closet", "balcony", "staircase", "bathroom", "utility"}  # not meant by "every room at least"
+BESIDES = {"wc", "hallway", "entry", "storage", "closet", "balcony", "staircase", "utility", "garage"}  # not among "five rooms"
 STRANGERS = {"guest", "elder", "carer", "staff"}  # whose bedrooms are beside those of the people who live there
 LIVED = {"living_room", "bedroom", "office", "dining_room", "playroom", "library", "studio_room", "family_room"}
 GROUND = {"living_room", "kitchen", "dining_room", "garage", "entry", "wc", "utility"}
@@ -117,7 +118,7 @@ def _count(draft: Draft, state: Reading) -> None:
     if "counts_living_rooms" in lex.traits and count <= MOST_COUNTED and not any(mark.text.endswith(t) for t in lex.sign("all_rooms")):
         _living_rooms(draft, state, count, mark)
     elif count > 1:
-        while len(stock.rooms) < count:
+        while sum(r.type not in BESIDES for r in stock.rooms) < count:
             stock.add(
                 next((k for k in ("living_room", "kitchen", "bathroom") if not stock.of(k)), "bedroom"), "", "room", None
             ).stated = False

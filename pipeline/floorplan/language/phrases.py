@@ -178,7 +178,7 @@ def _loose(pre: Sequence[Mark], ahead: Mark | None, lex: Lexicon, placed: bool =
     """Return what stood in front of no room: "two baths, one en suite", "ein Bad, das vom Flur erreichbar ist"."""
     owned = ahead is not None and ahead.kind == "owner"  # "four bedrooms, two for the kids"
     kept = {"amount", "adj"} if owned else {"amount", "adj", "det"}
-    kept |= {"size"} if ahead is None or ahead.kind in {"comma", "join", "but", "close"} else set()
+    kept |= {"size"} if ahead is None or ahead.kind in {"comma", "join", "but", "close", "verb"} else set()
     made = [_plain(m, lex) for m in pre if m.kind in kept or (m.kind == "num" and (m.value == "1" or owned or placed))]
     for e in made:
         if e.kind == "num":
