@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 from pipeline.floorplan.language.furnishing import STOPS, Claim, Scan
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import MAX_PIECES, Evidence, FloorProgram, Furniture, Things
-from pipeline.floorplan.program.furniture import natural
+from pipeline.floorplan.program.furniture import impossible, natural
 
 LONG = 400  # characters of a list of wishes
 FAR = 24  # characters between a wish and the room that follows it
@@ -140,6 +140,8 @@ class _Place:
         if before:
             near = self._joined(before[-1].end, claim.start) or self._natural(claim, before[-1])
             likely = [] if near else [m for m in [*reversed(before), *after, *self.named] if self._natural(claim, m)]
+            if not near and not likely and any(impossible(self.kinds[i], claim.name) for i in before[-1].ids):
+                return ()  # "a one-bedroom flat, with a tub"
             return (likely or before[-1:])[0].ids
         if claim.kind != "count" and gap <= FAR // 2:
             return after[0].ids

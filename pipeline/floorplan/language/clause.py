@@ -42,7 +42,9 @@ class Clause:
         self.only: Element | None = None
         self.factor: Element | None = None
         self.owner = self.owning = ""
-        first = next((e for e in sentence if e.kind in {"np", "level", "zone", "every", "pron"} or e.value in {"other", "both", "all"}), None)
+        first = next(
+            (e for e in sentence if e.kind in {"np", "level", "zone", "every", "pron"} or e.value in {"other", "both", "all"}), None
+        )
         self.forward = first is not None and first.kind == "level"  # storeys stand in front of their rooms
         self.level: int | None = None
         self.left_out: Group = ()  # "except the guest room, each has ..."

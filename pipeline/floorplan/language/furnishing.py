@@ -160,10 +160,10 @@ class Scan:
             return any(kind == "owner" and of == name for _, kind, of, _ in self._here(j))
 
         stop = self.stops[bisect.bisect_left(self.stops, k) - 1]
-        beside = lexicon()["beside"].get(name)
-        if beside and any(
-            (kind, of) == ("name", beside) for j in range(max(stop + 1, k - FAR), k + FAR) for _, kind, of, _ in self._here(j)
-        ):
+        other, around = lexicon()["beside"].get(name), range(max(stop + 1, k - FAR), k + FAR)
+        named = [(j, size) for j in around if other for size, kind, of, _ in self._here(j) if (kind, of) == ("name", other)]
+        alone = [j for j, size in named if self.text(j + size) not in lexicon()["words"]["rooms"]]
+        if any(self.length(i, "none") for j in alone for i in range(min(j, k) - 2, max(j, k))):
             return True  # "a shower instead of a bathtub"
         at = max((j for j in range(max(stop + 1, k - OWNED), k) if owner(j)), default=None)
         if at is not None:  # "a bedroom with a wardrobe" has one; "a bedroom, a bathroom and a wardrobe" are three rooms

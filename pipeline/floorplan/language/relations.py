@@ -33,7 +33,7 @@ def relate(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911, PLR0912, C90
     left, group, j = _sides(c, k, e)
     if not group:
         return _alone(c, k, e)
-    if e.value == "in" and ((k and c.sentence[k - 1].kind == "and") or not _inside(c, left, group)):
+    if e.value == "in" and (c.negative is not None or (k and c.sentence[k - 1].kind == "and") or not _inside(c, left, group)):
         c.latest, c.run = group, [x for x in c.sentence[k:j] if x.kind == "np"][-1:]
         return j
     if c.sentence[j - 1].kind == "zone" and e.value in {"door", "in"}:
