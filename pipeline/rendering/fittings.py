@@ -20,6 +20,7 @@ LINING = 0.003  # thickness of the door frame's lining, inside the gap around th
 CASING = (0.06, 0.012)  # width and thickness of the trim around a door [m]
 SEAM = 1e-4  # between its boards [m]
 HANDLE_HEIGHT = 1.02  # [m]
+PART = "line_fixed_handle"  # what its handle is in GAPartNet's words
 LEAF_DENSITY = 320.0  # hollow-core door [kg/m3]
 
 
@@ -41,11 +42,11 @@ def door_of(size: Size, *, entrance: bool) -> Asset:
     leaf = Leaf("door", np.zeros(2), np.array([1.0, 0.0]), np.array([0.0, size[0]]), int(size[0]), *size[1:])
     side = leaf.turn  # +1: the room it swings into lies towards +y
     # The lining is 3 mm before walls and lintel, which collide themselves.
-    frame = replace(solid_link("frame", (*_lining(leaf, LINING), *_casing(leaf)), _lining(leaf, LINING), 12.0), colliders=())
+    boards = _lining(leaf)
+    frame = replace(solid_link("frame", (joined("frame", (*boards, *_casing(leaf))),), boards, 12.0), colliders=())
     panel = _span("leaf", (LEAF_GAP, LEAF_GAP + leaf.width), (-side * LEAF_THICKNESS, 0.0), (leaf.bottom, leaf.top), 1)
-    handles = _handles(leaf)
+    handles, levers = zip(*(_handle(leaf, name) for name in ("front", "back")), strict=True)
     mass = LEAF_DENSITY * leaf.width * LEAF_THICKNESS * (leaf.top - leaf.bottom)
-    levers = tuple(h for h in handles if h.name.endswith("lever"))  # what a hand presses; their necks are behind them
     moving = solid_link("leaf", (panel, *handles), (panel, *levers), mass)
     hinge = Joint("hinge", "revolute", 0, 1, np.array([0.0, 0.0, float(side)]), np.zeros(3), 0.0, leaf.angle, "hinge_door")
     return Asset(
@@ -76,23 +77,20 @@ def window_size(cut: Cut) -> Size:
 def window_of(size: Size) -> Asset:
     """Make the window of a size."""
     (width, z0, z1), bar, depth = size, 0.05, 0.035
-    parts = [
-        box("frame_left", (0, -depth, z0), (bar, depth, z1)),
-        box("frame_right", (width - bar, -depth, z0), (width, depth, z1)),
-        box("frame_bottom", (bar, -depth, z0), (width - bar, depth, z0 + bar)),
-        box("frame_top", (bar, -depth, z1 - bar), (width - bar, depth, z1)),
-    ]
     panes = max(1, round(width / 0.8))
     edges = np.linspace(bar / 2, width - bar / 2, panes + 1)
-    for k, x in enumerate(edges[1:-1], 1):
-        parts.append(box(f"mullion_{k}", (x - bar / 2, -depth, z0 + bar), (x + bar / 2, depth, z1 - bar)))
-    for k, (x0, x1) in enumerate(itertools.pairwise(edges), 1):
-        parts.append(box(f"glass_{k}", (x0 + bar / 2, -0.01, z0 + bar), (x1 - bar / 2, 0.01, z1 - bar), 1))
+    bars = (
+        *(box("side", (x, -depth, z0), (x + bar, depth, z1)) for x in (0, width - bar)),
+        *(box("rail", (bar + SEAM, -depth, z), (width - bar - SEAM, depth, z + bar)) for z in (z0, z1 - bar)),
+        *(box("mullion", (x - bar / 2, -depth, z0 + bar + SEAM), (x + bar / 2, depth, z1 - bar - SEAM)) for x in edges[1:-1]),
+    )
+    glass = tuple(box("pane", (x0 + bar / 2, -0.01, z0 + bar), (x1 - bar / 2, 0.01, z1 - bar), 1) for x0, x1 in itertools.pairwise(edges))
+    parts = joined("frame", bars), joined("glass", glass)
     return Asset(
         asset_id="window",
         category="window",
         size=np.array([width, 2 * depth, z1]),
-        links=(replace(solid_link("frame", tuple(parts), tuple(parts), 30.0), colliders=()),),
+        links=(replace(solid_link("frame", parts, (*bars, *glass), 30.0), colliders=()),),
         joints=(),
         materials=(WINDOW_FRAME, GLASS),
         source="fitting",
@@ -107,14 +105,14 @@ def _span(name: str, x: tuple[float, float], y: tuple[float, float], z: tuple[fl
     return box(name, low, high, material, part)
 
 
-def _lining(leaf: Leaf, thickness: float) -> tuple[Mesh, ...]:
-    """Line the hole: boards whose inner faces leave the leaf its way, `thickness` deep [m]."""
+def _lining(leaf: Leaf) -> tuple[Mesh, ...]:
+    """Line the hole: boards of LINING, whose inner faces leave the leaf its way."""
     y = (-leaf.turn * leaf.back, leaf.turn * leaf.front)
     top = leaf.top + LEAF_GAP
     return (
-        _span("lining_hinge", (LINING - thickness, LINING), y, (0, top), 0),
-        _span("lining_lock", (leaf.clear - LINING, leaf.clear - LINING + thickness), y, (0, top), 0),
-        _span("lining_top", (LINING, leaf.clear - LINING), y, (top - LINING, top - LINING + thickness), 0),
+        _span("hinge", (0, LINING), y, (0, top), 0),
+        _span("lock", (leaf.clear - LINING, leaf.clear), y, (0, top), 0),
+        _span("top", (LINING + SEAM, leaf.clear - LINING - SEAM), y, (top - LINING, top), 0),
     )
 
 
@@ -122,34 +120,22 @@ def _casing(leaf: Leaf) -> tuple[Mesh, ...]:
     """Make the trim on both faces of the wall; to look at only, so that furniture may stand against it."""
     wide, thick = CASING
     top = leaf.top + LEAF_GAP
-    parts = []
-    for name, face, out in (("front", leaf.turn * leaf.front, leaf.turn), ("back", -leaf.turn * leaf.back, -leaf.turn)):
-        y = (face, face + out * thick)
-        boards = (
+    parts: list[Mesh] = []
+    for face, out in ((leaf.turn * leaf.front, leaf.turn), (-leaf.turn * leaf.back, -leaf.turn)):
+        y = (face + out * SEAM, face + out * thick)
+        parts += (
             _span("hinge", (-wide, 0), y, (0, top + wide), 0),
             _span("lock", (leaf.clear, leaf.clear + wide), y, (0, top + wide), 0),
             _span("top", (SEAM, leaf.clear - SEAM), y, (top, top + wide), 0),
         )
-        parts.append(joined(f"casing_{name}", boards))
     return tuple(parts)
 
 
-def _handles(leaf: Leaf) -> tuple[Mesh, ...]:
-    """Make a lever on each face, near the lock edge, pointing to the hinge."""
+def _handle(leaf: Leaf, side: str) -> tuple[Mesh, Mesh]:
+    """Make the handle of a face ("front" is where the leaf swings to), near the lock edge, pointing to the hinge; and its lever alone, which a hand presses."""
     x, z = leaf.width - 0.055, leaf.bottom + HANDLE_HEIGHT
-    parts = []
-    for name, face, out in (("front", 0.0, leaf.turn), ("back", -leaf.turn * LEAF_THICKNESS, -leaf.turn)):
-        parts.append(
-            _span(f"handle_{name}_neck", (x - 0.01, x + 0.01), (face, face + out * 0.045), (z - 0.01, z + 0.01), 2, "line_fixed_handle")
-        )
-        parts.append(
-            _span(
-                f"handle_{name}_lever",
-                (x - 0.12, x + 0.01),
-                (face + out * 0.045, face + out * 0.06),
-                (z - 0.01, z + 0.01),
-                2,
-                "line_fixed_handle",
-            )
-        )
-    return tuple(parts)
+    face, out = (0.0, leaf.turn) if side == "front" else (-leaf.turn * LEAF_THICKNESS, -leaf.turn)
+    height = (z - 0.01, z + 0.01)
+    neck = _span("neck", (x - 0.01, x + 0.01 - SEAM), (face, face + out * (0.045 - SEAM)), height, 2)
+    lever = _span(f"handle_{side}_lever", (x - 0.12, x + 0.01), (face + out * 0.045, face + out * 0.06), height, 2, PART)
+    return replace(joined(f"handle_{side}", (neck, lever)), part=PART), lever
