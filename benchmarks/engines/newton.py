@@ -70,4 +70,5 @@ class NewtonEngine:
 
 if __name__ == "__main__":
     wp.config.quiet = True
+    newton.solvers.SolverMuJoCo.import_mujoco()  # packages are loaded once a process, not once a home
     trial.run(NewtonEngine)

@@ -132,19 +132,32 @@ def _is_box(mesh: Mesh) -> bool:
 
 
 def _passes(asset: Asset, link: int) -> list[int]:
-    """Return the later links that `link` must not collide with: the base's and its own movers, and movers it touches at rest."""
+    """Return the later links that `link` must not collide with: the base's and its own movers, and movers it touches at rest.
+
+    What moves on a mover meets the base: the lid on a toilet's seat comes to lie against the cistern.
+    """
     boxes = [_box(entry) for entry in asset.links]
     joined = {(j.parent, j.child) for j in asset.joints} | {(j.child, j.parent) for j in asset.joints}
     found = []
     for other in range(link + 1, len(asset.links)):
-        (low, high), (low2, high2) = boxes[link], boxes[other]
-        touch = bool(np.all(low <= high2 + TOUCH) and np.all(low2 <= high + TOUCH))
-        if link == 0 or (link, other) in joined or touch:
+        near = _meet(boxes[link], boxes[other])
+        if near and link == 0:
+            near = any(_meet(_box_of(a), _box_of(b)) for a in asset.links[0].colliders for b in asset.links[other].colliders)
+        if (link, other) in joined or near:
             found.append(other)
     return found
 
 
+def _meet(one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> bool:
+    (low, high), (low2, high2) = one, other
+    return bool(np.all(low <= high2 + TOUCH) and np.all(low2 <= high + TOUCH))
+
+
 def _box(link: Link) -> tuple[np.ndarray, np.ndarray]:
     meshes = link.colliders or link.visuals
-    points = np.concatenate([m.vertices for m in meshes]) if meshes else np.zeros((1, 3))
+    return _box_of(*meshes) if meshes else (np.zeros(3), np.zeros(3))
+
+
+def _box_of(*meshes: Mesh) -> tuple[np.ndarray, np.ndarray]:
+    points = np.concatenate([m.vertices for m in meshes])
     return points.min(axis=0), points.max(axis=0)

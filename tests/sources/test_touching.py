@@ -93,6 +93,11 @@ def test_what_is_felt_the_same_without_a_piece_has_none():
     assert len(felt_of([worktop, bottom], even(0.005))) == 2
 
 
+def test_a_vessel_keeps_its_floor():
+    tub = [block((0, 0, 0), (1.6, 0.7, 0.05)), block((0.1, 0.1, 0.05), (1.5, 0.6, 0.15))]
+    assert len(felt_of(tub, even(0.15))) == 2
+
+
 def test_furniture_that_is_shut_is_a_block_and_open_furniture_keeps_its_boards():
     sides = [((0, 0, 0), (0.02, 0.4, 0.8)), ((0.58, 0, 0), (0.6, 0.4, 0.8)), ((0, 0.39, 0), (0.6, 0.4, 0.8)), ((0, 0, 0), (0.6, 0.4, 0.02))]
     boards = [block(*b) for b in (*sides, ((0, 0, 0.78), (0.6, 0.4, 0.8)), ((0.02, 0, 0.4), (0.58, 0.39, 0.42)))]

@@ -9,6 +9,7 @@ from pxr import Usd, UsdGeom, UsdPhysics, UsdShade, UsdUtils
 
 from pipeline.entities.asset import Joint
 from pipeline.errors import ContentError
+from pipeline.rendering.boxes import box, solid_link
 from pipeline.usd import write_library
 from pipeline.usd.check import check_stage
 from pipeline.usd.physics import gravity_load
@@ -80,6 +81,22 @@ def test_base_and_movers_do_not_collide(library):
     stage = open_asset(library, "cabinet_a")
     targets = UsdPhysics.FilteredPairsAPI(stage.GetPrimAtPath("/cabinet_a/base")).GetFilteredPairsRel().GetTargets()
     assert targets == ["/cabinet_a/drawer", "/cabinet_a/door", "/cabinet_a/knob"]
+
+
+def test_a_lid_on_a_seat_comes_to_lie_against_the_cistern(tmp_path, cabinet):
+    """Where both turn by a right angle, the lid's hinge alone would let it through."""
+    base = (box("bowl", (-0.2, -0.35, 0), (0.2, 0.3, 0.39)), box("cistern", (-0.2, 0.16, 0.39), (0.2, 0.35, 0.75)))
+    plates = [(box(name, (-0.2, -0.35, z), (0.2, 0.11, z + 0.015)),) for name, z in (("seat", 0.394), ("lid", 0.414))]
+    links = tuple(solid_link(b[-1].name, b, b, 1.0) for b in (base, *plates))
+    joints = tuple(
+        Joint(f"hinge_{k}", "revolute", k, k + 1, np.array([-1.0, 0, 0]), np.array([0, 0.11, 0.4]), 0.0, 1.6, "hinge_lid") for k in (0, 1)
+    )
+    write_library([replace(cabinet, asset_id="toilet_a", links=links, joints=joints, parts=())], tmp_path)
+    stage = Usd.Stage.Open(str(tmp_path / "toilet_a" / "toilet_a.usda"))
+    targets = [
+        UsdPhysics.FilteredPairsAPI(stage.GetPrimAtPath(f"/toilet_a/{n}")).GetFilteredPairsRel().GetTargets() for n in ("cistern", "seat")
+    ]
+    assert targets == [["/toilet_a/seat"], ["/toilet_a/lid"]]
 
 
 def test_handles_are_named_and_labelled(library):

@@ -123,12 +123,20 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
 
 
 def felt_of(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
-    """Return the pieces without those that the others feel the same without: a basin's bottom close above its worktop."""
+    """Return the pieces without those that the others feel the same without: a basin's bottom close above its worktop.
+
+    Less is allowed than for a hull, which bears something: what is deep in a vessel is its floor.
+    """
+
+    def least(at: Floats, normals: Floats) -> Floats:
+        tolerance = allowed(at, normals)
+        return np.where(tolerance < ANY, np.minimum(tolerance, HELD), ANY)
+
     planes = [_planes(p.hull) for p in pieces]
     kept = set(range(len(pieces)))
     for k in sorted(kept, key=lambda k: (round(pieces[k].hull_volume, 9), k)):
         others = [planes[i] for i in sorted(kept - {k})]
-        if others and _deviation(pieces[k].hull, others, allowed) is not None:
+        if others and _deviation(pieces[k].hull, others, least) is not None:
             kept.discard(k)
     return tuple(pieces[k] for k in sorted(kept))
 
