@@ -23,8 +23,6 @@ def relate(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911, PLR0912, C90
         return excepted(c, k, e)
     if e.value.startswith("thru"):
         return through(c, k, e)
-    if e.value == "between" and (after := door_between(c, k, e)):
-        return after
     if e.value == "from" and c.says(e, "there") and (there := known(c.objects or (c.latest if k else ()) or (c.state.past or [()])[-1])):
         c.goes_on(there if len(there) == 1 else c.state.topic)
         c.objects = ()
@@ -227,17 +225,6 @@ def through(c: Clause, k: int, e: Element) -> int:
         c.waiting = None
     c.state.say("avoid" if c.deny() or e.value == "thru_not" else "door", things, hosts, e)
     c.goes_on(things)
-    return j
-
-
-def door_between(c: Clause, k: int, e: Element) -> int:
-    """Read "a door between kitchen and bathroom"; return 0 where no door is spoken of."""
-    group, j = c.after(k + 1, "between", ()) if any(x.value == "doors" for x in c.sentence) else ((), 0)
-    near = [*c.sentence[max(0, k - 2) : k], *c.sentence[j : j + 4]]
-    if len(group) != 2 or c.negative or not any(x.value == "doors" for x in near):
-        return 0
-    wide = any(x.kind == "adj" and x.value == "open" for x in near)  # "an open doorway between kitchen and dining room"
-    c.state.say("open" if wide else "door", group[:1], group[1:], e)
     return j
 
 
