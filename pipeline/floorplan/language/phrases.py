@@ -102,13 +102,6 @@ def sentences(marks: Sequence[Mark], heard: Words) -> list[list[Element]]:
     return [e for e in (_elements(s, heard.lexicon) for s in found if s) if e]
 
 
-def settle(found: list[list[Element]]) -> None:
-    """Settle what phrases mean that depends on others."""
-    _kitchenette(found)
-    for sentence in found:
-        _parted(sentence)
-
-
 def _line(marks: Sequence[Mark], k: int, heard: Words) -> str:
     """Tell whether a line break ends a sentence, parts a list, or only wraps a text."""
     before = marks[k - 1].kind if k else "stop"
@@ -292,7 +285,7 @@ def _counts(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> 
     return marks[k].value == "figure" and (after in ENDS or after in {"colon", "amount", "verb", "cue", "level", "line"})
 
 
-def _kitchenette(found: list[list[Element]]) -> None:
+def settle(found: list[list[Element]]) -> None:
     """Let the kitchenette of a studio be a function of its one room, not a kitchen of its own."""
     everything = [e for s in found for e in s]
     one = any((e.kind == "home" and e.value) or e.type == "studio_room" or (e.value == "rooms" and e.number == 1) for e in everything)
@@ -301,14 +294,3 @@ def _kitchenette(found: list[list[Element]]) -> None:
             had = k > 1 and e.size < 1.0 and (everything[k - 1].kind, everything[k - 1].value) == ("cue", "has")  # "with a small kitchen"
             if e.kind == "np" and e.type == "kitchen" and (had or (e.mark is not None and e.mark.value == "kitchen/corner")):
                 e.kind = "corner"
-
-
-def _parted(sentence: list[Element]) -> None:
-    """Read "three bathrooms, two en suite" as "two of them en suite", and "twice a bedroom" as one that is there."""
-    for k in range(len(sentence) - 1, 0, -1):
-        e, before = sentence[k], sentence[k - 2] if k > 1 and sentence[k - 1].kind in {"comma", "open"} else None
-        several = (
-            before is not None and before.kind == "np" and before.type == e.type == "bathroom" and (e.number or 1) < (before.number or 1)
-        )
-        if several and e.role == "ensuite" and not e.det:
-            sentence[k : k + 1] = [Element("pron", "one", e.first, e.first, e.text, number=e.number), replace(e, number=None)]

@@ -291,15 +291,10 @@ def no_door(c: Clause) -> None:
             continue
         flag = next((e for e in part if e.value == "thoroughfare"), None)
         rooms = [k for k in range(first + 1, last) if c.sentence[k].kind == "np"]
-        door = next((e for e in part[none + 1 : none + 4] if e.value == "doors" or (e.kind == "cue" and c.says(e, "a_door"))), None)
-        if flag is not None:
-            named = [f"*{c.sentence[k].type}" if c.sentence[k].banned or not c.sentence[k].definite else c.named(k)[0] for k in rooms]
-            c.state.say("no_through", tuple(named) or ("*bedroom",), (), flag)
-        elif door is not None and len(rooms) == 2:
-            a, b = (tuple(name(c.state, c.sentence, k, None)) for k in rooms)
-            c.state.say("not_connected", a, b, door)
-        else:
+        if flag is None:
             continue
+        named = [f"*{c.sentence[k].type}" if c.sentence[k].banned or not c.sentence[k].definite else c.named(k)[0] for k in rooms]
+        c.state.say("no_through", tuple(named) or ("*bedroom",), (), flag)
         c.state.understood(part[0].first, part[-1].last)
         c.sentence[first + 1 : last] = []
         return
