@@ -172,10 +172,6 @@ def _adj(c: Clause, k: int, e: Element) -> int:
         and (kind in {"np", "reciprocal", "open"} or (kind == "verb" and alone))
     ):
         c.state.say("merge", social, (), e)  # "living and dining room open"
-    elif e.value == "open" and c.negative is not None and c.types(social) == {"kitchen"}:
-        c.state.say("closed", social, (), e)  # "the kitchen should not be open"
-        c.state.understood(e.first, e.last)
-        c.deny()
     ends = ahead is None or ahead.kind in {"comma", "and"}
     if e.value in {"largest", "smallest"} and len(c.latest) == 1 and (c.verb or (kind == "np" and ends)):  # "客厅最大"
         c.state.say(f"{e.value}_of_all", c.latest, (), e)
@@ -324,15 +320,11 @@ def _flag(c: Clause, k: int, e: Element) -> int:
 
 def _windows(c: Clause, k: int, e: Element) -> int:
     """Read "no windows in the bedroom", "the bath needs daylight"; return where to go on."""
-    rooms, j, negative = known(c.latest or c.subject), k + 1, c.negated(k)
-    ahead = c.near(j)
-    if ahead is not None and ahead.kind == "cue" and ahead.value == "in" and (negative or not c.run):
-        named, end = c.after(j + 1, "in", ())
-        rooms, j = (named, end) if named else (rooms, j)
+    rooms, negative = known((c.listed() if c.verb else c.latest) or c.latest or c.subject), c.negated(k)
     if rooms:
         c.state.say("no_window" if negative else "window", rooms, (), e)
     c.deny()
-    return j
+    return k + 1
 
 
 READERS: Mapping[str, Callable[[Clause, int, Element], int]] = {
