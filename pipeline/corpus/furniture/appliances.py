@@ -11,9 +11,9 @@ import numpy as np
 
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.finishes import DARK_GLASS, ENAMEL, GLASS, GRAPHITE, PLASTIC, PLASTIC_WHITE, STEEL, Finish, Scheme
-from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, knob, lid, reach
+from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, knob, lid, reach, tray
 from pipeline.corpus.furniture.shape import Mover, Piece, Shape, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, shell, slab, strips
+from pipeline.corpus.furniture.solids import box, circle, revolve, ring, shell, slab, strips
 from pipeline.corpus.furniture.storage import Size, pick
 
 FRONTS = (ENAMEL, STEEL, GRAPHITE)
@@ -315,15 +315,7 @@ def _porthole(r: float, zc: float, face: float, finish: Finish) -> Mover:
 def _detergent(x: tuple[float, float], z: tuple[float, float], face: float, t: float, finish: Finish) -> Mover:
     """Return the detergent drawer: a small box behind its front, with a grip."""
     rect = Rect(x, z, face)
-    wall = 0.008
-    x0, x1, y0, y1 = x[0] + 0.006, x[1] - 0.006, face + t, face + 0.2
-    z0, z1 = z[0] + 0.012, z[1] - 0.012
-    solids: list[Solid] = [
-        box((x0, x1), (y0, y1), (z0, z0 + wall)),
-        box((x0, x0 + wall), (y0, y1), (z0 + wall, z1)),
-        box((x1 - wall, x1), (y0, y1), (z0 + wall, z1)),
-        box((x0 + wall, x1 - wall), (y1 - wall, y1), (z0 + wall, z1)),
-    ]
+    solids = tray((x[0] + 0.006, x[1] - 0.006), (face + t, face + 0.2), (z[0] + 0.012, z[1] - 0.012), 0.008)
     made = pieces("front", box(x, (face, face + t), z, 0.003), finish) + pieces("drawer_box", solids, PLASTIC_WHITE)
     middle = (x[0] + x[1]) / 2
     made += pieces(

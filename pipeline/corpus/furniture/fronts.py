@@ -11,7 +11,7 @@ import numpy as np
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.panels import LIP, FrontStyle, HandleStyle, PanelStyle, Rect, panel
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Piece, pieces
-from pipeline.corpus.furniture.solids import Solid, box, hull, revolve, ring, rod
+from pipeline.corpus.furniture.solids import Interval, Solid, box, hull, revolve, ring, rod
 
 __all__ = ["FrontStyle", "HandleStyle", "PanelStyle", "Rect", "button", "door", "drawer", "handle", "knob", "lid", "panel", "sliding_door"]
 
@@ -160,16 +160,18 @@ def drawer(
     z0 = cz0 + RUN
     z1 = min(z0 + max(0.04, 0.74 * (cz1 - cz0)), cz1 - 0.008)
     wall = min(BOARD, 0.1 * (x1 - x0))
-    boards = [
-        box((x0, x1), (y0, y1), (z0, z0 + 0.008)),
-        box((x0, x0 + wall), (y0, y1), (z0 + 0.008, z1)),
-        box((x1 - wall, x1), (y0, y1), (z0 + 0.008, z1)),
-        box((x0 + wall, x1 - wall), (y1 - wall, y1), (z0 + 0.008, z1)),
-    ]
+    boards = tray((x0, x1), (y0, y1), (z0, z1), wall)
     grips, at = _drawer_grips(rect, style)
     travel = round(0.82 * (y1 - y0), 3)
     made = panel(rect, style) + pieces("drawer_box", boards, inside) + grips
     return Mover(name, made, "prismatic", (0, -1, 0), at, travel, "slider_drawer", "drawer", after=after)
+
+
+def tray(x: Interval, y: Interval, z: Interval, wall: float) -> list[Solid]:
+    """Return a drawer behind its front: a bottom of 8 mm, two sides and a back of thickness `wall` [m]."""
+    low = z[0] + 0.008
+    sides = [box(span, y, (low, z[1])) for span in ((x[0], x[0] + wall), (x[1] - wall, x[1]))]
+    return [box(x, y, (z[0], low)), *sides, box((x[0] + wall, x[1] - wall), (y[1] - wall, y[1]), (low, z[1]))]
 
 
 def _drawer_grips(rect: Rect, style: FrontStyle) -> tuple[tuple[Piece, ...], Axis3]:
