@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -166,14 +167,19 @@ def test_a_scheduler_behind_tls_takes_those_only_who_have_its_certificate(tmp_pa
 
 
 def test_workers_that_join_late_are_all_busy(cluster):
-    """The first worker's window of two jobs does not starve those that come while it is at work."""
-    pids = set()
-    for done, (_, (_, pid)) in enumerate(map_jobs(work.doze, range(60), scheduler=cluster.scheduler_address)):
-        if done == 1:
-            cluster.scale(4)
-            cluster.wait_for_workers(4, 120)
-        pids.add(pid)
-    assert len(pids) == 4
+    """The first worker's window of two jobs does not starve those that come, in three lots, while it is at work."""
+    joined, pids = 1, []
+    for done, (_, (_, pid)) in enumerate(map_jobs(work.doze, range(160), scheduler=cluster.scheduler_address)):
+        if done in (1, 20, 60):
+            joined = {1: 3, 20: 4, 60: 8}[done]
+            cluster.scale(joined)
+            cluster.wait_for_workers(joined, 120)
+        pids.append(pid)
+        if done == 60:
+            assert len(set(pids)) == 4
+    jobs = Counter(pids[80:])
+    assert len(jobs) == 8
+    assert min(jobs.values()) >= 3, jobs  # ten each, were all alike
 
 
 @pytest.mark.parametrize("scheduler", ["nowhere.json", "tcp://127.0.0.1:9", "gopher://x"])
