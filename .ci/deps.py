@@ -50,8 +50,8 @@ def shortest(files: Iterable[str]) -> list[str]:
 
 def stages(text: str) -> dict[str, str]:
     """Return the stages of dvc.yaml and the module that each runs."""
-    found = YAML(typ="safe").load(text)["stages"]
-    return {name: body["cmd"].split()[2] for name, body in found.items() if body["cmd"].startswith("python -m stages.")}
+    entries = YAML(typ="safe").load(text)["stages"]
+    return {name: body["cmd"].split()[2] for name, body in entries.items() if body["cmd"].startswith("python -m stages.")}
 
 
 def main() -> None:

@@ -18,10 +18,10 @@ def main(target: Path, preset: str) -> None:
         shutil.rmtree(target, ignore_errors=True)
         target.parent.mkdir(parents=True, exist_ok=True)
         git("clone", "--quiet", "--no-hardlinks", ".", str(target))
-    for name in listed("-C", str(target), "ls-files", "-z"):
+    for name in git_files("-C", str(target), "ls-files", "-z"):
         if name != "dvc.lock":
             (target / name).unlink(missing_ok=True)
-    for name in listed("ls-files", "-z", "--cached", "--others", "--exclude-standard"):
+    for name in git_files("ls-files", "-z", "--cached", "--others", "--exclude-standard"):
         source, copy = Path(name), target / name
         if source.is_file() and not (name == "dvc.lock" and copy.exists()):
             copy.parent.mkdir(parents=True, exist_ok=True)
@@ -31,13 +31,13 @@ def main(target: Path, preset: str) -> None:
 
 def choose(path: Path, preset: str) -> None:
     """Set the key `preset` of params.yaml."""
-    text, found = re.subn(r"(?m)^preset: *\w+", f"preset: {preset}", path.read_text(encoding="utf-8"))
-    if found != 1 or not re.search(rf"(?m)^  {re.escape(preset)}:", text):
+    text, count = re.subn(r"(?m)^preset: *\w+", f"preset: {preset}", path.read_text(encoding="utf-8"))
+    if count != 1 or not re.search(rf"(?m)^  {re.escape(preset)}:", text):
         sys.exit(f"sfgen: params.yaml has no preset {preset!r}; give PRESET= one of those under its key `presets`")
     path.write_text(text, encoding="utf-8")
 
 
-def listed(*arguments: str) -> list[str]:
+def git_files(*arguments: str) -> list[str]:
     """Return the file names that a git command lists."""
     return [name for name in git(*arguments).split("\0") if name]
 

@@ -27,12 +27,12 @@ def start(folder: Path, homes: int) -> subprocess.Popen[str]:
     return subprocess.Popen([sys.executable, "-m", "sfgen.cli", "shard", *asked], cwd=ROOT, stdout=subprocess.PIPE, text=True)
 
 
-def made(command: subprocess.Popen[str]) -> int:
+def wait_for_homes(command: subprocess.Popen[str]) -> int:
     """Wait for a command; return the number of homes that it made."""
-    told, _ = command.communicate()
+    stdout, _ = command.communicate()
     if command.returncode:
         sys.exit(f"sfgen: a command ended with exit code {command.returncode}")
-    return int(json.loads(told.splitlines()[-1])["made"])
+    return int(json.loads(stdout.splitlines()[-1])["made"])
 
 
 def content(folder: Path) -> dict[str, bytes]:
@@ -45,14 +45,14 @@ def main(homes: int, commands: int) -> int:
     rng = np.random.default_rng()
     with tempfile.TemporaryDirectory() as place:
         alone, shared = Path(place) / "alone", Path(place) / "shared"
-        made(start(alone, homes))
+        wait_for_homes(start(alone, homes))
         before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
         joined = []
         for wait in np.diff([0.0, *np.sort(rng.uniform(0, SPREAD, commands - 1))]):
             joined.append(start(shared, homes))
             time.sleep(wait)
         joined.append(start(shared, homes))
-        counts = [made(command) for command in joined]
+        counts = [wait_for_homes(command) for command in joined]
         wall, after = time.perf_counter() - began, resource.getrusage(resource.RUSAGE_CHILDREN)
         cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         equal = content(alone) == content(shared)

@@ -74,7 +74,7 @@ def main(cuts: int, kills: int) -> int:
     if not cuts:
         return bool(wrong or failed)
     start = time.process_time()
-    distinct, reported, faults = crashes.run(cuts, say=told)
+    distinct, reported, faults = crashes.run(cuts, say=print_progress)
     print(f"{cuts} power cuts, {distinct} distinct states: {len(faults)} faults, reported instead of recovered: {reported or 0}")
     print(f"{(time.process_time() - start) / max(1, distinct) * 1e3:.0f} ms of CPU a state")
     for fault in faults[:10]:
@@ -82,7 +82,7 @@ def main(cuts: int, kills: int) -> int:
     return bool(faults or wrong or failed)
 
 
-def told(number: int, distinct: int, faults: list[str]) -> None:
+def print_progress(number: int, distinct: int, faults: list[str]) -> None:
     """Say how far it is, now and then."""
     if distinct % 1000 == 0:
         print(f"{number + 1} power cuts, {distinct} distinct states, {len(faults)} faults", flush=True)

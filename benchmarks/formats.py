@@ -55,7 +55,7 @@ class Reading(NamedTuple):
     bodies: dict[tuple[str, str], Body]
 
 
-def _turned(rotation: Any) -> Gf.Matrix3d:
+def _rotation_matrix(rotation: Any) -> Gf.Matrix3d:
     """Convert a quatf, whose length is 1 but for rounding; not by way of an angle, which loses half the digits."""
     return Gf.Matrix3d(Gf.Quatd(rotation).GetNormalized())
 
@@ -69,7 +69,7 @@ def from_usd(path: Path) -> Reading:
         matrix: Any = UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(0) if prim.IsA(UsdGeom.Xformable) else None
         if prim.HasAPI(UsdPhysics.RigidBodyAPI):
             api = UsdPhysics.MassAPI(prim)
-            R = np.array((_turned(api.GetPrincipalAxesAttr().Get()) * matrix.ExtractRotationMatrix()).GetTranspose())
+            R = np.array((_rotation_matrix(api.GetPrincipalAxesAttr().Get()) * matrix.ExtractRotationMatrix()).GetTranspose())
             center = np.array(matrix.Transform(Gf.Vec3d(api.GetCenterOfMassAttr().Get())))
             bodies[name[0], name[-1]] = Body(api.GetMassAttr().Get(), center, R @ np.diag(api.GetDiagonalInertiaAttr().Get()) @ R.T)
         if prim.IsA(UsdPhysics.RevoluteJoint) or prim.IsA(UsdPhysics.PrismaticJoint):
@@ -78,7 +78,7 @@ def from_usd(path: Path) -> Reading:
                 stage.GetPrimAtPath(UsdPhysics.Joint(prim).GetBody1Rel().GetTargets()[0])
             ).ComputeLocalToWorldTransform(0)
             local = Gf.Vec3d(*(float(a == get["axis"]) for a in "XYZ"))
-            axis = child.TransformDir(local * _turned(get["localRot1"]))
+            axis = child.TransformDir(local * _rotation_matrix(get["localRot1"]))
             limits = [math.radians(v) if prim.IsA(UsdPhysics.RevoluteJoint) else v for v in (get["lowerLimit"], get["upperLimit"])]
             joints[name[0], name[-1]] = Joint(np.array(child.Transform(Gf.Vec3d(get["localPos1"]))), np.array(axis), *limits)
     return Reading(joints, bodies)
@@ -172,10 +172,10 @@ def deviations(one: Reading, other: Reading) -> dict[str, float]:
         raise ValueError(
             f"not the same: {sorted((one.joints.keys() ^ other.joints.keys()) | (one.bodies.keys() ^ other.bodies.keys()))[:5]}"
         )
-    found: dict[str, float] = defaultdict(float)
+    largest: dict[str, float] = defaultdict(float)
 
     def note(key: str, difference: Any) -> None:
-        found[key] = max(found[key], float(np.abs(difference).max()))
+        largest[key] = max(largest[key], float(np.abs(difference).max()))
 
     for name, a in one.joints.items():
         b = other.joints[name]
@@ -188,7 +188,7 @@ def deviations(one: Reading, other: Reading) -> dict[str, float]:
         note("masses", (c.mass - d.mass) / c.mass)
         note("centres of mass [m]", c.center - d.center)
         note("inertias", (c.inertia - d.inertia) / np.abs(c.inertia).max())
-    return dict(found)
+    return dict(largest)
 
 
 def _split(name: str) -> tuple[str, str]:

@@ -32,10 +32,10 @@ def homes(count: int) -> None:
     print(f"a home alone, again in the same process: {sum(factory.seconds.values()):.2f} CPU s")
     factory.seconds.clear()
     start = time.perf_counter()
-    made = []
+    successes = []
     for first in range(0, count, factory.chunk):
         outcomes = factory.make([Request(i) for i in range(first, min(first + factory.chunk, count))])
-        made += [outcome for outcome in outcomes if isinstance(outcome, Outcome)]
+        successes += [outcome for outcome in outcomes if isinstance(outcome, Outcome)]
     wall = time.perf_counter() - start
     total = sum(factory.seconds.values())
     print(f"{count} homes, one process, {wall:.1f} s; CPU seconds per home:")
@@ -43,9 +43,9 @@ def homes(count: int) -> None:
         print(f"  {part:10s} {seconds / count:8.3f}")
     print(f"  {'all':10s} {total / count:8.3f}")
     print(f"memory, at most: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MiB")
-    rooms = sum(len(o.rows["rooms"]) for o in made)
-    tries = sum(row["attempts"] for o in made for row in o.rows["scenes"])
-    size = sum(len(data) for o in made for data in o.files.values()) / 1e6
+    rooms = sum(len(o.rows["rooms"]) for o in successes)
+    tries = sum(row["attempts"] for o in successes for row in o.rows["scenes"])
+    size = sum(len(data) for o in successes for data in o.files.values()) / 1e6
     print(f"{rooms / total:.2f} rooms per CPU second, {tries / count:.1f} tries of rooms per home, {size / count:.2f} MB of files per home")
 
 

@@ -24,23 +24,23 @@ ROUND = 100  # files on disk at a time
 
 def main(count: int) -> None:
     """Make, read, print."""
-    found = []
+    outcomes = []
     for start in range(0, count, ROUND):
         with tempfile.TemporaryDirectory() as place:
-            found += list(mutation.outcomes(Path(place), range(start, min(start + ROUND, count)), cores()))
-    reasons = Counter(reason for _, _, told, *_ in found for reason in told)
-    changed = [entry for entry in found if entry[1]]
-    spent, memory = (np.array([entry[k] for entry in found]) for k in (4, 5))
-    print(f"{len(changed)} changed files, {len(found) - len(changed)} good ones among them")
-    print(f"good ones read: {sum(not kind and many > 0 for _, kind, _, many, _, _ in found)}")
+            outcomes += list(mutation.outcomes(Path(place), range(start, min(start + ROUND, count)), cores()))
+    reasons = Counter(reason for _, _, codes, *_ in outcomes for reason in codes)
+    changed = [entry for entry in outcomes if entry[1]]
+    spent, memory = (np.array([entry[k] for entry in outcomes]) for k in (4, 5))
+    print(f"{len(changed)} changed files, {len(outcomes) - len(changed)} good ones among them")
+    print(f"good ones read: {sum(not kind and many > 0 for _, kind, _, many, _, _ in outcomes)}")
     print(f"changed ones of which something was read: {sum(many > 0 for _, kind, _, many, _, _ in changed)}")
     print("refused or repaired: " + ", ".join(f"{reason} {times}" for reason, times in reasons.most_common()))
     print(
         f"CPU seconds: {spent.mean():.3f} in the mean, {spent.max():.2f} at most; memory: {memory.mean():.0f} MiB, {memory.max():.0f} at most"
     )
-    for folder, kind, told, _, seconds, mib in found:
-        if seconds > 1 or mib > 128 or {"internal", "out_of_time", "out_of_memory", "reader_died"} & set(told):
-            print(f"  {folder.name} {kind}: {', '.join(told)}, {seconds:.2f} s, {mib:.0f} MiB")
+    for folder, kind, codes, _, seconds, mib in outcomes:
+        if seconds > 1 or mib > 128 or {"internal", "out_of_time", "out_of_memory", "reader_died"} & set(codes):
+            print(f"  {folder.name} {kind}: {', '.join(codes)}, {seconds:.2f} s, {mib:.0f} MiB")
 
 
 if __name__ == "__main__":

@@ -51,16 +51,16 @@ def faults(case: Mapping[str, Any], engine: Engine | None = None) -> list[str]:
         *_amounts(program, case),
         *_relations(program, case),
         *_shape(program, case),
-        *_furnished(program, case),
+        *_furniture(program, case),
         *_unsaid(program, case),
     ]
 
 
 def _rooms(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
-    made: Counter[str] = Counter(r.type for r in program.rooms if r.stated)
+    actual: Counter[str] = Counter(r.type for r in program.rooms if r.stated)
     wanted: Counter[str] = Counter(case["rooms"])
-    if made != wanted:
-        yield f"rooms: more {dict(made - wanted)}, fewer {dict(wanted - made)}"
+    if actual != wanted:
+        yield f"rooms: more {dict(actual - wanted)}, fewer {dict(wanted - actual)}"
     there = Counter(r.type for r in program.rooms)
     for kind, count in case.get("has", {}).items():
         if there[kind] < count:
@@ -90,9 +90,9 @@ def _links(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
         )
         if here < (count[0] if count else 1):
             yield f"link {a}-{b} {kind}: {here}"
-    made: Counter[tuple[str, str]] = Counter((min(p), max(p)) for k in stated if k.kind != "wall" for p in [(kinds[k.a], kinds[k.b])])
-    if "links" in case and made - wanted:
-        yield f"links not asked for: {dict(made - wanted)}"
+    actual: Counter[tuple[str, str]] = Counter((min(p), max(p)) for k in stated if k.kind != "wall" for p in [(kinds[k.a], kinds[k.b])])
+    if "links" in case and actual - wanted:
+        yield f"links not asked for: {dict(actual - wanted)}"
 
 
 def _amounts(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
@@ -103,13 +103,13 @@ def _amounts(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
             yield f"area of {kind}"
 
 
-def _meets(made: Range, wanted: float | Sequence[float | None] | None) -> bool:
+def _meets(actual: Range, wanted: float | Sequence[float | None] | None) -> bool:
     if wanted is None:
-        return not made.stated
+        return not actual.stated
     if isinstance(wanted, (int, float)):
-        return made.stated and made.target is not None and abs(made.target - wanted) < 0.01 * wanted
-    ends = [(made.min, wanted[0]), (made.max, wanted[1])]
-    return made.stated and all(w is None or (m is not None and abs(m - w) < 0.01 * w) for m, w in ends)
+        return actual.stated and actual.target is not None and abs(actual.target - wanted) < 0.01 * wanted
+    ends = [(actual.min, wanted[0]), (actual.max, wanted[1])]
+    return actual.stated and all(w is None or (m is not None and abs(m - w) < 0.01 * w) for m, w in ends)
 
 
 def _relations(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
@@ -158,7 +158,7 @@ def _shape(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
         yield "ceiling"
 
 
-def _furnished(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
+def _furniture(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
     """Furniture of the first room of a type, or of the home."""
     for kind, category, least, most in case.get("furniture", ()):
         if not any((t.category, t.min, t.max) == (category, least, most) for f in _wishes(program, kind) for t in f.counts):
@@ -183,7 +183,7 @@ def _wishes(program: FloorProgram, kind: str) -> list[Furniture]:
     return [r.furniture for r in program.rooms if r.type == kind] if kind else [program.furniture]
 
 
-def recorded(replies: dict[str, Any], server: llm.Server | None) -> Engine:
+def replay_engine(replies: dict[str, Any], server: llm.Server | None) -> Engine:
     """Return an engine that reads what a model has replied; what it has not been asked yet is asked, and its program kept as a reply."""
 
     def read(prompt: str) -> FloorProgram:
@@ -191,7 +191,7 @@ def recorded(replies: dict[str, Any], server: llm.Server | None) -> Engine:
             if server is None:
                 raise llm.UnansweredError("no reply is recorded, and no server is configured")
             replies[prompt] = json.loads(llm.ask(prompt, server).model_dump_json(exclude_defaults=True))
-        program = complete(llm.validated(json.dumps(replies[prompt], ensure_ascii=False), prompt))
+        program = complete(llm.validate_reply(json.dumps(replies[prompt], ensure_ascii=False), prompt))
         check(program)
         return program
 
@@ -210,7 +210,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     asked = parser.parse_args(arguments)
     known = yaml.safe_load(asked.replies.read_text(encoding="utf-8")) if asked.replies and asked.replies.exists() else []
     replies = {row["prompt"]: row["reply"] for row in known}
-    engine = recorded(replies, llm.configured()) if asked.engine == "llm" else None
+    engine = replay_engine(replies, llm.server_from_env()) if asked.engine == "llm" else None
     exact: Counter[tuple[str, str, str]] = Counter()
     count: Counter[tuple[str, str, str]] = Counter()
     spent = 0.0

@@ -35,15 +35,15 @@ PITCH = 1.5  # [m] between assets
 
 def pythons(candidates: list[str], engines: list[str]) -> dict[str, str]:
     """Return the first Python that has each engine."""
-    found = {}
+    by_engine = {}
     for engine in engines:
         for python in candidates:
             if not subprocess.run([python, "-c", f"import {ENGINES[engine]}"], capture_output=True, check=False).returncode:
-                found[engine] = python
+                by_engine[engine] = python
                 break
         else:
             print(f"{engine}: no Python has it", flush=True)
-    return found
+    return by_engine
 
 
 def asset_stage(ids: list[str], folder: Path) -> Path:
@@ -85,7 +85,7 @@ def asset_stage(ids: list[str], folder: Path) -> Path:
     return path
 
 
-def chosen(count: int) -> list[str]:
+def pick_assets(count: int) -> list[str]:
     """Return articulated assets and small things in turn, as many kinds of them as there can be, always the same."""
     import pyarrow.parquet as pq
 
@@ -122,30 +122,30 @@ def trials(stages: list[Path], runs: dict[str, str], folder: Path) -> dict[str, 
     return results
 
 
-def report(engine: str, found: list[dict[str, Any]], *, faults: bool) -> None:
+def report(engine: str, records: list[dict[str, Any]], *, faults: bool) -> None:
     """Print what an engine found: one line, and with `faults` a line for each thing that is not as it should be."""
     if engine == "validator":
-        issues = sum((Counter(r["issues"]) for r in found), Counter())
+        issues = sum((Counter(r["issues"]) for r in records), Counter())
         print(f"{engine:10s} {dict(issues) or 'no failures, no warnings'}", flush=True)
-        for rule, example in found[0]["examples"].items() if faults and found else ():
+        for rule, example in records[0]["examples"].items() if faults and records else ():
             print(f"    {rule}: {example[:160]}")
         return
-    joints = [j for r in found for j in r["plan"]["joints"]]
-    bodies = [b["path"] for r in found for b in r["plan"]["bodies"]]
+    joints = [j for r in records for j in r["plan"]["joints"]]
+    bodies = [b["path"] for r in records for b in r["plan"]["bodies"]]
     opened, closed, left, together = (
-        np.concatenate([np.array(r[k], float) for r in found]) for k in ("opened", "closed", "left", "together")
+        np.concatenate([np.array(r[k], float) for r in records]) for k in ("opened", "closed", "left", "together")
     )
     limited = np.array([j["limited"] for j in joints], bool)
     opens = opened >= OPEN
     near = SHUT + FLOOR / np.array([j["upper"] for j in joints])  # a key of 1 mm gives way by more than its share under a push
     shuts = (np.abs(closed) <= near) | ~limited
     stays = (np.abs(left) <= near) | ~limited
-    moved = {k: np.concatenate([np.array(r[k], float).reshape(-1, 2) for r in found]) for k in ("moved_shut", "moved_open")}
+    moved = {k: np.concatenate([np.array(r[k], float).reshape(-1, 2) for r in records]) for k in ("moved_shut", "moved_open")}
     still = {k: (m <= STILL).all(axis=1) for k, m in moved.items()}
     print(
         f"{engine:10s} {opens.sum()} of {len(joints)} joints open one at a time, {(together >= OPEN).sum()} all at once; {shuts.sum()} shut, "
         f"{stays.sum()} stay shut; {(~still['moved_shut']).sum()} / {(~still['moved_open']).sum()} of {len(bodies)} things move (shut / open); "
-        f"load {np.mean([r['load'] for r in found]):.1f} s of CPU, {np.mean([r['steps_per_second'] for r in found]):.0f} steps/s",
+        f"load {np.mean([r['load'] for r in records]):.1f} s of CPU, {np.mean([r['steps_per_second'] for r in records]):.0f} steps/s",
         flush=True,
     )
     for k in np.flatnonzero(~(opens & shuts & stays)) if faults else ():
@@ -173,7 +173,7 @@ def main() -> None:
     if given.what == "homes":
         stages = sorted(p for p in (given.dataset / "usd").glob("*/*.usdc"))[: given.count]
     else:
-        ids = chosen(given.count)
+        ids = pick_assets(given.count)
         stages = [asset_stage(ids[k : k + BATCH], given.out / f"assets_{k:04d}") for k in range(0, len(ids), BATCH)]
     results = trials(stages, runs, given.out)
     colliders = [r["plan"]["colliders"] for r in next(iter(results.values()), [])]
@@ -182,9 +182,9 @@ def main() -> None:
         if colliders
         else "nothing ran"
     )
-    for engine, found in results.items():
-        if found:
-            report(engine, found, faults=False)
+    for engine, records in results.items():
+        if records:
+            report(engine, records, faults=False)
 
 
 if __name__ == "__main__":

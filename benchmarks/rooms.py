@@ -31,17 +31,17 @@ Rooms = list["Arrangement"]
 def rooms_of(jobs: Sequence[RoomJob], things: Sequence[Sequence[object]]) -> Rooms:
     """Return proposals or placements of rooms as the metrics read them."""
     from pipeline.metrics.relations import furniture
-    from pipeline.relations.arrangement import arranged
+    from pipeline.relations.arrangement import make_arrangement
 
     return [
         furniture(
-            arranged(str(job.index), job.layout_type, job.room.polygon, [(p.category, p.position, p.yaw, p.size) for p in own])  # type: ignore[attr-defined]
+            make_arrangement(str(job.index), job.layout_type, job.room.polygon, [(p.category, p.position, p.yaw, p.size) for p in own])  # type: ignore[attr-defined]
         )
         for job, own in zip(jobs, things, strict=True)
     ]
 
 
-def made(factory: Factory, jobs: Sequence[RoomJob], seconds: dict[str, float]) -> dict[str, Rooms]:
+def furnish_rooms(factory: Factory, jobs: Sequence[RoomJob], seconds: dict[str, float]) -> dict[str, Rooms]:
     """Furnish rooms: drafts unguided and guided, finished; adds CPU seconds by set."""
     from pipeline import taxonomy
     from pipeline.homes.furnish import draft_rooms
@@ -83,7 +83,7 @@ def main(count: int, seeds: int) -> None:
     truth = [replace(by_index[job.index], name=str(job.index)) for job in jobs]
     sets: dict[str, Rooms] = {"real": truth * seeds}
     seconds: dict[str, float] = {}
-    told: dict[str, list[tuple[float, float]]] = {}
+    accuracies: dict[str, list[tuple[float, float]]] = {}
     train = {room.name: furniture(room) for room in real_rooms(folder, "train") if room.layout_type}
     floors = [(job, row) for job, row in rows_of(test_rooms(source, "train", taxonomy.load().layout_types), source["rooms"])]
     named = {f"{row['scene_id']}/{row['room_id']}": job for job, row in floors}
@@ -92,25 +92,25 @@ def main(count: int, seeds: int) -> None:
         factory = load_factory(ROOT, tree, seed)
         for name, fid in views_apart(factory, seed, truth, {k: room for k, room in train.items() if room.categories}, named).items():
             views.setdefault(name, []).append(fid)
-        for name, rooms in made(factory, jobs, seconds).items():
+        for name, rooms in furnish_rooms(factory, jobs, seconds).items():
             sets.setdefault(name, []).extend(rooms)
             names = [room.name for room in truth]
             pair = [
                 forest_accuracy(seed, features(truth, solid=solid), features(rooms, solid=solid), names, names)["rate"]
                 for solid in (False, True)
             ]
-            told.setdefault(name, []).append((pair[0], pair[1]))
-    found = compare(np.random.default_rng(0), sets, files.load(folder / "relations.json"))
+            accuracies.setdefault(name, []).append((pair[0], pair[1]))
+    comparison = compare(np.random.default_rng(0), sets, files.load(folder / "relations.json"))
     print(f"{len(jobs)} rooms of split {split}, {seeds} seeds; share of cases in which it holds, and of the real share")
-    for rule, rates in found["rates"].items():
+    for rule, rates in comparison["rates"].items():
         own = max(rates["real"]["rate"], 1e-9)
         cells = [f"{v['rate']:.3f} ({v['low']:.2f}-{v['high']:.2f}) {v['rate'] / own:4.2f}" for k, v in rates.items() if k != "real"]
         print(f"  {rule:42s} {rates['real']['rate']:.3f}  " + "   ".join(cells) + f"   n {rates['real']['n'] // seeds}")
     print("objects a room: real, " + ", ".join(k for k in sets if k != "real"))
-    for kind, of in found["objects"].items():
+    for kind, of in comparison["objects"].items():
         print(f"  {kind:20s} " + "   ".join(f"{v['mean']:6.2f}" for v in of.values()) + f"   n {of['real']['n'] // seeds}")
     print("SCA of a random forest on layout features; the same where what is in another body counts as touching it")
-    for name, pairs in told.items():
+    for name, pairs in accuracies.items():
         print(f"  {name:20s} " + "   ".join(f"{np.mean(p):.3f} +- {np.std(p):.3f}" for p in zip(*pairs, strict=True)))
     print(
         "FID of plan views, on training floors: " + ", ".join(f"{k} {np.mean(v):.2f} ({min(v):.2f}-{max(v):.2f})" for k, v in views.items())
@@ -129,7 +129,7 @@ def views_apart(
     embed = embeddings("")["plan-view net"]
     real, floors = alike(np.random.default_rng(seed), truth, list(train.values()))
     sets = {"train": floors}
-    for name, rooms in made(factory, [jobs[room.name] for room in floors], {}).items():
+    for name, rooms in furnish_rooms(factory, [jobs[room.name] for room in floors], {}).items():
         sets[name] = [replace(room, openings=floor.openings) for room, floor in zip(rooms, floors, strict=True) if room.categories]
     return {name: frechet(embed(views_of(real)), embed(views_of(rooms))) for name, rooms in sets.items()}
 

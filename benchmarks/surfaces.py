@@ -26,7 +26,7 @@ from pipeline import taxonomy  # noqa: E402
 from pipeline.card import Category  # noqa: E402
 from pipeline.entities.asset import Asset, Link  # noqa: E402
 from pipeline.entities.files import load_asset  # noqa: E402
-from pipeline.sources.meshes.reach import reached  # noqa: E402
+from pipeline.sources.meshes.reach import make_reach_test  # noqa: E402
 
 Floats = NDArray[np.float64]
 Reached = Callable[[Floats], NDArray[np.bool_]]
@@ -44,26 +44,26 @@ def main() -> None:
     options.add_argument("--count", type=int, default=100)
     options.add_argument("--assets", type=Path, default=ROOT / "data" / "assets")
     given = options.parse_args()
-    found: dict[str, list[Floats]] = defaultdict(list)
+    by_kind: dict[str, list[Floats]] = defaultdict(list)
     every = {}
-    for path in _chosen(given.assets, given.count):
+    for path in _pick_assets(given.assets, given.count):
         asset = load_asset(path)
         measured = errors(asset, np.random.default_rng(0))
         every[asset.asset_id] = {
             k: [round(1000 * float(v.max()), 2), round(1000 * float(np.quantile(v, 0.95)), 2)] for k, v in measured.items()
         }
         for kind, values in measured.items():
-            found[kind].append(values)
+            by_kind[kind].append(values)
     (ROOT / "build").mkdir(exist_ok=True)
     (ROOT / "build" / "surfaces.json").write_text(json.dumps(every, indent=1))
     print(f"{len(every)} assets; mm: 95th percentile of all points, worst asset's 95th percentile, largest")
-    for kind, parts in sorted(found.items()):
+    for kind, parts in sorted(by_kind.items()):
         together = 1000 * np.concatenate(parts)
         worst = 1000 * max(float(np.quantile(v, 0.95)) for v in parts)
         print(f"{kind:40s} {np.quantile(together, 0.95):5.1f} {worst:6.1f} {together.max():6.1f}   ({len(parts)} assets)")
 
 
-def _chosen(folder: Path, count: int) -> list[Path]:
+def _pick_assets(folder: Path, count: int) -> list[Path]:
     import pyarrow.parquet as pq
 
     kinds: dict[str, list[str]] = {}
@@ -78,7 +78,7 @@ def errors(asset: Asset, rng: np.random.Generator) -> dict[str, Floats]:
     """Return by what is touched how far [m] points of colliders are from what is seen, and what is seen from colliders."""
     card = taxonomy.load().categories[asset.category]
     moved = {joint.child for joint in asset.joints}
-    found: dict[str, list[Floats]] = defaultdict(list)
+    by_kind: dict[str, list[Floats]] = defaultdict(list)
     for k, link in enumerate(asset.links):
         if not link.colliders or not link.visuals:
             continue
@@ -86,19 +86,21 @@ def errors(asset: Asset, rng: np.random.Generator) -> dict[str, Floats]:
         away = np.maximum(_outside(at, link), 0.0)
         points, outwards = _collider_points(link, rng)
         distance, nearest = _nearest(points, link)
-        comes = reached(
+        comes = make_reach_test(
             [c.vertices.astype(np.float64) for c in link.colliders], _planes(link), HAND if asset.articulated or card.loose else BODY
         )
         for way, kinds, values in (
-            ("seen, from colliders", _touched(card, k in moved, at, normals, parts, comes), away),
-            ("colliders, from what is seen", _touched(card, k in moved, points, outwards, nearest, comes), distance),
+            ("seen, from colliders", _surface_kinds(card, k in moved, at, normals, parts, comes), away),
+            ("colliders, from what is seen", _surface_kinds(card, k in moved, points, outwards, nearest, comes), distance),
         ):
             for kind in set(kinds) - {""}:
-                found[f"{kind}: {way}"].append(values[kinds == kind])
-    return {kind: np.concatenate(values) for kind, values in found.items()}
+                by_kind[f"{kind}: {way}"].append(values[kinds == kind])
+    return {kind: np.concatenate(values) for kind, values in by_kind.items()}
 
 
-def _touched(card: Category, moves: bool, points: Floats, normals: Floats, parts: NDArray[np.str_], comes: Reached) -> NDArray[np.str_]:
+def _surface_kinds(
+    card: Category, moves: bool, points: Floats, normals: Floats, parts: NDArray[np.str_], comes: Reached
+) -> NDArray[np.str_]:
     """Return (P,) what each point of a link is of."""
     plain = "small things" if card.loose else "moving parts" if moves else ""
     kinds = np.full(len(normals), plain, "<U16")
@@ -124,14 +126,14 @@ def _spread(triangles: Floats, count: int, rng: np.random.Generator) -> tuple[Fl
     return a + u * (b - a) + v * (c - a), cross[which] / areas[which, None], which
 
 
-def _seen(link: Link) -> tuple[Floats, NDArray[np.str_]]:
+def _visual_triangles(link: Link) -> tuple[Floats, NDArray[np.str_]]:
     """Return the triangles (F, 3, 3) that are seen of a link, and of which part each is."""
     triangles = np.concatenate([m.vertices[m.faces] for m in link.visuals]).astype(np.float64)
     return triangles, np.concatenate([np.full(len(m.faces), m.part, "<U24") for m in link.visuals])
 
 
 def _seen_points(link: Link, rng: np.random.Generator) -> tuple[Floats, Floats, NDArray[np.str_]]:
-    triangles, parts = _seen(link)
+    triangles, parts = _visual_triangles(link)
     points, normals, which = _spread(triangles, POINTS, rng)
     return points, normals, parts[which]
 
@@ -159,7 +161,7 @@ def _collider_points(link: Link, rng: np.random.Generator) -> tuple[Floats, Floa
 
 def _nearest(points: Floats, link: Link) -> tuple[Floats, NDArray[np.str_]]:
     """Return how far points (P, 3) are from the nearest triangle that is seen, and of which part it is."""
-    triangles, parts = _seen(link)
+    triangles, parts = _visual_triangles(link)
     low, high = triangles.min(axis=1), triangles.max(axis=1)
     corner, _ = cKDTree(triangles.reshape(-1, 3)).query(points)  # no nearest triangle is farther than that
     distance, which = np.empty(len(points)), np.empty(len(points), np.int64)

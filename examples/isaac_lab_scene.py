@@ -2,7 +2,7 @@
 
 ./isaaclab.sh -p examples/isaac_lab_scene.py data/shards --num_envs 16
 
-Runs inside Isaac Lab 2; `articulated` alone, which says what is where, needs only sfgen's loaders and pxr. Bases are fixed to their own
+Runs inside Isaac Lab 2; `articulations` alone, which says what is where, needs only sfgen's loaders and pxr. Bases are fixed to their own
 Xform in the stage, so `fix_root_link` stays unset; `spawn=None` takes what the home's stage has brought. Poses are given once more,
 because Isaac Lab puts an articulation where its `init_state` says when it resets.
 """
@@ -25,18 +25,18 @@ class Article(NamedTuple):
     joints: list[str]
 
 
-def articulated(home: Home) -> dict[str, Article]:
+def articulations(home: Home) -> dict[str, Article]:
     """Return everything in a home that has joints."""
     stage, cache = Usd.Stage.Open(str(home.usd)), UsdGeom.XformCache()
     objects = {o.object_id for o in home.objects}
-    found = {}
+    articles = {}
     for name in dict.fromkeys(joint.object_id for joint in home.joints):
         prim = f"{'Objects' if name in objects else 'Doors'}/{name}"
         matrix = cache.GetLocalToWorldTransform(stage.GetDefaultPrim().GetPrimAtPath(prim))
         turned = matrix.ExtractRotationQuat()
         orientation = (turned.GetReal(), *turned.GetImaginary())
-        found[name] = Article(prim, tuple(matrix.ExtractTranslation()), orientation, [j.joint_id for j in home.joints_of(name)])
-    return found
+        articles[name] = Article(prim, tuple(matrix.ExtractTranslation()), orientation, [j.joint_id for j in home.joints_of(name)])
+    return articles
 
 
 def scene_cfg(home: Home, num_envs: int, spacing: float) -> object:
@@ -48,11 +48,11 @@ def scene_cfg(home: Home, num_envs: int, spacing: float) -> object:
 
     cfg = InteractiveSceneCfg(num_envs=num_envs, env_spacing=spacing, replicate_physics=True)
     cfg.home = AssetBaseCfg(prim_path="{ENV_REGEX_NS}/Home", spawn=sim.UsdFileCfg(usd_path=str(home.usd)))
-    for name, found in articulated(home).items():
+    for name, article in articulations(home).items():
         # the stage's own drives (damping, springs) stay: None leaves them as they are
-        passive = ImplicitActuatorCfg(joint_names_expr=found.joints, stiffness=None, damping=None)
-        state = ArticulationCfg.InitialStateCfg(pos=found.position, rot=found.orientation, joint_pos={".*": 0.0})
-        prim = f"{{ENV_REGEX_NS}}/Home/{found.prim}"
+        passive = ImplicitActuatorCfg(joint_names_expr=article.joints, stiffness=None, damping=None)
+        state = ArticulationCfg.InitialStateCfg(pos=article.position, rot=article.orientation, joint_pos={".*": 0.0})
+        prim = f"{{ENV_REGEX_NS}}/Home/{article.prim}"
         setattr(cfg, name, ArticulationCfg(prim_path=prim, spawn=None, init_state=state, actuators={"passive": passive}))
     return cfg
 

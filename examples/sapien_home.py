@@ -35,9 +35,9 @@ def load(scene: sapien.Scene, home: Path, loader: type[URDFLoader] = URDFLoader)
         reader.set_scene(scene)
         reader.fix_root_link = thing["fixed"]
         articulations, entities = reader.load_multiple(str(home.parent / thing["urdf"]))
-        (made,) = [*articulations, *entities]
-        made.set_pose(sapien.Pose(thing["position"], thing["orientation"]))
-        placed[thing["name"]] = made
+        (model,) = [*articulations, *entities]
+        model.set_pose(sapien.Pose(thing["position"], thing["orientation"]))
+        placed[thing["name"]] = model
     return placed
 
 

@@ -178,17 +178,17 @@ class Category:
 @functools.cache
 def cards() -> Mapping[str, Category]:
     """Return the categories by name, in order. Raises ContentError naming the card that is not valid."""
-    made = [_card(path) for path in sorted(FOLDER.glob("*.yaml"))]
-    found = {c.name: c for c in sorted(made, key=lambda c: (c.order, c.name))}
-    for card in made:
+    categories = [_card(path) for path in sorted(FOLDER.glob("*.yaml"))]
+    by_name = {c.name: c for c in sorted(categories, key=lambda c: (c.order, c.name))}
+    for card in categories:
         for key, name in _references(card):
-            if name not in found:
-                raise params.unknown(f"{key}.{name}", name, found, f"manifests/categories/{card.name}.yaml")
-    for card in made:  # what lies on furniture is added to what that holds
+            if name not in by_name:
+                raise params.unknown(f"{key}.{name}", name, by_name, f"manifests/categories/{card.name}.yaml")
+    for card in categories:  # what lies on furniture is added to what that holds
         for support, expected in card.lies_on.items():
-            other = found[support]
-            found[support] = replace(other, holds={**other.holds, card.name: expected})
-    return found
+            other = by_name[support]
+            by_name[support] = replace(other, holds={**other.holds, card.name: expected})
+    return by_name
 
 
 def _card(path: Path) -> Category:

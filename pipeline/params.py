@@ -79,10 +79,10 @@ def rewritten(text: str, changes: Mapping[tuple[str, ...], str | None]) -> str:
         start, end = -1, len(lines)
         for depth, name in enumerate(path):
             inside = range(start + 1, end)
-            found = next((i for i in inside if re.match(rf"{'  ' * depth}{name}:(\s|$)", lines[i])), None)
-            if found is None:
+            line_number = next((i for i in inside if re.match(rf"{'  ' * depth}{name}:(\s|$)", lines[i])), None)
+            if line_number is None:
                 raise ContentError(f"params.yaml: key {'.'.join(path)} has no line", "restore it with `git checkout params.yaml`")
-            start, end = found, next((i for i in inside if i > found and re.match(rf" {{0,{2 * depth}}}[^\s#]", lines[i])), end)
+            start, end = line_number, next((i for i in inside if i > line_number and re.match(rf" {{0,{2 * depth}}}[^\s#]", lines[i])), end)
         comment = re.search(r"\s#\s.*$", lines[start].rstrip("\n"))
         said = "null" if value is None else value if re.fullmatch(r"[\w./][\w./-]*", value) else json.dumps(value, ensure_ascii=False)
         lines[start] = f"{'  ' * (len(path) - 1)}{path[-1]}: {said}{comment.group() if comment else ''}\n"

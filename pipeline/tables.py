@@ -55,9 +55,9 @@ class Stream:
 def stream(path: Path, table: Table) -> Iterator[Stream]:
     """Open a zstd Parquet file to append rows to; it is there, whole, when the block ends without an error."""
     with replacing(path) as temporary, pq.ParquetWriter(temporary, table.schema(), compression="zstd", store_schema=True) as writer:
-        made = Stream(writer, table)
-        yield made
-        made.finish()
+        row_stream = Stream(writer, table)
+        yield row_stream
+        row_stream.finish()
 
 
 def read(path: Path, table: Table, scenes: Collection[str] | None = None) -> list[dict[str, Any]]:

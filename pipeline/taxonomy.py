@@ -128,8 +128,8 @@ class Taxonomy:
     def of_kind(self, *names: str) -> tuple[str, ...]:
         """Return the categories that the first known of these super-categories or title groups may be, () for none."""
         for name in map(normalise, names):
-            if found := tuple(c.name for c in self.categories.values() if name in c.names.kinds):
-                return found
+            if categories := tuple(c.name for c in self.categories.values() if name in c.names.kinds):
+                return categories
         return ()
 
     def from_partnet(self, model_cat: str) -> tuple[str, ...]:

@@ -117,8 +117,8 @@ def _read_seal(place: Place) -> dict[str, tuple[str, int]]:
 
     def load(text: bytes) -> Any:
         data = json.loads(text)
-        told = {key: value for key, value in data.items() if key != "sha256"}
-        plain = json.dumps(told, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+        content = {key: value for key, value in data.items() if key != "sha256"}
+        plain = json.dumps(content, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
         written = json.dumps(data, sort_keys=True, indent=2, ensure_ascii=False) + "\n"
         if data["sha256"] != hashlib.sha256(plain.encode()).hexdigest() or written.encode() != text:
             raise ValueError
@@ -156,10 +156,10 @@ def _check_files(place: Place, there: Mapping[str, int], files: Mapping[str, tup
             raise _wrong(f"{place.path(path)} has {there[path]} bytes, not {size}")
         try:
             with place.open(path) as file:
-                found = hashlib.file_digest(file, "sha256").hexdigest()  # type: ignore[arg-type]
+                digest = hashlib.file_digest(file, "sha256").hexdigest()  # type: ignore[arg-type]
         except OSError as error:
             raise _wrong(f"{place.path(path)} cannot be read ({error.strerror or error})") from error
-        if found != sha256:
+        if digest != sha256:
             raise _wrong(f"{place.path(path)} is not what was written (its sha256 differs)")
 
 
@@ -206,8 +206,11 @@ def _read_table(place: Place, path: str, schema: pa.Schema | None) -> pa.Table:
             data = pq.ParquetFile(file).read()
     except (OSError, pa.ArrowException) as error:
         raise _wrong(f"{place.path(path)} is not a readable Parquet file ({str(error).splitlines()[0]})") from error
-    told = data.schema.metadata or {}
-    if (told.get(b"sfgen.table"), told.get(b"sfgen.schema_version")) != (path.split("/", maxsplit=1)[0].encode(), SCHEMA_VERSION.encode()):
+    metadata = data.schema.metadata or {}
+    if (metadata.get(b"sfgen.table"), metadata.get(b"sfgen.schema_version")) != (
+        path.split("/", maxsplit=1)[0].encode(),
+        SCHEMA_VERSION.encode(),
+    ):
         raise _wrong(f"{place.path(path)} is not that table of a dataset of format {FORMAT}")
     if schema is not None and not data.schema.equals(schema):
         odd = sorted({str(field) for field in data.schema} ^ {str(field) for field in schema})
@@ -219,27 +222,27 @@ def _check_homes(read: dict[str, pa.Table], header: Mapping[str, Any], number: i
     """Check that every index of the shard has its home, or a rejects row that says why it has none."""
     size = header["shard_size"]
     indices = range(number * size, min(header["count"], (number + 1) * size))
-    made = read["scenes"]["index"].to_pylist()
+    homes = read["scenes"]["index"].to_pylist()
     whats, wheres = (read["rejects"][column].to_pylist() for column in ("what", "where"))
     try:
         empty = [int(where.rpartition("_")[2]) for what, where in zip(whats, wheres, strict=True) if what == "index"]
     except ValueError as error:
         raise _wrong(f"{places['rejects']} names a home that cannot be") from error
-    names = [f"s{header['seed']}_{i:08d}" for i in (*made, indices[0], indices[-1])]
-    if made != sorted(made) or sorted((*made, *empty)) != list(indices) or read["scenes"]["scene_id"].to_pylist() != names[:-2]:
+    names = [f"s{header['seed']}_{i:08d}" for i in (*homes, indices[0], indices[-1])]
+    if homes != sorted(homes) or sorted((*homes, *empty)) != list(indices) or read["scenes"]["scene_id"].to_pylist() != names[:-2]:
         raise _wrong(f"{places['scenes']} does not hold the homes {names[-2]} ... {names[-1]}")
 
 
 def _ids(data: pa.Table, column: str, place: object) -> set[tuple[str, str]]:
     """Return the (scene, id) pairs of a table after checking that they are unique and well formed."""
-    seen: set[tuple[str, str]] = set()
+    pairs: set[tuple[str, str]] = set()
     for pair in _pairs(data, column):
         if not ID.fullmatch(pair[1] or ""):
             raise _wrong(f"{place}: {column} {pair[1]!r} is not a valid id")
-        if pair in seen:
+        if pair in pairs:
             raise _wrong(f"{place}: {column} {pair[1]!r} stands twice in {pair[0]}")
-        seen.add(pair)
-    return seen
+        pairs.add(pair)
+    return pairs
 
 
 def _pairs(data: pa.Table, column: str) -> Iterator[tuple[str, Any]]:

@@ -141,13 +141,13 @@ def plan(
     if bool(prompts) != score:
         raise Complaint("--prompts and --score go together; give both or neither", 2)
     root = factory_root()
-    made = stage("plan")
+    module = stage("plan")
     if schema:
-        made.schema(root)
+        module.schema(root)
     elif prompts:
-        made.score(root, prompts=prompts, seeds=seeds, json_path=json)
+        module.score(root, prompts=prompts, seeds=seeds, json_path=json)
     else:
-        made.main(root, prompt=prompt, seed=seed, source=source, house=house, json_path=json, svg_path=svg, png_path=png, strict=strict)
+        module.main(root, prompt=prompt, seed=seed, source=source, house=house, json_path=json, svg_path=svg, png_path=png, strict=strict)
 
 
 @app.command()

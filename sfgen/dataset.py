@@ -34,7 +34,7 @@ def load(path: str | Path, split: str | None = None) -> Dataset:
     """
     place = Place(path)
     header = read_header(place)
-    numbers = committed(place, header)
+    numbers = committed_shards(place, header)
     counts = [_read_json(place, f"commits/shard-{n:05d}.json")["rows"]["scenes"] for n in numbers]
     whole = [np.column_stack([np.full(c, n), np.arange(c)]) for n, c in zip(numbers, counts, strict=True)]
     places = np.concatenate(whole) if whole else np.empty((0, 2), np.int64)
@@ -53,8 +53,8 @@ def read_header(place: Place) -> dict[str, Any]:
         msg = f"{place.name}/dataset.json is not of format {FORMAT}; use the release of sfgen that made it"
         raise DatasetError(msg)
     if header.get("schema_version") != SCHEMA_VERSION:
-        told = f"{place.name} has tables of version {header.get('schema_version')}, and this release of sfgen reads {SCHEMA_VERSION}"
-        msg = f"{told}; use the release of sfgen that made it"
+        mismatch = f"{place.name} has tables of version {header.get('schema_version')}, and this release of sfgen reads {SCHEMA_VERSION}"
+        msg = f"{mismatch}; use the release of sfgen that made it"
         raise DatasetError(msg)
     numbers: list[Any] = [header.get(name) for name in ("seed", "count", "shard_size")]
     if not all(type(n) is int for n in numbers) or min(numbers[1:]) < 1 or not isinstance(header.get("vocabulary"), dict):
@@ -63,13 +63,13 @@ def read_header(place: Place) -> dict[str, Any]:
     return header
 
 
-def committed(place: Place, header: dict[str, Any]) -> list[int]:
+def committed_shards(place: Place, header: dict[str, Any]) -> list[int]:
     """Return the numbers of the shards that are there. Raises DatasetError for a commit file that cannot be of this dataset."""
     numbers = []
     for name in place.names("commits"):
-        found = re.fullmatch(r"shard-(\d{5,})\.json", name)
-        if found and int(found[1]) * header["shard_size"] < header["count"]:
-            numbers.append(int(found[1]))
+        match = re.fullmatch(r"shard-(\d{5,})\.json", name)
+        if match and int(match[1]) * header["shard_size"] < header["count"]:
+            numbers.append(int(match[1]))
         elif name not in {"assets.json", "dataset.json"}:
             msg = f"{place.path(f'commits/{name}')} does not belong to this dataset; move it away, or {AGAIN}"
             raise DatasetError(msg)
@@ -137,7 +137,7 @@ class Dataset(Sequence[Home]):
 
     def empty(self) -> dict[int, str]:
         """Return the indices whose homes could not be made, each with the code of its reason (docs/reasons.md)."""
-        numbers = committed(self.place, self.header)
+        numbers = committed_shards(self.place, self.header)
         rows = [row for n in numbers for row in self._read("rejects", n, ["what", "where", "reason"]).to_pylist()]
         return {int(row["where"].rpartition("_")[2]): row["reason"] for row in rows if row["what"] == "index"}
 
@@ -160,11 +160,11 @@ class Dataset(Sequence[Home]):
         if number not in self._kept:
             while len(self._kept) >= KEPT:
                 self._kept.popitem(last=False)
-            self._kept[number] = {table: self._indexed(table, number) for table in ("scenes", *RECORDS)}
+            self._kept[number] = {table: self._rows_by_home(table, number) for table in ("scenes", *RECORDS)}
         self._kept.move_to_end(number)
         return self._kept[number]
 
-    def _indexed(self, table: str, number: int) -> tuple[pa.Table, dict[str, tuple[int, int]]]:
+    def _rows_by_home(self, table: str, number: int) -> tuple[pa.Table, dict[str, tuple[int, int]]]:
         data = self._read(table, number).combine_chunks()
         require_columns(data, RECORDS.get(table, Home), f"{self.place.path(table)}/shard-{number:05d}.parquet")
         names = data["scene_id"].to_pylist()

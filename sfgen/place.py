@@ -24,8 +24,8 @@ class Place:
 
                 self._system, self._root = url_to_fs(self.name)
             except (ImportError, ValueError) as error:
-                told = str(error).splitlines()[0]
-                msg = f"{self.name} cannot be reached ({told}); install 'sfgen[remote]' and the package of its kind of place: s3fs, gcsfs, adlfs"
+                reason = str(error).splitlines()[0]
+                msg = f"{self.name} cannot be reached ({reason}); install 'sfgen[remote]' and the package of its kind of place: s3fs, gcsfs, adlfs"
                 raise DatasetError(msg) from error
 
     def open(self, name: str) -> BinaryIO:
@@ -50,8 +50,8 @@ class Place:
     def files(self) -> dict[str, int]:
         """Return the length in bytes of every file, by name; -1 of a link that leads nowhere."""
         if self._system:
-            found = self._system.find(self._root, detail=True)
-            return {path[len(self._root) :].lstrip("/"): entry["size"] for path, entry in found.items()}
+            entries = self._system.find(self._root, detail=True)
+            return {path[len(self._root) :].lstrip("/"): entry["size"] for path, entry in entries.items()}
         root = Path(self.name)
         paths = [path for path in root.rglob("*") if path.is_symlink() or not path.is_dir()]
         return {path.relative_to(root).as_posix(): path.stat().st_size if path.exists() else -1 for path in paths}

@@ -10,7 +10,7 @@ from pipeline import params
 from pipeline.errors import UsageError
 from pipeline.manifest import write_bytes
 from pipeline.sources import inventory
-from pipeline.sources.registry import SOURCES, recognised
+from pipeline.sources.registry import SOURCES, recognise_sources
 from pipeline.sources.settings import PreprocessSettings
 from pipeline.sources.source import Listing
 
@@ -35,34 +35,34 @@ def main(root: Path, paths: Sequence[Path]) -> None:
         save(root, params.rewritten(text, changes))
         sys.stdout.write("the embedded corpus is in use; `dvc repro` makes what follows from it\n")
         return
-    found = chosen(paths)
+    listings = sources_by_key(paths)
     changes = {("shard", "licence"): MADE}
     for source in SOURCES:
-        if source.key in found:
-            changes[("preprocess", "sources", source.key)] = written(root, found[source.key].root)
+        if source.key in listings:
+            changes[("preprocess", "sources", source.key)] = params_path(root, listings[source.key].root)
             changes[("preprocess", "licences", source.key)] = source.licence
-        elif source.replaces & found.keys():  # the houses that are named, no longer what somebody made of them
+        elif source.replaces & listings.keys():  # the houses that are named, no longer what somebody made of them
             changes[("preprocess", "sources", source.key)] = None
             (root / inventory.FOLDER / f"{source.key}.csv").unlink(missing_ok=True)
     text = params.rewritten(text, changes)
-    for key, listing in found.items():
+    for key, listing in listings.items():
         files = inventory.write(root / inventory.FOLDER / f"{key}.csv", inventory.scan(listing))
         sys.stdout.write(f"+ {key}: {listing}; {files} files in {inventory.FOLDER / key}.csv\n")
     save(root, text)
     sys.stdout.write("params.yaml names them, with their licences; `dvc repro` reads them\n")
 
 
-def chosen(paths: Sequence[Path]) -> dict[str, Listing]:
+def sources_by_key(paths: Sequence[Path]) -> dict[str, Listing]:
     """Return the one source of each kind, by key. Raises UsageError when two of a kind are given."""
-    found: dict[str, Listing] = {}
-    for listing in (s for path in paths for s in recognised(path)):
-        other = found.setdefault(listing.key, listing)
+    listings: dict[str, Listing] = {}
+    for listing in (s for path in paths for s in recognise_sources(path)):
+        other = listings.setdefault(listing.key, listing)
         if other.root != listing.root:
             raise UsageError(f"{other.root} and {listing.root} are both {listing.key} data", "give one of them")
-    return found
+    return listings
 
 
-def written(root: Path, path: Path) -> str:
+def params_path(root: Path, path: Path) -> str:
     """Return a path as params.yaml names it: relative where it lies in the checkout."""
     return path.relative_to(root).as_posix() if path.is_relative_to(root) else str(path)
 

@@ -22,7 +22,7 @@ from pipeline.baselines.settings import BaselineSettings
 from pipeline.baselines.training import Trainer, train
 from pipeline.diffusion.settings import SampleSettings, TrainSettings
 from pipeline.entry import run
-from pipeline.experiments.baselines import cases_of, compared
+from pipeline.experiments.baselines import cases_of, compare_models
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.manifest import write_json
 from pipeline.relations import files
@@ -41,28 +41,28 @@ def main(root: Path) -> None:
     job = open_job(root, settings)
     trained = {name: trained_net(name, job, settings, tree["seed"]) for name in NETS}
     nets = {name: each.average for name, each in trained.items()}
-    made = Baselines(nets, job.scaling, settings, job.layouts, job.opens, tree["seed"])
-    makers = {name: partial(made.furnish, name) for name in BASELINES}
+    baselines = Baselines(nets, job.scaling, settings, job.layouts, job.opens, tree["seed"])
+    makers = {name: partial(baselines.furnish, name) for name in BASELINES}
     layout = params.section(TrainSettings, tree, "train")
-    own = ours.trained(
+    own = ours.train_model(
         root, folder, replace(layout, start="scratch"), params.section(SampleSettings, tree, "sample"), settings.seconds, tree["seed"]
     )
-    makers |= {"ours": partial(ours.unguided, own.sampler), "ours_guided": partial(ours.guided, own.sampler)}
+    makers |= {"ours": partial(ours.sample_unguided, own.sampler), "ours_guided": partial(ours.sample_guided, own.sampler)}
     cases = cases_of(job.tables, metrics.split, job.layouts, job.scaling.classes, settings.slots)
     opens = dict(zip(job.scaling.classes, job.opens.tolist(), strict=True))
-    found = compared(makers, cases, opens, settings, tree["seed"], files.load(root / "data/tables/relations.json"))
+    comparison = compare_models(makers, cases, opens, settings, tree["seed"], files.load(root / "data/tables/relations.json"))
     cost = {name: report(each) for name, each in trained.items()} | {"ours": own.cost}
-    write_json(root / "metrics" / "baselines.json", found | {"trained": cost, "train_rooms": len(job.outlines)})
+    write_json(root / "metrics" / "baselines.json", comparison | {"trained": cost, "train_rooms": len(job.outlines)})
 
 
 def trained_net(name: str, job: Job, settings: BaselineSettings, seed: int) -> Trainer:
     """Train one network."""
-    made = trainer(name, job, settings, seed)
+    net_trainer = trainer(name, job, settings, seed)
     with tqdm(total=round(settings.seconds), desc=name, unit="CPU s") as bar:
-        for step in train(made, job.outlines, job.furniture, job.weights):
+        for step in train(net_trainer, job.outlines, job.furniture, job.weights):
             bar.update(round(step.spent) - bar.n)
             bar.set_postfix(loss=f"{step.loss:.3f}", steps=step.done, refresh=False)
-    return made
+    return net_trainer
 
 
 def report(state: Trainer) -> dict[str, Any]:

@@ -37,8 +37,8 @@ def main(root: Path) -> None:
     """Make the corpus of params.yaml under data/raw: in a temporary folder, which takes its place when it is whole."""
     tree = params.read(root / "params.yaml")
     settings = params.section(CorpusSettings, tree, "corpus")
-    found = make(root / RAW, params.convert(int, tree.get("seed"), "seed"), settings, workers=cores())
-    output.write(root, found)
+    corpus = make(root / RAW, params.convert(int, tree.get("seed"), "seed"), settings, workers=cores())
+    output.write(root, corpus)
 
 
 def make(target: Path, seed: int, settings: CorpusSettings, workers: int) -> dict[str, Any]:
@@ -52,7 +52,7 @@ def make(target: Path, seed: int, settings: CorpusSettings, workers: int) -> dic
     jobs = list(tasks(making, seed, settings))
     total = sum(n for n, _ in jobs)
     tallies: list[HouseTally] = []
-    for _, houses in track(completed([job for _, job in jobs], workers), total, "corpus", unit="file", size=lambda done: done[0]):
+    for _, houses in track(run_tasks([job for _, job in jobs], workers), total, "corpus", unit="file", size=lambda done: done[0]):
         tallies += houses
     if target.exists():
         target.replace(old)
@@ -83,7 +83,7 @@ def tasks(folder: Path, seed: int, settings: CorpusSettings) -> Iterator[tuple[i
         yield len(indices), partial(_houses, front / "3D-FRONT", seed, settings, indices)
 
 
-def completed(jobs: Sequence[Task], workers: int) -> Iterator[Done]:
+def run_tasks(jobs: Sequence[Task], workers: int) -> Iterator[Done]:
     """Run the tasks on that many processes and yield what each did."""
     if workers == 1:
         for job in jobs:

@@ -15,7 +15,7 @@ from pipeline import params
 from pipeline.entry import run
 from pipeline.errors import ContentError
 from pipeline.execution import Voice, cores
-from pipeline.sources.registry import SOURCES, named
+from pipeline.sources.registry import SOURCES, configured_sources
 from pipeline.sources.settings import PreprocessSettings
 
 # (package, what it is for): what the factory cannot do without, then what some commands want
@@ -37,12 +37,12 @@ MADE = (
 
 def main(root: Path, *, voice: Voice = "plain") -> None:
     """Print one line per thing; `-` marks what is missing. For machines, one JSON object."""
-    found = {"machine": machine(), "packages": packages(), "sources": sources(root), "made": made(root)}
+    parts = {"machine": machine(), "packages": packages(), "sources": sources(root), "made": stage_outputs(root)}
     if voice == "json":
-        told = {part: [{"ok": not line.startswith("-"), "text": line.lstrip("+- ")} for line in lines] for part, lines in found.items()}
-        sys.stdout.write(json.dumps(told) + "\n")
+        report = {part: [{"ok": not line.startswith("-"), "text": line.lstrip("+- ")} for line in lines] for part, lines in parts.items()}
+        sys.stdout.write(json.dumps(report) + "\n")
         return
-    sys.stdout.writelines(f"{line}\n" for lines in found.values() for line in lines)
+    sys.stdout.writelines(f"{line}\n" for lines in parts.values() for line in lines)
 
 
 def places(root: Path) -> None:
@@ -67,8 +67,8 @@ def machine() -> Iterator[str]:
 def packages() -> Iterator[str]:
     """Yield the versions of what the factory stands on."""
     for name in NEEDED:
-        yield f"+ {name} {version}" if (version := installed(name)) else f"- {name} is not installed; type `make run`"
-    if installed("torch"):
+        yield f"+ {name} {version}" if (version := installed_version(name)) else f"- {name} is not installed; type `make run`"
+    if installed_version("torch"):
         import torch
 
         if torch.cuda.is_available():
@@ -76,14 +76,14 @@ def packages() -> Iterator[str]:
         else:
             yield "+ CUDA is not there: training and sampling run on the CPU"
     for name, use in WANTED:
-        version = installed(name)
+        version = installed_version(name)
         yield f"+ {name} {version}" if version else f"- {name} is not installed ({use}); pip install -c constraints.txt -e '.[render,dev]'"
 
 
 def sources(root: Path) -> Iterator[str]:
     """Yield what lies in the folders that stage `preprocess` reads."""
     settings = params.section(PreprocessSettings, params.read(root / "params.yaml"), "preprocess")
-    used = {source.key: path for source, path in named(settings.sources)}
+    used = {source.key: path for source, path in configured_sources(settings.sources)}
     for source in SOURCES:
         path = used.get(source.key)
         if path is None:
@@ -97,7 +97,7 @@ def sources(root: Path) -> Iterator[str]:
                 yield f"- {source.key}: {path} cannot be read ({error})"
 
 
-def made(root: Path) -> Iterator[str]:
+def stage_outputs(root: Path) -> Iterator[str]:
     """Yield what the stages have made, and the first command to type."""
     missing = []
     for path, what, command in MADE:
@@ -108,7 +108,7 @@ def made(root: Path) -> Iterator[str]:
     yield f"type `make run` in {root}: it makes what is missing" if missing else "all is made; try `sfgen generate` or `sfgen shard`"
 
 
-def installed(name: str) -> str | None:
+def installed_version(name: str) -> str | None:
     """Return a package's version, None when it is not installed."""
     try:
         return importlib.metadata.version(name)

@@ -23,7 +23,7 @@ from pipeline.latents.fidelity import rebuilt, two_samples
 from pipeline.latents.ranking import self_ranking
 from pipeline.latents.settings import EncodeSettings
 from pipeline.latents.surface import surface_points, triangles
-from pipeline.latents.training import encode, seeded, train
+from pipeline.latents.training import encode, init_vae, train
 from pipeline.latents.vae import PointVae, chamfer
 from pipeline.latents.weights import load_vae, save_vae
 from pipeline.manifest import write_json
@@ -47,18 +47,18 @@ def main(root: Path) -> None:
     order = sorted(shapes)
     first, second = clouds(root / "data/assets", [shapes[k] for k in order], settings.points, seed)
     learnt = [i for i, k in enumerate(order) if shapes[k]["split"] == "train"] or list(range(len(order)))
-    net, untrained = seeded(seed, settings), seeded(seed, settings)
+    net, untrained = init_vae(seed, settings), init_vae(seed, settings)
     if settings.start == "released":
-        net = released(root / RELEASED, settings)
+        net = load_released(root / RELEASED, settings)
     else:
         for _ in tqdm(train(seed, net, first[learnt], settings, device), total=settings.steps, desc="encode", unit="step"):
             pass
     save_vae(root / "models/vae.safetensors", net, settings)
     means = encode(net, first, device).numpy()
     at = {k: i for i, k in enumerate(order)}
-    made = [{"asset_id": r["asset_id"], "latent": means[at[r["source"], r["source_id"]]].tolist()} for r in rows]
-    tables.write(root / "data/latents/latents.parquet", LATENTS, made)
-    held = [i for i, k in enumerate(order) if shapes[k]["split"] != "train"]
+    latents = [{"asset_id": r["asset_id"], "latent": means[at[r["source"], r["source_id"]]].tolist()} for r in rows]
+    tables.write(root / "data/latents/latents.parquet", LATENTS, latents)
+    held_out = [i for i, k in enumerate(order) if shapes[k]["split"] != "train"]
     served: dict[tuple[str, str], set[str]] = {}
     for row in rows:
         served.setdefault((row["source"], row["source_id"]), set()).add(row["category"])
@@ -70,7 +70,7 @@ def main(root: Path) -> None:
     }
     for name, model in (("trained", net), ("untrained", untrained)):
         stored, queries = (encode(model, cloud, device).numpy() for cloud in (first, second))
-        for part, asked in (("held_out", held), ("all", list(range(len(order))))):
+        for part, asked in (("held_out", held_out), ("all", list(range(len(order))))):
             ranking = self_ranking(stored, queries, [min(served[k]) for k in order], asked, *twins(first, second))
             report[f"self_rank_{part}_{name}"] = round(ranking.rate, 6)
             report[f"asked_{part}"] = ranking.asked
@@ -89,12 +89,12 @@ def clouds(folder: Path, rows: list[Row], points: int, seed: int) -> tuple[torch
     return torch.from_numpy(np.stack(samples[0])), torch.from_numpy(np.stack(samples[1]))
 
 
-def released(path: Path, settings: EncodeSettings) -> PointVae:
+def load_released(path: Path, settings: EncodeSettings) -> PointVae:
     """Read the released encoder. Raises ContentError when its shape is not the one that is asked for."""
-    net, made = load_vae(path)
+    net, own_settings = load_vae(path)
     shape = ("width", "latent", "decoded_points")
-    if any(getattr(made, name) != getattr(settings, name) for name in shape):
-        have = ", ".join(f"{name} {getattr(made, name)}" for name in shape)
+    if any(getattr(own_settings, name) != getattr(settings, name) for name in shape):
+        have = ", ".join(f"{name} {getattr(own_settings, name)}" for name in shape)
         raise ContentError(
             f"{path} holds an encoder of another shape ({have})", "set encode.start: scratch in params.yaml, or these numbers"
         )

@@ -12,7 +12,7 @@ from pipeline.execution import Progress, Voice, single_thread
 from pipeline.execution.messages import listen
 from pipeline.floorplan import FloorProgram, describe, plan_json, request
 from pipeline.floorplan.draw.drawing import svg
-from pipeline.floorplan.imports import program_of, read_own, told
+from pipeline.floorplan.imports import describe_repairs, program_of, read_own
 from pipeline.floorplan.program.assumptions import assumptions, notes
 from pipeline.floorplan.wishes import with_wishes
 from pipeline.homes.factory import open_factory
@@ -71,7 +71,7 @@ def main(
     sys.stdout.write(report(delivered))
     if source is None:
         sys.stderr.write(notes(program, assumptions(program)))
-    sys.stdout.write(told(repairs))
+    sys.stdout.write(describe_repairs(repairs))
     for file in written:
         sys.stdout.write(f"{file}\n")
 

@@ -15,7 +15,7 @@ from pipeline.experiments import paper_tables
 from pipeline.experiments.dataset import dataset_figures, reject_counts
 from pipeline.experiments.document import write_report
 from pipeline.experiments.prompt_file import read_prompts
-from pipeline.experiments.prompts import measured
+from pipeline.experiments.prompts import evaluate_prompts
 from pipeline.experiments.realism import beside, embeddings, realism_table
 from pipeline.experiments.rooms import spread, test_rooms
 from pipeline.experiments.settings import MetricsSettings
@@ -41,9 +41,9 @@ def main(root: Path) -> None:
     settings, seed = params.section(MetricsSettings, tree, "metrics"), tree["seed"]
     parts: list[Callable[[], Any]] = [partial(run_family, root, seed, settings, family) for family in paper_tables.families(settings)]
     parts.append(partial(plans, root, settings))
-    found = map_jobs(partial(measure, parts), range(len(parts)), workers=min(cores(), len(parts)))
-    *families, plan = (made for _, made in sorted(track(found, len(parts), "metrics", unit="experiment"), key=itemgetter(0)))
-    trials: dict[str, Trial] = {name: made for family in families for name, made in family.items()}
+    jobs = map_jobs(partial(measure, parts), range(len(parts)), workers=min(cores(), len(parts)))
+    *families, plan = (measurement for _, measurement in sorted(track(jobs, len(parts), "metrics", unit="experiment"), key=itemgetter(0)))
+    trials: dict[str, Trial] = {name: measurement for family in families for name, measurement in family.items()}
     factory = open_factory(root, seed)
     rng = seeds.generator(seed, "bootstrap")
     source = {t.name: tables.read(root / "data" / "tables" / f"{t.name}.parquet", t) for t in (SCENES, OBJECTS)}
@@ -70,9 +70,9 @@ def main(root: Path) -> None:
 def realism(root: Path, seed: int, settings: MetricsSettings, trials: Mapping[str, Trial]) -> dict[str, Any]:
     """Put what was drafted for the split's floors, and what shipped, beside the rooms that stand there."""
     plain, guided = trials[paper_tables.ALL_PLAIN], trials[paper_tables.ALL_GUIDED]
-    made = {"unguided": plain.drafted, "guided": guided.drafted, "finished": guided.shipped}
+    generated = {"unguided": plain.drafted, "guided": guided.drafted, "finished": guided.shipped}
     known = files.load(root / "data" / "tables" / "relations.json")
-    return realism_table(seed, beside(root, settings.split, made), known, embeddings(settings.inception))
+    return realism_table(seed, beside(root, settings.split, generated), known, embeddings(settings.inception))
 
 
 def measure(parts: Sequence[Callable[[], Any]], number: int) -> Any:
@@ -100,7 +100,9 @@ def _rooms(source: Mapping[str, Sequence[Row]], settings: MetricsSettings, condi
 
 def plans(root: Path, settings: MetricsSettings) -> dict[str, Any]:
     """Score the floor plans of the benchmark's prompts."""
-    return measured(read_prompts(root / "manifests/prompts/benchmark.yaml"), settings.plan_seeds, lambda case: parse(case["prompt"]))
+    return evaluate_prompts(
+        read_prompts(root / "manifests/prompts/benchmark.yaml"), settings.plan_seeds, lambda case: parse(case["prompt"])
+    )
 
 
 if __name__ == "__main__":

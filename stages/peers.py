@@ -8,7 +8,7 @@ from pathlib import Path
 from pipeline import tables
 from pipeline.errors import UsageError
 from pipeline.sources.atiss.labels import KINDS
-from pipeline.sources.atiss.writer import grouped, write_kind
+from pipeline.sources.atiss.writer import rooms_with_objects, write_kind
 from pipeline.sources.reasons import Row
 from schemas.objects import OBJECTS
 from schemas.rejects import REJECTS
@@ -25,14 +25,14 @@ def main(root: Path, *, out: Path, filtered: bool) -> None:
     splits = {row["scene_id"]: row["split"] for row in columns(here, SCENES, "scene_id", "split")}
     rooms = columns(here, ROOMS, "scene_id", "room_id", "type", "polygon", "source_id")
     objects = columns(here, OBJECTS, "scene_id", "room_id", "category", "position", "yaw", "size", "source_id")
-    found = grouped(rooms, objects, splits)
+    furnished_rooms = rooms_with_objects(rooms, objects, splits)
     rejects: list[Row] = []
     for kind in KINDS.values():
-        made = write_kind(out, found, kind, filtered=filtered)
-        rejects += made.rejects
-        counts = ", ".join(f"{n} {split}" for split, n in made.rooms.items())
-        dropped = sum(row["reason"] == "peers_filter" for row in made.rejects)
-        sys.stdout.write(f"{out / kind.name}: {sum(made.rooms.values())} rooms ({counts}), {dropped} left out\n")
+        summary = write_kind(out, furnished_rooms, kind, filtered=filtered)
+        rejects += summary.rejects
+        counts = ", ".join(f"{n} {split}" for split, n in summary.rooms.items())
+        dropped = sum(row["reason"] == "peers_filter" for row in summary.rejects)
+        sys.stdout.write(f"{out / kind.name}: {sum(summary.rooms.values())} rooms ({counts}), {dropped} left out\n")
     tables.write(out / "rejects.parquet", REJECTS, rejects)
 
 

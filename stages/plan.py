@@ -9,12 +9,12 @@ from pathlib import Path
 from pipeline.entry import announce_compiling
 from pipeline.errors import RefusedError, UsageError
 from pipeline.experiments.prompt_file import read_prompts
-from pipeline.experiments.prompts import measured, report
+from pipeline.experiments.prompts import evaluate_prompts, report
 from pipeline.floorplan import plan_json, refusal_json, request, solve, warm
 from pipeline.floorplan.document import document_schema
 from pipeline.floorplan.draw.characters import terminal
 from pipeline.floorplan.draw.drawing import png, svg
-from pipeline.floorplan.imports import program_of, read_own, told
+from pipeline.floorplan.imports import describe_repairs, program_of, read_own
 from pipeline.floorplan.program.assumptions import assumptions, notes
 from pipeline.homes.soundness import require_sound
 from pipeline.manifest import write_bytes, write_json
@@ -63,7 +63,7 @@ def main(
     else:
         sys.stderr.write(notes(program, assumed))
     if STDOUT not in {str(path) for path in targets}:
-        sys.stdout.write(told(repairs))
+        sys.stdout.write(describe_repairs(repairs))
 
 
 def schema(_root: Path) -> None:
@@ -77,10 +77,10 @@ def score(_root: Path, *, prompts: Path, seeds: int = 5, json_path: Path | None 
     cases = read_prompts(prompts)
     announce_compiling()
     warm()  # no prompt pays for what is compiled once
-    found = measured(cases, seeds)
-    _write_json(json_path, found)
+    figures = evaluate_prompts(cases, seeds)
+    _write_json(json_path, figures)
     if str(json_path) != STDOUT:
-        sys.stdout.write(report(found))
+        sys.stdout.write(report(figures))
 
 
 def _check_target(path: Path | None) -> None:

@@ -17,7 +17,7 @@ from pipeline.relations import files, learning
 from pipeline.relations.split import rooms_of
 from pipeline.sources import inventory
 from pipeline.sources.library_rows import LibraryRows
-from pipeline.sources.registry import named
+from pipeline.sources.registry import configured_sources
 from pipeline.sources.settings import PreprocessSettings
 from pipeline.sources.source import Listing, Reading, Source
 from pipeline.sources.table_writer import write_houses, write_library
@@ -45,7 +45,7 @@ def main(root: Path) -> None:
 
 def sources(root: Path, settings: PreprocessSettings, walker: Walker) -> Iterator[tuple[Source, Listing, Reading]]:
     """Yield the sources in use, what lies there, and how each is read."""
-    used = named(settings.sources)
+    used = configured_sources(settings.sources)
     replaced = {key for source, _ in used for key in source.replaces}
     for source, path in used:
         houses = source.key not in replaced
@@ -59,8 +59,8 @@ def read_library(out: Path, used: Used, *, required: bool) -> LibraryRows:
     """Read all models, write their assets, and remove assets of earlier runs. Raises ContentError where models are `required` and none is usable."""
     library = LibraryRows()
     for source, listing, reading in used:
-        for made in source.models(listing, reading):
-            library.add(made)
+        for rows in source.models(listing, reading):
+            library.add(rows)
     if required and not library.assets:
         raise ContentError(f"{places(used)} gives no usable model", "check the folders in section preprocess of params.yaml")
     kept = {row["file"] for row in library.assets}

@@ -19,7 +19,7 @@ from pipeline.diffusion.checkpoint import save_checkpoint, save_weights
 from pipeline.diffusion.inventory import fit
 from pipeline.diffusion.job import CHECKPOINT, WEIGHTS, Job, holdings, open_job
 from pipeline.diffusion.livelog import LiveLog
-from pipeline.diffusion.process_group import ProcessGroup, gathered
+from pipeline.diffusion.process_group import ProcessGroup, spawn_group
 from pipeline.diffusion.rooms import Sets
 from pipeline.diffusion.settings import TrainSettings
 from pipeline.diffusion.training import Trainer, train, validation
@@ -32,7 +32,7 @@ def main(root: Path) -> None:
     settings, seed = settings_of(root)
     size = 1 if torch.cuda.is_available() else settings.workers or os.cpu_count() or 1
     job = open_job(root, settings, seed, ProcessGroup(0, size))
-    with gathered(size, partial(follow, root)):
+    with spawn_group(size, partial(follow, root)):
         lead(root, job, settings)
 
 
@@ -57,7 +57,7 @@ def lead(root: Path, job: Job, settings: TrainSettings) -> None:
     def save(state: Trainer) -> None:
         save_checkpoint(root / CHECKPOINT, job.key, state.done, state.groups())
 
-    def checked() -> dict[str, dict[str, float]]:
+    def validate() -> dict[str, dict[str, float]]:
         return validation(trainer, job.checked)
 
     by_level: dict[str, dict[str, float]] = {}
@@ -66,13 +66,13 @@ def lead(root: Path, job: Job, settings: TrainSettings) -> None:
             bar.update()
             last = step.done == trainer.total
             if step.done % settings.validate_every == 0 or last:
-                by_level = checked()
+                by_level = validate()
             if step.done % 10 == 0 or last:
                 bar.set_postfix(loss=f"{step.loss:.3f}", geometry=f"{step.geometry:.3f}", refresh=False)
                 log.step(step, by_level)
     inventory = fit(job.inventory, holdings(job.sets.train, job.header), trainer.settings.inventory, trainer.seed)
     save_weights(root / WEIGHTS, job.header, {"denoiser": trainer.average, "inventory": inventory})
-    write_json(root / "metrics/train.json", report(job.sets, trainer, by_level or checked()))
+    write_json(root / "metrics/train.json", report(job.sets, trainer, by_level or validate()))
 
 
 def report(sets: Sets, trainer: Trainer, by_level: dict[str, dict[str, float]]) -> dict[str, Any]:

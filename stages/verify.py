@@ -37,7 +37,7 @@ def again(root: Path, folder: Path, count: int, prompts: Path | None, progress: 
         return 0
     from pipeline.homes.factory import open_factory
     from pipeline.homes.prompt_mix import asked_of
-    from pipeline.homes.reproduction import chosen, differing, made_with
+    from pipeline.homes.reproduction import differing, made_with, spread_indices
 
     header = read_header(folder)
     factory = open_factory(root, header.seed)
@@ -45,12 +45,12 @@ def again(root: Path, folder: Path, count: int, prompts: Path | None, progress: 
     here = replace(header, digests={**header.digests, **factory.digests}, versions=made_with())
     for difference in header.differences(here):
         sys.stderr.write(f"sfgen: it was made with {difference}\n")
-    indices = chosen(header, count)
-    found = differing(folder, header, factory, asked, indices)
-    for line in found:
+    indices = spread_indices(header, count)
+    differences = differing(folder, header, factory, asked, indices)
+    for line in differences:
         sys.stderr.write(f"sfgen: {line}\n")
-    progress.say(f"{len(indices) - len(found)} of {len(indices)} homes come out the same, byte for byte")
-    return 1 if found else 0
+    progress.say(f"{len(indices) - len(differences)} of {len(indices)} homes come out the same, byte for byte")
+    return 1 if differences else 0
 
 
 def stages(folder: Path) -> Iterator[Path]:

@@ -26,18 +26,18 @@ class NewtonEngine:
     def __init__(self, stage: Path, plan: dict[str, Any]) -> None:
         builder = newton.ModelBuilder(up_axis=newton.Axis.Z)
         newton.solvers.SolverMuJoCo.register_custom_attributes(builder)  # several contacts a pair of meshes: the scene asks for them
-        found = builder.add_usd(str(stage), load_visual_shapes=False)
+        maps = builder.add_usd(str(stage), load_visual_shapes=False)
         self.model = builder.finalize(device="cpu")
         self.solver = newton.solvers.SolverMuJoCo(self.model, use_mujoco_cpu=True, njmax=8000, nconmax=8000)
         self.control = self.model.control()
         self.states = self.model.state(), self.model.state()
         start = self.model.joint_qd_start.numpy()
         place = self.model.joint_q_start.numpy()
-        joints = [found["path_joint_map"].get(j["path"], -1) for j in plan["joints"]]
+        joints = [maps["path_joint_map"].get(j["path"], -1) for j in plan["joints"]]
         self.known = np.array([k >= 0 for k in joints], bool)
         self.dofs = np.array([start[k] if k >= 0 else 0 for k in joints], int)
         self.places = np.array([place[k] if k >= 0 else 0 for k in joints], int)
-        self.bodies = np.array([found["path_body_map"][b["path"]] for b in plan["bodies"]], int)
+        self.bodies = np.array([maps["path_body_map"][b["path"]] for b in plan["bodies"]], int)
         self.force = np.zeros(self.model.joint_dof_count, np.float32)
         newton.eval_fk(self.model, self.model.joint_q, self.model.joint_qd, self.states[0])
 

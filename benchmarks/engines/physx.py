@@ -47,7 +47,7 @@ class PhysXEngine:
             "rootv": TensorType.ARTICULATION_ROOT_VELOCITY,
         }
         # A root API on an asset's Xform is seen as its base link.
-        made: dict[str, Any] = {}
+        arm: dict[str, Any] = {}
         for kind, tensor in kinds.items():
             binding = self.physx.create_tensor_binding(prim_paths=[root], tensor_type=tensor)
             if not binding.count:
@@ -55,22 +55,22 @@ class PhysXEngine:
             if not binding.count:
                 print("no articulation", root)
                 return None
-            made[kind] = binding
-        names = made["q"].dof_names
-        made["index"] = np.array([index.get(f"{root}/joints/{name.rsplit('/', 1)[-1]}", -1) for name in names])
+            arm[kind] = binding
+        names = arm["q"].dof_names
+        arm["index"] = np.array([index.get(f"{root}/joints/{name.rsplit('/', 1)[-1]}", -1) for name in names])
         for kind in kinds:
-            made[f"{kind}0"] = np.zeros(made[kind].shape, np.float32)
+            arm[f"{kind}0"] = np.zeros(arm[kind].shape, np.float32)
             if kind != "f":
-                made[kind].read(made[f"{kind}0"])
-        made["buffer"] = np.zeros(made["q"].shape, np.float32)
-        made["q0"][:] = 0
-        made["v0"][:] = 0
-        made["rootv0"][:] = 0
-        return made
+                arm[kind].read(arm[f"{kind}0"])
+        arm["buffer"] = np.zeros(arm["q"].shape, np.float32)
+        arm["q0"][:] = 0
+        arm["v0"][:] = 0
+        arm["rootv0"][:] = 0
+        return arm
 
     def _bodies(self, bodies: list[dict[str, str]]) -> list[tuple[Any, Any, Any, Any]]:
         """Bind each loose body: a rigid body of its own, or the root of a loose articulation."""
-        found = []
+        bindings = []
         arms = {str(arm["root"].prim_paths[0]): arm for arm in self.arms}
         for body in bodies:
             arm = next((a for path, a in arms.items() if path.startswith(body["root"])), None)
@@ -83,8 +83,8 @@ class PhysXEngine:
                 )
             at = np.zeros(pose.shape, np.float32)
             pose.read(at)
-            found.append((pose, speed, at.copy(), at))
-        return found
+            bindings.append((pose, speed, at.copy(), at))
+        return bindings
 
     def reset(self) -> None:
         """Put everything back."""
@@ -104,12 +104,12 @@ class PhysXEngine:
 
     def positions(self) -> np.ndarray:
         """Return the joints' positions (J,)."""
-        found = np.full(self.count, np.nan)
+        joint_positions = np.full(self.count, np.nan)
         for arm in self.arms:
             arm["q"].read(arm["buffer"])
             known = arm["index"] >= 0
-            found[arm["index"][known]] = arm["buffer"][0][known]
-        return found
+            joint_positions[arm["index"][known]] = arm["buffer"][0][known]
+        return joint_positions
 
     def poses(self) -> np.ndarray:
         """Return the poses (B, 7) of what lies about."""

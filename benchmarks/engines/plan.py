@@ -34,17 +34,17 @@ def read(stage_file: Path) -> dict[str, Any]:
     for joint in joints:
         below.setdefault(_end(joint, 0), []).append(_end(joint, 1))
     loose = [path for path in bodies if path not in fixed and path not in children.values()]
-    made, sweeps = [], []
+    entries, sweeps = [], []
     for joint in joints:
-        moved = _moved(_end(joint, 1), below)
+        moved = _subtree(_end(joint, 1), below)
         root = next(r for r in roots if str(joint.GetPath()).startswith(f"{r}/"))
         entry, sweep = _joint(joint, [bodies[path] for path in moved], cache, root, light=_end(joint, 0) in loose)
-        made.append(entry)
+        entries.append(entry)
         sweeps.append(sweep)
-    index = {entry["path"]: k for k, entry in enumerate(made)}
-    before = [_before(k, made, index) for k in range(len(made))]
+    index = {entry["path"]: k for k, entry in enumerate(entries)}
+    before = [_before(k, entries, index) for k in range(len(entries))]
     return {
-        "joints": made,
+        "joints": entries,
         "groups": _groups(sweeps, before),
         "bodies": [{"path": path, "root": path.rsplit("/", 1)[0]} for path in loose],
         "colliders": sum(p.HasAPI(UsdPhysics.CollisionAPI) for p in prims),
@@ -60,8 +60,8 @@ def _end(joint: Usd.Prim, which: int) -> str:
     return str(targets[0]) if targets else ""
 
 
-def _moved(link: str, below: dict[str, list[str]]) -> list[str]:
-    return [link, *(deeper for child in below.get(link, ()) for deeper in _moved(child, below))]
+def _subtree(link: str, below: dict[str, list[str]]) -> list[str]:
+    return [link, *(deeper for child in below.get(link, ()) for deeper in _subtree(child, below))]
 
 
 def _joint(prim: Usd.Prim, moved: list[Usd.Prim], cache: UsdGeom.XformCache, root: str, *, light: bool) -> tuple[dict[str, Any], Floats]:
@@ -114,7 +114,7 @@ def _joint(prim: Usd.Prim, moved: list[Usd.Prim], cache: UsdGeom.XformCache, roo
 
 
 def _points(moved: list[Usd.Prim], cache: UsdGeom.XformCache) -> Floats:
-    found = [np.zeros((0, 3))]
+    points = [np.zeros((0, 3))]
     for body in moved:
         for prim in Usd.PrimRange(body):
             if prim.HasAPI(UsdPhysics.CollisionAPI) and prim.IsA(UsdGeom.Boundable):
@@ -123,8 +123,8 @@ def _points(moved: list[Usd.Prim], cache: UsdGeom.XformCache) -> Floats:
                     [[(low, high)[i][0], (low, high)[j][1], (low, high)[k][2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)]
                 )
                 matrix = np.array(cache.GetLocalToWorldTransform(prim))
-                found.append(corners @ matrix[:3, :3] + matrix[3, :3])
-    return np.concatenate(found)
+                points.append(corners @ matrix[:3, :3] + matrix[3, :3])
+    return np.concatenate(points)
 
 
 def _sweep(points: Floats, origin: Floats, axis: Floats, upper: float, *, hinge: bool) -> Floats:
@@ -139,10 +139,10 @@ def _sweep(points: Floats, origin: Floats, axis: Floats, upper: float, *, hinge:
 
 
 def _before(k: int, joints: list[dict[str, Any]], index: dict[str, int]) -> list[int]:
-    found: list[int] = []
+    prerequisites: list[int] = []
     for path in joints[k]["after"]:
-        found += [*_before(index[path], joints, index), index[path]]
-    return found
+        prerequisites += [*_before(index[path], joints, index), index[path]]
+    return prerequisites
 
 
 def _groups(sweeps: list[Floats], before: list[list[int]]) -> list[dict[str, list[int]]]:

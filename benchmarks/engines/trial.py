@@ -51,8 +51,8 @@ def run(make: Any) -> None:
     engine = make(stage, plan)
     engine.reset()
     engine.step(np.zeros(len(plan["joints"])))
-    found = {"load": time.process_time() - start, **_trial(engine, plan)}
-    out.write_text(json.dumps(found))
+    measurements = {"load": time.process_time() - start, **_trial(engine, plan)}
+    out.write_text(json.dumps(measurements))
 
 
 def _trial(engine: Engine, plan: dict[str, Any]) -> dict[str, Any]:

@@ -71,8 +71,8 @@ def main(stage: Path, home: Path) -> None:
     """Print the largest differences."""
     truth = from_usd(stage)
     for name, reading in (("SAPIEN", from_sapien(home)), ("yourdfpy", from_yourdfpy(home))):
-        found = ", ".join(f"{key} {value:.1e}" for key, value in deviations(truth, reading).items())
-        print(f"{name}: {len(truth.bodies)} bodies, {len(truth.joints)} joints; largest difference from USD: {found}")
+        differences = ", ".join(f"{key} {value:.1e}" for key, value in deviations(truth, reading).items())
+        print(f"{name}: {len(truth.bodies)} bodies, {len(truth.joints)} joints; largest difference from USD: {differences}")
 
 
 if __name__ == "__main__":

@@ -18,8 +18,8 @@ def main(dataset: Path, folder: Path, scenes: Sequence[str]) -> None:
     rows = -(-len(scenes) // COLUMNS)
     sheet = Image.new("RGB", (COLUMNS * (CELL[0] + GAP) + GAP, rows * (CELL[1] + GAP) + GAP), PAPER)
     for k, scene in enumerate(scenes):
-        (found,) = (dataset / "previews").rglob(f"{scene}.png")
-        view = Image.open(found).convert("RGB")
+        (path,) = (dataset / "previews").rglob(f"{scene}.png")
+        view = Image.open(path).convert("RGB")
         view.thumbnail(CELL, Image.Resampling.LANCZOS)
         x, y = GAP + k % COLUMNS * (CELL[0] + GAP), GAP + k // COLUMNS * (CELL[1] + GAP)
         sheet.paste(view, (x + (CELL[0] - view.width) // 2, y + (CELL[1] - view.height) // 2))

@@ -55,7 +55,7 @@ OPEN_SHEETS = {
 OPEN = 0.7  # of the range of every joint
 
 
-def chosen(models: Sequence[Model], categories: Sequence[str], count: int) -> list[Model]:
+def pick_models(models: Sequence[Model], categories: Sequence[str], count: int) -> list[Model]:
     """Take about `count` models of the categories in turn: first one of each form, styles as different as they come."""
     queues = []
     for category in categories:
@@ -63,14 +63,14 @@ def chosen(models: Sequence[Model], categories: Sequence[str], count: int) -> li
         seen: set[str] = set()
         first = [m for m in mine if m.form not in seen and not seen.add(m.form)]  # type: ignore[func-returns-value]
         queues.append(first + [m for m in mine if m not in first])
-    made: list[Model] = []
+    selection: list[Model] = []
     share = {
         c: max(1, round(count * len([m for m in models if m.category == c]) / len([m for m in models if m.category in categories])))
         for c in categories
     }
     for category, queue in zip(categories, queues, strict=True):
-        made += queue[: share[category]]
-    return made[:count]
+        selection += queue[: share[category]]
+    return selection[:count]
 
 
 def assets(models: Sequence[Model]) -> list[Asset]:
@@ -86,28 +86,30 @@ def articulated_assets(models: Sequence[Model]) -> list[Asset]:
     """Write articulated models, and read each back as what it was made as."""
     with tempfile.TemporaryDirectory() as name:
         write_partnet(models, Path(name))
-        made = []
+        loaded_assets = []
         for model in models:
             shape = read_shape(Folder.at(Path(name) / model.model_id), model.model_id, ModelLimits().max_texture)
-            made.append(next(articulated.assets(shape, model.model_id, (model.category,), taxonomy.load(), ModelLimits(), "CC0-1.0"))[0])
-        return made
+            loaded_assets.append(
+                next(articulated.assets(shape, model.model_id, (model.category,), taxonomy.load(), ModelLimits(), "CC0-1.0"))[0]
+            )
+        return loaded_assets
 
 
 def pictures(name: str, given: argparse.Namespace) -> list[tuple[str, Image.Image]]:
     """Render the models of one sheet, each with its caption."""
     library = catalogue(given.seed)
-    made = []
+    portraits = []
     if name in OPEN_SHEETS:
-        models = chosen(library.partnet, OPEN_SHEETS[name], given.count // 2)
+        models = pick_models(library.partnet, OPEN_SHEETS[name], given.count // 2)
         for model, asset in zip(models, articulated_assets(models), strict=True):
             words = (f"{model.category}: {model.form}".replace("_", " "), model.style)
-            made += [(text, portrait(asset, given.cell, given.spp, at)) for text, at in zip(words, (0.0, OPEN), strict=True)]
-        return made
-    models = chosen(library.future, SHEETS[name], given.count)
+            portraits += [(text, portrait(asset, given.cell, given.spp, at)) for text, at in zip(words, (0.0, OPEN), strict=True)]
+        return portraits
+    models = pick_models(library.future, SHEETS[name], given.count)
     for model, asset in zip(models, assets(models), strict=True):
         hangs = taxonomy.load().categories[model.category].mount == "wall"
-        made.append((caption(model), portrait(asset, given.cell, given.spp, on_wall=hangs)))
-    return made
+        portraits.append((caption(model), portrait(asset, given.cell, given.spp, on_wall=hangs)))
+    return portraits
 
 
 def caption(model: Model) -> str:
@@ -128,11 +130,11 @@ def main() -> None:
     (given.folder / "images").mkdir(parents=True, exist_ok=True)
     for name in given.only.split(","):
         start = time.process_time()
-        made = pictures(name, given)
-        sheet = contact_sheet(made, given.columns, given.cell)
+        portraits = pictures(name, given)
+        sheet = contact_sheet(portraits, given.columns, given.cell)
         path = given.folder / "images" / f"library_{name}.png"
         sheet.quantize(256, dither=Image.Dither.NONE).save(path, optimize=True)
-        print(f"{path}: {len(made)} pictures, {path.stat().st_size / 1e6:.2f} MB, {time.process_time() - start:.0f} CPU s", flush=True)
+        print(f"{path}: {len(portraits)} pictures, {path.stat().st_size / 1e6:.2f} MB, {time.process_time() - start:.0f} CPU s", flush=True)
 
 
 if __name__ == "__main__":

@@ -20,11 +20,11 @@ Shapes = Mapping[str, shapely.Polygon]
 
 def faults(program: FloorProgram, plan: Plan, shapes: Shapes) -> list[str]:
     """Return what is wrong with the openings; rooms are valid polygons."""
-    parts = (_asked, _stand, _leaves, _windows)
+    parts = (_link_faults, _stand, _leaves, _windows)
     return [f for part in parts for f in part(program, plan, shapes)]
 
 
-def _asked(program: FloorProgram, plan: Plan, shapes: Shapes) -> Iterator[str]:
+def _link_faults(program: FloorProgram, plan: Plan, shapes: Shapes) -> Iterator[str]:
     """Yield links without their opening, and openings that nobody asked for."""
     del shapes
     wanted = {frozenset((k.a, k.b)): k.kind for k in program.links if k.kind != "wall"}

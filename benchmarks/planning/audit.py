@@ -26,8 +26,8 @@ Shapes = Mapping[str, shapely.Polygon]
 
 def faults(program: FloorProgram, plan: Plan) -> list[str]:
     """Return what is wrong with the plan of a completed program."""
-    asked, made = {r.id: r for r in program.rooms}, {r.room_id: r for r in plan.rooms}
-    if set(made) != set(asked) or len(plan.rooms) != len(asked):
+    asked, actual = {r.id: r for r in program.rooms}, {r.room_id: r for r in plan.rooms}
+    if set(actual) != set(asked) or len(plan.rooms) != len(asked):
         return ["rooms are not those asked for"]
     shapes = {r.room_id: shapely.Polygon(r.polygon) for r in plan.rooms}
     broken = list(_polygons(program, plan, shapes))
@@ -98,17 +98,17 @@ def _storeys(program: FloorProgram, plan: Plan, shapes: Shapes) -> Iterator[str]
 
 def _areas(program: FloorProgram, plan: Plan, shapes: Shapes) -> Iterator[str]:
     for r in program.rooms:
-        made, wish = shapes[r.id].area, r.area
-        if abs(made - plan.room(r.id).area) > 1e-6:
+        area, wish = shapes[r.id].area, r.area
+        if abs(area - plan.room(r.id).area) > 1e-6:
             yield f"the area of {r.id} is not that of its polygon"
-        if (wish.min is not None and made < wish.min - 1e-6) or (wish.max is not None and made > wish.max + 1e-6):
-            yield f"{r.id} has {made:.2f} m2, bounds {wish.min}..{wish.max}"
-        elif wish.stated and wish.min is None and wish.max is None and wish.target and abs(made / wish.target - 1) > STATED:
-            yield f"{r.id} has {made:.2f} m2 of {wish.target:.2f}"
+        if (wish.min is not None and area < wish.min - 1e-6) or (wish.max is not None and area > wish.max + 1e-6):
+            yield f"{r.id} has {area:.2f} m2, bounds {wish.min}..{wish.max}"
+        elif wish.stated and wish.min is None and wish.max is None and wish.target and abs(area / wish.target - 1) > STATED:
+            yield f"{r.id} has {area:.2f} m2 of {wish.target:.2f}"
         elif not wish.stated and wish.target:
             low, high = USUAL_HALL if r.type in {"hallway", "entry"} else USUAL
-            if not low <= made / wish.target <= high:
-                yield f"{r.id} has {made:.2f} m2, usual are {wish.target:.2f}"
+            if not low <= area / wish.target <= high:
+                yield f"{r.id} has {area:.2f} m2, usual are {wish.target:.2f}"
     wish, whole = program.total_area, sum(shapes[r.id].area for r in program.rooms if r.type not in OUTSIDE)
     if wish.stated and not (wish.min or 0.0) <= whole <= (wish.max or np.inf):
         yield f"the home has {whole:.1f} m2, bounds {wish.min}..{wish.max}"

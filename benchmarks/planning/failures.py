@@ -42,7 +42,7 @@ def main(count: int, start: int = 0, sources: tuple[str, ...] = tuple(SOURCES), 
                 print(f"... {source}: {number + 1}, {len(faults)} failed", file=sys.stderr, flush=True)
         if count >= LEAST:
             figures = {"start": start, "count": count, "cpu_s": round(sum(spent), 1), "slowest_s": round(max(spent), 2), "failures": faults}
-            record.write(RECORD, record.read(RECORD) | {source: record.told("failures", count, figures)})
+            record.write(RECORD, record.read(RECORD) | {source: record.with_provenance("failures", count, figures)})
         print(f"{source}: {len(faults)} of {count} failed; CPU ms mean {1e3 * np.mean(spent):.0f}", end="")
         print(f", p50 {1e3 * np.median(spent):.0f}, p99 {1e3 * np.percentile(spent, 99):.0f}, max {1e3 * max(spent):.0f}", flush=True)
         failed += len(faults)

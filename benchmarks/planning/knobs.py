@@ -21,9 +21,9 @@ def main(seeds: int, first: int = 0) -> None:
         + "".join(f"{f'2^{v}':>9s}" for v in VALUES)
         + "    ends / error  monotone"
     )
-    for name, found in table["terms"].items():
-        row = "".join(f"{m:9.4f}" for m in found["mean"])
-        print(f"{name:14s}{row} {found['ends'][0] / max(found['ends'][1], 1e-12):15.1f}  {'yes' if monotone(found) else 'NO'}")
+    for name, term in table["terms"].items():
+        row = "".join(f"{m:9.4f}" for m in term["mean"])
+        print(f"{name:14s}{row} {term['ends'][0] / max(term['ends'][1], 1e-12):15.1f}  {'yes' if monotone(term) else 'NO'}")
     if seeds < LEAST:
         return
     (RECORDS / "knobs.json").write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")

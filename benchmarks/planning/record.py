@@ -26,8 +26,8 @@ def commit() -> str:
 def read(name: str) -> dict[str, Any]:
     """Return what stands in benchmarks/records/`name`, nothing where there is no such file."""
     path = RECORDS / name
-    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
-    return found
+    record: dict[str, Any] = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    return record
 
 
 def write(name: str, figures: Mapping[str, Any]) -> None:
@@ -35,11 +35,11 @@ def write(name: str, figures: Mapping[str, Any]) -> None:
     (RECORDS / name).write_text(json.dumps(figures, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
-def told(what: str, count: int, figures: Any) -> dict[str, Any]:
+def with_provenance(what: str, count: int, figures: Any) -> dict[str, Any]:
     """Return figures of one measurement with the command and the commit that made them."""
     return {"command": f"python -m benchmarks.plan {what} --count {count}", "commit": commit(), "figures": figures}
 
 
 def keep(what: str, count: int, figures: Any) -> None:
     """Put the figures of one measurement into benchmarks/records/planning.json, beside those of the others."""
-    write("planning.json", read("planning.json") | {what: told(what, count, figures)})
+    write("planning.json", read("planning.json") | {what: with_provenance(what, count, figures)})

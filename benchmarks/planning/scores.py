@@ -10,7 +10,7 @@ import numpy as np
 
 from benchmarks.planning import record
 from pipeline.experiments.prompt_file import read_prompts
-from pipeline.experiments.prompts import SCORES, measured
+from pipeline.experiments.prompts import SCORES, evaluate_prompts
 from pipeline.floorplan import FloorProgram, parse
 from pipeline.floorplan.program.floor_program import Entrance, Link, Range, RoomReq
 from pipeline.metrics.plan_scores import s_constraint
@@ -34,13 +34,13 @@ def truth(case: Mapping[str, Any]) -> FloorProgram:
 
 def ceiling(case: Mapping[str, Any], program: FloorProgram) -> float:
     """Return S_constraint of a plan whose rooms have exactly the areas of the completed program."""
-    made: dict[str, float] = {}
+    areas: dict[str, float] = {}
     for r in program.rooms:
-        made[r.type] = made.get(r.type, 0.0) + (r.area.target or 0.0)
+        areas[r.type] = areas.get(r.type, 0.0) + (r.area.target or 0.0)
     wanted: dict[str, float] = {}
     for row in case["graph"]["rooms"]:
         wanted[row["type"]] = wanted.get(row["type"], 0.0) + row["area"]
-    return s_constraint(made, case["graph"].get("area_ratio") or wanted)
+    return s_constraint(areas, case["graph"].get("area_ratio") or wanted)
 
 
 def main(seeds: int) -> None:
@@ -53,15 +53,15 @@ def main(seeds: int) -> None:
         ("truth", "given the ground-truth rooms, links and areas", truth),
     )
     for key, title, make in kinds:
-        found = measured(every, seeds, make)
-        runs = [row["runs"] for row in found["prompts"]]
-        for row in found["prompts"]:
+        scores = evaluate_prompts(every, seeds, make)
+        runs = [row["runs"] for row in scores["prompts"]]
+        for row in scores["prompts"]:
             for run in row["runs"]:
                 if not run["strict"] and make is not truth:
                     print(f"  {row['id']} seed {run['seed']}: P {run['presence']:.3f} A {run['adjacency']:.3f} C {run['constraints']:.3f}")
-        spent = found["mean"]["cpu_seconds"]
-        print(f"{found['plans']} plans, {title}; {1e3 * spent:.0f} CPU ms each")
-        figures[key] = {"plans": found["plans"], "successes": int(sum(run["strict"] for own in runs for run in own)), "cpu_s": spent}
+        spent = scores["mean"]["cpu_seconds"]
+        print(f"{scores['plans']} plans, {title}; {1e3 * spent:.0f} CPU ms each")
+        figures[key] = {"plans": scores["plans"], "successes": int(sum(run["strict"] for own in runs for run in own)), "cpu_s": spent}
         for name in SCORES:
             table = np.array([[run[name] for run in own] for own in runs])  # prompts, seeds
             each = table.mean(axis=0)

@@ -111,14 +111,14 @@ def _cut(rng: np.random.Generator, n: int) -> np.ndarray | None:
 
 
 def _walls(boxes: np.ndarray) -> list[tuple[int, int, float]]:
-    found = []
+    walls = []
     for a in range(len(boxes)):
         for b in range(a + 1, len(boxes)):
             one, two = boxes[a], boxes[b]
             over = np.minimum(one[2:], two[2:]) - np.maximum(one[:2], two[:2])
             if over.min() > -1e-9 and over.min() < 1e-9 and over.max() >= DOOR_WALL:
-                found.append((a, b, float(over.max())))
-    return found
+                walls.append((a, b, float(over.max())))
+    return walls
 
 
 def _outside(boxes: np.ndarray) -> np.ndarray:

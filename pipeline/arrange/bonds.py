@@ -57,10 +57,10 @@ def _best_bond(
     best: tuple[float, Bond] | None = None
     for j in anchors:
         other = items[j]
-        found = learnt.modes(other.placement.category, item.placement.category)
-        if found is None:
+        relation = learnt.modes(other.placement.category, item.placement.category)
+        if relation is None:
             continue
-        table, strength = found
+        table, strength = relation
         if item.mount == "wall":  # walls place what hangs on them, but for what is placed over furniture
             table = table[table[:, 0] == OVER]
         frames = (poses[j], other.wished)
@@ -93,10 +93,10 @@ def at_anchor(pose: Floats, local: Floats) -> Floats:
 
 def mode_poses(anchor: Item, at: Floats, item: Item, wished: Floats, learnt: LearntRelations) -> Floats:
     """Return the poses (K, 3) x, y, yaw of an item in each mode at an anchor that stands at (x, y, z, yaw): those nearest to `wished`."""
-    found = learnt.modes(anchor.placement.category, item.placement.category)
-    if found is None:
+    relation = learnt.modes(anchor.placement.category, item.placement.category)
+    if relation is None:
         return np.zeros((0, 3))
-    table = found[0]
+    table = relation[0]
     near = np.array([nearest(table[k : k + 1], at[FLAT], anchor.half, wished[FLAT], item.half)[2:5] for k in range(len(table))])
     return np.array([at_anchor(at, local) for local in near]).reshape(-1, 3)
 
@@ -189,11 +189,11 @@ def broken(
     for i, bond in enumerate(bonds):
         if bond is None or not there[i]:
             continue
-        found = learnt.modes(items[bond.anchor].placement.category, items[i].placement.category)
-        if not there[bond.anchor] or found is None:
+        relation = learnt.modes(items[bond.anchor].placement.category, items[i].placement.category)
+        if not there[bond.anchor] or relation is None:
             lost.append(i)
             continue
-        near = nearest(found[0], poses[bond.anchor][FLAT], items[bond.anchor].half, poses[i][FLAT], items[i].half)
+        near = nearest(relation[0], poses[bond.anchor][FLAT], items[bond.anchor].half, poses[i][FLAT], items[i].half)
         if near[0] > most or near[1] > TURNED:
             lost.append(i)
     return lost

@@ -10,7 +10,7 @@ import shapely
 from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import mode_poses
-from pipeline.arrange.item import Item, other_wall, turned, wrapped
+from pipeline.arrange.item import Item, other_wall, wrap_yaw, yaw_difference
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
@@ -39,25 +39,25 @@ def near_by(
 
     `neighbours` (M, 4, 2) are the outlines of what stands, with which it may be flush.
     """
-    found, costs = [target[None]], [_opening_cost(item, target[None], walls)]
+    candidates, costs = [target[None]], [_opening_cost(item, target[None], walls)]
     if item.mount != "wall":
         off = OFF_WALL * item.habit.backed if item.habit.wants and _at_wall(item, target, walls) else 0.0
         angles = np.arange(WAYS) * (2 * math.pi / WAYS) + target[3]
         ring = np.stack([np.cos(angles), np.sin(angles)], 1)
         shifts = np.concatenate([r * ring for r in RINGS])
-        found.append(_made(target[:2] + shifts, np.full(len(shifts), target[3]), target[2]))
-        costs.append(np.linalg.norm(shifts, axis=1) + off + _opening_cost(item, found[-1], walls))
+        candidates.append(_stack_poses(target[:2] + shifts, np.full(len(shifts), target[3]), target[2]))
+        costs.append(np.linalg.norm(shifts, axis=1) + off + _opening_cost(item, candidates[-1], walls))
     if item.habit.wants:
         poses, cost = _along_walls(item, target, walls, neighbours)
-        found.append(poses)
-        costs.append(cost + settings.turn_cost * turned(poses[:, 3], float(target[3])))
-    return _sorted(item, np.concatenate(found), np.concatenate(costs), site)
+        candidates.append(poses)
+        costs.append(cost + settings.turn_cost * yaw_difference(poses[:, 3], float(target[3])))
+    return _rank_poses(item, np.concatenate(candidates), np.concatenate(costs), site)
 
 
 def round_walls(item: Item, target: Floats, walls: Sequence[Edge], site: Site, settings: SeparateSettings) -> tuple[Floats, Floats]:
     """Return poses (C, 4) along all the walls, and their costs (C,), the cheapest first: for what takes along who stands across from it."""
     poses, cost = _along_walls(item, target, walls, np.zeros((0, 4, 2)))
-    return _sorted(item, poses, cost + settings.turn_cost * turned(poses[:, 3], float(target[3])), site)
+    return _rank_poses(item, poses, cost + settings.turn_cost * yaw_difference(poses[:, 3], float(target[3])), site)
 
 
 def everywhere(item: Item, target: Floats, walls: Sequence[Edge], site: Site, settings: SeparateSettings) -> tuple[Floats, Floats]:
@@ -69,10 +69,14 @@ def everywhere(item: Item, target: Floats, walls: Sequence[Edge], site: Site, se
     xs, ys = (np.arange(low[k] + GRID / 2, high[k], GRID) for k in (0, 1))
     points = np.stack(np.meshgrid(xs, ys, indexing="ij"), -1).reshape(-1, 2)
     points = points[shapely.contains_xy(shapely.Polygon(site.polygon), points[:, 0], points[:, 1])]
-    yaws = np.array([wrapped(float(base) + k * math.pi / 2) for k in range(4)])
+    yaws = np.array([wrap_yaw(float(base) + k * math.pi / 2) for k in range(4)])
     spread, turns = np.repeat(points, 4, axis=0), np.tile(yaws, len(points))
-    cost = np.linalg.norm(spread - target[:2], axis=1) + settings.turn_cost * turned(turns, float(target[3])) + OFF_WALL * item.habit.backed
-    return _sorted(item, _made(spread, turns, target[2]), cost, site)
+    cost = (
+        np.linalg.norm(spread - target[:2], axis=1)
+        + settings.turn_cost * yaw_difference(turns, float(target[3]))
+        + OFF_WALL * item.habit.backed
+    )
+    return _rank_poses(item, _stack_poses(spread, turns, target[2]), cost, site)
 
 
 def at_anchor_poses(
@@ -103,14 +107,14 @@ def at_anchor_poses(
     aside = np.tile(ASIDE * np.abs(ALONG[:, None]) + np.abs(OUT[None]), (len(modes), 1, 1)).ravel()
     yaws = np.repeat(modes[:, 2], len(ALONG) * len(OUT))
     away = np.repeat(np.linalg.norm(modes[:, :2] - target[:2], axis=1), len(ALONG) * len(OUT))
-    cost = BESIDE * away + aside + 0.5 * settings.turn_cost * turned(yaws, float(target[3]))
+    cost = BESIDE * away + aside + 0.5 * settings.turn_cost * yaw_difference(yaws, float(target[3]))
     order = np.argsort(np.round(cost, 9), kind="stable")
-    return np.ascontiguousarray(_made(points, yaws, target[2])[order]), cost[order]
+    return np.ascontiguousarray(_stack_poses(points, yaws, target[2])[order]), cost[order]
 
 
 def _along_walls(item: Item, target: Floats, walls: Sequence[Edge], neighbours: Floats) -> tuple[Floats, Floats]:
     """Return poses with the back to each wall: at a stride, at the target, at corners, flush with neighbours."""
-    found, costs = [np.zeros((0, 4))], [np.zeros(0)]
+    poses, costs = [np.zeros((0, 4))], [np.zeros(0)]
     w, d = item.half
     gap = item.habit.gap[1]
     for edge in walls:
@@ -130,15 +134,15 @@ def _along_walls(item: Item, target: Floats, walls: Sequence[Edge], neighbours: 
         places = np.unique(np.round(places[(places >= w) & (places <= edge.length - w)], 4))
         points = edge.start + places[:, None] * edge.along + (d + gap) * edge.inward
         cost = np.linalg.norm(points - target[:2], axis=1) + opening_cost(item, places, edge.openings)
-        found.append(_made(points, np.full(len(places), edge.yaw), target[2])[np.isfinite(cost)])
+        poses.append(_stack_poses(points, np.full(len(places), edge.yaw), target[2])[np.isfinite(cost)])
         costs.append(cost[np.isfinite(cost)])
-    return np.concatenate(found), np.concatenate(costs)
+    return np.concatenate(poses), np.concatenate(costs)
 
 
 def _at_wall(item: Item, pose: Floats, walls: Sequence[Edge]) -> bool:
     """Whether an object has its back at a wall."""
     back = pose[:2] + np.array([-math.sin(pose[3]), math.cos(pose[3])]) * item.half[1]
-    return any(turned(edge.yaw, float(pose[3])) < 0.1 and abs(float(edge.off(back))) <= 2 * item.habit.gap[2] for edge in walls)
+    return any(yaw_difference(edge.yaw, float(pose[3])) < 0.1 and abs(float(edge.off(back))) <= 2 * item.habit.gap[2] for edge in walls)
 
 
 def hides(item: Item, pose: Floats, walls: Sequence[Edge]) -> bool:
@@ -155,13 +159,13 @@ def _opening_cost(item: Item, poses: Floats, walls: Sequence[Edge]) -> Floats:
             for opening in edge.openings
             if (hides_window(item, opening) and item.habit.kind != "bed") or (item.habit.must and not opening.window)
         ]
-        if openings and turned(edge.yaw, float(poses[0, 3])) < 0.1:
+        if openings and yaw_difference(edge.yaw, float(poses[0, 3])) < 0.1:
             near = edge.off(poses[:, :2]) < item.half[1] + 0.3
             cost[near] += opening_cost(item, edge.along_of(poses[near, :2]), openings)
     return cost
 
 
-def _sorted(item: Item, poses: Floats, costs: Floats, site: Site) -> tuple[Floats, Floats]:
+def _rank_poses(item: Item, poses: Floats, costs: Floats, site: Site) -> tuple[Floats, Floats]:
     """Return poses rounded, the cheapest first; what hangs on walls is tried at other heights as well."""
     if item.mount == "wall":
         wished = height(item, site, float(item.wished[2]))
@@ -175,5 +179,5 @@ def _sorted(item: Item, poses: Floats, costs: Floats, site: Site) -> tuple[Float
     return np.ascontiguousarray(poses), np.ascontiguousarray(costs[order])
 
 
-def _made(points: Floats, yaws: Floats, z: float) -> Floats:
+def _stack_poses(points: Floats, yaws: Floats, z: float) -> Floats:
     return np.column_stack([points, np.full(len(points), z), yaws])

@@ -39,10 +39,10 @@ def groups(items: Sequence[Item], poses: Floats, bonds: Sequence[Bond | None], r
         bond = bonds[i]
         if bond is not None and bond.rigid:
             root[i] = root[bond.anchor]
-    found: dict[int, list[int]] = {}
+    by_root: dict[int, list[int]] = {}
     for i, r in enumerate(root):
-        found.setdefault(r, []).append(i)
-    return [group_of([r, *(i for i in own if i != r)], poses) for r, own in found.items()]
+        by_root.setdefault(r, []).append(i)
+    return [group_of([r, *(i for i in own if i != r)], poses) for r, own in by_root.items()]
 
 
 def group_of(members: Sequence[int], poses: Floats) -> Group:

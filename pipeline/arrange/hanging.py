@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.item import wrapped
+from pipeline.arrange.item import wrap_yaw
 from pipeline.entities.plan import Opening
 
 Floats = NDArray[np.float64]
@@ -39,12 +39,12 @@ class Wall:
     @property
     def yaw(self) -> float:
         """Yaw [rad] of what hangs on it: its front looks into the room."""
-        return wrapped(math.atan2(float(self.along[1]), float(self.along[0])) + math.pi)
+        return wrap_yaw(math.atan2(float(self.along[1]), float(self.along[0])) + math.pi)
 
     def point(self, s: float, off: float) -> Floats:
         """Return the point (2,) [m] at `s` along the wall, `off` before it."""
-        found: Floats = self.start + s * self.along + off * np.array([-self.along[1], self.along[0]])
-        return found
+        position: Floats = self.start + s * self.along + off * np.array([-self.along[1], self.along[0]])
+        return position
 
     def free(self, span: tuple[float, float], height: tuple[float, float]) -> bool:
         """Tell whether a stretch of wall and a little around it is free."""
@@ -83,16 +83,16 @@ class Hanging:
             self.walls.append(Wall(a, along, length, np.concatenate([standing[standing[:, 2] < DEEP], in_wall])))
 
     def _openings_of(self, number: int, a: Floats, along: Floats, length: float, openings: Sequence[Opening]) -> Floats:
-        found = []
+        rows = []
         for o in openings:
             s = (o.segment - a) @ along
             off = np.abs((o.segment - a) @ np.array([-along[1], along[0]]))
             start, end = max(float(s.min()), 0.0), min(float(s.max()), length)
             if off.max() < OFF and end - start > 0.05:
-                found.append([start, end, IN_WALL, o.sill, o.sill + o.height])
+                rows.append([start, end, IN_WALL, o.sill, o.sill + o.height])
                 if o.kind == "window":
                     self.windows.append(Window(number, start, end, o.sill, o.sill + o.height))
-        return np.array(found).reshape(-1, 5)
+        return np.array(rows).reshape(-1, 5)
 
     def hang(
         self, rng: np.random.Generator, size: Floats, middle: float, anchors: Sequence[Floats], *, beside: bool, tries: int
@@ -117,19 +117,19 @@ class Hanging:
 
     def _near(self, footprint: Floats, size: Floats, low: float, *, beside: bool) -> list[tuple[int, float, float]]:
         """Return (wall, s, z) over the middle of a footprint that stands at a wall, or at both its sides."""
-        found = []
+        places = []
         for number, wall in enumerate(self.walls):
             s, off = (footprint - wall.start) @ wall.along, (footprint - wall.start) @ np.array([-wall.along[1], wall.along[0]])
             if off.min() > AT_WALL or off.min() < -AT_WALL or s.min() < -AT_WALL or s.max() > wall.length + AT_WALL:
                 continue
             if beside:
                 aside = float(size[0]) / 2 + 2 * ROOM
-                found += [(number, float(s.min()) - aside, low), (number, float(s.max()) + aside, low)]
+                places += [(number, float(s.min()) - aside, low), (number, float(s.max()) + aside, low)]
                 continue
             mine = wall.taken[(wall.taken[:, 0] < s.max()) & (wall.taken[:, 1] > s.min())]
             tops = mine[mine[:, 3] < 1.0, 4]
-            found.append((number, float(s.mean()), max(low, float(tops.max(initial=0.0)) + OVER)))
-        return found
+            places.append((number, float(s.mean()), max(low, float(tops.max(initial=0.0)) + OVER)))
+        return places
 
     def _fits(self, number: int, s: float, z: float, size: Floats) -> bool:
         half = float(size[0]) / 2

@@ -41,24 +41,24 @@ class Item:
 
     def at(self, pose: Floats) -> Placement:
         """Return its placement at a pose."""
-        return replace(self.placement, position=np.round(pose[:3], 4) + 0.0, yaw=wrapped(float(pose[3])))
+        return replace(self.placement, position=np.round(pose[:3], 4) + 0.0, yaw=wrap_yaw(float(pose[3])))
 
 
 def make_item(placement: Placement, assets: Mapping[str, Asset], learnt: LearntRelations, access_depth: float) -> Item:
     """Prepare a placement."""
     wished = np.array([*placement.position, placement.yaw])
     habit = learnt.habit(placement.category)
-    made = shape(assets[placement.asset_id], placement.scale, access_depth, habit.access)
-    return Item(placement, made, habit, wished, np.asarray(placement.size[:2]) / 2)
+    asset_shape = shape(assets[placement.asset_id], placement.scale, access_depth, habit.access)
+    return Item(placement, asset_shape, habit, wished, np.asarray(placement.size[:2]) / 2)
 
 
-def wrapped(yaw: float) -> float:
+def wrap_yaw(yaw: float) -> float:
     """Return a yaw in (-pi, pi], rounded as poses are (1e-5 rad)."""
-    found = round(math.remainder(yaw, 2 * math.pi), 5)
-    return 3.14159 if found <= -3.14159 else found
+    angle = round(math.remainder(yaw, 2 * math.pi), 5)
+    return 3.14159 if angle <= -3.14159 else angle
 
 
-def turned(a: Floats | float, b: float) -> Floats:
+def yaw_difference(a: Floats | float, b: float) -> Floats:
     """Return the absolute difference of yaws [rad], at most pi."""
     difference = np.abs(np.asarray(a, float) - b) % (2 * math.pi)
     smaller: Floats = np.minimum(difference, 2 * math.pi - difference)
@@ -67,4 +67,4 @@ def turned(a: Floats | float, b: float) -> Floats:
 
 def other_wall(turn: float) -> bool:
     """Whether two things that are turned so far from each other [rad] stand at different walls."""
-    return bool(turned(turn, 0.0) > OTHER_WALL)
+    return bool(yaw_difference(turn, 0.0) > OTHER_WALL)

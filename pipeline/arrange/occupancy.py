@@ -12,7 +12,7 @@ from pipeline.arrange.groups import Group
 from pipeline.arrange.item import Item
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
-from pipeline.arrange.world import composed, free_poses, make_world, put
+from pipeline.arrange.world import compose_pose, free_poses, make_world, put
 from pipeline.geometry.free_space import FreeSpace
 from pipeline.geometry.prisms import Prisms
 from pipeline.geometry.stance import stand_pose
@@ -40,7 +40,7 @@ class Occupancy:
     def stand(self, group: Group, pose: Floats) -> None:
         """Let a group stand with its first member at a pose."""
         for i, offset in zip(group.members, group.offsets, strict=True):
-            composed(pose, offset, self.poses[i])
+            compose_pose(pose, offset, self.poses[i])
             put(self.world, i, self.poses[i])
             self.there[i] = True
 
@@ -83,12 +83,16 @@ class Occupancy:
                 if any(math.hypot(x - f[0], y - f[1]) < apart and abs(math.remainder(yaw - f[2], math.tau)) < 0.3 for f in failed):
                     continue
                 self.stand(group, poses[k])
-                found = self.out_of_reach()
+                unreached = self.out_of_reach()
                 self.leave(group)
-                total = np.inf if found is None else float(totals[k]) + sum(OUT_OF_REACH[i in self.bound] for i in found - self.unreached)
-                if found is not None and (best is None or total < best[0]):
-                    best = total, poses[k], found
-                if found == self.unreached:
+                total = (
+                    np.inf
+                    if unreached is None
+                    else float(totals[k]) + sum(OUT_OF_REACH[i in self.bound] for i in unreached - self.unreached)
+                )
+                if unreached is not None and (best is None or total < best[0]):
+                    best = total, poses[k], unreached
+                if unreached == self.unreached:
                     break
                 failed.append([x, y, yaw])
                 tries += 1

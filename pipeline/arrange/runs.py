@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.item import Item, turned
+from pipeline.arrange.item import Item, yaw_difference
 from pipeline.arrange.site import Site
 from pipeline.arrange.walls import Edge
 
@@ -57,7 +57,7 @@ def lay_runs(items: Sequence[Item], walls: Sequence[Edge], site: Site) -> tuple[
     waiting = floor
     wall = {i: _wall_of(items[i], walls) for i in floor}
     depth = max(2 * float(items[i].half[1]) for i in floor) + BACK
-    wall = _joined(wall, items, _by_use(wall, items, walls), depth, site)
+    wall = _join_lone_units(wall, items, _by_use(wall, items, walls), depth, site)
     ordered = _by_use(wall, items, walls)
     for edge in ordered:
         own = [i for i in waiting if wall[i] is edge]
@@ -69,7 +69,7 @@ def lay_runs(items: Sequence[Item], walls: Sequence[Edge], site: Site) -> tuple[
     return runs, poses
 
 
-def torn(runs: Sequence[Sequence[int]], items: Sequence[Item], poses: Floats, there: NDArray[np.bool_]) -> list[int]:
+def stray_units(runs: Sequence[Sequence[int]], items: Sequence[Item], poses: Floats, there: NDArray[np.bool_]) -> list[int]:
     """Return the units of runs of several that stand at `poses` (N, 4), and beside no other unit."""
     units = [i for run in runs for i in run if there[i]]
     laid = {i for run in runs if len(run) > 1 for i in run}
@@ -82,7 +82,7 @@ def _beside(items: Sequence[Item], poses: Floats, i: int, k: int) -> bool:
     dx, dy = poses[k, :2] - poses[i, :2]
     gap = abs(c * dx + s * dy) - float(items[i].half[0] + items[k].half[0])
     line = s * dx - c * dy + float(items[k].half[1] - items[i].half[1])
-    return bool(gap <= NEXT and abs(line) <= IN_LINE and turned(poses[k, 3], float(poses[i, 3])) < 0.01)
+    return bool(gap <= NEXT and abs(line) <= IN_LINE and yaw_difference(poses[k, 3], float(poses[i, 3])) < 0.01)
 
 
 def _by_use(wall: Mapping[int, Edge | None], items: Sequence[Item], walls: Sequence[Edge]) -> list[Edge]:
@@ -91,7 +91,7 @@ def _by_use(wall: Mapping[int, Edge | None], items: Sequence[Item], walls: Seque
     return [walls[k] for k in sorted(range(len(walls)), key=lambda k: (-round(length[k], 6), k)) if length[k] > 0]
 
 
-def _joined(
+def _join_lone_units(
     wall: Mapping[int, Edge | None], items: Sequence[Item], ordered: Sequence[Edge], depth: float, site: Site
 ) -> dict[int, Edge | None]:
     """Return the walls with each unit that is alone at its own sent to a run with room for it, the longest first."""
@@ -113,7 +113,7 @@ def _wall_of(item: Item, walls: Sequence[Edge]) -> Edge | None:
     for edge in walls:
         s, off = float(edge.along_of(item.wished[:2])), float(edge.off(item.wished[:2]))
         beyond = max(0.0, -s, s - edge.length)
-        cost = abs(off - float(item.half[1])) + beyond + 0.5 * float(turned(edge.yaw, float(item.wished[3])))
+        cost = abs(off - float(item.half[1])) + beyond + 0.5 * float(yaw_difference(edge.yaw, float(item.wished[3])))
         if edge.length > 2 * item.half[0] and cost < (best[0] if best else STRAY):
             best = cost, edge
     return best[1] if best else None
@@ -127,12 +127,12 @@ def _stretches(edge: Edge, depth: float, site: Site, taken: Sequence[Floats], un
         s, off = edge.along_of(outline), edge.off(outline)
         if off.min() < depth and off.max() > 0.02:
             cuts.append((float(s.min()) - margin, float(s.max()) + margin))
-    found, at = [], BACK
+    stretches, at = [], BACK
     for low, high in [*sorted(cuts), (edge.length - BACK, math.inf)]:
         if low - at > 0.3:
-            found.append(Stretch(edge, at, low, list(units)))
+            stretches.append(Stretch(edge, at, low, list(units)))
         at = max(at, high)
-    return found
+    return stretches
 
 
 def _fill(
@@ -168,8 +168,8 @@ def _apart(stretch: Stretch, item: Item) -> float:
 def _lay(stretch: Stretch, items: Sequence[Item], poses: dict[int, Floats], site: Site) -> list[int]:
     """Lay the units of a stretch side by side under one front line, as near to the draft as order and ends allow."""
     edge = stretch.edge
-    order = _ordered(stretch, items)
-    places = _packed([2 * float(items[i].half[0]) for i in order], [_place(items[i], edge) for i in order], stretch.low, stretch.high)
+    order = _unit_order(stretch, items)
+    places = _pack_units([2 * float(items[i].half[0]) for i in order], [_place(items[i], edge) for i in order], stretch.low, stretch.high)
     line = BACK + max(2 * float(items[i].half[1]) for i in order if not _tall(items[i])) if not all(_tall(items[i]) for i in order) else 0.0
     for i, s in zip(order, places, strict=True):
         depth = float(items[i].half[1])
@@ -185,7 +185,7 @@ def _tall(item: Item) -> bool:
     return float(item.placement.size[2]) > TALL
 
 
-def _ordered(stretch: Stretch, items: Sequence[Item]) -> list[int]:
+def _unit_order(stretch: Stretch, items: Sequence[Item]) -> list[int]:
     """Return the units in the order of the draft, what is tall at the nearer end, and a unit between sink and cooker."""
     by_place = sorted(stretch.units, key=lambda i: (round(_place(items[i], stretch.edge), 6), i))
     base = [i for i in by_place if not _tall(items[i])]
@@ -194,10 +194,10 @@ def _ordered(stretch: Stretch, items: Sequence[Item]) -> list[int]:
         middle = float(np.mean([_place(items[i], stretch.edge) for i in base]))
     tall = [i for i in by_place if _tall(items[i])]
     low = [i for i in tall if _place(items[i], stretch.edge) < middle]
-    return [*low, *_parted(base, items), *(i for i in tall if i not in low)]
+    return [*low, *_part_sink_cooker(base, items), *(i for i in tall if i not in low)]
 
 
-def _parted(base: list[int], items: Sequence[Item]) -> list[int]:
+def _part_sink_cooker(base: list[int], items: Sequence[Item]) -> list[int]:
     """Put a unit between a sink and a cooker that are neighbours, the nearest other one."""
     for k in range(len(base) - 1):
         if {items[base[k]].placement.category, items[base[k + 1]].placement.category} == {SINK, COOKER}:
@@ -211,7 +211,7 @@ def _parted(base: list[int], items: Sequence[Item]) -> list[int]:
     return base
 
 
-def _packed(widths: Sequence[float], wished: Sequence[float], low: float, high: float) -> list[float]:
+def _pack_units(widths: Sequence[float], wished: Sequence[float], low: float, high: float) -> list[float]:
     """Return the middles of units side by side, between `low` and `high`, nearest to the wished ones; small gaps to the ends are closed."""
     steps = np.array(widths) + SEAM
     middles = np.cumsum(steps) - steps / 2
@@ -238,7 +238,9 @@ def _hang(items: Sequence[Item], walls: Sequence[Edge], runs: list[list[int]], p
     hung = {i: _wall_of(item, walls) for i, item in enumerate(items) if item.habit.kind == "kitchen" and item.mount == "wall"}
     for edge in walls:
         own = [i for i in hung if hung[i] is edge]
-        base = [i for run in runs for i in run if abs(float(turned(poses[i][3], edge.yaw))) < 0.01 and _at(poses[i], edge, items[i])]
+        base = [
+            i for run in runs for i in run if abs(float(yaw_difference(poses[i][3], edge.yaw))) < 0.01 and _at(poses[i], edge, items[i])
+        ]
         if not own or not base:
             continue
         bottom = float(np.median([items[i].wished[2] for i in own])) - site.elevation
@@ -272,13 +274,13 @@ def _at(pose: Floats, edge: Edge, item: Item) -> bool:
 
 
 def _between(edge: Edge, cuts: Sequence[tuple[float, float]], low: float, high: float) -> list[Stretch]:
-    found, at = [], low
+    stretches, at = [], low
     for a, b in [*sorted(cuts), (high, math.inf)]:
         end = min(a, high)
         if end - at > 0.2:
-            found.append(Stretch(edge, at, end))
+            stretches.append(Stretch(edge, at, end))
         at = max(at, b)
-    return found
+    return stretches
 
 
 def _hang_in(own: Sequence[int], items: Sequence[Item], stretches: Sequence[Stretch], poses: dict[int, Floats], z: float) -> None:
@@ -291,5 +293,7 @@ def _hang_in(own: Sequence[int], items: Sequence[Item], stretches: Sequence[Stre
         order = sorted(stretch.units, key=lambda i: (round(_place(items[i], stretch.edge), 6), i))
         if order:
             wide = [2 * float(items[i].half[0]) for i in order]
-            for i, s in zip(order, _packed(wide, [_place(items[i], stretch.edge) for i in order], stretch.low, stretch.high), strict=True):
+            for i, s in zip(
+                order, _pack_units(wide, [_place(items[i], stretch.edge) for i in order], stretch.low, stretch.high), strict=True
+            ):
                 poses[i] = stretch.edge.pose(s, BACK + float(items[i].half[1]), z)

@@ -18,7 +18,7 @@ from pipeline.arrange.bonds import REACH, Bond, broken
 from pipeline.arrange.item import Item, make_item
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.occupancy import Occupancy
-from pipeline.arrange.runs import lay_runs, torn
+from pipeline.arrange.runs import lay_runs, stray_units
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.settling import Draft, settle_all
 from pipeline.arrange.site import Site
@@ -96,11 +96,11 @@ def separate(
     astray: list[int] = []
     least: tuple[float, float] | None = None
     for number in range(max(1, settings.rounds)):
-        occupancy, sound, bonds, runs = _arranged(site, items, first, led, learnt, settings, number)
+        occupancy, sound, bonds, runs = _arrange_once(site, items, first, led, learnt, settings, number)
         apart = broken(bonds, items, occupancy.poses, occupancy.there, learnt)
         there = {i: items[i].at(occupancy.poses[i]) for i in np.flatnonzero(occupancy.there).tolist()}
         lost = [i for i in range(len(items)) if i not in there]
-        faults = len(apart) + len(torn(runs, items, occupancy.poses, occupancy.there))
+        faults = len(apart) + len(stray_units(runs, items, occupancy.poses, occupancy.there))
         score = _score(there, items, BROKEN * faults + UNREACHED * len(occupancy.unreached))
         if (sound or number == settings.rounds - 1) and (least is None or score < least):
             best, least = there, score
@@ -127,7 +127,7 @@ def separate(
         ]
     for i in () if keep_count else astray:
         del best[i]
-    return _separated(asked, best, keep_count=keep_count)
+    return _outcome(asked, best, keep_count=keep_count)
 
 
 def _only_there(items: Sequence[Item], bond: Bond | None, i: int, learnt: LearntRelations) -> bool:
@@ -138,7 +138,7 @@ def _only_there(items: Sequence[Item], bond: Bond | None, i: int, learnt: Learnt
     return pair is not None and pair.share >= ALWAYS
 
 
-def _arranged(
+def _arrange_once(
     site: Site,
     items: list[Item],
     first: Sequence[int],
@@ -155,12 +155,12 @@ def _arranged(
     settle_all(occupancy, Draft(poses, bonds, runs, walls, learnt, led), first, careful=number > 0, bulk=number <= 1)
     if number > 0:
         return occupancy, True, bonds, runs
-    found = occupancy.out_of_reach()
-    occupancy.unreached = found or frozenset()
-    return occupancy, found is not None, bonds, runs
+    unreached = occupancy.out_of_reach()
+    occupancy.unreached = unreached or frozenset()
+    return occupancy, unreached is not None, bonds, runs
 
 
-def _separated(asked: Sequence[Item], best: Mapping[int, Placement], *, keep_count: bool) -> Separated:
+def _outcome(asked: Sequence[Item], best: Mapping[int, Placement], *, keep_count: bool) -> Separated:
     rejects: list[Reject] = []
     for i, item in enumerate(asked):
         what = item.placement
@@ -192,14 +192,14 @@ def _exchange(
     changed = False
     for name in sorted({items[i].placement.asset_id for i in crowded}):
         alike = [i for i, item in enumerate(items) if item.placement.asset_id == name]
-        made = {i: _exchanged(items[i], assets, learnt, settings, smaller) for i in alike}
-        for i, item in made.items():
+        replacements = {i: _smaller_item(items[i], assets, learnt, settings, smaller) for i in alike}
+        for i, item in replacements.items():
             items[i] = item or items[i]
             changed |= item is not None
     return changed
 
 
-def _exchanged(
+def _smaller_item(
     item: Item, assets: Mapping[str, Asset], learnt: LearntRelations, settings: SeparateSettings, smaller: Smaller
 ) -> Item | None:
     """Return the item as a smaller asset of its category, by at least a tenth, wished where it was; None if there is none."""

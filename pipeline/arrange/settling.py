@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pipeline.arrange.bonds import Bond, at_anchor
 from pipeline.arrange.candidates import ALONE, at_anchor_poses, everywhere, hides, near_by, round_walls
 from pipeline.arrange.groups import Group, group_of, groups
-from pipeline.arrange.item import Item, wrapped
+from pipeline.arrange.item import Item, wrap_yaw
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.occupancy import Occupancy
 from pipeline.arrange.walls import Edge
@@ -39,8 +39,8 @@ class Draft:
 
     def pose(self, i: int) -> Floats:
         """Return the exact pose of an object."""
-        found: Floats = self.poses[i]
-        return found
+        exact_pose: Floats = self.poses[i]
+        return exact_pose
 
 
 def settle_all(occupancy: Occupancy, draft: Draft, first: Sequence[int], *, careful: bool, bulk: bool) -> None:
@@ -49,46 +49,46 @@ def settle_all(occupancy: Occupancy, draft: Draft, first: Sequence[int], *, care
     `careful`: the floor must hang together with each group that is added. `bulk`: those that are free where they belong come first, all at once.
     """
     pairs, alone = conflicts(occupancy.world, draft.poses, occupancy.settings.touch)
-    made, strays, poses = _fitted(occupancy, draft, groups(occupancy.items, draft.poses, draft.bonds, draft.runs), pairs)
-    leading = _led(occupancy.items, draft, made, poses)
+    fitted_groups, strays, poses = _resolve_overlaps(occupancy, draft, groups(occupancy.items, draft.poses, draft.bonds, draft.runs), pairs)
+    leading = _leading_groups(occupancy.items, draft, fitted_groups, poses)
     if not np.array_equal(poses, draft.poses):
         draft = replace(draft, poses=poses)
         pairs, alone = conflicts(occupancy.world, poses, occupancy.settings.touch)
     at_fault = (alone != FREE) | np.array([hides(i, p, draft.walls) for i, p in zip(occupancy.items, draft.poses, strict=True)], np.bool_)
     member = np.full(len(occupancy.items), -1)
-    for number, group in enumerate(made):
+    for number, group in enumerate(fitted_groups):
         member[group.members] = number
     clash = pairs & (member[:, None] != member[None]) & (member >= 0)[:, None] & (member >= 0)[None]
-    order = sorted(range(len(made)), key=lambda k: _rank(occupancy, made[k], draft, first))
+    order = sorted(range(len(fitted_groups)), key=lambda k: _rank(occupancy, fitted_groups[k], draft, first))
     bound = {i for group in leading.values() for i in group.members.tolist()}
-    stays = [k for k in order if bound.isdisjoint(made[k].members.tolist())]
-    free = [k for k in stays if bulk and not (at_fault[made[k].members].any() or clash[made[k].members].any())]
+    stays = [k for k in order if bound.isdisjoint(fitted_groups[k].members.tolist())]
+    free = [k for k in stays if bulk and not (at_fault[fitted_groups[k].members].any() or clash[fitted_groups[k].members].any())]
     for k in free:
-        occupancy.stand(made[k], draft.poses[made[k].first])
+        occupancy.stand(fitted_groups[k], draft.poses[fitted_groups[k].first])
     if careful and free and occupancy.out_of_reach() != frozenset():
         for k in free:
-            occupancy.leave(made[k])
+            occupancy.leave(fitted_groups[k])
         free = []
     for group in leading.values():
-        found = round_walls(occupancy.items[group.first], draft.pose(group.first), draft.walls, occupancy.site, occupancy.settings)
-        _put(occupancy, group, *found, careful=careful)
+        candidates = round_walls(occupancy.items[group.first], draft.pose(group.first), draft.walls, occupancy.site, occupancy.settings)
+        _put(occupancy, group, *candidates, careful=careful)
     for k in (k for k in order if k not in set(free)):
-        left = [i for i in made[k].members.tolist() if not occupancy.there[i]]
-        whole = len(left) == len(made[k].members)
-        strays += _settle_group(occupancy, draft, made[k], careful=careful) if whole else left
+        left = [i for i in fitted_groups[k].members.tolist() if not occupancy.there[i]]
+        whole = len(left) == len(fitted_groups[k].members)
+        strays += _settle_group(occupancy, draft, fitted_groups[k], careful=careful) if whole else left
     for i in sorted(strays, key=lambda i: (-occupancy.items[i].area, i)):
         _settle_one(occupancy, draft, i, careful=careful)
 
 
-def _led(items: Sequence[Item], draft: Draft, made: Sequence[Group], poses: Floats) -> dict[int, Group]:
+def _leading_groups(items: Sequence[Item], draft: Draft, fitted_groups: Sequence[Group], poses: Floats) -> dict[int, Group]:
     """Return, by the number of its anchor's group, the group that is sought a wall as one for each who is `led`.
 
     Who belongs to a wall across from the anchor leads it: a sofa goes where there is a wall for its screen.
     """
     across = {b.anchor: i for i, b in enumerate(draft.bonds) if b is not None and not b.rigid and items[i].habit.must}
-    found: dict[int, Group] = {}
+    by_anchor: dict[int, Group] = {}
     for anchor in sorted({bond.anchor for i in draft.led if (bond := draft.bonds[i]) is not None}):
-        at = next((k for k, group in enumerate(made) if group.first == anchor), None)
+        at = next((k for k, group in enumerate(fitted_groups) if group.first == anchor), None)
         lead = across.get(anchor)
         bond = None if lead is None else draft.bonds[lead]
         if at is None:
@@ -96,10 +96,10 @@ def _led(items: Sequence[Item], draft: Draft, made: Sequence[Group], poses: Floa
         if lead is not None and bond is not None and not items[anchor].habit.must:
             together = poses.copy()
             together[lead, [0, 1, 3]] = at_anchor(poses[anchor], bond.local)
-            found[at] = group_of([lead, *made[at].members.tolist()], together)
+            by_anchor[at] = group_of([lead, *fitted_groups[at].members.tolist()], together)
         elif items[anchor].habit.wants:
-            found[at] = made[at]
-    return found
+            by_anchor[at] = fitted_groups[at]
+    return by_anchor
 
 
 def _rank(occupancy: Occupancy, group: Group, draft: Draft, first: Sequence[int]) -> tuple[int, int, int, float, int]:
@@ -112,12 +112,14 @@ def _rank(occupancy: Occupancy, group: Group, draft: Draft, first: Sequence[int]
     return again, 0 if run else 1, int(waits), -area * (OPENS if lead.shape.opens else 1.0), group.first
 
 
-def _fitted(occupancy: Occupancy, draft: Draft, whole: Sequence[Group], pairs: NDArray[np.bool_]) -> tuple[list[Group], list[int], Floats]:
+def _resolve_overlaps(
+    occupancy: Occupancy, draft: Draft, whole: Sequence[Group], pairs: NDArray[np.bool_]
+) -> tuple[list[Group], list[int], Floats]:
     """Move each member that is in another of its group to the next place at its anchor where it is not: a chair out from under the table.
 
     Return the groups, the strays, who found none, and the poses (N, 4).
     """
-    poses, made, strays = draft.poses.copy(), [], []
+    poses, fitted_groups, strays = draft.poses.copy(), [], []
     for group in whole:
         kept = [group.first]
         for i in group.members[1:].tolist():
@@ -128,8 +130,8 @@ def _fitted(occupancy: Occupancy, draft: Draft, whole: Sequence[Group], pairs: N
                     continue
                 poses[i] = place
             kept.append(i)
-        made.append(group_of(kept, poses))
-    return made, strays, poses
+        fitted_groups.append(group_of(kept, poses))
+    return fitted_groups, strays, poses
 
 
 def _beside(occupancy: Occupancy, draft: Draft, i: int, group: Group, poses: Floats) -> Floats | None:
@@ -137,12 +139,12 @@ def _beside(occupancy: Occupancy, draft: Draft, i: int, group: Group, poses: Flo
     bond = draft.bonds[i]
     if bond is None or bond.over:
         return None
-    found, costs = at_anchor_poses(
+    candidates, costs = at_anchor_poses(
         occupancy.items[i], poses[i], occupancy.items[bond.anchor], poses[bond.anchor], draft.walls, draft.learnt, occupancy.settings
     )
     others = np.zeros(len(occupancy.items), np.bool_)
     others[group.members[group.members != i]] = True
-    best = occupancy.nearest(group_of([i], poses), found, costs, others)
+    best = occupancy.nearest(group_of([i], poses), candidates, costs, others)
     put(occupancy.world, i, poses[i] if best is None else best[0])
     return None if best is None else best[0]
 
@@ -173,10 +175,10 @@ def _settle_one(occupancy: Occupancy, draft: Draft, i: int, *, careful: bool) ->
 def _put(occupancy: Occupancy, group: Group, poses: Floats, costs: Floats, *, careful: bool) -> bool:
     if careful:
         return occupancy.settle(group, poses, costs)
-    found = occupancy.nearest(group, poses, costs)
-    if found is not None:
-        occupancy.stand(group, found[0])
-    return found is not None
+    best = occupancy.nearest(group, poses, costs)
+    if best is not None:
+        occupancy.stand(group, best[0])
+    return best is not None
 
 
 def _target(occupancy: Occupancy, draft: Draft, i: int) -> Floats:
@@ -190,7 +192,7 @@ def _target(occupancy: Occupancy, draft: Draft, i: int) -> Floats:
     if not bond.rigid:  # its own wall is as good as any other across from there
         return draft.pose(i)
     x, y, yaw = at_anchor(now, bond.local)
-    return np.array([x, y, draft.poses[i, 2], wrapped(float(yaw))])
+    return np.array([x, y, draft.poses[i, 2], wrap_yaw(float(yaw))])
 
 
 def _near(occupancy: Occupancy, draft: Draft, i: int) -> tuple[Floats, Floats]:

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from pipeline.entities.asset import Asset, Joint
 from pipeline.geometry.convex import hull
 from pipeline.geometry.kinematics import OPENERS, grips
-from pipeline.geometry.memo import kept
-from pipeline.geometry.prisms import Prisms, Sweep, prism, solid, stacked
+from pipeline.geometry.memo import cached_on_asset
+from pipeline.geometry.prisms import Prisms, Sweep, join_prisms, prism, solid
 
 Floats = NDArray[np.float64]
 
@@ -51,15 +51,15 @@ def shape(asset: Asset, scale: Floats, access_depth: float, access: str = "") ->
     """Return the shape of an asset at a scale; it is kept while the process lives, where nothing is scaled."""
     if np.any(scale != 1.0):
         return make_shape(asset, scale, access_depth, access)
-    own = _unscaled(asset)
+    own = _shape_cache(asset)
     key = (access_depth, access)
     if key not in own:
         own[key] = make_shape(asset, scale, access_depth, access)
     return own[key]
 
 
-@kept
-def _unscaled(_: Asset) -> dict[tuple[float, str], Shape]:
+@cached_on_asset
+def _shape_cache(_: Asset) -> dict[tuple[float, str], Shape]:
     return {}
 
 
@@ -69,25 +69,27 @@ def make_shape(asset: Asset, scale: Floats, access_depth: float, access: str) ->
     `access_depth` [m] is the place kept free beyond opened parts; what does not open gets half of it where people come
     to it: before its front ("front") or at both its sides ("sides").
     """
-    made = solid(asset)
+    asset_solid = solid(asset)
     origin = np.zeros(3)
-    body = made.rest.placed(origin, 0.0, scale)
-    keep = stacked([p for sweep, j in zip(made.sweeps, asset.joints, strict=True) for p in _coarse(sweep, j)]).placed(origin, 0.0, scale)
-    held = tuple(
+    body = asset_solid.rest.placed(origin, 0.0, scale)
+    keep = join_prisms([p for sweep, j in zip(asset_solid.sweeps, asset.joints, strict=True) for p in _coarse(sweep, j)]).placed(
+        origin, 0.0, scale
+    )
+    handles = tuple(
         Grip(point[:2] * scale[:2], heading, sweep.prisms.placed(origin, 0.0, scale))
-        for (point, heading), sweep, j in zip(grips(asset), made.sweeps, asset.joints, strict=True)
+        for (point, heading), sweep, j in zip(grips(asset), asset_solid.sweeps, asset.joints, strict=True)
         if j.part_class in OPENERS
     )
-    places = _access(stacked([g.swept for g in held]), asset, scale, access_depth)
+    places = _access(join_prisms([g.swept for g in handles]), asset, scale, access_depth)
     if not len(places) and access:
         places = _approach(asset.size * scale, access_depth / 2, sides=access == "sides")
     points = body.corners.reshape(-1, 2) if len(body) else np.zeros((1, 2))
-    return Shape(body, keep, places, held, hull(np.ascontiguousarray(points)))
+    return Shape(body, keep, places, handles, hull(np.ascontiguousarray(points)))
 
 
 def _coarse(sweep: Sweep, joint: Joint) -> list[Prisms]:
     """Cover a sweep by few prisms: for sliders one, for hinges one per `STRIDE` steps."""
-    found = []
+    covers = []
     steps = len(sweep.reached)
     stride = max(steps, 1) if joint.type == "prismatic" else STRIDE
     for first in range(0, steps, stride):
@@ -97,16 +99,16 @@ def _coarse(sweep: Sweep, joint: Joint) -> list[Prisms]:
         flat = sweep.prisms.corners[own].reshape(-1, 2)
         low, high = sweep.prisms.z[own, 0].min(), sweep.prisms.z[own, 1].max()
         points = np.concatenate([np.column_stack([flat, np.full(len(flat), z)]) for z in (low, high)])
-        made = prism(points)
-        if made is not None:
-            found.append(made)
-    return found
+        cover = prism(points)
+        if cover is not None:
+            covers.append(cover)
+    return covers
 
 
 def _access(swept: Prisms, asset: Asset, scale: Floats, depth: float) -> Prisms:
     """Return the box before the front, as wide as the asset, from its face to `depth` beyond what opens."""
     if not len(swept):
-        return stacked([])
+        return join_prisms([])
     w, d = float(asset.size[0] * scale[0]) / 2, float(asset.size[1] * scale[1]) / 2
     return _box((-w, min(float(swept.corners[..., 1].min()), -d) - depth), (w, -d))
 
@@ -117,10 +119,10 @@ def _approach(size: Floats, depth: float, *, sides: bool) -> Prisms:
     if not sides:
         return _box((-w, -d - depth), (w, -d))
     back = max(d - BEDSIDE, -d + 0.1)
-    return stacked([_box((-w - depth, -d), (-w, back)), _box((w, -d), (w + depth, back))])
+    return join_prisms([_box((-w - depth, -d), (-w, back)), _box((w, -d), (w + depth, back))])
 
 
 def _box(low: tuple[float, float], high: tuple[float, float]) -> Prisms:
     """Return one prism over a rectangle, as high as a person needs it."""
-    made = prism(np.array([[x, y, z] for z in (0.02, 1.4) for x in (low[0], high[0]) for y in (low[1], high[1])]))
-    return stacked([]) if made is None else made
+    block = prism(np.array([[x, y, z] for z in (0.02, 1.4) for x in (low[0], high[0]) for y in (low[1], high[1])]))
+    return join_prisms([]) if block is None else block

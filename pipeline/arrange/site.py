@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pipeline.entities.plan import Opening, Plan
 from pipeline.geometry.door_sweeps import leaf_sweep
 from pipeline.geometry.free_space import PASSABLE, Floor, FreeSpace, bare_floor, free_space
-from pipeline.geometry.prisms import Prisms, stacked
+from pipeline.geometry.prisms import Prisms, join_prisms
 from pipeline.geometry.robot import Robot
 from pipeline.geometry.walls import leaves
 
@@ -62,7 +62,7 @@ class Site:
         # Beyond each opening lies floor on which the robot can stand whole: one passes through, not up to the wall.
         # Wide openings must be free in the middle, seen from both of their rooms: so both agree on where to pass.
         floor = bare_floor([room], openings, 2 * robot.radius + cell, cell, PASS_WIDTH)
-        swung = stacked([leaf_sweep(leaf, elevation).prisms for leaf in leaves(plan) if leaf.opening_id in own])
+        swung = join_prisms([leaf_sweep(leaf, elevation).prisms for leaf in leaves(plan) if leaf.opening_id in own])
         return cls(
             room_id,
             np.ascontiguousarray(room.polygon, np.float64),
@@ -72,7 +72,7 @@ class Site:
             np.array([o.segment.mean(0) for o in openings if o.kind in PASSABLE]).reshape(-1, 2),
             _openings_by_edge(room.polygon, openings),
             floor,
-            free_space(floor, stacked([]), robot.radius, robot.band(elevation)),
+            free_space(floor, join_prisms([]), robot.radius, robot.band(elevation)),
             robot,
         )
 
@@ -112,7 +112,7 @@ class Site:
 
 def _openings_by_edge(polygon: Floats, openings: Sequence[Opening]) -> tuple[tuple[EdgeOpening, ...], ...]:
     """Return the openings in each edge of a polygon."""
-    found = []
+    by_edge = []
     for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
         length = float(np.linalg.norm(b - a))
         t = (b - a) / max(length, 1e-9)
@@ -122,5 +122,5 @@ def _openings_by_edge(polygon: Floats, openings: Sequence[Opening]) -> tuple[tup
             off = np.abs((o.segment - a) @ np.array([-t[1], t[0]]))
             if off.max() < WALL and min(length, s.max()) - max(0.0, s.min()) > 0.05:
                 own.append(EdgeOpening(float(s.min()), float(s.max()), o.sill, o.kind == "window"))
-        found.append(tuple(own))
-    return tuple(found)
+        by_edge.append(tuple(own))
+    return tuple(by_edge)

@@ -39,14 +39,14 @@ def exact_poses(
             continue
         for wished in (items[i].wished, _alone(items[i], site, walls, settings)):  # who has come to a wall may find its anchor there
             bond = find_bond(i, items, wished, poses, learnt)
-            found = None if bond is None else _bound(items[i], bond, items, poses, site, walls, settings)
-            bonds[i], poses[i] = (bond, wished) if found is None else (bond, found)
-            if found is not None:
+            pose = None if bond is None else _pose_at_anchor(items[i], bond, items, poses, site, walls, settings)
+            bonds[i], poses[i] = (bond, wished) if pose is None else (bond, pose)
+            if pose is not None:
                 break
     return poses, bonds
 
 
-def _bound(
+def _pose_at_anchor(
     item: Item, bond: Bond, items: Sequence[Item], poses: Floats, site: Site, walls: Sequence[Edge], settings: SeparateSettings
 ) -> Floats | None:
     """Return the pose at the anchor, the back at the wall where it belongs to one; None where no wall is where its anchor wants it."""
@@ -62,12 +62,12 @@ def _bound(
         return pose
     if not bond.rigid:
         return at_wall(item, pose, walls, ACROSS, settings.turn_cost, FACING)
-    found = at_wall(item, pose, walls, LOOSE, settings.turn_cost)
-    if found is None:
+    flush = at_wall(item, pose, walls, LOOSE, settings.turn_cost)
+    if flush is None:
         return pose
-    back = np.array([-math.sin(found[3]), math.cos(found[3])])
-    depth = float((found[:2] - pose[:2]) @ back)
-    return np.array([*(pose[:2] + depth * back), pose[2], found[3]])  # beside its anchor, even where the wall ends: then the group moves
+    back = np.array([-math.sin(flush[3]), math.cos(flush[3])])
+    depth = float((flush[:2] - pose[:2]) @ back)
+    return np.array([*(pose[:2] + depth * back), pose[2], flush[3]])  # beside its anchor, even where the wall ends: then the group moves
 
 
 def _alone(item: Item, site: Site, walls: Sequence[Edge], settings: SeparateSettings) -> Floats:
@@ -76,9 +76,9 @@ def _alone(item: Item, site: Site, walls: Sequence[Edge], settings: SeparateSett
     pose[2] = height(item, site, float(pose[2]))
     if item.habit.wants:
         reach = FAR if item.habit.must else settings.wall_reach
-        found = at_wall(item, pose, walls, 10.0 if item.mount == "wall" else reach, settings.turn_cost)
-        if found is not None:
-            return in_corner(found, item, walls)
+        flush = at_wall(item, pose, walls, 10.0 if item.mount == "wall" else reach, settings.turn_cost)
+        if flush is not None:
+            return in_corner(flush, item, walls)
     large = item.habit.kind in {"bed", "table", "cabinet", "sofa"} and item.area > 0.5
     pose[3] = square(float(pose[3]), walls, math.pi if large or item.habit.must else math.radians(settings.snap_angle))
     return pose

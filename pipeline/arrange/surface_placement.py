@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.item import wrapped
+from pipeline.arrange.item import wrap_yaw
 from pipeline.arrange.settings import ThingsSettings
 from pipeline.arrange.surfaces import Surfaces, surfaces
 from pipeline.entities.asset import Asset
@@ -17,8 +17,8 @@ from pipeline.entities.home import Placement
 from pipeline.geometry.contact import first_hits, group_boxes, wall_excesses
 from pipeline.geometry.convex import hull
 from pipeline.geometry.kinematics import moved_links, rotation
-from pipeline.geometry.memo import kept
-from pipeline.geometry.prisms import Prisms, prism, solid, stacked
+from pipeline.geometry.memo import cached_on_asset
+from pipeline.geometry.prisms import Prisms, join_prisms, prism, solid
 
 Floats = NDArray[np.float64]
 UNIT = np.ones(3)
@@ -42,7 +42,7 @@ class Groups:
     def of(cls, groups: Sequence[Prisms]) -> Groups:
         """Join groups."""
         start = np.concatenate([[0], np.cumsum([len(g) for g in groups], dtype=np.int64)]).astype(np.int64)
-        prisms = stacked(list(groups))
+        prisms = join_prisms(list(groups))
         return cls(prisms, start, prisms.boxes(), group_boxes(prisms, start))
 
     def plus(self, groups: Sequence[Prisms]) -> Groups:
@@ -50,7 +50,7 @@ class Groups:
         more = Groups.of(groups)
         start = np.concatenate([self.start, self.start[-1] + more.start[1:]])
         flat, boxes = np.concatenate([self.flat, more.flat]), np.concatenate([self.boxes, more.boxes])
-        return Groups(stacked([self.prisms, more.prisms]), start, flat, boxes)
+        return Groups(join_prisms([self.prisms, more.prisms]), start, flat, boxes)
 
     def hit(self, moved: Prisms, touch: float, without: Sequence[int] = ()) -> bool:
         """Tell whether prisms touch any group, some left out."""
@@ -88,8 +88,8 @@ class Laying:
 
     def fix(self, placements: Sequence[Placement]) -> None:
         """Take in things that hang or stand already, and bear nothing."""
-        made = [solid(self.assets[p.asset_id]).rest.placed(p.position, p.yaw, p.scale) for p in placements]
-        self.laid = self.laid.plus(made)
+        prisms = [solid(self.assets[p.asset_id]).rest.placed(p.position, p.yaw, p.scale) for p in placements]
+        self.laid = self.laid.plus(prisms)
 
     def lay(
         self, rng: np.random.Generator, asset: Asset, support: int, *, facing: bool, centred: bool = False, backed: bool = False
@@ -100,33 +100,33 @@ class Laying:
         `backed`: it lies towards their backs. Open surfaces are preferred to what lies behind doors and in drawers.
         """
         placement = self.furniture[support]
-        found = surfaces(self.assets[placement.asset_id])
+        support_surfaces = surfaces(self.assets[placement.asset_id])
         turn = float(rng.normal(0, WOBBLE) if facing else rng.uniform(-math.pi, math.pi))
-        tops = self._candidates(rng, found, placement.scale, asset.size, turn, backed=backed)
-        for top, x, y in (self._middles(found, placement.scale, asset.size, turn) + tops) if centred else tops:
-            z = float(found.tops[top, 4] * placement.scale[2])
-            if self._boxed(support, asset.size, (x, y, z), turn):
+        tops = self._candidates(rng, support_surfaces, placement.scale, asset.size, turn, backed=backed)
+        for top, x, y in (self._middles(support_surfaces, placement.scale, asset.size, turn) + tops) if centred else tops:
+            z = float(support_surfaces.tops[top, 4] * placement.scale[2])
+            if self._meets_box(support, asset.size, (x, y, z), turn):
                 continue
-            yaw = wrapped(placement.yaw + turn)
+            yaw = wrap_yaw(placement.yaw + turn)
             c, s = math.cos(placement.yaw), math.sin(placement.yaw)
             position = np.round(placement.position + np.array([c * x - s * y, s * x + c * y, z]), 4) + 0.0
-            if self._free(asset, position, yaw, support, int(found.link[top])):
+            if self._free(asset, position, yaw, support, int(support_surfaces.link[top])):
                 self._add(asset, position, yaw)
                 self._taken.setdefault(support, []).append(_box(asset.size, (x, y, z), turn, self.settings.margin))
                 return position, yaw
         return None
 
     def _candidates(
-        self, rng: np.random.Generator, found: Surfaces, scale: Floats, size: Floats, turn: float, *, backed: bool
+        self, rng: np.random.Generator, support_surfaces: Surfaces, scale: Floats, size: Floats, turn: float, *, backed: bool
     ) -> list[tuple[int, float, float]]:
         """Draw (surface, x, y) at which the thing lies wholly on a surface, object frame of the support."""
-        if not len(found):
+        if not len(support_surfaces):
             return []
         low, high = _reach(size, turn)
         margin = self.settings.margin
-        first = found.tops[:, :2] * scale[:2] - low + margin
-        last = found.tops[:, 2:4] * scale[:2] - high - margin
-        weight = np.where(found.hidden, self.settings.hidden, 1.0) * (last >= first).all(1)
+        first = support_surfaces.tops[:, :2] * scale[:2] - low + margin
+        last = support_surfaces.tops[:, 2:4] * scale[:2] - high - margin
+        weight = np.where(support_surfaces.hidden, self.settings.hidden, 1.0) * (last >= first).all(1)
         if weight.sum() <= 0:
             return []
         which = rng.choice(len(weight), self.settings.tries, p=weight / weight.sum())
@@ -136,30 +136,32 @@ class Laying:
         return [(int(k), float(x), float(y)) for k, (x, y) in zip(which, spots, strict=True)]
 
     @staticmethod
-    def _middles(found: Surfaces, scale: Floats, size: Floats, turn: float) -> list[tuple[int, float, float]]:
+    def _middles(support_surfaces: Surfaces, scale: Floats, size: Floats, turn: float) -> list[tuple[int, float, float]]:
         """Return (surface, x, y) of the middles of the open surfaces that are wide enough, the highest first."""
         low, high = _reach(size, turn)
-        extent = (found.tops[:, 2:4] - found.tops[:, :2]) * scale[:2]
-        middle = (found.tops[:, 2:4] + found.tops[:, :2]) * scale[:2] / 2
-        fits = np.flatnonzero((extent >= high - low).all(1) & ~found.hidden)
-        return [(int(k), float(middle[k, 0]), float(middle[k, 1])) for k in fits[np.argsort(-found.tops[fits, 4], kind="stable")]]
+        extent = (support_surfaces.tops[:, 2:4] - support_surfaces.tops[:, :2]) * scale[:2]
+        middle = (support_surfaces.tops[:, 2:4] + support_surfaces.tops[:, :2]) * scale[:2] / 2
+        fits = np.flatnonzero((extent >= high - low).all(1) & ~support_surfaces.hidden)
+        return [
+            (int(k), float(middle[k, 0]), float(middle[k, 1])) for k in fits[np.argsort(-support_surfaces.tops[fits, 4], kind="stable")]
+        ]
 
-    def _boxed(self, support: int, size: Floats, at: tuple[float, float, float], turn: float) -> bool:
+    def _meets_box(self, support: int, size: Floats, at: tuple[float, float, float], turn: float) -> bool:
         """Tell whether a thing's box meets that of another thing on the same furniture."""
         box = _box(size, at, turn, 0.0)
         return any(bool(np.all(box[0] < other[1]) and np.all(box[1] > other[0])) for other in self._taken.get(support, ()))
 
     def _free(self, asset: Asset, position: Floats, yaw: float, support: int, link: int) -> bool:
         """Tell whether a thing stands free there, no joint sweeps through it, and its own joints move."""
-        made = solid(asset)
-        rest = made.rest.placed(position, yaw, UNIT)
+        asset_solid = solid(asset)
+        rest = asset_solid.rest.placed(position, yaw, UNIT)
         if not len(rest) or self.rest.hit(rest, self.touch) or self.laid.hit(rest, self.touch) or self._outside(rest):
             return False
         bearer = self.assets[self.furniture[support].asset_id]
         carrying = [k for k in range(len(bearer.joints)) if link in moved_links(bearer, k)]
         if self.sweeps.hit(rest, self.touch, [self.joints[support, k] for k in carrying]) or self.laid_sweeps.hit(rest, self.touch):
             return False
-        for sweep in made.sweeps:
+        for sweep in asset_solid.sweeps:
             moved = sweep.prisms.placed(position, yaw, UNIT)
             if self.rest.hit(moved, self.touch) or self.laid.hit(moved, self.touch) or self._outside(moved):
                 return False
@@ -171,7 +173,7 @@ class Laying:
         way = rotation(np.array([0.0, 0.0, 1.0]), placement.yaw) @ moving.axis * moving.upper
         heights = rest.z + np.array([0.0, HEADROOM])
         ends = [[np.column_stack([rest.polygon(i), np.full(rest.count[i], z)]) for z in heights[i]] for i in range(len(rest))]
-        out = stacked([p for own in ends if (p := prism(np.concatenate([*own, *(e + way for e in own)]))) is not None])
+        out = join_prisms([p for own in ends if (p := prism(np.concatenate([*own, *(e + way for e in own)]))) is not None])
         body = self.solids[support].rest.placed(placement.position, placement.yaw, placement.scale)
         still = ~np.isin(body.part, moved_links(bearer, joint))
         frame = Prisms(body.corners[still], body.count[still], body.z[still], body.part[still])
@@ -182,13 +184,13 @@ class Laying:
         return bool((wall_excesses(moved.corners, moved.count, self.polygon) > self.touch).any())
 
     def _add(self, asset: Asset, position: Floats, yaw: float) -> None:
-        made = solid(asset)
-        self.laid = self.laid.plus([made.rest.placed(position, yaw, UNIT)])
-        if made.sweeps:
-            self.laid_sweeps = self.laid_sweeps.plus([s.prisms.placed(position, yaw, UNIT) for s in made.sweeps])
+        asset_solid = solid(asset)
+        self.laid = self.laid.plus([asset_solid.rest.placed(position, yaw, UNIT)])
+        if asset_solid.sweeps:
+            self.laid_sweeps = self.laid_sweeps.plus([s.prisms.placed(position, yaw, UNIT) for s in asset_solid.sweeps])
 
 
-@kept
+@cached_on_asset
 def steady(asset: Asset) -> float:
     """Return how far a thing's centre of mass is within the edge of its foot, as a share of its height: it tips where it is held back by more of its weight."""
     points = np.concatenate([piece.vertices for link in asset.links for piece in link.colliders]).astype(np.float64)

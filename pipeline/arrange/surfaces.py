@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pipeline import taxonomy
 from pipeline.entities.asset import Asset, Link
 from pipeline.geometry.convex import hull
-from pipeline.geometry.memo import kept
+from pipeline.geometry.memo import cached_on_asset
 from pipeline.geometry.prisms import Prisms, solid
 
 Floats = NDArray[np.float64]
@@ -43,7 +43,7 @@ class Surfaces:
         return len(self.tops)
 
 
-@kept
+@cached_on_asset
 def surfaces(asset: Asset) -> Surfaces:
     """Return an asset's surfaces. They depend on the asset alone and are kept while the process lives."""
     return make_surfaces(asset)
@@ -56,7 +56,7 @@ def make_surfaces(asset: Asset) -> Surfaces:
     flat = rest.boxes()
     known = taxonomy.load().categories.get(asset.category)
     swell = SOFT if known is not None and known.super in UPHOLSTERED else FLAT
-    seen = max(swell, SEEN)
+    tolerance = max(swell, SEEN)
     tops, links, hidden = [], [], []
     for number in (0, *sorted(drawers)):
         link = asset.links[number]
@@ -69,8 +69,8 @@ def make_surfaces(asset: Asset) -> Surfaces:
             top = level_top(vertices, swell)
             if top is None:
                 continue
-            level = _level(link, seen) if level is None else level
-            access = _access(rest, flat, top, float(asset.size[1]), inside=number != 0) if _seen(level, top, seen) else ""
+            level = _level(link, tolerance) if level is None else level
+            access = _access(rest, flat, top, float(asset.size[1]), inside=number != 0) if _covers_top(level, top, tolerance) else ""
             if access:
                 tops.append(top)
                 links.append(number)
@@ -99,18 +99,18 @@ def level_top(vertices: Floats, flat: float = FLAT) -> tuple[float, float, float
     return None
 
 
-def _level(link: Link, seen: float) -> Floats:
-    """Return the level triangles (T, 3, 3), to 2 `seen` [m], of a link's visuals, counter-clockwise seen from above: files wind them either way."""
+def _level(link: Link, tolerance: float) -> Floats:
+    """Return the level triangles (T, 3, 3), to 2 `tolerance` [m], of a link's visuals, counter-clockwise seen from above: files wind them either way."""
     corners = np.concatenate([np.asarray(m.vertices, np.float64)[m.faces] for m in link.visuals] or [np.zeros((0, 3, 3))])
     if len(corners):
-        corners = corners[np.ptp(corners[:, :, 2], axis=1) < 2 * seen]
+        corners = corners[np.ptp(corners[:, :, 2], axis=1) < 2 * tolerance]
     turn = _cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return np.concatenate([corners[turn > 1e-12], corners[turn < -1e-12][:, ::-1]])
 
 
-def _seen(level: Floats, top: Sequence[float], seen: float) -> bool:
-    """Tell whether a surface within `seen` [m] of it is there to see all over a top: a hull may span what is open."""
-    near = level[(np.abs(level[:, :, 2] - top[4]) < seen).all(1)]
+def _covers_top(level: Floats, top: Sequence[float], tolerance: float) -> bool:
+    """Tell whether a surface within `tolerance` [m] of it is there to see all over a top: a hull may span what is open."""
+    near = level[(np.abs(level[:, :, 2] - top[4]) < tolerance).all(1)]
     if not len(near):
         return False
     x, y = (np.linspace(top[k], top[k + 2], GRID + 2)[1:-1] for k in (0, 1))
@@ -121,8 +121,8 @@ def _seen(level: Floats, top: Sequence[float], seen: float) -> bool:
 
 
 def _cross(u: Floats, v: Floats) -> Floats:
-    found: Floats = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
-    return found
+    product: Floats = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+    return product
 
 
 def _access(rest: Prisms, flat: Floats, top: Sequence[float], depth: float, *, inside: bool) -> str:

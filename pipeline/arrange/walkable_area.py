@@ -18,7 +18,7 @@ from pipeline.arrange.settings import WalkableSettings
 from pipeline.arrange.site import Site
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
-from pipeline.geometry.prisms import solid, stacked
+from pipeline.geometry.prisms import join_prisms, solid
 
 Ratio = Callable[[Sequence[Placement]], float]
 
@@ -67,18 +67,20 @@ def control_walkable(
     iteration = 0
     while after < target and iteration < settings.iterations:
         iteration += 1
-        made = 0
+        count = 0
         largest = _by_area(current)
         for i in largest if settings.skip_exhausted else largest[: settings.top]:
-            found = _replaced(current[i], smaller, assets)
-            if found is None:
+            replacement = _next_smaller(current[i], smaller, assets)
+            if replacement is None:
                 continue
-            exchanges.append(Exchange(iteration, found.object_id, current[i].asset_id, found.asset_id, _area(current[i]), _area(found)))
-            current[i] = found
-            made += 1
-            if made == settings.top:
+            exchanges.append(
+                Exchange(iteration, replacement.object_id, current[i].asset_id, replacement.asset_id, _area(current[i]), _area(replacement))
+            )
+            current[i] = replacement
+            count += 1
+            if count == settings.top:
                 break
-        if not made:
+        if not count:
             break
         after = ratio(current)
     return Controlled(tuple(current), before, after, iteration, tuple(exchanges), after >= target)
@@ -87,20 +89,20 @@ def control_walkable(
 def paper_ratio(area: float, elevation: float) -> Ratio:
     """Return the paper's ratio of a room of `area` [m2]: footprints are summed over what stands on the floor."""
 
-    def measured(placements: Sequence[Placement]) -> float:
+    def ratio(placements: Sequence[Placement]) -> float:
         return (area - sum(_area(p) for p in placements if _stands(p, elevation))) / area
 
-    return measured
+    return ratio
 
 
 def free_ratio(site: Site, assets: Mapping[str, Asset]) -> Ratio:
     """Return the true ratio of a room: connected floor that the robot covers, coming from the doors, over all floor."""
 
-    def measured(placements: Sequence[Placement]) -> float:
+    def ratio(placements: Sequence[Placement]) -> float:
         bodies = [solid(assets[p.asset_id]).rest.placed(p.position, p.yaw, p.scale) for p in placements]
-        return site.free_share(site.free_space(stacked(bodies)))
+        return site.free_share(site.free_space(join_prisms(bodies)))
 
-    return measured
+    return ratio
 
 
 def _area(placement: Placement) -> float:
@@ -122,7 +124,7 @@ def _by_area(placements: Sequence[Placement]) -> list[int]:
     return sorted(valid, key=lambda i: -round(_area(placements[i]), 9))
 
 
-def _replaced(placement: Placement, smaller: Smaller, assets: Mapping[str, Asset]) -> Placement | None:
+def _next_smaller(placement: Placement, smaller: Smaller, assets: Mapping[str, Asset]) -> Placement | None:
     """Return the placement with the next smaller asset, its bottom centre and yaw kept; None if there is none."""
     match = smaller(placement.asset_id, _area(placement))
     if match is None:

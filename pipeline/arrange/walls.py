@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.item import Item, turned, wrapped
+from pipeline.arrange.item import Item, wrap_yaw, yaw_difference
 from pipeline.arrange.site import EdgeOpening, Site
 
 Floats = NDArray[np.float64]
@@ -53,12 +53,12 @@ class Edge:
 
 def edges(site: Site) -> list[Edge]:
     """Return the walls of a room."""
-    found = []
+    walls = []
     for a, b, openings in zip(site.polygon, np.roll(site.polygon, -1, axis=0), site.openings, strict=True):
         length = math.hypot(*(b - a))
         t = (b - a) / max(length, 1e-9)
-        found.append(Edge(a, t, np.array([-t[1], t[0]]), length, wrapped(math.atan2(-t[1], -t[0])), openings))
-    return found
+        walls.append(Edge(a, t, np.array([-t[1], t[0]]), length, wrap_yaw(math.atan2(-t[1], -t[0])), openings))
+    return walls
 
 
 def hides_window(item: Item, opening: EdgeOpening) -> bool:
@@ -94,7 +94,7 @@ def at_wall(item: Item, pose: Floats, walls: Sequence[Edge], reach: float, turn_
             continue
         s, off = float(edge.along_of(pose[:2])), float(edge.off(pose[:2]))
         gap = off - d
-        turn = float(turned(edge.yaw, float(pose[3])))
+        turn = float(yaw_difference(edge.yaw, float(pose[3])))
         if turn > most or gap > reach + FAR:
             continue
         stop = min(max(s, w + low), edge.length - w - low)
@@ -118,13 +118,13 @@ def in_corner(pose: Floats, item: Item, walls: Sequence[Edge]) -> Floats:
             gaps.append((off - float(item.half[0]) - item.habit.corner, away))
     if not gaps:
         return pose
-    gap, away = min(gaps, key=lambda found: (round(abs(found[0]), 6), found[1]))
+    gap, away = min(gaps, key=lambda candidate: (round(abs(candidate[0]), 6), candidate[1]))
     return np.array([*(pose[:2] - gap * away * ahead), pose[2], pose[3]])
 
 
 def square(yaw: float, walls: Sequence[Edge], within: float) -> float:
     """Return a yaw turned to the nearest direction of a wall where that is `within` [rad], else the same."""
     squares = (np.array([edge.yaw for edge in walls])[:, None] + np.arange(4) * math.pi / 2).ravel()
-    distance = turned(squares, yaw)
+    distance = yaw_difference(squares, yaw)
     best = int(np.argmin(np.round(distance, 6)))
-    return wrapped(float(squares[best])) if distance[best] <= within else wrapped(yaw)
+    return wrap_yaw(float(squares[best])) if distance[best] <= within else wrap_yaw(yaw)

@@ -13,7 +13,7 @@ from pipeline.arrange.shapes import Shape
 from pipeline.geometry.compiled import borrowing
 from pipeline.geometry.contact import depth
 from pipeline.geometry.polygons import beyond
-from pipeline.geometry.prisms import Prisms, stacked
+from pipeline.geometry.prisms import Prisms, join_prisms
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -58,7 +58,7 @@ def make_world(shapes: Sequence[Shape], swung: Prisms, polygon: Floats, ceiling:
     sizes = np.array([len(g) for g in groups], np.int64).reshape(-1, 3)
     ends = np.cumsum(sizes.ravel()).reshape(-1, 3)
     start = np.column_stack([ends[:, 0] - sizes[:, 0], ends]) if len(shapes) else np.zeros((0, 4), np.int64)
-    every = stacked(groups)
+    every = join_prisms(groups)
     most = max((len(s.outline) for s in shapes), default=1)
     shell = np.zeros((len(shapes), most, 2))
     for i, s in enumerate(shapes):
@@ -225,7 +225,7 @@ def _conflicts(world: World, poses: Floats, tolerance: float, nobody: NDArray[np
 
 
 @borrowing
-def composed(pose: Floats, offset: Floats, out: Floats) -> None:
+def compose_pose(pose: Floats, offset: Floats, out: Floats) -> None:
     """Write the pose of a member at `offset` (x, y, z, yaw) in the frame of one at `pose`, rounded as poses are."""
     c, s = math.cos(pose[3]), math.sin(pose[3])
     out[0] = round((pose[0] + c * offset[0] - s * offset[1]) * 1e4) / 1e4
@@ -251,9 +251,9 @@ def free_poses(
     `members` (K,) move as one, at `offsets` (K, 4) from the group's pose; `others` (N,) are the objects that stand. Poses are
     given in ascending order of `costs`, to which the soft rules add.
     """
-    found = np.full(poses.shape[0], np.inf)
+    totals = np.full(poses.shape[0], np.inf)
     own = np.empty((members.shape[0], 4))
-    return found, int(_free_poses(world, members, offsets, poses, costs, first, wanted, others, tolerance, access_cost, own, found))
+    return totals, int(_free_poses(world, members, offsets, poses, costs, first, wanted, others, tolerance, access_cost, own, totals))
 
 
 @borrowing
@@ -269,7 +269,7 @@ def _free_poses(
             return k
         free = True
         for m in range(members.shape[0]):
-            composed(poses[k], offsets[m], own[m])
+            compose_pose(poses[k], offsets[m], own[m])
             if leaves_room(world, members[m], own[m], tolerance):
                 free = False
                 break

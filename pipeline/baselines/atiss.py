@@ -64,8 +64,8 @@ class Autoregressive(nn.Module):
     def mixtures(self, head: nn.Module, code: Tensor, kind: Tensor, known: Tensor) -> Tensor:
         """Return the mixtures (B, own, 3, K) of a head's attributes given the class (B,) and the attributes (B, known) before."""
         given = torch.cat([code, self.kind(kind), self.said(known)], -1)
-        found: Tensor = head(given).unflatten(-1, (-1, 3, MIXTURES))
-        return found
+        parameters: Tensor = head(given).unflatten(-1, (-1, 3, MIXTURES))
+        return parameters
 
 
 def loss(net: Autoregressive, rooms: Outlines, things: Furniture, rng: torch.Generator) -> Tensor:

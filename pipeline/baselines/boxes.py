@@ -38,7 +38,7 @@ def boxes_of(metric: Tensor) -> Boxes:
     return Boxes(metric[..., :3], metric[..., 3:6].clamp_min(0) / 2, unit)
 
 
-def extended(boxes: Boxes, opens: Tensor) -> Boxes:
+def extend_front(boxes: Boxes, opens: Tensor) -> Boxes:
     """Return the paper's b': boxes that open (...) have a third more depth, added at the front: h becomes h + h / 3."""
     more = torch.where(opens, boxes.half[..., 1] / 3, torch.zeros_like(boxes.half[..., 1]))
     centre = torch.cat([boxes.centre[..., :2] - boxes.turn * more[..., None], boxes.centre[..., 2:]], -1)
@@ -77,16 +77,16 @@ def iou(a: Boxes, b: Boxes) -> Tensor:
     top = torch.minimum(a.centre[..., 2] + a.half[..., 2], b.centre[..., 2] + b.half[..., 2])
     low = torch.maximum(a.centre[..., 2] - a.half[..., 2], b.centre[..., 2] - b.half[..., 2])
     shared = shared_area(a, b) * (top - low).clamp_min(0)
-    found: Tensor = shared / (8 * (a.half.prod(-1) + b.half.prod(-1)) - shared).clamp_min(1e-9)
-    return found
+    ratio: Tensor = shared / (8 * (a.half.prod(-1) + b.half.prod(-1)) - shared).clamp_min(1e-9)
+    return ratio
 
 
 def near(a: Boxes, b: Boxes) -> Tensor:
     """Tell (...) of which pairs the footprints could meet at all: their circles do."""
     with torch.no_grad():
         reach = torch.linalg.vector_norm(a.half[..., :2], dim=-1) + torch.linalg.vector_norm(b.half[..., :2], dim=-1)
-        found: Tensor = torch.linalg.vector_norm(a.centre[..., :2] - b.centre[..., :2], dim=-1) < reach
-        return found
+        close: Tensor = torch.linalg.vector_norm(a.centre[..., :2] - b.centre[..., :2], dim=-1) < reach
+        return close
 
 
 def overlaps(boxes: Boxes, others: Boxes, pairs: Tensor) -> Tensor:
@@ -94,8 +94,8 @@ def overlaps(boxes: Boxes, others: Boxes, pairs: Tensor) -> Tensor:
     first = Boxes(*(part[:, :, None] for part in boxes))
     second = Boxes(*(part[:, None] for part in others))
     room, i, j = torch.nonzero(pairs & near(first, second), as_tuple=True)
-    found = iou(boxes.at(room, i), others.at(room, j))
-    return torch.zeros(len(pairs), dtype=found.dtype, device=found.device).index_add(0, room, found)
+    ious = iou(boxes.at(room, i), others.at(room, j))
+    return torch.zeros(len(pairs), dtype=ious.dtype, device=ious.device).index_add(0, room, ious)
 
 
 def mates(occupied: Tensor) -> Tensor:

@@ -40,8 +40,8 @@ class Denoiser(nn.Module):
         tokens = self.enter(x)
         for block in self.blocks:
             tokens = block(tokens, condition)
-        found: Tensor = self.leave(tokens)
-        return found
+        prediction: Tensor = self.leave(tokens)
+        return prediction
 
 
 def clean(raw: Tensor, x: Tensor, alpha: Tensor | float, sigma: Tensor | float) -> Tensor:
@@ -51,7 +51,7 @@ def clean(raw: Tensor, x: Tensor, alpha: Tensor | float, sigma: Tensor | float) 
 
 def loss(net: Denoiser, levels: Levels, rooms: Outlines, things: Furniture, rng: torch.Generator) -> Tensor:
     """Return DiffuScene's loss of a batch: denoising, and overlaps of what is expected."""
-    x0, t, noise, x = noised(net, levels, things, rng)
+    x0, t, noise, x = add_noise(net, levels, things, rng)
     raw = net(x, t, net.floor(rooms))
     total = denoising(net, levels, raw, x0, noise, t)
     if not net.settings.iou_weight:
@@ -61,7 +61,7 @@ def loss(net: Denoiser, levels: Levels, rooms: Outlines, things: Furniture, rng:
     return total + net.settings.iou_weight * (levels.alpha[t] ** 2 * upright_overlap(net.scaling, expected)).mean()
 
 
-def noised(net: Denoiser, levels: Levels, things: Furniture, rng: torch.Generator) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+def add_noise(net: Denoiser, levels: Levels, things: Furniture, rng: torch.Generator) -> tuple[Tensor, Tensor, Tensor, Tensor]:
     """Draw levels t (B,), uniform in 1..T, and noise; return x0, t, eps, x_t."""
     x0 = net.scaling.encode(things)
     t = torch.randint(1, net.settings.timesteps + 1, (len(x0),), generator=rng)

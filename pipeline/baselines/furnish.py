@@ -37,21 +37,21 @@ class Baselines:
 
     def furnish(self, name: str, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:
         """Furnish rooms as baseline `name` does. Numbers that are asked for (`n_target`) are heard by SceneFoundry's guidance alone."""
-        made: list[list[Proposal]] = []
+        proposals: list[list[Proposal]] = []
         for start in range(0, len(rooms), self.settings.sample_batch):
             part = rooms[start : start + self.settings.sample_batch]
             rng = torch.Generator().manual_seed(seeds.key(self.seed, "baseline-sample", start) % 2**63)
-            found = self._found(name, part, rng)
-            made += [self._proposals(found, i, room) for i, room in enumerate(part)]
-        return made
+            samples = self._sample(name, part, rng)
+            proposals += [self._proposals(samples, i, room) for i, room in enumerate(part)]
+        return proposals
 
-    def _found(self, name: str, rooms: Sequence[RoomContext], rng: torch.Generator) -> Found:
-        net, told = self.nets[BASELINES[name]].eval(), self._outlines(rooms)
+    def _sample(self, name: str, rooms: Sequence[RoomContext], rng: torch.Generator) -> Found:
+        net, floor_outlines = self.nets[BASELINES[name]].eval(), self._outlines(rooms)
         if isinstance(net, atiss.Autoregressive):
-            return atiss.sample(net, told, rng)
+            return atiss.sample(net, floor_outlines, rng)
         if not isinstance(net, Denoiser):
             raise TypeError(name)
-        return self.scaling.decode(diffuscene.sample(net, told, rng, self._guide(name, rooms)))
+        return self.scaling.decode(diffuscene.sample(net, floor_outlines, rng, self._guide(name, rooms)))
 
     def _guide(self, name: str, rooms: Sequence[RoomContext]) -> Guide | None:
         if name == "physcene":
@@ -64,13 +64,13 @@ class Baselines:
     def _outlines(self, rooms: Sequence[RoomContext]) -> Outlines:
         return outlines([floor_tokens(r) for r in rooms], [self.layouts.index(r.layout_type) for r in rooms], self.settings.points)
 
-    def _proposals(self, found: Found, room: int, context: RoomContext) -> list[Proposal]:
+    def _proposals(self, samples: Found, room: int, context: RoomContext) -> list[Proposal]:
         """Read one room: boxes stand on their bottoms, in the world. Baselines are compared as boxes, so no shape is asked for."""
-        there = found.occupied[room]
-        boxes = found.boxes[room, there].double().numpy()
+        there = samples.occupied[room]
+        boxes = samples.boxes[room, there].double().numpy()
         origin = np.array([*context.centre, context.elevation])
         size = np.maximum(boxes[:, 3:6], 0.02)
         place = boxes[:, :3] + origin - size * [0, 0, 0.5]
         yaw = np.arctan2(boxes[:, 7], boxes[:, 6])
-        names = [self.scaling.classes[k] for k in found.labels[room, there].tolist()]
+        names = [self.scaling.classes[k] for k in samples.labels[room, there].tolist()]
         return [Proposal(*row, np.zeros(LATENT, np.float32)) for row in zip(names, place, yaw.tolist(), size, strict=True)]

@@ -53,10 +53,10 @@ def open_job(root: Path, settings: BaselineSettings) -> Job:
     sets = sets_of(read, latents, {}, words.names, words.layout_types, settings.slots)
     if not sets.train:
         raise ContentError("data/tables has no furnished room of split train", "raise corpus.houses in params.yaml")
-    held = furniture(sets.train, len(words.names), settings.slots)
+    objects = furniture(sets.train, len(words.names), settings.slots)
     rooms = outlines([e.floor for e in sets.train], [e.layout for e in sets.train], settings.points)
     weights = torch.from_numpy(layout_weights(sets.train))
-    return Job(rooms, held, weights, Scaling.of(held, words.names), sets, read, words.layout_types, openable(words.names))
+    return Job(rooms, objects, weights, Scaling.of(objects, words.names), sets, read, words.layout_types, openable(words.names))
 
 
 def openable(classes: tuple[str, ...]) -> Tensor:
@@ -81,5 +81,5 @@ def trainer(name: str, job: Job, settings: BaselineSettings, seed: int) -> Train
 
 
 def _with_levels(loss: Any, levels: Levels, net: nn.Module, rooms: Outlines, things: Furniture, rng: torch.Generator) -> Tensor:
-    found: Tensor = loss(net, levels, rooms, things, rng=rng)
-    return found
+    losses: Tensor = loss(net, levels, rooms, things, rng=rng)
+    return losses

@@ -12,7 +12,7 @@ import torch
 
 from pipeline.diffusion.checkpoint import save_weights
 from pipeline.diffusion.context import Proposal, RoomContext
-from pipeline.diffusion.inventory import begun, fit
+from pipeline.diffusion.inventory import fit, initial_inventory
 from pipeline.diffusion.job import holdings, load, rooms_of
 from pipeline.diffusion.sampling import Sampler
 from pipeline.diffusion.settings import SampleSettings, TrainSettings
@@ -29,12 +29,12 @@ class Trained(NamedTuple):
     cost: dict[str, float]
 
 
-def trained(root: Path, folder: Path, settings: TrainSettings, sample: SampleSettings, seconds: float, seed: int) -> Trained:
+def train_model(root: Path, folder: Path, settings: TrainSettings, sample: SampleSettings, seconds: float, seed: int) -> Trained:
     """Train both nets from scratch for so many CPU seconds, reading not counted; the number of steps hangs on the machine."""
     sets, header = load(root, settings)
-    data, held = rooms_of(sets.train, header, CPU), holdings(sets.train, header)
+    data, contents = rooms_of(sets.train, header, CPU), holdings(sets.train, header)
     start = time.process_time()
-    inventory = fit(begun(held, len(header.layouts), header.inventory_width, seed), held, settings.inventory, seed)
+    inventory = fit(initial_inventory(contents, len(header.layouts), header.inventory_width, seed), contents, settings.inventory, seed)
     probe, before = Trainer(seed, header, settings, PROBE, 1, CPU), time.process_time()
     list(train(probe, data))
     per_step = (time.process_time() - before) / PROBE
@@ -52,15 +52,15 @@ def trained(root: Path, folder: Path, settings: TrainSettings, sample: SampleSet
     return Trained(Sampler.load(weights, sample, seed), cost)
 
 
-def unguided(sampler: Sampler, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:
+def sample_unguided(sampler: Sampler, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:
     """Furnish rooms without guidance; a told number is drawn exactly."""
-    return _furnished(replace(sampler.unguided(), settings=replace(sampler.unguided().settings, quantity=True)), rooms)
+    return _sample(replace(sampler.unguided(), settings=replace(sampler.unguided().settings, quantity=True)), rooms)
 
 
-def guided(sampler: Sampler, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:
+def sample_guided(sampler: Sampler, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:
     """Furnish rooms with the articulation guidance, which knows the paper's boxes alone: nothing is retrieved here."""
-    return _furnished(replace(sampler, settings=replace(sampler.settings, articulation="heuristic", snap_below=0)), rooms)
+    return _sample(replace(sampler, settings=replace(sampler.settings, articulation="heuristic", snap_below=0)), rooms)
 
 
-def _furnished(sampler: Sampler, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:
+def _sample(sampler: Sampler, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:
     return sampler.sample_rooms(rooms, [(k, 0, 0) for k in range(len(rooms))])

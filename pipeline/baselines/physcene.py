@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from pipeline.baselines import reachability
-from pipeline.baselines.boxes import Boxes, boxes_of, extended, iou, mates, overlaps
+from pipeline.baselines.boxes import Boxes, boxes_of, extend_front, iou, mates, overlaps
 from pipeline.baselines.rooms import BOX
 from pipeline.baselines.scaling import Scaling
 
@@ -41,28 +41,28 @@ class Guidance:
 
     def __call__(self, mean: Tensor, t: int, _variance: float) -> Tensor:
         """Return the shift of the mean (B, N, D) at level t."""
-        found = torch.zeros_like(mean)
+        shift = torch.zeros_like(mean)
         if t >= self.below:
-            return found
+            return shift
         boxes = mean[..., :BOX].detach().clone().requires_grad_()
         occupied = self.scaling.occupied(mean)
         with torch.enable_grad():
             total = self.penalty(self.scaling.metric(boxes), occupied, self.opens[self.scaling.labels(mean)] & occupied)
             (slope,) = torch.autograd.grad(total.sum(), boxes)
         moves = list(MOVES)
-        found[..., moves] = -slope[..., moves].clamp(-CLIP, CLIP)
-        return found
+        shift[..., moves] = -slope[..., moves].clamp(-CLIP, CLIP)
+        return shift
 
     def penalty(self, metric: Tensor, occupied: Tensor, opens: Tensor) -> Tensor:
         """Return L (B,) of boxes (B, N, 8) [m]."""
         boxes = boxes_of(metric)
-        held = occupied.sum(1).clamp_min(1)
+        count = occupied.sum(1).clamp_min(1)
         opened = Boxes(  # what opens is a constant, and what it meets is pushed
-            *(torch.where(opens[..., None], wide.detach(), own) for wide, own in zip(extended(boxes, opens), boxes, strict=True))
+            *(torch.where(opens[..., None], wide.detach(), own) for wide, own in zip(extend_front(boxes, opens), boxes, strict=True))
         )
-        collision = overlaps(opened, boxes, mates(occupied)) / held
-        outside = self.outside(boxes, occupied) / held
-        return COLLISION * collision + ROOM * outside + REACH * self.blocked(boxes, occupied, opens) / held
+        collision = overlaps(opened, boxes, mates(occupied)) / count
+        outside = self.outside(boxes, occupied) / count
+        return COLLISION * collision + ROOM * outside + REACH * self.blocked(boxes, occupied, opens) / count
 
     def outside(self, boxes: Boxes, occupied: Tensor) -> Tensor:
         """Return the sum (B,) of IoU3D of objects with what lies beyond each wall."""
@@ -76,7 +76,7 @@ class Guidance:
 
     def blocked(self, boxes: Boxes, occupied: Tensor, opens: Tensor) -> Tensor:
         """Return the sum (B,) of IoU3D of low objects with robots on ways that furniture stands on."""
-        found = []
+        totals = []
         for room, polygon in enumerate(self.polygons):
             own = boxes.at(torch.tensor(room), occupied[room])
             centre, half, axis = (part.detach().double().numpy() for part in own)
@@ -89,8 +89,8 @@ class Guidance:
             wide = torch.full_like(at, reachability.WIDTH / 2)
             robot = Boxes(torch.cat([at, height], -1), torch.cat([wide, height], -1), torch.tensor([1.0, 0.0]).expand_as(at))
             pairs = iou(low.at(torch.arange(len(low.centre))[:, None]), robot.at(torch.arange(len(at))[None]))
-            found.append(pairs.sum())
-        return torch.stack(found)
+            totals.append(pairs.sum())
+        return torch.stack(totals)
 
 
 def beyond(polygon: Floats) -> Floats:

@@ -59,11 +59,11 @@ def robots(polygon: Floats, boxes: Boxes) -> Floats:
     goals = [middle_of(labels == ranked[1])] if count > 1 and area[ranked[1] - 1] > SECOND else []
     goals += [tuple(cell) for cell in raster.index(handles(low)).tolist()]
     heat = ndimage.gaussian_filter(filled.astype(float), WIDTH / CELL)
-    found = []
+    crossings = []
     for way in ways(np.where(stand, BASE + heat, BASE + 1.0), start, goals):
         through = way[filled[way[:, 0], way[:, 1]]]
-        found.append(through[:: max(1, round(WIDTH / CELL))])
-    cells = np.concatenate([*found, np.zeros((0, 2), np.int64)])
+        crossings.append(through[:: max(1, round(WIDTH / CELL))])
+    cells = np.concatenate([*crossings, np.zeros((0, 2), np.int64)])
     return np.asarray(raster.origin + (cells + 0.5) * CELL, float)
 
 
@@ -105,10 +105,10 @@ def ways(cost: Floats, start: tuple[int, int], goals: list[tuple[int, int]]) -> 
         price.append((np.hypot(dx, dy) * (cost[a] + cost[b]) / 2).ravel())
     graph = sparse.coo_array((np.concatenate(price), (np.concatenate(one), np.concatenate(other))), shape=(cost.size, cost.size)).tocsr()
     _, before = csgraph.dijkstra(graph, directed=False, indices=int(cells[start]), return_predecessors=True)
-    found = []
+    paths = []
     for goal in goals:
         way = [int(cells[goal])]
         while before[way[-1]] >= 0:
             way.append(int(before[way[-1]]))
-        found.append(np.stack(np.divmod(np.array(way, np.int64), wide), 1))
-    return found
+        paths.append(np.stack(np.divmod(np.array(way, np.int64), wide), 1))
+    return paths

@@ -85,12 +85,12 @@ def outlines(floors: Sequence[Floor], layouts: Sequence[int], count: int) -> Out
 
 def furniture(examples: Sequence[Example], classes: int, slots: int) -> Furniture:
     """Pad the objects of examples to `slots`; `classes` is C."""
-    held = torch.full((len(examples), slots), classes)
+    labels = torch.full((len(examples), slots), classes)
     boxes, latents = torch.zeros(len(examples), slots, BOX), torch.zeros(len(examples), slots, LATENT)
     for i, example in enumerate(examples):
         n = len(example.classes)
-        held[i, :n] = torch.from_numpy(example.classes)
+        labels[i, :n] = torch.from_numpy(example.classes)
         own = torch.from_numpy(example.continuous).float()
         boxes[i, :n], latents[i, :n] = own[:, :BOX], own[:, BOX : BOX + LATENT]
         boxes[i, :n, 2] += own[:, 5] / 2  # examples stand on their bottoms, the peers' boxes hang on their centres
-    return Furniture(held, boxes, latents)
+    return Furniture(labels, boxes, latents)

@@ -39,9 +39,9 @@ class Scaling:
     def of(cls, rooms: Furniture, classes: tuple[str, ...]) -> Scaling:
         """Measure the training rooms."""
         there = rooms.classes < len(classes)
-        held, shapes = rooms.boxes[there], rooms.latents[there]
-        low, high = held[:, :6].amin(0), held[:, :6].amax(0)
-        reach = held[:, :2].abs().amax()
+        boxes, shapes = rooms.boxes[there], rooms.latents[there]
+        low, high = boxes[:, :6].amin(0), boxes[:, :6].amax(0)
+        reach = boxes[:, :2].abs().amax()
         low[:2], high[:2] = -reach, reach
         low = low.minimum(high - 1e-3)
         latent = float(shapes.min()), float(max(shapes.max(), shapes.min() + 1e-3))

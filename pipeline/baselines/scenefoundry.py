@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 import torch
 from torch import Tensor
 
-from pipeline.baselines.boxes import boxes_of, extended, mates, overlaps
-from pipeline.baselines.diffuscene import Denoiser, clean, denoising, noised
+from pipeline.baselines.boxes import boxes_of, extend_front, mates, overlaps
+from pipeline.baselines.diffuscene import Denoiser, add_noise, clean, denoising
 from pipeline.baselines.rooms import BOX, Furniture, Outlines
 from pipeline.baselines.scaling import Scaling
 from pipeline.baselines.schedule import Levels
@@ -47,7 +47,7 @@ def articulated_collision(metric: Tensor, occupied: Tensor, opens: Tensor) -> Te
     `metric` (B, N, 8) boxes in metres; `occupied` and `opens` (B, N) say which slots hold something, and something articulated.
     """
     boxes = boxes_of(metric)
-    return overlaps(extended(boxes, opens), boxes, mates(occupied))
+    return overlaps(extend_front(boxes, opens), boxes, mates(occupied))
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,18 +62,18 @@ class Constraints:
     def descent(self, x: Tensor) -> Tensor:
         """Return -lambda grad phi (B, N, D) at slots x."""
         s, at = self.settings, x.detach()
-        found = torch.zeros_like(at)
+        direction = torch.zeros_like(at)
         if bool((self.counts >= 0).any()):
             empty = at[..., self.scaling.empty].requires_grad_()
             with torch.enable_grad():
                 (slope,) = torch.autograd.grad(quantity(empty, self.counts).sum(), empty)
-            found[..., self.scaling.empty] = -s.quantity_scale * slope
+            direction[..., self.scaling.empty] = -s.quantity_scale * slope
         boxes = at[..., :BOX].clone().requires_grad_()
         with torch.enable_grad():
             phi = articulated_collision(self.scaling.metric(boxes), self.scaling.occupied(at), self.opens[self.scaling.labels(at)])
             (slope,) = torch.autograd.grad(phi.sum(), boxes)
-        found[..., :BOX] = -s.articulation_scale * slope
-        return found
+        direction[..., :BOX] = -s.articulation_scale * slope
+        return direction
 
     def __call__(self, mean: Tensor, _t: int, variance: float) -> Tensor:
         """Return what one step of algorithm 1 adds to the mean: -lambda Sigma grad phi, taken at the mean."""
@@ -86,7 +86,7 @@ def loss(net: Denoiser, levels: Levels, rooms: Outlines, things: Furniture, open
     The number asked for is the room's own. The guided noise is larger where the descent is: x0 = (x_t - sigma eps) / alpha
     moves along -sigma / alpha times it, so eps minus lambda Sigma g means that x0 moves along g, down the penalty.
     """
-    _, t, noise, x = noised(net, levels, things, rng)
+    _, t, noise, x = add_noise(net, levels, things, rng)
     raw = net(x, t, net.floor(rooms))
     alpha, sigma = levels.alpha[t][:, None, None], levels.sigma[t][:, None, None]
     expected = clean(raw.detach(), x, alpha, sigma).clamp(-1, 1)

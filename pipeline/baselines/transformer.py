@@ -39,9 +39,9 @@ class Attention(nn.Module):
         """Return what tokens (B, N, d) see; `mask` (B, N) says which tokens there are to be seen."""
         query, key, value = self.ask(x).unflatten(-1, (3, self.heads, -1)).permute(2, 0, 3, 1, 4).unbind(0)
         shown = None if mask is None else mask[:, None, None, :]
-        seen = nn.functional.scaled_dot_product_attention(query, key, value, attn_mask=shown)
-        found: Tensor = self.out(seen.transpose(1, 2).flatten(2))
-        return found
+        context = nn.functional.scaled_dot_product_attention(query, key, value, attn_mask=shown)
+        tokens: Tensor = self.out(context.transpose(1, 2).flatten(2))
+        return tokens
 
 
 class Block(nn.Module):

@@ -89,13 +89,13 @@ def _identity() -> Json:
 def _add_meshes(
     house: House, dialect: Dialect, ids: Ids, materials: dict[str, Json], rooms: list[Json], counter: dict[str, int]
 ) -> list[tuple[Json, shell.Surface]]:
-    made = []
+    meshes = []
     for surface in shell.surfaces(house.plan):
         name = surface.type if surface.type in materials else "Door" if surface.type in {"Hole", "Pocket"} else "WallInner"
         record = mesh_record(surface, ids.uid("0"), materials[name]["uid"], dialect)
-        made.append((record, surface))
+        meshes.append((record, surface))
         _child(rooms[surface.room], "mesh", record["uid"], counter)
-    return made
+    return meshes
 
 
 def mesh_record(surface: shell.Surface, uid: str, material: str, dialect: Dialect) -> Json:

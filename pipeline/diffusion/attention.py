@@ -26,8 +26,8 @@ class Surroundings(NamedTuple):
 
 def split_heads(x: Tensor, parts: int, heads: int) -> tuple[Tensor, ...]:
     """Split (B, N, parts * d) into `parts` tensors (B, H, N, d / H)."""
-    found: tuple[Tensor, ...] = x.unflatten(-1, (parts, heads, -1)).permute(2, 0, 3, 1, 4).contiguous().unbind(0)
-    return found
+    tensors: tuple[Tensor, ...] = x.unflatten(-1, (parts, heads, -1)).permute(2, 0, 3, 1, 4).contiguous().unbind(0)
+    return tensors
 
 
 def weights(query: Tensor, key: Tensor, bias: Tensor) -> Tensor:
@@ -36,13 +36,13 @@ def weights(query: Tensor, key: Tensor, bias: Tensor) -> Tensor:
     return scores.view_as(bias).softmax(-1)
 
 
-def gathered(weight: Tensor, value: Tensor, relation: Tensor) -> Tensor:
+def attend(weight: Tensor, value: Tensor, relation: Tensor) -> Tensor:
     """Return what was seen (B, N, d + H R): values (B, H, M, c) and relations (B, N, M, R), each under the weights of each head."""
-    seen = (weight @ value).transpose(1, 2).flatten(2)
-    return torch.cat([seen, (weight.transpose(1, 2) @ relation).flatten(2)], -1)
+    context = (weight @ value).transpose(1, 2).flatten(2)
+    return torch.cat([context, (weight.transpose(1, 2) @ relation).flatten(2)], -1)
 
 
-def pointed(weight: Tensor, directions: Tensor, amount: Tensor, moves: int) -> Tensor:
+def sum_directions(weight: Tensor, directions: Tensor, amount: Tensor, moves: int) -> Tensor:
     """Choose pairs by attention (B, H, N, M) and sum the directions (B, N, M, P, 2) that they offer, each with its `amount` (B, N, H P).
 
     Returns the sums (B, N, 2, 2) of the first `moves` directions, and of the others.
@@ -69,15 +69,15 @@ class Block(nn.Module):
         self, x: Tensor, others: Surroundings, floor: Surroundings, keys: tuple[Tensor, Tensor], modulation: Sequence[Tensor]
     ) -> Tensor:
         """Return the new tokens (B, N, d). `keys` of the floor and their values (B, H, M, c); `modulation`: nine times (B, 1, d)."""
-        query, key, value = split_heads(self.look(modulated(x, *modulation[:2])), 3, self.heads)
-        seen = gathered(weights(query, key, others.bias), value, others.relation)
-        x = torch.addcmul(x, modulation[2], self.objects(seen))
-        (query,) = split_heads(self.search(modulated(x, *modulation[3:5])), 1, self.heads)
-        seen = gathered(weights(query, keys[0], floor.bias), keys[1], floor.relation)
-        x = torch.addcmul(x, modulation[5], self.floor(seen))
-        return torch.addcmul(x, modulation[8], self.think(modulated(x, *modulation[6:8])))
+        query, key, value = split_heads(self.look(modulate(x, *modulation[:2])), 3, self.heads)
+        context = attend(weights(query, key, others.bias), value, others.relation)
+        x = torch.addcmul(x, modulation[2], self.objects(context))
+        (query,) = split_heads(self.search(modulate(x, *modulation[3:5])), 1, self.heads)
+        context = attend(weights(query, keys[0], floor.bias), keys[1], floor.relation)
+        x = torch.addcmul(x, modulation[5], self.floor(context))
+        return torch.addcmul(x, modulation[8], self.think(modulate(x, *modulation[6:8])))
 
 
-def modulated(x: Tensor, shift: Tensor, scale: Tensor) -> Tensor:
+def modulate(x: Tensor, shift: Tensor, scale: Tensor) -> Tensor:
     """Layer norm, then the scale and shift that the condition sets."""
     return torch.addcmul(shift, nn.functional.layer_norm(x, x.shape[-1:]), scale)

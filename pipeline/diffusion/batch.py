@@ -82,9 +82,9 @@ class Objects:
         return Objects(self.classes[:, :slots], self.channels[:, :slots], self.sweeps[:, :slots])
 
 
-def bucket_of(held: NDArray[np.int64]) -> NDArray[np.int64]:
+def bucket_of(counts: NDArray[np.int64]) -> NDArray[np.int64]:
     """Return how many slots rooms of so many objects are padded to."""
-    return np.array(BUCKETS)[np.searchsorted(BUCKETS, held)]
+    return np.array(BUCKETS)[np.searchsorted(BUCKETS, counts)]
 
 
 def room_batch(floors: Sequence[Floor], layouts: Sequence[int], heights: Sequence[float]) -> RoomBatch:
@@ -96,7 +96,7 @@ def room_batch(floors: Sequence[Floor], layouts: Sequence[int], heights: Sequenc
     return RoomBatch(ends, normal, kind, hinge, sill, mask, *said)
 
 
-def stacked(examples: Sequence[Example], codec: Codec, slots: int) -> tuple[RoomBatch, Objects]:
+def collate(examples: Sequence[Example], codec: Codec, slots: int) -> tuple[RoomBatch, Objects]:
     """Pad examples to `slots` and stack them."""
     classes = torch.full((len(examples), slots), codec.classes)
     channels = torch.zeros(len(examples), slots, CHANNELS)

@@ -80,7 +80,7 @@ def load_weights(path: Path) -> tuple[SetTransformer, Inventory, Header]:
 
 def save_checkpoint(path: Path, digest: str, step: int, groups: dict[str, dict[str, Tensor]]) -> None:
     """Write a checkpoint: named groups of tensors (weights, averages, moments), the step, and the digest of what it is of."""
-    tensors = {f"{group}/{k}": v.detach().cpu().contiguous() for group, held in groups.items() for k, v in held.items()}
+    tensors = {f"{group}/{k}": v.detach().cpu().contiguous() for group, state in groups.items() for k, v in state.items()}
     header = canonical({"format": FORMAT, "digest": digest, "step": step}).decode()
     write_bytes(path, save(dict(sorted(tensors.items())), {"checkpoint": header}))
 

@@ -38,16 +38,16 @@ class Normalisation:
     def of(cls, continuous: NDArray[np.float64], labels: NDArray[np.int64], classes: tuple[str, ...]) -> Normalisation:
         """Measure the constants on rows (n, 40) of metres, cos, sin and raw latents, and their class indices (n,)."""
         count, every, spread = len(classes), continuous.mean(0), continuous.var(0)
-        held = np.bincount(labels, minlength=count).astype(float)[:, None]
+        per_class = np.bincount(labels, minlength=count).astype(float)[:, None]
         total, squares = np.zeros((count, CHANNELS)), np.zeros((count, CHANNELS))
         np.add.at(total, labels, continuous)
-        mean = (total + PRIOR * every) / (held + PRIOR)
+        mean = (total + PRIOR * every) / (per_class + PRIOR)
         np.add.at(squares, labels, (continuous - mean[labels]) ** 2)
-        scale = np.sqrt((squares + np.minimum(PRIOR, 1.0) * spread / 4) / (held + np.minimum(PRIOR, 1.0)))
+        scale = np.sqrt((squares + np.minimum(PRIOR, 1.0) * spread / 4) / (per_class + np.minimum(PRIOR, 1.0)))
         scale = np.maximum(scale, LEAST_SPREAD)
         mean[:, :2], mean[:, YAW], scale[:, YAW] = 0.0, 0.0, 1.0
         scale[:, :2] = np.sqrt((continuous[:, :2] ** 2).mean())
-        return cls(_rounded(mean), _rounded(scale), classes)
+        return cls(_round_table(mean), _round_table(scale), classes)
 
     @classmethod
     def of_json(cls, value: dict[str, Any]) -> Normalisation:
@@ -77,8 +77,8 @@ class Codec:
 
     def proposals(self, x0: Tensor, classes: Tensor, context: RoomContext) -> list[Proposal]:
         """Decode one room, x0 (N, 40) and `classes` (N,), into its objects, in slot order; class C is padding."""
-        held = classes < self.classes
-        x0, classes, centre = x0[held], classes[held], context.centre
+        occupied = classes < self.classes
+        x0, classes, centre = x0[occupied], classes[occupied], context.centre
         values = self.metric(x0, classes).double().cpu().numpy()
         return [
             Proposal(
@@ -105,5 +105,5 @@ def class_indices(names: Sequence[str], classes: tuple[str, ...]) -> NDArray[np.
     return np.array([order[name] for name in names], np.int64)
 
 
-def _rounded(table: NDArray[np.float64]) -> tuple[tuple[float, ...], ...]:
+def _round_table(table: NDArray[np.float64]) -> tuple[tuple[float, ...], ...]:
     return tuple(tuple(round(float(v), 6) for v in row) for row in table)

@@ -137,45 +137,45 @@ def articulated_collision(boxes: Boxes, occupied: Tensor, sweeps: Tensor | None,
     batch, slots = occupied.shape
     body, (doors, there) = bodies(boxes), doorways(rooms)
     first_door, first_sweep = batch * slots, batch * (slots + there.shape[1])
-    things, mates = [_packed(body), _packed(doors)], occupied[:, :, None] & occupied[:, None]
+    things, mates = [_to_rows(body), _to_rows(doors)], occupied[:, :, None] & occupied[:, None]
     own, door = _numbers(occupied, 0), _numbers(there, first_door)
     pairs = [
-        _listed(mates.triu(1), own[:, :, None], own[:, None]),
-        _listed(occupied[:, :, None] & there[:, None], own[:, :, None], door[:, None]),
+        _select_pairs(mates.triu(1), own[:, :, None], own[:, None]),
+        _select_pairs(occupied[:, :, None] & there[:, None], own[:, :, None], door[:, None]),
     ]
     if sweeps is not None:
         moving, real = swept(body, sweeps)
         real = real & occupied[:, :, None]
-        things.append(_packed(moving))
+        things.append(_to_rows(moving))
         swept_by = _numbers(real, first_sweep)[..., None]
         others = mates & ~torch.eye(slots, dtype=torch.bool, device=occupied.device)
         pairs += [
-            _listed(real[..., None] & others[:, :, None], swept_by, own[:, None, None]),
-            _listed(real[..., None] & there[:, None, None], swept_by, door[:, None, None]),
+            _select_pairs(real[..., None] & others[:, :, None], swept_by, own[:, None, None]),
+            _select_pairs(real[..., None] & there[:, None, None], swept_by, door[:, None, None]),
         ]
     listed = torch.cat(things)
     left, right, owner = (torch.cat(parts) for parts in zip(*pairs, strict=True))
-    a, b = _unpacked(listed.detach()[left]), _unpacked(listed.detach()[right])
+    a, b = _from_rows(listed.detach()[left]), _from_rows(listed.detach()[right])
     reach = (a.half**2).sum(-1).sqrt() + (b.half**2).sum(-1).sqrt()
     meet = torch.nonzero(((b.centre - a.centre) ** 2).sum(-1) < reach**2)[:, 0]
-    depth = (overlap(_unpacked(listed[left[meet]]), _unpacked(listed[right[meet]])) - slack).clamp_min(0)
+    depth = (overlap(_from_rows(listed[left[meet]]), _from_rows(listed[right[meet]])) - slack).clamp_min(0)
     phi = torch.zeros_like(body.low[:, 0]).index_add(0, owner[meet], depth**2 / 2)
     standing = torch.nonzero(occupied.flatten())[:, 0]
-    phi = phi.index_add(0, standing // slots, outside(_unpacked(listed[standing]), rooms, standing // slots) / 2)
+    phi = phi.index_add(0, standing // slots, outside(_from_rows(listed[standing]), rooms, standing // slots) / 2)
     if sweeps is None:
         return phi
     moved = torch.nonzero(real.flatten())[:, 0]
     room = moved // real[0].numel()
-    return phi.index_add(0, room, outside(_unpacked(listed[first_sweep + moved]), rooms, room) / 4)
+    return phi.index_add(0, room, outside(_from_rows(listed[first_sweep + moved]), rooms, room) / 4)
 
 
-def _packed(prisms: Prisms) -> Tensor:
+def _to_rows(prisms: Prisms) -> Tensor:
     """Prisms (..., ) as the rows (n, 8) of a list."""
     return torch.cat([prisms.centre, prisms.half, prisms.axis, prisms.low[..., None], prisms.high[..., None]], -1).flatten(0, -2)
 
 
-def _unpacked(rows: Tensor) -> Prisms:
-    """Undo `_packed`."""
+def _from_rows(rows: Tensor) -> Prisms:
+    """Undo `_to_rows`."""
     centre, half, axis, low, high = rows.split([2, 2, 2, 1, 1], -1)
     return Prisms(centre, half, axis, low[..., 0], high[..., 0])
 
@@ -185,6 +185,6 @@ def _numbers(like: Tensor, first: int) -> Tensor:
     return torch.arange(first, first + like.numel(), device=like.device).view_as(like)
 
 
-def _listed(chosen: Tensor, left: Tensor, right: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+def _select_pairs(chosen: Tensor, left: Tensor, right: Tensor) -> tuple[Tensor, Tensor, Tensor]:
     """Return the places of both things of each chosen pair, and its room; `chosen` (B, ...), to whose shape the places broadcast."""
     return left.expand_as(chosen)[chosen], right.expand_as(chosen)[chosen], torch.nonzero(chosen)[:, 0]

@@ -33,7 +33,7 @@ class Floor:
 
 def floor_tokens(context: RoomContext) -> Floor:
     """Return the tokens of a room. The origin is the centre of the polygon's box, the axes are the world's."""
-    polygon = simplified(np.asarray(context.polygon, float), WALLS) - context.centre
+    polygon = simplify_polygon(np.asarray(context.polygon, float), WALLS) - context.centre
     ends, normal = np.zeros((TOKENS, 2, 2), np.float32), np.zeros((TOKENS, 2), np.float32)
     kind, hinge, sill, mask = (
         np.zeros(TOKENS, np.int64),
@@ -81,7 +81,7 @@ def on_wall(
     return placed[::-1] if swapped else placed, normal, swapped
 
 
-def simplified(polygon: NDArray[np.float64], most: int) -> NDArray[np.float64]:
+def simplify_polygon(polygon: NDArray[np.float64], most: int) -> NDArray[np.float64]:
     """Drop the corners that enclose the least area until at most `most` are left (Visvalingam and Whyatt, 1993)."""
     while len(polygon) > most:
         before, after = np.roll(polygon, 1, 0) - polygon, np.roll(polygon, -1, 0) - polygon

@@ -52,20 +52,20 @@ class Inventory(nn.Module):
 
     def logits(self, about: Tensor, before: Tensor, left: Tensor, layout: Tensor, which: slice) -> Tensor:
         """Return logits (B, K, MOST + 1) of the classes `which`; `before` (B, K, d) sums what earlier counts say, `left` (B, K) is what a told number leaves."""
-        told = (left >= 0).float()
+        known = (left >= 0).float()
         rest = left.clamp(0, 2 * MOST).float()
-        still = self.left(torch.stack([told, told * rest / 8, told * (rest == 0)], -1))
-        seen = nn.functional.layer_norm(about[:, None] + before + self.asked.weight[which] + still, about.shape[-1:])
-        answer: Tensor = self.out(self.think(seen)) + self.own[which, layout].transpose(0, 1)
+        still = self.left(torch.stack([known, known * rest / 8, known * (rest == 0)], -1))
+        hidden = nn.functional.layer_norm(about[:, None] + before + self.asked.weight[which] + still, about.shape[-1:])
+        answer: Tensor = self.out(self.think(hidden)) + self.own[which, layout].transpose(0, 1)
         return answer
 
-    def forward(self, features: Tensor, layout: Tensor, counts: Tensor, told: Tensor) -> Tensor:
-        """Return the log-likelihood (B,) of counts (B, C); `told` (B,) says whose total is told."""
+    def forward(self, features: Tensor, layout: Tensor, counts: Tensor, known: Tensor) -> Tensor:
+        """Return the log-likelihood (B,) of counts (B, C); `known` (B,) says whose total is told."""
         clipped = counts.clamp_max(MOST)
         says = self.held[torch.arange(self.classes), clipped]
         before = says.cumsum(1) - says
         passed = counts.cumsum(1) - counts
-        left = torch.where(told[:, None], counts.sum(1, keepdim=True) - passed, torch.full_like(passed, UNTOLD))
+        left = torch.where(known[:, None], counts.sum(1, keepdim=True) - passed, torch.full_like(passed, UNTOLD))
         scores = self.logits(self.about(features, layout), before, left, layout, slice(None)).log_softmax(-1)
         return scores.gather(-1, clipped[..., None])[..., 0].sum(1)
 
@@ -144,12 +144,12 @@ class Holdings(NamedTuple):
     counts: NDArray[np.int64]
 
 
-def begun(held: Holdings, types: int, width: int, seed: int) -> Inventory:
+def initial_inventory(contents: Holdings, types: int, width: int, seed: int) -> Inventory:
     """Return an inventory model that knows how often each room type holds how many of a class, and nothing else yet."""
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(seeds.key(seed, "inventory-init") % 2**63)
-        net = Inventory(held.counts.shape[1], types, width)
-    counts, layouts = torch.from_numpy(held.counts), torch.from_numpy(held.layouts)
+        net = Inventory(contents.counts.shape[1], types, width)
+    counts, layouts = torch.from_numpy(contents.counts), torch.from_numpy(contents.layouts)
     with torch.no_grad():
         for k in range(types):
             rooms = counts[layouts == k].clamp_max(MOST)
@@ -158,17 +158,17 @@ def begun(held: Holdings, types: int, width: int, seed: int) -> Inventory:
     return net
 
 
-def fit(net: Inventory, held: Holdings, settings: InventorySettings, seed: int) -> Inventory:
+def fit(net: Inventory, contents: Holdings, settings: InventorySettings, seed: int) -> Inventory:
     """Train an inventory model in place on what rooms hold: AdamW, a cosine to zero. Every draw is keyed by `seed`."""
     rng = torch.Generator().manual_seed(seeds.key(seed, "inventory") % 2**63)
-    features, layouts, counts = (torch.from_numpy(part) for part in held)
+    features, layouts, counts = (torch.from_numpy(part) for part in contents)
     optimiser = torch.optim.AdamW(net.parameters(), weight_decay=1e-3)
     for step in range(settings.steps):
         for group in optimiser.param_groups:
             group["lr"] = settings.learning_rate * min(1.0, (step + 1) / 50) * 0.5 * (1 + float(np.cos(np.pi * step / settings.steps)))
         rows = torch.randint(len(features), (min(settings.batch, len(features)),), generator=rng)
-        told = torch.rand(len(rows), generator=rng) < settings.count_known
-        loss = -net(features[rows], layouts[rows], counts[rows], told).mean()
+        known = torch.rand(len(rows), generator=rng) < settings.count_known
+        loss = -net(features[rows], layouts[rows], counts[rows], known).mean()
         optimiser.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(net.parameters(), 1.0)
@@ -183,24 +183,24 @@ def draw_inventories(
     """Draw one inventory (C,) for each of B rooms; `uniform` (B, DRAWS, C) in [0, 1) is all the randomness.
 
     The first draw is free. Where it lacks one thing of a kind, the room is drawn again with the number of the first draw told:
-    rooms then hold what they need and no more than rooms of their type do. `amended` mends what no draw meets.
+    rooms then hold what they need and no more than rooms of their type do. `repair_counts` mends what no draw meets.
     """
     about = net.about(features, layout)
-    found = list(_drawn(net, about, layout, [Ask(None, most=ask.most) for ask in asks], uniform[:, :1])[:, 0])
-    met = [bool(ask.met_by(mine[None])[0]) for ask, mine in zip(asks, found, strict=True)]
-    lacking = [i for i, mine in enumerate(found) if not (met[i] and mine.any())]
+    inventories = list(_draw_counts(net, about, layout, [Ask(None, most=ask.most) for ask in asks], uniform[:, :1])[:, 0])
+    met = [bool(ask.met_by(mine[None])[0]) for ask, mine in zip(asks, inventories, strict=True)]
+    lacking = [i for i, mine in enumerate(inventories) if not (met[i] and mine.any())]
     if not lacking:
-        return found
-    asks = [asks[i] if met[i] else asks[i].sized(int(found[i].sum())) for i in lacking]
-    for i, ask, mine in zip(lacking, asks, _drawn(net, about[lacking], layout[lacking], asks, uniform[lacking, 1:]), strict=True):
+        return inventories
+    asks = [asks[i] if met[i] else asks[i].sized(int(inventories[i].sum())) for i in lacking]
+    for i, ask, mine in zip(lacking, asks, _draw_counts(net, about[lacking], layout[lacking], asks, uniform[lacking, 1:]), strict=True):
         good, apart = (np.flatnonzero(a.met_by(mine) & (mine.sum(1) > 0)) for a in (ask, replace(ask, together=())))
         good = good if len(good) else apart
         usual: NDArray[np.float64] = net.own[:, layout[i]].softmax(-1).double().numpy() @ np.arange(MOST + 1, dtype=float)
-        found[i] = mine[good[0]] if len(good) else amended(mine[-1], ask, usual)
-    return found
+        inventories[i] = mine[good[0]] if len(good) else repair_counts(mine[-1], ask, usual)
+    return inventories
 
 
-def _drawn(net: Inventory, about: Tensor, layout: Tensor, asks: Sequence[Ask], uniform: NDArray[np.float64]) -> NDArray[np.int64]:
+def _draw_counts(net: Inventory, about: Tensor, layout: Tensor, asks: Sequence[Ask], uniform: NDArray[np.float64]) -> NDArray[np.int64]:
     """Draw inventories (B, D, C) from `uniform` (B, D, C).
 
     The later half of a room's draws are held to what is asked while they are made: a bounded group is cut at its most and
@@ -248,7 +248,7 @@ def _limits(asks: Sequence[Ask], counts: NDArray[np.int64], c: int, draws: int) 
     return least, most
 
 
-def amended(counts: NDArray[np.int64], ask: Ask, usual: NDArray[np.float64]) -> NDArray[np.int64]:
+def repair_counts(counts: NDArray[np.int64], ask: Ask, usual: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return counts (C,) changed one object at a time until they meet what is asked; `usual` (C,) is how many of each a room of the type holds.
 
     What is added is what rooms of the type hold most of beyond what is there; what goes is what there is most of beyond that.

@@ -12,10 +12,10 @@ import numpy as np
 import torch
 
 from pipeline import tables, taxonomy
-from pipeline.diffusion.batch import stacked
+from pipeline.diffusion.batch import collate
 from pipeline.diffusion.checkpoint import Header, load_checkpoint, load_weights
 from pipeline.diffusion.codec import Codec, Normalisation
-from pipeline.diffusion.inventory import Holdings, Inventory, begun, counts_of, room_features
+from pipeline.diffusion.inventory import Holdings, Inventory, counts_of, initial_inventory, room_features
 from pipeline.diffusion.process_group import ProcessGroup
 from pipeline.diffusion.rooms import Example, Sets, layout_weights, sets_of, stacked_classes, stacked_rows, sweeps_by_asset
 from pipeline.diffusion.set_transformer import SetTransformer
@@ -55,24 +55,24 @@ def open_job(root: Path, settings: TrainSettings, seed: int, group: ProcessGroup
     sets, header = load(root, settings)
     start: SetTransformer | None = None
     if settings.start == "released":
-        start, inventory, header = released(root / RELEASED, header)
+        start, inventory, header = load_released(root / RELEASED, header)
         tune = settings.tune
         tuned = replace(settings.inventory, steps=tune.inventory_steps, learning_rate=tune.learning_rate)
         settings = replace(settings, steps=tune.steps, epochs=0, learning_rate=tune.learning_rate, inventory=tuned)
     else:
-        inventory = begun(holdings(sets.train, header), len(header.layouts), settings.inventory.width, seed)
+        inventory = initial_inventory(holdings(sets.train, header), len(header.layouts), settings.inventory.width, seed)
     per_epoch = max(1, sum(len(e.classes) for e in sets.train) // settings.objects)
     total = settings.epochs * per_epoch if settings.epochs else settings.steps
     trainer = Trainer(seed, header, settings, total, per_epoch, device, group, start)
     key = digest([asdict(settings), asdict(header), seed, threads, group.size, device.type, inputs(root, settings)])
-    found = load_checkpoint(root / CHECKPOINT, key)
-    if found:
-        trainer.restore(*found)
+    checkpoint = load_checkpoint(root / CHECKPOINT, key)
+    if checkpoint:
+        trainer.restore(*checkpoint)
     data, checked = (rooms_of(part, header, device) for part in (sets.train, sets.val or sets.train[:64]))
     return Job(trainer, data, checked, sets, header, inventory, key)
 
 
-def released(path: Path, wanted: Header) -> tuple[SetTransformer, Inventory, Header]:
+def load_released(path: Path, wanted: Header) -> tuple[SetTransformer, Inventory, Header]:
     """Read the released weights. Raises ContentError when their vocabulary or shape is not that of the data and params.yaml.
 
     Their normalisation is kept: with another the same numbers would mean other rooms.
@@ -94,9 +94,9 @@ def released(path: Path, wanted: Header) -> tuple[SetTransformer, Inventory, Hea
 
 def rooms_of(examples: Sequence[Example], header: Header, device: torch.device) -> Rooms:
     """Stack examples as they are trained on."""
-    rooms, objects = stacked(examples, Codec(header.norm), header.slots)
-    held = np.array([len(e.classes) for e in examples], np.int64)
-    return Rooms(rooms.to(device), objects.to(device), layout_weights(examples), held)
+    rooms, objects = collate(examples, Codec(header.norm), header.slots)
+    counts = np.array([len(e.classes) for e in examples], np.int64)
+    return Rooms(rooms.to(device), objects.to(device), layout_weights(examples), counts)
 
 
 def load(root: Path, settings: TrainSettings) -> tuple[Sets, Header]:

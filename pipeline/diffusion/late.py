@@ -37,10 +37,10 @@ class LateFinder(importlib.abc.MetaPathFinder):
 
     def find_spec(self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
         """Return how such a module is loaded, None for all others."""
-        found = PathFinder.find_spec(fullname, path, target) if fullname in LATE else None
-        if found is not None and found.loader is not None:
-            found.loader = LateLoader(found.loader)
-        return found
+        spec = PathFinder.find_spec(fullname, path, target) if fullname in LATE else None
+        if spec is not None and spec.loader is not None:
+            spec.loader = LateLoader(spec.loader)
+        return spec
 
 
 def postpone() -> None:

@@ -63,7 +63,7 @@ def denoising_loss(net: Denoiser, rooms: RoomBatch, objects: Objects, drawn: Dra
     """
     codec, classes = net.codec, objects.classes
     alpha, sigma = (v[:, None, None] for v in alpha_sigma(drawn.level))
-    held = (classes < codec.classes)[..., None]
+    occupied = (classes < codec.classes)[..., None]
     xt = alpha * objects.channels + sigma * drawn.noise
     answers = net(xt, classes, drawn.level, rooms)
     noise = drawn.noise
@@ -76,10 +76,10 @@ def denoising_loss(net: Denoiser, rooms: RoomBatch, objects: Objects, drawn: Dra
         noise = noise.clone()
         noise[near] -= shift.clamp(-most, most)
     target = alpha * noise - sigma * (xt - sigma * noise) / alpha
-    count = held.sum((1, 2)).clamp_min(1)
+    count = occupied.sum((1, 2)).clamp_min(1)
     terms = []
     for answer in answers:
-        error = (target - answer) ** 2 * held
+        error = (target - answer) ** 2 * occupied
         terms.append(Loss(error[..., : YAW.stop].mean(-1).sum(1) / count, error[..., YAW.stop :].mean(-1).sum(1) / count))
     return tuple(terms)
 

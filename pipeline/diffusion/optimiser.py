@@ -53,7 +53,7 @@ class Optimiser:
             for part, move in zip(squares(p, self.width), squares(ahead, self.width), strict=True):
                 alike.setdefault((part.shape[0], part.shape[1]), []).append((part, move))
         for shape, pairs in alike.items():
-            moves = orthogonalised(torch.stack([move for _, move in pairs])) * (rate * AS_LARGE * max(shape) ** 0.5)
+            moves = orthogonalise(torch.stack([move for _, move in pairs])) * (rate * AS_LARGE * max(shape) ** 0.5)
             for (part, _), move in zip(pairs, moves, strict=True):
                 part.mul_(1 - rate * self.weight_decay).sub_(move)
         for p in (*self.matrices.values(), *self.others.values()):
@@ -62,8 +62,8 @@ class Optimiser:
     def moments(self) -> dict[str, Tensor]:
         """Return the moments by `<parameter>/<kind>`, for a checkpoint."""
         names, state = list(self.others), self.adam.state_dict()["state"]
-        found = {f"{names[i]}/{kind}": value for i, entry in state.items() for kind, value in entry.items()}
-        return found | {f"{name}/momentum": value for name, value in self.momenta.items()}
+        tensors = {f"{names[i]}/{kind}": value for i, entry in state.items() for kind, value in entry.items()}
+        return tensors | {f"{name}/momentum": value for name, value in self.momenta.items()}
 
     def restore(self, moments: Mapping[str, Tensor]) -> None:
         """Take up what `moments` gave."""
@@ -90,7 +90,7 @@ def squares(matrix: Tensor, width: int) -> Sequence[Tensor]:
     return parts
 
 
-def orthogonalised(matrices: Tensor) -> Tensor:
+def orthogonalise(matrices: Tensor) -> Tensor:
     """Return the nearest matrices (K, m, n) with singular values near 1, by Newton-Schulz steps; m <= n."""
     x: Tensor = matrices / (1.01 * torch.linalg.matrix_norm(matrices, keepdim=True)).clamp_min(1e-12)
     for a, b, c in QUINTICS:

@@ -38,12 +38,12 @@ class ProcessGroup:
         """Replace the gradients by their mean over the group; return the mean of `terms` (n,)."""
         if self.size == 1:
             return terms
-        held = [p.grad for p in parameters if p.grad is not None]
-        flat = torch.cat([*(g.flatten() for g in held), terms])
+        gradients = [p.grad for p in parameters if p.grad is not None]
+        flat = torch.cat([*(g.flatten() for g in gradients), terms])
         distributed.all_reduce(flat)
         flat /= self.size
-        *means, terms = flat.split([*(g.numel() for g in held), len(terms)])
-        for gradient, mean in zip(held, means, strict=True):
+        *means, terms = flat.split([*(g.numel() for g in gradients), len(terms)])
+        for gradient, mean in zip(gradients, means, strict=True):
             gradient.copy_(mean.view_as(gradient))
         return terms
 
@@ -52,7 +52,7 @@ ALONE = ProcessGroup()
 
 
 @contextmanager
-def gathered(size: int, work: Callable[[ProcessGroup], None]) -> Iterator[None]:
+def spawn_group(size: int, work: Callable[[ProcessGroup], None]) -> Iterator[None]:
     """Make this process the first of a group whose others run `work`, each in a process of its own; `work` is importable by name.
 
     Raises SfgenError when one of them failed.
@@ -63,7 +63,9 @@ def gathered(size: int, work: Callable[[ProcessGroup], None]) -> Iterator[None]:
     context = multiprocessing.get_context("spawn")
     with TemporaryDirectory() as folder:
         meeting = f"file://{Path(folder) / 'meeting'}"
-        others = [context.Process(target=_joined, args=(meeting, ProcessGroup(rank, size), work), daemon=True) for rank in range(1, size)]
+        others = [
+            context.Process(target=_run_member, args=(meeting, ProcessGroup(rank, size), work), daemon=True) for rank in range(1, size)
+        ]
         for process in others:
             process.start()
         try:
@@ -80,7 +82,7 @@ def gathered(size: int, work: Callable[[ProcessGroup], None]) -> Iterator[None]:
                 distributed.destroy_process_group()
 
 
-def _joined(meeting: str, group: ProcessGroup, work: Callable[[ProcessGroup], None]) -> None:
+def _run_member(meeting: str, group: ProcessGroup, work: Callable[[ProcessGroup], None]) -> None:
     distributed.init_process_group("gloo", init_method=meeting, rank=group.rank, world_size=group.size)
     try:
         work(group)

@@ -125,7 +125,7 @@ def in_noise(values: list[Tensor]) -> Tensor:
     return torch.stack(values, -1).clamp(-3, 3)
 
 
-def aligned(boxes: Boxes, rooms: RoomBatch, blur: Tensor) -> Tensor:
+def axis_deviations(boxes: Boxes, rooms: RoomBatch, blur: Tensor) -> Tensor:
     """Return how far each box's axis is from the nearest of its room's directions (B, N, 2), in units of the noise, up to 3.
 
     The room's directions are the normals of its walls; the nearest is taken for each box.

@@ -48,7 +48,7 @@ class Sets:
 
 def context_of(room: Row, openings: Iterable[Row]) -> RoomContext:
     """Build the context of a rooms row and the openings of its scene."""
-    seen = tuple(
+    room_openings = tuple(
         RoomOpening(
             o["kind"],
             np.array(o["segment"], float),
@@ -58,7 +58,7 @@ def context_of(room: Row, openings: Iterable[Row]) -> RoomContext:
         for o in openings
         if room["room_id"] in o["rooms"]
     )
-    return RoomContext(str(room["layout_type"]), np.array(room["polygon"], float), seen, height=float(room["height"]))
+    return RoomContext(str(room["layout_type"]), np.array(room["polygon"], float), room_openings, height=float(room["height"]))
 
 
 def example_of(
@@ -107,8 +107,8 @@ def sets_of(
     """
     split = {s["scene_id"]: s["split"] for s in tables["scenes"]}
     storey = {s["scene_id"]: float(s["storey_height"]) for s in tables["scenes"]}
-    openings, objects = _grouped(tables["openings"], "scene_id"), _grouped(tables["objects"], "scene_id", "room_id")
-    known, found, left = set(classes), {"train": [], "val": [], "test": []}, Counter()  # type: ignore[var-annotated]
+    openings, objects = _group_rows(tables["openings"], "scene_id"), _group_rows(tables["objects"], "scene_id", "room_id")
+    known, by_split, left = set(classes), {"train": [], "val": [], "test": []}, Counter()  # type: ignore[var-annotated]
     for room in tables["rooms"]:
         rows = [o for o in objects.get((room["scene_id"], room["room_id"]), []) if o["category"] in known]
         reason = _reason(room, rows, layouts, slots)
@@ -119,8 +119,8 @@ def sets_of(
         context = context_of(room, openings.get((scene,), []))
         floor_z = room["level"] * storey[scene]
         example = example_of(room, rows, context, split[scene], layouts.index(room["layout_type"]), classes, latents, sweeps, floor_z)
-        found[example.split].append(example)
-    return Sets(tuple(found["train"]), tuple(found["val"]), tuple(found["test"]), dict(sorted(left.items())))
+        by_split[example.split].append(example)
+    return Sets(tuple(by_split["train"]), tuple(by_split["val"]), tuple(by_split["test"]), dict(sorted(left.items())))
 
 
 def _reason(room: Row, rows: Sequence[Row], layouts: tuple[str, ...], slots: int) -> str:
@@ -131,7 +131,7 @@ def _reason(room: Row, rows: Sequence[Row], layouts: tuple[str, ...], slots: int
     return "more-objects-than-slots" if len(rows) > slots else ""
 
 
-def _grouped(rows: Iterable[Row], *keys: str) -> dict[tuple[Any, ...], list[Row]]:
+def _group_rows(rows: Iterable[Row], *keys: str) -> dict[tuple[Any, ...], list[Row]]:
     grouped: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
         grouped.setdefault(tuple(row[k] for k in keys), []).append(row)
@@ -143,11 +143,11 @@ def sweeps_by_asset(joints: Iterable[Row]) -> dict[str, NDArray[np.float32]]:
     boxes: dict[str, list[NDArray[np.float64]]] = {}
     for joint in joints:
         boxes.setdefault(joint["asset_id"], []).append(np.array([joint["sweep_min"], joint["sweep_max"]], float))
-    found = {}
+    by_asset = {}
     for asset, listed in boxes.items():
         volume = [-float(np.prod(box[1] - box[0])) for box in listed]
-        found[asset] = np.array([listed[i] for i in np.argsort(volume, kind="stable")[:SWEEPS]], np.float32)
-    return found
+        by_asset[asset] = np.array([listed[i] for i in np.argsort(volume, kind="stable")[:SWEEPS]], np.float32)
+    return by_asset
 
 
 def layout_weights(examples: Sequence[Example], power: float = 0.5) -> NDArray[np.float64]:

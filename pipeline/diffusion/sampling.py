@@ -23,7 +23,7 @@ from pipeline.diffusion.guidance import Guide
 from pipeline.diffusion.inventory import DRAWS, Ask, Inventory, draw_inventories, room_features
 from pipeline.diffusion.schedule import levels, paper_levels
 from pipeline.diffusion.settings import SampleSettings
-from pipeline.diffusion.solver import diffused
+from pipeline.diffusion.solver import denoise
 from pipeline.errors import ContentError
 
 Key = tuple[int, int, int]  # home index, room number, attempt
@@ -70,11 +70,11 @@ class Sampler:
     def inventories(self, rooms: Sequence[RoomContext], keys: Sequence[Key], floors: Sequence[Floor]) -> list[NDArray[np.int64]]:
         """Draw what each room holds: class indices (n,), rising. Told numbers and category_bounds are met, at most `slots` objects."""
         layouts = self._layouts(rooms)
-        classes, found = self.header.norm.classes, []
+        classes, room_counts = self.header.norm.classes, []
         with one_thread():
             for start in range(0, len(rooms), self.settings.batch):
                 part = range(start, min(start + self.settings.batch, len(rooms)))
-                padded = filled(part)
+                padded = pad_batch(part)
                 features = torch.from_numpy(np.stack([room_features(floors[i], rooms[i].height) for i in padded]))
                 told = [rooms[i].n_target if self.settings.quantity else None for i in padded]
                 asks = [
@@ -82,33 +82,33 @@ class Sampler:
                 ]
                 uniform = np.stack([seeds.generator(self.seed, "inventory", *keys[i]).random((DRAWS, len(classes))) for i in padded])
                 kinds = torch.tensor([layouts[i] for i in padded])
-                found += draw_inventories(self.inventory, features, kinds, asks, uniform)[: len(part)]
-        return [np.repeat(np.arange(len(classes)), counts) for counts in found]
+                room_counts += draw_inventories(self.inventory, features, kinds, asks, uniform)[: len(part)]
+        return [np.repeat(np.arange(len(classes)), counts) for counts in room_counts]
 
     def arranged(
-        self, rooms: Sequence[RoomContext], keys: Sequence[Key], held: Sequence[NDArray[np.int64]], floors: Sequence[Floor]
+        self, rooms: Sequence[RoomContext], keys: Sequence[Key], inventories: Sequence[NDArray[np.int64]], floors: Sequence[Floor]
     ) -> list[list[Proposal]]:
-        """Arrange what rooms hold: `held` are class indices (n,) per room. Proposals come in that order."""
-        found: list[list[Proposal]] = [[] for _ in rooms]
+        """Arrange what rooms hold: `inventories` are class indices (n,) per room. Proposals come in that order."""
+        proposals: list[list[Proposal]] = [[] for _ in rooms]
         layouts = self._layouts(rooms)
         with one_thread(), torch.no_grad():
-            for slots, tokens, part in self._batches(floors, held):
-                padded = filled(part)
-                told = room_batch([floors[i] for i in padded], [layouts[i] for i in padded], [rooms[i].height for i in padded])
+            for slots, tokens, part in self._batches(floors, inventories):
+                padded = pad_batch(part)
+                conditioning = room_batch([floors[i] for i in padded], [layouts[i] for i in padded], [rooms[i].height for i in padded])
                 classes = np.full((len(padded), slots), len(self.header.norm.classes))
                 for row, i in enumerate(padded):
-                    classes[row, : len(held[i])] = held[i]
-                batch = told.first(tokens), torch.from_numpy(classes), [keys[i] for i in padded]
+                    classes[row, : len(inventories[i])] = inventories[i]
+                batch = conditioning.first(tokens), torch.from_numpy(classes), [keys[i] for i in padded]
                 for i, x0, mine in zip(part, self._batch(*batch), batch[1], strict=False):  # the padding is left over
-                    found[i] = self.net.codec.proposals(x0, mine, rooms[i])
-        return found
+                    proposals[i] = self.net.codec.proposals(x0, mine, rooms[i])
+        return proposals
 
-    def _batches(self, floors: Sequence[Floor], held: Sequence[NDArray[np.int64]]) -> Iterator[tuple[int, int, list[int]]]:
+    def _batches(self, floors: Sequence[Floor], inventories: Sequence[NDArray[np.int64]]) -> Iterator[tuple[int, int, list[int]]]:
         """Cut rooms into batches of one shape: yields slots, floor tokens, and the indices of the rooms. A room's shape is its own."""
-        slots = np.array(SLOTS)[np.searchsorted(SLOTS, [len(h) for h in held])]
+        slots = np.array(SLOTS)[np.searchsorted(SLOTS, [len(h) for h in inventories])]
         tokens = np.array(TOKENS)[np.searchsorted(TOKENS, [int(f.mask.sum()) for f in floors])]
-        for shape in sorted({(int(s), int(t)) for s, t, h in zip(slots, tokens, held, strict=True) if len(h)}):
-            alike = [i for i, h in enumerate(held) if len(h) and (slots[i], tokens[i]) == shape]
+        for shape in sorted({(int(s), int(t)) for s, t, h in zip(slots, tokens, inventories, strict=True) if len(h)}):
+            alike = [i for i, h in enumerate(inventories) if len(h) and (slots[i], tokens[i]) == shape]
             for start in range(0, len(alike), self.settings.batch):
                 yield *shape, alike[start : start + self.settings.batch]
 
@@ -131,7 +131,7 @@ class Sampler:
             return torch.from_numpy(np.stack([seeds.normal(self.seed, "diffusion", draw, *key, shape=shape) for key in keys])).to(device)
 
         count = self.settings.evaluations
-        return diffused(expect, steer, noise, levels(count) if count else paper_levels(), self.settings.eta).cpu()
+        return denoise(expect, steer, noise, levels(count) if count else paper_levels(), self.settings.eta).cpu()
 
     def _layouts(self, rooms: Sequence[RoomContext]) -> list[int]:
         """Return the indices of the rooms' types."""
@@ -141,7 +141,7 @@ class Sampler:
         return [self.header.layouts.index(r.layout_type) for r in rooms]
 
 
-def filled(part: Sequence[int]) -> list[int]:
+def pad_batch(part: Sequence[int]) -> list[int]:
     """Return the rooms of a batch, the first of them repeated until they are a multiple of QUAD."""
     return [*part, *[part[0]] * (-len(part) % QUAD)]
 

@@ -17,14 +17,14 @@ TIMESTEPS = 1000
 FIRST, LAST = -6.0, 8.0  # lambda at which sampling starts, from pure noise, and at which the clean slots are taken as they are expected
 
 
-def retained(first: float = 1e-4, last: float = 0.02) -> NDArray[np.float64]:
+def alpha_squared(first: float = 1e-4, last: float = 0.02) -> NDArray[np.float64]:
     """Return alpha^2 (T + 1,) at the paper's levels; index 0 is clean data."""
     return np.concatenate([[1.0], np.cumprod(1 - np.linspace(first, last, TIMESTEPS))])
 
 
 def lambda_of(t: float) -> float:
     """Return lambda at the paper's level 0 < t <= 1000; alpha^2 is interpolated linearly between the integers."""
-    share = float(np.interp(t, np.arange(TIMESTEPS + 1), retained()))
+    share = float(np.interp(t, np.arange(TIMESTEPS + 1), alpha_squared()))
     return math.log(share) - math.log1p(-share)
 
 
@@ -35,7 +35,7 @@ def levels(count: int) -> tuple[float, ...]:
 
 def paper_levels() -> tuple[float, ...]:
     """Return all 1000 levels of the paper, from t = 1000 down to 1: the reference that few-step samplers are held to."""
-    share = retained()[:0:-1]
+    share = alpha_squared()[:0:-1]
     return tuple((np.log(share) - np.log1p(-share)).tolist())
 
 

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor, nn
 
-from pipeline.diffusion.attention import MODULATIONS, SUBLAYERS, Block, Surroundings, modulated, pointed, split_heads, weights
+from pipeline.diffusion.attention import MODULATIONS, SUBLAYERS, Block, Surroundings, modulate, split_heads, sum_directions, weights
 from pipeline.diffusion.batch import RoomBatch
 from pipeline.diffusion.codec import CHANNELS, YAW, Codec, Normalisation
 from pipeline.diffusion.floor import KINDS
@@ -31,7 +31,7 @@ from pipeline.diffusion.relations import (
     WALL_MOVES,
     WALL_NOISE,
     WALL_TURNS,
-    aligned,
+    axis_deviations,
     boxes_of,
     pair_relations,
     wall_relations,
@@ -86,19 +86,19 @@ class Pass(nn.Module):
 
     def by_layer(self, bias: Tensor) -> tuple[Tensor, ...]:
         """Split biases (B, N, M, (layers + 1) H) into (B, H, N, M) for each layer, and for the pointer."""
-        found: tuple[Tensor, ...] = bias.unflatten(-1, (-1, self.heads)).permute(3, 0, 4, 1, 2).contiguous().unbind(0)
-        return found
+        biases: tuple[Tensor, ...] = bias.unflatten(-1, (-1, self.heads)).permute(3, 0, 4, 1, 2).contiguous().unbind(0)
+        return biases
 
     def forward(
-        self, tokens: Tensor, seen: Seen, guess: Tensor, rooms: RoomBatch, keys: tuple[Tensor, ...], condition: Tensor
+        self, tokens: Tensor, slots: Seen, guess: Tensor, rooms: RoomBatch, keys: tuple[Tensor, ...], condition: Tensor
     ) -> tuple[Tensor, Tensor]:
         """Return the tokens, and the answer (B, N, 40) as directions and amounts; `guess` (B, N, 8) metric."""
-        boxes, blur = boxes_of(guess), seen.blur
+        boxes, blur = boxes_of(guess), slots.blur
         pair, wall = pair_relations(boxes, blur), wall_relations(boxes, rooms, blur)
         pairs = torch.cat([self.pairs(torch.cat([pair.far, pair.near], -1)), pair.near], -1)
         kind = nn.functional.one_hot(rooms.kind, len(KINDS)).float()[:, None].expand(-1, guess.shape[1], -1, -1)
         walls = torch.cat([self.walls(torch.cat([wall.far, wall.near, kind], -1)), wall.near], -1)
-        pair_bias = self.by_layer(self.pair_bias(pairs).masked_fill(seen.padding[:, None, :, None], HIDDEN))
+        pair_bias = self.by_layer(self.pair_bias(pairs).masked_fill(slots.padding[:, None, :, None], HIDDEN))
         wall_bias = self.by_layer(self.wall_bias(walls).masked_fill(~rooms.mask[:, None, :, None], HIDDEN))
         modulation = self.modulation(condition)[:, None].chunk(MODULATIONS * self.layers + 2, -1)
         axis = boxes.axis
@@ -109,16 +109,16 @@ class Pass(nn.Module):
             tokens = block(
                 tokens, Surroundings(pairs, pair_bias[i]), Surroundings(walls, wall_bias[i]), (keys[2 * i], keys[2 * i + 1]), own
             )
-        told = modulated(tokens, *modulation[-2:])
-        plain, ways, by_wall, by_pair = self.head(told).split(self.parts, -1)
-        to_walls, to_slots, slot_keys = split_heads(self.point(told), 3, self.heads)
-        mine = torch.stack([*seen.ways, axis, aligned(boxes, rooms, blur)], -2)
+        features = modulate(tokens, *modulation[-2:])
+        plain, ways, by_wall, by_pair = self.head(features).split(self.parts, -1)
+        to_walls, to_slots, slot_keys = split_heads(self.point(features), 3, self.heads)
+        mine = torch.stack([*slots.ways, axis, axis_deviations(boxes, rooms, blur)], -2)
         goes = ways.unflatten(-1, (2, OWN_WAYS)) @ mine  # (B, N, 2, 2): move, turn
         for query, key, bias, relation, amount, moves in (
             (to_walls, keys[-1], wall_bias[-1], wall, by_wall, WALL_MOVES),
             (to_slots, slot_keys, pair_bias[-1], pair, by_pair, PAIR_MOVES),
         ):
-            goes = goes + pointed(weights(query, key, bias), torch.cat([relation.moves, relation.turns], -2), amount, moves)
+            goes = goes + sum_directions(weights(query, key, bias), torch.cat([relation.moves, relation.turns], -2), amount, moves)
         return tokens, torch.cat([goes[:, :, 0], plain[..., :4], goes[:, :, 1], plain[..., 4:]], -1)
 
 
@@ -163,9 +163,9 @@ class SetTransformer(nn.Module):
         reach = torch.linalg.vector_norm(torch.where(rooms.mask[..., None], middle, 0) + 1e-9, dim=-1).amax(1, keepdim=True)
         area = polygon_area(rooms)
         pooled = tokens.sum(1) / rooms.mask.sum(1, keepdim=True).clamp_min(1)
-        held = (self.kind(classes) * (classes < self.codec.classes)[..., None]).sum(1) / 4
+        inventory = (self.kind(classes) * (classes < self.codec.classes)[..., None]).sum(1) / 4
         size = torch.cat([reach / 3, area.clamp_min(0.5).log()[:, None] - 2, rooms.height[:, None] - 2.7], -1)
-        room = self.room(torch.cat([pooled, held, size], -1)) + self.layout(rooms.layout)
+        room = self.room(torch.cat([pooled, inventory, size], -1)) + self.layout(rooms.layout)
         parts = self.settings.passes * (2 * self.settings.layers + 1)
         return FloorCode(split_heads(self.floor_keys(tokens), parts, self.settings.heads), room)
 
@@ -176,26 +176,26 @@ class SetTransformer(nn.Module):
         alpha, sigma = torch.sigmoid(level).sqrt()[:, None, None], torch.sigmoid(-level).sqrt()[:, None, None]
         spread = sigma[:, 0, 0].clamp_min(3e-3)
         front = torch.stack([x[..., 7], -x[..., 6]], -1)
-        seen = Seen((x[..., :2], x[..., YAW], front), torch.stack([spread * self.codec.reach, spread], -1), classes >= self.codec.classes)
+        slots = Seen((x[..., :2], x[..., YAW], front), torch.stack([spread * self.codec.reach, spread], -1), classes >= self.codec.classes)
         tokens = self.slot(torch.cat([invariants(x[..., :2], x[..., YAW]), x[..., 2:6], x[..., YAW.stop :]], -1)) + self.kind(classes)
         guess, answer, answers = alpha * x[..., Geometry], None, []
         per_pass = 2 * self.settings.layers + 1
         for number, look in enumerate(self.passes):
             keys = code.keys[number * per_pass : (number + 1) * per_pass]
-            tokens, more = look(tokens, seen, self.codec.metric(guess, classes), rooms, keys, condition)
+            tokens, more = look(tokens, slots, self.codec.metric(guess, classes), rooms, keys, condition)
             answer = more if answer is None else answer.detach() + more
             answers.append(answer)
-            guess = bounded((alpha * x[..., Geometry] - sigma * answer[..., Geometry]).detach())
+            guess = clamp_channels((alpha * x[..., Geometry] - sigma * answer[..., Geometry]).detach())
         return tuple(answers)
 
     def expected(self, x: Tensor, classes: Tensor, level: Tensor, rooms: RoomBatch, code: FloorCode | None = None) -> Tensor:
         """Return the expected clean channels x0 (B, N, 40), within what data can be: in rooms unlike any in training a step could else run away."""
         alpha, sigma = torch.sigmoid(level).sqrt()[:, None, None], torch.sigmoid(-level).sqrt()[:, None, None]
         answer: Tensor = self(x, classes, level, rooms, code)[-1]
-        return bounded(alpha * x - sigma * answer)
+        return clamp_channels(alpha * x - sigma * answer)
 
 
-def bounded(x0: Tensor) -> Tensor:
+def clamp_channels(x0: Tensor) -> Tensor:
     """Cut clean channels (B, N, >= 8) at MOST; position and axis as vectors, so that the answer still turns with the room."""
     place, axis = (v * (MOST / torch.linalg.vector_norm(v, dim=-1, keepdim=True).clamp_min(MOST)) for v in (x0[..., :2], x0[..., YAW]))
     return torch.cat([place, x0[..., 2 : YAW.start].clamp(-MOST, MOST), axis, x0[..., YAW.stop :].clamp(-MOST, MOST)], -1)

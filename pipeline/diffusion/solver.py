@@ -13,7 +13,7 @@ Shift = Callable[[Tensor, float], Tensor]  # expected x0, lambda -> x0 as it is 
 Noise = Callable[[int], Tensor]  # number of the draw -> standard normal (B, N, 40)
 
 
-def diffused(expect: Expect, steer: Shift, noise: Noise, at_levels: Sequence[float], eta: float = 1.0) -> Tensor:
+def denoise(expect: Expect, steer: Shift, noise: Noise, at_levels: Sequence[float], eta: float = 1.0) -> Tensor:
     """Go from noise up through rising `at_levels` (lambda); return the clean channels expected at the last of them.
 
     From level s to level t > s, x_t ~ q(x_t | x_s, x0) of the forward process, with `eta` times its deviation (Song et al.

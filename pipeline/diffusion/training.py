@@ -152,7 +152,7 @@ def validation(trainer: Trainer, data: Rooms) -> dict[str, dict[str, float]]:
 
     The noise is keyed by (seed, level), and so the same at every call.
     """
-    found: dict[str, dict[str, float]] = {}
+    losses: dict[str, dict[str, float]] = {}
     plain = replace(trainer.settings, constraint=False)  # validation measures denoising alone
     slots = torch.from_numpy(bucket_of(data.held))
     for level in LEVELS:
@@ -165,5 +165,5 @@ def validation(trainer: Trainer, data: Rooms) -> dict[str, dict[str, float]]:
                 rooms, objects = data.rooms.rows(rows), data.objects.rows(rows).first(size)
                 terms.append(torch.stack(denoising_loss(trainer.average, rooms, objects, drawn, plain)[-1]))
         mean = torch.cat(terms, 1).mean(1).tolist()
-        found[f"lambda {level:g}"] = dict(zip(("geometry", "shape"), (round(v, 6) for v in mean), strict=True))
-    return found
+        losses[f"lambda {level:g}"] = dict(zip(("geometry", "shape"), (round(v, 6) for v in mean), strict=True))
+    return losses

@@ -50,7 +50,13 @@ def encode(asset: Asset) -> bytes:
         "size": asset.size.tolist(),
         "links": links,
         "joints": [
-            {**asdict(j), "axis": j.axis.tolist(), "origin": j.origin.tolist(), "lower": _bound(j.lower), "upper": _bound(j.upper)}
+            {
+                **asdict(j),
+                "axis": j.axis.tolist(),
+                "origin": j.origin.tolist(),
+                "lower": _encode_limit(j.lower),
+                "upper": _encode_limit(j.upper),
+            }
             for j in asset.joints
         ],
         "materials": [asdict(m) for m in asset.materials],
@@ -76,13 +82,13 @@ def load_asset(path: Path) -> Asset:
 
 def _decode(header: dict[str, Any], tensors: dict[str, np.ndarray[Any, Any]]) -> Asset:
     def meshes(i: int, kind: str, entries: list[dict[str, Any]]) -> tuple[Mesh, ...]:
-        made = []
+        pieces = []
         for j, entry in enumerate(entries):
             key = f"{i:03d}.{kind}.{j:04d}"
-            made.append(
+            pieces.append(
                 Mesh(entry["name"], tensors[f"{key}.v"], tensors[f"{key}.f"], entry["material"], tensors.get(f"{key}.t"), entry["part"])
             )
-        return tuple(made)
+        return tuple(pieces)
 
     links = tuple(
         Link(
@@ -101,8 +107,8 @@ def _decode(header: dict[str, Any], tensors: dict[str, np.ndarray[Any, Any]]) ->
                 **j,
                 "axis": np.array(j["axis"]),
                 "origin": np.array(j["origin"]),
-                "lower": _unbound(j["lower"], -1),
-                "upper": _unbound(j["upper"], 1),
+                "lower": _decode_limit(j["lower"], -1),
+                "upper": _decode_limit(j["upper"], 1),
                 "after": tuple(j.get("after", ())),
             }
         )
@@ -118,9 +124,9 @@ def _decode(header: dict[str, Any], tensors: dict[str, np.ndarray[Any, Any]]) ->
     return Asset(size=np.array(header["size"]), links=links, joints=joints, materials=materials, textures=textures, parts=parts, **plain)
 
 
-def _bound(value: float) -> float | None:
+def _encode_limit(value: float) -> float | None:
     return None if math.isinf(value) else value
 
 
-def _unbound(value: float | None, sign: int) -> float:
+def _decode_limit(value: float | None, sign: int) -> float:
     return sign * math.inf if value is None else value

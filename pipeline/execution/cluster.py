@@ -40,7 +40,7 @@ def run_on_cluster(step: Callable[[J], R], queue: Queue[J], scheduler: str) -> I
             each = 1 if queue.suspects or any(t.strikes for t in tasks.values()) else IN_FLIGHT
             window = each * max(1, sum(client.nthreads().values()))
             while len(tasks) < window and (task := queue.next()):
-                future = client.submit(_guarded, step, task.job, retries=RETRIES, pure=False)
+                future = client.submit(_try_step, step, task.job, retries=RETRIES, pure=False)
                 tasks[future.key] = task
                 completed.add(future)
 
@@ -63,7 +63,7 @@ def run_on_cluster(step: Callable[[J], R], queue: Queue[J], scheduler: str) -> I
             raise ContentError(f"the Dask scheduler at {scheduler} is gone", "start it, then the same command again: it resumes") from error
 
 
-def _guarded(step: Callable[[J], R], job: J) -> R | SfgenError:
+def _try_step(step: Callable[[J], R], job: J) -> R | SfgenError:
     """Run the step. Our own errors are answers: the same input fails again, so Dask shall not retry it."""
     single_thread()
     try:

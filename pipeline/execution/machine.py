@@ -26,7 +26,7 @@ def _quotas(system: Path) -> list[float]:
         lines = (system / "proc/self/cgroup").read_text(encoding="utf-8").splitlines()
     except OSError:
         return []
-    found = []
+    quotas = []
     for line in lines:
         number, controllers, name = line.split(":", 2)
         if number != "0" and "cpu" not in controllers.split(","):
@@ -35,8 +35,8 @@ def _quotas(system: Path) -> list[float]:
         place = mount / name.strip("/")
         # inside a container the path may be the host's, of which only the mount itself is seen
         for group in (place, *(p for p in place.parents if p.is_relative_to(mount))):
-            found += _quota(group)
-    return found
+            quotas += _quota(group)
+    return quotas
 
 
 def _quota(group: Path) -> list[float]:
@@ -53,10 +53,10 @@ def _quota(group: Path) -> list[float]:
 def pin_instructions(system: Path = Path("/")) -> None:
     """Hold numeric libraries to PINNED where the machine has AVX2 and nobody has said otherwise; to be called before they are loaded."""
     try:
-        told = (system / "proc/cpuinfo").read_text(encoding="utf-8")
+        cpuinfo = (system / "proc/cpuinfo").read_text(encoding="utf-8")
     except OSError:
         return
-    if " avx2 " in told.replace("\n", " "):
+    if " avx2 " in cpuinfo.replace("\n", " "):
         for name, value in PINNED.items():
             os.environ.setdefault(name, value)
 

@@ -81,7 +81,7 @@ def run_on_processes(
         recruit = functools.partial(_start, start, step, scratch)
         try:
             while _employ(crew, queue, recruit, workers):
-                for worker in _heard(crew, silence):
+                for worker in _await_workers(crew, silence):
                     task = worker.task
                     kind, answer = _message(worker)
                     if kind in {READY, NOTE}:
@@ -139,7 +139,7 @@ def _start(context: Any, step: Callable[[J], R], scratch: str) -> _Worker:
     return _Worker(process, ours)
 
 
-def _heard(crew: list[_Worker], silence: float) -> list[_Worker]:
+def _await_workers(crew: list[_Worker], silence: float) -> list[_Worker]:
     """Wait until a busy worker says something, dies or has been silent for too long; return those."""
     busy = {worker.pipe: worker for worker in crew if worker.task}
     until = min(worker.heard + _patience(worker, silence) for worker in busy.values())

@@ -115,8 +115,8 @@ class Progress:
         sys.stderr.flush()
 
     def _event(self, event: str, **what: Any) -> None:
-        told = {"event": event, f"{self.unit}s": self.done, "of": self.total, "seconds": round(self.seconds, 2), **self.counts, **what}
-        sys.stderr.write(json.dumps(told) + "\n")
+        record = {"event": event, f"{self.unit}s": self.done, "of": self.total, "seconds": round(self.seconds, 2), **self.counts, **what}
+        sys.stderr.write(json.dumps(record) + "\n")
         sys.stderr.flush()
 
 

@@ -23,7 +23,7 @@ from pipeline.metrics.intervals import bootstrap, rate
 from pipeline.metrics.layout_features import features
 from pipeline.metrics.rows import Row
 from pipeline.metrics.two_samples import forest_accuracy
-from pipeline.relations.arrangement import Arrangement, RoomOpening, arranged
+from pipeline.relations.arrangement import Arrangement, RoomOpening, make_arrangement
 from pipeline.relations.model import Relations
 
 Furnish = Callable[[Sequence[RoomContext]], list[list[Proposal]]]
@@ -58,7 +58,7 @@ def cases_of(tables: Mapping[str, Sequence[Row]], split: str, layouts: Sequence[
     for row in tables["objects"]:
         if row["scene_id"] in scenes and row["category"] in known:
             objects.setdefault((row["scene_id"], row["room_id"]), []).append(row)
-    found = []
+    cases = []
     for room in tables["rooms"]:
         own = objects.get((room["scene_id"], room["room_id"]), [])
         if room["scene_id"] not in scenes or room["layout_type"] not in layouts or not 0 < len(own) <= slots:
@@ -66,8 +66,8 @@ def cases_of(tables: Mapping[str, Sequence[Row]], split: str, layouts: Sequence[
         context = replace(
             context_of(room, openings.get(room["scene_id"], [])), elevation=room["level"] * float(scenes[room["scene_id"]]["storey_height"])
         )
-        found.append(Case(context, [_proposal(o) for o in own], f"{room['scene_id']}/{room['room_id']}"))
-    return found
+        cases.append(Case(context, [_proposal(o) for o in own], f"{room['scene_id']}/{room['room_id']}"))
+    return cases
 
 
 def holds(case: Case, count: int) -> bool:
@@ -76,13 +76,13 @@ def holds(case: Case, count: int) -> bool:
     return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2 >= FLOOR * count
 
 
-def drafted(furnish: Furnish, rooms: Sequence[RoomContext]) -> Drafts:
+def timed_drafts(furnish: Furnish, rooms: Sequence[RoomContext]) -> Drafts:
     """Furnish rooms."""
     start = time.process_time()
     return Drafts(furnish(rooms), time.process_time() - start)
 
 
-def compared(
+def compare_models(
     makers: Mapping[str, Furnish],
     cases: Sequence[Case],
     opens: Mapping[str, bool],
@@ -93,18 +93,21 @@ def compared(
     """Furnish rooms with every model, and return their figures beside those of the real rooms; `opens` says which classes count as articulated."""
     shown = spread(cases, settings.rooms)
 
-    found = {name: drafted(furnish, [case.context for case in shown]) for name, furnish in makers.items()}
-    counted = {name: {n: drafted(makers[name], asked(cases, n, settings.count_rooms)) for n in settings.counts} for name in COUNTING}
+    by_model = {name: timed_drafts(furnish, [case.context for case in shown]) for name, furnish in makers.items()}
+    counted = {
+        name: {n: timed_drafts(makers[name], rooms_with_target(cases, n, settings.count_rooms)) for n in settings.counts}
+        for name in COUNTING
+    }
     real = [case.real for case in shown]
     rng = seeds.generator(seed, "baselines-bootstrap")
-    made_by = {"real": real} | {name: each.rooms for name, each in found.items()}
+    made_by = {"real": real} | {name: each.rooms for name, each in by_model.items()}
     lived = liveable(rng, seed, shown, made_by, known)
     models = {name: figures(rng, shown, rooms, real, opens, settings.counts) | lived[name] for name, rooms in made_by.items()}
-    for name, each in found.items():
+    for name, each in by_model.items():
         models[name]["cpu_seconds_per_room"] = round(each.seconds / len(shown), 4)
     return {
         "models": models,
-        "quantity": {name: {str(n): success(each.rooms, n) for n, each in made.items()} for name, made in counted.items()},
+        "quantity": {name: {str(n): success(each.rooms, n) for n, each in by_count.items()} for name, by_count in counted.items()},
     }
 
 
@@ -133,8 +136,8 @@ def liveable(
 ) -> dict[str, Json]:
     """Return, by model, the relation rates, and how well a forest tells its rooms from the real ones (.5 is best); `drafts` holds "real"."""
     sets = {
-        name: [relations.furniture(arrangement(case, draft)) for case, draft in zip(cases, made, strict=True)]
-        for name, made in drafts.items()
+        name: [relations.furniture(arrangement(case, draft)) for case, draft in zip(cases, room_drafts, strict=True)]
+        for name, room_drafts in drafts.items()
     }
     rates = relations.compare(rng, sets, known)["rates"]
     names = [case.name for case in cases]
@@ -150,10 +153,12 @@ def arrangement(case: Case, draft: Sequence[Proposal]) -> Arrangement:
     """Return a draft as the room metrics read it."""
     things = [(p.category, p.position, p.yaw, p.size) for p in draft]
     context = case.context
-    return arranged(case.name, context.layout_type, context.polygon, things, [RoomOpening(g.kind, g.segment) for g in context.openings])
+    return make_arrangement(
+        case.name, context.layout_type, context.polygon, things, [RoomOpening(g.kind, g.segment) for g in context.openings]
+    )
 
 
-def asked(cases: Sequence[Case], count: int, rooms: int) -> list[RoomContext]:
+def rooms_with_target(cases: Sequence[Case], count: int, rooms: int) -> list[RoomContext]:
     """Return rooms that are asked for `count` things: `rooms` of those that can hold so many."""
     return [replace(case.context, n_target=count) for case in spread([c for c in cases if holds(c, count)] or cases, rooms)]
 

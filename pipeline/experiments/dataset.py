@@ -54,15 +54,15 @@ def reject_counts(root: Path) -> list[RejectCount]:
     """Count everything that was left out, repaired or tried again, by stage, kind of thing and reason."""
     places = [("preprocess", sources.REASONS, [root / "data" / "tables" / "rejects.parquet"])]
     places += [("postopt", homes.REASONS, sorted((root / "data" / "shards" / "rejects").glob("*.parquet")))]
-    found = []
+    counts = []
     for stage, known, paths in places:
         cases: dict[tuple[str, str], list[Row]] = {}
         for row in (row for path in paths for row in tables.read(path, REJECTS)):
             cases.setdefault((row["what"], row["reason"]), []).append(row)
         for (what, code), rows in sorted(cases.items()):
             example = ": ".join(filter(None, (rows[0]["where"], rows[0]["detail"])))
-            found.append(RejectCount(stage, what, code, known[code], len(rows), example))
-    return found
+            counts.append(RejectCount(stage, what, code, known[code], len(rows), example))
+    return counts
 
 
 def _mean(rows: list[Row], name: str) -> float:

@@ -42,7 +42,7 @@ def write_report(
     shutil.rmtree(folder, ignore_errors=True)
     homes = dataset_homes(root)
     gallery, missing = path_traced(root, folder, homes, factory.seed, settings)
-    views = [Picture(_copied(root, folder, home), f"{home.scene_id}: {home.prompt}") for home in homes[:SHOWN]]
+    views = [Picture(_copy_preview(root, folder, home), f"{home.scene_id}: {home.prompt}") for home in homes[:SHOWN]]
     rates = {name: _plot(folder, name, curves, **labels) for name, (curves, labels) in _plots(figures).items()}
     loss = (
         [_plot(folder, "loss", [_loss(root)], title="training", x="step", y="loss", log=True)]
@@ -64,10 +64,10 @@ def write_report(
         *_baselines(root),
         realism_section(figures["realism"], lineups(root, folder, homes, factory, settings)),
         sections.training_section(_json(root / "metrics" / "encode.json"), _json(root / "metrics" / "train.json"), loss),
-        sections.reject_section([_told(r) for r in rejects]),
+        sections.reject_section([_reject_row(r) for r in rejects]),
     ]
-    if found := _json(root / "metrics" / "calibration.json"):
-        chapters.insert(-1, _calibration(folder, found))
+    if comparison := _json(root / "metrics" / "calibration.json"):
+        chapters.insert(-1, _calibration(folder, comparison))
     write_bytes(folder / "index.html", render("Homes for robots", _lead(root), chapters).encode())
 
 
@@ -85,35 +85,35 @@ def lineups(root: Path, folder: Path, homes: Sequence[Home], factory: Factory, s
     shipped = [row for path in sorted((root / "data" / "shards" / ROOMS.name).glob("*.parquet")) for row in tables.read(path, ROOMS)]
     types = {(row["scene_id"], row["room_id"]): row["layout_type"] for row in (*rows[ROOMS.name], *shipped)}
     rng = seeds.generator(factory.seed, "lineup")
-    made = lineup.lineup(rng, lineup.by_type(homes_of(rows), types), lineup.by_type(homes, types), factory.library)
+    images = lineup.lineup(rng, lineup.by_type(homes_of(rows), types), lineup.by_type(homes, types), factory.library)
     pictures = []
     for name, caption, image in zip(
-        ("lineup", "lineup_told"), ("which five of each row are made?", "the answer"), made or (), strict=False
+        ("lineup", "lineup_told"), ("which five of each row are made?", "the answer"), images or (), strict=False
     ):
         write_with(folder / "plots" / f"{name}.png", image.save)
         pictures.append(Picture(f"plots/{name}.png", caption))
     return pictures
 
 
-def _calibration(folder: Path, found: Mapping[str, Any]) -> Section:
+def _calibration(folder: Path, comparison: Mapping[str, Any]) -> Section:
     pictures = []
-    for name, png in calibration.plots(found).items():
+    for name, png in calibration.plots(comparison).items():
         write_bytes(folder / "plots" / f"{name}.png", png)
         pictures.append(Picture(f"plots/{name}.png", name.replace("_", ", ")))
-    return calibration.calibration_section(found, pictures)
+    return calibration.calibration_section(comparison, pictures)
 
 
 def _planning(root: Path) -> list[Section]:
     """Return the chapter of the bars of floor plans, from the records that the checkout carries."""
     kept, failures, knobs = (_json(root / RECORDS / name) for name in ("planning.json", "failures.json", "knobs.json"))
-    made = planning.planning_section(kept, failures, knobs, monotone)
-    return [made] if made else []
+    section = planning.planning_section(kept, failures, knobs, monotone)
+    return [section] if section else []
 
 
 def _baselines(root: Path) -> list[Section]:
     """Return the chapter of the baselines, where they were run."""
-    made = baselines.baselines_section(_json(root / "metrics" / "baselines.json"))
-    return [made] if made else []
+    section = baselines.baselines_section(_json(root / "metrics" / "baselines.json"))
+    return [section] if section else []
 
 
 def _knobs(root: Path, folder: Path) -> list[Section]:
@@ -126,7 +126,7 @@ def _knobs(root: Path, folder: Path) -> list[Section]:
     return [sections.knob_section(table, Picture("plots/knobs.png", "each knob against its own term"))]
 
 
-def _told(reject: RejectCount) -> list[str]:
+def _reject_row(reject: RejectCount) -> list[str]:
     reason = reject.reason
     return [reject.stage, reject.what, reject.code, reason.effect, str(reject.count), reason.doc, reject.example[:90]]
 
@@ -162,7 +162,7 @@ def _trace(root: Path, seed: int, folder: Path, settings: MetricsSettings, home:
     path_trace(home, library, folder / "views" / f"{home.scene_id}.png", size=size, spp=settings.gallery_samples)
 
 
-def _copied(root: Path, folder: Path, home: Home) -> str:
+def _copy_preview(root: Path, folder: Path, home: Home) -> str:
     source = next((root / "data" / "shards" / "previews").glob(f"*/{home.scene_id}.png"))
     write_bytes(folder / "previews" / source.name, source.read_bytes())
     return f"previews/{source.name}"
@@ -203,5 +203,5 @@ def _plot(folder: Path, name: str, curves: Sequence[Curve], **labels: Any) -> Pi
 def _json(path: Path) -> dict[str, Any]:
     if not path.is_file():
         return {}
-    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    return found
+    content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return content

@@ -60,10 +60,10 @@ def knob_table(seeds: int, jobs: int = 1, names: Collection[str] = TERMS, first:
         measured = [_measure(one) for one in work]
     terms: dict[str, Any] = {}
     for k, name in enumerate(n for n in TERMS if n in names):
-        found = np.array(measured).reshape(-1, len(VALUES), seeds)[k]
-        mean, error = _mean(found.T)
-        steps = [_mean((after - before)[:, None]) for before, after in pairwise(found)]
-        ends = _mean((found[-1] - found[0])[:, None])
+        energies = np.array(measured).reshape(-1, len(VALUES), seeds)[k]
+        mean, error = _mean(energies.T)
+        steps = [_mean((after - before)[:, None]) for before, after in pairwise(energies)]
+        ends = _mean((energies[-1] - energies[0])[:, None])
         terms[name] = {
             "mean": mean.round(5).tolist(),
             "error": error.round(5).tolist(),
@@ -86,9 +86,9 @@ def _mean(samples: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np
     return samples.mean(axis=0), samples.std(axis=0, ddof=1) / np.sqrt(len(samples))
 
 
-def monotone(found: Mapping[str, Any]) -> bool:
+def monotone(term: Mapping[str, Any]) -> bool:
     """Whether a term falls as its knob rises: no step rises by more than its standard error, and the ends differ by more than three."""
-    return all(step <= error for step, error in found["step"]) and found["ends"][0] < -3 * found["ends"][1]
+    return all(step <= error for step, error in term["step"]) and term["ends"][0] < -3 * term["ends"][1]
 
 
 def knob_picture(table: Mapping[str, Any]) -> bytes:
@@ -97,10 +97,10 @@ def knob_picture(table: Mapping[str, Any]) -> bytes:
         Curve(
             name.replace("_", " "),
             table["values"],
-            found["mean"],
-            [m - e for m, e in zip(found["mean"], found["error"], strict=True)],
-            [m + e for m, e in zip(found["mean"], found["error"], strict=True)],
+            term["mean"],
+            [m - e for m, e in zip(term["mean"], term["error"], strict=True)],
+            [m + e for m, e in zip(term["mean"], term["error"], strict=True)],
         )
-        for name, found in table["terms"].items()
+        for name, term in table["terms"].items()
     ]
     return panels(curves, title=f"each knob against its own term, means over {table['seeds']} seeds", x="knob k: weight times 2^k")

@@ -29,31 +29,31 @@ def alone(home: Home, room_id: str) -> Home:
 
 
 def lineup(
-    rng: np.random.Generator, real: Mapping[str, Sequence[Room]], made: Mapping[str, Sequence[Room]], assets: Mapping[str, Asset]
+    rng: np.random.Generator, real: Mapping[str, Sequence[Room]], generated: Mapping[str, Sequence[Room]], assets: Mapping[str, Asset]
 ) -> tuple[Image.Image, Image.Image] | None:
     """Return the two pictures of rooms by type, a row for each type that both have; None where there is none."""
     hidden: list[tuple[str, Image.Image]] = []
-    told: list[tuple[str, Image.Image]] = []
-    for kind in (kind for kind in TYPES if real.get(kind) and made.get(kind)):
+    answers: list[tuple[str, Image.Image]] = []
+    for kind in (kind for kind in TYPES if real.get(kind) and generated.get(kind)):
         row = [
             (name, top_view(alone(*room), assets, CELL, reaches=False))
-            for name, rooms in (("real", real), ("made", made))
+            for name, rooms in (("real", real), ("made", generated))
             for room in (rooms[kind][k] for k in sorted(rng.permutation(len(rooms[kind]))[:EACH]))
         ]
         blank = Image.new("RGB", (CELL, CELL), (244, 244, 241))
         row += [("", blank)] * (2 * EACH - len(row))
-        told += [(f"{name} {kind.replace('_', ' ')}" if name else "", picture) for name, picture in row]
+        answers += [(f"{name} {kind.replace('_', ' ')}" if name else "", picture) for name, picture in row]
         hidden += [("", row[k][1]) for k in rng.permutation(len(row))]
-    if not told:
+    if not answers:
         return None
-    return contact_sheet(hidden, 2 * EACH, CELL), contact_sheet(told, 2 * EACH, CELL)
+    return contact_sheet(hidden, 2 * EACH, CELL), contact_sheet(answers, 2 * EACH, CELL)
 
 
 def by_type(homes: Iterable[Home], types: Mapping[tuple[str, str], str]) -> dict[str, list[Room]]:
     """Return the furnished rooms of homes by their layout type; `types` by (scene_id, room_id)."""
-    found: dict[str, list[Room]] = {}
+    rooms: dict[str, list[Room]] = {}
     for home in homes:
         for room in home.plan.rooms:
             if home.in_room(room.room_id):
-                found.setdefault(types.get((home.scene_id, room.room_id), ""), []).append((home, room.room_id))
-    return found
+                rooms.setdefault(types.get((home.scene_id, room.room_id), ""), []).append((home, room.room_id))
+    return rooms

@@ -24,40 +24,40 @@ def families(settings: MetricsSettings) -> list[list[Condition]]:
 
     The families that take longest come first, so that no worker is left alone at the end.
     """
-    made = [[Condition(f"walkable_{tau:.2f}", walkable=tau) for tau in sorted(settings.taus, reverse=True)]]
-    made[0] += [Condition("guided")]
-    made += [[Condition(ALL_GUIDED)]]  # would share the first family's drafts, but that one takes longest already
+    groups = [[Condition(f"walkable_{tau:.2f}", walkable=tau) for tau in sorted(settings.taus, reverse=True)]]
+    groups[0] += [Condition("guided")]
+    groups += [[Condition(ALL_GUIDED)]]  # would share the first family's drafts, but that one takes longest already
     plain = Condition("plain", articulation="none")
     middle = settings.taus[len(settings.taus) // 2]
-    made += [[replace(plain, name="plain_walkable", walkable=middle), plain, replace(plain, name=ALL_PLAIN, finished=False)]]
-    made += [[Condition(f"count_{n}", count=n)] for n in sorted(settings.counts, reverse=True)]
-    made += [[replace(plain, name=f"count_{n}_plain", count=n, finished=False)] for n in settings.counts]
-    made += [[Condition("heuristic", articulation="heuristic", finished=False)]]
-    return made
+    groups += [[replace(plain, name="plain_walkable", walkable=middle), plain, replace(plain, name=ALL_PLAIN, finished=False)]]
+    groups += [[Condition(f"count_{n}", count=n)] for n in sorted(settings.counts, reverse=True)]
+    groups += [[replace(plain, name=f"count_{n}_plain", count=n, finished=False)] for n in settings.counts]
+    groups += [[Condition("heuristic", articulation="heuristic", finished=False)]]
+    return groups
 
 
 def quantity_table(trials: Trials, counts: Sequence[int], rooms: int) -> Json:
     """Return SR(N): without guidance; guided, as drafted and after post-optimisation, over all first attempts; as shipped."""
-    made: Json = {}
+    table: Json = {}
     for n in counts:
         guided, plain = trials[f"count_{n}"], trials[f"count_{n}_plain"]
-        made[str(n)] = {
+        table[str(n)] = {
             "plain": quantity.from_rooms(plain.drafted["rooms"])[str(n)],
             "drafted": quantity.from_rooms(guided.drafted["rooms"])[str(n)],
             "first": quantity.from_rooms(guided.first["rooms"])[str(n)],
             "shipped": quantity.from_rooms(guided.shipped["rooms"]).get(str(n), {}),
             "ships": len(guided.shipped["rooms"]) / rooms,
         }
-    return made
+    return table
 
 
 def walkable_table(trials: Trials, taus: Sequence[float], rooms: int) -> Json:
     """Return SR(tau) in both meanings: without control, with it over all first attempts, and over the rooms that ship."""
-    made: Json = {}
+    table: Json = {}
     plain = trials["guided"].shipped["rooms"]
     for tau in taus:
         ours, first = (rows["rooms"] for rows in (trials[f"walkable_{tau:.2f}"].shipped, trials[f"walkable_{tau:.2f}"].first))
-        made[f"{tau:.2f}"] = {
+        table[f"{tau:.2f}"] = {
             meaning: {
                 "without": walkable.success_rate([float(r[f"walkable_{meaning}"]) for r in plain], tau),
                 "first": walkable.success_rate([float(r[f"walkable_{meaning}"]) for r in first], tau),
@@ -65,17 +65,17 @@ def walkable_table(trials: Trials, taus: Sequence[float], rooms: int) -> Json:
             }
             for meaning in walkable.MEANINGS
         } | {"ships": len(ours) / rooms}
-    return made
+    return table
 
 
 def articulation_table(rng: np.random.Generator, trials: Trials, sweeps: articulation.Sweeps, assets: Mapping[str, Asset]) -> Json:
     """Return R_acoll, R_reach, Col_obj and openable objects: without guidance, with the paper's heuristic, with the joints' sweeps."""
-    made: Json = {}
+    table: Json = {}
     for name in ("plain", "heuristic", "guided"):
-        made[f"{name}_drafted"] = figures(rng, trials[name].drafted, sweeps, assets)
+        table[f"{name}_drafted"] = figures(rng, trials[name].drafted, sweeps, assets)
     for name in ("plain", "guided"):
-        made[f"{name}_shipped"] = figures(rng, trials[name].shipped, sweeps, assets)
-    return made
+        table[f"{name}_shipped"] = figures(rng, trials[name].shipped, sweeps, assets)
+    return table
 
 
 def figures(rng: np.random.Generator, rows: Mapping[str, list[Row]], sweeps: articulation.Sweeps, assets: Mapping[str, Asset]) -> Json:

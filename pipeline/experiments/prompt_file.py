@@ -82,14 +82,14 @@ def read_prompts(path: Path) -> list[Json]:
     lines = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip()]
     match path.suffix.lower():
         case ".yaml" | ".yml":
-            cases = _listed(path, _yaml(path, text))
+            cases = _cases(path, _yaml(path, text))
         case ".json":
-            cases = _listed(path, _json(path, text) if lines else None)
+            cases = _cases(path, _json(path, text) if lines else None)
         case ".jsonl" | ".ndjson":
             cases = [_case(_json(f"line {n} of {path}", line), f"line {n} of {path}", f"line {n}") for n, line in lines]
         case _:
-            told = [(n, line) for n, line in lines if not line.lstrip().startswith("#")]
-            cases = [{"id": f"line {n}", "prompt": require_prompt(line, f"line {n} of {path}")} for n, line in told]
+            prompts = [(n, line) for n, line in lines if not line.lstrip().startswith("#")]
+            cases = [{"id": f"line {n}", "prompt": require_prompt(line, f"line {n} of {path}")} for n, line in prompts]
     if not cases:
         raise UsageError(f"{path} holds no prompt", "write one prompt a line")
     return cases
@@ -109,12 +109,12 @@ def _json(where: object, text: str) -> object:
         raise ContentError(f"{where} is not JSON ({error})", REMEDY) from error
 
 
-def _listed(path: Path, found: object) -> list[Json]:
-    if found is None:
+def _cases(path: Path, tree: object) -> list[Json]:
+    if tree is None:
         return []
-    if not isinstance(found, list):
+    if not isinstance(tree, list):
         raise ContentError(f"{path} is not a list", REMEDY)
-    return [_case(entry, f"entry {n} of {path}", f"entry {n}") for n, entry in enumerate(found, 1)]
+    return [_case(entry, f"entry {n} of {path}", f"entry {n}") for n, entry in enumerate(tree, 1)]
 
 
 def _case(entry: object, where: str, name: str) -> Json:

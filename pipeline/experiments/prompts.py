@@ -10,7 +10,7 @@ import numpy as np
 
 from pipeline.errors import RefusedError, SfgenError
 from pipeline.floorplan import FloorProgram, request, solve
-from pipeline.metrics.plan_scores import checked, score
+from pipeline.metrics.plan_scores import score, score_checks
 
 Json = dict[str, Any]
 CHECKED = ("presence", "adjacency", "constraints", "strict")  # what a case without a graph is scored on
@@ -26,12 +26,14 @@ NAMES = {
 }
 
 
-def asked(case: Mapping[str, Any]) -> FloorProgram:
+def case_program(case: Mapping[str, Any]) -> FloorProgram:
     """Return what the words of a case ask for."""
     return request(case["prompt"])
 
 
-def measured(cases: Sequence[Mapping[str, Any]], seeds: int, program: Callable[[Mapping[str, Any]], FloorProgram] = asked) -> Json:
+def evaluate_prompts(
+    cases: Sequence[Mapping[str, Any]], seeds: int, program: Callable[[Mapping[str, Any]], FloorProgram] = case_program
+) -> Json:
     """Return every run's scores and seconds, their means and the spread over seeds; a refused prompt scores 0 throughout.
 
     `spread` is the standard deviation over seeds of what it stands beside; `seconds` is wall time from prompt to plan. `program` makes of a case
@@ -40,7 +42,7 @@ def measured(cases: Sequence[Mapping[str, Any]], seeds: int, program: Callable[[
     rows = []
     for case in cases:
         runs = [_run(case, seed, program) for seed in range(seeds)]
-        rows.append({"id": case["id"], "prompt": case["prompt"], "scored": bool(scored(case)), "runs": runs, **_summary(runs)})
+        rows.append({"id": case["id"], "prompt": case["prompt"], "scored": bool(score_names(case)), "runs": runs, **_summary(runs)})
     by_seed = [
         {
             k: float(np.mean([row["runs"][s][k] for row in rows if k in row["runs"][s]]))
@@ -69,18 +71,18 @@ def _run(case: Mapping[str, Any], seed: int, program: Callable[[Mapping[str, Any
         refused = str(error)
     run: Json = {"seed": seed, "seconds": round(time.perf_counter() - start, 4), "cpu_seconds": round(time.process_time() - spent, 4)}
     run["refused"] = refused
-    names = scored(case)
+    names = score_names(case)
     if plan is None:
         return run | dict.fromkeys(names, 0.0)
     if "graph" in case:
-        found = score(plan, case)
-        run |= {name: round(float(getattr(found, name)), 6) for name in SCORES[:-1]} | {"strict": float(found.success)}
+        scores = score(plan, case)
+        run |= {name: round(float(getattr(scores, name)), 6) for name in SCORES[:-1]} | {"strict": float(scores.success)}
     elif names:
-        run |= dict(zip(CHECKED, (round(float(v), 6) for v in checked(plan, case)), strict=True))
+        run |= dict(zip(CHECKED, (round(float(v), 6) for v in score_checks(plan, case)), strict=True))
     return run
 
 
-def scored(case: Mapping[str, Any]) -> tuple[str, ...]:
+def score_names(case: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the scores that a case has ground truth for."""
     return SCORES if "graph" in case else CHECKED if any(case.get("checks", {}).values()) else ()
 
@@ -93,21 +95,21 @@ def _summary(runs: Sequence[Mapping[str, Any]]) -> Json:
     }
 
 
-def report(found: Mapping[str, Any]) -> str:
+def report(figures: Mapping[str, Any]) -> str:
     """Return the figures as a table: a line per prompt, then the mean over all with its spread over seeds."""
-    scored = any(row["scored"] for row in found["prompts"])
-    names = [*SCORES, "seconds"] if scored else ["seconds"]
-    wide = min(32, max(len(row["id"]) for row in found["prompts"]) + 2)
+    any_scored = any(row["scored"] for row in figures["prompts"])
+    names = [*SCORES, "seconds"] if any_scored else ["seconds"]
+    wide = min(32, max(len(row["id"]) for row in figures["prompts"]) + 2)
     head = f"{'prompt':{wide}s}" + "".join(f"{NAMES.get(n, n):>16s}" for n in names) + f"{'refused':>10s}"
     lines = [head]
-    for row in found["prompts"]:
+    for row in figures["prompts"]:
         cells = "".join(f"{row['mean'][n]:16.3f}" if n in row["mean"] else f"{'-':>16s}" for n in names)
         lines.append(f"{row['id'][: wide - 1]:{wide}s}{cells}{sum(r['refused'] is not None for r in row['runs']):10d}")
     for label in ("mean", "spread"):
-        cells = "".join(f"{found[label][n]:16.4f}" if n in found[label] else f"{'-':>16s}" for n in names)
-        lines.append(f"{label:{wide}s}{cells}" + (f"{found['failures']:10d}" if label == "mean" else ""))
+        cells = "".join(f"{figures[label][n]:16.4f}" if n in figures[label] else f"{'-':>16s}" for n in names)
+        lines.append(f"{label:{wide}s}{cells}" + (f"{figures['failures']:10d}" if label == "mean" else ""))
     lines.append(
-        f"{found['plans']} plans: {len(found['prompts'])} prompts with {found['seeds']} seeds; spread: standard deviation over seeds"
+        f"{figures['plans']} plans: {len(figures['prompts'])} prompts with {figures['seeds']} seeds; spread: standard deviation over seeds"
     )
-    lines += [f"refused: {row['id']}: {r['refused']}" for row in found["prompts"] for r in row["runs"][:1] if r["refused"]]
+    lines += [f"refused: {row['id']}: {r['refused']}" for row in figures["prompts"] for r in row["runs"][:1] if r["refused"]]
     return "\n".join(lines) + "\n"

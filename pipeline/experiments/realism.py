@@ -53,16 +53,16 @@ def beside(root: Path, split: str, drafted: Mapping[str, Mapping[str, Sequence[R
     number = {f"{row['scene_id']}/{row['room_id']}": f"room_{FIRST + k}/{row['room_id']}" for k, row in enumerate(rows)}
     real = [replace(furniture(room), name=number[room.name]) for room in rooms_of(folder, split) if room.layout_type]
     floors = {room.name: room for room in real if room.categories}
-    made = {}
-    for name, found in drafted.items():
-        rooms = [room for room in map(furniture, from_rows(found["rooms"], found["objects"])) if room.name in floors]
-        made[name] = [replace(room, openings=floors[room.name].openings) for room in rooms]
-    made[SHIPPED] = [room for room in map(furniture, _shipped(root)) if room.layout_type and room.categories]
+    generated = {}
+    for name, draft in drafted.items():
+        rooms = [room for room in map(furniture, from_rows(draft["rooms"], draft["objects"])) if room.name in floors]
+        generated[name] = [replace(room, openings=floors[room.name].openings) for room in rooms]
+    generated[SHIPPED] = [room for room in map(furniture, _shipped_rooms(root)) if room.layout_type and room.categories]
     train = [room for room in map(furniture, rooms_of(folder, "train")) if room.layout_type and room.categories]
-    return Beside(list(floors.values()), train, made)
+    return Beside(list(floors.values()), train, generated)
 
 
-def _shipped(root: Path) -> Rooms:
+def _shipped_rooms(root: Path) -> Rooms:
     rows: dict[str, list[Row]] = {}
     for table in (ROOMS, OBJECTS, OPENINGS):
         rows[table.name] = [
@@ -76,10 +76,10 @@ def realism_table(seed: int, rooms: Beside, known: Relations, nets: Mapping[str,
     rng = seeds.generator(seed, "realism")
     draws = [alike(rng, rooms.real, rooms.train) for _ in range(DRAWS)]
     pairs = {"train": draws[0]}
-    for name, made in rooms.made.items():
-        floors = {room.name for room in made}
+    for name, generated in rooms.made.items():
+        floors = {room.name for room in generated}
         same = [room for room in rooms.real if room.name in floors]
-        pairs[name] = (same, made) if same else alike(rng, rooms.real, made)
+        pairs[name] = (same, generated) if same else alike(rng, rooms.real, generated)
     pairs = {name: pair for name, pair in pairs.items() if len(pair[0]) > 1}
     spoils = {name: [harm(rng, room) for room in rooms.real] for name, harm in WHOLE.items()}
     harmed = {name: (rooms.real, worse) for name, worse in spoils.items()}
@@ -90,7 +90,7 @@ def realism_table(seed: int, rooms: Beside, known: Relations, nets: Mapping[str,
         "relations": compare(rng, {"real": rooms.real, "train": rooms.train, **rooms.made}, known),
         "layout": layout_figures(seed, pairs, harmed),
         "views": {name: view_figures(rng, seed, embed, pairs, apart, draws) for name, embed in nets.items()},
-        "novelty": {name: novelty(made, real, rooms.train) for name, (real, made) in pairs.items() if name != "train"},
+        "novelty": {name: novelty(generated, real, rooms.train) for name, (real, generated) in pairs.items() if name != "train"},
     }
 
 
@@ -111,15 +111,15 @@ Pairs = Mapping[str, tuple[Sequence[Arrangement], Sequence[Arrangement]]]
 def layout_figures(seed: int, pairs: Pairs, harmed: Pairs) -> Json:
     """Return SCA of the forest for each pair of samples, the same where no body counts as in another, and for each harm."""
 
-    def told(pair: tuple[Sequence[Arrangement], Sequence[Arrangement]], *, solid: bool = False) -> Any:
-        real, made = (features(rooms, solid=solid) for rooms in pair)
-        return forest_accuracy(seed, real, made, *([room.name for room in rooms] for rooms in pair))
+    def accuracy_of(pair: tuple[Sequence[Arrangement], Sequence[Arrangement]], *, solid: bool = False) -> Any:
+        real, generated = (features(rooms, solid=solid) for rooms in pair)
+        return forest_accuracy(seed, real, generated, *([room.name for room in rooms] for rooms in pair))
 
-    harm = {name: told(pair) for name, pair in harmed.items()}
-    blind = [name for name, found in harm.items() if found["rate"] < SEEN]
+    harm = {name: accuracy_of(pair) for name, pair in harmed.items()}
+    blind = [name for name, accuracy in harm.items() if accuracy["rate"] < SEEN]
     return {
-        "made": {name: told(pair) for name, pair in pairs.items()},
-        "solid": {name: told(pair, solid=True) for name, pair in pairs.items()},
+        "made": {name: accuracy_of(pair) for name, pair in pairs.items()},
+        "solid": {name: accuracy_of(pair, solid=True) for name, pair in pairs.items()},
         "harm": harm,
         "blind_to": blind,
     }
@@ -133,23 +133,23 @@ def view_figures(
     A harm is seen where spoilt rooms of the split are farther from training rooms than the same rooms unspoilt, twice as far or more.
     """
 
-    def told(found: Pairs) -> Json:
-        return {name: compare_views(rng, seed, embed, real, {name: made})[name] for name, (real, made) in found.items()}
+    def scores_of(samples: Pairs) -> Json:
+        return {name: compare_views(rng, seed, embed, real, {name: generated})[name] for name, (real, generated) in samples.items()}
 
-    made, harm = told(pairs), told(harmed)
-    if "train" in made:
+    scores, harm = scores_of(pairs), scores_of(harmed)
+    if "train" in scores:
         every = [frechet(*(embed(views_of(rooms)) for rooms in pair)) for pair in draws]
-        made["train"]["fid"] = round(float(np.mean(every)), 4)
-    blind = [name for name, found in harm.items() if "train" not in made or found["fid"] < FARTHER * made["train"]["fid"]]
-    return {"made": made, "harm": harm, "blind_to": blind}
+        scores["train"]["fid"] = round(float(np.mean(every)), 4)
+    blind = [name for name, figures in harm.items() if "train" not in scores or figures["fid"] < FARTHER * scores["train"]["fid"]]
+    return {"made": scores, "harm": harm, "blind_to": blind}
 
 
 def embeddings(file: str) -> dict[str, Embed]:
     """Return the nets by name: our own, and Inception where the user names its file."""
     known = taxonomy.load()
     own = net.load(WEIGHTS, net.header(known.layout_types, STATES, known.names))
-    made: dict[str, Embed] = {"plan-view net": lambda views: net.embed(own, views)}
+    nets: dict[str, Embed] = {"plan-view net": lambda views: net.embed(own, views)}
     if file:
         module = inception.inception(Path(file))
-        made["Inception-v3"] = lambda views: inception.embed(module, views)
-    return made
+        nets["Inception-v3"] = lambda views: inception.embed(module, views)
+    return nets

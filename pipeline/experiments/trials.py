@@ -74,12 +74,12 @@ def trial(factory: Factory, jobs: Sequence[RoomJob], condition: Condition, draft
     drafted = _rows(factory, [(draft, draft.placements) for draft in asked])
     if not condition.finished:
         return Trial(drafted, _rows(factory, []), _rows(factory, []))
-    first, best = _finished(factory, asked, drafts)
+    first, best = _finish_rooms(factory, asked, drafts)
     shipped = [(r.draft, r.placements) for r in best if not r.binding]
     return Trial(drafted, _rows(factory, [(r.draft, r.placements) for r in first]), _rows(factory, shipped))
 
 
-def _finished(factory: Factory, asked: Sequence[Draft], drafts: Drafts) -> tuple[list[RoomResult], list[RoomResult]]:
+def _finish_rooms(factory: Factory, asked: Sequence[Draft], drafts: Drafts) -> tuple[list[RoomResult], list[RoomResult]]:
     """Take rooms to the end: return the first try of each, and the best of as many tries as a room of a home has."""
     rooms = [RoomTries(draft.job) for draft in asked]
     first: dict[int, RoomResult] = {}
@@ -88,14 +88,14 @@ def _finished(factory: Factory, asked: Sequence[Draft], drafts: Drafts) -> tuple
     while pending:
         for i, draft in pending:
             result = finish(draft, factory.library, factory.index, factory.learnt, factory.postopt, factory.verify, taxonomy.load())
-            best[i] = rooms[i].keep(_cleared(factory, result))
+            best[i] = rooms[i].keep(_drop_violations(factory, result))
             first.setdefault(i, best[i])
         failed = [i for i, _ in pending if best[i].failure and rooms[i].again(factory.shard.room_attempts)]
         pending = list(zip(failed, drafts.of([rooms[i].job for i in failed]), strict=True))
     return [first[i] for i in range(len(asked))], [best[i] for i in range(len(asked))]
 
 
-def _cleared(factory: Factory, result: RoomResult) -> RoomResult:
+def _drop_violations(factory: Factory, result: RoomResult) -> RoomResult:
     """Take out of a finished room what the judge faults, as the factory does with homes."""
     while True:
         home = room_home(result.draft.job, result.placements)

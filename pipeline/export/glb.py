@@ -59,9 +59,9 @@ class _Writer:
                 tops.append(turned)
             else:
                 self._nodes[nodes[joint.parent]].setdefault("children", []).append(turned)
-        made = self._node(placed.name, tops, extras={"kind": placed.kind, "model": model.name})
-        _move(self._nodes[made], placed.T_world_model, placed.scale)
-        return made
+        node = self._node(placed.name, tops, extras={"kind": placed.kind, "model": model.name})
+        _move(self._nodes[node], placed.T_world_model, placed.scale)
+        return node
 
     def packed(self, name: str, tops: list[int], licence: str) -> bytes:
         """Return the whole file."""

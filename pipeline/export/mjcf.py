@@ -59,12 +59,12 @@ class _Writer:
                 SubElement(element, "freejoint", name=f"{placed.name}/{model.bodies[index].name}")
             if joint is not None:
                 self._joint(element, placed, joint)
-            for found in children.get(index, []):
-                write(element, found.child, found.T_parent_joint @ inverse(found.T_child_joint), found)
+            for child_joint in children.get(index, []):
+                write(element, child_joint.child, child_joint.T_parent_joint @ inverse(child_joint.T_child_joint), child_joint)
 
         for index, body in enumerate(model.bodies):
             if index not in carried:
-                write(self._world, index, placed.T_world_model @ _scaled(body.T_model_body, placed.scale), None)
+                write(self._world, index, placed.T_world_model @ _scale_translation(body.T_model_body, placed.scale), None)
         for joint in children.get(-1, []):
             T = joint.T_parent_joint @ inverse(joint.T_child_joint)
             write(self._world, joint.child, placed.T_world_model @ T, joint)
@@ -85,8 +85,8 @@ class _Writer:
     def _geoms(self, element: Element, placed: Placed, model: Model, body: Body) -> None:
         for surface in body.surfaces:
             mesh = self._mesh(model, placed, surface.name, visual=True)
-            seen = "ceiling" if surface.group == "ceiling" else "visual"
-            SubElement(element, "geom", {"class": seen}, mesh=mesh, material=self._material(model, surface.material))
+            geom_class = "ceiling" if surface.group == "ceiling" else "visual"
+            SubElement(element, "geom", {"class": geom_class}, mesh=mesh, material=self._material(model, surface.material))
         for box in body.boxes:
             pos, size = numbers(box.center * placed.scale), numbers(box.half * placed.scale)
             SubElement(element, "geom", {"class": "collider"}, type="box", pos=pos, size=size, friction=numbers([box.friction]))
@@ -129,10 +129,10 @@ class _Writer:
             about["range"] = numbers([joint.lower, joint.upper])
         for name, values in zip(("solreflimit", "solimplimit"), joint.stops, strict=False):
             about[name] = numbers(values)
-        held = {"damping": joint.damping, "frictionloss": joint.friction, "armature": joint.armature, "stiffness": joint.stiffness}
+        dynamics = {"damping": joint.damping, "frictionloss": joint.friction, "armature": joint.armature, "stiffness": joint.stiffness}
         if joint.stiffness:
             about["springref"] = numbers([joint.rest])
-        about |= {name: numbers([value]) for name, value in held.items() if value}
+        about |= {name: numbers([value]) for name, value in dynamics.items() if value}
         SubElement(element, "joint", {"name": f"{placed.name}/{joint.name}", "type": joint.kind, **about})
 
 
@@ -144,10 +144,10 @@ def _root(name: str) -> Element:
     SubElement(visual, "headlight", ambient="0.45 0.45 0.45", diffuse="0.5 0.5 0.5", specular="0.1 0.1 0.1")
     default = SubElement(root, "default")
     for kind, group in (("visual", "2"), ("ceiling", "1")):  # of its own, so that a viewer can look in from above
-        seen = SubElement(default, "default", {"class": kind})
-        SubElement(seen, "geom", type="mesh", contype="0", conaffinity="0", group=group, density="0")
-    felt = SubElement(default, "default", {"class": "collider"})
-    SubElement(felt, "geom", group="3", density="0")
+        visual_class = SubElement(default, "default", {"class": kind})
+        SubElement(visual_class, "geom", type="mesh", contype="0", conaffinity="0", group=group, density="0")
+    collider_class = SubElement(default, "default", {"class": "collider"})
+    SubElement(collider_class, "geom", group="3", density="0")
     return root
 
 
@@ -161,11 +161,11 @@ def _inertial(element: Element, inertia: Inertia) -> None:
     SubElement(element, "inertial", {name: numbers(values) for name, values in about.items()})
 
 
-def _scaled(T: Floats, scale: Floats) -> Floats:
+def _scale_translation(T: Floats, scale: Floats) -> Floats:
     """Return a body's transform in a scaled model; only its place is scaled, its geometry is by whoever writes it."""
-    made = T.copy()
-    made[:3, 3] *= scale
-    return made
+    T_scaled = T.copy()
+    T_scaled[:3, 3] *= scale
+    return T_scaled
 
 
 def _bytes(root: Element) -> bytes:

@@ -34,7 +34,7 @@ def read_pieces(
     body: Usd.Prim, T_world_body: Floats, cache: UsdGeom.XformCache, others: set[Sdf.Path]
 ) -> tuple[tuple[Surface, ...], tuple[Box, ...], tuple[Hull, ...], Floats | None]:
     """Return surfaces, boxes, hulls and the middle of the handles of a body, down to where `others` (other bodies) begin."""
-    seen: defaultdict[tuple[str, Material], list[Corners]] = defaultdict(list)
+    visuals: defaultdict[tuple[str, Material], list[Corners]] = defaultdict(list)
     boxes: list[Box] = []
     hulls: list[Hull] = []
     for prim in _gprims(body, others):
@@ -42,17 +42,17 @@ def read_pieces(
         points, counts, indices = _polygons(prim)
         points = points @ T[:3, :3].T + T[:3, 3]
         if prim.HasAPI(UsdPhysics.CollisionAPI) and UsdPhysics.CollisionAPI(prim).GetCollisionEnabledAttr().Get():
-            made = _collider(prim, points, len(hulls), body)
-            if isinstance(made, Box):
-                boxes.append(made)
+            collider = _collider(prim, points, len(hulls), body)
+            if isinstance(collider, Box):
+                boxes.append(collider)
             else:
-                hulls.append(made)
+                hulls.append(collider)
         image = UsdGeom.Imageable(prim)
         if image.ComputePurpose() != "guide" and image.ComputeVisibility() != "invisible":
-            seen[_group(prim, body), _material(prim)].append(_corners(prim, T, points, counts, indices))
-    merged = [_merge(f"{body.GetName()}_{i}", group, look, parts) for i, ((group, look), parts) in enumerate(seen.items())]
-    held = [surface.points for surface in merged if surface.group == "handle"]
-    handle = np.concatenate([(p.max(axis=0) + p.min(axis=0))[None] / 2 for p in held]).mean(axis=0) if held else None
+            visuals[_group(prim, body), _material(prim)].append(_corners(prim, T, points, counts, indices))
+    merged = [_merge(f"{body.GetName()}_{i}", group, look, parts) for i, ((group, look), parts) in enumerate(visuals.items())]
+    handles = [surface.points for surface in merged if surface.group == "handle"]
+    handle = np.concatenate([(p.max(axis=0) + p.min(axis=0))[None] / 2 for p in handles]).mean(axis=0) if handles else None
     return tuple(merged), tuple(boxes), tuple(hulls), None if handle is None else handle.astype(np.float64)
 
 
@@ -89,8 +89,8 @@ def _collider(prim: Usd.Prim, points: Floats, number: int, body: Usd.Prim) -> Bo
     low, high = points.min(axis=0), points.max(axis=0)
     friction = _friction(prim)
     corner = np.abs(points - low).clip(max=np.abs(points - high))  # distance to the nearer face, along each axis
-    found = {tuple(row) for row in (points > (low + high) / 2).tolist()}
-    if approximation == "boundingCube" or (len(found) == 8 and corner.max() < SQUARE):
+    octants = {tuple(row) for row in (points > (low + high) / 2).tolist()}
+    if approximation == "boundingCube" or (len(octants) == 8 and corner.max() < SQUARE):
         return Box((low + high) / 2, (high - low) / 2, friction)
     if approximation != "convexHull":
         raise ContentError(f"{prim.GetPath()} collides as {approximation!r}", "only convex hulls and boxes mean the same in every format")
@@ -187,8 +187,8 @@ def _material(prim: Usd.Prim) -> Material:
 
 
 def _input(shader: UsdShade.Shader, name: str, otherwise: float) -> float:
-    found = shader.GetInput(name)
-    value = found.Get() if found else None
+    shader_input = shader.GetInput(name)
+    value = shader_input.Get() if shader_input else None
     return otherwise if value is None else round(float(value), 6)
 
 

@@ -73,7 +73,7 @@ def read_model(root: Usd.Prim, name: str, *, shared: bool) -> Model:
     joints, grounded = read_joints(root, index, cache)
     grounded |= {i for i, body in enumerate(bodies) if body.inertia is None}
     _require_tree(len(bodies), [(j.parent, j.child) for j in joints], root)
-    pairs = {tuple(sorted((index[p.GetPath()], index[t]))) for p in prims for t in _filtered(p) if t in index}
+    pairs = {tuple(sorted((index[p.GetPath()], index[t]))) for p in prims for t in _filtered_pairs(p) if t in index}
     return Model(name, shared, tuple(bodies), tuple(joints), frozenset(grounded), tuple(sorted(pairs)))  # type: ignore[arg-type]
 
 
@@ -117,7 +117,7 @@ def _inertia(prim: Usd.Prim) -> Inertia | None:
     return Inertia(float(mass), np.array(api.GetCenterOfMassAttr().Get(), np.float64), np.array(moments, np.float64), quaternion)
 
 
-def _filtered(prim: Usd.Prim) -> list[Sdf.Path]:
+def _filtered_pairs(prim: Usd.Prim) -> list[Sdf.Path]:
     return list(UsdPhysics.FilteredPairsAPI(prim).GetFilteredPairsRel().GetTargets()) if prim.HasAPI(UsdPhysics.FilteredPairsAPI) else []
 
 

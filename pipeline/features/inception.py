@@ -33,10 +33,10 @@ def inception(path: Path) -> torch.jit.ScriptModule:
 
 def embed(module: torch.jit.ScriptModule, views: NDArray[np.uint8]) -> NDArray[np.float64]:
     """Return the features (N, D) of views (N, H, W, 3)."""
-    made = []
+    features = []
     with torch.inference_mode():
         for k in range(0, len(views), BATCH):
             images = torch.from_numpy(views[k : k + BATCH]).permute(0, 3, 1, 2).float()
             larger = interpolate(images, (PIXELS, PIXELS), mode="bilinear", antialias=True).round().to(torch.uint8)
-            made.append(module(larger, return_features=True).double())
-    return np.asarray(torch.cat(made).numpy())
+            features.append(module(larger, return_features=True).double())
+    return np.asarray(torch.cat(features).numpy())

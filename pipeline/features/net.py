@@ -53,13 +53,13 @@ class ViewNet(nn.Module):
         """Return the features (B, 32) of plan views (B, 64, 64, 3) in 8 bits."""
         x = views.permute(0, 3, 1, 2).float() / 127.5 - 1
         plane = self.body(x)
-        found: Tensor = self.line(torch.cat([plane.mean((2, 3)), plane.amax((2, 3))], 1))
-        return found
+        embedding: Tensor = self.line(torch.cat([plane.mean((2, 3)), plane.amax((2, 3))], 1))
+        return embedding
 
     def forward(self, views: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         """Return the logits of room kinds (B, R) and of states (B, S), and layout features (B, L)."""
-        found = self.features(views)
-        return self.room(found), self.state(found), self.layout(found)
+        features = self.features(views)
+        return self.room(features), self.state(features), self.layout(features)
 
 
 def embed(net: ViewNet, views: NDArray[np.uint8]) -> NDArray[np.float64]:
@@ -72,9 +72,9 @@ def embed(net: ViewNet, views: NDArray[np.uint8]) -> NDArray[np.float64]:
 
 def standardise(net: ViewNet, views: NDArray[np.uint8]) -> None:
     """Let the net's features have mean 0 and standard deviation 1 over these views (N, 64, 64, 3)."""
-    found = torch.from_numpy(embed(net, views)).float()
-    net.centre += net.spread * found.mean(0)
-    net.spread *= found.std(0).clamp_min(1e-3)
+    features = torch.from_numpy(embed(net, views)).float()
+    net.centre += net.spread * features.mean(0)
+    net.spread *= features.std(0).clamp_min(1e-3)
 
 
 def header(rooms: Sequence[str], states: Sequence[str], categories: Sequence[str]) -> dict[str, str]:
@@ -94,11 +94,11 @@ def load(path: Path, said: dict[str, str]) -> ViewNet:
         raise ContentError(f"{path} is missing", remedy)
     try:
         with safe_open(path, framework="pt") as handle:
-            found = handle.metadata() or {}
+            metadata = handle.metadata() or {}
             tensors = {name: handle.get_tensor(name) for name in handle.keys()}  # noqa: SIM118 - no mapping
     except (OSError, SafetensorError) as error:
         raise ContentError(f"{path} is no safetensors file ({error})", remedy) from error
-    odd = [key for key in said if found.get(key) != said[key]]
+    odd = [key for key in said if metadata.get(key) != said[key]]
     if odd:
         raise ContentError(f"{path} was made for other {', '.join(odd)}", remedy)
     try:

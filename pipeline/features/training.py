@@ -45,9 +45,9 @@ def train(
         order = torch.from_numpy(rng.permutation(len(views)))
         batches = [order[k : k + BATCH] for k in range(0, len(order) - BATCH + 1, BATCH)]
         for batch in batches:
-            seen = _turned(rng, data[0][batch])
-            room, state, found = net(seen)
-            loss = cross_entropy(room, data[1][batch]) + 2 * cross_entropy(state, data[2][batch]) + 3 * mse_loss(found, data[3][batch])
+            images = _augment(rng, data[0][batch])
+            room, state, features = net(images)
+            loss = cross_entropy(room, data[1][batch]) + 2 * cross_entropy(state, data[2][batch]) + 3 * mse_loss(features, data[3][batch])
             optimiser.zero_grad()
             loss.backward()
             optimiser.step()
@@ -57,7 +57,7 @@ def train(
         yield Epoch(*(total / max(1, len(batches))).round(4).tolist())
 
 
-def _turned(rng: np.random.Generator, views: torch.Tensor) -> torch.Tensor:
+def _augment(rng: np.random.Generator, views: torch.Tensor) -> torch.Tensor:
     """Turn a batch by some quarters and mirror it, or not: a room stays a room."""
     turned = torch.rot90(views, int(rng.integers(4)), (1, 2))
     return turned.flip(2) if rng.integers(2) else turned

@@ -137,7 +137,7 @@ def plan_json(
                 "levels": list(range(r.level, top + 1)) if r.room_id in stairs else [r.level],
                 "height": round(r.height, MM),
                 "area": round(r.area, 4),
-                "polygon": _rounded(r.polygon),
+                "polygon": _round_points(r.polygon),
             }
             for r in plan.rooms
         ],
@@ -146,7 +146,7 @@ def plan_json(
                 "id": o.opening_id,
                 "kind": o.kind,
                 "rooms": list(o.rooms),
-                "segment": _rounded(o.segment),
+                "segment": _round_points(o.segment),
                 "width": round(o.width, MM),
                 "height": round(o.height, MM),
                 "sill": round(o.sill, MM),
@@ -166,7 +166,7 @@ def plan_json(
     }
 
 
-def _rounded(points: np.ndarray[Any, np.dtype[np.float64]]) -> list[list[float]]:
+def _round_points(points: np.ndarray[Any, np.dtype[np.float64]]) -> list[list[float]]:
     return (np.round(points, MM) + 0.0).tolist()  # type: ignore[no-any-return]
 
 

@@ -6,8 +6,8 @@ import logging
 
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan.language import parse
-from pipeline.floorplan.language.llm import Server, UnansweredError, ask, configured
-from pipeline.floorplan.language.parser import bounded
+from pipeline.floorplan.language.llm import Server, UnansweredError, ask, server_from_env
+from pipeline.floorplan.language.parser import check_length
 from pipeline.floorplan.program.completion import complete
 from pipeline.floorplan.program.consistency import ImpossibleError, check
 from pipeline.floorplan.program.floor_program import Evidence, FloorProgram
@@ -35,10 +35,10 @@ def _read(prompt: str, server: Server | None) -> FloorProgram:
     parser takes over. A contradiction in the words is refused even where the model has settled it by itself. Raises UsageError and
     RefusedError as `parse` does.
     """
-    server = server or configured()
+    server = server or server_from_env()
     if server is None:
         return parse(prompt)
-    bounded(prompt)
+    check_length(prompt)
     try:
         program = complete(ask(prompt, server))
         check(program)

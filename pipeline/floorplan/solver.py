@@ -17,7 +17,7 @@ from pipeline.floorplan.search import anneal
 from pipeline.floorplan.search.energy import Terms, area, useful_area
 from pipeline.floorplan.search.grid import Labels
 from pipeline.floorplan.search.stairwell import rectangle
-from pipeline.floorplan.search.storeys import Storey, founded, storey
+from pipeline.floorplan.search.storeys import Storey, storey, stretch_storeys
 from pipeline.floorplan.search.trees import Effort, Outline, Trees
 
 TRIES = 24  # whole attempts before a program is refused
@@ -58,14 +58,14 @@ def search(program: FloorProgram, seed: int, keys: tuple[int, ...] = ()) -> Solu
     """Return what `solve` returns, and the effort."""
     program = complete(program)
     check(program)
-    program = founded(program)
+    program = stretch_storeys(program)
     effort = Effort()
     for attempt in range(TRIES):
         effort.attempts += 1
         rng = seeds.generator(seed, "plan", *keys, attempt)
-        made = _attempt(program, rng, attempt, effort)
-        if made is not None:
-            return Solution(made[0], effort, made[1])
+        outcome = _attempt(program, rng, attempt, effort)
+        if outcome is not None:
+            return Solution(outcome[0], effort, outcome[1])
     raise RefusedError(
         f"no floor plan found in {TRIES} attempts for {len(program.rooms)} rooms in {program.total_area.target:.0f} m2",
         "ask for fewer links to one room, a larger total area, or drop a separation",
@@ -82,13 +82,13 @@ def _attempt(program: FloorProgram, rng: np.random.Generator, attempt: int, effo
     stair: tuple[int, int, int, int] | None = None
     for level in range(program.storeys):
         request = requests[level] if stair is None else storey(program, level, stair, ease)
-        made = _storey_grid(request, program, outline, rng, length, effort)
-        if made is None:
+        layout = _storey_grid(request, program, outline, rng, length, effort)
+        if layout is None:
             return None
-        grid = made[0]
-        if attempt < BOLD and (_slotted(grid) or (solved and _hangs(grid, solved[-1]))):
+        grid = layout[0]
+        if attempt < BOLD and (_has_slots(grid) or (solved and _hangs(grid, solved[-1]))):
             return None
-        terms.append(made[1])
+        terms.append(layout[1])
         if program.storeys > 1 and stair is None:
             stair = rectangle(grid, next(i for i, r in enumerate(request.rooms) if r.type == "staircase"))
             if stair is None:
@@ -103,8 +103,8 @@ def _as_built(terms: list[Terms], plan: Plan, storeys: list[tuple[Storey, Labels
     areas = {r.room_id: r.area for r in plan.rooms}
     built = [(request.spec, np.array([areas[r.id] for r in request.rooms])) for request, _ in storeys]
     return Terms(*(float(sum(values)) for values in zip(*terms, strict=True)))._replace(
-        area=sum(area(made, spec.target, spec.heed) for spec, made in built),
-        useful_area=sum(useful_area(made, spec.useful) for spec, made in built),
+        area=sum(area(room_areas, spec.target, spec.heed) for spec, room_areas in built),
+        useful_area=sum(useful_area(room_areas, spec.useful) for spec, room_areas in built),
     )
 
 
@@ -130,7 +130,7 @@ def _hangs(grid: Labels, below: tuple[Storey, Labels]) -> bool:
     return bool(np.sum((grid != grid[0, 0]) & bare) > OVERHANG * grid.size)
 
 
-def _slotted(grid: Labels) -> bool:
+def _has_slots(grid: Labels) -> bool:
     """Whether rooms stand so close to each other with nothing between that one could only fill it: slots outside of less than three cells."""
     for outside in (grid == grid[0, 0], (grid == grid[0, 0]).T):
         for width in range(1, SLOT):

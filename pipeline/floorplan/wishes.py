@@ -6,9 +6,9 @@ import dataclasses
 from collections.abc import Mapping
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language.attaching import Mention, attach, mentioned
+from pipeline.floorplan.language.attaching import Mention, attach, room_mentions
 from pipeline.floorplan.language.furnishing import read_furniture
-from pipeline.floorplan.language.parser import bounded, understand_rooms
+from pipeline.floorplan.language.parser import check_length, understand_rooms
 from pipeline.floorplan.program.consistency import ImpossibleError, check_furniture
 from pipeline.floorplan.program.floor_program import Evidence, FloorProgram, RoomReq
 from pipeline.floorplan.program.furniture import allot, spread
@@ -19,7 +19,7 @@ def with_wishes(program: FloorProgram, prompt: str) -> FloorProgram:
 
     Raises RefusedError when the prompt has no such wish, names a room that the plan lacks, or asks for what no room can meet.
     """
-    bounded(prompt)
+    check_length(prompt)
     plain, claims = read_furniture(prompt)
     if not claims:
         raise RefusedError(
@@ -39,16 +39,16 @@ def with_wishes(program: FloorProgram, prompt: str) -> FloorProgram:
 def _in_plan(program: FloorProgram, said: FloorProgram, prompt: str) -> list[Mention]:
     """Return the mentions with the ids of the plan's rooms instead of those that the words alone would make."""
     rooms: Mapping[str, RoomReq] = {r.id: r for r in said.rooms}
-    found = []
-    for mention in mentioned(said):
+    mentions = []
+    for mention in room_mentions(said):
         ids = tuple(dict.fromkeys(i for name in mention.ids for i in _alike(program, rooms[name])))
         if not ids:
             words = Evidence(start=mention.start, end=mention.end, text=prompt[mention.start : mention.end], field="rooms")
             kind = rooms[mention.ids[0]].type.replace("_", " ")
             have = ", ".join(sorted({r.type.replace("_", " ") for r in program.rooms}))
             raise ImpossibleError(f"the plan has no {kind}", f"it has {have}", [words])
-        found.append(dataclasses.replace(mention, ids=ids))
-    return found
+        mentions.append(dataclasses.replace(mention, ids=ids))
+    return mentions
 
 
 def _alike(program: FloorProgram, room: RoomReq) -> tuple[str, ...]:

@@ -18,12 +18,12 @@ def source_digest(root: Path) -> str:
 
     Compiled code holds what it calls in other modules; numba itself looks only at the module of the function, and would go on using the rest.
     """
-    found = hashlib.sha256(numba.__version__.encode())
+    hasher = hashlib.sha256(numba.__version__.encode())
     for path in sorted(root.rglob("*.py")):
         source = path.read_bytes()
         if b"geometry.compiled import" in source:
-            found.update(source)
-    return found.hexdigest()[:16]
+            hasher.update(source)
+    return hasher.hexdigest()[:16]
 
 
 CONFIG: Any = numba.config

@@ -20,17 +20,17 @@ Ints = NDArray[np.int64]
 
 def group_boxes(prisms: Prisms, start: Ints) -> Floats:
     """Return the boxes (G, 6) of groups: x0, y0, z0, x1, y1, z1; an empty group has an inverted box."""
-    found = np.empty((len(start) - 1, 6))
-    found[:, :3], found[:, 3:] = np.inf, -np.inf
+    boxes = np.empty((len(start) - 1, 6))
+    boxes[:, :3], boxes[:, 3:] = np.inf, -np.inf
     flat = prisms.boxes()
     group = np.repeat(np.arange(len(start) - 1), np.diff(start))
-    np.minimum.at(found[:, 0], group, flat[:, 0])
-    np.minimum.at(found[:, 1], group, flat[:, 1])
-    np.minimum.at(found[:, 2], group, prisms.z[:, 0])
-    np.maximum.at(found[:, 3], group, flat[:, 2])
-    np.maximum.at(found[:, 4], group, flat[:, 3])
-    np.maximum.at(found[:, 5], group, prisms.z[:, 1])
-    return found
+    np.minimum.at(boxes[:, 0], group, flat[:, 0])
+    np.minimum.at(boxes[:, 1], group, flat[:, 1])
+    np.minimum.at(boxes[:, 2], group, prisms.z[:, 0])
+    np.maximum.at(boxes[:, 3], group, flat[:, 2])
+    np.maximum.at(boxes[:, 4], group, flat[:, 3])
+    np.maximum.at(boxes[:, 5], group, prisms.z[:, 1])
+    return boxes
 
 
 @borrowing
@@ -46,7 +46,7 @@ def depth(corners_a: Floats, z_a: Floats, corners_b: Floats, z_b: Floats) -> flo
 def pair_depths(corners: Floats, count: Ints, z: Floats, flat: Floats, start: Ints, group_box: Floats, tolerance: float) -> Floats:
     """Return the depths (G, G) [m] to which groups are in each other (symmetric, 0 where within `tolerance`)."""
     groups = start.shape[0] - 1
-    found = np.zeros((groups, groups))
+    depths = np.zeros((groups, groups))
     for g in range(groups):
         for h in range(g + 1, groups):
             if _apart(group_box[g], group_box[h], tolerance):
@@ -58,9 +58,9 @@ def pair_depths(corners: Floats, count: Ints, z: Floats, flat: Floats, start: In
                         continue
                     worst = max(worst, depth(corners[i, : count[i]], z[i], corners[j, : count[j]], z[j]))
             if worst > tolerance:
-                found[g, h] = worst
-                found[h, g] = worst
-    return found
+                depths[g, h] = worst
+                depths[h, g] = worst
+    return depths
 
 
 @compiled
@@ -79,13 +79,13 @@ def first_hits(
     tolerance: float,
 ) -> Ints:
     """Return for each prism (P,) the first group that it touches, its `owner` left out; -1 for none."""
-    found = np.full(count.shape[0], -1)
+    hits = np.full(count.shape[0], -1)
     box = np.empty(6)
     for i in range(count.shape[0]):
         box[0], box[1], box[2] = flat[i, 0], flat[i, 1], z[i, 0]
         box[3], box[4], box[5] = flat[i, 2], flat[i, 3], z[i, 1]
         for g in range(start.shape[0] - 1):
-            if g == owner[i] or found[i] >= 0 or _apart(box, group_box[g], tolerance):
+            if g == owner[i] or hits[i] >= 0 or _apart(box, group_box[g], tolerance):
                 continue
             for j in range(start[g], start[g + 1]):
                 if _flat_apart(flat[i], others_flat[j], tolerance):
@@ -93,18 +93,18 @@ def first_hits(
                 if min(z[i, 1], others_z[j, 1]) - max(z[i, 0], others_z[j, 0]) <= tolerance:
                     continue
                 if depth(corners[i, : count[i]], z[i], others[j, : others_count[j]], others_z[j]) > tolerance:
-                    found[i] = g
+                    hits[i] = g
                     break
-    return found
+    return hits
 
 
 @compiled
 def wall_excesses(corners: Floats, count: Ints, polygon: Floats) -> Floats:
     """Return how far (P,) [m] each prism sticks out of a room polygon."""
-    found, wall = np.empty(count.shape[0]), np.empty((4, 2))
+    excesses, wall = np.empty(count.shape[0]), np.empty((4, 2))
     for i in range(count.shape[0]):
-        found[i] = beyond(corners[i, : count[i]], polygon, wall)
-    return found
+        excesses[i] = beyond(corners[i, : count[i]], polygon, wall)
+    return excesses
 
 
 @borrowing

@@ -40,10 +40,10 @@ def gap(a: Floats, b: Floats) -> float:
 @compiled
 def gaps(a: Floats, b: Floats) -> Floats:
     """Return `gap` of P pairs: (P, V, 2) and (P, W, 2) -> (P,)."""
-    found = np.empty(a.shape[0])
+    distances = np.empty(a.shape[0])
     for k in range(a.shape[0]):
-        found[k] = gap(a[k], b[k])
-    return found
+        distances[k] = gap(a[k], b[k])
+    return distances
 
 
 @compiled
@@ -87,10 +87,10 @@ def clipped_area(a: Floats, b: Floats) -> float:
 @compiled
 def clipped_areas(a: Floats, b: Floats) -> Floats:
     """Return `clipped_area` of P pairs: (P, V, 2) and (P, W, 2) -> (P,) [m2]."""
-    found = np.empty(a.shape[0])
+    areas = np.empty(a.shape[0])
     for k in range(a.shape[0]):
-        found[k] = clipped_area(a[k], b[k])
-    return found
+        areas[k] = clipped_area(a[k], b[k])
+    return areas
 
 
 @borrowing
@@ -114,21 +114,21 @@ def distance_to(x: float, y: float, polygon: Floats) -> float:
 @compiled
 def _chain(ordered: Floats) -> Floats:
     n = ordered.shape[0]
-    found = np.empty((2 * n, 2))
+    chain = np.empty((2 * n, 2))
     size = 0
     for turn in range(2):
         floor = 2 if turn == 0 else size + 1
         for step in range(turn, n):
             i = step if turn == 0 else n - 1 - step
             while size >= floor:
-                ax, ay = found[size - 2, 0], found[size - 2, 1]
-                bx, by = found[size - 1, 0], found[size - 1, 1]
+                ax, ay = chain[size - 2, 0], chain[size - 2, 1]
+                bx, by = chain[size - 1, 0], chain[size - 1, 1]
                 if (bx - ax) * (ordered[i, 1] - ay) - (by - ay) * (ordered[i, 0] - ax) > 1e-10:
                     break
                 size -= 1
-            found[size, 0], found[size, 1] = ordered[i, 0], ordered[i, 1]
+            chain[size, 0], chain[size, 1] = ordered[i, 0], ordered[i, 1]
             size += 1
-    return found[: size - 1].copy()
+    return chain[: size - 1].copy()
 
 
 @compiled

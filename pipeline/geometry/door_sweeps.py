@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.geometry.memo import recent
-from pipeline.geometry.prisms import BULGE, STEPS, Sweep, covering, stacked
+from pipeline.geometry.prisms import BULGE, STEPS, Sweep, covering, join_prisms
 from pipeline.geometry.walls import LEAF_THICKNESS, Leaf
 
 Floats = NDArray[np.float64]
@@ -34,7 +34,7 @@ def leaf_sweep(leaf: Leaf, elevation: float) -> Sweep:
         flat = _outlines(leaf, angles, start, end, out)
         posed = np.concatenate([np.dstack([flat, np.full(flat.shape[:2], elevation + z)]) for z in (low, high)], axis=1)
         groups.append(covering(np.concatenate([posed[:-1], posed[1:]], axis=1)))
-    return Sweep(stacked(groups), angles[1:])
+    return Sweep(join_prisms(groups), angles[1:])
 
 
 def leaf_handles(leaf: Leaf) -> Floats:

@@ -41,8 +41,8 @@ class Raster:
 
     def index(self, points: Floats) -> NDArray[np.int64]:
         """Return the cells (N, 2) in which points (N, 2) lie, clipped to the raster."""
-        found = np.floor((points - self.origin) / self.cell).astype(np.int64)
-        clipped: NDArray[np.int64] = np.clip(found, 0, np.array(self.shape) - 1)
+        cells = np.floor((points - self.origin) / self.cell).astype(np.int64)
+        clipped: NDArray[np.int64] = np.clip(cells, 0, np.array(self.shape) - 1)
         return clipped
 
     def fill(self, mask: Mask, polygons: Sequence[Floats], *, value: bool = True) -> Mask:
@@ -104,31 +104,31 @@ def standing(free: Mask, radius_cells: float) -> Mask:
     least = (radius_cells + 0.5 - 1e-9) ** 2
     reach = int(np.ceil(radius_cells + 0.5))
     apart = _apart(~free, 1)
-    found = np.zeros((rows, columns), np.bool_)
+    cells = np.zeros((rows, columns), np.bool_)
     for i in range(rows):
         if min(i + 1, rows - i) ** 2 < least:
             continue
         for j in range(columns):
-            found[i, j] = True
+            cells[i, j] = True
         for k in range(max(0, i - reach), min(rows, i + reach + 1)):  # row by row, many cells at once
             for j in range(columns):
-                found[i, j] &= (k - i) ** 2 + apart[k, j] >= least
-    return found
+                cells[i, j] &= (k - i) ** 2 + apart[k, j] >= least
+    return cells
 
 
 @compiled
-def covered(centres: Mask, radius_cells: float) -> Mask:
+def dilate(centres: Mask, radius_cells: float) -> Mask:
     """Return the cells that a disc covers while its centre runs over `centres`: a centre is no farther than the radius and half a cell."""
     rows, columns = centres.shape
     most = (radius_cells + 0.5 + 1e-9) ** 2
     reach = int(np.ceil(radius_cells + 0.5))
     apart = _apart(centres, FAR)
-    found = np.zeros((rows, columns), np.bool_)
+    cells = np.zeros((rows, columns), np.bool_)
     for i in range(rows):
         for k in range(max(0, i - reach), min(rows, i + reach + 1)):
             for j in range(columns):
-                found[i, j] |= (k - i) ** 2 + apart[k, j] <= most
-    return found
+                cells[i, j] |= (k - i) ** 2 + apart[k, j] <= most
+    return cells
 
 
 @compiled
@@ -150,12 +150,12 @@ def _apart(there: Mask, margin: int) -> Floats:
 
 def components(mask: Mask) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
     """Label the 4-connected parts of a mask from 1, and return their sizes in cells (entry 0 counts what is outside)."""
-    labels, sizes = _labelled(mask)
+    labels, sizes = _label_components(mask)
     return labels, sizes
 
 
 @compiled
-def _labelled(mask: Mask) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+def _label_components(mask: Mask) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
     """Flood each part from its first cell, in the order of rows and columns."""
     rows, columns = mask.shape
     wide = columns + 2
@@ -185,8 +185,8 @@ def _labelled(mask: Mask) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
     sizes[0] = rows * columns - tail
     for k in range(1, count + 1):
         sizes[k] = ends[k] - ends[k - 1]
-    found = np.empty((rows, columns), np.int32)
+    label_map = np.empty((rows, columns), np.int32)
     for i in range(rows):
         for j in range(columns):
-            found[i, j] = max(labels[(i + 1) * wide + j + 1], 0)
-    return found, sizes
+            label_map[i, j] = max(labels[(i + 1) * wide + j + 1], 0)
+    return label_map, sizes

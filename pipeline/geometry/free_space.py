@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.plan import Opening, Room
 from pipeline.geometry.compiled import borrowing
-from pipeline.geometry.floor_raster import Mask, Raster, components, covered, fill_all, standing
+from pipeline.geometry.floor_raster import Mask, Raster, components, dilate, fill_all, standing
 from pipeline.geometry.prisms import Prisms
 
 Floats = NDArray[np.float64]
@@ -52,7 +52,7 @@ class FreeSpace:
 
     def covered(self, label: int) -> Mask:
         """Return the floor that the robot covers while it moves about one connected part."""
-        return covered(self.reached(label), self.radius)
+        return dilate(self.reached(label), self.radius)
 
     def shares(self, mask: Mask, rooms: int) -> Floats:
         """Return the share (rooms,) of each room's cells that are in a mask."""
@@ -79,13 +79,13 @@ def bare_floor(rooms: Sequence[Room], openings: Sequence[Opening], depth: float,
 @borrowing
 def _label_near(labels: NDArray[np.int32], point: Floats, within: float) -> int:
     """Return the label other than 0 whose cell's centre is nearest to a point (2,), 0 when none is `within`; all in cells."""
-    best, found = within * within, 0
+    best, label = within * within, 0
     for i in range(max(0, int(point[0] - within - 1)), min(labels.shape[0], int(point[0] + within + 2))):
         for j in range(max(0, int(point[1] - within - 1)), min(labels.shape[1], int(point[1] + within + 2))):
             square = (i + 0.5 - point[0]) ** 2 + (j + 0.5 - point[1]) ** 2
-            if labels[i, j] and (square < best or (found == 0 and square <= best)):
-                best, found = square, labels[i, j]
-    return found
+            if labels[i, j] and (square < best or (label == 0 and square <= best)):
+                best, label = square, labels[i, j]
+    return label
 
 
 def passage(opening: Opening, depth: float, widest: float = np.inf) -> Floats:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Joint, JointType, Link
-from pipeline.geometry.memo import kept
+from pipeline.geometry.memo import cached_on_asset
 
 HANDLES = ("line_fixed_handle", "round_fixed_handle", "hinge_handle")  # part classes that a hand takes hold of
 OPENERS = ("hinge_door", "slider_drawer", "hinge_lid", "slider_lid")  # part classes that open something
@@ -159,7 +159,7 @@ def facing(asset: Asset, joint_index: int) -> NDArray[np.float64]:
     return flat / length if length > 0.5 else np.array([0.0, -1.0])
 
 
-@kept
+@cached_on_asset
 def grips(asset: Asset) -> tuple[tuple[NDArray[np.float64], NDArray[np.float64]], ...]:
     """Return `handle_point` and `facing` of every joint."""
     return tuple((handle_point(asset, k), facing(asset, k)) for k in range(len(asset.joints)))

@@ -25,10 +25,10 @@ def masonry(plan: Plan, level: int, built: Shell) -> list[Prism]:
     """Return all solids of a storey [m above its floor]: walls, lintels, what is below an opening, its floor, its ceilings."""
     windows = [Polygon(cut.quad) for cut in built.cuts if cut.opening.kind == "window"]
     others = [cut for cut in built.cuts if cut.opening.kind != "window"]
-    made = [Prism("wall", piece, 0.0, built.top) for piece in convex_cover(_whole(shapely.union_all([built.region, *windows])))]
-    made += _bands("lintel", [cut for cut in others if built.top - cut.top > EVEN], built, lambda cut: (cut.top, built.top))
-    made += _bands("sill", [cut for cut in others if cut.bottom > EVEN], built, lambda cut: (0.0, cut.bottom))
-    return [*made, *_floor(plan, level, built), *_ceilings(plan, level)]
+    prisms = [Prism("wall", piece, 0.0, built.top) for piece in convex_cover(_whole(shapely.union_all([built.region, *windows])))]
+    prisms += _bands("lintel", [cut for cut in others if built.top - cut.top > EVEN], built, lambda cut: (cut.top, built.top))
+    prisms += _bands("sill", [cut for cut in others if cut.bottom > EVEN], built, lambda cut: (0.0, cut.bottom))
+    return [*prisms, *_floor(plan, level, built), *_ceilings(plan, level)]
 
 
 def _bands(kind: str, cuts: Sequence[Cut], built: Shell, heights: Callable[[Cut], tuple[float, float]]) -> Iterator[Prism]:
@@ -42,7 +42,7 @@ def _bands(kind: str, cuts: Sequence[Cut], built: Shell, heights: Callable[[Cut]
         group.sort(key=lambda cut: float(cut.quad.mean(axis=0) @ along))
         run = group[0].quad
         for cut in group[1:]:
-            longer = _spanned(run, cut.quad)
+            longer = _spanning_rectangle(run, cut.quad)
             if _solid(longer, bottom, top, built):
                 run = longer
             else:
@@ -61,7 +61,7 @@ def _line(cut: Cut) -> tuple[float, ...]:
     return tuple(np.round([*along, across.min(), across.max()], 4).tolist())
 
 
-def _spanned(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+def _spanning_rectangle(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the rectangle (4, 2) over two of the same wall."""
     hull = shapely.convex_hull(shapely.MultiPoint(np.concatenate([first, second])))
     box = shapely.geometry.polygon.orient(shapely.minimum_rotated_rectangle(hull))

@@ -12,18 +12,18 @@ T = TypeVar("T")
 P = ParamSpec("P")
 
 
-def kept(make: Callable[[Asset], T]) -> Callable[[Asset], T]:
+def cached_on_asset(make: Callable[[Asset], T]) -> Callable[[Asset], T]:
     """Let `make` run once per asset; the result lies with the asset and goes with it."""
     name = f"{make.__module__}.{make.__qualname__}"
 
     @functools.wraps(make)
-    def found(asset: Asset) -> T:
+    def cached(asset: Asset) -> T:
         if name not in asset.derived:
             asset.derived[name] = make(asset)
         result: T = asset.derived[name]
         return result
 
-    return found
+    return cached
 
 
 def recent(most: int) -> Callable[[Callable[P, T]], Callable[P, T]]:
@@ -32,11 +32,11 @@ def recent(most: int) -> Callable[[Callable[P, T]], Callable[P, T]]:
     Keyed by the identity of the subject, which holds arrays and has no hash, and by the values of the other arguments.
     """
 
-    def wrapped(make: Callable[P, T]) -> Callable[P, T]:
+    def decorate(make: Callable[P, T]) -> Callable[P, T]:
         known: dict[tuple[Any, ...], tuple[Any, T]] = {}
 
         @functools.wraps(make)
-        def found(*args: P.args, **kwargs: P.kwargs) -> T:
+        def cached(*args: P.args, **kwargs: P.kwargs) -> T:
             key = (id(args[0]), *args[1:], *kwargs.items())
             entry = known.get(key)
             if entry is None:
@@ -45,6 +45,6 @@ def recent(most: int) -> Callable[[Callable[P, T]], Callable[P, T]]:
                 entry = known[key] = (args[0], make(*args, **kwargs))
             return entry[1]
 
-        return found
+        return cached
 
-    return wrapped
+    return decorate

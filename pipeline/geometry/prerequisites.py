@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from pipeline.entities.asset import Asset, Joint
 from pipeline.geometry.contact import first_hits, group_boxes
 from pipeline.geometry.kinematics import OPENERS, joint_motion, joint_range, link_points, moved_links
-from pipeline.geometry.prisms import Prisms, prism, stacked, sweep_of
+from pipeline.geometry.prisms import Prisms, join_prisms, prism, sweep_of
 
 TOUCH = 0.005  # parts that are in each other by no more do not block each other [m]
 HELD = ("hinge_handle", "hinge_knob", "slider_button")  # what a hand takes hold of waits for nothing
 Floats = NDArray[np.float64]
 
 
-def ordered(asset: Asset) -> Asset:
+def with_prerequisites(asset: Asset) -> Asset:
     """Return the asset, each joint's `after` found from its geometry.
 
     A joint waits for a door, drawer or lid whose parts lie in its way at rest, and do so no more once that is open. Parts
@@ -38,7 +38,7 @@ def waiting(asset: Asset) -> list[tuple[int, ...]]:
     moved = [moved_links(asset, k) for k in range(len(joints))]
     points = [np.concatenate([link_points(asset.links[i]) for i in links]) for links in moved]
     rest = [_box(own) for own in points]
-    found: list[set[int]] = [set() for _ in joints]
+    prerequisites: list[set[int]] = [set() for _ in joints]
     for k, joint in enumerate(joints):
         if joint.part_class in HELD:
             continue
@@ -52,8 +52,8 @@ def waiting(asset: Asset) -> list[tuple[int, ...]]:
             at_rest, opened = (_links(asset, moved[i], joint_motion(other, q)) for q in (0.0, joint_range(other)[1]))
             own = _links(asset, moved[k], np.eye(4))
             if _meet(sweep, at_rest) and not _meet(own, at_rest) and not _meet(sweep, opened):
-                found[k].add(i)
-    return [tuple(sorted(i for i in own if k not in found[i])) for k, own in enumerate(found)]
+                prerequisites[k].add(i)
+    return [tuple(sorted(i for i in own if k not in prerequisites[i])) for k, own in enumerate(prerequisites)]
 
 
 def _way(joint: Joint, points: Floats, rest: Floats) -> Floats:
@@ -75,8 +75,8 @@ def _way(joint: Joint, points: Floats, rest: Floats) -> Floats:
 def _links(asset: Asset, links: Sequence[int], T: Floats) -> Prisms:
     """Return the prisms of links, moved by T (4, 4) from rest."""
     meshes = [m for i in links for m in (asset.links[i].colliders or asset.links[i].visuals)]
-    made = (prism(np.asarray(m.vertices, np.float64) @ T[:3, :3].T + T[:3, 3]) for m in meshes)
-    return stacked([p for p in made if p is not None])
+    prisms = (prism(np.asarray(m.vertices, np.float64) @ T[:3, :3].T + T[:3, 3]) for m in meshes)
+    return join_prisms([p for p in prisms if p is not None])
 
 
 def _meet(a: Prisms, b: Prisms) -> bool:

@@ -17,7 +17,7 @@ from pipeline.entities.asset import Asset, Joint, Link
 from pipeline.geometry.compiled import compiled
 from pipeline.geometry.convex import hull
 from pipeline.geometry.kinematics import joint_motion, joint_range, moved_links
-from pipeline.geometry.memo import kept
+from pipeline.geometry.memo import cached_on_asset
 
 Floats = NDArray[np.float64]
 
@@ -41,12 +41,12 @@ class Prisms:
 
     def polygon(self, i: int) -> Floats:
         """Return the plan polygon (n, 2) of prism i."""
-        found: Floats = self.corners[i, : self.count[i]]
-        return found
+        corners: Floats = self.corners[i, : self.count[i]]
+        return corners
 
     def placed(self, position: Floats, yaw: float, scale: Floats) -> Prisms:
         """Return the prisms in the world: scaled, turned by `yaw` [rad], moved to `position` (3,) [m]."""
-        corners, z = _placed(self.corners, self.z, np.asarray(position, np.float64), yaw, np.asarray(scale, np.float64))
+        corners, z = _place_corners(self.corners, self.z, np.asarray(position, np.float64), yaw, np.asarray(scale, np.float64))
         return Prisms(corners, self.count, z, self.part)
 
     def boxes(self) -> Floats:
@@ -55,7 +55,7 @@ class Prisms:
 
 
 @compiled
-def _placed(corners: Floats, z: Floats, position: Floats, yaw: float, scale: Floats) -> tuple[Floats, Floats]:
+def _place_corners(corners: Floats, z: Floats, position: Floats, yaw: float, scale: Floats) -> tuple[Floats, Floats]:
     """Scale, turn and move corners (P, V, 2) and heights (P, 2)."""
     c, s = math.cos(yaw), math.sin(yaw)
     moved, raised = np.empty(corners.shape), np.empty(z.shape)
@@ -71,14 +71,14 @@ def _placed(corners: Floats, z: Floats, position: Floats, yaw: float, scale: Flo
 @compiled
 def _boxes(corners: Floats) -> Floats:
     """Return the boxes (P, 4) of corners (P, V, 2)."""
-    found = np.empty((corners.shape[0], 4))
+    boxes = np.empty((corners.shape[0], 4))
     for i in range(corners.shape[0]):
         for axis in range(2):
             low = high = corners[i, 0, axis]
             for k in range(1, corners.shape[1]):
                 low, high = min(low, corners[i, k, axis]), max(high, corners[i, k, axis])
-            found[i, axis], found[i, axis + 2] = low, high
-    return found
+            boxes[i, axis], boxes[i, axis + 2] = low, high
+    return boxes
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ class Solid:
     sweeps: tuple[Sweep, ...]
 
 
-def stacked(groups: list[Prisms]) -> Prisms:
+def join_prisms(groups: list[Prisms]) -> Prisms:
     """Join groups of prisms into one."""
     if not groups:
         return Prisms(np.zeros((0, CORNERS, 2)), np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0, np.int64))
@@ -115,8 +115,8 @@ def stacked(groups: list[Prisms]) -> Prisms:
 
 def prism(points: Floats, part: int = 0) -> Prisms | None:
     """Return the one prism that covers points (N, 3), or None when their projection is degenerate."""
-    made = covering(np.asarray(points, np.float64)[None], part)
-    return made if len(made) else None
+    cover = covering(np.asarray(points, np.float64)[None], part)
+    return cover if len(cover) else None
 
 
 def covering(points: Floats, first: int = 0) -> Prisms:
@@ -143,7 +143,7 @@ def _cover(points: Floats) -> tuple[Floats, NDArray[np.int64], Floats]:
     return corners, count, z
 
 
-@kept
+@cached_on_asset
 def solid(asset: Asset) -> Solid:
     """Return an asset's prisms. They depend on the asset alone and are kept while the process lives."""
     return make_solid(asset)
@@ -152,7 +152,7 @@ def solid(asset: Asset) -> Solid:
 def make_solid(asset: Asset) -> Solid:
     """Compute the prisms of an asset at rest and in motion."""
     pieces = [p for i, link in enumerate(asset.links) for points in _pieces(link) if (p := prism(points, i)) is not None]
-    return Solid(stacked(pieces), tuple(sweep_of(asset, j) for j in range(len(asset.joints))))
+    return Solid(join_prisms(pieces), tuple(sweep_of(asset, j) for j in range(len(asset.joints))))
 
 
 def _pieces(link: Link) -> list[Floats]:
@@ -175,7 +175,7 @@ def sweep_of(asset: Asset, index: int) -> Sweep:
             moved = np.einsum("kij,pj->kpi", motions[:, :3, :3], points) + motions[:, None, :3, 3]
             groups.append(covering(np.concatenate([moved[:-1], moved[1:]], axis=1), len(reached)))
         reached += positions[1:].tolist()
-    return Sweep(stacked(groups), np.array(reached))
+    return Sweep(join_prisms(groups), np.array(reached))
 
 
 def _steps(joint: Joint, limit: float, pieces: list[Floats]) -> int:
@@ -204,12 +204,12 @@ def _fewer(outline: Floats, most: int) -> Floats:
             cost = abs((b[0] - a[0]) * (apex_y - a[1]) - (b[1] - a[1]) * (apex_x - a[0]))
             if t >= 1.0 - 1e-9 and cost < best:
                 best, edge, x, y = cost, k, apex_x, apex_y
-        kept = np.empty((n - 1, 2))
+        corners = np.empty((n - 1, 2))
         dropped = (edge + 1) % n
         for k in range(n):
             if k != dropped:
-                kept[k - (k > dropped)] = outline[k]
+                corners[k - (k > dropped)] = outline[k]
         place = edge if dropped > edge else edge - 1
-        kept[place, 0], kept[place, 1] = x, y
-        outline = kept
+        corners[place, 0], corners[place, 1] = x, y
+        outline = corners
     return outline

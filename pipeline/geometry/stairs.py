@@ -38,14 +38,14 @@ class Step:
 
 def steps(plan: Plan, level: int) -> tuple[Step, ...]:
     """Return the landings on a storey with their balustrades, and the flights that lead up from it."""
-    found: list[Step] = []
+    pieces: list[Step] = []
     for room in plan.rooms:
         if room.type == "staircase" and level in plan.levels_of(room):
-            found.extend(_storey(plan, room, level))
-    return tuple(found)
+            pieces.extend(_storey(plan, room, level))
+    return tuple(pieces)
 
 
-def seen(plan: Plan, level: int) -> tuple[Step, ...]:
+def visible_steps(plan: Plan, level: int) -> tuple[Step, ...]:
     """Return the steps that one sees on a storey: its own, and the flights that arrive from below; heights above its floor."""
     below = (Step(s.kind, s.polygon, s.bottom - plan.storey_height, s.top - plan.storey_height) for s in steps(plan, level - 1))
     return (*below, *steps(plan, level))
@@ -64,11 +64,11 @@ def _storey(plan: Plan, room: Room, level: int) -> list[Step]:
     half = [min(m[0].width / 2 + LANDING, well.length / 4) for m in mouths]
     turn = 1 if well.way(at[0], half[0], at[1], half[1], 1) >= well.way(at[0], half[0], at[1], half[1], -1) else -1
     k = storeys.index(level)
-    found = []
+    pieces = []
     if k > 0:
-        found.append(Step("landing", well.sector(at[k] - half[k], at[k] + half[k]), -BODY, 0.0))
+        pieces.append(Step("landing", well.sector(at[k] - half[k], at[k] + half[k]), -BODY, 0.0))
         if k == len(storeys) - 1:
-            found.append(Step("rail", well.rail(at[k] + turn * half[k]), 0.0, RAIL_HEIGHT))
+            pieces.append(Step("rail", well.rail(at[k] + turn * half[k]), 0.0, RAIL_HEIGHT))
     if k < len(storeys) - 1:
         count = ceil(plan.storey_height / RISE)
         rise = plan.storey_height / count
@@ -77,10 +77,10 @@ def _storey(plan: Plan, room: Room, level: int) -> list[Step]:
         for i in range(count - 1):
             low, high = sorted((start + turn * i * going, start + turn * (i + 1) * going))
             top = (i + 1) * rise
-            found.append(Step("step", well.sector(low, high), max(0.0, top - BODY), top))
+            pieces.append(Step("step", well.sector(low, high), max(0.0, top - BODY), top))
         post = well.middle + NEWEL / 2 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
-        found.append(Step("newel", post, 0.0, plan.storey_height + RAIL_HEIGHT))
-    return found
+        pieces.append(Step("newel", post, 0.0, plan.storey_height + RAIL_HEIGHT))
+    return pieces
 
 
 class _Well:
@@ -98,8 +98,8 @@ class _Well:
         return float(self.ring.project(shapely.Point(point)))
 
     def point(self, place: float) -> Ring:
-        found: Ring = np.asarray(self.ring.interpolate(place % self.length).coords)[0]
-        return found
+        position: Ring = np.asarray(self.ring.interpolate(place % self.length).coords)[0]
+        return position
 
     def way(self, a: float, half_a: float, b: float, half_b: float, turn: int) -> float:
         """Return the length of wall from the landing at a to the one at b, turning that way; landings may lie above each other."""

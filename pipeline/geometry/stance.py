@@ -35,7 +35,7 @@ def stand_pose(
     prisms, of which those that the robot is high enough to meet, standing at `floor` [m], must stay its radius away; its reach
     bounds the distance to the grip, its cone the angle to the heading. Straight ahead is tried before the sides, middle distances before near and far.
     """
-    distances, turns = _tried(robot.reach, robot.cone)
+    distances, turns = _search_grid(robot.reach, robot.cone)
     low = np.flatnonzero(swept.z[:, 0] < robot.band(floor)[1])
     raster = space.floor.raster
     x, y, found = _search(
@@ -56,7 +56,7 @@ def stand_pose(
 
 
 @functools.lru_cache(maxsize=16)
-def _tried(reach: tuple[float, float], cone: float) -> tuple[Floats, Floats]:
+def _search_grid(reach: tuple[float, float], cone: float) -> tuple[Floats, Floats]:
     """Return the distances [m] to the handle and the turns [rad] from its heading that are tried, in their order."""
     near, far = reach
     distances = np.linspace(near, far, DISTANCES)

@@ -70,7 +70,7 @@ def _rectangle(xs: NDArray[np.float64], ys: NDArray[np.float64], block: tuple[in
 def _cover(part: Polygon) -> list[NDArray[np.float64]]:
     """Cover an axis-parallel polygon greedily by rectangles that cannot grow: each time the one over most of what is left."""
     xs, ys, inside = _cells(part)
-    blocks = sorted({block for cell in np.argwhere(inside) for block in _grown(inside, *map(int, cell))})
+    blocks = sorted({block for cell in np.argwhere(inside) for block in _grow_blocks(inside, *map(int, cell))})
     area = np.diff(xs)[:, None] * np.diff(ys)
     left = np.where(inside, area, 0.0)
     chosen = []
@@ -81,9 +81,9 @@ def _cover(part: Polygon) -> list[NDArray[np.float64]]:
     return chosen
 
 
-def _grown(inside: NDArray[np.bool_], i: int, j: int) -> list[tuple[int, int, int, int]]:
+def _grow_blocks(inside: NDArray[np.bool_], i: int, j: int) -> list[tuple[int, int, int, int]]:
     """Return the blocks (i, j, i1, j1; ends exclusive) about a cell that grow along the rows first, and along the columns first."""
-    found = []
+    blocks = []
     for turned in (False, True):
         grid, a, b = (inside.T, j, i) if turned else (inside, i, j)
         a0, a1 = a, a + 1
@@ -96,8 +96,8 @@ def _grown(inside: NDArray[np.bool_], i: int, j: int) -> list[tuple[int, int, in
             b0 -= 1
         while b1 < grid.shape[1] and grid[a0:a1, b1].all():
             b1 += 1
-        found.append((b0, a0, b1, a1) if turned else (a0, b0, a1, b1))
-    return found
+        blocks.append((b0, a0, b1, a1) if turned else (a0, b0, a1, b1))
+    return blocks
 
 
 def _ticks(values: NDArray[np.float64]) -> NDArray[np.float64]:

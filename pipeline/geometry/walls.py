@@ -125,7 +125,7 @@ def shell(plan: Plan, level: int) -> Shell:
     cuts = tuple(_cut(o, inner, plan) for o in plan.openings if o.level == level)
     region = solid
     if cuts:
-        region = shapely.set_precision(solid.difference(shapely.union_all([_widened(c) for c in cuts])), 1e-6)
+        region = shapely.set_precision(solid.difference(shapely.union_all([_hole_polygon(c) for c in cuts])), 1e-6)
     prisms = [Prism("wall", piece, 0.0, top) for piece in convex_pieces(region)]
     for cut in cuts:
         if top - cut.top > 1e-3:
@@ -139,14 +139,14 @@ def shell(plan: Plan, level: int) -> Shell:
 @recent(64)
 def leaves(plan: Plan) -> tuple[Leaf, ...]:
     """Return the door leaves of all storeys, in the order of the openings, without building walls."""
-    found = []
+    doors = []
     for opening in plan.openings:
         if opening.swing is not None:
             inner = {room.room_id: Polygon(room.polygon) for room in plan.rooms if room.room_id in opening.rooms}
             leaf = _leaf(_cut(opening, inner, plan), inner)
             if leaf is not None:
-                found.append(leaf)
-    return tuple(found)
+                doors.append(leaf)
+    return tuple(doors)
 
 
 def room_panels(room: Room, cuts: tuple[Cut, ...], height: float = 0.0) -> list[Panel]:
@@ -181,7 +181,7 @@ def reveals(cut: Cut) -> list[Panel]:
 def _side(segment: NDArray[np.float64], polygon: Polygon) -> tuple[int, float]:
     """Return on which side of the segment (+1 left, -1 right) a room lies, and how far its face is from the centre line."""
     middle = segment.mean(axis=0)
-    normal = _left(segment)
+    normal = _left_normal(segment)
     for reach in (0.5, 2.0):
         for side in (1, -1):
             ray = LineString([middle, middle + side * reach * normal])
@@ -192,7 +192,7 @@ def _side(segment: NDArray[np.float64], polygon: Polygon) -> tuple[int, float]:
     return (1 if (centre - middle) @ normal > 0 else -1), float(polygon.distance(shapely.Point(middle)))
 
 
-def _left(segment: NDArray[np.float64]) -> NDArray[np.float64]:
+def _left_normal(segment: NDArray[np.float64]) -> NDArray[np.float64]:
     along = segment[1] - segment[0]
     normal: NDArray[np.float64] = np.array([-along[1], along[0]]) / np.linalg.norm(along)
     return normal
@@ -207,15 +207,15 @@ def _cut(opening: Opening, inner: dict[str, Polygon], plan: Plan) -> Cut:
     wall = plan.inner_wall if len(opening.rooms) > 1 else plan.outer_wall
     left = depth.get(1, wall - depth.get(-1, wall / 2))
     right = depth.get(-1, wall - depth.get(1, wall / 2))
-    n, (a, b) = _left(opening.segment), opening.segment
+    n, (a, b) = _left_normal(opening.segment), opening.segment
     quad = np.array([a - right * n, b - right * n, b + left * n, a + left * n])
     return Cut(opening, quad, opening.sill, opening.sill + opening.height)
 
 
-def _widened(cut: Cut) -> Polygon:
+def _hole_polygon(cut: Cut) -> Polygon:
     """Return the hole, a millimetre deeper than the wall, so that no film of wall remains."""
     a, b, c, d = cut.quad
-    n = 1e-3 * _left(cut.opening.segment)
+    n = 1e-3 * _left_normal(cut.opening.segment)
     return Polygon([a - n, b - n, c + n, d + n])
 
 
@@ -226,7 +226,7 @@ def _leaf(cut: Cut, inner: dict[str, Polygon]) -> Leaf | None:
     hinge, other = opening.segment[swing.hinge], opening.segment[1 - swing.hinge]
     along = (other - hinge) / opening.width
     side = _side(opening.segment, inner[swing.room_id])[0] if swing.room_id in inner else 1
-    normal = side * _left(opening.segment)
+    normal = side * _left_normal(opening.segment)
     turn = 1 if along[0] * normal[1] - along[1] * normal[0] > 0 else -1
     right, left = (float(np.linalg.norm(cut.quad[k] - opening.segment[0])) for k in (0, 3))
     front, back = (left, right) if side > 0 else (right, left)

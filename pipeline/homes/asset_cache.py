@@ -72,15 +72,15 @@ class AssetCache:
     def _write(self, asset_id: str, place: Path, seal: Path) -> None:
         """Write an asset under another name and exchange it with what is there: others may be reading."""
         with tempfile.TemporaryDirectory(prefix=".tmp-", dir=self.folder) as scratch:
-            made = Path(scratch) / "made"
-            write_asset(self.library[asset_id], made)
-            commit = record(made, asset_id, {}, flush=False)
+            asset_folder = Path(scratch) / "made"
+            write_asset(self.library[asset_id], asset_folder)
+            commit = record(asset_folder, asset_id, {}, flush=False)
             for path in commit.files:
-                (made / path).chmod(0o444)  # datasets share the file: what edits it in one would change it in all
+                (asset_folder / path).chmod(0o444)  # datasets share the file: what edits it in one would change it in all
             seal.unlink(missing_ok=True)
             if place.exists():
                 place.rename(Path(scratch) / "old")
-            made.rename(place)
+            asset_folder.rename(place)
             write_json(seal, commit.to_json())
 
 

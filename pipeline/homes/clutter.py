@@ -106,7 +106,7 @@ class _Dressing:
         """Return the room's furniture of these categories, in the order of the categories."""
         return [p for name in categories for p in self.furniture if p.category == name]
 
-    def _picked(self, category: str, style: str = "") -> str:
+    def _pick_asset(self, category: str, style: str = "") -> str:
         """Draw an asset of a category, rather one of that style; "" if the library has none."""
         shelf = self.library.of(category)
         if not shelf:
@@ -114,13 +114,13 @@ class _Dressing:
         weights = np.array([STYLE_WEIGHT if style and self.library.rows[a]["style"] == style else 1.0 for a in shelf])
         return shelf[int(self.rng.choice(len(shelf), p=weights / weights.sum()))]
 
-    def _drawn(self, expected: float) -> int:
+    def _draw_count(self, expected: float) -> int:
         return int(expected * self.settings.rate + self.rng.random())
 
     # -- floor -------------------------------------------------------------------------------------------------------
 
     def _rug(self, custom: Rug) -> None:
-        drawn = {asset_id for _ in range(RUGS_TRIED) if (asset_id := self._picked(custom.category))}
+        drawn = {asset_id for _ in range(RUGS_TRIED) if (asset_id := self._pick_asset(custom.category))}
         supers = taxonomy.load().categories
         clear = [
             p
@@ -173,13 +173,13 @@ class _Dressing:
         chosen = next((name for name, most in zip(shares, np.cumsum(list(shares.values())), strict=True) if mark < most), None)
         if chosen is None:
             return
-        kinds = [(name, self._picked(name)) for name in dict.fromkeys((chosen, "blind"))]
+        kinds = [(name, self._pick_asset(name)) for name in dict.fromkeys((chosen, "blind"))]
         for window in hanging.windows:
             for name, asset_id in kinds:
-                if asset_id and self._dressed(hanging, window, name, asset_id):
+                if asset_id and self._dress_window(hanging, window, name, asset_id):
                     break
 
-    def _dressed(self, hanging: Hanging, window: Window, category: str, asset_id: str) -> bool:
+    def _dress_window(self, hanging: Hanging, window: Window, category: str, asset_id: str) -> bool:
         """Hang a curtain to the floor or to the sill, or a blind that is half drawn up, before a window if there is room for it."""
         asset, long = self.library[asset_id], category == "curtain"
         rest = solid(asset).rest
@@ -193,8 +193,8 @@ class _Dressing:
 
     def _walls(self, hanging: Hanging, category: str, expected: float, custom: Hangs) -> None:
         anchors = [p.footprint() for p in self._of(*(custom.over or custom.beside))]
-        for _ in range(self._drawn(expected)):
-            asset_id = self._picked(category)
+        for _ in range(self._draw_count(expected)):
+            asset_id = self._pick_asset(category)
             if not asset_id:
                 return
             size = self.library[asset_id].size
@@ -214,8 +214,8 @@ class _Dressing:
 
     def _load(self, laying: Laying, number: int, support: Placement) -> None:
         for category, expected in cards()[support.category].holds.items():
-            for _ in range(self._drawn(expected)):
-                asset_id = self._picked(category, self.library.rows[support.asset_id]["style"])
+            for _ in range(self._draw_count(expected)):
+                asset_id = self._pick_asset(category, self.library.rows[support.asset_id]["style"])
                 if not asset_id:
                     break
                 facing, centred, backed = (way in cards()[category].lies for way in ("facing", "centred", "backed"))

@@ -79,5 +79,5 @@ def read_drafts(folder: Path, seed: int, indices: Iterable[int]) -> dict[str, li
     """Read the rows of some homes by table. Raises ContentError as `tables.read_arrow` does."""
     scenes = {scene_id(seed, index) for index in indices}
     rows = {table.name: tables.read(folder / f"{table.name}.parquet", table, scenes) for table in DRAFT_TABLES[:-1]}
-    told = tables.read(folder / f"{REJECTS.name}.parquet", REJECTS)
-    return rows | {REJECTS.name: [row for row in told if row["where"].partition("/")[0] in scenes]}
+    rejects = tables.read(folder / f"{REJECTS.name}.parquet", REJECTS)
+    return rows | {REJECTS.name: [row for row in rejects if row["where"].partition("/")[0] in scenes]}

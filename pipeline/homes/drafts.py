@@ -21,14 +21,14 @@ NO_ASSET = "no_asset"
 def draft_rows(drafts: Iterable[HomeDraft], seed: int, assets: Mapping[str, Asset]) -> dict[str, list[Row]]:
     """Return the rows of scenes, rooms, openings, objects and rejects of first drafts."""
     rows: dict[str, list[Row]] = {name: [] for name in ("scenes", "rooms", "openings", "objects", "rejects")}
-    for made in drafts:
-        name = scene_id(seed, made.request.index)
-        placed = tuple(p for draft in made.drafts for p in draft.placements)
-        home = Home(name, seed, made.request.index, made.prompt, made.program, made.plan, placed)
+    for home_draft in drafts:
+        name = scene_id(seed, home_draft.request.index)
+        placed = tuple(p for draft in home_draft.drafts for p in draft.placements)
+        home = Home(name, seed, home_draft.request.index, home_draft.prompt, home_draft.program, home_draft.plan, placed)
         openable = {p.object_id: assets[p.asset_id].openable for p in placed}
-        kinds = {draft.job.room_id: draft for draft in made.drafts}
+        kinds = {draft.job.room_id: draft for draft in home_draft.drafts}
         rows["scenes"].append(scene_row(home) | {"openable": sum(openable.values())})
-        for room in made.plan.rooms:
+        for room in home_draft.plan.rooms:
             draft = kinds.get(room.room_id)
             row = room_row(name, room, draft.job.layout_type if draft else None)
             if draft:
@@ -36,9 +36,9 @@ def draft_rows(drafts: Iterable[HomeDraft], seed: int, assets: Mapping[str, Asse
                 row |= {"objects": len(draft.placements), "openable": count, "openable_sampled": count}
                 row |= {"asked_objects": draft.job.count, "walkable_target": draft.job.walkable}
             rows["rooms"].append(row)
-        rows["openings"] += [opening_row(name, opening) for opening in made.plan.openings]
+        rows["openings"] += [opening_row(name, opening) for opening in home_draft.plan.openings]
         rows["objects"] += [object_row(name, p, openable=openable[p.object_id]) for p in placed]
-        for draft in made.drafts:
+        for draft in home_draft.drafts:
             rows["rejects"] += [reject_row(name, draft.job.room_id, draft.job.attempt, ("object", NO_ASSET, lost)) for lost in draft.lost]
     return rows
 
@@ -50,7 +50,7 @@ def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], reso
     for row in tables["rejects"]:
         if row["reason"] == NO_ASSET:
             lost.setdefault(row["where"], []).append(row["detail"])
-    made = []
+    home_drafts = []
     for request in requests:
         if request.index not in homes:
             continue
@@ -68,5 +68,5 @@ def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], reso
             )
             for job in jobs
         )
-        made.append(HomeDraft(request, home.prompt, home.program, plan, drafts))
-    return made
+        home_drafts.append(HomeDraft(request, home.prompt, home.program, plan, drafts))
+    return home_drafts

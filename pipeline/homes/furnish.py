@@ -15,13 +15,13 @@ from pipeline.diffusion.context import CategoryBounds, Proposal, RoomContext
 from pipeline.diffusion.sampling import Sampler
 from pipeline.entities.home import Placement
 from pipeline.entities.plan import Plan
-from pipeline.homes.parts import parted
+from pipeline.homes.parts import split_room
 from pipeline.homes.request import Request, RoomJob
 from pipeline.homes.resources import Resources
-from pipeline.homes.rounding import rounded
+from pipeline.homes.rounding import round_placement
 from pipeline.retrieval.index import AssetIndex, Match
 from pipeline.retrieval.taste import FinishOf, Taste, draw_finishes, draw_style, tasteful
-from pipeline.retrieval.wall_alignment import anchored
+from pipeline.retrieval.wall_alignment import keep_at_walls
 from pipeline.taxonomy import Taxonomy
 
 PART = 1000  # between the numbers of a room's parts: more than homes have rooms
@@ -76,8 +76,8 @@ def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxono
 
 def _parts(job: RoomJob, whole: RoomContext, taxonomy: Taxonomy, rng: np.random.Generator) -> list[RoomContext]:
     """Return a room, or the parts of one that serves as several, each as the layout model is asked for it."""
-    parts = parted(whole, [(kind, taxonomy.layouts[kind].part) for kind in job.kinds]) if len(job.kinds) > 1 else [whole]
-    counts = _shared(job.count, [shapely.Polygon(part.polygon).area for part in parts])
+    parts = split_room(whole, [(kind, taxonomy.layouts[kind].part) for kind in job.kinds]) if len(job.kinds) > 1 else [whole]
+    counts = _split_count(job.count, [shapely.Polygon(part.polygon).area for part in parts])
     kinds = [part.layout_type for part in parts]
     asked = [(*category_bounds(job, kind, kinds, taxonomy), *usual_bounds(job, kind, taxonomy, rng)) for kind in kinds]
     whole_or_none = [taxonomy.layouts[kind].together if kind in taxonomy.layouts else () for kind in kinds]
@@ -86,7 +86,7 @@ def _parts(job: RoomJob, whole: RoomContext, taxonomy: Taxonomy, rng: np.random.
     ]
 
 
-def _shared(count: int | None, areas: Sequence[float]) -> list[int | None]:
+def _split_count(count: int | None, areas: Sequence[float]) -> list[int | None]:
     """Share a told number of objects among parts by their areas [m2]; None to each where none is told."""
     if count is None:
         return [None] * len(areas)
@@ -165,7 +165,7 @@ def retrieve(
         if match is None:
             lost.append(proposal.category)
             continue
-        position = anchored(proposal.position, proposal.yaw, proposal.size, match.size, context.polygon)
+        position = keep_at_walls(proposal.position, proposal.yaw, proposal.size, match.size, context.polygon)
         position[2] = _height(taxonomy.categories[proposal.category].mount, proposal, float(match.size[2]), context)
         placement = Placement(
             f"{job.room_id}_{proposal.category}_{number}",
@@ -179,7 +179,7 @@ def retrieve(
             np.round(proposal.latent, 5).astype(np.float32),
             match.distance,
         )
-        placements.append(rounded(placement))
+        placements.append(round_placement(placement))
     return Draft(job, tuple(placements), tuple(lost), taste)
 
 

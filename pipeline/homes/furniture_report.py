@@ -8,7 +8,7 @@ from typing import Any
 
 from pipeline import taxonomy
 from pipeline.floorplan.program.floor_program import FloorProgram, Furniture, RoomReq
-from pipeline.floorplan.program.furniture import meant, plain
+from pipeline.floorplan.program.furniture import matching_categories, plain
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,25 +26,25 @@ def deliveries(program: FloorProgram, rows: Mapping[str, Sequence[Mapping[str, A
     """Compare a program with the rows of a finished home; `styles` gives the style of each asset, "" where it is unknown."""
     measured = {row["room_id"]: row for row in rows["rooms"]}
     pieces = set(taxonomy.load().names)  # what lies on or in furniture is no piece of it
-    found: list[Delivery] = []
+    entries: list[Delivery] = []
     home = program.furniture
     if home.least is not None or home.most is not None:
         there = sum(o["category"] in pieces for o in rows["objects"])
-        found.append(_counted("(home)", "pieces", home.least or 0, home.most, there))
+        entries.append(_delivery("(home)", "pieces", home.least or 0, home.most, there))
     for room in program.rooms:
         wish = room.furniture
         if wish != Furniture() and room.id in measured:
             objects = [o for o in rows["objects"] if o["room_id"] == room.id and o["category"] in pieces]
-            found += _room(room, wish, measured[room.id], objects, styles)
-    return found
+            entries += _room(room, wish, measured[room.id], objects, styles)
+    return entries
 
 
-def report(found: Sequence[Delivery]) -> str:
+def report(entries: Sequence[Delivery]) -> str:
     """Return the deliveries as a table, "" where nothing was asked."""
-    if not found:
+    if not entries:
         return ""
     marks = {True: "yes", False: "NO", None: ""}
-    rows = [("room", "furniture", "asked", "delivered", "met"), *((d.room, d.what, d.asked, d.delivered, marks[d.met]) for d in found)]
+    rows = [("room", "furniture", "asked", "delivered", "met"), *((d.room, d.what, d.asked, d.delivered, marks[d.met]) for d in entries)]
     wide = [max(len(row[k]) for row in rows) + 2 for k in range(5)]
     return "\n".join("".join(cell.ljust(w) for cell, w in zip(row, wide, strict=True)).rstrip() for row in rows) + "\n"
 
@@ -61,23 +61,23 @@ def bounds(least: int | None, most: int | None) -> str:
 def _room(
     room: RoomReq, wish: Furniture, row: Mapping[str, Any], objects: Sequence[Mapping[str, Any]], styles: Mapping[str, str]
 ) -> list[Delivery]:
-    found: list[Delivery] = []
+    entries: list[Delivery] = []
     if wish.least is not None or wish.most is not None:
-        found.append(_counted(room.id, "pieces", wish.least or 0, wish.most, len(objects)))
+        entries.append(_delivery(room.id, "pieces", wish.least or 0, wish.most, len(objects)))
     for things in wish.counts:
-        have = sum(o["category"] in meant(things, room.type) for o in objects)
-        found.append(_counted(room.id, plain(things.category), things.min, things.max, have))
+        have = sum(o["category"] in matching_categories(things, room.type) for o in objects)
+        entries.append(_delivery(room.id, plain(things.category), things.min, things.max, have))
     if wish.openable is not None:
-        found.append(_counted(room.id, "that open", wish.openable, None, int(row["openable"])))
+        entries.append(_delivery(room.id, "that open", wish.openable, None, int(row["openable"])))
     if wish.walkable is not None:
         free = float(row["walkable_free"])
-        found.append(Delivery(room.id, "free floor", f"{wish.walkable:.0%}", f"{free:.0%}", free >= wish.walkable - 0.005))
+        entries.append(Delivery(room.id, "free floor", f"{wish.walkable:.0%}", f"{free:.0%}", free >= wish.walkable - 0.005))
     if wish.style is not None:
         known = [styles[o["asset_id"]] for o in objects if styles.get(o["asset_id"])]
         text = f"{sum(s == wish.style for s in known)} of {len(known)} with a style" if known else "nothing has a style"
-        found.append(Delivery(room.id, "style", wish.style, text, None))
-    return found
+        entries.append(Delivery(room.id, "style", wish.style, text, None))
+    return entries
 
 
-def _counted(room: str, what: str, least: int, most: int | None, have: int) -> Delivery:
+def _delivery(room: str, what: str, least: int, most: int | None, have: int) -> Delivery:
     return Delivery(room, what, bounds(least, most), str(have), least <= have and (most is None or have <= most))

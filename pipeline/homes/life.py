@@ -117,7 +117,7 @@ class HomeLife:
 
     def _draw_plan(self) -> None:
         try:
-            with self._charged():
+            with self._charge():
                 self._move_in(plan_home(self.resources, self.request, self.plan_attempt))
         except RefusedError as error:
             self._refuse("refused", error)
@@ -140,7 +140,7 @@ class HomeLife:
         self.drafted.pop(job.room_id, None)
         self.tries += 1
         r = self.resources
-        with self._charged(), r.timed("postopt"):
+        with self._charge(), r.timed("postopt"):
             result = finish(draft, r.library, r.index, r.learnt, r.postopt, r.verify, taxonomy.load())
         self.rejects.extend(self._reject(job, reject) for reject in result.rejects)
         self._check(result, self.rooms[job.room_id].keep(result))
@@ -152,8 +152,8 @@ class HomeLife:
         job, budget = result.draft.job, self.resources.shard
         self.rejects.append(self._reject(job, ("room", result.failure, result.detail)))
         if self._seconds > budget.home_seconds:
-            told = f"took more than {budget.home_seconds:.0f} s, last by {result.failure} ({result.detail})"
-            self._refuse("deadline", ContentError(told))
+            message = f"took more than {budget.home_seconds:.0f} s, last by {result.failure} ({result.detail})"
+            self._refuse("deadline", ContentError(message))
         elif again := self.rooms[job.room_id].again(budget.room_attempts):
             self.waiting[job.room_id] = again
         elif best.binding:
@@ -164,8 +164,8 @@ class HomeLife:
         most = self.resources.shard.home_attempts
         if self.plan_attempt + 1 >= most:
             kind = RefusedError if failure in WISHES else ContentError
-            told = f"home {self.request.index} (seed {self.resources.seed}) failed {most} times, last by {failure} ({detail})"
-            self._refuse("attempts_spent", kind(told, "ask for fewer or smaller things, or larger rooms"))
+            message = f"home {self.request.index} (seed {self.resources.seed}) failed {most} times, last by {failure} ({detail})"
+            self._refuse("attempts_spent", kind(message, "ask for fewer or smaller things, or larger rooms"))
             return
         self.rejects.append(reject_row(self.name, "", self.plan_attempt, ("home", failure, detail)))
         self.plan_attempt += 1
@@ -230,7 +230,7 @@ class HomeLife:
         return reject_row(self.name, job.room_id, job.draw, reject)
 
     @contextmanager
-    def _charged(self) -> Iterator[None]:
+    def _charge(self) -> Iterator[None]:
         """Add the CPU seconds of the block to what the home has taken."""
         start = time.process_time()
         yield

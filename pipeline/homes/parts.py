@@ -34,13 +34,13 @@ class Cut:
     merit: float
 
 
-def parted(room: RoomContext, areas: Sequence[tuple[str, float]]) -> list[RoomContext]:
+def split_room(room: RoomContext, areas: Sequence[tuple[str, float]]) -> list[RoomContext]:
     """Return the parts of a room in the order of `areas`, which are layout types and their usual areas [m2]; the room itself where there is one or no good cut."""
     if len(areas) < 2:
         return [replace(room, layout_type=areas[0][0])] if areas else [room]
     rest, openings = shapely.Polygon(room.polygon), list(room.openings)
     order = sorted(range(len(areas)), key=lambda k: (areas[k][0] in LAST, -k))
-    found: dict[int, RoomContext] = {}
+    parts: dict[int, RoomContext] = {}
     for place, k in enumerate(order[:-1]):
         kind, left = areas[k][0], sum(areas[i][1] for i in order[place:])
         cut = _best_cut(rest, areas[k][1] / left, openings, kind)
@@ -48,10 +48,10 @@ def parted(room: RoomContext, areas: Sequence[tuple[str, float]]) -> list[RoomCo
             return [replace(room, layout_type=areas[order[-1]][0])]
         within = [o for o in openings if _nearer(o, cut.part, cut.rest)]
         between = RoomOpening("open", cut.line)
-        found[k] = replace(room, layout_type=kind, polygon=_ring(cut.part), openings=(*within, between))
+        parts[k] = replace(room, layout_type=kind, polygon=_ring(cut.part), openings=(*within, between))
         rest, openings = cut.rest, [*(o for o in openings if not _nearer(o, cut.part, cut.rest)), between]
-    found[order[-1]] = replace(room, layout_type=areas[order[-1]][0], polygon=_ring(rest), openings=tuple(openings))
-    return [found[k] for k in range(len(areas))]
+    parts[order[-1]] = replace(room, layout_type=areas[order[-1]][0], polygon=_ring(rest), openings=tuple(openings))
+    return [parts[k] for k in range(len(areas))]
 
 
 def _best_cut(whole: shapely.Polygon, share: float, openings: Sequence[RoomOpening], kind: str) -> Cut | None:
@@ -95,7 +95,7 @@ def _cut_off(whole: shapely.Polygon, way: Floats, share: float, openings: Sequen
     merit = min(_squareness(part), _squareness(rest))
     passages = [o for o in openings if o.kind != "window" and _nearer(o, part, rest)]
     merit -= DOOR * len(passages) if kind == QUIET else 0.0
-    merit -= CUT * sum(_straddled(o, (first + last) / 2, way) for o in openings)
+    merit -= CUT * sum(_crosses_opening(o, (first + last) / 2, way) for o in openings)
     return Cut(part, rest, ends, merit)
 
 
@@ -108,7 +108,7 @@ def _nearer(opening: RoomOpening, part: shapely.Polygon, rest: shapely.Polygon) 
     return bool(part.distance(middle) < rest.distance(middle))
 
 
-def _straddled(opening: RoomOpening, at: float, way: Floats) -> bool:
+def _crosses_opening(opening: RoomOpening, at: float, way: Floats) -> bool:
     """Whether a line across `way` runs through an opening."""
     ends = np.sort(opening.segment @ way)
     return bool(ends[0] < at < ends[1])

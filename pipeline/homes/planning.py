@@ -14,7 +14,7 @@ from pipeline.entities.plan import Plan
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language import parse
 from pipeline.floorplan.program.floor_program import Furniture
-from pipeline.floorplan.program.furniture import meant, needed, plain
+from pipeline.floorplan.program.furniture import least_pieces, matching_categories, plain
 from pipeline.homes.request import Request, RoomJob, layout_type
 from pipeline.homes.resources import Resources
 from pipeline.verify import verify_home
@@ -77,14 +77,14 @@ def room_jobs(resources: Resources, plan: Plan, index: int, attempt: int, wishes
 
 def _check_possible(resources: Resources, room_id: str, kind: str, wish: Furniture) -> None:
     """Raise RefusedError for wishes that the layout model or the library cannot meet."""
-    most, slots = max(wish.least or 0, needed(wish)), resources.sampler.slots
+    most, slots = max(wish.least or 0, least_pieces(wish)), resources.sampler.slots
     if most > slots:
         raise RefusedError(
             f"{most} objects are asked for in {room_id}, and a room takes at most {slots}",
             "ask for fewer, or train with more train.slots",
         )
     for things in wish.counts:
-        if things.min and not any(resources.index.shelves.get(name) is not None for name in meant(things, kind)):
+        if things.min and not any(resources.index.shelves.get(name) is not None for name in matching_categories(things, kind)):
             raise RefusedError(f"the library has no {plain(things.category)} for {room_id}", "ask for something else")
 
 
@@ -93,7 +93,7 @@ def told_count(wish: Furniture, rng: np.random.Generator) -> int | None:
     least, most = wish.least, wish.most
     if least is None and most is None:
         return None
-    low = max(least or 0, needed(wish))
+    low = max(least or 0, least_pieces(wish))
     high = most if most is not None else max(low + 2, 4)
     low = low if least is not None else max(low, high // 2)
     return int(rng.integers(low, max(high, low) + 1))

@@ -111,11 +111,11 @@ class Tally:
 
     def lines(self) -> list[str]:
         """Return one line for each reason why homes stay empty."""
-        told = []
+        reasons = []
         for reason, cases in sorted(self.empty.items()):
             count = "1 home stays" if len(cases) == 1 else f"{len(cases)} homes stay"
-            told.append(f"{count} empty: {reason} ({'; '.join(f'{scene}: {detail}'[:200] for scene, detail in cases[:1])})")
-        return told
+            reasons.append(f"{count} empty: {reason} ({'; '.join(f'{scene}: {detail}'[:200] for scene, detail in cases[:1])})")
+        return reasons
 
 
 def fill(
@@ -154,7 +154,7 @@ def fill(
         before = tally.homes + tally.unmade
         with closing(done):  # an error stops the workers at once
             for chunk, answer in done:
-                batch = lost(chunk, answer, factory.seed) if isinstance(answer, Lost) else answer
+                batch = lost_batch(chunk, answer, factory.seed) if isinstance(answer, Lost) else answer
                 for empty in batch.empties:
                     if strict:
                         raise empty.error
@@ -224,11 +224,11 @@ def attempt(factory: Factory, requests: Sequence[Request], first: Sequence[HomeD
             mine = {d.request.index: [d] for d in first or ()}
             return [o for r in requests for o in attempt(factory, [r], None if first is None else mine.get(r.index, []))]
         frame = traceback.extract_tb(error.__traceback__)[-1]
-        told = f"{type(error).__name__}: {error} ({Path(frame.filename).name}:{frame.lineno}, {frame.name})"
-        return [Empty(requests[0].index, "internal", ContentError(told))]
+        message = f"{type(error).__name__}: {error} ({Path(frame.filename).name}:{frame.lineno}, {frame.name})"
+        return [Empty(requests[0].index, "internal", ContentError(message))]
 
 
-def lost(chunk: Chunk, answer: Lost, seed: int) -> Batch:
+def lost_batch(chunk: Chunk, answer: Lost, seed: int) -> Batch:
     """Return what a chunk of one home comes to that its workers did not survive."""
     (request,) = chunk.requests
     how = "died at it" if answer.how == "died" else "kept silent"
@@ -238,7 +238,7 @@ def lost(chunk: Chunk, answer: Lost, seed: int) -> Batch:
 
 def empties_of(dataset: Dataset) -> dict[str, list[tuple[str, str]]]:
     """Return the homes that stay empty, by reason: (scene id, detail)."""
-    found: dict[str, list[tuple[str, str]]] = {}
+    by_reason: dict[str, list[tuple[str, str]]] = {}
     for number in range(dataset.header.shards):
         commit = read_commit(dataset.folder, shard_name(number))
         if commit and commit.rows["scenes"] == len(dataset.header.indices(number)):
@@ -250,8 +250,8 @@ def empties_of(dataset: Dataset) -> dict[str, list[tuple[str, str]]]:
             rows = [row for part in parts if part.whole() for row in part.rows("rejects").to_pylist()]
         for row in rows:
             if row["what"] == EMPTY:
-                found.setdefault(row["reason"], []).append((row["where"], row["detail"]))
-    return found
+                by_reason.setdefault(row["reason"], []).append((row["where"], row["detail"]))
+    return by_reason
 
 
 def _finish(dataset: Dataset, number: int) -> None:

@@ -27,20 +27,20 @@ def made_with() -> dict[str, str]:
     return {**{name: version(name) for name in PACKAGES}, "python": platform.python_version(), "instructions": instructions}
 
 
-def chosen(header: Header, count: int) -> list[int]:
+def spread_indices(header: Header, count: int) -> list[int]:
     """Return so many indices of a dataset, evenly spread."""
     return [int(i) for i in np.unique(np.linspace(0, header.count - 1, min(count, header.count)).round())]
 
 
 def differing(folder: Path, header: Header, factory: Factory, asked: Callable[[int], Request], indices: Sequence[int]) -> list[str]:
     """Make homes again and return a line for each that is not what lies in the dataset: which columns and files, and by how much."""
-    told = []
+    lines = []
     for start in range(0, len(indices), factory.chunk):
         some = indices[start : start + factory.chunk]
         for index, outcome in zip(some, factory.make([asked(i) for i in some]), strict=True):
             number, name = index // header.shard_size, scene_id(header.seed, index)
-            made = (outcome.rows(header.seed), {}) if isinstance(outcome, Empty) else (outcome.rows, outcome.files)
-            content = gather(number, [made])
+            home = (outcome.rows(header.seed), {}) if isinstance(outcome, Empty) else (outcome.rows, outcome.files)
+            content = gather(number, [home])
             parts = []
             for table, schema in TABLES.items():
                 there = [r for r in tables.read(folder / table_path(table, number), schema) if name in (r.get("scene_id"), r.get("where"))]
@@ -48,20 +48,20 @@ def differing(folder: Path, header: Header, factory: Factory, asked: Callable[[i
                 parts += _columns(table, there, here)
             parts += [file for file, data in content.files.items() if not (folder / file).is_file() or (folder / file).read_bytes() != data]
             if parts:
-                told.append(f"{name}: {', '.join(parts)}")
-    return told
+                lines.append(f"{name}: {', '.join(parts)}")
+    return lines
 
 
 def _columns(table: str, there: Sequence[Mapping[str, Any]], here: Sequence[Mapping[str, Any]]) -> list[str]:
     """Return what differs between the rows of one home."""
     if len(there) != len(here):
         return [f"{table} ({len(there)} rows, here {len(here)})"]
-    found = []
+    differences = []
     for column in here[0] if here else ():
         pairs = [(a[column], b[column]) for a, b in zip(there, here, strict=True) if a[column] != b[column]]
         if pairs and all(isinstance(v, float) or (isinstance(v, list) and v and isinstance(v[0], float)) for pair in pairs for v in pair):
             most = max(float(np.abs(np.subtract(a, b)).max()) for a, b in pairs)
-            found.append(f"{table}.{column} ({len(pairs)} rows, by {most:.0e} at most)")
+            differences.append(f"{table}.{column} ({len(pairs)} rows, by {most:.0e} at most)")
         elif pairs:
-            found.append(f"{table}.{column} ({len(pairs)} rows)")
-    return found
+            differences.append(f"{table}.{column} ({len(pairs)} rows)")
+    return differences

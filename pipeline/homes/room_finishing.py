@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from pipeline.arrange import LearntRelations, PostoptSettings, Site, post_optimise
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
-from pipeline.floorplan.program.furniture import meant
+from pipeline.floorplan.program.furniture import matching_categories
 from pipeline.homes.furnish import Draft
 from pipeline.homes.request import RoomJob
-from pipeline.homes.rounding import rounded
+from pipeline.homes.rounding import round_placement
 from pipeline.homes.violations import Violation
 from pipeline.retrieval.index import AssetIndex
 from pipeline.taxonomy import Taxonomy
@@ -74,11 +74,11 @@ def _unmet(job: RoomJob, placements: tuple[Placement, ...], openers: frozenset[s
     """Return (reason code, detail) of the first wish that is not met."""
     least, most = job.bounds
     if len(placements) < (least or 0) or (most is not None and len(placements) > most):
-        return "count_missed", f"{len(placements)} objects, asked for {_asked(least or 0, most)}"
+        return "count_missed", f"{len(placements)} objects, asked for {_bounds_in_words(least or 0, most)}"
     for wish in job.furniture.counts:
-        have = sum(p.category in meant(wish, job.room.type) for p in placements)
+        have = sum(p.category in matching_categories(wish, job.room.type) for p in placements)
         if have < wish.min or (wish.max is not None and have > wish.max):
-            return "category_missed", f"{have} {wish.category}, asked for {_asked(wish.min, wish.max)}"
+            return "category_missed", f"{have} {wish.category}, asked for {_bounds_in_words(wish.min, wish.max)}"
     opening = sum(p.asset_id in openers for p in placements)
     if opening < (job.furniture.openable or 0):
         return "openable_missed", f"{opening} objects open, asked for {job.furniture.openable}"
@@ -103,7 +103,7 @@ def finish(
     smaller = index.favouring(draft.taste.style, wished=draft.taste.wished).smaller
     counted = job.bounds[0] is not None or bool(job.furniture.counts)
     arranged = post_optimise(site, placements, assets, learnt, settings, smaller, target=job.walkable, keep_count=counted)
-    placements = tuple(rounded(p) for p in arranged.placements)
+    placements = tuple(round_placement(p) for p in arranged.placements)
     rejects += [("object", r.reason, f"{r.object_id}: {r.detail}") for r in arranged.rejects]
     free = arranged.ratio
     openers = frozenset(p.asset_id for p in placements if assets[p.asset_id].openable)
@@ -111,7 +111,7 @@ def finish(
     return RoomResult(draft, placements, tuple(rejects), failure, detail, binding, free, openers)
 
 
-def _asked(least: int, most: int | None) -> str:
+def _bounds_in_words(least: int, most: int | None) -> str:
     """Return bounds in words."""
     if most is None:
         return f"at least {least}"

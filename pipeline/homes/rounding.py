@@ -10,7 +10,7 @@ import numpy as np
 from pipeline.entities.home import Placement
 
 
-def rounded(placement: Placement) -> Placement:
+def round_placement(placement: Placement) -> Placement:
     """Round position and size to 0.1 mm, yaw to 1e-5 rad in (-pi, pi], scale to 1e-6."""
     yaw = round(math.remainder(placement.yaw, 2 * math.pi), 5)
     if yaw <= -3.14159:

@@ -22,7 +22,7 @@ class Step(NamedTuple):
     kl: float
 
 
-def seeded(seed: int, settings: EncodeSettings) -> PointVae:
+def init_vae(seed: int, settings: EncodeSettings) -> PointVae:
     """Build the untrained net from the seed alone."""
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(seeds.key(seed, "vae-init") % 2**63)
@@ -40,12 +40,12 @@ def train(seed: int, net: PointVae, clouds: Tensor, settings: EncodeSettings, de
     for step in range(settings.steps):
         rng = torch.Generator().manual_seed(seeds.key(seed, "vae-step", step) % 2**63)
         rows = torch.randint(len(clouds), (settings.batch,), generator=rng).to(device)
-        seen = torch.randperm(clouds.shape[1], generator=rng)[: settings.train_points].to(device)
-        batch = clouds[rows][:, seen]
+        subset = torch.randperm(clouds.shape[1], generator=rng)[: settings.train_points].to(device)
+        batch = clouds[rows][:, subset]
         mean, logvar = net.encoder(batch)
         noise = torch.randn(mean.shape, generator=rng).to(device)
-        made = net.decoder(mean + (0.5 * logvar).exp() * noise)
-        distance, kl = chamfer(batch, made).mean(), kl_to_standard_normal(mean, logvar).mean()
+        reconstruction = net.decoder(mean + (0.5 * logvar).exp() * noise)
+        distance, kl = chamfer(batch, reconstruction).mean(), kl_to_standard_normal(mean, logvar).mean()
         for group in optimiser.param_groups:
             group["lr"] = settings.learning_rate * min(1.0, (step + 1) / 20) * 0.5 * (1 + math.cos(math.pi * step / settings.steps))
         optimiser.zero_grad(set_to_none=True)

@@ -25,14 +25,14 @@ EPSILON = 1e-4  # an IoU below this is two boxes that touch [-]; the paper's "> 
 
 def sweeps_of(asset_joints: Iterable[Row]) -> dict[str, Floats]:
     """Return the swept boxes of doors, drawers and lids by asset, from rows of the asset_joints table."""
-    found: dict[str, list[Any]] = {}
+    by_asset: dict[str, list[Any]] = {}
     for row in asset_joints:
         if row["part_class"] in OPENERS:
-            found.setdefault(row["asset_id"], []).append([row["sweep_min"], row["sweep_max"]])
-    return {asset: np.array(pairs, float).reshape(-1, 2, 3) for asset, pairs in found.items()}
+            by_asset.setdefault(row["asset_id"], []).append([row["sweep_min"], row["sweep_max"]])
+    return {asset: np.array(pairs, float).reshape(-1, 2, 3) for asset, pairs in by_asset.items()}
 
 
-def extended(objects: Sequence[Row], extension: Extension, sweeps: Sweeps | None = None) -> Boxes:
+def extended_boxes(objects: Sequence[Row], extension: Extension, sweeps: Sweeps | None = None) -> Boxes:
     """Return the boxes b' of objects: extended where they open, as they are otherwise."""
     position, yaw, size = boxes(objects)
     for i, row in enumerate(objects):
@@ -52,11 +52,11 @@ def extended(objects: Sequence[Row], extension: Extension, sweeps: Sweeps | None
     return position, yaw, size
 
 
-def obstructed(objects: Sequence[Row], extension: Extension, sweeps: Sweeps | None = None, *, both: bool = True) -> list[bool]:
+def are_obstructed(objects: Sequence[Row], extension: Extension, sweeps: Sweeps | None = None, *, both: bool = True) -> list[bool]:
     """Tell of each openable object of a room whether its b' meets any other's b' (or b at rest, with `both` false)."""
     if not objects:
         return []
-    mine = extended(objects, extension, sweeps)
+    mine = extended_boxes(objects, extension, sweeps)
     iou = iou_matrix(*mine, None if both else boxes(objects))
     np.fill_diagonal(iou, 0.0)
     return [bool(iou[i].max() > EPSILON) for i, row in enumerate(objects) if row["openable"]]
@@ -66,9 +66,9 @@ def acoll(
     rng: np.random.Generator, objects: Iterable[Row], extension: Extension, sweeps: Sweeps | None = None, *, both: bool = True
 ) -> dict[str, Mean | Rate]:
     """Return R_acoll: the mean over rooms with openable objects, as printed, and the rate over all such objects."""
-    rooms = [found for own in by_room(objects).values() if (found := obstructed(own, extension, sweeps, both=both))]
-    hits = [hit for found in rooms for hit in found]
-    return {"rooms": bootstrap(rng, [float(np.mean(found)) for found in rooms]), "objects": rate(sum(hits), len(hits))}
+    rooms = [flags for own in by_room(objects).values() if (flags := are_obstructed(own, extension, sweeps, both=both))]
+    hits = [hit for flags in rooms for hit in flags]
+    return {"rooms": bootstrap(rng, [float(np.mean(flags)) for flags in rooms]), "objects": rate(sum(hits), len(hits))}
 
 
 def swept(joints: Iterable[Row]) -> dict[str, Rate]:

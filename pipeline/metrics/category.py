@@ -32,8 +32,8 @@ def frequencies(categories: Iterable[str], names: Sequence[str]) -> NDArray[np.f
     unknown = sorted(set(counts) - set(names))
     if unknown:
         raise ValueError(f"unknown categories: {', '.join(unknown)}")
-    found = np.array([counts[name] for name in names], float)
-    shares: NDArray[np.float64] = found / max(float(found.sum()), 1.0)
+    per_category = np.array([counts[name] for name in names], float)
+    shares: NDArray[np.float64] = per_category / max(float(per_category.sum()), 1.0)
     return shares
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pipeline.entities.asset import Asset
 from pipeline.geometry.boxes import iou_matrix
 from pipeline.geometry.contact import group_boxes, pair_depths
-from pipeline.geometry.prisms import solid, stacked
+from pipeline.geometry.prisms import join_prisms, solid
 from pipeline.metrics.intervals import Rate, rate
 from pipeline.metrics.rows import Row, boxes, by_room
 
@@ -28,8 +28,8 @@ def bbox_hits(objects: Sequence[Row]) -> NDArray[np.bool_]:
         return np.zeros(0, np.bool_)
     iou = iou_matrix(*boxes(objects))
     np.fill_diagonal(iou, 0.0)
-    found: NDArray[np.bool_] = iou.max(1) > EPSILON
-    return found
+    hits: NDArray[np.bool_] = iou.max(1) > EPSILON
+    return hits
 
 
 def prism_hits(objects: Sequence[Row], assets: Mapping[str, Asset], touch: float = TOUCH) -> NDArray[np.bool_]:
@@ -41,10 +41,10 @@ def prism_hits(objects: Sequence[Row], assets: Mapping[str, Asset], touch: float
         solid(assets[o["asset_id"]]).rest.placed(position[i], float(yaw[i]), np.array(o["scale"], float)) for i, o in enumerate(objects)
     ]
     start = np.concatenate([[0], np.cumsum([len(p) for p in placed])]).astype(np.int64)
-    prisms = stacked(placed)
+    prisms = join_prisms(placed)
     depths = pair_depths(prisms.corners, prisms.count, prisms.z, prisms.boxes(), start, group_boxes(prisms, start), touch)
-    found: NDArray[np.bool_] = depths.max(1) > 0
-    return found
+    hits: NDArray[np.bool_] = depths.max(1) > 0
+    return hits
 
 
 def rates(objects: Iterable[Row], assets: Mapping[str, Asset] | None = None) -> dict[str, dict[str, Rate]]:
@@ -53,7 +53,7 @@ def rates(objects: Iterable[Row], assets: Mapping[str, Asset] | None = None) -> 
     flags = {"bbox": [bbox_hits(own) for own in rooms]}
     if assets is not None:
         flags["prism"] = [prism_hits(own, assets) for own in rooms]
-    return {kind: _rates(found) for kind, found in flags.items()}
+    return {kind: _rates(hits) for kind, hits in flags.items()}
 
 
 def _rates(flags: Sequence[NDArray[np.bool_]]) -> dict[str, Rate]:

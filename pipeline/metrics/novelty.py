@@ -29,7 +29,7 @@ TURNS = tuple(np.array([[c, -s * m], [s, c * m]], float) for m in (1, -1) for c,
 
 def distances(rooms: Sequence[Arrangement], known: Sequence[Arrangement]) -> Floats:
     """Return each room's distance to the nearest of the known rooms of its type [m]; inf where there is none."""
-    made = np.full(len(rooms), np.inf)
+    nearest = np.full(len(rooms), np.inf)
     for kind in sorted({room.layout_type for room in rooms}):
         own = [k for k, room in enumerate(rooms) if room.layout_type == kind]
         others = [room for room in known if room.layout_type == kind]
@@ -37,8 +37,8 @@ def distances(rooms: Sequence[Arrangement], known: Sequence[Arrangement]) -> Flo
             ours, theirs = (_outlines(group) for group in ([rooms[k] for k in own], others))
             for k, row in zip(own, ours, strict=True):
                 close = np.argsort(np.abs(theirs - row).sum(1), kind="stable")[:LOOKED]
-                made[k] = min(distance(rooms[k], others[j]) for j in close)
-    return made
+                nearest[k] = min(distance(rooms[k], others[j]) for j in close)
+    return nearest
 
 
 def distance(room: Arrangement, other: Arrangement) -> float:
@@ -58,13 +58,13 @@ def distance(room: Arrangement, other: Arrangement) -> float:
     return float(best)
 
 
-def novelty(made: Sequence[Arrangement], held_out: Sequence[Arrangement], train: Sequence[Arrangement]) -> Json:
+def novelty(generated: Sequence[Arrangement], held_out: Sequence[Arrangement], train: Sequence[Arrangement]) -> Json:
     """Compare the made rooms' distances to the training rooms with those of held-out rooms (Kolmogorov-Smirnov), and count copies."""
-    ours, theirs = distances(made, train), distances(held_out, train)
+    ours, theirs = distances(generated, train), distances(held_out, train)
     test = ks_2samp(ours, theirs)
     return {
         "made": _quantiles(ours), "held_out": _quantiles(theirs), "statistic": round(float(test.statistic), 4), "p": round(float(test.pvalue), 6),
-        "copies": _copies(made, ours), "copies_held_out": _copies(held_out, theirs), "rooms": len(made),
+        "copies": _copies(generated, ours), "copies_held_out": _copies(held_out, theirs), "rooms": len(generated),
     }  # fmt: skip
 
 
@@ -74,14 +74,14 @@ def _outlines(rooms: Sequence[Arrangement]) -> Floats:
     Neither changes when a room is turned or mirrored: rooms that are near each other differ little in both.
     """
     names = {name: k for k, name in enumerate(taxonomy.load().names)}
-    made = np.zeros((len(rooms), 2 * len(names)))
-    for row, room in zip(made, rooms, strict=True):
+    descriptors = np.zeros((len(rooms), 2 * len(names)))
+    for row, room in zip(descriptors, rooms, strict=True):
         kinds = np.array([names[name] for name in room.categories], int)
         away = np.linalg.norm(room.position[:, :2] - (room.polygon.min(0) + room.polygon.max(0)) / 2, axis=1)
         np.add.at(row, kinds, 1.0)
         np.add.at(row, len(names) + kinds, away)
         row[len(names) :] /= np.maximum(row[: len(names)], 1)
-    return made
+    return descriptors
 
 
 def _quantiles(values: Floats) -> Json:
@@ -91,5 +91,5 @@ def _quantiles(values: Floats) -> Json:
     )
 
 
-def _copies(rooms: Sequence[Arrangement], found: Floats) -> int:
-    return sum(len(room.categories) >= 3 and bool(value < NEAR) for room, value in zip(rooms, found, strict=True))
+def _copies(rooms: Sequence[Arrangement], nearest: Floats) -> int:
+    return sum(len(room.categories) >= 3 and bool(value < NEAR) for room, value in zip(rooms, nearest, strict=True))

@@ -14,7 +14,7 @@ SHIFT = 0.2  # how far each thing is moved [m]
 Harm = Callable[[np.random.Generator, Arrangement], Arrangement]
 
 
-def jittered(rng: np.random.Generator, room: Arrangement) -> Arrangement:
+def jitter(rng: np.random.Generator, room: Arrangement) -> Arrangement:
     """Move each thing by 20 cm, in any direction."""
     way = rng.uniform(0, 2 * np.pi, len(room.yaw))
     position = room.position.copy()
@@ -22,7 +22,7 @@ def jittered(rng: np.random.Generator, room: Arrangement) -> Arrangement:
     return replace(room, position=position)
 
 
-def turned(rng: np.random.Generator, room: Arrangement) -> Arrangement:
+def permute_yaws(rng: np.random.Generator, room: Arrangement) -> Arrangement:
     """Give each thing the yaw of another, and a single one another quarter."""
     if len(room.yaw) < 2:
         return replace(room, yaw=room.yaw + rng.integers(1, 4) * np.pi / 2)
@@ -31,7 +31,7 @@ def turned(rng: np.random.Generator, room: Arrangement) -> Arrangement:
     return replace(room, yaw=yaw)
 
 
-def swapped(rng: np.random.Generator, room: Arrangement) -> Arrangement:
+def swap_places(rng: np.random.Generator, room: Arrangement) -> Arrangement:
     """Let things change places: each takes the place and yaw of another, and keeps its kind and size."""
     order = rng.permutation(len(room.yaw))
     position = room.position[order].copy()
@@ -39,7 +39,7 @@ def swapped(rng: np.random.Generator, room: Arrangement) -> Arrangement:
     return replace(room, position=position, yaw=room.yaw[order])
 
 
-HARMS: Mapping[str, Harm] = MappingProxyType({"jittered": jittered, "turned": turned, "swapped": swapped})
+HARMS: Mapping[str, Harm] = MappingProxyType({"jittered": jitter, "turned": permute_yaws, "swapped": swap_places})
 
 
 def spoilt(rng: np.random.Generator, room: Arrangement) -> Arrangement:

@@ -54,39 +54,39 @@ class _Search:
         self.score = (-1, 0.0)
         self.left = BUDGET
 
-    def branch(self, k: int, found: dict[str, str], hits: int, gap: float) -> None:
+    def branch(self, k: int, assignment: dict[str, str], hits: int, gap: float) -> None:
         """Assign room k and those after it; `hits` edges are met so far, areas differ by `gap` [m2]."""
         self.left -= 1
         if self.left < 0 and self.best:
             return
         if k == len(self.rooms):
             if (hits, -gap) > self.score:
-                self.best, self.score = dict(found), (hits, -gap)
+                self.best, self.score = dict(assignment), (hits, -gap)
             return
         most = hits + self.open[k]
-        if most < self.score[0] or (most == self.score[0] and -(gap + self._least(k, found)) <= self.score[1] + 1e-12):
+        if most < self.score[0] or (most == self.score[0] and -(gap + self._least(k, assignment)) <= self.score[1] + 1e-12):
             return
         room = self.rooms[k]
-        taken = set(found.values())
+        taken = set(assignment.values())
         free = [n for n in self.names[room.type] if n not in taken]
         waiting = sum(r.type == room.type for r in self.rooms[k:])
-        for name in sorted(free, key=lambda n: (-self._met(room, n, found), self._gap(room, n))):
-            found[room.room_id] = name
-            self.branch(k + 1, found, hits + self._met(room, name, found), gap + self._gap(room, name))
-            del found[room.room_id]
+        for name in sorted(free, key=lambda n: (-self._met(room, n, assignment), self._gap(room, n))):
+            assignment[room.room_id] = name
+            self.branch(k + 1, assignment, hits + self._met(room, name, assignment), gap + self._gap(room, name))
+            del assignment[room.room_id]
         if waiting > len(free):  # more rooms than the truth has: this one may stay alone
-            self.branch(k + 1, found, hits, gap)
+            self.branch(k + 1, assignment, hits, gap)
 
-    def _met(self, room: Room, name: str, found: Mapping[str, str]) -> int:
-        return sum(other in found and frozenset((name, found[other])) in self.near for other in self.joined[room.room_id])
+    def _met(self, room: Room, name: str, assignment: Mapping[str, str]) -> int:
+        return sum(other in assignment and frozenset((name, assignment[other])) in self.near for other in self.joined[room.room_id])
 
     def _gap(self, room: Room, name: str) -> float:
         wanted = self.area[name]
         return 0.0 if wanted is None else abs(room.area - wanted)
 
-    def _least(self, k: int, found: Mapping[str, str]) -> float:
+    def _least(self, k: int, assignment: Mapping[str, str]) -> float:
         """Return the least sum of differences that rooms from k on can have: matched by size where there are as many names."""
-        taken, total = set(found.values()), 0.0
+        taken, total = set(assignment.values()), 0.0
         for kind in {r.type for r in self.rooms[k:]}:
             rooms = [r.area for r in self.rooms[k:] if r.type == kind]
             wanted = [self.area[n] for n in self.names[kind] if n not in taken]

@@ -54,18 +54,18 @@ class PlanScores:
 def score(plan: Plan, case: Mapping[str, Any]) -> PlanScores:
     """Score a plan against one case of a prompt set: its `graph` and its `checks`."""
     graph = case["graph"]
-    found = match(plan, graph)
-    node, strict_node = _node(plan, graph, found)
-    edge, strict_edge = _edge(plan, graph, found)
+    matching = match(plan, graph)
+    node, strict_node = _node(plan, graph, matching)
+    edge, strict_edge = _edge(plan, graph, matching)
     truth: dict[str, float] = {}
     for row in graph["rooms"]:
         truth[row["type"]] = truth.get(row["type"], 0.0) + (row.get("area") or 0.0)
-    presence, adjacency, constraints, success = checked(plan, case, {n: i for i, n in found.items()})
+    presence, adjacency, constraints, success = score_checks(plan, case, {n: i for i, n in matching.items()})
     share = s_constraint(areas_by_type(plan.rooms), graph.get("area_ratio") or truth)
     return PlanScores(node, share, edge, strict_node, strict_edge, presence, adjacency, constraints, success)
 
 
-def checked(plan: Plan, case: Mapping[str, Any], names: Mapping[str, str] = MappingProxyType({})) -> tuple[float, float, float, bool]:
+def score_checks(plan: Plan, case: Mapping[str, Any], names: Mapping[str, str] = MappingProxyType({})) -> tuple[float, float, float, bool]:
     """Return presence, adjacency, constraints and whether all are met exactly; `names` maps rooms of the truth to those of the plan."""
     checks, graph = case.get("checks", {}), case.get("graph", {"rooms": ()})
     scene = Scene(plan, names)
@@ -77,13 +77,13 @@ def checked(plan: Plan, case: Mapping[str, Any], names: Mapping[str, str] = Mapp
     return presence, adjacency, constraints, presence == 1.0 and adjacency == 1.0 and all(v >= 1.0 for v in met)
 
 
-def s_constraint(made: Mapping[str, float], truth: Mapping[str, float]) -> float:
+def s_constraint(areas: Mapping[str, float], truth: Mapping[str, float]) -> float:
     """1 - D_L1 / 2 of two distributions of area over room types (paper eq. constraint_score)."""
-    keys = set(made) | set(truth)
-    a, b = sum(made.values()), sum(truth.values())
+    keys = set(areas) | set(truth)
+    a, b = sum(areas.values()), sum(truth.values())
     if not a or not b:
         return float(a == b)
-    return 1.0 - 0.5 * sum(abs(made.get(k, 0.0) / a - truth.get(k, 0.0) / b) for k in keys)
+    return 1.0 - 0.5 * sum(abs(areas.get(k, 0.0) / a - truth.get(k, 0.0) / b) for k in keys)
 
 
 def areas_by_type(rooms: Sequence[Room]) -> dict[str, float]:
@@ -94,34 +94,34 @@ def areas_by_type(rooms: Sequence[Room]) -> dict[str, float]:
     return total
 
 
-def _node(plan: Plan, graph: Mapping[str, Any], found: Mapping[str, str]) -> tuple[float, float]:
+def _node(plan: Plan, graph: Mapping[str, Any], matching: Mapping[str, str]) -> tuple[float, float]:
     inferred = {r["id"] for r in graph["rooms"] if r.get("inferred")}
-    strict = len(found) / max(len(plan.rooms), len(graph["rooms"]))
-    kept = [n for n in found.values() if n not in inferred]
-    made = len(plan.rooms) - (len(found) - len(kept)) - len(_spare(plan, graph, found))
-    return len(kept) / max(made, len(graph["rooms"]) - len(inferred)), strict
+    strict = len(matching) / max(len(plan.rooms), len(graph["rooms"]))
+    kept = [n for n in matching.values() if n not in inferred]
+    room_count = len(plan.rooms) - (len(matching) - len(kept)) - len(_spare(plan, graph, matching))
+    return len(kept) / max(room_count, len(graph["rooms"]) - len(inferred)), strict
 
 
-def _spare(plan: Plan, graph: Mapping[str, Any], found: Mapping[str, str]) -> set[str]:
+def _spare(plan: Plan, graph: Mapping[str, Any], matching: Mapping[str, str]) -> set[str]:
     """Return circulation that the truth has no partner for, where it infers some or has none at all: it counts for nothing."""
     infers = any(r.get("inferred") for r in graph["rooms"]) or not any(r["type"] in CIRCULATION for r in graph["rooms"])
-    return {r.room_id for r in plan.rooms if r.room_id not in found and r.type in CIRCULATION} if infers else set()
+    return {r.room_id for r in plan.rooms if r.room_id not in matching and r.type in CIRCULATION} if infers else set()
 
 
-def _edge(plan: Plan, graph: Mapping[str, Any], found: Mapping[str, str]) -> tuple[float, float]:
+def _edge(plan: Plan, graph: Mapping[str, Any], matching: Mapping[str, str]) -> tuple[float, float]:
     """Return S_edge, lenient and strict: met edges over the larger number of edges. No edges at all, where none are asked for, is 1."""
     truth = {frozenset((e["a"], e["b"])) for e in graph["edges"]}
     optional = {frozenset((e["a"], e["b"])) for e in graph["edges"] if e.get("optional")}
-    free = {r["id"] for r in graph["rooms"] if r.get("inferred")} | {f"?{i}" for i in _spare(plan, graph, found)}
-    images = [frozenset(found.get(i, f"?{i}") for i in e) for e in edges_of(plan)]
+    free = {r["id"] for r in graph["rooms"] if r.get("inferred")} | {f"?{i}" for i in _spare(plan, graph, matching)}
+    images = [frozenset(matching.get(i, f"?{i}") for i in e) for e in edges_of(plan)]
     firm = [e for e in images if e not in optional and not e & free]
     asked = [e for e in truth if e not in optional and not e & free]
     return _ratio(firm, asked), _ratio(images, list(truth))
 
 
-def _ratio(made: Sequence[frozenset[str]], asked: Sequence[frozenset[str]]) -> float:
-    most = max(len(made), len(asked))
-    return len(set(made) & set(asked)) / most if most else 1.0
+def _ratio(edges: Sequence[frozenset[str]], asked: Sequence[frozenset[str]]) -> float:
+    most = max(len(edges), len(asked))
+    return len(set(edges) & set(asked)) / most if most else 1.0
 
 
 def _adjacent(scene: Scene, graph: Mapping[str, Any], check: Mapping[str, Any]) -> list[float]:

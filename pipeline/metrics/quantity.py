@@ -8,13 +8,13 @@ from pipeline.metrics.intervals import Rate, rate
 from pipeline.metrics.rows import Row
 
 
-def success_rates(asked: Sequence[int], made: Sequence[int]) -> dict[str, Rate]:
+def success_rates(asked: Sequence[int], actual: Sequence[int]) -> dict[str, Rate]:
     """Return SR(N) for each N that was asked for, ascending, keyed by N as text (JSON has no other keys)."""
-    found: dict[str, Rate] = {}
+    rates: dict[str, Rate] = {}
     for target in sorted(set(asked)):
-        counts = [m for a, m in zip(asked, made, strict=True) if a == target]
-        found[str(target)] = rate(sum(c == target for c in counts), len(counts))
-    return found
+        counts = [m for a, m in zip(asked, actual, strict=True) if a == target]
+        rates[str(target)] = rate(sum(c == target for c in counts), len(counts))
+    return rates
 
 
 def from_rooms(rooms: Iterable[Row]) -> dict[str, Rate]:

@@ -15,9 +15,9 @@ import numpy as np
 from pipeline import taxonomy
 from pipeline.metrics.intervals import Rate, bootstrap, rate
 from pipeline.metrics.rules import CHAIRS, RULES, TABLES, Rule, backs, frames_of, of
-from pipeline.relations.arrangement import Arrangement, arranged
+from pipeline.relations.arrangement import Arrangement, make_arrangement
 from pipeline.relations.model import PairRelation, Relations
-from pipeline.relations.modes import held
+from pipeline.relations.modes import in_any_mode
 
 Json = dict[str, Any]
 Sets = Mapping[str, Sequence[Arrangement]]
@@ -32,7 +32,7 @@ def furniture(room: Arrangement) -> Arrangement:
     names = set(taxonomy.load().names)
     kept = [k for k, name in enumerate(room.categories) if name in names]
     things = [(room.categories[k], room.position[k], room.yaw[k], room.size[k]) for k in kept]
-    return arranged(room.name, room.layout_type, room.polygon, things, room.openings)
+    return make_arrangement(room.name, room.layout_type, room.polygon, things, room.openings)
 
 
 def compare(rng: np.random.Generator, sets: Sets, known: Relations) -> Json:
@@ -41,14 +41,14 @@ def compare(rng: np.random.Generator, sets: Sets, known: Relations) -> Json:
     rules = {**RULES, "back at the wall": backs(wanting(known))}
     learnt = {f"{pair.member} at {pair.anchor}": holding(pair) for pair in notable(known)}
     return {
-        "rates": {name: {key: counted(rooms, rule) for key, rooms in sets.items()} for name, rule in sorted(rules.items())},
-        "learnt": {name: {key: counted(rooms, rule) for key, rooms in sets.items()} for name, rule in learnt.items()},
+        "rates": {name: {key: rule_rate(rooms, rule) for key, rooms in sets.items()} for name, rule in sorted(rules.items())},
+        "learnt": {name: {key: rule_rate(rooms, rule) for key, rooms in sets.items()} for name, rule in learnt.items()},
         "objects": {kind: {key: objects(rng, rooms, kind) for key, rooms in sets.items()} for kind in types(sets)},
         "chairs": {key: chairs(rng, rooms) for key, rooms in sets.items()},
     }
 
 
-def counted(rooms: Sequence[Arrangement], rule: Rule) -> Rate:
+def rule_rate(rooms: Sequence[Arrangement], rule: Rule) -> Rate:
     """Return how often a rule holds over all its cases."""
     verdicts = [verdict for room in rooms for verdict in rule(room)]
     return rate(sum(verdicts), len(verdicts))
@@ -58,8 +58,8 @@ def wanting(known: Relations) -> frozenset[str]:
     """Return the categories that want a wall at their backs: most of them had one, in the training rooms."""
     return frozenset(
         name
-        for name, found in known.walls.items()
-        for wall in found
+        for name, walls in known.walls.items()
+        for wall in walls
         if wall.side == "back" and wall.share >= WANTS_A_WALL and wall.gap.high < 0.2
     )
 
@@ -67,13 +67,13 @@ def wanting(known: Relations) -> frozenset[str]:
 def notable(known: Relations) -> list[PairRelation]:
     """Return the strongest relations among what the layout model learns, one for each pair of categories and three for each member."""
     names = set(taxonomy.load().names)
-    found: dict[frozenset[str], PairRelation] = {}
+    by_pair: dict[frozenset[str], PairRelation] = {}
     taken: Counter[str] = Counter()
     for pair in known.strongest(STRONG):
-        if {pair.anchor, pair.member} <= names and frozenset((pair.anchor, pair.member)) not in found and taken[pair.member] < 3:
-            found[frozenset((pair.anchor, pair.member))] = pair
+        if {pair.anchor, pair.member} <= names and frozenset((pair.anchor, pair.member)) not in by_pair and taken[pair.member] < 3:
+            by_pair[frozenset((pair.anchor, pair.member))] = pair
             taken[pair.member] += 1
-    return list(found.values())[:MOST]
+    return list(by_pair.values())[:MOST]
 
 
 def holding(pair: PairRelation) -> Rule:
@@ -85,7 +85,7 @@ def holding(pair: PairRelation) -> Rule:
             others = anchors[anchors != k]
             if len(others):
                 frames = frames_of(room, others, np.array([k]))
-                yield bool(held(pair.modes, frames[np.array([frames.distance().argmin()])])[0])
+                yield bool(in_any_mode(pair.modes, frames[np.array([frames.distance().argmin()])])[0])
 
     return rule
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.relations.arrangement import Arrangement
-from pipeline.relations.frames import Boxes, Frames, relate, wrapped
+from pipeline.relations.frames import Boxes, Frames, relate, wrap_angle
 from pipeline.relations.walls import AROUND, measure
 
 Floats = NDArray[np.float64]
@@ -73,8 +73,8 @@ def any_of(
     """Yield for each member whether it holds at one of the anchors; nothing in rooms without an anchor."""
     a, m = of(room, anchors), of(room, members)
     if len(a) and len(m):
-        found = holds(frames_of(room, a, m)).reshape(len(m), len(a))
-        yield from (bool(row.any()) for row in found)
+        by_member = holds(frames_of(room, a, m)).reshape(len(m), len(a))
+        yield from (bool(row.any()) for row in by_member)
 
 
 def chair_at_table(room: Arrangement) -> Iterator[bool]:
@@ -97,7 +97,7 @@ def sofa_looks_at_screen(room: Arrangement) -> Iterator[bool]:
     a, m = of(room, ("tv_stand",)), of(room, SOFAS)
     if len(a) and len(m):
         frames = frames_of(room, a, m)
-        there = np.abs(wrapped(frames.turn - np.arctan2(-frames.place[:, 0], frames.place[:, 1]))) < SIGHT
+        there = np.abs(wrap_angle(frames.turn - np.arctan2(-frames.place[:, 0], frames.place[:, 1]))) < SIGHT
         back = np.abs(np.arctan2(frames.place[:, 0], -frames.place[:, 1])) < SIGHT
         yield bool((there & back).any())
 
@@ -156,7 +156,7 @@ def has(types: tuple[str, ...], *groups: tuple[str, ...]) -> Rule:
     return rule
 
 
-def served(anchors: tuple[str, ...], members: tuple[str, ...], reach: float) -> Rule:
+def has_facing_member(anchors: tuple[str, ...], members: tuple[str, ...], reach: float) -> Rule:
     """Return the rule for anchors: some member stands within `reach` [m] and faces it."""
 
     def rule(room: Arrangement) -> Iterator[bool]:
@@ -185,8 +185,8 @@ RULES: Mapping[str, Rule] = MappingProxyType(
         "bedroom has wardrobe or cabinet": has(("bedroom", "kids_room"), STORAGE),
         "living room has seats": has(LIVING, SEATS),
         "living room has TV and seats": has(LIVING, SEATS, ("tv_stand",)),
-        "dining table has chairs": served(TABLES, (*CHAIRS, "lounge_chair", "stool"), AT_TABLE),
-        "desk has its chair": served(("desk",), DESK_CHAIRS, AT_DESK),
+        "dining table has chairs": has_facing_member(TABLES, (*CHAIRS, "lounge_chair", "stool"), AT_TABLE),
+        "desk has its chair": has_facing_member(("desk",), DESK_CHAIRS, AT_DESK),
         "kitchen has sink, cooker, fridge, worktop": has(
             ("kitchen",), ("sink_cabinet",), ("oven",), ("refrigerator",), ("kitchen_cabinet", "dishwasher")
         ),

@@ -19,7 +19,7 @@ SUBSETS = 200  # of KID
 SUBSET = 100  # rooms in each, if there are so many
 
 
-def forest_accuracy(seed: int, real: Floats, made: Floats, real_rooms: Sequence[str], made_rooms: Sequence[str]) -> Rate:
+def forest_accuracy(seed: int, real: Floats, generated: Floats, real_rooms: Sequence[str], generated_rooms: Sequence[str]) -> Rate:
     """Return the share of rooms that a random forest puts with their kind, balanced and cross-validated by room.
 
     Rooms of one name, the real and the made furniture of one floor, are always in the same fold.
@@ -30,10 +30,10 @@ def forest_accuracy(seed: int, real: Floats, made: Floats, real_rooms: Sequence[
         model = RandomForestClassifier(TREES, min_samples_leaf=2, class_weight="balanced", random_state=seed, n_jobs=1)
         return np.asarray(model.fit(x, y).predict(asked))
 
-    return _accuracy(forest, seed, real, made, real_rooms, made_rooms)
+    return _accuracy(forest, seed, real, generated, real_rooms, generated_rooms)
 
 
-def linear_accuracy(seed: int, real: Floats, made: Floats, real_rooms: Sequence[str], made_rooms: Sequence[str]) -> Rate:
+def linear_accuracy(seed: int, real: Floats, generated: Floats, real_rooms: Sequence[str], generated_rooms: Sequence[str]) -> Rate:
     """Return the same for logistic regression on standardised features: a classifier on top of a frozen net."""
     from sklearn.linear_model import LogisticRegression
     from sklearn.pipeline import make_pipeline
@@ -43,13 +43,15 @@ def linear_accuracy(seed: int, real: Floats, made: Floats, real_rooms: Sequence[
         model = make_pipeline(StandardScaler(), LogisticRegression(C=0.3, class_weight="balanced", max_iter=300))
         return np.asarray(model.fit(x, y).predict(asked))
 
-    return _accuracy(linear, seed, real, made, real_rooms, made_rooms)
+    return _accuracy(linear, seed, real, generated, real_rooms, generated_rooms)
 
 
-def _accuracy(fitted: Fitted, seed: int, real: Floats, made: Floats, real_rooms: Sequence[str], made_rooms: Sequence[str]) -> Rate:
+def _accuracy(
+    fitted: Fitted, seed: int, real: Floats, generated: Floats, real_rooms: Sequence[str], generated_rooms: Sequence[str]
+) -> Rate:
     """Return the balanced share of right answers over folds of whole rooms."""
-    x, y = np.concatenate([real, made]), np.repeat([0, 1], [len(real), len(made)])
-    rooms = np.array([*real_rooms, *made_rooms])
+    x, y = np.concatenate([real, generated]), np.repeat([0, 1], [len(real), len(generated)])
+    rooms = np.array([*real_rooms, *generated_rooms])
     names = np.unique(rooms)
     fold_of = dict(zip(names.tolist(), np.random.default_rng(seed).permutation(len(names)) % FOLDS, strict=True))
     fold = np.array([fold_of[name] for name in rooms.tolist()])
@@ -58,7 +60,7 @@ def _accuracy(fitted: Fitted, seed: int, real: Floats, made: Floats, real_rooms:
         known, asked = fold != k, fold == k
         if asked.any() and len(np.unique(y[known])) == 2:
             right[asked] = fitted(x[known], y[known], x[asked]) == y[asked]
-    balanced = (right[y == 0].mean() + right[y == 1].mean()) / 2 if len(real) and len(made) else 0.0
+    balanced = (right[y == 0].mean() + right[y == 1].mean()) / 2 if len(real) and len(generated) else 0.0
     return rate(round(float(balanced) * len(y)), len(y))
 
 

@@ -30,13 +30,13 @@ def compare_views(
     """Return FID, KID and SCA of each set of rooms against the real ones."""
     truth = embed(views_of(real))
     names = [room.name for room in real]
-    made: Json = {}
+    figures: Json = {}
     for key, rooms in sets.items():
-        found = embed(views_of(rooms))
-        made[key] = {
-            "fid": round(frechet(truth, found), 4),
-            "kid": kernel_distance(rng, truth, found),
-            "sca": linear_accuracy(seed, truth, found, names, [room.name for room in rooms]),
+        features = embed(views_of(rooms))
+        figures[key] = {
+            "fid": round(frechet(truth, features), 4),
+            "kid": kernel_distance(rng, truth, features),
+            "sca": linear_accuracy(seed, truth, features, names, [room.name for room in rooms]),
             "rooms": len(rooms),
         }
-    return made
+    return figures

@@ -10,7 +10,7 @@ from shapely.geometry import Polygon
 
 from pipeline.entities.asset import Material
 from pipeline.entities.plan import Plan
-from pipeline.geometry.stairs import seen
+from pipeline.geometry.stairs import visible_steps
 from pipeline.geometry.walls import Shell, floor_pieces
 from pipeline.rendering import palette
 
@@ -36,13 +36,15 @@ class Soup:
 
 def building(plan: Plan, level: int, shell: Shell) -> Soup:
     """Return one storey's floors, thresholds, cut walls and windows as triangles; heights above the storey's floor."""
-    paved = [_paved(piece, palette.floor(room.type)) for room in plan.rooms if room.level == level for piece in floor_pieces(room)]
+    paved = [
+        _floor_triangles(piece, palette.floor(room.type)) for room in plan.rooms if room.level == level for piece in floor_pieces(room)
+    ]
     quads: list[tuple[NDArray[np.float64], tuple[float, float, float], float]] = []
     parts = sum(len(faces) for faces, _ in paved)
-    for step in seen(plan, level):
+    for step in visible_steps(plan, level):
         grey = np.interp(step.top, (-plan.storey_height, 0.0, plan.storey_height), (0.45, 0.95, 1.05))
         odd = (parts + len(quads)) % 2
-        quads.append((step.polygon, shaded(pale(palette.STEP), float(grey) + STEP_GRAIN * odd), min(step.top, WALL_TOP - 0.1)))
+        quads.append((step.polygon, scale_colour(pale(palette.STEP), float(grey) + STEP_GRAIN * odd), min(step.top, WALL_TOP - 0.1)))
     for cut in shell.cuts:
         if cut.bottom > 0.05 or cut.opening.kind == "window":
             quads.append((cut.quad, WINDOW, WALL_TOP))
@@ -56,7 +58,7 @@ def building(plan: Plan, level: int, shell: Shell) -> Soup:
     return Soup(faces, colours, np.zeros(len(faces), np.int32))
 
 
-def _paved(piece: NDArray[np.float64], material: Material) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
+def _floor_triangles(piece: NDArray[np.float64], material: Material) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
     """Return a piece of floor as triangles (T, 3, 3) and their colours (T, 3)."""
     rings, shades = pattern(piece, material)
     colours = np.minimum(1.0, np.array(pale(material)) * (1 + GRAIN * shades[:, None])).astype(np.float32)
@@ -95,7 +97,7 @@ def pattern(piece: NDArray[np.float64], material: Material) -> tuple[NDArray[np.
     return np.stack([a, c, b, c, b, d, a, d], axis=-1)[real].reshape(-1, 4, 2), shades[real]
 
 
-def shaded(colour: tuple[float, float, float], factor: float) -> tuple[float, float, float]:
+def scale_colour(colour: tuple[float, float, float], factor: float) -> tuple[float, float, float]:
     """Scale a colour, within [0, 1]."""
     red, green, blue = (min(1.0, v * factor) for v in colour)
     return red, green, blue

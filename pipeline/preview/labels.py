@@ -23,7 +23,7 @@ def font(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
     return ImageFont.load_default(size)
 
 
-def summed(mask: NDArray[np.bool_]) -> NDArray[np.int32]:
+def summed_area_table(mask: NDArray[np.bool_]) -> NDArray[np.int32]:
     """Return the summed-area table (H + 1, W + 1) of a mask (H, W)."""
     table = np.zeros((mask.shape[0] + 1, mask.shape[1] + 1), np.int32)
     np.cumsum(mask, axis=0, dtype=np.int32, out=table[1:, 1:])

@@ -15,9 +15,9 @@ from PIL import Image
 from pipeline.entities.asset import Asset, Material, Mesh
 from pipeline.geometry.kinematics import link_transforms
 from pipeline.preview.denoise import Guides, denoise
-from pipeline.preview.trace import FIELD_OF_VIEW, FINER, developed, framed, mitsuba, sun
+from pipeline.preview.trace import FIELD_OF_VIEW, FINER, fit_camera, mitsuba, sun, tone_map
 from pipeline.rendering.normals import corner_normals
-from pipeline.rendering.pose import opened
+from pipeline.rendering.pose import open_joint_values
 
 AZIMUTH = math.radians(28)  # of the camera from the front (-Y) towards +X
 ELEVATION = math.radians(19)
@@ -33,14 +33,14 @@ def portrait(asset: Asset, pixels: int = 240, spp: int = 24, open_fraction: floa
     With `on_wall` it hangs before a wall. Raises UsageError where Mitsuba is not installed.
     """
     mi = mitsuba()
-    values = opened(asset, open_fraction)
+    values = open_joint_values(asset, open_fraction)
     transforms = link_transforms(asset, np.array([values.get(j.name, 0.0) for j in asset.joints]))
     placed = [
         (mesh, mesh.vertices @ T[:3, :3].T + T[:3, 3]) for link, T in zip(asset.links, transforms, strict=True) for mesh in link.visuals
     ]
     points = np.concatenate([v for _, v in placed])
     fine = FINER * pixels
-    camera = framed(points, (fine, fine), AZIMUTH, ELEVATION)
+    camera = fit_camera(points, (fine, fine), AZIMUTH, ELEVATION)
     scene: dict[str, Any] = {
         "type": "scene",
         "integrator": {"type": "aov", "aovs": "albedo:albedo,normal:sh_normal,depth:depth", "image": {"type": "path", "max_depth": 5}},
@@ -62,7 +62,7 @@ def portrait(asset: Asset, pixels: int = 240, spp: int = 24, open_fraction: floa
         scene[f"mesh_{i:03d}"] = _shape(mi, f"mesh_{i:03d}", mesh, vertices, surfaces[mesh.material])
     image = np.asarray(mi.render(mi.load_dict(scene), seed=0), np.float32)
     guides = Guides(np.maximum(image[..., 3:6], 0.02), image[..., 6:9], image[..., 9])
-    return developed(denoise(image[..., :3], guides), (pixels, pixels))
+    return tone_map(denoise(image[..., :3], guides), (pixels, pixels))
 
 
 def _plane(mi: ModuleType, points: NDArray[np.float64], *, on_wall: bool) -> dict[str, Any]:
@@ -84,15 +84,15 @@ def _shape(mi: ModuleType, name: str, mesh: Mesh, vertices: NDArray[np.float64],
     properties = mi.Properties()
     properties["bsdf"] = surface
     count = len(faces)
-    made = mi.Mesh(name, vertex_count=3 * count, face_count=count, has_vertex_normals=True, has_vertex_texcoords=True, props=properties)
+    shape = mi.Mesh(name, vertex_count=3 * count, face_count=count, has_vertex_normals=True, has_vertex_texcoords=True, props=properties)
     uv = np.zeros((3 * count, 2)) if mesh.uv is None else mesh.uv[mesh.faces].reshape(-1, 2) * [1, -1] + [0, 1]
-    values = mi.traverse(made)
+    values = mi.traverse(shape)
     values["vertex_positions"] = faces.astype(np.float32).ravel()
     values["vertex_normals"] = corner_normals(faces).astype(np.float32).ravel()
     values["vertex_texcoords"] = uv.astype(np.float32).ravel()
     values["faces"] = np.arange(3 * count, dtype=np.uint32)
     values.update()
-    return made
+    return shape
 
 
 def _surface(mi: ModuleType, material: Material, textures: Mapping[str, bytes]) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from PIL import ImageDraw
 from pipeline.entities.asset import Asset, Joint
 from pipeline.entities.home import Placement
 from pipeline.geometry.kinematics import joint_motion
-from pipeline.geometry.memo import kept
+from pipeline.geometry.memo import cached_on_asset
 from pipeline.geometry.tiling import polygons
 from pipeline.geometry.walls import Cut, Leaf, Shell
 from pipeline.rendering.pose import placement_transform
@@ -54,7 +54,7 @@ def draw_reach(draw: ImageDraw.ImageDraw, placement: Placement, asset: Asset, pr
         draw.line(project(ring @ T[:2, :2].T + T[:2, 3]), fill=OPENS, width=line)
 
 
-@kept
+@cached_on_asset
 def reaches(asset: Asset) -> tuple[NDArray[np.float64], ...]:
     """Return the outlines (n, 2) [m, object frame] of what doors, drawers and lids cover before the asset's box."""
     w, d = asset.size[0] / 2, asset.size[1] / 2

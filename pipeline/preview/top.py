@@ -12,7 +12,7 @@ from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
 from pipeline.geometry.walls import Shell, levels, shell
 from pipeline.preview.building import building
-from pipeline.preview.labels import SMALL, draw_label, summed
+from pipeline.preview.labels import SMALL, draw_label, summed_area_table
 from pipeline.preview.symbols import draw_openings, draw_reach
 from pipeline.rendering.above import draw_roof
 from pipeline.rendering.raster import Frame, View, darken_edges, render, top_down
@@ -66,7 +66,7 @@ def _storey(home: Home, assets: Mapping[str, Asset], level: int, built: Shell, v
     image = _shade(image.reduce(SAMPLES), frame)
     size = max(9, round(0.26 * view.scale / SAMPLES))
     if size >= SMALL:
-        busy = summed(frame.item[::SAMPLES, ::SAMPLES] > 0)
+        busy = summed_area_table(frame.item[::SAMPLES, ::SAMPLES] > 0)
         for room in home.plan.rooms:
             if room.level == level:
                 draw_label(image, room, np.array(project(room.polygon)) / SAMPLES, busy, min(size, 22))

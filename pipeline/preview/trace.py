@@ -51,7 +51,7 @@ def path_trace(
     batches = home_batches(home, assets, level, open_fraction, np.array([math.sin(azimuth), -math.cos(azimuth)]))
     points = np.concatenate([b.faces.reshape(-1, 3) for b in batches])
     fine = (FINER * size[0], FINER * size[1])
-    camera = framed(points, fine, azimuth, ELEVATION)
+    camera = fit_camera(points, fine, azimuth, ELEVATION)
     scene: dict[str, Any] = {
         "type": "scene",
         "integrator": {"type": "path", "max_depth": 5},
@@ -117,7 +117,7 @@ def _azimuth(home: Home, level: int, size: tuple[int, int]) -> float:
     return AZIMUTH + (math.pi / 2 if (depth > 1.15 * width) == (size[0] >= size[1]) and abs(depth / width - 1) > 0.15 else 0.0)
 
 
-def framed(points: NDArray[np.float64], size: tuple[int, int], azimuth: float, elevation: float) -> Camera:
+def fit_camera(points: NDArray[np.float64], size: tuple[int, int], azimuth: float, elevation: float) -> Camera:
     """Stand where all points (N, 3) are in the picture, with a small margin; angles [rad] as of AZIMUTH and ELEVATION."""
     ca, sa, ce, se = math.cos(azimuth), math.sin(azimuth), math.cos(elevation), math.sin(elevation)
     back, right = np.array([sa * ce, -ca * ce, se]), np.array([ca, sa, 0.0])
@@ -198,12 +198,12 @@ def _surface(batch: Batch) -> dict[str, Any]:
 
 
 def save(image: NDArray[np.float32], path: Path, size: tuple[int, int]) -> None:
-    """Write what `developed` makes of an image as a PNG."""
+    """Write what `tone_map` makes of an image as a PNG."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    developed(image, size).save(path)
+    tone_map(image, size).save(path)
 
 
-def developed(image: NDArray[np.float32], size: tuple[int, int]) -> PilImage:
+def tone_map(image: NDArray[np.float32], size: tuple[int, int]) -> PilImage:
     """Expose, compress the highlights above the middle, encode as sRGB, average down to `size`."""
     from PIL import Image
 

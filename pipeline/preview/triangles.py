@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Material
 from pipeline.entities.home import Home
-from pipeline.geometry.stairs import Step, seen
+from pipeline.geometry.stairs import Step, visible_steps
 from pipeline.geometry.walls import Panel, Shell, floor_pieces, outer_panels, reveals, room_panels, shell
-from pipeline.preview.building import pattern, shaded
+from pipeline.preview.building import pattern, scale_colour
 from pipeline.rendering import fittings, palette
-from pipeline.rendering.pose import asset_triangles, opened, placement_transform
+from pipeline.rendering.pose import asset_triangles, open_joint_values, placement_transform
 from pipeline.rendering.texture import face_colours
 from pipeline.taxonomy import load
 
@@ -81,11 +81,11 @@ def _building(home: Home, level: int, built: Shell, heaps: Heaps, cut_height: Cu
             material = palette.floor(room.type)
             for piece in floor_pieces(room):
                 for ring, shade in zip(*pattern(piece, material), strict=True):
-                    plank = replace(material, base_color=shaded(material.base_color, 1 + GRAIN * float(shade)))
+                    plank = replace(material, base_color=scale_colour(material.base_color, 1 + GRAIN * float(shade)))
                     _paint(heaps, plank, _flat(ring, 0.0))
         if level in home.plan.levels_of(room):
             _panels(heaps, palette.wall(room.type), room_panels(room, built.cuts), cut_height)
-    for step in seen(home.plan, level):
+    for step in visible_steps(home.plan, level):
         if step.bottom < CUT:
             _paint(heaps, palette.STEP, _solid(step, min(step.top, CUT)))
     heights = [(p, cut_height(p.polygon)) for p in built.prisms]
@@ -125,7 +125,7 @@ def _fan(corners: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _add(heaps: Heaps, asset: Asset, T: NDArray[np.float64], open_fraction: float) -> None:
-    faces, materials = asset_triangles(asset, opened(asset, open_fraction) if open_fraction else None)
+    faces, materials = asset_triangles(asset, open_joint_values(asset, open_fraction) if open_fraction else None)
     world, colours = faces @ T[:3, :3].T + T[:3, 3], face_colours(asset)
     for index in np.unique(materials):
         material = asset.materials[index] if asset.materials else palette.PLASTER

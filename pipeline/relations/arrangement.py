@@ -57,7 +57,7 @@ class Arrangement:
         return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 
 
-def arranged(
+def make_arrangement(
     name: str, layout_type: str, polygon: Any, things: Iterable[tuple[str, Any, float, Any]], openings: Iterable[RoomOpening] = ()
 ) -> Arrangement:
     """Return the arrangement of things (category, position (3,), yaw, size (3,))."""
@@ -87,9 +87,9 @@ def from_rows(
     for row in openings:
         for room in row["rooms"]:
             holes.setdefault((row["scene_id"], room), []).append(RoomOpening(row["kind"], np.asarray(row["segment"], float)))
-    made = []
+    arrangements = []
     for row in rooms:
         key = row["scene_id"], row["room_id"]
         name = f"{key[0]}/{key[1]}"
-        made.append(arranged(name, row["layout_type"], row["polygon"], inside.get(key, ()), holes.get(key, ())))
-    return made
+        arrangements.append(make_arrangement(name, row["layout_type"], row["polygon"], inside.get(key, ()), holes.get(key, ())))
+    return arrangements

@@ -31,42 +31,42 @@ def density(values: Floats) -> tuple[Floats, Floats]:
 
 def entropy(values: Floats) -> float:
     """Return minus the mean log density [nats]: the lower, the better the values keep together."""
-    grid, found = density(values)
-    return -float(np.mean(np.log(np.interp(values, grid, found) + 1e-9)))
+    grid, densities = density(values)
+    return -float(np.mean(np.log(np.interp(values, grid, densities) + 1e-9)))
 
 
 def split(values: Floats, least: int) -> list[NDArray[np.intp]]:
     """Return the clusters, left to right, as indices; those of fewer than `least` values go with a neighbour."""
     if len(values) < 2 * least:
         return [np.arange(len(values))]
-    grid, found = density(values)
-    cuts = grid[_valleys(found)]
+    grid, densities = density(values)
+    cuts = grid[_valleys(densities)]
     order = np.digitize(values, cuts)
-    made = [np.flatnonzero(order == k) for k in range(len(cuts) + 1)]
-    while len(made) > 1 and min(map(len, made)) < least:
-        k = min(range(len(made)), key=lambda i: len(made[i]))
-        other = k - 1 if k and (k == len(made) - 1 or _apart(values, made, k - 1) < _apart(values, made, k)) else k + 1
+    clusters = [np.flatnonzero(order == k) for k in range(len(cuts) + 1)]
+    while len(clusters) > 1 and min(map(len, clusters)) < least:
+        k = min(range(len(clusters)), key=lambda i: len(clusters[i]))
+        other = k - 1 if k and (k == len(clusters) - 1 or _apart(values, clusters, k - 1) < _apart(values, clusters, k)) else k + 1
         first = min(k, other)
-        made[first : first + 2] = [np.concatenate(made[first : first + 2])]
-    return made
+        clusters[first : first + 2] = [np.concatenate(clusters[first : first + 2])]
+    return clusters
 
 
-def _apart(values: Floats, made: list[NDArray[np.intp]], k: int) -> float:
-    left, right = values[made[k]], values[made[k + 1]]
+def _apart(values: Floats, clusters: list[NDArray[np.intp]], k: int) -> float:
+    left, right = values[clusters[k]], values[clusters[k + 1]]
     return float(right.min() - left.max()) if len(left) and len(right) else 0.0
 
 
-def _valleys(found: Floats) -> list[int]:
+def _valleys(densities: Floats) -> list[int]:
     """Return the grid points at which to cut: the lowest between two peaks, where it is low enough."""
-    rise = np.flatnonzero((found[1:-1] > found[:-2]) & (found[1:-1] >= found[2:])) + 1
+    rise = np.flatnonzero((densities[1:-1] > densities[:-2]) & (densities[1:-1] >= densities[2:])) + 1
     peaks = [int(p) for p in rise]
     cuts: list[int] = []
     while len(peaks) > 1:
-        lows = [a + int(np.argmin(found[a:b])) for a, b in pairwise(peaks)]
-        worth = [found[v] / min(found[a], found[b]) for v, a, b in zip(lows, peaks[:-1], peaks[1:], strict=True)]
+        lows = [a + int(np.argmin(densities[a:b])) for a, b in pairwise(peaks)]
+        worth = [densities[v] / min(densities[a], densities[b]) for v, a, b in zip(lows, peaks[:-1], peaks[1:], strict=True)]
         k = int(np.argmax(worth))
         if worth[k] <= VALLEY:
             cuts = lows
             break
-        del peaks[k if found[peaks[k]] < found[peaks[k + 1]] else k + 1]
+        del peaks[k if densities[peaks[k]] < densities[peaks[k + 1]] else k + 1]
     return cuts

@@ -23,19 +23,19 @@ def to_json(known: Relations) -> dict[str, Any]:
     ]
     walls = [
         [w.category, w.side, w.cases, round(w.share, DIGITS), round(w.chance, DIGITS), list(w.gap), list(w.turn)]
-        for found in known.walls.values()
-        for w in found
+        for sides in known.walls.values()
+        for w in sides
     ]
     return {"version": VERSION, "pairs": pairs, "walls": walls}
 
 
-def of_json(found: Any) -> Relations:
+def of_json(tree: Any) -> Relations:
     """Return the relations that `to_json` wrote. Raises ContentError for anything else."""
     try:
-        if found["version"] != VERSION:
-            raise ContentError(f"relations of version {found['version']}, not {VERSION}", "run `dvc repro preprocess`")
-        pairs = [PairRelation(a, m, tuple(_mode(r) for r in modes), n, share, chance) for a, m, n, share, chance, modes in found["pairs"]]
-        walls = [WallRelation(c, s, Span(*gap), Span(*turn), n, share, chance) for c, s, n, share, chance, gap, turn in found["walls"]]
+        if tree["version"] != VERSION:
+            raise ContentError(f"relations of version {tree['version']}, not {VERSION}", "run `dvc repro preprocess`")
+        pairs = [PairRelation(a, m, tuple(_mode(r) for r in modes), n, share, chance) for a, m, n, share, chance, modes in tree["pairs"]]
+        walls = [WallRelation(c, s, Span(*gap), Span(*turn), n, share, chance) for c, s, n, share, chance, gap, turn in tree["walls"]]
     except (KeyError, TypeError, ValueError) as error:
         raise ContentError(f"no relations ({type(error).__name__}: {error})", "run `dvc repro preprocess`") from error
     return relations(pairs, walls)
@@ -43,8 +43,8 @@ def of_json(found: Any) -> Relations:
 
 def save(path: Path, known: Relations) -> None:
     """Write relations, a line for each pair and wall."""
-    made = to_json(known)
-    lines = {key: ",\n".join(f"  {json.dumps(row)}" for row in made[key]) for key in ("pairs", "walls")}
+    tree = to_json(known)
+    lines = {key: ",\n".join(f"  {json.dumps(row)}" for row in tree[key]) for key in ("pairs", "walls")}
     parts = [f'"version": {VERSION}', *(f'"{key}": [\n{text}\n]' for key, text in lines.items())]
     write_bytes(path, ("{" + ",\n".join(parts) + "}\n").encode())
 

@@ -18,7 +18,7 @@ SIDES = ("front", "right", "back", "left", "over")
 NORMAL = np.array([[0.0, -1], [1, 0], [0, 1], [-1, 0], [0, 1]])
 ALONG = np.array([[1.0, 0], [0, 1], [1, 0], [0, 1], [1, 0]])
 OVER = SIDES.index("over")
-REFERENCES = ("middle", "low", "high", "share", "outside")  # what an offset is measured from, see `measured`
+REFERENCES = ("middle", "low", "high", "share", "outside")  # what an offset is measured from, see `offset_along`
 THIN = 0.03  # a thing no higher than this, or heights that overlap no more: one lies over the other [m]
 
 
@@ -70,7 +70,7 @@ class Frames:
         return np.asarray(np.where(self.over, OVER, side))
 
 
-def wrapped(angle: Floats) -> Floats:
+def wrap_angle(angle: Floats) -> Floats:
     """Return angles in (-pi, pi]."""
     return np.asarray(np.pi - np.mod(np.pi - angle, 2 * np.pi))
 
@@ -86,18 +86,18 @@ def relate(anchors: Boxes, members: Boxes) -> Frames:
     apart = members.position - anchors.position
     c, s = np.cos(anchors.yaw), np.sin(anchors.yaw)
     place = np.stack([c * apart[:, 0] + s * apart[:, 1], c * apart[:, 1] - s * apart[:, 0]], -1)
-    turn = wrapped(members.yaw - anchors.yaw)
+    turn = wrap_angle(members.yaw - anchors.yaw)
     extent, anchor = extents(members.size, turn), anchors.size[:, :2]
     heights, reach = np.stack([anchors.size[:, 2], members.size[:, 2]]), apart[:, 2]
     shared = np.minimum(heights[0], reach + heights[1]) - np.maximum(0.0, reach)
     meet = (np.abs(place) < (anchor + extent) / 2).all(1)
     inside = (np.abs(place) < np.maximum(anchor, extent) / 2).all(1)
     over = meet & inside & ((shared < THIN) | (heights.min(0) < THIN))
-    facing = wrapped(turn - np.arctan2(-place[:, 0], place[:, 1]))
+    facing = wrap_angle(turn - np.arctan2(-place[:, 0], place[:, 1]))
     return Frames(place, extent, anchor, turn, facing, over)
 
 
-def measured(frames: Frames, direction: Floats, reference: str) -> Floats:
+def offset_along(frames: Frames, direction: Floats, reference: str) -> Floats:
     """Return the members' place (P,) along a direction (2,) of the anchor's frame: metres from the reference.
 
     middle: the anchor's middle; low, high: where the two boxes' ends of that name are flush; outside: where they touch;

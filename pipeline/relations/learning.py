@@ -13,9 +13,9 @@ from pipeline import taxonomy
 from pipeline.relations import walls
 from pipeline.relations.arrangement import Arrangement
 from pipeline.relations.clusters import entropy, split
-from pipeline.relations.frames import ALONG, NORMAL, OVER, SIDES, Boxes, Frames, measured, relate, wrapped
+from pipeline.relations.frames import ALONG, NORMAL, OVER, SIDES, Boxes, Frames, offset_along, relate, wrap_angle
 from pipeline.relations.model import PairRelation, Relations, relations
-from pipeline.relations.modes import Mode, Span, held
+from pipeline.relations.modes import Mode, Span, in_any_mode
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -60,7 +60,7 @@ def fit(rooms: Sequence[Arrangement], kinds: Mapping[str, str] | None = None) ->
     `kinds` names the kind of a category, see `alike`, which is what stands for None: a pair that shares too few rooms to be learnt by itself takes what its
     anchor has with all members of the kind, else what all anchors of the kind have with the member.
     """
-    things, kinds = _gathered(rooms), alike() if kinds is None else kinds
+    things, kinds = _collect_things(rooms), alike() if kinds is None else kinds
     anchor, member = _together(things)
     learnt: dict[tuple[int, int], _Learnt | None] = {
         pair: _relation(things, *case) for pair, case in _cases(anchor, member, things.kind, things.kind)
@@ -72,11 +72,11 @@ def fit(rooms: Sequence[Arrangement], kinds: Mapping[str, str] | None = None) ->
             for pair, case in _cases(anchor, member, anchors[things.kind], members[things.kind]):
                 own = sorted((a, m) for a, m in rare if (anchors[a], members[m]) == pair and not learnt.get((a, m)))
                 learnt |= dict.fromkeys(own, _relation(things, *case) if own else None)
-    named = [PairRelation(things.names[a], things.names[m], *found) for (a, m), found in learnt.items() if found is not None]
+    named = [PairRelation(things.names[a], things.names[m], *relation) for (a, m), relation in learnt.items() if relation is not None]
     return relations([pair for pair in named if pair.strength >= LEAST_STRENGTH], walls.fit(rooms))
 
 
-def _gathered(rooms: Sequence[Arrangement]) -> _Things:
+def _collect_things(rooms: Sequence[Arrangement]) -> _Things:
     names = tuple(sorted({name for room in rooms for name in room.categories}))
     code = {name: k for k, name in enumerate(names)}
     filled = [room for room in rooms if room.categories]
@@ -124,18 +124,18 @@ def _relation(things: _Things, anchor: Indices, member: Indices) -> _Learnt | No
     modes = _modes(own)
     if not modes:
         return None
-    chances = [held(modes, _nearest(things, anchor, member, mirror)).mean() for mirror in ((-1, 1), (1, -1), (-1, -1))]
-    return _Learnt(modes, len(own.turn), float(held(modes, own).mean()), float(np.mean(chances)))
+    chances = [in_any_mode(modes, _nearest(things, anchor, member, mirror)).mean() for mirror in ((-1, 1), (1, -1), (-1, -1))]
+    return _Learnt(modes, len(own.turn), float(in_any_mode(modes, own).mean()), float(np.mean(chances)))
 
 
 def _nearest(things: _Things, anchor: Indices, member: Indices, mirror: tuple[int, int]) -> Frames:
     """Return each member in the frame of the anchor that is nearest; the members mirrored about the middle of their rooms."""
-    frames = relate(things.boxes[anchor], _mirrored(things, member, mirror))
+    frames = relate(things.boxes[anchor], _mirror_boxes(things, member, mirror))
     order = np.lexsort((frames.distance(), member))
     return frames[order[np.flatnonzero(np.diff(member[order], prepend=-1))]]
 
 
-def _mirrored(things: _Things, member: Indices, mirror: tuple[int, int]) -> Boxes:
+def _mirror_boxes(things: _Things, member: Indices, mirror: tuple[int, int]) -> Boxes:
     """Mirror things: a mirror image of a thing about a line of its own is itself, so its yaw is that of its front's image."""
     boxes, middle = things.boxes[member], things.middle[member]
     position = boxes.position.copy()
@@ -149,13 +149,13 @@ def _modes(frames: Frames) -> tuple[Mode, ...]:
     count = len(frames.turn)
     least = max(LEAST_IN_MODE, int(np.ceil(LEAST_MODE * count)))
     sides, quarters = frames.sides(), np.mod(np.rint(frames.turn / (np.pi / 2)).astype(int), 4)
-    found = []
+    modes = []
     for side in range(len(SIDES)):
         for quarter in range(4):
             group = np.flatnonzero((sides == side) & (quarters == quarter))
             if len(group) >= least:
-                found += [_mode(frames[leaf], side, count) for leaf in _leaves(frames, group, side, least)]
-    return tuple(sorted(found, key=lambda mode: -mode.weight))
+                modes += [_mode(frames[leaf], side, count) for leaf in _leaves(frames, group, side, least)]
+    return tuple(sorted(modes, key=lambda mode: -mode.weight))
 
 
 def _leaves(frames: Frames, group: Indices, side: int, least: int) -> Iterator[Indices]:
@@ -164,7 +164,7 @@ def _leaves(frames: Frames, group: Indices, side: int, least: int) -> Iterator[I
     while waiting:
         leaf = waiting.pop()
         for direction, references in _directions(side):
-            values = [measured(frames[leaf], direction, r) * _unit(frames, leaf, direction, r) for r in references]
+            values = [offset_along(frames[leaf], direction, r) * _unit(frames, leaf, direction, r) for r in references]
             parts = split(values[int(np.argmin([entropy(v) for v in values]))], least)
             if len(parts) > 1:
                 waiting += [leaf[part] for part in parts]
@@ -187,7 +187,9 @@ def _unit(frames: Frames, leaf: Indices, direction: Floats, reference: str) -> f
 def _mode(frames: Frames, side: int, count: int) -> Mode:
     spans = []
     for direction, references in _directions(side):
-        options = [_span(r, measured(frames, direction, r), _unit(frames, np.arange(len(frames.turn)), direction, r)) for r in references]
+        options = [
+            _span(r, offset_along(frames, direction, r), _unit(frames, np.arange(len(frames.turn)), direction, r)) for r in references
+        ]
         spans.append(min(options, key=lambda o: o[0])[1])
     turns = [_turn("anchor", frames.turn), _turn("facing", frames.facing)]
     return Mode(
@@ -209,5 +211,5 @@ def _span(reference: str, values: Floats, unit: float) -> tuple[float, Span]:
 def _turn(reference: str, values: Floats) -> Span:
     """Return the span of angles: percentiles around their mean direction."""
     mean = float(np.arctan2(np.sin(values).mean(), np.cos(values).mean()))
-    low, middle, high = mean + np.percentile(wrapped(values - mean), TAILS)
+    low, middle, high = mean + np.percentile(wrap_angle(values - mean), TAILS)
     return Span(reference, *(round(float(v), 4) for v in (low, middle, high)))

@@ -75,8 +75,8 @@ class Relations:
 
     def strongest(self, least: float = 0.0) -> list[PairRelation]:
         """Return the relations of at least this strength, strongest first."""
-        found = [pair for pair in self.pairs.values() if pair.strength >= least]
-        return sorted(found, key=lambda p: (-p.strength, p.anchor, p.member))
+        pairs = [pair for pair in self.pairs.values() if pair.strength >= least]
+        return sorted(pairs, key=lambda p: (-p.strength, p.anchor, p.member))
 
     def nearest(self, anchor: Thing, member: Thing) -> Nearest | None:
         """Return how far a member is from the nearest mode at this anchor, and the pose that would be in it; None without a relation."""
@@ -96,8 +96,8 @@ class Relations:
 
     def best(self, member: Thing, anchors: Sequence[Thing]) -> tuple[int, Nearest] | None:
         """Return the anchor (its index) at whose modes the member is nearest, and that nearest mode; None where none relates."""
-        found = [(k, near) for k, anchor in enumerate(anchors) if (near := self.nearest(anchor, member)) is not None]
-        return min(found, key=lambda f: f[1].metres + 0.5 * f[1].radians) if found else None
+        candidates = [(k, near) for k, anchor in enumerate(anchors) if (near := self.nearest(anchor, member)) is not None]
+        return min(candidates, key=lambda f: f[1].metres + 0.5 * f[1].radians) if candidates else None
 
 
 def relations(pairs: Iterable[PairRelation], walls: Iterable[WallRelation]) -> Relations:
@@ -106,4 +106,4 @@ def relations(pairs: Iterable[PairRelation], walls: Iterable[WallRelation]) -> R
     for wall in sorted(walls, key=lambda w: (w.category, -w.strength, w.side)):
         by_category.setdefault(wall.category, []).append(wall)
     named = {(p.anchor, p.member): p for p in pairs}
-    return Relations(dict(sorted(named.items())), {name: tuple(found) for name, found in by_category.items()})
+    return Relations(dict(sorted(named.items())), {name: tuple(sides) for name, sides in by_category.items()})

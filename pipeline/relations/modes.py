@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.relations.arrangement import Thing
-from pipeline.relations.frames import ALONG, NORMAL, SIDES, Boxes, Frames, base, extents, measured, relate, wrapped
+from pipeline.relations.frames import ALONG, NORMAL, SIDES, Boxes, Frames, base, extents, offset_along, relate, wrap_angle
 
 Floats = NDArray[np.float64]
 
@@ -18,7 +18,7 @@ LEVER = 0.5  # metres that a radian counts where modes are compared [m/rad]
 
 
 class Span(NamedTuple):
-    """Where the cases lie: 5 %, 50 % and 95 % of them are below; measured from a reference, see `frames.measured`."""
+    """Where the cases lie: 5 %, 50 % and 95 % of them are below; measured from a reference, see `frames.offset_along`."""
 
     reference: str
     low: float
@@ -67,9 +67,9 @@ class Mode:
         k = SIDES.index(self.side)
         off = []
         for span, direction in ((self.outwards, NORMAL[k]), (self.along, ALONG[k])):
-            beyond = excess(measured(frames, direction, span.reference), span)
+            beyond = excess(offset_along(frames, direction, span.reference), span)
             off.append(beyond * (frames.anchor @ np.abs(direction)) if span.reference == "share" else beyond)
-        angle = wrapped((frames.facing if self.turn.reference == "facing" else frames.turn) - self.turn.middle)
+        angle = wrap_angle((frames.facing if self.turn.reference == "facing" else frames.turn) - self.turn.middle)
         beyond = excess(angle, self.turn._replace(low=self.turn.low - self.turn.middle, high=self.turn.high - self.turn.middle))
         return np.hypot(*off), np.abs(beyond)
 
@@ -79,7 +79,7 @@ class Mode:
         facing = self.turn.reference == "facing"
         turned = self.turn.middle
         if frames is not None:
-            off = wrapped((frames.facing if facing else frames.turn) - self.turn.middle)
+            off = wrap_angle((frames.facing if facing else frames.turn) - self.turn.middle)
             turned += float(np.clip(off[0], self.turn.low - self.turn.middle, self.turn.high - self.turn.middle))
         place = NORMAL[SIDES.index(self.side)] if frames is None else frames.place[0]
         yaw = turned
@@ -88,7 +88,7 @@ class Mode:
             place = self._place(anchor, extents(np.array([size]), np.array([yaw])), frames)
         c, s = np.cos(anchor.yaw), np.sin(anchor.yaw)
         x, y = anchor.x + c * place[0] - s * place[1], anchor.y + s * place[0] + c * place[1]
-        return Pose(float(x), float(y), float(wrapped(np.array(anchor.yaw + yaw))), self.weight)
+        return Pose(float(x), float(y), float(wrap_angle(np.array(anchor.yaw + yaw))), self.weight)
 
     def _place(self, anchor: Thing, extent: Floats, frames: Frames | None) -> Floats:
         """Return the place (2,) in the anchor's frame of a member with these extents (1, 2)."""
@@ -117,17 +117,17 @@ def boxes(things: list[Thing]) -> Boxes:
 
 def nearest(modes: tuple[Mode, ...], frames: Frames) -> tuple[NDArray[np.intp], Floats, Floats]:
     """Return for each member the nearest mode (P,), and how far it is off: [m], [rad]."""
-    found = [mode.distances(frames) for mode in modes]
-    metres, radians = np.stack([m for m, _ in found]), np.stack([r for _, r in found])
+    distances = [mode.distances(frames) for mode in modes]
+    metres, radians = np.stack([m for m, _ in distances]), np.stack([r for _, r in distances])
     best = np.argmin(metres + LEVER * radians, axis=0)
     each = np.arange(len(best))
     return best, metres[best, each], radians[best, each]
 
 
-def held(modes: tuple[Mode, ...], frames: Frames) -> NDArray[np.bool_]:
+def in_any_mode(modes: tuple[Mode, ...], frames: Frames) -> NDArray[np.bool_]:
     """Return which members are in a mode (P,)."""
-    found = np.zeros(len(frames.turn), bool)
+    inside = np.zeros(len(frames.turn), bool)
     for mode in modes:
         metres, radians = mode.distances(frames)
-        found |= (metres <= METRES) & (radians <= RADIANS)
-    return found
+        inside |= (metres <= METRES) & (radians <= RADIANS)
+    return inside

@@ -26,6 +26,6 @@ def rooms_of(folder: Path, split: str) -> list[Arrangement]:
     known = scenes.filter(pc.equal(scenes["split"], split))["scene_id"]
     rows = {}
     for table in (ROOMS, OBJECTS, OPENINGS):
-        found = tables.read_arrow(folder / f"{table.name}.parquet", table).select(COLUMNS[table.name])
-        rows[table.name] = found.filter(pc.is_in(found["scene_id"], known)).to_pylist()
+        records = tables.read_arrow(folder / f"{table.name}.parquet", table).select(COLUMNS[table.name])
+        rows[table.name] = records.filter(pc.is_in(records["scene_id"], known)).to_pylist()
     return from_rows(rows[ROOMS.name], rows[OBJECTS.name], rows[OPENINGS.name])

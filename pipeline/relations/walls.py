@@ -38,8 +38,8 @@ def measure(room: Arrangement) -> tuple[Floats, Floats]:
         reach = (apart * outside).sum(-1)[:, None] / towards
         hit = room.position[:, None, None, :2] + reach[..., None] * ways[:, :, None]
         place = ((hit - start) * edge).sum(-1) / np.maximum((edge * edge).sum(-1), 1e-12)
-        seen = (towards > np.cos(OBLIQUE)) & (reach > 0) & (place > -1e-6) & (place < 1 + 1e-6)
-    reach = np.where(seen, reach, np.inf)
+        visible = (towards > np.cos(OBLIQUE)) & (reach > 0) & (place > -1e-6) & (place < 1 + 1e-6)
+    reach = np.where(visible, reach, np.inf)
     nearest = reach.argmin(-1)
     gap = np.take_along_axis(reach, nearest[..., None], -1)[..., 0] - half
     normal = outside[nearest]
@@ -51,10 +51,10 @@ def measure(room: Arrangement) -> tuple[Floats, Floats]:
 def fit(rooms: Sequence[Arrangement]) -> Iterator[WallRelation]:
     """Yield for each category the sides that stand at a wall more often than others do."""
     names = np.array([name for room in rooms for name in room.categories])
-    found = [measure(room) for room in rooms if room.categories]
-    if not found:
+    measures = [measure(room) for room in rooms if room.categories]
+    if not measures:
         return
-    gaps, turns = np.concatenate([g for g, _ in found]), np.concatenate([t for _, t in found])
+    gaps, turns = np.concatenate([g for g, _ in measures]), np.concatenate([t for _, t in measures])
     for name in sorted(set(names.tolist())):
         own = names == name
         if own.sum() >= LEAST_CASES:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset
 from pipeline.geometry.compiled import borrowing
-from pipeline.geometry.memo import kept
+from pipeline.geometry.memo import cached_on_asset
 from pipeline.rendering.pose import asset_triangles
 from pipeline.rendering.raster import AMBIENT, LIGHT, Frame, View, fill_triangle, render, top_down
 from pipeline.rendering.texture import display, face_colours
@@ -27,29 +27,29 @@ class Roof:
     colours: NDArray[np.float32]
 
 
-@kept
+@cached_on_asset
 def roof(asset: Asset) -> Roof:
     """Return what is seen of an asset with all joints at 0."""
     faces, _ = asset_triangles(asset)
-    seen = np.zeros(len(faces), np.bool_)
+    visible = np.zeros(len(faces), np.bool_)
     if len(faces):
         low, high = faces[..., :2].min((0, 1)), faces[..., :2].max((0, 1))
         width, height = (int(np.clip(math.ceil(FINENESS * side), 8, MOST)) for side in high - low)
         items = render(top_down(low, high, width, height), faces, np.zeros((len(faces), 3), np.float32)).item
-        seen[items[items >= 0]] = True
-    return Roof(faces[seen].astype(np.float32), display(face_colours(asset, seen)))
+        visible[items[items >= 0]] = True
+    return Roof(faces[visible].astype(np.float32), display(face_colours(asset, visible)))
 
 
 def draw_roof(
     frame: Frame, view: View, asset: Asset, position: NDArray[np.float64], yaw: float, scale: NDArray[np.float64], item: int
 ) -> None:
     """Draw an asset into a frame that looks down at `position` (3,) [m], shaded as `render` does; `item` labels its pixels."""
-    found = roof(asset)
+    top = roof(asset)
     pose = np.array([*position, math.cos(yaw), math.sin(yaw)])
     offset = np.array([view.width / 2, view.height / 2]) - view.scale * view.centre[:2] * (1.0, -1.0)
     scratch = np.empty((3, 3)), np.empty((3, 3), np.float32), np.empty(3, np.uint8)
     drawn = frame.colour, frame.depth, frame.item
-    _draw(found.faces, found.colours, pose, scale, view.scale, offset, item, TO_LIGHT, AMBIENT, scratch, drawn)
+    _draw(top.faces, top.colours, pose, scale, view.scale, offset, item, TO_LIGHT, AMBIENT, scratch, drawn)
 
 
 @borrowing

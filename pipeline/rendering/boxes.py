@@ -20,7 +20,7 @@ def box(name: str, low: tuple[float, float, float], high: tuple[float, float, fl
     return Mesh(name, corner + CORNERS * extent, FACES, material, None, part)
 
 
-def joined(name: str, meshes: tuple[Mesh, ...]) -> Mesh:
+def join_meshes(name: str, meshes: tuple[Mesh, ...]) -> Mesh:
     """Make one mesh of several, with the material of the first."""
     starts = np.cumsum([0, *(len(m.vertices) for m in meshes[:-1])])
     faces = np.concatenate([m.faces + start for m, start in zip(meshes, starts, strict=True)]).astype(np.int32)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Joint, Mesh
 from pipeline.geometry.walls import LEAF_GAP, LEAF_THICKNESS, Cut, Leaf
-from pipeline.rendering.boxes import box, joined, solid_link
+from pipeline.rendering.boxes import box, join_meshes, solid_link
 from pipeline.rendering.palette import ENTRANCE_LEAF, GLASS, JAMB, LEAF, METAL, WINDOW_FRAME
 
 LINING = 0.003  # thickness of the door frame's lining, inside the gap around the leaf [m]
@@ -43,7 +43,7 @@ def door_of(size: Size, *, entrance: bool) -> Asset:
     side = leaf.turn  # +1: the room it swings into lies towards +y
     # The lining is 3 mm before walls and lintel, which collide themselves.
     boards = _lining(leaf)
-    frame = replace(solid_link("frame", (joined("frame", (*boards, *_casing(leaf))),), boards, 12.0), colliders=())
+    frame = replace(solid_link("frame", (join_meshes("frame", (*boards, *_casing(leaf))),), boards, 12.0), colliders=())
     panel = _span("leaf", (LEAF_GAP, LEAF_GAP + leaf.width), (-side * LEAF_THICKNESS, 0.0), (leaf.bottom, leaf.top), 1)
     handles, levers = zip(*(_handle(leaf, name) for name in ("front", "back")), strict=True)
     mass = LEAF_DENSITY * leaf.width * LEAF_THICKNESS * (leaf.top - leaf.bottom)
@@ -85,7 +85,7 @@ def window_of(size: Size) -> Asset:
         *(box("mullion", (x - bar / 2, -depth, z0 + bar + SEAM), (x + bar / 2, depth, z1 - bar - SEAM)) for x in edges[1:-1]),
     )
     glass = tuple(box("pane", (x0 + bar / 2, -0.01, z0 + bar), (x1 - bar / 2, 0.01, z1 - bar), 1) for x0, x1 in itertools.pairwise(edges))
-    parts = joined("frame", bars), joined("glass", glass)
+    parts = join_meshes("frame", bars), join_meshes("glass", glass)
     return Asset(
         asset_id="window",
         category="window",
@@ -138,4 +138,4 @@ def _handle(leaf: Leaf, side: str) -> tuple[Mesh, Mesh]:
     height = (z - 0.01, z + 0.01)
     neck = _span("neck", (x - 0.01, x + 0.01 - SEAM), (face, face + out * (0.045 - SEAM)), height, 2)
     lever = _span(f"handle_{side}_lever", (x - 0.12, x + 0.01), (face + out * 0.045, face + out * 0.06), height, 2, PART)
-    return replace(joined(f"handle_{side}", (neck, lever)), part=PART), lever
+    return replace(join_meshes(f"handle_{side}", (neck, lever)), part=PART), lever

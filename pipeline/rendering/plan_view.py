@@ -53,14 +53,14 @@ def plan_view(room: Arrangement, size: int = SIZE) -> NDArray[np.uint8]:
             edge = -d + FRONT * 2 * d
             for (y0, y1), dark, lift in (((-d, d), 1.0, 0.0), ((-d, edge), 0.35, 0.005)):
                 corners = np.array([[-w, y0], [w, y0], [w, y1], [-w, y1]])
-                shapes.append(_quad(_placed(corners, room.position[k, :2], float(room.yaw[k])), top + lift))
+                shapes.append(_quad(_place_corners(corners, room.position[k, :2], float(room.yaw[k])), top + lift))
                 paints.append(np.tile(np.array(known[name]) * dark, (2, 1)))
     triangles = np.concatenate(shapes)
     frame = fill(view.project(triangles), np.concatenate(paints).astype(np.float32), None, (view.width, view.height), PAPER)
     return shrink(frame, FINE).colour
 
 
-def _placed(corners: NDArray[np.float64], place: NDArray[np.float64], yaw: float) -> NDArray[np.float64]:
+def _place_corners(corners: NDArray[np.float64], place: NDArray[np.float64], yaw: float) -> NDArray[np.float64]:
     c, s = np.cos(yaw), np.sin(yaw)
     moved: NDArray[np.float64] = corners @ np.array([[c, s], [-s, c]]) + place
     return moved

@@ -15,7 +15,7 @@ from pipeline.rendering.boxes import triangles
 FREE_TURN = math.pi / 2  # how far a joint without limits turns when it is shown open [rad]
 
 
-def opened(asset: Asset, fraction: float) -> dict[str, float]:
+def open_joint_values(asset: Asset, fraction: float) -> dict[str, float]:
     """Return joint values with doors, drawers and lids at `fraction` of their range; knobs and buttons stay."""
     openers = {"hinge_door", "slider_drawer", "hinge_lid", "slider_lid"}
     return {j.name: fraction * (j.upper if math.isfinite(j.upper) else FREE_TURN) for j in asset.joints if j.part_class in openers}

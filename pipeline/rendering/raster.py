@@ -80,9 +80,9 @@ def render(
     shade = np.ones((0, 1), np.float32)
     if len(triangles):
         normals = face_normals(triangles)
-        seen = np.abs(normals @ view.axes[2]) > 1e-3  # what is seen edge-on covers no pixel
-        triangles, colours, normals = triangles[seen], colours[seen], normals[seen]
-        items = np.flatnonzero(seen).astype(np.int32) if items is None else items[seen]
+        visible = np.abs(normals @ view.axes[2]) > 1e-3  # what is seen edge-on covers no pixel
+        triangles, colours, normals = triangles[visible], colours[visible], normals[visible]
+        items = np.flatnonzero(visible).astype(np.int32) if items is None else items[visible]
         normals *= np.where(normals @ view.axes[2] < 0, -1.0, 1.0)[:, None]  # shade the side that is seen
         lambert = np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0, 1)
         shade = (AMBIENT + (1 - AMBIENT) * lambert).astype(np.float32)[:, None]
@@ -128,7 +128,7 @@ def darken_edges(frame: Frame, radius: int, strength: float, reach: float = 0.6,
         low = _box_means(np.ascontiguousarray(_box_means(low, radius + 1).T), radius + 1).T
     everywhere = ground is not None
     return Frame(
-        _darkened(frame.colour, frame.depth, filled, low, np.float32(strength / reach), np.float32(strength), everywhere),
+        _darken_pixels(frame.colour, frame.depth, filled, low, np.float32(strength / reach), np.float32(strength), everywhere),
         frame.depth,
         frame.item,
     )
@@ -218,7 +218,7 @@ def fill_triangle(
 def _box_means(values: NDArray[np.float32], width: int) -> NDArray[np.float32]:
     """Return the means of `width` values around each (H, W) down the columns; those at the ends count beyond them."""
     height, columns = values.shape
-    found = np.empty((height, columns), np.float32)
+    means = np.empty((height, columns), np.float32)
     total = np.zeros(columns)
     before = width // 2
     for row in range(-before, width - before):
@@ -230,12 +230,12 @@ def _box_means(values: NDArray[np.float32], width: int) -> NDArray[np.float32]:
             for column in range(columns):
                 total[column] += np.float64(values[enters, column]) - np.float64(values[leaves, column])
         for column in range(columns):
-            found[row, column] = total[column] / width
-    return found
+            means[row, column] = total[column] / width
+    return means
 
 
 @compiled
-def _darkened(
+def _darken_pixels(
     colour: NDArray[np.uint8],
     depth: NDArray[np.float32],
     filled: NDArray[np.float32],
@@ -246,7 +246,7 @@ def _darkened(
 ) -> NDArray[np.uint8]:
     """Darken each pixel (H, W) by how far it lies below `low` (H / 2, W / 2), `slope` per metre and at `most`; empty ones `everywhere` or not."""
     height, width = depth.shape
-    found = np.empty((height, width, 3), np.uint8)
+    image = np.empty((height, width, 3), np.uint8)
     zero, one, half = np.float32(0.0), np.float32(1.0), np.float32(0.5)
     for row in range(height):
         for column in range(width):
@@ -254,5 +254,5 @@ def _darkened(
             if not everywhere and not np.isfinite(depth[row, column]):
                 occlusion = zero
             for channel in range(3):
-                found[row, column, channel] = np.uint8(np.float32(colour[row, column, channel]) * (one - occlusion) + half)
-    return found
+                image[row, column, channel] = np.uint8(np.float32(colour[row, column, channel]) * (one - occlusion) + half)
+    return image

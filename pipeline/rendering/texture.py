@@ -42,14 +42,14 @@ def _mesh_colours(asset: Asset, mesh: Mesh, faces: NDArray[np.int32]) -> NDArray
     if material.texture is None or mesh.uv is None or material.texture not in asset.textures or not len(faces):
         return plain
     texels = _texels(asset.textures[material.texture])
-    return plain if texels is None else _sampled(texels, np.asarray(mesh.uv, np.float32), faces)
+    return plain if texels is None else _mean_colours(texels, np.asarray(mesh.uv, np.float32), faces)
 
 
 @compiled
-def _sampled(texels: NDArray[np.uint8], uv: NDArray[np.float32], faces: NDArray[np.int32]) -> NDArray[np.float32]:
+def _mean_colours(texels: NDArray[np.uint8], uv: NDArray[np.float32], faces: NDArray[np.int32]) -> NDArray[np.float32]:
     """Return the mean linear colour (F, 3) of the encoded texels (H, W, 3) under the spots of each face, by its corners' coordinates in `uv` (V, 2)."""
     height, width = texels.shape[:2]
-    found = np.zeros((len(faces), 3), np.float32)
+    colours = np.zeros((len(faces), 3), np.float32)
     one = np.float32(1.0)
     for f in range(len(faces)):
         a, b, c = uv[faces[f, 0]], uv[faces[f, 1]], uv[faces[f, 2]]
@@ -58,10 +58,10 @@ def _sampled(texels: NDArray[np.uint8], uv: NDArray[np.float32], faces: NDArray[
             v = (SPOTS[s, 0] * a[1] + SPOTS[s, 1] * b[1] + SPOTS[s, 2] * c[1]) % one
             row, column = min(int((one - v) * np.float32(height)), height - 1), min(int(u * np.float32(width)), width - 1)
             for k in range(3):
-                found[f, k] += LINEAR[texels[row, column, k]]
+                colours[f, k] += LINEAR[texels[row, column, k]]
         for k in range(3):
-            found[f, k] /= np.float32(SPOTS.shape[0])
-    return found
+            colours[f, k] /= np.float32(SPOTS.shape[0])
+    return colours
 
 
 @functools.lru_cache(maxsize=16)

@@ -8,7 +8,7 @@ import numpy as np
 from PIL import Image
 
 from pipeline.entities.asset import Asset
-from pipeline.rendering.pose import asset_triangles, opened
+from pipeline.rendering.pose import asset_triangles, open_joint_values
 from pipeline.rendering.raster import darken_edges, oblique, render, shrink
 from pipeline.rendering.texture import display, face_colours
 
@@ -17,7 +17,7 @@ BACKGROUND = (0.96, 0.96, 0.95)
 
 def thumbnail(asset: Asset, size: int = 256, open_fraction: float = 0.35) -> Image.Image:
     """Draw the asset, `size` x `size` pixels."""
-    faces, _ = asset_triangles(asset, opened(asset, open_fraction))
+    faces, _ = asset_triangles(asset, open_joint_values(asset, open_fraction))
     if not len(faces):
         return Image.new("RGB", (size, size), tuple(int(255 * c) for c in BACKGROUND))
     view = oblique(faces.reshape(-1, 3), math.radians(-32), math.radians(24), 2 * size)

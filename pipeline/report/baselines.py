@@ -25,11 +25,11 @@ TEXT = (
 )  # fmt: skip
 
 
-def baselines_section(found: Json) -> Section | None:
+def baselines_section(figures: Json) -> Section | None:
     """Return the tables of metrics/baselines.json; None where the baselines were not run."""
-    if not found:
+    if not figures:
         return None
-    models, counts = {name: found["models"][name] for name in NAMES}, sorted(found["quantity"]["ours"], key=int)
+    models, counts = {name: figures["models"][name] for name in NAMES}, sorted(figures["quantity"]["ours"], key=int)
     rows = [
         [
             NAMES[name], share(row["objects"]), share(row["r_acoll"]["rooms"]), share(row["collision"]["col_obj"]),
@@ -38,18 +38,18 @@ def baselines_section(found: Json) -> Section | None:
         for name, row in models.items()
     ]  # fmt: skip
     rows += [
-        [f"{NAMES[name]}, asked for N", *["-"] * 4, *(share(made[n]) for n in counts), "-"] for name, made in found["quantity"].items()
+        [f"{NAMES[name]}, asked for N", *["-"] * 4, *(share(rates[n]) for n in counts), "-"] for name, rates in figures["quantity"].items()
     ]
     header = ("", "objects a room", "R_acoll, boxes + depth/3", "Col_obj, boxes", "CKL", *(f"SR({n})" for n in counts), "CPU s a room")
     rules = sorted(models["real"]["relations"])
     kept = [[rule, *(share(row["relations"][rule]) for row in models.values())] for rule in rules if models["real"]["relations"][rule]["n"]]
     kept.append(["SCA of a forest on layout features (.5 is best)", *(share(row.get("sca")) for row in models.values())])
     cost = [
-        [NAMES[name], f"{row['parameters']:,}", str(row["steps"]), f"{row['cpu_seconds']:.0f}"] for name, row in found["trained"].items()
+        [NAMES[name], f"{row['parameters']:,}", str(row["steps"]), f"{row['cpu_seconds']:.0f}"] for name, row in figures["trained"].items()
     ]
     tables = [
         TableView(f"{models['real']['rooms']} rooms of the held-out split, with 95 % intervals", header, rows),
         TableView("Relations: share of cases where they hold", ("", *(NAMES[name] for name in models)), kept),
-        TableView(f"Training, on {found['train_rooms']:,} rooms", ("", "parameters", "steps", "CPU s"), cost),
+        TableView(f"Training, on {figures['train_rooms']:,} rooms", ("", "parameters", "steps", "CPU s"), cost),
     ]
     return Section("Layout models of the peers and of the paper", [TEXT], tables)

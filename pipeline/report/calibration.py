@@ -21,13 +21,15 @@ HEADER = ("", "ours", "3D-FRONT", "to lie within", "n", "interval from", "")
 SIZES = ("category", "models", "mean w, d, h / reference", "spread w, d, h / reference", "")
 
 
-def calibration_section(found: Json, pictures: Sequence[Picture]) -> Section:
+def calibration_section(figures: Json, pictures: Sequence[Picture]) -> Section:
     """Return the chapter: a table per group, one row per figure; sizes in one row per category."""
-    lines = [entry for group in (*GROUPS, "sizes") for entry in found[group].values()]
+    lines = [entry for group in (*GROUPS, "sizes") for entry in figures[group].values()]
     met = sum(entry["ok"] for entry in lines)
-    lead = f"{found['houses']} houses, {found['rooms']} rooms, counted as they were written: {met} of {len(lines)} figures lie where 3D-FRONT's do."
-    tables = [TableView(caption, HEADER, [_row(name, entry) for name, entry in found[group].items()]) for group, caption in GROUPS.items()]
-    tables.append(TableView("Sizes of models: ours over the reference's", SIZES, sizes(found["sizes"])))
+    lead = f"{figures['houses']} houses, {figures['rooms']} rooms, counted as they were written: {met} of {len(lines)} figures lie where 3D-FRONT's do."
+    tables = [
+        TableView(caption, HEADER, [_row(name, entry) for name, entry in figures[group].items()]) for group, caption in GROUPS.items()
+    ]
+    tables.append(TableView("Sizes of models: ours over the reference's", SIZES, sizes(figures["sizes"])))
     return Section("The embedded corpus beside 3D-FRONT", [lead], tables, pictures)
 
 
@@ -43,23 +45,23 @@ def sizes(lines: Json) -> list[list[str]]:
     for name, entry in lines.items():
         category, axis, what = name.removesuffix(" [m]").split(", ")
         by.setdefault(category, {})[f"{what} {axis}"] = entry
-    made = []
+    rows = []
     for category, entries in by.items():
         ratios = [
             ", ".join(f"{entries[f'{what} {a}']['ours'] / entries[f'{what} {a}']['reference']:.2f}" for a in "wdh")
             for what in ("mean", "spread")
         ]
         ok = all(entry["ok"] for entry in entries.values())
-        made.append([category, str(next(iter(entries.values()))["n"]), *ratios, "ok" if ok else "not ok"])
-    return made
+        rows.append([category, str(next(iter(entries.values()))["n"]), *ratios, "ok" if ok else "not ok"])
+    return rows
 
 
-def plots(found: Json) -> dict[str, bytes]:
+def plots(figures: Json) -> dict[str, bytes]:
     """Return the chapter's pictures by name: class frequencies and objects per room, ours beside the reference."""
-    made = {}
+    pictures = {}
     for group, y in (("frequencies", "share of objects"), ("histograms", "share of rooms")):
-        for kind, shares in found[group].items():
+        for kind, shares in figures[group].items():
             values = {name: [entry[key] for entry in shares.values()] for name, key in (("ours", "ours"), ("3D-FRONT", "reference"))}
             title = f"{kind}: {'classes' if group == 'frequencies' else 'objects per room'}"
-            made[f"{group}_{kind}"] = bars(values, [label.replace("_", " ") for label in shares], title=title, y=y)
-    return made
+            pictures[f"{group}_{kind}"] = bars(values, [label.replace("_", " ") for label in shares], title=title, y=y)
+    return pictures

@@ -23,7 +23,7 @@ VOID = "Void for what it does not see: real rooms with things"
 
 def realism_section(table: Json, pictures: Sequence[Picture]) -> Section:
     """Return relation rates, counts, classifiers, image metrics and novelty."""
-    found = table["relations"]
+    relations = table["relations"]
     text = [
         "Real: furnished rooms of the test split. Drafts: what the layout model draws on the same floors. Finished: those as they would ship. Shipped: the rooms of the homes above, on floors of their own.",
         "Harms are done to real rooms: a figure that does not see one of them (SCA of .8 and more, FID twice that of training rooms) is void for it.",
@@ -31,9 +31,9 @@ def realism_section(table: Json, pictures: Sequence[Picture]) -> Section:
     ]
     views = [view for name, figures in table["views"].items() for view in _views(name, figures)]
     tables = [
-        _rates("Share of cases in which it holds", found["rates"]),
-        _rates("The strongest learnt relations: share of cases that stand in one of their modes", found["learnt"]),
-        _rates("Objects in a room; chairs in rooms with a dining table", {**found["objects"], "chairs": found["chairs"]}),
+        _rates("Share of cases in which it holds", relations["rates"]),
+        _rates("The strongest learnt relations: share of cases that stand in one of their modes", relations["learnt"]),
+        _rates("Objects in a room; chairs in rooms with a dining table", {**relations["objects"], "chairs": relations["chairs"]}),
         _forest(table["layout"]),
         *views,
         _novelty(table["novelty"]),
@@ -47,11 +47,11 @@ def _title(name: str) -> str:
 
 def _rates(caption: str, figures: Json) -> TableView:
     sets = list(next(iter(figures.values()), {}))
-    rows = [[name.replace("_", " "), *(_shown(row[key]) for key in sets), str(row["real"]["n"])] for name, row in figures.items()]
+    rows = [[name.replace("_", " "), *(_format_share(row[key]) for key in sets), str(row["real"]["n"])] for name, row in figures.items()]
     return TableView(caption, ("", *map(_title, sets), "real cases"), rows)
 
 
-def _shown(value: Json) -> str:
+def _format_share(value: Json) -> str:
     return share(value) if value["n"] else "-"
 
 
@@ -61,7 +61,7 @@ def _forest(figures: Json) -> TableView:
     caption = (
         "SCA of a random forest on layout features against real rooms: .5 is best. Solid: what is in another body counts as touching it."
     )
-    return TableView(_warned(caption, figures), ("rooms", "accuracy", "solid", "rooms of both"), rows)
+    return TableView(_with_warning(caption, figures), ("rooms", "accuracy", "solid", "rooms of both"), rows)
 
 
 def _views(name: str, figures: Json) -> list[TableView]:
@@ -76,10 +76,10 @@ def _views(name: str, figures: Json) -> list[TableView]:
         for key, v in part.items()
     ]
     caption = f"Plan views against those of real rooms, features of {name}."
-    return [TableView(_warned(caption, figures), ("rooms", "FID", "KID", "SCA"), rows)]
+    return [TableView(_with_warning(caption, figures), ("rooms", "FID", "KID", "SCA"), rows)]
 
 
-def _warned(caption: str, figures: Json) -> str:
+def _with_warning(caption: str, figures: Json) -> str:
     return f"{caption} {VOID} {', '.join(figures['blind_to'])}." if figures["blind_to"] else caption
 
 

@@ -181,8 +181,8 @@ class AssetIndex:
         raw = self.latents[row] * self.spread + self.mean
         table = self.distance(fits, self.sizes[row][None], raw[None])[0]
         best = int(table.argmin())
-        found = int(fits[best])
-        return Match(self.asset_ids[found], float(table[best]), np.ones(3), self.sizes[found].copy(), bool(self.openable[found]))
+        closest = int(fits[best])
+        return Match(self.asset_ids[closest], float(table[best]), np.ones(3), self.sizes[closest].copy(), bool(self.openable[closest]))
 
     def lookup(
         self, categories: Sequence[Sequence[str | None]], sizes: NDArray[np.float64], latents: NDArray[np.float32]
@@ -194,12 +194,12 @@ class AssetIndex:
         flat = [c for row in categories for c in row]
         asked = np.asarray(sizes, float).reshape(-1, 3)
         rows, _ = self.nearest(flat, asked, np.asarray(latents, float).reshape(len(flat), -1))
-        safe, found = np.maximum(rows, 0), rows >= 0
+        safe, has_asset = np.maximum(rows, 0), rows >= 0
         limit = np.where(self.articulated[safe], 0.0, self.settings.stretch)[:, None]
         scale = np.clip(asked / self.sizes[safe], 1 - limit, 1 + limit)
-        placed = np.where(found[:, None], self.sizes[safe] * scale, asked)
+        placed = np.where(has_asset[:, None], self.sizes[safe] * scale, asked)
         boxes = self.sweep_boxes[safe].copy()
-        boxes[~found] = np.nan
+        boxes[~has_asset] = np.nan
         shape = (len(categories), -1)
         return placed.reshape(*shape, 3), boxes.reshape(*shape, *boxes.shape[1:])
 

@@ -42,14 +42,14 @@ def draw_style(rng: np.random.Generator, index: AssetIndex) -> str:
 
 def draw_finishes(rng: np.random.Generator, index: AssetIndex, style: str, finish_of: FinishOf) -> dict[str, Floats]:
     """Draw a room's finish for each group: that of some asset of the style, of any asset where the style has none."""
-    found: dict[str, Floats] = {}
+    finishes: dict[str, Floats] = {}
     for group, categories in SOURCES.items():
         mark = rng.random()
         rows = [int(k) for name in categories for k in index.shelves.get(name, ())]
         rows = [k for k in rows if style and index.styles[k] == style] or rows
         if rows:
-            found[group] = finish_of(index.asset_ids[rows[int(mark * len(rows))]])
-    return found
+            finishes[group] = finish_of(index.asset_ids[rows[int(mark * len(rows))]])
+    return finishes
 
 
 def sets(categories: Sequence[str], positions: Floats) -> list[list[int]]:
@@ -83,11 +83,11 @@ def tasteful(
     for group in sets(categories, positions):
         asked[group], shapes[group] = asked[group].mean(0), shapes[group].mean(0)
     s, favoured = index.settings, index.favouring(taste.style, wished=taste.wished)
-    found: list[Match | None] = []
+    matches: list[Match | None] = []
     for k, category in enumerate(categories):
         shelf = index.shelves.get(category)
         if shelf is None:
-            found.append(None)
+            matches.append(None)
             continue
         far = favoured.distance(shelf, asked[k : k + 1], shapes[k : k + 1])[0]
         best = np.argsort(far, kind="stable")[: s.shortlist]
@@ -97,5 +97,5 @@ def tasteful(
             off = np.array([np.linalg.norm(finish_of(index.asset_ids[shelf[j]]) - finish) for j in best])
         cost = far[best] + s.prefer_finish * np.minimum(np.nan_to_num(off) / STEP, MOST_STEPS)
         j = int(best[cost.argmin()])
-        found.append(index.matched(int(shelf[j]), float(far[j]), asked[k]))
-    return found
+        matches.append(index.matched(int(shelf[j]), float(far[j]), asked[k]))
+    return matches

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from pipeline.geometry.compiled import compiled
 
 
-def anchored(
+def keep_at_walls(
     position: NDArray[np.float64],
     yaw: float,
     asked: NDArray[np.float64],

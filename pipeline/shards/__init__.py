@@ -2,7 +2,7 @@
 
 from pipeline.shards.address import Address
 from pipeline.shards.content import ShardContent, gather
-from pipeline.shards.dataset import Dataset, add_part, commit_shard, committed, forget_altered, open_or_create
+from pipeline.shards.dataset import Dataset, add_part, commit_shard, forget_altered, is_committed, open_or_create
 from pipeline.shards.header import Header, code_digest, read_header
 from pipeline.shards.layout import EMPTY, TABLES, file_path, scene_id, shard_name
 from pipeline.shards.library import AssetSource
@@ -21,11 +21,11 @@ __all__ = [
     "add_part",
     "code_digest",
     "commit_shard",
-    "committed",
     "file_path",
     "forget_altered",
     "gather",
     "identity",
+    "is_committed",
     "open_or_create",
     "read_header",
     "read_mix",

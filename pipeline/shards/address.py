@@ -116,7 +116,7 @@ class Address:
         except (ContentError, UsageError):
             raise
         except Exception as error:  # each kind of place has errors of its own
-            told = str(error).strip().splitlines() or [type(error).__name__]
+            lines = str(error).strip().splitlines() or [type(error).__name__]
             raise ContentError(
-                f"{self.name} cannot be read or written ({told[0][:200]})", "mend that and start it again: it resumes"
+                f"{self.name} cannot be read or written ({lines[0][:200]})", "mend that and start it again: it resumes"
             ) from error

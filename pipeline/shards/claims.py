@@ -129,7 +129,7 @@ class Claims:
             text = path.read_text(errors="replace")
         except OSError:
             return False
-        if token and _died(text):
+        if token and _owner_died(text):
             return False
         now = time.monotonic()
         size, since = self._seen.get(str(path), (-1, now))
@@ -165,13 +165,13 @@ def _read(path: Path) -> str:
 def _machine() -> dict[str, str]:
     """Return the names of this machine, of its kernel's boot and of the table of processes that this one can see; "" for what is not told."""
     return {
-        "host": platform.node() + _told(lambda: Path("/etc/machine-id").read_text().strip()),
-        "boot": _told(lambda: Path("/proc/sys/kernel/random/boot_id").read_text().strip()),
-        "processes": _told(lambda: str(Path("/proc/self/ns/pid").readlink())),
+        "host": platform.node() + _read_or_empty(lambda: Path("/etc/machine-id").read_text().strip()),
+        "boot": _read_or_empty(lambda: Path("/proc/sys/kernel/random/boot_id").read_text().strip()),
+        "processes": _read_or_empty(lambda: str(Path("/proc/self/ns/pid").readlink())),
     }
 
 
-def _told(read: Callable[[], str]) -> str:
+def _read_or_empty(read: Callable[[], str]) -> str:
     try:
         return read()
     except OSError:
@@ -189,7 +189,7 @@ def _birth(pid: int) -> str:
     return "gone" if fields[0] in "ZX" else fields[19]
 
 
-def _died(text: str) -> bool:
+def _owner_died(text: str) -> bool:
     """Tell whether an owner was a process of this machine that is no more, or the machine has been started again; what cannot be known is no."""
     try:
         who, here = json.loads(text.splitlines()[0]), _machine()

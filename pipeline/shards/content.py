@@ -31,7 +31,7 @@ def gather(number: int, homes: Iterable[tuple[Mapping[str, Sequence[Row]], Mappi
         moved = {path: file_path(*_split(path, number)) for path in named}
         files |= {moved[path]: data for path, data in named.items()}
         for table, some in brought.items():
-            rows.setdefault(table, []).extend(_placed(row, moved, named) if table == "scenes" else row for row in some)
+            rows.setdefault(table, []).extend(_with_usd_path(row, moved, named) if table == "scenes" else row for row in some)
     return ShardContent(rows, files)
 
 
@@ -40,6 +40,6 @@ def _split(path: str, number: int) -> tuple[str, int, str]:
     return family, number, name
 
 
-def _placed(scene: Row, moved: Mapping[str, str], files: Mapping[str, bytes]) -> Row:
+def _with_usd_path(scene: Row, moved: Mapping[str, str], files: Mapping[str, bytes]) -> Row:
     usd = scene["usd"]
     return {**scene, "usd": moved[usd], "usd_sha256": sha256(files[usd])} if usd else scene

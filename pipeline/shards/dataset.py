@@ -62,7 +62,7 @@ class Dataset:
 
     def missing(self) -> list[int]:
         """Return the numbers of the shards that are still to be made."""
-        self.done.update(n for n in range(self.header.shards) if n not in self.done and committed(self, n))
+        self.done.update(n for n in range(self.header.shards) if n not in self.done and is_committed(self, n))
         return [n for n in range(self.header.shards) if n not in self.done]
 
     def todo(self, number: int) -> list[int]:
@@ -74,7 +74,7 @@ class Dataset:
         """Claim home `index`; False where it is there, or another is at work at it."""
         if not self.claims.take(f"{shard_name(number)}/{index:08d}"):
             return False
-        return not (part_place(self.folder, number, index).exists() or committed(self, number))
+        return not (part_place(self.folder, number, index).exists() or is_committed(self, number))
 
 
 @contextmanager
@@ -117,7 +117,7 @@ def open_or_create(
         claims.leave(partial(_tidy, folder))
 
 
-def committed(dataset: Dataset, number: int) -> bool:
+def is_committed(dataset: Dataset, number: int) -> bool:
     """Tell whether shard `number` is there: a commit that can be read, with every file at its full length."""
     try:
         commit = read_commit(dataset.folder, shard_name(number))
@@ -171,10 +171,10 @@ def add_part(dataset: Dataset, number: int, content: ShardContent) -> int:
     Raises ContentError for a table or file that has no place in the shard, and for a home that is not of it.
     """
     scenes, rejects = (TABLES[t].from_rows(content.rows.get(t, ())) for t in ("scenes", "rejects"))
-    made = [i for some in indices_of(scenes, rejects) for i in some]
+    indices = [i for some in indices_of(scenes, rejects) for i in some]
     wanted = dataset.header.indices(number)
-    if not set(made) <= set(wanted):
-        raise ContentError(f"{shard_name(number)} brings homes {made}, not one of {list(wanted)}", "one home a part")
+    if not set(indices) <= set(wanted):
+        raise ContentError(f"{shard_name(number)} brings homes {indices}, not one of {list(wanted)}", "one home a part")
     return write_part(dataset.folder, dataset.staging, number, content)
 
 
@@ -185,7 +185,7 @@ def commit_shard(dataset: Dataset, number: int) -> bool:
     Raises ContentError when a home is missing that no rejects row accounts for.
     """
     name, left = shard_name(number), dataset.todo(number)
-    if committed(dataset, number):  # asked after the parts were looked for: another command that commits removes them
+    if is_committed(dataset, number):  # asked after the parts were looked for: another command that commits removes them
         return True
     if left:
         raise ContentError(f"{name} lacks the homes {left}", "one scenes row per index, or a rejects row that says why there is none")
@@ -195,9 +195,9 @@ def commit_shard(dataset: Dataset, number: int) -> bool:
         if not _drop_torn(dataset, number):
             _commit(dataset, number)
     except OSError:
-        if not committed(dataset, number):
+        if not is_committed(dataset, number):
             raise  # or else: this one was given up, and another has done it meanwhile
-    if not committed(dataset, number):
+    if not is_committed(dataset, number):
         return False
     dataset.claims.forget(name)
     shutil.rmtree(dataset.folder / PARTS / name, ignore_errors=True)
@@ -232,8 +232,8 @@ def _commit(dataset: Dataset, number: int) -> None:
         pq.write_table(data, path, compression="zstd", store_schema=True)
         if table == "objects":
             adopt(folder, dataset.source, dataset.staging, set(data["asset_id"].to_pylist()))
-    for part, held in zip(parts, brought, strict=True):
-        for file in (f.removeprefix(f"{FILES}/") for f in held.files if f.startswith(f"{FILES}/")):
+    for part, part_commit in zip(parts, brought, strict=True):
+        for file in (f.removeprefix(f"{FILES}/") for f in part_commit.files if f.startswith(f"{FILES}/")):
             (staging / file).parent.mkdir(parents=True, exist_ok=True)
             link(part.folder / FILES / file, staging / file)  # the part stays whole until the shard is
     commit = record(staging, name, rows)

@@ -123,6 +123,6 @@ def parse_header(text: bytes, path: Path | str) -> Header:
 
 def code_digest(root: Path, parts: Iterable[str] = ("schemas", "pipeline", "manifests")) -> str:
     """Return the digest of code by the folders and files of the checkout at `root` that hold it; by default of all that homes depend on."""
-    found = [p for part in parts for p in (root / part, *(root / part).rglob("*")) if p.is_file()]
-    kept = sorted((p.relative_to(root).as_posix(), p) for p in found if "__pycache__" not in p.parts)
+    files = [p for part in parts for p in (root / part, *(root / part).rglob("*")) if p.is_file()]
+    kept = sorted((p.relative_to(root).as_posix(), p) for p in files if "__pycache__" not in p.parts)
     return sha256("\n".join(f"{name} {sha256(path.read_bytes())}" for name, path in kept).encode())

@@ -79,12 +79,12 @@ def write_part(folder: Path, staging: Path, number: int, content: ShardContent) 
     for file in content.files:
         require_inside(file, name)
     tables = {table: schema.from_rows(content.rows.get(table, ())) for table, schema in TABLES.items()}
-    made, empty = indices_of(tables["scenes"], tables["rejects"])
-    if len(made + empty) != 1:
+    homes, empty = indices_of(tables["scenes"], tables["rejects"])
+    if len(homes + empty) != 1:
         raise ContentError(
-            f"a part of {name} brings homes {[*made, *empty]}", "one scenes row, or a rejects row that says why there is none"
+            f"a part of {name} brings homes {[*homes, *empty]}", "one scenes row, or a rejects row that says why there is none"
         )
-    (index,) = made + empty
+    (index,) = homes + empty
     place = staging / f"{index:08d}"
     shutil.rmtree(place, ignore_errors=True)
     (place / ROWS).mkdir(parents=True)

@@ -34,9 +34,9 @@ def is_sealed(folder: Path, header: Header) -> bool:
 
 def identity(folder: Path) -> tuple[int, int]:
     """Return seed and number of homes of a dataset: from its header or, where the seal says that it is not what was written, from its rows."""
-    told = _sealed(folder).get(HEADER)
+    entry = _sealed_files(folder).get(HEADER)
     path = folder / HEADER
-    if told is None or (path.is_file() and entry_of(path) == told):
+    if entry is None or (path.is_file() and entry_of(path) == entry):
         header = read_header(folder)
         return header.seed, header.count
     scenes = [scene for table in ("scenes", "rejects") for scene in _scenes(folder, table)]
@@ -47,10 +47,10 @@ def identity(folder: Path) -> tuple[int, int]:
 
 def vouches(folder: Path, header: Header) -> bool:
     """Tell whether a dataset was sealed with this header, whatever has become of the file."""
-    return _sealed(folder).get(HEADER) == Entry(sha256(text := text_of(header.to_json())), len(text))
+    return _sealed_files(folder).get(HEADER) == Entry(sha256(text := text_of(header.to_json())), len(text))
 
 
-def _sealed(folder: Path) -> Mapping[str, Entry]:
+def _sealed_files(folder: Path) -> Mapping[str, Entry]:
     try:
         commit = read_commit(folder, SEAL)
     except ContentError:
@@ -74,5 +74,5 @@ def _names(folder: Path, header: Header) -> list[str]:
 
 
 def _content(folder: Path, header: Header) -> dict[str, Any]:
-    told = Commit(SEAL, {name: entry_of(folder / name) for name in _names(folder, header)}, {}).to_json()
-    return {**told, "sha256": digest(told)}
+    commit = Commit(SEAL, {name: entry_of(folder / name) for name in _names(folder, header)}, {}).to_json()
+    return {**commit, "sha256": digest(commit)}

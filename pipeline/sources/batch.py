@@ -12,7 +12,7 @@ from typing import Any, Generic, TypeVar
 
 from pipeline.execution.pool import run_on_processes
 from pipeline.execution.queue import Lost, Queue
-from pipeline.sources.budget import Budget, OutOfTimeError, held
+from pipeline.sources.budget import Budget, OutOfTimeError, enforce
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -53,7 +53,7 @@ class _Step(Generic[T, R, M]):
     def __call__(self, job: tuple[int, R]) -> M | _Spent:
         """Read one item."""
         try:
-            with held(self.budget):
+            with enforce(self.budget):
                 return self.step(self.common, job[1])
         except OutOfTimeError:
             return _Spent("out_of_time", f"{self.budget.seconds:g} s of processor time")
@@ -68,11 +68,11 @@ def each(batch: Batch[T, R, M], workers: int, budget: Budget) -> Iterator[M]:
     jobs = Queue(enumerate(batch.items), None)
     count = max(1, min(workers, len(batch.items)))
     following = 0
-    for (number, item), found in run_on_processes(step, jobs, count, None, SILENCE, start=_context()):
-        if isinstance(found, Lost):
-            early[number] = batch.refused(item, "reader_died", f"{found.times} times, out of memory perhaps")
+    for (number, item), outcome in run_on_processes(step, jobs, count, None, SILENCE, start=_context()):
+        if isinstance(outcome, Lost):
+            early[number] = batch.refused(item, "reader_died", f"{outcome.times} times, out of memory perhaps")
         else:
-            early[number] = batch.refused(item, found.reason, found.detail) if isinstance(found, _Spent) else found
+            early[number] = batch.refused(item, outcome.reason, outcome.detail) if isinstance(outcome, _Spent) else outcome
         while following in early:
             yield early.pop(following)
             following += 1

@@ -27,7 +27,7 @@ class OutOfTimeError(BaseException):
 
 
 @contextlib.contextmanager
-def held(budget: Budget) -> Iterator[None]:
+def enforce(budget: Budget) -> Iterator[None]:
     """Hold what is done within to a budget: raises OutOfTimeError, or lets MemoryError arise; a library that is deaf to both ends the process.
 
     For the main thread of a process of its own. Where the system knows no such limits (Windows), only the pool's patience is one.
@@ -43,7 +43,7 @@ def held(budget: Budget) -> Iterator[None]:
     wanted = {resource.RLIMIT_CPU: last, resource.RLIMIT_CORE: 0}
     if size := _address_space():
         wanted[resource.RLIMIT_AS] = size + budget.mebibytes * MIB
-    heard = signal.signal(signal.SIGPROF, _out_of_time)
+    old_handler = signal.signal(signal.SIGPROF, _out_of_time)
     try:
         for kind, most in wanted.items():
             hard = before[kind][1]
@@ -52,7 +52,7 @@ def held(budget: Budget) -> Iterator[None]:
         yield
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
-        signal.signal(signal.SIGPROF, heard)
+        signal.signal(signal.SIGPROF, old_handler)
         for kind, limits in before.items():
             resource.setrlimit(kind, limits)
 

@@ -55,5 +55,5 @@ def density(super_category: str, material: str, category: str = "") -> float:
         return own
     if super_category in SOFT:
         return min(MATERIALS.get(material.lower(), 1e9), KINDS[super_category])
-    found = MATERIALS.get(material.lower(), KINDS.get(super_category, DEFAULT))
-    return max(found, UPHOLSTERED) if super_category in SEATS else found
+    material_density = MATERIALS.get(material.lower(), KINDS.get(super_category, DEFAULT))
+    return max(material_density, UPHOLSTERED) if super_category in SEATS else material_density

@@ -24,7 +24,7 @@ class HouseRows:
     content: str = ""
 
 
-def numbered(parts: Iterable[HouseRows]) -> Iterator[HouseRows]:
+def number_scenes(parts: Iterable[HouseRows]) -> Iterator[HouseRows]:
     """Yield the rows of all houses, their scenes numbered in order; one that was there before under another name only gives a reject."""
     count = 0
     known: dict[str, str] = {}

@@ -39,8 +39,8 @@ def _files(root: Path, folder: Path) -> Iterator[Entry]:
             if entry.name not in UNREAD:
                 yield from _files(root, Path(entry.path))
         elif entry.is_file():
-            found = entry.stat()
-            yield Path(entry.path).relative_to(root).as_posix(), found.st_size, found.st_mtime_ns
+            stat = entry.stat()
+            yield Path(entry.path).relative_to(root).as_posix(), stat.st_size, stat.st_mtime_ns
 
 
 def write(path: Path, entries: Iterable[Entry]) -> int:

@@ -14,7 +14,7 @@ from pipeline.entities.files import save_asset
 from pipeline.geometry.kinematics import handle_point, sweep_box
 from pipeline.sources.densities import density
 from pipeline.sources.identity import split_of
-from pipeline.sources.masses import held
+from pipeline.sources.masses import clamp_mass
 from pipeline.sources.reasons import Row, SourceError, reject
 
 STEPS = 9  # positions of a joint's range whose boxes are united
@@ -43,7 +43,7 @@ class LibraryRows:
 
         A mass by volume is held to what such things weigh; a URDF to scale may state its own.
         """
-        asset, heavier = (asset, 1.0) if asset.source == "urdf" else held(asset)
+        asset, heavier = (asset, 1.0) if asset.source == "urdf" else clamp_mass(asset)
         file = f"{asset.asset_id}.safetensors"
         digest = save_asset(folder / file, asset)
         split = split_of(asset.source_id)

@@ -23,7 +23,7 @@ def factor(category: str, kilograms: float) -> float:
     return min(max(kilograms, low), high) / kilograms
 
 
-def held(asset: Asset) -> tuple[Asset, float]:
+def clamp_mass(asset: Asset) -> tuple[Asset, float]:
     """Return the asset with its mass in the range of its category, and the factor on all masses and inertias."""
     by = factor(asset.category, mass(asset))
     if by == 1.0:

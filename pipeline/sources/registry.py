@@ -17,7 +17,7 @@ from pipeline.sources.threed_front.source import ThreedFront
 SOURCES: Sequence[Source] = (ThreedFront(), Articulated(), Atiss())
 
 
-def named(paths: Mapping[str, str | None]) -> list[tuple[Source, str]]:
+def configured_sources(paths: Mapping[str, str | None]) -> list[tuple[Source, str]]:
     """Return the sources that have a path. Raises ContentError for a key that is none of a source."""
     keys = {source.key: source for source in SOURCES}
     for key in paths:
@@ -26,7 +26,7 @@ def named(paths: Mapping[str, str | None]) -> list[tuple[Source, str]]:
     return [(source, path) for source in SOURCES if (path := paths.get(source.key)) is not None]
 
 
-def recognised(path: Path) -> list[Listing]:
+def recognise_sources(path: Path) -> list[Listing]:
     """Return the sources that lie in `path`, or around it when it is a part of one.
 
     Raises UsageError for a path that is missing or no folder, ContentError when nothing that is known lies there.
@@ -34,15 +34,15 @@ def recognised(path: Path) -> list[Listing]:
     if not path.is_dir():
         raise UsageError(f"{path} is {'no folder' if path.exists() else 'missing'}", "give the folder that the data was unpacked to")
     root = path.resolve()
-    found: dict[str, Listing] = {}
+    listings: dict[str, Listing] = {}
     try:
         for source in SOURCES:
             # What was made of a dataset often lies beside it: then it has to be named itself.
-            if not source.replaces & found.keys() and (folder := source.recognise(root)):
-                found[source.key] = source.list(folder, PreprocessSettings())
+            if not source.replaces & listings.keys() and (folder := source.recognise(root)):
+                listings[source.key] = source.list(folder, PreprocessSettings())
     except PermissionError as error:
         raise ContentError(f"{error.filename} cannot be read", "give yourself the right to read it") from error
-    if not found:
+    if not listings:
         *most, last = (source.expected for source in SOURCES)
         raise ContentError(f"{path} holds no data set that is known here", f"it should hold {', '.join(most)}, or {last}")
-    return list(found.values())
+    return list(listings.values())

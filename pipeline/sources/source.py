@@ -31,8 +31,8 @@ class Listing:
 
     def __str__(self) -> str:
         """Say what was found."""
-        found = ", ".join(f"{count} {what}" for what, count in self.counts)
-        return f"{self.root}: {found}" + (f"; without {', '.join(self.lacks)}" if self.lacks else "")
+        contents = ", ".join(f"{count} {what}" for what, count in self.counts)
+        return f"{self.root}: {contents}" + (f"; without {', '.join(self.lacks)}" if self.lacks else "")
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from pipeline import tables
 from pipeline.errors import ContentError
-from pipeline.sources.house_rows import HouseRows, numbered
+from pipeline.sources.house_rows import HouseRows, number_scenes
 from pipeline.sources.library_rows import LibraryRows
 from schemas.assets import ASSET_JOINTS, ASSET_PARTS, ASSETS
 from schemas.objects import OBJECTS
@@ -67,7 +67,7 @@ def write_houses(folder: Path, houses: Iterable[HouseRows], library: LibraryRows
             t.name: stack.enter_context(tables.stream(folder / f"{t.name}.parquet", t)) for t in (SCENES, ROOMS, OPENINGS, OBJECTS, REJECTS)
         }
         opened["rejects"].add(library.rejects)
-        for house in numbered(houses):
+        for house in number_scenes(houses):
             summary.add(house)
             for name, stream in opened.items():
                 stream.add(getattr(house, name))

@@ -49,7 +49,7 @@ def loose(asset: Asset) -> bool:
     return known is not None and known.loose
 
 
-def untouched(asset: Asset) -> bool:
+def is_visual_only(asset: Asset) -> bool:
     """Whether an asset is there to be looked at alone: what hangs on a wall or at a ceiling, and rugs, over which doors and wheels pass."""
     known = taxonomy.load().categories.get(asset.category)
     return known is not None and known.felt == "seen" and not known.loose
@@ -76,43 +76,43 @@ def convert_asset(root: Sdf.PrimSpec, asset: Asset, materials: Sequence[Sdf.Path
         prims = dict(zip((joint.name for joint in asset.joints), joint_names(asset), strict=True))
         for index, joint in enumerate(asset.joints):
             ends = links[joint.parent].path, links[joint.child].path
-            made = convert_joint(scope, prims[joint.name], joint, *ends, resistance(asset, index))
+            joint_prim = convert_joint(scope, prims[joint.name], joint, *ends, resistance(asset, index))
             if joint.after:  # engines know no such order; whoever plans for a robot does
-                relationship(made, "sfgen:after", [scope.path.AppendChild(prims[name]) for name in joint.after])
+                relationship(joint_prim, "sfgen:after", [scope.path.AppendChild(prims[name]) for name in joint.after])
         for i, spec in enumerate(links):
             convert_filter(spec, [links[k].path for k in _passes(asset, i)])
 
 
 def _convert_pieces(spec: Sdf.PrimSpec, link: Link, asset: Asset, materials: Sequence[Sdf.Path], *, weigh: bool) -> None:
     """Write visuals and colliders; a collider that is the very mesh that one sees, and no box, is one prim with it."""
-    colliders = () if untouched(asset) else link.colliders
+    colliders = () if is_visual_only(asset) else link.colliders
     weights = [volume(c) for c in colliders]
     shares = {_key(c): link.mass * w / sum(weights) if weigh else None for c, w in zip(colliders, weights, strict=True)}
     boxes = {_key(c) for c in colliders if _is_box(c)}
-    seen: set[tuple[bytes, bytes]] = set()
+    visible: set[tuple[bytes, bytes]] = set()
     visual_names = identifiers(m.name for m in link.visuals)
     for name, mesh in zip(visual_names, link.visuals, strict=True):
         material = asset.materials[mesh.material] if asset.materials else None
-        made = convert_mesh(spec, name, mesh, material.base_color if material else (0.8, 0.8, 0.8))
+        gprim = convert_mesh(spec, name, mesh, material.base_color if material else (0.8, 0.8, 0.8))
         if materials:
-            bind(made, materials[mesh.material])
+            bind(gprim, materials[mesh.material])
         if mesh.part:
-            label(made, "class", [HANDLES.get(mesh.part, MOVERS.get(mesh.part, "part"))])
-            label(made, "part", [mesh.part])
+            label(gprim, "class", [HANDLES.get(mesh.part, MOVERS.get(mesh.part, "part"))])
+            label(gprim, "part", [mesh.part])
         key = _key(mesh)
-        if key in shares and key not in seen | boxes:
-            seen.add(key)
-            convert_collider(made, shares[key])
-    hidden = {_key(c): c for c in colliders if _key(c) not in seen}
+        if key in shares and key not in visible | boxes:
+            visible.add(key)
+            convert_collider(gprim, shares[key])
+    hidden = {_key(c): c for c in colliders if _key(c) not in visible}
     for name, (key, mesh) in zip(identifiers((f"{c.name}_collider" for c in hidden.values()), visual_names), hidden.items(), strict=True):
         if key in boxes:
-            made = convert_box(spec, name, mesh.vertices.min(axis=0), mesh.vertices.max(axis=0))
+            gprim = convert_box(spec, name, mesh.vertices.min(axis=0), mesh.vertices.max(axis=0))
         else:
-            made = convert_mesh(spec, name, Mesh(mesh.name, mesh.vertices, mesh.faces), None)
-        hide(made)
-        convert_collider(made, shares[key])
+            gprim = convert_mesh(spec, name, Mesh(mesh.name, mesh.vertices, mesh.faces), None)
+        hide(gprim)
+        convert_collider(gprim, shares[key])
         if materials:
-            bind(made, materials[min(mesh.material, len(materials) - 1)])
+            bind(gprim, materials[min(mesh.material, len(materials) - 1)])
 
 
 def _key(mesh: Mesh) -> tuple[bytes, bytes]:
@@ -138,14 +138,14 @@ def _passes(asset: Asset, link: int) -> list[int]:
     """
     boxes = [_box(entry) for entry in asset.links]
     joined = {(j.parent, j.child) for j in asset.joints} | {(j.child, j.parent) for j in asset.joints}
-    found = []
+    links = []
     for other in range(link + 1, len(asset.links)):
         near = _meet(boxes[link], boxes[other])
         if near and link == 0:
             near = any(_meet(_box_of(a), _box_of(b)) for a in asset.links[0].colliders for b in asset.links[other].colliders)
         if (link, other) in joined or near:
-            found.append(other)
-    return found
+            links.append(other)
+    return links
 
 
 def _meet(one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> bool:

@@ -16,7 +16,7 @@ from pipeline.usd.layer import read_layer, save
 from pipeline.usd.lights import lamp, sky
 from pipeline.usd.material import Palette
 from pipeline.usd.physics import convert_scene
-from pipeline.usd.prim_templates import cast, group, mould, placed, quoted
+from pipeline.usd.prim_templates import cast, group, mould, quote, transform_ops
 from pipeline.usd.shell import MATERIALS, door_texts, room_text, walls_text, window_texts
 
 
@@ -66,13 +66,13 @@ def placement_text(parent: str, placement: Placement, assets: Mapping[str, Asset
         raise ContentError(
             f"object {placement.object_id} scales the articulated asset {asset.asset_id}", "place it with scale 1: joints break otherwise"
         )
-    about = f"bool articulated = {int(asset.articulated)}\nstring room_id = {quoted(placement.room_id)}\n"
+    about = f"bool articulated = {int(asset.articulated)}\nstring room_id = {quote(placement.room_id)}\n"
     support = f"rel sfgen:support = <{parent}/{placement.support}>\n" if placement.support else ""
     return (
         f'def Xform "{placement.object_id}" (\n'
         f"customData = {{\n{about}}}\n"
         f"prepend references = @{library}/{asset.asset_id}/{asset.asset_id}.usda@\n)\n"
-        f"{{\n{placed(placement.position.tolist(), placement.yaw, placement.scale.tolist())}{support}}}\n"
+        f"{{\n{transform_ops(placement.position.tolist(), placement.yaw, placement.scale.tolist())}{support}}}\n"
     )
 
 

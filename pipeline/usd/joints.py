@@ -28,7 +28,9 @@ def convert_fixed(scope: Sdf.PrimSpec, root: Sdf.Path, base: Sdf.Path) -> Sdf.Pr
     return spec
 
 
-def convert_joint(scope: Sdf.PrimSpec, prim_name: str, joint: Joint, parent: Sdf.Path, child: Sdf.Path, held: Resistance) -> Sdf.PrimSpec:
+def convert_joint(
+    scope: Sdf.PrimSpec, prim_name: str, joint: Joint, parent: Sdf.Path, child: Sdf.Path, resistance: Resistance
+) -> Sdf.PrimSpec:
     """Write a joint between two links whose frames are the asset's frame; it stands at 0 when all is closed."""
     hinge = joint.type != "prismatic"
     spec = prim(scope, prim_name, "PhysicsRevoluteJoint" if hinge else "PhysicsPrismaticJoint", ["NewtonJointAPI"])
@@ -42,14 +44,14 @@ def convert_joint(scope: Sdf.PrimSpec, prim_name: str, joint: Joint, parent: Sdf
         attribute(spec, "physics:lowerLimit", "float", joint.lower * unit)
         attribute(spec, "physics:upperLimit", "float", joint.upper * unit)
         for name, value in zip(("limitStiffness", "limitDamping"), STOP, strict=True):
-            attribute(spec, f"newton:{name}", "float", value * held.inertia)  # Newton reads them by name; PhysX does not know them
-    attribute(spec, "newton:armature", "float", held.armature)  # this and friction: PhysX, Newton and MuJoCo
-    attribute(spec, "newton:friction", "float", held.friction)
+            attribute(spec, f"newton:{name}", "float", value * resistance.inertia)  # Newton reads them by name; PhysX does not know them
+    attribute(spec, "newton:armature", "float", resistance.armature)  # this and friction: PhysX, Newton and MuJoCo
+    attribute(spec, "newton:friction", "float", resistance.friction)
     drive = "angular" if hinge else "linear"
     apply(spec, [f"PhysicsDriveAPI:{drive}"])
     attribute(spec, f"drive:{drive}:physics:type", "token", "force", uniform=True)
-    attribute(spec, f"drive:{drive}:physics:stiffness", "float", held.stiffness / unit)
-    attribute(spec, f"drive:{drive}:physics:damping", "float", held.damping / unit)
+    attribute(spec, f"drive:{drive}:physics:stiffness", "float", resistance.stiffness / unit)
+    attribute(spec, f"drive:{drive}:physics:damping", "float", resistance.damping / unit)
     attribute(spec, f"drive:{drive}:physics:targetPosition", "float", 0.0)
     attribute(spec, f"drive:{drive}:physics:targetVelocity", "float", 0.0)
     label(spec, "part", [joint.part_class])

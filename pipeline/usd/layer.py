@@ -76,10 +76,10 @@ def save(layer: Sdf.Layer, path: Path) -> Path:
 
 def prim(parent: Sdf.PrimSpec | Sdf.Layer, name: str, kind: str = "Xform", apis: Sequence[str] = ()) -> Sdf.PrimSpec:
     """Define a prim of schema `kind` with applied API schemas."""
-    made = Sdf.PrimSpec(parent, name, Sdf.SpecifierDef, kind)
+    spec = Sdf.PrimSpec(parent, name, Sdf.SpecifierDef, kind)
     if apis:
-        apply(made, apis)
-    return made
+        apply(spec, apis)
+    return spec
 
 
 def over(parent: Sdf.PrimSpec | Sdf.Layer, name: str) -> Sdf.PrimSpec:
@@ -101,18 +101,18 @@ def attribute(
 ) -> Sdf.AttributeSpec:
     """Write an attribute of a type of VALUE_TYPES."""
     variability = Sdf.VariabilityUniform if uniform else Sdf.VariabilityVarying
-    made = Sdf.AttributeSpec(spec, name, VALUE_TYPES[kind], variability, custom)
+    attribute_spec = Sdf.AttributeSpec(spec, name, VALUE_TYPES[kind], variability, custom)
     if value is not None:
-        made.default = value
-    return made
+        attribute_spec.default = value
+    return attribute_spec
 
 
 def relationship(spec: Sdf.PrimSpec, name: str, targets: Iterable[Sdf.Path | str]) -> Sdf.RelationshipSpec:
     """Write a relationship with explicit targets (none: explicitly empty)."""
-    made = Sdf.RelationshipSpec(spec, name, False)
-    made.targetPathList.ClearEditsAndMakeExplicit()
-    made.targetPathList.explicitItems = [Sdf.Path(str(t)) for t in targets]
-    return made
+    relationship_spec = Sdf.RelationshipSpec(spec, name, False)
+    relationship_spec.targetPathList.ClearEditsAndMakeExplicit()
+    relationship_spec.targetPathList.explicitItems = [Sdf.Path(str(t)) for t in targets]
+    return relationship_spec
 
 
 def place(spec: Sdf.PrimSpec, position: Sequence[float], yaw: float = 0.0, scale: Sequence[float] | None = None) -> None:
@@ -137,7 +137,7 @@ def vec3s(points: NDArray[Any]) -> Vt.Vec3fArray:
 
 def identifiers(names: Iterable[str], taken: Iterable[str] = ()) -> list[str]:
     """Turn names into distinct USD identifiers, keeping those that are fine already."""
-    used, made = set(taken), []
+    used, distinct_names = set(taken), []
     for name in names:
         stem = re.sub(r"\W", "_", name, flags=re.ASCII) or "part"
         stem = stem if not stem[0].isdigit() else f"_{stem}"
@@ -146,5 +146,5 @@ def identifiers(names: Iterable[str], taken: Iterable[str] = ()) -> list[str]:
             number += 1
             candidate = f"{stem}_{number}"
         used.add(candidate)
-        made.append(candidate)
-    return made
+        distinct_names.append(candidate)
+    return distinct_names

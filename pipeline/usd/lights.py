@@ -10,7 +10,7 @@ from shapely.geometry import Polygon
 
 from pipeline.entities.plan import Room
 from pipeline.usd.layer import attribute, prim
-from pipeline.usd.prim_templates import cast, mould, placed
+from pipeline.usd.prim_templates import cast, mould, transform_ops
 
 DOME_INTENSITY = 600.0
 LAMP_INTENSITY = 4000.0
@@ -27,7 +27,9 @@ def lamp(path: str, room: Room, elevation: float) -> str:
     x, y = _inside(Polygon(room.polygon))
     side = float(np.clip(0.16 * np.sqrt(room.area), 0.25, 0.9))
     size = f"float inputs:width = {side!r}\nfloat inputs:height = {side!r}\n"
-    return cast(_light("RectLight", LAMP_INTENSITY, (1.0, 0.93, 0.82)), path, placed((x, y, elevation + room.height - LAMP_GAP)) + size)
+    return cast(
+        _light("RectLight", LAMP_INTENSITY, (1.0, 0.93, 0.82)), path, transform_ops((x, y, elevation + room.height - LAMP_GAP)) + size
+    )
 
 
 @functools.cache

@@ -18,9 +18,9 @@ APART = 2e-5  # [m] between points of parts that meet
 
 def convert_mesh(parent: Sdf.PrimSpec, name: str, mesh: Mesh, color: tuple[float, float, float] | None) -> Sdf.PrimSpec:
     """Write a mesh; `color` (linear) is for viewers that know no materials; None for what is not to be seen."""
-    points, faces, uv = welded(mesh)
+    points, faces, uv = weld_vertices(mesh)
     smooth = smooth_normals(points.astype(np.float64), faces) if color is not None else None
-    rows, faces = parted(points if uv is None else np.concatenate([points, uv], axis=1), faces)
+    rows, faces = split_nonmanifold(points if uv is None else np.concatenate([points, uv], axis=1), faces)
     points, uv = rows[:, :3], None if uv is None else rows[:, 3:]
     spec = convert_polygons(parent, name, points, np.full(len(faces), 3, np.int32), faces.ravel(), color, smooth)
     if uv is not None:
@@ -31,7 +31,7 @@ def convert_mesh(parent: Sdf.PrimSpec, name: str, mesh: Mesh, color: tuple[float
     return spec
 
 
-def welded(mesh: Mesh) -> tuple[NDArray[np.float32], NDArray[np.int32], NDArray[np.float32] | None]:
+def weld_vertices(mesh: Mesh) -> tuple[NDArray[np.float32], NDArray[np.int32], NDArray[np.float32] | None]:
     """Return points (V, 3), faces (F, 3) and uv (V, 2) or None with corners that say the same said once, faces without an area left out."""
     points, faces = np.asarray(mesh.vertices, np.float32), np.asarray(mesh.faces, np.int32)
     rows = points if mesh.uv is None else np.concatenate([points, np.asarray(mesh.uv, np.float32)], axis=1)
@@ -46,7 +46,7 @@ def welded(mesh: Mesh) -> tuple[NDArray[np.float32], NDArray[np.int32], NDArray[
     return kept[:, :3], faces, None if mesh.uv is None else kept[:, 3:]
 
 
-def parted(rows: NDArray[np.float32], faces: NDArray[np.int32]) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+def split_nonmanifold(rows: NDArray[np.float32], faces: NDArray[np.int32]) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
     """Return rows (V, 3 and more), points first, and faces (F, 3) so that every point has one fan of faces about it: a manifold.
 
     Boards of one mesh may meet in an edge or a corner. Each gets points of its own there, APART from the others', towards its own middle.
@@ -54,32 +54,32 @@ def parted(rows: NDArray[np.float32], faces: NDArray[np.int32]) -> tuple[NDArray
     count = len(faces)
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     corner = np.arange(3 * count).reshape(count, 3)  # of each face; those that edges join between two faces are one point
-    held = np.concatenate([corner[:, [0, 1]], corner[:, [1, 2]], corner[:, [2, 0]]])
+    edge_corners = np.concatenate([corner[:, [0, 1]], corner[:, [1, 2]], corner[:, [2, 0]]])
     turned = ends[:, 0] > ends[:, 1]
-    ends[turned], held[turned] = ends[turned][:, ::-1], held[turned][:, ::-1]
+    ends[turned], edge_corners[turned] = ends[turned][:, ::-1], edge_corners[turned][:, ::-1]
     code = ends[:, 0].astype(np.int64) * (int(faces.max(initial=0)) + 1) + ends[:, 1]
     order = np.argsort(code, kind="stable")
     _, first, times = np.unique(code[order], return_index=True, return_counts=True)
     one, other = order[first[times == 2]], order[first[times == 2] + 1]
     alike = turned[one] == turned[other]  # two boards' rims on each other: faces of one surface run along their edge both ways
     one, other = one[~alike], other[~alike]
-    fan = _connected(3 * count, held[one].ravel(), held[other].ravel())
+    fan = _component_labels(3 * count, edge_corners[one].ravel(), edge_corners[other].ravel())
     fans = int(fan.max(initial=-1)) + 1
     if fans == len(np.unique(faces)):
         return rows, faces
     owner = np.zeros(fans, np.int64)
     owner[fan] = faces.ravel()
     split = np.bincount(owner, minlength=len(rows))[owner] > 1
-    made = rows[owner]
+    vertices = rows[owner]
     middle = np.stack([np.bincount(fan, np.repeat(rows[faces, k].mean(axis=1), 3)) for k in range(3)], axis=1) / np.bincount(fan)[:, None]
-    away = middle - made[:, :3]
+    away = middle - vertices[:, :3]
     away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
-    made[split, :3] += (APART * away[split]).astype(np.float32)
-    return made, fan.reshape(count, 3).astype(np.int32)
+    vertices[split, :3] += (APART * away[split]).astype(np.float32)
+    return vertices, fan.reshape(count, 3).astype(np.int32)
 
 
 @compiled
-def _connected(count: int, one: NDArray[np.int64], other: NDArray[np.int64]) -> NDArray[np.int64]:
+def _component_labels(count: int, one: NDArray[np.int64], other: NDArray[np.int64]) -> NDArray[np.int64]:
     """Return the part (count,) of each of `count` points that pairs of them join, numbered in the order of their first points."""
     parent = np.arange(count)
     for k in range(len(one)):
@@ -92,14 +92,14 @@ def _connected(count: int, one: NDArray[np.int64], other: NDArray[np.int64]) -> 
             b = parent[b]
         parent[max(a, b)] = min(a, b)  # a part is known by its first point
     parts = 0
-    found = np.empty(count, np.int64)
+    labels = np.empty(count, np.int64)
     for point in range(count):
         if parent[point] == point:
-            found[point] = parts
+            labels[point] = parts
             parts += 1
         else:
-            found[point] = found[parent[point]]
-    return found
+            labels[point] = labels[parent[point]]
+    return labels
 
 
 def convert_box(parent: Sdf.PrimSpec, name: str, low: NDArray[np.floating], high: NDArray[np.floating]) -> Sdf.PrimSpec:
@@ -142,7 +142,7 @@ def flat_normals(points: NDArray[np.floating], counts: NDArray[np.int32], indice
 
 @compiled
 def _normals(points: NDArray[np.float64], counts: NDArray[np.int32], indices: NDArray[np.int32]) -> NDArray[np.float64]:
-    found = np.zeros((len(counts), 3))
+    normals = np.zeros((len(counts), 3))
     start = 0
     for f in range(len(counts)):
         first = points[indices[start]]
@@ -156,8 +156,8 @@ def _normals(points: NDArray[np.float64], counts: NDArray[np.int32], indices: ND
             z += ax * by - ay * bx
         length = math.sqrt(x * x + y * y + z * z)
         if length > 1e-15:
-            found[f, 0], found[f, 1], found[f, 2] = x / length, y / length, z / length
+            normals[f, 0], normals[f, 1], normals[f, 2] = x / length, y / length, z / length
         else:
-            found[f, 2] = 1.0
+            normals[f, 2] = 1.0
         start += counts[f]
-    return found
+    return normals

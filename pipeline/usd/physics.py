@@ -86,8 +86,8 @@ def principal(inertia: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArra
 
 def quaternion(R: NDArray[np.float64]) -> Gf.Quatf:
     """Convert a rotation matrix (columns are the rotated axes) to a quaternion with w >= 0."""
-    made = Gf.Matrix3d(*map(float, R.T.ravel())).ExtractRotation().GetQuat()
-    q = np.array([made.GetReal(), *made.GetImaginary()])
+    gf_quat = Gf.Matrix3d(*map(float, R.T.ravel())).ExtractRotation().GetQuat()
+    q = np.array([gf_quat.GetReal(), *gf_quat.GetImaginary()])
     q = q / np.linalg.norm(q) * (-1.0 if q[0] < 0 else 1.0)
     return Gf.Quatf(*map(float, q))
 

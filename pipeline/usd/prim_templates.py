@@ -48,7 +48,7 @@ def group(kind: str = "", schema: str = "Xform") -> str:
     return mould(convert)
 
 
-def placed(position: Sequence[float], yaw: float = 0.0, scale: Sequence[float] = (1.0, 1.0, 1.0)) -> str:
+def transform_ops(position: Sequence[float], yaw: float = 0.0, scale: Sequence[float] = (1.0, 1.0, 1.0)) -> str:
     """Return translate, orient and scale, as `layer.place` writes them."""
     return (
         f"double3 xformOp:translate = {numbers(position)}\n"
@@ -64,7 +64,7 @@ def _turn(yaw: float) -> str:
     return numbers((np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)))
 
 
-def shaped(points: NDArray[np.floating], normals: NDArray[np.floating], interpolation: str = "uniform") -> str:
+def mesh_attributes(points: NDArray[np.floating], normals: NDArray[np.floating], interpolation: str = "uniform") -> str:
     """Return the points (n, 3) [m] of a mesh, their extent, and normals, one a face ("uniform") or a point ("vertex")."""
     rows = np.asarray(points, np.float32)
     ends = np.array([rows.min(axis=0), rows.max(axis=0)])
@@ -82,6 +82,6 @@ def rows_of(values: NDArray[np.float32]) -> str:
     return str([*map(tuple, values.tolist())])
 
 
-def quoted(text: str) -> str:
+def quote(text: str) -> str:
     """Return a string in quotes."""
     return json.dumps(text, ensure_ascii=False)

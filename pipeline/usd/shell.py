@@ -20,7 +20,7 @@ from pipeline.usd.layer import attribute, label, prim
 from pipeline.usd.material import Palette, bind
 from pipeline.usd.mesh import convert_box, convert_mesh, convert_polygons, flat_normals
 from pipeline.usd.physics import convert_collider, hide
-from pipeline.usd.prim_templates import cast, group, mould, placed, shaped
+from pipeline.usd.prim_templates import cast, group, mesh_attributes, mould, transform_ops
 
 MATERIALS = "/World/Materials"  # where a home's own parts find theirs
 SHAPE = ("points", "extent", "normals")  # what each prism has of its own
@@ -37,7 +37,7 @@ def room_text(parent: str, plan: Plan, room: Room, shells: Mapping[int, Shell], 
     pieces = floor_pieces(room)
     storeys = plan.levels_of(room)
     under = (len(storeys) - 1) * plan.storey_height + room.height
-    parts = [placed((0.0, 0.0, room.level * plan.storey_height))]
+    parts = [transform_ops((0.0, 0.0, room.level * plan.storey_height))]
     for name, bottom, material in (("floor", -SLAB, palette.floor(room.type)), ("ceiling", under, palette.CEILING)):
         slabs = (_slab(f"{path}/{name}/piece_{i}", piece, (bottom, bottom + SLAB), material, materials) for i, piece in enumerate(pieces))
         parts.append(cast(_scope(name), f"{path}/{name}", "".join(slabs)))
@@ -55,7 +55,7 @@ def walls_text(parent: str, plan: Plan, level: int, shell: Shell, materials: Pal
     path = f"{parent}/level_{level}"
     plaster = materials.path(palette.PLASTER)
     solids = [_solid(f"{path}/solids/{solid.kind}_{i:03d}", solid, plaster) for i, solid in enumerate(masonry(plan, level, shell))]
-    parts = [placed((0.0, 0.0, level * plan.storey_height)), cast(group(schema="Scope"), f"{path}/solids", "".join(solids))]
+    parts = [transform_ops((0.0, 0.0, level * plan.storey_height)), cast(group(schema="Scope"), f"{path}/solids", "".join(solids))]
     parts.append(_panels(f"{path}/facade", outer_panels(shell), palette.FACADE, materials))
     faces = [panel for cut in shell.cuts for panel in reveals(cut)]
     if faces:
@@ -76,26 +76,26 @@ def walls_text(parent: str, plan: Plan, level: int, shell: Shell, materials: Pal
 def door_texts(parent: str, elevation: float, shell: Shell, materials: Palette) -> list[str]:
     """Return the doors of a storey, each an articulation of a fixed frame and a leaf on a hinge."""
     kinds = {cut.opening.opening_id: cut.opening.kind for cut in shell.cuts}
-    made = []
+    texts = []
     for leaf in shell.leaves:
         fitting = _door(fittings.door_size(leaf), entrance=kinds[leaf.opening_id] == "entrance")
         materials.paths(fitting.materials)
-        where = placed((*leaf.hinge, elevation), float(np.arctan2(leaf.along[1], leaf.along[0])))
-        made.append(cast(fitting.form, f"{parent}/{leaf.opening_id}", where))
-    return made
+        where = transform_ops((*leaf.hinge, elevation), float(np.arctan2(leaf.along[1], leaf.along[0])))
+        texts.append(cast(fitting.form, f"{parent}/{leaf.opening_id}", where))
+    return texts
 
 
 def window_texts(parent: str, elevation: float, shell: Shell, materials: Palette) -> list[str]:
     """Return the windows of a storey: static frames and panes."""
-    made = []
+    texts = []
     for cut in shell.cuts:
         if cut.opening.kind == "window":
             a, b = (cut.quad[0] + cut.quad[3]) / 2, (cut.quad[1] + cut.quad[2]) / 2
             fitting = _window(fittings.window_size(cut))
             materials.paths(fitting.materials)
-            where = placed((*a, elevation), float(np.arctan2(*(b - a)[::-1])))
-            made.append(cast(fitting.form, f"{parent}/{cut.opening.opening_id}", where))
-    return made
+            where = transform_ops((*a, elevation), float(np.arctan2(*(b - a)[::-1])))
+            texts.append(cast(fitting.form, f"{parent}/{cut.opening.opening_id}", where))
+    return texts
 
 
 class Fitting(NamedTuple):
@@ -147,7 +147,7 @@ def _prism(n: int) -> Mesh:
 
 def _prism_shape(polygon: NDArray[np.float64], bottom: float, top: float) -> str:
     points, faces = prism_points(polygon, bottom, top), _prism(len(polygon)).faces
-    return shaped(points, flat_normals(points, np.full(len(faces), 3, np.int32), faces.ravel()))
+    return mesh_attributes(points, flat_normals(points, np.full(len(faces), 3, np.int32), faces.ravel()))
 
 
 @functools.cache
@@ -172,17 +172,17 @@ def _solid(path: str, solid: Prism, material: str) -> str:
     if len(p) == 4 and float(np.abs(p[0] + p[2] - p[1] - p[3]).max()) < EXACT and abs((p[1] - p[0]) @ (p[3] - p[0])) < EXACT:
         size = (*(float(np.linalg.norm(p[k] - p[0])) for k in (1, 3)), high - low)
         yaw = float(np.arctan2(*(p[1] - p[0])[::-1]))
-        return cast(_block_form(material), path, placed((*p.mean(axis=0), (low + high) / 2), yaw, size))
+        return cast(_block_form(material), path, transform_ops((*p.mean(axis=0), (low + high) / 2), yaw, size))
     return cast(_prism_form(len(p), material), path, _prism_shape(p, low, high))
 
 
 @functools.lru_cache(maxsize=256)
 def _block_form(material: str) -> str:
     def convert(layer: Sdf.Layer) -> None:
-        made = convert_box(layer, "Mould", np.zeros(3), np.ones(3))
-        hide(made)
-        convert_collider(made)
-        bind(made, material)
+        gprim = convert_box(layer, "Mould", np.zeros(3), np.ones(3))
+        hide(gprim)
+        convert_collider(gprim)
+        bind(gprim, material)
 
     return mould(convert, PLACE)
 
@@ -190,10 +190,10 @@ def _block_form(material: str) -> str:
 @functools.lru_cache(maxsize=256)
 def _prism_form(corners: int, material: str) -> str:
     def convert(layer: Sdf.Layer) -> None:
-        made = convert_mesh(layer, "Mould", _prism(corners), None)
-        hide(made)
-        convert_collider(made)
-        bind(made, material)
+        gprim = convert_mesh(layer, "Mould", _prism(corners), None)
+        hide(gprim)
+        convert_collider(gprim)
+        bind(gprim, material)
 
     return mould(convert, SHAPE)
 
@@ -210,12 +210,12 @@ def _slab(
 @functools.lru_cache(maxsize=256)
 def _slab_form(corners: int, material: Material, path: str, name: str, *, collides: bool) -> str:
     def convert(layer: Sdf.Layer) -> None:
-        made = convert_mesh(layer, "Mould", _prism(corners), material.base_color)
-        bind(made, path)
+        gprim = convert_mesh(layer, "Mould", _prism(corners), material.base_color)
+        bind(gprim, path)
         if collides:
-            convert_collider(made)
+            convert_collider(gprim)
         if name:
-            label(made, "class", [name])
+            label(gprim, "class", [name])
 
     return mould(convert, SHAPE)
 
@@ -228,7 +228,7 @@ def _panels(path: str, panels: Iterable[Panel], material: Material, materials: P
     normals = np.repeat(flat_normals(every, counts, np.arange(len(every), dtype=np.int32)), counts, axis=0)
     rows, index = np.unique(np.concatenate([every, normals.round(5)], axis=1), axis=0, return_inverse=True)  # one corner a plane
     topology = f"int[] faceVertexCounts = {counts.tolist()}\nint[] faceVertexIndices = {index.reshape(-1).tolist()}\n"
-    shape = shaped(rows[:, :3], rows[:, 3:], "vertex")
+    shape = mesh_attributes(rows[:, :3], rows[:, 3:], "vertex")
     return cast(_panels_form(material, materials.path(material)), path, shape + topology)
 
 
@@ -236,9 +236,9 @@ def _panels(path: str, panels: Iterable[Panel], material: Material, materials: P
 def _panels_form(material: Material, path: str) -> str:
     def convert(layer: Sdf.Layer) -> None:
         one = np.arange(3, dtype=np.int32)
-        made = convert_polygons(layer, "Mould", np.eye(3), one[2:] + 1, one, material.base_color)
-        attribute(made, "doubleSided", "bool", True, uniform=True)
-        label(made, "class", ["wall"])
-        bind(made, path)
+        gprim = convert_polygons(layer, "Mould", np.eye(3), one[2:] + 1, one, material.base_color)
+        attribute(gprim, "doubleSided", "bool", True, uniform=True)
+        label(gprim, "class", ["wall"])
+        bind(gprim, path)
 
     return mould(convert, (*SHAPE, "faceVertexCounts", "faceVertexIndices"))

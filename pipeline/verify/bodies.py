@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 from pipeline.geometry.contact import group_boxes
-from pipeline.geometry.prisms import Prisms, Solid, solid, stacked
+from pipeline.geometry.prisms import Prisms, Solid, join_prisms, solid
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,5 +30,5 @@ def bodies(placements: Sequence[Placement], assets: Mapping[str, Asset]) -> Bodi
     solids = tuple(solid(assets[p.asset_id]) for p in placements)
     placed = [s.rest.placed(p.position, p.yaw, p.scale) for s, p in zip(solids, placements, strict=True)]
     start = np.concatenate([[0], np.cumsum([len(p) for p in placed], dtype=np.int64)]).astype(np.int64)
-    prisms = stacked(placed)
+    prisms = join_prisms(placed)
     return Bodies(prisms, start, prisms.boxes(), group_boxes(prisms, start), solids)

@@ -12,7 +12,7 @@ from pipeline.entities.asset import Asset, Joint
 from pipeline.entities.home import Placement
 from pipeline.geometry.kinematics import moved_links
 from pipeline.geometry.polygons import contains
-from pipeline.geometry.prisms import Prisms, covering, stacked
+from pipeline.geometry.prisms import Prisms, covering, join_prisms
 from pipeline.verify.bodies import Bodies
 
 LEVEL = 0.1  # a slide whose axis rises less than this per metre keeps what lies in it
@@ -26,49 +26,49 @@ class Carrier:
     link: int
 
 
-def carried(placements: Sequence[Placement], made: Bodies, gap: float) -> dict[int, Carrier]:
+def find_carriers(placements: Sequence[Placement], bodies: Bodies, gap: float) -> dict[int, Carrier]:
     """Return what bears each placement that names a `support`, by index; what nothing there bears is missing.
 
     Its middle must lie over a piece of the support whose top is within `gap` [m] of its bottom.
     """
     index = {p.object_id: g for g, p in enumerate(placements)}
-    p = made.prisms
-    found = {}
+    p = bodies.prisms
+    carriers = {}
     for g, placement in enumerate(placements):
         h = index.get(placement.support) if placement.support else None
         if h is None or h == g:
             continue
-        own = np.arange(made.start[h], made.start[h + 1])
+        own = np.arange(bodies.start[h], bodies.start[h + 1])
         x, y, z = placement.position.tolist()
         off = np.abs(p.z[own, 1] - z)
         # The nearest top bears it: a drawer's floor, not the board of the carcass just below.
         for i in own[np.argsort(off, kind="stable")][: int((off <= gap).sum())]:
             if contains(x, y, np.ascontiguousarray(p.polygon(int(i)))):
-                found[g] = Carrier(h, int(p.part[i]))
+                carriers[g] = Carrier(h, int(p.part[i]))
                 break
-    return found
+    return carriers
 
 
-def riders(asset: Asset, index: int, owner: int, held: Mapping[int, Carrier]) -> list[int]:
+def riders(asset: Asset, index: int, owner: int, carriers: Mapping[int, Carrier]) -> list[int]:
     """Return the placements that ride along when joint `index` of placement `owner` moves: they lie in a drawer."""
     joint = asset.joints[index]
     if joint.type != "prismatic" or abs(float(joint.axis[2])) > LEVEL:
         return []
     moved = moved_links(asset, index)
-    return [g for g, carrier in held.items() if carrier.placement == owner and carrier.link in moved]
+    return [g for g, carrier in carriers.items() if carrier.placement == owner and carrier.link in moved]
 
 
-def way(made: Bodies, things: Sequence[int], joint: Joint, turn: NDArray[np.float64], ends: Sequence[float]) -> Prisms:
+def way(bodies: Bodies, things: Sequence[int], joint: Joint, turn: NDArray[np.float64], ends: Sequence[float]) -> Prisms:
     """Return what riding things cover between each position of a slide and the next; `part` numbers the stretches.
 
     `turn` (3, 3) is the owner's rotation, `ends` (S + 1,) the positions.
     """
-    p = made.prisms
+    p = bodies.prisms
     axis = turn @ joint.axis
     moves = np.asarray(ends)[:, None, None] * axis
     groups = []
-    for i in (i for g in things for i in range(int(made.start[g]), int(made.start[g + 1]))):
+    for i in (i for g in things for i in range(int(bodies.start[g]), int(bodies.start[g + 1]))):
         corners = p.polygon(i)
         posed = np.concatenate([np.column_stack([corners, np.full(len(corners), z)]) for z in p.z[i]]) + moves
         groups.append(covering(np.concatenate([posed[:-1], posed[1:]], axis=1)))
-    return stacked(groups)
+    return join_prisms(groups)

@@ -129,19 +129,19 @@ class Certificate:
 
         `closed` are rooms that the plan itself, given by somebody, closes to the robot: no fault of what stands in them.
         """
-        found: list[tuple[str, str]] = []
+        breaches: list[tuple[str, str]] = []
         if self.collisions > policy.collisions:
-            found.append(("collision", ", ".join(o.object_id for o in self.objects if o.collides)))
+            breaches.append(("collision", ", ".join(o.object_id for o in self.objects if o.collides)))
         if self.joints and self.joints_clear < policy.clear * len(self.joints) - 1e-9:
             stuck = (f"{j.object_id}/{j.joint_id} at {j.blocker}" for j in self.joints if not j.clear)
-            found.append(("joint_blocked", ", ".join(stuck)))
+            breaches.append(("joint_blocked", ", ".join(stuck)))
         if self.reach < policy.reach - 1e-9:
-            found.append(("out_of_reach", f"{self.reach:.3f} of the openable objects can be opened"))
+            breaches.append(("out_of_reach", f"{self.reach:.3f} of the openable objects can be opened"))
         if policy.connected and (lost := self.closed() - closed):
-            found.append(("room_cut_off", ", ".join(r.room_id for r in self.rooms if r.room_id in lost)))
+            breaches.append(("room_cut_off", ", ".join(r.room_id for r in self.rooms if r.room_id in lost)))
         if policy.supported and not all(o.supported for o in self.objects):
-            found.append(("unsupported", ", ".join(o.object_id for o in self.objects if not o.supported)))
-        return tuple(found)
+            breaches.append(("unsupported", ", ".join(o.object_id for o in self.objects if not o.supported)))
+        return tuple(breaches)
 
     def ok(self, policy: Policy) -> bool:
         """Whether the home may ship."""
@@ -156,8 +156,8 @@ class Certificate:
                 "joint_id": j.joint_id,
                 "type": j.type,
                 "part_class": j.part_class,
-                "axis": _rounded(j.axis),
-                "origin": _rounded(j.origin),
+                "axis": _round_vector(j.axis),
+                "origin": _round_vector(j.origin),
                 "lower": j.lower,
                 "upper": j.upper,
                 "after": list(j.after),
@@ -186,5 +186,5 @@ class Certificate:
         }
 
 
-def _rounded(vector: Floats) -> list[float]:
+def _round_vector(vector: Floats) -> list[float]:
     return [round(float(x), 6) + 0.0 for x in vector]

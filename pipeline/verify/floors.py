@@ -16,7 +16,7 @@ from pipeline.verify.settings import VerifySettings
 NEAR_ENTRANCE = 1.0  # the robot must find a place this near to the entrance door [m]
 
 
-def level_free_space(home: Home, level: int, made: Bodies, settings: VerifySettings) -> tuple[FreeSpace, int]:
+def level_free_space(home: Home, level: int, bodies: Bodies, settings: VerifySettings) -> tuple[FreeSpace, int]:
     """Return the furnished floor of one storey, and the label of the part that one enters.
 
     Small things take no floor: what lies on furniture is above it, rugs are driven over, curtains give way.
@@ -26,18 +26,18 @@ def level_free_space(home: Home, level: int, made: Bodies, settings: VerifySetti
     openings = [o for o in plan.openings if o.level == level]
     floor = bare_floor(rooms, openings, max(plan.inner_wall, plan.outer_wall) / 2 + settings.cell, settings.cell)
     base = level * plan.storey_height
-    space = free_space(floor, _furniture(home, made), robot.radius, robot.band(base))
-    return space, _entered(plan, level, rooms, space)
+    space = free_space(floor, _furniture(home, bodies), robot.radius, robot.band(base))
+    return space, _entry_label(plan, level, rooms, space)
 
 
-def _furniture(home: Home, made: Bodies) -> Prisms:
+def _furniture(home: Home, bodies: Bodies) -> Prisms:
     """Return the prisms of all but small things."""
-    small, p = taxonomy.load().small, made.prisms
-    own = np.repeat([placement.category not in small for placement in home.placements], np.diff(made.start)).astype(bool)
+    small, p = taxonomy.load().small, bodies.prisms
+    own = np.repeat([placement.category not in small for placement in home.placements], np.diff(bodies.start)).astype(bool)
     return Prisms(p.corners[own], p.count[own], p.z[own], p.part[own])
 
 
-def _entered(plan: Plan, level: int, rooms: list[Room], space: FreeSpace) -> int:
+def _entry_label(plan: Plan, level: int, rooms: list[Room], space: FreeSpace) -> int:
     """Return the label of the part one comes into: at the entrance door, else in the entrance room, else by the stairs."""
     doors = [o for o in plan.openings if o.level == level and o.kind == "entrance"]
     if doors:
@@ -51,7 +51,7 @@ def _entered(plan: Plan, level: int, rooms: list[Room], space: FreeSpace) -> int
 
 def check_rooms(home: Home, spaces: dict[int, tuple[FreeSpace, int]]) -> dict[str, RoomCheck]:
     """Return the figures of every room."""
-    found: dict[str, RoomCheck] = {}
+    checks: dict[str, RoomCheck] = {}
     small = taxonomy.load().small
     for level, (space, label) in spaces.items():
         rooms = [r for r in home.plan.rooms if r.level == level]
@@ -60,7 +60,7 @@ def check_rooms(home: Home, spaces: dict[int, tuple[FreeSpace, int]]) -> dict[st
         entered = np.bincount(inside[inside >= 0], minlength=len(rooms))
         for number, room in enumerate(rooms):
             own = tuple(p for p in home.in_room(room.room_id) if p.category not in small)
-            found[room.room_id] = RoomCheck(
+            checks[room.room_id] = RoomCheck(
                 room.room_id,
                 room.area,
                 occupied_ratio(room, tuple(p for p in own if _floor_standing(p, home.plan))),
@@ -68,7 +68,7 @@ def check_rooms(home: Home, spaces: dict[int, tuple[FreeSpace, int]]) -> dict[st
                 float(shares[number]),
                 bool(entered[number] > 0),
             )
-    return found
+    return checks
 
 
 def occupied_ratio(room: Room, placements: tuple[Placement, ...]) -> float:

@@ -9,7 +9,7 @@ from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
 from pipeline.geometry.walls import levels
 from pipeline.verify.bodies import bodies
-from pipeline.verify.carrying import carried
+from pipeline.verify.carrying import find_carriers
 from pipeline.verify.certificate import Certificate
 from pipeline.verify.floors import check_rooms, level_free_space
 from pipeline.verify.joints import check_joints, check_leaves
@@ -19,15 +19,15 @@ from pipeline.verify.settings import VerifySettings
 
 def verify_home(home: Home, assets: Mapping[str, Asset], settings: VerifySettings) -> Certificate:
     """Judge one home: every joint swept, every object at rest, every room's floor."""
-    made = bodies(home.placements, assets)
-    held = carried(home.placements, made, settings.float_gap)
-    spaces = {level: level_free_space(home, level, made, settings) for level in levels(home.plan)}
+    home_bodies = bodies(home.placements, assets)
+    carriers = find_carriers(home.placements, home_bodies, settings.float_gap)
+    spaces = {level: level_free_space(home, level, home_bodies, settings) for level in levels(home.plan)}
     rooms = check_rooms(home, spaces)
     small = taxonomy.load().small
     return Certificate(
         home.scene_id,
-        (*check_joints(home, assets, made, held, spaces, settings), *check_leaves(home, made, spaces, settings)),
-        check_objects(home, made, held, settings),
+        (*check_joints(home, assets, home_bodies, carriers, spaces, settings), *check_leaves(home, home_bodies, spaces, settings)),
+        check_objects(home, home_bodies, carriers, settings),
         tuple(rooms[room.room_id] for room in home.plan.rooms),
         frozenset(p.object_id for p in home.placements if p.category in small),
     )

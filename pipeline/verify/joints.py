@@ -16,7 +16,7 @@ from pipeline.geometry.door_sweeps import leaf_handles, leaf_sweep
 from pipeline.geometry.free_space import FreeSpace
 from pipeline.geometry.kinematics import grips, joint_range, moved_links, rotation
 from pipeline.geometry.polygons import contains
-from pipeline.geometry.prisms import Prisms, Sweep, stacked
+from pipeline.geometry.prisms import Prisms, Sweep, join_prisms
 from pipeline.geometry.robot import Robot
 from pipeline.geometry.stance import stand_pose
 from pipeline.geometry.walls import Leaf, leaves
@@ -32,7 +32,7 @@ WALL = "wall"  # blocker's name where a part meets a wall
 
 
 def check_joints(
-    home: Home, assets: Mapping[str, Asset], made: Bodies, held: Mapping[int, Carrier], walks: Walks, settings: VerifySettings
+    home: Home, assets: Mapping[str, Asset], bodies: Bodies, carriers: Mapping[int, Carrier], walks: Walks, settings: VerifySettings
 ) -> list[JointCheck]:
     """Check every joint of every placed object, in order. What lies in a drawer comes out with it."""
     checks = []
@@ -44,18 +44,18 @@ def check_joints(
         room = np.ascontiguousarray(home.plan.room(placement.room_id).polygon, np.float64)
         space, label = walks[home.plan.room(placement.room_id).level]
         floor = home.plan.elevation(placement.room_id)
-        moved = [sweep.prisms.placed(placement.position, placement.yaw, placement.scale) for sweep in made.solids[g].sweeps]
+        moved = [sweep.prisms.placed(placement.position, placement.yaw, placement.scale) for sweep in bodies.solids[g].sweeps]
         own = []
         for index, joint in enumerate(asset.joints):
-            hits = _way(made, g, index, asset, moved[index], turn, held, settings)
+            hits = _way(bodies, g, index, asset, moved[index], turn, carriers, settings)
             hits[(hits < 0) & (wall_excesses(moved[index].corners, moved[index].count, room) > settings.wall)] = -2
-            clear_upper, clear, blocker = _progress(made.solids[g].sweeps[index], moved[index], hits, home)
+            clear_upper, clear, blocker = _progress(bodies.solids[g].sweeps[index], moved[index], hits, home)
             handle, way = grips(asset)[index]
             grip = placement.position + turn @ (handle * placement.scale)
             heading = turn[:2, :2] @ way
             lower, upper = joint_range(joint)
             # Where the robot stands, it stands clear of the doors that it has opened before.
-            opened = stacked([moved[index], *(m for m, j in zip(moved, asset.joints, strict=True) if j.name in joint.after)])
+            opened = join_prisms([moved[index], *(m for m, j in zip(moved, asset.joints, strict=True) if j.name in joint.after)])
             own.append(
                 JointCheck(
                     placement.object_id,
@@ -80,38 +80,38 @@ def check_joints(
 def _in_turn(checks: list[JointCheck]) -> list[JointCheck]:
     """Return the checks of one object, in which no joint moves that waits for one that is not clear."""
     stuck = {c.joint_id: c.blocker for c in checks if not c.clear}
-    held = {c.joint_id: next((stuck[name] for name in c.after if name in stuck), "") for c in checks}
-    return [replace(c, clear=False, clear_upper=0.0, blocker=held[c.joint_id]) if held[c.joint_id] else c for c in checks]
+    blockers = {c.joint_id: next((stuck[name] for name in c.after if name in stuck), "") for c in checks}
+    return [replace(c, clear=False, clear_upper=0.0, blocker=blockers[c.joint_id]) if blockers[c.joint_id] else c for c in checks]
 
 
 def _way(
-    made: Bodies,
+    bodies: Bodies,
     owner: int,
     index: int,
     asset: Asset,
     moved: Prisms,
     turn: Floats,
-    held: Mapping[int, Carrier],
+    carriers: Mapping[int, Carrier],
     settings: VerifySettings,
 ) -> NDArray[np.int64]:
     """Return per prism of a joint's sweep the object that it meets, -1 for none; what rides along must come through as well."""
-    along = riders(asset, index, owner, held)
+    along = riders(asset, index, owner, carriers)
     if not along:
-        return _hits(moved, owner, made, settings.touch)
-    boxes = made.boxes.copy()
+        return _hits(moved, owner, bodies, settings.touch)
+    boxes = bodies.boxes.copy()
     boxes[along] = (*[np.inf] * 3, *[-np.inf] * 3)
-    free = replace(made, boxes=boxes)
+    free = replace(bodies, boxes=boxes)
     hits = _hits(moved, owner, free, settings.touch)
-    still = np.flatnonzero(~np.isin(made.prisms.part, moved_links(asset, index)))
-    still = still[(still >= made.start[owner]) & (still < made.start[owner + 1])]
-    frame = _only(made, still)
-    reached = made.solids[owner].sweeps[index].reached
+    still = np.flatnonzero(~np.isin(bodies.prisms.part, moved_links(asset, index)))
+    still = still[(still >= bodies.start[owner]) & (still < bodies.start[owner + 1])]
+    frame = _only(bodies, still)
+    reached = bodies.solids[owner].sweeps[index].reached
     # The stretches from rest upwards, then those from rest downwards, as the sweep numbers them.
     upward = np.concatenate([[0.0], reached[reached > 0]])
     downward = np.concatenate([[0.0], reached[reached < 0]])
     for ends, first in ((upward, 0), (downward, len(upward) - 1)):
         for stretch in (ends[[0, -1]], ends):  # the whole way at once; step by step only if something is in it
-            things = way(made, along, asset.joints[index], turn, stretch.tolist())
+            things = way(bodies, along, asset.joints[index], turn, stretch.tolist())
             met = _hits(things, owner, free, settings.touch)
             met[(met < 0) & (_hits(things, -1, frame, settings.touch) >= 0)] = along[0]
             if (met < 0).all():
@@ -121,15 +121,15 @@ def _way(
     return hits
 
 
-def _only(made: Bodies, which: NDArray[np.int64]) -> Bodies:
+def _only(bodies: Bodies, which: NDArray[np.int64]) -> Bodies:
     """Return some prisms as one group."""
-    p = made.prisms
+    p = bodies.prisms
     kept = Prisms(p.corners[which], p.count[which], p.z[which], p.part[which])
     start = np.array([0, len(which)])
     return Bodies(kept, start, kept.boxes(), group_boxes(kept, start), ())
 
 
-def check_leaves(home: Home, made: Bodies, walks: Walks, settings: VerifySettings) -> list[JointCheck]:
+def check_leaves(home: Home, bodies: Bodies, walks: Walks, settings: VerifySettings) -> list[JointCheck]:
     """Check every room door, in the order of the openings."""
     levels = {o.opening_id: o.level for o in home.plan.openings}
     swings = {o.opening_id: o.swing.room_id for o in home.plan.openings if o.swing is not None}
@@ -138,7 +138,7 @@ def check_leaves(home: Home, made: Bodies, walks: Walks, settings: VerifySetting
         level = levels[leaf.opening_id]
         elevation = level * home.plan.storey_height
         sweep = leaf_sweep(leaf, elevation)
-        hits = _hits(sweep.prisms, -1, made, settings.touch)
+        hits = _hits(sweep.prisms, -1, bodies, settings.touch)
         room = next((r.polygon for r in home.plan.rooms if r.room_id == swings[leaf.opening_id]), None)
         if room is not None:
             hits[_through_wall(leaf, sweep, np.ascontiguousarray(room, np.float64), hits)] = -2
@@ -166,11 +166,11 @@ def check_leaves(home: Home, made: Bodies, walks: Walks, settings: VerifySetting
     return checks
 
 
-def _hits(moved: Prisms, owner: int, made: Bodies, touch: float) -> NDArray[np.int64]:
-    p = made.prisms
+def _hits(moved: Prisms, owner: int, bodies: Bodies, touch: float) -> NDArray[np.int64]:
+    p = bodies.prisms
     owners = np.full(len(moved), owner)
     return first_hits(
-        moved.corners, moved.count, moved.z, moved.boxes(), owners, p.corners, p.count, p.z, made.flat, made.start, made.boxes, touch
+        moved.corners, moved.count, moved.z, moved.boxes(), owners, p.corners, p.count, p.z, bodies.flat, bodies.start, bodies.boxes, touch
     )
 
 
@@ -211,9 +211,9 @@ def _stand(
     grip: Floats, heading: Floats, swept: Prisms, floor: float, space: FreeSpace, label: int, robot: Robot
 ) -> tuple[float, float, float] | None:
     """Return (x, y, yaw) at which the robot, coming from the entrance, opens a part. At yaw 0 it looks along +x."""
-    found = stand_pose(grip, heading, swept, floor, space, label, robot)
-    if found is None:
+    position = stand_pose(grip, heading, swept, floor, space, label, robot)
+    if position is None:
         return None
-    x, y = found
+    x, y = position
     yaw = math.atan2(float(grip[1]) - y, float(grip[0]) - x)
     return round(x, 4) + 0.0, round(y, 4) + 0.0, round(yaw, 5) + 0.0

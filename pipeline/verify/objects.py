@@ -16,12 +16,12 @@ from pipeline.verify.certificate import ObjectCheck
 from pipeline.verify.settings import VerifySettings
 
 
-def check_objects(home: Home, made: Bodies, held: Mapping[int, Carrier], settings: VerifySettings) -> tuple[ObjectCheck, ...]:
+def check_objects(home: Home, bodies: Bodies, carriers: Mapping[int, Carrier], settings: VerifySettings) -> tuple[ObjectCheck, ...]:
     """Check every object against all others, the walls of its room, and gravity."""
-    p = made.prisms
-    depths = pair_depths(p.corners, p.count, p.z, made.flat, made.start, made.boxes, settings.touch)
+    p = bodies.prisms
+    depths = pair_depths(p.corners, p.count, p.z, bodies.flat, bodies.start, bodies.boxes, settings.touch)
     rooms = {room.room_id: room for room in home.plan.rooms}
-    outside = _outside(home, made, rooms)
+    outside = _outside(home, bodies, rooms)
     checks = []
     for g, placement in enumerate(home.placements):
         hits = tuple(home.placements[int(h)].object_id for h in np.flatnonzero(depths[g]))
@@ -32,24 +32,24 @@ def check_objects(home: Home, made: Bodies, held: Mapping[int, Carrier], setting
                 hits,
                 round(float(outside[g]), 6),
                 bool(outside[g] <= settings.wall),
-                g in held if placement.support else _supported(g, placement, home, made, settings),
+                g in carriers if placement.support else _is_supported(g, placement, home, bodies, settings),
             )
         )
     return tuple(checks)
 
 
-def _outside(home: Home, made: Bodies, rooms: Mapping[str, Room]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+def _outside(home: Home, bodies: Bodies, rooms: Mapping[str, Room]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     """Return how far each object sticks out of its room's walls [m]."""
-    p = made.prisms
+    p = bodies.prisms
     worst = np.zeros(len(home.placements))
     for g, placement in enumerate(home.placements):
-        own = slice(int(made.start[g]), int(made.start[g + 1]))
+        own = slice(int(bodies.start[g]), int(bodies.start[g + 1]))
         if own.stop > own.start:
             worst[g] = wall_excesses(p.corners[own], p.count[own], np.ascontiguousarray(rooms[placement.room_id].polygon, np.float64)).max()
     return worst
 
 
-def _supported(g: int, placement: Placement, home: Home, made: Bodies, settings: VerifySettings) -> bool:
+def _is_supported(g: int, placement: Placement, home: Home, bodies: Bodies, settings: VerifySettings) -> bool:
     """Tell whether an object stands on the floor or on another, or hangs where its category may hang."""
     floor = home.plan.elevation(placement.room_id)
     ceiling = floor + home.plan.room(placement.room_id).height
@@ -62,8 +62,8 @@ def _supported(g: int, placement: Placement, home: Home, made: Bodies, settings:
     if known is not None and known.mount != "floor":
         return True
     low, high = placement.footprint().min(0), placement.footprint().max(0)
-    p = made.prisms
+    p = bodies.prisms
     under = np.abs(p.z[:, 1] - bottom) <= settings.float_gap
-    under[made.start[g] : made.start[g + 1]] = False
-    shared = np.minimum(made.flat[:, 2:], high) - np.maximum(made.flat[:, :2], low)
+    under[bodies.start[g] : bodies.start[g + 1]] = False
+    shared = np.minimum(bodies.flat[:, 2:], high) - np.maximum(bodies.flat[:, :2], low)
     return bool(np.any(under & (shared > 0.02).all(1)))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from pipeline.arrange import separate
 from pipeline.arrange.item import make_item
-from pipeline.arrange.runs import torn
+from pipeline.arrange.runs import stray_units
 from pipeline.verify import Policy, verify_home
 from tests.arrange.known import LORE, drafted
 from tests.geometry.furniture import block, home, one_room
@@ -110,5 +110,5 @@ def test_a_wall_unit_that_is_in_the_way_does_not_tear_a_run():
 def test_units_without_a_neighbour_are_torn_from_their_run(apart, yaw, lone):
     items = [make_item(drafted(ASSETS["base"], 0.0, 0.0, number=k), ASSETS, LORE, 0.5) for k in range(2)]
     poses = np.array([[1.0, 2.7, 0.0, 0.0], [1.8 + apart, 2.7, 0.0, yaw]])
-    assert len(torn([[0, 1]], items, poses, np.ones(2, bool))) == lone
-    assert torn([[0], [1]], items, poses, np.ones(2, bool)) == []
+    assert len(stray_units([[0, 1]], items, poses, np.ones(2, bool))) == lone
+    assert stray_units([[0], [1]], items, poses, np.ones(2, bool)) == []

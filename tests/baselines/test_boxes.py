@@ -6,7 +6,7 @@ import torch
 from shapely import Polygon
 
 from pipeline import seeds
-from pipeline.baselines.boxes import Boxes, boxes_of, extended, iou, mates, overlaps, shared_area
+from pipeline.baselines.boxes import Boxes, boxes_of, extend_front, iou, mates, overlaps, shared_area
 from pipeline.geometry.boxes import footprints, iou_3d
 
 
@@ -66,9 +66,9 @@ def test_gradients_are_those_of_finite_differences():
 
 def test_what_opens_grows_by_a_third_of_its_depth_to_the_front():
     box = torch.tensor([[1.0, 2.0, 0.5, 0.8, 0.6, 1.0, 1.0, 0.0]]).double()  # yaw 0: the front looks to -y
-    (grown,) = polygons_of(extended(boxes_of(box), torch.tensor([True])))
+    (grown,) = polygons_of(extend_front(boxes_of(box), torch.tensor([True])))
     assert grown.bounds == pytest.approx((0.6, 1.5, 1.4, 2.3))
-    (same,) = polygons_of(extended(boxes_of(box), torch.tensor([False])))
+    (same,) = polygons_of(extend_front(boxes_of(box), torch.tensor([False])))
     assert same.bounds == pytest.approx((0.6, 1.7, 1.4, 2.3))
 
 

@@ -171,7 +171,7 @@ def test_an_exact_prediction_has_no_loss_and_gives_x0_back(world, scaling, setti
     levels = Levels.linear(settings.timesteps)
     torch.manual_seed(3)
     net = Denoiser(scaling, len(LAYOUTS), settings)
-    x0, t, noise, x = diffuscene.noised(net, levels, world[1], torch.Generator().manual_seed(4))
+    x0, t, noise, x = diffuscene.add_noise(net, levels, world[1], torch.Generator().manual_seed(4))
     alpha, sigma = levels.alpha[t][:, None, None], levels.sigma[t][:, None, None]
     raw = alpha * noise - sigma * x0
     assert float(diffuscene.denoising(net, levels, raw, x0, noise, t)) < 1e-9

@@ -78,7 +78,7 @@ def room(*categories, kind="bedroom", side=4.0, mirrored=False):
 def test_the_peers_filters_leave_out_what_they_would():
     bed = KNOWN.classes["bedroom"]
     good = room("double_bed", "nightstand", "lounge_chair")
-    assert figures.filtered([good], bed) == [["double_bed", "nightstand", "chair"]]
+    assert figures.filter_rooms([good], bed) == [["double_bed", "nightstand", "chair"]]
     for bad in (
         room("double_bed", "nightstand"),
         room("wardrobe", "nightstand", "nightstand"),
@@ -87,7 +87,7 @@ def test_the_peers_filters_leave_out_what_they_would():
         room(*good.categories, mirrored=True),
         room(*good.categories, kind="kidsroom"),
     ):
-        assert figures.filtered([bad], bed) == []
+        assert figures.filter_rooms([bad], bed) == []
 
 
 def test_intervals_hold_what_they_are_made_of():

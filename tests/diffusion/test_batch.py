@@ -1,7 +1,7 @@
 import numpy as np
 import torch
 
-from pipeline.diffusion.batch import Objects, bucket_of, moved_objects, moved_rooms, reflections, stacked
+from pipeline.diffusion.batch import Objects, bucket_of, collate, moved_objects, moved_rooms, reflections
 from pipeline.diffusion.codec import Codec
 from pipeline.diffusion.constraints import articulated_collision
 from pipeline.diffusion.relations import boxes_of, pair_relations, wall_relations
@@ -11,7 +11,7 @@ from tests.diffusion.small_world import make_context
 
 def batch(examples, norm):
     codec = Codec(norm)
-    return (codec, *stacked(examples, codec, 24))
+    return (codec, *collate(examples, codec, 24))
 
 
 def turns(count, seed):

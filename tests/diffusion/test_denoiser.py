@@ -1,7 +1,7 @@
 import pytest
 import torch
 
-from pipeline.diffusion.batch import moved_rooms, stacked
+from pipeline.diffusion.batch import collate, moved_rooms
 from pipeline.diffusion.codec import CHANNELS, YAW, Codec
 from pipeline.diffusion.set_transformer import SetTransformer
 from pipeline.diffusion.settings import ModelSettings
@@ -21,7 +21,7 @@ def net(norm, request):
 
 @pytest.fixture(scope="module")
 def noisy(examples, norm):
-    rooms, objects = stacked(examples[:6], Codec(norm), 8)
+    rooms, objects = collate(examples[:6], Codec(norm), 8)
     x = torch.randn(6, 8, CHANNELS, generator=torch.Generator().manual_seed(1))
     return rooms, objects.classes, x, torch.tensor([-5.0, -2.0, 0.0, 2.0, 4.0, 8.0])
 

@@ -9,11 +9,11 @@ from pipeline.diffusion.inventory import (
     Ask,
     Holdings,
     Inventory,
-    amended,
-    begun,
     counts_of,
     draw_inventories,
     fit,
+    initial_inventory,
+    repair_counts,
     room_features,
 )
 from pipeline.diffusion.settings import InventorySettings
@@ -32,7 +32,7 @@ def rooms():
 @pytest.fixture(scope="module")
 def net(rooms):
     torch.set_num_threads(1)
-    return fit(begun(rooms, len(LAYOUTS), 16, 0), rooms, InventorySettings(16, steps=150, batch=64), 0)
+    return fit(initial_inventory(rooms, len(LAYOUTS), 16, 0), rooms, InventorySettings(16, steps=150, batch=64), 0)
 
 
 def drawn(net, rooms, asks, seed=0):
@@ -93,15 +93,15 @@ def test_what_comes_together_is_there_as_a_whole_or_not_at_all(rooms):
 def test_what_no_draw_meets_is_mended():
     usual = np.array([1.0, 2.0, 0.0, 0.0, 0.0, 0.5])
     ask = Ask(6, (((0,), 1, 1), ((2, 3), 2, None)))
-    found = amended(np.array([0, 0, 0, 0, 0, 9]), ask, usual)
+    found = repair_counts(np.array([0, 0, 0, 0, 0, 9]), ask, usual)
     assert ask.met_by(found[None])[0]
     assert found[0] == 1
 
 
 def test_a_room_is_never_empty_unless_nothing_may_be_there():
-    assert amended(np.zeros(3, np.int64), Ask(None), np.array([0.2, 0.9, 0.1])).tolist() == [0, 1, 0]
+    assert repair_counts(np.zeros(3, np.int64), Ask(None), np.array([0.2, 0.9, 0.1])).tolist() == [0, 1, 0]
     nothing = Ask(None, (((0, 1, 2), 0, 0),))
-    assert amended(np.zeros(3, np.int64), nothing, np.array([0.2, 0.9, 0.1])).sum() == 0
+    assert repair_counts(np.zeros(3, np.int64), nothing, np.array([0.2, 0.9, 0.1])).sum() == 0
 
 
 def test_a_wish_for_a_class_that_the_model_does_not_know_asks_nothing():
@@ -132,7 +132,7 @@ def test_features_do_not_change_when_the_room_is_turned():
 
 def test_the_fit_is_the_same_every_time(rooms):
     settings = InventorySettings(8, steps=5, batch=16)
-    one, two = (fit(begun(rooms, len(LAYOUTS), 8, 3), rooms, settings, 3) for _ in range(2))
+    one, two = (fit(initial_inventory(rooms, len(LAYOUTS), 8, 3), rooms, settings, 3) for _ in range(2))
     assert all(torch.equal(a, b) for a, b in zip(one.state_dict().values(), two.state_dict().values(), strict=True))
 
 
@@ -150,4 +150,4 @@ def test_what_is_unwanted_stays_out_and_nothing_is_asked_of_the_rest(net, rooms)
     found = drawn(net, rooms, [none] * 60)
     assert (found[:, CHAIR] == 0).all()
     assert (found.sum(1) > 0).all()
-    assert amended(np.array([0, 0, 2]), Ask(3, (((0, 1, 2), 0, 0),)), np.ones(3)).sum() == 0
+    assert repair_counts(np.array([0, 0, 2]), Ask(3, (((0, 1, 2), 0, 0),)), np.ones(3)).sum() == 0

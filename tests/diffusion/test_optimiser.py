@@ -4,7 +4,7 @@ import torch
 from torch import nn
 
 from pipeline.diffusion.checkpoint import Header, build_net
-from pipeline.diffusion.optimiser import Optimiser, is_hidden, orthogonalised, squares
+from pipeline.diffusion.optimiser import Optimiser, is_hidden, orthogonalise, squares
 from pipeline.diffusion.settings import ModelSettings, TrainSettings
 from tests.diffusion.small_world import LAYOUTS
 
@@ -40,16 +40,16 @@ def descend(made, optimiser, steps, rate=0.02):
 
 def test_singular_values_come_near_1():
     made = torch.randn(5, 12, 20, generator=torch.Generator().manual_seed(0)) * torch.logspace(-3, 3, 5)[:, None, None]
-    values = torch.linalg.svdvals(orthogonalised(made))
+    values = torch.linalg.svdvals(orthogonalise(made))
     assert values.min() > 0.7
     assert values.max() < 1.3
-    assert torch.isfinite(orthogonalised(torch.zeros(1, 4, 4))).all()
+    assert torch.isfinite(orthogonalise(torch.zeros(1, 4, 4))).all()
 
 
 def test_the_directions_of_a_matrix_stay():
     made = torch.randn(1, 8, 8, generator=torch.Generator().manual_seed(1))
     u, _, v = torch.linalg.svd(made)
-    torch.testing.assert_close(u.transpose(1, 2) @ orthogonalised(made) @ v.transpose(1, 2), torch.eye(8)[None], atol=0.3, rtol=0)
+    torch.testing.assert_close(u.transpose(1, 2) @ orthogonalise(made) @ v.transpose(1, 2), torch.eye(8)[None], atol=0.3, rtol=0)
 
 
 def test_a_matrix_that_stands_for_several_is_moved_in_parts():

@@ -2,7 +2,7 @@ import numpy as np
 
 from pipeline import seeds
 from pipeline.diffusion.context import RoomContext, RoomOpening
-from pipeline.diffusion.floor import OPENINGS, WALLS, floor_tokens, simplified
+from pipeline.diffusion.floor import OPENINGS, WALLS, floor_tokens, simplify_polygon
 from pipeline.diffusion.rooms import sets_of, sweeps_by_asset
 from pipeline.entities.plan import Opening, Plan, Room, Swing
 from tests.diffusion.small_world import CLASSES, LAYOUTS, room_rows, shapes
@@ -65,4 +65,4 @@ def test_many_corners_and_openings_are_cut_to_what_fits():
     assert int(floor.mask.sum()) == WALLS + OPENINGS
     widths = np.linalg.norm(floor.ends[WALLS:, 1] - floor.ends[WALLS:, 0], axis=1)
     assert widths.min() > 0.95
-    assert len(simplified(polygon, WALLS)) == WALLS
+    assert len(simplify_polygon(polygon, WALLS)) == WALLS

@@ -5,19 +5,19 @@ import pytest
 import torch
 
 from pipeline import seeds
-from pipeline.diffusion.schedule import FIRST, LAST, alpha_sigma, lambda_of, levels, paper_levels, retained
-from pipeline.diffusion.solver import alpha_sigma_of, diffused
+from pipeline.diffusion.schedule import FIRST, LAST, alpha_sigma, alpha_squared, lambda_of, levels, paper_levels
+from pipeline.diffusion.solver import alpha_sigma_of, denoise
 
 
 def test_the_paper_s_schedule():
-    share = retained()
+    share = alpha_squared()
     assert len(share) == 1001
     assert share[0] == 1
     np.testing.assert_allclose(share[1:] / share[:-1], 1 - np.linspace(1e-4, 0.02, 1000))
 
 
 def test_levels_of_the_paper_are_log_signal_to_noise_ratios():
-    share = retained()
+    share = alpha_squared()
     for t in (1, 10, 100, 1000):
         assert lambda_of(t) == pytest.approx(math.log(share[t] / (1 - share[t])))
     assert lambda_of(100) < lambda_of(55.5) < lambda_of(10)
@@ -60,28 +60,28 @@ def noise(draw):
 
 @pytest.mark.parametrize("eta", [0.0, 0.5, 1.0])
 def test_every_solver_draws_the_gaussian_that_the_denoiser_knows(eta):
-    x = diffused(exact, still, noise, np.linspace(-9, 12, 120).tolist(), eta)
+    x = denoise(exact, still, noise, np.linspace(-9, 12, 120).tolist(), eta)
     assert float(x.mean()) == pytest.approx(MEAN, abs=0.03)
     assert float(x.std()) == pytest.approx(SPREAD, rel=0.08)
 
 
 def test_the_thousand_levels_of_the_paper_are_the_reference():
-    x = diffused(exact, still, noise, paper_levels())
+    x = denoise(exact, still, noise, paper_levels())
     assert float(x.mean()) == pytest.approx(MEAN, abs=0.03)
     assert float(x.std()) == pytest.approx(SPREAD, rel=0.06)
 
 
 def test_without_noise_it_is_an_invertible_map_that_keeps_the_order():
-    x = diffused(exact, still, noise, levels(40), 0.0).flatten()
+    x = denoise(exact, still, noise, levels(40), 0.0).flatten()
     assert float(x[noise(0).flatten().argsort()].diff().min()) > -1e-6
 
 
 def test_with_noise_it_forgets_where_it_began():
-    x = diffused(exact, still, noise, levels(40)).flatten()
+    x = denoise(exact, still, noise, levels(40)).flatten()
     assert abs(float(np.corrcoef(x, noise(0).flatten())[0, 1])) < 0.1
 
 
 def test_what_is_steered_moves_the_sample_its_way():
-    plain = diffused(exact, still, noise, levels(30))
-    pushed = diffused(exact, lambda x0, level: x0 + 0.05 * (level > 6), noise, levels(30))
+    plain = denoise(exact, still, noise, levels(30))
+    pushed = denoise(exact, lambda x0, level: x0 + 0.05 * (level > 6), noise, levels(30))
     assert float((pushed - plain).min()) > 0.04

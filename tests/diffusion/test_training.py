@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 import torch
 
-from pipeline.diffusion.batch import stacked
+from pipeline.diffusion.batch import collate
 from pipeline.diffusion.checkpoint import Header, build_inventory, load_checkpoint, load_weights, save_checkpoint, save_weights
 from pipeline.diffusion.codec import Codec
 from pipeline.diffusion.job import rooms_of
@@ -131,7 +131,7 @@ def test_g_points_down_the_penalty(examples, norm):
     from pipeline.diffusion.relations import boxes_of
 
     codec = Codec(norm)
-    rooms, objects = stacked(examples, codec, 12)
+    rooms, objects = collate(examples, codec, 12)
     occupied = objects.classes < codec.classes
     x = objects.channels.clone()
     x[..., :2] *= 0.5  # squeeze the furniture together

@@ -3,7 +3,7 @@ import pytest
 
 from pipeline import seeds
 from pipeline.diffusion.context import Proposal, RoomContext
-from pipeline.experiments.baselines import Case, asked, figures, holds, liveable, success
+from pipeline.experiments.baselines import Case, figures, holds, liveable, rooms_with_target, success
 from pipeline.relations.model import Relations
 
 OPENS = {"nightstand": True, "chair": False}
@@ -51,9 +51,9 @@ def test_a_way_that_is_blocked_only_when_opened_counts(cases):
 
 def test_numbers_are_asked_of_rooms_that_can_hold_them(cases):
     assert [holds(c, 7) for c in cases] == [False, True, True]
-    assert [r.n_target for r in asked(cases, 7, 10)] == [7, 7]
-    assert [r.n_target for r in asked(cases, 100, 10)] == [100] * 3  # none can: all are asked
-    assert len(asked(cases, 2, 2)) == 2
+    assert [r.n_target for r in rooms_with_target(cases, 7, 10)] == [7, 7]
+    assert [r.n_target for r in rooms_with_target(cases, 100, 10)] == [100] * 3  # none can: all are asked
+    assert len(rooms_with_target(cases, 2, 2)) == 2
     assert success([[thing("chair", 1)] * n for n in (2, 3, 2, 0)], 2)["rate"] == 0.5
 
 

@@ -8,7 +8,7 @@ import yaml
 
 from pipeline.errors import ContentError, UsageError
 from pipeline.experiments.prompt_file import read_prompts
-from pipeline.experiments.prompts import CHECKED, SCORES, measured, report
+from pipeline.experiments.prompts import CHECKED, SCORES, evaluate_prompts, report
 from pipeline.floorplan import parse, solve
 from pipeline.metrics.plan_checks import CHECKS, MEASURES
 from pipeline.metrics.plan_scores import score
@@ -37,7 +37,7 @@ def write(tmp_path, value, name="cases.yaml"):
 
 def test_scores_means_and_spread(tmp_path):
     cases = read_prompts(write(tmp_path, [CASE, "a studio with a bathroom", {"prompt": "12 rooms in 20 m2", "graph": CASE["graph"]}]))
-    found = measured(cases, 2)
+    found = evaluate_prompts(cases, 2)
     flat, studio, refused = found["prompts"]
     assert flat["mean"]["node"] == flat["mean"]["presence"] == 1.0
     assert not studio["scored"]
@@ -89,7 +89,7 @@ def test_forms_of_a_file_mean_the_same(tmp_path):
     assert [c["prompt"] for c in read_prompts(write(tmp_path, lines, "a.jsonl"))] == [c["prompt"] for c in listed]
     plain = "\ufeff# four\n" + "\n".join(c["prompt"] for c in listed)
     assert [c["prompt"] for c in read_prompts(write(tmp_path, plain, "a.txt"))] == [c["prompt"] for c in listed]
-    found = measured(listed, 1)
+    found = evaluate_prompts(listed, 1)
     assert found["failures"] == 0
     assert found["prompts"][0]["mean"]["node"] == 1.0
 
@@ -97,7 +97,7 @@ def test_forms_of_a_file_mean_the_same(tmp_path):
 def test_a_case_without_a_graph_is_scored_on_its_checks(tmp_path):
     checks = {"presence": {"bedroom": 2}, "absent": ["balcony"], "constraints": [{"type": "room_area", "room": "bedroom", "min": 90}]}
     (case,) = read_prompts(write(tmp_path, [{"prompt": "a two-bedroom flat without a balcony", "checks": checks}]))
-    mean = measured([case], 1)["prompts"][0]["mean"]
+    mean = evaluate_prompts([case], 1)["prompts"][0]["mean"]
     assert set(CHECKED) <= set(mean)
     assert (mean["presence"], mean["constraints"], mean["strict"]) == (1.0, 0.0, 0.0)
     assert "node" not in mean
@@ -114,7 +114,7 @@ def test_names_of_rooms_mean_nothing(tmp_path):
         "adjacency": [{"a": 2, "b": 1}],
         "constraints": [{"type": "degree", "room": "卧室", "equals": 1}, {"type": "level", "room": 1, "equals": 0}],
     }
-    found = measured(read_prompts(write(tmp_path, [{**CASE, "graph": graph, "checks": checks}])), 2)
+    found = evaluate_prompts(read_prompts(write(tmp_path, [{**CASE, "graph": graph, "checks": checks}])), 2)
     for name in ("node", "edge", "adjacency", "constraints", "strict"):
         assert found["mean"][name] == 1.0
 

@@ -158,4 +158,4 @@ def test_lines_of_a_layout_are_those_of_its_grid():
             cells[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = i
         out = grid.empty(n, side, side)
         grid.measure(cells, n, out)
-        assert layout.aligned(rect) == out.columns.sum() + out.rows.sum()
+        assert layout.count_wall_lines(rect) == out.columns.sum() + out.rows.sum()

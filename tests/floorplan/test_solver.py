@@ -262,12 +262,12 @@ def test_a_hopeless_program_ends_with_a_refusal():
 def test_slots_that_one_can_only_fill_are_seen():
     rows = ["........", ".aaaaaa.", ".aa..bb.", ".aa..bb.", "........"]  # a notch of two cells
     grid = np.array([[{"a": 0, "b": 1, ".": 2}[c] for c in row] for row in rows])
-    assert solver._slotted(grid)
-    assert solver._slotted(grid.T)
+    assert solver._has_slots(grid)
+    assert solver._has_slots(grid.T)
     wide = np.array([[{"a": 0, "b": 1, ".": 2}[c] for c in row] for row in [".........", ".aaaaaaa.", ".aa...bb.", "........."]])
-    assert not solver._slotted(wide)
-    assert not solver._slotted(wide.T)
-    assert not solver._slotted(np.array([[2, 2, 2], [2, 0, 2], [2, 2, 2]]))
+    assert not solver._has_slots(wide)
+    assert not solver._has_slots(wide.T)
+    assert not solver._has_slots(np.array([[2, 2, 2], [2, 0, 2], [2, 2, 2]]))
 
 
 def spread(plan, pairs):

@@ -2,7 +2,7 @@ import numpy as np
 import shapely
 
 from pipeline.geometry.contact import first_hits, group_boxes, pair_depths, wall_excesses
-from pipeline.geometry.prisms import prism, stacked
+from pipeline.geometry.prisms import join_prisms, prism
 
 
 def random_prisms(seed, n=60):
@@ -11,7 +11,7 @@ def random_prisms(seed, n=60):
     for _ in range(n):
         points = rng.normal(size=(int(rng.integers(4, 20)), 3)) * [0.3, 0.3, 0.2] + rng.uniform(-0.8, 0.8, 3)
         made.append(prism(points))
-    return stacked(made)
+    return join_prisms(made)
 
 
 def truth(a, b):
@@ -75,7 +75,7 @@ def test_first_hits_are_hits_and_leave_the_owner_out():
 def test_a_tolerance_forgives_shallow_contact():
     a = prism(np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float))
     for shift, touching in ((0.997, False), (0.99, True)):
-        both = stacked([a, a.placed(np.array([shift, 0.0, 0.0]), 0.0, np.ones(3))])
+        both = join_prisms([a, a.placed(np.array([shift, 0.0, 0.0]), 0.0, np.ones(3))])
         start = np.arange(3)
         depths = pair_depths(both.corners, both.count, both.z, both.boxes(), start, group_boxes(both, start), 0.005)
         assert (depths[0, 1] > 0) == touching

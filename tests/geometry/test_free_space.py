@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 import shapely
 
-from pipeline.geometry.floor_raster import Raster, components, covered, standing
+from pipeline.geometry.floor_raster import Raster, components, dilate, standing
 from pipeline.geometry.free_space import bare_floor, free_space
-from pipeline.geometry.prisms import prism, stacked
+from pipeline.geometry.prisms import join_prisms, prism
 from tests.geometry.furniture import two_rooms
 
 SQUARE = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 2.0], [0.0, 2.0]])
@@ -30,7 +30,7 @@ def test_a_disc_stands_where_it_fits_and_covers_all_but_the_corners():
     free = raster.fill(raster.empty(), [SQUARE])
     centres = standing(free, 0.25 / 0.05)
     assert raster.area(centres) == pytest.approx(2.5 * 1.5, rel=0.02)
-    swept = covered(centres, 5)
+    swept = dilate(centres, 5)
     assert not (swept & ~free).any()
     assert raster.area(swept) == pytest.approx(6.0 - (4 - np.pi) * 0.25**2, rel=0.01)
     assert not standing(free, 100).any()
@@ -48,7 +48,7 @@ def test_components_are_ordered_by_size():
 def test_a_door_joins_two_rooms_until_it_is_blocked():
     plan = two_rooms()
     floor = bare_floor(plan.rooms, plan.openings, 0.17, 0.05)
-    nothing = stacked([])
+    nothing = join_prisms([])
     free = free_space(floor, nothing, 0.25, (0.02, 1.4))
     label = free.largest_label(floor.room == 0)
     assert (free.labels[floor.room == 1] == label).any()

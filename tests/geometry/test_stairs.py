@@ -9,7 +9,7 @@ import shapely
 from shapely.geometry import Polygon
 
 from pipeline.entities.plan import Opening, Plan, Room
-from pipeline.geometry.stairs import RISE, seen, steps
+from pipeline.geometry.stairs import RISE, steps, visible_steps
 from pipeline.geometry.walls import room_panels, shell
 
 SHAFT = np.array([[0, 0], [2.9, 0], [2.9, 2.1], [0, 2.1]], float)
@@ -90,6 +90,6 @@ def test_a_shaft_that_a_flight_does_not_suit_stays_empty(plan):
 
 def test_what_arrives_from_below_is_seen_below_the_floor():
     plan = home("south", "east")
-    below = [s for s in seen(plan, 1) if s.top < 0.0]
+    below = [s for s in visible_steps(plan, 1) if s.top < 0.0]
     assert len(below) == len([s for s in steps(plan, 0) if s.top < plan.storey_height])
     assert steps(replace(plan, openings=()), 0) == ()

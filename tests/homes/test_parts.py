@@ -5,7 +5,7 @@ import pytest
 import shapely
 
 from pipeline.diffusion.context import RoomContext, RoomOpening
-from pipeline.homes.parts import parted
+from pipeline.homes.parts import split_room
 
 OBLONG = np.array([[0, 0], [6, 0], [6, 4], [0, 4.0]])
 ANGLED = np.array([[0, 0], [7, 0], [7, 3], [4, 3], [4, 5], [0, 5.0]])
@@ -19,7 +19,7 @@ def turned(polygon, yaw):
 
 @pytest.mark.parametrize("polygon", [OBLONG, ANGLED, turned(OBLONG, 0.4)])
 def test_parts_cover_the_room_by_their_shares(polygon):
-    found = parted(RoomContext("", polygon), STUDIO)
+    found = split_room(RoomContext("", polygon), STUDIO)
     assert [part.layout_type for part in found] == [kind for kind, _ in STUDIO]
     shapes = [shapely.Polygon(part.polygon) for part in found]
     whole = shapely.Polygon(polygon)
@@ -33,7 +33,7 @@ def test_parts_cover_the_room_by_their_shares(polygon):
 def test_openings_go_to_the_part_that_they_open_and_parts_are_open_to_each_other():
     door = RoomOpening("door", np.array([[0, 1], [0, 1.9]]))
     window = RoomOpening("window", np.array([[6, 1], [6, 3.0]]), 0.9)
-    living, sleeping = parted(RoomContext("", OBLONG, (door, window)), STUDIO[:2])
+    living, sleeping = split_room(RoomContext("", OBLONG, (door, window)), STUDIO[:2])
     assert [o.kind for o in living.openings] == ["door", "open"]  # nobody sleeps at the door
     assert [o.kind for o in sleeping.openings] == ["window", "open"]
     assert np.array_equal(living.openings[-1].segment, sleeping.openings[-1].segment)
@@ -41,6 +41,6 @@ def test_openings_go_to_the_part_that_they_open_and_parts_are_open_to_each_other
 
 
 def test_a_room_of_one_use_is_its_only_part():
-    (part,) = parted(RoomContext("", OBLONG), STUDIO[:1])
+    (part,) = split_room(RoomContext("", OBLONG), STUDIO[:1])
     assert part.layout_type == "living_room"
     assert np.array_equal(part.polygon, OBLONG)

@@ -15,7 +15,7 @@ import papers
 
 from pipeline.execution import pin_instructions
 from pipeline.execution.machine import PINNED
-from pipeline.homes.reproduction import chosen, differing, made_with
+from pipeline.homes.reproduction import differing, made_with, spread_indices
 
 ROOT = Path(__file__).parents[2]
 
@@ -43,8 +43,8 @@ def test_what_differs_is_named_with_its_size(tmp_path):
 
 
 def test_the_homes_are_spread_over_the_dataset():
-    assert chosen(papers.HEADER, 4) == [0, 3, 6, 9]
-    assert chosen(papers.HEADER, 100) == list(range(10))
+    assert spread_indices(papers.HEADER, 4) == [0, 3, 6, 9]
+    assert spread_indices(papers.HEADER, 100) == list(range(10))
 
 
 def test_other_versions_are_another_dataset():

@@ -7,7 +7,7 @@ import torch
 from pipeline import seeds
 from pipeline.errors import ContentError
 from pipeline.latents.settings import EncodeSettings
-from pipeline.latents.training import encode, seeded, train
+from pipeline.latents.training import encode, init_vae, train
 from pipeline.latents.vae import chamfer, kl_to_standard_normal
 from pipeline.latents.weights import load_vae, save_vae
 
@@ -50,14 +50,14 @@ def test_kl_is_zero_for_the_prior_alone():
 
 
 def test_the_order_of_points_does_not_matter():
-    net, cloud = seeded(0, SMALL), clouds(2)
+    net, cloud = init_vae(0, SMALL), clouds(2)
     order = torch.randperm(128, generator=torch.Generator().manual_seed(0))
     torch.testing.assert_close(encode(net, cloud, CPU), encode(net, cloud[:, order], CPU), atol=1e-5, rtol=1e-4)
 
 
 def test_it_learns_and_is_reproducible():
     torch.set_num_threads(1)
-    nets = [seeded(0, SMALL) for _ in range(2)]
+    nets = [init_vae(0, SMALL) for _ in range(2)]
     runs = [list(train(0, net, clouds(), SMALL, CPU)) for net in nets]
     assert runs[0] == runs[1]
     assert np.mean([s.chamfer for s in runs[0][-10:]]) < 0.9 * runs[0][0].chamfer
@@ -65,12 +65,12 @@ def test_it_learns_and_is_reproducible():
 
 
 def test_the_latent_of_an_asset_does_not_depend_on_the_others():
-    net, cloud = seeded(0, SMALL), clouds(20)
+    net, cloud = init_vae(0, SMALL), clouds(20)
     torch.testing.assert_close(encode(net, cloud, CPU)[17:18], encode(net, cloud[17:18], CPU), atol=1e-6, rtol=1e-5)
 
 
 def test_weights_come_back_with_their_settings(tmp_path):
-    net = seeded(3, SMALL)
+    net = init_vae(3, SMALL)
     save_vae(tmp_path / "vae.safetensors", net, SMALL)
     again, settings = load_vae(tmp_path / "vae.safetensors")
     assert settings == SMALL

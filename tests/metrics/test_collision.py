@@ -32,7 +32,7 @@ def test_nothing_hangs_on_where_the_room_lies(seed, angle, dx, dy):
     assert np.array_equal(collision.bbox_hits(here), collision.bbox_hits(there))
     assert np.array_equal(collision.prism_hits(here, LIBRARY), collision.prism_hits(there, LIBRARY))
     for kind in ("heuristic", "joints"):
-        assert articulation.obstructed(here, kind, SWEEPS) == articulation.obstructed(there, kind, SWEEPS)
+        assert articulation.are_obstructed(here, kind, SWEEPS) == articulation.are_obstructed(there, kind, SWEEPS)
 
 
 @settings(max_examples=25, deadline=None)
@@ -70,13 +70,13 @@ def test_touching_boxes_do_not_collide():
 def test_a_blocked_drawer(gap, heuristic, joints):
     # The heuristic adds a third of the depth (17 cm), the drawer comes out by 40 cm and its handle by 3 more.
     rows = blocked_chest(gap)
-    assert articulation.obstructed(rows, "heuristic") == [heuristic]
-    assert articulation.obstructed(rows, "joints", SWEEPS) == [joints]
+    assert articulation.are_obstructed(rows, "heuristic") == [heuristic]
+    assert articulation.are_obstructed(rows, "joints", SWEEPS) == [joints]
 
 
 def test_extended_boxes_hold_the_sweep():
     rows = [object_row("cupboard", 1.0, 1.0, 0.7), object_row("bed", 3, 3)]
-    position, yaw, size = articulation.extended(rows, "joints", SWEEPS)
+    position, yaw, size = articulation.extended_boxes(rows, "joints", SWEEPS)
     assert size[0, 1] == pytest.approx(0.5 + 0.6, abs=0.01)
     assert size[1].tolist() == rows[1]["size"]
     # The box grew ahead of the front, so its centre moved there.
@@ -97,8 +97,8 @@ def test_acoll_is_a_mean_of_rooms():
 def test_two_extended_boxes_meet_only_in_the_papers_metric():
     # Two chests face each other at 60 cm: each opens, both at once do not (b' against b', paper eq. acoll_metric).
     rows = [object_row("chest", 2.0, 2.0), object_row("chest", 2.0, 2.0 - 0.5 - 0.6, math.pi, number=1)]
-    assert articulation.obstructed(rows, "joints", SWEEPS) == [True, True]
-    assert articulation.obstructed(rows, "joints", SWEEPS, both=False) == [False, False]
+    assert articulation.are_obstructed(rows, "joints", SWEEPS) == [True, True]
+    assert articulation.are_obstructed(rows, "joints", SWEEPS, both=False) == [False, False]
 
 
 def test_swept_counts_objects_joints_and_doors():

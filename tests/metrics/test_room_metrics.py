@@ -5,11 +5,11 @@ import pytest
 
 from pipeline.metrics import novelty, relations
 from pipeline.metrics.layout_features import features
-from pipeline.metrics.perturbations import HARMS, jittered, spoilt, swapped, turned
+from pipeline.metrics.perturbations import HARMS, jitter, permute_yaws, spoilt, swap_places
 from pipeline.metrics.rules import RULES, backs
 from pipeline.metrics.two_samples import forest_accuracy, frechet, kernel_distance, linear_accuracy
 from pipeline.relations import learning
-from pipeline.relations.arrangement import arranged
+from pipeline.relations.arrangement import make_arrangement
 from tests.relations.making import bedrooms
 
 SQUARE = np.array([[0.0, 0], [5, 0], [5, 5], [0, 5]])
@@ -17,7 +17,7 @@ CHAIR, TABLE, SOFA, UNIT = (0.5, 0.5, 0.9), (1.4, 0.8, 0.75), (2.0, 0.9, 0.8), (
 
 
 def room(*things, kind="living_dining_room"):
-    return arranged("room", kind, SQUARE, [(c, [x, y, 0.0], yaw, size) for c, x, y, yaw, size in things])
+    return make_arrangement("room", kind, SQUARE, [(c, [x, y, 0.0], yaw, size) for c, x, y, yaw, size in things])
 
 
 def verdicts(name, *things, **said):
@@ -87,7 +87,7 @@ def samples():
 def test_learnt_relations_are_rates_and_harm_breaks_them(samples):
     real, other, known = samples
     rng = np.random.default_rng(2)
-    found = relations.compare(rng, {"real": real, "other": other, "jittered": [jittered(rng, r) for r in other]}, known)
+    found = relations.compare(rng, {"real": real, "other": other, "jittered": [jitter(rng, r) for r in other]}, known)
     learnt = (
         found["learnt"]["double_bed at nightstand"]
         if "double_bed at nightstand" in found["learnt"]
@@ -115,11 +115,11 @@ def test_the_forest_sees_every_harm_and_nothing_where_there_is_none(samples, har
 def test_harm_keeps_what_it_does_not_spoil():
     rng = np.random.default_rng(0)
     before = bedrooms(rng, 1)[0]
-    moved = jittered(rng, before)
+    moved = jitter(rng, before)
     assert np.allclose(np.linalg.norm((moved.position - before.position)[:, :2], axis=1), 0.2)
-    assert sorted(turned(rng, before).yaw) == pytest.approx(sorted(before.yaw))
-    assert sorted(map(tuple, swapped(rng, before).position[:, :2])) == sorted(map(tuple, before.position[:, :2]))
-    empty = arranged("empty", "bedroom", SQUARE, [])
+    assert sorted(permute_yaws(rng, before).yaw) == pytest.approx(sorted(before.yaw))
+    assert sorted(map(tuple, swap_places(rng, before).position[:, :2])) == sorted(map(tuple, before.position[:, :2]))
+    empty = make_arrangement("empty", "bedroom", SQUARE, [])
     assert spoilt(rng, empty).categories == ()
     assert features([empty]).shape == features([before]).shape
 
@@ -143,11 +143,11 @@ def test_copies_are_found_whatever_way_they_are_turned(samples):
     assert found["copies"] == 0
     copies = novelty.novelty(real[:20], other[:20], [*real[10:30], *other[20:]])
     assert copies["copies"] == 10
-    mirrored = arranged(
+    mirrored = make_arrangement(
         "m",
         "bedroom",
         real[0].polygon * [-1, 1],
         [(c, p * [-1, 1, 1], -y, s) for c, p, y, s in zip(real[0].categories, real[0].position, real[0].yaw, real[0].size, strict=True)],
     )
     assert novelty.distance(mirrored, real[0]) == pytest.approx(0, abs=1e-9)
-    assert novelty.distance(real[0], arranged("e", "bedroom", SQUARE, [])) == 1
+    assert novelty.distance(real[0], make_arrangement("e", "bedroom", SQUARE, [])) == 1

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from pipeline.relations.arrangement import arranged
+from pipeline.relations.arrangement import make_arrangement
 
 SIZES = {"double_bed": (1.8, 2.1, 0.5), "nightstand": (0.45, 0.4, 0.5), "plant": (0.4, 0.4, 1.0), "tv_stand": (1.6, 0.4, 0.5)}
 
@@ -26,7 +26,7 @@ def bedroom(rng, *, turned=0.0):
     c, s = np.cos(turned), np.sin(turned)
     matrix = np.array([[c, s], [-s, c]])
     moved = [(k, [*(np.array(p[:2]) @ matrix), p[2]], y + turned, z) for k, p, y, z in things]
-    return arranged("room", "bedroom", polygon @ matrix, moved)
+    return make_arrangement("room", "bedroom", polygon @ matrix, moved)
 
 
 def bedrooms(rng, count):

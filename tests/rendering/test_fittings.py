@@ -6,9 +6,9 @@ import pytest
 from pipeline.entities.plan import Opening, Plan, Room, Swing
 from pipeline.geometry.kinematics import joint_motion
 from pipeline.geometry.walls import shell
-from pipeline.rendering.boxes import box, joined, solid_link, triangles
+from pipeline.rendering.boxes import box, join_meshes, solid_link, triangles
 from pipeline.rendering.fittings import door, window
-from pipeline.rendering.pose import asset_triangles, opened, placement_transform
+from pipeline.rendering.pose import asset_triangles, open_joint_values, placement_transform
 
 A = Room("a", "bedroom", np.array([[0, 0], [4, 0], [4, 3], [0, 3]], float))
 B = Room("b", "hallway", np.array([[4.12, 0], [6, 0], [6, 3], [4.12, 3]], float))
@@ -28,7 +28,7 @@ def volume(mesh):
 def test_boxes_face_outwards():
     mesh = box("b", (-1, 0, 2), (1, 3, 2.5))
     assert volume(mesh) == pytest.approx(3.0, rel=1e-6)
-    assert volume(joined("two", (mesh, box("c", (5, 5, 5), (6, 6, 6))))) == pytest.approx(4.0, rel=1e-6)
+    assert volume(join_meshes("two", (mesh, box("c", (5, 5, 5), (6, 6, 6))))) == pytest.approx(4.0, rel=1e-6)
 
 
 def test_inertia_of_a_split_box_is_that_of_the_whole():
@@ -85,7 +85,7 @@ def test_windows_fill_their_hole():
 def test_posed_triangles_move_with_their_joint():
     asset, _, _ = door(leaf("b", 0), entrance=False)
     rest, materials = asset_triangles(asset)
-    moved, _ = asset_triangles(asset, opened(asset, 1.0))
+    moved, _ = asset_triangles(asset, open_joint_values(asset, 1.0))
     still = sum(len(m.faces) for m in asset.links[0].visuals)
     assert len(rest) == len(materials) == len(moved)
     assert np.allclose(rest[:still], moved[:still])

@@ -3,7 +3,7 @@ import pytest
 
 from pipeline import seeds
 from pipeline.retrieval.box_merging import merged_boxes, volume
-from pipeline.retrieval.wall_alignment import anchored
+from pipeline.retrieval.wall_alignment import keep_at_walls
 
 
 @pytest.mark.parametrize("most", [1, 2, 4])
@@ -36,17 +36,17 @@ ASKED, SMALLER = np.array([1.0, 0.6, 0.8]), np.array([0.8, 0.5, 0.8])
 
 def test_a_back_at_the_wall_stays_at_the_wall():
     position = np.array([2.0, 2.7, 0.0])  # back flush with the wall y = 3
-    np.testing.assert_allclose(anchored(position, 0.0, ASKED, SMALLER, ROOM), [2.0, 2.75, 0.0])
+    np.testing.assert_allclose(keep_at_walls(position, 0.0, ASKED, SMALLER, ROOM), [2.0, 2.75, 0.0])
 
 
 def test_a_corner_keeps_both_sides():
     position = np.array([0.5, 2.7, 0.0])
-    np.testing.assert_allclose(anchored(position, 0.0, ASKED, SMALLER, ROOM), [0.4, 2.75, 0.0])
+    np.testing.assert_allclose(keep_at_walls(position, 0.0, ASKED, SMALLER, ROOM), [0.4, 2.75, 0.0])
 
 
 def test_in_the_middle_nothing_moves():
     position = np.array([2.0, 1.5, 0.3])
-    np.testing.assert_allclose(anchored(position, 0.4, ASKED, SMALLER, ROOM), position)
+    np.testing.assert_allclose(keep_at_walls(position, 0.4, ASKED, SMALLER, ROOM), position)
 
 
 @pytest.mark.parametrize("turn", [0.5, 1.5707963, 3.0])
@@ -54,6 +54,6 @@ def test_a_turned_room_turns_the_answer(turn):
     c, s = np.cos(turn), np.sin(turn)
     rotation = np.array([[c, -s], [s, c]])
     position = np.array([0.5, 2.7, 0.0])
-    plain = anchored(position, 0.0, ASKED, SMALLER, ROOM)
-    turned = anchored(np.array([*(rotation @ position[:2]), 0.0]), turn, ASKED, SMALLER, ROOM @ rotation.T)
+    plain = keep_at_walls(position, 0.0, ASKED, SMALLER, ROOM)
+    turned = keep_at_walls(np.array([*(rotation @ position[:2]), 0.0]), turn, ASKED, SMALLER, ROOM @ rotation.T)
     np.testing.assert_allclose(turned[:2], rotation @ plain[:2], atol=1e-9)

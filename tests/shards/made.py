@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from pipeline.shards import EMPTY, TABLES, Header, add_part, commit_shard, committed, gather, open_or_create, scene_id
+from pipeline.shards import EMPTY, TABLES, Header, add_part, commit_shard, gather, is_committed, open_or_create, scene_id
 from schemas.assets import ASSETS
 
 HEADER = Header(seed=5, count=10, shard_size=4, licence="CC0-1.0", digests={"params": "p" * 64, "weights": "w" * 64})
@@ -112,7 +112,7 @@ def fill(folder, header=HEADER, stop=None, numbers=None, without=(), source=None
     with opened(folder, header, source, **how) as dataset:
         missing = [n for n in dataset.missing() if numbers is None or n in numbers]
         for number in missing:
-            while not committed(dataset, number):
+            while not is_committed(dataset, number):
                 for index in dataset.todo(number):
                     if dataset.take(number, index):
                         while index == stop:

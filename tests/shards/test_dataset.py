@@ -10,7 +10,7 @@ import made
 import pytest
 
 from pipeline.errors import ContentError, UsageError
-from pipeline.shards import Header, ShardContent, add_part, commit_shard, committed, read_header
+from pipeline.shards import Header, ShardContent, add_part, commit_shard, is_committed, read_header
 from pipeline.shards import dataset as dataset_module
 from sfgen.check import check
 from sfgen.place import DatasetError
@@ -221,7 +221,7 @@ def test_a_committed_shard_is_never_rewritten(folder):
     made.fill(folder)
     before = {p: p.stat().st_ino for p in folder.rglob("*shard-00000*")}
     with made.opened(folder) as dataset:
-        assert committed(dataset, 0)
+        assert is_committed(dataset, 0)
         assert commit_shard(dataset, 0)
     assert {p: p.stat().st_ino for p in before} == before
 

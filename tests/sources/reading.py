@@ -4,7 +4,7 @@ import dataclasses
 from pathlib import Path
 from types import SimpleNamespace
 
-from pipeline.sources.house_rows import HouseRows, numbered
+from pipeline.sources.house_rows import HouseRows, number_scenes
 from pipeline.sources.library_rows import LibraryRows
 from pipeline.sources.registry import SOURCES
 from pipeline.sources.settings import FrontFilters, ModelLimits, PreprocessSettings
@@ -42,7 +42,7 @@ def read(root, *, front="front", partnet="partnet", filters=None, limits=None):
     for source, listing, reading in used:
         for made in source.models(listing, reading):
             library.add(made)
-    for part in numbered(h for source, listing, reading in used if reading.houses for h in source.houses(listing, reading, library)):
+    for part in number_scenes(h for source, listing, reading in used if reading.houses for h in source.houses(listing, reading, library)):
         for name in ("scenes", "rooms", "openings", "objects", "rejects"):
             getattr(houses, name).extend(getattr(part, name))
     library.assets += add_mirrored(root / "assets", library.assets, (o["asset_id"] for o in houses.objects))

@@ -95,7 +95,7 @@ def root(tmp_path, monkeypatch):
 
 
 def test_it_is_recognised_listed_and_read(root):
-    (listing,) = registry.recognised(root / "sketches")
+    (listing,) = registry.recognise_sources(root / "sketches")
     assert str(listing) == f"{root / 'sketches'}: 4 rooms"
     assert inventory.write(root / inventory.FOLDER / "sketches.csv", inventory.scan(listing)) == 4
     preprocess.main(root)

@@ -7,7 +7,7 @@ import signal
 import pytest
 
 from pipeline.sources.batch import Batch, each
-from pipeline.sources.budget import MIB, Budget, OutOfTimeError, held
+from pipeline.sources.budget import MIB, Budget, OutOfTimeError, enforce
 from pipeline.sources.registry import SOURCES
 from pipeline.sources.settings import PreprocessSettings
 from pipeline.sources.source import Reading
@@ -73,7 +73,7 @@ def test_nothing_to_read():
 
 def test_limits_are_taken_back():
     before = [resource.getrlimit(kind) for kind in LIMITS], signal.getsignal(signal.SIGPROF)
-    with pytest.raises(OutOfTimeError), held(Budget(seconds=0.05, mebibytes=512)):
+    with pytest.raises(OutOfTimeError), enforce(Budget(seconds=0.05, mebibytes=512)):
         step(0, "spin")
     assert ([resource.getrlimit(kind) for kind in LIMITS], signal.getsignal(signal.SIGPROF)) == before
 

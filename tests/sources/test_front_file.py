@@ -6,7 +6,7 @@ import pytest
 from pipeline import taxonomy
 from pipeline.sources.reasons import SourceError
 from pipeline.sources.threed_front.furniture import category_of
-from pipeline.sources.threed_front.house_file import Furniture, declared_box, deferred, parse_house
+from pipeline.sources.threed_front.house_file import Furniture, declared_box, extract_arrays, parse_house
 from tests.sources import making
 from tests.sources.making import BED
 from tests.sources.reading import read
@@ -120,7 +120,7 @@ def test_deferred_arrays_are_the_arrays():
     tree["mesh"][1] |= {"xyz": [], "faces": []}
     plain = parse_house(json.loads(json.dumps(tree)), "house-a")
     for text in (json.dumps(tree), json.dumps(tree, indent=3), json.dumps(tree, separators=(",", ":"))):
-        short, arrays = deferred(text.encode())
+        short, arrays = extract_arrays(text.encode())
         house = parse_house(json.loads(short), "house-a", arrays)
         assert house.meshes.keys() == plain.meshes.keys()
         for uid, mesh in plain.meshes.items():

@@ -3,7 +3,7 @@ import pytest
 from shapely.geometry import box
 
 from pipeline.sources.threed_front.opening_evidence import MESHES, MIN_WIDTH, from_furniture, from_mesh
-from pipeline.sources.threed_front.reveals import covered, jambs, merge
+from pipeline.sources.threed_front.reveals import is_at_hole, jambs, merge
 from pipeline.sources.threed_front.wall_openings import Outline, resolve, touching
 from tests.sources import making
 from tests.sources.making import floor, slab
@@ -121,7 +121,7 @@ def test_jambs_by_themselves_make_a_door():
     assert door.depth == pytest.approx(0.12)
     whole = reveal("door", (4, 0, 1), (4.12, 2.1, 1.9))
     assert jambs([left, right], [whole])[0] == []
-    assert covered(left.centre, [whole])
+    assert is_at_hole(left.centre, [whole])
     assert jambs([left], []) == ([], [left])
     low = reveal("door", (4, 0, 1.9), (4.12, 1.2, 1.901))
     assert jambs([left, low], [])[0] == []

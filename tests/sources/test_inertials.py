@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from pipeline.entities.files import load_asset
-from pipeline.sources.meshes.inertials import Inertial, inertia_flaw, joined, mass_flaw
+from pipeline.sources.meshes.inertials import Inertial, combine_inertials, inertia_flaw, mass_flaw
 from tests.sources import test_plain_urdf as plain_urdf
 from tests.sources.reading import read
 
@@ -25,7 +25,7 @@ def test_pieces_of_a_box_are_the_box(cut):
     whole = box(10, (2, 1, 1))
     left = box(10 * cut, (2 * cut, 1, 1), (cut - 1, 0, 0))
     right = box(10 - 10 * cut, (2 - 2 * cut, 1, 1), (cut, 0, 0))
-    made = joined([left, right])
+    made = combine_inertials([left, right])
     assert made.mass == pytest.approx(10)
     assert np.allclose(made.centre, 0)
     assert np.allclose(made.inertia, whole.inertia)
@@ -34,7 +34,7 @@ def test_pieces_of_a_box_are_the_box(cut):
 def test_joining_and_moving_commute():
     pieces = [box(3, (1, 2, 3), (1, 0, 0)), box(5, (2, 1, 1), (0, 2, 1))]
     T = turned(0.7)
-    a, b = joined(pieces).moved(T), joined([p.moved(T) for p in pieces])
+    a, b = combine_inertials(pieces).moved(T), combine_inertials([p.moved(T) for p in pieces])
     assert np.allclose(a.centre, b.centre)
     assert np.allclose(a.inertia, b.inertia)
 

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from pipeline.sources.meshes.colliders import link, solids
 from pipeline.sources.meshes.mesh_solids import hull, signed_volume
-from pipeline.sources.meshes.near_boxes import NEAR, boxed
+from pipeline.sources.meshes.near_boxes import NEAR, simplify_to_box
 from pipeline.sources.settings import ModelLimits
 from tests.sources import mobility
 
@@ -29,7 +29,7 @@ def test_a_rounded_board_is_a_box_that_holds_it_and_stands_out_by_less_than_the_
     vertices, _ = mobility.board(-size / 2, size / 2, int(rng.integers(2, 8)), rng.uniform(0.0005, 0.004))
     R = Rotation.random(rng=rng).as_matrix() if seed % 3 else np.eye(3)
     corners, faces, volume = hull(vertices @ R.T + rng.uniform(-1, 1, 3))
-    made, sides = boxed(corners, faces)
+    made, sides = simplify_to_box(corners, faces)
     assert (len(made), len(sides)) == (8, 12)
     assert signed_volume(made, sides) >= volume - 1e-12  # outwards, and no smaller
     assert trimesh.Trimesh(made, sides, process=False).is_watertight
@@ -47,7 +47,7 @@ def test_a_rounded_board_is_a_box_that_holds_it_and_stands_out_by_less_than_the_
 )  # fmt: skip
 def test_what_is_round_or_cut_off_stays_as_it_is(mesh):
     corners, faces, _ = hull(np.asarray(mesh.vertices, float))
-    made, sides = boxed(corners, faces)
+    made, sides = simplify_to_box(corners, faces)
     assert made is corners
     assert sides is faces
 

@@ -12,7 +12,7 @@ from pipeline.entities.files import load_asset
 from pipeline.geometry.kinematics import handle_point, link_transforms
 from pipeline.sources.articulated import metric_scale
 from pipeline.sources.articulated.category_signs import Signs
-from pipeline.sources.articulated.part_classes import cornered
+from pipeline.sources.articulated.part_classes import box_corners
 from pipeline.sources.articulated.partnet import read_shape
 from pipeline.sources.category_sizes import sizes
 from pipeline.sources.guarded import Folder
@@ -204,7 +204,7 @@ def test_part_boxes_are_read_back_as_the_corpus_wrote_them(tmp_path):
         assert len(parts) == len(entries) == len(shape.parts)
         for part, entry in zip(parts, entries, strict=True):
             X, Y, Z = np.array(entry["bbox"]).T
-            assert np.allclose(cornered(part.centre, part.axes, part.size), np.stack([-Y, X, Z], axis=1), atol=1e-6)
+            assert np.allclose(box_corners(part.centre, part.axes, part.size), np.stack([-Y, X, Z], axis=1), atol=1e-6)
             assert np.linalg.det(part.axes) == pytest.approx(1)
             points = shape.bodies[part.body].points()
             assert (part.centre >= points.min(axis=0) - 1e-3).all()

@@ -14,7 +14,7 @@ from pipeline.errors import ContentError
 from pipeline.sources.atiss.files import BOXES, STATS, read_room, write_stats
 from pipeline.sources.atiss.labels import KINDS, kind_of
 from pipeline.sources.atiss.reader import PeersTask, kinds_of, peers_houses, read_peers
-from pipeline.sources.atiss.writer import cached, floor_mesh, grouped, write_kind
+from pipeline.sources.atiss.writer import floor_mesh, rooms_with_objects, to_cached_room, write_kind
 from pipeline.sources.guarded import Folder
 from pipeline.sources.identity import split_of
 from pipeline.sources.reasons import SourceError
@@ -55,7 +55,7 @@ def bedroom(scene="a1-b2", name="MasterBedroom-7"):
 def written(tmp_path, rooms, kind="bedroom", *, filtered=False):
     rows, objects = [r for r, _ in rooms], [o for _, things in rooms for o in things]
     splits = {r["scene_id"]: split_of(r["source_id"].split("/")[0]) for r in rows}
-    return write_kind(tmp_path, grouped(rows, objects, splits), KINDS[kind], filtered=filtered)
+    return write_kind(tmp_path, rooms_with_objects(rows, objects, splits), KINDS[kind], filtered=filtered)
 
 
 def read_all(source, models=None):
@@ -121,7 +121,7 @@ def test_reading_what_was_written_and_writing_it_again_changes_nothing(tmp_path_
         assert -np.pi < o["yaw"] <= np.pi
         assert o["category"] == "double_bed"
     first = read_room(Folder.at(tmp_path), f"bedroom/a1-b2_MasterBedroom-7/{BOXES}")
-    again = cached(house.rooms[0], house.objects, KINDS["bedroom"], first.scene_id)
+    again = to_cached_room(house.rooms[0], house.objects, KINDS["bedroom"], first.scene_id)
     for name in FIELDS:
         assert np.array_equal(getattr(first, name), getattr(again, name)), name
     assert (first.uids, first.jids, first.scene_uid) == (again.uids, again.jids, again.scene_uid)

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from pipeline.sources.meshes.near_boxes import CORNERS
-from pipeline.sources.meshes.reach import reached
+from pipeline.sources.meshes.reach import make_reach_test
 
 SIDES = [
     ((0, 0, 0), (1, 1, 0.02)),
@@ -20,7 +20,7 @@ FRONT = ((0, 0, 0), (1, 0.02, 1))
 
 def comes(boxes, points, cell=0.01):
     hulls = [np.array(low) + CORNERS * (np.array(high) - np.array(low)) for low, high in boxes]
-    return reached(hulls, [ConvexHull(h).equations for h in hulls], cell)(np.array(points, float)).tolist()
+    return make_reach_test(hulls, [ConvexHull(h).equations for h in hulls], cell)(np.array(points, float)).tolist()
 
 
 def test_nothing_comes_into_a_cabinet_that_is_shut():

@@ -9,7 +9,7 @@ import pytest
 
 from pipeline.sources.atiss.labels import KINDS
 from pipeline.sources.atiss.reader import PeersTask, read_peers
-from pipeline.sources.atiss.writer import grouped, write_kind
+from pipeline.sources.atiss.writer import rooms_with_objects, write_kind
 from pipeline.sources.reasons import REASONS, SourceError, reject
 from pipeline.sources.settings import FrontFilters
 from pipeline.sources.threed_front import source
@@ -232,7 +232,7 @@ def peers(tmp, *, filtered):
     """The codes of `sfgen peers`, from a bedroom whose stand is a thing that the peers do not know."""
     front(tmp, entries=[making.info(BED), making.info(STAND, "Shoe Cabinet"), making.info(LAMP)])
     made = read(tmp)
-    rooms = grouped(made.rooms, made.objects, {s["scene_id"]: s["split"] for s in made.scenes})
+    rooms = rooms_with_objects(made.rooms, made.objects, {s["scene_id"]: s["split"] for s in made.scenes})
     rejects = write_kind(tmp / "out", rooms, KINDS["bedroom"], filtered=filtered).rejects
     return SimpleNamespace(rejects=rejects, reasons={r["reason"] for r in rejects})
 

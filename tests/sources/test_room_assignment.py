@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pipeline.sources.identity import split_of
-from pipeline.sources.threed_front.notches import CELLS, filled, shared
+from pipeline.sources.threed_front.notches import CELLS, occupancy_bits, overlap_share
 from pipeline.sources.threed_front.poses import Pose
 from tests.sources import making
 from tests.sources.making import BED, CHAIR, LAMP, STAND, TABLE, chair_record, child, floor
@@ -65,7 +65,7 @@ def test_shapes_are_what_models_fill():
             self.faces = np.array([t for a, b, c, d in sides for t in ((a, b, c), (a, c, d))])
 
     def mask(parts, size):
-        bits = np.frombuffer(filled(parts, np.array(size)), np.uint8)
+        bits = np.frombuffer(occupancy_bits(parts, np.array(size)), np.uint8)
         return np.unpackbits(bits, count=int(np.prod(CELLS))).reshape(CELLS).astype(bool)
 
     assert mask([Box((-0.5, -0.5, 0), (0.5, 0.5, 1))], (1, 1, 1)).all()
@@ -73,11 +73,11 @@ def test_shapes_are_what_models_fill():
     assert table[..., -1].all()
     assert not table[4:, 4:, : CELLS[2] - 1].any()
     both = [Box((-1, -0.5, 0), (1, 0, 0.8)), Box((0.4, 0, 0), (1, 0.5, 0.4))]
-    bits = filled(both, np.array((2.0, 1.0, 0.8)))
+    bits = occupancy_bits(both, np.array((2.0, 1.0, 0.8)))
     pose = Pose(np.array([1.0, 2.0, 0.0]), 0.3, np.array([2.0, 1.0, 0.8]), mirrored=False)
-    assert shared((pose, bits), (pose, bits)) == 1.0
+    assert overlap_share((pose, bits), (pose, bits)) == 1.0
     far = Pose(np.array([9.0, 2.0, 0.0]), 0.3, np.array([2.0, 1.0, 0.8]), mirrored=False)
-    assert shared((pose, bits), (far, b"")) == 0.0
+    assert overlap_share((pose, bits), (far, b"")) == 0.0
 
 
 def test_what_lies_in_another_room_is_there(tmp_path):

@@ -8,7 +8,7 @@ from pipeline.sources.densities import MINIMUM
 from pipeline.sources.meshes import colliders, merging
 from pipeline.sources.meshes.colliders import link, solids
 from pipeline.sources.meshes.cutting import cut
-from pipeline.sources.meshes.merging import merged
+from pipeline.sources.meshes.merging import merge_pieces
 from pipeline.sources.meshes.mesh_solids import MAX_HULL, components, convex, hull, mass_properties, parts, signed_volume
 from pipeline.sources.settings import ModelLimits
 from tests.sources import mobility
@@ -164,7 +164,7 @@ def test_merging_is_the_same_in_any_company():
     """Boards far away change nothing, though bounds are taken for many pairs at once."""
     boards = [p for k in range(4) for p in parts(*box((0.3, 0.4, 0.02), (0.3 * k, 0, 0)))]
     far = [p for k in range(3) for p in parts(*box((0.1, 0.1, 0.1), (0.2 * k, 0.9, 0)))]
-    assert len(merged(boards + far)) == 1 + 3
+    assert len(merge_pieces(boards + far)) == 1 + 3
 
 
 def drawer(w=0.5, d=0.45, h=0.15, t=0.012):
@@ -210,7 +210,7 @@ def test_merging_covers_all_and_fills_little(seed):
     grid = rng.integers(0, 4, (8, 3)) * 0.25
     boards = [box(rng.choice([0.02, 0.25, 0.5], 3), at) for at in grid]
     apart = [p for v, f in boards for p in parts(v, f)]
-    made = merged(apart)
+    made = merge_pieces(apart)
     assert len(made) <= len(apart)
     points = rng.uniform(-0.3, 1.1, (4000, 3))
     before, after = inside(points, apart), inside(points, made)
@@ -263,6 +263,6 @@ def test_a_bound_on_the_hulls_that_are_tried_where_everything_touches(monkeypatc
     hulls = merging._hull
     monkeypatch.setattr(merging, "_hull", lambda pieces: tried.append(len(pieces)) or hulls(pieces))
     monkeypatch.setattr(merging, "HULLS", 150)  # five for each of the thirty
-    made = merged(crowd + boards)
+    made = merge_pieces(crowd + boards)
     assert sum(count == 2 for count in tried) <= 2 * 5 * 30
     assert sum(p.hull.min(axis=0)[2] > 0.8 for p in made) == 1

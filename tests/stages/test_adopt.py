@@ -11,7 +11,7 @@ from pipeline.sources import inventory
 from pipeline.sources.articulated import source as articulated
 from pipeline.sources.atiss.files import BOXES, STATS, stats, write_stats
 from pipeline.sources.atiss.labels import KINDS
-from pipeline.sources.registry import recognised
+from pipeline.sources.registry import recognise_sources
 from stages import adopt, doctor, preprocess
 from tests.sources import making
 from tests.sources.test_recognition import front, partnet
@@ -130,8 +130,8 @@ def test_houses_of_3d_front_take_the_place_of_cached_rooms(root, tmp_path):
 
 def test_rooms_beside_3d_front_are_not_taken_for_it(tmp_path):
     both = cached(front(tmp_path / "both"))
-    assert [s.key for s in recognised(both)] == ["front"]
-    assert [s.key for s in recognised(both / "bedroom")] == ["peers"]
+    assert [s.key for s in recognise_sources(both)] == ["front"]
+    assert [s.key for s in recognise_sources(both / "bedroom")] == ["peers"]
 
 
 def test_rooms_of_unknown_classes_are_told(root, tmp_path):

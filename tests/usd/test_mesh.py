@@ -6,8 +6,8 @@ from collections import Counter
 
 import numpy as np
 
-from pipeline.rendering.boxes import box, joined
-from pipeline.usd.mesh import APART, parted, welded
+from pipeline.rendering.boxes import box, join_meshes
+from pipeline.usd.mesh import APART, split_nonmanifold, weld_vertices
 
 
 def edges(faces):
@@ -16,10 +16,10 @@ def edges(faces):
 
 
 def test_boxes_that_meet_in_an_edge_have_corners_of_their_own():
-    mesh = joined("boards", (box("a", (0, 0, 0), (1, 1, 1)), box("b", (1, 1, 0), (2, 2, 1))))
-    points, faces, _ = welded(mesh)
+    mesh = join_meshes("boards", (box("a", (0, 0, 0), (1, 1, 1)), box("b", (1, 1, 0), (2, 2, 1))))
+    points, faces, _ = weld_vertices(mesh)
     assert max(edges(faces).values()) == 4
-    rows, made = parted(points, faces)
+    rows, made = split_nonmanifold(points, faces)
     assert set(edges(made).values()) == {2}
     assert len(np.unique(rows, axis=0)) == len(rows) == 16
     assert np.abs(rows[made] - points[faces]).max() <= APART
@@ -27,14 +27,14 @@ def test_boxes_that_meet_in_an_edge_have_corners_of_their_own():
 
 def test_faces_that_run_along_an_edge_the_same_way_are_of_two_surfaces():
     points = np.array([(0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0)], np.float32)
-    rows, made = parted(points, np.array([(0, 1, 2), (0, 1, 3)], np.int32))
+    rows, made = split_nonmanifold(points, np.array([(0, 1, 2), (0, 1, 3)], np.int32))
     assert len(rows) == 6
     assert not set(made[0]) & set(made[1])
     assert np.abs(rows[made[0]] - points[[0, 1, 2]]).max() <= APART
 
 
 def test_what_is_whole_stays_as_it_is():
-    points, faces, _ = welded(box("a", (0, 0, 0), (1, 1, 1)))
-    rows, made = parted(points, faces)
+    points, faces, _ = weld_vertices(box("a", (0, 0, 0), (1, 1, 1)))
+    rows, made = split_nonmanifold(points, faces)
     assert rows is points
     assert made is faces

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pipeline.geometry.prerequisites import ordered
+from pipeline.geometry.prerequisites import with_prerequisites
 from pipeline.verify import verify_home
 from tests.geometry.furniture import LIBRARY, home, inner_drawer, placed
 from tests.judging import SETTINGS
@@ -15,7 +15,7 @@ def judged(*things, made):
 
 @pytest.fixture
 def cabinet(monkeypatch):
-    made = ordered(inner_drawer())
+    made = with_prerequisites(inner_drawer())
     monkeypatch.setitem(LIBRARY, made.asset_id, made)
     return made
 

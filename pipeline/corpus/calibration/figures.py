@@ -35,13 +35,13 @@ def calibration(houses: Sequence[HouseTally], models: Sequence[Model], centimetr
     groups: dict[str, Any] = {"houses": len(houses), "rooms": len(rooms), "frequencies": {}, "histograms": {}}
     groups["classes"] = {}
     for name, kind in reference.classes.items():
-        kept = filtered(rooms, kind)
+        kept = filter_rooms(rooms, kind)
         groups["classes"] |= _class_lines(name, kept, kind)
         groups["frequencies"][name] = frequencies(kept, kind)
         groups["histograms"][name] = {
             f"{a}-{b}": {"ours": x, "reference": y} for (a, b), x, y in zip(HISTOGRAM, *_histograms(kept, kind), strict=True)
         }
-    groups["rooms_by_house"] = _furnished(houses, reference)
+    groups["rooms_by_house"] = _rooms_by_house(houses, reference)
     groups["areas"] = _areas(rooms, reference)
     groups["shares"] = _shares(houses, rooms, reference)
     groups["relations"] = _relations(houses, reference)
@@ -50,7 +50,7 @@ def calibration(houses: Sequence[HouseTally], models: Sequence[Model], centimetr
     return groups
 
 
-def filtered(rooms: Iterable[RoomTally], kind: Classes) -> list[list[str]]:
+def filter_rooms(rooms: Iterable[RoomTally], kind: Classes) -> list[list[str]]:
     """Return the labels of each room that the peers' filters keep: three objects or more, not too large, nothing mirrored."""
     kept = []
     for room in rooms:
@@ -101,59 +101,59 @@ def _histogram_noise(kind: Classes, theirs: Sequence[float]) -> float:
     return float(np.percentile(0.5 * np.abs(draws - p).sum(axis=1), 97.5))
 
 
-def furnished(house: HouseTally, reference: Reference) -> int:
+def count_furnished(house: HouseTally, reference: Reference) -> int:
     """Return how many of a house's rooms hold two objects or more, those beyond 3D-FRONT left out."""
     return sum(len(r.categories) >= 2 and r.type not in reference.beyond for r in house.rooms)
 
 
-def _furnished(houses: Sequence[HouseTally], reference: Reference) -> dict[str, Line]:
+def _rooms_by_house(houses: Sequence[HouseTally], reference: Reference) -> dict[str, Line]:
     top = len(reference.furnished_rooms)
-    counted = Counter(min(furnished(house, reference), top) for house in houses)
+    counted = Counter(min(count_furnished(house, reference), top) for house in houses)
     whole, n = sum(reference.furnished_rooms), max(1, len(houses))
-    made = {}
+    lines = {}
     for k, count in enumerate(reference.furnished_rooms, 1):
         theirs = count / whole
         half = 1.96 * float(np.sqrt(theirs * (1 - theirs) / n)) + 0.5 / n
         name = f"{k}{'+' if k == top else ''} furnished rooms"
-        made[name] = line(counted[k] / n, theirs, max(0.0, theirs - half), theirs + half, n, "sampling of our houses")
-    return made
+        lines[name] = line(counted[k] / n, theirs, max(0.0, theirs - half), theirs + half, n, "sampling of our houses")
+    return lines
 
 
 def _areas(rooms: Sequence[RoomTally], reference: Reference) -> dict[str, Line]:
-    made = {}
+    lines = {}
     for name, (n, mean, least, most) in reference.areas.items():
         ours = [r.area for r in rooms if r.type == name.lower()]
         if ours:
             low, high = known.from_range(n, mean, least, most)
-            made[f"{name} [m2]"] = line(float(np.mean(ours)), mean, low, high, len(ours), f"{n} rooms of 12 scenes, from their range")
-    return made
+            lines[f"{name} [m2]"] = line(float(np.mean(ours)), mean, low, high, len(ours), f"{n} rooms of 12 scenes, from their range")
+    return lines
 
 
 def _shares(houses: Sequence[HouseTally], rooms: Sequence[RoomTally], reference: Reference) -> dict[str, Line]:
-    made = {name: _share(houses, name, *counts) for name, counts in reference.shares.items()}
+    lines = {name: _share(houses, name, *counts) for name, counts in reference.shares.items()}
     n, mean, least, most = reference.walkable
     ours = [r.walkable for r in rooms if r.walkable is not None and r.type not in reference.beyond]
     low, high = known.from_range(n, mean, least, most)
-    made["walkable"] = line(float(np.mean(ours)) if ours else 1.0, mean, low, high, len(ours), f"{n} rooms of 12 scenes, from their range")
-    return made
+    lines["walkable"] = line(float(np.mean(ours)) if ours else 1.0, mean, low, high, len(ours), f"{n} rooms of 12 scenes, from their range")
+    return lines
 
 
 def _share(houses: Sequence[HouseTally], name: str, count: int, of: int) -> Line:
-    found, cases = (sum(h.shares[name][k] for h in houses) for k in (0, 1))
+    hits, cases = (sum(h.shares[name][k] for h in houses) for k in (0, 1))
     low, high = known.bootstrap_share(count, of)
-    return line(found / max(1, cases), count / of, low, high, cases, "12 scenes, bootstrap")
+    return line(hits / max(1, cases), count / of, low, high, cases, "12 scenes, bootstrap")
 
 
 def _relations(houses: Sequence[HouseTally], reference: Reference) -> dict[str, Line]:
-    made = {}
+    lines = {}
     for name, values in reference.relations.items():
         ours = [v for h in houses for v in h.relations[name]]
         if ours:
             low, high = known.bootstrap(values)
-            made[f"{name} [m]"] = line(
+            lines[f"{name} [m]"] = line(
                 float(np.mean(ours)), float(np.mean(values)), low, high, len(ours), f"{len(values)} of 12 scenes, bootstrap"
             )
-    return made
+    return lines
 
 
 def _sizes(models: Iterable[Model]) -> dict[str, Line]:
@@ -161,7 +161,7 @@ def _sizes(models: Iterable[Model]) -> dict[str, Line]:
     by: dict[str, list[tuple[float, float, float]]] = {}
     for model in models:
         by.setdefault(model.category, []).append(model.size)
-    made = {}
+    lines = {}
     for category, statistics in sizes.load().items():
         if statistics.models < LEAST_MODELS or category not in by:
             continue
@@ -172,18 +172,18 @@ def _sizes(models: Iterable[Model]) -> dict[str, Line]:
                 ("spread", box[:, axis].std(), statistics.std[axis]),
             ):
                 bounds = ((1 - RELATIVE) * float(theirs), (1 + RELATIVE) * float(theirs))
-                made[f"{category}, {letter}, {word} [m]"] = line(float(ours), float(theirs), *bounds, len(box), "bar")
-    return made
+                lines[f"{category}, {letter}, {word} [m]"] = line(float(ours), float(theirs), *bounds, len(box), "bar")
+    return lines
 
 
 def _defects(houses: Sequence[HouseTally], reference: Reference, models: int, centimetres: int) -> dict[str, Line]:
-    made = {name: _share(houses, name, *counts) for name, counts in reference.defects.items() if name != "centimetres"}
+    lines = {name: _share(houses, name, *counts) for name, counts in reference.defects.items() if name != "centimetres"}
     count, of = reference.defects["centimetres"]
     total = max(1, models)
     # One model is the least that can be in centimetres: of few models it is more than the observed share.
     high = max(known.bootstrap_share(count, of)[1], 1.5 / total)
-    made["centimetres"] = line(centimetres / total, count / of, 0.0, high, total, "release, bootstrap; at least one model")
-    return made
+    lines["centimetres"] = line(centimetres / total, count / of, 0.0, high, total, "release, bootstrap; at least one model")
+    return lines
 
 
 def table(groups: Mapping[str, Any]) -> Iterable[tuple[str, str, Line]]:

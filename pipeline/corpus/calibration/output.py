@@ -11,10 +11,10 @@ from pipeline.corpus.calibration.figures import table
 from pipeline.manifest import write_bytes, write_json
 
 
-def write(root: Path, found: Mapping[str, Any]) -> None:
+def write(root: Path, calibration: Mapping[str, Any]) -> None:
     """Write a calibration table under `root` and say how much of it is met."""
-    write_json(root / "metrics" / "calibration.json", found)
-    rows = [f"{kind}: {c},{v['ours']},{v['reference']}" for kind, shares in found["frequencies"].items() for c, v in shares.items()]
+    write_json(root / "metrics" / "calibration.json", calibration)
+    rows = [f"{kind}: {c},{v['ours']},{v['reference']}" for kind, shares in calibration["frequencies"].items() for c, v in shares.items()]
     write_bytes(root / "plots" / "classes.csv", "\n".join(["class,ours,reference", *rows, ""]).encode())
-    held = [line["ok"] for _, _, line in table(found)]
-    sys.stdout.write(f"calibration: {sum(held)} of {len(held)} figures as in 3D-FRONT (metrics/calibration.json)\n")
+    verdicts = [line["ok"] for _, _, line in table(calibration)]
+    sys.stdout.write(f"calibration: {sum(verdicts)} of {len(verdicts)} figures as in 3D-FRONT (metrics/calibration.json)\n")

@@ -52,27 +52,27 @@ class HouseTally:
 
 def tally(house: House, scene: Json, reference: Reference) -> HouseTally:
     """Count a house and its scene file."""
-    found = HouseTally(relations={name: [] for name in reference.relations})
+    house_tally = HouseTally(relations={name: [] for name in reference.relations})
     outside, overlapping, oblique, objects, pairs = 0, 0, 0, 0, 0
     for number, room in enumerate(house.plan.rooms):
         items = [i for i in house.items if i.room == number and reference.counted(i.model.category)]
         polygon = Polygon(room.polygon)
         shapes = [Polygon(i.corners()) for i in items]
-        found.rooms.append(_room(room.type, polygon, items, shapes))
+        house_tally.rooms.append(_room(room.type, polygon, items, shapes))
         for item, shape in zip(items, shapes, strict=True):
             objects += 1
             outside += not polygon.covers(shape) and shape.intersection(polygon).area < 0.95 * shape.area
             oblique += abs(math.sin(2 * item.yaw)) > 0.035
         count, together = _overlaps(items, shapes)
         overlapping, pairs = overlapping + count, pairs + together
-        relate(items, found.relations)
-    found.shares = _defects(scene) | {
+        relate(items, house_tally.relations)
+    house_tally.shares = _defects(scene) | {
         "outside": (outside, objects),
         "overlapping": (overlapping, pairs),
         "oblique": (oblique, objects),
-        "rectangular": (sum(r.rectangular for r in found.rooms), len(found.rooms)),
+        "rectangular": (sum(r.rectangular for r in house_tally.rooms), len(house_tally.rooms)),
     }
-    return found
+    return house_tally
 
 
 def _room(room_type: str, polygon: Polygon, items: Sequence[Item], shapes: Sequence[Polygon]) -> RoomTally:
@@ -91,14 +91,14 @@ def _overlaps(items: Sequence[Item], shapes: Sequence[Polygon]) -> tuple[int, in
     """Return how many pairs of things on the floor overlap by more than 1 % of the smaller, and how many pairs there are."""
     floor = [k for k, i in enumerate(items) if i.position[2] < STANDING]
     boxes = [items[k].rect() for k in floor]
-    found = 0
+    overlaps = 0
     for n, a in enumerate(boxes):
         for m in range(n):
             b = boxes[m]
             if a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]:
                 one, other = shapes[floor[n]], shapes[floor[m]]
-                found += one.intersection(other).area > 0.01 * min(one.area, other.area)
-    return found, len(floor) * (len(floor) - 1) // 2
+                overlaps += one.intersection(other).area > 0.01 * min(one.area, other.area)
+    return overlaps, len(floor) * (len(floor) - 1) // 2
 
 
 def local(frame: Item, item: Item) -> tuple[float, float]:
@@ -108,7 +108,7 @@ def local(frame: Item, item: Item) -> tuple[float, float]:
     return c * dx + s * dy, s * dx - c * dy
 
 
-def relate(items: Sequence[Item], found: dict[str, list[float]]) -> None:
+def relate(items: Sequence[Item], lengths: dict[str, list[float]]) -> None:
     """Append the lengths of the relations that the pieces of one room stand in."""
     by: dict[str, list[Item]] = {}
     for item in items:
@@ -118,24 +118,24 @@ def relate(items: Sequence[Item], found: dict[str, list[float]]) -> None:
         for stand in by.get("nightstand", ()):
             if abs(math.remainder(stand.yaw - bed.yaw, 2 * math.pi)) < 0.1:
                 across, ahead = local(bed, stand)
-                found["nightstand beside double_bed, across"].append(abs(across))
-                found["nightstand beside double_bed, ahead"].append(ahead)
-        _opposite(bed, by.get("tv_stand", ()), found["tv_stand before double_bed, ahead"], found["tv_stand before double_bed, across"])
+                lengths["nightstand beside double_bed, across"].append(abs(across))
+                lengths["nightstand beside double_bed, ahead"].append(ahead)
+        _opposite(bed, by.get("tv_stand", ()), lengths["tv_stand before double_bed, ahead"], lengths["tv_stand before double_bed, across"])
     for sofa in sofas:
-        _opposite(sofa, by.get("tv_stand", ()), found["tv_stand before sofa, ahead"], [])
+        _opposite(sofa, by.get("tv_stand", ()), lengths["tv_stand before sofa, ahead"], [])
     for table in by.get("coffee_table", ()):
         places = [local(sofa, table) for sofa in sofas]
         in_front = [(ahead, abs(across)) for across, ahead in places if 0.3 < ahead < 2.5 and abs(across) < 1.0]
         if in_front:
-            found["coffee_table before sofa, ahead"].append(min(in_front)[0])
-            found["coffee_table before sofa, across"].append(min(in_front)[1])
+            lengths["coffee_table before sofa, ahead"].append(min(in_front)[0])
+            lengths["coffee_table before sofa, across"].append(min(in_front)[1])
     for table in by.get("dining_table", ()):
         for name, categories, most in (
             ("dining_chair from the table's centre", DINING, NEAR_TABLE),
             ("pendant_lamp from the table's centre", {"pendant_lamp"}, ABOVE_TABLE),
         ):
             distances = [math.dist(i.position[:2], table.position[:2]) for i in items if i.model.category in categories]
-            found[name] += [d for d in distances if d < most]
+            lengths[name] += [d for d in distances if d < most]
 
 
 def _opposite(seat: Item, stands: Sequence[Item], ahead: list[float], across: list[float]) -> None:

@@ -98,7 +98,7 @@ def oven(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
 def _burners(w: float, d: float, z: float) -> tuple[Piece, ...]:
     """Return four burners under grates of bars, on a hob at height `z` [m]."""
     iron = Finish("cast_iron", (0.025, 0.025, 0.027), 0.6, density=3000)
-    made: tuple[Piece, ...] = ()
+    parts: tuple[Piece, ...] = ()
     for k, (sx, sy, r) in enumerate(((-1, -1, 0.035), (1, -1, 0.045), (-1, 1, 0.045), (1, 1, 0.028))):
         x, y = sx * 0.22 * w, 0.03 + sy * 0.19 * d
         cap = revolve([(1.2 * r, z), (1.2 * r, z + 0.006), (r, z + 0.008), (r, z + 0.014)], 14, (x, y))
@@ -109,8 +109,8 @@ def _burners(w: float, d: float, z: float) -> tuple[Piece, ...]:
         ]
         bars.append(box((x - 0.005, x + 0.005), (y + 0.005, y + half), (z + 0.018, z + 0.030)))
         feet = [box((x + s * half - 0.004, x + s * half + 0.004), (y - 0.005, y + 0.005), (z, z + 0.018)) for s in (-0.97, 0.97)]
-        made += pieces("burners", cap, iron, group=f"burner_{k}") + pieces("grates", bars + feet, iron, group=f"grate_{k}")
-    return made
+        parts += pieces("burners", cap, iron, group=f"burner_{k}") + pieces("grates", bars + feet, iron, group=f"grate_{k}")
+    return parts
 
 
 def dishwasher(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -144,7 +144,7 @@ def _rack(name: str, x: tuple[float, float], y: tuple[float, float], z: float, h
     """Return a basket of wire that is drawn out through the open door."""
     wires = [box((x[0], x[1]), (a, a + 0.008), (z, z + 0.008)) for a in np.linspace(y[0], y[1] - 0.008, 8).tolist()]
     wires += [box((a, a + 0.008), (y[0] + 0.009, y[1] - 0.009), (z + 0.008, z + 0.014)) for a in (x[0], (x[0] + x[1]) / 2, x[1] - 0.008)]
-    made = pieces("rack", wires, STEEL, group="floor")
+    parts = pieces("rack", wires, STEEL, group="floor")
     rims = (
         ("left", (x[0], x[0] + 0.008), y),
         ("right", (x[1] - 0.008, x[1]), y),
@@ -153,9 +153,9 @@ def _rack(name: str, x: tuple[float, float], y: tuple[float, float], z: float, h
     )
     for side, span, depth in rims:
         rails = [box(span, depth, (at, at + 0.007)) for at in (z + 0.05, z + high - 0.007)]
-        made += pieces(f"rim_{side}", rails, STEEL, group=f"rim_{side}")
+        parts += pieces(f"rim_{side}", rails, STEEL, group=f"rim_{side}")
     at = ((x[0] + x[1]) / 2, y[0], z + high)
-    return Mover(name, made, "prismatic", (0, -1, 0), at, 0.85 * (y[1] - y[0]), "slider_drawer", "rack", after=(door,))
+    return Mover(name, parts, "prismatic", (0, -1, 0), at, 0.85 * (y[1] - y[0]), "slider_drawer", "rack", after=(door,))
 
 
 def microwave(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -257,11 +257,11 @@ def _top_loader(size: Size, outside: Finish) -> Shape:
     base += pieces("drum_end", slab(circle(r, 24, middle), (0.185, 0.2)), STEEL)
     z = deck + 0.022
     cover_y = (y[0] + 0.02, back - 0.042)
-    made = pieces("lid", box((x[0] + 0.02, x[1] - 0.02), cover_y, (z, z + 0.018), 0.004), outside, group="lid")
+    lid_parts = pieces("lid", box((x[0] + 0.02, x[1] - 0.02), cover_y, (z, z + 0.018), 0.004), outside, group="lid")
     pane = box((hole_x[0], hole_x[1]), (hole_y[0], hole_y[1]), (z + 0.018, z + 0.0205), 0.001)
-    made += pieces("lid_glass", pane, DARK_GLASS, group="lid")
-    made += pieces("lid_grip", box((-0.06, 0.06), (y[0], cover_y[0]), (z + 0.004, z + 0.014), 0.002), PLASTIC, "line_fixed_handle")
-    movers = [lid("lid", made, (0.0, cover_y[1], z), math.radians(85))]
+    lid_parts += pieces("lid_glass", pane, DARK_GLASS, group="lid")
+    lid_parts += pieces("lid_grip", box((-0.06, 0.06), (y[0], cover_y[0]), (z + 0.004, z + 0.014), 0.002), PLASTIC, "line_fixed_handle")
+    movers = [lid("lid", lid_parts, (0.0, cover_y[1], z), math.radians(85))]
     face, at = back + 0.004, 0.5 * (z + 0.03 + h)
     movers += [knob(f"knob_{k}", (float(f) * w, face, at), 0.022, STEEL, depth=0.02) for k, f in enumerate((-0.36, -0.24))]
     movers += [
@@ -273,18 +273,18 @@ def _top_loader(size: Size, outside: Finish) -> Shape:
 
 def _cabinet(x: tuple[float, float], y: tuple[float, float], h: float, t: float, finish: Finish) -> tuple[Piece, ...]:
     """Return the housing without its front: sides, top, bottom, back and four feet."""
-    made = pieces("top", box(x, y, (h - 0.03, h), 0.004), finish)
-    made += pieces(
+    parts = pieces("top", box(x, y, (h - 0.03, h), 0.004), finish)
+    parts += pieces(
         "sides",
         [box((x[0], x[0] + t), (y[0] + t, y[1]), (0.012, h - 0.03)), box((x[1] - t, x[1]), (y[0] + t, y[1]), (0.012, h - 0.03))],
         finish,
     )
-    made += pieces("bottom", box((x[0] + t, x[1] - t), (y[0] + 0.03, y[1]), (0.012, 0.03)), finish)
-    made += pieces("back", box((x[0] + t, x[1] - t), (y[1] - 0.01, y[1]), (0.03, h - 0.03)), finish)
+    parts += pieces("bottom", box((x[0] + t, x[1] - t), (y[0] + 0.03, y[1]), (0.012, 0.03)), finish)
+    parts += pieces("back", box((x[0] + t, x[1] - t), (y[1] - 0.01, y[1]), (0.03, h - 0.03)), finish)
     feet = [
         revolve([(0.02, 0.0), (0.02, 0.012)], 10, (px, py))[0] for px in (x[0] + 0.06, x[1] - 0.06) for py in (y[0] + 0.06, y[1] - 0.06)
     ]
-    return made + pieces("feet", feet, PLASTIC)
+    return parts + pieces("feet", feet, PLASTIC)
 
 
 def _on_square(angle: float, x: tuple[float, float], z: tuple[float, float], zc: float) -> tuple[float, float]:
@@ -305,23 +305,23 @@ def _porthole(r: float, zc: float, face: float, finish: Finish) -> Mover:
     ]
     grip = box((r - 0.045, r - 0.012), (face - 0.043, face - 0.03), (zc - 0.05, zc + 0.05), 0.003)
     rim_finish = Finish("door_rim", (0.3, 0.3, 0.31), 0.3, 0.5, density=1500)
-    made: tuple[Piece, ...] = pieces("door_rim", rim, rim_finish, group="door") + pieces(
+    parts: tuple[Piece, ...] = pieces("door_rim", rim, rim_finish, group="door") + pieces(
         "door_glass", glass, replace(DARK_GLASS, opacity=0.45, name="door_glass"), group="door"
     )
-    made += pieces("handle", grip, finish if finish is not ENAMEL else PLASTIC_WHITE, "line_fixed_handle")
-    return Mover("door", made, "revolute", (0, 0, -1), (-r, face - 0.035, zc), math.radians(100), "hinge_door", "door")
+    parts += pieces("handle", grip, finish if finish is not ENAMEL else PLASTIC_WHITE, "line_fixed_handle")
+    return Mover("door", parts, "revolute", (0, 0, -1), (-r, face - 0.035, zc), math.radians(100), "hinge_door", "door")
 
 
 def _detergent(x: tuple[float, float], z: tuple[float, float], face: float, t: float, finish: Finish) -> Mover:
     """Return the detergent drawer: a small box behind its front, with a grip."""
     rect = Rect(x, z, face)
     solids = tray((x[0] + 0.006, x[1] - 0.006), (face + t, face + 0.2), (z[0] + 0.012, z[1] - 0.012), 0.008)
-    made = pieces("front", box(x, (face, face + t), z, 0.003), finish) + pieces("drawer_box", solids, PLASTIC_WHITE)
+    parts = pieces("front", box(x, (face, face + t), z, 0.003), finish) + pieces("drawer_box", solids, PLASTIC_WHITE)
     middle = (x[0] + x[1]) / 2
-    made += pieces(
+    parts += pieces(
         "handle",
         box((middle - 0.045, middle + 0.045), (face - 0.012, face), (z[1] - 0.012, z[1] - 0.004), 0.001),
         PLASTIC,
         "line_fixed_handle",
     )
-    return Mover("detergent", made, "prismatic", (0, -1, 0), (middle, rect.y, (z[0] + z[1]) / 2), 0.15, "slider_drawer", "drawer")
+    return Mover("detergent", parts, "prismatic", (0, -1, 0), (middle, rect.y, (z[0] + z[1]) / 2), 0.15, "slider_drawer", "drawer")

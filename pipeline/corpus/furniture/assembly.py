@@ -10,7 +10,7 @@ from pipeline.corpus.furniture import finishes
 from pipeline.corpus.furniture.builders import builder
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.furniture.finishes import Scheme
-from pipeline.corpus.furniture.shape import Shape, fitted, frozen
+from pipeline.corpus.furniture.shape import Shape, fit_to_size, frozen
 
 
 def scheme_of(model: Model) -> Scheme:
@@ -31,5 +31,5 @@ def main_material(model: Model) -> str:
 def shape_of(model: Model) -> Shape:
     """Return the shape of a model, its box exactly `model.size`; static models have their movers fixed."""
     rng = seeds.generator(model.seed, "corpus.furniture.shape")
-    shape = fitted(builder(model.category)(rng, model.form, model.size, scheme_of(model)), model.size)
+    shape = fit_to_size(builder(model.category)(rng, model.form, model.size, scheme_of(model)), model.size)
     return shape if model.articulated else frozen(shape)

@@ -10,7 +10,7 @@ from pipeline.corpus.furniture.bent import arc, lean, prism, tube
 from pipeline.corpus.furniture.finishes import Finish, Scheme, cane
 from pipeline.corpus.furniture.shape import Piece, pieces
 from pipeline.corpus.furniture.solids import Solid, beam, box, circle, rod, slab
-from pipeline.corpus.furniture.upholstery import padded
+from pipeline.corpus.furniture.upholstery import upright_pad
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,14 +34,14 @@ class Frame:
 
 def posts(frame: Frame, *, turned: bool = False) -> list[Solid]:
     """Return the two posts that rise from the seat."""
-    made = []
+    solids = []
     for s in (-1, 1):
         x, y, t = s * (frame.x - frame.thick / 2), frame.y, frame.thick
         if turned:
-            made.append(rod((x, y, frame.low), (x, y, frame.high), 0.5 * t, 0.4 * t, 8))
+            solids.append(rod((x, y, frame.low), (x, y, frame.high), 0.5 * t, 0.4 * t, 8))
         else:
-            made.append(beam((x, y, frame.low), (x, y, frame.high), 0.86 * t, 0.86 * t, 1.15))
-    return made
+            solids.append(beam((x, y, frame.low), (x, y, frame.high), 0.86 * t, 0.86 * t, 1.15))
+    return solids
 
 
 def back(rng: np.random.Generator, kind: str, frame: Frame, scheme: Scheme) -> tuple[Piece, ...]:
@@ -51,7 +51,7 @@ def back(rng: np.random.Generator, kind: str, frame: Frame, scheme: Scheme) -> t
     wood: list[Solid] = []
     other: tuple[Piece, ...] = ()
     if kind == "pad":
-        soft = padded(
+        soft = upright_pad(
             rng, scheme, (-frame.x, frame.x), (frame.y - 0.035, frame.y + 0.03), (frame.low + 0.08 * (frame.high - frame.low), frame.high)
         )
     elif kind == "medallion":
@@ -115,10 +115,10 @@ def _cross(frame: Frame) -> list[Solid]:
     """Two bars that cross behind each other, as on a bistro chair."""
     rise, t = frame.high - frame.low, frame.thick
     x, z = frame.x - 1.1 * t, (frame.low + 0.12 * rise, frame.low + 0.86 * rise)
-    made = [frame.bar(0.06, 0.12, t, 0.5)]
+    bars = [frame.bar(0.06, 0.12, t, 0.5)]
     for s, dy in ((-1, -0.009), (1, 0.009)):
-        made.append(rod((-s * x, frame.y + dy, z[0]), (s * x, frame.y + dy, z[1]), 0.009, n=8))
-    return made
+        bars.append(rod((-s * x, frame.y + dy, z[0]), (s * x, frame.y + dy, z[1]), 0.009, n=8))
+    return bars
 
 
 def _medallion(frame: Frame) -> tuple[list[Solid], list[Solid]]:

@@ -9,11 +9,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.corpus.furniture.bent import settled
+from pipeline.corpus.furniture.bent import split_bent_quads
 from pipeline.corpus.furniture.finishes import CERAMIC, GLASS, PLASTIC_WHITE, STEEL, Scheme
 from pipeline.corpus.furniture.fronts import lid, top_button
 from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, hull, revolve, ring, rod, rounded, shell, slab, stack
+from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, hull, revolve, ring, rod, rounded_rectangle, shell, slab, stack
 from pipeline.corpus.furniture.storage import Size
 
 
@@ -35,14 +35,14 @@ def toilet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     def span(share: float) -> tuple[float, float]:
         return (cy - share * ry, cy + share * ry)
 
-    foot = settled(stack([_oval(0.74 * rx, span(0.80), 0.0), _oval(0.70 * rx, span(0.76), 0.10 * h)]))
-    neck = settled(stack([_oval(0.70 * rx, span(0.76), 0.10 * h), _oval(0.90 * rx, span(0.90), 0.62 * rim)]))
+    foot = split_bent_quads(stack([_oval(0.74 * rx, span(0.80), 0.0), _oval(0.70 * rx, span(0.76), 0.10 * h)]))
+    neck = split_bent_quads(stack([_oval(0.70 * rx, span(0.76), 0.10 * h), _oval(0.90 * rx, span(0.90), 0.62 * rim)]))
     outer = [_oval(k * rx, span(k), z) for k, z in ((0.90, 0.62 * rim), (1.0, rim))]
     inner = [_oval(k * rx, span(k), z) for k, z in ((0.42, 0.62 * rim), (0.76, rim))]
     wall = shell(outer, inner)
     heel, shelf = ((-0.27 * w, 0.27 * w), (cy + 0.3 * ry, d / 2 - 0.06)), ((-0.36 * w, 0.36 * w), (bowl_y[1] - 0.05, d / 2 - 0.012))
     outlines = [(heel, 0.0), (shelf, 0.8 * rim), (shelf, rim)]
-    bridge = hull(np.concatenate([np.column_stack([rounded(*spans, 0.04), np.full(20, z)]) for spans, z in outlines]))
+    bridge = hull(np.concatenate([np.column_stack([rounded_rectangle(*spans, 0.04), np.full(20, z)]) for spans, z in outlines]))
     half = (0.44 if form == "lever" else 0.5) * w  # a lever stands out of the tank's side
     tank = cushion((-half, half), tank_y, (rim, h - 0.03), 0.025)
     base = pieces("bowl", [foot, neck], CERAMIC) + staves("bowl", wall, CERAMIC)
@@ -81,8 +81,8 @@ def _lever(half: float, y: float, h: float) -> Mover:
         rod((at[0], at[1], at[2]), (at[0] - 0.012, at[1], at[2]), 0.010, n=10),
         box((at[0] - 0.020, at[0] - 0.012), (at[1] - 0.085, at[1] + 0.008), (at[2] - 0.008, at[2] + 0.008), 0.002),
     ]
-    made = pieces("lever", solids, STEEL, group="lever")
-    return Mover("lever", made, "revolute", (1, 0, 0), at, 0.5, "hinge_handle", "lever", (-1.0, 0.0, 0.0))
+    parts = pieces("lever", solids, STEEL, group="lever")
+    return Mover("lever", parts, "revolute", (1, 0, 0), at, 0.5, "hinge_handle", "lever", (-1.0, 0.0, 0.0))
 
 
 def _rays(w: float, d: float) -> NDArray[np.float64]:

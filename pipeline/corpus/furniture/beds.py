@@ -13,7 +13,7 @@ from pipeline.corpus.furniture.legs import leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, box, cushion, pillow, revolve, rod
 from pipeline.corpus.furniture.storage import Size
-from pipeline.corpus.furniture.upholstery import Span, channels, duvet, throw_pillow, tufted
+from pipeline.corpus.furniture.upholstery import Span, channels, duvet, throw_pillow, tufted_panel
 
 SOFT = frozenset({"upholstered", "tufted", "wing"})
 
@@ -30,7 +30,7 @@ def bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     top = min(rail_top + 0.17, 0.55 * h + 0.05)
     head = {"upholstered": 0.1, "tufted": 0.12, "wing": 0.1, "sleigh": 0.16, "metal": 0.05}.get(form, 0.06)
     foot = {"sleigh": 0.12, "metal": 0.05, "canopy": 0.06}.get(form, 0.0)
-    made = _head(rng, form, x, (y[1] - head, y[1]), lift, h, scheme)
+    parts = _head(rng, form, x, (y[1] - head, y[1]), lift, h, scheme)
     side = 0.07 if soft else 0.032
     rail = (y[0] + foot, y[1] - head)
     cloth = scheme.soft if soft else scheme.handle if form == "metal" else scheme.body
@@ -50,14 +50,14 @@ def bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     low = rail_top - 0.03
     inner_x, inner_y = (x[0] + side, x[1] - side), (rail[0] + (0.0 if foot else side), rail[1])
     frame.append(box(inner_x, inner_y, (low - 0.03, low)))
-    made += pieces("frame", frame, cloth)
+    parts += pieces("frame", frame, cloth)
     if foot:
-        made += _foot(form, x, (y[0], y[0] + foot), lift, min(0.62 * h, top + 0.16), h, scheme)
+        parts += _foot(form, x, (y[0], y[0] + foot), lift, min(0.62 * h, top + 0.16), h, scheme)
     kind = "bun" if scheme.manner.ornament > 0.5 and lift < 0.16 else "square" if form in ("panel", "slatted") else "tapered"
     if form not in ("canopy", "metal", "sleigh"):
         feet = [s.moved((0, -0.04, 0)) for s in legs(kind, (w / 2 - 0.07, d / 2 - 0.12), lift, 0.055)]
-        made += pieces("feet", feet, leg_finish(scheme, kind))
-    return Shape(made + bedding(rng, inner_x, inner_y, low, top, scheme, h - top))
+        parts += pieces("feet", feet, leg_finish(scheme, kind))
+    return Shape(parts + bedding(rng, inner_x, inner_y, low, top, scheme, h - top))
 
 
 def bedding(rng: np.random.Generator, x: Span, y: Span, low: float, top: float, scheme: Scheme, room: float = 1.0) -> tuple[Piece, ...]:
@@ -66,16 +66,16 @@ def bedding(rng: np.random.Generator, x: Span, y: Span, low: float, top: float, 
     There are cushions only where there is `room` above for them.
     """
     mx, my = (x[0] + 0.014, x[1] - 0.014), (y[0] + 0.014, y[1] - 0.006)
-    made = pieces("mattress", cushion(mx, my, (low, top), 0.045, 3), MATTRESS)
+    parts = pieces("mattress", cushion(mx, my, (low, top), 0.045, 3), MATTRESS)
     wide, long = mx[1] - mx[0], my[1] - my[0]
     head = min(0.62, 0.34 * long)
     cover = BEDDING if rng.random() < 0.45 else scheme.second
     fold = my[1] - head
     thick = 0.045
     drop = min(0.8 * (top - low), 0.16)
-    made += duvet(mx, (my[0], fold - 0.2), top, thick, drop, cover, foot=False)
+    parts += duvet(mx, (my[0], fold - 0.2), top, thick, drop, cover, foot=False)
     turned = cushion((mx[0] - 0.02, mx[1] + 0.02), (fold - 0.198, fold + 0.03), (top, top + 1.5 * thick), 0.03, 3)
-    made += pieces("duvet_fold", turned, BEDDING if cover is not BEDDING else scheme.soft if rng.random() < 0.5 else BEDDING)
+    parts += pieces("duvet_fold", turned, BEDDING if cover is not BEDDING else scheme.soft if rng.random() < 0.5 else BEDDING)
     count = 2 if wide > 1.25 else 1
     share = wide / count
     deep = min(0.44, head - 0.1)
@@ -89,13 +89,13 @@ def bedding(rng: np.random.Generator, x: Span, y: Span, low: float, top: float, 
             front = throw_pillow(
                 (middle, my[1] - deep - 0.13, top + 1.5 * thick + 0.002), min(0.4, 1.5 * half, deep), 0.5, float(rng.uniform(-0.15, 0.15))
             )
-            made += pieces("cushion", front, scheme.soft)
-    made += pieces("pillows", pads, BEDDING)
+            parts += pieces("cushion", front, scheme.soft)
+    parts += pieces("pillows", pads, BEDDING)
     if rng.random() < 0.55:
         foot = my[0] + 0.14 * long
         band = duvet((mx[0] - 0.027, mx[1] + 0.027), (foot, foot + 0.45), top + 1.25 * thick, 0.014, drop * 0.95, scheme.soft, foot=False)
-        made += tuple(Piece("throw", p.solid, p.finish) for p in band)
-    return made
+        parts += tuple(Piece("throw", p.solid, p.finish) for p in band)
+    return parts
 
 
 def _head(rng: np.random.Generator, form: str, x: Span, y: Span, lift: float, h: float, scheme: Scheme) -> tuple[Piece, ...]:  # noqa: PLR0911 - one return per form
@@ -114,17 +114,17 @@ def _head(rng: np.random.Generator, form: str, x: Span, y: Span, lift: float, h:
             scheme.soft,
         )
     if form == "tufted":
-        return pieces("headboard", tufted(x, y, (lift, h), max(4, round(w / 0.26)), max(2, round((h - lift) / 0.26))), scheme.soft)
+        return pieces("headboard", tufted_panel(x, y, (lift, h), max(4, round(w / 0.26)), max(2, round((h - lift) / 0.26))), scheme.soft)
     if form == "wing":
-        made = pieces("headboard", cushion((x[0] + 0.06, x[1] - 0.06), y, (lift, h), 0.04, 3), scheme.soft)
+        parts = pieces("headboard", cushion((x[0] + 0.06, x[1] - 0.06), y, (lift, h), 0.04, 3), scheme.soft)
         wings = [cushion((a, a + 0.058), (y[0] - 0.16, y[1]), (lift + 0.3, h - 0.02), 0.026, 2) for a in (x[0], x[1] - 0.058)]
-        return made + pieces("wings", wings, scheme.soft)
+        return parts + pieces("wings", wings, scheme.soft)
     if form == "sleigh":
         return pieces("headboard", _scroll(x, y[0] + 0.03, lift, h), wood) + _sleigh_posts(x, y, lift, 0.75 * h, scheme)
     if form == "metal":
         return pieces("headboard", _hoop(x, (y[0] + y[1]) / 2, h, scheme), scheme.handle)
     post = 0.06 if form == "canopy" else 0.05
-    made = (
+    parts = (
         pieces("posts", [box((a, a + post), y, (0, h), 0.006) for a in (x[0], x[1] - post)], wood)
         if form != "canopy"
         else _posters(x, y, h, scheme)
@@ -135,7 +135,7 @@ def _head(rng: np.random.Generator, form: str, x: Span, y: Span, lift: float, h:
         count = max(5, round(w / 0.11))
         xs = np.linspace(inner[0] + 0.05, inner[1] - 0.05, count)
         rails = [box(inner, (y[0] + 0.01, y[1] - 0.01), z, 0.004) for z in ((lift + 0.14, lift + 0.21), (crown - 0.09, crown - 0.005))]
-        return made + pieces(
+        return parts + pieces(
             "headboard",
             rails + [box((a - 0.014, a + 0.014), (y[0] + 0.018, y[1] - 0.018), (lift + 0.21, crown - 0.09), 0.002) for a in xs],
             wood,
@@ -146,10 +146,10 @@ def _head(rng: np.random.Generator, form: str, x: Span, y: Span, lift: float, h:
     boards = [box((inner[0], field[0]), deep, (lift, crown - 0.02), 0.003), box((field[1], inner[1]), deep, (lift, crown - 0.02), 0.003)]
     boards += [box(field, deep, z, 0.003) for z in ((lift, lift + 0.3), (crown - 0.1, crown - 0.02))]
     panel = box(field, (deep[0] + 0.012, deep[1] - 0.006), (lift + 0.3, crown - 0.1))
-    made += pieces("headboard", boards, wood) + pieces("panel", panel, cane(rng) if weave else scheme.front)
+    parts += pieces("headboard", boards, wood) + pieces("panel", panel, cane(rng) if weave else scheme.front)
     if form == "panel":
-        made += pieces("cap", box((x[0] + post, x[1] - post), y, (crown - 0.02, crown), 0.005), wood)
-    return made
+        parts += pieces("cap", box((x[0] + post, x[1] - post), y, (crown - 0.02, crown), 0.005), wood)
+    return parts
 
 
 def _scroll(x: Span, y: float, lift: float, h: float) -> list[Solid]:
@@ -182,21 +182,21 @@ def _hoop(x: Span, y: float, h: float, scheme: Scheme) -> list[Solid]:
         (x[1] - r, y, low - 0.08 * (rise == 0)),
         (x[1] - r, y, 0.0),
     ]
-    made = tube(bow, r, 8)
+    solids = tube(bow, r, 8)
     z = 0.42 * h
-    made.append(rod((x[0] + 2 * r, y, z), (x[1] - 2 * r, y, z), 0.7 * r, n=8))
+    solids.append(rod((x[0] + 2 * r, y, z), (x[1] - 2 * r, y, z), 0.7 * r, n=8))
     count = max(5, round(w / 0.14))
     for t in (np.arange(count) + 0.5) / count:
         top = low - 2 * r + rise * math.sin(math.pi * t) - 0.012 * (rise > 0)
         at = x[0] + r + (w - 2 * r) * float(t)
         if top > z + 0.06:
-            made.append(rod((at, y, z + 0.7 * r), (at, y, top), 0.4 * r, n=6))
-    return made
+            solids.append(rod((at, y, z + 0.7 * r), (at, y, top), 0.4 * r, n=6))
+    return solids
 
 
 def _posters(x: Span, y: Span, h: float, scheme: Scheme) -> tuple[Piece, ...]:
     """Return two tall posts of a four-poster: turned where there is ornament, else square."""
-    made: list[Solid] = []
+    solids: list[Solid] = []
     middle = (y[0] + y[1]) / 2
     for a in (x[0] + 0.03, x[1] - 0.03):
         if scheme.manner.ornament > 0.5:
@@ -210,10 +210,10 @@ def _posters(x: Span, y: Span, h: float, scheme: Scheme) -> tuple[Piece, ...]:
                 (0.028, h - 0.08),
                 (0.028, h - 0.05),
             ]
-            made += [block, *revolve(steps, 12, (a, middle))]
+            solids += [block, *revolve(steps, 12, (a, middle))]
         else:
-            made.append(box((a - 0.025, a + 0.025), (middle - 0.025, middle + 0.025), (0, h - 0.05), 0.004))
-    return pieces("posters", made, scheme.timber)
+            solids.append(box((a - 0.025, a + 0.025), (middle - 0.025, middle + 0.025), (0, h - 0.05), 0.004))
+    return pieces("posters", solids, scheme.timber)
 
 
 def _foot(form: str, x: Span, y: Span, lift: float, top: float, h: float, scheme: Scheme) -> tuple[Piece, ...]:
@@ -228,14 +228,14 @@ def _foot(form: str, x: Span, y: Span, lift: float, top: float, h: float, scheme
         )
     if form == "metal":
         return pieces("footboard", _hoop(x, (y[0] + y[1]) / 2, min(0.72 * h, 0.7), scheme), scheme.handle)
-    made = _posters(x, y, h, scheme)
+    parts = _posters(x, y, h, scheme)
     rail = box((x[0] + 0.06, x[1] - 0.06), (y[0] + 0.01, y[1] - 0.01), (lift, min(top, lift + 0.3)), 0.004)
-    made += pieces("footboard", rail, scheme.body)
+    parts += pieces("footboard", rail, scheme.body)
     z = (h - 0.05, h)
     deep = -y[0]  # the frame of the canopy runs from the foot to the head, alike at both ends
     frame = [box((a, a + 0.06), (-deep, deep), z, 0.004) for a in (x[0], x[1] - 0.06)]
     frame += [box((x[0] + 0.06, x[1] - 0.06), (b, b + 0.06), z, 0.004) for b in (-deep, deep - 0.06)]
-    return made + pieces("canopy", frame, scheme.timber)
+    return parts + pieces("canopy", frame, scheme.timber)
 
 
 def _platform(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
@@ -248,15 +248,15 @@ def _platform(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
         box((a + 0.0008, b - 0.0008), (-y, y - 0.08), (deck - 0.035, deck), 0.003)
         for a, b in itertools.pairwise(np.linspace(-x, x, count + 1))
     ]
-    made = pieces("deck", boards, scheme.body)
-    made += pieces(
+    parts = pieces("deck", boards, scheme.body)
+    parts += pieces(
         "plinth",
         box((-x + 0.16, x - 0.16), (-y + 0.18, y - 0.18), (0, deck - 0.035), 0.003),
         scheme.accent if scheme.accent is not scheme.handle else scheme.timber,
     )
     wide = min(0.7 * w, 1.2) if rng.random() < 0.3 else w
     board = [box((-wide / 2, wide / 2), (y - 0.045, y - 0.01), (0.06, h), 0.006)]
-    made += pieces("headboard", board, scheme.timber)
+    parts += pieces("headboard", board, scheme.timber)
     if rng.random() < 0.5:
         half = (w - 0.06) / 2
         pads = [
@@ -265,8 +265,9 @@ def _platform(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
             )
             for s in (-1, 1)
         ]
-        made += pieces("back_pads", pads, scheme.soft)
+        parts += pieces("back_pads", pads, scheme.soft)
     edge = min(0.12, 0.06 * w)
     return Shape(
-        made + bedding(rng, (-x + edge, x - edge), (-y + edge, y - 0.12), deck, deck + min(0.2, 0.4 * (h - deck)), scheme, 0.6 * (h - deck))
+        parts
+        + bedding(rng, (-x + edge, x - edge), (-y + edge, y - 0.12), deck, deck + min(0.2, 0.4 * (h - deck)), scheme, 0.6 * (h - deck))
     )

@@ -27,10 +27,10 @@ def curve(points: Sequence[Vector], steps: int = 4) -> Points:
     p = np.asarray(points, float)
     p = np.concatenate([2 * p[:1] - p[1:2], p, 2 * p[-1:] - p[-2:-1]])
     t = (np.arange(steps) / steps)[:, None]
-    made = []
+    segments = []
     for a, b, c, d in zip(p[:-3], p[1:-2], p[2:-1], p[3:], strict=True):
-        made.append(0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t**2 + (3 * b - a - 3 * c + d) * t**3))
-    return np.concatenate([*made, p[-2:-1]])
+        segments.append(0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t**2 + (3 * b - a - 3 * c + d) * t**3))
+    return np.concatenate([*segments, p[-2:-1]])
 
 
 def _mitres(path: Points, closed: bool) -> tuple[Points, Points]:
@@ -52,7 +52,7 @@ def tube(path: Sequence[Vector] | Points, radius: float | Sequence[float] | Poin
     radii = np.broadcast_to(np.asarray(radius, float), (len(p),))
     along, normals = _mitres(p, closed)
     angles = (np.arange(n) + 0.5) * (2 * np.pi / n)
-    made = []
+    segments = []
     u = _across(along[0])
     v = np.cross(along[0], u)
     for k, direction in enumerate(along):
@@ -69,8 +69,8 @@ def tube(path: Sequence[Vector] | Points, radius: float | Sequence[float] | Poin
             if np.abs(slide).max() > 0.45 * length:  # too sharp a bend for so short a piece: cut square
                 slide = np.zeros(n)
             ends.append(p[j] + ring + slide[:, None] * direction)
-        made.append(settled(stack(ends)))
-    return made
+        segments.append(split_bent_quads(stack(ends)))
+    return segments
 
 
 def _across(direction: Points) -> Points:
@@ -82,18 +82,18 @@ def _across(direction: Points) -> Points:
 def band(path: Points, thick: float, z: tuple[float, float], *, closed: bool = False) -> list[Solid]:
     """Return an upright wall over a path in plan (m, 2), `thick` wide, half to each side: one stave per segment."""
     left, right = _sides(path, thick, closed)
-    made = []
+    staves = []
     for i in range(len(path) if closed else len(path) - 1):
         j = (i + 1) % len(path)
         ring = np.array([right[i], right[j], left[j], left[i]])
-        made.append(stack([np.column_stack([ring, np.full(4, z[0])]), np.column_stack([ring, np.full(4, z[1])])]))
-    return made
+        staves.append(stack([np.column_stack([ring, np.full(4, z[0])]), np.column_stack([ring, np.full(4, z[1])])]))
+    return staves
 
 
 def wall(path: Points, thick: float, low: float, tops: Sequence[float] | Points, ease: float = 0.0) -> list[Solid]:
     """Return an upright wall over a path in plan (m, 2) whose top rises and falls: `tops` (m,) [m]; `ease` rounds the upper edge."""
     left, right = _sides(path, thick, closed=False)
-    made = []
+    segments = []
     for i in range(len(path) - 1):
         ring = np.array([right[i], right[i + 1], left[i + 1], left[i]])
         z = np.array([tops[i], tops[i + 1], tops[i + 1], tops[i]])
@@ -102,14 +102,14 @@ def wall(path: Points, thick: float, low: float, tops: Sequence[float] | Points,
             centre = np.array([path[i], path[i + 1], path[i + 1], path[i]])
             rings.append(np.column_stack([centre + (ring - centre) * 0.72, z - 0.3 * ease]))
             rings.append(np.column_stack([centre + (ring - centre) * 0.3, z]))
-        made.append(settled(stack(rings)))
-    return made
+        segments.append(split_bent_quads(stack(rings)))
+    return segments
 
 
 def upright(outline: Points, x: tuple[float, float], bevel: float) -> Solid:
     """Return a board over a convex outline (n, 2) in (y, z), counter-clockwise, across `x`, its edges eased by `bevel`."""
-    made = slab(outline, x, bevel)
-    return Solid(made.vertices[:, [2, 0, 1]], made.faces)
+    board = slab(outline, x, bevel)
+    return Solid(board.vertices[:, [2, 0, 1]], board.faces)
 
 
 def _sides(path: Points, thick: float, closed: bool) -> tuple[Points, Points]:
@@ -126,14 +126,14 @@ def sheet(profile: Points, thick: float, width: float | Sequence[float] | Points
     """Return a bent board: a profile in (y, z) (m, 2), `thick`, across x; `width` may differ from point to point."""
     half = np.broadcast_to(np.asarray(width, float), (len(profile),)) / 2
     left, right = _sides(profile, thick, closed=False)
-    made = []
+    segments = []
     for i in range(len(profile) - 1):
         corners = []
         for k in (i, i + 1):
             (y0, z0), (y1, z1) = right[k], left[k]
             corners.append(np.array([(-half[k], y1, z1), (half[k], y1, z1), (half[k], y0, z0), (-half[k], y0, z0)]))
-        made.append(settled(stack(corners)))
-    return made
+        segments.append(split_bent_quads(stack(corners)))
+    return segments
 
 
 def prism(outline: Points, axis: str, span: tuple[float, float]) -> Solid:
@@ -146,7 +146,7 @@ def prism(outline: Points, axis: str, span: tuple[float, float]) -> Solid:
     return stack(rings if axis != "y" else rings[::-1])
 
 
-def settled(solid: Solid) -> Solid:
+def split_bent_quads(solid: Solid) -> Solid:
     """Return the solid with quads that are not plane cut along the diagonal that keeps it convex."""
     v = solid.vertices
     faces: list[Face] = []

@@ -50,7 +50,7 @@ MODULES = (
 def builder(category: str) -> Builder:
     """Return the function that the card of a category names as "module.function". Raises ContentError where there is none."""
     module, _, name = cards()[category].corpus.builder.partition(".")
-    found: Builder | None = getattr(next((m for m in MODULES if m.__name__.endswith(f".{module}")), None), name, None)
-    if found is None:
+    function: Builder | None = getattr(next((m for m in MODULES if m.__name__.endswith(f".{module}")), None), name, None)
+    if function is None:
         raise ContentError(f"manifests/categories/{category}.yaml: no builder {module}.{name}", "see pipeline/corpus/furniture/builders.py")
-    return found
+    return function

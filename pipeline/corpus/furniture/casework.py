@@ -186,13 +186,13 @@ def _inner(
     inside = (x[0] + 0.022, x[1] - 0.022)
     face = y[0] + 0.03
     style = replace(how.style, panel="slab", handle="none", finish=how.body, thickness=0.016)
-    made = []
+    drawers = []
     for j in range(count):
         low = bottom + j * (INNER + GAP)
         rect = Rect(inside, (low + GAP, low + INNER - 0.03), face)
-        made.append(drawer(f"{name}_inner_{j}", rect, style, (inside, (low, low + INNER), y[1]), how.body, after=doors))
+        drawers.append(drawer(f"{name}_inner_{j}", rect, style, (inside, (low, low + INNER), y[1]), how.body, after=doors))
     top = bottom + count * (INNER + GAP)
-    return list(pieces(f"{name}_inner_top", box(x, (face, y[1]), (top, top + 0.016)), how.body)), made
+    return list(pieces(f"{name}_inner_top", box(x, (face, y[1]), (top, top + 0.016)), how.body)), drawers
 
 
 def _sliding(
@@ -247,11 +247,11 @@ def feet(kind: Feet, x: tuple[float, float], y: tuple[float, float], height: flo
         side = 0.018 if height > 0.08 else 0.025
         solids = [beam((cx, cy, 0), (cx, cy, height), 2 * side, 2 * side, 0.75) for cx, cy in corners]
     elif kind == "hairpin":
-        made: tuple[Piece, ...] = ()
+        parts: tuple[Piece, ...] = ()
         for k, (cx, cy) in enumerate(corners):
             pair = [rod((cx + s * 0.003, cy, 0), (cx + s * 0.03, cy, height), 0.006, 0.006, 6) for s in (-1, 1)]
-            made += pieces("feet", pair, finish, group=f"foot_{k}")
-        return made
+            parts += pieces("feet", pair, finish, group=f"foot_{k}")
+        return parts
     else:  # sled: two closed frames of square tube
         t = 0.012
         for cx in (x[0] + inset, x[1] - inset):

@@ -57,7 +57,7 @@ def catalogue(seed: int, size: float = 1.0) -> Catalogue:
         future += _models(seed, category, line, max(1, round(line.static * size)), articulated=False)
         if line.moving:
             partnet += _models(seed, category, line, max(1, round(line.moving * size)), articulated=True)
-    return Catalogue(tuple(future), tuple(_renumbered(seed, partnet)))
+    return Catalogue(tuple(future), tuple(_assign_ids(seed, partnet)))
 
 
 def _models(seed: int, category: str, line: Line, count: int, *, articulated: bool) -> list[Model]:
@@ -115,7 +115,7 @@ def _turns(rng: np.random.Generator, forms: Sequence[Form], count: int) -> list[
     return [forms[(start + i) % len(forms)] for i in range(count)]
 
 
-def _renumbered(seed: int, models: list[Model]) -> list[Model]:
+def _assign_ids(seed: int, models: list[Model]) -> list[Model]:
     """Give the articulated models PartNet-Mobility's kind of id: distinct numbers of five digits, in no order."""
     rng = seeds.generator(seed, "corpus.furniture", "partnet_ids")
     numbers = rng.choice(np.arange(10_000, 100_000), size=len(models), replace=False)

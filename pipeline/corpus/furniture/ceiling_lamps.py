@@ -45,24 +45,24 @@ def pendant_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         "rattan": 0.7,
     }
     tall = min(0.66 * h, share.get(kind, 0.6) * w)
-    made = shade(rng, scheme, kind, w / 2, (0.0, tall))
-    return Shape(made + pieces("cord", cord((0, 0), (tall - 0.002, h - 0.024)), metal) + pieces("rose", rose(h), metal))
+    parts = shade(rng, scheme, kind, w / 2, (0.0, tall))
+    return Shape(parts + pieces("cord", cord((0, 0), (tall - 0.002, h - 0.024)), metal) + pieces("rose", rose(h), metal))
 
 
 def _linear(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
     w, d, h = size
     metal = scheme.handle
-    made = pieces("rose", box((-0.3 * w, 0.3 * w), (-0.035, 0.035), (h - 0.024, h), 0.004), metal)
+    parts = pieces("rose", box((-0.3 * w, 0.3 * w), (-0.035, 0.035), (h - 0.024, h), 0.004), metal)
     if rng.random() < 0.35:  # one long beam of light
         deep = min(0.05, 0.4 * d)
-        made += pieces(
+        parts += pieces(
             "beam", box((-w / 2, w / 2), (-d / 2 if d < 0.12 else -deep, d / 2 if d < 0.12 else deep), (0.02, 0.075), 0.006), metal
         )
-        made += pieces("light", box((-0.49 * w, 0.49 * w), (-0.8 * deep, 0.8 * deep), (0.0, 0.02), 0.003), GLOW)
-        return made + pieces("cord", [rod((s * 0.28 * w, 0, 0.075), (s * 0.28 * w, 0, h - 0.024), THIN, n=6) for s in (-1, 1)], metal)
+        parts += pieces("light", box((-0.49 * w, 0.49 * w), (-0.8 * deep, 0.8 * deep), (0.0, 0.02), 0.003), GLOW)
+        return parts + pieces("cord", [rod((s * 0.28 * w, 0, 0.075), (s * 0.28 * w, 0, h - 0.024), THIN, n=6) for s in (-1, 1)], metal)
     z = min(0.24, 0.36 * h)
-    made += pieces("bar", rod((-0.49 * w, 0, z + 0.05), (0.49 * w, 0, z + 0.05), 0.011, n=10), metal)
-    made += pieces("cord", [rod((s * 0.25 * w, 0, z + 0.061), (s * 0.25 * w, 0, h - 0.024), THIN, n=6) for s in (-1, 1)], metal)
+    parts += pieces("bar", rod((-0.49 * w, 0, z + 0.05), (0.49 * w, 0, z + 0.05), 0.011, n=10), metal)
+    parts += pieces("cord", [rod((s * 0.25 * w, 0, z + 0.061), (s * 0.25 * w, 0, h - 0.024), THIN, n=6) for s in (-1, 1)], metal)
     count = int(np.clip(round(w / 0.32), 2, 6))
     paired = d > 0.5 * w
     r = min(0.23 * d if paired else 0.5 * d, 0.46 * w / count)
@@ -70,9 +70,9 @@ def _linear(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece
     rows = [-d / 2 + r, d / 2 - r] if paired else [0.0]
     for x in np.linspace(-w / 2 + r, w / 2 - r, count).tolist():
         for y in rows:
-            made += shade(rng, scheme, kind, r, (0.0, min(1.9 * r, z)), (x, y), 14)
-            made += pieces("drop", rod((x, y, min(1.9 * r, z)), (x, 0.03 * y, z + 0.039), 0.005, n=6), metal)
-    return made
+            parts += shade(rng, scheme, kind, r, (0.0, min(1.9 * r, z)), (x, y), 14)
+            parts += pieces("drop", rod((x, y, min(1.9 * r, z)), (x, 0.03 * y, z + 0.039), 0.005, n=6), metal)
+    return parts
 
 
 def _cluster(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -80,15 +80,15 @@ def _cluster(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
     metal = scheme.handle
     count = int(rng.integers(3, 7))
     r = 0.2 * min(w, d) if min(w, d) > 0.3 else 0.34 * min(w, d)
-    made = pieces("rose", slab(circle(0.3 * w, 24, squash=min(1.0, d / w)), (h - 0.024, h), 0.004), metal)
+    parts = pieces("rose", slab(circle(0.3 * w, 24, squash=min(1.0, d / w)), (h - 0.024, h), 0.004), metal)
     kind = str(rng.choice(["globe", "globe", "cylinder", "dome"]))
     for k, a in enumerate(turns(count, 0.3)):
         x, y = (w / 2 - r) * math.cos(a), max(0.0, d / 2 - r) * math.sin(a)
         low = 0.45 * h * (k * 2 % count) / max(1, count - 1)
         high = low + min(1.9 * r, 0.4 * h)
-        made += shade(rng, scheme, kind, r, (low, high), (x, y), 14)
-        made += pieces("cord", rod((x, y, high - 0.001), (0.45 * x, 0.45 * y * min(1.0, d / w), h - 0.024), THIN, n=6), metal)
-    return made
+        parts += shade(rng, scheme, kind, r, (low, high), (x, y), 14)
+        parts += pieces("cord", rod((x, y, high - 0.001), (0.45 * x, 0.45 * y * min(1.0, d / w), h - 0.024), THIN, n=6), metal)
+    return parts
 
 
 def _chandelier(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -97,26 +97,26 @@ def _chandelier(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[P
     metal = scheme.handle
     r, body = w / 2, min(0.62 * h, 0.8 * w)
     steps = [(0.012, 0.0), (0.05, 0.06), (0.02, 0.14), (0.055, 0.24), (0.02, 0.36), (0.03, 0.6), (0.012, 0.8), (0.02, 0.95), (0.006, 1.0)]
-    made = pieces("stem", revolve([(a * min(1.0, w / 0.6), b * body) for a, b in steps], 14), metal)
+    parts = pieces("stem", revolve([(a * min(1.0, w / 0.6), b * body) for a, b in steps], 14), metal)
     count = 6 if w > 0.55 else 5
     crystal = scheme.manner.ornament > 0.75 or scheme.style == "Light Luxury"
     for a in turns(count, 0.2):
         c, s = math.cos(a), math.sin(a)
         path = [(0.035, 0.3 * body), (0.45 * r, 0.10 * body), (0.80 * r, 0.22 * body), (0.82 * r, 0.42 * body)]
-        made += pieces("arms", tube(curve([(p * c, p * s, z) for p, z in path], 2), 0.0075, 6), metal)
+        parts += pieces("arms", tube(curve([(p * c, p * s, z) for p, z in path], 2), 0.0075, 6), metal)
         at = (0.82 * r * c, 0.82 * r * s)
         z = 0.42 * body
-        made += pieces("cups", revolve([(0.012, z), (0.03, z + 0.01), (0.03, z + 0.016)], 10, at), metal)
+        parts += pieces("cups", revolve([(0.012, z), (0.03, z + 0.01), (0.03, z + 0.016)], 10, at), metal)
         if crystal:
-            made += pieces("candle", rod((*at, z + 0.016), (*at, z + 0.09), 0.011, n=8), scheme.front) + bulb(z + 0.09, 0.045, at)
-            made += pieces(
+            parts += pieces("candle", rod((*at, z + 0.016), (*at, z + 0.09), 0.011, n=8), scheme.front) + bulb(z + 0.09, 0.045, at)
+            parts += pieces(
                 "drops", revolve([(0.002, 0.02 * body), (0.014, 0.09 * body), (0.004, 0.19 * body)], 6, (0.8 * r * c, 0.8 * r * s)), CRYSTAL
             )
         else:
-            made += shade(rng, scheme, "bell", 0.175 * r, (z + 0.03, z + 0.03 + 0.3 * r), at, 12) + pieces(
+            parts += shade(rng, scheme, "bell", 0.175 * r, (z + 0.03, z + 0.03 + 0.3 * r), at, 12) + pieces(
                 "candle", rod((*at, z + 0.016), (*at, z + 0.03 + 0.26 * r), 0.008, n=6), metal
             )
-    return made + pieces("cord", cord((0, 0), (body - 0.002, h - 0.024)), metal) + pieces("rose", rose(h), metal)
+    return parts + pieces("cord", cord((0, 0), (body - 0.002, h - 0.024)), metal) + pieces("rose", rose(h), metal)
 
 
 def _sputnik(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -126,7 +126,7 @@ def _sputnik(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
     ball = min(0.66 * h, 0.9 * min(w, d))
     count, r = 12, 0.09 * min(w, d)
     middle = ball / 2
-    made = pieces(
+    parts = pieces(
         "hub",
         [s.moved((0, 0, middle)) for s in revolve([(0.4 * r, -0.8 * r), (0.9 * r, -0.3 * r), (0.9 * r, 0.3 * r), (0.4 * r, 0.8 * r)], 12)],
         metal,
@@ -137,10 +137,10 @@ def _sputnik(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
         out = np.array([q * math.cos(a) * (w / 2 - r), q * math.sin(a) * (d / 2 - r), z * (middle - r)])
         at = out + np.array([0, 0, middle])
         unit = out / np.linalg.norm(out)
-        made += pieces("rods", rod(tuple(np.array([0, 0, middle]) + 0.85 * r * unit), tuple(at - 0.9 * r * unit), 0.005, n=6), metal)
+        parts += pieces("rods", rod(tuple(np.array([0, 0, middle]) + 0.85 * r * unit), tuple(at - 0.9 * r * unit), 0.005, n=6), metal)
         globe = revolve([(r * math.cos(p), r * math.sin(p)) for p in np.linspace(-1.4, 1.4, 7)], 12)
-        made += pieces("globes", [s.moved(at) for s in globe], GLOW)
-    return made + pieces("cord", cord((0, 0), (middle + 0.8 * r, h - 0.024)), metal) + pieces("rose", rose(h), metal)
+        parts += pieces("globes", [s.moved(at) for s in globe], GLOW)
+    return parts + pieces("cord", cord((0, 0), (middle + 0.8 * r, h - 0.024)), metal) + pieces("rose", rose(h), metal)
 
 
 def _hoops(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -148,14 +148,14 @@ def _hoops(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece,
     w, d, h = size
     metal = scheme.handle
     count = 2 if h < 0.8 else 3
-    made = pieces("rose", rose(h, 0.09), metal)
+    parts = pieces("rose", rose(h, 0.09), metal)
     for k in range(count):
         r = w / 2 * (1.0, 0.68, 0.42)[k]
         z = 0.22 * h * k
         squash = np.array([1.0, d / w, 1.0])
-        made += pieces("hoop", [s.scaled(squash) for s in ring((r, r), (r - 0.018, r - 0.018), (z + 0.014, z + 0.045), 30)], metal)
-        made += pieces("light", [s.scaled(squash) for s in ring((r - 0.001, r - 0.001), (r - 0.017, r - 0.017), (z, z + 0.014), 30)], GLOW)
-        made += pieces(
+        parts += pieces("hoop", [s.scaled(squash) for s in ring((r, r), (r - 0.018, r - 0.018), (z + 0.014, z + 0.045), 30)], metal)
+        parts += pieces("light", [s.scaled(squash) for s in ring((r - 0.001, r - 0.001), (r - 0.017, r - 0.017), (z, z + 0.014), 30)], GLOW)
+        parts += pieces(
             "wires",
             [
                 rod(
@@ -168,7 +168,7 @@ def _hoops(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece,
             ],
             metal,
         )
-    return made
+    return parts
 
 
 def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -180,22 +180,22 @@ def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         return Shape(_rain(form, size, scheme))
     if form == "disc":
         rim = min(0.4 * h, 0.05)
-        made = pieces(
+        parts = pieces(
             "mount",
             [s.scaled(squash) for s in revolve([(0.5 * w, h - rim), (0.5 * w, h)], 32)],
             metal if rng.random() < 0.6 else scheme.timber,
         )
         profile = [(0.26 * w, 0.0), (0.38 * w, 0.08 * h), (0.45 * w, 0.35 * h), (0.48 * w, h - rim)]
-        return Shape(made + pieces("diffuser", [s.scaled(squash) for s in revolve(profile, 32)], GLOW))
+        return Shape(parts + pieces("diffuser", [s.scaled(squash) for s in revolve(profile, 32)], GLOW))
     if form == "square":
-        made = pieces("mount", box((-w / 2, w / 2), (-d / 2, d / 2), (0.45 * h, h), 0.004), metal if rng.random() < 0.6 else scheme.timber)
+        parts = pieces("mount", box((-w / 2, w / 2), (-d / 2, d / 2), (0.45 * h, h), 0.004), metal if rng.random() < 0.6 else scheme.timber)
         return Shape(
-            made + pieces("diffuser", cushion((-0.47 * w, 0.47 * w), (-0.47 * d, 0.47 * d), (0, 0.45 * h), min(0.03, 0.2 * h), 2), GLOW)
+            parts + pieces("diffuser", cushion((-0.47 * w, 0.47 * w), (-0.47 * d, 0.47 * d), (0, 0.45 * h), min(0.03, 0.2 * h), 2), GLOW)
         )
     if form == "frame":
         return Shape(_lattice(size, scheme))
     if form == "spots":
-        made = pieces("bar", box((-w / 2, w / 2), (-0.03, 0.03), (h - 0.03, h), 0.003), metal)
+        parts = pieces("bar", box((-w / 2, w / 2), (-0.03, 0.03), (h - 0.03, h), 0.003), metal)
         count = max(2, round(w / 0.28))
         for x in np.linspace(-0.42 * w, 0.42 * w, count):
             r = min(0.045, 0.3 * h, 0.2 * d)
@@ -203,20 +203,20 @@ def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
             drum = revolve([(0.7 * r, 0.0), (r, 0.02), (r, long)], 14)
             tilt = float(rng.uniform(-0.3, 0.3))
             head = [s.moved((0, 0, -long)).turned("x", tilt).moved((float(x), 0, long)) for s in drum]
-            made += pieces("heads", head, metal) + pieces(
+            parts += pieces("heads", head, metal) + pieces(
                 "joints", rod((float(x), 0, long + 0.3 * r), (float(x), 0, h - 0.03), 0.007, n=8), metal
             )
-        made += pieces("ends", [box((-0.08 * w, 0.08 * w), (-d / 2, d / 2), (h - 0.02, h))] if d > 0.07 else [], metal)
-        return Shape(made)
+        parts += pieces("ends", [box((-0.08 * w, 0.08 * w), (-d / 2, d / 2), (h - 0.02, h))] if d > 0.07 else [], metal)
+        return Shape(parts)
     outer = [s.scaled(squash) for s in ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0, 0.4 * h), 32)]
-    made = pieces("ring", outer, GLOW) + pieces(
+    parts = pieces("ring", outer, GLOW) + pieces(
         "hoop", [s.scaled(squash) for s in ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0.4 * h, 0.6 * h), 32)], metal
     )
     bars = [
         box((-0.42 * w, 0.42 * w), (-0.012, 0.012), (0.6 * h, 0.72 * h)),
         box((-0.012, 0.012), (-0.42 * d, 0.42 * d), (0.72 * h, 0.84 * h)),
     ]
-    return Shape(made + pieces("spokes", bars, metal) + pieces("mount", revolve([(0.08, 0.84 * h), (0.08, h)], 20), metal))
+    return Shape(parts + pieces("spokes", bars, metal) + pieces("mount", revolve([(0.08, 0.84 * h), (0.08, h)], 20), metal))
 
 
 def _rain(form: str, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -226,7 +226,7 @@ def _rain(form: str, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
     disc = revolve([(0.5 * w, h - 0.03), (0.5 * w, h - 0.008), (0.47 * w, h)], 28)
     panel = [box((-w / 2, w / 2), (-w / 2, w / 2), (h - 0.03, h), 0.006)]
     edged = form in ("square", "frame")
-    made = pieces("plate", [s.scaled(squash) for s in (panel if edged else disc)], scheme.handle)
+    parts = pieces("plate", [s.scaled(squash) for s in (panel if edged else disc)], scheme.handle)
     rows = 3
     for k in range(rows):
         r = 0.47 * w * (1 - 0.3 * k)
@@ -237,8 +237,8 @@ def _rain(form: str, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
             reach = r / max(abs(math.cos(a)), abs(math.sin(a))) if edged else r
             x, y = reach * math.cos(a), reach * math.sin(a) * d / w
             rods.append(rod((x, y, low), (x, y, h - 0.03), 0.007, n=5))
-        made += pieces("drops", rods, CRYSTAL if form == "crystal" else GLOW)
-    return made
+        parts += pieces("drops", rods, CRYSTAL if form == "crystal" else GLOW)
+    return parts
 
 
 def _lattice(size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -249,9 +249,9 @@ def _lattice(size: Size, scheme: Scheme) -> tuple[Piece, ...]:
     x, y = w / 2, d / 2
     frame = [box((-x, x), (s * (y - t / 2) - t / 2, s * (y - t / 2) + t / 2), (0, h), 0.003) for s in (-1, 1)]
     frame += [box((s * (x - t / 2) - t / 2, s * (x - t / 2) + t / 2), (-y + t, y - t), (0, h), 0.003) for s in (-1, 1)]
-    made = pieces("frame", frame, wood) + pieces("light", box((-x + t, x - t), (-y + t, y - t), (0.02, h - 0.01)), GLOW)
+    parts = pieces("frame", frame, wood) + pieces("light", box((-x + t, x - t), (-y + t, y - t), (0.02, h - 0.01)), GLOW)
     xs, ys = np.linspace(-x + t, x - t, 5)[1:-1], np.linspace(-y + t, y - t, 5)[1:-1]
     bars = [box((a - 0.006, a + 0.006), (-y + t, y - t), (0.011, 0.02)) for a in xs] + [
         box((-x + t, x - t), (b - 0.006, b + 0.006), (0.002, 0.011)) for b in ys
     ]
-    return made + pieces("lattice", bars, wood)
+    return parts + pieces("lattice", bars, wood)

@@ -38,8 +38,8 @@ def trash_can(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
         r = w / 2 - 0.006
         body = ring((0.92 * r, r), (0.92 * r - 0.009, r - 0.009), (0.03, top), 24)
         base = staves("body", body, finish) + pieces("foot", slab(circle(0.94 * r, 24), (0.0, 0.03), 0.004), PLASTIC)
-        made = pieces("lid", revolve([(w / 2 - 0.004, top + 0.003), (w / 2 - 0.004, top + 0.015), (0.7 * r, h)], 24), cover_finish)
-        movers = [lid("lid", made, (0.0, r + 0.002, top + 0.004), math.radians(80))]
+        lid_parts = pieces("lid", revolve([(w / 2 - 0.004, top + 0.003), (w / 2 - 0.004, top + 0.015), (0.7 * r, h)], 24), cover_finish)
+        movers = [lid("lid", lid_parts, (0.0, r + 0.002, top + 0.004), math.radians(80))]
         if form == "pedal":
             plate = box((-0.045, 0.045), (-r - ahead, -0.94 * r - 0.004), (0.022, 0.030), 0.002)
             at = (0.0, -r - 0.5 * ahead, 0.03)
@@ -95,11 +95,11 @@ def bucket(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     movers = [bail((w / 2 - 0.004, w - r - 0.004), z, (0.0, 0.0), STEEL)]
     if covered:
         dome = revolve([(r + 0.002, rim + 0.002), (r + 0.002, rim + 0.008), (0.9 * r, rim + 0.012)], 24)
-        made = pieces("lid", dome, finish, group="lid")
-        made += pieces(
+        lid_parts = pieces("lid", dome, finish, group="lid")
+        lid_parts += pieces(
             "lid_knob", revolve([(0.018, rim + 0.012), (0.022, h - 0.004), (0.016, h)], 12), PLASTIC, "round_fixed_handle", "knob"
         )
-        movers.append(Mover("lid", made, "prismatic", (0, 0, 1), (0.0, 0.0, rim), 0.5 * h, "slider_lid", "lid", UP))
+        movers.append(Mover("lid", lid_parts, "prismatic", (0, 0, 1), (0.0, 0.0, rim), 0.5 * h, "slider_lid", "lid", UP))
     return Shape(base, tuple(movers))
 
 
@@ -122,14 +122,14 @@ def storage_box(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
     cover = min(0.05, 0.25 * h)
     low = h - cover
     base = pieces("walls", tray_walls(x, (front, y[1]), (0.0, low), t, 0.001), finish)
-    made = pieces("lid", box(x, (front, y[1]), (h - t, h), 0.002), finish)
+    lid_parts = pieces("lid", box(x, (front, y[1]), (h - t, h), 0.002), finish)
     rim = [box((x[0], x[0] + t), (front, y[1]), (low + 0.002, h - t)), box((x[1] - t, x[1]), (front, y[1]), (low + 0.002, h - t))]
     rim += [box((x[0] + t, x[1] - t), (a, a + t), (low + 0.002, h - t)) for a in (front, y[1] - t)]
-    made += pieces("lid_rim", rim, finish)
-    made += pieces("tab", box((-0.025, 0.025), (y[0], front), (low - 0.012, low + 0.02), 0.002), scheme.handle, "line_fixed_handle")
+    lid_parts += pieces("lid_rim", rim, finish)
+    lid_parts += pieces("tab", box((-0.025, 0.025), (y[0], front), (low - 0.012, low + 0.02), 0.002), scheme.handle, "line_fixed_handle")
     corners = [box((sx * (w / 2 - 0.012) - 0.012, sx * (w / 2 - 0.012) + 0.012), (front - 0.001, front), (0.0, 0.03)) for sx in (-1, 1)]
     base += pieces("corners", corners, scheme.handle)
-    return Shape(base, (lid("lid", made, (0.0, y[1], low + 0.002), math.radians(100)),))
+    return Shape(base, (lid("lid", lid_parts, (0.0, y[1], low + 0.002), math.radians(100)),))
 
 
 def _carton(size: Size) -> Shape:
@@ -170,9 +170,9 @@ def briefcase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     half = 0.52 * h
     base = pieces("lower", tray_walls(x, y, (0.0, half), t, 0.002), finish)
     base += pieces("band", box((x[0] - 0.001, x[1] + 0.001), (y[0] - 0.001, y[0]), (half - 0.012, half)), STEEL, group="band")
-    made = pieces("upper", box(x, y, (h - t, h), 0.004), finish)
-    made += pieces("upper_rim", walls(x, y, (half + 0.003, h - t), t), finish)
-    movers = [lid("lid", made, (0.0, y[1], half + 0.003), math.radians(110))]
+    lid_parts = pieces("upper", box(x, y, (h - t, h), 0.004), finish)
+    lid_parts += pieces("upper_rim", walls(x, y, (half + 0.003, h - t), t), finish)
+    movers = [lid("lid", lid_parts, (0.0, y[1], half + 0.003), math.radians(110))]
     # the handle hangs against the front and is folded out
     z = half - 0.03
     reach, wide = min(0.036, z - 0.02), min(0.07, 0.2 * w)  # it hangs clear of what the case lies on
@@ -210,14 +210,14 @@ def suitcase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     base += pieces("tubes", [rod((s * 0.2 * w, y[1] - 0.02, z[1]), (s * 0.2 * w, y[1] - 0.02, h - 0.014), 0.006) for s in (-1, 1)], STEEL)
     base += pieces("pull", box((-0.22 * w, 0.22 * w), (y[1] - 0.034, y[1] - 0.006), (h - 0.014, h), 0.004), PLASTIC, "line_fixed_handle")
     front = [box(x, (y[0], y[0] + face), z, 0.009), *frame(outer, inner, (y[0] + face, middle - 0.003), 0.0)]
-    made = pieces("front", front, finish) + castors(y[0] + 0.0335, 5e-4)  # which turn with it
+    front_parts = pieces("front", front, finish) + castors(y[0] + 0.0335, 5e-4)  # which turn with it
     grooves = [
         box((x[0] + (k + 0.5) * w / 7 - 0.008, x[0] + (k + 0.5) * w / 7 + 0.008), (y[0] - 0.003, y[0]), (z[0] + 0.03, z[1] - 0.03))
         for k in range(7)
     ]
-    made += pieces("ribs", grooves, finish, group="ribs")
+    front_parts += pieces("ribs", grooves, finish, group="ribs")
     axis = (0.0, 0.0, -1.0)
-    shut = Mover("shell", made, "revolute", axis, (x[0], middle - 0.003, (z[0] + z[1]) / 2), math.radians(120), "hinge_door", "door")
+    shut = Mover("shell", front_parts, "revolute", axis, (x[0], middle - 0.003, (z[0] + z[1]) / 2), math.radians(120), "hinge_door", "door")
     hoop = [
         box((x[1] + 0.001, x[1] + 0.012), (middle + 0.01, middle + 0.024), (0.45 * h + s * 0.08 - 0.006, 0.45 * h + s * 0.08 + 0.006))
         for s in (-1, 1)
@@ -276,8 +276,8 @@ def _wheel(at: tuple[float, float, float], r: float, s: float) -> Mover:
     """Return the lever that draws the bolts: a hub with one arm."""
     hub = [k.turned("x", math.pi / 2).moved(at) for k in revolve([(0.016, 0.001), (0.016, 0.032), (0.012, 0.038)], 12)]
     arm = box((min(at[0], at[0] + s * r), max(at[0], at[0] + s * r)), (at[1] - 0.034, at[1] - 0.022), (at[2] - 0.009, at[2] + 0.009), 0.003)
-    made = pieces("lever", [*hub, arm], STEEL, group="lever")
-    return Mover("lever", made, "revolute", (0, s, 0), at, math.pi / 2, "hinge_handle", "handle")
+    parts = pieces("lever", [*hub, arm], STEEL, group="lever")
+    return Mover("lever", parts, "revolute", (0, s, 0), at, math.pi / 2, "hinge_handle", "handle")
 
 
 def drawer_organiser(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:

@@ -129,12 +129,12 @@ def _jug(x: float, y: float, low: float, high: float, r: float) -> tuple[Piece, 
     """Return a glass jug half full of coffee, with a handle."""
     rim = high - 0.025
     wall = ring((r, 0.8 * r), (r - 0.006, 0.8 * r - 0.006), (low + 0.006, rim), 18, (x, y))
-    made = staves("jug", wall, GLASS) + pieces("jug_floor", slab(circle(r, 18, (x, y)), (low, low + 0.006)), GLASS)
-    made += pieces("coffee", revolve([(r - 0.008, low + 0.007), (r - 0.014, low + 0.4 * (rim - low))], 18, (x, y)), COFFEE)
-    made += pieces("jug_lid", revolve([(0.8 * r, rim), (0.7 * r, high)], 18, (x, y)), PLASTIC)
+    parts = staves("jug", wall, GLASS) + pieces("jug_floor", slab(circle(r, 18, (x, y)), (low, low + 0.006)), GLASS)
+    parts += pieces("coffee", revolve([(r - 0.008, low + 0.007), (r - 0.014, low + 0.4 * (rim - low))], 18, (x, y)), COFFEE)
+    parts += pieces("jug_lid", revolve([(0.8 * r, rim), (0.7 * r, high)], 18, (x, y)), PLASTIC)
     grip = [box((x - 0.008, x + 0.008), (y - r - 0.026, y - r - 0.014), (low + 0.03, rim - 0.006), 0.003)]
     grip.append(box((x - 0.008, x + 0.008), (y - r - 0.014, y - 0.8 * r), (rim - 0.018, rim - 0.006), 0.002))
-    return made + pieces("jug_handle", grip, PLASTIC, group="jug_handle")
+    return parts + pieces("jug_handle", grip, PLASTIC, group="jug_handle")
 
 
 def kitchen_pot(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -191,14 +191,14 @@ def bail(radii: tuple[float, float], z: float, centre: tuple[float, float], fini
     solids: list[Solid] = [rod(a, b, WIRE, n=6) for a, b in itertools.pairwise(points)]
     middle = centre[1] + radii[1] * math.sin(angles[3])
     solids[3] = rod((centre[0] - 0.05, middle, z), (centre[0] + 0.05, middle, z), 2 * WIRE, n=8)
-    made = pieces("bail", [s for k, s in enumerate(solids) if k != 3], finish) + pieces("bail_grip", solids[3], PLASTIC)
-    return Mover("bail", made, "revolute", (1, 0, 0), (centre[0], centre[1], z), math.pi, "hinge_handle", "handle", UP)
+    parts = pieces("bail", [s for k, s in enumerate(solids) if k != 3], finish) + pieces("bail_grip", solids[3], PLASTIC)
+    return Mover("bail", parts, "revolute", (1, 0, 0), (centre[0], centre[1], z), math.pi, "hinge_handle", "handle", UP)
 
 
 def lugs(r: float, z: float, centre: tuple[float, float]) -> list[Solid]:
     """Return the two lugs on which a bail turns."""
-    made = []
+    solids = []
     for s in (-1, 1):
         x = sorted((centre[0] + s * (r - 0.006), centre[0] + s * (r + 0.008)))
-        made.append(box((x[0], x[1]), (centre[1] - 0.01, centre[1] + 0.01), (z - 0.012, z + 0.012), 0.002))
-    return made
+        solids.append(box((x[0], x[1]), (centre[1] - 0.01, centre[1] + 0.01), (z - 0.012, z + 0.012), 0.002))
+    return solids

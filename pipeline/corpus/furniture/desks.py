@@ -8,10 +8,10 @@ import math
 import numpy as np
 
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
-from pipeline.corpus.furniture.dining_tables import cased_table, legged
+from pipeline.corpus.furniture.dining_tables import cased_table, legged_table
 from pipeline.corpus.furniture.finishes import MIRROR, Scheme
 from pipeline.corpus.furniture.panels import Rect, frame
-from pipeline.corpus.furniture.shape import Piece, Shape, joined, moved, pieces
+from pipeline.corpus.furniture.shape import Piece, Shape, join_shapes, pieces, translate
 from pipeline.corpus.furniture.solids import box, revolve, ring
 from pipeline.corpus.furniture.storage import Size, front_style
 
@@ -26,12 +26,12 @@ def desk(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     elif form == "drawers":
         shape = cased_table(rng, (w, d, work), scheme, drawer_height=0.11, count=2 if w < 1.5 else 3)
     else:
-        shape = legged(rng, (w, d, work), scheme, without="block bun horse")
+        shape = legged_table(rng, (w, d, work), scheme, without="block bun horse")
         shape = Shape(
             shape.base + pieces("modesty", box((-0.44 * w, 0.44 * w), (0.3 * d, 0.3 * d + 0.015), (0.4 * work, work - 0.05)), scheme.body)
         )
     if hutch > 0.1:
-        shape = joined(shape, Shape(_hutch(w, d, work, hutch, scheme)))
+        shape = join_shapes(shape, Shape(_hutch(w, d, work, hutch, scheme)))
     return shape
 
 
@@ -41,13 +41,13 @@ def _hutch(w: float, d: float, z: float, height: float, scheme: Scheme) -> tuple
     y = (d / 2 - depth, d / 2)
     count = max(1, round(w / 0.7))
     xs = np.linspace(-w / 2 + 0.01, w / 2 - 0.01 - 0.018, count + 1)
-    made = pieces("hutch_sides", [box((x, x + 0.018), y, (z, z + height - 0.018)) for x in xs], scheme.body)
-    made += pieces("hutch_top", box((-w / 2 + 0.01, w / 2 - 0.01), y, (z + height - 0.018, z + height), 0.002), scheme.body)
+    parts = pieces("hutch_sides", [box((x, x + 0.018), y, (z, z + height - 0.018)) for x in xs], scheme.body)
+    parts += pieces("hutch_top", box((-w / 2 + 0.01, w / 2 - 0.01), y, (z + height - 0.018, z + height), 0.002), scheme.body)
     middle = z + 0.55 * height
     if height > 0.3:
         boards = [box((a + 0.018, b), (y[0] + 0.01, y[1]), (middle, middle + 0.016)) for a, b in itertools.pairwise(xs)]
-        made += pieces("hutch_boards", boards, scheme.body)
-    return made
+        parts += pieces("hutch_boards", boards, scheme.body)
+    return parts
 
 
 def _pedestal_desk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
@@ -72,7 +72,7 @@ def _pedestal_desk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shap
     inner = side * (w / 2 - 0.02 - wide)
     span = (min(inner, x), max(inner, x))
     base += pieces("modesty", box(span, (0.36 * d, 0.36 * d + 0.015), (0.45 * h, h - t)), scheme.body)
-    return joined(Shape(base), moved(chest, (side * (w / 2 - 0.02 - wide / 2), 0.0, 0.0), "pedestal_"))
+    return join_shapes(Shape(base), translate(chest, (side * (w / 2 - 0.02 - wide / 2), 0.0, 0.0), "pedestal_"))
 
 
 def dressing_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -102,4 +102,4 @@ def dressing_table(rng: np.random.Generator, form: str, size: Size, scheme: Sche
         glass = [box(pane.x, (y + 0.006, y + 0.014), pane.z)]
         base = pieces("mirror", glass, MIRROR, group="mirror") + pieces("mirror_frame", rim, scheme.body, group="mirror")
         base += pieces("mirror_feet", feet, scheme.body)
-    return joined(table, Shape(base))
+    return join_shapes(table, Shape(base))

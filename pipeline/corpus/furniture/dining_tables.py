@@ -14,7 +14,7 @@ from pipeline.corpus.furniture.casework import Cell, Column, case
 from pipeline.corpus.furniture.finishes import Finish, Scheme
 from pipeline.corpus.furniture.legs import WIDE, draw_kind, inside, leg_finish, legs, pedestal
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, box, circle, revolve, rod, rounded, slab
+from pipeline.corpus.furniture.solids import Solid, beam, box, circle, revolve, rod, rounded_rectangle, slab
 from pipeline.corpus.furniture.storage import Size, case_style, front_style
 
 
@@ -31,7 +31,7 @@ def outline(rng: np.random.Generator, scheme: Scheme, w: float, d: float) -> NDA
         side = np.column_stack([w / 2 * t, (0.1 * t**2 - 0.5) * d])
         return np.concatenate([side, -side])
     radius = 0.012 + scheme.manner.edge if u < 0.55 else min(0.14, 0.2 * d) if u < 0.88 else 0.499 * min(w, d)
-    return rounded((-w / 2, w / 2), (-d / 2, d / 2), radius, 4 if radius < 0.2 else 8)
+    return rounded_rectangle((-w / 2, w / 2), (-d / 2, d / 2), radius, 4 if radius < 0.2 else 8)
 
 
 def top(edge: NDArray[np.float64], z: tuple[float, float], scheme: Scheme) -> list[Solid]:
@@ -54,25 +54,25 @@ def apron(w: float, d: float, z: tuple[float, float], inset: float, thick: float
     ]
 
 
-def legged(rng: np.random.Generator, size: Size, scheme: Scheme, *, without: str = "") -> Shape:
+def legged_table(rng: np.random.Generator, size: Size, scheme: Scheme, *, without: str = "") -> Shape:
     """Build a top on legs of the style's form, joined by rails between them."""
     w, d, h = size
     t = float(rng.uniform(0.022, 0.036)) * min(scheme.manner.slim, 1.15)
     kind = draw_kind(rng, scheme, without + (" bun" if h > 0.3 else ""))
     material = top_finish(rng, scheme)
-    made = pieces("top", top(outline(rng, scheme, w, d), (h - t, h), scheme), material)
+    parts = pieces("top", top(outline(rng, scheme, w, d), (h - t, h), scheme), material)
     finish = leg_finish(scheme, kind)
     thick = (0.062 if h > 0.6 else 0.046) * scheme.manner.slim
     room = 0.16 * min(w, d) if d > 0.9 * w else 0.05
     outer = (w / 2 - room * 0.6, d / 2 - room * 0.6)
     if kind in ("hairpin", "sled", "cross", "plank", "blade", "pipe"):
         half = inside(kind, (outer[0] - (0.06 * w if kind in WIDE else 0), outer[1]), h - t, thick)
-        return Shape(made + pieces("legs", legs(kind, half, h - t, thick), finish) + _brace(kind, half, h - t, finish))
+        return Shape(parts + pieces("legs", legs(kind, half, h - t, thick), finish) + _brace(kind, half, h - t, finish))
     drop = (0.075 if h > 0.6 else 0.045) + 0.02 * scheme.manner.ornament
     half = inside(kind, outer, h - t, thick)
-    made += pieces("legs", legs(kind, half, h - t, thick), finish)
-    made += pieces("apron", rails(half, (h - t - drop, h - t), 0.5 * thick + (0.004 if kind not in ("turned", "fluted") else 0.0)), finish)
-    return Shape(made)
+    parts += pieces("legs", legs(kind, half, h - t, thick), finish)
+    parts += pieces("apron", rails(half, (h - t - drop, h - t), 0.5 * thick + (0.004 if kind not in ("turned", "fluted") else 0.0)), finish)
+    return Shape(parts)
 
 
 def rails(half: tuple[float, float], z: tuple[float, float], gap: float) -> list[Solid]:
@@ -95,29 +95,29 @@ def dining_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     w, d, h = size
     t = float(rng.uniform(0.026, 0.042))
     if form == "legs":
-        return legged(rng, size, scheme, without="block")
+        return legged_table(rng, size, scheme, without="block")
     if form == "farm":
         return _farm(rng, size, scheme)
     material = top_finish(rng, scheme, stone=1.8)
     if form in ("pedestal", "tulip", "drum"):
-        made = pieces("top", top(circle(w / 2, 36), (h - t, h), scheme), material)
+        parts = pieces("top", top(circle(w / 2, 36), (h - t, h), scheme), material)
         if form == "drum":
-            return Shape(made + fluted_drum(0.3 * w, h - t, scheme))
+            return Shape(parts + fluted_drum(0.3 * w, h - t, scheme))
         foot = trumpet(0.32 * w, h - t) if form == "tulip" else pedestal(rng, scheme, min(0.32 * w, 0.4), h - t)
         metal = form == "tulip" or (scheme.accent is scheme.handle and scheme.manner.ornament < 0.5)
-        return Shape(made + pieces("pedestal", foot, scheme.front if form == "tulip" else scheme.handle if metal else scheme.timber))
-    made = pieces("top", top(outline(rng, scheme, w, d), (h - t, h), scheme), material)
+        return Shape(parts + pieces("pedestal", foot, scheme.front if form == "tulip" else scheme.handle if metal else scheme.timber))
+    parts = pieces("top", top(outline(rng, scheme, w, d), (h - t, h), scheme), material)
     solids: list[Solid] = []
     x = 0.32 * w
     if form == "bar":
-        return Shape(made + _bar(size, t, scheme))
+        return Shape(parts + _bar(size, t, scheme))
     if form == "trestle":
         for s in (-1, 1):
             solids += [beam((s * x, sy * 0.38 * d, 0.05), (s * x, sy * 0.1 * d, h - t - 0.05), 0.05, 0.06) for sy in (-1, 1)]
             solids.append(box((s * x - 0.03, s * x + 0.03), (-0.42 * d, 0.42 * d), (0.0, 0.05), 0.006))
             solids.append(box((s * x - 0.03, s * x + 0.03), (-0.38 * d, 0.38 * d), (h - t - 0.05, h - t), 0.006))
         solids.append(box((-x + 0.026, x - 0.026), (-0.014, 0.014), (0.1, 0.17), 0.004))
-        return Shape(made + pieces("trestle", solids, scheme.timber))
+        return Shape(parts + pieces("trestle", solids, scheme.timber))
     if form == "cross":
         bars = [((s * 0.30 * w, -0.32 * d), (-s * 0.14 * w, 0.3 * d)) for s in (-1, 1)]
         for k, ((x0, y0), (x1, y1)) in enumerate(bars):
@@ -132,11 +132,11 @@ def dining_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
                     )
                 )
         solids.append(box((-0.33 * w, 0.33 * w), (-0.36 * d, 0.36 * d), (h - t - 0.02, h - t), 0.003))
-        return Shape(made + pieces("cross", solids, scheme.handle if scheme.manner.tube > 0.3 else scheme.timber))
+        return Shape(parts + pieces("cross", solids, scheme.handle if scheme.manner.tube > 0.3 else scheme.timber))
     thick = 0.05
     solids += [box((s * x - thick / 2, s * x + thick / 2), (-0.4 * d, 0.4 * d), (0, h - t), 0.006) for s in (-1, 1)]
     solids.append(box((-x + thick / 2, x - thick / 2), (-0.016, 0.016), (0.55 * h, h - t), 0.003))
-    return Shape(made + pieces("slabs", solids, scheme.body))
+    return Shape(parts + pieces("slabs", solids, scheme.body))
 
 
 def _farm(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
@@ -153,8 +153,8 @@ def _farm(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
     thick = 0.082
     half = inside(kind, (w / 2 - 0.05, d / 2 - 0.05), h - t, thick)
     under = scheme.front if rng.random() < 0.5 else scheme.timber
-    made = pieces("top", planks, scheme.timber) + pieces("legs", legs(kind, half, h - t, thick), under)
-    return Shape(made + pieces("apron", rails(half, (h - t - 0.1, h - t), 0.52 * thick + (0.012 if kind == "block" else 0.0)), under))
+    parts = pieces("top", planks, scheme.timber) + pieces("legs", legs(kind, half, h - t, thick), under)
+    return Shape(parts + pieces("apron", rails(half, (h - t - 0.1, h - t), 0.52 * thick + (0.012 if kind == "block" else 0.0)), under))
 
 
 def trumpet(radius: float, height: float) -> list[Solid]:
@@ -199,14 +199,14 @@ def _bar(size: Size, t: float, scheme: Scheme) -> tuple[Piece, ...]:
     boards = [box((a + 0.001, b - 0.001), (y, y + 0.02), (0.06, h - t), 0.003) for a, b in itertools.pairwise(xs)]
     sides = [box((s * 0.45 * w - 0.012, s * 0.45 * w + 0.012), (y + 0.02, 0.42 * d), (0.0, h - t), 0.002) for s in (-1, 1)]
     inner = (-0.45 * w + 0.012, 0.45 * w - 0.012)
-    made = pieces("front", boards, scheme.front) + pieces("sides", sides, scheme.body)
-    made += pieces("shelf", [box(inner, (y + 0.02, 0.4 * d), (z, z + 0.02)) for z in (0.1, 0.48 * h)], scheme.body)
-    made += pieces("plinth", box((-0.45 * w, 0.45 * w), (y + 0.004, y + 0.02), (0.0, 0.06)), scheme.handle)
+    parts = pieces("front", boards, scheme.front) + pieces("sides", sides, scheme.body)
+    parts += pieces("shelf", [box(inner, (y + 0.02, 0.4 * d), (z, z + 0.02)) for z in (0.1, 0.48 * h)], scheme.body)
+    parts += pieces("plinth", box((-0.45 * w, 0.45 * w), (y + 0.004, y + 0.02), (0.0, 0.06)), scheme.handle)
     z = 0.17
     rail = [rod((-0.45 * w, y - 0.1, z), (0.45 * w, y - 0.1, z), 0.014, n=10)] + [
         rod((s * 0.36 * w, y, z), (s * 0.36 * w, y - 0.087, z), 0.009, n=8) for s in (-1, 0, 1)
     ]
-    return made + pieces("rail", rail, scheme.handle)
+    return parts + pieces("rail", rail, scheme.handle)
 
 
 def cased_table(rng: np.random.Generator, size: Size, scheme: Scheme, *, drawer_height: float, count: int) -> Shape:

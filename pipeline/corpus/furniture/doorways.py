@@ -9,7 +9,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Scheme
 from pipeline.corpus.furniture.panels import FrontStyle, Rect, panel
-from pipeline.corpus.furniture.shape import Axis3, Mover, Piece, Shape, grouped, pieces
+from pipeline.corpus.furniture.shape import Axis3, Mover, Piece, Shape, group_pieces, pieces
 from pipeline.corpus.furniture.solids import box, revolve
 from pipeline.corpus.furniture.storage import Size, pick
 
@@ -50,9 +50,9 @@ def _leaf(rng: np.random.Generator, form: str, rect: Rect, style: FrontStyle) ->
     kind = "glass" if form == "glazed" else pick(rng, "shaker raised")
     looks = replace(style, panel=kind)  # type: ignore[arg-type]
     cut = rect.z[0] + 0.42 * rect.height
-    made = panel(Rect(rect.x, (rect.z[0], cut), rect.y), replace(looks, panel="shaker") if form == "glazed" else looks)
-    made += panel(Rect(rect.x, (cut, rect.z[1]), rect.y), looks)
-    return grouped(made, "leaf")
+    parts = panel(Rect(rect.x, (rect.z[0], cut), rect.y), replace(looks, panel="shaker") if form == "glazed" else looks)
+    parts += panel(Rect(rect.x, (cut, rect.z[1]), rect.y), looks)
+    return group_pieces(parts, "leaf")
 
 
 def _lever(name: str, at: Axis3, outwards: float, side: float, finish: Finish) -> Mover:
@@ -63,6 +63,6 @@ def _lever(name: str, at: Axis3, outwards: float, side: float, finish: Finish) -
     arm_y = sorted((at[1] + outwards * (LEVER - 0.016), at[1] + outwards * LEVER))
     arm_x = sorted((at[0] + side * 0.010, at[0] - side * 0.115))
     arm = box((arm_x[0], arm_x[1]), (arm_y[0], arm_y[1]), (at[2] - 0.010, at[2] + 0.010), 0.003)
-    made = pieces("rose", rose, finish) + pieces("lever", [*neck, arm], finish)
+    parts = pieces("rose", rose, finish) + pieces("lever", [*neck, arm], finish)
     axis = (0.0, -side, 0.0)
-    return Mover(name, made, "revolute", axis, at, math.radians(40), "hinge_handle", "handle", (0.0, outwards, 0.0), "leaf")
+    return Mover(name, parts, "revolute", axis, at, math.radians(40), "hinge_handle", "handle", (0.0, outwards, 0.0), "leaf")

@@ -36,27 +36,27 @@ def handle(
     x, z = at
     y, half = rect.y, length / 2
     part = "line_fixed_handle"
-    made: list[Solid]
+    solids: list[Solid]
     if style.handle in ("none", "groove"):
         return ()
     if style.handle in ("knob", "ring"):
         part = "round_fixed_handle"
-        made = [s.turned("x", math.pi / 2).moved((x, y, z)) for s in _round_grip(style.handle)]
+        solids = [s.turned("x", math.pi / 2).moved((x, y, z)) for s in _round_grip(style.handle)]
     elif style.handle == "cup" and not upright:
         turns = np.linspace(0, math.pi / 2, 4)
         section = [(-0.022 * math.cos(t), 0.024 * math.sin(t) - 0.008) for t in turns] + [(0.0, -0.008)]
         wide = min(half, 0.048)
-        made = [hull(np.array([(x + s * wide, y + dy, z + dz) for s in (-1, 1) for dy, dz in section]))]
+        solids = [hull(np.array([(x + s * wide, y + dy, z + dz) for s in (-1, 1) for dy, dz in section]))]
     elif style.handle == "edge":
         top = rect.z[1] - 0.001
         if upright:
             edge = rect.x[0] if x < rect.middle[0] else rect.x[1] - 0.008
-            made = [box((edge, edge + 0.008), (y - 0.014, y), (z - half, z + half), 0.001)]
+            solids = [box((edge, edge + 0.008), (y - 0.014, y), (z - half, z + half), 0.001)]
         else:
-            made = [box((x - half, x + half), (y - 0.014, y), (top - 0.008, top), 0.001)]
+            solids = [box((x - half, x + half), (y - 0.014, y), (top - 0.008, top), 0.001)]
     else:
-        made = _bar(style, (x, y, z), (0.0, half) if upright else (half, 0.0))
-    return pieces(name, made, style.metal, part, name)
+        solids = _bar(style, (x, y, z), (0.0, half) if upright else (half, 0.0))
+    return pieces(name, solids, style.metal, part, name)
 
 
 def _round_grip(style: HandleStyle) -> list[Solid]:
@@ -75,14 +75,14 @@ def _bar(style: FrontStyle, at: Axis3, along: tuple[float, float]) -> list[Solid
     if style.handle in ("bar", "long"):
         r = 0.006
         centre = y - stand + r
-        made = [rod((x - along[0], centre, z - along[1]), (x + along[0], centre, z + along[1]), r)]
+        solids = [rod((x - along[0], centre, z - along[1]), (x + along[0], centre, z + along[1]), r)]
     else:
         half_x, half_z = max(along[0], 0.006), max(along[1], 0.006)
-        made = [box((x - half_x, x + half_x), (y - stand, y - stand + 0.008), (z - half_z, z + half_z), 0.0015)]
+        solids = [box((x - half_x, x + half_x), (y - stand, y - stand + 0.008), (z - half_z, z + half_z), 0.0015)]
     for sign in (-1, 1):
         fx, fz = x + sign * 0.75 * along[0], z + sign * 0.75 * along[1]
-        made.append(box((fx - 0.005, fx + 0.005), (y - stand + 0.006, y), (fz - 0.005, fz + 0.005)))
-    return made
+        solids.append(box((fx - 0.005, fx + 0.005), (y - stand + 0.006, y), (fz - 0.005, fz + 0.005)))
+    return solids
 
 
 def door(name: str, rect: Rect, style: FrontStyle, hinge: Side, upper: float, *, grip: tuple[float, float] | None = None) -> Mover:
@@ -120,8 +120,8 @@ def door(name: str, rect: Rect, style: FrontStyle, hinge: Side, upper: float, *,
         grip = grips[hinge]
     if not upright:
         length = min(0.45, 0.6 * rect.width)
-    made = panel(rect, style) + handle(style, rect, upright=upright, at=grip, length=length)
-    return Mover(name, made, "revolute", axis, origin, upper, "hinge_door", "door")
+    parts = panel(rect, style) + handle(style, rect, upright=upright, at=grip, length=length)
+    return Mover(name, parts, "revolute", axis, origin, upper, "hinge_door", "door")
 
 
 def sliding_door(name: str, rect: Rect, style: FrontStyle, towards: float, travel: float) -> Mover:
@@ -135,8 +135,8 @@ def sliding_door(name: str, rect: Rect, style: FrontStyle, towards: float, trave
     z = min(max(rect.middle[1], rect.z[0] + 0.12), 1.05)
     half = min(0.09, 0.3 * rect.height)
     plate = box((x - 0.012, x + 0.012), (rect.y - 0.003, rect.y), (z - half, z + half))
-    made = panel(rect, style) + pieces("handle", plate, style.metal, "line_fixed_handle")
-    return Mover(name, made, "prismatic", (towards, 0.0, 0.0), (rect.middle[0], rect.y, z), travel, "slider_lid", "door")
+    parts = panel(rect, style) + pieces("handle", plate, style.metal, "line_fixed_handle")
+    return Mover(name, parts, "prismatic", (towards, 0.0, 0.0), (rect.middle[0], rect.y, z), travel, "slider_lid", "door")
 
 
 def drawer(
@@ -163,8 +163,8 @@ def drawer(
     boards = tray((x0, x1), (y0, y1), (z0, z1), wall)
     grips, at = _drawer_grips(rect, style)
     travel = round(0.82 * (y1 - y0), 3)
-    made = panel(rect, style) + pieces("drawer_box", boards, inside) + grips
-    return Mover(name, made, "prismatic", (0, -1, 0), at, travel, "slider_drawer", "drawer", after=after)
+    parts = panel(rect, style) + pieces("drawer_box", boards, inside) + grips
+    return Mover(name, parts, "prismatic", (0, -1, 0), at, travel, "slider_drawer", "drawer", after=after)
 
 
 def tray(x: Interval, y: Interval, z: Interval, wall: float) -> list[Solid]:
@@ -188,9 +188,9 @@ def _drawer_grips(rect: Rect, style: FrontStyle) -> tuple[tuple[Piece, ...], Axi
     return handle(style, rect, upright=False, at=(middle, height), length=min(length, 0.8 * rect.width)), at
 
 
-def lid(name: str, made: tuple[Piece, ...], hinge: tuple[float, float, float], upper: float, parent: str = "base") -> Mover:
+def lid(name: str, parts: tuple[Piece, ...], hinge: tuple[float, float, float], upper: float, parent: str = "base") -> Mover:
     """Return a lid that opens upwards about an axis along x through `hinge`."""
-    return Mover(name, made, "revolute", (-1, 0, 0), hinge, upper, "hinge_lid", "lid", UP, parent)
+    return Mover(name, parts, "revolute", (-1, 0, 0), hinge, upper, "hinge_lid", "lid", UP, parent)
 
 
 def knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: float = 0.022, turn: float = 1.5 * math.pi) -> Mover:
@@ -198,8 +198,8 @@ def knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: float = 
     profile = [(radius, 0.001), (radius, 0.35 * depth), (0.82 * radius, depth)]
     dial = [s.turned("x", math.pi / 2).moved(at) for s in revolve(profile, 16)]
     mark = box((at[0] - 0.0015, at[0] + 0.0015), (at[1] - depth - 0.002, at[1] - depth), (at[2], at[2] + 0.75 * radius))
-    made = pieces("knob", dial, finish, group="knob") + pieces("knob_mark", mark, MARK, group="knob")
-    return Mover(name, made, "revolute", (0, 1, 0), at, turn, "hinge_knob", "knob")
+    parts = pieces("knob", dial, finish, group="knob") + pieces("knob_mark", mark, MARK, group="knob")
+    return Mover(name, parts, "revolute", (0, 1, 0), at, turn, "hinge_knob", "knob")
 
 
 def top_knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: float = 0.018, turn: float = 1.5 * math.pi) -> Mover:
@@ -207,8 +207,8 @@ def top_knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: floa
     dial = revolve([(radius, at[2] + 0.001), (radius, at[2] + 0.4 * depth), (0.85 * radius, at[2] + depth)], 12, (at[0], at[1]))
     top = at[2] + depth
     mark = box((at[0] - 0.0015, at[0] + 0.0015), (at[1] - 0.75 * radius, at[1]), (top, top + 0.002))
-    made = pieces("knob", dial, finish, group="knob") + pieces("knob_mark", mark, MARK, group="knob")
-    return Mover(name, made, "revolute", (0, 0, -1), at, turn, "hinge_knob", "knob", UP)
+    parts = pieces("knob", dial, finish, group="knob") + pieces("knob_mark", mark, MARK, group="knob")
+    return Mover(name, parts, "revolute", (0, 0, -1), at, turn, "hinge_knob", "knob", UP)
 
 
 def button(name: str, x: tuple[float, float], z: tuple[float, float], y: float, finish: Finish) -> Mover:

@@ -14,7 +14,7 @@ from pipeline.corpus.furniture.shape import Piece, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, pillow, revolve, ring, rod, slab
 from pipeline.corpus.furniture.storage import Size, pick
 from pipeline.corpus.furniture.tableware import glaze
-from pipeline.corpus.furniture.wall_decor import INKS, bordered
+from pipeline.corpus.furniture.wall_decor import INKS, frame_boards
 from pipeline.style import Color
 
 SCREEN = Finish("screen", (0.008, 0.009, 0.011), 0.08, density=1200)
@@ -50,7 +50,7 @@ def photo_frame(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
     art = Finish("photo", paper, 0.4, pattern=pick(rng, "art_hills art_circles art_blocks"), density=400, second=ink)  # type: ignore[arg-type]
     frame = scheme.timber if rng.random() < 0.5 else scheme.handle
     rim, front = 0.1 * w, -d / 2 + 0.006
-    face = bordered(w, h, rim, (front - 0.006, front + 0.006))
+    face = frame_boards(w, h, rim, (front - 0.006, front + 0.006))
     sheet = box((-w / 2 + rim, w / 2 - rim), (front - 0.001, front + 0.004), (rim, h - rim))
     slope = 0.5 * d / h
     leant = [lean([s], 0.0, slope)[0] for s in face]
@@ -86,12 +86,12 @@ def tray(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
         floor = slab(circle(0.49 * w, 24), (0.0, 0.25 * h))
         return Shape(pieces("floor", floor, finish) + pieces("rim", ring((w / 2, w / 2), (0.48 * w, 0.48 * w), (0.25 * h, h), 16), finish))
     t = 0.012
-    made = [box((-w / 2, w / 2), (-d / 2, d / 2), (0.0, 0.2 * h))]
-    made += [box((-w / 2, w / 2), (s * (d / 2 - t / 2) - t / 2, s * (d / 2 - t / 2) + t / 2), (0.2 * h, 0.7 * h)) for s in (-1, 1)]
+    solids = [box((-w / 2, w / 2), (-d / 2, d / 2), (0.0, 0.2 * h))]
+    solids += [box((-w / 2, w / 2), (s * (d / 2 - t / 2) - t / 2, s * (d / 2 - t / 2) + t / 2), (0.2 * h, 0.7 * h)) for s in (-1, 1)]
     x = w / 2 - t / 2
-    made += [box((s * x - t / 2, s * x + t / 2), (-d / 2 + t, d / 2 - t), (0.2 * h, 0.7 * h)) for s in (-1, 1)]
+    solids += [box((s * x - t / 2, s * x + t / 2), (-d / 2 + t, d / 2 - t), (0.2 * h, 0.7 * h)) for s in (-1, 1)]
     grips = [box((s * x - 0.006, s * x + 0.006), (-0.06, 0.06), (0.7 * h, h), 0.002) for s in (-1, 1)]
-    return Shape(pieces("tray", made, finish) + pieces("grips", grips, scheme.handle))
+    return Shape(pieces("tray", solids, finish) + pieces("grips", grips, scheme.handle))
 
 
 def bottle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -183,11 +183,11 @@ def cutting_board(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     y = 0.2 * d
     blade = box((-0.1 * w, 0.3 * w), (y - 0.018, y + 0.012), (0.6 * h, 0.6 * h + 0.002))
     grip = box((-0.34 * w, -0.1 * w), (y - 0.011, y + 0.011), (0.6 * h, h), 0.003)
-    made = pieces("board", board, timber) + pieces("blade", blade, steel) + pieces("grip", grip, SHELL)
+    parts = pieces("board", board, timber) + pieces("blade", blade, steel) + pieces("grip", grip, SHELL)
     if form == "bread":
         loaf = cushion((-0.34 * w, 0.2 * w), (-0.42 * d, -0.02 * d), (0.6 * h, 0.6 * h + 0.075), 0.032, 3)
-        made += pieces("bread", loaf, Finish("crust", shade(rng, (0.42, 0.20, 0.06)), 0.9, pattern="speckle", density=300))
-    return Shape(made)
+        parts += pieces("bread", loaf, Finish("crust", shade(rng, (0.42, 0.20, 0.06)), 0.9, pattern="speckle", density=300))
+    return Shape(parts)
 
 
 def fruit_bowl(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -253,14 +253,14 @@ def pen_cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     w, _, h = size
     r, tall = w / 2, 0.55 * h
     cup = [slab(circle(r, 14), (0.0, tall))] if form == "round" else [box((-r, r), (-r, r), (0.0, tall), 0.003)]
-    made = pieces("cup", cup, scheme.front if rng.random() < 0.5 else scheme.handle)
+    parts = pieces("cup", cup, scheme.front if rng.random() < 0.5 else scheme.handle)
     for k, a in enumerate(turns(4, float(rng.uniform(0, 1)))):
         tip = (0.8 * r * math.cos(a), 0.8 * r * math.sin(a), h * float(rng.uniform(0.86, 1.0)))
         pen = rod((0.4 * r * math.cos(a), 0.4 * r * math.sin(a), tall), tip, 0.0045, n=6)
-        made += pieces(
+        parts += pieces(
             f"pen_{k}", pen, Finish("pen", shade(rng, LACQUERS[pick(rng, "black navy coral mustard emerald")]), 0.4, density=900)
         )
-    return Shape(made)
+    return Shape(parts)
 
 
 def alarm_clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -308,9 +308,9 @@ def coat_hooks(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
             rod((x, back - 0.018, h - 0.05), (x, back - 0.07, h - 0.05), 0.006, n=6),
             rod((x, back - 0.066, h - 0.055), (x, back - 0.07, h - 0.02), 0.007, n=6),
         ]
-    made = pieces("board", board, scheme.timber) + pieces("hooks", hooks, scheme.handle)
+    parts = pieces("board", board, scheme.timber) + pieces("hooks", hooks, scheme.handle)
     if form == "bare":
-        return Shape(made)
+        return Shape(parts)
     for k in (1, count - 2):
         x = float(xs[k])
         cloth = Finish(
@@ -322,8 +322,8 @@ def coat_hooks(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
         )
         bag = cushion((x - 0.1, x + 0.1), (-d / 2, back - 0.02), (0.0, 0.55 * h), 0.03, 3)
         strap = [box((x + s * 0.05 - 0.006, x + s * 0.05 + 0.006), (-0.005, 0.005), (0.5 * h, h - 0.06)) for s in (-1, 1)]
-        made += pieces(f"bag_{k}", [bag, *strap, box((x - 0.056, x + 0.056), (-0.005, 0.005), (h - 0.06, h - 0.045))], cloth)
-    return Shape(made)
+        parts += pieces(f"bag_{k}", [bag, *strap, box((x - 0.056, x + 0.056), (-0.005, 0.005), (h - 0.06, h - 0.045))], cloth)
+    return Shape(parts)
 
 
 def potted_herb(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:

@@ -15,10 +15,10 @@ from pipeline.corpus.furniture.upholstery import throw_pillow
 
 def kids_bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a bed of one of the forms. Where it is wide the sleeper lies along x."""
-    return {"rails": _railed, "bunk": _bunk, "loft": _bunk, "house": _house, "car": _car, "couch": _couch}[form](rng, size, scheme, form)
+    return {"rails": _rail_bed, "bunk": _bunk, "loft": _bunk, "house": _house, "car": _car, "couch": _couch}[form](rng, size, scheme, form)
 
 
-def _railed(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Shape:  # noqa: ARG001 - one signature for all
+def _rail_bed(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Shape:  # noqa: ARG001 - one signature for all
     w, d, h = size
     lift, t = 0.12, 0.045
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
@@ -48,13 +48,13 @@ def _railed(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> 
         for a in np.linspace(x[0] + 0.14, x[1] - 0.14, max(5, round(w / 0.15)))
     ]
     base = box((x[0] + 0.032, x[1] - 0.032), (y[0] + 0.03, y[1] - 0.03), (lift + 0.06, lift + 0.08))
-    made = (
+    parts = (
         pieces("posts", posts, scheme.front)
         + pieces("knobs", knobs, scheme.timber)
         + pieces("boards", [*boards, base], scheme.front)
         + pieces("bars", bars, scheme.timber)
     )
-    return Shape(made + bedding(rng, (x[0] + t, x[1] - t), (y[0] + t, y[1] - t), lift + 0.08, low + 0.06, scheme))
+    return Shape(parts + bedding(rng, (x[0] + t, x[1] - t), (y[0] + t, y[1] - t), lift + 0.08, low + 0.06, scheme))
 
 
 def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Shape:
@@ -63,7 +63,7 @@ def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Sh
     t = 0.06
     x, y = (-w / 2, w / 2), (-d / 2 + 0.07, d / 2)
     posts = [box((px, px + t), (py, py + t), (0, h), 0.008) for px in (x[0], x[1] - t) for py in (y[0], y[1] - t)]
-    made = pieces("posts", posts, scheme.front)
+    parts = pieces("posts", posts, scheme.front)
     upper = 0.24 + 0.48 * h
     levels = (upper,) if form == "loft" else (0.2, upper)
     inner_x, inner_y = (x[0] + t, x[1] - t), (y[0] + 0.034, y[1] - 0.034)
@@ -76,19 +76,19 @@ def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Sh
         if z == upper:
             boards += [box(inner_x, (y[1] - 0.034, y[1] - 0.008), (guard, guard + 0.06), 0.004)]
             boards += [box((x[0] + t, x[1] - 0.64), (y[0] + 0.008, y[0] + 0.034), (guard, guard + 0.06), 0.004)]
-        made += pieces("berth", boards, scheme.front)
-        made += tuple(p for p in bedding(rng, inner_x, inner_y, z + 0.04, z + 0.19, scheme) if p.name not in ("throw", "cushion"))
+        parts += pieces("berth", boards, scheme.front)
+        parts += tuple(p for p in bedding(rng, inner_x, inner_y, z + 0.04, z + 0.19, scheme) if p.name not in ("throw", "cushion"))
     if form == "loft" and upper > 0.7:
-        made += pieces(
+        parts += pieces(
             "desk", box((x[0] + t, x[1] - 0.7), (y[1] - 0.5, y[1] - t), (0.66 * upper, 0.66 * upper + 0.024), 0.003), scheme.timber
         )
-        made += pieces("desk_leg", box((x[1] - 0.74, x[1] - 0.7), (y[1] - 0.48, y[1] - 0.08), (0, 0.66 * upper), 0.003), scheme.timber)
+        parts += pieces("desk_leg", box((x[1] - 0.74, x[1] - 0.7), (y[1] - 0.48, y[1] - 0.08), (0, 0.66 * upper), 0.003), scheme.timber)
     lx = (x[1] - 0.56, x[1] - 0.14)
     ladder: list[Solid] = [box((px - 0.02, px + 0.02), (-d / 2, -d / 2 + 0.06), (0, min(h, upper + 0.45)), 0.006) for px in lx]
     ladder += [
         box((lx[0] + 0.02, lx[1] - 0.02), (-d / 2 + 0.008, -d / 2 + 0.05), (z, z + 0.03), 0.004) for z in np.arange(0.25, upper, 0.27)
     ]
-    return Shape(made + pieces("ladder", ladder, scheme.timber))
+    return Shape(parts + pieces("ladder", ladder, scheme.timber))
 
 
 def _house(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Shape:  # noqa: ARG001 - one signature for all
@@ -107,8 +107,8 @@ def _house(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> S
     rails = [box((px, px + 0.026), (y[0] + t, y[1] - t), (0.1, 0.36), 0.004) for px in (x[0] + 0.012, x[1] - 0.038)]
     rails += [box((x[0] + t, x[1] - t), (py, py + 0.026), (0.1, 0.36 if py > 0 else 0.26), 0.004) for py in (y[0] + 0.012, y[1] - 0.038)]
     rails.append(box((x[0] + 0.038, x[1] - 0.038), (y[0] + 0.038, y[1] - 0.038), (0.14, 0.16)))
-    made = pieces("house", solids, scheme.timber) + pieces("rails", rails, scheme.front)
-    return Shape(made + bedding(rng, (x[0] + t, x[1] - t), (y[0] + t, y[1] - t), 0.16, 0.34, scheme))
+    parts = pieces("house", solids, scheme.timber) + pieces("rails", rails, scheme.front)
+    return Shape(parts + bedding(rng, (x[0] + t, x[1] - t), (y[0] + t, y[1] - t), 0.16, 0.34, scheme))
 
 
 def _car(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Shape:  # noqa: ARG001 - one signature for all
@@ -116,27 +116,27 @@ def _car(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Sha
     w, d, h = size
     x = w / 2
     body = min(0.55, 0.6 * h)
-    made: tuple[Piece, ...] = ()
+    parts: tuple[Piece, ...] = ()
     r = min(0.2, 0.24 * h)
     for s in (-1, 1):
         span = (s * (x - 0.04) - 0.018, s * (x - 0.04) + 0.018)
         low = np.array([(-d / 2, 0.09), (d / 2, 0.09), (d / 2, body), (-0.32 * d, 0.86 * body), (-d / 2, 0.62 * body)])
         rise = np.array([(0.12 * d, body * 0.955), (d / 2, body), (d / 2, h), (0.36 * d, h)])
-        made += pieces("sides", [prism(low, "x", span), prism(rise, "x", span)], scheme.front)
+        parts += pieces("sides", [prism(low, "x", span), prism(rise, "x", span)], scheme.front)
         out = s * (x - 0.022)
         for cy in (-0.3 * d, 0.3 * d):
-            made += pieces("wheels", rod((out, cy, r), (s * x, cy, r), r, n=20), PLASTIC)
-            made += pieces("hubs", rod((s * x - s * 0.001, cy, r), (s * x + s * 0.006, cy, r), 0.5 * r, n=14), scheme.handle)
+            parts += pieces("wheels", rod((out, cy, r), (s * x, cy, r), r, n=20), PLASTIC)
+            parts += pieces("hubs", rod((s * x - s * 0.001, cy, r), (s * x + s * 0.006, cy, r), 0.5 * r, n=14), scheme.handle)
     inner = (-x + 0.06, x - 0.06)
     ends = [
         box(inner, (-d / 2, -d / 2 + 0.03), (0.09, 0.6 * body), 0.01),
         box(inner, (d / 2 - 0.03, d / 2), (0.09, h), 0.01),
         box(inner, (-d / 2 + 0.03, d / 2 - 0.03), (0.14, 0.16)),
     ]
-    made += pieces("ends", ends, scheme.front)
+    parts += pieces("ends", ends, scheme.front)
     lamps = [rod((px, -d / 2 - 0.012, 0.42 * body), (px, -d / 2, 0.42 * body), 0.07, n=14) for px in (-0.3 * w, 0.3 * w)]
-    made += pieces("lamps", lamps, scheme.second)
-    return Shape(made + bedding(rng, inner, (-d / 2 + 0.035, d / 2 - 0.035), 0.16, 0.16 + 0.55 * (body - 0.16), scheme))
+    parts += pieces("lamps", lamps, scheme.second)
+    return Shape(parts + bedding(rng, inner, (-d / 2 + 0.035, d / 2 - 0.035), 0.16, 0.16 + 0.55 * (body - 0.16), scheme))
 
 
 def _couch(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Shape:  # noqa: ARG001 - one signature for all
@@ -151,15 +151,15 @@ def _couch(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> S
     boards += [box(inner, (y[0] + 0.03, y[0] + 0.055), (0.04, low), 0.004), box(inner, (y[0] + 0.055, y[1] - t), (low - 0.06, low - 0.04))]
     half = (inner[0] + inner[1]) / 2
     fronts = [box((a + 0.006, b - 0.006), (y[0], y[0] + 0.029), (0.05, low - 0.01), 0.003) for a, b in ((inner[0], half), (half, inner[1]))]
-    made = pieces("frame", boards, scheme.front) + pieces("fronts", fronts, scheme.body)
+    parts = pieces("frame", boards, scheme.front) + pieces("fronts", fronts, scheme.body)
     top = low + 0.16
-    made += pieces("mattress", cushion(inner, (y[0] + 0.06, y[1] - t - 0.002), (low - 0.04, top), 0.05, 3, 0.02), scheme.soft)
+    parts += pieces("mattress", cushion(inner, (y[0] + 0.06, y[1] - t - 0.002), (low - 0.04, top), 0.05, 3, 0.02), scheme.soft)
     size_ = min(0.46, 0.9 * (h - top) + 0.12)
     count = max(1, min(round(w / 0.7), int((inner[1] - inner[0]) / (size_ + 0.12))))
     for px in np.linspace(inner[0] + 0.5 * size_ + 0.02, inner[1] - 0.5 * size_ - 0.02, count):
-        made += pieces(
+        parts += pieces(
             "pillows",
             throw_pillow((float(px), y[1] - t - 0.02 - 0.32 * size_, top + 0.002), size_, 0.34, float(rng.uniform(-0.1, 0.1))),
             scheme.second,
         )
-    return Shape(made)
+    return Shape(parts)

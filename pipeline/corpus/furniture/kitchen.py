@@ -12,7 +12,7 @@ import numpy as np
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.finishes import CERAMIC, MARBLE, PLASTIC, STEEL, STONE, Finish, Scheme
 from pipeline.corpus.furniture.fronts import reach
-from pipeline.corpus.furniture.shape import Mover, Piece, Shape, joined, pieces, staves
+from pipeline.corpus.furniture.shape import Mover, Piece, Shape, join_shapes, pieces, staves
 from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, rod, shell, strips, walls
 from pipeline.corpus.furniture.storage import Size, front_style
 
@@ -94,8 +94,8 @@ def tap(x: float, y: float, z: float, height: float, reach_out: float, finish: F
     root = (x + r + 0.002, y, z + 0.055)
     arm = [rod(root, (root[0] + 0.014, y, root[2]), 0.010, n=10)]
     arm.append(box((root[0] + 0.014, root[0] + 0.022), (y - 0.075, y + 0.008), (root[2] - 0.006, root[2] + 0.006), 0.002))
-    made = pieces("lever", arm, finish, group="lever")
-    lever = Mover("tap_lever", made, "revolute", (-1, 0, 0), root, 1.0, "hinge_handle", "lever", (1.0, 0.0, 0.0))
+    lever_parts = pieces("lever", arm, finish, group="lever")
+    lever = Mover("tap_lever", lever_parts, "revolute", (-1, 0, 0), root, 1.0, "hinge_handle", "lever", (1.0, 0.0, 0.0))
     return Shape(pieces("tap", solids, finish), (lever,))
 
 
@@ -121,7 +121,7 @@ def sink_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     z = (body - how.top_thickness, body)
     top = pieces("top", strips((-w / 2, w / 2), (face - how.nose, d / 2), hole_x, hole_y, z, 0.002), how.top or STONE)
     top += bowl((hole_x[0], hole_x[1]), hole_y, body - 0.003, 0.17, STEEL)
-    return joined(_topless(shape, top), tap(0.0, d / 2 - 0.065, body, h - body, 0.2, scheme.handle))
+    return join_shapes(_topless(shape, top), tap(0.0, d / 2 - 0.065, body, h - body, 0.2, scheme.handle))
 
 
 def vanity(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -145,14 +145,14 @@ def vanity(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
         r, middle = min(0.36 * (d - 0.1), 0.19), (face + d / 2 - 0.11) / 2
         basin = _vessel(min(r * 1.2, 0.4 * w), r, (0.0, middle), (body, body + 0.12))
         stand = tap(0.0, d / 2 - 0.045, body, h - body, 0.13, scheme.handle)
-        made = staves("basin", basin[1:], CERAMIC) + pieces("basin_floor", basin[0], CERAMIC)
-        return joined(shape, Shape(made), stand)
+        basin_parts = staves("basin", basin[1:], CERAMIC) + pieces("basin_floor", basin[0], CERAMIC)
+        return join_shapes(shape, Shape(basin_parts), stand)
     half = min(0.26, 0.5 * w - 0.07)
     hole_x, hole_y = (-half, half), (face + 0.06, d / 2 - 0.11)
     z = (body - how.top_thickness, body)
     new = pieces("top", strips((-w / 2, w / 2), (face - how.overhang, d / 2), hole_x, hole_y, z, 0.002), top)
     new += bowl(hole_x, hole_y, body - 0.002, 0.13, CERAMIC)
-    return joined(_topless(shape, new), tap(0.0, d / 2 - 0.055, body, h - body, 0.13, scheme.handle))
+    return join_shapes(_topless(shape, new), tap(0.0, d / 2 - 0.055, body, h - body, 0.13, scheme.handle))
 
 
 def _vessel(rx: float, ry: float, centre: tuple[float, float], z: tuple[float, float]) -> list[Solid]:

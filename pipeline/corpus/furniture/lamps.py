@@ -36,8 +36,8 @@ def floor_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
         return Shape(_reading_lamp(rng, size, scheme))
     kind = shade_word(rng, scheme, "globe cage lantern paper crystal mushroom cylinder")
     tall = min(0.26 * h, 0.95 * w)
-    made = shade(rng, scheme, kind, r, (h - tall, h))
-    return Shape(made + (_tripod(rng, size, tall, scheme) if form == "tripod" else _pole(rng, size, tall, scheme)))
+    parts = shade(rng, scheme, kind, r, (h - tall, h))
+    return Shape(parts + (_tripod(rng, size, tall, scheme) if form == "tripod" else _pole(rng, size, tall, scheme)))
 
 
 def _tripod(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> tuple[Piece, ...]:
@@ -46,11 +46,11 @@ def _tripod(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -
     r, metal = w / 2, scheme.handle
     top = h - tall
     ends = [(0.95 * r * math.cos(a), 0.95 * r * math.sin(a)) for a in turns(3, math.pi / 2)]
-    made = pieces("legs", [rod((x, y, 0), (0.03 * x / r, 0.03 * y / r, top - 0.035), 0.011, 0.015, 8) for x, y in ends], scheme.timber)
+    parts = pieces("legs", [rod((x, y, 0), (0.03 * x / r, 0.03 * y / r, top - 0.035), 0.011, 0.015, 8) for x, y in ends], scheme.timber)
     if rng.random() < 0.5:
-        made += pieces("shelf", slab(circle(0.42 * r, 20), (0.42 * top, 0.42 * top + 0.012)), scheme.timber)
+        parts += pieces("shelf", slab(circle(0.42 * r, 20), (0.42 * top, 0.42 * top + 0.012)), scheme.timber)
     hub = revolve([(0.05, top - 0.035), (0.05, top - 0.02), (0.012, top - 0.012), (0.008, top + 0.3 * tall)], 14)
-    return made + pieces("hub", hub, metal)
+    return parts + pieces("hub", hub, metal)
 
 
 def _pole(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> tuple[Piece, ...]:
@@ -102,15 +102,17 @@ def _stem_of_globes(rng: np.random.Generator, size: Size, scheme: Scheme) -> tup
     """Build three lit globes on arms around a stem."""
     w, d, h = size
     r, metal = w / 2, scheme.handle
-    made = pieces("foot", revolve([(0.62 * r, 0.0), (0.62 * r, 0.02), (0.014, 0.03), (0.011, h - 0.02)], 20), metal)
+    parts = pieces("foot", revolve([(0.62 * r, 0.0), (0.62 * r, 0.02), (0.014, 0.03), (0.011, h - 0.02)], 20), metal)
     for k, z in enumerate((0.62, 0.78, 0.93)):
         q = 0.36 * r
         a = 2.2 * k + 0.4
         x, y = (r - q) * math.cos(a), (min(r, d / 2) - q) * math.sin(a)
-        made += shade(rng, scheme, "globe", q, (z * h - q, min(z * h + q, h)), (x, y), 14)
+        parts += shade(rng, scheme, "globe", q, (z * h - q, min(z * h + q, h)), (x, y), 14)
         u = np.array([x, y]) / max(math.hypot(x, y), 1e-6)
-        made += pieces("arms", rod((0.01 * u[0], 0.01 * u[1], z * h), (x - q * u[0] * 0.99, y - q * u[1] * 0.99, z * h), 0.006, n=6), metal)
-    return made
+        parts += pieces(
+            "arms", rod((0.01 * u[0], 0.01 * u[1], z * h), (x - q * u[0] * 0.99, y - q * u[1] * 0.99, z * h), 0.006, n=6), metal
+        )
+    return parts
 
 
 def _reading_lamp(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -136,9 +138,9 @@ def _arc_lamp(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Pie
     base = revolve([(foot_r, 0.0), (foot_r, 0.03), (0.9 * foot_r, 0.04)], 28, (x, 0.0))
     bow = curve([(x, 0, 0.04), (x, 0, 0.55 * h), (x + 0.12 * w, 0, 0.86 * h), (0.05 * w, 0, h - 0.012), (w / 2 - r, 0, 0.9 * h)], 3)
     top = 0.9 * h - 0.05
-    made = pieces("foot", base, scheme.stone if scheme.manner.stone > 0.2 else metal) + pieces("bow", tube(bow, 0.011, 8), metal)
-    made += pieces("drop", rod((w / 2 - r, 0, top), (w / 2 - r, 0, 0.9 * h - 0.008), 0.006, n=6), metal)
-    return made + shade(rng, scheme, "dome", r, (top - 0.9 * r, top), (w / 2 - r, 0.0))
+    parts = pieces("foot", base, scheme.stone if scheme.manner.stone > 0.2 else metal) + pieces("bow", tube(bow, 0.011, 8), metal)
+    parts += pieces("drop", rod((w / 2 - r, 0, top), (w / 2 - r, 0, 0.9 * h - 0.008), 0.006, n=6), metal)
+    return parts + shade(rng, scheme, "dome", r, (top - 0.9 * r, top), (w / 2 - r, 0.0))
 
 
 def wall_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -157,27 +159,27 @@ def wall_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     if form == "globe":
         r = min(w / 2, 0.42 * d)
         y = -d / 2 + r
-        made = pieces(
+        parts = pieces(
             "plate",
             [s.turned("x", math.pi / 2).moved((0, back, 0.5 * h)) for s in [slab(circle(0.5 * w, 20, squash=h / w), (0.0, 0.016), 0.003)]],
             metal,
         )
         neck = rod((0, back - 0.016, 0.5 * h), (0, y + 0.95 * r, 0.5 * h), 0.009, n=8)
         return Shape(
-            made
+            parts
             + pieces("neck", neck, metal)
             + shade(rng, scheme, "globe", r, (0.5 * h - min(r, 0.5 * h), 0.5 * h + min(r, 0.5 * h)), (0.0, y), 18)
         )
     r = min(w / 2, 0.4 * d) if form == "shade" else min(0.24 * w, 0.4 * d)
     wide = 0.2 * w if form != "shade" or r > 0.4 * w else 0.5 * w
-    made = pieces("plate", box((-wide, wide), (back - 0.016, back), (0.0, 0.7 * h), 0.004), metal)
+    parts = pieces("plate", box((-wide, wide), (back - 0.016, back), (0.0, 0.7 * h), 0.004), metal)
     tall = 0.55 * h
     for s in (0,) if form == "shade" else (-1, 1):
         x, y = s * (w / 2 - r), -d / 2 + r
         swing = curve([(0.1 * x, back - 0.016, 0.34 * h), (0.6 * x, 0.5 * (y + back), 0.22 * h), (x, y, 0.26 * h), (x, y, 0.42 * h)], 2)
-        made += pieces("arm", tube(swing, 0.0065, 6), metal)
-        made += shade(rng, scheme, "pleated" if scheme.manner.ornament > 0.5 else "drum", r, (h - tall, h), (x, y), 16)
-    return Shape(made)
+        parts += pieces("arm", tube(swing, 0.0065, 6), metal)
+        parts += shade(rng, scheme, "pleated" if scheme.manner.ornament > 0.5 else "drum", r, (h - tall, h), (x, y), 16)
+    return Shape(parts)
 
 
 def table_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:

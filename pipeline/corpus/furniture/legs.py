@@ -67,10 +67,10 @@ def leg(kind: str, at: Spot, out: Spot, height: float, thick: float) -> list[Sol
     if kind in ("dowel", "ming"):
         reach = min(0.03 * h, 0.02)
         return [rod((x + sx * reach, y + sy * reach, 0), (x, y, h), 0.42 * t, n=10)]
-    return _ORNATE.get(kind, _turned)(x, y, sx, sy, h, t)
+    return _ORNATE.get(kind, _turned_leg)(x, y, sx, sy, h, t)
 
 
-def _turned(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
+def _turned_leg(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
     if h < 0.16:
         return _bun(x, y, sx, sy, h, t)
     profile = [(0.34, 0.0), (0.5, 0.05), (0.3, 0.12), (0.44, 0.42), (0.56, 0.68), (0.34, 0.76), (0.54, 0.8), (0.54, 0.84)]
@@ -78,7 +78,7 @@ def _turned(x: float, y: float, sx: float, sy: float, h: float, t: float) -> lis
     return [*revolve([(r * t, z * h) for r, z in profile], 12, (x, y)), block]
 
 
-def _fluted(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:  # noqa: ARG001 - one signature for all
+def _fluted_leg(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:  # noqa: ARG001 - one signature for all
     if h < 0.12:
         return [beam((x, y, 0), (x, y, h), t, t, 0.55)]
     column = revolve([(0.26 * t, 0.06 * h), (0.44 * t, 0.82 * h)], 8, (x, y))
@@ -121,7 +121,7 @@ def _hairpin(x: float, y: float, sx: float, sy: float, h: float, t: float) -> li
 
 def _bun(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
     if h >= 0.16:
-        return _turned(x, y, sx, sy, h, t)
+        return _turned_leg(x, y, sx, sy, h, t)
     r = max(0.6 * t, 0.028)
     return revolve([(0.55 * r, 0.0), (r, 0.25 * h), (r, 0.5 * h), (0.6 * r, 0.78 * h), (0.85 * r, 0.86 * h), (0.85 * r, h)], 14, (x, y))
 
@@ -139,16 +139,16 @@ def _horse(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list
 
 def _bamboo(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:  # noqa: ARG001 - one signature for all
     count = max(1, round(h / 0.16))
-    made, node, r = [], 0.008, 0.38 * t
+    solids, node, r = [], 0.008, 0.38 * t
     edges = np.linspace(0, h, count + 1)
     for k in range(count):
         low = edges[k] + (node if k else 0.0)
-        made.append(rod((x, y, low), (x, y, edges[k + 1]), r, n=10))
+        solids.append(rod((x, y, low), (x, y, edges[k + 1]), r, n=10))
         if k:
-            made += revolve(
+            solids += revolve(
                 [(r, edges[k]), (1.22 * r, edges[k] + 0.35 * node), (1.22 * r, edges[k] + 0.65 * node), (r, edges[k] + node)], 10, (x, y)
             )
-    return made
+    return solids
 
 
 def _pipe(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:  # noqa: ARG001 - one signature for all
@@ -162,7 +162,7 @@ def _blade(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list
 
 
 _ORNATE = {
-    "fluted": _fluted, "cabriole": _cabriole, "hairpin": _hairpin, "bun": _bun, "horse": _horse, "bamboo": _bamboo, "pipe": _pipe, "blade": _blade,
+    "fluted": _fluted_leg, "cabriole": _cabriole, "hairpin": _hairpin, "bun": _bun, "horse": _horse, "bamboo": _bamboo, "pipe": _pipe, "blade": _blade,
 }  # fmt: skip
 
 
@@ -207,7 +207,7 @@ def pedestal(rng: np.random.Generator, scheme: Scheme, radius: float, height: fl
     if kind == 2:
         return revolve([(0.62 * r, 0.0), (0.62 * r, 0.03), (0.5 * r, 0.05), (0.42 * r, 0.5 * h), (0.5 * r, 0.94 * h), (0.62 * r, h)], 20)
     column = [(0.17, 0.2), (0.24, 0.26), (0.24, 0.3), (0.14, 0.36), (0.26, 0.52), (0.28, 0.6), (0.14, 0.8), (0.24, 0.92), (0.44, 1.0)]
-    made = revolve([(a * r, b * h) for a, b in column], 16)
+    solids = revolve([(a * r, b * h) for a, b in column], 16)
     for k in range(3):
         a = math.pi / 2 + 2 * math.pi * k / 3
         c, s = math.cos(a), math.sin(a)
@@ -220,5 +220,5 @@ def pedestal(rng: np.random.Generator, scheme: Scheme, radius: float, height: fl
             ],
             2,
         )
-        made += tube(path, np.linspace(0.055, 0.026, len(path)), 8)
-    return made
+        solids += tube(path, np.linspace(0.055, 0.026, len(path)), 8)
+    return solids

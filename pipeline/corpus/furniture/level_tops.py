@@ -38,8 +38,8 @@ def surfaces_of(model: Model) -> Surfaces:
         vertices = piece.solid.vertices
         boxes.append(piece.solid.bounds())
         on_top = (vertices[:, 2] > vertices[:, 2].max() - LEVEL).tolist()
-        found = (level(vertices[list(face)]) for face in piece.solid.faces if all(on_top[k] for k in face))
-        tops += [top for top in found if top is not None]
+        candidates = (level(vertices[list(face)]) for face in piece.solid.faces if all(on_top[k] for k in face))
+        tops += [top for top in candidates if top is not None]
     return Surfaces(np.array(boxes).reshape(-1, 2, 3), np.array(tops).reshape(-1, 5))
 
 

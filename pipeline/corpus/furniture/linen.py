@@ -11,7 +11,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import FABRICS, PAPER, Finish, Scheme, shade
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, rod, rounded, slab
+from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, rod, rounded_rectangle, slab
 from pipeline.corpus.furniture.storage import Size, pick
 from pipeline.corpus.furniture.wall_decor import standing
 
@@ -34,22 +34,24 @@ def towel(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
         arm = rod((0.0, d / 2 - 0.012, h - 0.035), (0.0, 0.0, h - 0.035), 0.008)
         hoop = [box((-0.24 * w, 0.24 * w), (-0.006, 0.006), (z, z + 0.012), 0.003) for z in (h - 0.16, h - 0.042)]
         sides = [box((s * 0.24 * w - 0.005, s * 0.24 * w + 0.005), (-0.006, 0.006), (h - 0.148, h - 0.042), 0.002) for s in (-1, 1)]
-        made = pieces("ring", [plate, arm, *hoop, *sides], metal)
-        return Shape(made + _draped((-0.22 * w, 0.22 * w), d, h - 0.152, h - 0.16, cloth, rng))
+        parts = pieces("ring", [plate, arm, *hoop, *sides], metal)
+        return Shape(parts + _towel_over_bar((-0.22 * w, 0.22 * w), d, h - 0.152, h - 0.16, cloth, rng))
     z = h - 0.03
     bar = [rod((-w / 2, 0, z), (w / 2, 0, z), 0.009, n=8)]
     for s in (-1, 1):
         x = s * (w / 2 - 0.02)
         bar += [rod((x, d / 2, z), (x, 0.0, z), 0.009, n=8), rod((x, d / 2, z), (x, d / 2 - 0.01, z), 0.024, n=12)]
-    made = pieces("rail", bar, metal)
+    parts = pieces("rail", bar, metal)
     if form == "single":
-        return Shape(made + _draped((-0.4 * w, 0.4 * w), d, z, z, cloth, rng))
+        return Shape(parts + _towel_over_bar((-0.4 * w, 0.4 * w), d, z, z, cloth, rng))
     other = terry(rng, scheme)
-    left = _draped((-0.46 * w, -0.02 * w), d, z, z, cloth, rng)
-    return Shape(made + left + _draped((0.02 * w, 0.46 * w), d, z, 0.8 * z, other, rng))
+    left = _towel_over_bar((-0.46 * w, -0.02 * w), d, z, z, cloth, rng)
+    return Shape(parts + left + _towel_over_bar((0.02 * w, 0.46 * w), d, z, 0.8 * z, other, rng))
 
 
-def _draped(x: tuple[float, float], d: float, top: float, drop: float, cloth: Finish, rng: np.random.Generator) -> tuple[Piece, ...]:
+def _towel_over_bar(
+    x: tuple[float, float], d: float, top: float, drop: float, cloth: Finish, rng: np.random.Generator
+) -> tuple[Piece, ...]:
     """Return a towel over a bar at height `top`: the front fall `drop` long, the back one a little shorter, a border near the hem."""
     t, half = 0.012, 0.016
     front, back = top - drop, top - drop * float(rng.uniform(0.75, 0.9))
@@ -66,23 +68,23 @@ def _draped(x: tuple[float, float], d: float, top: float, drop: float, cloth: Fi
 def folded_towels(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a pile of folded towels, or three rolled ones."""
     w, d, h = size
-    made: tuple[Piece, ...] = ()
+    parts: tuple[Piece, ...] = ()
     if form == "rolled":
         r = min(w / 4, h / 3.6)
         spots = [(-r, r), (r, r), (0.0, r + 1.7 * r)]
         for x, z in spots:
             roll = slab(circle(r, 16), (-d / 2, d / 2), 0.25 * r).turned("x", math.pi / 2).moved((x, 0, z))
-            made += pieces("towel", roll, terry(rng, scheme))
-        return Shape(made)
+            parts += pieces("towel", roll, terry(rng, scheme))
+        return Shape(parts)
     count = max(2, round(h / 0.05))
     for k in range(count):
         cloth = terry(rng, scheme)
         dx, dy = (float(v) for v in rng.uniform(-0.012, 0.012, 2))
         span = (k * h / count, (k + 1) * h / count - 0.001)
-        made += pieces(
+        parts += pieces(
             "towel", cushion((-w / 2 + 0.012 + dx, w / 2 - 0.012 + dx), (-d / 2 + 0.012 + dy, d / 2 - 0.012 + dy), span, 0.02, 3), cloth
         )
-    return Shape(made)
+    return Shape(parts)
 
 
 def throw(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -109,8 +111,8 @@ def bath_mat(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
         rails = [box((-w / 2, w / 2), (s * 0.35 * d - 0.015, s * 0.35 * d + 0.015), (0.0, 0.3 * h)) for s in (-1, 1)]
         return Shape(pieces("mat", slats + rails, scheme.timber))
     cloth = terry(rng, scheme)
-    edge = rounded((-w / 2, w / 2), (-d / 2, d / 2), 0.03, 2)
-    inner = rounded((-w / 2 + 0.05, w / 2 - 0.05), (-d / 2 + 0.05, d / 2 - 0.05), 0.02, 2)
+    edge = rounded_rectangle((-w / 2, w / 2), (-d / 2, d / 2), 0.03, 2)
+    inner = rounded_rectangle((-w / 2 + 0.05, w / 2 - 0.05), (-d / 2 + 0.05, d / 2 - 0.05), 0.02, 2)
     pile = replace(cloth, name="pile", color=tuple(0.85 * c for c in cloth.color))  # type: ignore[arg-type]
     return Shape(pieces("mat", slab(edge, (0.0, 0.75 * h)), cloth) + pieces("pile", slab(inner, (0.75 * h, h)), pile))
 

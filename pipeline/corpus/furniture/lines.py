@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pipeline.card import Corpus, cards
-from pipeline.corpus.furniture.styles import suited
+from pipeline.corpus.furniture.styles import expand_styles
 
 # 3D-FUTURE's super-category for each of our own (`super` of the cards); it has none for kitchens and baths.
 SUPER_CATEGORIES: Mapping[str, str] = {
@@ -55,6 +55,7 @@ def lines() -> Mapping[str, Line]:
 
 def _line(corpus: Corpus) -> Line:
     forms = (
-        Form(name, f.name or corpus.name, f.round, f.upright, f.still, f.least_height, suited(f.styles)) for name, f in corpus.forms.items()
+        Form(name, f.name or corpus.name, f.round, f.upright, f.still, f.least_height, expand_styles(f.styles))
+        for name, f in corpus.forms.items()
     )
     return Line(tuple(forms), corpus.static, corpus.moving)

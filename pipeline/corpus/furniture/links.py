@@ -75,12 +75,12 @@ def link_records(shape: Shape, frame: Frame) -> list[LinkRecord]:
     names = {"base": body} | {mover.name: f"link_{k}" for k, mover in enumerate(shape.movers)}
     number = 0
     for mover in shape.movers:
-        made = _components(mover.pieces, number)
-        number += len(made)
+        components = _components(mover.pieces, number)
+        number += len(components)
         name, origin = names[mover.name], frame.point(mover.origin)
-        own = tuple(c for c in made if not c.part)
+        own = tuple(c for c in components if not c.part)
         movers.append(LinkRecord(name, names[mover.parent], mover, origin, own, mover.part_class, mover.outward))
-        for grip in (c for c in made if c.part):
+        for grip in (c for c in components if c.part):
             handles.append(LinkRecord(f"link_{len(shape.movers) + len(handles)}", name, None, origin, (grip,), grip.part, mover.outward))
     return [*movers, *handles, LinkRecord(body, "base", None, np.zeros(3), _components(shape.base, number), "", FRONT)]
 
@@ -94,7 +94,7 @@ def _components(parts: tuple[Piece, ...], first: int) -> tuple[Component, ...]:
     for piece in parts:
         key = piece.name if piece.part else finishes[piece.group] if piece.group else piece.finish
         groups.setdefault((piece.part, key), []).append(piece)
-    return tuple(Component(first + k, found[0].name, part, tuple(found)) for k, ((part, _), found) in enumerate(groups.items()))
+    return tuple(Component(first + k, members[0].name, part, tuple(members)) for k, ((part, _), members) in enumerate(groups.items()))
 
 
 def without_handles(links: Sequence[LinkRecord]) -> list[LinkRecord]:

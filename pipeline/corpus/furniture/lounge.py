@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
-from pipeline.corpus.furniture.bent import arc, curve, lean, settled, sheet, tube, turns, upright, wall
+from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, split_bent_quads, tube, turns, upright, wall
 from pipeline.corpus.furniture.finishes import PLASTIC, Finish, Scheme, cane, shade
 from pipeline.corpus.furniture.legs import draw_kind, leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, beam, box, cushion, revolve, rod, slab, stack
 from pipeline.corpus.furniture.storage import Size
-from pipeline.corpus.furniture.upholstery import padded, seat_cushion, throw_pillow
+from pipeline.corpus.furniture.upholstery import seat_cushion, throw_pillow, upright_pad
 
 
 def lounge_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -46,18 +46,18 @@ def _easy(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, 
     rails = [box((-x + 0.04, x - 0.04), (a - 0.011, a + 0.011), (seat - 0.18, seat - 0.13), 0.003) for a in (-y + 0.09, y - 0.2)]
     slope, back = 0.28, y - 0.14 - 0.28 * (h - seat) * 0.6
     wide = (-x + 0.045, x - 0.045)
-    made = pieces("frame", frame + rails, wood)
-    made += seat_cushion(
+    parts = pieces("frame", frame + rails, wood)
+    parts += seat_cushion(
         (wide[0], wide[1]), (-y + 0.01, back - 0.055), (seat - 0.125, seat + 0.02), 0.04, scheme.soft, _piping(rng, scheme), 0.025
     )
     top = h - 0.012
-    pad = padded(rng, scheme, wide, (back - 0.05, back + 0.05), (seat - 0.1, top))
-    made += pieces("back_pad", lean(pad, seat - 0.1, slope), scheme.soft)
+    pad = upright_pad(rng, scheme, wide, (back - 0.05, back + 0.05), (seat - 0.1, top))
+    parts += pieces("back_pad", lean(pad, seat - 0.1, slope), scheme.soft)
     laths = [
         box((px - 0.013, px + 0.013), (back + 0.052, back + 0.068), (seat - 0.17, top - 0.06), 0.002)
         for px in np.linspace(wide[0] + 0.03, wide[1] - 0.03, 5)
     ]
-    return made + pieces("laths", lean(laths, seat - 0.1, slope), wood)
+    return parts + pieces("laths", lean(laths, seat - 0.1, slope), wood)
 
 
 def _wing(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -66,24 +66,24 @@ def _wing(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, 
     kind = draw_kind(rng, scheme, "plank cross sled hairpin pipe blade horse")
     low = 0.17
     cloth = scheme.soft
-    made = pieces("legs", legs(kind, (x - 0.07, y - 0.08), low, 0.042), leg_finish(scheme, kind))
-    made += pieces("body", cushion((-x + 0.03, x - 0.03), (-y + 0.02, y - 0.02), (low, seat - 0.1), 0.025, 2), cloth)
+    parts = pieces("legs", legs(kind, (x - 0.07, y - 0.08), low, 0.042), leg_finish(scheme, kind))
+    parts += pieces("body", cushion((-x + 0.03, x - 0.03), (-y + 0.02, y - 0.02), (low, seat - 0.1), 0.025, 2), cloth)
     arm = 0.13 * min(1.0, w / 0.75)
     back = y - 0.15
-    made += seat_cushion((-x + arm, x - arm), (-y, back - 0.002), (seat - 0.098, seat + 0.035), 0.04, cloth, _piping(rng, scheme), 0.03)
-    made += pieces("back", padded(rng, scheme, (-x + arm - 0.02, x - arm + 0.02), (back, y - 0.01), (seat - 0.098, h)), cloth)
+    parts += seat_cushion((-x + arm, x - arm), (-y, back - 0.002), (seat - 0.098, seat + 0.035), 0.04, cloth, _piping(rng, scheme), 0.03)
+    parts += pieces("back", upright_pad(rng, scheme, (-x + arm - 0.02, x - arm + 0.02), (back, y - 0.01), (seat - 0.098, h)), cloth)
     roll = 0.5 * arm + 0.012
     top = seat + 0.22 - roll
     for s in (-1, 1):
         lo, hi = sorted((s * x, s * (x - arm + 0.004)))
-        made += pieces("arms", cushion((lo, hi), (-y + 0.05, back - 0.004), (seat - 0.098, top - roll + 0.01), 0.03, 2), cloth)
-        made += pieces("arms", rod((s * (x - 0.5 * arm), -y + 0.035, top), (s * (x - 0.5 * arm), back - 0.006, top), roll, n=14), cloth)
+        parts += pieces("arms", cushion((lo, hi), (-y + 0.05, back - 0.004), (seat - 0.098, top - roll + 0.01), 0.03, 2), cloth)
+        parts += pieces("arms", rod((s * (x - 0.5 * arm), -y + 0.035, top), (s * (x - 0.5 * arm), back - 0.006, top), roll, n=14), cloth)
         lo, hi = sorted((s * (x - 0.005), s * (x - 0.06)))
         side = np.array(
             [(back - 0.2, top + roll - 0.006), (back - 0.003, top + roll - 0.006), (back - 0.003, h - 0.03), (back - 0.13, h - 0.03)]
         )
-        made += pieces("wings", upright(side, (lo, hi), 0.018), cloth)
-    return made
+        parts += pieces("wings", upright(side, (lo, hi), 0.018), cloth)
+    return parts
 
 
 def _office(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -99,26 +99,26 @@ def _office(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece
             wheels.append(rod((p[0] - 0.009 * s, p[1] + 0.009 * c, 0.026), (p[0] + 0.009 * s, p[1] - 0.009 * c, 0.026), 0.026, n=12))
     base += revolve([(0.034, 0.06), (0.034, 0.13), (0.02, 0.14), (0.02, seat - 0.13)], 12)
     x, y = 0.46 * w, 0.44 * d
-    made = pieces("castors", wheels, PLASTIC) + pieces("star", base, scheme.handle)
-    made += pieces("plate", box((-0.09, 0.09), (-0.11, 0.11), (seat - 0.13, seat - 0.1), 0.004), PLASTIC)
-    made += seat_cushion((-x + 0.03, x - 0.03), (-y, y - 0.1), (seat - 0.1, seat), 0.035, scheme.soft, None, 0.018)
+    parts = pieces("castors", wheels, PLASTIC) + pieces("star", base, scheme.handle)
+    parts += pieces("plate", box((-0.09, 0.09), (-0.11, 0.11), (seat - 0.13, seat - 0.1), 0.004), PLASTIC)
+    parts += seat_cushion((-x + 0.03, x - 0.03), (-y, y - 0.1), (seat - 0.1, seat), 0.035, scheme.soft, None, 0.018)
     rise = h - seat
     net = Finish("mesh_cloth", (0.05, 0.05, 0.055), 0.9, pattern="cane", density=300, second=(0.12, 0.12, 0.125))
     face = net if rng.random() < 0.5 else scheme.soft
     bow = curve([np.array(p) for p in ((y - 0.06, seat + 0.12), (y - 0.075, seat + 0.12 + 0.3 * (rise - 0.12)), (y - 0.03, h - 0.005))], 3)
-    made += pieces("back", sheet(bow, 0.03 if face is net else 0.055, np.linspace(0.9, 0.74, len(bow)) * 2 * (x - 0.03)), face)
+    parts += pieces("back", sheet(bow, 0.03 if face is net else 0.055, np.linspace(0.9, 0.74, len(bow)) * 2 * (x - 0.03)), face)
     spine = tube(
         curve([(0, 0.12, seat - 0.115), (0, y - 0.015, seat - 0.1), (0, y + 0.0, seat + 0.05), (0, y - 0.028, seat + 0.42 * rise)], 2),
         0.014,
         8,
     )
-    made += pieces("spine", spine, PLASTIC)
+    parts += pieces("spine", spine, PLASTIC)
     arms: list[Solid] = []
     for s in (-1, 1):
         px = s * (w / 2 - 0.03)
         arms.append(cushion((px - 0.03, px + 0.03), (-0.25 * d, 0.18 * d), (seat + 0.19, seat + 0.22), 0.012, 2))
         arms += tube([(s * 0.1, 0, seat - 0.115), (px, 0, seat - 0.115), (px, 0, seat + 0.19)], 0.012, 8)
-    return made + pieces("arms", arms, PLASTIC)
+    return parts + pieces("arms", arms, PLASTIC)
 
 
 def _lounger(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -136,8 +136,8 @@ def _lounger(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
         ],
         3,
     )
-    made = pieces("shells", sheet(under, 0.014, 2 * x - 0.12) + sheet(behind, 0.014, 2 * x - 0.14), wood)
-    made += seat_cushion(
+    parts = pieces("shells", sheet(under, 0.014, 2 * x - 0.12) + sheet(behind, 0.014, 2 * x - 0.14), wood)
+    parts += seat_cushion(
         (-x + 0.075, x - 0.075), (-y + 0.005, 0.5 * y - 0.108), (seat - 0.05, seat + 0.065), 0.045, scheme.soft, _piping(rng, scheme), 0.02
     )
     slope = (0.5 * y - 0.03) / (h - seat)
@@ -145,11 +145,11 @@ def _lounger(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
         cushion((-x + 0.085, x - 0.085), (0.5 * y - 0.105, 0.5 * y - 0.015), (a, b), 0.04, 3)
         for a, b in ((seat - 0.02, seat + 0.53 * (h - seat)), (seat + 0.55 * (h - seat), h))
     ]
-    made += pieces("back_pads", lean(pads, seat - 0.02, slope), scheme.soft)
+    parts += pieces("back_pads", lean(pads, seat - 0.02, slope), scheme.soft)
     for s in (-1, 1):
         px = s * (x - 0.035)
-        made += pieces("arms", cushion((px - 0.035, px + 0.035), (-0.5 * y, 0.3 * y), (seat + 0.16, seat + 0.21), 0.022, 2), scheme.soft)
-        made += pieces("arm_struts", box((px - 0.008, px + 0.008), (-0.12 * y, 0.1 * y), (seat - 0.05, seat + 0.16), 0.002), wood)
+        parts += pieces("arms", cushion((px - 0.035, px + 0.035), (-0.5 * y, 0.3 * y), (seat + 0.16, seat + 0.21), 0.022, 2), scheme.soft)
+        parts += pieces("arm_struts", box((px - 0.008, px + 0.008), (-0.12 * y, 0.1 * y), (seat - 0.05, seat + 0.16), 0.002), wood)
     star = [
         rod(
             (0.03 * math.cos(a), 0.03 * math.sin(a), 0.06),
@@ -161,7 +161,7 @@ def _lounger(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
         for a in turns(5, math.pi / 2)
     ]
     column = revolve([(0.03, 0.03), (0.03, 0.1), (0.024, 0.11), (0.024, seat - 0.12), (0.13, seat - 0.11), (0.13, seat - 0.095)], 16)
-    return made + pieces("foot", star + column, scheme.handle)
+    return parts + pieces("foot", star + column, scheme.handle)
 
 
 def _tub(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -170,14 +170,14 @@ def _tub(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, .
     seat, x, y = min(0.43, 0.52 * h), w / 2, d / 2
     low = 0.13
     kind = draw_kind(rng, scheme, "plank cross sled hairpin pipe horse")
-    made = pieces("legs", legs(kind, (0.62 * x, 0.66 * y), low, 0.04), leg_finish(scheme, kind))
+    parts = pieces("legs", legs(kind, (0.62 * x, 0.66 * y), low, 0.04), leg_finish(scheme, kind))
     thick = 0.09 * min(1.0, w / 0.75)
     rx, ry = x - thick / 2, min(0.75 * d, max(x, 0.5 * d)) - thick / 2
     cy = y - thick / 2 - ry
     bow = np.concatenate([[(rx, -y + 0.06)], arc((0.0, cy), rx, 0.0, math.pi, 12, ry / rx), [(-rx, -y + 0.06)]])
     t = np.abs(np.linspace(-1, 1, len(bow)))
     height = np.interp(t, [0, 0.45, 1], [h, h, seat + 0.16 if h > seat + 0.2 else h])
-    made += pieces("wall", wall(bow, thick, low + 0.004, height, 0.04), scheme.soft)
+    parts += pieces("wall", wall(bow, thick, low + 0.004, height, 0.04), scheme.soft)
     inner = arc((0.0, cy), rx - thick / 2 - 0.004, 0.0, math.pi, 12, (ry - thick / 2 - 0.004) / (rx - thick / 2 - 0.004))
     edge = np.concatenate(
         [inner, [(-inner[0, 0], -y + 0.03), (-inner[0, 0] + 0.03, -y), (inner[0, 0] - 0.03, -y), (inner[0, 0], -y + 0.03)]]
@@ -187,7 +187,7 @@ def _tub(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, .
         np.column_stack([centre + (edge - centre) * f, np.full(len(edge), z)])
         for f, z in ((0.98, low), (1.0, low + 0.02), (1.0, seat - 0.05), (0.975, seat - 0.02), (0.88, seat), (0.5, seat + 0.02))
     ]
-    return made + pieces("seat", stack(rings), scheme.soft if rng.random() < 0.7 else scheme.second)
+    return parts + pieces("seat", stack(rings), scheme.soft if rng.random() < 0.7 else scheme.second)
 
 
 def _sling(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -243,18 +243,18 @@ def _rattan(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece
     weave = cane(rng)
     bow = arc((0.0, -0.05 * d), x - 0.03, -0.06 * math.pi, 1.06 * math.pi, 12, (0.55 * d - 0.03) / (x - 0.03))
     height = np.interp(np.abs(np.linspace(-1, 1, 13)), [0, 0.5, 1], [h - r, h - 0.25 * (h - seat), seat + 0.2])
-    made = pieces("hoop", tube(np.column_stack([bow, height]), r, 8), pole)
+    parts = pieces("hoop", tube(np.column_stack([bow, height]), r, 8), pole)
     ring = [np.array([math.cos(a) * (x - 0.045), math.sin(a) * (y - r)]) for a in turns(16)]
-    made += pieces("seat_ring", tube(np.column_stack([ring, np.full(16, seat - 0.06)]), r, 8, closed=True), pole)
-    made += pieces("weave", wall(bow * 0.985, 0.012, seat - 0.04, height - r), weave)
-    made += pieces("seat_weave", slab(np.array(ring) * 0.93, (seat - 0.066, seat - 0.05)), weave)
-    made += pieces(
+    parts += pieces("seat_ring", tube(np.column_stack([ring, np.full(16, seat - 0.06)]), r, 8, closed=True), pole)
+    parts += pieces("weave", wall(bow * 0.985, 0.012, seat - 0.04, height - r), weave)
+    parts += pieces("seat_weave", slab(np.array(ring) * 0.93, (seat - 0.066, seat - 0.05)), weave)
+    parts += pieces(
         "legs",
         [rod((s * 0.8 * x, t * 0.78 * y, 0), (s * 0.66 * x, t * 0.62 * y, seat - 0.066), 0.015, n=8) for s in (-1, 1) for t in (-1, 1)],
         pole,
     )
     pad = revolve([(0.9, seat - 0.05), (1.0, seat - 0.03), (1.0, seat + 0.01), (0.92, seat + 0.035), (0.5, seat + 0.045)], 24)
-    return made + pieces("pad", [s.scaled(np.array([0.8 * x, 0.74 * y, 1])) for s in pad], scheme.soft)
+    return parts + pieces("pad", [s.scaled(np.array([0.8 * x, 0.74 * y, 1])) for s in pad], scheme.soft)
 
 
 def _hanging(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -265,8 +265,8 @@ def _hanging(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
     bow = curve(
         [(0, 0.40 * d, 0.02), (0, y - 0.022, 0.4 * h), (0, 0.42 * d, 0.86 * h), (0, 0.2 * d, h - 0.022), (0, -0.1 * d, h - 0.06)], 2
     )
-    made = pieces("stand", foot + tube(bow, 0.02, 8), scheme.handle)
-    made += pieces("base", box((-0.03, 0.03), (0.3 * d, 0.42 * d + 0.02), (0.0, 0.02)), scheme.handle)
+    parts = pieces("stand", foot + tube(bow, 0.02, 8), scheme.handle)
+    parts += pieces("base", box((-0.03, 0.03), (0.3 * d, 0.42 * d + 0.02), (0.0, 0.02)), scheme.handle)
     low, high = 0.16 * h, 0.9 * h
     weave = cane(rng)
     rows = 5
@@ -282,16 +282,16 @@ def _hanging(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
                 if k
                 else [2 * math.pi * (j + q) / steps for q in (0, 1)]
             )
-            made += pieces("egg", _stave(radii, zs, t, 0.4 * d / (x - 0.02)).moved((0, -0.1 * d, 0)), weave)
+            parts += pieces("egg", _stave(radii, zs, t, 0.4 * d / (x - 0.02)).moved((0, -0.1 * d, 0)), weave)
     r0 = math.cos(-0.62 * math.pi / 2) * (x - 0.02)
-    made += pieces(
+    parts += pieces(
         "egg_floor",
         slab(np.array([(r0 * math.cos(a), r0 * 0.4 * d / (x - 0.02) * math.sin(a) - 0.1 * d) for a in turns(16)]), (low - 0.012, low)),
         weave,
     )
-    made += pieces("pad", cushion((-0.66 * r0, 0.66 * r0), (-0.26 * d, 0.06 * d), (low, low + 0.1), 0.045, 3), scheme.soft)
-    made += pieces("pillow", throw_pillow((0.0, -0.04 * d, low + 0.1), min(0.4, 0.45 * w), 0.3, 0.0), scheme.second)
-    return made + pieces("chain", rod((0, -0.1 * d, high - 0.004), (0, -0.1 * d, h - 0.075), 0.006, n=6), scheme.handle)
+    parts += pieces("pad", cushion((-0.66 * r0, 0.66 * r0), (-0.26 * d, 0.06 * d), (low, low + 0.1), 0.045, 3), scheme.soft)
+    parts += pieces("pillow", throw_pillow((0.0, -0.04 * d, low + 0.1), min(0.4, 0.45 * w), 0.3, 0.0), scheme.second)
+    return parts + pieces("chain", rod((0, -0.1 * d, high - 0.004), (0, -0.1 * d, h - 0.075), 0.006, n=6), scheme.handle)
 
 
 def _stave(radii: list[float], zs: list[float], t: list[float], squash: float) -> Solid:
@@ -301,4 +301,4 @@ def _stave(radii: list[float], zs: list[float], t: list[float], squash: float) -
         a, b = (np.array([r * math.cos(q), squash * r * math.sin(q)]) for q in t)
         i, j = (np.array([(r - 0.012) * math.cos(q), squash * (r - 0.012) * math.sin(q)]) for q in t)
         rings.append(np.column_stack([np.array([a, b, j, i]), np.full(4, z)]))
-    return settled(stack(rings))
+    return split_bent_quads(stack(rings))

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from pipeline.corpus.furniture.finishes import DARK_GLASS, GLASS, MIRROR, Finish
-from pipeline.corpus.furniture.shape import Piece, grouped, pieces
+from pipeline.corpus.furniture.shape import Piece, group_pieces, pieces
 from pipeline.corpus.furniture.solids import Solid, box, slab, stack
 
 PanelStyle = Literal["slab", "shaker", "raised", "glass", "dark_glass", "slats", "reeded", "cane", "mirror"]
@@ -60,8 +60,8 @@ class FrontStyle:
 
 def panel(rect: Rect, style: FrontStyle) -> tuple[Piece, ...]:
     """Return the panel of a front; whatever it is made of, it collides as one board."""
-    made = _panel(rect, style)
-    return made if len(made) == 1 else grouped(made, "front")
+    parts = _panel(rect, style)
+    return parts if len(parts) == 1 else group_pieces(parts, "front")
 
 
 def _panel(rect: Rect, style: FrontStyle) -> tuple[Piece, ...]:
@@ -102,21 +102,21 @@ def _filling(inner: Rect, style: FrontStyle) -> tuple[Piece, ...]:
     if style.panel == "slats":
         return pieces("front_slats", _louvres(inner, t), style.finish)
     if style.panel in ("glass", "dark_glass"):
-        made = pieces("front_glass", box(inner.x, (y + 0.006, y + 0.012), inner.z), GLASS if style.panel == "glass" else DARK_GLASS)
+        parts = pieces("front_glass", box(inner.x, (y + 0.006, y + 0.012), inner.z), GLASS if style.panel == "glass" else DARK_GLASS)
         if style.panel == "glass" and inner.height > 0.7:  # a glazing bar
             middle = inner.middle[1]
-            made += pieces("front_bar", box(inner.x, (y + 0.003, y + 0.006), (middle - 0.011, middle + 0.011)), style.finish)
-        return made
+            parts += pieces("front_bar", box(inner.x, (y + 0.003, y + 0.006), (middle - 0.011, middle + 0.011)), style.finish)
+        return parts
     if style.panel == "cane":
         return pieces("front_cane", box(inner.x, (y + 0.006, y + 0.010), inner.z), CANE)
-    made = pieces("front_panel", box(inner.x, (y + 0.009, y + t - 0.002), inner.z), style.finish)
+    parts = pieces("front_panel", box(inner.x, (y + 0.009, y + t - 0.002), inner.z), style.finish)
     if style.panel == "raised" and min(inner.width, inner.height) > 0.08:
         field = min(0.035, 0.25 * min(inner.width, inner.height))
         low = np.array([(inner.x[0], inner.z[0]), (inner.x[1], inner.z[0]), (inner.x[1], inner.z[1]), (inner.x[0], inner.z[1])])
         high = low + np.array([(field, field), (-field, field), (-field, -field), (field, -field)])
         rings = [np.column_stack([o[:, 0], np.full(4, at), o[:, 1]]) for o, at in ((low, y + 0.009), (high, y + 0.002))]
-        made += pieces("front_field", stack(rings), style.finish)
-    return made
+        parts += pieces("front_field", stack(rings), style.finish)
+    return parts
 
 
 def _louvres(inner: Rect, thickness: float) -> list[Solid]:
@@ -124,13 +124,13 @@ def _louvres(inner: Rect, thickness: float) -> list[Solid]:
     count = min(18, max(3, round(inner.height / 0.045)))
     pitch = inner.height / count
     middle, half = inner.y + thickness / 2, 0.5 * thickness - 0.003
-    made = []
+    slats = []
     for i in range(count):
         z = inner.z[0] + (i + 0.5) * pitch
         slat = box(inner.x, (middle - 0.003, middle + 0.003), (z - 0.56 * pitch, z + 0.56 * pitch))
         angle = math.asin(min(0.8, max(0.0, half - 0.003) / (0.56 * pitch)))
-        made.append(slat.turned("x", -angle, (0.0, middle, z)))
-    return made
+        slats.append(slat.turned("x", -angle, (0.0, middle, z)))
+    return slats
 
 
 def _reeds(rect: Rect, proud: float) -> list[Solid]:
@@ -138,9 +138,9 @@ def _reeds(rect: Rect, proud: float) -> list[Solid]:
     count = min(18, max(4, round(rect.width / 0.028)))
     pitch = rect.width / count
     turns = np.linspace(math.pi, 2 * math.pi, 5)
-    made = []
+    strips = []
     for i in range(count):
         x = rect.x[0] + (i + 0.5) * pitch
         outline = np.stack([x + 0.46 * pitch * np.cos(turns), rect.y + proud + proud * np.sin(turns)], axis=1)
-        made.append(slab(outline, rect.z))
-    return made
+        strips.append(slab(outline, rect.z))
+    return strips

@@ -27,7 +27,7 @@ def plant(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     slim = form in ("cactus", "swords")
     pot_r = min((0.42 if slim else 0.3) * min(w, d), 0.2)
     pot_h = min(0.34 * h, 0.36, 1.9 * pot_r)
-    made, crown = _pot(rng, pot_r, pot_h, scheme)
+    pot, crown = _pot(rng, pot_r, pot_h, scheme)
     grow = {
         "bush": _bush,
         "palm": _palm,
@@ -39,7 +39,7 @@ def plant(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
         "olive": _olive,
     }[form]
     green = Finish("leaf", shade(rng, LEAF.color, 0.28), 0.55, pattern="leaf", density=300)
-    return Shape(made + grow(rng, (w / 2, d / 2), crown, h, pot_r, green))
+    return Shape(pot + grow(rng, (w / 2, d / 2), crown, h, pot_r, green))
 
 
 def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[tuple[Piece, ...], float]:
@@ -49,10 +49,10 @@ def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[
     finish = (CERAMIC, clay, scheme.front, concrete)[int(rng.integers(4))]
     kind = int(rng.integers(4))
     lift = 0.0
-    made: tuple[Piece, ...] = ()
+    parts: tuple[Piece, ...] = ()
     if kind == 3 and h > 0.15:  # a cylinder in a wooden stand
         lift = 0.35 * h
-        made += pieces(
+        parts += pieces(
             "stand",
             [
                 rod(
@@ -66,7 +66,7 @@ def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[
             scheme.timber,
         )
         bar = 0.95 * r - 0.012
-        made += pieces(
+        parts += pieces(
             "stand_bars",
             [
                 rod(
@@ -88,11 +88,11 @@ def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[
     profile = [(a * r, lift + b * (h - lift)) for a, b in steps]
     for (r0, z0), (r1, z1) in itertools.pairwise(profile):
         z0_ = z0 + (0.014 if z0 == lift else 0.0)
-        made += pieces("pot", ring((r0, r1), (r0 - 0.013, r1 - 0.013), (z0_, z1), 22), finish)
-    made += pieces("pot_floor", slab(circle(profile[0][0], 22), (lift, lift + 0.014)), finish)
+        parts += pieces("pot", ring((r0, r1), (r0 - 0.013, r1 - 0.013), (z0_, z1), 22), finish)
+    parts += pieces("pot_floor", slab(circle(profile[0][0], 22), (lift, lift + 0.014)), finish)
     crown = lift + 0.9 * (h - lift)
     inner = float(np.interp(crown, [z for _, z in profile], [a for a, _ in profile])) - 0.0135
-    return made + pieces("soil", slab(circle(inner, 18), (crown - 0.02, crown)), SOIL), crown
+    return parts + pieces("soil", slab(circle(inner, 18), (crown - 0.02, crown)), SOIL), crown
 
 
 def _leaves(
@@ -158,7 +158,7 @@ def _palm(rng: np.random.Generator, half: tuple[float, float], crown: float, h: 
 
 def _swords(rng: np.random.Generator, half: tuple[float, float], crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
     """Stiff upright leaves, each of two blades, the upper one leaning on."""
-    made: list[Solid] = []
+    leaves: list[Solid] = []
     count = 15
     for k in range(count):
         a, out = k * GOLDEN, math.sqrt((k + 0.5) / count)
@@ -174,8 +174,8 @@ def _swords(rng: np.random.Generator, half: tuple[float, float], crown: float, h
         def section(at: Points, f: float, side: Points = side, deep: Points = deep) -> Points:
             return np.array([at - f * side, at - f * deep, at + f * side, at + f * deep])
 
-        made += [stack([section(root, 0.6), section(middle, 1.0)]), stack([section(middle, 1.0), section(tip, 0.06)])]
-    return pieces("leaves", made, green)
+        leaves += [stack([section(root, 0.6), section(middle, 1.0)]), stack([section(middle, 1.0), section(tip, 0.06)])]
+    return pieces("leaves", leaves, green)
 
 
 def _big_leaf(base: Points, direction: float, droop: float, size: float) -> tuple[list[Points], list[Points]]:
@@ -273,7 +273,7 @@ def _cactus(rng: np.random.Generator, half: tuple[float, float], crown: float, h
     """Build a ribbed column with one or two arms."""
     r = min(0.24 * min(half), 0.6 * pot)
     body = [(0.8 * r, crown - 0.01), (r, crown + 0.15 * (h - crown)), (r, h - 0.8 * r), (0.75 * r, h - 0.25 * r), (0.3 * r, h)]
-    made = pieces("column", revolve(body, 12), green)
+    parts = pieces("column", revolve(body, 12), green)
     for s, share in ((-1, 0.4), (1, 0.55)):
         z = crown + share * (h - crown)
         out = half[0] - 0.55 * r
@@ -287,7 +287,7 @@ def _cactus(rng: np.random.Generator, half: tuple[float, float], crown: float, h
             2,
         )
         arm = tube(path, [0.36 * r, 0.42 * r, 0.46 * r, 0.48 * r, 0.48 * r, 0.44 * r, 0.28 * r], 10)
-        made += pieces("arms", arm if s < 0 else [q.turned("z", 0.5 * math.pi) for q in arm], green)
+        parts += pieces("arms", arm if s < 0 else [q.turned("z", 0.5 * math.pi) for q in arm], green)
     ribs = [
         box(
             (r * math.cos(a) - 0.004, r * math.cos(a) + 0.004),
@@ -296,7 +296,7 @@ def _cactus(rng: np.random.Generator, half: tuple[float, float], crown: float, h
         )
         for a in turns(12)
     ]
-    return made + pieces("ribs", ribs, Finish("spine", (0.45, 0.45, 0.28), 0.8, density=300))
+    return parts + pieces("ribs", ribs, Finish("spine", (0.45, 0.45, 0.28), 0.8, density=300))
 
 
 def _olive(rng: np.random.Generator, half: tuple[float, float], crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:

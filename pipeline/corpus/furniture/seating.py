@@ -14,7 +14,7 @@ from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, tube
 from pipeline.corpus.furniture.finishes import Finish, Scheme, cane
 from pipeline.corpus.furniture.legs import draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, box, cushion, revolve, rod, rounded, slab
+from pipeline.corpus.furniture.solids import Solid, beam, box, cushion, revolve, rod, rounded_rectangle, slab
 from pipeline.corpus.furniture.storage import Size
 from pipeline.corpus.furniture.styles import CLASSIC, ORIENTAL
 from pipeline.corpus.furniture.upholstery import seat_cushion
@@ -24,11 +24,11 @@ TUBE = 0.011  # radius of bent steel
 
 def dining_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a chair: framed (wood, upholstered, spindle, medallion, cafe), a shell, a wishbone, a cantilever, or one that folds."""
-    made = {"shell": _shell_chair, "wishbone": _wishbone, "cantilever": _cantilever, "folding": _folding}.get(form)
-    return Shape(made(rng, size, scheme) if made else _framed(rng, form, size, scheme))
+    build = {"shell": _shell_chair, "wishbone": _wishbone, "cantilever": _cantilever, "folding": _folding}.get(form)
+    return Shape(build(rng, size, scheme) if build else _frame_chair(rng, form, size, scheme))
 
 
-def _framed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _frame_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
     w, d, h = size
     seat = min(0.47, 0.56 * h)
     x, y = w / 2, d / 2
@@ -46,18 +46,20 @@ def _framed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     under = seat - top - rail
     half = inside(kind, (x, (back_y + y) / 2 + 0.3 * thick), under, thick)
     middle = (back_y - y) / 2 + 0.3 * thick
-    made = pieces("legs", [s.moved((0, middle, 0)) for s in legs(kind, half, under, thick)], wood)
-    made += pieces(
-        "rail", slab(rounded((-x + 0.012, x - 0.012), (-y + 0.016, back_y + 0.5 * thick), 0.02, 2), (under, under + rail), 0.004), wood
+    parts = pieces("legs", [s.moved((0, middle, 0)) for s in legs(kind, half, under, thick)], wood)
+    parts += pieces(
+        "rail",
+        slab(rounded_rectangle((-x + 0.012, x - 0.012), (-y + 0.016, back_y + 0.5 * thick), 0.02, 2), (under, under + rail), 0.004),
+        wood,
     )
     span_x, span_y = (-x, x), (-y, back_y - 0.55 * thick)
     if form == "wood":
-        made += pieces("seat", slab(rounded(span_x, span_y, 0.05, 3), (seat - top, seat), scheme.manner.edge), scheme.body)
+        parts += pieces("seat", slab(rounded_rectangle(span_x, span_y, 0.05, 3), (seat - top, seat), scheme.manner.edge), scheme.body)
     elif scheme.manner.cane > 0.3 and rng.random() < scheme.manner.cane:
-        made += pieces("seat", slab(rounded(span_x, span_y, 0.05, 3), (seat - top, seat - 0.01), 0.006), cane(rng))
+        parts += pieces("seat", slab(rounded_rectangle(span_x, span_y, 0.05, 3), (seat - top, seat - 0.01), 0.006), cane(rng))
     else:
         piping = scheme.second if rng.random() < scheme.manner.piping else None
-        made += seat_cushion(span_x, span_y, (seat - top, seat + 0.02), 0.04, scheme.soft, piping, 0.018)
+        parts += seat_cushion(span_x, span_y, (seat - top, seat + 0.02), 0.04, scheme.soft, piping, 0.018)
     frame = Frame(x - 0.012, back_y, under + rail, h, rise / (h - seat), thick, wood)
     kinds = {"wood": "slat ladder panel cane", "upholstered": "pad", "spindle": "spindle", "medallion": "medallion", "cafe": "cross"}[form]
     if form == "wood" and scheme.style in ORIENTAL:
@@ -70,9 +72,9 @@ def _framed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
             beam((s * 0.62 * x, back_y, under + rail), (s * 0.62 * x, back_y, seat - 0.021 + 0.08 * (h - seat + 0.02)), 0.03, 0.022)
             for s in (-1, 1)
         ]
-        made += pieces("posts", lean(short, under + rail, frame.slope), wood)
+        parts += pieces("posts", lean(short, under + rail, frame.slope), wood)
         frame = Frame(frame.x, frame.y, seat - 0.02, h, frame.slope, thick, wood)
-    made += back(rng, choice, frame, scheme)
+    parts += back(rng, choice, frame, scheme)
     if kind in ("square", "ming", "turned") and rng.random() < 0.55:
         z = 0.36 * under
         low = [
@@ -84,8 +86,8 @@ def _framed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
             )
             for s in (-1, 1)
         ]
-        made += pieces("stretchers", low, wood)
-    return made
+        parts += pieces("stretchers", low, wood)
+    return parts
 
 
 def _bucket(x: float, profile: list[tuple[float, float]], thick: float, steps: int = 3) -> list[Solid]:
@@ -111,7 +113,7 @@ def _shell_chair(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[
         (0.74 * y, seat + 0.3 * (h - seat)),
         (y - 0.02, h),
     ]
-    made = pieces("shell", _bucket(x, profile, thick, 3), finish)
+    parts = pieces("shell", _bucket(x, profile, thick, 3), finish)
     if soft or rng.random() < 0.3:  # low sides that hold the sitter
         wings = [
             cushion(
@@ -123,19 +125,19 @@ def _shell_chair(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[
             )
             for s in (-1, 1)
         ]
-        made += pieces("arms", wings, finish)
+        parts += pieces("arms", wings, finish)
     if not soft and rng.random() < 0.4:
-        made += seat_cushion((-0.8 * x, 0.8 * x), (-0.7 * y, 0.4 * y), (seat + 0.008, seat + 0.04), 0.015, scheme.soft, None, 0.006)
+        parts += seat_cushion((-0.8 * x, 0.8 * x), (-0.7 * y, 0.4 * y), (seat + 0.008, seat + 0.04), 0.015, scheme.soft, None, 0.006)
     top = seat - 0.06
     base = int(rng.integers(3))
     if base == 0:
         column = revolve([(0.42 * w, 0.0), (0.42 * w, 0.01), (0.03, 0.03), (0.022, top - 0.02), (0.12, top - 0.012), (0.12, top)], 20)
-        return made + pieces("foot", column, scheme.handle)
+        return parts + pieces("foot", column, scheme.handle)
     kind = "splayed" if base == 1 else "dowel"
     finish = scheme.timber if base == 1 else scheme.handle
     feet = legs(kind, (0.3 * w, 0.3 * d), top - 0.012, 0.036 if base == 1 else 0.026)
-    plate = slab(rounded((-0.34 * w, 0.34 * w), (-0.34 * d, 0.34 * d), 0.03, 2), (top - 0.012, top), 0.002)
-    return made + pieces("legs", feet, finish) + pieces("plate", plate, scheme.handle)
+    plate = slab(rounded_rectangle((-0.34 * w, 0.34 * w), (-0.34 * d, 0.34 * d), 0.03, 2), (top - 0.012, top), 0.002)
+    return parts + pieces("legs", feet, finish) + pieces("plate", plate, scheme.handle)
 
 
 def _wishbone(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -162,8 +164,8 @@ def _wishbone(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Pie
     rails += [rod((s * (x - 0.028), -y + 0.06, seat - 0.05), (s * 0.70 * x, 0.5 * y, seat - 0.05), 0.012, n=8) for s in (-1, 1)]
     weave = Finish("cord", (0.56, 0.46, 0.32), 0.95, pattern="knit", density=300)
     quad = np.array([(-x + 0.03, -y + 0.036), (x - 0.03, -y + 0.036), (0.66 * x, 0.5 * y), (-0.66 * x, 0.5 * y)])
-    made = pieces("frame", crest + front + [s for leg in rear for s in leg] + rails, wood) + pieces("fork", fork, wood)
-    return made + pieces("seat", slab(quad, (seat - 0.012, seat + 0.008), 0.004), weave)
+    parts = pieces("frame", crest + front + [s for leg in rear for s in leg] + rails, wood) + pieces("fork", fork, wood)
+    return parts + pieces("seat", slab(quad, (seat - 0.012, seat + 0.008), 0.004), weave)
 
 
 def _cantilever(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -185,13 +187,13 @@ def _cantilever(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[P
     panel = scheme.soft if rng.random() < 0.6 else cane(rng)
     inner = (-x + TUBE + 0.002, x - TUBE - 0.002)
     thick = 0.03 if panel is scheme.soft else 0.014
-    made = pieces("frame", frame, scheme.handle) + pieces(
+    parts = pieces("frame", frame, scheme.handle) + pieces(
         "seat", cushion(inner, (-y + 0.05, 0.5 * y), (seat - 0.035, seat - 0.035 + thick), 0.012, 2), panel
     )
     low = seat + 0.28 * (h - seat)
     slope = (y - 0.012 - 0.66 * y) / (h - seat - 0.03)
     pad = cushion(inner, (0.66 * y - thick / 2, 0.66 * y + thick / 2), (low, h), 0.012, 2)
-    return made + pieces("back", lean([pad], seat + 0.02, slope), panel)
+    return parts + pieces("back", lean([pad], seat + 0.02, slope), panel)
 
 
 def _folding(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
@@ -203,10 +205,10 @@ def _folding(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
     long = [beam((s * (x - 0.6 * t), -y + 0.02, 0), (s * (x - 0.6 * t), y - 0.02, h), t, 0.032) for s in (-1, 1)]
     short = [beam((s * (x - 1.75 * t), y - 0.05, 0), (s * (x - 1.75 * t), -y + 0.06, seat - 0.026), t, 0.03) for s in (-1, 1)]
     bars = [rod((-x + 2.4 * t, sy, z), (x - 2.4 * t, sy, z), 0.007, n=6) for sy, z in ((y - 0.09, 0.08), (-y + 0.1, seat - 0.09))]
-    made = pieces("frames", long + short, metal if rng.random() < 0.4 else wood) + pieces("bars", bars, metal)
+    parts = pieces("frames", long + short, metal if rng.random() < 0.4 else wood) + pieces("bars", bars, metal)
     reach = -y + 0.02 + (2 * y - 0.04) * seat / h  # where the long frame passes the seat
     ys = np.linspace(-y, reach - 0.045, 6)
-    made += pieces(
+    parts += pieces(
         "seat",
         [box((-x + 1.3 * t, x - 1.3 * t), (a + 0.003, b - 0.003), (seat - 0.024, seat), 0.003) for a, b in itertools.pairwise(ys)],
         wood,
@@ -214,7 +216,7 @@ def _folding(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
     slope = (2 * y - 0.04) / h
     at = -y + 0.02 + slope * 0.7 * h
     boards = [box((-x + 1.3 * t, x - 1.3 * t), (at - 0.007, at + 0.007), (q * h, (q + 0.09) * h), 0.003) for q in (0.7, 0.81, 0.92)]
-    return made + pieces("back", lean(boards, 0.7 * h, slope), wood)
+    return parts + pieces("back", lean(boards, 0.7 * h, slope), wood)
 
 
 def chinese_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -227,20 +229,20 @@ def chinese_chair(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     sides = [rod((-x + 0.017, sy, z), (x - 0.017, sy, z), 0.012, n=8) for sy, z in ((-y, 0.07), (y, 0.12))] + [
         rod((s * x, -y + 0.017, 0.1), (s * x, y - 0.017, 0.1), 0.012, n=8) for s in (-1, 1)
     ]
-    made = pieces(
+    parts = pieces(
         "posts", [rod((s * x, t * y, 0), (s * x, t * y, seat - board), 0.018, 0.016, 10) for s in (-1, 1) for t in (-1, 1)] + sides, wood
     )
-    made += pieces("seat", box((-x - 0.03, x + 0.03), (-y - 0.03, y + 0.03), (seat - board, seat), 0.006), wood)
+    parts += pieces("seat", box((-x - 0.03, x + 0.03), (-y - 0.03, y + 0.03), (seat - board, seat), 0.006), wood)
     apron = [box((-x + 0.02, x - 0.02), (t * y - 0.006, t * y + 0.006), (seat - 0.09, seat - board), 0.002) for t in (-1, 1)]
     apron += [box((s * x - 0.006, s * x + 0.006), (-y + 0.02, y - 0.02), (seat - 0.08, seat - board), 0.002) for s in (-1, 1)]
-    made += pieces("apron", apron, wood)
+    parts += pieces("apron", apron, wood)
     arm = seat + (0.5 if form != "rose" else 0.62) * (h - seat)
     upper, top = (_bow(x, y, seat, arm, h), h - 2 * 0.0145) if form == "horseshoe" else _yoke(form, x, y, seat, arm, h)
-    made += pieces("frame", upper, wood)
+    parts += pieces("frame", upper, wood)
     splat = box((-0.085, 0.085), (y - 0.007, y + 0.007), (seat, top - 0.004 if form != "rose" else seat + 0.6 * (top - seat)), 0.003)
-    made += pieces("splat", splat, wood)
+    parts += pieces("splat", splat, wood)
     if rng.random() < 0.55:
-        made += seat_cushion(
+        parts += seat_cushion(
             (-0.84 * x, 0.84 * x),
             (-0.86 * y, 0.8 * y),
             (seat + 0.0005, seat + 0.045),
@@ -249,7 +251,7 @@ def chinese_chair(rng: np.random.Generator, form: str, size: Size, scheme: Schem
             scheme.second if rng.random() < 0.4 else None,
             0.008,
         )
-    return Shape(made)
+    return Shape(parts)
 
 
 def _bow(x: float, y: float, seat: float, arm: float, h: float) -> list[Solid]:

@@ -78,8 +78,8 @@ def shade(
     }.get(kind, CLOTH)
     if cover is CLOTH and rng.random() < 0.3:
         cover = Finish("shade_linen", tinted(rng, (0.62, 0.52, 0.38)), 0.9, pattern="weave", density=150)
-    made = pieces("shade", _walls(kind, profile, at, n), cover)
-    return made + _fittings(radius, profile[-1][0], z, at, metal)
+    parts = pieces("shade", _walls(kind, profile, at, n), cover)
+    return parts + _fittings(radius, profile[-1][0], z, at, metal)
 
 
 def _ball(scheme: Scheme, kind: str, radius: float, z: Span, at: Spot, n: int) -> tuple[Piece, ...]:
@@ -91,14 +91,14 @@ def _ball(scheme: Scheme, kind: str, radius: float, z: Span, at: Spot, n: int) -
         (radius * math.cos(a), low + tall / 2 + tall / 2 * math.sin(a) / math.sin(1.45))
         for a in np.linspace(-1.45, 1.45, 11 if n > 16 else 8)
     ]
-    made = pieces("globe", revolve([(r, q * squat + low * (1 - squat)) if kind == "paper" else (r, q) for r, q in steps], n, at), GLOW)
+    parts = pieces("globe", revolve([(r, q * squat + low * (1 - squat)) if kind == "paper" else (r, q) for r, q in steps], n, at), GLOW)
     if kind == "globe":
         return (
-            made + pieces("cap", revolve([(0.3 * radius, high - 0.02 * tall), (0.24 * radius, high)], 12, at), scheme.handle)
+            parts + pieces("cap", revolve([(0.3 * radius, high - 0.02 * tall), (0.24 * radius, high)], 12, at), scheme.handle)
             if tall > 0.08 and n > 16
-            else made
+            else parts
         )
-    return made + pieces("neck", revolve([(0.12 * radius, low + squat * tall), (0.12 * radius, high)], 10, at), scheme.timber)
+    return parts + pieces("neck", revolve([(0.12 * radius, low + squat * tall), (0.12 * radius, high)], 10, at), scheme.timber)
 
 
 def _walls(kind: str, profile: list[Spot], at: Spot, n: int) -> list[Solid]:
@@ -125,11 +125,11 @@ def _fittings(radius: float, top: float, z: Span, at: Spot, metal: Finish) -> tu
     """Build the spokes that carry an open shade whose upper rim has radius `top`, its socket and its bulb, where there is room for them."""
     low, high = z
     tall = high - low
-    made: tuple[Piece, ...] = ()
+    parts: tuple[Piece, ...] = ()
     if top > 0.05:  # spokes carry an open shade
         inner = top - 0.5 * WALL
         zt = high - 0.03 * tall - 0.004
-        made += pieces(
+        parts += pieces(
             "spider",
             [
                 rod((at[0] - s * inner * math.cos(a), at[1] - s * inner * math.sin(a), zt), (at[0], at[1], zt), 0.0025, n=5)
@@ -139,13 +139,13 @@ def _fittings(radius: float, top: float, z: Span, at: Spot, metal: Finish) -> tu
             metal,
         )
     if tall > 0.1:
-        made += (
+        parts += (
             pieces("socket", revolve([(0.014, high - 0.45 * tall), (0.014, high - 0.02 * tall)], 8, at), metal)
             + bulb(high - 0.45 * tall - 0.07, 0.07, at)
             if radius > 0.06 and tall > 0.16
             else ()
         )
-    return made
+    return parts
 
 
 def _lantern(scheme: Scheme, radius: float, z: Span, at: Spot) -> tuple[Piece, ...]:
@@ -199,13 +199,13 @@ def _cage(scheme: Scheme, radius: float, z: Span, at: Spot) -> tuple[Piece, ...]
     tall = high - low
     metal = scheme.handle
     shape = [(0.34, 0.0), (0.8, 0.14), (1.0, 0.42), (0.8, 0.7), (0.3, 0.9)]
-    made: tuple[Piece, ...] = ()
+    parts: tuple[Piece, ...] = ()
     for a in turns(8):
         c, s = math.cos(a), math.sin(a)
         path = curve([(at[0] + (r * radius - 0.004) * c, at[1] + (r * radius - 0.004) * s, low + q * tall) for r, q in shape], 1)
-        made += pieces("wires", tube(path, 0.0035, 5), metal)
+        parts += pieces("wires", tube(path, 0.0035, 5), metal)
     hoop = [(at[0] + (0.34 * radius + 0.002) * math.cos(a), at[1] + (0.34 * radius + 0.002) * math.sin(a)) for a in turns(12)]
-    made += pieces("hoop", tube([(p[0], p[1], low + 0.004) for p in hoop], 0.004, 5, closed=True), metal)
+    parts += pieces("hoop", tube([(p[0], p[1], low + 0.004) for p in hoop], 0.004, 5, closed=True), metal)
     cap = revolve([(0.36 * radius, high - 0.12 * tall), (0.36 * radius, high - 0.05 * tall), (0.1 * radius, high)], 14, at)
-    made += pieces("cap", cap, metal) + pieces("foot", slab(circle(0.3 * radius, 10, at), (low + 0.002, low + 0.004)), metal)
-    return made + bulb(high - 0.12 * tall - 0.5 * tall, 0.5 * tall, at)
+    parts += pieces("cap", cap, metal) + pieces("foot", slab(circle(0.3 * radius, 10, at), (low + 0.002, low + 0.004)), metal)
+    return parts + bulb(high - 0.12 * tall - 0.5 * tall, 0.5 * tall, at)

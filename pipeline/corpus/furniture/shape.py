@@ -83,7 +83,7 @@ def pieces(name: str, solids: Solid | Iterable[Solid], finish: Finish, part: str
     return tuple(Piece(name, solid, finish, part, group) for solid in solids)
 
 
-def grouped(parts: Iterable[Piece], group: str) -> tuple[Piece, ...]:
+def group_pieces(parts: Iterable[Piece], group: str) -> tuple[Piece, ...]:
     """Return the pieces, all colliding as one convex solid."""
     return tuple(replace(piece, group=group) for piece in parts)
 
@@ -103,20 +103,20 @@ def colliders(parts: Iterable[Piece]) -> list[Solid]:
     for piece in parts:
         (groups.setdefault(piece.group, []) if piece.group else alone).append(piece.solid)
     hulls = [_hull_or_box(members) for members in groups.values()]
-    return alone + [_smaller(made, *made.bounds()) for made in hulls]
+    return alone + [_smaller(solid, *solid.bounds()) for solid in hulls]
 
 
 def _hull_or_box(members: list[Solid]) -> Solid:
     if len(members) == 1:
         return members[0]
-    made = hull(np.concatenate([s.vertices for s in members]))
-    low, high = made.bounds()
-    if made.volume() > BOXY * float(np.prod(high - low)):
+    solid = hull(np.concatenate([s.vertices for s in members]))
+    low, high = solid.bounds()
+    if solid.volume() > BOXY * float(np.prod(high - low)):
         return box(*((float(a), float(b)) for a, b in zip(low, high, strict=True)))  # type: ignore[arg-type]
-    return made
+    return solid
 
 
-def fitted(shape: Shape, size: Vector) -> Shape:
+def fit_to_size(shape: Shape, size: Vector) -> Shape:
     """Return the shape scaled to `size` (w, d, h) exactly and centred over the origin, bottom at 0.
 
     Builders come within a few percent of their box; this takes up the rest. Lengths of sliding joints scale along.
@@ -146,7 +146,7 @@ def _drawn_in(parts: tuple[Piece, ...]) -> tuple[Piece, ...]:
     components: dict[str, list[NDArray[np.float64]]] = {}
     for piece in parts:
         components.setdefault(piece.group or piece.name, []).append(piece.solid.bounds())
-    bounds = {name: (np.min([b[0] for b in found], axis=0), np.max([b[1] for b in found], axis=0)) for name, found in components.items()}
+    bounds = {name: (np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)) for name, boxes in components.items()}
     return tuple(replace(piece, solid=_smaller(piece.solid, *bounds[piece.group or piece.name])) for piece in parts)
 
 
@@ -162,7 +162,7 @@ def frozen(shape: Shape) -> Shape:
     return Shape(tuple(shape.pieces()))
 
 
-def moved(shape: Shape, offset: Vector, prefix: str = "") -> Shape:
+def translate(shape: Shape, offset: Vector, prefix: str = "") -> Shape:
     """Return the shape translated by `offset` (3,) [m]; `prefix` goes before the names of its pieces and movers."""
     dx, dy, dz = (float(v) for v in offset)
 
@@ -183,6 +183,6 @@ def moved(shape: Shape, offset: Vector, prefix: str = "") -> Shape:
     return Shape(place(shape.base), movers)
 
 
-def joined(*shapes: Shape) -> Shape:
+def join_shapes(*shapes: Shape) -> Shape:
     """Return the shapes on one base."""
     return Shape(tuple(p for s in shapes for p in s.base), tuple(m for s in shapes for m in s.movers))

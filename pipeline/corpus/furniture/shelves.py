@@ -39,7 +39,7 @@ BOOK_COLORS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "
 
 def books(rng: np.random.Generator, shape: Shape) -> tuple[Piece, ...]:
     """Return a few rows of books on the boards of open shelves."""
-    made: list[Piece] = []
+    parts: list[Piece] = []
     palette = [Finish(f"book_{n}", LACQUERS[n], 0.8, density=600) for n in BOOK_COLORS[:4]]
     boards = [p for p in shape.base if "_board_" in p.name or p.name == "bottom"]
     for board in boards:
@@ -51,11 +51,11 @@ def books(rng: np.random.Generator, shape: Shape) -> tuple[Piece, ...]:
             t, tall, deep = float(rng.uniform(0.02, 0.05)), float(rng.uniform(0.16, 0.24)), float(rng.uniform(0.12, 0.17))
             if x + t > high[0] - 0.01:
                 break
-            made += pieces(
+            parts += pieces(
                 "books", box((x, x + t), (y, min(y + deep, high[1])), (high[2], high[2] + tall)), palette[int(rng.integers(len(palette)))]
             )
             x += t + 0.0015
-    return tuple(made)
+    return tuple(parts)
 
 
 def ladder_shelf(size: Size, scheme: Scheme, rows: int) -> Shape:

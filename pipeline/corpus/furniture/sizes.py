@@ -50,19 +50,19 @@ def draw(rng: np.random.Generator, statistics: SizeStatistics, count: int, round
     From three draws on their mean and standard deviation are those of the category, as far as the bounds let them. Where
     `rounds` (count,) is true, width and depth are equal.
     """
-    made = np.stack([_axis(rng, statistics, axis, count) for axis in range(3)], axis=1)
+    sizes = np.stack([_axis(rng, statistics, axis, count) for axis in range(3)], axis=1)
     for axis in range(3):
-        made[:, axis] = rng.permutation(made[:, axis])
+        sizes[:, axis] = rng.permutation(sizes[:, axis])
     mask = np.array(rounds, bool) if len(rounds) else np.zeros(count, bool)
     if mask.any():
-        made[mask, :2] = _round(rng, statistics, int(mask.sum()))[:, None]
+        sizes[mask, :2] = _round(rng, statistics, int(mask.sum()))[:, None]
     for _ in range(ROUNDS):  # what is clipped at a bound shifts the others
         for axis in range(3):
             free = ~mask if axis < 2 and (~mask).sum() >= 2 else np.ones(count, bool)
-            _standardise(made[:, axis], free, statistics, axis)
+            _standardise(sizes[:, axis], free, statistics, axis)
     if mask.any():
-        made[mask, 1] = made[mask, 0]
-    return made
+        sizes[mask, 1] = sizes[mask, 0]
+    return sizes
 
 
 def _axis(rng: np.random.Generator, statistics: SizeStatistics, axis: int, count: int) -> NDArray[np.float64]:

@@ -16,7 +16,7 @@ from pipeline.corpus.furniture.lounge import lounge_chair
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, beam, box, cushion, revolve, rod
 from pipeline.corpus.furniture.storage import Size
-from pipeline.corpus.furniture.upholstery import Span, bolster, channels, seat_cushion, throw_pillow, tufted
+from pipeline.corpus.furniture.upholstery import Span, bolster, channels, seat_cushion, throw_pillow, tufted_panel
 
 ARMS = {"track": 0.13, "legs": 0.09, "roll": 0.2, "chesterfield": 0.2, "camelback": 0.17, "cloud": 0.22, "u_shape": 0.15}
 LIFTS = {"track": 0.05, "legs": 0.15, "roll": 0.09, "chesterfield": 0.1, "camelback": 0.17, "cloud": 0.03, "u_shape": 0.06}
@@ -27,7 +27,7 @@ def sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     if form == "tub":
         return lounge_chair(rng, "tub", size, scheme)
     if form == "frame":
-        return Shape(_framed(rng, size, scheme))
+        return Shape(_frame_sofa(rng, size, scheme))
     w, d, h = size
     seats = max(1, round((w - 0.4) / (0.72 if form != "cloud" else 0.95)))
     seat = float(rng.uniform(0.40, 0.44)) * min(1.0, h / 0.78) * (0.92 if form == "cloud" else 1.0)
@@ -35,23 +35,23 @@ def sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     lift = LIFTS[form]
     deep = min(0.2, 0.22 * d)
     front = -d / 2 + (0.28 * d if form == "u_shape" and w > 2.2 else 0.0)
-    made = feet(rng, scheme, (-w / 2, w / 2), (-d / 2, d / 2), lift, form)
+    parts = feet(rng, scheme, (-w / 2, w / 2), (-d / 2, d / 2), lift, form)
     base_top = seat - 0.14
     side = arm if form == "track" else 0.012
-    made += pieces("frame", cushion((-w / 2 + side, w / 2 - side), (front + 0.03, d / 2 - 0.008), (lift, base_top), 0.018, 2), scheme.soft)
+    parts += pieces("frame", cushion((-w / 2 + side, w / 2 - side), (front + 0.03, d / 2 - 0.008), (lift, base_top), 0.018, 2), scheme.soft)
     inner = (-w / 2 + arm, w / 2 - arm)
     if form == "u_shape":
-        made += _returns(w, d, front, lift, base_top, seat, arm, scheme)
+        parts += _returns(w, d, front, lift, base_top, seat, arm, scheme)
     top = min(h - 0.04, seat + 0.2) if form != "chesterfield" else h - 0.08
     rolled = form in ("roll", "chesterfield", "camelback")
     rear = d / 2 - 0.62 * deep - 0.002 if rolled else d / 2 - 0.012
-    made += _arms(form, w, (-d / 2 + 0.012, rear), (base_top if form != "track" else lift + 0.004, top), arm, lift, scheme)
+    parts += _arms(form, w, (-d / 2 + 0.012, rear), (base_top if form != "track" else lift + 0.004, top), arm, lift, scheme)
     behind = (-w / 2 + 0.04, w / 2 - 0.04) if rolled else inner
-    made += _back(rng, form, behind, (d / 2 - 0.62 * deep, d / 2), (base_top, h), scheme)
+    parts += _back(rng, form, behind, (d / 2 - 0.62 * deep, d / 2), (base_top, h), scheme)
     if form in ("chesterfield", "camelback"):
         xs = np.linspace(inner[0], inner[1], max(1, seats) + 1)
         for a, b in itertools.pairwise(xs):
-            made += seat_cushion(
+            parts += seat_cushion(
                 (float(a) + 0.001, float(b) - 0.001),
                 (front, d / 2 - 0.62 * deep - 0.002),
                 (base_top, seat + 0.03),
@@ -60,11 +60,11 @@ def sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
                 _piping(rng, scheme),
                 0.03,
             )
-        return Shape(made)
-    made += _cushions(rng, inner, (front, d / 2 - 0.62 * deep), (base_top, seat), h, seats, deep, scheme)
+        return Shape(parts)
+    parts += _cushions(rng, inner, (front, d / 2 - 0.62 * deep), (base_top, seat), h, seats, deep, scheme)
     if w > 1.2:
-        made += _pillows(rng, w / 2 - arm, d / 2 - 1.75 * deep, (seat + 0.022, h), scheme)
-    return Shape(made)
+        parts += _pillows(rng, w / 2 - arm, d / 2 - 1.75 * deep, (seat + 0.022, h), scheme)
+    return Shape(parts)
 
 
 def _piping(rng: np.random.Generator, scheme: Scheme) -> Finish | None:
@@ -82,30 +82,30 @@ def feet(rng: np.random.Generator, scheme: Scheme, x: Span, y: Span, lift: float
     )
     middle_x, middle_y = (x[0] + x[1]) / 2, (y[0] + y[1]) / 2
     half = ((x[1] - x[0]) / 2 - 0.08, (y[1] - y[0]) / 2 - 0.08)
-    made = [s.moved((middle_x, middle_y, 0)) for s in legs(kind, half, lift, 0.045)]
+    solids = [s.moved((middle_x, middle_y, 0)) for s in legs(kind, half, lift, 0.045)]
     if x[1] - x[0] > 1.9 and form != "u_shape":
-        made += [s.moved((middle_x, middle_y, 0)) for sy in (-1, 1) for s in leg(kind, (0.0, sy * half[1]), (1, sy), lift, 0.045)]
-    return pieces("feet", made, leg_finish(scheme, kind))
+        solids += [s.moved((middle_x, middle_y, 0)) for sy in (-1, 1) for s in leg(kind, (0.0, sy * half[1]), (1, sy), lift, 0.045)]
+    return pieces("feet", solids, leg_finish(scheme, kind))
 
 
 def _arms(form: str, w: float, y: Span, z: Span, arm: float, lift: float, scheme: Scheme) -> tuple[Piece, ...]:
     """Return both arms; z from the frame's top (or the floor's lift) to the arm's top."""
-    made: list[Solid] = []
+    solids: list[Solid] = []
     soft = scheme.manner.soft
     for s in (-1, 1):
         lo, hi = (w / 2 - arm, w / 2) if s > 0 else (-w / 2, -w / 2 + arm)
         if form in ("roll", "chesterfield", "camelback"):
             r = 0.5 * arm * (0.95 if form != "camelback" else 0.8)
             core = 0.16 * arm
-            made.append(cushion((lo + core * (s > 0), hi - core * (s < 0)), (y[0] + 0.02, y[1]), (z[0], z[1] - 2 * r + 0.012), 0.02, 2))
-            made.append(rod(((lo + hi) / 2, y[0] + 0.004, z[1] - r), ((lo + hi) / 2, y[1], z[1] - r), r, n=16))
-            made.append(rod(((lo + hi) / 2, y[0] - 0.004, z[1] - r), ((lo + hi) / 2, y[0] + 0.004, z[1] - r), 0.55 * r, 0.62 * r, n=14))
+            solids.append(cushion((lo + core * (s > 0), hi - core * (s < 0)), (y[0] + 0.02, y[1]), (z[0], z[1] - 2 * r + 0.012), 0.02, 2))
+            solids.append(rod(((lo + hi) / 2, y[0] + 0.004, z[1] - r), ((lo + hi) / 2, y[1], z[1] - r), r, n=16))
+            solids.append(rod(((lo + hi) / 2, y[0] - 0.004, z[1] - r), ((lo + hi) / 2, y[0] + 0.004, z[1] - r), 0.55 * r, 0.62 * r, n=14))
         elif form == "cloud":
-            made.append(cushion((lo, hi), y, z, 0.1, 4))
+            solids.append(cushion((lo, hi), y, z, 0.1, 4))
         else:
             low = lift + 0.004 if form == "track" else z[0]
-            made.append(cushion((lo, hi), y, (low, z[1]), min(soft, 0.4 * arm), 3))
-    return pieces("arms", made, scheme.soft)
+            solids.append(cushion((lo, hi), y, (low, z[1]), min(soft, 0.4 * arm), 3))
+    return pieces("arms", solids, scheme.soft)
 
 
 def _back(rng: np.random.Generator, form: str, x: Span, y: Span, z: Span, scheme: Scheme) -> tuple[Piece, ...]:
@@ -113,7 +113,7 @@ def _back(rng: np.random.Generator, form: str, x: Span, y: Span, z: Span, scheme
     low, h = z
     if form == "chesterfield":
         r = 0.09
-        pads = tufted(x, (y[0], y[1] - 0.02), (low, h - 2 * r + 0.01), max(3, round((x[1] - x[0]) / 0.17)), 2)
+        pads = tufted_panel(x, (y[0], y[1] - 0.02), (low, h - 2 * r + 0.01), max(3, round((x[1] - x[0]) / 0.17)), 2)
         inset = ARMS[form] * min(1.0, (x[1] - x[0] + 0.08) / 0.85) - 0.038  # the roll runs between the arms
         roll = rod((x[0] + inset, y[1] - r, h - r), (x[1] - inset, y[1] - r, h - r), r, n=16)
         return pieces("back", pads, scheme.soft) + pieces("roll", roll, scheme.soft)
@@ -133,10 +133,10 @@ def _cushions(rng: np.random.Generator, x: Span, y: Span, z: Span, h: float, sea
     low, seat = z
     piping = _piping(rng, scheme)
     soft = scheme.manner.soft
-    made: tuple[Piece, ...] = ()
+    parts: tuple[Piece, ...] = ()
     long = seats > 1 and rng.random() < 0.25
     for a, b in itertools.pairwise(np.linspace(x[0], x[1], (1 if long else seats) + 1)):
-        made += seat_cushion(
+        parts += seat_cushion(
             (float(a) + 0.003, float(b) - 0.003), (y[0], y[1] - 0.003), (low, seat + 0.022), soft, scheme.soft, piping, 0.028
         )
     slope = 0.16
@@ -145,31 +145,31 @@ def _cushions(rng: np.random.Generator, x: Span, y: Span, z: Span, h: float, sea
         tall = h - float(rng.uniform(0.0, 0.025))
         at = y[1] - slope * (h - seat) - 0.004
         backs.append(cushion((float(a) + 0.005, float(b) - 0.005), (at - 0.75 * deep, at), (seat + 0.024, tall), min(0.06, 0.36 * deep), 3))
-    return made + pieces("back_cushions", lean(backs, seat + 0.024, slope), scheme.soft)
+    return parts + pieces("back_cushions", lean(backs, seat + 0.024, slope), scheme.soft)
 
 
 def _pillows(rng: np.random.Generator, x: float, y: float, z: Span, scheme: Scheme) -> tuple[Piece, ...]:
-    made = []
+    pillows = []
     for s in ([-1, 1], [-1], [1])[int(rng.integers(3))]:
         size = min(float(rng.uniform(0.38, 0.46)), z[1] - z[0])
-        made.append(throw_pillow((s * (x - 0.27), y - 0.12, z[0]), size, 0.32, -0.25 * s))
-    return pieces("pillows", made, scheme.second)
+        pillows.append(throw_pillow((s * (x - 0.27), y - 0.12, z[0]), size, 0.32, -0.25 * s))
+    return pieces("pillows", pillows, scheme.second)
 
 
 def _returns(w: float, d: float, front: float, lift: float, top: float, seat: float, arm: float, scheme: Scheme) -> tuple[Piece, ...]:
     """Return the seats that come forward at both ends of a sofa in the shape of a U."""
     if front <= -d / 2:
         return ()
-    made: tuple[Piece, ...] = ()
+    parts: tuple[Piece, ...] = ()
     wide = min(0.75, 0.28 * w)
     for s in (-1, 1):
         lo, hi = (w / 2 - arm - wide, w / 2 - arm) if s > 0 else (-w / 2 + arm, -w / 2 + arm + wide)
-        made += pieces("frame_end", cushion((lo + 0.005, hi - 0.002), (-d / 2 + 0.02, front + 0.028), (lift, top), 0.018, 2), scheme.soft)
-        made += seat_cushion((lo + 0.003, hi - 0.003), (-d / 2, front - 0.003), (top, seat + 0.022), 0.05, scheme.soft, None, 0.025)
-    return made
+        parts += pieces("frame_end", cushion((lo + 0.005, hi - 0.002), (-d / 2 + 0.02, front + 0.028), (lift, top), 0.018, 2), scheme.soft)
+        parts += seat_cushion((lo + 0.003, hi - 0.003), (-d / 2, front - 0.003), (top, seat + 0.022), 0.05, scheme.soft, None, 0.025)
+    return parts
 
 
-def _framed(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _frame_sofa(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
     """Loose cushions in an open frame of wood with laths behind them."""
     w, d, h = size
     x, y = w / 2, d / 2
@@ -199,16 +199,16 @@ def _framed(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece
         box((px - 0.011, px + 0.011), (back + 0.005, back + 0.018), (seat + 0.025, h - 0.06), 0.002)
         for px in np.linspace(inner[0] + 0.03, inner[1] - 0.03, count)
     ]
-    made = pieces("frame", solids, wood) + pieces("laths", lean(laths, seat - 0.02, slope), wood)
+    parts = pieces("frame", solids, wood) + pieces("laths", lean(laths, seat - 0.02, slope), wood)
     seats = max(1, round(span / 0.65))
     piping = _piping(rng, scheme)
     pads = []
     for a, b in itertools.pairwise(np.linspace(inner[0], inner[1], seats + 1)):
-        made += seat_cushion(
+        parts += seat_cushion(
             (float(a) + 0.003, float(b) - 0.003), (-y, back - 0.105), (low, seat), scheme.manner.soft, scheme.soft, piping, 0.02
         )
         pads.append(cushion((float(a) + 0.005, float(b) - 0.005), (back - 0.1, back - 0.003), (seat - 0.02, h - 0.002), 0.035, 3))
-    return made + pieces("back_cushions", lean(pads, seat - 0.02, slope), scheme.soft)
+    return parts + pieces("back_cushions", lean(pads, seat - 0.02, slope), scheme.soft)
 
 
 def l_shaped_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -222,34 +222,34 @@ def l_shaped_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     long = min(1.0, 0.36 * w)
     y0 = d / 2 - main  # front of the main part
     cx = (-w / 2, -w / 2 + long)
-    made = feet(rng, scheme, (-w / 2, w / 2), (y0, d / 2), lift, style) + feet(rng, scheme, cx, (-d / 2, y0 - 0.1), lift, style)
-    made += pieces("frame", cushion((-w / 2 + 0.012, w / 2 - 0.012), (y0 + 0.03, d / 2 - 0.008), (lift, top), 0.018, 2), scheme.soft)
-    made += pieces("frame_chaise", cushion((cx[0] + 0.012, cx[1] - 0.01), (-d / 2 + 0.02, y0 + 0.028), (lift, top), 0.018, 2), scheme.soft)
+    parts = feet(rng, scheme, (-w / 2, w / 2), (y0, d / 2), lift, style) + feet(rng, scheme, cx, (-d / 2, y0 - 0.1), lift, style)
+    parts += pieces("frame", cushion((-w / 2 + 0.012, w / 2 - 0.012), (y0 + 0.03, d / 2 - 0.008), (lift, top), 0.018, 2), scheme.soft)
+    parts += pieces("frame_chaise", cushion((cx[0] + 0.012, cx[1] - 0.01), (-d / 2 + 0.02, y0 + 0.028), (lift, top), 0.018, 2), scheme.soft)
     back = (d / 2 - 0.62 * deep, d / 2)
-    made += _back(rng, style, (-w / 2 + arm, w / 2 - arm), back, (top, h), scheme)
+    parts += _back(rng, style, (-w / 2 + arm, w / 2 - arm), back, (top, h), scheme)
     rest = seat + 0.2
     radius = 0.1 if style == "cloud" else min(scheme.manner.soft, 0.4 * arm)
     sides = [
         cushion((w / 2 - arm, w / 2), (y0 + 0.012, d / 2 - 0.012), (top, rest), radius, 3),
         cushion((-w / 2, -w / 2 + arm), (y0 + 0.012, d / 2 - 0.012), (top, rest), radius, 3),
     ]
-    made += pieces("arms", sides, scheme.soft)
+    parts += pieces("arms", sides, scheme.soft)
     seats = max(1, round((w - long - arm) / 0.75))
     face = back[0]
-    made += _cushions(rng, (cx[1], w / 2 - arm), (y0, face), (top, seat), h, seats, deep, scheme)
+    parts += _cushions(rng, (cx[1], w / 2 - arm), (y0, face), (top, seat), h, seats, deep, scheme)
     piping = _piping(rng, scheme)
-    made += seat_cushion(
+    parts += seat_cushion(
         (cx[0] + arm + 0.003, cx[1] - 0.003), (y0, face - 0.003), (top, seat + 0.022), scheme.manner.soft, scheme.soft, piping, 0.025
     )
-    made += seat_cushion((cx[0], cx[1] - 0.003), (-d / 2, y0 - 0.003), (top, seat + 0.022), scheme.manner.soft, scheme.soft, piping, 0.025)
+    parts += seat_cushion((cx[0], cx[1] - 0.003), (-d / 2, y0 - 0.003), (top, seat + 0.022), scheme.manner.soft, scheme.soft, piping, 0.025)
     slope = 0.16
     at = face - slope * (h - seat) - 0.004
     pad = cushion((cx[0] + arm + 0.005, cx[1] - 0.005), (at - 0.75 * deep, at), (seat + 0.024, h - 0.01), 0.06, 3)
-    made += pieces("chaise_back", lean([pad], seat + 0.024, slope), scheme.soft)
-    made += _pillows(rng, w / 2 - arm, d / 2 - 1.75 * deep, (seat + 0.022, h), scheme)
+    parts += pieces("chaise_back", lean([pad], seat + 0.024, slope), scheme.soft)
+    parts += _pillows(rng, w / 2 - arm, d / 2 - 1.75 * deep, (seat + 0.022, h), scheme)
     if form == "right":
-        made = tuple(Piece(p.name, p.solid.mirrored(), p.finish, p.part) for p in made)
-    return Shape(made)
+        parts = tuple(Piece(p.name, p.solid.mirrored(), p.finish, p.part) for p in parts)
+    return Shape(parts)
 
 
 def lazy_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -267,12 +267,12 @@ def lazy_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
         pads = [
             cushion((-x, x), (front, front + 0.15), (a + 0.001, b - 0.001), 0.05, 3) for a, b in itertools.pairwise(np.linspace(0.0, h, 4))
         ]
-        made = pieces("seat", cushion((-x, x), (-y, front - 0.003), (0, thick), 0.06, 3, 0.02), scheme.soft)
-        return Shape(made + pieces("back", lean(pads, 0.0, slope), scheme.soft))
+        parts = pieces("seat", cushion((-x, x), (-y, front - 0.003), (0, thick), 0.06, 3, 0.02), scheme.soft)
+        return Shape(parts + pieces("back", lean(pads, 0.0, slope), scheme.soft))
     seat = min(0.38, 0.52 * h)
-    made = pieces("body", cushion((-x, x), (-y, y), (0, seat), 0.11, 4, 0.03), scheme.soft)
-    made += pieces("back", cushion((-x, x), (y - 0.3 * d, y), (seat - 0.012, h), 0.12, 4), scheme.soft)
-    return Shape(made + pieces("bolster", bolster((-0.8 * x, 0.8 * x), y - 0.3 * d - 0.075, seat + 0.05, 0.075), scheme.second))
+    parts = pieces("body", cushion((-x, x), (-y, y), (0, seat), 0.11, 4, 0.03), scheme.soft)
+    parts += pieces("back", cushion((-x, x), (y - 0.3 * d, y), (seat - 0.012, h), 0.12, 4), scheme.soft)
+    return Shape(parts + pieces("bolster", bolster((-0.8 * x, 0.8 * x), y - 0.3 * d - 0.075, seat + 0.05, 0.075), scheme.second))
 
 
 def chaise_longue(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -281,16 +281,18 @@ def chaise_longue(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     x, y = w / 2, d / 2
     seat = 0.42 * min(1.0, h / 0.8)
     kind = draw_kind(rng, scheme, "plank cross sled hairpin")
-    made = pieces("legs", legs(kind, (x - 0.06, y - 0.08), 0.15, 0.045), leg_finish(scheme, kind))
-    made += pieces("frame", cushion((-x + 0.008, x - 0.008), (-y + 0.015, y - 0.015), (0.15, seat - 0.13), 0.02, 2), scheme.soft)
-    made += seat_cushion((-x, x), (-y, y - 0.17), (seat - 0.13, seat + 0.022), scheme.manner.soft, scheme.soft, _piping(rng, scheme), 0.025)
+    parts = pieces("legs", legs(kind, (x - 0.06, y - 0.08), 0.15, 0.045), leg_finish(scheme, kind))
+    parts += pieces("frame", cushion((-x + 0.008, x - 0.008), (-y + 0.015, y - 0.015), (0.15, seat - 0.13), 0.02, 2), scheme.soft)
+    parts += seat_cushion(
+        (-x, x), (-y, y - 0.17), (seat - 0.13, seat + 0.022), scheme.manner.soft, scheme.soft, _piping(rng, scheme), 0.025
+    )
     if form == "recamier":
-        pad = tufted((-x, x), (y - 0.17, y - 0.06), (seat - 0.13, h - 0.16), max(2, round(w / 0.18)), 3)
-        made += pieces("back", pad, scheme.soft) + pieces("scroll", bolster((-x, x), y - 0.085, h - 0.085, 0.085), scheme.soft)
-        return Shape(made + pieces("bolster", bolster((-0.75 * x, 0.75 * x), y - 0.255, seat + 0.105, 0.08), scheme.second))
-    made += pieces("back", cushion((-x, x), (y - 0.165, y), (seat - 0.13, h), 0.06, 3), scheme.soft)
+        pad = tufted_panel((-x, x), (y - 0.17, y - 0.06), (seat - 0.13, h - 0.16), max(2, round(w / 0.18)), 3)
+        parts += pieces("back", pad, scheme.soft) + pieces("scroll", bolster((-x, x), y - 0.085, h - 0.085, 0.085), scheme.soft)
+        return Shape(parts + pieces("bolster", bolster((-0.75 * x, 0.75 * x), y - 0.255, seat + 0.105, 0.08), scheme.second))
+    parts += pieces("back", cushion((-x, x), (y - 0.165, y), (seat - 0.13, h), 0.06, 3), scheme.soft)
     s = -1 if rng.random() < 0.5 else 1
     lo, hi = (x - 0.11, x) if s > 0 else (-x, -x + 0.11)
-    made += pieces("arm", cushion((lo, hi), (0.05 * y, y - 0.168), (seat + 0.024, seat + 0.24), 0.04, 3), scheme.soft)
+    parts += pieces("arm", cushion((lo, hi), (0.05 * y, y - 0.168), (seat + 0.024, seat + 0.24), 0.04, 3), scheme.soft)
     at = (-0.75 * x, x - 0.125) if s > 0 else (-x + 0.125, 0.75 * x)
-    return Shape(made + pieces("bolster", bolster(at, y - 0.168 - 0.085, seat + 0.107, 0.08), scheme.second))
+    return Shape(parts + pieces("bolster", bolster(at, y - 0.168 - 0.085, seat + 0.107, 0.08), scheme.second))

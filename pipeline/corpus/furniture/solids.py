@@ -60,10 +60,10 @@ class Solid:
 
     def bounds(self) -> NDArray[np.float64]:
         """Return the lower and upper corner (2, 3)."""
-        made = np.empty((2, 3))
-        self.vertices.min(axis=0, out=made[0])
-        self.vertices.max(axis=0, out=made[1])
-        return made
+        corners = np.empty((2, 3))
+        self.vertices.min(axis=0, out=corners[0])
+        self.vertices.max(axis=0, out=corners[1])
+        return corners
 
     def moved(self, offset: Vector) -> Solid:
         """Return the solid translated by `offset` (3,)."""
@@ -91,7 +91,7 @@ class Solid:
         return Solid(self.vertices * np.array([-1.0, 1.0, 1.0]), tuple(f[::-1] for f in self.faces))
 
 
-def merged(solids: Sequence[Solid]) -> tuple[NDArray[np.float64], Topology]:
+def merge_solids(solids: Sequence[Solid]) -> tuple[NDArray[np.float64], Topology]:
     """Return the solids as one: their vertices (V, 3) in a row, and the index arrays of all their faces."""
     shared = [topology(solid.faces) for solid in solids]
     vertices = np.concatenate([solid.vertices for solid in solids])
@@ -115,8 +115,8 @@ def normals(vertices: NDArray[np.float64], faces: Topology) -> NDArray[np.float6
     p = vertices[faces.corners] - vertices[faces.corners[faces.starts]].repeat(faces.lengths, axis=0)
     q = p[faces.following]
     crossed = np.stack([p[:, i] * q[:, j] - p[:, j] * q[:, i] for i, j in ((1, 2), (2, 0), (0, 1))], axis=1)
-    made = np.add.reduceat(crossed, faces.starts, axis=0)
-    return np.asarray(made / np.maximum(np.sqrt((made**2).sum(axis=1, keepdims=True)), 1e-30))
+    sums = np.add.reduceat(crossed, faces.starts, axis=0)
+    return np.asarray(sums / np.maximum(np.sqrt((sums**2).sum(axis=1, keepdims=True)), 1e-30))
 
 
 def stack(rings: Sequence[NDArray[np.float64]]) -> Solid:
@@ -124,11 +124,11 @@ def stack(rings: Sequence[NDArray[np.float64]]) -> Solid:
 
     It is convex where corresponding edges are parallel and the profile over the rings is concave.
     """
-    return Solid(np.concatenate(rings), _stacked(len(rings[0]), len(rings)))
+    return Solid(np.concatenate(rings), _stack_faces(len(rings[0]), len(rings)))
 
 
 @functools.cache
-def _stacked(n: int, rings: int) -> tuple[Face, ...]:
+def _stack_faces(n: int, rings: int) -> tuple[Face, ...]:
     """Return the faces of a stack: the two ends, then quads between neighbouring rings of `n` corners."""
     faces: list[Face] = [tuple(range(n - 1, -1, -1)), tuple(range((rings - 1) * n, rings * n))]
     for k in range(rings - 1):
@@ -210,7 +210,7 @@ def _quarter(steps: int) -> tuple[NDArray[np.float64], list[float], float]:
 
 def pillow(x: Interval, y: Interval, z: Interval, steps: int = 2) -> Solid:
     """Return a throw pillow: two domes that meet in a sharp seam around a rectangle with soft corners."""
-    outline = rounded((x[0], x[1]), (y[0], y[1]), 0.22 * min(x[1] - x[0], y[1] - y[0]), steps)
+    outline = rounded_rectangle((x[0], x[1]), (y[0], y[1]), 0.22 * min(x[1] - x[0], y[1] - y[0]), steps)
     centre, middle, half = np.array([(x[0] + x[1]) / 2, (y[0] + y[1]) / 2]), (z[0] + z[1]) / 2, (z[1] - z[0]) / 2
     rings = []
     for height, scale in ((-1, 0.34), (-0.82, 0.66), (-0.45, 0.88), (0, 1), (0.45, 0.88), (0.82, 0.66), (1, 0.34)):
@@ -234,7 +234,7 @@ def circle(radius: float, n: int = 20, centre: Interval = (0.0, 0.0), squash: fl
     return np.stack([centre[0] + radius * np.cos(angles), centre[1] + radius * squash * np.sin(angles)], axis=1)
 
 
-def rounded(x: Interval, y: Interval, radius: float, steps: int = 4) -> NDArray[np.float64]:
+def rounded_rectangle(x: Interval, y: Interval, radius: float, steps: int = 4) -> NDArray[np.float64]:
     """Return a rectangle's outline with rounded corners (4 * steps + 4, 2), counter-clockwise."""
     radius = min(radius, 0.499 * min(x[1] - x[0], y[1] - y[0]))
     points = []
@@ -312,12 +312,12 @@ def ring(
 
 def hull(points: NDArray[np.float64]) -> Solid:
     """Return the convex hull of `points` (n, 3)."""
-    found = ConvexHull(points)
-    keep, corners = np.unique(found.simplices, return_inverse=True)
-    corners = corners.reshape(found.simplices.shape)
+    qhull = ConvexHull(points)
+    keep, corners = np.unique(qhull.simplices, return_inverse=True)
+    corners = corners.reshape(qhull.simplices.shape)
     kept = points[keep]
     a, b, c = (kept[corners[:, k]] for k in range(3))
-    inwards = np.linalg.det(np.stack([b - a, c - a, found.equations[:, :3]], axis=1)) < 0
+    inwards = np.linalg.det(np.stack([b - a, c - a, qhull.equations[:, :3]], axis=1)) < 0
     corners[inwards] = corners[inwards][:, ::-1]
     return Solid(kept, tuple(map(tuple, corners.tolist())))
 

@@ -11,9 +11,9 @@ from pipeline.corpus.furniture.bent import arc, curve, sheet, tube, turns, wall
 from pipeline.corpus.furniture.finishes import Finish, Scheme
 from pipeline.corpus.furniture.legs import METAL, draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import box, circle, cushion, revolve, rod, rounded, slab
+from pipeline.corpus.furniture.solids import box, circle, cushion, revolve, rod, rounded_rectangle, slab
 from pipeline.corpus.furniture.storage import Size
-from pipeline.corpus.furniture.upholstery import padded, seat_cushion, tufted
+from pipeline.corpus.furniture.upholstery import seat_cushion, tufted_panel, upright_pad
 
 
 def dressing_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -23,12 +23,12 @@ def dressing_chair(rng: np.random.Generator, form: str, size: Size, scheme: Sche
     squash = np.array([1.0, d / w, 1.0])
     low = seat - 0.11
     if form == "drum":
-        made = pieces("body", [s.scaled(squash) for s in revolve([(0.44 * w, 0.0), (0.46 * w, 0.03), (0.46 * w, low)], 28)], scheme.second)
+        parts = pieces("body", [s.scaled(squash) for s in revolve([(0.44 * w, 0.0), (0.46 * w, 0.03), (0.46 * w, low)], 28)], scheme.second)
     else:
         kind = draw_kind(rng, scheme, "plank cross sled horse block bun pipe")
         half = 0.31 * w
-        made = pieces("legs", legs(kind, (half, half * d / w), low - 0.012, 0.034), leg_finish(scheme, kind))
-        made += pieces("ring", slab(circle(0.45 * w, 24, squash=d / w), (low - 0.012, low), 0.003), leg_finish(scheme, kind))
+        parts = pieces("legs", legs(kind, (half, half * d / w), low - 0.012, 0.034), leg_finish(scheme, kind))
+        parts += pieces("ring", slab(circle(0.45 * w, 24, squash=d / w), (low - 0.012, low), 0.003), leg_finish(scheme, kind))
     backed = h > seat + 0.1
     profile = [
         (0.46 * w, low),
@@ -41,12 +41,12 @@ def dressing_chair(rng: np.random.Generator, form: str, size: Size, scheme: Sche
     ]
     if backed:
         profile = [(0.85 * r, z) for r, z in profile]
-    made += pieces("seat", [s.scaled(squash) for s in revolve(profile, 28)], scheme.soft)
+    parts += pieces("seat", [s.scaled(squash) for s in revolve(profile, 28)], scheme.soft)
     if backed:
         bow = arc((0.0, 0.0), 0.467 * w, 0.06 * math.pi, 0.94 * math.pi, 10, d / w)
         rise = 0.55 + 0.45 * np.sin(np.linspace(0.1, math.pi - 0.1, 11))
-        made += pieces("back", wall(bow, 0.06, low, seat + (h - seat) * rise / rise.max(), 0.025), scheme.soft)
-    return Shape(made)
+        parts += pieces("back", wall(bow, 0.06, low, seat + (h - seat) * rise / rise.max(), 0.025), scheme.soft)
+    return Shape(parts)
 
 
 def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -55,11 +55,11 @@ def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     seat = h if h < 0.85 or form == "saddle" else 0.72 * h
     x, y = w / 2, d / 2
     metal = scheme.handle
-    made: tuple[Piece, ...]
+    parts: tuple[Piece, ...]
     top = seat - 0.075
     if form == "pedestal":
         r = min(w, d)
-        made = pieces(
+        parts = pieces(
             "column",
             revolve(
                 [(0.46 * r, 0.0), (0.46 * r, 0.012), (0.05, 0.035), (0.028, 0.05), (0.026, top - 0.012), (0.11, top - 0.01), (0.11, top)],
@@ -78,36 +78,36 @@ def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
             )
             for a in turns(3, math.pi / 2)
         ]
-        made += pieces("foot_rest", ring + arms, metal)
+        parts += pieces("foot_rest", ring + arms, metal)
     else:
         kind = draw_kind(rng, scheme, "plank cross sled block bun hairpin blade cabriole")
         finish = leg_finish(scheme, kind)
         half = inside(kind, (x, y), top - 0.02, 0.036)
-        made = pieces("legs", legs(kind, half, top - 0.02, 0.036), finish) + pieces(
-            "frame", slab(rounded((-0.46 * w, 0.46 * w), (-0.44 * d, 0.44 * d), 0.03, 2), (top - 0.02, top), 0.003), finish
+        parts = pieces("legs", legs(kind, half, top - 0.02, 0.036), finish) + pieces(
+            "frame", slab(rounded_rectangle((-0.46 * w, 0.46 * w), (-0.44 * d, 0.44 * d), 0.03, 2), (top - 0.02, top), 0.003), finish
         )
         z, out = 0.3 * seat, min(0.12 * top, 0.06) * 0.7 if kind == "splayed" else 0.0
         a, b = half[0] + out, half[1] + out
         rest = [rod((-a + 0.012, t * b, z), (a - 0.012, t * b, z), 0.009, n=8) for t in (-1, 1)] + [
             rod((s * a, -b + 0.012, z + 0.04), (s * a, b - 0.012, z + 0.04), 0.009, n=8) for s in (-1, 1)
         ]
-        made += pieces("foot_rest", rest, metal if kind in METAL else finish)
+        parts += pieces("foot_rest", rest, metal if kind in METAL else finish)
     if form == "saddle":
         path = curve([np.array(p) for p in ((-y, seat - 0.028), (-0.5 * y, seat - 0.045), (0.5 * y, seat - 0.045), (y, seat - 0.01))], 3)
         bent = list(sheet(path, 0.032, w))
         return Shape(
-            made
+            parts
             + pieces("seat", bent, scheme.body)
             + pieces("block", box((-0.3 * w, 0.3 * w), (-0.3 * d, 0.3 * d), (top, seat - 0.0625), 0.003), scheme.body)
         )
-    made += seat_cushion(
+    parts += seat_cushion(
         (-x, x), (-y, 0.84 * y), (top, seat), 0.03, scheme.soft, scheme.second if rng.random() < scheme.manner.piping else None
     )
     if h > seat + 0.1:
-        made += pieces("back", padded(rng, scheme, (-0.45 * w, 0.45 * w), (y - 0.055, y), (seat + 0.05, h)), scheme.soft)
+        parts += pieces("back", upright_pad(rng, scheme, (-0.45 * w, 0.45 * w), (y - 0.055, y), (seat + 0.05, h)), scheme.soft)
         struts = [box((s * 0.3 * w - 0.012, s * 0.3 * w + 0.012), (0.85 * y, 0.85 * y + 0.012), (top, seat + 0.05), 0.002) for s in (-1, 1)]
-        made += pieces("struts", struts, metal)
-    return Shape(made)
+        parts += pieces("struts", struts, metal)
+    return Shape(parts)
 
 
 def stool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -128,29 +128,33 @@ def stool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     piping = scheme.second if rng.random() < scheme.manner.piping else None
     if form == "ottoman":
         feet = legs("bun" if scheme.manner.ornament > 0.5 else "tapered", (x - 0.05, y - 0.05), 0.06, 0.05)
-        made = pieces("feet", feet, scheme.timber) + pieces(
+        parts = pieces("feet", feet, scheme.timber) + pieces(
             "body", cushion((-x + 0.004, x - 0.004), (-y + 0.004, y - 0.004), (0.06, 0.66 * h), 0.02, 2), scheme.soft
         )
         if rng.random() < scheme.manner.tufts and w > 0.4:
             pad = [
                 s.turned("x", math.pi / 2)
-                for s in tufted((-x, x), (-0.34 * h, 0.0), (-y, y), max(2, round(w / 0.22)), max(2, round(d / 0.22)))
+                for s in tufted_panel((-x, x), (-0.34 * h, 0.0), (-y, y), max(2, round(w / 0.22)), max(2, round(d / 0.22)))
             ]
             low = min(float(s.vertices[:, 2].min()) for s in pad)
             top = [s.moved((0, 0, 0.66 * h - low)) for s in pad]
-            return Shape(made + pieces("seat", top, scheme.soft))
-        return Shape(made + seat_cushion((-x, x), (-y, y), (0.66 * h, h), 0.05, scheme.soft, piping))
+            return Shape(parts + pieces("seat", top, scheme.soft))
+        return Shape(parts + seat_cushion((-x, x), (-y, y), (0.66 * h, h), 0.05, scheme.soft, piping))
     kind = draw_kind(rng, scheme, "bun blade")
     half = inside(kind, (x, y), h - 0.1, 0.04)
     thick = min(0.12, 0.3 * h) if form == "bench" else 0.07
     finish = leg_finish(scheme, kind)
-    made = pieces("legs", legs(kind, half, h - thick - 0.035, 0.04), finish)
-    made += pieces(
-        "frame", slab(rounded((-x + 0.008, x - 0.008), (-y + 0.008, y - 0.008), 0.02, 2), (h - thick - 0.035, h - thick), 0.004), finish
+    parts = pieces("legs", legs(kind, half, h - thick - 0.035, 0.04), finish)
+    parts += pieces(
+        "frame",
+        slab(rounded_rectangle((-x + 0.008, x - 0.008), (-y + 0.008, y - 0.008), 0.02, 2), (h - thick - 0.035, h - thick), 0.004),
+        finish,
     )
     if form == "legs" and rng.random() < 0.35:
-        return Shape(made + pieces("seat", slab(rounded((-x, x), (-y, y), 0.03, 3), (h - thick, h), scheme.manner.edge), scheme.body))
+        return Shape(
+            parts + pieces("seat", slab(rounded_rectangle((-x, x), (-y, y), 0.03, 3), (h - thick, h), scheme.manner.edge), scheme.body)
+        )
     count = max(1, round(w / 0.55)) if form == "bench" else 1
     for a, b in itertools.pairwise(np.linspace(-x, x, count + 1)):
-        made += seat_cushion((float(a) + 0.001, float(b) - 0.001), (-y, y), (h - thick, h), 0.04, scheme.soft, piping)
-    return Shape(made)
+        parts += seat_cushion((float(a) + 0.001, float(b) - 0.001), (-y, y), (h - thick, h), 0.04, scheme.soft, piping)
+    return Shape(parts)

@@ -124,14 +124,14 @@ def _sliding_wardrobe(rng: np.random.Generator, form: str, size: Size, scheme: S
 
 def _rails(shape: Shape, scheme: Scheme) -> tuple[Piece, ...]:
     """Return a hanging rail under every hat shelf."""
-    made: list[Piece] = []
+    rails: list[Piece] = []
     for piece in shape.base:
         if piece.name.endswith("_board_0"):
             low, high = piece.solid.bounds()
             if high[0] - low[0] > 0.35 and high[2] > 1.4:
                 y, z = (low[1] + high[1]) / 2, low[2] - 0.06
-                made += pieces(f"{piece.name}_rail", rod((low[0] + 1e-3, y, z), (high[0] - 1e-3, y, z), 0.012), scheme.handle)
-    return tuple(made)
+                rails += pieces(f"{piece.name}_rail", rod((low[0] + 1e-3, y, z), (high[0] - 1e-3, y, z), 0.012), scheme.handle)
+    return tuple(rails)
 
 
 def cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -252,16 +252,16 @@ def wine_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     columns = [Column(1, (Cell("open", 1.3, 2), doors_of(rng, w / count, 1.0, 1))) for _ in range(count)]
     shape = case(size, columns, how)
     bottle = replace(DARK_GLASS, name="bottle", color=(0.02, 0.05, 0.025))
-    made: list[Piece] = []
+    bottles: list[Piece] = []
     for board in [p for p in shape.base if "_board_" in p.name and p.name.split("_")[1] == "0"]:
         low, high = board.solid.bounds()
         for k in range(min(6, int((high[0] - low[0]) / 0.105))):
             x, z = low[0] + 0.06 + 0.105 * k, high[2] + 0.041
             start = low[1] + 0.03
             name = f"bottle_{board.name}_{k}"
-            made += pieces(name, rod((x, start, z), (x, start + 0.08, z), 0.014, n=8), bottle, group=name)
-            made += pieces(name, rod((x, start + 0.08, z), (x, min(start + 0.28, high[1] - 0.005), z), 0.038, n=10), bottle, group=name)
-    return Shape(shape.base + tuple(made), shape.movers)
+            bottles += pieces(name, rod((x, start, z), (x, start + 0.08, z), 0.014, n=8), bottle, group=name)
+            bottles += pieces(name, rod((x, start + 0.08, z), (x, min(start + 0.28, high[1] - 0.005), z), 0.038, n=10), bottle, group=name)
+    return Shape(shape.base + tuple(bottles), shape.movers)
 
 
 def shoe_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:

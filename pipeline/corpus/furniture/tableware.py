@@ -27,11 +27,11 @@ def glaze(rng: np.random.Generator) -> Finish:
 
 def vessel(profile: list[tuple[float, float]], wall: float, floor: float, n: int) -> list[Solid]:
     """Return an open vessel: a wall `wall` [m] thick along a profile of (radius, height), a floor `floor` [m] thick."""
-    made = [slab(circle(profile[0][0], n), (profile[0][1], profile[0][1] + floor))]
+    solids = [slab(circle(profile[0][0], n), (profile[0][1], profile[0][1] + floor))]
     start = [(profile[0][0], profile[0][1] + floor), *profile[1:]]
     for (r0, z0), (r1, z1) in itertools.pairwise(start):
-        made += ring((r0, r1), (r0 - wall, r1 - wall), (z0, z1), n)
-    return made
+        solids += ring((r0, r1), (r0 - wall, r1 - wall), (z0, z1), n)
+    return solids
 
 
 def cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -123,34 +123,34 @@ def binding(rng: np.random.Generator) -> Finish:
     return Finish(f"binding_{name}", shade(rng, LACQUERS[name], 0.12), 0.6, density=700)
 
 
-def bound(rng: np.random.Generator, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> tuple[Piece, ...]:
+def flat_book(rng: np.random.Generator, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> tuple[Piece, ...]:
     """Return a book that lies flat: two boards, a spine at the left, the block of paper set back between them."""
     t = min(0.003, 0.2 * (z[1] - z[0]))
     boards = [box(x, y, (z[0], z[0] + t)), box(x, y, (z[1] - t, z[1])), box((x[0], x[0] + t), y, (z[0] + t, z[1] - t))]
-    made = pieces("cover", boards, binding(rng))
-    return made + pieces("pages", box((x[0] + t, x[1] - 0.004), (y[0] + 0.004, y[1] - 0.004), (z[0] + t, z[1] - t)), PAPER)
+    parts = pieces("cover", boards, binding(rng))
+    return parts + pieces("pages", box((x[0] + t, x[1] - 0.004), (y[0] + 0.004, y[1] - 0.004), (z[0] + t, z[1] - t)), PAPER)
 
 
 def book(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a book that lies, stands upright, or lies open."""
     w, d, h = size
     if form == "open":
-        made: tuple[Piece, ...] = ()
+        parts: tuple[Piece, ...] = ()
         t = min(0.0035, 0.2 * h)
-        made += pieces("cover", box((-w / 2, w / 2), (-d / 2, d / 2), (0.0, t)), binding(rng))
+        parts += pieces("cover", box((-w / 2, w / 2), (-d / 2, d / 2), (0.0, t)), binding(rng))
         for s in (-1, 1):
             outer, inner = s * (w / 2 - 0.005), s * 0.001
             low = [(min(outer, inner), t), (max(outer, inner), t)]
             block = np.array([*low, (max(outer, inner), 0.6 * h if s > 0 else h), (min(outer, inner), h if s > 0 else 0.6 * h)])
-            made += pieces("pages", prism(block, "y", (-d / 2 + 0.005, d / 2 - 0.005)), PAPER)
-        return Shape(made)
-    return Shape(bound(rng, (-w / 2, w / 2), (-d / 2, d / 2), (0.0, h)))
+            parts += pieces("pages", prism(block, "y", (-d / 2 + 0.005, d / 2 - 0.005)), PAPER)
+        return Shape(parts)
+    return Shape(flat_book(rng, (-w / 2, w / 2), (-d / 2, d / 2), (0.0, h)))
 
 
 def book_stack(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a pile of books, or a row of upright ones."""
     w, d, h = size
-    made: tuple[Piece, ...] = ()
+    parts: tuple[Piece, ...] = ()
     if form == "row":
         x = -w / 2
         while x < w / 2 - 0.012:
@@ -164,10 +164,10 @@ def book_stack(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
                 box((x + t - skin, x + t), y, (0, tall)),
                 box((x + skin, x + t - skin), (y[0], y[0] + skin), (0, tall)),
             ]
-            made += pieces("cover", boards, cover)
-            made += pieces("pages", box((x + skin, x + t - skin), (y[0] + skin, y[1] - 0.004), (0.003, tall - 0.004)), PAPER)
+            parts += pieces("cover", boards, cover)
+            parts += pieces("pages", box((x + skin, x + t - skin), (y[0] + skin, y[1] - 0.004), (0.003, tall - 0.004)), PAPER)
             x += t + 0.0008
-        return Shape(made)
+        return Shape(parts)
     count = max(2, round(h / 0.035))
     edges = np.cumsum(rng.uniform(0.6, 1.4, count))
     edges = np.concatenate([[0.0], edges / edges[-1] * h])
@@ -175,8 +175,8 @@ def book_stack(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
         share = 1.0 if k == 0 else float(rng.uniform(0.75, 0.98))
         dx, dy = (float(v) for v in rng.uniform(-0.5, 0.5, 2) * (1 - share))
         span_x, span_y = (w * (dx - share / 2), w * (dx + share / 2)), (d * (dy - share / 2), d * (dy + share / 2))
-        made += bound(rng, span_x, span_y, (float(edges[k]), float(edges[k + 1])))
-    return Shape(made)
+        parts += flat_book(rng, span_x, span_y, (float(edges[k]), float(edges[k + 1])))
+    return Shape(parts)
 
 
 def basket(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -185,13 +185,13 @@ def basket(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     straw = Finish("straw", shade(rng, (0.52, 0.36, 0.18)), 0.9, pattern="cane", density=300, second=(0.22, 0.14, 0.07))
     body = h - 0.03
     if form == "round":
-        made = vessel([(0.40 * w, 0.0), (0.48 * w, 0.4 * body), (0.46 * w, body)], 0.012, 0.012, 18)
-        made = [s.scaled(np.array([1, d / w, 1])) for s in made]
+        solids = vessel([(0.40 * w, 0.0), (0.48 * w, 0.4 * body), (0.46 * w, body)], 0.012, 0.012, 18)
+        solids = [s.scaled(np.array([1, d / w, 1])) for s in solids]
         rim = [s.scaled(np.array([1, d / w, 1])) for s in ring((0.5 * w, 0.5 * w), (0.46 * w, 0.46 * w), (body, body + 0.015), 18)]
     else:
         t = 0.012
         x, y = (-w / 2 + 0.006, w / 2 - 0.006), (-d / 2 + 0.006, d / 2 - 0.006)
-        made = [box(x, y, (0, t)), *walls(x, y, (t, body), t)]
+        solids = [box(x, y, (0, t)), *walls(x, y, (t, body), t)]
         rim = [
             box((s * w / 2 - 0.012 - 0.012 * s, s * w / 2 + 0.012 - 0.012 * s), (-d / 2, d / 2), (body, body + 0.015), 0.004)
             for s in (-1, 1)
@@ -209,4 +209,4 @@ def basket(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
         grips += tube(
             curve([(x0, -0.05, top - 0.002), (x0, -0.03, h - 0.006), (x0, 0.03, h - 0.006), (x0, 0.05, top - 0.002)], 2), 0.005, 6
         )
-    return Shape(pieces("basket", made, straw) + pieces("rim", rim, straw) + pieces("grips", grips, rope))
+    return Shape(pieces("basket", solids, straw) + pieces("rim", rim, straw) + pieces("grips", grips, rope))

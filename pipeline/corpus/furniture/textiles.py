@@ -10,7 +10,7 @@ import numpy as np
 from pipeline.corpus.furniture.bent import band
 from pipeline.corpus.furniture.finishes import CLOTH_GROUNDS, FABRICS, Finish, Pattern, Scheme, cover, shade
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, circle, pillow, ring, rod, rounded, slab
+from pipeline.corpus.furniture.solids import Solid, box, circle, pillow, ring, rod, rounded_rectangle, slab
 from pipeline.corpus.furniture.storage import Size, pick
 from pipeline.corpus.furniture.styles import CLASSIC, ORIENTAL
 
@@ -30,15 +30,15 @@ def rug(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     if form == "round":
         return Shape(pieces("rug", slab(circle(w / 2, 40), (0.0, h), min(0.004, 0.3 * h)), weave))
     fringe = 0.06 if form == "fringed" else 0.0
-    edge = rounded((-w / 2, w / 2), (-d / 2 + fringe, d / 2 - fringe), 0.012 if form != "shaggy" else 0.05, 2)
-    made = pieces("rug", slab(edge, (0.0, h), min(0.004, 0.3 * h)), weave)
+    edge = rounded_rectangle((-w / 2, w / 2), (-d / 2 + fringe, d / 2 - fringe), 0.012 if form != "shaggy" else 0.05, 2)
+    parts = pieces("rug", slab(edge, (0.0, h), min(0.004, 0.3 * h)), weave)
     if fringe:
         count = max(12, round(w / 0.07))
         xs = np.linspace(-w / 2 + 0.01, w / 2 - 0.03, count)
         yarn = replace(weave, name="yarn", color=CLOTH_GROUNDS, pattern="plain", second=None)
         ends = [(-d / 2, -d / 2 + fringe), (d / 2 - fringe, d / 2)]
-        made += pieces("fringe", [box((float(x), float(x) + 0.018), end, (0.0, 0.5 * h)) for x in xs for end in ends], yarn)
-    return Shape(made)
+        parts += pieces("fringe", [box((float(x), float(x) + 0.018), end, (0.0, 0.5 * h)) for x in xs for end in ends], yarn)
+    return Shape(parts)
 
 
 def curtain(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -50,15 +50,15 @@ def curtain(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     for s in (-1, 1):
         bar.append(rod((s * (w / 2 - 0.03), 0, rod_z), (s * w / 2, 0, rod_z), 0.02, 0.012, 8))
         bar.append(box((s * (w / 2 - 0.06) - 0.008, s * (w / 2 - 0.06) + 0.008), (0.012, d / 2), (rod_z - 0.01, rod_z + 0.01)))
-    made = pieces("rod", bar, scheme.handle)
+    parts = pieces("rod", bar, scheme.handle)
     share = float(rng.uniform(0.16, 0.24)) if form == "drawn" else 0.5
     for s in (-1, 1):
         outer, inner = s * (w / 2 - 0.07), s * (w / 2 - 0.07 - share * (w - 0.14) + (0.002 if form != "drawn" else 0.0))
-        made += _panel(outer, inner, d, rod_z - 0.03, cloth)
+        parts += _panel(outer, inner, d, rod_z - 0.03, cloth)
     if form == "drawn":
-        return Shape(made)
+        return Shape(parts)
     sheer = replace(cloth, name="sheer", color=(0.80, 0.79, 0.76), pattern="weave", second=None)
-    return Shape(tuple(replace(p, finish=sheer) if p.finish is cloth else p for p in made))
+    return Shape(tuple(replace(p, finish=sheer) if p.finish is cloth else p for p in parts))
 
 
 def _panel(start: float, end: float, d: float, h: float, cloth: Finish) -> tuple[Piece, ...]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import Finish, Scheme
 from pipeline.corpus.furniture.shape import Piece, pieces
-from pipeline.corpus.furniture.solids import Solid, cushion, pillow, rod, rounded, slab
+from pipeline.corpus.furniture.solids import Solid, cushion, pillow, rod, rounded_rectangle, slab
 
 Span = tuple[float, float]
 SEAM = 0.007  # height of a piping
@@ -24,29 +24,29 @@ def seat_cushion(
     cut = z[0] + 0.62 * (z[1] - crown - z[0])
     r = min(radius, 0.4 * (z[1] - crown - cut))
     inner_x, inner_y = (x[0] + 0.004, x[1] - 0.004), (y[0] + 0.004, y[1] - 0.004)
-    cord = slab(rounded(x, y, radius, 3), (cut, cut + SEAM), 0.002)
-    lower = slab(rounded(inner_x, inner_y, radius, 3), (z[0], cut), 0.006)
+    cord = slab(rounded_rectangle(x, y, radius, 3), (cut, cut + SEAM), 0.002)
+    lower = slab(rounded_rectangle(inner_x, inner_y, radius, 3), (z[0], cut), 0.006)
     upper = cushion(inner_x, inner_y, (cut + SEAM, z[1]), min(r, 0.03), 2, crown)
     return pieces("cushion", [lower, upper], cloth) + pieces("piping", cord, piping)
 
 
-def tufted(x: Span, y: Span, z: Span, across: int, rows: int) -> list[Solid]:
+def tufted_panel(x: Span, y: Span, z: Span, across: int, rows: int) -> list[Solid]:
     """Return an upright buttoned panel facing -y: a board behind a grid of small pads."""
     deep = y[1] - y[0]
-    made: list[Solid] = [cushion(x, (y[0] + 0.5 * deep, y[1]), z, 0.2 * deep, 1)]
+    solids: list[Solid] = [cushion(x, (y[0] + 0.5 * deep, y[1]), z, 0.2 * deep, 1)]
     xs, zs = np.linspace(x[0] + 0.01, x[1] - 0.01, across + 1), np.linspace(z[0] + 0.01, z[1] - 0.01, rows + 1)
     for a, b in itertools.pairwise(xs):
         for c, e in itertools.pairwise(zs):
-            made.append(cushion((a + 0.001, b - 0.001), (y[0], y[0] + 0.5 * deep), (c + 0.001, e - 0.001), 0.45 * 0.5 * deep, 1))
-    return made
+            solids.append(cushion((a + 0.001, b - 0.001), (y[0], y[0] + 0.5 * deep), (c + 0.001, e - 0.001), 0.45 * 0.5 * deep, 1))
+    return solids
 
 
-def padded(rng: np.random.Generator, scheme: Scheme, x: Span, y: Span, z: Span) -> list[Solid]:
+def upright_pad(rng: np.random.Generator, scheme: Scheme, x: Span, y: Span, z: Span) -> list[Solid]:
     """Return an upright pad facing -y: plain, in channels, or buttoned, as the style likes."""
     wide, tall = x[1] - x[0], z[1] - z[0]
     u = rng.random()
     if u < 0.6 * scheme.manner.tufts and wide > 0.3:
-        return tufted(x, y, z, max(2, round(wide / 0.17)), max(2, round(tall / 0.17)))
+        return tufted_panel(x, y, z, max(2, round(wide / 0.17)), max(2, round(tall / 0.17)))
     if u < 0.9 * scheme.manner.tufts + 0.08 and wide > 0.3:
         return channels(x, y, z, max(3, round(wide / 0.09)))
     radius = min(0.45 * (y[1] - y[0]), scheme.manner.soft)
@@ -67,20 +67,20 @@ def bolster(x: Span, y: float, z: float, radius: float) -> Solid:
 
 def throw_pillow(at: tuple[float, float, float], size: float, tilt: float, yaw: float) -> Solid:
     """Return a pillow that stands on `at` and leans back by `tilt` [rad]; its lowest edge is at that height."""
-    made = pillow((-size / 2, size / 2), (-size / 2, size / 2), (-0.15 * size, 0.15 * size), 2)
-    made = made.turned("x", np.pi / 2 - tilt).turned("z", yaw)
-    return made.moved((at[0], at[1], at[2] - float(made.vertices[:, 2].min())))
+    solid = pillow((-size / 2, size / 2), (-size / 2, size / 2), (-0.15 * size, 0.15 * size), 2)
+    solid = solid.turned("x", np.pi / 2 - tilt).turned("z", yaw)
+    return solid.moved((at[0], at[1], at[2] - float(solid.vertices[:, 2].min())))
 
 
 def duvet(x: Span, y: Span, z: float, thick: float, drop: float, cloth: Finish, *, foot: bool = True) -> tuple[Piece, ...]:
     """Return a cover that lies on a mattress at `z` and hangs over its sides (and foot) by `drop`; x, y are the mattress's."""
     side = 0.55 * thick
-    made = [cushion((x[0] - side, x[1] + side), (y[0] - side * foot, y[1]), (z, z + thick), 0.45 * thick, 3, 0.25 * thick)]
+    solids = [cushion((x[0] - side, x[1] + side), (y[0] - side * foot, y[1]), (z, z + thick), 0.45 * thick, 3, 0.25 * thick)]
     low = z - drop
-    made += [
+    solids += [
         cushion((px - side if s < 0 else px, px if s < 0 else px + side), (y[0] - side * foot, y[1] - 0.01), (low, z), 0.45 * side, 1)
         for s, px in ((-1, x[0]), (1, x[1]))
     ]
     if foot:
-        made.append(cushion((x[0], x[1]), (y[0] - side, y[0]), (low, z), 0.45 * side, 1))
-    return pieces("duvet", made, cloth)
+        solids.append(cushion((x[0], x[1]), (y[0] - side, y[0]), (low, z), 0.45 * side, 1))
+    return pieces("duvet", solids, cloth)

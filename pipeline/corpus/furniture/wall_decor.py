@@ -29,7 +29,7 @@ def standing(solids: list[Solid], y: float, z: float) -> list[Solid]:
     return [s.turned("x", math.pi / 2).moved((0, y, z)) for s in solids]
 
 
-def bordered(w: float, h: float, wide: float, y: tuple[float, float], bevel: float = 0.002) -> list[Solid]:
+def frame_boards(w: float, h: float, wide: float, y: tuple[float, float], bevel: float = 0.002) -> list[Solid]:
     """Return four boards around a rectangle `w` x `h` whose lower edge is at z = 0."""
     x = w / 2
     return frame(Rect((-x, x), (0.0, h), y[0]), Rect((-x + wide, x - wide), (wide, h - wide), y[0]), y, bevel)
@@ -46,7 +46,7 @@ def picture(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
         return Shape(pieces("canvas", box((-w / 2, w / 2), (-back, back), (0.0, h), 0.003), art))
     frame = scheme.timber if rng.random() < 0.5 else scheme.handle
     spans = [(-w / 2, w / 2)] if form == "framed" else [(-w / 2, -0.02 * w), (0.02 * w, w / 2)]
-    made: tuple[Piece, ...] = ()
+    parts: tuple[Piece, ...] = ()
     for k, (x0, x1) in enumerate(spans):
         wide = x1 - x0
         rim = 0.018 + 0.02 * scheme.manner.ornament
@@ -54,9 +54,9 @@ def picture(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
         mount = 0.12 * min(wide, h)
         sheet = box((-wide / 2 + rim, wide / 2 - rim), (back - 0.008, back), (rim, h - rim))
         inner = box((-wide / 2 + rim + mount, wide / 2 - rim - mount), (back - 0.011, back - 0.008), (rim + mount, h - rim - mount))
-        made += pieces(f"frame_{k}", [s.moved(at) for s in bordered(wide, h, rim, (-back, back))], frame)
-        made += pieces(f"mount_{k}", sheet.moved(at), PAPER) + pieces(f"print_{k}", inner.moved(at), art)
-    return Shape(made)
+        parts += pieces(f"frame_{k}", [s.moved(at) for s in frame_boards(wide, h, rim, (-back, back))], frame)
+        parts += pieces(f"mount_{k}", sheet.moved(at), PAPER) + pieces(f"print_{k}", inner.moved(at), art)
+    return Shape(parts)
 
 
 def mirror(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -67,16 +67,16 @@ def mirror(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     if form == "rectangle":
         rim = 0.02 + 0.035 * scheme.manner.ornament
         glass = box((-w / 2 + rim, w / 2 - rim), (back - 0.012, back - 0.004), (rim, h - rim))
-        return Shape(pieces("frame", bordered(w, h, rim, (-back, back), 0.004), frame) + pieces("mirror", glass, MIRROR))
+        return Shape(pieces("frame", frame_boards(w, h, rim, (-back, back), 0.004), frame) + pieces("mirror", glass, MIRROR))
     r = min(w, h) / 2
     rim = 0.6 * r if form == "sunburst" else 0.93 * r
-    made = pieces("mirror", standing([slab(circle(rim, 36), (0.0, 0.006))], back - 0.004, h / 2), MIRROR)
+    parts = pieces("mirror", standing([slab(circle(rim, 36), (0.0, 0.006))], back - 0.004, h / 2), MIRROR)
     if form == "sunburst":
         hoop = ring((1.06 * rim, 1.06 * rim), (rim, rim), (0.0, d), 36)
         rays = [rod((1.06 * rim * math.cos(a), back - 0.012, h / 2 + 1.06 * rim * math.sin(a)), (q * math.cos(a), back - 0.012, h / 2 + q * math.sin(a)), 0.007, 0.002, 6)
                 for k, a in enumerate(turns(24)) for q in (r if k % 2 == 0 else 0.84 * r,)]  # fmt: skip
-        return Shape(made + pieces("frame", standing(hoop, back, h / 2), frame) + pieces("rays", rays, frame))
-    return Shape(made + pieces("frame", standing(ring((r, r), (rim, rim), (0.0, d), 36), back, h / 2), frame))
+        return Shape(parts + pieces("frame", standing(hoop, back, h / 2), frame) + pieces("rays", rays, frame))
+    return Shape(parts + pieces("frame", standing(ring((r, r), (rim, rim), (0.0, d), 36), back, h / 2), frame))
 
 
 def clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -93,7 +93,7 @@ def clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
             pieces("dial", disc, face) + pieces("rim", standing(ring((r, 0.97 * r), (0.9 * r, 0.9 * r), (0.0, d), 32), back, h / 2), rim)
         )
     hub = standing(revolve([(0.2 * r, 0.0), (0.2 * r, 0.7 * d), (0.12 * r, d)], 20), back, h / 2)
-    made = pieces("ring", standing(ring((0.86 * r, 0.86 * r), (0.8 * r, 0.8 * r), (0.0, 0.4 * d), 32), back, h / 2), rim) + pieces(
+    parts = pieces("ring", standing(ring((0.86 * r, 0.86 * r), (0.8 * r, 0.8 * r), (0.0, 0.4 * d), 32), back, h / 2), rim) + pieces(
         "hub", hub, rim
     )
     y = (back - 0.8 * d, back - 0.4 * d)
@@ -105,4 +105,4 @@ def clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     bars = [rod((0.2 * r * math.cos(a), back - 0.15 * d, h / 2 + 0.2 * r * math.sin(a)), (0.8 * r * math.cos(a), back - 0.15 * d, h / 2 + 0.8 * r * math.sin(a)), 0.1 * d, n=6)
             for a in turns(4)]  # fmt: skip
     dark = Finish("marks", shade(rng, FABRICS["charcoal"], 0.1), 0.5, density=900)
-    return Shape(made + pieces("spokes", bars, rim) + pieces("marks", marks, rim) + pieces("hands", hands, dark))
+    return Shape(parts + pieces("spokes", bars, rim) + pieces("marks", marks, rim) + pieces("hands", hands, dark))

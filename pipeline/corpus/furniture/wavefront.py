@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.shape import Piece
-from pipeline.corpus.furniture.solids import Face, Solid, Topology, merged, normals, topology
+from pipeline.corpus.furniture.solids import Face, Solid, Topology, merge_solids, normals, topology
 from pipeline.corpus.furniture.texture import Atlas, Corners, srgb
 
 
@@ -47,7 +47,7 @@ class Text:
 def text(groups: Sequence[Group], library: str, sheet: Atlas | None = None) -> Text:
     """Return groups of solids as OBJ text: triangles and quads as they are, larger faces in fans, flat normals."""
     pieces = [piece for group in groups for piece in group.pieces]
-    vertices, shared = merged([piece.solid for piece in pieces])
+    vertices, shared = merge_solids([piece.solid for piece in pieces])
     normal = normals(vertices, shared)
     known, index = _distinct(np.round(mesh_frame(normal), 3) + 0.0)
     columns = [shared.corners, np.repeat(index, shared.lengths)]
@@ -65,8 +65,8 @@ def text(groups: Sequence[Group], library: str, sheet: Atlas | None = None) -> T
         lines.append(f"g {group.name}\nusemtl {group.material}\n")
         rows: tuple[list[NDArray[np.int64]], list[NDArray[np.int64]]] = ([], [])
         for piece in group.pieces:
-            for made, found in zip(rows, faces_of(piece.solid.faces), strict=True):
-                made.append(found.ravel() + start)
+            for chunks, faces in zip(rows, faces_of(piece.solid.faces), strict=True):
+                chunks.append(faces.ravel() + start)
             start += len(topology(piece.solid.faces).corners)
         for count, parts in zip((3, 4), rows, strict=True):
             wanted = table[np.concatenate(parts)]

@@ -10,7 +10,7 @@ import numpy as np
 from pipeline.card import cards
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.rates import Rates
-from pipeline.corpus.houses.room_occupancy import Space, Spot, against, ahead, box_of, shifted
+from pipeline.corpus.houses.room_occupancy import Space, Spot, against, ahead, box_of, shift_spot
 from pipeline.corpus.houses.stock import Stock
 from pipeline.corpus.houses.stratified_draws import Deal
 
@@ -96,9 +96,9 @@ class Arranger:
         if seat is not None:
             off = float(self.rng.uniform(0.02, 0.1))
             turn = math.pi + (float(self.rng.normal(0, 0.4)) if self.chance(0.85) else 0.0)
-            place = shifted(spot, float(self.rng.normal(0, 0.04)), desk.size[1] / 2 + seat.size[1] / 2 + off, turn)
+            place = shift_spot(spot, float(self.rng.normal(0, 0.04)), desk.size[1] / 2 + seat.size[1] / 2 + off, turn)
             if turn != math.pi:
-                place = shifted(place, 0.0, -0.1)
+                place = shift_spot(place, 0.0, -0.1)
             self.space.nestle(seat, place)
         return True
 
@@ -113,11 +113,11 @@ class Arranger:
         if category in {"armchair", "lounge_chair", "lazy_sofa", "chaise_longue_sofa"} and self.chance(0.8):
             turn = float(self.rng.choice([-1, 1])) * float(self.rng.uniform(0.3, 0.8))
             bounds = box_of(0, 0, turn, model.size[0], model.size[1])
-            turned = shifted(spot, 0.0, bounds[3] - model.size[1] / 2, turn)
+            turned = shift_spot(spot, 0.0, bounds[3] - model.size[1] / 2, turn)
             if self.space.try_add(model, turned):
                 return True
         if category in {"plant", "floor_lamp"} and self.chance(0.4):  # round things stand at any angle
-            spot = shifted(spot, 0.0, 0.08, float(self.rng.uniform(-0.7, 0.7)))
+            spot = shift_spot(spot, 0.0, 0.08, float(self.rng.uniform(-0.7, 0.7)))
         return self.space.try_add(model, spot)
 
     def on_wall(self, category: str, low: float) -> bool:

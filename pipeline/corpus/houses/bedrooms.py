@@ -8,7 +8,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger
-from pipeline.corpus.houses.room_occupancy import Spot, ahead, back_gap, box_of, on_side, shifted
+from pipeline.corpus.houses.room_occupancy import Spot, ahead, back_gap, box_of, on_side, shift_spot
 
 FARTHEST_TV = 1.2
 """Most free floor between a bed's foot and the TV stand [m]."""
@@ -89,15 +89,15 @@ def place_bed(arranger: Arranger, category: str) -> tuple[Model, Spot] | None:
             model = max([model, *(m for m in others if m)], key=lambda m: m.size[0] + 1.5 * m.size[1])
         space.blind = attempt >= 1 or arranger.chance(0.15)  # a headboard before a window: now and then
         beside = BESIDE[min(attempt, len(BESIDE) - 1)] if attempt < 6 and category == "double_bed" else 0.0
-        found = _bed_spots(arranger, model, beside)
+        candidates = _bed_spots(arranger, model, beside)
         space.blind = False
-        if found:
-            weights = np.array([w for w, _ in found])
-            spot = found[int(rng.choice(len(found), p=weights / weights.sum()))][1]
+        if candidates:
+            weights = np.array([w for w, _ in candidates])
+            spot = candidates[int(rng.choice(len(candidates), p=weights / weights.sum()))][1]
             w, d, _ = model.size
-            keep = [box_of(*_at(shifted(spot, 0.0, d / 2 + FOOT / 2)), w * 0.8, FOOT)]
+            keep = [box_of(*_at(shift_spot(spot, 0.0, d / 2 + FOOT / 2)), w * 0.8, FOOT)]
             for sign in (-1, 1):
-                lane = box_of(*_at(shifted(spot, sign * (w / 2 + SIDE / 2), 0.3)), SIDE, d - 0.6)
+                lane = box_of(*_at(shift_spot(spot, sign * (w / 2 + SIDE / 2), 0.3)), SIDE, d - 0.6)
                 if space.clear(lane):
                     keep.append(lane)
             space.add(model, spot, keep=keep)
@@ -116,14 +116,14 @@ def _bed_spots(arranger: Arranger, model: Model, beside: float) -> list[tuple[fl
     w, d, h = model.size
     gap = back_gap(rng)
     aside = 0.8 if beside else 5.0  # a narrow bed often stands along a wall
-    found: list[tuple[float, Spot]] = []
+    candidates: list[tuple[float, Spot]] = []
     for i, side in enumerate(space.sides):
         for a, b in space.spans(side, d + gap, FOOT, 0.0, h):
             room = b - a
             if room < w + 2 * beside:
                 continue
             middle = (a + b) / 2 + float(rng.normal(0, 0.08)) if room > w + 2 * beside + 0.2 else (a + b) / 2
-            found.append(
+            candidates.append(
                 (
                     3.0 * (1.0 + min(room - w, 2.5)),
                     on_side(space, i, float(np.clip(middle, a + w / 2 + beside, b - w / 2 - beside)), d, gap),
@@ -131,8 +131,8 @@ def _bed_spots(arranger: Arranger, model: Model, beside: float) -> list[tuple[fl
             )
             lean = w / 2 + max(beside, 0.02)
             if room > w + 2 * beside + 0.4:
-                found += [(aside, on_side(space, i, a + lean, d, gap)), (aside, on_side(space, i, b - lean, d, gap))]
-    return found
+                candidates += [(aside, on_side(space, i, a + lean, d, gap)), (aside, on_side(space, i, b - lean, d, gap))]
+    return candidates
 
 
 def nightstands(arranger: Arranger, bed: tuple[Model, Spot], count: int) -> None:
@@ -146,7 +146,7 @@ def nightstands(arranger: Arranger, bed: tuple[Model, Spot], count: int) -> None
             return
         gap = float(abs(arranger.rng.normal(0.08, 0.04)) + 0.01)
         back = -(model.size[1] - stand.size[1]) / 2
-        places = [shifted(spot, sign * (model.size[0] / 2 + stand.size[0] / 2 + gap), back) for sign in signs]
+        places = [shift_spot(spot, sign * (model.size[0] / 2 + stand.size[0] / 2 + gap), back) for sign in signs]
         fitting = [p for p in places if arranger.space.nestle(stand, p, dry=True)]
         if len(fitting) == len(places) or attempt == 4:
             for place in fitting:
@@ -186,7 +186,7 @@ def bed_end_stool(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
     stool = arranger.pick("stool", width=model.size[0], depth=0.6)
     if stool is None:
         return False
-    place = shifted(spot, float(arranger.rng.normal(0, 0.04)), model.size[1] / 2 + stool.size[1] / 2 + 0.04)
+    place = shift_spot(spot, float(arranger.rng.normal(0, 0.04)), model.size[1] / 2 + stool.size[1] / 2 + 0.04)
     return arranger.space.nestle(stool, place)
 
 

@@ -80,7 +80,7 @@ def disturb(rng: np.random.Generator, house: House, stock: Stock) -> House:
     pieces = [k for k, i in enumerate(items) if i.support < 0 and taxonomy.load().categories[i.model.category].layout]
     for k in pieces:
         if k not in carried:
-            items[k] = _mirrored(rng, _replaced(rng, items[k], stock))
+            items[k] = _mirror_item(rng, _swap_model(rng, items[k], stock))
     standing = [k for k in pieces if items[k].position[2] < LOW]
     for k in standing:
         if items[k].model.category in IN_ORDER:
@@ -98,7 +98,7 @@ def disturb(rng: np.random.Generator, house: House, stock: Stock) -> House:
     return dataclasses.replace(house, items=tuple(items))
 
 
-def _replaced(rng: np.random.Generator, item: Item, stock: Stock) -> Item:
+def _swap_model(rng: np.random.Generator, item: Item, stock: Stock) -> Item:
     """Swap the model for a similar one of its category, scaled in plan to the size of the old one."""
     if rng.random() >= REPLACED:
         return item
@@ -116,7 +116,7 @@ def _replaced(rng: np.random.Generator, item: Item, stock: Stock) -> Item:
     return dataclasses.replace(item, model=model, scale=(w / model.size[0], d / model.size[1], up))
 
 
-def _mirrored(rng: np.random.Generator, item: Item) -> Item:
+def _mirror_item(rng: np.random.Generator, item: Item) -> Item:
     share = MIRRORED_L_SOFAS if item.model.category == "l_shaped_sofa" else MIRRORED
     if rng.random() >= share:
         return item

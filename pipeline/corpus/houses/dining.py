@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.rates import load
-from pipeline.corpus.houses.room_occupancy import Spot, box_of, shifted
+from pipeline.corpus.houses.room_occupancy import Spot, box_of, shift_spot
 
 CHAIRS = {"two": 2, "four": 4, "six": 6, "eight": 8}
 ACROSS = 0.6
@@ -110,12 +110,12 @@ def _place(arranger: Arranger, table: Model, chair: Model, count: int) -> bool:
     for across, forward, turn in chairs:
         # Turned away from the table's front by `turn`: the chair looks back at the table.
         sway = float(np.clip(rng.normal(0, 0.012), -0.02, 0.02))
-        seat = shifted(spot, across + (sway if abs(forward) > 1e-9 else 0.0), forward, turn)
+        seat = shift_spot(spot, across + (sway if abs(forward) > 1e-9 else 0.0), forward, turn)
         left_open = arranger.chance(rates["turned_chair"])  # pulled out and turned, as somebody left it
-        if left_open and space.try_add(chair, shifted(seat, 0.0, -0.25, float(rng.normal(0, 0.5))), under=under):
+        if left_open and space.try_add(chair, shift_spot(seat, 0.0, -0.25, float(rng.normal(0, 0.5))), under=under):
             continue
         if arranger.chance(rates["askew_chair"]):
-            seat = shifted(seat, 0.0, -0.04, float(rng.choice([-1, 1]) * rng.uniform(0.05, 0.25)))
+            seat = shift_spot(seat, 0.0, -0.04, float(rng.choice([-1, 1]) * rng.uniform(0.05, 0.25)))
         space.try_add(chair, seat, under=under)
     if arranger.deal.mark("dining_lamp") < rates["lamp"]:
         arranger.lamp(

@@ -270,12 +270,12 @@ def shafts(rng: np.random.Generator, patches: Sequence[Patch], rooms: Sequence[P
     return (*patches, *cuts)
 
 
-def turned(rng: np.random.Generator, patches: Sequence[Patch]) -> tuple[Patch, ...]:
+def reorient(rng: np.random.Generator, patches: Sequence[Patch]) -> tuple[Patch, ...]:
     """Mirror and turn a whole draft at random."""
     flip_x, flip_y, swap = (bool(v) for v in rng.random(3) < 0.5)
-    made = []
+    transformed = []
     for room, x0, y0, x1, y1 in patches:
         xa, xb = (-x1, -x0) if flip_x else (x0, x1)
         ya, yb = (-y1, -y0) if flip_y else (y0, y1)
-        made.append((room, ya, xa, yb, xb) if swap else (room, xa, ya, xb, yb))
-    return tuple(made)
+        transformed.append((room, ya, xa, yb, xb) if swap else (room, xa, ya, xb, yb))
+    return tuple(transformed)

@@ -102,12 +102,12 @@ def tidy(space: Space) -> None:
 def _culprit(space: Space, standing: list[int]) -> int:
     """Return the item whose removal joins the most doors; the latest of equals."""
     items = space.items
-    found = []
+    scores = []
     for k in reversed(standing):
         space.items = items[:k] + items[k + 1 :]
-        found.append((walkable_grid.problems(space)[0], -k))
+        scores.append((walkable_grid.problems(space)[0], -k))
     space.items = items
-    return -min(found)[1]
+    return -min(scores)[1]
 
 
 def style_of(rng: np.random.Generator, stock: Stock) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.dining import furnish_dining_corner
-from pipeline.corpus.houses.room_occupancy import Side, Space, Spot, ahead, back_gap, box_of, on_side, shifted
+from pipeline.corpus.houses.room_occupancy import Side, Space, Spot, ahead, back_gap, box_of, on_side, shift_spot
 
 SIDE_TABLES = {"none": 0, "one": 1, "two": 2}
 
@@ -67,7 +67,7 @@ def _sofa_places(arranger: Arranger, sofa: Model, stand: Model | None, *, aside:
     space, rng = arranger.space, arranger.rng
     w, d, h = sofa.size
     gap = back_gap(rng) + 0.02
-    found: list[tuple[float, Spot, Spot | None]] = []
+    candidates: list[tuple[float, Spot, Spot | None]] = []
     for i, side in enumerate(space.sides):
         for a, b in space.spans(side, d + gap, 1.1, 0.0, h):
             if b - a < w + 0.02:
@@ -82,15 +82,15 @@ def _sofa_places(arranger: Arranger, sofa: Model, stand: Model | None, *, aside:
                     if look > 4.2:  # too far for the TV: the sofa comes forward and leaves a passage behind it
                         shift = look - float(rng.uniform(2.7, 3.9))
                         if shift > 0.75:
-                            spot, look = shifted(spot, 0.0, shift), look - shift
+                            spot, look = shift_spot(spot, 0.0, shift), look - shift
                     tv = _tv_place(arranger, spot, side, stand, depth)
                 score = 1.0 + rng.random() + min(b - a - w, 2.0) * 0.3
                 score += 3.0 if tv is not None else -1.0 if stand is not None else 0.0
                 score += 3.0 * _off_centre(space, spot) if aside else 0.0
                 score -= 2.0 * max(0.0, look - 4.2) + 2.0 * max(0.0, 2.1 - look)
                 if space.fits(box_of(spot.x, spot.y, spot.yaw, w, d), 0.0, h):
-                    found.append((score, spot, tv))
-    return found
+                    candidates.append((score, spot, tv))
+    return candidates
 
 
 def _off_centre(space: Space, spot: Spot) -> float:
@@ -136,14 +136,14 @@ def _set_lounge(arranger: Arranger, sofa: Model, spot: Spot, stand: Model | None
         table = arranger.pick("coffee_table", width=max(0.9, sofa.size[0] * 0.75), depth=deepest)
         if table is None or placed is not None:
             break
-        place = shifted(spot, float(rng.normal(0, 0.06)), d / 2 + table.size[1] / 2 + float(rng.uniform(0.3, 0.48)))
+        place = shift_spot(spot, float(rng.normal(0, 0.06)), d / 2 + table.size[1] / 2 + float(rng.uniform(0.3, 0.48)))
         if space.try_add(table, place):
             placed = (table, place)
         deepest = table.size[1] * 0.85
     if placed is None and arranger.chance(0.3):
         table = arranger.pick("round_end_table") or arranger.pick("corner_side_table")
         if table is not None:
-            space.try_add(table, shifted(spot, float(rng.normal(0, 0.1)), d / 2 + table.size[1] / 2 + 0.35))
+            space.try_add(table, shift_spot(spot, float(rng.normal(0, 0.1)), d / 2 + table.size[1] / 2 + 0.35))
     if tv is not None:  # nobody dines between sofa and TV
         space.keeps.append(ahead(spot, d, max(0.4, reach), min(1.4, sofa.size[0])))
     return Lounge(sofa, spot, placed)
@@ -159,7 +159,7 @@ def seats(arranger: Arranger, lounge: Lounge) -> None:
         if side_table is not None:
             back = -(lounge.sofa.size[1] - side_table.size[1]) / 2 + float(abs(rng.normal(0, 0.05)))
             across = sign * (lounge.sofa.size[0] / 2 + side_table.size[0] / 2 + float(rng.uniform(0.02, 0.1)))
-            space.try_add(side_table, shifted(lounge.spot, across, back))
+            space.try_add(side_table, shift_spot(lounge.spot, across, back))
     wanted = arranger.wanted("seats")
     if "chinese_chairs" in wanted:
         wanted[wanted.index("chinese_chairs") :] = ["chinese_chair", "chinese_chair"]
@@ -181,7 +181,7 @@ def _around(arranger: Arranger, lounge: Lounge, model: Model, free: list[int]) -
         oblique = float(rng.uniform(0.25, 0.7)) * (-sign) if arranger.chance(arranger.rates["oblique_seat"]) else 0.0
         half = max(model.size[0], model.size[1]) / 2 if oblique else model.size[1] / 2
         across = sign * (reach + half + float(rng.uniform(0.35, 0.6)))
-        place = shifted(lounge.spot, across, ahead_by + (0.1 if oblique else 0.0), -sign * math.pi / 2 + oblique)
+        place = shift_spot(lounge.spot, across, ahead_by + (0.1 if oblique else 0.0), -sign * math.pi / 2 + oblique)
         if arranger.space.try_add(model, place):
             free.remove(sign)
             return True

@@ -65,7 +65,7 @@ def wall_openings(
             return None
         if all(set(h.rooms) != set(gap.rooms) for h in placed):
             placed.append(gap)
-    if not _connected(len(types), placed):
+    if not _is_connected(len(types), placed):
         return None
     entrance = _entrance(rng, types, walls, placed)
     if entrance is None:
@@ -80,7 +80,7 @@ def _first_public(types: Sequence[str]) -> int:
     return next(i for i, t in enumerate(types) if t in PUBLIC)
 
 
-def _connected(count: int, placed: Sequence[WallOpening]) -> bool:
+def _is_connected(count: int, placed: Sequence[WallOpening]) -> bool:
     reached, edge = {0}, [0]
     while edge:
         room = edge.pop()
@@ -162,12 +162,12 @@ def _free(index: int, wall: Wall, placed: Sequence[WallOpening], margin: int) ->
 def _entrance(rng: np.random.Generator, types: Sequence[str], walls: Sequence[Wall], placed: Sequence[WallOpening]) -> WallOpening | None:
     """Put the entrance into the hall if there is one, else into a public room; away from the long outer walls."""
     rank = {"Hallway": 0, "Corridor": 1, "Aisle": 1, "DiningRoom": 2, "LivingDiningRoom": 3, "LivingRoom": 4}
-    found = []
+    candidates = []
     for i, wall in enumerate(walls):
         inside = wall.b if wall.a == OUTSIDE else wall.a
         if OUTSIDE in (wall.a, wall.b) and types[inside] in rank and wall.length >= 130:
-            found.append((rank[types[inside]], wall.length, i, inside))
-    for _, length, i, inside in sorted(found):
+            candidates.append((rank[types[inside]], wall.length, i, inside))
+    for _, length, i, inside in sorted(candidates):
         width = 90 if length < 160 else 95
         spans = [(a, b) for a, b in _free(i, walls[i], placed, 20) if b - a >= width + 10]
         if spans:
@@ -183,9 +183,9 @@ def _windows(
 ) -> list[WallOpening]:
     """Put windows into the outer walls of a room: one in the longest, now and then a second around the corner."""
     outer = [(w.length, i) for i, w in enumerate(walls) if {w.a, w.b} == {room, OUTSIDE} and w.length >= 90]
-    made: list[WallOpening] = []
+    windows: list[WallOpening] = []
     if room_type in CORRIDORS or room_type in {"StorageRoom", "CloakRoom"}:
-        return made
+        return windows
     widest, sill, height = WINDOWS.get(room_type, (240, float(rng.choice([0.3, 0.6, 0.9, 0.9])), 0.0))
     height = height or float(rng.choice([2.3, 2.4])) - sill
     count = 3 if room_type == "Balcony" else 2 if room_type in PUBLIC or rng.random() < 0.15 else 1
@@ -197,8 +197,8 @@ def _windows(
         share = 1.0 if room_type == "Balcony" else rng.uniform(0.4, 0.75)
         width = int(np.clip(round((b - a) * share / 5) * 5, 60, widest))
         start = a + (b - a - width) // 2 + (0 if b - a - width < 40 else int(rng.integers(-10, 10)))
-        made.append(WallOpening(i, start, start + width, "window", (room,), height, sill))
-    return made
+        windows.append(WallOpening(i, start, start + width, "window", (room,), height, sill))
+    return windows
 
 
 def opening(number: int, gap: WallOpening, walls: Sequence[Wall], angle: float) -> Opening:

@@ -55,24 +55,24 @@ def walls(grid: NDArray[np.int64], xs: Sequence[int], ys: Sequence[int]) -> tupl
     """Return the maximal straight stretches between cells of different rooms."""
     padded = np.full((grid.shape[0] + 2, grid.shape[1] + 2), OUTSIDE)
     padded[1:-1, 1:-1] = grid
-    found: list[Wall] = []
+    stretches: list[Wall] = []
     for i, x in enumerate(xs):
-        found += _stretches(padded[i, 1:-1].tolist(), padded[i + 1, 1:-1].tolist(), ys, x, vertical=True)
+        stretches += _stretches(padded[i, 1:-1].tolist(), padded[i + 1, 1:-1].tolist(), ys, x, vertical=True)
     for j, y in enumerate(ys):
-        found += _stretches(padded[1:-1, j].tolist(), padded[1:-1, j + 1].tolist(), xs, y, vertical=False)
-    return tuple(found)
+        stretches += _stretches(padded[1:-1, j].tolist(), padded[1:-1, j + 1].tolist(), xs, y, vertical=False)
+    return tuple(stretches)
 
 
 def _stretches(before: list[int], after: list[int], lines: Sequence[int], at: int, *, vertical: bool) -> list[Wall]:
-    made: list[Wall] = []
+    stretches: list[Wall] = []
     start = 0
     for k in range(1, len(before) + 1):
         if k < len(before) and (before[k], after[k]) == (before[start], after[start]):
             continue
         if before[start] != after[start]:
-            made.append(Wall(before[start], after[start], vertical, at, lines[start], lines[k]))
+            stretches.append(Wall(before[start], after[start], vertical, at, lines[start], lines[k]))
         start = k
-    return made
+    return stretches
 
 
 def outline(room: int, stretches: Sequence[Wall]) -> list[tuple[int, int]] | None:

@@ -48,30 +48,30 @@ def _attempt(rng: np.random.Generator, wanted: room_list.Program, furnished: Seq
     sketch = make(rng, wanted)
     if lacking(sketch.types, furnished):
         return None
-    rooms = [
+    first_patches = [
         p
         for i, p in enumerate(sketch.patches)
         if sketch.types[p[0]] not in openings.CORRIDORS and p[0] not in {q[0] for q in sketch.patches[:i]}
     ]
-    patches = draft.turned(rng, draft.shafts(rng, sketch.patches, rooms, SHAFT_SHARE))
+    patches = draft.reorient(rng, draft.shafts(rng, sketch.patches, first_patches, SHAFT_SHARE))
     stretches = outline.walls(*outline.paint(patches))
     loops = [outline.outline(i, stretches) for i in range(len(sketch.types))]
     height = float(rng.choice([2.6, 2.8], p=[0.45, 0.55]))
-    made = []
+    rooms = []
     for i, (room_type, loop) in enumerate(zip(sketch.types, loops, strict=True)):
         if loop is None or not _usable(loop, room_type):
             return None
         faces = outline.inset(loop)
         if not passable(faces):
             return None
-        made.append(Room(f"room_{i}", room_type, faces, height=height))
+        rooms.append(Room(f"room_{i}", room_type, faces, height=height))
     placed = openings.wall_openings(rng, sketch.types, sketch.parents, stretches)
     if placed is None:
         return None
     angle = float(rng.uniform(1.45, 1.57))
     ways = tuple(openings.opening(k, gap, stretches, angle) for k, gap in enumerate(placed))
     entrance = next(w.rooms[0] for w in ways if w.kind == "entrance")
-    return Plan(tuple(made), ways, entrance)
+    return Plan(tuple(rooms), ways, entrance)
 
 
 def passable(faces: NDArray[np.float64]) -> bool:

@@ -101,7 +101,7 @@ def ahead(spot: Spot, depth: float, reach: float, width: float) -> Rect:
     return box_of(spot.x + fx * middle, spot.y + fy * middle, spot.yaw, width, reach)
 
 
-def shifted(spot: Spot, right: float, front: float, turn: float = 0.0) -> Spot:
+def shift_spot(spot: Spot, right: float, front: float, turn: float = 0.0) -> Spot:
     """Return the spot moved in its own frame (x to the right as its width runs, front forwards) and turned."""
     c, s = math.cos(spot.yaw), math.sin(spot.yaw)
     return Spot(spot.x + c * right + s * front, spot.y + s * right - c * front, wrap(spot.yaw + turn), spot.side, spot.s)
@@ -176,14 +176,14 @@ class Space:
         blocked += [side.along(r) for r, top in self.gaps if low < top and meets(body, r)]
         if not self.blind:
             blocked += [side.along(r) for r, sill in self.panes if high > sill + 0.05 and meets(body, r)]
-        found, at = [], 0.0
+        stretches, at = [], 0.0
         for a, b in sorted(blocked):
             if a > at:
-                found.append((at, min(a, side.length)))
+                stretches.append((at, min(a, side.length)))
             at = max(at, b)
         if at < side.length:
-            found.append((at, side.length))
-        return found
+            stretches.append((at, side.length))
+        return stretches
 
     def add(self, model: Model, spot: Spot, z: float = 0.0, *, keep: Sequence[Rect] = ()) -> Item:
         """Put a piece down and keep the given rectangles free from now on."""
@@ -225,14 +225,14 @@ def against(
     """Return a place with the back to a wall, `front` metres free before it; with chance `corner` at a stretch's end."""
     w, d, h = model.size
     gap = back_gap(rng)
-    found: list[tuple[int, float, float]] = []
+    candidates: list[tuple[int, float, float]] = []
     for i in range(len(space.sides)) if sides is None else sides:
-        found += [(i, a, b) for a, b in space.spans(space.sides[i], d + gap, front, low, low + h) if b - a >= w + 0.02]
-    if not found:
+        candidates += [(i, a, b) for a, b in space.spans(space.sides[i], d + gap, front, low, low + h) if b - a >= w + 0.02]
+    if not candidates:
         return None
     if corner >= 0.95:  # the room's own corners first
-        found = [f for f in found if f[1] < 0.01 or f[2] > space.sides[f[0]].length - 0.01] or found
-    i, a, b = found[int(rng.integers(len(found)))]
+        candidates = [f for f in candidates if f[1] < 0.01 or f[2] > space.sides[f[0]].length - 0.01] or candidates
+    i, a, b = candidates[int(rng.integers(len(candidates)))]
     slack = b - a - w
     if rng.random() < corner:
         if corner >= 0.95 and (a < 0.01) != (b > space.sides[i].length - 0.01):
@@ -283,8 +283,8 @@ def inside_intervals(polygon: Sequence[tuple[float, float]], x: float) -> list[t
 def sides_of(room: Room) -> list[Side]:
     """Return the walls of a room as directed sides, interior on the left."""
     points = [(float(x), float(y)) for x, y in room.polygon]
-    made = []
+    sides = []
     for p, q in zip(points, points[1:] + points[:1], strict=True):
         length = math.hypot(q[0] - p[0], q[1] - p[1])
-        made.append(Side(p[0], p[1], round((q[0] - p[0]) / length), round((q[1] - p[1]) / length), length))
-    return made
+        sides.append(Side(p[0], p[1], round((q[0] - p[0]) / length), round((q[1] - p[1]) / length), length))
+    return sides

@@ -67,12 +67,12 @@ def _block(seed: int, block: int) -> tuple[Agenda, ...]:
     drawn = [_rooms(rng, names, shares, n) for n in _numbers(rng)]
     typed = _living(rng, drawn)
     totals = Counter(KINDS[t] for rooms in typed for t in rooms)
-    seen: Counter[str] = Counter()
-    made = []
+    counts: Counter[str] = Counter()
+    agendas = []
     for rooms in typed:
-        made.append(Agenda(block, rooms, {kind: (seen[kind], total) for kind, total in totals.items()}))
-        seen.update(KINDS[t] for t in rooms)
-    return tuple(made)
+        agendas.append(Agenda(block, rooms, {kind: (counts[kind], total) for kind, total in totals.items()}))
+        counts.update(KINDS[t] for t in rooms)
+    return tuple(agendas)
 
 
 def _numbers(rng: np.random.Generator) -> list[int]:
@@ -87,10 +87,10 @@ def chances(shares: NDArray[np.float64], number: int) -> NDArray[np.float64]:
     """Return the chance of each candidate to be among `number` chosen ones: in proportion to the shares, at most 1."""
     sure = np.zeros(len(shares), bool)
     while True:
-        made = np.where(sure, 1.0, shares * (number - sure.sum()) / shares[~sure].sum())
-        new = (made >= 1) & ~sure
+        probabilities = np.where(sure, 1.0, shares * (number - sure.sum()) / shares[~sure].sum())
+        new = (probabilities >= 1) & ~sure
         if not new.any():
-            return np.asarray(made)
+            return np.asarray(probabilities)
         sure |= new
 
 

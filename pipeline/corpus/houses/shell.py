@@ -31,29 +31,29 @@ class Surface:
 
 def surfaces(plan: Plan) -> tuple[Surface, ...]:
     """Return all surfaces of a plan, room by room, then opening by opening."""
-    made: list[Surface] = []
+    shell: list[Surface] = []
     sides = [sides_of(room) for room in plan.rooms]
     for number, room in enumerate(plan.rooms):
-        made.append(Surface("Floor", number, tuple(_flat(room, 0.0, up=True))))
-        made.append(Surface("Ceiling", number, tuple(_flat(room, room.height, up=False))))
+        shell.append(Surface("Floor", number, tuple(_flat(room, 0.0, up=True))))
+        shell.append(Surface("Ceiling", number, tuple(_flat(room, room.height, up=False))))
         others = [s for k, other in enumerate(sides) if k != number for s in other]
         bare = [_outer_parts(side, others) for side in sides[number]]
         for k, side in enumerate(sides[number]):
             holes = holes_on(side, plan, room)
-            made.append(Surface("WallInner", number, tuple(_wall(side, 0.0, holes, room.height, inside=True))))
-            spans = _cornered(k, sides[number], bare)
+            shell.append(Surface("WallInner", number, tuple(_wall(side, 0.0, holes, room.height, inside=True))))
+            spans = _outer_spans(k, sides[number], bare)
             quads = [q for a, b in spans for q in _wall(side, -OUTER, holes, room.height, inside=False, low=a, high=b)]
             if quads:
-                made.append(Surface("WallOuter", number, tuple(quads)))
-                made.append(Surface("WallTop", number, tuple(_level(side, a, b, room.height) for a, b in bare[k])))
+                shell.append(Surface("WallOuter", number, tuple(quads)))
+                shell.append(Surface("WallTop", number, tuple(_level(side, a, b, room.height) for a, b in bare[k])))
     for k, opening in enumerate(plan.openings):
-        made += _reveals(plan, sides, k, opening)
-    return tuple(made)
+        shell += _reveals(plan, sides, k, opening)
+    return tuple(shell)
 
 
 def holes_on(side: Side, plan: Plan, room: Room) -> list[tuple[float, float, float, float]]:
     """Return (low, high, sill, top) of the openings of a room that lie in one of its sides [m]."""
-    found = []
+    holes = []
     for opening in plan.openings:
         if room.room_id not in opening.rooms:
             continue
@@ -61,8 +61,8 @@ def holes_on(side: Side, plan: Plan, room: Room) -> list[tuple[float, float, flo
         if side.away((ax + bx) / 2, (ay + by) / 2) > OUTER / 2 + 1e-6 or (abs(bx - ax) > 1e-9) != (side.tx != 0):
             continue
         low, high = side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
-        found.append((low, high, opening.sill, opening.sill + opening.height))
-    return found
+        holes.append((low, high, opening.sill, opening.sill + opening.height))
+    return holes
 
 
 def _flat(room: Room, z: float, *, up: bool) -> Iterator[Quad]:
@@ -121,7 +121,7 @@ def _outer_parts(side: Side, others: Sequence[Side]) -> list[tuple[float, float]
     return parts
 
 
-def _cornered(k: int, sides: Sequence[Side], bare: Sequence[Sequence[tuple[float, float]]]) -> list[tuple[float, float]]:
+def _outer_spans(k: int, sides: Sequence[Side], bare: Sequence[Sequence[tuple[float, float]]]) -> list[tuple[float, float]]:
     """Return the stretches of side `k`'s outer face: longer than the inner one around outer corners, shorter in notches."""
     side, before, after = sides[k], sides[k - 1], sides[(k + 1) % len(sides)]
     parts = [list(p) for p in bare[k]]
@@ -164,7 +164,7 @@ def _reveals(plan: Plan, sides: Sequence[Sequence[Side]], k: int, opening: Openi
         (at(low, 0, z0), at(low, -thick, z0), at(high, -thick, z0), at(high, 0, z0)),
     ]
     kind = {"window": "Window", "open": "Hole", "portal": "Hole"}.get(opening.kind, "Door")
-    made = [Surface(kind, number, tuple(quads), k)]
+    reveals = [Surface(kind, number, tuple(quads), k)]
     if kind == "Door":
         f = 0.004
         frame: list[Quad] = [
@@ -172,5 +172,5 @@ def _reveals(plan: Plan, sides: Sequence[Sequence[Side]], k: int, opening: Openi
             (at(high + FRAME, f, 0), at(high, f, 0), at(high, f, z1), at(high + FRAME, f, z1)),
             (at(high + FRAME, f, z1), at(low - FRAME, f, z1), at(low - FRAME, f, z1 + FRAME), at(high + FRAME, f, z1 + FRAME)),
         ]
-        made.append(Surface("Pocket", number, tuple(frame), k))
-    return made
+        reveals.append(Surface("Pocket", number, tuple(frame), k))
+    return reveals

@@ -37,7 +37,7 @@ def add_small_things(arranger: Arranger, openings: Sequence[Opening], kind: str)
     if not items:
         return
     for category, expected in rates["floor"].get(kind, {}).items():
-        for _ in range(drawn(arranger.rng, expected)):
+        for _ in range(draw_count(arranger.rng, expected)):
             _on_floor(arranger, category)
     lay_rug(arranger, rates["rug"].get(kind, 0.0))
     hang_curtains(arranger, rates["curtain"].get(kind, 0.0), openings)
@@ -50,7 +50,7 @@ def add_small_things(arranger: Arranger, openings: Sequence[Opening], kind: str)
             load(arranger, index, wanted)
 
 
-def drawn(rng: np.random.Generator, expected: float) -> int:
+def draw_count(rng: np.random.Generator, expected: float) -> int:
     """Draw a number with that mean: at most one where less than one is expected."""
     return int(expected) + int(rng.random() < expected - int(expected))
 
@@ -65,7 +65,7 @@ def load(arranger: Arranger, index: int, wanted: Mapping[str, float]) -> None:
     others = [(i.rect(), i.position[2], i.position[2] + i.size[2]) for k, i in enumerate(space.items) if k != index]
     taken: list[tuple[np.ndarray, np.ndarray]] = []
     for category, expected in wanted.items():
-        for _ in range(drawn(rng, expected)):
+        for _ in range(draw_count(rng, expected)):
             model = arranger.pick(category)
             if model is None:
                 break

@@ -26,7 +26,7 @@ def terminal(plan: Plan, columns: int = 76) -> str:
     text = ""
     for level in storeys(plan):
         rooms = on_level(plan, level)
-        owner = _sampled(rooms, x0 + across * (np.arange(width + 1) - 0.5), y1 - down * (np.arange(height + 1) - 0.5))
+        owner = _room_raster(rooms, x0 + across * (np.arange(width + 1) - 0.5), y1 - down * (np.arange(height + 1) - 0.5))
         canvas = [[_box(owner, i, j) for j in range(width)] for i in range(height)]
         for o in (o for o in plan.openings if o.level == level):
             mark = {"window": "░", "entrance": "▒", "door": "·", "open": " ", "portal": " "}[o.kind]
@@ -53,7 +53,7 @@ def terminal(plan: Plan, columns: int = 76) -> str:
     return text + f"{len(plan.rooms)} rooms, {inside:.1f} m²{more}, {doors} doors; · door  ▒ entrance  ░ window\n"
 
 
-def _sampled(rooms: Sequence[Room], xs: np.ndarray, ys: np.ndarray) -> np.ndarray:
+def _room_raster(rooms: Sequence[Room], xs: np.ndarray, ys: np.ndarray) -> np.ndarray:
     """Index of the nearest room within a wall's thickness at each point of a raster, -1 outside."""
     points = shapely.points(*np.meshgrid(xs, ys))
     shapes = [shapely.Polygon(r.polygon) for r in rooms]

@@ -17,7 +17,7 @@ FINER = 2  # drawn large and reduced: smooth lines
 
 def svg(plan: Plan, scale: float = 60.0) -> str:
     """Return the plan as SVG; `scale` in pixels a metre."""
-    found, width, height = marks(plan)
+    elements, width, height = marks(plan)
 
     def text(points: np.ndarray) -> str:
         return " ".join(f"{x * scale:.1f},{(height - y) * scale:.1f}" for x, y in points)
@@ -27,7 +27,7 @@ def svg(plan: Plan, scale: float = 60.0) -> str:
         '<rect width="100%" height="100%" fill="#ffffff"/>',
         '<g font-family="sans-serif" text-anchor="middle" stroke-linejoin="round">',
     ]
-    for mark in found:
+    for mark in elements:
         if isinstance(mark, Area):
             path = " ".join(f"M {text(ring)} Z" for ring in mark.rings)
             edge = f' stroke="{mark.edge}" stroke-width="1"' if mark.edge else ""
@@ -48,7 +48,7 @@ def svg(plan: Plan, scale: float = 60.0) -> str:
 
 def image(plan: Plan, scale: float = 60.0) -> Image.Image:
     """Return the plan as an image; `scale` in pixels a metre."""
-    found, width, height = marks(plan)
+    elements, width, height = marks(plan)
     fine = scale * FINER
     picture = Image.new("RGB", (math.ceil(width * scale) * FINER, math.ceil(height * scale) * FINER), "white")
     pen = ImageDraw.Draw(picture)
@@ -56,7 +56,7 @@ def image(plan: Plan, scale: float = 60.0) -> Image.Image:
     def at(points: np.ndarray) -> list[tuple[float, float]]:
         return [(float(x) * fine, (height - float(y)) * fine) for x, y in points]
 
-    for mark in found:
+    for mark in elements:
         if isinstance(mark, Area):
             pen.polygon(at(mark.rings[0]), fill=mark.fill, outline=mark.edge or None, width=FINER)
             for ring in mark.rings[1:]:

@@ -10,7 +10,7 @@ import shapely
 from numpy.typing import NDArray
 
 from pipeline.entities.plan import Opening, Plan, Room
-from pipeline.geometry.stairs import seen
+from pipeline.geometry.stairs import visible_steps
 
 COLOURS = {
     "living_room": "#f6e8c4", "family_room": "#f6e8c4", "studio_room": "#f6e8c4", "kitchen": "#f4cfae", "dining_room": "#f3dcca",
@@ -81,14 +81,14 @@ def marks(plan: Plan) -> tuple[list[Mark], float, float]:
     """Return the marks, what lies below first, and width and height of the sheet [m]; its lower left corner is the origin."""
     x0, y0, x1, y1 = bounds(plan)
     step = x1 - x0 + GAP
-    found: list[Mark] = []
+    elements: list[Mark] = []
     for level in storeys(plan):
         shift = np.array([MARGIN - x0 + level * step, MARGIN - y0])
-        found.extend(_moved(mark, shift) for mark in _storey(plan, level))
-    return found, len(storeys(plan)) * step - GAP + 2 * MARGIN, y1 - y0 + 2 * MARGIN
+        elements.extend(_translate(mark, shift) for mark in _storey(plan, level))
+    return elements, len(storeys(plan)) * step - GAP + 2 * MARGIN, y1 - y0 + 2 * MARGIN
 
 
-def _moved(mark: Mark, shift: Points) -> Mark:
+def _translate(mark: Mark, shift: Points) -> Mark:
     if isinstance(mark, Area):
         return Area(tuple(r + shift for r in mark.rings), mark.fill, mark.edge)
     if isinstance(mark, Line):
@@ -108,7 +108,7 @@ def _storey(plan: Plan, level: int) -> Iterator[Mark]:
     openings = [o for o in plan.openings if o.level == level]
     for opening in openings:
         yield from _opening(plan, opening, rooms)
-    climbed = [shapely.Point(s.polygon.mean(axis=0)) for s in seen(plan, level)]
+    climbed = [shapely.Point(s.polygon.mean(axis=0)) for s in visible_steps(plan, level)]
     for room in rooms:
         if room.type == "staircase" and any(shapely.Polygon(room.polygon).contains(p) for p in climbed):
             continue  # its steps say what it is
@@ -120,12 +120,16 @@ def _storey(plan: Plan, level: int) -> Iterator[Mark]:
 
 def _stairs(plan: Plan, level: int) -> Iterator[Mark]:
     """Yield the edges of steps, and an arrow upwards on the storey where a flight begins."""
-    for step in seen(plan, level):
+    for step in visible_steps(plan, level):
         if step.kind in {"step", "landing"}:
             yield Line(np.vstack([step.polygon, step.polygon[:1]]), FAINT)
     for room in on_level(plan, level):
         inside = shapely.Polygon(room.polygon)
-        flight = [s for s in seen(plan, level) if s.kind == "step" and s.top > 0.0 and inside.contains(shapely.Polygon(s.polygon).centroid)]
+        flight = [
+            s
+            for s in visible_steps(plan, level)
+            if s.kind == "step" and s.top > 0.0 and inside.contains(shapely.Polygon(s.polygon).centroid)
+        ]
         if flight:
             walk = np.array([s.polygon.mean(axis=0) for s in flight])
             yield Line(walk, INK, 0.02)
@@ -198,12 +202,12 @@ def _label(room: Room, openings: Sequence[Opening], plan: Plan) -> Iterator[Mark
         for shown in (lines + sides, lines):
             at = _place(room, free, size * LETTER * max(map(len, shown)), 1.25 * size * len(shown))
             if at is not None:
-                yield from _written(shown, at, size)
+                yield from _text_block(shown, at, size)
                 return
-    yield from _written(lines, label_point(room), SIZES[-1])
+    yield from _text_block(lines, label_point(room), SIZES[-1])
 
 
-def _written(lines: Sequence[str], at: tuple[float, float], size: float) -> Iterator[Mark]:
+def _text_block(lines: Sequence[str], at: tuple[float, float], size: float) -> Iterator[Mark]:
     for k, text in enumerate(lines):
         y = at[1] + 1.25 * size * ((len(lines) - 1) / 2 - k)
         yield Words(text, (at[0], y), size if k == 0 else 0.85 * size, INK if k == 0 else "#5c5f64")

@@ -28,12 +28,12 @@ def front_sketch(document: Mapping[str, Any], name: str) -> Sketch:
         rooms = rooms_of(house, taxonomy.load(), limits, rejects)
         if not rooms:
             raise refuse("the house has no room with a floor")
-        found, (inner, outer) = openings_of(house, rooms, limits, rejects)
+        openings, (inner, outer) = openings_of(house, rooms, limits, rejects)
     except SourceError as error:
         raise ContentError(f"3D-FRONT house {name}: {error.code}: {error.detail or error}", "see docs/reasons.md for the code") from error
     sketch = Sketch(
         [SketchRoom(r.room_id, r.record.type, r.floor.polygon, height=round(r.height, 3)) for r in rooms],
-        [SketchOpening(o.opening_id, o.kind, o.rooms, o.segment, height=o.height, sill=o.sill) for o in found],
+        [SketchOpening(o.opening_id, o.kind, o.rooms, o.segment, height=o.height, sill=o.sill) for o in openings],
         "inner",
         "some",  # most rooms of the release have no Door mesh at all
         next((r.room_id for r in rooms if r.record.instance in house.entry_rooms), ""),

@@ -125,9 +125,9 @@ def native_sketch(document: object) -> Sketch:
     return sketch
 
 
-def _count(found: int, most: int, what: str) -> None:
-    if found > most:
-        raise refuse(f"it has {found} {what}; at most {most} are read")
+def _count(count: int, most: int, what: str) -> None:
+    if count > most:
+        raise refuse(f"it has {count} {what}; at most {most} are read")
 
 
 def _openings(read: PlanIn) -> list[tuple[OpeningIn, OpeningKind]]:

@@ -57,7 +57,7 @@ def procthor_sketch(document: Mapping[str, Any]) -> Sketch:
 
 def _fronts(walls: Mapping[str, Mapping[str, Any]], names: Mapping[str, str]) -> list[SketchOpening]:
     """Return an open front for every empty wall; both sides of one wall are in the file, and one of them is kept."""
-    found: list[SketchOpening] = []
+    fronts: list[SketchOpening] = []
     seen: set[tuple[float, ...]] = set()
     for key, wall in walls.items():
         if not wall.get("empty") or str(wall.get("roomId", "")) not in names:
@@ -66,8 +66,8 @@ def _fronts(walls: Mapping[str, Mapping[str, Any]], names: Mapping[str, str]) ->
         mark = tuple(np.round(sorted(ends.tolist()), 2).ravel().tolist())
         if mark not in seen:
             seen.add(mark)
-            found.append(SketchOpening(f"open_{len(found)}", "open", (), ends))
-    return found
+            fronts.append(SketchOpening(f"open_{len(fronts)}", "open", (), ends))
+    return fronts
 
 
 def _opening(
@@ -111,7 +111,7 @@ def _points(value: Any, where: str) -> Floats:
 
 
 def _dicts(document: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
-    found = document.get(key, [])
-    if not isinstance(found, list) or not all(isinstance(r, dict) for r in found):
+    entries = document.get(key, [])
+    if not isinstance(entries, list) or not all(isinstance(r, dict) for r in entries):
         raise ContentError(f"ProcTHOR house: {key} is no list of objects", REMEDY)
-    return found
+    return entries

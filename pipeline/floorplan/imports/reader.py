@@ -56,7 +56,7 @@ class OwnPlan:
         return OwnPlan(self.plan, (*self.repairs, *findings))
 
 
-def told(repairs: Iterable[Mapping[str, str]]) -> str:
+def describe_repairs(repairs: Iterable[Mapping[str, str]]) -> str:
     """Return repairs and findings, as plain data, in lines for the terminal."""
     return "".join(f"{'found' if r['code'] == 'closed' else 'repaired'}: {r['where']}: {r['text']}\n" for r in repairs)
 
@@ -94,9 +94,9 @@ def _line(data: bytes, house: str | None, path: Path) -> Any:
     for line, number, start in lines:
         if house.encode() not in line:
             continue
-        found = parse_json(line, path.name, number, start)
-        if isinstance(found, dict) and house in {found.get("id"), found.get("uid"), found.get("name")}:
-            return found
+        candidate = parse_json(line, path.name, number, start)
+        if isinstance(candidate, dict) and house in {candidate.get("id"), candidate.get("uid"), candidate.get("name")}:
+            return candidate
     raise UsageError(f"{path} has no house {house[:60]!r}", f"choose a line from 0 to {len(lines) - 1}")
 
 
@@ -111,10 +111,10 @@ def read_own_json(document: Any, name: str = "plan") -> OwnPlan:
     else:
         kind = "a list" if isinstance(document, list) else type(document).__name__ if not isinstance(document, dict) else "no known format"
         raise ContentError(f"{name} is {kind}, not a plan: it has no `rooms`", "see docs/floorplan.md for the formats that are read")
-    return OwnPlan(_built(sketch), tuple(sketch.repairs))
+    return OwnPlan(_build_plan(sketch), tuple(sketch.repairs))
 
 
-def _built(sketch: Sketch) -> Plan:
+def _build_plan(sketch: Sketch) -> Plan:
     """Check and repair a sketch, step by step, until it is a plan."""
     resolve_types(sketch)
     to_metres(sketch)
@@ -216,9 +216,9 @@ def _entrance(sketch: Sketch, rooms: list[Room], walls: list[Stretch], fitted: l
     if sketch.foreign or not wanted:
         wanted += [room for room in ground if room not in wanted]
     for room in wanted:
-        made = put_door(_fresh("entrance", fitted), (room,), [s for s in walls if s.level == 0], fitted, 0.9)
-        if made:
-            fitted.append(made)
+        door = put_door(_fresh("entrance", fitted), (room,), [s for s in walls if s.level == 0], fitted, 0.9)
+        if door:
+            fitted.append(door)
             sketch.repair("entrance", room, "no door leads outside from it: an entrance is put into its longest outside wall")
             return room
     raise refuse(f"no outside wall of {', '.join(wanted)} has room for an entrance")
@@ -252,20 +252,20 @@ def _join(sketch: Sketch, rooms: list[Room], walls: list[Stretch], fitted: list[
     """Put doors where the file leaves them open; refuse a plan in which a room cannot be reached."""
     while lost := [r.room_id for r in rooms if r.room_id not in _depths(fitted, entrance)]:
         reached = set(_depths(fitted, entrance))
-        made = None
+        door = None
         if sketch.doors != "all":
             kinds = {r.room_id: r.type for r in rooms}
             pairs = [s for s in walls if len(s.rooms) == 2 and len(set(s.rooms) & reached) == 1]
             # through a hall rather than through a bedroom or a bathroom, then through the longest wall
             pairs.sort(key=lambda s: (_rank(kinds[next(iter(set(s.rooms) & reached))]), -round(s.length, 3)))
-            made = next((f for s in pairs if (f := put_door(_fresh("door", fitted), s.rooms, [s], fitted))), None)
-        if made is None:
+            door = next((f for s in pairs if (f := put_door(_fresh("door", fitted), s.rooms, [s], fitted))), None)
+        if door is None:
             if sketch.foreign and _leave(sketch, rooms, fitted, lost):
                 continue
             _explain(rooms, walls, lost)
             raise refuse(f"there is no way from {entrance} to {', '.join(lost)}", "add doors between them")
-        fitted.append(made)
-        sketch.repair("door", made.opening.opening_id, f"no door leads to {' or '.join(set(made.opening.rooms) - reached)}: one is put")
+        fitted.append(door)
+        sketch.repair("door", door.opening.opening_id, f"no door leads to {' or '.join(set(door.opening.rooms) - reached)}: one is put")
 
 
 def _leave(sketch: Sketch, rooms: list[Room], fitted: list[Fitted], lost: list[str]) -> bool:

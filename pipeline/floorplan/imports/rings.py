@@ -25,7 +25,7 @@ LARGEST = 5000.0  # [m2] of a home
 
 def to_metres(sketch: Sketch) -> None:
     """Scale everything to metres. Where the file states no unit, rooms' sizes tell m, cm and mm apart, and a repair says so."""
-    sides = [math.sqrt(abs(_signed(r.ring))) for r in sketch.rooms if len(r.ring) >= 3]
+    sides = [math.sqrt(abs(_signed_area(r.ring))) for r in sketch.rooms if len(r.ring) >= 3]
     middle = float(np.median(sides)) if sides else 0.0
     if sketch.units and sketch.units not in UNITS:
         raise refuse(f"the unit {sketch.units[:20]!r} is unknown", f"units are {', '.join(UNITS)}")
@@ -118,7 +118,7 @@ def _ring(sketch: Sketch, room: SketchRoom) -> Floats:
         raise refuse(
             f"the outline of {name} crosses or touches itself ({explain_validity(shape)})", "give its corners in order, once around"
         )
-    if _signed(straight) < 0:
+    if _signed_area(straight) < 0:
         straight = straight[::-1]
         sketch.repair("clockwise", name, "its corners run clockwise and are turned round")
     if shape.area < LEAST_AREA:
@@ -179,6 +179,6 @@ def shrink(sketch: Sketch, by: float) -> None:
         room.ring = np.round(without_collinear(ring), 3) + 0.0
 
 
-def _signed(ring: Sequence[Floats] | Floats) -> float:
+def _signed_area(ring: Sequence[Floats] | Floats) -> float:
     x, y = np.asarray(ring, float).T
     return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))

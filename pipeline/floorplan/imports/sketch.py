@@ -84,15 +84,15 @@ class Sketch:
 
 def identifiers(names: list[str], fallback: str) -> list[str]:
     """Return ids that may be a path or a prim's name, one per name and all different."""
-    made: list[str] = []
+    ids: list[str] = []
     for number, name in enumerate(names):
         plain = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")[:32] or f"{fallback}_{number}"
         plain = plain if plain[0].isalpha() else f"{fallback}_{plain}"[:32]
         wanted, k = plain, 2
-        while wanted in made:
+        while wanted in ids:
             wanted, k = f"{plain}_{k}", k + 1
-        made.append(wanted)
-    return made
+        ids.append(wanted)
+    return ids
 
 
 class OwnPlanError(RefusedError):

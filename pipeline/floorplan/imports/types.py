@@ -47,11 +47,11 @@ def resolve_types(sketch: Sketch) -> None:
         said = room.type
         kind = re.sub(r"[^a-z]+", "_", re.sub(r"(?<=[a-z])(?=[A-Z])", "_", said).lower()).strip("_")
         plain = kind.replace("_", "")
-        found = next((t for t in (kind, ALIASES.get(kind, ""), ALIASES.get(plain, ""), f"{kind}_room") if t in TYPES), "")
-        found = found or next((t for t in TYPES if t.replace("_", "") == plain), "")
-        if not found and sketch.foreign:
-            found = "storage"
-        if not found:
+        room_type = next((t for t in (kind, ALIASES.get(kind, ""), ALIASES.get(plain, ""), f"{kind}_room") if t in TYPES), "")
+        room_type = room_type or next((t for t in TYPES if t.replace("_", "") == plain), "")
+        if not room_type and sketch.foreign:
+            room_type = "storage"
+        if not room_type:
             near = difflib.get_close_matches(kind, TYPES, 1)
             hint = f"did you mean {near[0]}?" if near else f"types are {', '.join(TYPES)}"
             raise refuse(f"{room.room_id} has the unknown type {said[:40]!r}", hint)
@@ -61,7 +61,7 @@ def resolve_types(sketch: Sketch) -> None:
         if room.role not in ROLES:
             sketch.repair("role", room.room_id, f"the unknown role {room.role[:40]!r} is left out")
             room.role = ""
-        if found != said:
-            room.type = found
+        if room_type != said:
+            room.type = room_type
             also = f", with {' and '.join(room.functions)} in it" if room.functions else ""
-            sketch.repair("type", room.room_id, f"the type {said[:40]!r} is taken as {found}{also}")
+            sketch.repair("type", room.room_id, f"the type {said[:40]!r} is taken as {room_type}{also}")

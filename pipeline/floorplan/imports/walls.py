@@ -45,7 +45,7 @@ class Stretch:
 def stretches(rooms: Sequence[Room], level: int, outer: float) -> list[Stretch]:
     """Return all stretches of one storey; `rooms` are those on it, `outer` [m] the thickness of outside walls."""
     shapes = {r.room_id: shapely.Polygon(r.polygon) for r in rooms}
-    found: list[Stretch] = []
+    segments: list[Stretch] = []
     for room in rooms:
         for start, end in _edges(room.polygon):
             length = float(np.linalg.norm(end - start))
@@ -62,13 +62,13 @@ def stretches(rooms: Sequence[Room], level: int, outer: float) -> list[Stretch]:
                     # each pair is met from both sides; the first of the list keeps it
                     if rooms.index(room) < rooms.index(other) and high - low >= LEAST_RUN and not between:
                         line = start + low * along + gap / 2 * out
-                        found.append(Stretch((room.room_id, other.room_id), line, along, high - low, max(gap, 0.0), level))
-            found += [
+                        segments.append(Stretch((room.room_id, other.room_id), line, along, high - low, max(gap, 0.0), level))
+            segments += [
                 Stretch((room.room_id,), start + low * along + outer / 2 * out, along, high - low, outer, level)
                 for low, high in _left_over(taken, length)
                 if high - low >= LEAST_RUN
             ]
-    return found
+    return segments
 
 
 def touching_share(rooms: Sequence[Room], level: int) -> tuple[int, int]:

@@ -33,50 +33,54 @@ def _kind(marks: Sequence[Mark], k: int) -> str:
     return marks[k].kind if 0 <= k < len(marks) else "stop"
 
 
-def amounts(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+def amounts(marks: Sequence[Mark], words: Words) -> list[Mark]:
     """Return the marks with amounts put together."""
-    return _dealt(measured(_shared(marks), heard))
+    return _dealt(combine_amounts(_share_units(marks), words))
 
 
-def _parted(mark: Mark) -> bool:
+def _is_separator(mark: Mark) -> bool:
     return mark.kind in {"comma", "slash"} or (mark.kind == "join" and mark.value == "and")
 
 
-def _shared(marks: Sequence[Mark]) -> list[Mark]:
+def _share_units(marks: Sequence[Mark]) -> list[Mark]:
     """Give each of "14, 12 and 10 m2" its unit."""
-    made = list(marks)
-    for k in range(len(made) - 1, 2, -1):
-        before, number = made[k - 3], made[k - 1]
-        row = (made[k].kind, made[k].value) == ("unit", "area") and _parted(made[k - 2]) and before.kind == number.kind == "num"
+    with_units = list(marks)
+    for k in range(len(with_units) - 1, 2, -1):
+        before, number = with_units[k - 3], with_units[k - 1]
+        row = (
+            (with_units[k].kind, with_units[k].value) == ("unit", "area")
+            and _is_separator(with_units[k - 2])
+            and before.kind == number.kind == "num"
+        )
         if row and max(before.number, number.number) < ALIKE * min(before.number, number.number):
-            made.insert(k - 2, replace(made[k], first=before.last, last=before.last))
-    return made
+            with_units.insert(k - 2, replace(with_units[k], first=before.last, last=before.last))
+    return with_units
 
 
 def _dealt(marks: Sequence[Mark]) -> list[Mark]:
     """Make one amount of those that several rooms share out: "two bedrooms (14 m2 and 12 m2)"; rooms nobody counted are so many."""
-    made: list[Mark] = []
+    merged: list[Mark] = []
     k = 0
     while k < len(marks):
         end = k
         while (
             end + 2 < len(marks)
-            and _parted(marks[end + 1])
+            and _is_separator(marks[end + 1])
             and all((m.kind, m.value) == ("amount", "area") for m in marks[end : end + 3 : 2])
         ):
             end += 2
         row, after = marks[k : end + 1 : 2], marks[end + 1] if end + 1 < len(marks) else None
         sizes = [m.number for m in row]
         total = any(m.total or m.bound in {"least", "most"} for m in row) or (after is not None and "home" in {after.kind, after.value})
-        place = _in_front(made) if len(row) > 1 and not total and max(sizes) < ALIKE * min(sizes) else None
-        made.append(marks[k])
+        place = _in_front(merged) if len(row) > 1 and not total and max(sizes) < ALIKE * min(sizes) else None
+        merged.append(marks[k])
         if place is not None:
-            made[-1] = replace(marks[k], last=row[-1].last, parts=tuple(sizes))
-            if not any(m.kind == "num" for m in (*made[max(0, place - 3) : place], *made[place + 1 : place + 2])):
-                made.insert(place, Mark("num", "", float(len(row)), False, made[place].first, made[place].first, ""))
+            merged[-1] = replace(marks[k], last=row[-1].last, parts=tuple(sizes))
+            if not any(m.kind == "num" for m in (*merged[max(0, place - 3) : place], *merged[place + 1 : place + 2])):
+                merged.insert(place, Mark("num", "", float(len(row)), False, merged[place].first, merged[place].first, ""))
             k = end
         k += 1
-    return made
+    return merged
 
 
 def _in_front(marks: Sequence[Mark]) -> int | None:
@@ -87,25 +91,25 @@ def _in_front(marks: Sequence[Mark]) -> int | None:
     return j if j is not None and marks[j].kind == "room" else None
 
 
-def measured(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+def combine_amounts(marks: Sequence[Mark], words: Words) -> list[Mark]:
     """Put amounts together: "at least 18 m²", "10 to 12 m²", "4 x 5 m", "seven square metres or more"."""
-    made: list[Mark] = []
+    merged: list[Mark] = []
     k = 0
     while k < len(marks):
-        found = _Amount(marks, heard.lexicon).read(k)
-        if found is None:
-            made.append(marks[k])
+        amount = _Amount(marks, words.lexicon).read(k)
+        if amount is None:
+            merged.append(marks[k])
             k += 1
         else:
-            mark, end = found
+            mark, end = amount
             mark.first, mark.last = marks[k].first, marks[end - 1].last
-            mark.text = " ".join(heard.texts[mark.first : mark.last])
+            mark.text = " ".join(words.texts[mark.first : mark.last])
             if mark.value == "share" and _kind(marks, end) == "cmp":  # "30 % larger than"
                 times = 1.0 + mark.number if marks[end].value == "larger" else 1.0 / max(1.0 - mark.number, 0.1)
                 mark = replace(mark, kind="factor", value="", number=times)
-            made.append(mark)
+            merged.append(mark)
             k = end
-    return made
+    return merged
 
 
 class _Amount:

@@ -34,35 +34,37 @@ def attach(program: FloorProgram, claims: Sequence[Claim], prompt: str, mentions
     """
     if not claims:
         return program
-    place = _Place(program, claims, prompt, list(mentions) if mentions is not None else mentioned(program))
-    made: dict[str, list[Claim]] = {}
+    place = _Place(program, claims, prompt, list(mentions) if mentions is not None else room_mentions(program))
+    by_room: dict[str, list[Claim]] = {}
     evidence = []
     for claim in claims:
         every = tuple(r.id for r in program.rooms) if claim.home and claim.kind in {"pieces", "openable"} else ()
         rooms = every or place.of(claim) or ("",)
         one = replace(claim, least=1) if claim.plural and len(rooms) > 1 else claim  # "two bedrooms with wardrobes"
         for room in rooms:
-            made.setdefault(room, []).append(one)
+            by_room.setdefault(room, []).append(one)
             where = f"rooms.{room}.furniture" if room else "furniture"
             field = f"{where}.{claim.name if claim.kind == 'count' else claim.kind}"
             evidence.append(Evidence(start=claim.start, end=claim.end, text=prompt[claim.start : claim.end], field=field))
-    furnished = [r.model_copy(update={"furniture": combined(made[r.id], prompt, r.id)}) if r.id in made else r for r in program.rooms]
-    own = combined(made[""], prompt, "the home") if "" in made else program.furniture
+    furnished = [
+        r.model_copy(update={"furniture": combine_claims(by_room[r.id], prompt, r.id)}) if r.id in by_room else r for r in program.rooms
+    ]
+    own = combine_claims(by_room[""], prompt, "the home") if "" in by_room else program.furniture
     return program.model_copy(update={"rooms": tuple(furnished), "furniture": own, "evidence": (*program.evidence, *evidence)})
 
 
-def mentioned(program: FloorProgram) -> list[Mention]:
+def room_mentions(program: FloorProgram) -> list[Mention]:
     """Return where the prompt names rooms, in its order."""
-    found: dict[tuple[int, int], list[str]] = {}
+    by_span: dict[tuple[int, int], list[str]] = {}
     ids = {r.id for r in program.rooms}
     for e in program.evidence:
         room = e.field.removeprefix("rooms.")
         if e.field.startswith("rooms.") and room in ids:
-            found.setdefault((e.start, e.end), []).append(room)
-    return [Mention(start, end, tuple(dict.fromkeys(rooms))) for (start, end), rooms in sorted(found.items())]
+            by_span.setdefault((e.start, e.end), []).append(room)
+    return [Mention(start, end, tuple(dict.fromkeys(rooms))) for (start, end), rooms in sorted(by_span.items())]
 
 
-def combined(claims: Sequence[Claim], prompt: str, where: str) -> Furniture:
+def combine_claims(claims: Sequence[Claim], prompt: str, where: str) -> Furniture:
     """Return the wishes that claims of one room make together. Raises ImpossibleError naming words that clash."""
     counts: dict[str, Things] = {}
     fields: dict[str, Any] = {}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from pipeline.floorplan.language.clause import LIGHT, LISTING, Clause, ids_of, known
+from pipeline.floorplan.language.clause import LIGHT, LISTING, Clause, ids_of, named_rooms
 from pipeline.floorplan.language.facts import PERSONAL, SOCIAL, Group
 from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.phrases import Element, heads
@@ -17,7 +17,7 @@ def level(c: Clause, k: int, e: Element) -> int:
     ahead = c.near(k + 1)
     part = c.part(k)
     if c.forward and part and (ahead is None or ahead.kind == "comma"):  # "upstairs two bedrooms, the kitchen downstairs"
-        for room in (c.stock.get(i) for i in known(part)):
+        for room in (c.stock.get(i) for i in named_rooms(part)):
             room.level = int(e.value)
         return k + 1
     if c.forward or heads(c.sentence, k) or ("*" in c.latest and ahead is not None and ahead.kind == "colon"):
@@ -25,7 +25,7 @@ def level(c: Clause, k: int, e: Element) -> int:
         c.forward, c.level, c.run = True, int(e.value), []
         return k + 1
     owners = c.subject if c.objects and c.latest == c.objects else ()  # "a guest room with bath, downstairs"
-    for room in (c.stock.get(i) for i in known((*c.latest, *owners))):
+    for room in (c.stock.get(i) for i in named_rooms((*c.latest, *owners))):
         room.level = int(e.value)
     c.state.heights |= {i.removeprefix("*zone_"): int(e.value) for i in c.latest if i.startswith("*")}
     return k + 1
@@ -43,10 +43,10 @@ def _settle(c: Clause, e: Element, ids: tuple[str, ...]) -> None:
     if not ids or all(i.startswith("*") for i in ids):
         c.state.wings += tuple(i.removeprefix("*zone_") for i in ids if i != "*")
         return
-    made = next((n for n, (members, _) in c.state.zones.items() if members and set(members) == set(ids)), None)
-    made = made or ("bedroom" if c.types(ids) == {"bedroom"} else f"wing_{len(c.state.wings) + 1}")
-    c.state.zones.setdefault(made, (ids, e))
-    c.state.wings += (made,)
+    zone_name = next((n for n, (members, _) in c.state.zones.items() if members and set(members) == set(ids)), None)
+    zone_name = zone_name or ("bedroom" if c.types(ids) == {"bedroom"} else f"wing_{len(c.state.wings) + 1}")
+    c.state.zones.setdefault(zone_name, (ids, e))
+    c.state.wings += (zone_name,)
 
 
 def zone(c: Clause, k: int, e: Element) -> int:
@@ -77,8 +77,8 @@ def measures_home(c: Clause, k: int, mark: Mark, ids: Group) -> bool:
     if sum(bool(x.amounts) for x in rooms) != 1:
         return False
     home = any(x.kind == "home" and not x.amounts for x in c.sentence[:k])
-    told = before is not None and before.kind == "home" and not before.amounts and len(ids) > 1
-    if told and times > MORE:  # "un piso de tres dormitorios de unos 95 metros cuadrados"
+    home_before = before is not None and before.kind == "home" and not before.amounts and len(ids) > 1
+    if home_before and times > MORE:  # "un piso de tres dormitorios de unos 95 metros cuadrados"
         return True
     last = not any(x.first >= mark.last for x in rooms)
     near = len(rooms) > 2 or (home and mark.first == c.sentence[k].last and mark.text[0].isdigit())
@@ -90,7 +90,7 @@ def attach(c: Clause, k: int, mark: Mark, *, home: bool = False) -> None:
     state = c.state
     around = c.sentence[max(0, k - 2) : k + 2]
     before, ahead = c.near(k - 1), c.near(k + 1)
-    rooms = () if home else tuple(i for i in known(c.latest) if not i.startswith("<"))
+    rooms = () if home else tuple(i for i in named_rooms(c.latest) if not i.startswith("<"))
     if mark.value == "storeys":
         state.storeys = state.storeys or ((int(mark.number), mark) if mark.number >= 1 else None)
     elif mark.value == "rooms":  # of one and a half, the half is to sleep in
@@ -132,7 +132,7 @@ def compare(c: Clause, k: int, e: Element) -> int:
     left = c.listed() or c.subject or c.latest
     if e.value == "alike":
         rooms = c.latest if len(c.latest) > 1 else ids_of(c.run)
-        c.state.say("area_equal", known(rooms if len(rooms) > 1 else c.subject), (), e, LIKE)
+        c.state.say("area_equal", named_rooms(rooms if len(rooms) > 1 else c.subject), (), e, LIKE)
         return k + 1
     right, j = c.after(k + 1, "cmp", left)
     behind = c.near(j)
@@ -202,10 +202,10 @@ def _owners(c: Clause, k: int, e: Element, before: Element | None, thing: Elemen
     if near.kind == "comma" and e.text in c.state.heard.lexicon.sign("home_has"):
         return ()  # "厨房不要开放式,要有阳台": the home
     if not c.run and near.kind == "np" and near.ids and set(near.ids) <= set(c.objects) and c.says(e, "with"):
-        return known(tuple(near.ids))  # "the living room leads to a hall with two bedrooms"
-    owners = known(tuple(c.run[-1].ids) if c.run else c.subject)
+        return named_rooms(tuple(near.ids))  # "the living room leads to a hall with two bedrooms"
+    owners = named_rooms(tuple(c.run[-1].ids) if c.run else c.subject)
     if len(c.run) > 1 and (c.verb or c.says(e, "having") or c.says(e, "every")) and not any(x.part for x in c.run):
-        listed = known(ids_of(c.run))
+        listed = named_rooms(ids_of(c.run))
         owners = listed if c.types(listed) == {"bedroom"} else owners
     return owners
 

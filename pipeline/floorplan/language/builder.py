@@ -71,7 +71,7 @@ def assemble(state: Reading, parsed: list[list[Element]]) -> FloorProgram:
             "relations": draft.relations,
             "zones": draft.zones,
             "language": state.heard.lexicon.language,
-            "evidence": [*_named(parsed, state), *draft.evidence],
+            "evidence": [*_room_evidence(parsed, state), *draft.evidence],
         }
     )
 
@@ -91,7 +91,7 @@ def _room(room: Named) -> dict[str, Any]:
     }
 
 
-def _named(parsed: list[list[Element]], state: Reading) -> list[dict[str, Any]]:
+def _room_evidence(parsed: list[list[Element]], state: Reading) -> list[dict[str, Any]]:
     """Return the evidence for the rooms themselves."""
     known, cited = {r.id for r in state.inventory.rooms}, Draft(state.heard)
     for e in (e for s in parsed for e in s if e.ids and e.kind in {"np", "pron", "det"} and e.last > e.first):
@@ -281,9 +281,9 @@ def _whole(draft: Draft, state: Reading) -> None:
     fields |= {"scale": LUXURY} if told("luxury", "scale") else {}
     if "no_hall" in flags:
         draft.forbid("room_type", "hallway", None, None, Fact("ban", (), (), 0.0, flags["no_hall"].first, flags["no_hall"].last))
-    for flag, made in OUTLINES.items():
+    for flag, outline in OUTLINES.items():
         if told(flag, "footprint"):
-            fields["footprint"] = {**fields.get("footprint", {}), **made, "stated": True}
+            fields["footprint"] = {**fields.get("footprint", {}), **outline, "stated": True}
     access = fields.setdefault("accessibility", {})
     for flag in ("wheelchair", "step_free", "single"):
         access |= {"step_free": True} if told(flag, "accessibility.step_free") else {}

@@ -16,7 +16,7 @@ LISTING = {"comma", "and", "or"}
 BESIDE = {"near", "wall"}  # what such a relation joins lies on one storey
 
 
-def known(group: Group) -> Group:
+def named_rooms(group: Group) -> Group:
     """Return the rooms of a group, without "all rooms" and zones."""
     return tuple(i for i in group if not i.startswith("*"))
 
@@ -223,15 +223,15 @@ class Clause:
                     or (first is not None and not self._continues(k, cue, joined, first, left, len(group)))
                 ):
                     break
-                here = {self.stock.get(i).level for i in known(left)} if cue in BESIDE else set()
+                here = {self.stock.get(i).level for i in named_rooms(left)} if cue in BESIDE else set()
                 ids = name(self.state, self.sentence, k, self.level if self.forward else here.pop() if len(here) == 1 else None)
                 self.measures(e)
                 if "largest" in e.adjectives and cue != "cmp":
                     self.state.say("largest", tuple(ids), tuple(r.id for r in self.stock.of(e.type)), e)
                 group += [i for i in ids if i not in group and i not in left]
                 first, joined, end = first or e, "", k + 1
-            elif not group and (found := self._standin(k, e, left)) is not None:
-                return found
+            elif not group and (standin := self._standin(k, e, left)) is not None:
+                return standin
             elif e.kind == "cue" and e.value in {"in", "leads"} and joined and cue in WIDE and not (joined == "comma" and self.relative):
                 joined = "and"  # "leads to the bath and into the kitchen"
             elif group and (e.value == "has" or e.kind == "to") and cue == "leads" and self.says(self.sentence[end - 2], "connect"):
@@ -256,8 +256,8 @@ class Clause:
         ahead = self.near(k + 1)
         phrase = ahead is not None and ahead.kind == "np"
         if e.kind in {"pron", "det"} and e.value in STANDINS and not (e.kind == "det" and phrase):
-            found = self.point(e, k, left)
-            return tuple(i for i in found if i not in left), k + 1
+            ids = self.point(e, k, left)
+            return tuple(i for i in ids if i not in left), k + 1
         if e.kind == "owner" and not phrase and (ahead is None or ahead.kind != "word"):  # "next to the parents'"
             theirs = [r.id for r in self.stock.of("bedroom") if r.role == e.value and r.id not in left]
             e.ids = theirs or [self.stock.add("bedroom", e.value, e.text, None).id]

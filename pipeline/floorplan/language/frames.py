@@ -77,20 +77,20 @@ def _atom(text: str) -> Atom:
     return Atom(frozenset(names.split("|")), text.endswith("?"), slot, frozenset(types.split(",")) if types else frozenset())
 
 
-def framed(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+def apply_frames(marks: Sequence[Mark], words: Words) -> list[Mark]:
     """Return the marks with every frame that fits read."""
-    signs = heard.lexicon.signs
-    made: list[Mark] = []
+    signs = words.lexicon.signs
+    rewritten: list[Mark] = []
     for sentence in sentences_of(marks):
         said = sentence
         names = [_names(m, signs) for m in said]
         for frame in frames():
             here = frozenset().union(*names)
             if all(need & here for need in frame.needs):
-                said, changed = _applied(frame, said, names)
+                said, changed = _apply_frame(frame, said, names)
                 names = [_names(m, signs) for m in said] if changed else names
-        made += said
-    return made
+        rewritten += said
+    return rewritten
 
 
 def _names(mark: Mark, signs: Mapping[str, frozenset[str]]) -> frozenset[str]:
@@ -117,21 +117,25 @@ def _names(mark: Mark, signs: Mapping[str, frozenset[str]]) -> frozenset[str]:
     return signs.get(mark.text, frozenset()) | own
 
 
-def _applied(frame: Frame, marks: list[Mark], names: Sequence[frozenset[str]]) -> tuple[list[Mark], bool]:
+def _apply_frame(frame: Frame, marks: list[Mark], names: Sequence[frozenset[str]]) -> tuple[list[Mark], bool]:
     """Return a sentence with a frame read wherever it fits, and whether it did."""
-    made: list[Mark] = []
+    rewritten: list[Mark] = []
     k = 0
     reader = _Reader(marks, names, frame.atoms)
     while k < len(marks):
-        found = next(reader.fits(0, k, {}), None)
-        if found is None or found[0] <= k:
-            made.append(marks[k])
+        match = next(reader.fits(0, k, {}), None)
+        if match is None or match[0] <= k:
+            rewritten.append(marks[k])
             k += 1
         else:
-            end, slots = found
-            made += _read(frame, marks, k, end, slots)
+            end, slots = match
+            rewritten += _read(frame, marks, k, end, slots)
             k = end
-    return (made, True) if len(made) != len(marks) or any(a is not b for a, b in zip(made, marks, strict=True)) else (marks, False)
+    return (
+        (rewritten, True)
+        if len(rewritten) != len(marks) or any(a is not b for a, b in zip(rewritten, marks, strict=True))
+        else (marks, False)
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +172,7 @@ class _Reader:
             if not atom.types or self._type(k, end) in atom.types:
                 yield end
         elif atom.slot in LISTS:
-            yield from reversed(listed(self.marks, k, self.names)[atom.slot == "L" :])
+            yield from reversed(list_ends(self.marks, k, self.names)[atom.slot == "L" :])
 
     def _type(self, k: int, end: int) -> str:
         """Return the type of the room that a phrase names."""
@@ -190,7 +194,7 @@ def phrase(marks: Sequence[Mark], k: int) -> int:
     return k
 
 
-def listed(marks: Sequence[Mark], k: int, names: Sequence[frozenset[str]]) -> list[int]:
+def list_ends(marks: Sequence[Mark], k: int, names: Sequence[frozenset[str]]) -> list[int]:
     """Return the ends of the lists of one, two, three ... noun phrases that begin at mark k."""
     ends: list[int] = []
     while end := phrase(marks, k):
@@ -215,7 +219,7 @@ def _read(frame: Frame, marks: Sequence[Mark], start: int, end: int, slots: Slot
             kept = list(_items(marks[a:b])) if slot in LISTS else marks[a:b]
             other = marks[slots[change[1:]][0]] if change[:1] in {"@", "="} else None
             if other is None:
-                yield from (_changed(m, change) for m in kept)
+                yield from (_change_mark(m, change) for m in kept)
             else:
                 said = {"number": other.number} if change[0] == "=" else {"value": f"bedroom/{other.value}"}
                 yield from (replace(m, **said) for m in kept)
@@ -239,7 +243,7 @@ def _items(marks: Sequence[Mark]) -> Iterator[Mark]:
         k = end or k + 1
 
 
-def _changed(mark: Mark, change: str) -> Mark:
+def _change_mark(mark: Mark, change: str) -> Mark:
     """Return a mark read as something else."""
     if change == "flip":
         return replace(mark, bound="most" if mark.bound == "least" else "least")

@@ -18,7 +18,7 @@ from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG
 from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.marks import listen, segment
 from pipeline.floorplan.language.spelling import detect, resolve
-from pipeline.floorplan.language.text import Stemmed, stem, stemmed
+from pipeline.floorplan.language.text import Stemmed, stem, stem_words
 from pipeline.floorplan.program.furniture import lexicon
 
 STOPS = frozenset(".;!?\n。;!?")
@@ -52,7 +52,7 @@ class Claim:
 @functools.cache
 def _numbers() -> Mapping[str, int]:
     """Return the number words of all languages; articles are none."""
-    articles = {w.text for kind in ("one", "article") for form in lexicon()["words"][kind] for w in stemmed(form)}
+    articles = {w.text for kind in ("one", "article") for form in lexicon()["words"][kind] for w in stem_words(form)}
     single = ((w, node[""]) for language in LANGUAGES for w, node in spoken(language).trie.items() if w.isascii() and "" in node)
     return {w: int(m.number) for w, m in single if m.kind == "num" and w not in articles and m.number.is_integer()}
 
@@ -68,7 +68,7 @@ def _phrases() -> Mapping[str, tuple[tuple[tuple[str, ...], str, str, bool], ...
     listed += [("owner", name, form) for name, some in data["owners"].items() for form in some]
     table: dict[str, list[tuple[tuple[str, ...], str, str, bool]]] = {}
     for kind, name, form in listed:
-        stems = tuple(w.stem for w in stemmed(form.removeprefix("@")))
+        stems = tuple(w.stem for w in stem_words(form.removeprefix("@")))
         table.setdefault(stems[0], []).append((stems, kind, name, form.startswith("@")))
     return {k: tuple(sorted(v, key=lambda p: -len(p[0]))) for k, v in table.items()}
 
@@ -79,9 +79,9 @@ def _stems() -> frozenset[str]:
 
 
 @functools.cache
-def _called(name: str, language: str) -> frozenset[str]:
+def _name_stems(name: str, language: str) -> frozenset[str]:
     """Return the first stems of what a language calls a thing."""
-    return frozenset(stemmed(form.removeprefix("@"))[0].stem for form in lexicon()["names"].get(name, {}).get(language, ()))
+    return frozenset(stem_words(form.removeprefix("@"))[0].stem for form in lexicon()["names"].get(name, {}).get(language, ()))
 
 
 class Scan:
@@ -98,12 +98,12 @@ class Scan:
         self.traits = lex.traits if lex is not None else frozenset[str]()
         self.rooms: dict[int, bool] = {}  # where the words of rooms' names begin, and whether they are their first
         self.counted: set[int] = set()  # where a word that rooms are counted by begins: "trois pièces"
-        self.words = stemmed(prompt)
+        self.words = stem_words(prompt)
         if lex is not None:
-            heard = listen(prompt, self.language)
-            for m in segment(heard):
-                self.rooms |= {heard.tokens[k].start: k == m.first for k in range(m.first, m.last)} if m.kind in STRONG else {}
-                self.counted |= {heard.tokens[m.first].start} if (m.kind, m.value) == ("unit", "rooms") else set()
+            prompt_words = listen(prompt, self.language)
+            for m in segment(prompt_words):
+                self.rooms |= {prompt_words.tokens[k].start: k == m.first for k in range(m.first, m.last)} if m.kind in STRONG else {}
+                self.counted |= {prompt_words.tokens[m.first].start} if (m.kind, m.value) == ("unit", "rooms") else set()
         if lex is not None and "characters" not in lex.traits:
             self.words = [w for word in self.words for w in self._mended(word)]
         stems, storeys = [w.stem for w in self.words], set(lexicon()["storeys"])
@@ -129,7 +129,7 @@ class Scan:
     def _other(self, k: int, name: str) -> bool:
         """Whether word k names a room, or is another word of the prompt's language: "Büro" is no "buró", "never" no "nevera"."""
         word = self.words[k]
-        if not self.language or word.stem in _called(name, self.language):
+        if not self.language or word.stem in _name_stems(name, self.language):
             return (
                 "characters" not in spoken(self.language or LANGUAGES[0]).traits and self.rooms.get(word.start) is False
             )  # "a walk-in wardrobe"
@@ -295,7 +295,7 @@ class Scan:
         elif read is None:
             last = self.text(name_at + length - 1)
             shown = any(
-                stemmed(f)[-1].text == last for some in lexicon()["names"].get(name, {}).values() for f in some
+                stem_words(f)[-1].text == last for some in lexicon()["names"].get(name, {}).values() for f in some
             )  # "drawers", "lavavajillas"
             least = 2 if last.endswith("s") and last[0].isascii() and not shown else 1
         self.negated = most == 0
@@ -343,8 +343,8 @@ class Scan:
         return 0
 
     def _style_at(self, k: int, length: int) -> None:
-        found, name = self.phrase(k, "look")
-        if length and found == length:
+        phrase_length, name = self.phrase(k, "look")
+        if length and phrase_length == length:
             self.claims.append(Claim("style", self.words[k].start, self.words[k + length - 1].end, name))
 
 
@@ -385,9 +385,9 @@ def _blank(scan: Scan, claims: Sequence[Claim]) -> list[bool]:
         blank[k : last + 1] = [True] * (last + 1 - k)
         lead = next((n for n in (3, 2, 1) if k - n >= 0 and scan.length(k - n, "with") == n), 0)
         join = scan.length(last + 1, "and") if scan.text(last + 1) not in STOPS else 0
-        told = scan.number(last + 1 + join)[1] is not None  # "two bedrooms with wardrobes and one bathroom": nobody's own
+        counted = scan.number(last + 1 + join)[1] is not None  # "two bedrooms with wardrobes and one bathroom": nobody's own
         kinds = ("owned",) if scan.text(last + 1) in COMMAS else ("owned", "own_rooms")
-        shared = join and not told and any(scan.length(i, *kinds) for i in range(last + 1 + join, last + 4 + join))
+        shared = join and not counted and any(scan.length(i, *kinds) for i in range(last + 1 + join, last + 4 + join))
         if lead and shared:  # a room of the same owner follows: the "and" goes, else the "with"
             blank[last + 1 : last + 1 + join] = [True] * join
         elif lead:

@@ -94,8 +94,8 @@ class _Entries(BaseModel):
     def _sorted(cls, raw: dict[str, Any]) -> dict[str, Any]:
         """Put the sections of phrases in the order in which they win."""
         looks = raw.get("styles", [])
-        found = raw | {"styles": {k: look.get("words", "") for k, look in enumerate(looks)}}
-        sections = {s: found[s] if isinstance(found[s], dict) else {"": found[s]} for s in SECTIONS if s in found}
+        entries = raw | {"styles": {k: look.get("words", "") for k, look in enumerate(looks)}}
+        sections = {s: entries[s] if isinstance(entries[s], dict) else {"": entries[s]} for s in SECTIONS if s in entries}
         types = {part.split("/")[0] for key in sections["rooms"] for part in key.split("+")} - set(get_args(RoomType))
         if types:
             raise ValueError(f"no room type is called {', '.join(sorted(types))}: use the types of docs/floorplan.md")
@@ -112,7 +112,7 @@ def split(text: str) -> Iterator[str]:
             yield phrase
 
 
-def _folded(text: str) -> frozenset[str]:
+def _fold_words(text: str) -> frozenset[str]:
     return frozenset(fold(w) for w in split(text))
 
 
@@ -193,10 +193,10 @@ def _spellings(phrase: str, contracted: Mapping[str, str]) -> Iterable[tuple[str
     plain = usual if phrase.isascii() else words(bare(phrase))
     if "n't" in phrase:
         plain = words(phrase.replace("n't", "nt"))
-    made = dict.fromkeys((usual, plain))
+    spellings = dict.fromkeys((usual, plain))
     if len(usual) > 1 and usual[-1] in contracted:  # "la mitad de" and "la mitad del"
-        made |= dict.fromkeys((*p[:-1], contracted[p[-1]]) for p in (usual, plain))
-    return made
+        spellings |= dict.fromkeys((*p[:-1], contracted[p[-1]]) for p in (usual, plain))
+    return spellings
 
 
 def _misheard(e: _Entries) -> Iterator[tuple[str, Meaning]]:
@@ -228,46 +228,46 @@ def lexicon(language: Language) -> Lexicon:
     verbs, phrases = entries.verbs_of, entries.phrases
     heads = {p.split()[0] for entry in phrases.get("conjugated", {}).values() for p in split(entry)}
     infinitives = sorted(filter(verbs.infinitive, heads))
-    made = Lexicon(language, entries.name, entries.traits, tenses=verbs.canonical(infinitives) | entries.spellings)
-    made.compounds, made.looks, made.behind = entries.compounds, entries.looks, entries.behind
-    made.adverbs, made.abbreviations = _folded(phrases.get("adverbs", {}).get("", "")), _folded(entries.abbreviations)
-    made.endings = tuple(sorted(split(entries.endings), key=len, reverse=True))
-    made.range_from, made.range_to = (_folded(entries.range.get(side, "")) for side in ("from", "to"))
-    made.bounds = {" ".join(words(p)): key for key, entry in phrases["bounds"].items() for p in split(entry)}
-    made.joins = frozenset((",", *(w for entry in phrases["joiners"].values() for w in _folded(entry))))
+    lex = Lexicon(language, entries.name, entries.traits, tenses=verbs.canonical(infinitives) | entries.spellings)
+    lex.compounds, lex.looks, lex.behind = entries.compounds, entries.looks, entries.behind
+    lex.adverbs, lex.abbreviations = _fold_words(phrases.get("adverbs", {}).get("", "")), _fold_words(entries.abbreviations)
+    lex.endings = tuple(sorted(split(entries.endings), key=len, reverse=True))
+    lex.range_from, lex.range_to = (_fold_words(entries.range.get(side, "")) for side in ("from", "to"))
+    lex.bounds = {" ".join(words(p)): key for key, entry in phrases["bounds"].items() for p in split(entry)}
+    lex.joins = frozenset((",", *(w for entry in phrases["joiners"].values() for w in _fold_words(entry))))
     signs: dict[str, set[str]] = {}
     for sign, entry in entries.signs.items():
-        for text in (" ".join(_told(spelt, made)) for p in split(entry) for spelt in _spellings(p, verbs.contracted)):
+        for text in (" ".join(_normal_tense(spelt, lex)) for p in split(entry) for spelt in _spellings(p, verbs.contracted)):
             signs.setdefault(text, set()).add(sign)
-    made.signs = {text: frozenset(named) for text, named in signs.items()}
-    made.classes = {sign: frozenset(t for t, named in signs.items() if sign in named) for sign in entries.signs}
-    made.vocabulary.update(made.tenses, (fold(w) for verb in infinitives for w in verbs.further(verb)))
-    _learn(made, entries)
-    return made
+    lex.signs = {text: frozenset(named) for text, named in signs.items()}
+    lex.classes = {sign: frozenset(t for t, named in signs.items() if sign in named) for sign in entries.signs}
+    lex.vocabulary.update(lex.tenses, (fold(w) for verb in infinitives for w in verbs.further(verb)))
+    _learn(lex, entries)
+    return lex
 
 
-def _learn(made: Lexicon, entries: _Entries) -> None:
+def _learn(lex: Lexicon, entries: _Entries) -> None:
     """Put all phrases into a lexicon, and sort its words by how near a typing error must be to them."""
     targets: set[str] = set()
-    others = _brackets(entries, made)
+    others = _brackets(entries, lex)
     for phrase, meaning in _meanings(entries):
         for spelt in _spellings(phrase, entries.verbs_of.contracted):
-            _insert(made.trie, _told(spelt, made), meaning)
-            made.vocabulary.update(spelt)
+            _insert(lex.trie, _normal_tense(spelt, lex), meaning)
+            lex.vocabulary.update(spelt)
             if meaning.kind in REPAIRED or (meaning.kind == "cue" and meaning.value in CUES):
                 targets.update(w for w in spelt if w.isalpha() and len(w) >= 4)
             for w in spelt:
                 others[w] = min(FARTHER[meaning.kind in FUNCTION], others.get(w, 1.0))
     for wrong, meaning in _misheard(entries):
-        _insert(made.trie, words(wrong), meaning)
-    made.vocabulary.update(w for p in split(entries.common) for w in words(p))
+        _insert(lex.trie, words(wrong), meaning)
+    lex.vocabulary.update(w for p in split(entries.common) for w in words(p))
     blocked = {w for entry in entries.phrases.get("fillers", {}).values() for p in split(entry) if " " not in p for w in words(p)}
     named = {w for entry in entries.phrases["rooms"].values() for p in split(entry.replace("|", ",")) for w in words(p)}
-    made.targets = tuple(sorted(targets - blocked, key=lambda w: (w not in named, w)))  # names of rooms first
-    others |= {w: COMMON for w in made.vocabulary if w not in others}
-    others = dict.fromkeys(_things(made.language, entries.plurals), FARTHER[True]) | others
-    spared = set(made.targets)
-    made.others = {w: far for w, far in others.items() if w not in spared and w.isalpha()}
+    lex.targets = tuple(sorted(targets - blocked, key=lambda w: (w not in named, w)))  # names of rooms first
+    others |= {w: COMMON for w in lex.vocabulary if w not in others}
+    others = dict.fromkeys(_things(lex.language, entries.plurals), FARTHER[True]) | others
+    spared = set(lex.targets)
+    lex.others = {w: far for w, far in others.items() if w not in spared and w.isalpha()}
 
 
 @functools.cache
@@ -283,14 +283,14 @@ def _brackets(entries: _Entries, lex: Lexicon) -> dict[str, float]:
         for phrase in split(phrases):
             first, second = phrase.split("...")
             for a in _spellings(first.strip(), {}):
-                pairs += [(_told(a, lex), _told(b, lex), cue) for b in _spellings(second.strip(), {})]
+                pairs += [(_normal_tense(a, lex), _normal_tense(b, lex), cue) for b in _spellings(second.strip(), {})]
     pairs.sort(key=lambda f: -len(f[0]) - len(f[1]))
     lex.frames = {word: tuple(f for f in pairs if f[0][0] == word) for word in {f[0][0] for f in pairs}}
     lex.vocabulary.update(w for a, b, _ in pairs for w in (*a, *b))
     return {w: FARTHER[True] for a, b, _ in pairs for w in (*a, *b)}
 
 
-def _told(phrase: tuple[str, ...], lex: Lexicon) -> tuple[str, ...]:
+def _normal_tense(phrase: tuple[str, ...], lex: Lexicon) -> tuple[str, ...]:
     """Return a phrase with its verbs in the one form that they are read in."""
     return tuple(lex.tenses.get(w, w) for w in phrase)
 

@@ -75,7 +75,7 @@ class Server:
     cache: Path | None = None
 
 
-def configured(environment: Mapping[str, str] = os.environ) -> Server | None:
+def server_from_env(environment: Mapping[str, str] = os.environ) -> Server | None:
     """Return the server that the environment names, or None. Raises UsageError for half a configuration."""
     url, model = environment.get("SFGEN_LLM_BASE_URL", ""), environment.get("SFGEN_LLM_MODEL", "")
     if not url and not model:
@@ -98,36 +98,36 @@ def ask(prompt: str, server: Server) -> FloorProgram:
     Raises UnansweredError.
     """
     entry = None if server.cache is None else server.cache / f"{digest([prompt, server.model, instructions()])}.json"
-    known = _cached(entry, prompt)
+    known = _read_cache(entry, prompt)
     if known is not None:
         return known
-    program = _asked(prompt, server)
+    program = _ask_server(prompt, server)
     if entry is not None:
         with contextlib.suppress(OSError):  # a cache that cannot be written is no reason to fail
             write_bytes(entry, program.model_dump_json(exclude_defaults=True).encode())
     return program
 
 
-def _cached(entry: Path | None, prompt: str) -> FloorProgram | None:
+def _read_cache(entry: Path | None, prompt: str) -> FloorProgram | None:
     """Return the program of a cache entry; a damaged one is none."""
     if entry is None:
         return None
     try:
         if entry.stat().st_size > MOST_BYTES:
             return None
-        return validated(entry.read_text(encoding="utf-8"), prompt, ours=True)
+        return validate_reply(entry.read_text(encoding="utf-8"), prompt, ours=True)
     except (OSError, ValueError, TypeError, RecursionError):
         return None
 
 
-def _asked(prompt: str, server: Server) -> FloorProgram:
+def _ask_server(prompt: str, server: Server) -> FloorProgram:
     messages = [{"role": "system", "content": instructions()}, {"role": "user", "content": prompt}]
     deadline = time.monotonic() + server.seconds
     fault = ""
     for _ in range(1 + REPAIRS):
         reply = _answer(messages, server, deadline)
         try:
-            return validated(reply, prompt)
+            return validate_reply(reply, prompt)
         except (ValueError, TypeError, RecursionError) as error:  # pydantic's ValidationError and JSON errors are ValueErrors
             fault = _explain(error)
         messages += [
@@ -162,32 +162,32 @@ def schema() -> dict[str, Any]:
     return full
 
 
-def _stated(found: Any) -> Any:
+def _mark_stated(answer: Any) -> Any:
     """Return an answer with all that it gives a value marked as stated: its quotes decide what of that stays so."""
-    if isinstance(found, list):
-        return [_stated(item) for item in found]
-    if not isinstance(found, dict):
-        return found
-    made = {k: _stated(v) for k, v in found.items() if k not in DECIDED}
+    if isinstance(answer, list):
+        return [_mark_stated(item) for item in answer]
+    if not isinstance(answer, dict):
+        return answer
+    fields = {k: _mark_stated(v) for k, v in answer.items() if k not in DECIDED}
     values = {"total_area", "area", "footprint", "shell", "entrance"}
-    made |= {k: v | {"stated": True} for k, v in made.items() if k in values and isinstance(v, dict) and v}
-    if isinstance(made.get("links"), list):
-        made["links"] = [k | {"stated": True} if isinstance(k, dict) else k for k in made["links"]]
-    return made
+    fields |= {k: v | {"stated": True} for k, v in fields.items() if k in values and isinstance(v, dict) and v}
+    if isinstance(fields.get("links"), list):
+        fields["links"] = [k | {"stated": True} if isinstance(k, dict) else k for k in fields["links"]]
+    return fields
 
 
-def validated(reply: str, prompt: str, *, ours: bool = False) -> FloorProgram:
+def validate_reply(reply: str, prompt: str, *, ours: bool = False) -> FloorProgram:
     """Return the program of a reply, its quotes looked up in the prompt; `ours`: it was looked up before. Raises ValueError, TypeError."""
     text = reply.strip()
     if text.startswith("```"):
         text = text.strip("`").removeprefix("json").strip()
-    found = json.loads(text)
-    if not isinstance(found, dict):
+    answer = json.loads(text)
+    if not isinstance(answer, dict):
         raise TypeError("the answer is not a JSON object")
     for name in OURS:
-        found.pop(name, None)
-    quotes = found.pop("evidence", None)
-    program = FloorProgram.model_validate(found if ours else _stated(found))
+        answer.pop(name, None)
+    quotes = answer.pop("evidence", None)
+    program = FloorProgram.model_validate(answer if ours else _mark_stated(answer))
     if not program.rooms:
         raise ValueError("rooms: there are none")
     if (
@@ -198,7 +198,7 @@ def validated(reply: str, prompt: str, *, ours: bool = False) -> FloorProgram:
     ids = [r.id for r in program.rooms]
     if len(set(ids)) != len(ids):
         raise ValueError("rooms: ids repeat")
-    return quoted(program, prompt, quotes, ours=ours)
+    return attach_evidence(program, prompt, quotes, ours=ours)
 
 
 def _explain(error: Exception) -> str:
@@ -331,7 +331,7 @@ LOG = logging.getLogger(__name__)
 MOST_QUOTES, LONGEST_FIELD = 400, 80
 
 
-def quoted(program: FloorProgram, prompt: str, quotes: object, *, ours: bool = False) -> FloorProgram:
+def attach_evidence(program: FloorProgram, prompt: str, quotes: object, *, ours: bool = False) -> FloorProgram:
     """Return the program with its evidence: each quote of the model at its place in the prompt, whatever offsets it gave.
 
     Rooms that it quotes nothing for get the words that the built-in parser reads their type from. Rooms, links and a total area that
@@ -347,9 +347,9 @@ def quoted(program: FloorProgram, prompt: str, quotes: object, *, ours: bool = F
     unsaid = {r.id for r in bare} - {f.split(".")[1] for f in fields if f.startswith("rooms.")}
     total = program.total_area
     if total.stated and "total_area" not in fields:
-        found = _number(prompt, total.target or total.min or total.max or 0.0)
-        evidence += [found] if found else []
-        total = total if found else total.model_copy(update={"stated": False})
+        quote = _number(prompt, total.target or total.min or total.max or 0.0)
+        evidence += [quote] if quote else []
+        total = total if quote else total.model_copy(update={"stated": False})
     if unsaid or total != program.total_area:
         names = ", ".join([*sorted(unsaid), *(["total_area"] if total != program.total_area else [])])
         LOG.warning("the language model states what no words of the prompt say; it counts as a default: %s", names)
@@ -365,7 +365,7 @@ def quoted(program: FloorProgram, prompt: str, quotes: object, *, ours: bool = F
 
 def _looked_up(prompt: str, quotes: object, ours: bool) -> list[Evidence]:
     """Return the quotes that stand in the prompt; anything else that the model put there is passed over."""
-    made = []
+    spans = []
     for quote in quotes[:MOST_QUOTES] if isinstance(quotes, list) else []:
         text, field = (quote.get("text"), quote.get("field")) if isinstance(quote, dict) else (None, None)
         if not isinstance(text, str) or not isinstance(field, str) or not text.strip() or len(field) > LONGEST_FIELD:
@@ -373,8 +373,8 @@ def _looked_up(prompt: str, quotes: object, ours: bool) -> list[Evidence]:
         pattern = r"\s+".join(re.escape(w) for w in text.split())
         if match := re.search(pattern, prompt, re.IGNORECASE):
             kept = ours and quote.get("source", "rule") == "rule"
-            made.append(Evidence(start=match.start(), end=match.end(), text=match.group(), field=field, source="rule" if kept else "llm"))
-    return made
+            spans.append(Evidence(start=match.start(), end=match.end(), text=match.group(), field=field, source="rule" if kept else "llm"))
+    return spans
 
 
 def _read_off(prompt: str, rooms: Sequence[Any]) -> list[tuple[Evidence, str]]:

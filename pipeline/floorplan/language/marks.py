@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, Lexicon, Meaning, lexicon
-from pipeline.floorplan.language.spelling import inflected, repair
+from pipeline.floorplan.language.spelling import repair, uninflected_meaning
 from pipeline.floorplan.language.text import Token, fold, tokenize
 
 STOPS = {".", "!", "?", ";"}
@@ -60,14 +60,14 @@ class Words:
 
 def sentences_of(marks: Sequence[Mark]) -> Iterator[list[Mark]]:
     """Yield the marks of each sentence, its end with it."""
-    found: list[Mark] = []
+    sentence: list[Mark] = []
     for mark in marks:
-        found.append(mark)
+        sentence.append(mark)
         if mark.kind in ENDS:
-            yield found
-            found = []
-    if found:
-        yield found
+            yield sentence
+            sentence = []
+    if sentence:
+        yield sentence
 
 
 def listen(prompt: str, language: Language) -> Words:
@@ -80,89 +80,89 @@ def listen(prompt: str, language: Language) -> Words:
     return Words(prompt, tokens, texts, lex)
 
 
-def segment(heard: Words) -> list[Mark]:
+def segment(words: Words) -> list[Mark]:
     """Return the marks of a prompt in reading order; numbers and units still stand apart."""
-    made: list[Mark] = []
+    marks: list[Mark] = []
     i = 0
-    while i < len(heard.texts):
-        mark = _mark(heard, i)
+    while i < len(words.texts):
+        mark = _mark(words, i)
         if mark.last > i:
             i = mark.last
             if mark.kind != "hyphen":
-                made.append(mark)
+                marks.append(mark)
         else:
             i += 1
-    return _settled(_numbers(_articles(made, heard), heard), heard)
+    return _relabel(_numbers(_articles(marks, words), words), words)
 
 
-def _articles(marks: list[Mark], heard: Words) -> list[Mark]:
+def _articles(marks: list[Mark], words: Words) -> list[Mark]:
     """Tell an article from the pronoun that an accent sets apart ("el" and "él"): in front of a name it is the article."""
-    if "accented_pronouns" not in heard.lexicon.traits:
+    if "accented_pronouns" not in words.lexicon.traits:
         return marks
-    made = list(marks)
+    relabelled = list(marks)
     for k, mark in enumerate(marks[:-1]):
-        plain = mark.kind == "pron" and mark.text in heard.lexicon.sign("accented_pronoun") and heard.tokens[mark.first].text == mark.text
+        plain = mark.kind == "pron" and mark.text in words.lexicon.sign("accented_pronoun") and words.tokens[mark.first].text == mark.text
         if plain and marks[k + 1].kind in NAMES:
-            made[k] = replace(mark, kind="det", value="definite")
-    return made
+            relabelled[k] = replace(mark, kind="det", value="definite")
+    return relabelled
 
 
 NAMES = {"room", "suite", "home", "adj", "size", "num", "ord", "fill", "owner", "word", "zone", "unit"}  # behind an article
 
 
-def _mark(heard: Words, i: int) -> Mark:  # noqa: PLR0911 - one branch per case: a grammar
-    token, text, lex = heard.tokens[i], heard.texts[i], heard.lexicon
-    found = lex.find(heard.texts, i)
-    if token.number is not None and (found is None or found[0] == i + 1):
+def _mark(words: Words, i: int) -> Mark:  # noqa: PLR0911 - one branch per case: a grammar
+    token, text, lex = words.tokens[i], words.texts[i], words.lexicon
+    entry = lex.find(words.texts, i)
+    if token.number is not None and (entry is None or entry[0] == i + 1):
         return Mark("num", "figure", token.number, False, i, i + 1, text)
-    if found is not None:
-        end, meaning, only = found
-        return _meant(heard, i, end, meaning, only)
+    if entry is not None:
+        end, meaning, only = entry
+        return _mark_of(words, i, end, meaning, only)
     if text in ARROWS:
         return Mark("cue", "chain", 0.0, False, i, i + 1, text)
     if text == "\n":
         return Mark("line", "", 0.0, False, i, i + 1, text)
     if text in STOPS:
-        after = heard.texts[i + 1] if i + 1 < len(heard.texts) else "\n"
-        short = text == "." and i > 0 and heard.texts[i - 1] in lex.abbreviations and after != "\n"
+        after = words.texts[i + 1] if i + 1 < len(words.texts) else "\n"
+        short = text == "." and i > 0 and words.texts[i - 1] in lex.abbreviations and after != "\n"
         return Mark("hyphen" if short else "stop", "", 0.0, False, i, i + 1, text)
     if text in {"-", "–", "—", "~", "="}:
-        spaced = i > 0 and heard.tokens[i - 1].end < token.start and i + 1 < len(heard.texts) and heard.tokens[i + 1].start > token.end
-        numbers = i > 0 and heard.tokens[i - 1].number is not None
+        spaced = i > 0 and words.tokens[i - 1].end < token.start and i + 1 < len(words.texts) and words.tokens[i + 1].start > token.end
+        numbers = i > 0 and words.tokens[i - 1].number is not None
         kind = "dash" if numbers or text == "~" else ("comma" if spaced else "hyphen")
-        if i == 0 or heard.texts[i - 1] == "\n":
+        if i == 0 or words.texts[i - 1] == "\n":
             kind = "bullet"
         return Mark(kind, "", 0.0, False, i, i + 1, text)
     if text in PUNCTUATION:
         kind = PUNCTUATION[text]
         return Mark("join", "and", 0.0, False, i, i + 1, text) if kind == "and" else Mark(kind, "", 0.0, False, i, i + 1, text)
-    if (stem := inflected(text, lex)) is not None:
-        return _meant(heard, i, i + 1, stem, only=False)
+    if (stem := uninflected_meaning(text, lex)) is not None:
+        return _mark_of(words, i, i + 1, stem, only=False)
     for other in LANGUAGES:
         if other != lex.language:
-            foreign = lexicon(other).find(heard.texts, i)
+            foreign = lexicon(other).find(words.texts, i)
             if (
                 foreign is not None
                 and foreign[1].kind in FOREIGN
                 and (foreign[1].kind in STRONG or foreign[0] > i + 1 or len(text) > 3 or (foreign[1].kind == "num" and len(text) > 2))
             ):
-                return _meant(heard, i, foreign[0], foreign[1], foreign[2])
+                return _mark_of(words, i, foreign[0], foreign[1], foreign[2])
     return Mark("word", "", 0.0, False, i, i + 1, text)
 
 
-def _meant(heard: Words, i: int, end: int, meaning: Meaning, only: bool) -> Mark:
-    text = " ".join(heard.texts[i:end])
+def _mark_of(words: Words, i: int, end: int, meaning: Meaning, only: bool) -> Mark:
+    text = " ".join(words.texts[i:end])
     return Mark(meaning.kind, meaning.value, meaning.number, meaning.plural, i, end, text, only)
 
 
-def _numbers(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+def _numbers(marks: Sequence[Mark], words: Words) -> list[Mark]:
     """Put number words together: "one hundred and ten", "setenta y cinco", "二十五"."""
-    made: list[Mark] = []
+    merged: list[Mark] = []
     k = 0
     while k < len(marks):
         mark = marks[k]
         if mark.kind != "num" or mark.value == "figure":
-            made.append(mark)
+            merged.append(mark)
             k += 1
             continue
         total, current, end = 0.0, mark.number, k + 1
@@ -180,39 +180,39 @@ def _numbers(marks: Sequence[Mark], heard: Words) -> list[Mark]:
             value = ahead.number
             if value >= 100:
                 total, current = total + max(current, 1.0) * value, 0.0
-            elif value == 10 and "characters" in heard.lexicon.traits and 0 < current < 10:
+            elif value == 10 and "characters" in words.lexicon.traits and 0 < current < 10:
                 current *= 10
             elif current == 0 or (current % 10 == 0 and value < 10 and current >= 10):
                 current += value
             else:
                 break
             end += step
-        made.append(
-            replace(mark, number=total + current, last=marks[end - 1].last, text=" ".join(heard.texts[mark.first : marks[end - 1].last]))
+        merged.append(
+            replace(mark, number=total + current, last=marks[end - 1].last, text=" ".join(words.texts[mark.first : marks[end - 1].last]))
         )
         k = end
-    return made
+    return merged
 
 
-def _settled(marks: Sequence[Mark], heard: Words) -> list[Mark]:
+def _relabel(marks: Sequence[Mark], words: Words) -> list[Mark]:
     """Settle what depends on words far off: narrow plots, floors counted from the ground floor, studies where there are bedrooms."""
-    lex, made = heard.lexicon, list(marks)
+    lex, relabelled = words.lexicon, list(marks)
     ground = "floors_from_one" in lex.traits and any(m.kind == "level" and lex.sign("ground") & set(m.text.split()) for m in marks)
     bedrooms = any(m.kind == "room" and m.value.startswith("bedroom") for m in marks)
     for k, mark in enumerate(marks):
         ahead = [m.kind for m in marks[k + 1 : k + 5] if m.kind not in {"adj", "num", "look", "size"}] if mark.value == "slim" else []
         if ahead[:1] == ["home"] or ahead[:2] == ["room", "home"] or (mark.value == "slim" and k and marks[k - 1].kind == "home"):
-            made[k] = replace(mark, kind="flag", value="narrow")  # "a narrow three-bedroom townhouse": a narrow room is only that
+            relabelled[k] = replace(mark, kind="flag", value="narrow")  # "a narrow three-bedroom townhouse": a narrow room is only that
         elif mark.kind == "level" and ground:  # with a ground floor, the first floor is the one above
             shifted = (n for n in (1, 2) if any(mark.text.endswith(t) for t in lex.sign(f"floor_{n}")))
-            made[k] = replace(mark, value=str(next(shifted, mark.value)))
+            relabelled[k] = replace(mark, value=str(next(shifted, mark.value)))
         elif mark.kind == "every" and any(m.kind == "room" and m.text == mark.text.rsplit(" ", 1)[-1] for m in marks[:k]):
-            made[k] = replace(
+            relabelled[k] = replace(
                 mark, kind="room", value="bedroom", plural=True
             )  # "todas las habitaciones" where so many were counted by that word
         elif mark.kind == "home" and k and bedrooms and mark.text in lex.sign("study"):
-            made[k] = replace(mark, kind="room", value="office")
-    return made
+            relabelled[k] = replace(mark, kind="room", value="office")
+    return relabelled
 
 
 Bracket = tuple[tuple[str, ...], tuple[str, ...], str]  # "an ... grenzt": two parts and what they mean
@@ -222,31 +222,31 @@ LISTED = {"room", "det", "adj", "size", "num", "clf", "comma", "join"}
 FARTHEST = 14  # marks between the two parts of a bracket
 
 
-def reorder(marks: list[Mark], heard: Words) -> list[Mark]:
+def reorder(marks: list[Mark], words: Words) -> list[Mark]:
     """Return the marks in the order that the reader reads."""
-    made, traits = _bracketed(marks, heard), heard.lexicon.traits
+    reordered, traits = _join_brackets(marks, words), words.lexicon.traits
     if "verb_last" in traits:
-        return list(_verbs_last(made, heard))
-    return _behind(made, heard.lexicon) if "adjectives_behind" in traits else made
+        return list(_verbs_last(reordered, words))
+    return _behind(reordered, words.lexicon) if "adjectives_behind" in traits else reordered
 
 
-def _bracketed(marks: list[Mark], heard: Words) -> list[Mark]:
+def _join_brackets(marks: list[Mark], words: Words) -> list[Mark]:
     """Make one relation of its two parts: "an ... grenzt" stands where "an" stood."""
-    made, lex = list(marks), heard.lexicon
+    reordered, lex = list(marks), words.lexicon
     k = 0
-    while k < len(made) if lex.frames else False:
-        found = _bracket(made, k, lex)
-        if found is not None:
-            cue, start, second, end = found
-            only = any(m.text in lex.sign("only") for m in made[max(0, k - 2) : k])
+    while k < len(reordered) if lex.frames else False:
+        bracket = _bracket(reordered, k, lex)
+        if bracket is not None:
+            cue, start, second, end = bracket
+            only = any(m.text in lex.sign("only") for m in reordered[max(0, k - 2) : k])
             kind = "cmp" if cue in {"larger", "smaller"} else "cue"
-            first = replace(made[k], kind=kind, value=cue, last=made[start - 1].last, number=0.0, only=made[k].only or only)
-            inside = made[start:second]
+            first = replace(reordered[k], kind=kind, value=cue, last=reordered[start - 1].last, number=0.0, only=reordered[k].only or only)
+            inside = reordered[start:second]
             none = [inside.pop()] if inside and inside[-1].kind == "neg" else []  # "厨房与卧室不相通"
-            made[k:end] = [*none, first, *inside, *(m for m in made[second:end] if m.kind in BREAKS)]
+            reordered[k:end] = [*none, first, *inside, *(m for m in reordered[second:end] if m.kind in BREAKS)]
             k += len(none)
         k += 1
-    return made
+    return reordered
 
 
 def _bracket(marks: list[Mark], k: int, lex: Lexicon) -> tuple[str, int, int, int] | None:
@@ -280,12 +280,12 @@ def _goes_on(marks: list[Mark], end: int, second: tuple[str, ...], lex: Lexicon)
 @functools.cache
 def _brackets(language: str) -> dict[str, tuple[Bracket, ...]]:
     """Return the brackets of a language by their first word, prepositions without the article that melted into them."""
-    made: dict[str, dict[Bracket, None]] = {}
+    by_word: dict[str, dict[Bracket, None]] = {}
     lex = lexicon(language)
     for first, second, cue in (b for some in lex.frames.values() for b in some):
         plain = tuple(_plain(w, lex) for w in first), tuple(_plain(w, lex) for w in second), cue
-        made.setdefault(plain[0][0], {})[plain] = None
-    return {word: tuple(sorted(found, key=lambda f: -len(f[0]) - len(f[1]))) for word, found in made.items()}
+        by_word.setdefault(plain[0][0], {})[plain] = None
+    return {word: tuple(sorted(brackets, key=lambda f: -len(f[0]) - len(f[1]))) for word, brackets in by_word.items()}
 
 
 def _plain(word: str, lex: Lexicon) -> str:
@@ -307,41 +307,46 @@ def _matches(marks: list[Mark], k: int, wanted: tuple[str, ...], lex: Lexicon) -
     return None if need else k
 
 
-def _verbs_last(marks: list[Mark], heard: Words) -> Iterator[Mark]:
+def _verbs_last(marks: list[Mark], words: Words) -> Iterator[Mark]:
     """Yield the marks with plurals that only articles tell, and articles out of prepositions."""
-    made, lex = list(marks), heard.lexicon
-    for k in range(len(made)):
-        mark, ahead = made[k], made[k + 1] if k + 1 < len(made) else None
-        if mark.kind == "room" and any(heard.tokens[mark.last - 1].text.lower().endswith(t) for t in lex.sign("dative")):
-            made[k] = replace(mark, plural=True)
-        described = k > 1 and made[k - 1].kind in {"adj", "size"} and any(m.kind == "num" for m in made[max(0, k - 4) : k])
+    relabelled, lex = list(marks), words.lexicon
+    for k in range(len(relabelled)):
+        mark, ahead = relabelled[k], relabelled[k + 1] if k + 1 < len(relabelled) else None
+        if mark.kind == "room" and any(words.tokens[mark.last - 1].text.lower().endswith(t) for t in lex.sign("dative")):
+            relabelled[k] = replace(mark, plural=True)
+        described = k > 1 and relabelled[k - 1].kind in {"adj", "size"} and any(m.kind == "num" for m in relabelled[max(0, k - 4) : k])
         if (mark.kind, mark.value) == ("unit", "rooms") and described:
-            made[k] = replace(mark, kind="room", value="bedroom", plural=True)  # "vier gleich große Zimmer"
+            relabelled[k] = replace(mark, kind="room", value="bedroom", plural=True)  # "vier gleich große Zimmer"
         uncounted = mark.text in lex.sign("plural_article") | lex.sign("plural_dative") and ahead is not None and ahead.kind == "room"
         if uncounted and ahead is not None and any(ahead.text.endswith(t) for t in lex.sign("uncounted")):
-            made[k + 1] = replace(ahead, plural=mark.text in lex.sign("plural_article"))
+            relabelled[k + 1] = replace(ahead, plural=mark.text in lex.sign("plural_article"))
         if mark.kind == "det" and mark.text in lex.sign("to_be") and (ahead is None or ahead.kind in BREAKS | {"join"}):
-            made[k] = replace(mark, kind="verb", value="")  # "sollen verbunden sein"
-    for k, mark in enumerate(made):
-        if mark.kind in HEADS and k and made[k - 1].kind == "cue" and made[k - 1].text.rsplit(" ", 1)[-1] in lex.sign("with_article"):
+            relabelled[k] = replace(mark, kind="verb", value="")  # "sollen verbunden sein"
+    for k, mark in enumerate(relabelled):
+        if (
+            mark.kind in HEADS
+            and k
+            and relabelled[k - 1].kind == "cue"
+            and relabelled[k - 1].text.rsplit(" ", 1)[-1] in lex.sign("with_article")
+        ):
             yield Mark("det", "definite", 0.0, False, mark.first, mark.first, "")  # "ins Bad" means a bathroom that is known
         yield mark
 
 
 def _behind(marks: Sequence[Mark], lex: Lexicon) -> list[Mark]:
     """Read adjectives behind their noun: "dormitorio principal", "cocina abierta", "baño propio"."""
-    made: list[Mark] = []
+    relabelled: list[Mark] = []
     for mark in marks:
-        before = made[-1] if made else None
+        before = relabelled[-1] if relabelled else None
         behind = before is not None and (before.kind in {*HEADS, "post"} or (before.kind, before.value) == ("size", "post"))
         if behind and (mark.kind == "adj" or (mark.kind == "det" and mark.value in {"own", "another"})):
-            made.append(replace(mark, kind="post"))
+            relabelled.append(replace(mark, kind="post"))
         elif behind and mark.text in lex.sign("single_bed") and before is not None and before.value.startswith("bedroom"):
-            made.append(replace(mark, kind="post", value="plain"))
+            relabelled.append(replace(mark, kind="post", value="plain"))
         elif behind and mark.text in lex.sign("more") and before is not None and before.kind == "room":
-            made.append(replace(mark, kind="post", value="another"))
+            relabelled.append(replace(mark, kind="post", value="another"))
         elif behind and mark.kind == "size":
-            made.append(replace(mark, value="post"))
+            relabelled.append(replace(mark, value="post"))
         elif not (behind and mark.kind == "adverb" and mark.text in lex.sign("very")):
-            made.append(mark)
-    return made
+            relabelled.append(mark)
+    return relabelled

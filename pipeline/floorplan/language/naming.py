@@ -35,7 +35,7 @@ def close(room: Named, role: str, surface: str, level: int | None = None) -> Nam
     return room
 
 
-def _listed(sentence: list[Element], k: int, room: Named) -> bool:
+def _is_spelt_out(sentence: list[Element], k: int, room: Named) -> bool:
     """Whether a phrase spells out a count in front of a colon or a bracket: "three bedrooms: a master, two for the kids"."""
     j = next((j for j in range(k - 1, -1, -1) if sentence[j].kind in {"colon", "open"}), 0)
     return any(room.id in x.ids and len(x.ids) > 1 for x in sentence[:j])
@@ -54,7 +54,7 @@ def _before(sentence: list[Element], k: int, *breaks: str) -> Element | None:
 def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[str]:
     """Return the ids of the rooms that the phrase k names; make those that are missing."""
     e, stock = sentence[k], state.inventory
-    e.ids = e.ids or [r.id for r in _named(state, sentence, k, level)]
+    e.ids = e.ids or [r.id for r in _resolve_phrase(state, sentence, k, level)]
     for room in (stock.get(i) for i in e.ids):
         room.span = room.span or (e.first, e.last)
         room.functions |= e.functions
@@ -62,7 +62,7 @@ def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> 
     return e.ids
 
 
-def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per kind of phrase
+def _resolve_phrase(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per kind of phrase
     e, stock, role = sentence[k], state.inventory, _role(sentence[k])
     same = stock.of(e.type)
     suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), None) if e.type == "bedroom" and not role else None
@@ -80,13 +80,13 @@ def _named(state: Reading, sentence: list[Element], k: int, level: int | None) -
         same = stock.of(e.type)
         return [close(r, role, e.text) for r in ([r for r in same if r.open_slot] or same)[: e.part]]
     if e.index:
-        return [_indexed(state, e, role, level)]
+        return [_indexed_room(state, e, role, level)]
     if e.ordinal:
         return _ordinal(state, e, role, level)
     if "other" in e.det:
         return _others(state, sentence, k, role, level)
-    found = _by_role(state, sentence, k, role, level) if role else _known(state, sentence, k, level) if same else []
-    return found or _new(state, e, int(e.number or (2 if "both" in e.det or (e.plural and e.type not in PLURAL_NAMES) else 1)), role, level)
+    rooms = _by_role(state, sentence, k, role, level) if role else _known_rooms(state, sentence, k, level) if same else []
+    return rooms or _new(state, e, int(e.number or (2 if "both" in e.det or (e.plural and e.type not in PLURAL_NAMES) else 1)), role, level)
 
 
 def _new(state: Reading, e: Element, count: int, role: str, level: int | None) -> list[Named]:
@@ -103,11 +103,11 @@ def _others(state: Reading, sentence: list[Element], k: int, role: str, level: i
     """Return "the other two bedrooms": those that nothing was said of, new ones where they are too few."""
     e, stock = sentence[k], state.inventory
     same = stock.of(e.type)
-    told = {i for g in state.past[-1:] for i in g} | {i for x in sentence[:k] for i in x.ids} | set(state.topic)
-    rest = [r for r in same if r.open_slot] or [r for r in same if r.id not in told] or ([] if len(same) == 1 else same[-1:])
+    mentioned = {i for g in state.past[-1:] for i in g} | {i for x in sentence[:k] for i in x.ids} | set(state.topic)
+    rest = [r for r in same if r.open_slot] or [r for r in same if r.id not in mentioned] or ([] if len(same) == 1 else same[-1:])
     if e.number is not None and e.type == "bedroom":
-        told |= {g[0] for g in state.past if len(g) == 1}
-        rest = [r for r in rest if r.open_slot or r.id not in told]
+        mentioned |= {g[0] for g in state.past if len(g) == 1}
+        rest = [r for r in rest if r.open_slot or r.id not in mentioned]
         rest += [stock.add(e.type, role, e.text, level) for _ in range(int(e.number) - len(rest))]
     return (rest if _many(e) else [close(r, "", e.text) for r in rest[:1]]) or [stock.add(e.type, role, e.text, level)]
 
@@ -123,7 +123,7 @@ def fresh(state: Reading, e: Element, level: int | None, owner: str) -> list[str
     return e.ids
 
 
-def _indexed(state: Reading, e: Element, role: str, level: int | None) -> Named:
+def _indexed_room(state: Reading, e: Element, role: str, level: int | None) -> Named:
     same = state.inventory.of(e.type)
     known = [r for r in same if r.index == e.index] or [r for r in same if not r.index and r.open_slot]
     room = known[0] if known else state.inventory.add(e.type, role, e.text, level)
@@ -135,8 +135,8 @@ def _ordinal(state: Reading, e: Element, role: str, level: int | None) -> list[N
     stock, same = state.inventory, state.inventory.of(e.type)
     if e.secondary and (e.number or 1) > 1:  # "次卧两间"
         slots = [r for r in same if r.open_slot and not r.role][: int(e.number or 1)]
-        made = [close(r, role, e.text) for r in slots]
-        return made + [stock.add(e.type, role, e.text, level) for _ in range(int(e.number or 1) - len(made))]
+        rooms = [close(r, role, e.text) for r in slots]
+        return rooms + [stock.add(e.type, role, e.text, level) for _ in range(int(e.number or 1) - len(rooms))]
     if len(same) >= e.ordinal:
         rest = same if e.ordinal == 1 else [r for r in same if r.role != "primary"]
         loose = [r for r in rest if r.open_slot] or rest[-1:]
@@ -151,10 +151,10 @@ def _ordinal(state: Reading, e: Element, role: str, level: int | None) -> list[N
 def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: int | None) -> list[Named]:
     """Return the rooms of a role; one that was only counted may take it."""
     e, same, many = sentence[k], state.inventory.of(sentence[k].type), _many(sentence[k])
-    found = [r for r in same if r.role == role]
+    rooms = [r for r in same if r.role == role]
     bare_nouns = "bare_nouns" in state.heard.lexicon.traits
-    if found and (many or not e.introduces):
-        return found if many else found[:1]
+    if rooms and (many or not e.introduces):
+        return rooms if many else rooms[:1]
     plain = [
         r for r in same if not r.role and not state.inventory.owned(r.id) and not (r.extra and r.span is not None and r.span[0] > e.first)
     ]
@@ -167,7 +167,7 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
         r
         for r in plain
         if r.open_slot
-        and (e.definite or r.whole or _listed(sentence, k, r) or listed is None or r.id not in listed.ids)
+        and (e.definite or r.whole or _is_spelt_out(sentence, k, r) or listed is None or r.id not in listed.ids)
         and ((e.definite and level is None) or r.level is None or r.level == level)  # counted on another storey: others
         and not (role == "primary" and r.secondary)
     ]
@@ -176,7 +176,7 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
     return [close(plain[0], role, e.text)] if len(plain) == 1 == len(same) and e.definite and not many else []
 
 
-def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:
+def _known_rooms(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:
     """Return the rooms that a phrase without role points at, where there are such rooms."""
     e, stock = sentence[k], state.inventory
     bare_nouns = "bare_nouns" in state.heard.lexicon.traits
@@ -192,7 +192,7 @@ def _known(state: Reading, sentence: list[Element], k: int, level: int | None) -
         return _several(state, e, same)
     owned = e.type == "bathroom" and not bare_nouns and all(stock.owned(r.id) or r.role == "ensuite" for r in same)
     other = e.type == "storage" and all(e.text != r.surface for r in same)
-    if not e.det and (owned or other or _repeated(state, sentence, k)):
+    if not e.det and (owned or other or _is_repeated(state, sentence, k)):
         return [stock.add(e.type, "", e.text, level)]  # "a master with en suite, ..., bathroom", "bedroom, bedroom, bath"
     if len(same) > 1:
         same = [r for r in same if _word(e) in r.surface.split()] or same
@@ -215,7 +215,7 @@ def _several(state: Reading, e: Element, same: list[Named]) -> list[Named]:
     return same
 
 
-def _repeated(state: Reading, sentence: list[Element], k: int) -> bool:
+def _is_repeated(state: Reading, sentence: list[Element], k: int) -> bool:
     """Whether a list names the same kind of room again: "bedroom, bedroom, bath"."""
     ahead = sentence[k + 1] if k + 1 < len(sentence) else None
     bare_nouns = "bare_nouns" in state.heard.lexicon.traits  # "一间书房,书房远离卧室"
@@ -246,8 +246,8 @@ def introduce(state: Reading, sentences: list[list[Element]]) -> None:
                 theirs = e.suite or (suites and e.type == "bedroom" and e.number is None)
                 if e.kind == "np" and e.introduces and not e.ids and not theirs and _whole(sentence, k) == whole:
                     _few(state, e)
-                    made = _count_all(state, e) if whole else _introduced(state, sentence, k, backward(sentence, k, level))
-                    e.ids = [r.id for r in made]
+                    rooms = _count_all(state, e) if whole else _introduce_rooms(state, sentence, k, backward(sentence, k, level))
+                    e.ids = [r.id for r in rooms]
 
 
 def _few(state: Reading, e: Element) -> None:
@@ -275,13 +275,13 @@ def _count_all(state: Reading, e: Element) -> list[Named]:
     return stock.of(e.type)[:count]
 
 
-def _introduced(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per case
+def _introduce_rooms(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per case
     """Return the rooms of a phrase with a number or an indefinite article."""
     e, stock, role = sentence[k], state.inventory, _role(sentence[k])
     count = int(e.number or (2 if e.plural and e.type not in PLURAL_NAMES else 1))
     same = stock.of(e.type)
     slots = [r for r in same if r.open_slot and (level is None or r.level in {None, level}) and not r.role]
-    told = [r for r in slots if r.whole or _listed(sentence, k, r)]
+    candidates = [r for r in slots if r.whole or _is_spelt_out(sentence, k, r)]
     if e.number is not None and not role and "another" not in e.det and count > len(same) and any(r.whole for r in same):
         state.say("beyond", tuple(r.id for r in same), (), e, float(count))
         return same
@@ -296,9 +296,9 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
     if slots and k > 1 and sentence[k - 1].kind == "verb" and (sentence[k - 2].kind, sentence[k - 2].value) == ("pron", "one"):
         return [close(r, role, e.text) for r in slots[:count]]  # "four bedrooms, one of which is a guest room"
     if role and role != "ensuite":
-        if len(told) >= count and e.type != "bathroom":
-            return [close(r, role, e.text) for r in told[:count]]
-    elif not role and slots and not _contrasted(sentence, k):
+        if len(candidates) >= count and e.type != "bathroom":
+            return [close(r, role, e.text) for r in candidates[:count]]
+    elif not role and slots and not _is_contrasted(sentence, k):
         if len(slots) == count == len(same) and count > 1:
             return slots
         known = all(r.whole for r in slots) or (e.number is not None and count < len(slots) and len(slots) > 1)
@@ -307,13 +307,13 @@ def _introduced(state: Reading, sentence: list[Element], k: int, level: int | No
     once = count == 1 and e.number is None and not role and e.type in ALONE and "another" not in e.det
     if once and same:
         return same[:1]
-    made = _new(state, e, count, role, level)
-    for room in made:
+    rooms = _new(state, e, count, role, level)
+    for room in rooms:
         room.extra, room.span, room.secondary = "another" in e.det, (e.first, e.last), e.secondary
-    return made
+    return rooms
 
 
-def _contrasted(sentence: list[Element], k: int) -> bool:
+def _is_contrasted(sentence: list[Element], k: int) -> bool:
     """Whether a count is told apart from the one in front by an adjective: "3 hab dobles, 1 hab individual"."""
     before = _before(sentence, k)
     return before is not None and bool(before.said) and bool(sentence[k].said) and not before.said & sentence[k].said
@@ -321,9 +321,9 @@ def _contrasted(sentence: list[Element], k: int) -> bool:
 
 def count_of(state: Reading, text: str) -> int:
     """Return how many "the other two" are; 0 where no number is said."""
-    found = (state.heard.lexicon.trie.get(w, {}).get("") for w in text.split())
+    meanings = (state.heard.lexicon.trie.get(w, {}).get("") for w in text.split())
     return next(
-        (int(m.number) for m in found if m is not None and m.kind == "num"),
+        (int(m.number) for m in meanings if m is not None and m.kind == "num"),
         2 if state.heard.lexicon.sign("pair") & set(text.split()) else 0,
     )
 
@@ -331,22 +331,22 @@ def count_of(state: Reading, text: str) -> int:
 def point(state: Reading, before: list[Element], e: Element, but: Group) -> Group:  # noqa: PLR0911 - one answer per pronoun
     """Return the rooms that a pronoun stands for after the elements `before`; as an object it does not point at the subject `but`."""
     here = [tuple(x.ids) for x in before if x.kind in {"np", "zone", "owner"} and x.ids]
-    heard = [*state.past, *here]
+    groups = [*state.past, *here]
     if e.value == "it":
         if but:
-            return next((g for g in reversed(heard if here else state.past) if not set(g) & set(but)), ())
+            return next((g for g in reversed(groups if here else state.past) if not set(g) & set(but)), ())
         return here[0] if here else (state.topic or (state.past[-1] if state.past else ()))
-    pair: Group = next((g for g in reversed(heard) if len(g) == 2), ())
-    single = tuple(dict.fromkeys(i for g in reversed(heard) for i in g if i not in but))
+    pair: Group = next((g for g in reversed(groups) if len(g) == 2), ())
+    single = tuple(dict.fromkeys(i for g in reversed(groups) for i in g if i not in but))
     if e.value == "both":
-        return pair if (pair and pair == heard[-1]) or len(single) < 2 else single[:2]
-    plural: Group = next((g for g in reversed(heard) if len(g) > 1), heard[-1] if heard else ())
+        return pair if (pair and pair == groups[-1]) or len(single) < 2 else single[:2]
+    plural: Group = next((g for g in reversed(groups) if len(g) > 1), groups[-1] if groups else ())
     if not plural or plural[0].startswith("*"):
         return plural
     kind = state.inventory.get(plural[0]).type
     kind = state.parted if e.value == "rest" and any(r.open_slot for r in state.inventory.of(state.parted)) else kind
     if e.value == "group" and len(plural) == 1:
-        same = [i for g in heard for i in g if i[0] not in "*<" and state.inventory.get(i).type == kind]
+        same = [i for g in groups for i in g if i[0] not in "*<" and state.inventory.get(i).type == kind]
         return tuple(dict.fromkeys(same))
     free = [r for r in state.inventory.of(kind) if r.open_slot]
     if e.value in {"rest", "some"}:

@@ -14,7 +14,7 @@ from pipeline.floorplan.language.amounts import amounts
 from pipeline.floorplan.language.attaching import attach
 from pipeline.floorplan.language.builder import assemble
 from pipeline.floorplan.language.facts import Reading
-from pipeline.floorplan.language.frames import framed
+from pipeline.floorplan.language.frames import apply_frames
 from pipeline.floorplan.language.furnishing import read_furniture
 from pipeline.floorplan.language.marks import Mark, listen, reorder, segment
 from pipeline.floorplan.language.naming import introduce
@@ -49,24 +49,24 @@ def parse(prompt: str) -> FloorProgram:
 
 def understand(prompt: str) -> FloorProgram:
     """Return what the prompt says, and no more: nothing is filled in or checked."""
-    bounded(prompt)
+    check_length(prompt)
     plain, wishes = read_furniture(prompt)
     return attach(understand_rooms(plain, prompt), wishes, prompt)
 
 
 def understand_rooms(plain: str, prompt: str) -> FloorProgram:
     """Return what a prompt says of rooms, and no more; `plain` is it without its wishes for furniture, all else in its place."""
-    heard = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
-    said = framed(choose(amounts(segment(heard), heard)), heard)
-    refuse(said, heard)
-    marks = reorder([m for m in said if m.kind != "people"], heard)
-    parsed = sentences(marks, heard)
+    words = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
+    said = apply_frames(choose(amounts(segment(words), words)), words)
+    refuse(said, words)
+    marks = reorder([m for m in said if m.kind != "people"], words)
+    parsed = sentences(marks, words)
     everything = [e for s in parsed for e in s]
     if not any(e.kind in {"np", "home"} or (e.kind, e.value) == ("amount", "rooms") for e in everything):
         shown = re.sub(r"\s+", " ", prompt.strip())[:60]
         advice = "name rooms, e.g. living room, two bedrooms, bathroom"
         raise RefusedError(f"nothing in the prompt names a room or a home: {shown!r}", advice)
-    state = Reading(heard, people=next((m for m in said if m.kind == "people"), None), looks=[e for e in everything if e.kind == "look"])
+    state = Reading(words, people=next((m for m in said if m.kind == "people"), None), looks=[e for e in everything if e.kind == "look"])
     for sentence in parsed:
         ban(sentence)
     settle(parsed)
@@ -79,10 +79,10 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
         fault = error.errors()[0]
         where = ".".join(map(str, fault["loc"]))
         raise RefusedError(f"{where} cannot be {str(fault['input'])[:60]}: {fault['msg']}", "ask for a home of usual size") from error
-    return program.model_copy(update={"unparsed": tuple(_unparsed(state, parsed, program.evidence, marks))})
+    return program.model_copy(update={"unparsed": tuple(_unparsed_spans(state, parsed, program.evidence, marks))})
 
 
-def bounded(prompt: str) -> None:
+def check_length(prompt: str) -> None:
     """Raise UsageError for a prompt that is empty or too long, in characters or words."""
     if not prompt.strip():
         raise UsageError("the prompt is empty", 'say what you want, e.g. "a two-bedroom flat with an open kitchen"')
@@ -92,11 +92,11 @@ def bounded(prompt: str) -> None:
         raise UsageError(f"the prompt has {count} words and marks", f"keep it under {MOST_WORDS}")
 
 
-def _unparsed(state: Reading, parsed: list[list[Element]], evidence: Sequence[Evidence], marks: Sequence[Mark]) -> Iterator[Span]:
+def _unparsed_spans(state: Reading, parsed: list[list[Element]], evidence: Sequence[Evidence], marks: Sequence[Mark]) -> Iterator[Span]:
     """Yield what nothing was made of: words that are in no vocabulary, and words that say something and stand in no evidence."""
     tokens = state.heard.tokens
     places = [{k for k, t in enumerate(tokens) if e.start <= t.start and t.end <= e.end} for e in evidence]
-    cited = _consumed(state, parsed, places, evidence)
+    cited = _consumed_tokens(state, parsed, places, evidence)
     for k, mark in enumerate(marks):
         if mark.last == mark.first:
             continue
@@ -105,7 +105,7 @@ def _unparsed(state: Reading, parsed: list[list[Element]], evidence: Sequence[Ev
             yield Span(start=start, end=end, text=state.heard.prompt[start:end])
 
 
-def _consumed(state: Reading, parsed: list[list[Element]], places: Sequence[set[int]], evidence: Sequence[Evidence]) -> set[int]:
+def _consumed_tokens(state: Reading, parsed: list[list[Element]], places: Sequence[set[int]], evidence: Sequence[Evidence]) -> set[int]:
     """Return the tokens that something was made of: evidence, what belongs to a phrase in it, and words that only help a statement."""
     cited = state.used.union(*places)
     stated = set().union(*(p for p, e in zip(places, evidence, strict=True) if e.field.split(".")[0] != "rooms" or e.field.count(".") > 1))
@@ -115,15 +115,15 @@ def _consumed(state: Reading, parsed: list[list[Element]], places: Sequence[set[
         ends = [-1, *(k for k, e in enumerate(sentence) if e.kind in {"comma", "but"}), len(sentence)]
         for a, b in itertools.pairwise(ends):
             part = sentence[a + 1 : b]
-            told = bool(part) and bool(stated & set(range(min(e.first for e in part), max(e.last for e in part))))
-            told = told or any(e.kind == "flag" and e.value in STRESS for e in part)
+            has_statement = bool(part) and bool(stated & set(range(min(e.first for e in part), max(e.last for e in part))))
+            has_statement = has_statement or any(e.kind == "flag" and e.value in STRESS for e in part)
             for k, e in enumerate(part):
                 if (
                     e.kind in READ
                     or (e.kind == "owner" and (e.value in roles or any(x.kind in {"np", "home"} for x in part[:k])))
-                    or (e.kind == "every" and (starred or told))
+                    or (e.kind == "every" and (starred or has_statement))
                     or (e.kind == "flag" and e.value in STRESS)
-                    or (told and (e.kind in {"flag", "det", "pron"} or (e.kind, e.value) in {("cue", "from"), ("adj", "open")}))
+                    or (has_statement and (e.kind in {"flag", "det", "pron"} or (e.kind, e.value) in {("cue", "from"), ("adj", "open")}))
                 ):
                     cited.update(range(e.first, e.last))
                 elif e.kind == "np" and (e.ids or e.banned):

@@ -81,12 +81,12 @@ def backward(sentence: list[Element], k: int, level: int | None) -> int | None:
     return level
 
 
-def sentences(marks: Sequence[Mark], heard: Words) -> list[list[Element]]:
+def sentences(marks: Sequence[Mark], words: Words) -> list[list[Element]]:
     """Return the elements of each sentence."""
-    found: list[list[Mark]] = [[]]
+    by_sentence: list[list[Mark]] = [[]]
     for k, mark in enumerate(marks):
-        here = found[-1]
-        line = _line(marks, k, heard) if mark.kind == "line" else ""
+        here = by_sentence[-1]
+        line = _line(marks, k, words) if mark.kind == "line" else ""
         listed = (
             (here[-1].kind, here[-1].value) == ("num", "figure") and (k < 2 or marks[k - 2].kind in {"line", "comma"}) if here else False
         )
@@ -96,13 +96,13 @@ def sentences(marks: Sequence[Mark], heard: Words) -> list[list[Element]]:
         elif line == "comma":
             here.append(replace(mark, kind="comma", text=","))
         elif line == "stop" or mark.kind == "stop" or (mark.kind == "comma" and len(here) > LONGEST):
-            found.append([])
+            by_sentence.append([])
         elif mark.kind != "line":
             here.append(mark)
-    return [e for e in (_elements(s, heard.lexicon) for s in found if s) if e]
+    return [e for e in (_elements(s, words.lexicon) for s in by_sentence if s) if e]
 
 
-def _line(marks: Sequence[Mark], k: int, heard: Words) -> str:
+def _line(marks: Sequence[Mark], k: int, words: Words) -> str:
     """Tell whether a line break ends a sentence, parts a list, or only wraps a text."""
     before = marks[k - 1].kind if k else "stop"
     after = marks[k + 1] if k + 1 < len(marks) else None
@@ -110,46 +110,46 @@ def _line(marks: Sequence[Mark], k: int, heard: Words) -> str:
         return ""
     if after.kind == "line":
         return "stop"
-    initial = heard.prompt[heard.tokens[after.first].start]
-    listed = after.kind in {"bullet", "num"} or max(map(len, heard.prompt.splitlines())) < SHORT
+    initial = words.prompt[words.tokens[after.first].start]
+    listed = after.kind in {"bullet", "num"} or max(map(len, words.prompt.splitlines())) < SHORT
     return "comma" if listed or initial.isupper() or initial > "\u2e80" else ""
 
 
 def _elements(marks: list[Mark], lex: Lexicon) -> list[Element]:
     """Return the elements of one sentence."""
-    made: list[Element] = []
+    elements: list[Element] = []
     pre: list[Mark] = []
     k = 0
-    postposed = _postposed(marks)
+    postposed = _has_postposed_counts(marks)
     while k < len(marks):
         mark = marks[k]
         if mark.kind in HEADS:
-            k = _phrases(marks, k, pre, made, lex, postposed)
+            k = _phrases(marks, k, pre, elements, lex, postposed)
             pre = []
             continue
         if mark.kind == "pron" and _heads_phrase(marks, k + 1) and marks[k + 1].value != "bathroom/ensuite":  # "one bath", "the others"
             determines = {"rest": "other", "both": "both", "group": "all"}.get(mark.value, "definite")
             mark = replace(mark, kind="num", value="", number=1.0) if mark.value == "one" else replace(mark, kind="det", value=determines)
-        behind = bool(made) and made[-1].kind in {"np", "home"} and not pre and mark.kind == "amount"
+        behind = bool(elements) and elements[-1].kind in {"np", "home"} and not pre and mark.kind == "amount"
         if mark.kind == "home":
-            made += [*_loose([p for p in pre if p.kind != "amount"], None, lex), _plain(mark, lex)]
-            made[-1].amounts += [p for p in pre if p.kind == "amount"]
+            elements += [*_loose([p for p in pre if p.kind != "amount"], None, lex), _plain(mark, lex)]
+            elements[-1].amounts += [p for p in pre if p.kind == "amount"]
             pre = []
         elif behind and mark.value in {"area", "length"} and not _ahead(marks, k, lex):
-            made[-1].amounts.append(mark)
-        elif mark.kind == "amount" and not pre and [e.kind for e in made[-2:]] == ["np", "colon"] and not made[-2].amounts:
-            made[-2].amounts.append(mark)  # "kitchen: 12 m² dining room: 16 m²"
+            elements[-1].amounts.append(mark)
+        elif mark.kind == "amount" and not pre and [e.kind for e in elements[-2:]] == ["np", "colon"] and not elements[-2].amounts:
+            elements[-2].amounts.append(mark)  # "kitchen: 12 m² dining room: 16 m²"
         elif mark.kind in PREMODIFIERS or (mark.kind == "amount" and mark.value == "area"):
             pre.append(mark)
         elif mark.kind in {"fill", "adverb", "look", "hyphen", "dash"} and pre:
-            made += [_plain(mark, lex)] if mark.kind == "look" else []
+            elements += [_plain(mark, lex)] if mark.kind == "look" else []
         else:
             placed = [m.kind for m in marks[k : k + 2] if m.kind != "verb"][:1] == ["level"]  # "one is downstairs, two are upstairs"
-            made += _loose(pre, mark, lex, placed)
+            elements += _loose(pre, mark, lex, placed)
             pre = []
-            made += [_plain(mark, lex)] if mark.kind not in DROPPED else []
+            elements += [_plain(mark, lex)] if mark.kind not in DROPPED else []
         k += 1
-    return made + _loose(pre, None, lex)
+    return elements + _loose(pre, None, lex)
 
 
 def _ahead(marks: Sequence[Mark], k: int, lex: Lexicon) -> bool:
@@ -162,7 +162,7 @@ def _heads_phrase(marks: Sequence[Mark], k: int) -> bool:
     return next((m.kind in HEADS for m in marks[k:] if m.kind not in {"num", "ord", "adj", "size"}), False)
 
 
-def _postposed(marks: Sequence[Mark]) -> bool:
+def _has_postposed_counts(marks: Sequence[Mark]) -> bool:
     """Whether numbers stand behind what they count, as in "卧室两间、卫生间一间"."""
     return [m.kind for m in marks if m.kind in {"room", "num", "clf"}][:3] == ["room", "num", "clf"]
 
@@ -172,13 +172,13 @@ def _loose(pre: Sequence[Mark], ahead: Mark | None, lex: Lexicon, placed: bool =
     owned = ahead is not None and ahead.kind == "owner"  # "four bedrooms, two for the kids"
     kept = {"amount", "adj"} if owned else {"amount", "adj", "det"}
     kept |= {"size"} if ahead is None or ahead.kind in {"comma", "join", "but", "close", "verb"} else set()
-    made = [_plain(m, lex) for m in pre if m.kind in kept or (m.kind == "num" and (m.value == "1" or owned or placed))]
-    for e in made:
+    elements = [_plain(m, lex) for m in pre if m.kind in kept or (m.kind == "num" and (m.value == "1" or owned or placed))]
+    for e in elements:
         if e.kind == "num":
             e.kind, e.value = "pron", "one"
         elif e.kind == "det" and e.text in lex.sign("relates"):
             e.kind = "relative"
-    return made
+    return elements
 
 
 def _plain(mark: Mark, lex: Lexicon) -> Element:
@@ -189,57 +189,59 @@ def _plain(mark: Mark, lex: Lexicon) -> Element:
     return Element(kind, mark.value, mark.first, mark.last, mark.text, number=mark.number, only=mark.only, removes=removes, mark=mark)
 
 
-def _phrases(marks: list[Mark], k: int, pre: list[Mark], made: list[Element], lex: Lexicon, postposed: bool) -> int:
+def _phrases(marks: list[Mark], k: int, pre: list[Mark], elements: list[Element], lex: Lexicon, postposed: bool) -> int:
     """Append the phrase whose head is at k, one for each room of a double name: "lounge diner"; return where reading goes on."""
     mark, front = marks[k], pre
     compound = k + 1 < len(marks) and marks[k + 1].kind == "home"
     names = mark.value.split("+") if mark.kind == "room" else [mark.value]
     for part in names[:-1]:
-        made += [_phrase(replace(mark, value=part), front, compound, lex), Element("and", "", mark.first, mark.first, "")]
-        made[-2].adjectives.update({"combined"} if part != "bedroom" else ())
+        elements += [_phrase(replace(mark, value=part), front, compound, lex), Element("and", "", mark.first, mark.first, "")]
+        elements[-2].adjectives.update({"combined"} if part != "bedroom" else ())
         front = [p for p in front if p.kind != "num"]
     phrase = _phrase(replace(mark, value=names[-1]), front, compound, lex)
     k = _behind(marks, k + 1, phrase, postposed)
     while len(names) > 1 and k < len(marks) and marks[k].kind == "amount":
-        made[-2 * len(names) + 2].amounts.append(marks[k])
+        elements[-2 * len(names) + 2].amounts.append(marks[k])
         k += 1
-    made.append(phrase)
+    elements.append(phrase)
     return k
 
 
 def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool, lex: Lexicon) -> Element:
     """Put a noun phrase together from its head and what stands in front of it."""
     kind, _, role = mark.value.partition("/") if mark.kind == "room" else ("bedroom", "", mark.value)
-    made = Element("np", "", mark.first, mark.last, mark.text, type=kind, plural=mark.plural, compound=compound, mark=mark, taken=list(pre))
-    made.suite, made.secondary = mark.kind == "suite", mark.text in lex.sign("second_bedroom")
-    made.functions = {*mark.functions, *(["dining"] if role == "diner" else [])}
-    made.role = "" if role in {"diner", "corner"} else role
+    phrase = Element(
+        "np", "", mark.first, mark.last, mark.text, type=kind, plural=mark.plural, compound=compound, mark=mark, taken=list(pre)
+    )
+    phrase.suite, phrase.secondary = mark.kind == "suite", mark.text in lex.sign("second_bedroom")
+    phrase.functions = {*mark.functions, *(["dining"] if role == "diner" else [])}
+    phrase.role = "" if role in {"diner", "corner"} else role
     for part in pre:
         if part.kind == "num":
-            made.banned = made.banned or part.number == 0
-            made.number = part.number if part.number == int(part.number) and part.number > 0 else made.number
-        elif part.kind == "det" and part.value == "partitive" and made.number is not None:
-            made.part, made.number = int(made.number), None
+            phrase.banned = phrase.banned or part.number == 0
+            phrase.number = part.number if part.number == int(part.number) and part.number > 0 else phrase.number
+        elif part.kind == "det" and part.value == "partitive" and phrase.number is not None:
+            phrase.part, phrase.number = int(phrase.number), None
         elif part.kind == "det":
-            made.det.add("definite" if part.value == "partitive" else part.value)
+            phrase.det.add("definite" if part.value == "partitive" else part.value)
             numbers = [
                 m.number for w in part.text.split() if (m := lex.trie.get(w, {}).get("")) is not None and m.kind == "num" and m.number > 1
             ]
-            if part.value == "other" and made.number is None:
-                made.number = numbers[0] if numbers else 2.0 if lex.sign("pair") & set(part.text.split()) else None
+            if part.value == "other" and phrase.number is None:
+                phrase.number = numbers[0] if numbers else 2.0 if lex.sign("pair") & set(part.text.split()) else None
         elif part.kind == "ord":
-            made.ordinal = int(part.number)
+            phrase.ordinal = int(part.number)
         elif part.kind == "adj":
-            made.adjectives.add(part.value)
-            made.said.add(part.text)
-            if part.value in ROLES and not made.role and kind in {"bedroom", "bathroom", "kitchen", "office"}:
-                made.role = part.value
+            phrase.adjectives.add(part.value)
+            phrase.said.add(part.text)
+            if part.value in ROLES and not phrase.role and kind in {"bedroom", "bathroom", "kitchen", "office"}:
+                phrase.role = part.value
         elif part.kind == "size":
-            made.size = part.number
+            phrase.size = part.number
         elif part.kind == "amount":
-            made.amounts.append(part)
-    made.role = "" if made.role == "shared" and kind != "bathroom" else made.role
-    return made
+            phrase.amounts.append(part)
+    phrase.role = "" if phrase.role == "shared" and kind != "bathroom" else phrase.role
+    return phrase
 
 
 def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> int:
@@ -285,9 +287,9 @@ def _counts(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> 
     return marks[k].value == "figure" and (after in ENDS or after in {"colon", "amount", "verb", "cue", "level", "line"})
 
 
-def settle(found: list[list[Element]]) -> None:
+def settle(parsed: list[list[Element]]) -> None:
     """Let the kitchenette of a studio be a function of its one room, not a kitchen of its own."""
-    everything = [e for s in found for e in s]
+    everything = [e for s in parsed for e in s]
     one = any((e.kind == "home" and e.value) or e.type == "studio_room" or (e.value == "rooms" and e.number == 1) for e in everything)
     if one and not any(e.type == "bedroom" and not e.banned for e in everything):
         for k, e in enumerate(everything):

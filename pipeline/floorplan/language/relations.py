@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 
 from pipeline.floorplan.language.attributes import has
-from pipeline.floorplan.language.clause import LISTING, Clause, ids_of, known
+from pipeline.floorplan.language.clause import LISTING, Clause, ids_of, named_rooms
 from pipeline.floorplan.language.facts import HALLS, SOCIAL, Group
 from pipeline.floorplan.language.naming import name
 from pipeline.floorplan.language.phrases import Element
@@ -20,10 +20,14 @@ def relate(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911, PLR0912, C90
     if e.value == "has":
         return has(c, k, e)
     if e.value == "except":
-        return excepted(c, k, e)
+        return except_rooms(c, k, e)
     if e.value.startswith("thru"):
         return through(c, k, e)
-    if e.value == "from" and c.says(e, "there") and (there := known(c.objects or (c.latest if k else ()) or (c.state.past or [()])[-1])):
+    if (
+        e.value == "from"
+        and c.says(e, "there")
+        and (there := named_rooms(c.objects or (c.latest if k else ()) or (c.state.past or [()])[-1]))
+    ):
         c.goes_on(there if len(there) == 1 else c.state.topic)
         c.objects = ()
         return k + 1
@@ -60,7 +64,7 @@ def relate(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911, PLR0912, C90
         return j
     if not left and c.negative is not None and c.waiting is not None and c.waiting[0].value == "from":
         left, c.waiting = c.waiting[1], None  # "from the kitchen no door may lead into the bedroom"
-    if not left or _inverted(c, k, j):
+    if not left or _is_inverted(c, k, j):
         c.waiting = (e, group)
         c.subject, c.latest, c.run, c.verb = (), group, [], False
         return j
@@ -100,7 +104,7 @@ def _inside(c: Clause, left: Group, group: Group) -> bool:
     return kinds == {"balcony"} or hosts <= HALLS or (kinds <= SECLUDED and hosts <= {*HALLS, "bedroom", "kitchen", "utility"})
 
 
-def _inverted(c: Clause, k: int, j: int) -> bool:
+def _is_inverted(c: Clause, k: int, j: int) -> bool:
     """Whether the subject follows: "off the foyer are a wc and the living room", "next to the kitchen, a pantry"."""
     behind = c.near(j)
     before = any(x.kind in {"np", "pron", "every", "zone", "home"} for x in c.sentence[:k])
@@ -195,7 +199,7 @@ def complete(c: Clause) -> None:
 # ways
 
 
-def excepted(c: Clause, k: int, e: Element) -> int:
+def except_rooms(c: Clause, k: int, e: Element) -> int:
     """Read "all rooms but the pantry open off the hall": those that are left out, and who goes on."""
     group, j = c.after(k + 1, "except", ())
     if not group:
@@ -230,7 +234,7 @@ def through(c: Clause, k: int, e: Element) -> int:
 
 def enter(c: Clause, e: Element, group: Group, j: int) -> int:
     """Let a room be the one that one enters, and what follows go on from there: "into the hall", ", then a hall"."""
-    group = known(group)
+    group = named_rooms(group)
     if not group:
         return j
     into, then = c.near(j), next((i for i, x in enumerate(c.sentence[j : j + 2]) if c.says(x, "then")), None)

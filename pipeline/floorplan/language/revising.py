@@ -23,41 +23,41 @@ TURNED = {"least": "most", "most": "least"}
 NAMES = {"bedroom", "living_room", "kitchen"}  # what a home has, not a room that is ruled out
 
 
-def refuse(marks: Sequence[Mark], heard: Words) -> None:
+def refuse(marks: Sequence[Mark], words: Words) -> None:
     """Refuse several homes, two counts of one thing, and amounts that nothing has: "-3 bedrooms", "0 m2", "no rooms"."""
     named = any(m.kind in HEADS for m in marks)
     for k, mark in enumerate(marks):
-        place = heard.tokens[mark.first].start if mark.first < len(heard.tokens) else 0
-        minus = mark.kind in {"num", "amount"} and place > 1 and heard.prompt[place - 1] in "-−" and heard.prompt[place - 2] == " "
+        place = words.tokens[mark.first].start if mark.first < len(words.tokens) else 0
+        minus = mark.kind in {"num", "amount"} and place > 1 and words.prompt[place - 1] in "-−" and words.prompt[place - 2] == " "
         lead = k and marks[k - 1].kind in {"cue", "fill", "bound", "of", "det", "verb"}
         none = mark.kind == "amount" and not mark.number and mark.value in {"area", "rooms"}
         empty = (mark.kind, mark.value) == ("unit", "rooms") and k and marks[k - 1].kind == "neg" and not named
         if mark.kind in CONFLICTS or (minus and lead) or none or empty:
-            start, end = spread(heard.tokens[marks[k - 1 if empty else k].first : max(mark.last, mark.first + 1)])
-            words = Evidence(start=start, end=end, text=heard.prompt[start:end], field="rooms")
+            start, end = spread(words.tokens[marks[k - 1 if empty else k].first : max(mark.last, mark.first + 1)])
+            evidence = Evidence(start=start, end=end, text=words.prompt[start:end], field="rooms")
             what, advice = CONFLICTS.get(mark.kind, ("no home has {!r}", "ask for numbers above zero"))
-            said = f"{mark.number:g}" if mark.kind == "homes" else ("-" if minus else "") + words.text
-            raise ImpossibleError(what.format(said), advice, [words])
+            said = f"{mark.number:g}" if mark.kind == "homes" else ("-" if minus else "") + evidence.text
+            raise ImpossibleError(what.format(said), advice, [evidence])
 
 
 def choose(marks: Sequence[Mark]) -> list[Mark]:
     """Of "a study or a guest room" take the first; the second is no more than words."""
-    made = list(marks)
+    relabelled = list(marks)
     negated = False
-    for k, mark in enumerate(made):
+    for k, mark in enumerate(relabelled):
         denied = mark.kind in {"neg", "except"} or (mark.kind == "cue" and mark.value in {"except", "avoid", "away"})
         negated = (negated or denied) and mark.kind not in ENDS
-        j = next((j for j in range(k + 1, len(made)) if made[j].kind not in CHOICE), len(made) - 1)
-        choice = (mark.kind, mark.value) == ("join", "or") and k and made[k - 1].kind in HEADS and made[j].kind in HEADS
-        if negated or not choice or _pointed(made, k - 1) or _pointed(made, j):
+        j = next((j for j in range(k + 1, len(relabelled)) if relabelled[j].kind not in CHOICE), len(relabelled) - 1)
+        choice = (mark.kind, mark.value) == ("join", "or") and k and relabelled[k - 1].kind in HEADS and relabelled[j].kind in HEADS
+        if negated or not choice or _is_definite(relabelled, k - 1) or _is_definite(relabelled, j):
             continue
-        ahead = next((m for m in made[j + 1 :] if m.kind not in {"verb", "flag"}), None)
+        ahead = next((m for m in relabelled[j + 1 :] if m.kind not in {"verb", "flag"}), None)
         if ahead is None or ahead.kind not in {"neg", "needless", "cmp"}:  # "a kitchen or a bathroom must not lie beside it"
-            made[k : j + 1] = [replace(m, kind="word") for m in made[k : j + 1]]
-    return made
+            relabelled[k : j + 1] = [replace(m, kind="word") for m in relabelled[k : j + 1]]
+    return relabelled
 
 
-def _pointed(marks: Sequence[Mark], k: int) -> bool:
+def _is_definite(marks: Sequence[Mark], k: int) -> bool:
     """Whether the room at k was named before: it has a definite article, or a relation leads to it."""
     j = k - 1
     while j >= 0 and marks[j].kind in CHOICE:
@@ -103,7 +103,7 @@ def _negate(sentence: list[Element], k: int, j: int) -> None:
         e.kind = "used"
         for m in phrase.amounts:
             m.bound = TURNED.get(m.bound, m.bound)
-    elif _related(sentence, j):
+    elif _relation_follows(sentence, j):
         _any(sentence, k)  # "no kitchen next to the bedroom"
     elif phrase.adjectives & {"open", "combined"} and phrase.type in SOCIAL:
         e.kind = "used"  # "no open kitchen" is a closed one
@@ -143,7 +143,7 @@ def _behind(sentence: list[Element], k: int) -> None:
         sentence[k].kind = "used" if e.banned else "neg"
 
 
-def _related(sentence: list[Element], j: int) -> bool:
+def _relation_follows(sentence: list[Element], j: int) -> bool:
     """Whether a relation follows at once, which is what is negated."""
     e = next((x for x in sentence[j + 1 :] if x.kind != "verb"), None)
     return e is not None and e.kind == "cue" and e.value in RELATIONS
@@ -166,8 +166,8 @@ def _list(sentence: list[Element], j: int) -> None:
         rest = next((x for x in sentence[i + 1 :] if x.kind not in {"np", "comma", "det"}), None)
         if joined == "comma" and not titled and (rest is None or rest.kind != "or"):
             return
-        told = sentence[i + 1] if i + 1 < len(sentence) and sentence[i + 1].kind in {"cue", "verb", "neg"} and joined != "or" else None
+        statement = sentence[i + 1] if i + 1 < len(sentence) and sentence[i + 1].kind in {"cue", "verb", "neg"} and joined != "or" else None
         had = next((x for x in sentence[i + 1 :] if x.kind == "np"), None)
-        if told is not None and not (told.value == "has" and had is not None and had.type in NAMES):
+        if statement is not None and not (statement.value == "has" and had is not None and had.type in NAMES):
             return  # it has a statement of its own, unless it is the home that has what follows
         e.banned, joined = True, ""

@@ -22,8 +22,8 @@ INNER = {"closet", "bathroom", "balcony", "storage", "wc", "utility", "garage"} 
 class Draft:
     """The program while it is put together, as plain data for pydantic."""
 
-    def __init__(self, heard: Words) -> None:
-        self.prompt, self.tokens = heard.prompt, heard.tokens
+    def __init__(self, words: Words) -> None:
+        self.prompt, self.tokens = words.prompt, words.tokens
         self.links: dict[tuple[str, str], dict[str, Any]] = {}
         self.forbids: list[dict[str, Any]] = []
         self.relations: list[dict[str, Any]] = []
@@ -34,9 +34,9 @@ class Draft:
     def cite(self, first: int, last: int, field: str) -> None:
         """Note that `field` was read from tokens[first:last]."""
         start, end = spread(self.tokens[first:last] or self.tokens[first : first + 1])
-        made = {"start": start, "end": end, "text": self.prompt[start:end], "field": field}
-        if made not in self.evidence[-40:]:
-            self.evidence.append(made)
+        entry = {"start": start, "end": end, "text": self.prompt[start:end], "field": field}
+        if entry not in self.evidence[-40:]:
+            self.evidence.append(entry)
 
     def cited(self, prefix: str) -> list[Evidence]:
         """Return the words of fields."""
@@ -63,16 +63,16 @@ class Draft:
 
     def relate(self, kind: str, a: str, b: str | None, value: float, fact: Fact, c: str | None = None) -> None:
         """Add a relation once."""
-        made = {"kind": kind, "a": a, "b": b, "value": value} | ({"c": c} if c else {})
-        if made not in self.relations:
-            self.relations.append(made)
+        relation = {"kind": kind, "a": a, "b": b, "value": value} | ({"c": c} if c else {})
+        if relation not in self.relations:
+            self.relations.append(relation)
         self.cite(fact.first, fact.last, f"relations.{kind}.{a}")
 
     def forbid(self, what: str, a: str, b: str | None, avoid: str | None, fact: Fact) -> None:
         """Add a prohibition once."""
-        made = {"what": what, "a": a, "b": b, "avoid": avoid}
-        if made not in self.forbids:
-            self.forbids.append(made)
+        prohibition = {"what": what, "a": a, "b": b, "avoid": avoid}
+        if prohibition not in self.forbids:
+            self.forbids.append(prohibition)
         self.cite(fact.first, fact.last, f"forbids.{what}.{a}")
 
 
@@ -96,15 +96,15 @@ def join(draft: Draft, state: Reading) -> None:
             _belongings(draft, stock, fact, ways)
         elif fact.what == "ensuite":
             _ensuites(draft, stock, fact)
-    _merged(draft, stock, facts)
+    _merge_rooms(draft, stock, facts)
     for fact in facts:
         if any(i[0] in "*<" for i in fact.a + fact.b):
             continue
         if fact.what in KINDS:
-            _linked(draft, stock, fact, facts)
+            _link_rooms(draft, stock, fact, facts)
         else:
-            _related(draft, stock, fact, facts)
-    _ordered(draft)
+            _relate_rooms(draft, stock, fact, facts)
+    _check_order(draft)
     for fact in facts:
         _everything(draft, stock, fact, facts)
     _suites(draft, stock, facts)
@@ -162,7 +162,7 @@ def _give(draft: Draft, stock: Inventory, thing: str, owner: str, fact: Fact) ->
             draft.relate("ensuite", thing, owner, 1.0, fact)
 
 
-def _merged(draft: Draft, stock: Inventory, facts: Sequence[Fact]) -> None:
+def _merge_rooms(draft: Draft, stock: Inventory, facts: Sequence[Fact]) -> None:
     """Open social rooms to each other; an open kitchen to where one lives."""
     for fact in facts:
         if fact.what == "merge":
@@ -179,7 +179,7 @@ def _merged(draft: Draft, stock: Inventory, facts: Sequence[Fact]) -> None:
         draft.link(host.id, room.id, "open", asked[0], stated=bool(social))
 
 
-def _linked(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact]) -> None:
+def _link_rooms(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact]) -> None:
     for a, b in pairs(fact.a, fact.b):
         kinds = {stock.get(a).type, stock.get(b).type}
         inner = bool({a, b} & stock.belongings)
@@ -192,7 +192,7 @@ def _linked(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact]) -
         draft.link(a, b, "open" if "staircase" in kinds and fact.what != "wall" else kind, fact)
 
 
-def _related(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact]) -> None:
+def _relate_rooms(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact]) -> None:
     """Write what a fact says of rooms beside links."""
     a, what = fact.a[0] if fact.a else "", fact.what
     if what == "only":
@@ -255,18 +255,18 @@ def _window(draft: Draft, stock: Inventory, fact: Fact) -> None:
         stock.get(a).window = wish
 
 
-def _ordered(draft: Draft) -> None:
+def _check_order(draft: Draft) -> None:
     """Refuse rooms each of which is to be larger than the other."""
     larger: dict[str, set[str]] = {}
     for r in draft.relations:
         if r["kind"] == "area_order" and r["value"] >= 1.0:
             larger.setdefault(r["a"], set()).add(r["b"])
     for start, below in larger.items():
-        seen: set[str] = set()
+        visited: set[str] = set()
         here = set(below)
         while here and start not in here:
-            seen |= here
-            here = {b for a in here for b in larger.get(a, ())} - seen
+            visited |= here
+            here = {b for a in here for b in larger.get(a, ())} - visited
         if start in here:
             words = draft.cited("relations.area_order")
             raise ImpossibleError(f"{start} is to be larger than a room that is to be larger than it", "drop one of the two", words)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from pipeline.floorplan.language.attributes import LIKE, attach, compare, factor, level, measures_home, wing, zone
-from pipeline.floorplan.language.clause import Clause, ids_of, known
+from pipeline.floorplan.language.clause import Clause, ids_of, named_rooms
 from pipeline.floorplan.language.facts import GROUND_FLOOR, PERSONAL, SOCIAL, Reading
 from pipeline.floorplan.language.naming import count_of, fresh
 from pipeline.floorplan.language.phrases import Element, backward
@@ -25,7 +25,7 @@ def read(state: Reading, sentence: list[Element]) -> None:
         k = READERS[e.kind](c, k, e) if e.kind in READERS else k + 1
     if c.waiting:
         complete(c)
-    state.topic = known(c.subject) or state.topic
+    state.topic = named_rooms(c.subject) or state.topic
     state.past = [*state.past, *(tuple(e.ids) for e in c.sentence if e.ids and e.kind == "np")][-12:]
 
 
@@ -53,11 +53,11 @@ def _np(c: Clause, k: int, e: Element) -> int:
         whole = (e.compound and mark.last <= e.first) or measures_home(c, k, mark, tuple(e.ids))
         c.state.amounts.append((mark, None if whole else ids))
     c.push(k, e, ids)
-    _described(c, k, e, ids)
+    _describe_rooms(c, k, e, ids)
     return k + 1
 
 
-def _described(c: Clause, k: int, e: Element, ids: tuple[str, ...]) -> None:
+def _describe_rooms(c: Clause, k: int, e: Element, ids: tuple[str, ...]) -> None:
     """Record what adjectives say of rooms."""
     same = tuple(r.id for r in c.stock.of(e.type))
     if e.adjectives & {"open", "combined"} and "closed_plan" not in c.state.flags:
@@ -163,7 +163,7 @@ def _but(c: Clause, k: int, _: Element) -> int:
 def _adj(c: Clause, k: int, e: Element) -> int:
     before, ahead = c.near(k - 1), c.near(k + 1)
     kind = before.kind if before is not None else ""
-    social = tuple(i for x in c.run for i in known(tuple(x.ids)) if c.stock.get(i).type in SOCIAL)
+    social = tuple(i for x in c.run for i in named_rooms(tuple(x.ids)) if c.stock.get(i).type in SOCIAL)
     alone = len(social) == len(ids_of(c.run))
     if (
         e.value in {"open", "combined"}
@@ -181,8 +181,8 @@ def _adj(c: Clause, k: int, e: Element) -> int:
 def _size(c: Clause, k: int, e: Element) -> int:
     """Read "the living room should be large"."""
     before = c.near(k - 1)
-    if e.number is not None and before is not None and before.kind in {"np", "verb", "pron", "bound", "word"} and known(c.latest):
-        c.state.say("size", known(c.latest), (), e, e.number)
+    if e.number is not None and before is not None and before.kind in {"np", "verb", "pron", "bound", "word"} and named_rooms(c.latest):
+        c.state.say("size", named_rooms(c.latest), (), e, e.number)
     return k + 1
 
 
@@ -195,7 +195,7 @@ def _enter(c: Clause, k: int, e: Element) -> int:
 
 
 def _outside(c: Clause, k: int, e: Element) -> int:
-    here = [i for i in known((*c.latest, *c.subject)) if c.stock.get(i).type not in {"bathroom", "wc", "closet"}]
+    here = [i for i in named_rooms((*c.latest, *c.subject)) if c.stock.get(i).type not in {"bathroom", "wc", "closet"}]
     c.state.outside = (c.owning or next(iter(here), ""), e)
     return k + 1
 
@@ -205,9 +205,9 @@ def _pron(c: Clause, k: int, e: Element) -> int:
     ahead = c.ahead(k + 1, "det", "verb")
     if e.value == "rest" and ahead is not None and ahead.kind in {"level", "colon"} and not c.parted():
         return _every(c, k, e)
-    told = ahead is not None and (ahead.kind in {"owner", "level"} or (ahead.kind == "cue" and ahead.value in ONE_THAT))
+    specified = ahead is not None and (ahead.kind in {"owner", "level"} or (ahead.kind == "cue" and ahead.value in ONE_THAT))
     like = c.run[-1] if c.run and k and c.sentence[k - 1].kind in {"and", "comma"} else None
-    if e.value == "one" and told and like is not None and like.ids and (like.number == 1.0 or "indefinite" in like.det):
+    if e.value == "one" and specified and like is not None and like.ids and (like.number == 1.0 or "indefinite" in like.det):
         room = c.stock.add(c.stock.get(like.ids[0]).type, "", e.text, None)  # "one bathroom for guests and one inside the master"
         level = ahead is not None and ahead.kind == "level"
         run = c.run
@@ -215,7 +215,7 @@ def _pron(c: Clause, k: int, e: Element) -> int:
         c.run, c.subject = run if level else [], (room.id,)
         return k + 1
     group = c.point(e, k, c.subject if e.value == "it" and (c.objects or c.run) else ())
-    spoken = [i for g in (c.subject, *reversed(c.state.past)) for i in known(g)]
+    spoken = [i for g in (c.subject, *reversed(c.state.past)) for i in named_rooms(g)]
     bed = next((i for i in spoken if c.stock.get(i).type == "bedroom"), None)
     if e.value == "rest" and bed is not None and c.state.parted in {"", "bedroom"} and (count := count_of(c.state, e.text)):
         group = _others(c, count)
@@ -300,7 +300,7 @@ def _flag(c: Clause, k: int, e: Element) -> int:
         c.only = e
         if last is not None and last.what in {"door", "leads"} and before is not None and before.kind == "np":
             c.state.say("only", last.a, (), e)
-    elif e.value == "each_floor" and len(known(c.latest)) == 1:  # "a toilet on each floor": one more for every storey but the first
+    elif e.value == "each_floor" and len(named_rooms(c.latest)) == 1:  # "a toilet on each floor": one more for every storey but the first
         room = c.stock.get(c.latest[0])
         room.level, storeys = GROUND_FLOOR, c.state.storeys[0] if c.state.storeys else 2
         for level in range(1, storeys):
@@ -310,7 +310,7 @@ def _flag(c: Clause, k: int, e: Element) -> int:
         c.state.flags["closed_plan"] = e
         c.deny()
     elif e.value == "open_plan":
-        social = tuple(i for i in known(ids_of(c.run)) if c.stock.get(i).type in SOCIAL)
+        social = tuple(i for i in named_rooms(ids_of(c.run)) if c.stock.get(i).type in SOCIAL)
         if len(social) > 1:
             c.state.say("merge", social, (), e)
             return k + 1
@@ -320,7 +320,7 @@ def _flag(c: Clause, k: int, e: Element) -> int:
 
 def _windows(c: Clause, k: int, e: Element) -> int:
     """Read "no windows in the bedroom", "the bath needs daylight"; return where to go on."""
-    rooms, negative = known((c.listed() if c.verb else c.latest) or c.latest or c.subject), c.negated(k)
+    rooms, negative = named_rooms((c.listed() if c.verb else c.latest) or c.latest or c.subject), c.negated(k)
     if rooms:
         c.state.say("no_window" if negative else "window", rooms, (), e)
     c.deny()

@@ -32,7 +32,7 @@ NEIGHBOURS = frozenset(p for r in ROWS for a, b in itertools.pairwise(r) for p i
 
 def repair(tokens: Sequence[Token], texts: Sequence[str], lex: Lexicon) -> tuple[list[Token], list[str]]:
     """Return the tokens with their words of the vocabulary: inflected and mistyped ones replaced, run-together ones split."""
-    made: list[Token] = []
+    repaired: list[Token] = []
     words: list[str] = []
     for token, text in zip(tokens, texts, strict=True):
         parts = (text,) if text in lex.vocabulary or not text.replace("'", "").isalpha() else resolve(text, lex.language, every=True)
@@ -41,9 +41,9 @@ def repair(tokens: Sequence[Token], texts: Sequence[str], lex: Lexicon) -> tuple
         ):  # "Kcühe": the umlaut's two letters would count as two errors
             parts = (plain,) if plain in lex.vocabulary else resolve(plain, lex.language, every=True)
         for part in parts:
-            made.append(token)
+            repaired.append(token)
             words.append(part)
-    return made, words
+    return repaired, words
 
 
 @functools.lru_cache(maxsize=8192)
@@ -74,11 +74,11 @@ def resolve(word: str, language: Language, *, every: bool = False) -> tuple[str,
     return (word,)
 
 
-def inflected(word: str, lex: Lexicon) -> Meaning | None:
+def uninflected_meaning(word: str, lex: Lexicon) -> Meaning | None:
     """Return what the uninflected form of a word means by itself: "kleine" is "klein"."""
     stems = (word.removesuffix(e) for e in lex.endings if word.endswith(e) and len(word) - len(e) >= SHORTEST - 1)
-    found = (lex.trie.get(stem, {}).get("") for stem in stems)
-    return next((meaning for meaning in found if meaning is not None), None)
+    meanings = (lex.trie.get(stem, {}).get("") for stem in stems)
+    return next((meaning for meaning in meanings if meaning is not None), None)
 
 
 def _stem(word: str, lex: Lexicon) -> str:
@@ -168,20 +168,20 @@ def _slip(word: str, target: str) -> bool:
 
 def _letters(word: str) -> int:
     """Return the set of a word's letters as bits."""
-    made = 0
+    bits = 0
     for char in word:
-        made |= 1 << (ord(char) & 31)
-    return made
+        bits |= 1 << (ord(char) & 31)
+    return bits
 
 
 @functools.cache
 def _shelves(language: Language) -> dict[int, list[tuple[str, int, float]]]:
     """Return the words of the vocabulary by length, each with its letters and how much farther it is than the name of a room."""
-    made: dict[int, list[tuple[str, int, float]]] = {}
+    by_length: dict[int, list[tuple[str, int, float]]] = {}
     lex = lexicon(language)
     for target, far in (*((t, 0.0) for t in lex.targets), *sorted(lex.others.items())):
-        made.setdefault(len(target), []).append((target, _letters(target), far))
-    return made
+        by_length.setdefault(len(target), []).append((target, _letters(target), far))
+    return by_length
 
 
 def distance(a: str, b: str, most: int) -> int:
@@ -216,7 +216,7 @@ def detect(prompt: str) -> Language:
     tokens = tokenize(prompt)
     texts = [fold(t.text) for t in tokens if any(c.isalpha() for c in t.text)][:MOST]
     if not texts:
-        raise RefusedError(_shown(prompt, "no words in the prompt"), f"say in {_read()} which rooms you want")
+        raise RefusedError(_quote_prompt(prompt, "no words in the prompt"), f"say in {_read()} which rooms you want")
     han = sum("\u3400" <= t[0] <= "\u9fff" for t in texts)
     foreign = _foreign(tokens)
     if han and han >= 0.3 * len(texts) and not foreign:
@@ -231,7 +231,7 @@ def detect(prompt: str) -> Language:
     others = sum(t in unread() for t in texts)
     share = (exact + REPAIR * close + min(han, 2)) / len(texts)
     if foreign > 0.3 * len(texts) or share < ENOUGH or (others > 1 and others >= 0.15 * len(texts)):
-        raise RefusedError(_shown(prompt, "the prompt is in no language that is read here"), f"write it in {_read()}")
+        raise RefusedError(_quote_prompt(prompt, "the prompt is in no language that is read here"), f"write it in {_read()}")
     return best
 
 
@@ -246,7 +246,7 @@ def _read() -> str:
     return f"{', '.join(most)} or {last}"
 
 
-def _shown(prompt: str, why: str) -> str:
+def _quote_prompt(prompt: str, why: str) -> str:
     shown = re.sub(r"\s+", " ", prompt.strip())[:60]
     return f"{why}: {shown!r}"
 

@@ -37,11 +37,11 @@ def clean(prompt: str) -> tuple[str, list[int]]:
 
     Traditional Chinese characters become simplified ones. Invisible characters inside a word leave no gap.
     """
-    made: list[str] = []
+    characters: list[str] = []
     places: list[int] = []
     for place, char in enumerate(prompt):
         if char.isascii() and (char.isalnum() or char == " "):
-            made.append(char.lower())
+            characters.append(char.lower())
             places.append(place)
             continue
         kind = unicodedata.category(char)
@@ -58,14 +58,14 @@ def clean(prompt: str) -> tuple[str, list[int]]:
         else:
             out = unicodedata.normalize("NFKC", char).lower().translate(ALIKE)
         for piece in out:
-            if unicodedata.combining(piece) and made:  # a letter and its accent, written apart
-                joined = unicodedata.normalize("NFC", made[-1] + piece)
+            if unicodedata.combining(piece) and characters:  # a letter and its accent, written apart
+                joined = unicodedata.normalize("NFC", characters[-1] + piece)
                 if len(joined) == 1:
-                    made[-1] = joined
+                    characters[-1] = joined
                 continue
-            made.append(MARKS.get(piece, piece))
+            characters.append(MARKS.get(piece, piece))
             places.append(place)
-    return "".join(made), places
+    return "".join(characters), places
 
 
 def tokenize(prompt: str) -> list[Token]:
@@ -76,13 +76,13 @@ def tokenize(prompt: str) -> list[Token]:
 @functools.lru_cache(maxsize=16)  # a prompt is read several times: for its language, its furniture, its rooms
 def _tokens(prompt: str) -> tuple[Token, ...]:
     text, places = clean(prompt)
-    found = []
+    tokens = []
     for match in WORD.finditer(text):
         raw = match.group()
         if raw[0].isalpha() and raw.endswith("'") and not raw.endswith("s'"):
             raw = raw[:-1]
-        found.append(Token(raw, places[match.start()], places[match.end() - 1] + 1, _number(raw)))
-    return tuple(found)
+        tokens.append(Token(raw, places[match.start()], places[match.end() - 1] + 1, _number(raw)))
+    return tuple(tokens)
 
 
 def _number(raw: str) -> float | None:
@@ -145,14 +145,14 @@ def stem(word: str) -> str:
     return word
 
 
-def stemmed(text: str) -> list[Stemmed]:
+def stem_words(text: str) -> list[Stemmed]:
     """Split a text into words of whatever language; Chinese into single characters. Hyphens part words."""
-    found = []
+    stems = []
     for match in PLAIN_WORD.finditer(text):
         lower = unicodedata.normalize("NFKC", match.group()).lower().replace("ß", "ss")
         folded = "".join(c for c in unicodedata.normalize("NFD", lower) if not unicodedata.combining(c))
-        found.append(Stemmed(folded, stem(folded), match.start(), match.end()))
-    return found
+        stems.append(Stemmed(folded, stem(folded), match.start(), match.end()))
+    return stems
 
 
 def spread(tokens: Sequence[Token]) -> tuple[int, int]:
@@ -186,7 +186,7 @@ class Plurals(BaseModel):
             yield " ".join([self._word(parts[0]), *parts[1:]])
 
     def _word(self, word: str) -> str:
-        return next((re.sub(end, made, word) for end, made in self.ends.items() if re.search(end, word)), word)
+        return next((re.sub(end, replacement, word) for end, replacement in self.ends.items() if re.search(end, word)), word)
 
 
 def forms(rule: Plurals, phrase: str) -> Iterator[tuple[str, bool]]:
@@ -219,13 +219,13 @@ class Compounds(BaseModel):
 
     def completed(self, texts: list[str], known: Collection[str], joins: Collection[str]) -> list[str]:
         """Return the words with "Arbeits- oder Gästezimmer" written out; the hyphen stays where it is."""
-        made = list(texts)
+        expanded = list(texts)
         for k in range(len(texts) - 3 if self.tails else 0):
             if texts[k + 1] == "-" and texts[k + 2] in joins and texts[k].isalpha():
                 last = next((t for t in texts[k + 3 :] if t.endswith(self.tails)), texts[k + 3])  # "Koch-, Ess- und Wohnbereich"
                 tail = next((t for t in self.tails if last.endswith(t) and texts[k] + t in known), "")
-                made[k] = texts[k] + tail
-        return made
+                expanded[k] = texts[k] + tail
+        return expanded
 
     def split(self, word: str, known: Collection[str], wanted: Collection[str]) -> tuple[str, ...]:
         """Split a compound into known words, one of them wanted; empty where it is none: "dreizimmerwohnung" is three words."""
@@ -259,19 +259,19 @@ class Verbs(BaseModel):
 
     def forms(self, infinitive: str) -> list[tuple[str, str]]:
         """Return (of one, of many) for each tense of the third person, the present first: ("abre", "abren"), ("abrirá", "abrirán")."""
-        told = self.irregular.get(infinitive)
-        parted = (form.partition("|") for form in (told.split() if told else _with_ends(infinitive, self.ends)))
+        irregular = self.irregular.get(infinitive)
+        parted = (form.partition("|") for form in (irregular.split() if irregular else _with_ends(infinitive, self.ends)))
         return [(one, many or one + self.plural) for one, _, many in parted]
 
     def canonical(self, infinitives: Iterable[str]) -> dict[str, str]:
         """Return folded form -> folded form of the present, for every tense of these verbs; words that mean something else besides are left out."""
-        made: dict[str, str] = {}
+        by_form: dict[str, str] = {}
         twofold = set(self.twofold.split())
         for present, *others in map(self.forms, infinitives):
             for form, shown in ((fold(f), fold(s)) for pair in others for f, s in zip(pair, present, strict=True)):
                 if form not in twofold and form != shown:
-                    made.setdefault(form, shown)
-        return made
+                    by_form.setdefault(form, shown)
+        return by_form
 
     def further(self, infinitive: str) -> list[str]:
         """Return the present, gerunds, participles and forms of "we" and "I", which are only known not to be errors."""

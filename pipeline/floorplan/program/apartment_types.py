@@ -197,7 +197,7 @@ def hall_less(s: Sketch, beds: int) -> FloorProgram:
     return s.program(corner=0.2)
 
 
-def shared(s: Sketch, beds: int) -> FloorProgram:
+def shared_flat(s: Sketch, beds: int) -> FloorProgram:
     """Draw a flat that several people share: like bedrooms off a hallway, a large kitchen to eat in, often no living room."""
     s.room("hall", "hallway")
     for k in range(beds):

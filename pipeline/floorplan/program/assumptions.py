@@ -18,7 +18,7 @@ def assumptions(program: FloorProgram) -> list[dict[str, str]]:
 
     Every room, area, link, way in, outline and shell that the request left open is named; `stated: false` marks them in the program.
     """
-    found = {
+    texts = {
         "rooms": _rooms(program),
         "areas": _areas(program),
         "links": ", ".join(f"{k.a}{SIGNS.get(k.kind, '-')}{k.b}" for k in program.links if not k.stated),
@@ -26,10 +26,10 @@ def assumptions(program: FloorProgram) -> list[dict[str, str]]:
         "outline": _outline(program),
         "shell": _shell(program),
     }
-    return [{"field": field, "text": text} for field, text in found.items() if text]
+    return [{"field": field, "text": text} for field, text in texts.items() if text]
 
 
-def shown(assumed: Sequence[Mapping[str, str]]) -> str:
+def format_assumptions(assumed: Sequence[Mapping[str, str]]) -> str:
     """Return what was assumed as paragraphs for a terminal."""
     text = "assumed, for nobody said it:\n" if assumed else ""
     for each in assumed:
@@ -41,7 +41,7 @@ def shown(assumed: Sequence[Mapping[str, str]]) -> str:
 def notes(program: FloorProgram, assumed: Sequence[Mapping[str, str]]) -> str:
     """Return what was assumed, and the words that were not understood."""
     lost = ", ".join(s.text for s in program.unparsed)
-    return shown(assumed) + (f"not understood: {lost}\n" if lost else "")
+    return format_assumptions(assumed) + (f"not understood: {lost}\n" if lost else "")
 
 
 def _rooms(program: FloorProgram) -> str:
@@ -57,11 +57,11 @@ def _areas(program: FloorProgram) -> str:
             factor = 1.0 if abs(factor - 1.0) < NEAR else round(factor, 2)
             groups.setdefault(factor, []).append(f"{room.id} {room.area.target:.1f}")
     texts = [f"{', '.join(names)} m²" + ("" if factor == 1.0 else f" (usual x {factor:g})") for factor, names in sorted(groups.items())]
-    reasons = list(_moved(program)) if set(groups) - {1.0} else []
+    reasons = list(_area_reasons(program)) if set(groups) - {1.0} else []
     return "; ".join(texts) + (f"; fitted to {' and '.join(reasons)}" if reasons else "")
 
 
-def _moved(program: FloorProgram) -> Iterator[str]:
+def _area_reasons(program: FloorProgram) -> Iterator[str]:
     """Yield what moves areas away from the usual ones."""
     whole = program.total_area
     if whole.stated or whole.min is not None or whole.max is not None:

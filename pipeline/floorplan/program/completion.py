@@ -6,7 +6,7 @@ from pipeline.floorplan.program.areas import with_areas
 from pipeline.floorplan.program.consistency import names, reach, storeys
 from pipeline.floorplan.program.distance import distances, nearness
 from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, RoomReq, Shell
-from pipeline.floorplan.program.furniture import allot, meant, spread
+from pipeline.floorplan.program.furniture import allot, matching_categories, spread
 from pipeline.floorplan.program.links import connect, is_forbidden, resolve
 
 UPSTAIRS = {"bedroom", "bathroom", "playroom"}
@@ -27,7 +27,7 @@ def complete(program: FloorProgram) -> FloorProgram:
     names(program)
     storeys(program)
     program = _join(program)
-    program = _bent(program.model_copy(update={"entrance": _entrance(program)}))
+    program = _make_irregular(program.model_copy(update={"entrance": _entrance(program)}))
     return allot(with_areas(_with_dining(spread(program))))
 
 
@@ -35,14 +35,14 @@ def _with_dining(program: FloorProgram) -> FloorProgram:
     """Let rooms in which somebody wants a dining table be rooms in which one dines, with the floor for it."""
 
     def dines(room: RoomReq) -> bool:
-        asked = [meant(c, room.type) for c in room.furniture.counts if c.min]
+        asked = [matching_categories(c, room.type) for c in room.furniture.counts if c.min]
         return room.type in TABLED and "dining" not in room.functions and any(set(names) == {"dining_table"} for names in asked)
 
     rooms = [r.model_copy(update={"functions": (*r.functions, "dining")}) if dines(r) else r for r in program.rooms]
     return program.model_copy(update={"rooms": tuple(rooms)})
 
 
-def _bent(program: FloorProgram) -> FloorProgram:
+def _make_irregular(program: FloorProgram) -> FloorProgram:
     """Give a home that is to be irregular an outline that is: one notched room is not seen from afar."""
     if not program.nonrect or program.footprint.stated:
         return program
@@ -144,12 +144,12 @@ def _storeys(program: FloorProgram) -> tuple[RoomReq, ...]:
 
 def _spread(rooms: list[RoomReq]) -> list[RoomReq]:
     """Move every second room of each type from the first upper storey to an empty second one."""
-    seen: dict[str, int] = {}
+    counts: dict[str, int] = {}
     result = []
     for room in rooms:
         if room.level == 1 and room.type != "hallway":
-            seen[room.type] = seen.get(room.type, 0) + 1
-            result.append(room.model_copy(update={"level": 2 if seen[room.type] % 2 == 0 else 1}))
+            counts[room.type] = counts.get(room.type, 0) + 1
+            result.append(room.model_copy(update={"level": 2 if counts[room.type] % 2 == 0 else 1}))
         else:
             result.append(room)
     return result
@@ -191,11 +191,11 @@ def _join(program: FloorProgram) -> FloorProgram:
     Where what may not be joined would be, or a room lies behind one that must not be passed, an entry more gives another way.
     """
     joined = program.model_copy(update={"links": connect(program)})
-    if _barred(joined) and not program.only and "entry" not in _forbidden_types(program):
+    if _violates_forbids(joined) and not program.only and "entry" not in _forbidden_types(program):
         entry = RoomReq(id=_name("entry", list(program.rooms)), type="entry", level=0, stated=False, inferred=True)
         around = program.model_copy(update={"rooms": (*program.rooms, entry)})
         around = around.model_copy(update={"links": connect(around)})
-        if not _barred(around):
+        if not _violates_forbids(around):
             return around
     broken = nearness(distances(program), joined.links)
     if not broken or program.only or "hallway" in _forbidden_types(program):
@@ -207,7 +207,7 @@ def _join(program: FloorProgram) -> FloorProgram:
     return joined if nearness(distances(wider), wider.links) else wider
 
 
-def _barred(program: FloorProgram) -> bool:
+def _violates_forbids(program: FloorProgram) -> bool:
     """Whether a link that nobody stated joins what may not be joined, or a room can only be reached through one to be avoided."""
     rooms = {r.id: r for r in program.rooms}
     if any(not k.stated and k.opens and is_forbidden(program, rooms[k.a], rooms[k.b]) for k in program.links):

@@ -45,10 +45,10 @@ def check(program: FloorProgram) -> None:
 def check_furniture(program: FloorProgram) -> None:
     """Raise ImpossibleError for the first wish for furniture that no room can meet."""
     for message, remedy, fields in faults(program):
-        raise ImpossibleError(message, remedy, cited(program, *fields))
+        raise ImpossibleError(message, remedy, evidence_for(program, *fields))
 
 
-def cited(program: FloorProgram, *fields: str) -> list[Evidence]:
+def evidence_for(program: FloorProgram, *fields: str) -> list[Evidence]:
     """Return the evidence of fields that start with one of the names."""
     return [e for e in program.evidence if any(e.field == f or e.field.startswith(f + ".") for f in fields)]
 
@@ -74,12 +74,12 @@ def storeys(program: FloorProgram) -> None:
     for level in range(program.storeys):
         if not any(r.level == level and r.type != "staircase" for r in program.rooms):
             message = f"{program.storeys} storeys are asked for, and level {level} has no room"
-            raise ImpossibleError(message, "name a room for each storey, or ask for fewer storeys", cited(program, "storeys"))
+            raise ImpossibleError(message, "name a room for each storey, or ask for fewer storeys", evidence_for(program, "storeys"))
     for k in program.links:
         ones, others = program.select(k.a), program.select(k.b)
         meet = any(a.level == b.level or "staircase" in {a.type, b.type} for a in ones for b in others)
         if k.stated and ones and others and not meet:
-            words = cited(program, *k.fields, f"rooms.{k.a}", f"rooms.{k.b}")
+            words = evidence_for(program, *k.fields, f"rooms.{k.a}", f"rooms.{k.b}")
             raise ImpossibleError(f"{k.a} and {k.b} are to be joined and lie on different storeys", "put both on one storey", words)
 
 
@@ -89,7 +89,7 @@ def _shell(program: FloorProgram) -> None:
         raise ImpossibleError(
             f"outside walls of {shell.outer_wall:g} m are thinner than those between rooms, {shell.inner_wall:g} m",
             "make them as thick at least",
-            cited(program, "shell"),
+            evidence_for(program, "shell"),
         )
 
 
@@ -99,14 +99,14 @@ def _forbidden(program: FloorProgram) -> None:
         if f.what == "room_type":
             there = [r for r in program.rooms if r.type == f.a and r.stated]
             if there:
-                words = cited(program, f"forbids.room_type.{f.a}", *(f"rooms.{r.id}" for r in there))
+                words = evidence_for(program, f"forbids.room_type.{f.a}", *(f"rooms.{r.id}" for r in there))
                 raise ImpossibleError(f"a {f.a.replace('_', ' ')} is both asked for and ruled out", "keep one of the two", words)
             continue
         others = program.select(f.b) if f.b else ()
         for k in program.links:
             hit = any({a.id, b.id} == k.ends for a in rooms for b in others if a.id != b.id)
             if hit and (f.what == "adjacent" or (f.what == "connected" and k.opens) or (f.what == "open" and k.kind == "open")):
-                words = cited(program, f"forbids.{f.what}.{f.a}", *k.fields)
+                words = evidence_for(program, f"forbids.{f.what}.{f.a}", *k.fields)
                 raise ImpossibleError(f"{k.a} and {k.b} are to be joined and kept apart", "keep one of the two", words)
 
 
@@ -123,7 +123,7 @@ def _areas(program: FloorProgram) -> None:
     for room in program.rooms:
         low, high = room.area.min, room.area.max
         if low is not None and high is not None and low > high:
-            words = cited(program, f"rooms.{room.id}.area")
+            words = evidence_for(program, f"rooms.{room.id}.area")
             raise ImpossibleError(f"{room.id} is to have at least {low:g} and at most {high:g} m²", "swap the two", words)
     inside = [r for r in program.rooms if r.type not in OUTSIDE]
     most = program.total_area.max
@@ -131,7 +131,7 @@ def _areas(program: FloorProgram) -> None:
         most = program.total_area.target * 1.1
     least = sum(_least(r) for r in inside)
     if most is not None and least > most * WALLS:
-        words = cited(program, "total_area", "rooms")
+        words = evidence_for(program, "total_area", "rooms")
         raise ImpossibleError(
             f"{len(inside)} rooms need at least {least:.0f} m² and {most:.0f} m² are allowed",
             "ask for fewer rooms or more area",
@@ -142,7 +142,7 @@ def _areas(program: FloorProgram) -> None:
     if low is not None and len(stated) == len(inside):
         largest = sum(r.area.max or (r.area.target or r.area.min or 0.0) * (1.1 if r.area.min is None else 3.0) for r in inside)
         if largest < low / WALLS:
-            words = cited(program, "total_area", *(f"rooms.{r.id}.area" for r in inside))
+            words = evidence_for(program, "total_area", *(f"rooms.{r.id}.area" for r in inside))
             raise ImpossibleError(f"the rooms add up to {largest:.0f} m², the home to at least {low:.0f} m²", "change one", words)
     for relation in program.relations:
         if relation.kind != "area_order":
@@ -151,7 +151,7 @@ def _areas(program: FloorProgram) -> None:
             for b in program.select(relation.b or ""):
                 high = a.area.max or (a.area.target if a.area.stated else None)
                 if a.id != b.id and high is not None and b.area.stated and high * 1.1 < relation.value * _least(b):
-                    words = cited(program, f"relations.area_order.{a.id}", f"rooms.{a.id}.area", f"rooms.{b.id}.area")
+                    words = evidence_for(program, f"relations.area_order.{a.id}", f"rooms.{a.id}.area", f"rooms.{b.id}.area")
                     raise ImpossibleError(f"{a.id} cannot be {relation.value:g} times as large as {b.id}", "change an area", words)
 
 
@@ -163,7 +163,7 @@ def _degrees(program: FloorProgram) -> None:
             joined = [k for k in program.links if room.id in k.ends and k.opens]
             if len(joined) > relation.value:
                 fields = [x for k in joined for x in k.fields]
-                words = cited(program, f"relations.degree.{room.id}", *fields)
+                words = evidence_for(program, f"relations.degree.{room.id}", *fields)
                 raise ImpossibleError(
                     f"{room.id} is to have {relation.value:g} door{'s' * (relation.value != 1)} and is joined to {len(joined)} rooms",
                     "drop one of the links",
@@ -177,7 +177,7 @@ def _ways(program: FloorProgram) -> None:
     reached = reach(program, root, frozenset())
     for room in program.rooms:
         if room.id not in reached:
-            words = cited(program, f"rooms.{room.id}")
+            words = evidence_for(program, f"rooms.{room.id}")
             raise ImpossibleError(f"{room.id} can be reached only through a bathroom or a bedroom", "say what it opens off", words)
     for f in program.forbids:
         if f.what != "through" or not f.avoid:
@@ -185,7 +185,7 @@ def _ways(program: FloorProgram) -> None:
         avoid = frozenset(r.id for r in program.select(f.avoid))
         for room in program.select(f.a):
             if room.id not in reach(program, root, avoid - {room.id}):
-                words = cited(program, f"forbids.through.{f.a}", *(f"links.{room.id}-{i}" for i in avoid))
+                words = evidence_for(program, f"forbids.through.{f.a}", *(f"links.{room.id}-{i}" for i in avoid))
                 raise ImpossibleError(f"{room.id} can be reached only through {', '.join(sorted(avoid))}", "add another door", words)
 
 
@@ -195,29 +195,29 @@ def reach(program: FloorProgram, root: str, avoid: frozenset[str]) -> set[str]:
     No way leads through a bathroom, nor through a balcony or from a bedroom to a room that is not its own unless such a link was stated.
     """
     kinds = {r.id: r.type for r in program.rooms}
-    found, frontier = {root} - avoid, [root]
+    reachable, frontier = {root} - avoid, [root]
     while frontier:
         here = frontier.pop()
         if here in avoid or (here != root and kinds[here] in {"bathroom", "wc"}):
             continue
         for k in program.links:
             other = k.beyond(here)
-            if other is None or other in found or other in avoid or not k.opens:
+            if other is None or other in reachable or other in avoid or not k.opens:
                 continue
             private = kinds[here] == "balcony" or (kinds[here] == "bedroom" and kinds[other] not in PRIVATE)
             if private and here != root and not k.stated:
                 continue
-            found.add(other)
+            reachable.add(other)
             frontier.append(other)
-    return found
+    return reachable
 
 
 def _distances(program: FloorProgram) -> None:
-    for asked, made in nearness(distances(program), program.links):
+    for asked, hops in nearness(distances(program), program.links):
         fields = [x for k in program.links if {asked.a, asked.b} == k.ends for x in k.fields]
-        words = cited(program, f"relations.hops.{asked.selector}", *fields)
+        words = evidence_for(program, f"relations.hops.{asked.selector}", *fields)
         raise ImpossibleError(
-            f"hops: {asked.a} and {asked.b} are to be at least {asked.least:g} openings apart and lie {made} apart",
+            f"hops: {asked.a} and {asked.b} are to be at least {asked.least:g} openings apart and lie {hops} apart",
             "drop a link between them, or let the home have a hallway more",
             words,
         )
@@ -229,7 +229,7 @@ def _corners(program: FloorProgram) -> None:
     for level in range(program.storeys):
         rooms = [r for r in program.rooms if r.exterior == "corner" and r.level == level]
         if len(rooms) > most:
-            words = cited(program, *(f"rooms.{r.id}" for r in rooms))
+            words = evidence_for(program, *(f"rooms.{r.id}" for r in rooms))
             raise ImpossibleError(
                 f"{len(rooms)} rooms of one storey are to have a corner of the outline ('exterior: corner'), which has {most}",
                 "ask for fewer corner rooms",
@@ -242,17 +242,17 @@ def _planar(program: FloorProgram) -> None:
     for level in range(program.storeys):
         ids = {r.id for r in program.rooms if r.level == level or r.type == "staircase"}
         links = [k for k in program.links if k.a in ids and k.b in ids]
-        if _tangled([(k.a, k.b) for k in links]) < 9:  # too few to be non-planar: K5 has 10 links, K3,3 has 9
+        if _core_link_count([(k.a, k.b) for k in links]) < 9:  # too few to be non-planar: K5 has 10 links, K3,3 has 9
             continue
         import networkx as nx
 
         graph = nx.Graph([(k.a, k.b) for k in links])
         if not nx.check_planarity(graph)[0]:
-            words = cited(program, *(f"links.{k.a}-{k.b}" for k in links if k.stated))
+            words = evidence_for(program, *(f"links.{k.a}-{k.b}" for k in links if k.stated))
             raise ImpossibleError("the links between rooms cross: no flat plan has them all", "drop a link", words)
 
 
-def _tangled(links: list[tuple[str, str]]) -> int:
+def _core_link_count(links: list[tuple[str, str]]) -> int:
     """Return how many links are left when rooms with one link are taken off, and those with two become one link: as planar as before."""
     near: dict[str, set[str]] = {}
     for a, b in links:

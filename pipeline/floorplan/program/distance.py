@@ -40,5 +40,5 @@ def distances(program: FloorProgram) -> tuple[Distance, ...]:
 def nearness(asked: Sequence[Distance], links: Sequence[Link]) -> list[Nearness]:
     """Return the distances that the graph of links breaks. Rooms that nothing joins yet are far apart."""
     pairs = [(link.a, link.b) for link in links if link.opens]
-    found = [(distance, hops(pairs, distance.a).get(distance.b)) for distance in asked]
-    return [Nearness(distance, made) for distance, made in found if made is not None and made < distance.least]
+    doors = [(distance, hops(pairs, distance.a).get(distance.b)) for distance in asked]
+    return [Nearness(distance, count) for distance, count in doors if count is not None and count < distance.least]

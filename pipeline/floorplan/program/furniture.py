@@ -20,11 +20,11 @@ SLACK = 1.1  # areas may turn out this much larger than their target
 @functools.cache
 def lexicon() -> Mapping[str, Any]:
     """Read the words of furniture: those of categories stand on their cards, of groups and of all around them in the lexicon."""
-    found: dict[str, Any] = yaml_text.parse(LEXICON.read_text(encoding="utf-8"))
+    entries: dict[str, Any] = yaml_text.parse(LEXICON.read_text(encoding="utf-8"))
     names = {name: card.words for name, card in cards().items() if card.words}
-    groups = {group: tuple(name for name, card in cards().items() if group in card.groups) for group in found["groups"]}
-    looks = {name: made.words for name, made in style.load().styles.items() if made.words}
-    return found | {"names": found["groups"] | names, "groups": groups, "styles": looks}
+    groups = {group: tuple(name for name, card in cards().items() if group in card.groups) for group in entries["groups"]}
+    looks = {name: look.words for name, look in style.load().styles.items() if look.words}
+    return entries | {"names": entries["groups"] | names, "groups": groups, "styles": looks}
 
 
 def members(selector: str) -> tuple[str, ...]:
@@ -35,7 +35,7 @@ def members(selector: str) -> tuple[str, ...]:
     return (selector,) if selector in taxonomy.load().names else ()
 
 
-def meant(things: Things, kind: str) -> tuple[str, ...]:
+def matching_categories(things: Things, kind: str) -> tuple[str, ...]:
     """Return the categories that meet a wish in a room of type `kind`: a table wished for in a dining room is no coffee table.
 
     Where a group is bounded from above alone, all its members count.
@@ -43,11 +43,11 @@ def meant(things: Things, kind: str) -> tuple[str, ...]:
     if not things.min:
         return members(things.category)
     by_room: Mapping[str, list[str]] = lexicon()["meant"].get(things.category, {})
-    found = next((names for kinds, names in by_room.items() if kind in kinds.split()), by_room.get("*"))
-    return tuple(found) if found else members(things.category)
+    categories = next((names for kinds, names in by_room.items() if kind in kinds.split()), by_room.get("*"))
+    return tuple(categories) if categories else members(things.category)
 
 
-def furnished(kind: str) -> bool:
+def is_furnished(kind: str) -> bool:
     """Whether rooms of a type are furnished at all."""
     known = taxonomy.load()
     return kind in known.layouts or (kind in known.types and known.types[kind].furnished_as != "")
@@ -63,7 +63,7 @@ def impossible(kind: str, category: str) -> bool:
     return category in cards() and kind in cards()[category].never
 
 
-def merged(low: Furniture, high: Furniture) -> Furniture:
+def merge_wishes(low: Furniture, high: Furniture) -> Furniture:
     """Lay one set of wishes over another: what `high` says of a category or a field goes first."""
     said = {c.category for c in high.counts}
     covered = {m for c in high.counts for m in members(c.category)}
@@ -79,7 +79,7 @@ def spread(program: FloorProgram) -> FloorProgram:
         return program
     everywhere = wish.model_copy(update={"counts": tuple(c for c in wish.counts if not c.min)})
     each = everywhere.model_copy(update={"least": None, "most": None, "openable": None})
-    rooms = [r.model_copy(update={"furniture": merged(each, r.furniture)}) if furnished(r.type) else r for r in program.rooms]
+    rooms = [r.model_copy(update={"furniture": merge_wishes(each, r.furniture)}) if is_furnished(r.type) else r for r in program.rooms]
     kept: list[Things] = []
     for things in (c for c in wish.counts if c.min):
         home = next((k for kind in natural(things.category) for k, r in enumerate(rooms) if r.type == kind), None)
@@ -87,7 +87,7 @@ def spread(program: FloorProgram) -> FloorProgram:
             kept.append(things)
             continue
         own = Furniture(counts=(things,))
-        rooms[home] = rooms[home].model_copy(update={"furniture": merged(rooms[home].furniture, own)})
+        rooms[home] = rooms[home].model_copy(update={"furniture": merge_wishes(rooms[home].furniture, own)})
     return program.model_copy(
         update={"rooms": tuple(rooms), "furniture": everywhere.model_copy(update={"counts": (*everywhere.counts, *kept)})}
     )
@@ -98,13 +98,13 @@ def allot(program: FloorProgram) -> FloorProgram:
     wish, rooms = program.furniture, list(program.rooms)
     bound = wish.most if wish.most is not None else wish.least
     if bound is not None:
-        chosen = [k for k, r in enumerate(rooms) if furnished(r.type) and r.furniture.least is None and r.furniture.most is None]
+        chosen = [k for k, r in enumerate(rooms) if is_furnished(r.type) and r.furniture.least is None and r.furniture.most is None]
         spare = bound - sum(max(r.furniture.least or 0, r.furniture.most or 0) for r in rooms)
-        for k, n in _shares(rooms, chosen, spare, [needed(rooms[k].furniture) for k in chosen]):
+        for k, n in _shares(rooms, chosen, spare, [least_pieces(rooms[k].furniture) for k in chosen]):
             own = {"least": n if wish.least is not None else None, "most": n if wish.most is not None else None}
             rooms[k] = rooms[k].model_copy(update={"furniture": rooms[k].furniture.model_copy(update=own)})
     if wish.openable is not None:
-        chosen = [k for k, r in enumerate(rooms) if furnished(r.type) and r.furniture.openable is None]
+        chosen = [k for k, r in enumerate(rooms) if is_furnished(r.type) and r.furniture.openable is None]
         spare = wish.openable - sum(r.furniture.openable or 0 for r in rooms)
         for k, n in _shares(rooms, chosen, spare, [0] * len(chosen)):
             rooms[k] = rooms[k].model_copy(update={"furniture": rooms[k].furniture.model_copy(update={"openable": n})})
@@ -134,7 +134,7 @@ def faults(program: FloorProgram) -> Iterable[tuple[str, str, tuple[str, ...]]]:
             yield f"no room of the home is one for a {plain(things.category)}", "say which room it shall stand in", (field,)
     for room in program.rooms:
         yield from _room_faults(room)
-    named, most = sum(max(r.furniture.least or 0, needed(r.furniture)) for r in program.rooms), program.furniture.most
+    named, most = sum(max(r.furniture.least or 0, least_pieces(r.furniture)) for r in program.rooms), program.furniture.most
     if most is not None and named > most:
         fields = ("furniture", *(f"rooms.{r.id}.furniture" for r in program.rooms))
         yield f"the home is to have {most} pieces, and its rooms {named}", "ask for more pieces or for fewer things", fields
@@ -149,7 +149,7 @@ def _room_faults(room: RoomReq) -> Iterable[tuple[str, str, tuple[str, ...]]]:
     wish, here = room.furniture, f"rooms.{room.id}.furniture"
     if wish == Furniture():
         return
-    if not furnished(room.type):
+    if not is_furnished(room.type):
         yield f"{room.id} is a {plain(room.type)}, which sfgen leaves empty", "wish for furniture in other rooms", (here,)
         return
     for things in wish.counts:
@@ -166,7 +166,7 @@ def _room_faults(room: RoomReq) -> Iterable[tuple[str, str, tuple[str, ...]]]:
 
 def _sums(room: RoomReq, wish: Furniture, here: str) -> Iterable[tuple[str, str, tuple[str, ...]]]:
     fields = (here, f"{here}.pieces", *(f"{here}.{c.category}" for c in wish.counts))
-    least, most = needed(wish), wish.most
+    least, most = least_pieces(wish), wish.most
     if wish.least is not None and most is not None and wish.least > most:
         yield f"{room.id} is to have at least {wish.least} and at most {most} pieces", "swap the two", fields
     if most is not None and least > most:
@@ -189,7 +189,7 @@ def _sums(room: RoomReq, wish: Furniture, here: str) -> Iterable[tuple[str, str,
         yield f"{pieces} pieces do not fit into {room.id}, {area:.0f} m2{free}", "ask for fewer, or for a larger room", words
 
 
-def needed(wish: Furniture) -> int:
+def least_pieces(wish: Furniture) -> int:
     """Return how many pieces the wishes name at least; a thing of a narrow category also counts for a group around it."""
     total = 0
     for things in wish.counts:

@@ -26,7 +26,7 @@ def terrace(s: Sketch, beds: int) -> FloorProgram:
     return s.program(into="hall", corner=0.0, aspects=(1.3, 1.6, 1.8), span=0.6, storeys=2)
 
 
-def detached(s: Sketch, beds: int) -> FloorProgram:
+def detached_house(s: Sketch, beds: int) -> FloorProgram:
     """Draw a detached house of today: an entrance hall with the stairs, kitchen open to the dining room; a suite above."""
     s.room("entry", "entry", 8.0, level=0)
     s.off("entry", "living", "living_room", 24.0 + beds, level=0)

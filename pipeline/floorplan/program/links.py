@@ -46,7 +46,7 @@ BUDGET = 600  # sets of links that are tried before `hops` relations are given u
 
 def resolve(program: FloorProgram) -> tuple[Link, ...]:
     """Expand selectors to room ids: `each` gives every room of `a` a partner of `b`, `some` joins one pair."""
-    found: dict[tuple[str, str], Link] = {}
+    by_pair: dict[tuple[str, str], Link] = {}
     for link in program.links:
         ones, others = program.select(link.a), program.select(link.b)
         pairs: list[tuple[RoomReq, RoomReq]] = []
@@ -58,11 +58,11 @@ def resolve(program: FloorProgram) -> tuple[Link, ...]:
             key = (min(one.id, other.id), max(one.id, other.id))
             between = any(_passes(r, one.id, other.id) or _passes(r, other.id, one.id) for r in program.relations)
             kind = "door" if link.kind == "any" and between else link.kind  # one walks through what lies between
-            made = link.model_copy(update={"a": one.id, "b": other.id, "kind": kind, "quant": "each"})
-            old = found.get(key)
-            if old is None or (made.opens and not old.opens):
-                found[key] = made
-    return tuple(found.values())
+            new = link.model_copy(update={"a": one.id, "b": other.id, "kind": kind, "quant": "each"})
+            old = by_pair.get(key)
+            if old is None or (new.opens and not old.opens):
+                by_pair[key] = new
+    return tuple(by_pair.values())
 
 
 def _passes(relation: Relation, room: str, side: str) -> bool:
@@ -82,23 +82,23 @@ def connect(program: FloorProgram) -> tuple[Link, ...]:
     stated = resolve(program)
     root = _root(program, stated)
     distant = distances(program)
-    found = _complete(program, stated, root, distant, set())
-    return _settled(program, found if found is not None else _complete(program, stated, root, (), set()) or stated)
+    completion = _complete(program, stated, root, distant, set())
+    return _resolve_kinds(program, completion if completion is not None else _complete(program, stated, root, (), set()) or stated)
 
 
-def _settled(program: FloorProgram, links: Sequence[Link]) -> tuple[Link, ...]:
+def _resolve_kinds(program: FloorProgram, links: Sequence[Link]) -> tuple[Link, ...]:
     """Say what joins rooms that are to lie next to each other: the door that is there already, one between rooms that one walks through, else no more than the wall."""
     kinds = {r.id: r.type for r in program.rooms}
     doors = {k.ends: k for k in links if k.opens}
     stated = {k.ends for k in links if k.stated}
-    made: list[Link] = []
+    settled: list[Link] = []
     for link in links:
         if doors.get(link.ends, link) is not link:
             continue  # a door needs the wall
         walked = all(kinds[i] in HUBS and DEFAULTS[kinds[i]].through for i in link.ends)
         kind = "door" if link.kind == "any" and walked else link.kind
-        made.append(link.model_copy(update={"kind": kind, "stated": link.ends in stated}))
-    return tuple(made)
+        settled.append(link.model_copy(update={"kind": kind, "stated": link.ends in stated}))
+    return tuple(settled)
 
 
 def _complete(
@@ -112,10 +112,10 @@ def _complete(
     groups = _groups(program, links)
     if len(groups) <= 1:
         return links
-    for made in _options(program, groups, root, links, wide=bool(distant)):
-        found = _complete(program, (*links, made), root, distant, seen)
-        if found is not None:
-            return found
+    for link in _options(program, groups, root, links, wide=bool(distant)):
+        completion = _complete(program, (*links, link), root, distant, seen)
+        if completion is not None:
+            return completion
     return None
 
 
@@ -124,13 +124,13 @@ def _options(program: FloorProgram, groups: Sequence[frozenset[str]], root: str,
     main = next(g for g in groups if root in g)
     fronts = {g: _fronts(program, g, links) for g in groups if root not in g}
     waiting = sorted(fronts, key=lambda g: _order(fronts[g][0]))
-    usual = [made for g in waiting for made in _hosted(program, fronts[g][0], main, links)]
+    usual = [link for g in waiting for link in _host_links(program, fronts[g][0], main, links)]
     yield from usual
     if not usual:
         yield from _unusual(program, fronts[waiting[0]][:1], frozenset({root}))
-        yield from (made for g in waiting for made in _unusual(program, fronts[g], main))
+        yield from (link for g in waiting for link in _unusual(program, fronts[g], main))
     if wide:
-        yield from (made for g in waiting for front in fronts[g][1:] for made in _hosted(program, front, main, links))
+        yield from (link for g in waiting for front in fronts[g][1:] for link in _host_links(program, front, main, links))
 
 
 def _unusual(program: FloorProgram, fronts: Sequence[RoomReq], main: frozenset[str]) -> Iterator[Link]:
@@ -205,7 +205,7 @@ def _order(room: RoomReq) -> int:
     return order.index(room.type) if room.type in order else len(order)
 
 
-def _hosted(program: FloorProgram, front: RoomReq, main: frozenset[str], links: Sequence[Link]) -> Iterator[Link]:
+def _host_links(program: FloorProgram, front: RoomReq, main: frozenset[str], links: Sequence[Link]) -> Iterator[Link]:
     """Yield the links by which a room may hang on one of `main`, the usual one first."""
     beside = {k.beyond(front.id) for k in links if not k.opens}
     second = front.type == "kitchen" and front.role not in {"", "primary"}  # a kitchen of somebody's own stands by itself

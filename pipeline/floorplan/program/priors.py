@@ -34,9 +34,9 @@ TYPES: Mapping[str, PlanType] = {
     "ldk": PlanType(apartment_types.ldk, 1, 4),
     "two_halls": PlanType(apartment_types.two_halls, 2, 4),
     "hall_less": PlanType(apartment_types.hall_less, 1, 4),
-    "shared": PlanType(apartment_types.shared, 3, 5),
+    "shared": PlanType(apartment_types.shared_flat, 3, 5),
     "terrace": PlanType(house_types.terrace, 2, 4),
-    "detached": PlanType(house_types.detached, 3, 6),
+    "detached": PlanType(house_types.detached_house, 3, 6),
 }
 
 

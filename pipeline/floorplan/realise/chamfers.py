@@ -32,7 +32,7 @@ class Corner(NamedTuple):
 Cuts = dict[tuple[str, int], float]  # room and vertex -> leg [m]
 
 
-def chamfered(program: FloorProgram, plan: Plan, holds: Callable[[list[Room]], bool]) -> Plan:
+def chamfer_corners(program: FloorProgram, plan: Plan, holds: Callable[[list[Room]], bool]) -> Plan:
     """Return the plan with the corners of its outline cut, as far as `holds` is true of the rooms that it then has.
 
     Corners above each other are cut alike, or not at all. Rooms keep them that are to have a corner, a length of outside wall, or

@@ -10,7 +10,7 @@ from pipeline.entities.plan import Plan, Room, hops
 from pipeline.floorplan.program.defaults import OUTSIDE
 from pipeline.floorplan.program.floor_program import FloorProgram
 from pipeline.floorplan.realise import trace, wall_lines
-from pipeline.floorplan.realise.chamfers import chamfered
+from pipeline.floorplan.realise.chamfers import chamfer_corners
 from pipeline.floorplan.realise.openings import Run, place
 from pipeline.floorplan.search.grid import Halves, Labels
 from pipeline.floorplan.search.storeys import EDGE, UNIT, Storey
@@ -41,17 +41,17 @@ def build(program: FloorProgram, storeys: list[tuple[Storey, Labels]], rng: np.r
             plan = Plan(tuple(rooms), openings, entrance, shell.inner_wall, shell.outer_wall, round(storey_height, 3))
             if program.footprint.corners == "plain":
                 return plan
-            return chamfered(program, plan, lambda made: _within(program, storeys, made))
+            return chamfer_corners(program, plan, lambda new_rooms: _within(program, storeys, new_rooms))
     return None
 
 
 def _flights(storeys: list[tuple[Storey, Labels]]) -> list[bool]:
     """Return which sides of a staircase have a room behind them on any storey: it is one room, and its walls stand above each other."""
-    found: list[list[bool]] = []
+    by_storey: list[list[bool]] = []
     for request, grid in storeys if len(storeys) > 1 else []:
         room = next(i for i, r in enumerate(request.rooms) if r.type == "staircase")
-        found.append(_inner_sides(grid, trace.outline(grid, room), len(request.rooms)))
-    return [any(sides) for sides in zip(*found, strict=True)]
+        by_storey.append(_inner_sides(grid, trace.outline(grid, room), len(request.rooms)))
+    return [any(sides) for sides in zip(*by_storey, strict=True)]
 
 
 def _realise(
@@ -61,22 +61,22 @@ def _realise(
     spec, n = request.spec, len(request.rooms)
     corners = [trace.outline(grid, i) for i in range(n)]
     sides = [flights if flights and r.type == "staircase" else _inner_sides(grid, corners[i], n) for i, r in enumerate(request.rooms)]
-    found = wall_lines.find(grid, UNIT)
+    lines = wall_lines.find(grid, UNIT)
     tight = np.array([r.type == "hallway" or r.min_width is not None for r in request.rooms])
     spare = np.array([_across(c) for c in corners]) - NARROW - spec.half.inner - spec.half.outer
     slack = np.where(tight, (spec.strict * UNIT - request.clear) / 2, np.minimum(wall_lines.FARTHEST, spare / 2))
     trust = np.where(np.array([r.type in {"hallway", "entry"} and not r.area.stated for r in request.rooms]), HALL_TRUST, 1.0)
-    held = np.zeros(found.at.size, dtype=bool)
+    fixed = np.zeros(lines.at.size, dtype=bool)
     for i in (i for i, r in enumerate(request.rooms) if r.type == "staircase"):
-        held |= wall_lines.outer(found, grid, n)  # outside walls and stairs stand above each other
-        held[wall_lines.corner_lines(found, corners[i])] = True
-    at = wall_lines.fit(found, corners, sides, spec.target, trust, np.maximum(slack, 0.0), held, share, spec.half)
+        fixed |= wall_lines.outer(lines, grid, n)  # outside walls and stairs stand above each other
+        fixed[wall_lines.corner_lines(lines, corners[i])] = True
+    at = wall_lines.fit(lines, corners, sides, spec.target, trust, np.maximum(slack, 0.0), fixed, share, spec.half)
     for i, room in enumerate(request.rooms):
         if room.type == "staircase" and request.level > 0:
             continue  # one room with its lowest level
-        polygon = np.round(at[wall_lines.corner_lines(found, corners[i])] + trace.insets(corners[i], sides[i], spec.half), 3)
+        polygon = np.round(at[wall_lines.corner_lines(lines, corners[i])] + trace.insets(corners[i], sides[i], spec.half), 3)
         rooms.append(Room(room.id, room.type, polygon, request.level, program.shell.ceiling, room.role, functions=room.functions))
-    runs += _runs(request, trace.walls(grid, n), rooms, found, at)
+    runs += _runs(request, trace.walls(grid, n), rooms, lines, at)
 
 
 def _across(corners: trace.Corners) -> float:
@@ -123,15 +123,15 @@ def _inner_sides(grid: Labels, corners: trace.Corners, n: int) -> list[bool]:
     return sides
 
 
-def _runs(request: Storey, walls: list[trace.Wall], rooms: list[Room], found: wall_lines.Lines, at: NDArray[np.float64]) -> list[Run]:
+def _runs(request: Storey, walls: list[trace.Wall], rooms: list[Room], lines: wall_lines.Lines, at: NDArray[np.float64]) -> list[Run]:
     """Return the stretches of wall that openings can stand in: where both rooms' inner faces lie opposite each other."""
     by_id, half = {r.room_id: r for r in rooms}, request.spec.half
     runs: list[Run] = []
     for wall in walls:
         names = (request.rooms[wall.a].id,) + ((request.rooms[wall.b].id,) if wall.b >= 0 else ())
         axis = 1 if wall.vertical else 0
-        line = float(at[found.upright[wall.start, wall.at] if wall.vertical else found.level[wall.at, wall.start]])
-        ends = [_crossing(found, at, wall, k) for k in (wall.start, wall.end)]
+        line = float(at[lines.upright[wall.start, wall.at] if wall.vertical else lines.level[wall.at, wall.start]])
+        ends = [_crossing(lines, at, wall, k) for k in (wall.start, wall.end)]
         middle = (ends[0] + ends[1]) / 2
         lows = (wall.a_low, not wall.a_low)
         faces = [_face(by_id[name].polygon, axis, line, middle, low, half) for name, low in zip(names, lows, strict=False)]
@@ -153,9 +153,9 @@ def _runs(request: Storey, walls: list[trace.Wall], rooms: list[Room], found: wa
     return runs
 
 
-def _crossing(found: wall_lines.Lines, at: NDArray[np.float64], wall: trace.Wall, k: int) -> float:
+def _crossing(lines: wall_lines.Lines, at: NDArray[np.float64], wall: trace.Wall, k: int) -> float:
     """Return the coordinate [m] at which a wall's stretch ends: that of the line that meets it there."""
-    beside = found.level[k] if wall.vertical else found.upright[:, k]
+    beside = lines.level[k] if wall.vertical else lines.upright[:, k]
     ids = [beside[i] for i in (wall.at - 1, wall.at) if 0 <= i < beside.size and beside[i] >= 0]
     return float(at[ids[0]]) if ids else k * UNIT
 

@@ -48,7 +48,7 @@ def outline(grid: Labels, room: int) -> Corners:
 
 def walls(grid: Labels, n: int) -> list[Wall]:
     """Return every straight stretch of wall, in a fixed order; `a` is a room, `b` a room or -1 for the outside."""
-    found: list[Wall] = []
+    segments: list[Wall] = []
     body = grid[:, 1:-1], grid[1:-1, :].T
     for vertical, cells in ((True, body[1]), (False, body[0])):
         low, high = cells[:-1], cells[1:]
@@ -60,10 +60,10 @@ def walls(grid: Labels, n: int) -> list[Wall]:
         for (at, start), end in zip(np.argwhere(begins).tolist(), np.nonzero(ends)[1].tolist(), strict=True):
             one, two = int(low[at, start]), int(high[at, start])
             if max(one, two) < n:
-                found.append(Wall(one, two, vertical, at, start, end + 1, True))
+                segments.append(Wall(one, two, vertical, at, start, end + 1, True))
             else:
-                found.append(Wall(two if one == n else one, -1, vertical, at, start, end + 1, two == n))
-    return found
+                segments.append(Wall(two if one == n else one, -1, vertical, at, start, end + 1, two == n))
+    return segments
 
 
 def insets(corners: Corners, inner_sides: list[bool], half: Halves) -> NDArray[np.float64]:

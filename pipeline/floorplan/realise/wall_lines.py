@@ -64,12 +64,12 @@ def corner_lines(lines: Lines, corners: trace.Corners) -> Ints:
 
 def outer(lines: Lines, grid: Labels, n: int) -> NDArray[np.bool_]:
     """Whether each line has the outside on any part of it (k,)."""
-    held = np.zeros(lines.at.size, dtype=bool)
+    outside = np.zeros(lines.at.size, dtype=bool)
     beside = (grid[1:-1, :-1] == n) ^ (grid[1:-1, 1:] == n)
-    held[lines.upright[beside]] = True
+    outside[lines.upright[beside]] = True
     above = (grid[:-1, 1:-1] == n) ^ (grid[1:, 1:-1] == n)
-    held[lines.level[above]] = True
-    return held
+    outside[lines.level[above]] = True
+    return outside
 
 
 def fit(
@@ -79,14 +79,14 @@ def fit(
     target: Floats,
     trust: Floats,
     slack: Floats,
-    held: NDArray[np.bool_],
+    fixed: NDArray[np.bool_],
     share: float,
     half: Halves,
 ) -> Floats:
     """Return moved coordinates [m], rounded to 1 mm.
 
     `target` (n,) areas [m2], `trust` (n,) their weights, `slack` (n,) how far the lines of each room may move [m],
-    `held` (k,) lines that stay, `share` scales all bounds (0: nothing moves), `half` are the walls.
+    `fixed` (k,) lines that stay, `share` scales all bounds (0: nothing moves), `half` are the walls.
     """
     at = lines.at.copy()
     ids = [corner_lines(lines, c) for c in outlines]
@@ -100,7 +100,7 @@ def fit(
                 axis = 0 if y1 == y else 1
                 for k in (own[i, axis], own[(i + 1) % len(corners), axis]):
                     bound[k] = min(bound[k], AT_JOG)
-    bound *= np.where(held, 0.0, share)
+    bound *= np.where(fixed, 0.0, share)
     for _ in range(ROUNDS):
         error, slope = _areas(at, shape, target)
         weight = np.sqrt(trust) / target

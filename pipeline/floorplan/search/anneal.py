@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.search.energy import Terms, terms, together, weighted
+from pipeline.floorplan.search.energy import Terms, terms, together, weighted_sum
 from pipeline.floorplan.search.grid import Labels, Measures, empty, measure
 from pipeline.floorplan.search.spec import Spec, tree
 from pipeline.geometry.compiled import borrowing
@@ -171,7 +171,7 @@ def anneal(
     measure(grid, n, out)
     exact = n > 0  # a plain True is a type of its own: `terms` would be compiled twice
     values, hard = terms(grid, out, spec, edges, areas, shape, touched, exact)
-    soft = weighted(values, weights) + together(out, spec.near)
+    soft = weighted_sum(values, weights) + together(out, spec.near)
     if hard < np.inf:
         _settle(shape, kept, touched)
     best_soft, best_hard = soft, hard
@@ -192,7 +192,7 @@ def anneal(
         new_hard, new_soft, new_values, united = np.inf, np.inf, values, together(out, spec.near)
         for look in range(2):
             new_values, new_hard = terms(trial, out, spec, edges, areas, shape, touched, look == 1)
-            new_soft = weighted(new_values, weights) + united
+            new_soft = weighted_sum(new_values, weights) + united
             if new_hard == np.inf or new_soft + weight * new_hard > bound:
                 new_hard = np.inf
                 break

@@ -62,7 +62,7 @@ SPLIT = 4.5  # m2 charged when a room falls apart at a neck; the legacy solver c
 
 
 @borrowing
-def weighted(values: Terms, weights: Terms) -> float:
+def weighted_sum(values: Terms, weights: Terms) -> float:
     """Return the sum of terms times weights."""
     total = 0.0
     for k in range(len(values)):
@@ -71,7 +71,7 @@ def weighted(values: Terms, weights: Terms) -> float:
 
 
 @borrowing
-def missed(own: float, whole: float) -> float:
+def share_error(own: float, whole: float) -> float:
     """Return (own share of the whole - 1)^2: the form of the terms 6, 7 and 9."""
     return (own / whole - 1.0) ** 2 * 4.0
 
@@ -161,7 +161,7 @@ def exterior(walls: Ints, habitable: Ints) -> float:
     for i in range(n):
         whole += walls[i, n]
         own += walls[i, n] * habitable[i]
-    return missed(own, max(whole, 1))
+    return share_error(own, max(whole, 1))
 
 
 @borrowing
@@ -171,7 +171,7 @@ def corner_light(outline_corners: Ints, habitable: Ints) -> float:
     for i in range(habitable.size):
         whole += outline_corners[i]
         own += outline_corners[i] * habitable[i]
-    return missed(own, max(whole, 1))
+    return share_error(own, max(whole, 1))
 
 
 @borrowing
@@ -192,7 +192,7 @@ def useful_area(areas: Floats, useful: Ints) -> float:
     for i in range(areas.size):
         own += areas[i] * useful[i]
         whole += areas[i]
-    return missed(own, max(whole, 1e-9))
+    return share_error(own, max(whole, 1e-9))
 
 
 @borrowing

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.search.energy import TOGETHER, Terms, missed, stair_fit, stair_snug
+from pipeline.floorplan.search.energy import TOGETHER, Terms, share_error, stair_fit, stair_snug
 from pipeline.geometry.compiled import borrowing
 
 Ints = NDArray[np.int64]
@@ -29,7 +29,7 @@ def contact(rect: Ints, a: int, b: int) -> int:
 @borrowing
 def _corners(rect: Ints, room: int, width: int, height: int, n: int) -> int:
     """Count the corners of the outline that a rectangle owns: its own corners with the outside, or a void, behind both sides."""
-    found = 0
+    count = 0
     for k in range(4):
         x, y = rect[room, 2 * (k % 2)], rect[room, 1 + 2 * (k // 2)]
         beside, above = x == (width if k % 2 else 0), y == (height if k // 2 else 0)
@@ -38,8 +38,8 @@ def _corners(rect: Ints, room: int, width: int, height: int, n: int) -> int:
                 beside = True
             if y == rect[v, 3 - 2 * (k // 2)] and rect[v, 0] < x + (k % 2 == 0) <= rect[v, 2]:
                 above = True
-        found += beside and above
-    return found
+        count += beside and above
+    return count
 
 
 class Wishes(NamedTuple):
@@ -83,9 +83,9 @@ def leaning(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: 
             corners += _corners(rect, a, width, height, n)
         own += gross[a] * useful[a]
         whole += gross[a]
-    total = weights.exterior * missed(lit, max(wall, 1))
-    total += weights.corner_light * missed(corners, 4.0 + m - n)
-    total += weights.useful_area * missed(own, whole)
+    total = weights.exterior * share_error(lit, max(wall, 1))
+    total += weights.corner_light * share_error(corners, 4.0 + m - n)
+    total += weights.useful_area * share_error(own, whole)
     for k in range(n):
         for way in range(4):
             travel[k, way] = 0.0
@@ -109,9 +109,9 @@ def leaning(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: 
 
 
 @borrowing
-def aligned(rect: Ints) -> int:
+def count_wall_lines(rect: Ints) -> int:
     """Count the lines on which walls lie, as term `alignment` does: every line but the last has a rectangle that starts there."""
-    found = 2
+    count = 2
     for axis in range(2):
         for a in range(rect.shape[0]):
             fresh = 1
@@ -119,8 +119,8 @@ def aligned(rect: Ints) -> int:
                 if rect[b, axis] == rect[a, axis]:
                     fresh = 0
                     break
-            found += fresh
-    return found
+            count += fresh
+    return count
 
 
 @borrowing
@@ -139,7 +139,7 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
         return float(total)
     total = _of_voids(_of_order(total, rect, wishes, diagonal), rect, width, height, n)
     total = _of_stairs(_of_nearness(total, rect, wishes, diagonal), rect, n, wishes, diagonal)
-    total += wishes.weights.alignment * aligned(rect)
+    total += wishes.weights.alignment * count_wall_lines(rect)
     if total > most:
         return float(total)
     return float(total) + leaning(rect, width, height, n, gross, wishes, travel)

@@ -50,20 +50,20 @@ class Spec(NamedTuple):
 def tree(link: Ints, root: int) -> Ints:
     """Return rows (room, parent) of the breadth-first tree of links from `root`, the root left out."""
     n = link.shape[0]
-    found = np.full((max(n - 1, 0), 2), -1, np.int64)
+    edges = np.full((max(n - 1, 0), 2), -1, np.int64)
     queue = np.empty(n, np.int64)
-    seen = np.zeros(n, np.int64)
+    visited = np.zeros(n, np.int64)
     queue[0] = root
-    seen[root] = 1
+    visited[root] = 1
     head, tail, size = 0, 1, 0
     while head < tail:
         a = queue[head]
         head += 1
         for b in range(n):
-            if link[a, b] > 0 and seen[b] == 0:
-                seen[b] = 1
-                found[size, 0], found[size, 1] = b, a
+            if link[a, b] > 0 and visited[b] == 0:
+                visited[b] = 1
+                edges[size, 0], edges[size, 1] = b, a
                 size += 1
                 queue[tail] = b
                 tail += 1
-    return found[:size]
+    return edges[:size]

@@ -172,7 +172,7 @@ def _strict_widths(rooms: Sequence[RoomReq], least: NDArray[np.int64], half: Hal
     return strict
 
 
-def founded(program: FloorProgram) -> FloorProgram:
+def stretch_storeys(program: FloorProgram) -> FloorProgram:
     """Stretch the usual areas of storeys that are smaller than what stands on them, so that no room hangs in the air.
 
     A stated total stays: then what stands on them shrinks as well.
@@ -293,7 +293,7 @@ def _relations(program: FloorProgram, index: dict[str, int]) -> tuple[NDArray[np
 
 def _between(program: FloorProgram, index: dict[str, int]) -> NDArray[np.int64]:
     """Return rows (a, b, c) of rooms of which a lies between b and c."""
-    found = [
+    triples = [
         (index[a.id], index[b.id], index[c.id])
         for r in program.relations
         if r.kind == "between" and r.b and r.c
@@ -302,14 +302,14 @@ def _between(program: FloorProgram, index: dict[str, int]) -> NDArray[np.int64]:
         for c in program.select(r.c)
         if len({a.id, b.id, c.id}) == 3
     ]
-    return np.array(found, np.int64).reshape(-1, 3)
+    return np.array(triples, np.int64).reshape(-1, 3)
 
 
 def _near(program: FloorProgram, index: dict[str, int]) -> NDArray[np.float64]:
     """Return rows (a, b, share) of rooms that belong together: members of a zone; shares of each sum to 1."""
     groups = [list(combinations(sorted({index[r.id] for m in z.members for r in program.select(m)}), 2)) for z in program.zones]
-    found = [(a, b, 1.0 / len(group)) for group in groups for a, b in group]
-    return np.array(found, np.float64).reshape(-1, 3)
+    pairs = [(a, b, 1.0 / len(group)) for group in groups for a, b in group]
+    return np.array(pairs, np.float64).reshape(-1, 3)
 
 
 def _stairs(rooms: tuple[RoomReq, ...]) -> str:

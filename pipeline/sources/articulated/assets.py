@@ -9,17 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset, Joint, Link, Mesh, PartBox
-from pipeline.geometry.prerequisites import ordered
-from pipeline.sources.articulated.fitting import fitted
+from pipeline.geometry.prerequisites import with_prerequisites
+from pipeline.sources.articulated.fitting import fit_shape
 from pipeline.sources.articulated.hidden_boards import without_hidden
 from pipeline.sources.articulated.metric_scale import Fit
 from pipeline.sources.articulated.proportions import Proportions
 from pipeline.sources.articulated.shape import ArticulatedShape, ShapeBody, ShapeJoint, ShapePart
-from pipeline.sources.articulated.shape_reader import unused
+from pipeline.sources.articulated.shape_reader import unique_name
 from pipeline.sources.densities import density
 from pipeline.sources.meshes.colliders import POCKET, Solids, bodies_solids, link, matter_volume, solids
-from pipeline.sources.meshes.inertials import Inertial, inertia_flaw, joined, mass_flaw
-from pipeline.sources.meshes.touching import BUMPED, LEFT_ALONE, UNDER, felt
+from pipeline.sources.meshes.inertials import Inertial, combine_inertials, inertia_flaw, mass_flaw
+from pipeline.sources.meshes.touching import BUMPED, LEFT_ALONE, UNDER, touch_tolerances
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
 from pipeline.taxonomy import Taxonomy
@@ -39,7 +39,7 @@ def assets(
     if not categories:
         raise SourceError("unknown_category", shape.source_id, f"model_cat {shape.model_cat!r}")
     base = solids("base", shape.bodies[0].collisions, limits, None).pieces
-    shape, fits = fitted(shape, base, categories, limits, own)
+    shape, fits = fit_shape(shape, base, categories, limits, own)
     low, high = shape.bounds()
     extent = high - low
     if not fits:
@@ -52,14 +52,14 @@ def assets(
     middle = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
     for number, fit in enumerate(fits):
         category = taxonomy.categories[fit.category]
-        kind, how = category.super, felt(category, opens=True)
+        kind, how = category.super, touch_tolerances(category, opens=True)
         lowest = min([UNDER, *(float((body.points()[:, 2] - middle[2]).min()) * fit.scale for body in bodies[1:])])
         below = how if category.loose else replace(how, sides=BUMPED, down=LEFT_ALONE, under=lowest)
         links: list[Link] = []
         weighed = []
         for body, solid in zip(bodies, matter, strict=True):
             real = solid.scaled(middle, fit.scale)
-            stated, note = _stated(body, real, middle, fit, kind)
+            stated, note = _stated_inertial(body, real, middle, fit, kind)
             weighed += note
             links.append(
                 link(
@@ -79,10 +79,10 @@ def assets(
             shape.source, shape.source_id, licence, "", kind, dict(shape.palette.textures),
             tuple(_part(p, middle, fit.scale) for p in shape.parts),
         )  # fmt: skip
-        yield ordered(asset), fit, _rejects(shape, matter, weighed) if number == 0 else []  # what befell the folder is told once
+        yield with_prerequisites(asset), fit, _rejects(shape, matter, weighed) if number == 0 else []  # what befell the folder is told once
 
 
-def _stated(
+def _stated_inertial(
     body: ShapeBody, matter: Solids, middle: Floats, fit: Fit, kind: str
 ) -> tuple[Inertial | float | None, list[tuple[str, str]]]:  # fmt: skip
     """Return what the source states of a body [m, kg] and a note of it: an inertial, the mass alone where the rest is a placeholder, or None."""
@@ -90,7 +90,7 @@ def _stated(
     if not pieces:
         return None, []
     points = (body.points() - middle) * fit.scale
-    stated = joined(pieces).scaled(middle, fit.scale)
+    stated = combine_inertials(pieces).scaled(middle, fit.scale)
     why = mass_flaw(stated.mass, matter_volume(matter, kind))
     if fit.fitted:
         why = "is of another size"
@@ -132,7 +132,7 @@ def _unique(bodies: tuple[ShapeBody, ...]) -> list[ShapeBody]:
     taken: set[str] = {"base"}
     named = [replace(bodies[0], name="base")]
     for body in bodies[1:]:
-        name = unused(body.name, taken)
+        name = unique_name(body.name, taken)
         taken.add(name)
         named.append(replace(body, name=name))
     return named

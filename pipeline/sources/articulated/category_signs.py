@@ -58,21 +58,21 @@ def signs(shape: ArticulatedShape, base: Sequence[Part]) -> Signs:
     return Signs(sizes, len(doors) + len(sliding), len(drawers), clear, min(front, 1.0), _grip(shape.parts, doors))
 
 
-def log_likelihood(found: Signs, category: str, scale: float) -> float:
+def log_likelihood(observed: Signs, category: str, scale: float) -> float:
     """Return how well the signs suit a category at `scale` [m per unit], up to a constant that all categories share."""
     entry = cards()[category].signs
     total = 0.0
     for name, (median, spread) in KNOWN.items():
-        values = [v for v in found.sizes[name] if v > 0]
+        values = [v for v in observed.sizes[name] if v > 0]
         if values:
             total -= 0.5 * ((math.log(float(np.median(values)) * scale) - math.log(median)) / spread) ** 2
-    total += math.log(entry.doors if found.doors else 1 - entry.doors)
-    total += math.log(entry.drawers if found.drawers else 1 - entry.drawers)
-    total += _normal(found.covered, *entry.covered)
-    if found.doors:
-        total += math.log(entry.glass if found.glass else 1 - entry.glass)
-    if found.grip is not None:
-        total += _normal(found.grip, *entry.grip)
+    total += math.log(entry.doors if observed.doors else 1 - entry.doors)
+    total += math.log(entry.drawers if observed.drawers else 1 - entry.drawers)
+    total += _normal(observed.covered, *entry.covered)
+    if observed.doors:
+        total += math.log(entry.glass if observed.glass else 1 - entry.glass)
+    if observed.grip is not None:
+        total += _normal(observed.grip, *entry.grip)
     return total
 
 
@@ -93,10 +93,10 @@ def _reach(part: ShapePart) -> Floats:
 
 def _grip(parts: Sequence[ShapePart], doors: Sequence[ShapePart]) -> float | None:
     """Return the mean height of handles on upright doors, in shares of the door's height from its middle."""
-    found = []
+    heights = []
     for door in doors:
         height = float(_reach(door)[2])
         if abs(float(door.axes[0, 2])) < 0.8 or height <= 0:
             continue
-        found += [(p.centre[2] - door.centre[2]) / height for p in parts if p.body == door.body and p.part_class.endswith("fixed_handle")]
-    return float(np.clip(np.mean(found), -0.5, 0.5)) if found else None
+        heights += [(p.centre[2] - door.centre[2]) / height for p in parts if p.body == door.body and p.part_class.endswith("fixed_handle")]
+    return float(np.clip(np.mean(heights), -0.5, 0.5)) if heights else None

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from pipeline.sources.articulated import metric_scale
 from pipeline.sources.articulated.category_signs import signs
-from pipeline.sources.articulated.joint_rules import folded
+from pipeline.sources.articulated.joint_rules import fold_shape
 from pipeline.sources.articulated.metric_scale import UNITS, Fit
 from pipeline.sources.articulated.proportions import Proportions
 from pipeline.sources.articulated.shape import ArticulatedShape
@@ -39,7 +39,7 @@ class _Variant:
     what: str
 
 
-def fitted(
+def fit_shape(
     shape: ArticulatedShape, base: Sequence[Part], categories: Sequence[str], limits: ModelLimits, own: Proportions | None
 ) -> tuple[ArticulatedShape, tuple[Fit, ...]]:
     """Return the shape as it fits best, and its fits, likeliest first; none where it is nothing of the kind.
@@ -53,20 +53,20 @@ def fitted(
     for wide in (False, True):
         if wide and shape.source == "urdf" and len(categories) > ANYTHING:
             break
-        found = [(v, f) for v in variants if (f := _fits(v, base, categories, limits, own, wide=wide))]
-        if found:
-            best, fits = max(found, key=lambda entry: entry[1][0].likelihood - entry[0].cost)
+        candidates = [(v, f) for v in variants if (f := _fits(v, base, categories, limits, own, wide=wide))]
+        if candidates:
+            best, fits = max(candidates, key=lambda entry: entry[1][0].likelihood - entry[0].cost)
             what = ", ".join(filter(None, (best.what, "wide priors" if wide else ""))) or "as drawn"
-            return _noted(best.shape, f"{what}: rms {fits[0].rms:.2f} as {fits[0].category}"), fits
+            return _add_note(best.shape, f"{what}: rms {fits[0].rms:.2f} as {fits[0].category}"), fits
     return shape, ()
 
 
 def _as_drawn(shape: ArticulatedShape, base: Sequence[Part], categories: Sequence[str], limits: ModelLimits) -> tuple[Fit, ...]:
     """Return the fits as drawn; a file by itself is taken to be to scale where that makes it furniture."""
     if shape.source == "urdf":
-        extent, found = _extent(shape), signs(shape, base)
+        extent, observed = _extent(shape), signs(shape, base)
         for unit in UNITS:
-            tried = (metric_scale.metric(extent, c, found, unit) for c in categories)
+            tried = (metric_scale.metric(extent, c, observed, unit) for c in categories)
             kept = metric_scale.best(tried, rms=metric_scale.METRIC, keep=limits.fit_keep, margin=limits.fit_margin)
             if kept:
                 return kept
@@ -74,7 +74,7 @@ def _as_drawn(shape: ArticulatedShape, base: Sequence[Part], categories: Sequenc
 
 
 def _variants(shape: ArticulatedShape) -> Iterator[_Variant]:
-    less = folded(shape)
+    less = fold_shape(shape)
     for state, cost, what in ((shape, 0.0, ""), *(((less, FOLD, "folded"),) if less is not None else ())):
         yield _Variant(state, AS_DRAWN, cost, what)
         yield _Variant(state, ALONG, cost + EXCHANGE, f"{what} along its depth".strip())
@@ -88,13 +88,13 @@ def _variants(shape: ArticulatedShape) -> Iterator[_Variant]:
 def _fits(
     variant: _Variant, base: Sequence[Part], categories: Sequence[str], limits: ModelLimits, own: Proportions | None, *, wide: bool
 ) -> tuple[Fit, ...]:
-    extent, found = _extent(variant.shape)[list(variant.order)], signs(variant.shape, base)
+    extent, observed = _extent(variant.shape)[list(variant.order)], signs(variant.shape, base)
     if not wide:
-        tried = [metric_scale.fit(extent, c, found) for c in categories]
+        tried = [metric_scale.fit(extent, c, observed) for c in categories]
         return metric_scale.best(tried, rms=limits.fit_rms, keep=limits.fit_keep, margin=limits.fit_margin)
     # Objects of a category are compared as they are drawn: turned ones are another matter.
     speaks = own if variant.order == AS_DRAWN and variant.cost <= FOLD else None
-    tried = [metric_scale.wide(extent, c, found, speaks) for c in categories]
+    tried = [metric_scale.wide(extent, c, observed, speaks) for c in categories]
     return metric_scale.best(tried, rms=np.inf, keep=limits.fit_keep, margin=limits.fit_margin)
 
 
@@ -103,5 +103,5 @@ def _extent(shape: ArticulatedShape) -> Floats:
     return np.asarray(high - low)
 
 
-def _noted(shape: ArticulatedShape, detail: str) -> ArticulatedShape:
+def _add_note(shape: ArticulatedShape, detail: str) -> ArticulatedShape:
     return replace(shape, notes=(*shape.notes, ("model", "refitted", detail)))

@@ -14,7 +14,7 @@ from scipy.spatial import ConvexHull
 
 from pipeline.entities.asset import Link
 from pipeline.sources.articulated.shape import ShapeJoint
-from pipeline.sources.meshes.reach import reached
+from pipeline.sources.meshes.reach import make_reach_test
 from pipeline.sources.meshes.touching import LEFT_ALONE, TOUCHED, UP, spread
 
 Floats = NDArray[np.float64]
@@ -38,7 +38,7 @@ def without_covered(base: Link, drawers: Sequence[Link]) -> Link:
     """Return a carcass without the boards whose outsides the other boards and the drawers all but have."""
     hulls = [np.asarray(c.vertices, np.float64) for link in (base, *drawers) for c in link.colliders]
     planes = [ConvexHull(h).equations for h in hulls]
-    comes = reached(hulls, planes, HAND)
+    comes = make_reach_test(hulls, planes, HAND)
     kept = set(range(len(hulls)))
     boards = range(len(base.colliders))
     for k in sorted(boards, key=lambda k: (round(float(np.ptp(hulls[k], axis=0).prod()), 9), k)):

@@ -62,12 +62,12 @@ def limits(joint: UrdfJoint, known: Mobility | None, notes: list[Note]) -> Limit
         notes.append(_note(joint, "joint_flipped_limits", f"{lower} to {upper}"))
         lower, upper = upper, lower
     if upper - lower < SMALLEST[kind]:
-        found = _from_mobility(joint, kind, known)
-        if found is None:
+        motion = _from_mobility(joint, kind, known)
+        if motion is None:
             notes.append(_note(joint, "joint_no_range", f"{kind}, limits {joint.limits}"))
             return None
-        notes.append(_note(joint, "joint_limits_found", f"{kind}, limits {joint.limits} in the URDF, {found[1:]} in mobility_v2.json"))
-        return found
+        notes.append(_note(joint, "joint_limits_found", f"{kind}, limits {joint.limits} in the URDF, {motion[1:]} in mobility_v2.json"))
+        return motion
     if kind == "revolute" and upper - lower > TURNS:
         return "continuous", -math.inf, math.inf
     return kind, lower, upper
@@ -87,7 +87,7 @@ def _from_mobility(joint: UrdfJoint, kind: JointType, known: Mobility | None) ->
     return (kind, lower, upper) if SMALLEST[kind] <= upper - lower <= TURNS else None
 
 
-def rested(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapePart], notes: list[Note]) -> None:
+def shift_to_rest(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapePart], notes: list[Note]) -> None:
     """Bring every joint to its rest, in place: 0 where the limits allow it, else the nearest limit; limits become relative to it."""
     for number in range(len(joints)):
         joint = joints[number]
@@ -98,7 +98,7 @@ def rested(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapeP
         joints[number] = opening(joints[number])
 
 
-def closed(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapePart], notes: list[Note]) -> None:
+def close_drawn_open(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapePart], notes: list[Note]) -> None:
     """Close, in place, doors, drawers and lids that are drawn open: the object's box is much smaller at their other limit.
 
     A lid closes where the box is smallest, which need be no limit; it opens from there the way that it was drawn.
@@ -127,7 +127,7 @@ def closed(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapeP
             boxes = [_box(body) for body in bodies]
 
 
-def folded(shape: ArticulatedShape) -> ArticulatedShape | None:
+def fold_shape(shape: ArticulatedShape) -> ArticulatedShape | None:
     """Return the shape with every joint where the object's box is smallest, None where that is how it is drawn."""
     bodies, joints, parts, notes = list(shape.bodies), list(shape.joints), list(shape.parts), list(shape.notes)
     outlines = [_outline(body) for body in bodies]
@@ -260,8 +260,8 @@ def _volume(boxes: Sequence[Floats], moved: set[int], T: Floats) -> float:
 
 
 def _span(bodies: Sequence[ShapeBody]) -> float:
-    found = [b for body in bodies if len(b := _box(body))]
-    return float(np.linalg.norm(np.ptp(np.concatenate(found), axis=0))) if found else 1.0
+    boxes = [b for body in bodies if len(b := _box(body))]
+    return float(np.linalg.norm(np.ptp(np.concatenate(boxes), axis=0))) if boxes else 1.0
 
 
 def _note(joint: UrdfJoint, reason: str, detail: str) -> Note:

@@ -44,7 +44,7 @@ class Fit:
     fitted: bool
 
 
-def fit(extent: Floats, category: str, found: Signs | None = None) -> Fit | None:
+def fit(extent: Floats, category: str, observed: Signs | None = None) -> Fit | None:
     """Fit a category's sizes to an object of `extent` (w, d, h) [units], or None without statistics.
 
     With e = log extent and N(m, s^2) the logarithm of the sizes, log scale = sum((m - e) / s^2) / sum(1 / s^2).
@@ -55,18 +55,18 @@ def fit(extent: Floats, category: str, found: Signs | None = None) -> Fit | None
     location, spread = known.logarithmic()
     weight = 1 / spread**2
     log_scale = float(((location - np.log(extent)) * weight).sum() / weight.sum())
-    return _at(extent, category, math.exp(log_scale), found, fitted=True)
+    return _at(extent, category, math.exp(log_scale), observed, fitted=True)
 
 
-def metric(extent: Floats, category: str, found: Signs | None = None, unit: float = 1.0) -> Fit | None:
+def metric(extent: Floats, category: str, observed: Signs | None = None, unit: float = 1.0) -> Fit | None:
     """Return the fit of an object that is to scale already, of `unit` metres per unit, or None where it is no such thing."""
     if sizes().get(category) is None or extent.min() <= 0 or extent[2] * unit > TALLEST:
         return None
-    made = _at(extent, category, unit, found, fitted=False)
-    return made if made.rms <= METRIC else None
+    candidate = _at(extent, category, unit, observed, fitted=False)
+    return candidate if candidate.rms <= METRIC else None
 
 
-def wide(extent: Floats, category: str, found: Signs | None = None, own: Proportions | None = None) -> Fit | None:
+def wide(extent: Floats, category: str, observed: Signs | None = None, own: Proportions | None = None) -> Fit | None:
     """Return the fit of an object that is built unlike its category's usual products, or None where it is nothing of the kind.
 
     Two of its three sides must agree on a scale, and decide it; the third may be odd (the sum of log(1 + z^2), Cauchy's
@@ -92,23 +92,23 @@ def wide(extent: Floats, category: str, found: Signs | None = None, own: Proport
         return None
     scale = round(math.exp(float(tried[k])), 6)
     likelihood = -float(cost[k] + np.log(spread).sum()) + math.log(known.count + COMMON)
-    if found is not None:
-        likelihood += log_likelihood(found, category, scale)
+    if observed is not None:
+        likelihood += log_likelihood(observed, category, scale)
     return Fit(category, scale, float(np.sqrt((z[k] ** 2).mean())), likelihood, fitted=True)
 
 
-def _at(extent: Floats, category: str, scale: float, found: Signs | None, *, fitted: bool) -> Fit:
+def _at(extent: Floats, category: str, scale: float, observed: Signs | None, *, fitted: bool) -> Fit:
     known = sizes()[category]
     location, spread = known.logarithmic()
     z = (np.log(extent) + math.log(scale) - location) / spread
     likelihood = float(-0.5 * (z**2).sum() - np.log(spread).sum() - 1.5 * math.log(2 * math.pi)) + math.log(known.count + COMMON)
-    if found is not None:
-        likelihood += log_likelihood(found, category, scale)
+    if observed is not None:
+        likelihood += log_likelihood(observed, category, scale)
     return Fit(category, round(scale, 6), float(np.sqrt((z**2).mean())), likelihood, fitted)
 
 
 def best(fits: Iterable[Fit | None], *, rms: float, keep: int, margin: float) -> tuple[Fit, ...]:
     """Return the fits within `rms`, most likely first: at most `keep`, none worse than the best by more than `margin`."""
-    found = [f for f in fits if f is not None and f.rms <= rms]
-    found.sort(key=lambda f: (-f.likelihood, f.category))
-    return tuple(f for f in found[:keep] if f.likelihood >= found[0].likelihood - margin)
+    candidates = [f for f in fits if f is not None and f.rms <= rms]
+    candidates.sort(key=lambda f: (-f.likelihood, f.category))
+    return tuple(f for f in candidates[:keep] if f.likelihood >= candidates[0].likelihood - margin)

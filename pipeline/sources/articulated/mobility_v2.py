@@ -57,7 +57,7 @@ def _numbers(value: Any, count: int) -> Floats | None:
     if not isinstance(value, list) or len(value) != count or any(type(v) not in {int, float} for v in value):
         return None
     try:
-        found = np.array(value, np.float64)
+        numbers = np.array(value, np.float64)
     except OverflowError:
         return None
-    return found if np.isfinite(found).all() and np.abs(found).max() < 1e6 else None
+    return numbers if np.isfinite(numbers).all() and np.abs(numbers).max() < 1e6 else None

@@ -32,20 +32,20 @@ def objects_in(source: Path) -> list[Found]:
     A link to a folder elsewhere is among them, to be refused; one to a folder within would only name it twice.
     """
     root, names = source.resolve(), {name for name, _ in URDFS}
-    found = []
+    paths = []
     for base, folders, files in os.walk(root):
         folders.sort()
         here = Path(base).relative_to(root)
         links = [f for f in folders if (Path(base) / f).is_symlink() and not (Path(base) / f).resolve().is_relative_to(root)]
-        found += [(here / link).as_posix() for link in links]
+        paths += [(here / link).as_posix() for link in links]
         if names & set(files) or "meta.json" in files:
-            found.append(here.as_posix())
+            paths.append(here.as_posix())
             folders.clear()
             continue
-        found += [(here / file).as_posix() for file in sorted(files) if file.lower().endswith(".urdf")]
+        paths += [(here / file).as_posix() for file in sorted(files) if file.lower().endswith(".urdf")]
         if len(here.parts) >= DEPTH:
             folders.clear()
-    return _stems(found)
+    return _stems(paths)
 
 
 def _stems(paths: list[str]) -> list[Found]:

@@ -33,7 +33,7 @@ def mover_part(body: ShapeBody, joint: ShapeJoint) -> ShapePart:
         out = _unit(np.cross(joint.axis, _far(points, joint) - joint.origin), FRONT)
         z = max((s * n for n in _sides(points, joint.axis) for s in (1, -1)), key=lambda n: float(n @ out), default=out)
     x = joint.axis if joint.part_class in {"hinge_door", "hinge_lid"} else _level(z)
-    return _boxed(joint.child, joint.part_class, points, x, z, annotated=not joint.inferred)
+    return _fit_part_box(joint.child, joint.part_class, points, x, z, annotated=not joint.inferred)
 
 
 def _sides(points: Floats, axis: Floats) -> list[Floats]:
@@ -56,15 +56,15 @@ def _sides(points: Floats, axis: Floats) -> list[Floats]:
 def fixed_parts(number: int, body: ShapeBody, joints: Sequence[ShapeJoint]) -> list[ShapePart]:
     """Return the handles and buttons among a body's visuals, one part for each mesh."""
     carrier = next((j for j in joints if j.child == number), None)
-    made = []
+    parts = []
     for mesh in body.visuals:
         if mesh.part:
             points = np.asarray(mesh.vertices, np.float64)
             z = FRONT if carrier is None else _outwards(points, carrier)
             across = np.ptp(points, axis=0) * (np.abs(z) < 0.5)
             x = np.eye(3)[int(np.argmax(across))] if mesh.part == "line_fixed_handle" else _level(z)
-            made.append(_boxed(number, mesh.part, points, x, z, annotated=False))
-    return made
+            parts.append(_fit_part_box(number, mesh.part, points, x, z, annotated=False))
+    return parts
 
 
 def _outwards(points: Floats, carrier: ShapeJoint) -> Floats:
@@ -83,7 +83,7 @@ def _far(points: Floats, joint: ShapeJoint) -> Floats:
     return np.asarray(points[radius >= 0.9 * radius.max()].mean(axis=0))
 
 
-def _boxed(body: int, part_class: str, points: Floats, x: Floats, z: Floats, *, annotated: bool) -> ShapePart:
+def _fit_part_box(body: int, part_class: str, points: Floats, x: Floats, z: Floats, *, annotated: bool) -> ShapePart:
     z = _unit(z - x * (z @ x), _level(x))
     axes = np.stack([x, np.cross(z, x), z])
     along = points @ axes.T

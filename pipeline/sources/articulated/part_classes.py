@@ -60,15 +60,15 @@ def annotated_links(folder: Folder) -> tuple[dict[str, Annotation], list[str]]:
     tree = read_json(folder, ANNOTATION, 16 * MIB)
     if not isinstance(tree, list):
         raise SourceError("bad_structure", ANNOTATION, "is no list of links")
-    found, odd = {}, []
+    by_link, odd = {}, []
     for entry in tree:
         name = text_field(entry, "link_name")
         if name and entry.get("category") in PART_CLASSES:
             corners = _corners(entry.get("bbox"))
-            found[name] = Annotation(str(entry["category"]), corners)
+            by_link[name] = Annotation(str(entry["category"]), corners)
             if corners is None and entry.get("bbox"):
                 odd.append(name)
-    return found, odd
+    return by_link, odd
 
 
 def _corners(value: Any) -> Floats | None:
@@ -83,7 +83,7 @@ def _corners(value: Any) -> Floats | None:
     if corners.shape != (8, 3) or not np.isfinite(corners).all() or np.abs(corners).max() > 1e6:
         return None
     centre, axes, size = box_of(corners)
-    away = np.abs(cornered(centre, axes, size) - corners).max()
+    away = np.abs(box_corners(centre, axes, size) - corners).max()
     return corners if size.min() > 0 and np.linalg.det(axes) > 0.99 and away < 0.01 * size.max() else None
 
 
@@ -97,7 +97,7 @@ def box_of(corners: Floats) -> tuple[Floats, Floats, Floats]:
     return corners.mean(axis=0), edges / np.maximum(size, 1e-12)[:, None], size
 
 
-def cornered(centre: Floats, axes: Floats, size: Floats) -> Floats:
+def box_corners(centre: Floats, axes: Floats, size: Floats) -> Floats:
     """Return the corners (8, 3) of a box, in GAPartNet's order."""
     return np.asarray((SIGNS * size) @ axes + centre)
 
@@ -127,8 +127,8 @@ def words_of(name: str) -> list[str]:
 
 def named_class(kind: str, name: str) -> str:
     """Return the part class that a semantic name tells of what a joint of `kind` moves, "" where it tells none."""
-    found = words_of(name)
-    return next(((sliding if kind == "prismatic" else turning) for word, turning, sliding in WORDS if word in found), "")
+    words = words_of(name)
+    return next(((sliding if kind == "prismatic" else turning) for word, turning, sliding in WORDS if word in words), "")
 
 
 def shaped_class(kind: str, axis: Floats, low: Floats, high: Floats, whole: Floats) -> str:

@@ -12,29 +12,29 @@ from pipeline.sources.articulated.part_classes import shaped_class
 from pipeline.sources.articulated.shape import ArticulatedShape, ShapeBody, ShapeJoint, ShapePart, below
 
 
-def completed(shape: ArticulatedShape) -> ArticulatedShape:
+def complete_shape(shape: ArticulatedShape) -> ArticulatedShape:
     """Return the shape with a class for every joint that its form tells, doors and drawers closed, and all part boxes."""
     bodies, parts, notes = list(shape.bodies), list(shape.parts), list(shape.notes)
-    joints = _classed(bodies, list(shape.joints))
-    joint_rules.closed(bodies, joints, parts, notes)
+    joints = _classify_joints(bodies, list(shape.joints))
+    joint_rules.close_drawn_open(bodies, joints, parts, notes)
     parts += _inferred_parts(bodies, joints, parts)
     return replace(shape, bodies=tuple(bodies), joints=tuple(joints), parts=tuple(parts), notes=tuple(notes))
 
 
-def _classed(bodies: list[ShapeBody], joints: list[ShapeJoint]) -> list[ShapeJoint]:
+def _classify_joints(bodies: list[ShapeBody], joints: list[ShapeJoint]) -> list[ShapeJoint]:
     points = [body.points() for body in bodies]
     everything = np.concatenate(points)
     low, whole = everything.min(axis=0), np.ptp(everything, axis=0)
     middle = np.array([low[0] + whole[0] / 2, low[1] + whole[1] / 2, low[2]])
-    made = []
+    classed_joints = []
     for joint in joints:
         if joint.part_class == "other" and joint.inferred:
             mine = np.concatenate([points[k] for k in sorted(below(joints, joint.child))]) - middle
             part = shaped_class(joint.type, joint.axis, mine.min(axis=0), mine.max(axis=0), whole)
-            made.append(replace(joint, part_class=part))
+            classed_joints.append(replace(joint, part_class=part))
         else:
-            made.append(joint)
-    return made
+            classed_joints.append(joint)
+    return classed_joints
 
 
 def _inferred_parts(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapePart]) -> list[ShapePart]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from pipeline.sources.articulated.mobility_v2 import mobility
 from pipeline.sources.articulated.part_classes import annotated_links, semantics, text_field
-from pipeline.sources.articulated.part_inference import completed
+from pipeline.sources.articulated.part_inference import complete_shape
 from pipeline.sources.articulated.shape import ArticulatedShape
 from pipeline.sources.articulated.shape_reader import Hints, ShapeReader
 from pipeline.sources.articulated.urdf import MAX_URDF, Urdf, parse_urdf
@@ -42,7 +42,7 @@ def read_shape(folder: Folder, source_id: str, texture_limit: int, known: Sequen
     entries = mobility(folder) if source == "partnet-mobility" else {}
     reader = ShapeReader(folder, "", urdf, FROM_PARTNET, Hints(annotated, links, entries, _looks(folder, source)), texture_limit)
     reader.notes += [("model", "part_box_refused", f"{link}: no box of eight corners in order") for link in odd]
-    return completed(reader.shape(source, source_id, model_cat))
+    return complete_shape(reader.shape(source, source_id, model_cat))
 
 
 def _looks(folder: Folder, source: str) -> Urdf | None:
@@ -52,14 +52,14 @@ def _looks(folder: Folder, source: str) -> Urdf | None:
 def _model_cat(folder: Folder, words: Mapping[str, tuple[str, str]], known: Sequence[str]) -> str:
     """Return the model category: of meta.json, else the known one that names the body, as in "oven_body", or the folder."""
     if folder.has("meta.json"):
-        found = text_field(read_json(folder, "meta.json", MIB), "model_cat")
-        if found:
-            return found
+        model_cat = text_field(read_json(folder, "meta.json", MIB), "model_cat")
+        if model_cat:
+            return model_cat
     bodies = [word.lower().removesuffix("_body") for _, word in words.values() if word.lower().endswith("_body")]
-    told = {_plain(word): "StorageFurniture" if word == "furniture" else "" for word in bodies}
+    by_body = {_plain(word): "StorageFurniture" if word == "furniture" else "" for word in bodies}
     by_name = {_plain(category): category for category in known}
     above = [_plain(part) for part in reversed(folder.root.parts[-4:])]
-    return next((by_name[w] for w in (*told, *above) if w in by_name), next((c for c in told.values() if c), ""))
+    return next((by_name[w] for w in (*by_body, *above) if w in by_name), next((c for c in by_body.values() if c), ""))
 
 
 def _plain(name: str) -> str:

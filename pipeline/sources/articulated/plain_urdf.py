@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from pipeline.sources.articulated import metric_scale
 from pipeline.sources.articulated.metric_scale import UNITS
-from pipeline.sources.articulated.part_inference import completed
+from pipeline.sources.articulated.part_inference import complete_shape
 from pipeline.sources.articulated.shape import ArticulatedShape, below
 from pipeline.sources.articulated.shape_reader import Hints, ShapeReader
 from pipeline.sources.articulated.urdf import MAX_URDF, Urdf, parse_urdf
@@ -38,7 +38,7 @@ SYNONYMS = {
 def read_plain_urdf(root: Folder, file: str, source_id: str, texture_limit: int) -> ArticulatedShape:
     """Read the URDF at `file` (relative to `root`), in the frame that it is drawn in. Raises SourceError."""
     base = PurePosixPath(file).parent.as_posix()
-    urdf, snapped = _straightened(parse_urdf(root.read(file, MAX_URDF), file))
+    urdf, snapped = _snap_rotations(parse_urdf(root.read(file, MAX_URDF), file))
     reader = ShapeReader(root, "" if base == "." else base, urdf, np.eye(3), Hints(named=_words(urdf)), texture_limit)
     if snapped:
         reader.notes.append(("model", "angle_snapped", f"{snapped} angles"))
@@ -48,9 +48,9 @@ def read_plain_urdf(root: Folder, file: str, source_id: str, texture_limit: int)
 def candidates(file: str, taxonomy: Taxonomy) -> tuple[str, ...]:
     """Return the categories that a file may be by its path, the file's own name first; without a word that tells, these are all that open."""
     for word in _tokens(file):
-        found = _meant(word, taxonomy)
-        if found:
-            return found
+        categories = _word_categories(word, taxonomy)
+        if categories:
+            return categories
     return tuple(c.name for c in taxonomy.categories.values() if c.names.partnet)
 
 
@@ -60,7 +60,7 @@ def _tokens(file: str) -> list[str]:
     return [t for part in parts for t in (part, *re.split(r"[^A-Za-z]+|(?<=[a-z])(?=[A-Z])", part)) if t]
 
 
-def _meant(word: str, taxonomy: Taxonomy) -> tuple[str, ...]:
+def _word_categories(word: str, taxonomy: Taxonomy) -> tuple[str, ...]:
     plain = re.sub(r"[^a-z]+", "_", word.lower()).strip("_")
     by_name = {c: c for c in taxonomy.names} | {m.lower(): m for e in taxonomy.categories.values() for m in e.names.partnet}
     meant = SYNONYMS | {w: c.name for c in taxonomy.categories.values() for w in c.names.files}
@@ -70,7 +70,7 @@ def _meant(word: str, taxonomy: Taxonomy) -> tuple[str, ...]:
     return (wanted,) if wanted in taxonomy.categories else taxonomy.from_partnet(wanted)
 
 
-def oriented(shape: ArticulatedShape, categories: Sequence[str]) -> ArticulatedShape:
+def orient_shape(shape: ArticulatedShape, categories: Sequence[str]) -> ArticulatedShape:
     """Return the shape turned so that up is z and the front -y, its parts and classes inferred.
 
     Up is z, or y where that makes a likelier piece of furniture; the front is where drawers and doors open to, else a
@@ -81,9 +81,9 @@ def oriented(shape: ArticulatedShape, categories: Sequence[str]) -> ArticulatedS
         turned = shape.turned(_upright(up))
         turned = turned.turned(_about(_heading(turned)))
         low, high = turned.bounds()
-        found = [f.likelihood for unit in UNITS for c in categories if (f := metric_scale.metric(high - low, c, None, unit)) is not None]
-        tried.append((_level(turned) + (0.5 if up == 2 else 0.0) + 0.2 * max(found, default=-20.0), turned))
-    return completed(max(tried, key=lambda t: t[0])[1])
+        scores = [f.likelihood for unit in UNITS for c in categories if (f := metric_scale.metric(high - low, c, None, unit)) is not None]
+        tried.append((_level(turned) + (0.5 if up == 2 else 0.0) + 0.2 * max(scores, default=-20.0), turned))
+    return complete_shape(max(tried, key=lambda t: t[0])[1])
 
 
 def _upright(up: int) -> Floats:
@@ -134,7 +134,7 @@ def _level(shape: ArticulatedShape) -> float:
     return score
 
 
-def _straightened(urdf: Urdf) -> tuple[Urdf, int]:
+def _snap_rotations(urdf: Urdf) -> tuple[Urdf, int]:
     """Return the URDF with rotations that are within SNAP of quarter turns made exact, and how many were off."""
     count = 0
 
@@ -147,9 +147,9 @@ def _straightened(urdf: Urdf) -> tuple[Urdf, int]:
         if not 0 < off <= SNAP:
             return T
         count += off > 1e-4
-        made = T.copy()
-        made[:3, :3] = near
-        return made
+        T_snapped = T.copy()
+        T_snapped[:3, :3] = near
+        return T_snapped
 
     links = {
         name: replace(
@@ -163,7 +163,7 @@ def _straightened(urdf: Urdf) -> tuple[Urdf, int]:
 
 def _words(urdf: Urdf) -> Mapping[str, str]:
     """Return {link: the words of its own name and its joint's}: "drawer_top" says what it is."""
-    found = {name: name for name in urdf.links}
+    words = {name: name for name in urdf.links}
     for joint in urdf.joints:
-        found[joint.child] = f"{joint.child} {joint.name}"
-    return found
+        words[joint.child] = f"{joint.child} {joint.name}"
+    return words

@@ -27,7 +27,7 @@ class Proportions:
     spread: Floats
 
 
-def drawn(source: Path, path: str) -> tuple[str, Floats] | None:
+def read_extent(source: Path, path: str) -> tuple[str, Floats] | None:
     """Return model category and extent (w, d, h) [units] of an object as drawn, by its own small files; None where they do not say."""
     try:
         folder = Folder.at(source).sub(path)
@@ -43,14 +43,14 @@ def drawn(source: Path, path: str) -> tuple[str, Floats] | None:
 def spreads(objects: Iterable[tuple[str, Floats] | None]) -> Mapping[str, Proportions]:
     """Return the proportions of every model category of which there are MANY objects."""
     logs: dict[str, list[Floats]] = {}
-    for found in objects:
-        if found is not None:
-            log = np.log(found[1])
-            logs.setdefault(found[0], []).append(log - log.mean())
-    made = {}
+    for entry in objects:
+        if entry is not None:
+            log = np.log(entry[1])
+            logs.setdefault(entry[0], []).append(log - log.mean())
+    by_category = {}
     for category, rows in logs.items():
         if len(rows) >= MANY:
             middle = np.median(rows, axis=0)
             spread = NORMAL * np.median(np.abs(np.array(rows) - middle), axis=0)
-            made[category] = Proportions(middle, np.maximum(spread, LEAST))
-    return made
+            by_category[category] = Proportions(middle, np.maximum(spread, LEAST))
+    return by_category

@@ -33,8 +33,8 @@ class ShapeBody:
 
     def points(self) -> Floats:
         """Return the vertices (V, 3) of the visuals, or of the collision meshes where there are none."""
-        found = [np.asarray(m.vertices, np.float64) for m in self.visuals] or [v[np.unique(f)] for v, f in self.collisions]
-        return np.concatenate(found) if found else np.zeros((0, 3))
+        vertices = [np.asarray(m.vertices, np.float64) for m in self.visuals] or [v[np.unique(f)] for v, f in self.collisions]
+        return np.concatenate(vertices) if vertices else np.zeros((0, 3))
 
     def moved(self, T: Floats) -> ShapeBody:
         """Return the body under the rigid motion T (4, 4)."""
@@ -119,8 +119,8 @@ def apply(T: Floats, points: Floats) -> Floats:
 
 def below(joints: Sequence[ShapeJoint], body: int) -> set[int]:
     """Return the bodies that move with `body`, itself included; joints come parents first."""
-    found = {body}
+    bodies = {body}
     for joint in joints:
-        if joint.parent in found:
-            found.add(joint.child)
-    return found
+        if joint.parent in bodies:
+            bodies.add(joint.child)
+    return bodies

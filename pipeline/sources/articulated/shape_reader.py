@@ -62,16 +62,16 @@ class ShapeReader:
         self._borrow_looks(bodies, body_of)
         words = {body_of[name]: word for name, word in self.hints.named.items() if name in body_of}
         joints = joint_rules.without_empty(bodies, joints, words, self.notes)
-        bodies, joints, index = self._used(bodies, joints)
-        joints = self._based(bodies, joints, source_id)
+        bodies, joints, index = self._drop_unmoved(bodies, joints)
+        joints = self._ensure_base(bodies, joints, source_id)
         parts = self._annotated_parts({name: index[body] for name, body in body_of.items() if body in index})
-        joint_rules.rested(bodies, joints, parts, self.notes)
+        joint_rules.shift_to_rest(bodies, joints, parts, self.notes)
         for body in bodies:
             if not body.collisions:
                 body.collisions = [(m.vertices.astype(np.float64), m.faces.astype(np.int64)) for m in body.visuals]
         notes = [*self.notes, *(("model", reason, detail) for reason, detail in self.palette.notes)]
         return ArticulatedShape(
-            source, source_id, model_cat, tuple(bodies), tuple(_named(joints)), tuple(parts), self.palette, tuple(notes)
+            source, source_id, model_cat, tuple(bodies), tuple(_assign_names(joints)), tuple(parts), self.palette, tuple(notes)
         )  # fmt: skip
 
     def _transforms(self, urdf: Urdf) -> dict[str, Floats]:
@@ -88,21 +88,21 @@ class ShapeReader:
         body_of = {self.urdf.root: 0}
         joints: list[ShapeJoint] = []
         for joint in self.urdf.joints:
-            found = joint_rules.limits(joint, self.hints.mobility.get(joint.child), self.notes)
-            if found is None:
+            limits = joint_rules.limits(joint, self.hints.mobility.get(joint.child), self.notes)
+            if limits is None:
                 body_of[joint.child] = body_of[joint.parent]
                 continue
-            kind, lower, upper = found
+            kind, lower, upper = limits
             body_of[joint.child] = len(bodies)
             pose = T[joint.child]
-            part, inferred = self._told(joint.child, kind)
+            part, inferred = self._part_class(joint.child, kind)
             axis, origin = pose[:3, :3] @ joint.axis, pose[:3, 3].copy()
             child = len(bodies)
             joints.append(ShapeJoint(joint.name, kind, body_of[joint.parent], child, axis, origin, lower, upper, part, inferred))
             bodies.append(ShapeBody(slug(joint.child)))
         return body_of, bodies, joints
 
-    def _told(self, link: str, kind: str) -> tuple[str, bool]:
+    def _part_class(self, link: str, kind: str) -> tuple[str, bool]:
         """Return (part class, whether inferred) of a moving link, "other" where nothing but its shape can tell."""
         if link in self.hints.annotated:
             return self.hints.annotated[link].part_class, False
@@ -121,16 +121,16 @@ class ShapeReader:
             body.collisions += [(points, group.faces) for group, _, points in self.files.geometry(shape, T)]
 
     def _visuals(self, link: UrdfLink, T: Floats, start: int, *, moves: bool) -> list[Mesh]:
-        made: list[Mesh] = []
+        meshes: list[Mesh] = []
         for shape in link.visuals:
             for group, file, points in self.files.geometry(shape, T):
                 extent = np.ptp(points[np.unique(group.faces)], axis=0)
                 part = fixed_class(link.name, shape.name, self.hints.annotated, extent, moves=moves)
                 material = self._material(shape, file, group)
-                mesh = visual(group, file, points, f"mesh_{start + len(made):03d}", material, part)
+                mesh = visual(group, file, points, f"mesh_{start + len(meshes):03d}", material, part)
                 if mesh:
-                    made.append(mesh)
-        return made
+                    meshes.append(mesh)
+        return meshes
 
     def _material(self, shape: Shape, file: ObjFile, group: ObjGroup) -> int:
         own = self.files.materials.get(shape.mesh, {}).get(group.material)
@@ -164,13 +164,13 @@ class ShapeReader:
         else:
             self.notes.append(("model", "looks_differ", "the meshes of the URDF for looks are not where the annotated ones are"))
 
-    def _used(self, bodies: list[ShapeBody], joints: list[ShapeJoint]) -> tuple[list[ShapeBody], list[ShapeJoint], dict[int, int]]:
+    def _drop_unmoved(self, bodies: list[ShapeBody], joints: list[ShapeJoint]) -> tuple[list[ShapeBody], list[ShapeJoint], dict[int, int]]:
         """Return bodies and joints without the bodies that no joint moves, and the new index of each old one."""
         used = [0, *(j.child for j in joints)]
         index = {old: new for new, old in enumerate(used)}
         return [bodies[k] for k in used], [replace(j, parent=index[j.parent], child=index[j.child]) for j in joints], index
 
-    def _based(self, bodies: list[ShapeBody], joints: list[ShapeJoint], source_id: str) -> list[ShapeJoint]:
+    def _ensure_base(self, bodies: list[ShapeBody], joints: list[ShapeJoint], source_id: str) -> list[ShapeJoint]:
         """See that every body has visuals, and the base something to be seen at all."""
         for body in bodies:
             if not body.visuals and body.collisions:
@@ -235,25 +235,25 @@ def _post(bodies: list[ShapeBody], joints: list[ShapeJoint], hinge: ShapeJoint) 
     return np.array(corners), FACES
 
 
-def _named(joints: list[ShapeJoint]) -> list[ShapeJoint]:
+def _assign_names(joints: list[ShapeJoint]) -> list[ShapeJoint]:
     """Give joints ids that are unique in the asset and match [a-z][a-z0-9_]*."""
     taken: set[str] = set()
     named = []
     for joint in joints:
-        name = unused(slug(joint.name), taken)
+        name = unique_name(slug(joint.name), taken)
         taken.add(name)
         named.append(replace(joint, name=name))
     return named
 
 
-def unused(name: str, taken: set[str]) -> str:
+def unique_name(name: str, taken: set[str]) -> str:
     """Return the name, with a number behind it where it is taken."""
     number = 1
-    made = name
-    while made in taken:
+    candidate = name
+    while candidate in taken:
         number += 1
-        made = f"{name}_n{number}"
-    return made
+        candidate = f"{name}_n{number}"
+    return candidate
 
 
 def slug(name: str) -> str:

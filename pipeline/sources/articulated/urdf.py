@@ -86,7 +86,7 @@ def parse_urdf(data: bytes, where: str) -> Urdf:
     joints = [_joint(e, where) for e in root.findall("joint")]
     if len(links) > MAX_LINKS or sum(len(v.visuals) + len(v.collisions) for v in links.values()) > MAX_SHAPES:
         raise SourceError("too_large", where, f"has {len(links)} links")
-    return _ordered(links, joints, where)
+    return _build_urdf(links, joints, where)
 
 
 def _tree(data: bytes, where: str) -> Any:
@@ -98,7 +98,7 @@ def _tree(data: bytes, where: str) -> Any:
     return root
 
 
-def _ordered(links: dict[str, UrdfLink], joints: list[UrdfJoint], where: str) -> Urdf:
+def _build_urdf(links: dict[str, UrdfLink], joints: list[UrdfJoint], where: str) -> Urdf:
     children: dict[str, UrdfJoint] = {}
     for joint in joints:
         if joint.parent not in links or joint.child not in links:
@@ -143,14 +143,14 @@ def _joint(element: Any, where: str) -> UrdfJoint:
 
 def _inertial(element: Any, where: str) -> Inertial | None:
     """Return a link's inertial, of nan where it is broken: a wrong mass is no reason to lose a model."""
-    found = element.find("inertial")
-    if found is None:
+    inertial = element.find("inertial")
+    if inertial is None:
         return None
-    mass, moments = found.find("mass"), found.find("inertia")
+    mass, moments = inertial.find("mass"), inertial.find("inertia")
     try:
         (kg,) = _vector(mass.get("value") if mass is not None else None, (math.nan,), where)
         values = [_vector(moments.get(k) if moments is not None else None, (math.nan,), where, 1e12)[0] for k in MOMENTS]
-        T = _origin(found, where)
+        T = _origin(inertial, where)
     except SourceError:
         kg, values, T = np.float64(math.nan), [math.nan] * 6, np.eye(4)
     xx, xy, xz, yy, yz, zz = values
@@ -185,11 +185,11 @@ def _primitive(element: Any, where: str) -> tuple[float, ...]:
 
 
 def _color(element: Any) -> tuple[float, float, float, float] | None:
-    found = element.find("color")
-    if found is None:
+    color = element.find("color")
+    if color is None:
         return None
     try:
-        r, g, b, a = (min(max(float(v), 0.0), 1.0) for v in re.split(r"[\s,]+", (found.get("rgba") or "").strip()))
+        r, g, b, a = (min(max(float(v), 0.0), 1.0) for v in re.split(r"[\s,]+", (color.get("rgba") or "").strip()))
     except ValueError:
         return None
     return (r, g, b, a) if all(map(math.isfinite, (r, g, b, a))) else None
@@ -198,11 +198,11 @@ def _color(element: Any) -> tuple[float, float, float, float] | None:
 def _origin(element: Any, where: str) -> Floats:
     """Return the 4x4 transform of <origin xyz rpy>: rotation Rz(y) Ry(p) Rx(r)."""
     T = np.eye(4)
-    found = element.find("origin")
-    if found is None:
+    origin = element.find("origin")
+    if origin is None:
         return T
-    T[:3, 3] = _vector(found.get("xyz"), (0.0, 0.0, 0.0), where)
-    r, p, y = _vector(found.get("rpy"), (0.0, 0.0, 0.0), where)
+    T[:3, 3] = _vector(origin.get("xyz"), (0.0, 0.0, 0.0), where)
+    r, p, y = _vector(origin.get("rpy"), (0.0, 0.0, 0.0), where)
     (cr, cp, cy), (sr, sp, sy) = np.cos([r, p, y]), np.sin([r, p, y])
     T[:3, :3] = [
         [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],

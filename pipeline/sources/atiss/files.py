@@ -85,23 +85,23 @@ def read_room(folder: Folder, file: str) -> CachedRoom:
     arrays = _arrays(folder.read(file, MAX_FILE), file)
 
     def numbers(name: str, *shape: int | None) -> Floats:
-        found = _array(arrays, name, file)
+        array = _array(arrays, name, file)
         if (
-            found.dtype.kind not in "fiu"
-            or found.ndim != len(shape)
-            or any(n not in {None, m} for n, m in zip(shape, found.shape, strict=True))
+            array.dtype.kind not in "fiu"
+            or array.ndim != len(shape)
+            or any(n not in {None, m} for n, m in zip(shape, array.shape, strict=True))
         ):
-            raise SourceError("bad_boxes", file, f"{name} has type {found.dtype} and shape {found.shape}")
-        made = found.astype(np.float32)
-        if not np.isfinite(made).all():
+            raise SourceError("bad_boxes", file, f"{name} has type {array.dtype} and shape {array.shape}")
+        floats = array.astype(np.float32)
+        if not np.isfinite(floats).all():
             raise SourceError("bad_boxes", file, f"{name} holds a number that is not finite")
-        return made
+        return floats
 
     def words(name: str) -> tuple[str, ...]:
-        found = _array(arrays, name, file)
-        if found.dtype.kind != "U" or found.ndim > 1:
-            raise SourceError("bad_boxes", file, f"{name} has type {found.dtype}, not text")
-        return tuple(map(str, found.reshape(-1)))
+        array = _array(arrays, name, file)
+        if array.dtype.kind != "U" or array.ndim > 1:
+            raise SourceError("bad_boxes", file, f"{name} has type {array.dtype}, not text")
+        return tuple(map(str, array.reshape(-1)))
 
     count = len(numbers("translations", None, 3))
     if count > MAX_OBJECTS:
@@ -128,21 +128,21 @@ def _arrays(data: bytes, file: str) -> dict[str, NDArray[Any]]:
         if unpacked > MAX_UNPACKED:
             raise SourceError("bad_boxes", file, f"unpacks to {unpacked} bytes")
         with np.load(io.BytesIO(data), allow_pickle=False) as archive:
-            return {name: _unpickled(archive, name, file) for name in archive.files}
+            return {name: _load_array(archive, name, file) for name in archive.files}
     except (zipfile.BadZipFile, zlib.error, OSError, ValueError, KeyError, EOFError, NotImplementedError) as error:
         raise SourceError("bad_boxes", file, f"is no readable npz file ({str(error)[:60]})") from error
 
 
-def _unpickled(archive: Any, name: str, file: str) -> NDArray[Any]:
+def _load_array(archive: Any, name: str, file: str) -> NDArray[Any]:
     try:
-        found: NDArray[Any] = archive[name]
+        array: NDArray[Any] = archive[name]
     except ValueError as error:
         if "allow_pickle" not in str(error):
             raise
         raise SourceError(
             "bad_boxes", file, f"{name} needs pickle, which is never loaded; write it again as an array of text or numbers"
         ) from error
-    return found
+    return array
 
 
 def _array(arrays: dict[str, NDArray[Any]], name: str, file: str) -> NDArray[Any]:

@@ -55,18 +55,18 @@ def kinds_of(source: Path) -> dict[str, Kind]:
 
     Raises ContentError where there is none, or its classes are not those of the peers.
     """
-    found = {}
+    kinds = {}
     for path in sorted([*source.glob(STATS), *source.glob(f"*/{STATS}")]):
         name = path.parent.relative_to(source).as_posix()
         kind = kind_of(read_classes(Folder.at(source), path.relative_to(source).as_posix()))
         if kind is None:
             raise ContentError(f"{path} lists classes that are none of the peers' four sets", "give the file that came with the rooms")
-        found[name] = kind
-    if not found:
+        kinds[name] = kind
+    if not kinds:
         raise ContentError(
             f"preprocess.sources.peers: {source} has no {STATS}", "name the folder with the cached rooms, or the one above it"
         )
-    return found
+    return kinds
 
 
 def peers_houses(source: Path, kinds: Mapping[str, Kind]) -> list[House]:
@@ -120,7 +120,7 @@ def _room(cached: CachedRoom, task: PeersTask, kind: Kind, others: list[ReadRoom
     record = RoomRecord(cached.scene_id, cached.scene_type, ())
     room = ReadRoom(record, room_id, cached.scene_type.lower(), floor, Polygon(floor.polygon), task.filters.ceiling, [])
     room.objects.extend(_objects(cached, task, kind, rows))
-    bare = sum(not made.asset_id for made in room.objects)
+    bare = sum(not piece.asset_id for piece in room.objects)
     if bare:
         rows.rejects.append(reject("room", cached.scene_uid, "size_from_bbox", f"{bare} of {len(room.objects)} objects have no model"))
     return room

@@ -32,28 +32,28 @@ class Written:
 
 def write_kind(folder: Path, rooms: Rooms, kind: Kind, *, filtered: bool) -> Written:
     """Write <folder>/<kind>/<house>_<room>/boxes.npz, dataset_stats.txt, and <kind>_threed_front_splits.csv beside it."""
-    made = Written()
+    summary = Written()
     kept: list[CachedRoom] = []
     lines = []
-    for split, room in _selected(rooms, kind, made.rejects, filtered=filtered):
+    for split, room in _select_rooms(rooms, kind, summary.rejects, filtered=filtered):
         write_room(folder / kind.name / room.scene_uid, room)
-        made.rooms[split] += 1
+        summary.rooms[split] += 1
         lines.append(f"{room.scene_id},{split}\n")
         if split != "test":
             kept.append(room)
     write_stats(folder / kind.name / STATS, stats(kept, kind.classes))
     write_bytes(folder / f"{kind.name}_threed_front_splits.csv", "".join(lines).encode())
-    return made
+    return summary
 
 
-def _selected(rooms: Rooms, kind: Kind, rejects: list[Row], *, filtered: bool) -> Iterator[tuple[str, CachedRoom]]:
+def _select_rooms(rooms: Rooms, kind: Kind, rejects: list[Row], *, filtered: bool) -> Iterator[tuple[str, CachedRoom]]:
     taken: set[str] = set()
     for split, row, objects in rooms:
         if kind.word not in row["type"]:
             continue
         known = [o for o in objects if kind.label(o["category"])]
         where = f"{kind.name}/{row['source_id']}"
-        why = _refused(row, objects, known, kind) if filtered else ""
+        why = _refusal(row, objects, known, kind) if filtered else ""
         if why or not known:
             rejects.append(reject("room", where, "peers_filter", why or "holds nothing of the kind's classes"))
             continue
@@ -61,10 +61,10 @@ def _selected(rooms: Rooms, kind: Kind, rejects: list[Row], *, filtered: bool) -
         if others:
             rejects.append(reject("room", where, "peers_class", f"{len(objects) - len(known)} objects left out: {', '.join(others)}"))
         scene_id = _unique(row["source_id"].split("/", 1)[-1].replace("_", "-"), taken)
-        yield split, cached(row, known, kind, scene_id)
+        yield split, to_cached_room(row, known, kind, scene_id)
 
 
-def _refused(row: Row, objects: Sequence[Row], known: Sequence[Row], kind: Kind) -> str:
+def _refusal(row: Row, objects: Sequence[Row], known: Sequence[Row], kind: Kind) -> str:
     """Return which of the peers' filters refuses the room, "" for none."""
     span = np.ptp(np.array(row["polygon"]), axis=0)
     top = max((o["position"][2] + o["size"][2] for o in objects), default=0.0)
@@ -89,7 +89,7 @@ def _unique(scene_id: str, taken: set[str]) -> str:
     return free
 
 
-def cached(row: Row, objects: Sequence[Row], kind: Kind, scene_id: str) -> CachedRoom:
+def to_cached_room(row: Row, objects: Sequence[Row], kind: Kind, scene_id: str) -> CachedRoom:
     """Return a room with `objects`, all of classes of the kind, as the peers keep it."""
     vertices, faces = floor_mesh(np.array(row["polygon"], float))
     centroid = ((vertices.min(axis=0) + vertices.max(axis=0)) / 2).astype(np.float32)
@@ -140,7 +140,7 @@ def floor_mask(polygon: Floats, centroid: NDArray[np.float32], reach: float) -> 
     return np.where(shapely.contains_xy(shape, x, -z), 255, 0).astype(np.uint8)[..., None]
 
 
-def grouped(rooms: Sequence[Row], objects: Sequence[Row], splits: Mapping[str, str]) -> list[tuple[str, Row, list[Row]]]:
+def rooms_with_objects(rooms: Sequence[Row], objects: Sequence[Row], splits: Mapping[str, str]) -> list[tuple[str, Row, list[Row]]]:
     """Return (split, room, its objects) for all rooms, in the order of the rooms table."""
     inside: dict[tuple[str, str], list[Any]] = {}
     for row in objects:

@@ -83,7 +83,7 @@ class _Reader:
         T[:3, :3] = UPRIGHT[(self.root.findtext("asset/up_axis") or "Y_UP").strip()]
         T[:3, :3] *= float(unit.get("meter", 1.0)) if unit is not None else 1.0
         scene = self.root.find("scene/instance_visual_scene")
-        shown = [self._named(scene)] if scene is not None else self.root.findall("library_visual_scenes/visual_scene")
+        shown = [self._resolve(scene)] if scene is not None else self.root.findall("library_visual_scenes/visual_scene")
         for element in shown:
             for node in element.findall("node"):
                 self._node(node, T, 0)
@@ -93,7 +93,7 @@ class _Reader:
         file = ObjFile(np.concatenate(self.vertices), uvs, tuple(self.groups), "")
         return file, {name: material(name, self.elements) for name in sorted({g.material for g in self.groups} - {""})}
 
-    def _named(self, instance: Any) -> Any:
+    def _resolve(self, instance: Any) -> Any:
         return self.elements[instance.get("url").removeprefix("#")]
 
     def _visit(self) -> None:
@@ -109,11 +109,11 @@ class _Reader:
             T = T @ _transform(element)
         for instance in node.findall("instance_geometry"):
             bound = {m.get("symbol"): m.get("target", "").removeprefix("#") for m in instance.iter("instance_material")}
-            self._geometry(self._named(instance), T, bound)
+            self._geometry(self._resolve(instance), T, bound)
         for child in node.findall("node"):
             self._node(child, T, depth + 1)
         for instance in node.findall("instance_node"):
-            self._node(self._named(instance), T, depth + 1)
+            self._node(self._resolve(instance), T, depth + 1)
 
     def _geometry(self, geometry: Any, T: Floats, bound: dict[str, str]) -> None:
         mesh = geometry.find("mesh")
@@ -173,12 +173,12 @@ def _numbers(text: str | None, kind: type, where: str) -> NDArray[Any]:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:
-            found: NDArray[Any] = np.fromstring((text or "").strip(), kind, sep=" ")
+            numbers: NDArray[Any] = np.fromstring((text or "").strip(), kind, sep=" ")
         except (ValueError, DeprecationWarning) as error:
             raise SourceError("bad_number", where, "has a list that holds something that is no number") from error
-    if kind is np.float64 and not np.isfinite(found).all():
+    if kind is np.float64 and not np.isfinite(numbers).all():
         raise SourceError("bad_number", where, "has a number that is not finite")
-    return found
+    return numbers
 
 
 def _triangles(primitive: Any, width: int) -> Iterator[Ints]:

@@ -30,8 +30,8 @@ def material(name: str, elements: Elements) -> MtlMaterial:
 
 def _following(element: Any, tag: str, elements: Elements) -> Any:
     """Return what the first `tag` in an element names by its url, or None."""
-    found = element.find(tag) if element is not None else None
-    return None if found is None else elements.get(found.get("url", "").removeprefix("#"))
+    reference = element.find(tag) if element is not None else None
+    return None if reference is None else elements.get(reference.get("url", "").removeprefix("#"))
 
 
 def _image(sampler: str, profile: Any, elements: Elements) -> str:
@@ -43,8 +43,8 @@ def _image(sampler: str, profile: Any, elements: Elements) -> str:
     params = {p.get("sid"): p for p in profile.iter("newparam")}
     name = sampler
     for tag in ("sampler2D/source", "surface/init_from"):
-        found = params[name].findtext(tag) if name in params else None
-        name = found.strip() if found else name
+        text = params[name].findtext(tag) if name in params else None
+        name = text.strip() if text else name
     image = _following(params[name].find("sampler2D"), "instance_image", elements) if name in params else elements.get(name)
     if image is None or image.tag != "image":
         return ""
@@ -54,12 +54,12 @@ def _image(sampler: str, profile: Any, elements: Elements) -> str:
 
 def _opacity(shader: Any) -> float:
     """Return the opacity: COLLADA's default, A_ONE, multiplies the colour's alpha; RGB_ZERO is transparent where it is white."""
-    found = shader.find("transparent")
+    transparent = shader.find("transparent")
     amount = _number(shader.findtext("transparency/float"), 1.0)
-    color = _color(found) if found is not None else None
+    color = _color(transparent) if transparent is not None else None
     if color is None:
         return 1.0
-    if found.get("opaque", "A_ONE") == "RGB_ZERO":
+    if transparent.get("opaque", "A_ONE") == "RGB_ZERO":
         return min(max(1.0 - amount * sum(color[:3]) / 3, 0.0), 1.0)
     # Exporters that mean opaque write alpha 0 or amount 0 as often as 1: nothing is made of glass that cannot be seen.
     return min(amount * color[3], 1.0) if amount * color[3] > 0 else 1.0

@@ -12,9 +12,9 @@ from pipeline.entities.asset import Link, Mesh
 from pipeline.sources.densities import BOARD, BOXES, HOLLOW, MINIMUM
 from pipeline.sources.meshes.cutting import cut
 from pipeline.sources.meshes.inertials import Inertial
-from pipeline.sources.meshes.merging import merged
-from pipeline.sources.meshes.mesh_solids import Part, convex, dissected, mass_properties
-from pipeline.sources.meshes.near_boxes import boxed
+from pipeline.sources.meshes.merging import merge_pieces
+from pipeline.sources.meshes.mesh_solids import Part, convex, mass_properties, parts_with_meshes
+from pipeline.sources.meshes.near_boxes import simplify_to_box
 from pipeline.sources.meshes.touching import Felt, simpler
 from pipeline.sources.settings import ModelLimits
 
@@ -57,10 +57,11 @@ def bodies_solids(
     CUTS pieces left; what comes after stands as its hull, and so do all of them where `tolerance` is None. Neighbouring
     pieces are merged where that fills next to nothing. Beyond `max_pieces` of a link the smallest are left out.
     """
-    found = [(name, [entry for vertices, faces in meshes for entry in dissected(vertices, faces)]) for name, meshes in bodies]
-    cuts = {} if tolerance is None else _cuts([parts for _, parts in found], limits, tolerance)
+    by_body = [(name, [entry for vertices, faces in meshes for entry in parts_with_meshes(vertices, faces)]) for name, meshes in bodies]
+    cuts = {} if tolerance is None else _cuts([parts for _, parts in by_body], limits, tolerance)
     return [
-        _solids(name, parts, {k: c for (owner, k), c in cuts.items() if owner == body}, limits) for body, (name, parts) in enumerate(found)
+        _solids(name, parts, {k: c for (owner, k), c in cuts.items() if owner == body}, limits)
+        for body, (name, parts) in enumerate(by_body)
     ]
 
 
@@ -74,30 +75,30 @@ def _cuts(bodies: Sequence[Sequence[Dissected]], limits: ModelLimits, tolerance:
             for k, (part, _, _) in enumerate(parts)
             if part.fill < limits.convex_fill and part.hull_volume >= WORTH * largest
         ]
-    made: dict[tuple[int, int], list[Part]] = {}
+    cuts: dict[tuple[int, int], list[Part]] = {}
     left = CUTS
     for _, body, k in sorted(hollow)[:LOOKS]:
         part, points, triangles = bodies[body][k]
         if np.ptp(points, axis=0).max() < 2 * tolerance:
-            made[body, k] = [part]
+            cuts[body, k] = [part]
             continue
         pieces = cut(points, triangles, tolerance, min(PIECES, left)).pieces
-        made[body, k] = [part] if len(pieces) == 1 else [p for piece in pieces if (p := convex(piece, part.volume / len(pieces)))]
+        cuts[body, k] = [part] if len(pieces) == 1 else [p for piece in pieces if (p := convex(piece, part.volume / len(pieces)))]
         left = max(left - len(pieces), 1)
-    return made
+    return cuts
 
 
-def _solids(name: str, found: Sequence[Dissected], cuts: Mapping[int, list[Part]], limits: ModelLimits) -> Solids:
+def _solids(name: str, dissection: Sequence[Dissected], cuts: Mapping[int, list[Part]], limits: ModelLimits) -> Solids:
     notes: list[tuple[str, str]] = []
-    pieces = [p for k, (part, _, _) in enumerate(found) for p in cuts.get(k, [part])]
-    hulls = sum(part.fill < limits.convex_fill and k not in cuts for k, (part, _, _) in enumerate(found))
+    pieces = [p for k, (part, _, _) in enumerate(dissection) for p in cuts.get(k, [part])]
+    hulls = sum(part.fill < limits.convex_fill and k not in cuts for k, (part, _, _) in enumerate(dissection))
     if hulls:
-        notes.append(("hull_collider", f"{name}: {hulls} of {len(found)} parts"))
-    pieces = list(merged(pieces))
+        notes.append(("hull_collider", f"{name}: {hulls} of {len(dissection)} parts"))
+    pieces = list(merge_pieces(pieces))
     if len(pieces) > limits.max_pieces:
         notes.append(("colliders_capped", f"{name}: {len(pieces)} pieces, the largest {limits.max_pieces} kept"))
         pieces = sorted(pieces, key=lambda p: -p.hull_volume)[: limits.max_pieces]
-    return Solids(tuple(part for part, _, _ in found), tuple(pieces), tuple(notes))
+    return Solids(tuple(part for part, _, _ in dissection), tuple(pieces), tuple(notes))
 
 
 def link(
@@ -116,7 +117,7 @@ def link(
     if isinstance(stated, Inertial):
         mass, com, inertia = stated.mass, stated.centre, stated.inertia
     else:
-        mass, com, inertia = mass_properties([(_hollowed(p, kind), density) for p in matter.parts])
+        mass, com, inertia = mass_properties([(_hollow_out(p, kind), density) for p in matter.parts])
         if stated is not None and mass > 0:
             mass, inertia = stated, inertia * (stated / mass)
     if 0 < mass < MINIMUM:
@@ -131,10 +132,10 @@ def link(
 
 def matter_volume(matter: Solids, kind: str) -> float:
     """Return the volume of matter [m3] of a link of that super-category."""
-    return float(sum(_hollowed(p, kind).volume for p in matter.parts))
+    return float(sum(_hollow_out(p, kind).volume for p in matter.parts))
 
 
-def _hollowed(part: Part, kind: str) -> Part:
+def _hollow_out(part: Part, kind: str) -> Part:
     """Return the part as it weighs: of case furniture a block too thick for a board is a box of boards."""
     if kind not in BOXES or np.ptp(part.hull, axis=0).min() <= HOLLOW:
         return part
@@ -142,5 +143,5 @@ def _hollowed(part: Part, kind: str) -> Part:
 
 
 def _piece(number: int, part: Part, near: float, floor: float) -> Mesh:
-    hull, faces = boxed(part.hull, part.faces, near, floor)
+    hull, faces = simplify_to_box(part.hull, part.faces, near, floor)
     return Mesh(f"piece_{number:03d}", hull.astype(np.float32), faces.astype(np.int32))

@@ -80,7 +80,7 @@ def cut(vertices: Floats, faces: Ints, tolerance: float, most: int) -> Cut:
     """Cut a part (vertices (V, 3), faces (F, 3)) into at most `most` pieces without pockets deeper than `tolerance`."""
     grid = _grid(vertices, faces, tolerance)
     enough = max(tolerance, FINE * grid.cell)
-    whole = _measured(grid, np.arange(len(grid.points)), enough)
+    whole = _make_piece(grid, np.arange(len(grid.points)), enough)
     if whole is None:
         return Cut((vertices[np.unique(faces)],), 0.0)
     if whole.depth <= enough or most < 2:
@@ -92,13 +92,13 @@ def cut(vertices: Floats, faces: Ints, tolerance: float, most: int) -> Cut:
         if pieces[worst].depth <= enough:
             break
         piece = pieces.pop(worst)
-        sides = _divided(grid, piece, most - len(pieces) - len(closed), enough)
+        sides = _divide(grid, piece, most - len(pieces) - len(closed), enough)
         if len(sides) < 2:
             closed.append(piece)
         else:
             pieces += sides
-    found = pieces + closed
-    return Cut(tuple(grid.points[p.members[p.hull.vertices]] for p in found), max(p.depth for p in found))
+    all_pieces = pieces + closed
+    return Cut(tuple(grid.points[p.members[p.hull.vertices]] for p in all_pieces), max(p.depth for p in all_pieces))
 
 
 def _grid(vertices: Floats, faces: Ints, tolerance: float) -> _Grid:
@@ -157,7 +157,7 @@ def _samples(corners: Floats, cell: float) -> Floats:
     return np.asarray((a + (b - a) * u[:, None]) * (1 - v)[:, None] + c * v[:, None])
 
 
-def _measured(grid: _Grid, members: Ints, enough: float) -> _Piece | None:
+def _make_piece(grid: _Grid, members: Ints, enough: float) -> _Piece | None:
     """Return a piece with what its hull holds of air deeper than `enough`, None where it spans no volume."""
     points = grid.points[members]
     try:
@@ -178,8 +178,8 @@ def _measured(grid: _Grid, members: Ints, enough: float) -> _Piece | None:
         air, centres = air[keep], centres[keep]
         if not len(air):
             break
-    found = depth[tuple(air.T)]
-    return _Piece(members, hull, step * len(found), float(found.max(initial=0.0)))
+    depths = depth[tuple(air.T)]
+    return _Piece(members, hull, step * len(depths), float(depths.max(initial=0.0)))
 
 
 def _planes(hull: ConvexHull) -> Floats:
@@ -194,7 +194,7 @@ def _thick(points: Floats, cell: float) -> Floats:
     return np.concatenate([points + 0.05 * cell * spread[2], points - 0.05 * cell * spread[2]])
 
 
-def _divided(grid: _Grid, piece: _Piece, most: int, enough: float) -> list[_Piece]:
+def _divide(grid: _Grid, piece: _Piece, most: int, enough: float) -> list[_Piece]:
     """Return a wall of a piece and the rest, else the sides of its best cut, each in as many pieces as it falls apart to.
 
     Fewer than 2 where no plane divides it.
@@ -202,33 +202,33 @@ def _divided(grid: _Grid, piece: _Piece, most: int, enough: float) -> list[_Piec
     wall = _wall(grid, piece.members) if grid.sheets else None
     if wall is not None:
         blocks = [piece.members[wall], *_apart(grid, piece.members[~wall])]
-        peeled = [p for block in blocks if (p := _measured(grid, block, enough)) is not None]
+        peeled = [p for block in blocks if (p := _make_piece(grid, block, enough)) is not None]
         if 2 <= len(peeled) <= most:
             return peeled
-    cost, axis, plane = min((_best(grid, piece, axis) for axis in range(3)), key=lambda found: found[:2])
+    cost, axis, plane = min((_best(grid, piece, axis) for axis in range(3)), key=lambda option: option[:2])
     if math.isfinite(cost) and cost > GAIN:
         axis, plane = _foresight(grid, piece) or (axis, plane)
     if plane < 0:
         return []
     where = grid.cells[piece.members, axis]
-    made: list[_Piece] = []
+    pieces: list[_Piece] = []
     for side in (piece.members[where <= plane], piece.members[where >= plane]):  # both hold the layer of the cut: no gap
-        made += [p for block in _apart(grid, np.unique(side)) if (p := _measured(grid, block, enough)) is not None]
-    return made if len(made) <= max(most, 2) else sorted(made, key=lambda p: -p.hull.volume)[: max(most, 2)]
+        pieces += [p for block in _apart(grid, np.unique(side)) if (p := _make_piece(grid, block, enough)) is not None]
+    return pieces if len(pieces) <= max(most, 2) else sorted(pieces, key=lambda p: -p.hull.volume)[: max(most, 2)]
 
 
 def _foresight(grid: _Grid, piece: _Piece) -> tuple[int, int] | None:
     """Return (axis, layer) of the halving after which the next cut gains most: a ring gains nothing by one cut, but by two."""
-    found = []
+    options = []
     for axis in range(3):
         where = grid.cells[piece.members, axis]
         plane = int(where.min() + where.max()) // 2
         if where.max() - where.min() < 4:
             continue
-        sides = [_measured(grid, piece.members[side], math.inf) for side in (where <= plane, where >= plane)]
+        sides = [_make_piece(grid, piece.members[side], math.inf) for side in (where <= plane, where >= plane)]
         then = [min(_best(grid, p, k)[0] for k in range(3)) * p.hull.volume for p in sides if p is not None]
-        found.append((round(sum(min(t, p.hull.volume) for t, p in zip(then, [p for p in sides if p], strict=True)), 9), axis, plane))
-    return min(found)[1:] if found else None
+        options.append((round(sum(min(t, p.hull.volume) for t, p in zip(then, [p for p in sides if p], strict=True)), 9), axis, plane))
+    return min(options)[1:] if options else None
 
 
 def _wall(grid: _Grid, members: Ints) -> Bools | None:
@@ -236,7 +236,7 @@ def _wall(grid: _Grid, members: Ints) -> Bools | None:
 
     What is made of boards or drawn as sheets, an open box say, has nothing to gain by any one cut elsewhere.
     """
-    found: tuple[int, Bools] | None = None
+    best: tuple[int, Bools] | None = None
     for axis in range(3):
         where = grid.cells[members, axis] - grid.cells[members, axis].min()
         count = np.bincount(where)
@@ -244,7 +244,7 @@ def _wall(grid: _Grid, members: Ints) -> Bools | None:
             return None
         pairs = count[:-1] + count[1:]
         k = int(np.argmax(pairs))
-        if pairs[k] < WALL * len(members) or (found is not None and pairs[k] <= found[0]):
+        if pairs[k] < WALL * len(members) or (best is not None and pairs[k] <= best[0]):
             continue
         inside = (where == k) | (where == k + 1)
         flat = np.unique(np.delete(grid.cells[members[inside]], axis, axis=1), axis=0)
@@ -253,8 +253,8 @@ def _wall(grid: _Grid, members: Ints) -> Bools | None:
         except QhullError:
             continue
         if len(flat) >= FULL * outline and not inside.all():
-            found = int(pairs[k]), inside
-    return None if found is None else found[1]
+            best = int(pairs[k]), inside
+    return None if best is None else best[1]
 
 
 def _apart(grid: _Grid, members: Ints) -> list[Ints]:
@@ -310,7 +310,7 @@ def _fewer(grid: _Grid, members: Ints, axis: int) -> Ints:
 
 def _volumes(blocks: list[Floats]) -> list[float]:
     """Return the volumes of the hulls of the first, the first two, ... of the blocks of points."""
-    kept, found = np.zeros((0, 3)), []
+    kept, volumes = np.zeros((0, 3)), []
     for block in blocks:
         kept = np.concatenate([kept, block])
         volume = 0.0
@@ -320,5 +320,5 @@ def _volumes(blocks: list[Floats]) -> list[float]:
                 kept, volume = kept[hull.vertices], float(hull.volume)
             except (QhullError, ValueError):
                 pass  # flat so far
-        found.append(volume)
-    return found
+        volumes.append(volume)
+    return volumes

@@ -35,7 +35,7 @@ class Inertial:
         return Inertial(self.mass, (self.centre - shift) * factor, self.inertia * factor**2)
 
 
-def joined(pieces: Sequence[Inertial]) -> Inertial:
+def combine_inertials(pieces: Sequence[Inertial]) -> Inertial:
     """Return what bodies that are fixed to each other are together (parallel axis theorem)."""
     mass = sum(p.mass for p in pieces)
     centre = np.asarray(sum(p.mass * p.centre for p in pieces) / (mass or np.nan))

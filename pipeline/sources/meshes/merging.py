@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combined, cross
+from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, cross
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -30,7 +30,7 @@ ALL = 40  # pieces of a slab up to which what lies between any two is looked at
 SAMPLES = (8, 40)  # a side, of the grids on which a slab's pockets are looked for
 
 
-def merged(pieces: Sequence[Part]) -> tuple[Part, ...]:
+def merge_pieces(pieces: Sequence[Part]) -> tuple[Part, ...]:
     """Return the pieces with neighbours merged: pairs, cheapest first, until each further one would fill more than GAIN; then slabs."""
     if not 2 <= len(pieces) <= MOST:
         return tuple(pieces)
@@ -69,13 +69,13 @@ class _State:
 
     def union(self, members: Sequence[int]) -> float:
         """Return a lower bound of the volume of the union of pieces."""
-        held = self.matter[members[0]]
+        volume = self.matter[members[0]]
         box = self.boxes[members[0]]
         for k in members[1:]:
             common = np.maximum(np.minimum(box[1], self.boxes[k, 1]) - np.maximum(box[0], self.boxes[k, 0]), 0.0)
-            held = max(held, self.matter[k], held + self.matter[k] - float(common.prod()))
+            volume = max(volume, self.matter[k], volume + self.matter[k] - float(common.prod()))
             box = np.array([np.minimum(box[0], self.boxes[k, 0]), np.maximum(box[1], self.boxes[k, 1])])
-        return held
+        return volume
 
     def offers(self, i: int, others: Sequence[int]) -> list[tuple[float, int, int]]:
         """Return the offers of piece i to pieces that touch it: bounds for all at once, hulls for the likeliest few that pass."""
@@ -98,18 +98,18 @@ class _State:
         """Return (share that the common hull fills, i, j), or None where it is more than GAIN."""
         least = self.union((i, j))
         most = least / (1 - GAIN)
-        if least <= 0 or self._grown(i, j) > most or self._grown(j, i) > most:
+        if least <= 0 or self._grown_volume(i, j) > most or self._grown_volume(j, i) > most:
             return None
-        found = _hull([self.pieces[i], self.pieces[j]])
-        if found is None or found.volume > most:
+        hull = _hull([self.pieces[i], self.pieces[j]])
+        if hull is None or hull.volume > most:
             return None
-        return 1 - least / float(found.volume), i, j
+        return 1 - least / float(hull.volume), i, j
 
-    def merge(self, members: Sequence[int], held: float) -> int:
-        """Replace pieces by one that holds `held` for certain; return its index."""
-        part = combined([self.pieces[k] for k in members])
+    def merge(self, members: Sequence[int], volume: float) -> int:
+        """Replace pieces by one that holds `volume` for certain; return its index."""
+        part = combine_parts([self.pieces[k] for k in members])
         self.pieces.append(part)
-        self.matter.append(held)
+        self.matter.append(volume)
         self.planes.append(_planes(part))
         pair = self.boxes[list(members)]
         self.boxes = np.concatenate([self.boxes, [[pair[:, 0].min(axis=0), pair[:, 1].max(axis=0)]]])
@@ -118,7 +118,7 @@ class _State:
         self.alive.append(True)
         return len(self.pieces) - 1
 
-    def _grown(self, i: int, j: int) -> float:
+    def _grown_volume(self, i: int, j: int) -> float:
         """Return the volume of the hull of piece i and the point of piece j that adds most: a bound that needs no hull.
 
         A point adds a pyramid over each face that it sees.
@@ -155,7 +155,7 @@ def _slabs(state: _State, axis: int) -> None:
     for seed in sorted((k for k in state.living() if thin[k]), key=lambda k: -extent[k, axis]):
         low, high = state.boxes[seed, :, axis]
         inside = np.array(state.alive) & (state.boxes[:, 0, axis] >= low - pocket) & (state.boxes[:, 1, axis] <= high + pocket)
-        members = _connected(state, inside, seed)
+        members = _connected_pieces(state, inside, seed)
         if len(members) < 2 or members in tried or not state.alive[seed]:
             continue
         tried.add(members)
@@ -163,15 +163,15 @@ def _slabs(state: _State, axis: int) -> None:
             state.merge(members, state.union(members))
 
 
-def _connected(state: _State, among: Bools, seed: int) -> tuple[int, ...]:
+def _connected_pieces(state: _State, among: Bools, seed: int) -> tuple[int, ...]:
     """Return the pieces that hang together with `seed` through pieces of the mask `among` (P,), itself included."""
-    found, queue = {seed}, [seed]
+    component, queue = {seed}, [seed]
     while queue:
         for k in np.flatnonzero(among & state.touching(*state.boxes[queue.pop()])).tolist():
-            if k not in found:
-                found.add(k)
+            if k not in component:
+                component.add(k)
                 queue.append(k)
-    return tuple(sorted(found))
+    return tuple(sorted(component))
 
 
 def _shallow(state: _State, members: Sequence[int], axis: int, pocket: float) -> bool:
@@ -180,18 +180,18 @@ def _shallow(state: _State, members: Sequence[int], axis: int, pocket: float) ->
     first, second = _between(centres)
     if _away(state, members, (centres[first] + centres[second]) / 2) > pocket:  # what lies between two of them is in the hull
         return False
-    found = _hull([state.pieces[k] for k in members])
-    if found is None:
+    hull = _hull([state.pieces[k] for k in members])
+    if hull is None:
         return False
-    low, high = found.points.min(axis=0), found.points.max(axis=0)
+    low, high = hull.points.min(axis=0), hull.points.max(axis=0)
     face = float(np.delete(high - low, axis).prod())
-    if found.volume - sum(state.pieces[k].hull_volume for k in members) > 2 * pocket * face:
+    if hull.volume - sum(state.pieces[k].hull_volume for k in members) > 2 * pocket * face:
         return False
     for samples in SAMPLES:
         steps = (np.arange(samples) + 0.5) / samples
         grid = np.stack(np.meshgrid(*((0.02, 0.5, 0.98) if k == axis else steps for k in range(3)), indexing="ij"), axis=-1).reshape(-1, 3)
         points = low + grid * (high - low)
-        points = points[(points @ found.equations[:, :3].T + found.equations[:, 3] <= 0).all(axis=1)]
+        points = points[(points @ hull.equations[:, :3].T + hull.equations[:, 3] <= 0).all(axis=1)]
         if len(points) and _away(state, members, points) > pocket:
             return False
     return True
@@ -224,7 +224,7 @@ def _planes(part: Part) -> tuple[Floats, Floats]:
 
 def _hull(pieces: Sequence[Part]) -> ConvexHull | None:
     try:
-        found = ConvexHull(np.concatenate([p.hull for p in pieces]))
+        hull = ConvexHull(np.concatenate([p.hull for p in pieces]))
     except (QhullError, ValueError):
         return None
-    return found if len(found.vertices) <= MAX_HULL else None
+    return hull if len(hull.vertices) <= MAX_HULL else None

@@ -56,22 +56,24 @@ class Part:
 
 def parts(vertices: Floats, faces: Ints) -> list[Part]:
     """Split a mesh [m] into connected parts, largest hull first; parts without extent are left out."""
-    return [part for part, _, _ in dissected(vertices, faces)]
+    return [part for part, _, _ in parts_with_meshes(vertices, faces)]
 
 
-def dissected(vertices: Floats, faces: Ints) -> list[tuple[Part, Floats, Ints]]:
+def parts_with_meshes(vertices: Floats, faces: Ints) -> list[tuple[Part, Floats, Ints]]:
     """Return the parts as `parts` does, each with its own mesh (vertices (V, 3), faces (F, 3))."""
-    made = [(part, points, triangles) for points, triangles in components(vertices, faces) if (part := _part(points, triangles))]
-    return sorted(made, key=lambda m: (-round(m[0].hull_volume, 12), *m[0].hull.min(axis=0).round(6), *m[0].hull.max(axis=0).round(6)))
+    dissection = [(part, points, triangles) for points, triangles in components(vertices, faces) if (part := _part(points, triangles))]
+    return sorted(
+        dissection, key=lambda m: (-round(m[0].hull_volume, 12), *m[0].hull.min(axis=0).round(6), *m[0].hull.max(axis=0).round(6))
+    )
 
 
-def combined(pieces: Sequence[Part]) -> Part:
+def combine_parts(pieces: Sequence[Part]) -> Part:
     """Return the hull of several parts as one; it holds their matter. Raises ValueError where they span no volume."""
-    made = hull(np.concatenate([p.hull for p in pieces]))
-    if made is None:
+    convex_hull = hull(np.concatenate([p.hull for p in pieces]))
+    if convex_hull is None:
         msg = "the parts span no volume"
         raise ValueError(msg)
-    corners, faces, volume = made
+    corners, faces, volume = convex_hull
     _, centre, inertia = _hull_moments(corners, faces)
     matter = min(sum(p.volume for p in pieces), volume)
     return Part(corners, faces, volume, matter / volume, matter, sum(p.area for p in pieces), centre, inertia)
@@ -79,13 +81,13 @@ def combined(pieces: Sequence[Part]) -> Part:
 
 def convex(points: Floats, matter: float) -> Part | None:
     """Return the hull of points (N, 3) as a part that holds `matter` [m3] at most; None where they span nothing."""
-    made = hull(points)
-    if made is None or made[2] <= 0:
+    convex_hull = hull(points)
+    if convex_hull is None or convex_hull[2] <= 0:
         return None
-    corners, faces, volume = made
+    corners, faces, volume = convex_hull
     _, centre, inertia = _hull_moments(corners, faces)
-    held = min(matter, volume)
-    return Part(corners, faces, volume, held / volume, held, surface(corners, faces), centre, inertia)
+    solid_volume = min(matter, volume)
+    return Part(corners, faces, volume, solid_volume / volume, solid_volume, surface(corners, faces), centre, inertia)
 
 
 def components(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]:
@@ -98,23 +100,23 @@ def components(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]:
         return []
     used, index = np.unique(faces, return_inverse=True)
     points, faces = vertices[used], index.reshape(faces.shape)
-    made = []
+    pieces = []
     label = _owners(faces, len(points))[faces[:, 0]]
     whole = _whole(faces, label)
     if whole.any():
-        made += [(points, block) for block in _split(faces[whole], label[whole])]
+        pieces += [(points, block) for block in _split(faces[whole], label[whole])]
         faces = faces[~whole]
     if len(faces):
-        points, faces = _welded(points, faces)
+        points, faces = _weld_vertices(points, faces)
         label = _over_edges(faces)
         whole = _whole(faces, label)
-        made += [(points, block) for block in _split(faces[whole], label[whole])]
+        pieces += [(points, block) for block in _split(faces[whole], label[whole])]
         loose = _once(faces[~whole])
-        made += [(points, block) for block in _split(loose, _owners(loose, len(points))[loose[:, 0]])]
-    return [_compact(*part) for part in made]
+        pieces += [(points, block) for block in _split(loose, _owners(loose, len(points))[loose[:, 0]])]
+    return [_compact(*part) for part in pieces]
 
 
-def _welded(points: Floats, faces: Ints) -> tuple[Floats, Ints]:
+def _weld_vertices(points: Floats, faces: Ints) -> tuple[Floats, Ints]:
     """Return the mesh with vertices at the same place made one, without the faces that this makes degenerate."""
     span = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
     grid = np.round((points - points.min(axis=0)) / (span * WELD)).astype(np.int64)
@@ -200,13 +202,13 @@ def _hash(grid: Ints) -> Ints:
 def _part(points: Floats, faces: Ints) -> Part | None:
     if np.ptp(points, axis=0).max() < 1e-4:
         return None
-    closed = _closed(faces)
+    closed = _is_watertight(faces)
     inside = abs(signed_volume(points, faces)) if closed else 0.0
-    made = _itself(points, faces, inside) if closed else None
-    made = made or hull(points)
-    if made is None:
+    convex_hull = _itself(points, faces, inside) if closed else None
+    convex_hull = convex_hull or hull(points)
+    if convex_hull is None:
         return None
-    corners, hull_faces, hull_volume = made
+    corners, hull_faces, hull_volume = convex_hull
     area = surface(points, faces)
     if not (closed and inside > 1e-12) and _covers(points, faces, corners, hull_faces, area):
         inside = hull_volume
@@ -266,7 +268,7 @@ def hull(points: Floats) -> tuple[Floats, Ints, float] | None:
     A flat set gets a thickness of 2 SHEET across its plane. None where there is nothing to span.
     """
     try:
-        found = ConvexHull(points)
+        qhull = ConvexHull(points)
     except (QhullError, ValueError):
         centre = points.mean(axis=0)
         axes = np.linalg.svd(points - centre, full_matrices=True)[2] if len(points) < 4096 else np.linalg.eigh(np.cov(points.T))[1].T[::-1]
@@ -276,25 +278,25 @@ def hull(points: Floats) -> tuple[Floats, Ints, float] | None:
             if span < 2 * SHEET:
                 thick = np.concatenate([thick - SHEET * axis, thick + SHEET * axis])
         try:
-            found = ConvexHull(thick)
+            qhull = ConvexHull(thick)
         except (QhullError, ValueError):
             return None
-    if len(found.vertices) > MAX_HULL:
-        chosen = extremes(found.points[found.vertices])
+    if len(qhull.vertices) > MAX_HULL:
+        chosen = extremes(qhull.points[qhull.vertices])
         try:
-            found = ConvexHull(chosen)
+            qhull = ConvexHull(chosen)
         except QhullError:
             return None
-    index = np.sort(found.vertices)
-    where = np.full(len(found.points), -1)
+    index = np.sort(qhull.vertices)
+    where = np.full(len(qhull.points), -1)
     where[index] = np.arange(len(index))
-    faces = where[found.simplices]
-    corners = found.points[index]
+    faces = where[qhull.simplices]
+    corners = qhull.points[index]
     a, b, c = corners[faces[:, 0]], corners[faces[:, 1]], corners[faces[:, 2]]
-    inward = np.einsum("ij,ij->i", cross(b - a, c - a), found.equations[:, :3]) < 0
+    inward = np.einsum("ij,ij->i", cross(b - a, c - a), qhull.equations[:, :3]) < 0
     faces[inward] = faces[inward][:, ::-1]
     order = np.lexsort(np.sort(faces, axis=1).T)
-    return np.asarray(corners), faces[order], float(found.volume)
+    return np.asarray(corners), faces[order], float(qhull.volume)
 
 
 def extremes(points: Floats, most: int = MAX_HULL) -> Floats:
@@ -306,7 +308,7 @@ def extremes(points: Floats, most: int = MAX_HULL) -> Floats:
     return np.asarray(points[np.unique(np.argmax(points @ directions.T, axis=0))])
 
 
-def _closed(faces: Ints) -> bool:
+def _is_watertight(faces: Ints) -> bool:
     """Return whether every edge is used once in each direction."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     size = int(faces.max()) + 1

@@ -27,7 +27,7 @@ FACES: Ints = np.array(
 )
 
 
-def boxed(hull: Floats, faces: Ints, near: float = NEAR, floor: float = -np.inf) -> tuple[Floats, Ints]:
+def simplify_to_box(hull: Floats, faces: Ints, near: float = NEAR, floor: float = -np.inf) -> tuple[Floats, Ints]:
     """Return a convex hull (vertices (V, 3) [m], faces (F, 3) outwards), or the box around it where no point of that is further than `near` away.
 
     It reaches no lower than `floor` [m], on which the thing stands, lest it is pushed up.
@@ -36,7 +36,7 @@ def boxed(hull: Floats, faces: Ints, near: float = NEAR, floor: float = -np.inf)
     """
     if len(hull) <= len(CORNERS):
         return hull, faces
-    found = []
+    candidates = []
     for R in _axes(hull, faces):
         local = hull @ R.T
         low, high = local.min(axis=0), local.max(axis=0)
@@ -45,8 +45,8 @@ def boxed(hull: Floats, faces: Ints, near: float = NEAR, floor: float = -np.inf)
             continue
         away = float(cdist(corners, local).min(axis=1).max())
         if away <= min(near, SHARE * float(np.linalg.norm(high - low))):
-            found.append((round(away, 9), corners @ R))
-    return (min(found, key=lambda f: f[0])[1], FACES) if found else (hull, faces)
+            candidates.append((round(away, 9), corners @ R))
+    return (min(candidates, key=lambda f: f[0])[1], FACES) if candidates else (hull, faces)
 
 
 def _axes(hull: Floats, faces: Ints) -> Iterator[Floats]:

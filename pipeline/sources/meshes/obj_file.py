@@ -125,7 +125,7 @@ def parse_mtl(data: bytes) -> dict[str, MtlMaterial]:
 
     Tf and Ke are ignored: 3D-FUTURE's are wrong.
     """
-    found: dict[str, MtlMaterial] = {}
+    materials: dict[str, MtlMaterial] = {}
     name: str | None = None
     for raw in data.removeprefix(BOM).replace(b"\r", b"\n").split(b"\n", MAX_LINES)[:MAX_LINES]:
         words = raw.decode("utf-8", "replace").strip().split(None, 1)
@@ -133,13 +133,13 @@ def parse_mtl(data: bytes) -> dict[str, MtlMaterial]:
             continue
         key, rest = words[0], words[1].strip()
         if key == "newmtl":
-            if len(found) >= MAX_MATERIALS:
+            if len(materials) >= MAX_MATERIALS:
                 break
             name = rest
-            found.setdefault(name, MtlMaterial(name))
+            materials.setdefault(name, MtlMaterial(name))
         elif name is not None:
-            found[name] = _set(found[name], key, rest)
-    return found
+            materials[name] = _set(materials[name], key, rest)
+    return materials
 
 
 def _set(entry: MtlMaterial, key: str, rest: str) -> MtlMaterial:

@@ -22,7 +22,7 @@ AIR = 2  # cells about the body
 AROUND = np.ones((3, 3, 3), bool)
 
 
-def reached(hulls: Sequence[Floats], planes: Sequence[Floats], cell: float) -> Callable[[Floats], Bools]:
+def make_reach_test(hulls: Sequence[Floats], planes: Sequence[Floats], cell: float) -> Callable[[Floats], Bools]:
     """Return who tells of points (P, 3) whether they are come to from outside a body of convex pieces: their points (N, 3), their planes (F, 4).
 
     A cell [m] that a piece passes is full, so that gaps narrower than one or two are shut. The body stands: nothing comes from below.

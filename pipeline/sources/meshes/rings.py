@@ -20,11 +20,11 @@ LEVEL = 0.005  # [m] between heights that are one
 
 def same_height(pieces: Sequence[Part]) -> list[list[int]]:
     """Return the pieces by index, together those that lie between the same heights."""
-    found: dict[tuple[int, int], list[int]] = {}
+    by_height: dict[tuple[int, int], list[int]] = {}
     for k, piece in enumerate(pieces):
         z = piece.hull[:, 2]
-        found.setdefault((round(z.min() / LEVEL), round(z.max() / LEVEL)), []).append(k)
-    return list(found.values())
+        by_height.setdefault((round(z.min() / LEVEL), round(z.max() / LEVEL)), []).append(k)
+    return list(by_height.values())
 
 
 def is_ring(pieces: Sequence[Part], among: Sequence[int]) -> bool:
@@ -75,13 +75,13 @@ def _fewest(staves: Sequence[tuple[float, int]], passes: Callable[[list[int]], b
     best: list[list[int]] = []
     for first in range(0, len(staves) // FEWEST, max(1, len(staves) // (FEWEST * TURNS))):
         turned = [k for _, k in (*staves[first:], *staves[:first])]
-        found: list[list[int]] = []
-        while turned and (not best or len(found) < len(best) - 1):
+        arcs: list[list[int]] = []
+        while turned and (not best or len(arcs) < len(best) - 1):
             arc = _longest(turned, passes)
-            found.append(turned[:arc])
+            arcs.append(turned[:arc])
             turned = turned[arc:]
-        if not turned and len(found) <= MOST:
-            best = found
+        if not turned and len(arcs) <= MOST:
+            best = arcs
     return best
 
 

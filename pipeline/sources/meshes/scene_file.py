@@ -46,14 +46,14 @@ def parse_scene(data: bytes, suffix: str, where: str) -> tuple[ObjFile, dict[str
     try:
         scene = trimesh.load_scene(io.BytesIO(data), file_type=suffix, process=False)
         shown = [(np.asarray(T, np.float64), scene.geometry[name]) for T, name in map(scene.graph.get, scene.graph.nodes_geometry)]
-        return _collected(shown, where)
+        return _merge_meshes(shown, where)
     except (MemoryError, SourceError):
         raise
     except Exception as error:  # trimesh promises no kind of error for what is broken
         raise SourceError("not_obj", where, f"cannot be read ({type(error).__name__}: {str(error)[:60]})") from error
 
 
-def _collected(shown: list[tuple[Floats, Any]], where: str) -> tuple[ObjFile, dict[str, SceneMaterial]]:
+def _merge_meshes(shown: list[tuple[Floats, Any]], where: str) -> tuple[ObjFile, dict[str, SceneMaterial]]:
     """Return meshes (T (4, 4), trimesh) as one file; a mirrored one has its faces turned."""
     if len(shown) > MAX_GROUPS:
         raise SourceError("too_large", where, f"shows {len(shown)} meshes")

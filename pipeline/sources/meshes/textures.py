@@ -12,7 +12,7 @@ MAX_FILE = 32 << 20  # bytes
 MAX_PIXELS = 4096 * 4096
 
 
-def prepared(data: bytes, where: str, limit: int) -> tuple[bytes, str]:
+def prepare_texture(data: bytes, where: str, limit: int) -> tuple[bytes, str]:
     """Return (bytes, suffix) of an image of at most `limit` pixels a side.
 
     A small PNG or JPEG stays as it is; anything else is re-encoded as PNG with fixed settings, so the bytes depend on

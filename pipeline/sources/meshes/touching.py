@@ -17,9 +17,9 @@ from scipy.spatial import ConvexHull, QhullError
 
 from pipeline.card import Category
 from pipeline.geometry.compiled import compiled
-from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combined, convex, extremes
+from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, convex, extremes
 from pipeline.sources.meshes.near_boxes import NEAR
-from pipeline.sources.meshes.reach import reached
+from pipeline.sources.meshes.reach import make_reach_test
 from pipeline.sources.meshes.rings import STAVES, is_ring, same_height, sectors
 
 Floats = NDArray[np.float64]
@@ -58,7 +58,7 @@ class Felt:
     What is `closed` is not reached into: the staves of a ring are one disc. Lower than `under` [m] only what faces upwards is felt.
     A `vessel` is felt from without; within it is but hollow. What is `soft` lies flat. What nobody touches is one piece, `whole`.
     Things lie on what faces upwards by `level`; what is less than `lift` [m] below the top of a piece is drawn up to it. Boxes may stand out by `box` [m] at their corners.
-    Nothing comes through gaps narrower than `cell` [m]; see `reached`.
+    Nothing comes through gaps narrower than `cell` [m]; see `make_reach_test`.
     """
 
     up: float = TOUCHED
@@ -86,7 +86,7 @@ FELT = MappingProxyType(  # by what cards say
 )
 
 
-def felt(category: Category, *, opens: bool) -> Felt:
+def touch_tolerances(category: Category, *, opens: bool) -> Felt:
     """Return how truly a thing of a category is felt: hands come to what is small and to what opens, bodies to other furniture."""
     if category.felt == "closed" and category.loose:
         return replace(FELT["closed"], sides=HELD, down=HELD)
@@ -107,19 +107,19 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
     if not pieces:
         return ()
     if how.whole:
-        return (combined(pieces),)
+        return (combine_parts(pieces),)
     points = np.concatenate([p.hull for p in pieces])
     low = float(points[:, 2].min())
     below = [p for p in pieces if p.hull[:, 2].max() <= low + how.under]
     if len(below) > 1:
-        pieces = [*(p for p in pieces if p.hull[:, 2].max() > low + how.under), combined(below)]
+        pieces = [*(p for p in pieces if p.hull[:, 2].max() > low + how.under), combine_parts(below)]
     if how.soft:
-        pieces = [_flat(combined(pieces))]
+        pieces = [_flat(combine_parts(pieces))]
     if how.closed:
         pieces = discs(pieces)
     allowed = _tolerance(pieces, how)
-    made = felt_of(fewer(pieces, allowed, max(how.up, how.sides, REACH), rings=how.up < SOFT), allowed)
-    return tuple(_levelled(p, how.lift) for p in made) if how.lift else made
+    fewer_pieces = felt_of(fewer(pieces, allowed, max(how.up, how.sides, REACH), rings=how.up < SOFT), allowed)
+    return tuple(_level_top(p, how.lift) for p in fewer_pieces) if how.lift else fewer_pieces
 
 
 def felt_of(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
@@ -141,7 +141,7 @@ def felt_of(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
     return tuple(pieces[k] for k in sorted(kept))
 
 
-def _levelled(part: Part, lift: float) -> Part:
+def _level_top(part: Part, lift: float) -> Part:
     """Return a cushion with a level top: what lies on a swell rolls, where a real one gives way."""
     top = float(part.hull[:, 2].max())
     upper = part.hull[part.hull[:, 2] > top - lift]
@@ -153,10 +153,10 @@ def _tolerance(pieces: Sequence[Part], how: Felt) -> Allowed:
     low, high = points.min(axis=0), points.max(axis=0)
     least = SHARE * float((high - low).min())
     hulls = [p.hull for p in pieces]
-    comes = reached(hulls, [_planes(h) for h in hulls], how.cell) if how.up < SOFT else None
+    comes = make_reach_test(hulls, [_planes(h) for h in hulls], how.cell) if how.up < SOFT else None
     hollows = _hollows(pieces, how)
 
-    def allowed(at: Floats, normals: Floats) -> Floats:
+    def tolerance_at(at: Floats, normals: Floats) -> Floats:
         tolerance = np.where(normals[:, 2] > how.level, how.up, np.where(normals[:, 2] < -UP, how.down, how.sides))
         if how.yielding:
             share = np.clip((at[:, 2] - low[2]) / (POT * (high[2] - low[2])), 0, 1)
@@ -167,7 +167,7 @@ def _tolerance(pieces: Sequence[Part], how: Felt) -> Allowed:
         away = (at[:, 2] < low[2] + how.under) & (normals[:, 2] <= how.level)
         return np.asarray(np.where(away if comes is None else away | ~comes(at), ANY, tolerance))
 
-    return allowed
+    return tolerance_at
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,7 +190,7 @@ class _Hollow:
 def _hollows(pieces: Sequence[Part], how: Felt) -> list[_Hollow]:
     """Return the inside of a vessel, and those of the rings in other things: basins, drums."""
     rings = [list(pieces)] if how.vessel else [[pieces[k] for k in ring] for ring in same_height(pieces) if is_ring(pieces, ring)]
-    made = []
+    hollows = []
     for ring in rings:
         points = np.concatenate([p.hull for p in ring])
         low, high = points.min(axis=0), points.max(axis=0)
@@ -200,10 +200,10 @@ def _hollows(pieces: Sequence[Part], how: Felt) -> list[_Hollow]:
         else:
             middle = (low + high)[:2] / 2
         depth = min(HOLLOW * float((high - low)[:2].min()), DEEP * float(high[2] - low[2]))
-        made.append(
+        hollows.append(
             _Hollow(middle, (low[2] - TOUCHED, high[2] + TOUCHED), np.inf if how.vessel else float(np.ptp(points[:, 0])) / 2, depth)
         )
-    return made
+    return hollows
 
 
 def _flat(part: Part) -> Part:
@@ -220,7 +220,7 @@ def _flat(part: Part) -> Part:
 def discs(pieces: Sequence[Part]) -> list[Part]:
     """Return the pieces with the staves of each ring, all of them between the same heights, as one."""
     levels = [[pieces[k] for k in level] for level in same_height(pieces)]
-    return [disc for level in levels for disc in (level if len(level) < STAVES else [combined(level)])]
+    return [disc for level in levels for disc in (level if len(level) < STAVES else [combine_parts(level)])]
 
 
 def fewer(pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, rings: bool = True) -> tuple[Part, ...]:
@@ -245,12 +245,12 @@ def fewer(pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, r
         return share(group, np.concatenate([pieces[k].hull for k in group])) is not None
 
     if passes(range(len(pieces))):
-        return (combined(pieces),)
-    groups = _merged(pieces, sectors(pieces, passes) if rings else [], share, apart)
-    return tuple(pieces[g[0]] if len(g) == 1 else combined([pieces[k] for k in g]) for g in groups)
+        return (combine_parts(pieces),)
+    groups = _merge_groups(pieces, sectors(pieces, passes) if rings else [], share, apart)
+    return tuple(pieces[g[0]] if len(g) == 1 else combine_parts([pieces[k] for k in g]) for g in groups)
 
 
-def _merged(
+def _merge_groups(
     pieces: Sequence[Part], rings: Sequence[list[int]], share: Callable[[Sequence[int], Floats], float | None], apart: float
 ) -> list[list[int]]:
     """Return groups of pieces by index, merged from the `rings` and the single others; see `fewer`."""
@@ -274,12 +274,12 @@ def _merged(
             return round(worst, 5), pair
         all_boxes = np.array(boxes)  # a frame is no pair, but it is with what it holds
         within = (all_boxes[:, 0] >= low - TOUCHED).all(axis=1) & (all_boxes[:, 1] <= high + TOUCHED).all(axis=1) & np.array(alive)
-        held = tuple(np.flatnonzero(within).tolist())
-        if len(held) == len(pair) or _roomy(low, high, sum(volumes[g] for g in held), apart) or (worst := worst_of(held)) is None:
+        inside = tuple(np.flatnonzero(within).tolist())
+        if len(inside) == len(pair) or _roomy(low, high, sum(volumes[g] for g in inside), apart) or (worst := worst_of(inside)) is None:
             return None
-        return round(worst, 5), held
+        return round(worst, 5), inside
 
-    heap = [found for i in range(len(groups)) for j in range(i + 1, len(groups)) if (found := offer(i, j))]
+    heap = [candidate for i in range(len(groups)) for j in range(i + 1, len(groups)) if (candidate := offer(i, j))]
     heapq.heapify(heap)
     while heap:
         _, members = heapq.heappop(heap)
@@ -295,20 +295,20 @@ def _merged(
         alive.append(True)
         new = len(groups) - 1
         for k in range(new):
-            if alive[k] and (found := offer(k, new)):
-                heapq.heappush(heap, found)
+            if alive[k] and (candidate := offer(k, new)):
+                heapq.heappush(heap, candidate)
     return [g for g, lives in zip(groups, alive, strict=True) if lives]
 
 
-def _roomy(low: Floats, high: Floats, held: float, apart: float) -> bool:
+def _roomy(low: Floats, high: Floats, volume: float, apart: float) -> bool:
     """Whether a box holds so little that no hull is looked at; what nobody touches may be as roomy as it likes."""
-    return apart < LEFT_ALONE and float((high - low).prod()) > ROOMY * held
+    return apart < LEFT_ALONE and float((high - low).prod()) > ROOMY * volume
 
 
 def _outer(points: Floats) -> tuple[Floats, float]:
     """Return the corners (N, 3) of a hull and its volume."""
-    made = ConvexHull(points)
-    return points[made.vertices], float(made.volume)
+    hull = ConvexHull(points)
+    return points[hull.vertices], float(hull.volume)
 
 
 def _planes(points: Floats) -> Floats:

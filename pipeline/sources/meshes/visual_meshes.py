@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pipeline.entities.asset import Material, Mesh
 from pipeline.sources.guarded import DRIVE, Folder
 from pipeline.sources.meshes.obj_file import MAX_MTL, MAX_OBJ, MtlMaterial, ObjFile, ObjGroup, parse_mtl, parse_obj
-from pipeline.sources.meshes.textures import MAX_FILE, prepared
+from pipeline.sources.meshes.textures import MAX_FILE, prepare_texture
 from pipeline.sources.reasons import SourceError
 
 Floats = NDArray[np.float64]
@@ -45,9 +45,9 @@ class Palette:
     ) -> int:
         """Return the index of a material of sRGB `color`, made when it is new."""
         linear = (_linear(color[0]), _linear(color[1]), _linear(color[2]))
-        return self._made(linear, opacity, texture, roughness, metallic)
+        return self._material_index(linear, opacity, texture, roughness, metallic)
 
-    def _made(
+    def _material_index(
         self, linear: tuple[float, float, float], opacity: float, texture: str | None, roughness: float, metallic: float = 0.0
     ) -> int:
         plain = Material("", linear, roughness, metallic, round(max(opacity, 0.05), 4), texture)
@@ -61,11 +61,11 @@ class Palette:
         texture = None
         if image:
             try:
-                texture = self._kept(*prepared(image, where, self.texture_limit))
+                texture = self._texture_name(*prepare_texture(image, where, self.texture_limit))
             except SourceError as error:
                 self.notes.append(("missing_texture", f"{where}: {error.detail}"))
         r, g, b = (1.0, 1.0, 1.0) if texture else color[:3]
-        return self._made((round(r, 5), round(g, 5), round(b, 5)), color[3], texture, round(max(roughness, 0.2), 3))
+        return self._material_index((round(r, 5), round(g, 5), round(b, 5)), color[3], texture, round(max(roughness, 0.2), 3))
 
     def image(self, path: str, base: str) -> str | None:
         """Return the name under which the image is kept, or None with a note where it cannot be had.
@@ -80,15 +80,15 @@ class Palette:
 
     def _load(self, path: str, base: str) -> str | None:
         try:
-            data, suffix = prepared(self.folder.read(path, MAX_FILE, base), path, self.texture_limit)
+            data, suffix = prepare_texture(self.folder.read(path, MAX_FILE, base), path, self.texture_limit)
         except SourceError as error:
             if error.code == "unsafe_path":
                 raise
             self.notes.append(("missing_texture", f"{path}: {error.detail}"))
             return None
-        return self._kept(data, suffix)
+        return self._texture_name(data, suffix)
 
-    def _kept(self, data: bytes, suffix: str) -> str:
+    def _texture_name(self, data: bytes, suffix: str) -> str:
         """Return the name under which image bytes are kept, each only once."""
         known = next((name for name, blob in self.textures.items() if blob == data), None)
         if known:

@@ -50,8 +50,8 @@ def outline(triangles: Floats) -> Floor | None:
     polygon = clean(Polygon(parts[0].exterior))
     if polygon is None:
         return None
-    seen = [p for p in parts if p.area > SLIVER]
-    return Floor(polygon, float(Polygon(polygon).area), float(sum(p.area for p in parts[1:]) + holes), len(seen))
+    pieces = [p for p in parts if p.area > SLIVER]
+    return Floor(polygon, float(Polygon(polygon).area), float(sum(p.area for p in parts[1:]) + holes), len(pieces))
 
 
 def clean(shape: Polygon) -> Floats | None:

@@ -15,7 +15,7 @@ from pipeline.sources.settings import FrontFilters
 from pipeline.sources.threed_front.future_scale import LONGEST, likeliest
 from pipeline.sources.threed_front.house_file import FARTHEST, Child, Furniture
 from pipeline.sources.threed_front.model_hints import kinds_of
-from pipeline.sources.threed_front.notches import shared
+from pipeline.sources.threed_front.notches import overlap_share
 from pipeline.sources.threed_front.poses import Box, Pose, place, yaw_and_tilt
 from pipeline.taxonomy import Taxonomy
 
@@ -83,7 +83,7 @@ def category_of(record: Furniture, taxonomy: Taxonomy) -> str | None:
     return likeliest(np.array(record.box), taxonomy.of_kind(*kinds_of(record)))
 
 
-def placed(  # noqa: PLR0911 - one return per reason
+def place_furniture(  # noqa: PLR0911 - one return per reason
     child: Child,
     record: Furniture,
     models: Mapping[str, Model],
@@ -112,19 +112,19 @@ def placed(  # noqa: PLR0911 - one return per reason
     if pose.size.max() > LONGEST or pose.size.min() < MIN_SIZE:
         return "bad_size", f"size {np.round(pose.size, 3).tolist()}"
     asset_id = "" if model is None else mirrored_id(model.asset_id) if pose.mirrored else model.asset_id
-    made = Placed(child, jid, category, asset_id, pose, scale, bool(model and model.openable), notes, model.shape if model else b"")
-    low, top = made.span
+    piece = Placed(child, jid, category, asset_id, pose, scale, bool(model and model.openable), notes, model.shape if model else b"")
+    low, top = piece.span
     if taxonomy.categories[category].mount == "ceiling" and low < STANDING and top - low > TALL:
         note = ("category_inferred", f"floor_lamp, for a {category} of {top - low:.2f} m that stands on the floor")
-        made = replace(made, category="floor_lamp", notes=(*notes, note))
+        piece = replace(piece, category="floor_lamp", notes=(*notes, note))
     if low < -BELOW or top > limits.max_top:
         return "bad_height", f"from {low:.2f} to {top:.2f} m"
-    return made
+    return piece
 
 
-def inside(made: Placed, floor: Polygon) -> float:
+def inside(piece: Placed, floor: Polygon) -> float:
     """Return the share of an object's footprint that lies on a floor, in whole per cent: what is said of it is what counts."""
-    footprint = made.footprint()
+    footprint = piece.footprint()
     return round(float(footprint.intersection(floor).area / footprint.area), 2)
 
 
@@ -160,7 +160,7 @@ def shared_shape(a: Placed, b: Placed) -> float:
     if not (a.shape or b.shape) or boxes == 0.0:
         return boxes
     first, second = sorted((a, b), key=lambda o: float(np.prod(o.pose.size)))
-    return min(boxes, shared((first.pose, first.shape), (second.pose, second.shape)))
+    return min(boxes, overlap_share((first.pose, first.shape), (second.pose, second.shape)))
 
 
 def overlapping(objects: list[Placed], limits: FrontFilters, taxonomy: Taxonomy) -> dict[int, tuple[int, float]]:

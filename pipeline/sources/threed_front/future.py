@@ -11,7 +11,7 @@ from pipeline.entities.asset import Asset, Mesh
 from pipeline.sources.densities import density
 from pipeline.sources.guarded import Folder, read_json
 from pipeline.sources.meshes.colliders import POCKET, Ints, link, solids
-from pipeline.sources.meshes.touching import felt
+from pipeline.sources.meshes.touching import touch_tolerances
 from pipeline.sources.meshes.visual_meshes import Palette, read_obj, visual
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
@@ -43,18 +43,18 @@ def read_model_info(folder: Folder, file: str) -> tuple[dict[str, ModelInfo], li
     if not isinstance(tree, list):
         other = "; the ToolBox's file of that name is another: take the one beside the models" if isinstance(tree, dict) else ""
         raise SourceError("bad_structure", file, f"is no list of models{other}")
-    found: dict[str, ModelInfo] = {}
+    by_id: dict[str, ModelInfo] = {}
     rejects: list[Row] = []
     for number, entry in enumerate(tree):
         model_id = entry.get("model_id") if isinstance(entry, dict) else None
         if not isinstance(model_id, str) or not model_id:
             rejects.append(reject("model", f"{file}#{number}", "bad_structure", "no model_id"))
-        elif model_id in found:
+        elif model_id in by_id:
             rejects.append(reject("model", model_id, "duplicate", "a second entry in model_info.json"))
         else:
             names = (entry.get(k) for k in ("category", "super-category", "style", "theme", "material"))
-            found[model_id] = ModelInfo(model_id, *(n if isinstance(n, str) else "" for n in names))
-    return found, rejects
+            by_id[model_id] = ModelInfo(model_id, *(n if isinstance(n, str) else "" for n in names))
+    return by_id, rejects
 
 
 def asset_id(jid: str) -> str:
@@ -91,7 +91,7 @@ def read_model(
     used = np.unique(np.concatenate([g.faces.ravel() for g in file.groups]))
     low, high = file.vertices[used].min(axis=0), file.vertices[used].max(axis=0)
     extent = (high - low)[[0, 2, 1]]
-    category, unit, notes = identified(info, hint or Hint(), extent, taxonomy)
+    category, unit, notes = identify_category(info, hint or Hint(), extent, taxonomy)
     size = np.round(extent * unit, 4)
     if size.max() > LONGEST or size.min() < MIN_SIZE:
         raise SourceError("bad_size", info.model_id, f"size {size.tolist()}")
@@ -107,7 +107,7 @@ def read_model(
             visuals.append(mesh)
             collisions.append((points, group.faces))
     known = taxonomy.categories[category]
-    kind, how = known.super, felt(known, opens=False)
+    kind, how = known.super, touch_tolerances(known, opens=False)
     matter = solids("base", collisions, limits, POCKET * float(np.linalg.norm(size)) if cut else None)
     base = link("base", visuals, matter, density(kind, info.material, category), kind, how=how)
     if not base.visuals or not base.colliders:
@@ -120,7 +120,7 @@ def read_model(
     return FutureModel(asset, box, tuple(reject("model", info.model_id, reason, detail) for reason, detail in notes))
 
 
-def identified(info: ModelInfo, hint: Hint, extent: Floats, taxonomy: Taxonomy) -> tuple[str, float, Notes]:
+def identify_category(info: ModelInfo, hint: Hint, extent: Floats, taxonomy: Taxonomy) -> tuple[str, float, Notes]:
     """Return the category of a model of `extent` (w, d, h) [its own units], the factor to metres, and what had to be inferred.
 
     The category is that of model_info.json, else of the scenes' records; where both name a super-category at most, the

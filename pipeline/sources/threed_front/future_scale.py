@@ -46,11 +46,11 @@ def likeliest(size: Floats, categories: Iterable[str]) -> str | None:
 
     None where none of the categories has statistics.
     """
-    found = []
+    candidates = []
     for category in categories:
         known = sizes().get(category)
         if known is not None:
             location, spread = known.logarithmic()
             z = (np.log(np.maximum(size, 1e-9)) - location) / spread
-            found.append((float(0.5 * (z**2).sum() + np.log(spread).sum()), category))
-    return min(found)[1] if found else None
+            candidates.append((float(0.5 * (z**2).sum() + np.log(spread).sum()), category))
+    return min(candidates)[1] if candidates else None

@@ -21,7 +21,7 @@ from pipeline.sources.settings import FrontFilters
 from pipeline.sources.threed_front import wall_openings
 from pipeline.sources.threed_front.floors import Floor, outline
 from pipeline.sources.threed_front.furniture import Model
-from pipeline.sources.threed_front.house_file import HouseFile, RoomRecord, deferred, parse_house
+from pipeline.sources.threed_front.house_file import HouseFile, RoomRecord, extract_arrays, parse_house
 from pipeline.sources.threed_front.opening_evidence import MESHES, OpeningEvidence, from_furniture, from_mesh
 from pipeline.sources.threed_front.poses import to_ours, yaw_and_tilt
 from pipeline.sources.threed_front.room_assignment import fill
@@ -46,11 +46,11 @@ def read_house(
     """Read one house. A file that is refused gives one reject row with its reason."""
     name = file.rsplit("/", 1)[-1].removesuffix(".json")
     try:
-        text, arrays = deferred(folder.read(file, MAX_JSON))
+        text, arrays = extract_arrays(folder.read(file, MAX_JSON))
         try:
             tree = parse_json(text, file)
         except SourceError:
-            parse_json(folder.read(file, MAX_JSON), file)  # says where in the file itself, whose arrays `deferred` took out
+            parse_json(folder.read(file, MAX_JSON), file)  # says where in the file itself, whose arrays `extract_arrays` took out
             raise
         return house_rows(parse_house(tree, name, arrays), models, taxonomy, limits, licence, walker)
     except SourceError as error:
@@ -114,7 +114,7 @@ def rooms_of(house: HouseFile, taxonomy: Taxonomy, limits: FrontFilters, rejects
     children = sum(len(record.children) for record in house.rooms)
     if len(house.rooms) > MAX_ROOMS or children > MAX_CHILDREN:
         raise SourceError("too_large", house.uid, f"{len(house.rooms)} rooms with {children} children")
-    made: list[ReadRoom] = []
+    rooms: list[ReadRoom] = []
     taken: set[str] = set()
     for number, record in enumerate(house.rooms):
         where = f"{house.uid}/{record.instance or number}"
@@ -132,7 +132,7 @@ def rooms_of(house: HouseFile, taxonomy: Taxonomy, limits: FrontFilters, rejects
         polygon = Polygon(floor.polygon)
         room_id = slug("r", record.instance or record.type or str(number))
         room_id = room_id if room_id not in taken else f"{room_id}_{number}"
-        double = next((r for r in made if r.polygon.intersection(polygon).area > 0.5 * min(r.polygon.area, polygon.area)), None)
+        double = next((r for r in rooms if r.polygon.intersection(polygon).area > 0.5 * min(r.polygon.area, polygon.area)), None)
         if double:
             rejects.append(reject("room", where, "duplicate_room", f"same floor as {double.record.instance}"))
             continue
@@ -144,8 +144,8 @@ def rooms_of(house: HouseFile, taxonomy: Taxonomy, limits: FrontFilters, rejects
         kind = record.type.lower().replace(" ", "")
         if kind not in taxonomy.front_rooms:
             rejects.append(reject("room", where, "unknown_room_type", f"type {record.type!r}"))
-        made.append(ReadRoom(record, room_id, kind, floor, polygon, _height(house, record, limits.ceiling), []))
-    return made
+        rooms.append(ReadRoom(record, room_id, kind, floor, polygon, _height(house, record, limits.ceiling), []))
+    return rooms
 
 
 def _floor(house: HouseFile, record: RoomRecord) -> Floor | None:
@@ -171,9 +171,9 @@ def _height(house: HouseFile, record: RoomRecord, default: float) -> float:
             continue  # a broken wall: the other meshes tell
         if len(up):
             tops["ceiling" if mesh.type == "Ceiling" else "wall"].append(float(np.median(up) if mesh.type == "Ceiling" else up.max()))
-    for found in (tops["ceiling"], tops["wall"]):
-        if found and 1.8 < max(found) < 8.0:
-            return round(max(found), 4)
+    for heights in (tops["ceiling"], tops["wall"]):
+        if heights and 1.8 < max(heights) < 8.0:
+            return round(max(heights), 4)
     return default
 
 
@@ -192,11 +192,11 @@ def openings_of(
     if len(evidence) > MAX_HOLES:
         raise SourceError("too_large", house.uid, f"{len(evidence)} doors, windows and holes")
     height = float(np.median([room.height for room in rooms]))
-    found, depths, rest = wall_openings.openings(evidence, outlines, height, limits.wall_reach, functools.cache(lambda: _faces(house)))
-    rejects += [_unresolved(house, hole) for hole in rest]
+    openings, depths, rest = wall_openings.openings(evidence, outlines, height, limits.wall_reach, functools.cache(lambda: _faces(house)))
+    rejects += [_unresolved_reject(house, hole) for hole in rest]
     inner = round(float(np.median(depths[2])), 4) if depths[2] else INNER_WALL
     outer = round(float(np.median(depths[1])), 4) if depths[1] else OUTER_WALL
-    return found, (inner, outer)
+    return openings, (inner, outer)
 
 
 def _faces(house: HouseFile) -> shapely.Geometry:
@@ -215,7 +215,7 @@ def _faces(house: HouseFile) -> shapely.Geometry:
     return shapely.union_all(shapely.linestrings(np.array(lines))) if lines else shapely.MultiLineString()
 
 
-def _unresolved(house: HouseFile, hole: OpeningEvidence) -> Row:
+def _unresolved_reject(house: HouseFile, hole: OpeningEvidence) -> Row:
     what = "threshold" if hole.flat else f"leaf of a {hole.evidence}" if hole.origin == "record" else hole.evidence
     at = ", ".join(f"{v:.2f}" for v in hole.centre)
     return reject("opening", house.uid, "opening_unresolved", f"{what} at ({at}), {hole.width:.2f} m wide")

@@ -48,7 +48,7 @@ class MeshRecord:
 
     def vertices(self) -> Floats:
         """Return (V, 3) world coordinates. Raises SourceError for anything that is not finite triples."""
-        values = floats(_listed(self.xyz, f"mesh {self.uid}"), f"mesh {self.uid}")
+        values = floats(_parse_numbers(self.xyz, f"mesh {self.uid}"), f"mesh {self.uid}")
         if len(values) % 3:
             raise SourceError("bad_structure", f"mesh {self.uid}", "xyz is not a list of triples")
         if np.abs(values).max(initial=0.0) > FARTHEST:
@@ -59,7 +59,7 @@ class MeshRecord:
         """Return (T, 3, 3) corner coordinates."""
         vertices = self.vertices()
         try:
-            index = np.asarray(_listed(self.faces, f"mesh {self.uid}"), dtype=np.int64)
+            index = np.asarray(_parse_numbers(self.faces, f"mesh {self.uid}"), dtype=np.int64)
         except (TypeError, ValueError, OverflowError) as error:
             raise SourceError("bad_structure", f"mesh {self.uid}", "faces are not integers") from error
         if index.ndim != 1 or len(index) % 3 or (len(index) and (index.min() < 0 or index.max() >= len(vertices))):
@@ -108,7 +108,7 @@ class HouseFile:
     identity: str = ""
 
 
-def _listed(values: Any, where: str) -> Any:
+def _parse_numbers(values: Any, where: str) -> Any:
     """Parse the text of a number array; anything else stays as it is."""
     if not isinstance(values, bytes):
         return values
@@ -129,7 +129,7 @@ def floats(values: Any, where: str) -> Floats:
     return array
 
 
-def deferred(data: bytes) -> tuple[bytes, list[bytes]]:
+def extract_arrays(data: bytes) -> tuple[bytes, list[bytes]]:
     """Return a house file with the number arrays of its meshes replaced by their positions in the returned list.
 
     They are most of the file, and only those of floors, ceilings, walls and openings are ever read: `MeshRecord` parses
@@ -137,8 +137,8 @@ def deferred(data: bytes) -> tuple[bytes, list[bytes]]:
     """
     kept: list[bytes] = []
 
-    def put(found: re.Match[bytes]) -> bytes:
-        key, numbers = found.groups()
+    def put(match: re.Match[bytes]) -> bytes:
+        key, numbers = match.groups()
         if key in {b"normal", b"uv"}:
             return b'"uv":[]'
         kept.append(numbers)
@@ -148,7 +148,7 @@ def deferred(data: bytes) -> tuple[bytes, list[bytes]]:
 
 
 def parse_house(tree: Any, name: str, arrays: Sequence[bytes] = ()) -> HouseFile:
-    """Read a parsed house file; `name` is the file's stem, `arrays` what `deferred` took out of it. Raises SourceError `bad_structure` when the frame is missing."""
+    """Read a parsed house file; `name` is the file's stem, `arrays` what `extract_arrays` took out of it. Raises SourceError `bad_structure` when the frame is missing."""
     scene = tree.get("scene") if isinstance(tree, dict) else None
     if not isinstance(scene, dict) or not isinstance(scene.get("room"), list):
         raise SourceError("bad_structure", name, "has no scene.room list; it is no 3D-FRONT house")
@@ -190,8 +190,8 @@ def _whd(values: Any, *, y_up: bool) -> tuple[float, float, float] | None:
 
 def _records(tree: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
     """Return the records of a list that another dialect may lack."""
-    found = tree.get(key)
-    return [r for r in found if isinstance(r, dict)] if isinstance(found, list) else []
+    entries = tree.get(key)
+    return [r for r in entries if isinstance(r, dict)] if isinstance(entries, list) else []
 
 
 def _first_by_uid(records: Iterable[Any], house: str, kind: str, rejects: list[Row]) -> dict[str, Any]:

@@ -38,10 +38,10 @@ def add_mirrored(folder: Path, assets: list[Row], used: Iterable[str]) -> list[R
     `assets` are the rows of the models themselves, whose files lie in `folder`.
     """
     origin = {mirrored_id(row["asset_id"]): row for row in assets}
-    made = []
+    rows = []
     for asset_id in sorted(set(used) & origin.keys()):
         row = origin[asset_id]
         file = f"{asset_id}.safetensors"
         digest = save_asset(folder / file, mirror(load_asset(folder / row["file"])))
-        made.append({**row, "asset_id": asset_id, "file": file, "sha256": digest})
-    return made
+        rows.append({**row, "asset_id": asset_id, "file": file, "sha256": digest})
+    return rows

@@ -73,11 +73,11 @@ def records(folder: Folder, file: str) -> list[Furniture]:
         part = data[start.end() : end if end > 0 else start.end() + MAX_LIST]
         if len(part) > MAX_LIST or part.count(b"{") + part.count(b"[") > MAX_CONTAINERS:
             return []
-        found, _ = json.JSONDecoder().raw_decode(part.decode("utf-8", "replace"))
+        tree, _ = json.JSONDecoder().raw_decode(part.decode("utf-8", "replace"))
     except (SourceError, ValueError, RecursionError):
         return []
-    made = (furniture_record(r) for r in found if isinstance(r, dict))
-    valid = [r for r in made if r.valid and r.jid]
+    furniture = (furniture_record(r) for r in tree if isinstance(r, dict))
+    valid = [r for r in furniture if r.valid and r.jid]
     lamps = {r.uid for r in valid if _is_some_lamp(r)}
     feet = _feet(data, lamps) if lamps else {}
     return [replace(r, foot=feet.get(r.uid)) for r in valid]
@@ -106,9 +106,9 @@ def _feet(data: bytes, uids: set[str]) -> dict[str, float]:
 
 def hints(houses: Iterable[Iterable[Furniture]], words: Taxonomy) -> Mapping[str, Hint]:
     """Gather the records of all houses by model."""
-    found: dict[str, Hint] = {}
+    by_model: dict[str, Hint] = {}
     for record in (r for house in houses for r in house):
-        hint = found.setdefault(record.jid, Hint())
+        hint = by_model.setdefault(record.jid, Hint())
         if record.box and len(hint.boxes) < MAX_BOXES:
             hint.boxes.append(record.box)
         if record.foot is not None and len(hint.feet) < MAX_BOXES:
@@ -118,7 +118,7 @@ def hints(houses: Iterable[Iterable[Furniture]], words: Taxonomy) -> Mapping[str
             hint.categories[named] += 1
         else:
             hint.kinds.update(name for name in kinds_of(record) if words.of_kind(name))
-    return found
+    return by_model
 
 
 def kinds_of(record: Furniture) -> Iterator[str]:

@@ -20,7 +20,7 @@ AT_ONCE = 500_000  # points, some 40 MB
 MOST = 72  # of these along one side; a side crosses 24 cells or, slantwise, 34
 
 
-def filled(meshes: Iterable[Mesh], size: Floats) -> bytes:
+def occupancy_bits(meshes: Iterable[Mesh], size: Floats) -> bytes:
     """Return which cells of its box (w, d, h) [m] a model fills, as packed bits; its meshes are in the asset's frame.
 
     Cells that the surface goes through, and in each column what lies between the lowest and the highest of them: tables stay
@@ -61,7 +61,7 @@ def _lattice(count: int) -> Floats:
     return np.stack([a, b, 1 - a - b], axis=1)
 
 
-def shared(a: tuple[Pose, bytes], b: tuple[Pose, bytes]) -> float:
+def overlap_share(a: tuple[Pose, bytes], b: tuple[Pose, bytes]) -> float:
     """Return the share of what `a` fills that lies in what `b` fills; one of which no shape is known fills its box."""
     (pose, bits), (other, theirs) = a, b
     index = np.argwhere(_mask(bits))

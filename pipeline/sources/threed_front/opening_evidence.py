@@ -139,21 +139,21 @@ def _clear(hole: OpeningEvidence, triangles: Floats) -> OpeningEvidence:
     """Return the passage between the faces (T, 3, 3) [our frame] of a mesh, or the hole itself where they close it."""
     along, up = (triangles[..., :2] - hole.centre) @ hole.along, triangles[..., 2]
     half = hole.width / 2
-    low, high = _widest(_crossed(up, along, hole.sill + LEVEL * (hole.top - hole.sill)), -half, half)
+    low, high = _widest(_line_crossings(up, along, hole.sill + LEVEL * (hole.top - hole.sill)), -half, half)
     if high - low < max(LEAST_CLEAR * hole.width, MIN_WIDTH):
         return without_casing(hole) if hole.origin == "frame" else hole
-    heads = [start for start, _ in _crossed(along, up, low + LEVEL * (high - low)) if start > hole.sill + HEADROOM]
+    heads = [start for start, _ in _line_crossings(along, up, low + LEVEL * (high - low)) if start > hole.sill + HEADROOM]
     return replace(hole.between(low, high), top=min(heads, default=hole.top))
 
 
-def _crossed(cut: Floats, kept: Floats, at: float) -> list[tuple[float, float]]:
+def _line_crossings(cut: Floats, kept: Floats, at: float) -> list[tuple[float, float]]:
     """Return where triangles, given by two coordinates (T, 3) of their corners, meet the line `cut` = `at`: intervals of `kept`."""
-    found = []
+    intervals = []
     for a, b in zip(cut - at, kept, strict=True):
         ends = [float(b[i] + a[i] / (a[i] - a[j]) * (b[j] - b[i])) for i, j in ((0, 1), (1, 2), (2, 0)) if float(a[i]) * float(a[j]) < 0.0]
         if ends:
-            found.append((min(ends), max(ends)))
-    return found
+            intervals.append((min(ends), max(ends)))
+    return intervals
 
 
 def _widest(taken: list[tuple[float, float]], low: float, high: float) -> tuple[float, float]:

@@ -29,7 +29,7 @@ class Gathered:
     rest: list[OpeningEvidence]
 
 
-def gathered(evidence: Iterable[OpeningEvidence]) -> Gathered:
+def group_evidence(evidence: Iterable[OpeningEvidence]) -> Gathered:
     """Sort evidence into openings."""
     all_of_it = list(evidence)
     narrow = [h for h in all_of_it if h.width < (MIN_PANE if h.evidence == "window" else MIN_WIDTH)]
@@ -38,7 +38,7 @@ def gathered(evidence: Iterable[OpeningEvidence]) -> Gathered:
     holes = merge([*wide, *between])
     flat = [h for h in holes if h.flat]
     upright = [replace(h, evidence="door") if h.evidence == "hole" and any(_ends(h, n) for n in narrow) else h for h in holes if not h.flat]
-    return Gathered(_apart(upright), [h for h in (*flat, *odd) if not covered(h.centre, upright)])
+    return Gathered(_apart(upright), [h for h in (*flat, *odd) if not is_at_hole(h.centre, upright)])
 
 
 def _ends(hole: OpeningEvidence, jamb: OpeningEvidence) -> bool:
@@ -58,7 +58,7 @@ def merge(holes: Iterable[OpeningEvidence]) -> list[OpeningEvidence]:
         else:
             groups.append([hole])
     return sorted(
-        (_joined(group) for group in groups), key=lambda h: (h.origin == "record", -round(h.width, 3), tuple(np.round(h.centre, 3)))
+        (_merge_group(group) for group in groups), key=lambda h: (h.origin == "record", -round(h.width, 3), tuple(np.round(h.centre, 3)))
     )
 
 
@@ -80,7 +80,7 @@ def _gap(hole: OpeningEvidence, group: Sequence[OpeningEvidence]) -> float:
     return math.inf
 
 
-def _joined(group: Sequence[OpeningEvidence]) -> OpeningEvidence:
+def _merge_group(group: Sequence[OpeningEvidence]) -> OpeningEvidence:
     """Return a group as one hole: measures of the best meshes in it, the depth of all, the kind from whoever knows it."""
     ranked = sorted(group, key=lambda h: (h.flat, ORIGINS.index(h.origin)))
     standing = [h.evidence for h in ranked if not h.flat] or [ranked[0].evidence]
@@ -96,27 +96,27 @@ def _joined(group: Sequence[OpeningEvidence]) -> OpeningEvidence:
     for hole in upright:
         widest = hole if hole.width > widest.width else widest
     low, high = _common([widest.span(h) for h in best])
-    made = widest
+    opening = widest
     if widest.width - (high - low) <= WIDER:
-        made = replace(widest.between(low, high), sill=max(h.sill for h in best), top=min(h.top for h in best))
-    return _deepened(replace(made, evidence=evidence, origin=best[0].origin), [h for h in best if h.depth > 0.0] or upright)
+        opening = replace(widest.between(low, high), sill=max(h.sill for h in best), top=min(h.top for h in best))
+    return _fit_depth(replace(opening, evidence=evidence, origin=best[0].origin), [h for h in best if h.depth > 0.0] or upright)
 
 
 def _common(spans: list[tuple[float, float]]) -> tuple[float, float]:
     """Return what several meshes of one opening leave clear: those upon each other by what they share, those side by side by what they span."""
-    made: list[tuple[float, float]] = []
+    intervals: list[tuple[float, float]] = []
     for low, high in sorted(spans):
-        if made:
-            a, b = made[-1]
+        if intervals:
+            a, b = intervals[-1]
             shared = min(b, high) - max(a, low)
             if shared > 0.5 * min(b - a, high - low):
-                made[-1] = (max(a, low), min(b, high))
+                intervals[-1] = (max(a, low), min(b, high))
                 continue
-        made.append((low, high))
-    return min(low for low, _ in made), max(high for _, high in made)
+        intervals.append((low, high))
+    return min(low for low, _ in intervals), max(high for _, high in intervals)
 
 
-def _deepened(hole: OpeningEvidence, reveals: Sequence[OpeningEvidence]) -> OpeningEvidence:
+def _fit_depth(hole: OpeningEvidence, reveals: Sequence[OpeningEvidence]) -> OpeningEvidence:
     """Return a hole in the middle of the wall that its reveals go through together, as deep as they are."""
     offsets = [float((h.centre - hole.centre) @ hole.across) for h in reveals]
     low = min(o - h.depth / 2 for o, h in zip(offsets, reveals, strict=True))
@@ -126,7 +126,7 @@ def _deepened(hole: OpeningEvidence, reveals: Sequence[OpeningEvidence]) -> Open
 
 def _apart(holes: list[OpeningEvidence]) -> list[OpeningEvidence]:
     """Narrow what has no width of its own until it stands clear of its neighbours in the same wall."""
-    made = []
+    clear_holes = []
     for hole in holes:
         half = hole.width / 2
         if not hole.sized:
@@ -138,8 +138,8 @@ def _apart(holes: list[OpeningEvidence]) -> list[OpeningEvidence]:
                 if other is not hole and across < SAME and abs(float(other.along @ hole.along)) > 0.9:
                     half = min(half, (along / 2 if not other.sized else along - other.width / 2) - MULLION / 2)
         if half >= MIN_PANE / 2:  # else there is no room for it beside the other: the two are one
-            made.append(replace(hole, width=2 * half))
-    return made
+            clear_holes.append(replace(hole, width=2 * half))
+    return clear_holes
 
 
 def jambs(narrow: Sequence[OpeningEvidence], wide: Sequence[OpeningEvidence]) -> tuple[list[OpeningEvidence], list[OpeningEvidence]]:
@@ -148,28 +148,30 @@ def jambs(narrow: Sequence[OpeningEvidence], wide: Sequence[OpeningEvidence]) ->
     Two narrow reveals of one kind and height are a pair when each is the other's nearest.
     """
     standing = [h for h in wide if not h.flat]
-    tall = [h for h in narrow if h.evidence != "window" and h.top - h.sill >= JAMB_HEIGHT and not covered(h.centre, standing)]
-    nearest = [min(((_faced(a, b), k) for k, b in enumerate(tall) if b is not a), default=(math.inf, i))[1] for i, a in enumerate(tall)]
-    made: list[OpeningEvidence] = []
+    tall = [h for h in narrow if h.evidence != "window" and h.top - h.sill >= JAMB_HEIGHT and not is_at_hole(h.centre, standing)]
+    nearest = [
+        min(((_jamb_distance(a, b), k) for k, b in enumerate(tall) if b is not a), default=(math.inf, i))[1] for i, a in enumerate(tall)
+    ]
+    holes: list[OpeningEvidence] = []
     used: set[int] = set()
     for i, k in enumerate(nearest):
         a, b = tall[i], tall[k]
-        if i >= k or nearest[k] != i or not JAMBS_APART[0] <= _faced(a, b) <= JAMBS_APART[1]:
+        if i >= k or nearest[k] != i or not JAMBS_APART[0] <= _jamb_distance(a, b) <= JAMBS_APART[1]:
             continue
-        along = (b.centre - a.centre) / _faced(a, b)
+        along = (b.centre - a.centre) / _jamb_distance(a, b)
         middle, sill, top = (a.centre + b.centre) / 2, max(a.sill, b.sill), min(a.top, b.top)
-        made.append(OpeningEvidence(a.evidence, middle, along, _faced(a, b), sill, top, max(a.width, b.width), a.origin))
+        holes.append(OpeningEvidence(a.evidence, middle, along, _jamb_distance(a, b), sill, top, max(a.width, b.width), a.origin))
         used |= {id(a), id(b)}
-    return made, [h for h in narrow if id(h) not in used]
+    return holes, [h for h in narrow if id(h) not in used]
 
 
-def _faced(a: OpeningEvidence, b: OpeningEvidence) -> float:
+def _jamb_distance(a: OpeningEvidence, b: OpeningEvidence) -> float:
     """Return how far two jambs are apart in plan [m]; infinite where they are not of one kind and height."""
     alike = a.evidence == b.evidence and abs(a.sill - b.sill) < 0.1 and abs(a.top - b.top) < 0.1
     return float(np.hypot(*(a.centre - b.centre))) if alike else math.inf
 
 
-def covered(point: Floats, holes: Iterable[OpeningEvidence]) -> bool:
+def is_at_hole(point: Floats, holes: Iterable[OpeningEvidence]) -> bool:
     """Return whether a point (2,) lies at one of the holes, give or take SAME."""
     for hole in holes:
         apart = point - hole.centre
@@ -186,12 +188,12 @@ def bays(panes: Sequence[OpeningEvidence]) -> list[OpeningEvidence]:
         if np.hypot(*(ends[i][:, None] - ends[j][None]).reshape(-1, 2).T).min() < ADJOIN:
             mine = [g for g in groups if i in g or j in g]
             groups = [g for g in groups if g not in mine] + [set().union({i, j}, *mine)]
-    made = []
+    windows = []
     for group in groups:
         longest = max((panes[k] for k in sorted(group)), key=lambda h: h.width)
         points = np.concatenate([ends[k] for k in sorted(group)]) - longest.centre
         (low, back), (high, front) = (f(points @ np.stack([longest.along, longest.across], 1), axis=0) for f in (np.min, np.max))
         centre = longest.centre + (low + high) / 2 * longest.along + (back + front) / 2 * longest.across
         sill, top = max(panes[k].sill for k in group), min(panes[k].top for k in group)
-        made.append(replace(longest, centre=centre, width=float(high - low), depth=float(front - back), sill=sill, top=top))
-    return made
+        windows.append(replace(longest, centre=centre, width=float(high - low), depth=float(front - back), sill=sill, top=top))
+    return windows

@@ -11,7 +11,7 @@ import numpy as np
 
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import FrontFilters
-from pipeline.sources.threed_front.furniture import Model, Placed, inside, overlapping, placed
+from pipeline.sources.threed_front.furniture import Model, Placed, inside, overlapping, place_furniture
 from pipeline.sources.threed_front.house_file import HouseFile, RoomRecord
 from pipeline.sources.threed_front.rows import ReadRoom
 from pipeline.sources.threed_front.supports import floating, supports
@@ -32,7 +32,7 @@ def fill(
     house: HouseFile, rooms: list[ReadRoom], models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]
 ) -> None:
     """Give each room its objects; every child that is left out gets a reason, dangling and built-in ones by the room."""
-    found = {room.room_id: Candidates() for room in rooms}
+    by_room = {room.room_id: Candidates() for room in rooms}
     mine = {id(room.record): room for room in rooms}
     seen: set[tuple[Any, ...]] = set()
     for record in house.rooms:
@@ -51,70 +51,70 @@ def fill(
                 rejects.append(reject("object", name, "duplicate", f"model {furniture.jid}"))
                 continue
             seen.add(pose)
-            made = placed(child, furniture, models, taxonomy, limits)
-            home = _home(made, room, rooms, limits) if isinstance(made, Placed) else None
-            if isinstance(made, Placed) and home is not None:
+            outcome = place_furniture(child, furniture, models, taxonomy, limits)
+            home = _home(outcome, room, rooms, limits) if isinstance(outcome, Placed) else None
+            if isinstance(outcome, Placed) and home is not None:
                 if home is room:
-                    found[home.room_id].own.append(made)
+                    by_room[home.room_id].own.append(outcome)
                 else:
-                    found[home.room_id].guests.append(_moved(made, record, home))
+                    by_room[home.room_id].guests.append(_move_to_room(outcome, record, home))
             else:
-                reason = made if isinstance(made, tuple) else ("outside_room", _outside(made, room, record))
+                reason = outcome if isinstance(outcome, tuple) else ("outside_room", _outside(outcome, room, record))
                 rejects.append(reject("object", name, *reason))
         rejects += [reject("room", where, k, f"{count[k]} of {len(record.children)} children") for k in sorted(count) if count[k]]
     placed_ones = {child.ref for record in house.rooms for child in record.children}
     missing = ((uid, r) for uid, r in house.furniture.items() if r.valid is not None and uid not in placed_ones)
     rejects += [reject("object", f"{house.uid}/{uid}", "not_placed", f"model {r.jid}") for uid, r in missing]
     for room in rooms:
-        _keep(house, room, found[room.room_id], taxonomy, limits, rejects)
+        _keep(house, room, by_room[room.room_id], taxonomy, limits, rejects)
 
 
-def _home(made: Placed, room: ReadRoom | None, rooms: list[ReadRoom], limits: FrontFilters) -> ReadRoom | None:
+def _home(piece: Placed, room: ReadRoom | None, rooms: list[ReadRoom], limits: FrontFilters) -> ReadRoom | None:
     """Return the room in which a piece lies: its own, else the one that holds most of it, None where it is in none."""
-    ordered = sorted(rooms, key=lambda r: (r is not room, -inside(made, r.polygon)))
-    return next((r for r in ordered if inside(made, r.polygon) >= limits.min_inside), None)
+    ordered = sorted(rooms, key=lambda r: (r is not room, -inside(piece, r.polygon)))
+    return next((r for r in ordered if inside(piece, r.polygon) >= limits.min_inside), None)
 
 
-def _moved(made: Placed, record: RoomRecord, home: ReadRoom) -> Placed:
+def _move_to_room(piece: Placed, record: RoomRecord, home: ReadRoom) -> Placed:
     note = ("other_room", f"filed under {record.instance or record.type}, lies in {home.record.instance}")
-    return replace(made, notes=(*made.notes, note), filed=record.instance)
+    return replace(piece, notes=(*piece.notes, note), filed=record.instance)
 
 
-def _outside(made: Placed, room: ReadRoom | None, record: RoomRecord) -> str:
+def _outside(piece: Placed, room: ReadRoom | None, record: RoomRecord) -> str:
     if room is None:
         return f"{record.instance or record.type} was left out, and it lies in no other room"
-    return f"{inside(made, room.polygon):.0%} of the footprint inside"
+    return f"{inside(piece, room.polygon):.0%} of the footprint inside"
 
 
-def _keep(house: HouseFile, room: ReadRoom, found: Candidates, taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]) -> None:
+def _keep(house: HouseFile, room: ReadRoom, contents: Candidates, taxonomy: Taxonomy, limits: FrontFilters, rejects: list[Row]) -> None:
     """Give a room what lies in it, but for what lies in each other and what hangs in the air."""
     where = f"{house.uid}/{room.record.instance}"
-    candidates = [*found.own, *found.guests]
+    candidates = [*contents.own, *contents.guests]
     if len(candidates) > MAX_OBJECTS:
         raise SourceError("too_large", where, f"{len(candidates)} objects in {where}")
     dropped = overlapping(candidates, limits, taxonomy)
-    for i, made in enumerate(candidates):
-        name = _name(house, room, made)
+    for i, piece in enumerate(candidates):
+        name = _name(house, room, piece)
         if i in dropped:
             j, share = dropped[i]
-            detail = f"{made.category} has {share:.0%} in {candidates[j].category} {candidates[j].child.instance}"
+            detail = f"{piece.category} has {share:.0%} in {candidates[j].category} {candidates[j].child.instance}"
             rejects.append(reject("object", name, "overlap", detail))
             continue
-        rejects.extend(reject("object", name, reason, detail) for reason, detail in made.notes)
-        room.objects.append(made)
+        rejects.extend(reject("object", name, reason, detail) for reason, detail in piece.notes)
+        room.objects.append(piece)
     _support(house, room, taxonomy, rejects)
 
 
-def _name(house: HouseFile, room: ReadRoom, made: Placed) -> str:
+def _name(house: HouseFile, room: ReadRoom, piece: Placed) -> str:
     """Return where the file has a piece."""
-    return f"{house.uid}/{made.filed or room.record.instance}/{made.child.instance}"
+    return f"{house.uid}/{piece.filed or room.record.instance}/{piece.child.instance}"
 
 
 def _support(house: HouseFile, room: ReadRoom, taxonomy: Taxonomy, rejects: list[Row]) -> None:
     """Find what the room's objects stand on; small things whose support was left out are left out as well."""
-    held = supports(room.objects, taxonomy)
-    while any(lost := [floating(o, on, taxonomy) for o, on in zip(room.objects, held, strict=True)]):
+    bearers = supports(room.objects, taxonomy)
+    while any(lost := [floating(o, on, taxonomy) for o, on in zip(room.objects, bearers, strict=True)]):
         rejects.extend(reject("object", _name(house, room, o), "no_support") for o, gone in zip(room.objects, lost, strict=True) if gone)
         room.objects = [o for o, gone in zip(room.objects, lost, strict=True) if not gone]
-        held = supports(room.objects, taxonomy)
-    room.supports = held
+        bearers = supports(room.objects, taxonomy)
+    room.supports = bearers

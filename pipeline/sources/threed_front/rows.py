@@ -38,10 +38,10 @@ class ReadRoom:
 
     def covering(self) -> list[Placed]:
         """Return what takes up floor: neither what hangs, nor what lies on furniture, nor what one walks on."""
-        held = self.supports or [-1] * len(self.objects)
+        bearers = self.supports or [-1] * len(self.objects)
         return [
             o
-            for o, on in zip(self.objects, held, strict=True)
+            for o, on in zip(self.objects, bearers, strict=True)
             if o.span[0] < STANDING and o.span[1] > THIN and (on < 0 or o.span[0] < THIN)
         ]
 
@@ -91,22 +91,22 @@ def opening_row(scene_id: str, opening: Opening) -> Row:
 
 def object_row(scene_id: str, room: ReadRoom, number: int, source: str) -> Row:
     """Return the objects row of a room's object; `source` is its room and child in the file."""
-    made = room.objects[number]
+    piece = room.objects[number]
     return {
         "scene_id": scene_id,
         "object_id": room.named(number),
         "room_id": room.room_id,
-        "category": made.category,
-        "asset_id": made.asset_id,
-        "position": made.pose.position.tolist(),
-        "yaw": made.pose.yaw,
-        "size": made.pose.size.tolist(),
-        "scale": made.scale.tolist(),
-        "openable": made.openable,
+        "category": piece.category,
+        "asset_id": piece.asset_id,
+        "position": piece.pose.position.tolist(),
+        "yaw": piece.pose.yaw,
+        "size": piece.pose.size.tolist(),
+        "scale": piece.scale.tolist(),
+        "openable": piece.openable,
         "support": room.named(room.supports[number]) if room.supports else "",
         "latent": [0.0] * 32,
         "retrieval_distance": 0.0,
-        "source_id": f"{source}#{made.jid}",
+        "source_id": f"{source}#{piece.jid}",
     }
 
 

@@ -20,7 +20,7 @@ from pipeline.sources.threed_front.future import ModelInfo, read_model, read_mod
 from pipeline.sources.threed_front.house import read_house
 from pipeline.sources.threed_front.house_file import Furniture
 from pipeline.sources.threed_front.model_hints import Hint, hints, records
-from pipeline.sources.threed_front.notches import filled
+from pipeline.sources.threed_front.notches import occupancy_bits
 from pipeline.sources.walkable_share import Walker
 
 HOUSES, MODELS, TEXTURES = "3D-FRONT", "3D-FUTURE-model", "3D-FRONT-texture"
@@ -117,21 +117,21 @@ def future_models(source: Path, said: Mapping[str, Hint]) -> tuple[list[ModelInf
 
 def read_future(task: ModelTask, info: ModelInfo) -> LibraryRows:
     """Read one 3D-FUTURE model and write its asset file."""
-    made = LibraryRows()
+    rows = LibraryRows()
 
     def work() -> None:
         models = Folder.at(task.source).sub(MODELS)
         words, hint = taxonomy.load(), task.hints.get(info.model_id)
         model = read_model(models, info, words, task.limits, task.licence, hint, cut=task.limits.cut == "all")
         asset = model.asset
-        made.keep(task.out, asset, Scale(model.box.unit), words.materials.get(info.material.lower(), ""), info.material)
-        made.rejects += model.rejects
+        rows.keep(task.out, asset, Scale(model.box.unit), words.materials.get(info.material.lower(), ""), info.material)
+        rows.rejects += model.rejects
         w, d, h = asset.size.tolist()
-        made.models[info.model_id] = Model(
-            model.box, asset.category, asset.asset_id, (w, d, h), asset.openable, filled(asset.meshes(), asset.size)
+        rows.models[info.model_id] = Model(
+            model.box, asset.category, asset.asset_id, (w, d, h), asset.openable, occupancy_bits(asset.meshes(), asset.size)
         )
 
-    return made.guarded(info.model_id, work)
+    return rows.guarded(info.model_id, work)
 
 
 def read_front(task: HouseTask, file: str) -> HouseRows:

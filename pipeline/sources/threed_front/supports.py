@@ -23,11 +23,11 @@ def supports(objects: Sequence[Placed], taxonomy: Taxonomy) -> list[int]:
 
     A thing stands on the highest box whose top it starts at; else it is in the smallest box around its foot.
     """
-    found = [-1] * len(objects)
+    bearers = [-1] * len(objects)
     shapes = np.array([o.footprint() for o in objects])
     raised = [i for i, o in enumerate(objects) if o.span[0] > RAISED and taxonomy.categories[o.category].mount != "ceiling"]
     if not raised:
-        return found
+        return bearers
     areas = shapely.area(shapes)
     for i in raised:
         z = objects[i].span[0]
@@ -39,13 +39,13 @@ def supports(objects: Sequence[Placed], taxonomy: Taxonomy) -> list[int]:
         ]
         on = [j for j in below if z >= objects[j].span[1] - ON]
         if on:
-            found[i] = max(on, key=lambda j: objects[j].span[1])
+            bearers[i] = max(on, key=lambda j: objects[j].span[1])
         elif below:
-            found[i] = min(below, key=lambda j: areas[j] * (objects[j].span[1] - objects[j].span[0]))
-    return found
+            bearers[i] = min(below, key=lambda j: areas[j] * (objects[j].span[1] - objects[j].span[0]))
+    return bearers
 
 
-def floating(made: Placed, support: int, taxonomy: Taxonomy) -> bool:
+def floating(piece: Placed, support: int, taxonomy: Taxonomy) -> bool:
     """Whether a small thing hangs in the air: its support was left out."""
-    category = taxonomy.categories[made.category]
-    return not category.layout and category.mount == "floor" and support < 0 and made.span[0] > ON
+    category = taxonomy.categories[piece.category]
+    return not category.layout and category.mount == "floor" and support < 0 and piece.span[0] > ON

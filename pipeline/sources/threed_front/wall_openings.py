@@ -16,7 +16,7 @@ from shapely.geometry import LineString, Polygon
 
 from pipeline.entities.plan import Opening, OpeningKind
 from pipeline.sources.threed_front.opening_evidence import DOOR_HEIGHT, MIN_PANE, MIN_WIDTH, Floats, OpeningEvidence
-from pipeline.sources.threed_front.reveals import SAME, bays, gathered
+from pipeline.sources.threed_front.reveals import SAME, bays, group_evidence
 
 DOORWAY = 1.2  # [m] floors that meet on no more than this meet under a doorway
 USUAL_DEPTH = 0.3  # [m] of the thickest usual wall; an opening that is deeper, a bay, reaches as much farther
@@ -89,18 +89,18 @@ def openings(
 
     `height` [m] is that of open fronts, `reach` [m] how far from an opening's middle its rooms begin; `walls` gives the walls' faces in plan.
     """
-    known = gathered(_in_wall(h, outlines, reach) for h in evidence)
-    found: list[Opening] = []
+    known = group_evidence(_in_wall(h, outlines, reach) for h in evidence)
+    room_openings: list[Opening] = []
     depths: dict[int, list[float]] = {1: [], 2: []}
     lost: list[OpeningEvidence] = []
 
     def take(holes: Iterable[OpeningEvidence], left: list[OpeningEvidence]) -> None:
         for hole in holes:
-            opening = None if _ajar(hole, outlines) else resolve(hole, outlines, f"opening_{len(found)}", reach)
+            opening = None if _ajar(hole, outlines) else resolve(hole, outlines, f"opening_{len(room_openings)}", reach)
             if opening is None:
                 left.append(hole)
                 continue
-            found.append(opening)
+            room_openings.append(opening)
             if 0.05 <= hole.depth <= 0.5:
                 depths[len(opening.rooms)].append(hole.depth)
 
@@ -110,7 +110,7 @@ def openings(
     around = bays(panes)
     take(around, rest)
     rest += [p for p in panes if not any(_holds(bay, p) for bay in around)]
-    return [*found, *touching(outlines, height, found, walls)], depths, [*rest, *known.rest]
+    return [*room_openings, *touching(outlines, height, room_openings, walls)], depths, [*rest, *known.rest]
 
 
 def _in_wall(hole: OpeningEvidence, outlines: Sequence[Outline], reach: float) -> OpeningEvidence:
@@ -186,14 +186,14 @@ def touching(
     Floors may meet in the middle of a wall: there is none where one of the `walls` (their faces in plan) stands, nor where an
     opening is `known` already, for it has a wall around it. Ids go on from `known`.
     """
-    found: list[Opening] = []
+    passages: list[Opening] = []
     for i, a in enumerate(outlines):
         for b in outlines[i + 1 :]:
             if a.polygon.distance(b.polygon) > TOUCHING:
                 continue
             rooms = tuple(sorted((a.room_id, b.room_id)))
-            edges = [e for e in _shared(a.polygon, b.polygon) if _length(e) >= LEAST_FRONT and not _is_known(e, rooms, known)]
-            edges = [e for e in edges if _walled(e, walls()) < 0.5] if edges else []
+            edges = [e for e in _shared_edges(a.polygon, b.polygon) if _length(e) >= LEAST_FRONT and not _is_known(e, rooms, known)]
+            edges = [e for e in edges if _wall_share(e, walls()) < 0.5] if edges else []
             longest = max(edges, key=_length, default=None)
             if longest is None:
                 continue
@@ -201,11 +201,11 @@ def touching(
             doorway = _length(longest) <= DOORWAY
             kind: OpeningKind = "portal" if doorway else "open"
             top = min(DOOR_HEIGHT, height) if doorway else height
-            found.append(Opening(f"opening_{len(known) + len(found)}", kind, rooms, ends, top))
-    return found
+            passages.append(Opening(f"opening_{len(known) + len(passages)}", kind, rooms, ends, top))
+    return passages
 
 
-def _shared(a: Polygon, b: Polygon) -> list[Floats]:
+def _shared_edges(a: Polygon, b: Polygon) -> list[Floats]:
     """Return the straight parts (2, 2) of the outline of `a` that `b` touches."""
     shared = a.exterior.intersection(b.buffer(TOUCHING))
     shared = shapely.line_merge(shared) if shared.geom_type == "MultiLineString" else shared
@@ -219,7 +219,7 @@ def _is_known(edge: Floats, rooms: tuple[str, ...], known: Sequence[Opening]) ->
     return any(line.distance(middle) < SAME for middle in middles)
 
 
-def _walled(edge: Floats, walls: shapely.Geometry) -> float:
+def _wall_share(edge: Floats, walls: shapely.Geometry) -> float:
     """Return the share of an edge (2, 2) along which a wall stands."""
     line = LineString(edge)
     return float(line.intersection(walls.buffer(WALL_NEAR, cap_style="flat")).length / line.length)

@@ -10,7 +10,7 @@ MADE = {
     "box": [solids.box(*UNIT)],
     "bevelled": [solids.box(*UNIT, 0.02)],
     "cushion": [solids.cushion(*UNIT, 0.1, 3)],
-    "slab": [solids.slab(solids.rounded((0, 1), (0, 2), 0.2), (0, 0.1), 0.01)],
+    "slab": [solids.slab(solids.rounded_rectangle((0, 1), (0, 2), 0.2), (0, 0.1), 0.01)],
     "rod": [solids.rod((0, 0, 0), (1, 2, 3), 0.1, 0.05)],
     "beam": [solids.beam((0, 0, 0), (0.2, 0.1, 1), 0.05, 0.04, 0.6)],
     "vase": solids.revolve([(0.2, 0), (0.3, 0.1), (0.1, 0.3), (0.1, 0.5), (0.25, 0.6)]),

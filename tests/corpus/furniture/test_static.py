@@ -13,7 +13,7 @@ from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.lines import lines
 from pipeline.corpus.furniture.shape import frozen, pieces
-from pipeline.corpus.furniture.solids import Solid, box, cushion, merged, normals, pillow, topology
+from pipeline.corpus.furniture.solids import Solid, box, cushion, merge_solids, normals, pillow, topology
 from pipeline.corpus.furniture.styles import MANNERS
 from pipeline.corpus.furniture.wavefront import corners_of
 from pipeline.seeds import generator
@@ -207,7 +207,7 @@ def test_texture_coordinates_keep_real_sizes_and_stay_in_their_field():
         "b", box((0, 0.5), (0, 0.5), (0, 0.1)), cloth
     )
     sheet = texture.atlas(parts)
-    vertices, shared = merged([p.solid for p in parts])
+    vertices, shared = merge_solids([p.solid for p in parts])
     corners = corners_of(parts, vertices, shared, normals(vertices, shared))
     pixels = sheet.uv(parts, corners) * [sheet.width, sheet.height]
     for number, part in enumerate(parts):

@@ -5,7 +5,7 @@ import pytest
 from pipeline import taxonomy
 from pipeline.floorplan import plan_json
 from pipeline.floorplan.document import PlanDocument
-from pipeline.floorplan.imports import program_of, read_own_json, told
+from pipeline.floorplan.imports import describe_repairs, program_of, read_own_json
 from pipeline.homes.request import layout_type
 from pipeline.homes.soundness import UnsoundError, check_sound, closed_rooms
 from tests.floorplan.imports import procthor_houses
@@ -79,7 +79,10 @@ def test_a_closet_behind_a_narrow_door_is_closed_to_the_robot_and_the_house_is_a
     (found,) = check_sound(own.plan, SETTINGS)
     assert (found.code, found.where) == ("closed", "r_bathroom_104")
     assert f"is {ways.closet:.2f} m wide" in found.text
-    assert told(own.and_found([found]).repairs_json()).count("found: r_bathroom_104: a robot 0.50 m wide does not get into it") == 1
+    assert (
+        describe_repairs(own.and_found([found]).repairs_json()).count("found: r_bathroom_104: a robot 0.50 m wide does not get into it")
+        == 1
+    )
     assert closed_rooms(own.plan, SETTINGS) == {"r_bathroom_104"}
 
 

@@ -12,11 +12,11 @@ from pathlib import Path
 import pytest
 import yaml
 
-from benchmarks.language import faults, recorded
+from benchmarks.language import faults, replay_engine
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan import complete
 from pipeline.floorplan.language import llm
-from pipeline.floorplan.language.llm import Server, UnansweredError, ask, configured
+from pipeline.floorplan.language.llm import Server, UnansweredError, ask, server_from_env
 from pipeline.floorplan.program.consistency import check
 from pipeline.floorplan.prompt import request
 
@@ -211,18 +211,18 @@ def test_a_contradiction_of_the_models_own_making_is_not_believed(serve, caplog)
 
 
 def test_configuration_comes_from_the_environment():
-    assert configured({}) is None
+    assert server_from_env({}) is None
     both = {"SFGEN_LLM_BASE_URL": "http://localhost:1/v1/", "SFGEN_LLM_MODEL": "m"}
-    found = configured(both)
+    found = server_from_env(both)
     assert (found.base_url, found.model, found.key, found.cache.name) == ("http://localhost:1/v1", "m", "", "llm")
-    assert configured({**both, "SFGEN_CACHE": "/x"}).cache == Path("/x/llm")
+    assert server_from_env({**both, "SFGEN_CACHE": "/x"}).cache == Path("/x/llm")
     with pytest.raises(UsageError) as caught:
-        configured({**both, "SFGEN_LLM_API_KEY": "secret\nX-Evil: 1"})
+        server_from_env({**both, "SFGEN_LLM_API_KEY": "secret\nX-Evil: 1"})
     assert "secret" not in str(caught.value)
     with pytest.raises(UsageError, match="SFGEN_LLM_MODEL"):
-        configured({"SFGEN_LLM_BASE_URL": "http://localhost:1"})
+        server_from_env({"SFGEN_LLM_BASE_URL": "http://localhost:1"})
     with pytest.raises(UsageError, match="http"):
-        configured({"SFGEN_LLM_BASE_URL": "file:///etc/passwd", "SFGEN_LLM_MODEL": "m"})
+        server_from_env({"SFGEN_LLM_BASE_URL": "file:///etc/passwd", "SFGEN_LLM_MODEL": "m"})
 
 
 def test_no_server_is_asked_about_an_empty_prompt(serve):
@@ -308,7 +308,7 @@ def test_the_worked_examples_are_valid_and_quote_their_requests():
     examples = yaml.safe_load(llm.EXAMPLES.read_text(encoding="utf-8"))
     assert len(examples) == 6
     for example in examples:
-        program = llm.validated(json.dumps(example["reply"], ensure_ascii=False), example["prompt"])
+        program = llm.validate_reply(json.dumps(example["reply"], ensure_ascii=False), example["prompt"])
         check(complete(program))
         assert len(program.evidence) == len(example["reply"]["evidence"])
         assert all(r.stated for r in program.rooms)
@@ -338,7 +338,7 @@ def test_a_contradiction_that_the_model_has_settled_is_refused(serve):
 
 def test_recorded_replies_are_scored_without_a_server():
     prompt = "Two bedrooms and a bath"
-    engine = recorded({prompt: {"rooms": [{"id": "bed", "type": "bedroom", "count": 2}, {"id": "bath", "type": "bathroom"}]}}, None)
+    engine = replay_engine({prompt: {"rooms": [{"id": "bed", "type": "bedroom", "count": 2}, {"id": "bath", "type": "bathroom"}]}}, None)
     case = {"prompt": prompt, "rooms": ["bedroom", "bedroom", "bathroom"]}
     assert faults(case, engine) == []
     assert faults({**case, "prompt": "A kitchen"}, engine) != []

@@ -3,7 +3,7 @@
 import pytest
 import yaml
 
-from pipeline.floorplan.language.amounts import measured
+from pipeline.floorplan.language.amounts import combine_amounts
 from pipeline.floorplan.language.lexicon import FOLDER, LANGUAGES, lexicon
 from pipeline.floorplan.language.marks import listen, segment
 from pipeline.floorplan.language.parser import parse
@@ -13,7 +13,7 @@ from pipeline.floorplan.language.text import Verbs, clean, fold, tokenize
 
 def amounts(text, language="en"):
     heard = listen(text, language)
-    return [m for m in measured(segment(heard), heard) if m.kind == "amount"]
+    return [m for m in combine_amounts(segment(heard), heard) if m.kind == "amount"]
 
 
 @pytest.mark.parametrize(
