@@ -75,7 +75,7 @@ words = taxonomy.load()
 assert "hope_chest" in words.names and "incense_burner" in words.small and words.names[0] == "double_bed"
 assert words.from_future("Dower Chest") == words.from_title("cabinet/ bottom drawer") == "hope_chest"
 assert words.from_partnet("HopeChest") == ("hope_chest",) and words.of_kind("Storage Unit")[-1] == "hope_chest"
-assert candidates("models/dowry_3.urdf", "", words) == candidates("a/hope_chest.urdf", "", words) == ("hope_chest",)
+assert candidates("models/dowry_3.urdf", words) == candidates("a/hope_chest.urdf", words) == ("hope_chest",)
 assert KINDS["bedroom"].label("hope_chest") == "cabinet" and "hope_chest" in KINDS["bedroom"].categories("cabinet")
 assert sizes()["hope_chest"].mean[0] == 1.1 and masses.factor("hope_chest", 120.0) == 0.5 and density("cabinet", "Metal", "hope_chest") == 555.0
 for prompt in ("a flat with a bedroom with two hope chests", "Wohnung mit einem Schlafzimmer mit zwei Aussteuertruhen"):

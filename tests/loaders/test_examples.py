@@ -94,7 +94,7 @@ def test_isaac_lab_scene_names_the_prims_that_are_there(furnished):
 
     home = sfgen.load(furnished)[0]
     stage = Usd.Stage.Open(str(home.usd))
-    found = runpy.run_path(str(ROOT / "examples" / "isaac_lab_scene.py"))["articulated"](home)
+    found = runpy.run_path(str(ROOT / "examples" / "isaac_lab_scene.py"))["articulations"](home)
     assert len(found) == 4 + 3 + 1
     for article in found.values():
         prim = stage.GetDefaultPrim().GetPrimAtPath(article.prim)

@@ -249,9 +249,7 @@ def test_files_of_any_name(name, hostile):
     assert made["assets"] >= 2
 
 
-@pytest.mark.parametrize(
-    "link", ["file", "folder", "loop", "house", "mtl", "texture", "urdf", "object", "mesh", "meshes", "meta", "zero", "categories"]
-)
+@pytest.mark.parametrize("link", ["file", "folder", "loop", "house", "mtl", "texture", "urdf", "object", "mesh", "meshes", "meta", "zero"])
 def test_links_out_of_the_folder(link, hostile):
     root, read = hostile
     outside = root.parent / "secret.obj"
@@ -277,7 +275,7 @@ def test_links_out_of_the_folder(link, hostile):
             "meshes": "textured_objs",
             "meta": "meta.json",
         }
-        path = folder / names[link] if link in names else root / "partnet" / "categories.csv" if link == "categories" else folder
+        path = folder / names[link] if link in names else folder
     if path.is_dir():
         path.rename(root.parent / "elsewhere")
         outside = root.parent / "elsewhere"
