@@ -173,7 +173,7 @@ def _furniture(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
 
 def _unsaid(program: FloorProgram, case: Mapping[str, Any]) -> Iterator[str]:
     """Words that nothing can be made of, and that are not listed as such."""
-    listed = "".join(s.text for s in program.unparsed).lower()
+    listed = "".join(s.text for s in (*program.unparsed, *program.unbuilt)).lower()
     for word in case.get("unread", ()):
         if word.lower().replace(" ", "") not in listed.replace(" ", ""):
             yield f"not said: {word}"

@@ -18,13 +18,14 @@ LOG = logging.getLogger(__name__)
 def request(prompt: str, server: Server | None = None, *, strict: bool = False) -> FloorProgram:
     """Return the completed program of a prompt: by the language model that `server` or the environment names, else built in.
 
-    With `strict`, a prompt of which words were not understood is refused with them.
+    With `strict`, a prompt of which words were not understood, or ask for what nobody builds, is refused with them.
     """
     program = _read(prompt, server)
-    if strict and program.unparsed:
-        lost = ", ".join(f"'{s.text}'" for s in program.unparsed)
-        words = [Evidence(start=s.start, end=s.end, text=s.text, field="unparsed") for s in program.unparsed]
-        raise ImpossibleError(f"not understood: {lost}", "say it in other words, or leave out --strict", words)
+    lost = {"not understood": program.unparsed, "not built here": program.unbuilt} if strict else {}
+    if any(lost.values()):
+        what = "; ".join(f"{why}: {', '.join(repr(s.text) for s in spans)}" for why, spans in lost.items() if spans)
+        words = [Evidence(start=s.start, end=s.end, text=s.text, field="unparsed") for spans in lost.values() for s in spans]
+        raise ImpossibleError(what, "say it in other words, or leave out --strict", words)
     return program
 
 

@@ -275,7 +275,7 @@ def test_what_was_assumed_and_what_was_not_understood_is_told_beside_a_file_too(
     document = json.loads(out)
     assert [each["text"] for each in document["assumed"]]
     assert "living_room" in err
-    assert "not understood: sauna" in err
+    assert "not built here: sauna" in err
 
 
 def test_the_schema_is_printed(sfgen):

@@ -173,6 +173,7 @@ def has(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one answer per
         return k + 1
     if kind == "kitchen" and thing.mark is not None and thing.mark.value == "dining_room/corner":  # "a kitchen with dining area"
         c.stock.get(owners[0]).functions.add("dining")
+        c.state.understood(thing.first, thing.last)
         return at + 1
     if kind == "hallway" and thing.type == "bedroom" and not thing.definite:  # "a corridor with two bedrooms and a bathroom"
         group, j = c.after(at, "leads", owners)

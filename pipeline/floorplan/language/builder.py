@@ -326,7 +326,7 @@ def _entrance(draft: Draft, state: Reading) -> None:
         owners = [r.id for kind in ("kitchen", "bedroom") for r in stock.of(kind) if r.role in {"elder", "guest", "staff", "carer"}]
         if separate := (owners or [owner])[0]:
             entrance["separate"] = [separate]
-            draft.cite(e.first, e.last, "entrance.separate")
+        draft.cite(e.first, e.last, "entrance.separate")
     draft.fields["entrance"] = entrance
 
 

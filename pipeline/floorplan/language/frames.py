@@ -23,7 +23,7 @@ FILE = Path(__file__).resolve().parents[3] / "manifests" / "lexicon" / "frames.y
 PHRASES, LISTS = frozenset("ABCD"), frozenset("LXY")
 LEADING = {"det", "num", "ord", "adj", "size", "clf", "times"}  # in front of a head
 HEADS = {"room", "suite"}
-SKIPPED = {"fill", "ignored", "adverb", "word", "look", "hyphen"}  # between atoms, where no atom names it
+SKIPPED = {"fill", "ignored", "adverb", "word", "look", "hyphen", "wish"}  # between atoms, where no atom names it
 CLOSERS = ENDS | {"comma", "close", "but", "open", "colon", "bullet", "dash"}
 SEPARATORS = {"comma", "join", "slash"}
 TOWARDS = {"into", "single", "det/indefinite", "det/another"}  # in front of each room of a list: "one to the hall, one to the kitchen"
@@ -250,7 +250,7 @@ def _change_mark(mark: Mark, change: str) -> Mark:
     if change == "total":
         return replace(mark, total=True)
     if change == "bedroom":
-        return replace(mark, kind="room", value=f"bedroom/{mark.value}", number=0.0)
+        return replace(mark, kind="room", value=f"bedroom/{mark.value}", number=0.0, text=f"bedroom_{mark.text}")
     if change == "room":
         return replace(mark, kind="room")
     kind, _, value = change.partition("/")

@@ -198,7 +198,7 @@ def _relabel(marks: Sequence[Mark], words: Words) -> list[Mark]:
     """Settle what depends on words far off: narrow plots, floors counted from the ground floor, studies where there are bedrooms."""
     lex, relabelled = words.lexicon, list(marks)
     ground = "floors_from_one" in lex.traits and any(m.kind == "level" and lex.sign("ground") & set(m.text.split()) for m in marks)
-    bedrooms = any(m.kind == "room" and m.value.startswith("bedroom") for m in marks)
+    bedrooms = any(m.kind == "room" and m.value.startswith("bedroom") and m.value != "bedroom/guest" for m in marks)
     for k, mark in enumerate(marks):
         ahead = [m.kind for m in marks[k + 1 : k + 5] if m.kind not in {"adj", "num", "look", "size"}] if mark.value == "slim" else []
         if ahead[:1] == ["home"] or ahead[:2] == ["room", "home"] or (mark.value == "slim" and k and marks[k - 1].kind == "home"):

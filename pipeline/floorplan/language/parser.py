@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import bisect
 import itertools
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from pydantic import ValidationError
@@ -15,8 +16,8 @@ from pipeline.floorplan.language.attaching import attach
 from pipeline.floorplan.language.builder import assemble
 from pipeline.floorplan.language.facts import Reading
 from pipeline.floorplan.language.frames import apply_frames
-from pipeline.floorplan.language.furnishing import read_furniture
-from pipeline.floorplan.language.marks import Mark, listen, reorder, segment
+from pipeline.floorplan.language.furnishing import Claim, read_furniture
+from pipeline.floorplan.language.marks import Mark, Words, listen, reorder, segment
 from pipeline.floorplan.language.naming import introduce
 from pipeline.floorplan.language.phrases import Element, sentences, settle
 from pipeline.floorplan.language.revising import ban, choose, refuse
@@ -30,7 +31,8 @@ from pipeline.floorplan.program.floor_program import Evidence, FloorProgram, Spa
 LONGEST = 20_000  # characters
 MOST_WORDS = 2_500  # and Chinese characters: reading takes time in proportion to them
 EMPTY = {"fill", "ignored", "adverb", "verb", "join", "but", "comma", "stop", "line", "colon", "open", "close", "slash", "bullet", "dash", "hyphen", "clf", "times", "relative", "home", "long", "bound", "enough", "fix", "unit", "to", "reciprocal", "look"}  # fmt: skip
-READ = {"used", "corner"}  # what was read with its neighbours
+READ = {"used"}  # what was read with its neighbours
+NOT_BUILT = {"unbuilt", "car"}  # a garage is one for one car
 # flags that hold wherever they stand, and such as only underline what is said
 STRESS = {"total", "only", "closed", "luxury", "wheelchair", "step_free", "single", "no_hall", "shape_l", "shape_t", "rectangle", "narrow", "chamfered"}  # fmt: skip
 POINTING = {"each", "other", "own", "another"}  # determiners that say something
@@ -51,13 +53,14 @@ def understand(prompt: str) -> FloorProgram:
     """Return what the prompt says, and no more: nothing is filled in or checked."""
     check_length(prompt)
     plain, wishes = read_furniture(prompt)
-    return attach(understand_rooms(plain, prompt), wishes, prompt)
+    return attach(understand_rooms(plain, prompt, wishes), wishes, prompt)
 
 
-def understand_rooms(plain: str, prompt: str) -> FloorProgram:
+def understand_rooms(plain: str, prompt: str, wishes: Sequence[Claim] = ()) -> FloorProgram:
     """Return what a prompt says of rooms, and no more; `plain` is it without its wishes for furniture, all else in its place."""
     words = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
-    said = apply_frames(choose(amounts(segment(words), words)), words)
+    marks = _with_wishes(choose(amounts(segment(words), words)), wishes, words)
+    said = [m for m in apply_frames(marks, words) if m.kind != "wish"]
     refuse(said, words)
     marks = reorder([m for m in said if m.kind != "people"], words)
     parsed = sentences(marks, words)
@@ -79,7 +82,14 @@ def understand_rooms(plain: str, prompt: str) -> FloorProgram:
         fault = error.errors()[0]
         where = ".".join(map(str, fault["loc"]))
         raise RefusedError(f"{where} cannot be {str(fault['input'])[:60]}: {fault['msg']}", "ask for a home of usual size") from error
-    return program.model_copy(update={"unparsed": tuple(_unparsed_spans(state, parsed, program.evidence, marks))})
+    return program.model_copy(update=_left_out(state, parsed, program.evidence, marks))
+
+
+def _with_wishes(marks: Sequence[Mark], wishes: Sequence[Claim], words: Words) -> list[Mark]:
+    """Return the marks with one in each place from which a wish was taken out: whose it is tells which rooms there are."""
+    starts = [t.start for t in words.tokens]
+    places = [bisect.bisect_left(starts, w.start) for w in wishes]
+    return sorted([*(Mark("wish", first=k, last=k) for k in places), *marks], key=lambda m: m.first)
 
 
 def check_length(prompt: str) -> None:
@@ -92,17 +102,21 @@ def check_length(prompt: str) -> None:
         raise UsageError(f"the prompt has {count} words and marks", f"keep it under {MOST_WORDS}")
 
 
-def _unparsed_spans(state: Reading, parsed: list[list[Element]], evidence: Sequence[Evidence], marks: Sequence[Mark]) -> Iterator[Span]:
-    """Yield what nothing was made of: words that are in no vocabulary, and words that say something and stand in no evidence."""
+def _left_out(
+    state: Reading, parsed: list[list[Element]], evidence: Sequence[Evidence], marks: Sequence[Mark]
+) -> dict[str, tuple[Span, ...]]:
+    """Return what nothing was made of: `unbuilt`, names of what nobody builds; `unparsed`, words that are in no vocabulary, and words that say something and stand in no evidence."""
     tokens = state.heard.tokens
     places = [{k for k, t in enumerate(tokens) if e.start <= t.start and t.end <= e.end} for e in evidence]
     cited = _consumed_tokens(state, parsed, places, evidence)
+    spans: dict[str, list[Span]] = {"unparsed": [], "unbuilt": []}
     for k, mark in enumerate(marks):
-        if mark.last == mark.first:
-            continue
-        if mark.kind == "word" or (not cited & set(range(mark.first, mark.last)) and (mark.value == "unbuilt" or _says(state, marks, k))):
+        free = mark.last > mark.first and not cited & set(range(mark.first, mark.last))
+        named = free and mark.value in NOT_BUILT
+        if named or (mark.kind == "word" and mark.last > mark.first) or (free and _says(state, marks, k)):
             start, end = tokens[mark.first].start, tokens[mark.last - 1].end
-            yield Span(start=start, end=end, text=state.heard.prompt[start:end])
+            spans["unbuilt" if named else "unparsed"].append(Span(start=start, end=end, text=state.heard.prompt[start:end]))
+    return {field: tuple(some) for field, some in spans.items()}
 
 
 def _consumed_tokens(state: Reading, parsed: list[list[Element]], places: Sequence[set[int]], evidence: Sequence[Evidence]) -> set[int]:
@@ -126,8 +140,8 @@ def _consumed_tokens(state: Reading, parsed: list[list[Element]], places: Sequen
                     or (has_statement and (e.kind in {"flag", "det", "pron"} or (e.kind, e.value) in {("cue", "from"), ("adj", "open")}))
                 ):
                     cited.update(range(e.first, e.last))
-                elif e.kind == "np" and (e.ids or e.banned):
-                    cited.update(i for m in e.taken for i in range(m.first, m.last))
+                elif e.kind == "corner" or (e.kind == "np" and (e.ids or e.banned)):
+                    cited.update(range(e.first, e.last), *(range(m.first, m.last) for m in e.taken))
     return cited
 
 

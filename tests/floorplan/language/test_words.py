@@ -157,3 +157,81 @@ def test_spanish_verbs_are_read_in_every_tense(infinitive, forms):
 def test_a_spanish_way_is_said_in_any_tense(cue):
     program = parse(f"El baño {cue} pasillo. Un dormitorio, salón y cocina.")
     assert {("bath", "hall"), ("hall", "bath")} & {(k.a, k.b) for k in program.links if k.stated}
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "Two bathrooms, but only one with a tub.",
+        "Zwei Bäder, aber nur eins mit Badewanne.",
+        "Dos baños, pero solo uno con bañera.",
+        "Deux salles de bain mais une seule avec baignoire.",
+        "两个卫生间,但只有一个有浴缸。",
+    ],
+)
+def test_a_thing_of_one_of_two_rooms_is_no_count(prompt):
+    baths = [r.furniture.counts for r in parse(prompt).rooms if r.type == "bathroom"]
+    assert sorted(len(counts) for counts in baths) == [0, 1]
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "Three bedrooms, one bathroom each.",
+        "Three bedrooms and one bathroom per bedroom.",
+        "Drei Schlafzimmer, je ein Bad.",
+        "Drei Schlafzimmer und ein Bad pro Zimmer.",
+        "Tres dormitorios, un baño cada uno.",
+        "Trois chambres, une salle de bain chacune.",
+        "三间卧室,各一个卫生间。",
+    ],
+)
+def test_a_bathroom_each_is_one_for_each(prompt):
+    program = parse(prompt)
+    assert sum(r.kind == "ensuite" for r in program.relations) == 3
+    assert program.unparsed == ()
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "We parents have a double bed. Our son has a desk.",
+        "Die Eltern haben ein Doppelbett, der Sohn hat einen Schreibtisch.",
+        "Los padres tenemos una cama doble y nuestro hijo un escritorio.",
+        "父母有一张双人床,儿子有书桌。",
+    ],
+)
+def test_what_somebody_has_stands_in_their_bedroom(prompt):
+    things = {r.role: [t.category for t in r.furniture.counts] for r in parse(prompt).rooms if r.type == "bedroom"}
+    assert things == {"primary": ["double_bed"], "child": ["desk"]}
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "One bedroom. The kitchen is open.",
+        "Ein Schlafzimmer. Die Küche ist offen.",
+        "Un dormitorio. La cocina tiene que ser abierta.",
+        "Une chambre. La cuisine est ouverte.",
+        "一间卧室。厨房是开放的。",
+    ],
+)
+def test_a_kitchen_that_is_open_is_an_open_kitchen(prompt):
+    program = parse(prompt)
+    assert [(k.a, k.b, k.kind) for k in program.links if k.kind == "open"] == [("living", "kitchen", "open")]
+    assert program.unparsed == ()
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "A studio with a guest room.",
+        "Ein Studio mit Gästezimmer.",
+        "Un estudio con habitación de invitados.",
+        "Un studio avec chambre d'amis.",
+        "一个单间公寓带一间客房",
+    ],
+)
+def test_a_studio_with_a_guest_room_has_no_other_bedroom(prompt):
+    program = parse(prompt)
+    assert [(r.type, r.role) for r in program.rooms if r.type in {"bedroom", "studio_room"}] == [("bedroom", "guest"), ("studio_room", "")]
