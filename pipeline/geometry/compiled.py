@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 import hashlib
+import importlib
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+
+# numba looks for SciPy's BLAS, with which it would multiply matrices. No loop here does, and scipy.linalg costs every process
+# a tenth of a second and 17 MiB.
+if "scipy.linalg" not in sys.modules:
+    sys.modules["scipy.linalg"] = None  # type: ignore[assignment]
+    importlib.import_module("numba.np.arraymath")
+    del sys.modules["scipy.linalg"]
 
 F = TypeVar("F", bound=Callable[..., object])
 ROOT = Path(__file__).resolve().parents[1]

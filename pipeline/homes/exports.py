@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Mapping
-from pathlib import Path
 
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
 from pipeline.preview.top import top_view
 from pipeline.rendering.png import png
 from pipeline.usd.home import home_layer
-from pipeline.usd.layer import save
+from pipeline.usd.layer import crate
 from pipeline.usd.mujoco import home_overlay
 
 LIBRARY = "../../assets"  # as seen from usd/shard-00000/
@@ -21,8 +19,7 @@ def files_of(home: Home, assets: Mapping[str, Asset], preview: int) -> dict[str,
     """Return the home's files by `<family>/<name>`; `preview` is the side of the top view [px], 0 for none."""
     files: dict[str, bytes] = {}
     stage = home_layer(home, assets, LIBRARY)
-    with tempfile.TemporaryDirectory() as folder:  # crate files are written to paths only; the bytes do not depend on where
-        files[f"usd/{home.scene_id}.usdc"] = save(stage, Path(folder) / f"{home.scene_id}.usdc").read_bytes()
+    files[f"usd/{home.scene_id}.usdc"] = crate(stage)
     overlay = home_overlay(stage, f"{home.scene_id}.usdc")
     files[f"usd/{home.scene_id}.mujoco.usda"] = overlay.ExportToString().encode()
     if preview:

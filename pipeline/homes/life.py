@@ -13,10 +13,11 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 from pipeline import seeds, taxonomy
+from pipeline.diffusion.sampling import QUAD
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Plan
 from pipeline.errors import ContentError, RefusedError, SfgenError
@@ -49,10 +50,11 @@ class State(Enum):
 
 @dataclass(slots=True)
 class RoomTries:
-    """The tries of one room under one plan: the job of the latest, and the best result so far."""
+    """The tries of one room under one plan: the job of the latest, the best result so far, and the jobs of tries that may come."""
 
     job: RoomJob
     best: RoomResult | None = None
+    coming: list[RoomJob] = field(default_factory=list)
 
     def keep(self, result: RoomResult) -> RoomResult:
         """Take a result where it is better than those before it; return the best."""
@@ -62,10 +64,18 @@ class RoomTries:
 
     def again(self, most: int) -> RoomJob | None:
         """Return the job of the next try, None when all `most` of them are spent."""
-        if self.job.attempt + 1 >= most:
+        following = self.following(1, most)
+        if not following:
             return None
-        self.job = replace(self.job, attempt=self.job.attempt + 1)
-        return self.job
+        self.job = self.coming.pop(0)
+        return following[0]
+
+    def following(self, count: int, most: int) -> list[RoomJob]:
+        """Return the jobs of the next `count` tries, as far as there are `most` in all; the same whenever they are asked for."""
+        left = most - 1 - self.job.attempt
+        while len(self.coming) < min(count, left):
+            self.coming.append(replace(self.job, attempt=self.job.attempt + 1 + len(self.coming)))
+        return self.coming[: min(count, left)]
 
 
 class HomeLife:
@@ -79,7 +89,7 @@ class HomeLife:
         self.prompt, self.program, self.plan = request.prompt, "", Plan((), (), "")
         self.rooms: dict[str, RoomTries] = {}
         self.waiting: dict[str, RoomJob] = {}  # by room id: what is to be drafted
-        self.drafted: dict[str, Draft] = {}  # of those, what a stage has drafted
+        self.drafted: dict[RoomJob, Draft] = {}  # by a stage, or ahead of their time
         self.things: tuple[Placement, ...] = ()
         self.closed: frozenset[str] = frozenset()  # rooms that a plan of the user's own closes to the robot
         self.certificate: Certificate | None = None
@@ -87,7 +97,7 @@ class HomeLife:
         self._seconds = 0.0
         if first:
             self._move_in(PlannedHome(first.prompt, first.program, first.plan, tuple(d.job for d in first.drafts)))
-            self.drafted = {d.job.room_id: d for d in first.drafts}
+            self.drafted = {draft.job: draft for draft in first.drafts}
         else:
             tell("planning", request.index)
             self._draw_plan()
@@ -137,13 +147,17 @@ class HomeLife:
             return
         tell("furnishing", self.request.index)
         del self.waiting[job.room_id]
-        self.drafted.pop(job.room_id, None)
+        self.drafted.pop(job, None)
         self.tries += 1
         r = self.resources
         with self._charge(), r.timed("postopt"):
             result = finish(draft, r.library, r.index, r.learnt, r.postopt, r.verify, taxonomy.load())
         self.rejects.extend(self._reject(job, reject) for reject in result.rejects)
         self._check(result, self.rooms[job.room_id].keep(result))
+
+    def following(self, job: RoomJob, count: int) -> list[RoomJob]:
+        """Return the jobs of up to `count` tries that come after the one that waits."""
+        return self.rooms[job.room_id].following(count, self.resources.shard.room_attempts)
 
     def _check(self, result: RoomResult, best: RoomResult) -> None:
         """Where a result is not good enough the room is tried again; a wish that even the best leaves unmet needs another plan."""
@@ -260,10 +274,14 @@ def make_homes(resources: Resources, requests: Sequence[Request], first: Mapping
     """Take a batch of homes through their lives; rooms are drafted together. `first` are first drafts that a stage has made, by index."""
     homes = [HomeLife(resources, request, first.get(request.index)) for request in requests]
     while any(home.state in {State.PLANNED, State.FINISHED} for home in homes):
-        jobs = [job for home in homes for job in home.waiting.values() if job.room_id not in home.drafted]
-        drafts = {draft.job: draft for draft in draft_rooms(resources, jobs)}
+        jobs = [(home, job) for home in homes for job in home.waiting.values() if job not in home.drafted]
+        # Fewer rooms than QUAD cost as much as QUAD of them, and a room that has failed often fails again.
+        ahead = QUAD // len(jobs) - 1 if jobs else 0
+        jobs += [(home, later) for home, job in jobs if job.attempt for later in home.following(job, ahead)]
+        for (home, job), draft in zip(jobs, draft_rooms(resources, [job for _, job in jobs]), strict=True):
+            home.drafted[job] = draft
         for home in homes:
-            for draft in [drafts.get(job) or home.drafted[job.room_id] for job in home.waiting.values()]:
+            for draft in [home.drafted[job] for job in home.waiting.values()]:
                 home.finish(draft)
             while home.state is State.FINISHED:
                 home.judge()

@@ -21,6 +21,7 @@ Floats = NDArray[np.float64]
 LAST = ("living_room", "living_dining_room", "dining_room")  # what keeps the rest of the floor when the others have been cut off
 QUIET, DOOR = "bedroom", 0.15  # whose part is better without doors, and what each costs it, beside 1 for a square's shape
 CUT = 0.4  # cost of a cut that ends in a door or window
+EXACT = 1e-9  # of the corners of parts [m]
 AWAY = 0.01  # cuts are tried this near to the right area [share of the width]
 
 
@@ -86,10 +87,12 @@ def _cut_off(whole: shapely.Polygon, way: Floats, share: float, openings: Sequen
         middle = (first + last) / 2
         first, last = (middle, last) if beyond(middle).area > share * whole.area else (first, middle)
     part = beyond((first + last) / 2)
-    rest = shapely.difference(whole, part)
+    part, rest = shapely.set_precision([part, shapely.difference(whole, part)], EXACT)  # a side off by a last bit leaves a spike
+    if part.geom_type != "Polygon" or rest.geom_type != "Polygon":
+        return None
     line = shapely.intersection(part.boundary, rest.boundary)
     line = shapely.line_merge(line) if line.geom_type == "MultiLineString" else line
-    if part.geom_type != "Polygon" or rest.geom_type != "Polygon" or line.geom_type != "LineString":
+    if line.geom_type != "LineString":
         return None
     ends = np.array(line.coords)[[0, -1]]
     merit = min(_squareness(part), _squareness(rest))

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from pipeline.entities.asset import Asset
-from pipeline.entities.home import Home
+from pipeline.entities.home import Home, Placement
 from pipeline.geometry.walls import Shell, levels, shell
 from pipeline.preview.building import building
 from pipeline.preview.labels import SMALL, draw_label, summed_area_table
@@ -42,15 +42,10 @@ def top_view(home: Home, assets: Mapping[str, Asset], size: int = 1024, *, reach
 def _storey(home: Home, assets: Mapping[str, Asset], level: int, built: Shell, view: View, *, reaches: bool) -> Image.Image:
     ids = {room.room_id for room in home.plan.rooms if room.level == level}
     placed = [p for p in home.placements if p.room_id in ids and p.asset_id in assets]
-    elevation = level * home.plan.storey_height
     categories = load().categories
     hanging = [p for p in placed if p.category in categories and categories[p.category].mount == "ceiling"]
     standing = [p for p in placed if p.category not in categories or categories[p.category].mount != "ceiling"]
-    ground = building(home.plan, level, built)
-    frame = render(view, ground.faces, ground.colours, ground.items, BACKGROUND)
-    for number, p in enumerate(standing, 1):
-        draw_roof(frame, view, assets[p.asset_id], p.position - (0.0, 0.0, elevation), p.yaw, p.scale, number)
-    image = Image.fromarray(frame.colour)
+    image, depth, item = _solids(home, assets, level, built, view, standing)
     draw = ImageDraw.Draw(image)
 
     def project(points: NDArray[np.float64]) -> list[tuple[float, float]]:
@@ -63,17 +58,28 @@ def _storey(home: Home, assets: Mapping[str, Asset], level: int, built: Shell, v
         draw_reach(draw, placement, assets[placement.asset_id], project, line)
     for placement in hanging:
         draw.line(project(placement.footprint()[[0, 1, 2, 3, 0]]), fill=(150, 150, 150), width=line)
-    image = _shade(image.reduce(SAMPLES), frame)
+    image = _shade(image.reduce(SAMPLES), depth, item)
     size = max(9, round(0.26 * view.scale / SAMPLES))
     if size >= SMALL:
-        busy = summed_area_table(frame.item[::SAMPLES, ::SAMPLES] > 0)
+        busy = summed_area_table(item > 0)
         for room in home.plan.rooms:
             if room.level == level:
                 draw_label(image, room, np.array(project(room.polygon)) / SAMPLES, busy, min(size, 22))
     return image
 
 
-def _shade(image: Image.Image, frame: Frame) -> Image.Image:
-    """Add the soft shadows that the depth buffer gives, at the final resolution."""
-    coarse = Frame(np.asarray(image), frame.depth[::SAMPLES, ::SAMPLES], frame.item[::SAMPLES, ::SAMPLES])
+def _solids(
+    home: Home, assets: Mapping[str, Asset], level: int, built: Shell, view: View, standing: Sequence[Placement]
+) -> tuple[Image.Image, NDArray[np.float32], NDArray[np.int32]]:
+    """Draw walls, floors and what stands on them: the fine image, and depths and items at the final resolution; fine ones take 20 MB."""
+    ground, elevation = building(home.plan, level, built), level * home.plan.storey_height
+    frame = render(view, ground.faces, ground.colours, ground.items, BACKGROUND)
+    for number, p in enumerate(standing, 1):
+        draw_roof(frame, view, assets[p.asset_id], p.position - (0.0, 0.0, elevation), p.yaw, p.scale, number)
+    return Image.fromarray(frame.colour), frame.depth[::SAMPLES, ::SAMPLES].copy(), frame.item[::SAMPLES, ::SAMPLES].copy()
+
+
+def _shade(image: Image.Image, depth: NDArray[np.float32], item: NDArray[np.int32]) -> Image.Image:
+    """Add the soft shadows that a depth buffer (H, W) gives, at the final resolution."""
+    coarse = Frame(np.asarray(image), depth, item)
     return Image.fromarray(darken_edges(coarse, max(2, image.width // 120), 0.38, reach=1.4, ground=0.0).colour)

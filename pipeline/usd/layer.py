@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -72,6 +73,14 @@ def save(layer: Sdf.Layer, path: Path) -> Path:
         raise OSError(f"cannot write {path}")
     os.replace(temporary, path)  # noqa: PTH105 - same call, and atomic
     return path
+
+
+def crate(layer: Sdf.Layer) -> bytes:
+    """Return the layer as the bytes of a .usdc file. USD writes those to paths only; they do not depend on where."""
+    with tempfile.NamedTemporaryFile(suffix=".usdc") as scratch:
+        if not layer.Export(scratch.name):
+            raise OSError(f"cannot write {scratch.name}")
+        return Path(scratch.name).read_bytes()
 
 
 def prim(parent: Sdf.PrimSpec | Sdf.Layer, name: str, kind: str = "Xform", apis: Sequence[str] = ()) -> Sdf.PrimSpec:

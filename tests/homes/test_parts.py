@@ -44,3 +44,18 @@ def test_a_room_of_one_use_is_its_only_part():
     (part,) = split_room(RoomContext("", OBLONG), STUDIO[:1])
     assert part.layout_type == "living_room"
     assert np.array_equal(part.polygon, OBLONG)
+
+
+def test_a_cut_beside_a_corner_leaves_no_spike():
+    """A studio whose second cut once ran along a spike of the first: planned for home 197 of seed 17."""
+    outline = np.array([[0.118, 0.118], [6.882, 0.118], [6.882, 1.44], [5.689, 1.44], [5.689, 5.133], [0.118, 5.133]])
+    doors = [
+        RoomOpening("entrance", np.array([[0.218, -0.002], [1.118, -0.002]])),
+        RoomOpening("door", np.array([[5.749, 4.233], [5.749, 5.033]])),
+    ]
+    windows = [RoomOpening("window", np.array([[a, y], [a + 2.4, y]]), 0.9) for a, y in ((2.3, -0.002), (1.703, 5.253))]
+    found = split_room(RoomContext("", outline, (*doors, *windows)), [*STUDIO, ("dining_room", 6.0)])
+    shapes = [shapely.Polygon(part.polygon) for part in found]
+    assert len(shapes) == 4
+    assert shapely.union_all(shapes).symmetric_difference(shapely.Polygon(outline)).area < 1e-5
+    assert all(shape.is_valid and shape.buffer(-0.01).buffer(0.02).contains(shape) for shape in shapes)  # no spikes

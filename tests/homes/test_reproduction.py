@@ -81,3 +81,21 @@ def test_stages_compute_with_the_same_sums_whatever_the_machine_has_besides():
     }
     assert len(found) == 1
     assert next(iter(found)).endswith("AVX2\n")
+
+
+@pytest.mark.skipif(" avx512f " not in Path("/proc/cpuinfo").read_text(), reason="a machine without AVX-512")
+def test_arrays_come_out_the_same_with_and_without_avx_512():
+    """Products by OpenBLAS and exponentials by NumPy differ between instruction sets in their last bits; not once a stage is imported."""
+    program = (
+        "{first}; import hashlib, numpy as np; x = np.random.default_rng(0).normal(size=(303, 303))\n"
+        "print(hashlib.sha256(b''.join(f(x).tobytes() for f in (np.exp, np.tan, lambda x: x @ x))).hexdigest())"
+    )
+    clean = {k: v for k, v in os.environ.items() if k not in PINNED}
+
+    def told(first, **more):
+        command = [sys.executable, "-c", program.format(first=first)]
+        return subprocess.run(command, env={**clean, **more}, cwd=ROOT, capture_output=True, check=True, text=True).stdout
+
+    held = told("import stages")
+    wide = told("import sys", OPENBLAS_CORETYPE="SkylakeX")
+    assert held == told("import sys", **PINNED) != wide
