@@ -3,13 +3,15 @@ import pytest
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial import ConvexHull
 
+from pipeline.corpus.furniture.solids import rounded_rectangle
 from pipeline.sources.densities import MINIMUM
 from pipeline.sources.meshes import colliders, merging
 from pipeline.sources.meshes.colliders import link, solids
 from pipeline.sources.meshes.cutting import cut
 from pipeline.sources.meshes.merging import merge_pieces
-from pipeline.sources.meshes.mesh_solids import MAX_HULL, components, convex, hull, mass_properties, parts, signed_volume
+from pipeline.sources.meshes.mesh_solids import MAX_HULL, components, convex, extremes, hull, mass_properties, parts, signed_volume
 from pipeline.sources.settings import ModelLimits
 from tests.sources import mobility
 
@@ -266,3 +268,11 @@ def test_a_bound_on_the_hulls_that_are_tried_where_everything_touches(monkeypatc
     made = merge_pieces(crowd + boards)
     assert sum(count == 2 for count in tried) <= 2 * 5 * 30
     assert sum(p.hull.min(axis=0)[2] > 0.8 for p in made) == 1
+
+
+def test_a_hull_of_few_corners_leaves_little_of_a_rounded_plate_out():
+    outline = rounded_rectangle((-0.32, 0.32), (-0.28, 0.28), 0.03, 14)
+    plate = np.concatenate([np.column_stack([outline, np.full(len(outline), z)]) for z in (0.0, 0.04)])
+    kept = ConvexHull(extremes(plate))
+    assert len(kept.vertices) <= MAX_HULL < len(plate)
+    assert (plate @ kept.equations[:, :3].T + kept.equations[:, 3]).max() < 0.001

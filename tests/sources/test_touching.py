@@ -7,7 +7,7 @@ from scipy.spatial import ConvexHull
 
 from pipeline.sources.meshes.mesh_solids import convex
 from pipeline.sources.meshes.near_boxes import CORNERS
-from pipeline.sources.meshes.touching import FELT, Felt, felt_of, fewer, simpler
+from pipeline.sources.meshes.touching import FELT, Felt, felt_of, fewer, simpler, without_feet
 
 
 def block(low, high):
@@ -151,3 +151,19 @@ def test_cushions_have_level_tops():
     )
     (found,) = simpler([swell], Felt(up=0.035, lift=0.05))
     assert np.ptp(found.hull[found.hull[:, 2] > 0.1 - 1e-9][:, :2], axis=0).min() > 1.9
+
+
+def test_a_bar_before_a_door_has_no_feet_and_fingers_come_behind_it():
+    door, bar = block((-0.2, 0, 0), (0.2, 0.02, 0.7)), block((-0.08, -0.032, 0.6), (0.08, -0.02, 0.612))
+    feet = [block((x, -0.026, 0.601), (x + 0.01, -5e-5, 0.611)) for x in (-0.06, 0.05)]
+    found = simpler([door, bar, *feet], Felt())
+    assert sorted(len(p.hull) for p in found) == [8, 8]
+    assert {round(float(np.ptp(p.hull[:, 1])), 3) for p in found} == {0.02, 0.012}
+
+
+def test_a_chain_of_small_pieces_keeps_its_links_and_a_peg_stays():
+    door = block((-0.2, 0, 0), (0.2, 0.02, 0.7))
+    links = [block((x, -0.1, 0.6), (x + 0.03, -0.09, 0.61)) for x in (-0.045, -0.015, 0.015)]
+    assert without_feet([door, *links]) == [door, *links]
+    peg = block((0.1, -0.03, 0.3), (0.11, 0, 0.31))
+    assert without_feet([door, peg]) == [door, peg]

@@ -32,8 +32,12 @@ def reach(handle: HandleStyle) -> float:
 def handle(
     style: FrontStyle, rect: Rect, *, upright: bool, at: tuple[float, float], length: float, name: str = "handle"
 ) -> tuple[Piece, ...]:
-    """Return the handle of a front with its middle `at` (x, z); `upright` turns a bar along z. It collides as one solid."""
+    """Return the handle of a front with its middle `at` (x, z); `upright` turns a bar along z.
+
+    It collides as one solid, but for a bar on feet: fingers come behind that.
+    """
     x, z = at
+    group = name
     y, half = rect.y, length / 2
     part = "line_fixed_handle"
     solids: list[Solid]
@@ -55,8 +59,8 @@ def handle(
         else:
             solids = [box((x - half, x + half), (y - 0.014, y), (top - 0.008, top), 0.001)]
     else:
-        solids = _bar(style, (x, y, z), (0.0, half) if upright else (half, 0.0))
-    return pieces(name, solids, style.metal, part, name)
+        solids, group = _bar(style, (x, y, z), (0.0, half) if upright else (half, 0.0)), ""
+    return pieces(name, solids, style.metal, part, group)
 
 
 def _round_grip(style: HandleStyle) -> list[Solid]:

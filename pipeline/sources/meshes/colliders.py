@@ -15,7 +15,8 @@ from pipeline.sources.meshes.inertials import Inertial
 from pipeline.sources.meshes.merging import merge_pieces
 from pipeline.sources.meshes.mesh_solids import Part, convex, mass_properties, parts_with_meshes
 from pipeline.sources.meshes.near_boxes import simplify_to_box
-from pipeline.sources.meshes.touching import Felt, simpler
+from pipeline.sources.meshes.recesses import stand_midway
+from pipeline.sources.meshes.touching import TOUCHED, Felt, simpler
 from pipeline.sources.settings import ModelLimits
 
 Floats = NDArray[np.float64]
@@ -123,11 +124,15 @@ def link(
     if 0 < mass < MINIMUM:
         inertia = inertia * (MINIMUM / mass)
     least = 1e-6 * np.eye(3)  # engines refuse inertias of thin parts that round to zero
-    how = how or Felt()
+    how, visuals = how or Felt(), tuple(visuals)
     pieces = simpler(matter.pieces, how)
     floor = min((float(p.hull[:, 2].min()) for p in pieces), default=0.0)
-    colliders = tuple(_piece(k, p, how.box, floor) for k, p in enumerate(pieces))
-    return Link(name, tuple(visuals), colliders, round(max(mass, MINIMUM), 5), np.round(com, 6), np.round(inertia, 9) + least)
+    boxes = [simplify_to_box(p.hull, p.faces, how.box, floor) for p in pieces]
+    if how.sides <= TOUCHED:
+        seen = [m.vertices[m.faces].astype(np.float64) for m in visuals if not m.part]
+        boxes = [(stand_midway(hull, np.concatenate(seen)), faces) for hull, faces in boxes] if seen else boxes
+    colliders = tuple(_piece(k, *box) for k, box in enumerate(boxes))
+    return Link(name, visuals, colliders, round(max(mass, MINIMUM), 5), np.round(com, 6), np.round(inertia, 9) + least)
 
 
 def matter_volume(matter: Solids, kind: str) -> float:
@@ -142,6 +147,5 @@ def _hollow_out(part: Part, kind: str) -> Part:
     return replace(part, volume=min(part.volume, part.area * BOARD))
 
 
-def _piece(number: int, part: Part, near: float, floor: float) -> Mesh:
-    hull, faces = simplify_to_box(part.hull, part.faces, near, floor)
+def _piece(number: int, hull: Floats, faces: Ints) -> Mesh:
     return Mesh(f"piece_{number:03d}", hull.astype(np.float32), faces.astype(np.int32))

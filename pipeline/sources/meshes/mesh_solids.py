@@ -16,6 +16,7 @@ Ints = NDArray[np.int64]
 
 WELD = 1e-5  # share of the mesh's diagonal within which vertices are one
 MAX_HULL = 64  # vertices; PhysX takes no more in one convex piece
+LEFT_OUT = 1e-6  # [m] outside of a hull that is no further than its surface
 SHEET = 0.001  # [m] half thickness given to a flat part
 CLOSED = 4  # faces of a closed surface at least; two that are one drawn from both sides are none
 SHELL = 0.008  # [m] thickness of an open surface, when its mass is estimated
@@ -300,12 +301,31 @@ def hull(points: Floats) -> tuple[Floats, Ints, float] | None:
 
 
 def extremes(points: Floats, most: int = MAX_HULL) -> Floats:
-    """Return at most so many of the points: those furthest along the axes and along evenly spread directions."""
+    """Return at most so many of the points: those furthest along the axes and along evenly spread directions, then what their hull leaves out furthest."""
     k = np.arange(most - 6) + 0.5
     polar, turn = np.arccos(1 - 2 * k / (most - 6)), np.pi * (1 + 5**0.5) * k
     directions = np.stack([np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1)
     directions = np.concatenate([np.eye(3), -np.eye(3), directions])
-    return np.asarray(points[np.unique(np.argmax(points @ directions.T, axis=0))])
+    chosen = np.unique(np.argmax(points @ directions.T, axis=0))
+    while len(chosen) < most:
+        further = _left_out(points, chosen)[: most - len(chosen)]
+        if not len(further):
+            break
+        chosen = np.union1d(chosen, further)
+    return np.asarray(points[chosen])
+
+
+def _left_out(points: Floats, chosen: Ints) -> Ints:
+    """Return of each face of the hull of chosen points the one that is furthest outside of it, the furthest of all first."""
+    try:
+        planes = ConvexHull(points[chosen]).equations
+    except QhullError:
+        return np.zeros(0, np.int64)
+    away = points @ planes[:, :3].T + planes[:, 3]
+    furthest = np.unique(np.argmax(away, axis=0))
+    outside = away[furthest].max(axis=1)
+    furthest, outside = furthest[outside > LEFT_OUT], outside[outside > LEFT_OUT]
+    return np.asarray(furthest[np.lexsort((furthest, -outside.round(9)))])
 
 
 def _is_watertight(faces: Ints) -> bool:

@@ -47,6 +47,10 @@ UNDER = 0.2  # [m] above the floor below which furniture's legs and plinths are 
 SEAT = 0.4  # [m] the same under a seat, whose legs a robot stands before
 CUSHIONED = frozenset(("bed", "chair", "sofa", "stool"))  # super-categories on which one sits and lies: what things lie on there gives way
 REACH = 0.05  # [m] between pieces that may become one across what lies between them: shelves on both sides of a board
+FOOT = (0.045, 0.018)  # [m] the foot of a handle's bar is no longer, no wider
+SEAM = 0.001  # [m] between pieces that meet
+APART = 0.016  # ... and no point of it that far from the bar and the front that it stands between
+SLIGHT = 3  # times as long are both of them
 POT = 0.4  # share of a plant's height up to which it is as hard as other things
 Offer = tuple[float, tuple[int, ...]]  # how much changes, who becomes one
 
@@ -117,6 +121,8 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
         pieces = [_flat(combine_parts(pieces))]
     if how.closed:
         pieces = discs(pieces)
+    if how.sides <= TOUCHED:
+        pieces = without_feet(pieces)
     allowed = _tolerance(pieces, how)
     fewer_pieces = felt_of(fewer(pieces, allowed, max(how.up, how.sides, REACH), rings=how.up < SOFT), allowed)
     return tuple(_level_top(p, how.lift) for p in fewer_pieces) if how.lift else fewer_pieces
@@ -139,6 +145,25 @@ def felt_of(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
         if others and _deviation(pieces[k].hull, others, least) is not None:
             kept.discard(k)
     return tuple(pieces[k] for k in sorted(kept))
+
+
+def without_feet(pieces: Sequence[Part]) -> list[Part]:
+    """Return the pieces without the feet that hold bars before a front: a hand takes hold of the bar, and comes behind it."""
+    extents = [np.sort(np.ptp(p.hull, axis=0)) for p in pieces]
+    slight = [k for k, extent in enumerate(extents) if extent[2] <= FOOT[0] and extent[1] <= FOOT[1]]
+    planes = [_planes(p.hull) for p in pieces] if slight else []
+    feet = set()
+    for k in slight:
+        ends = [
+            i
+            for i, extent in enumerate(extents)
+            if extent[2] >= SLIGHT * extents[k][2]
+            and float((pieces[k].hull @ planes[i][:, :3].T + planes[i][:, 3]).max(axis=1).min()) < SEAM
+        ]
+        at = spread(pieces[k].hull[pieces[k].faces], SAMPLES[-1])
+        if len(ends) > 1 and _away(at, [planes[i] for i in ends], np.full(len(at), APART)) <= 1.0:
+            feet.add(k)
+    return [p for k, p in enumerate(pieces) if k not in feet]
 
 
 def _level_top(part: Part, lift: float) -> Part:
