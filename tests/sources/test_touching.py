@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from pipeline.sources.meshes.feet import without_feet
 from pipeline.sources.meshes.mesh_solids import convex
 from pipeline.sources.meshes.near_boxes import CORNERS
-from pipeline.sources.meshes.touching import FELT, Felt, felt_of, fewer, simpler, without_feet
+from pipeline.sources.meshes.touching import FELT, Felt, felt_of, fewer, simpler
 
 
 def block(low, high):
@@ -167,3 +168,14 @@ def test_a_chain_of_small_pieces_keeps_its_links_and_a_peg_stays():
     assert without_feet([door, *links]) == [door, *links]
     peg = block((0.1, -0.03, 0.3), (0.11, 0, 0.31))
     assert without_feet([door, peg]) == [door, peg]
+
+
+def test_a_lid_keeps_its_knob():
+    turns = 2 * np.pi * np.arange(24) / 24
+    disc = convex(
+        np.concatenate([np.column_stack([r * np.cos(turns), r * np.sin(turns), np.full(24, z)]) for r, z in ((0.1, 0), (0.06, 0.012))]), 1.0
+    )
+    knob = convex(
+        np.concatenate([np.column_stack([0.018 * np.cos(turns), 0.018 * np.sin(turns), np.full(24, z)]) for z in (0.013, 0.04)]), 1.0
+    )
+    assert len(simpler([disc, knob], Felt(vessel=True))) == 2

@@ -17,6 +17,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from pipeline.card import Category
 from pipeline.geometry.compiled import compiled
+from pipeline.sources.meshes.feet import without_feet
 from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, convex, extremes
 from pipeline.sources.meshes.near_boxes import NEAR
 from pipeline.sources.meshes.reach import make_reach_test
@@ -43,14 +44,11 @@ LEFT_ALONE = 0.15  # ... from underneath, and leaves
 HELD = 0.02  # ... the outside of small things that no hand goes into
 ANY = 10.0  # [m]
 HOLLOW, DEEP = 0.25, 0.45  # shares of a vessel's width and height that it may be off within
+OUTWARD = 0.1  # of the normal of a floor within
 UNDER = 0.2  # [m] above the floor below which furniture's legs and plinths are one block: no hand comes there
 SEAT = 0.4  # [m] the same under a seat, whose legs a robot stands before
 CUSHIONED = frozenset(("bed", "chair", "sofa", "stool"))  # super-categories on which one sits and lies: what things lie on there gives way
 REACH = 0.05  # [m] between pieces that may become one across what lies between them: shelves on both sides of a board
-FOOT = (0.045, 0.018)  # [m] the foot of a handle's bar is no longer, no wider
-SEAM = 0.001  # [m] between pieces that meet
-APART = 0.016  # ... and no point of it that far from the bar and the front that it stands between
-SLIGHT = 3  # times as long are both of them
 POT = 0.4  # share of a plant's height up to which it is as hard as other things
 Offer = tuple[float, tuple[int, ...]]  # how much changes, who becomes one
 
@@ -147,25 +145,6 @@ def felt_of(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
     return tuple(pieces[k] for k in sorted(kept))
 
 
-def without_feet(pieces: Sequence[Part]) -> list[Part]:
-    """Return the pieces without the feet that hold bars before a front: a hand takes hold of the bar, and comes behind it."""
-    extents = [np.sort(np.ptp(p.hull, axis=0)) for p in pieces]
-    slight = [k for k, extent in enumerate(extents) if extent[2] <= FOOT[0] and extent[1] <= FOOT[1]]
-    planes = [_planes(p.hull) for p in pieces] if slight else []
-    feet = set()
-    for k in slight:
-        ends = [
-            i
-            for i, extent in enumerate(extents)
-            if extent[2] >= SLIGHT * extents[k][2]
-            and float((pieces[k].hull @ planes[i][:, :3].T + planes[i][:, 3]).max(axis=1).min()) < SEAM
-        ]
-        at = spread(pieces[k].hull[pieces[k].faces], SAMPLES[-1])
-        if len(ends) > 1 and _away(at, [planes[i] for i in ends], np.full(len(at), APART)) <= 1.0:
-            feet.add(k)
-    return [p for k, p in enumerate(pieces) if k not in feet]
-
-
 def _level_top(part: Part, lift: float) -> Part:
     """Return a cushion with a level top: what lies on a swell rolls, where a real one gives way."""
     top = float(part.hull[:, 2].max())
@@ -208,7 +187,8 @@ class _Hollow:
         """Return (P,) whether points (P, 3) of faces with normals (P, 3) are of its inside."""
         away = at[:, :2] - self.middle
         inside = (np.linalg.norm(away, axis=1) < self.radius) & (at[:, 2] >= self.heights[0]) & (at[:, 2] <= self.heights[1])
-        inwards = (normals[:, 2] > UP) | ((away * normals[:, :2]).sum(axis=1) < 0) & (normals[:, 2] > -UP)
+        leans = (away * normals[:, :2]).sum(axis=1)  # outwards: a lid's knob is no inside, though its top looks up
+        inwards = (normals[:, 2] > UP) & (leans <= OUTWARD * np.linalg.norm(away, axis=1)) | (leans < 0) & (normals[:, 2] > -UP)
         return np.asarray(inside & inwards)
 
 
