@@ -14,7 +14,8 @@ from pipeline.usd.physics import quaternion
 from pipeline.usd.resistance import Resistance
 
 # Newton's limits: its own are so soft that a push goes 18 % past them. Springs of 120 rad/s, damped so that nothing bounces back; Newton
-# holds a twentieth of that against a push (1 - dmax of MuJoCo's default impedance), hence the factor on the inertia.
+# takes a twentieth of that (1 - dmax of MuJoCo's default impedance), hence the factor on the inertia. Hinges' are by the degree: by the
+# radian they would be stiffer than a step allows, MuJoCo would stretch their time and keep their damping, and they creep beyond the stop.
 STOP = (120.0**2 / 0.05, 2 * 120.0 / 0.05)  # stiffness and damping [1/s2, 1/s]
 AXES = {"X": (1, 0, 0), "Y": (0, 1, 0), "Z": (0, 0, 1)}
 
@@ -44,7 +45,7 @@ def convert_joint(
         attribute(spec, "physics:lowerLimit", "float", joint.lower * unit)
         attribute(spec, "physics:upperLimit", "float", joint.upper * unit)
         for name, value in zip(("limitStiffness", "limitDamping"), STOP, strict=True):
-            attribute(spec, f"newton:{name}", "float", value * resistance.inertia)  # Newton reads them by name; PhysX does not know them
+            attribute(spec, f"newton:{name}", "float", value * resistance.inertia / unit)  # Newton reads them by name; PhysX does not know them
     attribute(spec, "newton:armature", "float", resistance.armature)  # this and friction: PhysX, Newton and MuJoCo
     attribute(spec, "newton:friction", "float", resistance.friction)
     drive = "angular" if hinge else "linear"

@@ -19,9 +19,8 @@ HINGE_DAMPING, SLIDE_DAMPING = 1.15, 12.0  # at most: a cupboard door's [N m s/r
 HINGE_DRAG, SLIDE_DRAG = 0.1, 0.05  # dry friction: shares of what weight does to the arm of a hinge, of the weight on a rail
 HINGE_FRICTION, SLIDE_FRICTION = 0.1, 1.5  # ... at most [N m, N]: a push opens a door, a touch does not
 HOLD = 1.3  # dry friction on top, in multiples of what gravity does to a closed flap or lid, so that it stays closed
-# Inertia of the works behind knobs, taps and buttons [kg m2, kg]: nothing beside a door's own, but it keeps feathers from racing, and
-# Newton, whose stops are springs after what they hold, from letting 1 N m push a lever of half a radian past its stop by a twentieth of that.
-HINGE_ARMATURE, SLIDE_ARMATURE = 0.005, 0.05
+# Inertia of the works behind knobs and buttons [kg m2, kg]: nothing beside a door's own, but it keeps feathers from racing.
+HINGE_ARMATURE, SLIDE_ARMATURE = 0.002, 0.05
 BUTTON = 0.6  # [N] of a button's spring when it is pressed down, ...
 SAG = 0.03  # ... and at most this share of its way down it lies by its own weight; springs rest at 0: Newton takes no target beyond a limit
 

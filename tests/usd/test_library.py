@@ -12,7 +12,6 @@ from pipeline.errors import ContentError
 from pipeline.rendering.boxes import box, solid_link
 from pipeline.usd import write_library
 from pipeline.usd.check import check_stage
-from pipeline.usd.joints import STOP
 from pipeline.usd.physics import gravity_load
 from pipeline.usd.resistance import resistance
 
@@ -173,12 +172,14 @@ def test_gravity_does_not_open_what_hangs_or_looks_up(cabinet):
     assert resistance(key, 0).stiffness * 0.05 * 0.5 > gravity_load(key, 0), "... and are not pressed down by their own weight"
 
 
-def test_a_light_lever_stays_at_its_stop_under_a_newton_metre(cabinet):
-    feather = replace(cabinet.links[3], mass=0.01, inertia=1e-6 * np.eye(3))
-    lever = replace(cabinet.joints[2], type="revolute", lower=0.0, upper=0.5, part_class="hinge_handle", origin=feather.com)
-    asset = replace(cabinet, links=(*cabinet.links[:3], feather), joints=(*cabinet.joints[:2], lever))
-    holds = 0.05 * STOP[0] * resistance(asset, 2).inertia  # [N m/rad] of Newton's stop, a twentieth of what is said
-    assert 1.0 / holds < 0.05 * lever.upper
+def test_newtons_stops_are_springs_by_the_metre_and_by_the_degree(library, cabinet):
+    stage = open_asset(library, "cabinet_a")
+    for k, unit in ((0, 1.0), (1, math.degrees(1.0))):
+        prim = stage.GetPrimAtPath(f"/cabinet_a/joints/{cabinet.joints[k].name}")
+        stiffness, damping = (unit * prim.GetAttribute(f"newton:{name}").Get() for name in ("limitStiffness", "limitDamping"))
+        inertia = resistance(cabinet, k).inertia
+        assert 0.05 * stiffness / inertia == pytest.approx(120.0**2), "per second squared, as Newton takes it"
+        assert damping == pytest.approx(2 * math.sqrt(stiffness * inertia / 0.05)), "damped critically: it neither bounces nor creeps"
 
 
 def test_what_waits_for_another_joint_says_so(cabinet, tmp_path):
