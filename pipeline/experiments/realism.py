@@ -18,7 +18,7 @@ from pipeline.metrics.novelty import novelty
 from pipeline.metrics.perturbations import HARMS, Harm, spoilt
 from pipeline.metrics.relations import compare, furniture
 from pipeline.metrics.two_samples import forest_accuracy, frechet
-from pipeline.metrics.views import STATES, Embed, compare_views, views_of
+from pipeline.metrics.views import STATES, Embed, Features, compare_views, features_once
 from pipeline.relations.arrangement import Arrangement, from_rows
 from pipeline.relations.model import Relations
 from pipeline.relations.split import rooms_of
@@ -89,7 +89,7 @@ def realism_table(seed: int, rooms: Beside, known: Relations, nets: Mapping[str,
     return {
         "relations": compare(rng, {"real": rooms.real, "train": rooms.train, **rooms.made}, known),
         "layout": layout_figures(seed, pairs, harmed),
-        "views": {name: view_figures(rng, seed, embed, pairs, apart, draws) for name, embed in nets.items()},
+        "views": {name: view_figures(rng, seed, features_once(embed), pairs, apart, draws) for name, embed in nets.items()},
         "novelty": {name: novelty(generated, real, rooms.train) for name, (real, generated) in pairs.items() if name != "train"},
     }
 
@@ -126,7 +126,7 @@ def layout_figures(seed: int, pairs: Pairs, harmed: Pairs) -> Json:
 
 
 def view_figures(
-    rng: np.random.Generator, seed: int, embed: Embed, pairs: Pairs, harmed: Pairs, draws: Sequence[tuple[Rooms, Rooms]] = ()
+    rng: np.random.Generator, seed: int, features_of: Features, pairs: Pairs, harmed: Pairs, draws: Sequence[tuple[Rooms, Rooms]] = ()
 ) -> Json:
     """Return FID, KID and SCA of plan views for each pair of samples, and for each harm; FID of training rooms is the mean over `draws` of them.
 
@@ -134,11 +134,11 @@ def view_figures(
     """
 
     def scores_of(samples: Pairs) -> Json:
-        return {name: compare_views(rng, seed, embed, real, {name: generated})[name] for name, (real, generated) in samples.items()}
+        return {name: compare_views(rng, seed, features_of, real, {name: generated})[name] for name, (real, generated) in samples.items()}
 
     scores, harm = scores_of(pairs), scores_of(harmed)
     if "train" in scores:
-        every = [frechet(*(embed(views_of(rooms)) for rooms in pair)) for pair in draws]
+        every = [frechet(*map(features_of, pair)) for pair in draws]
         scores["train"]["fid"] = round(float(np.mean(every)), 4)
     blind = [name for name, figures in harm.items() if "train" not in scores or figures["fid"] < FARTHER * scores["train"]["fid"]]
     return {"made": scores, "harm": harm, "blind_to": blind}

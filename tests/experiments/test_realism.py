@@ -20,6 +20,7 @@ from pipeline.experiments.rooms import FIRST
 from pipeline.homes.rows import object_row, room_row, scene_row
 from pipeline.manifest import canonical
 from pipeline.metrics.perturbations import spoilt
+from pipeline.metrics.views import features_once
 from pipeline.relations import learning
 from pipeline.report.page import render
 from pipeline.report.realism import VOID, realism_section
@@ -111,7 +112,7 @@ def test_what_training_rooms_themselves_reach_stands_beside_and_is_a_mean_over_d
     def fid(*draws):
         pair = {"train": (rooms.real[:20], rooms.train[:20])}
         embed = lambda views: views.reshape(len(views), -1)[:, ::997].astype(float)  # noqa: E731
-        return view_figures(np.random.default_rng(0), 0, embed, pair, {}, draws)["made"]["train"]["fid"]
+        return view_figures(np.random.default_rng(0), 0, features_once(embed), pair, {}, draws)["made"]["train"]["fid"]
 
     one, two = ((rooms.real[k : k + 20], rooms.train[k : k + 20]) for k in (0, 20))
     assert fid(one) != fid(two)

@@ -13,7 +13,7 @@ from pipeline.features import inception
 from pipeline.features import net as nets
 from pipeline.features.training import train
 from pipeline.metrics.perturbations import spoilt
-from pipeline.metrics.views import STATES, compare_views, views_of
+from pipeline.metrics.views import STATES, compare_views, features_once, views_of
 from tests.relations.making import bedrooms
 
 SAID = nets.header(("bedroom",), STATES, ("double_bed",))
@@ -69,10 +69,25 @@ def test_the_released_net_sees_harm_and_nothing_where_there_is_none(root):
     rng = np.random.default_rng(0)
     real, other = ([replace(room, name=str(k)) for k, room in enumerate(bedrooms(rng, 120))] for _ in range(2))
     sets = {"other": other, "spoilt": [spoilt(rng, room) for room in other]}
-    found = compare_views(rng, 0, lambda views: nets.embed(net, views), real, sets)
+    found = compare_views(rng, 0, features_once(lambda views: nets.embed(net, views)), real, sets)
     assert found["spoilt"]["fid"] > 4 * found["other"]["fid"]
     assert found["spoilt"]["kid"]["low"] > 0 > found["other"]["kid"]["low"]
     assert found["spoilt"]["sca"]["rate"] > 0.8 > 0.65 > found["other"]["sca"]["rate"]
+
+
+def test_each_room_is_embedded_once_and_keeps_its_own_features():
+    rooms = bedrooms(np.random.default_rng(0), 6)
+    seen = []
+
+    def embed(views):
+        seen.append(len(views))
+        return views.reshape(len(views), -1)[:, ::997].astype(float)
+
+    features_of = features_once(embed)
+    first, again = features_of(rooms[:4]), features_of([*rooms[2:], *rooms[:2]])
+    assert seen == [4, 2]
+    assert np.array_equal(again, embed(views_of([*rooms[2:], *rooms[:2]])))
+    assert np.array_equal(first[2:], again[:2])
 
 
 @pytest.fixture
