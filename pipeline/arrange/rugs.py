@@ -22,13 +22,13 @@ SHARES = (1.15, 1.0, 0.85, 0.7)  # shares of its size in which a rug is tried
 def lay_rug(
     polygon: Floats, size: Floats, places: Sequence[tuple[float, float, float]], clear: Sequence[Placement]
 ) -> tuple[Floats, float, Floats] | None:
-    """Return position (2,) [m], yaw [rad] and scale (3,) of a rug of `size` (3,) [m] at the first place that takes it; None for none.
+    """Return position (2,) [m], yaw [rad] and scale (3,) of a rug of `size` (3,) [m] at the first place that takes it, there as large as it can; None for none.
 
     `places` are middles and directions (x, y, yaw); the rug stays within the room and off the furniture `clear`.
     """
     blocked = [p.footprint() for p in clear]
-    for share in SHARES:
-        for x, y, yaw in places:
+    for x, y, yaw in places:
+        for share in SHARES:
             c, s = math.cos(yaw), math.sin(yaw)
             half = share * size[:2] / 2
             corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * half

@@ -48,7 +48,7 @@ class Stretch:
 
 def lay_runs(items: Sequence[Item], walls: Sequence[Edge], site: Site) -> tuple[list[list[int]], dict[int, Floats]]:
     """Return the runs of a room, each as the indices of its units, and the pose (4,) of each unit."""
-    floor = [i for i, item in enumerate(items) if item.habit.kind in KINDS and item.mount == "floor"]
+    floor = base_units(items)
     if len(floor) < 2 or not any(items[i].habit.kind == "kitchen" for i in floor):
         return [], {}
     runs: list[list[int]] = []
@@ -70,10 +70,15 @@ def lay_runs(items: Sequence[Item], walls: Sequence[Edge], site: Site) -> tuple[
 
 
 def stray_units(runs: Sequence[Sequence[int]], items: Sequence[Item], poses: Floats, there: NDArray[np.bool_]) -> list[int]:
-    """Return the units of runs of several that stand at `poses` (N, 4), and beside no other unit."""
-    units = [i for run in runs for i in run if there[i]]
-    laid = {i for run in runs if len(run) > 1 for i in run}
-    return [i for i in units if i in laid and not any(k != i and _beside(items, poses, i, k) for k in units)]
+    """Return the units of runs of several, and those that no run had room for, that stand at `poses` (N, 4), and beside no other unit."""
+    units = [i for i in base_units(items) if there[i]] if runs else []
+    alone = {run[0] for run in runs if len(run) == 1}  # as drafted
+    return [i for i in units if i not in alone and not any(k != i and _beside(items, poses, i, k) for k in units)]
+
+
+def base_units(items: Sequence[Item]) -> list[int]:
+    """Return what may stand in a run."""
+    return [i for i, item in enumerate(items) if item.habit.kind in KINDS and item.mount == "floor"]
 
 
 def _beside(items: Sequence[Item], poses: Floats, i: int, k: int) -> bool:
@@ -169,12 +174,20 @@ def _lay(stretch: Stretch, items: Sequence[Item], poses: dict[int, Floats], site
     """Lay the units of a stretch side by side under one front line, as near to the draft as order and ends allow."""
     edge = stretch.edge
     order = _unit_order(stretch, items)
-    places = _pack_units([2 * float(items[i].half[0]) for i in order], [_place(items[i], edge) for i in order], stretch.low, stretch.high)
+    first, last = (min(_play(items[order[k]]), stretch.room(items) / 2) for k in (0, -1))
+    widths, wished = [2 * float(items[i].half[0]) for i in order], [_place(items[i], edge) for i in order]
+    places = _pack_units(widths, wished, stretch.low + first, stretch.high - last)
     line = BACK + max(2 * float(items[i].half[1]) for i in order if not _tall(items[i])) if not all(_tall(items[i]) for i in order) else 0.0
     for i, s in zip(order, places, strict=True):
         depth = float(items[i].half[1])
         poses[i] = edge.pose(s, max(line - depth, BACK + depth), site.elevation)
     return order
+
+
+def _play(item: Item) -> float:
+    """Return how far what opens reaches beyond the sides of a unit [m]: the handle of a refrigerator's door, into the wall of a corner."""
+    across = np.abs(item.shape.keep.boxes()[:, [0, 2]]) if len(item.shape.keep) else np.zeros((1, 2))
+    return max(0.0, float(across.max() - item.half[0]))
 
 
 def _place(item: Item, edge: Edge) -> float:

@@ -18,7 +18,7 @@ from pipeline.arrange.bonds import REACH, Bond, broken
 from pipeline.arrange.item import Item, make_item
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.occupancy import Occupancy
-from pipeline.arrange.runs import lay_runs, stray_units
+from pipeline.arrange.runs import base_units, lay_runs, stray_units
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.settling import Draft, settle_all
 from pipeline.arrange.site import Site
@@ -100,7 +100,9 @@ def separate(
         apart = broken(bonds, items, occupancy.poses, occupancy.there, learnt)
         there = {i: items[i].at(occupancy.poses[i]) for i in np.flatnonzero(occupancy.there).tolist()}
         lost = [i for i in range(len(items)) if i not in there]
-        faults = len(apart) + len(stray_units(runs, items, occupancy.poses, occupancy.there))
+        strays = stray_units(runs, items, occupancy.poses, occupancy.there)
+        wide = [i for i in strays if not any(i in run for run in runs)]
+        faults = len(apart) + len(strays)
         score = _score(there, items, BROKEN * faults + UNREACHED * len(occupancy.unreached))
         if (sound or number == settings.rounds - 1) and (least is None or score < least):
             best, least = there, score
@@ -108,16 +110,18 @@ def separate(
                 i for i in broken(bonds, items, occupancy.poses, occupancy.there, learnt, REACH) if _only_there(items, bonds[i], i, learnt)
             ]
         hidden = [i for i in occupancy.unreached if number == 0 or (bonds[i] is None and number < HIDDEN_ROUNDS)]
-        if sound and not (lost or apart or hidden):
+        if sound and not (lost or apart or hidden or wide):
             break
         led = frozenset(apart)
+        if wide and smaller is not None:  # no order of placing makes a wall longer: its cabinets get narrower
+            _exchange(items, [i for i in base_units(items) if items[i].habit.kind == "kitchen"], assets, learnt, settings, smaller)
         if number and smaller is not None:
             for i in (*lost, *apart):
                 losses[i] += 1
             # To be the first and still find no place, or none at the anchor, is to be too large.
             crowded = [i for i in (*lost, *apart) if losses[i] > (i in lost)]
             changed = _exchange(items, crowded, assets, learnt, settings, smaller)
-            if not (lost or changed or hidden):
+            if not (lost or changed or hidden or wide):
                 break
         first = [
             *(i for i in lost if items[i].mount != "wall"),  # a wall unit in the way of the run below it waits

@@ -69,3 +69,7 @@ def test_a_rug_lies_flat_within_the_room_and_off_cabinets():
     assert scale[0] == 1.15
     assert lay_rug(SQUARE, size, [(2.0, 0.85, 0.0)], [])[2][0] == 1.0  # smaller where the wall is near
     assert lay_rug(SQUARE, size, [(2.0, 1.5, 0.0)], [placed("block", 2.0, 1.5)]) is None
+    assert lay_rug(SQUARE, size, [(2.0, 0.7, 0.0), (2.0, 1.5, 0.0)], [])[0].tolist() == [
+        2.0,
+        0.7,
+    ]  # rather small there than large elsewhere

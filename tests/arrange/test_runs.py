@@ -2,6 +2,7 @@
 
 import math
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from pipeline.arrange.item import make_item
 from pipeline.arrange.runs import stray_units
 from pipeline.verify import Policy, verify_home
 from tests.arrange.known import LORE, drafted
-from tests.geometry.furniture import block, home, one_room
+from tests.geometry.furniture import block, cupboard, home, one_room
 from tests.judging import SETTINGS, site
 
 ASSETS = {
@@ -22,6 +23,8 @@ ASSETS = {
     "cooker": block("cooker", "oven", (0.6, 0.62, 0.9)),
     "fridge": block("fridge", "refrigerator", (0.7, 0.7, 1.8)),
     "hung": block("hung", "wall_cabinet", (0.8, 0.35, 0.7)),
+    "slim": block("slim", "kitchen_cabinet", (0.4, 0.58, 0.9)),
+    "opening": cupboard("opening", "refrigerator", (0.7, 0.7, 1.8), math.radians(100.0)),  # its door goes 12 cm beyond its side
 }
 UNITS = ("sink", "cooker", "base", "fridge")
 
@@ -94,6 +97,30 @@ def test_a_unit_that_the_run_has_no_room_for_stays_at_its_wall():
 
 def narrow():
     return one_room(np.array([[0.0, 0.0], [3.1, 0.0], [3.1, 3.0], [0.0, 3.0]]))
+
+
+def in_one_run(placements):
+    units = sorted(placements, key=lambda p: p.position[0])
+    gaps = [right.position[0] - left.position[0] - (left.size[0] + right.size[0]) / 2 for left, right in pairwise(units)]
+    return {p.yaw for p in units} == {0.0} and np.allclose(gaps, 0.002, atol=0.0005)
+
+
+def test_what_opens_beyond_its_side_keeps_off_the_corner_and_the_run_together():
+    wished = [drafted(ASSETS[name], 0.4 + 0.8 * k, 2.6, number=k) for k, name in enumerate(("opening", "sink", "base", "cooker"))]
+    found = arranged(wished)
+    assert in_one_run(found.values())
+    assert 0.12 < found["opening"].position[0] - 0.35 < 0.2
+
+
+@pytest.mark.parametrize("exchanged", [True, False])
+def test_cabinets_get_narrower_where_a_run_is_too_long_for_its_wall(exchanged):
+    names = ("fridge", "sink", "base", "cooker", "base")
+    wished = [drafted(ASSETS[name], 0.35 + 0.6 * k, 2.6, number=k) for k, name in enumerate(names)]
+    smaller = lambda name, _: SimpleNamespace(asset_id="slim", distance=0.1, scale=np.ones(3)) if name == "base" and exchanged else None  # noqa: E731
+    found = separate(site(narrow(), "room"), wished, ASSETS, LORE, smaller=smaller).placements
+    assert verify_home(home(found, narrow()), ASSETS, SETTINGS).faults(Policy()) == ()
+    assert in_one_run(found) == exchanged
+    assert sum(p.asset_id == "slim" for p in found) == 2 * exchanged
 
 
 def test_a_wall_unit_that_is_in_the_way_does_not_tear_a_run():
