@@ -127,6 +127,7 @@ class _Dressing:
             for p in self.furniture
             if supers[p.category].mount == "floor" and (custom.category != "rug" or supers[p.category].super not in STANDS_ON_RUGS)
         ]
+        clear += self.found  # rugs of the room's other parts
         polygon = np.ascontiguousarray(self.room.polygon, np.float64)
         for asset_id in sorted(drawn, key=lambda a: (-float(np.prod(self.library[a].size[:2])), a)):
             size = self.library[asset_id].size

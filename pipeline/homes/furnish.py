@@ -108,9 +108,9 @@ def category_bounds(job: RoomJob, kind: str, kinds: Sequence[str], taxonomy: Tax
     What is wished for of a group, none of it too, stands. What rooms of the plan's type do not want stays out, unless it is wished for.
     """
     wished = {c for bounds in job.category_bounds for c in bounds.categories}
-    needed = Counter(job.essentials_of(kind, taxonomy))
-    groups = [b for group, least in needed.items() if not wished.intersection(group) for b in _essential(group, least, job.attempt)]
     unwanted = tuple(c for c in job.unwanted(taxonomy) if c not in wished)
+    needed = Counter(tuple(c for c in group if c not in unwanted) for group in job.essentials_of(kind, taxonomy))
+    groups = [b for group, least in needed.items() if not wished.intersection(group) for b in _essential(group, least, job.attempt)]
     own = [
         bounds if _host(bounds, kinds, taxonomy) == kind else replace(bounds, least=0, most=bounds.most and 0)
         for bounds in job.category_bounds

@@ -12,11 +12,7 @@ from pipeline.taxonomy import Taxonomy
 
 LIVING = frozenset({"living_room", "family_room"})
 MOST_ATTEMPTS = 100  # tries of a room under one plan
-TABLE, SPACIOUS = (
-    18.0,
-    24.0,
-)  # [m2] of a living room in which one dines, though nobody said so: where no kitchen has the floor, and in any case
-EAT_IN, BREAKFAST = 10.0, 12.0  # [m2] of a kitchen in which one does: where the living room is not spacious, and in any case
+ENOUGH = 0.75  # of the floor that training rooms have for it makes a place to dine, where a home has no other
 PARTS = "+"  # between the layout types of a room that serves as several
 
 
@@ -103,25 +99,28 @@ def layout_type(room: Room, plan: Plan, taxonomy: Taxonomy) -> str | None:
     own = taxonomy.types[room.type].functions
     if not own:
         return room.type if room.type in taxonomy.layouts else taxonomy.types[room.type].furnished_as or None
-    functions = {*own, *room.functions, *(["dining"] if _dines(room, plan) else [])}
+    functions = {*own, *room.functions, *(["dining"] if _dines(room, plan, taxonomy) else [])}
     if {"living", "dining"} <= functions and "sleeping" not in functions:  # no part of a studio is as large as rooms that are both
         functions = functions - {"living", "dining"} | {"living and dining"}
     return PARTS.join(kind for name, kind in taxonomy.functions.items() if name in functions)
 
 
-def _dines(room: Room, plan: Plan) -> bool:
-    """Whether one dines in a room though nobody said so: in large kitchens, and where a home has no other place for it in the room that has the floor for it."""
-    if room.type == "kitchen" and room.area >= BREAKFAST:
+def _dines(room: Room, plan: Plan, taxonomy: Taxonomy) -> bool:
+    """Whether one dines in a room though nobody said so: in kitchens with the floor for both, and where a home has no other place for it in the room that comes nearest to that."""
+    share = _dining_share(room, taxonomy)
+    if room.type == "kitchen" and share >= 1.0:
         return True
     if any(r.type == "dining_room" or "dining" in r.functions for r in plan.rooms):
         return False
-    living, kitchen = (
-        max((r for r in plan.rooms if r.type in types), key=lambda r: r.area, default=None) for types in (LIVING, {"kitchen"})
-    )
-    if living and living.area >= SPACIOUS:
-        return room is living
-    if kitchen and kitchen.area >= EAT_IN:
-        return room is kitchen
-    if living and living.area >= TABLE:
-        return room is living
-    return room.type == "studio_room" and room.area >= SPACIOUS
+    return share >= ENOUGH and room is max(plan.rooms, key=lambda r: _dining_share(r, taxonomy))
+
+
+def _dining_share(room: Room, taxonomy: Taxonomy) -> float:
+    """Return a room's floor as a share of what it takes to dine there as well; 0 where nobody does."""
+    part = {kind: taxonomy.layouts[kind].part for kind in taxonomy.functions.values()}
+    needed = {
+        **dict.fromkeys(LIVING, part["living_dining_room"]),
+        "kitchen": part["kitchen"] + part["dining_room"],
+        "studio_room": part["bedroom"] + part["living_room"] + part["dining_room"],
+    }
+    return room.area / needed[room.type] if room.type in needed else 0.0

@@ -79,7 +79,7 @@ BROKEN = {
     "slanted": lambda p: room(p, "wc", polygon=p.room("wc").polygon + np.eye(4, 2) * 0.05),
     "type": lambda p: room(p, "wc", type="closet"),
     "level": lambda p: room(p, "bath", level=0),
-    "area": lambda p: grown(p, "bed_1", -0.9),
+    "area": lambda p: grown(p, "bed_1", -1.5),
     "cut off": lambda p: without(p, "door"),
     "no entrance": lambda p: without(p, "entrance"),
     "entered elsewhere": lambda p: dataclasses.replace(p, entrance="kitchen"),

@@ -49,6 +49,15 @@ def test_no_tub_stands_in_a_wc_unless_it_is_wished_for():
     assert CategoryBounds(("bathtub",), 0, 0) in asked
 
 
+def test_a_studio_is_not_for_children_whatever_the_try():
+    words = taxonomy.load()
+    rooms = [replace(job("studio_room"), layout_type="living_room+bedroom", attempt=attempt) for attempt in range(5)]
+    for asked in (category_bounds(room, "bedroom", room.kinds, words) for room in rooms):
+        assert not any("kids_bed" in d.categories for d in asked if d.least)
+        assert any("kids_bed" in d.categories and d.most == 0 for d in asked)
+        assert any(d.least == 1 and {"double_bed", "single_bed"}.intersection(d.categories) for d in asked)
+
+
 def test_later_tries_insist_on_another_bed():
     words = taxonomy.load()
     (group,) = words.layouts["bedroom"].needs

@@ -10,6 +10,11 @@ from pipeline.floorplan.program.floor_program import FloorProgram, Forbid
 from pipeline.floorplan.program.program_sketch import Sketch
 
 
+def _lounge(beds: int) -> float:
+    """Mean area of a living room beside a dining room: such rooms of the training houses have 19 m2, those in which one dines as well 31."""
+    return 18.0 + 1.5 * beds
+
+
 def studio(s: Sketch, _beds: int) -> FloorProgram:
     """One room to live and sleep in, a bathroom, mostly a kitchen of its own."""
     entered = s.odds(0.35)
@@ -24,18 +29,19 @@ def studio(s: Sketch, _beds: int) -> FloorProgram:
         s.room("kitchen", "kitchen", 5.5)
         s.link("studio", "kitchen", "open", "open", "door")
     if s.odds(0.25):
-        s.off("studio", "balcony", "balcony", 4.5)
+        s.off("studio", "balcony", "balcony", 3.8)
     return s.program(corner=0.0)
 
 
 def flat(s: Sketch, beds: int) -> FloorProgram:
     """Draw a contemporary flat: bedrooms off a hallway, an entry or the living room; the kitchen open, apart or behind the dining room."""
-    s.room("living", "living_room", 20.0 + 3.0 * beds)
-    hub = _hub(s, beds)
-    s.room("kitchen", "kitchen", 7.0 + 0.6 * beds)
     draw = s.rng.random()
-    if beds >= 2 and draw < 0.2:
-        s.room("dining", "dining_room", 12.5)
+    apart = beds >= 2 and draw < 0.2
+    s.room("living", "living_room", _lounge(beds) if apart else 20.0 + 3.0 * beds)
+    hub = _hub(s, beds)
+    s.room("kitchen", "kitchen", 6.5 + 0.4 * beds)
+    if apart:
+        s.room("dining", "dining_room", 14.0)
         s.link("living", "dining", "door", "open", "portal")
         s.link("dining", "kitchen", "door", "open")
     elif draw < 0.65:
@@ -75,7 +81,7 @@ def _hub(s: Sketch, beds: int) -> str:
 
 def _extras(s: Sketch, beds: int, hub: str) -> None:
     if s.odds(0.35):
-        s.off("living", "balcony", "balcony", 6.5)
+        s.off("living", "balcony", "balcony", 5.0)
     if s.odds(0.12 + 0.04 * beds):
         s.off(hub, "office", "office", 9.5)
     if beds >= 2 and s.odds(0.2):
@@ -91,31 +97,32 @@ def _extras(s: Sketch, beds: int, hub: str) -> None:
 def corridor(s: Sketch, beds: int) -> FloorProgram:
     """Draw a flat of the European block: one corridor from the front door, every room closed off it, a WC apart from the bath."""
     s.room("hall", "hallway")
-    s.off("hall", "living", "living_room", 20.0 + 1.5 * beds)
+    s.off("hall", "living", "living_room", 20.0 + 2.0 * beds)
     if s.odds(0.6):
-        s.off("hall", "kitchen", "kitchen", 7.5 + 0.5 * beds)
+        s.off("hall", "kitchen", "kitchen", 6.5 + 0.4 * beds)
     else:
-        s.off("living", "kitchen", "kitchen", 7.0 + 0.5 * beds)
+        s.off("living", "kitchen", "kitchen", 6.5 + 0.4 * beds)
     if s.odds(0.25):
         s.link("living", "kitchen") if s.links[-1].a == "hall" else s.link("hall", "kitchen")
-    s.bedrooms("hall", beds, 15.0, 11.5)
+    s.bedrooms("hall", beds, 15.0, 12.3)
     s.off("hall", "bath", "bathroom", 5.2, 0.14)
     if s.odds(0.45):
         s.off("hall", "wc", "wc", 1.9, 0.1)
     if s.odds(0.4):
         s.off("hall", "storage", "storage", 2.6, 0.12)
     if s.odds(0.55):
-        s.off("living", "balcony", "balcony", 5.5)
+        s.off("living", "balcony", "balcony", 4.5)
     return s.program(into="hall", aspects=(1.0, 1.2, 1.4))
 
 
 def open_plan(s: Sketch, beds: int) -> FloorProgram:
     """Draw a North American home: living, dining and kitchen in one; a primary suite with walk-in closet; the garage behind the laundry."""
-    s.room("living", "living_room", 24.0 + 2.0 * beds)
-    s.room("kitchen", "kitchen", 9.5 + 0.5 * beds)
+    apart = s.odds(0.55)
+    s.room("living", "living_room", _lounge(beds) if apart else 24.0 + 2.0 * beds)
+    s.room("kitchen", "kitchen", 7.5 + 0.4 * beds)
     s.link("living", "kitchen", "open")
-    if s.odds(0.55):
-        s.room("dining", "dining_room", 13.0)
+    if apart:
+        s.room("dining", "dining_room", 14.0)
         s.link("living" if s.odds(0.5) else "kitchen", "dining", "open")
     s.room("hall", "hallway")
     s.link("living", "hall", "portal", "door")
@@ -141,16 +148,16 @@ def ldk(s: Sketch, beds: int) -> FloorProgram:
     s.room("genkan", "entry", 3.4, 0.12)
     s.room("hall", "hallway")
     s.link("genkan", "hall", "portal", "door")
-    s.room("ldk", "living_room", 19.0 + 2.5 * beds, functions=("living", "dining", "cooking"))
+    s.room("ldk", "living_room", 20.0 + 2.5 * beds, functions=("living", "dining", "cooking"))
     s.link("hall", "ldk")
     s.off("hall", "wc", "wc", 1.7, 0.08)
     s.off("hall", "washroom", "utility", 3.6, 0.1)
     s.off("washroom", "bath", "bathroom", 3.6, 0.1)
     for k in range(beds):
         beside = beds > 1 and k == beds - 1 and s.odds(0.5)  # a room of mats that opens to the living room
-        s.off("ldk" if beside else "hall", f"bed_{k + 1}", "bedroom", 11.5 if k == 0 else 9.5, 0.1)
+        s.off("ldk" if beside else "hall", f"bed_{k + 1}", "bedroom", 12.0 if k == 0 else 10.5, 0.1)
     if s.odds(0.8):
-        s.off("ldk", "balcony", "balcony", 6.0)
+        s.off("ldk", "balcony", "balcony", 4.5)
     if s.odds(0.35):
         s.off("bed_1", "closet", "closet", 2.8)
     return s.program(into="genkan", aspects=(1.0, 1.3, 1.6), corner=0.05)
@@ -158,19 +165,19 @@ def ldk(s: Sketch, beds: int) -> FloorProgram:
 
 def two_halls(s: Sketch, beds: int) -> FloorProgram:
     """Draw a Chinese flat of n bedrooms and two halls: living and dining in one run, kitchen off the dining hall, balcony south of the living."""
-    s.room("living", "living_room", 20.0 + 2.0 * beds)
-    s.room("dining", "dining_room", 10.5)
+    s.room("living", "living_room", _lounge(beds))
+    s.room("dining", "dining_room", 12.5)
     s.link("living", "dining", "open")
     s.off("dining", "kitchen", "kitchen", 7.0)
     s.room("hall", "hallway")
     s.link("living", "hall", "portal", "door")
-    s.bedrooms("hall", beds, 15.0, 10.5)
+    s.bedrooms("hall", beds, 15.0, 11.5)
     s.off("hall", "bath", "bathroom", 4.5, 0.12)
     if beds >= 3 and s.odds(0.7):
         s.off("bed_1", "ensuite", "bathroom", 4.2, 0.12)
-    s.off("living", "balcony", "balcony", 6.5)
+    s.off("living", "balcony", "balcony", 5.0)
     if s.odds(0.3):
-        s.off("kitchen", "balcony_2", "balcony", 4.0, 0.1)
+        s.off("kitchen", "balcony_2", "balcony", 3.3, 0.1)
     if s.odds(0.3):
         s.off("dining", "genkan", "entry", 3.6, 0.12)
     return s.program(into="genkan" if s.has("genkan") else "living")
@@ -178,10 +185,11 @@ def two_halls(s: Sketch, beds: int) -> FloorProgram:
 
 def hall_less(s: Sketch, beds: int) -> FloorProgram:
     """Draw a tropical house without corridors: everything opens off one large living room; a veranda; the kitchen behind."""
-    s.room("living", "living_room", 24.0 + 4.0 * beds)
-    s.bedrooms("living", beds, 14.0, 11.5)
-    if s.odds(0.4):
-        s.room("dining", "dining_room", 11.0)
+    apart = s.odds(0.4)
+    s.room("living", "living_room", (21.0 if apart else 24.0) + 3.0 * beds)
+    s.bedrooms("living", beds, 14.5, 12.3)
+    if apart:
+        s.room("dining", "dining_room", 13.0)
         s.link("living", "dining", "open", "portal")
         s.off("dining", "kitchen", "kitchen", 7.5)
     else:
@@ -191,7 +199,7 @@ def hall_less(s: Sketch, beds: int) -> FloorProgram:
     if beds >= 3 and s.odds(0.5):
         s.off("bed_1", "ensuite", "bathroom", 4.0, 0.14)
     if s.odds(0.75):
-        s.off("living", "veranda", "balcony", 9.0)
+        s.off("living", "veranda", "balcony", 6.5)
     if s.odds(0.3):
         s.off("kitchen", "utility", "utility", 4.5)
     return s.program(corner=0.2)
@@ -210,5 +218,5 @@ def shared_flat(s: Sketch, beds: int) -> FloorProgram:
     if s.odds(0.5):
         s.off("hall", "living", "living_room", 18.0)
     if s.odds(0.4):
-        s.off("kitchen", "balcony", "balcony", 5.5)
+        s.off("kitchen", "balcony", "balcony", 4.5)
     return s.program(into="hall", aspects=(1.0, 1.3, 1.5))

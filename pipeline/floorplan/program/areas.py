@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from pipeline.floorplan.program.defaults import DEFAULTS, EATIN_KITCHEN, OUTSIDE, PRIMARY_BEDROOM
+from pipeline.floorplan.program.defaults import DEFAULTS, EATIN_KITCHEN, LIVING_DINING, OUTSIDE, PRIMARY_BEDROOM
 from pipeline.floorplan.program.floor_program import FloorProgram, Range, RoomReq
 
 HALL_SHARE, HALL_LEAST = 0.08, 4.0
@@ -57,8 +57,10 @@ def _default(room: RoomReq, rooms: Sequence[RoomReq]) -> float:
         return (PRIMARY_BEDROOM + DEFAULTS["bedroom"].area) / 2 if len(beds) == 1 else DEFAULTS["bedroom"].area
     if room.type == "kitchen" and "dining" in room.functions:
         return EATIN_KITCHEN
-    if room.type == "living_room" and {"cooking", "dining"} <= set(room.functions):
-        return DEFAULTS["living_room"].area + DEFAULTS["kitchen"].area
+    if room.type == "living_room":
+        apart = "dining" not in room.functions and any(r.type == "dining_room" or "dining" in r.functions for r in rooms)
+        cooking = DEFAULTS["kitchen"].area if "cooking" in room.functions else 0.0
+        return cooking + (DEFAULTS["living_room"].area if apart else LIVING_DINING)
     return DEFAULTS[room.type].area
 
 

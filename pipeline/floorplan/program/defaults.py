@@ -7,6 +7,7 @@ from pipeline import taxonomy
 DEFAULTS = taxonomy.load().types
 PRIMARY_BEDROOM = 16.0  # the first of several bedrooms, or one that is called main, master or primary
 EATIN_KITCHEN = 16.0
+LIVING_DINING = 24.0  # a living room of a home in which one dines nowhere else
 OUTSIDE = frozenset({"balcony", "garage"})  # not part of the total area
 HUBS = ("hallway", "entry", "living_room", "family_room", "studio_room", "dining_room", "kitchen", "office")
 DOOR, DOOR_HEIGHT = 0.8, 2.05

@@ -9,18 +9,18 @@ from pipeline.floorplan.program.program_sketch import Sketch
 def terrace(s: Sketch, beds: int) -> FloorProgram:
     """Draw a Victorian terrace: a narrow house, hall and stairs along two parlours, the kitchen behind; bedrooms and bath above."""
     s.room("hall", "hallway", level=0)
-    s.off("hall", "front", "living_room", 16.5, level=0)
-    s.off("hall", "dining", "dining_room", 13.5, level=0)
+    s.off("hall", "front", "living_room", 17.5, level=0)
+    s.off("hall", "dining", "dining_room", 15.0, level=0)
     if s.odds(0.5):
         s.link("front", "dining", "open", "portal")
-    s.room("kitchen", "kitchen", 11.5, level=0)
+    s.room("kitchen", "kitchen", 9.5, level=0)
     s.link("dining", "kitchen", "door", "open")
     if s.odds(0.5):
         s.off("kitchen", "scullery", "utility", 4.5, level=0)
     if s.odds(0.5):
         s.off("hall", "wc", "wc", 1.9, 0.1, level=0)
     _stairs(s, "hall")
-    s.bedrooms("landing", beds, 16.0, 11.5, level=1)
+    s.bedrooms("landing", beds, 16.0, 11.8, level=1)
     s.off("landing", "bath", "bathroom", 6.0, 0.14, level=1)
     s.balance()
     return s.program(into="hall", corner=0.0, aspects=(1.3, 1.6, 1.8), span=0.6, storeys=2)
@@ -29,9 +29,9 @@ def terrace(s: Sketch, beds: int) -> FloorProgram:
 def detached_house(s: Sketch, beds: int) -> FloorProgram:
     """Draw a detached house of today: an entrance hall with the stairs, kitchen open to the dining room; a suite above."""
     s.room("entry", "entry", 8.0, level=0)
-    s.off("entry", "living", "living_room", 24.0 + beds, level=0)
-    s.room("kitchen", "kitchen", 14.0, level=0)
-    s.room("dining", "dining_room", 13.0, level=0)
+    s.off("entry", "living", "living_room", 20.0 + 1.5 * beds, level=0)
+    s.room("kitchen", "kitchen", 11.0, level=0)
+    s.room("dining", "dining_room", 17.0, level=0)
     s.link("kitchen", "dining", "open")
     s.link("living", "dining", "open", "portal", "door")
     s.off("entry", "wc", "wc", 2.2, 0.1, level=0)
