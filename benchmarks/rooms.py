@@ -49,7 +49,7 @@ def furnish_rooms(factory: Factory, jobs: Sequence[RoomJob], seconds: dict[str, 
 
     sets: dict[str, Rooms] = {}
     drafts = []
-    for name, sampler in (("unguided", factory.sampler.unguided()), ("guided", factory.sampler)):
+    for name, sampler in (("unguided", factory.sampler.baseline()), ("guided", factory.sampler)):
         start = time.process_time()
         drafts = draft_rooms(replace(factory, sampler=sampler), jobs)
         seconds[name] = seconds.get(name, 0.0) + time.process_time() - start

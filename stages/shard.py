@@ -48,7 +48,7 @@ def main(
     opened = partial(open_factory, root, seed, memory)
     factory = opened()
     if only is not None:
-        return try_one(root, seed, order.asked(only))
+        return try_one(root, seed, order.wish(only))
     header = header_of(factory, seed, count, order.digest())
     again = shlex.join(["sfgen", "shard", "--count", str(count), "--seed", str(seed), *(["--prompts", str(prompts)] if prompts else [])])
     recipe = Recipe(opened, cache_assets=scheduler is None, digests=factory.digests)
@@ -56,7 +56,7 @@ def main(
         if dataset.missing():
             warm_up(progress, root)
         where: dict[str, Any] = {"workers": workers or cores(), "scheduler": scheduler}
-        tally = fill(dataset, recipe, order.asked, **where, strict=strict, progress=progress, again=f"{again} --only {{index}}")
+        tally = fill(dataset, recipe, order.wish, **where, strict=strict, progress=progress, again=f"{again} --only {{index}}")
     progress.close()
     return tell(tally, header, address or str(folder), progress, voice)
 

@@ -107,7 +107,7 @@ class Site:
 
     def free_share(self, space: FreeSpace) -> float:
         """Return the true walkable ratio: what the robot covers, moving about from the doors, over the floor."""
-        return float(space.shares(space.covered(self.gate(space)[0]), 1)[0])
+        return float(space.shares(space.swept_floor(self.gate(space)[0]), 1)[0])
 
 
 def _openings_by_edge(polygon: Floats, openings: Sequence[Opening]) -> tuple[tuple[EdgeOpening, ...], ...]:

@@ -46,13 +46,13 @@ class Autoregressive(nn.Module):
         yaw = torch.atan2(boxes[..., 7:8], boxes[..., 6:7]) / math.pi
         return torch.cat([boxes[..., PLACE], yaw, boxes[..., SIZE]], -1)
 
-    def said(self, values: Tensor) -> Tensor:
+    def sines(self, values: Tensor) -> Tensor:
         """Return the sines (..., 2 RATES k) of k attributes (..., k)."""
         return sines(values, RATES, math.pi / 2, 64 * math.pi).flatten(-2)
 
     def next(self, floor: Tensor, kinds: Tensor, values: Tensor, there: Tensor) -> Tensor:
         """Return the code (B, d) of the next object, from those (B, N) that `there` marks."""
-        tokens = self.kind(kinds) + self.enter(self.said(values))
+        tokens = self.kind(kinds) + self.enter(self.sines(values))
         ones = torch.ones_like(there[:, :1])
         x = torch.cat([floor[:, None], self.query.expand(len(floor), 1, -1), tokens], 1)
         mask = torch.cat([ones, ones, there], 1)
@@ -63,7 +63,7 @@ class Autoregressive(nn.Module):
 
     def mixtures(self, head: nn.Module, code: Tensor, kind: Tensor, known: Tensor) -> Tensor:
         """Return the mixtures (B, own, 3, K) of a head's attributes given the class (B,) and the attributes (B, known) before."""
-        given = torch.cat([code, self.kind(kind), self.said(known)], -1)
+        given = torch.cat([code, self.kind(kind), self.sines(known)], -1)
         parameters: Tensor = head(given).unflatten(-1, (-1, 3, MIXTURES))
         return parameters
 

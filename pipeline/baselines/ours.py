@@ -54,7 +54,7 @@ def train_model(root: Path, folder: Path, settings: TrainSettings, sample: Sampl
 
 def sample_unguided(sampler: Sampler, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:
     """Furnish rooms without guidance; a told number is drawn exactly."""
-    return _sample(replace(sampler.unguided(), settings=replace(sampler.unguided().settings, quantity=True)), rooms)
+    return _sample(replace(sampler.baseline(), settings=replace(sampler.baseline().settings, quantity=True)), rooms)
 
 
 def sample_guided(sampler: Sampler, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:

@@ -62,7 +62,7 @@ class Guidance:
         )
         collision = overlaps(opened, boxes, mates(occupied)) / count
         outside = self.outside(boxes, occupied) / count
-        return COLLISION * collision + ROOM * outside + REACH * self.blocked(boxes, occupied, opens) / count
+        return COLLISION * collision + ROOM * outside + REACH * self.way_overlap(boxes, occupied, opens) / count
 
     def outside(self, boxes: Boxes, occupied: Tensor) -> Tensor:
         """Return the sum (B,) of IoU3D of objects with what lies beyond each wall."""
@@ -74,7 +74,7 @@ class Guidance:
         there = padded[..., 3] > 0
         return overlaps(boxes, boxes_of(padded), occupied[:, :, None] & there[:, None])
 
-    def blocked(self, boxes: Boxes, occupied: Tensor, opens: Tensor) -> Tensor:
+    def way_overlap(self, boxes: Boxes, occupied: Tensor, opens: Tensor) -> Tensor:
         """Return the sum (B,) of IoU3D of low objects with robots on ways that furniture stands on."""
         totals = []
         for room, polygon in enumerate(self.polygons):

@@ -104,7 +104,7 @@ def collate(examples: Sequence[Example], codec: Codec, slots: int) -> tuple[Room
     for i, example in enumerate(examples):
         n = len(example.classes)
         classes[i, :n] = torch.from_numpy(example.classes)
-        channels[i, :n] = codec.normalised(torch.from_numpy(example.continuous).float(), classes[i, :n])
+        channels[i, :n] = codec.normalise(torch.from_numpy(example.continuous).float(), classes[i, :n])
         sweeps[i, :n] = torch.from_numpy(example.sweeps)
     rooms = room_batch([e.floor for e in examples], [e.layout for e in examples], [e.height for e in examples])
     return rooms, Objects(classes, channels, sweeps)

@@ -66,7 +66,7 @@ class Codec:
         self.scale = torch.cat([scale, scale.mean(0, keepdim=True)]).to(device)
         self.reach = float(scale[0, 0])  # scale of x and y [m]
 
-    def normalised(self, continuous: Tensor, classes: Tensor) -> Tensor:
+    def normalise(self, continuous: Tensor, classes: Tensor) -> Tensor:
         """Metres, radians' cos and sin, raw latents (..., 40) of objects of `classes` (...) to unit variance."""
         return (continuous - self.mean[classes]) / self.scale[classes]
 

@@ -34,7 +34,7 @@ class ProcessGroup:
         part = batch // self.size
         return slice(self.rank * part, (self.rank + 1) * part)
 
-    def averaged(self, parameters: Sequence[Tensor], terms: Tensor) -> Tensor:
+    def average(self, parameters: Sequence[Tensor], terms: Tensor) -> Tensor:
         """Replace the gradients by their mean over the group; return the mean of `terms` (n,)."""
         if self.size == 1:
             return terms

@@ -58,14 +58,14 @@ class Sampler:
         """Most objects that a room can get."""
         return self.header.slots
 
-    def unguided(self) -> Sampler:
+    def baseline(self) -> Sampler:
         """Return the baseline: same weights, same noise, numbers and sizes as they come, no guidance of geometry."""
         return replace(self, settings=replace(self.settings, quantity=False, articulation="none", snap_below=0))
 
     def sample_rooms(self, rooms: Sequence[RoomContext], keys: Sequence[Key]) -> list[list[Proposal]]:
         """Furnish rooms; `keys` gives (home index, room number, attempt) for each."""
         floors = [floor_tokens(r) for r in rooms]
-        return self.arranged(rooms, keys, self.inventories(rooms, keys, floors), floors)
+        return self.arrange(rooms, keys, self.inventories(rooms, keys, floors), floors)
 
     def inventories(self, rooms: Sequence[RoomContext], keys: Sequence[Key], floors: Sequence[Floor]) -> list[NDArray[np.int64]]:
         """Draw what each room holds: class indices (n,), rising. Told numbers and category_bounds are met, at most `slots` objects."""
@@ -85,7 +85,7 @@ class Sampler:
                 room_counts += draw_inventories(self.inventory, features, kinds, asks, uniform)[: len(part)]
         return [np.repeat(np.arange(len(classes)), counts) for counts in room_counts]
 
-    def arranged(
+    def arrange(
         self, rooms: Sequence[RoomContext], keys: Sequence[Key], inventories: Sequence[NDArray[np.int64]], floors: Sequence[Floor]
     ) -> list[list[Proposal]]:
         """Arrange what rooms hold: `inventories` are class indices (n,) per room. Proposals come in that order."""

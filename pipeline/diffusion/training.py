@@ -37,12 +37,12 @@ class Step(NamedTuple):
 
 
 class Rooms(NamedTuple):
-    """What is trained on: rooms and their objects, `weights` (n,) by which they are drawn, `held` (n,) the number of their objects."""
+    """What is trained on: rooms and their objects, `weights` (n,) by which they are drawn, `counts` (n,) the number of their objects."""
 
     rooms: RoomBatch
     objects: Objects
     weights: NDArray[np.float64]
-    held: NDArray[np.int64]
+    counts: NDArray[np.int64]
 
 
 class Trainer:
@@ -77,13 +77,13 @@ class Trainer:
             return s.learning_rate * warm * 0.5 * (1 + math.cos(math.pi * step / self.total))
         return s.learning_rate * warm * 0.5 ** (step // self.per_epoch // s.decay_every)
 
-    def chosen(self, rng: torch.Generator, data: Rooms) -> tuple[Tensor, int]:
+    def draw_rows(self, rng: torch.Generator, data: Rooms) -> tuple[Tensor, int]:
         """Draw the rows of a step's rooms by their weights, and the number of slots that they get.
 
         The rooms of a step hold about as many objects each, so that little is padding and every step costs the same; a
         bucket is drawn as often as makes every room's chance its weight, since a step holds fewer of the large ones.
         """
-        slots = bucket_of(data.held)
+        slots = bucket_of(data.counts)
         share = np.array([data.weights[slots == size].sum() * size for size in BUCKETS])
         size = BUCKETS[int(torch.multinomial(torch.from_numpy(share), 1, generator=rng))]
         count = max(1, self.settings.objects // size // self.group.size) * self.group.size
@@ -98,7 +98,7 @@ class Trainer:
         """
         s = self.settings
         rng = torch.Generator().manual_seed(seeds.key(self.seed, "train-step", self.done) % 2**63)
-        rows, slots = self.chosen(rng, data)
+        rows, slots = self.draw_rows(rng, data)
         reflection = reflections(rng, len(rows)).to(self.device)
         drawn = draw(rng, len(rows), slots)
         own = self.group.share(len(rows))
@@ -112,7 +112,7 @@ class Trainer:
             total = total + EARLY * (early.geometry.mean() + s.latent_weight * early.shape.mean())
         rate = self.rate(self.done)
         total.backward()
-        terms = self.group.averaged(list(self.net.parameters()), torch.stack([total, geometry, shape]).detach())
+        terms = self.group.average(list(self.net.parameters()), torch.stack([total, geometry, shape]).detach())
         torch.nn.utils.clip_grad_norm_(self.net.parameters(), s.clip)
         self.optimiser.step(rate)
         self._follow()
@@ -154,7 +154,7 @@ def validation(trainer: Trainer, data: Rooms) -> dict[str, dict[str, float]]:
     """
     losses: dict[str, dict[str, float]] = {}
     plain = replace(trainer.settings, constraint=False)  # validation measures denoising alone
-    slots = torch.from_numpy(bucket_of(data.held))
+    slots = torch.from_numpy(bucket_of(data.counts))
     for level in LEVELS:
         rng = torch.Generator().manual_seed(seeds.key(trainer.seed, "validate", round(10 * level) + 100) % 2**63)
         terms = []

@@ -39,11 +39,11 @@ WHOLE: Mapping[str, Harm] = {**HARMS, "all": spoilt}
 
 @dataclass(frozen=True, slots=True)
 class Beside:
-    """Furnished rooms of the held-out split, rooms of split train, and made rooms by what made them; furniture alone."""
+    """Furnished rooms of the held-out split, rooms of split train, and `samples` of rooms by what made them; furniture alone."""
 
     real: Rooms
     train: Rooms
-    made: Mapping[str, Rooms]
+    samples: Mapping[str, Rooms]
 
 
 def beside(root: Path, split: str, drafted: Mapping[str, Mapping[str, Sequence[Row]]]) -> Beside:
@@ -76,7 +76,7 @@ def realism_table(seed: int, rooms: Beside, known: Relations, nets: Mapping[str,
     rng = seeds.generator(seed, "realism")
     draws = [alike(rng, rooms.real, rooms.train) for _ in range(DRAWS)]
     pairs = {"train": draws[0]}
-    for name, generated in rooms.made.items():
+    for name, generated in rooms.samples.items():
         floors = {room.name for room in generated}
         same = [room for room in rooms.real if room.name in floors]
         pairs[name] = (same, generated) if same else alike(rng, rooms.real, generated)
@@ -87,7 +87,7 @@ def realism_table(seed: int, rooms: Beside, known: Relations, nets: Mapping[str,
     kept = {room.name for room in own}
     apart = {name: (train, [room for room in worse if room.name in kept]) for name, worse in spoils.items()}
     return {
-        "relations": compare(rng, {"real": rooms.real, "train": rooms.train, **rooms.made}, known),
+        "relations": compare(rng, {"real": rooms.real, "train": rooms.train, **rooms.samples}, known),
         "layout": layout_figures(seed, pairs, harmed),
         "views": {name: view_figures(rng, seed, features_once(embed), pairs, apart, draws) for name, embed in nets.items()},
         "novelty": {name: novelty(generated, real, rooms.train) for name, (real, generated) in pairs.items() if name != "train"},

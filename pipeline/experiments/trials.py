@@ -50,7 +50,7 @@ class Drafts:
     """
 
     def __init__(self, factory: Factory, articulation: Articulation) -> None:
-        sampler = factory.sampler.unguided()
+        sampler = factory.sampler.baseline()
         if articulation != "none":
             sampler = replace(factory.sampler, settings=replace(factory.sampler.settings, articulation=articulation))
         self._factory = replace(factory, sampler=sampler)

@@ -46,13 +46,13 @@ class FreeSpace:
         counts[0] = 0
         return int(np.argmax(counts)) if counts.any() else 0
 
-    def reached(self, label: int) -> Mask:
+    def centres(self, label: int) -> Mask:
         """Return the places of the robot's centre in one connected part."""
         return (self.labels == label) if label else np.zeros(self.labels.shape, np.bool_)
 
-    def covered(self, label: int) -> Mask:
+    def swept_floor(self, label: int) -> Mask:
         """Return the floor that the robot covers while it moves about one connected part."""
-        return dilate(self.reached(label), self.radius)
+        return dilate(self.centres(label), self.radius)
 
     def shares(self, mask: Mask, rooms: int) -> Floats:
         """Return the share (rooms,) of each room's cells that are in a mask."""

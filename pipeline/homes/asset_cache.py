@@ -87,7 +87,7 @@ class AssetCache:
 def whole(place: Path, seal: Path) -> bool:
     """Tell whether an entry is there, and as its commit file says."""
     commit = read_file(seal) if seal.is_file() else None
-    return commit is not None and not commit.altered(place)
+    return commit is not None and not commit.first_change(place)
 
 
 @contextmanager

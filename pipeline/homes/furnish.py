@@ -51,7 +51,7 @@ class HomeDraft:
 
 def draft_rooms(resources: Resources, jobs: Sequence[RoomJob]) -> list[Draft]:
     """Furnish a batch of rooms with what is loaded, timed as "sample"; nothing is moved yet."""
-    with resources.timed("sample"):
+    with resources.time("sample"):
         return furnish(jobs, resources.sampler, resources.index, categories.load(), resources.library.finish)
 
 
@@ -108,7 +108,7 @@ def category_bounds(job: RoomJob, kind: str, kinds: Sequence[str], taxonomy: Tax
     What is wished for of a group, none of it too, stands. What rooms of the plan's type do not want stays out, unless it is wished for.
     """
     wished = {c for bounds in job.category_bounds for c in bounds.categories}
-    unwanted = tuple(c for c in job.unwanted(taxonomy) if c not in wished)
+    unwanted = tuple(c for c in job.exclusions(taxonomy) if c not in wished)
     needed = Counter(tuple(c for c in group if c not in unwanted) for group in job.essentials_of(kind, taxonomy))
     groups = [b for group, least in needed.items() if not wished.intersection(group) for b in _essential(group, least, job.attempt)]
     own = [
@@ -128,7 +128,7 @@ def _host(bounds: CategoryBounds, kinds: Sequence[str], taxonomy: Taxonomy) -> s
 def usual_bounds(job: RoomJob, kind: str, taxonomy: Taxonomy, rng: np.random.Generator) -> tuple[CategoryBounds, ...]:
     """Return what a room like this is asked to hold because most do, on its first tries; nothing where a number of objects, or some of these, is wished for."""
     marks = {usual: rng.random() for usual in taxonomy.layouts[kind].usual} if kind in taxonomy.layouts else {}
-    settled = {c for bounds in job.category_bounds for c in bounds.categories} | set(job.unwanted(taxonomy))
+    settled = {c for bounds in job.category_bounds for c in bounds.categories} | set(job.exclusions(taxonomy))
     if job.count is not None or job.attempt >= FREE_CHOICE:
         return ()
     return tuple(CategoryBounds(usual.of, 1) for usual, mark in marks.items() if mark < usual.share and settled.isdisjoint(usual.of))

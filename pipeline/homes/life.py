@@ -150,7 +150,7 @@ class HomeLife:
         self.drafted.pop(job, None)
         self.tries += 1
         r = self.resources
-        with self._charge(), r.timed("postopt"):
+        with self._charge(), r.time("postopt"):
             result = finish(draft, r.library, r.index, r.learnt, r.postopt, r.verify, taxonomy.load())
         self.rejects.extend(self._reject(job, reject) for reject in result.rejects)
         self._check(result, self.rooms[job.room_id].keep(result))
@@ -194,7 +194,7 @@ class HomeLife:
     def judge(self) -> None:
         """Lay small things and verify the whole home; what is at fault goes, and a room that is then not good enough is tried again."""
         r, bare = self.resources, self.home
-        with r.timed("things"):
+        with r.time("things"):
             draw = seeds.generator(r.seed, "things", self.request.index, self.plan_attempt)
             things = small_things(bare, r.library, r.postopt.things, draw, r.postopt.separate.touch)
         things, certificate, violating = self._verdict(bare, things)
@@ -209,7 +209,7 @@ class HomeLife:
         """Judge a home with its small things, leaving out those at fault; return the others, the certificate, the furniture that violates."""
         while True:
             home = replace(bare, placements=bare.placements + things)
-            with self.resources.timed("verify"):
+            with self.resources.time("verify"):
                 certificate = verify_home(home, self.resources.library, self.resources.verify)
             violating = violations(home, certificate, self.closed)
             small = {p.object_id for p in things}
@@ -261,7 +261,7 @@ class HomeLife:
         r, home = self.resources, self.home
         exported: dict[str, bytes] = {}
         if files:
-            with r.timed("export"):
+            with r.time("export"):
                 exported = files_of(home, r.library, r.shard.preview)
         results = {k: room.best for k, room in self.rooms.items() if room.best}
         rows = home_rows(home, self.certificate, results, r.library, taxonomy.load(), self.tries, r.shard.licence)

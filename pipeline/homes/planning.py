@@ -32,7 +32,7 @@ class PlannedHome:
 
 def plan_home(resources: Resources, request: Request, attempt: int) -> PlannedHome:
     """Plan a home for the `attempt`-th time. Raises RefusedError for what cannot be met."""
-    with resources.timed("plan"):
+    with resources.time("plan"):
         if request.program:
             program, prompt = floorplan.FloorProgram.model_validate_json(request.program), request.prompt
         elif request.prompt:

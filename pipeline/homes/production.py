@@ -205,7 +205,7 @@ def make_chunk(recipe: Recipe, chunk: Chunk) -> Batch:
     brought = [(o.rows(factory.seed), {}) if isinstance(o, Empty) else (o.rows, o.files) for o in outcomes]
     homes = tuple(gather(chunk.shard, [home]) for home in brought)
     if recipe.cache_assets:
-        with factory.timed("library"):
+        with factory.time("library"):
             factory.asset_cache.stock(row["asset_id"] for home in homes for row in home.rows["objects"])
     retries = sum(row["what"] in {"room", "home"} for home in homes for row in home.rows["rejects"])
     return Batch(homes, tuple(o for o in outcomes if isinstance(o, Empty)), dict(factory.seconds), retries)

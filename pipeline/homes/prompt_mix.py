@@ -26,7 +26,7 @@ class Order:
     mix: Mix
     programs: Mapping[str, str]
 
-    def asked(self, index: int) -> Request:
+    def wish(self, index: int) -> Request:
         """Return what home `index` is asked to be; without words it takes its program from the prior."""
         words = self.mix.prompt(self.seed, index)
         return Request(index, words, self.programs.get(words, ""))
@@ -60,7 +60,7 @@ def read_order(prompts: Path | None, seed: int, progress: Progress, *, strict: b
 def orders(root: Path, seed: int, prompts: Path | None) -> Iterator[tuple[str, Callable[[int], Request]]]:
     """Yield what a dataset may have been asked for, each with its digest: `prompts`, or nothing, or the list of params.yaml."""
     order = read_order(prompts, seed, Progress(0, "homes", voice="quiet"), strict=False)
-    yield order.digest(), order.asked
+    yield order.digest(), order.wish
     if prompts is None:
         tree = params.read(root / "params.yaml")
         listed = requests_of(params.section(DatasetSettings, tree, "dataset"), root, seed)

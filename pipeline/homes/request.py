@@ -74,9 +74,9 @@ class RoomJob:
     def essentials_of(self, kind: str, taxonomy: Taxonomy) -> tuple[tuple[str, ...], ...]:
         """Return the groups that a part of this layout type needs."""
         groups = taxonomy.layouts[kind].needs if self.count is None and kind in taxonomy.layouts else ()
-        return tuple(group for group in groups if not set(group) <= set(self.unwanted(taxonomy)))
+        return tuple(group for group in groups if not set(group) <= set(self.exclusions(taxonomy)))
 
-    def unwanted(self, taxonomy: Taxonomy) -> tuple[str, ...]:
+    def exclusions(self, taxonomy: Taxonomy) -> tuple[str, ...]:
         """Return what is not put into rooms of the plan's type, though rooms of the same layout type have it: no tub into a WC."""
         return taxonomy.types[self.room.type].unwanted if self.room.type in taxonomy.types else ()
 

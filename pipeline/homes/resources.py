@@ -33,7 +33,7 @@ class Resources:
     seconds: dict[str, float] = field(default_factory=dict)
 
     @contextmanager
-    def timed(self, part: str) -> Iterator[None]:
+    def time(self, part: str) -> Iterator[None]:
         """Add the CPU seconds (user + system) of the block to `seconds[part]`."""
         start = time.process_time()
         try:

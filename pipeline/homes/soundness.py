@@ -30,7 +30,7 @@ def require_sound(root: Path, own: OwnPlan) -> OwnPlan:
 def check_sound(plan: Plan, settings: VerifySettings) -> tuple[Repair, ...]:
     """Return a finding for each room that a robot does not get into. Raises UnsoundError naming what is wrong with the empty home."""
     judged = _empty(plan, settings)
-    closed = judged.closed() if settings.policy.connected else frozenset[str]()
+    closed = judged.closed_rooms() if settings.policy.connected else frozenset[str]()
     width = 2 * settings.robot.radius
     remedy = f"doors and rooms must let a robot {width:.2f} m wide pass"
     if faults := judged.faults(settings.policy, closed):
@@ -48,7 +48,7 @@ def check_sound(plan: Plan, settings: VerifySettings) -> tuple[Repair, ...]:
 
 def closed_rooms(plan: Plan, settings: VerifySettings) -> frozenset[str]:
     """Return the rooms of an empty home that a robot does not get into."""
-    return _empty(plan, settings).closed()
+    return _empty(plan, settings).closed_rooms()
 
 
 def _empty(plan: Plan, settings: VerifySettings) -> Certificate:

@@ -119,7 +119,7 @@ def _reachable_without(s: Scene, c: Mapping[str, Any]) -> float:
 
 def _between(s: Scene, c: Mapping[str, Any]) -> float:
     middle = s.select(c["mid"])
-    sides = [any(s.joined(m, r, "any") for m in middle for r in s.select(c[k])) for k in ("a", "b")]
+    sides = [any(s.joins(m, r, "any") for m in middle for r in s.select(c[k])) for k in ("a", "b")]
     return float(bool(middle) and all(sides))
 
 

@@ -43,7 +43,7 @@ class Scene:
         strip = one.buffer(TOUCH, join_style="mitre").intersection(two)
         return not strip.is_empty and strip.area > 0.02 * RUN and max(extent(strip)) > RUN
 
-    def joined(self, a: Room, b: Room, via: str) -> bool:
+    def joins(self, a: Room, b: Room, via: str) -> bool:
         """Whether an adjacency of the kind `via` holds between two rooms."""
         kinds = self.edges.get(frozenset((a.room_id, b.room_id)), set())
         if via == "wall":
@@ -58,7 +58,7 @@ class Scene:
         known = set(self.names.values())
         if check.get("quant") != "some":
             ones = [r for r in ones if r.room_id in known] or ones
-        met = [any(self.joined(a, b, check.get("via", "any")) for b in others if b.room_id != a.room_id) for a in ones]
+        met = [any(self.joins(a, b, check.get("via", "any")) for b in others if b.room_id != a.room_id) for a in ones]
         if check.get("quant") == "some" or not met:
             return [float(any(met))]
         return [float(v) for v in met]

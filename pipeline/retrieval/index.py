@@ -124,7 +124,7 @@ class AssetIndex:
         """
         rows, distances = self.nearest(categories, sizes, latents)
         return [
-            None if row < 0 else self.matched(int(row), float(d), sizes[p]) for p, (row, d) in enumerate(zip(rows, distances, strict=True))
+            None if row < 0 else self.fit(int(row), float(d), sizes[p]) for p, (row, d) in enumerate(zip(rows, distances, strict=True))
         ]
 
     def nearest(
@@ -210,7 +210,7 @@ class AssetIndex:
             raise ContentError(f"asset {asset_id!r} is not in the library", "run `dvc repro` so that library and samples agree")
         return at
 
-    def matched(self, row: int, distance: float, asked: NDArray[np.float64]) -> Match:
+    def fit(self, row: int, distance: float, asked: NDArray[np.float64]) -> Match:
         """Return the asset of a row as what was `asked` for (3,) [m] gets it: static ones are stretched a little."""
         limit = 0.0 if self.articulated[row] else self.settings.stretch
         scale = np.clip(np.asarray(asked, float) / self.sizes[row], 1 - limit, 1 + limit)

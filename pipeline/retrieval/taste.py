@@ -97,5 +97,5 @@ def tasteful(
             off = np.array([np.linalg.norm(finish_of(index.asset_ids[shelf[j]]) - finish) for j in best])
         cost = far[best] + s.prefer_finish * np.minimum(np.nan_to_num(off) / STEP, MOST_STEPS)
         j = int(best[cost.argmin()])
-        matches.append(index.matched(int(shelf[j]), float(far[j]), asked[k]))
+        matches.append(index.fit(int(shelf[j]), float(far[j]), asked[k]))
     return matches

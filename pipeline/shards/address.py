@@ -90,7 +90,7 @@ class Address:
             for path in commit.files:
                 (place / path).parent.mkdir(parents=True, exist_ok=True)
                 self._system.get_file(self._at(path), str(place / path))
-        if commit.altered(place):  # it is made and sent again
+        if commit.first_change(place):  # it is made and sent again
             with self._reaching():
                 self._system.rm_file(self._at(commit_path(name)))
             return

@@ -39,7 +39,7 @@ class Commit:
         files = {path: {"sha256": e.sha256, "bytes": e.bytes} for path, e in sorted(self.files.items())}
         return {"name": self.name, "files": files, "rows": dict(self.rows)}
 
-    def damaged(self, folder: Path) -> str | None:
+    def first_damage(self, folder: Path) -> str | None:
         """Return the first file that is missing or not of its length, None when all are well (digests are not read)."""
         for path, entry in self.files.items():
             try:
@@ -49,7 +49,7 @@ class Commit:
                 return path
         return None
 
-    def altered(self, folder: Path) -> str | None:
+    def first_change(self, folder: Path) -> str | None:
         """Return the first file that is not what was written, None when all are well."""
         return next((p for p, entry in self.files.items() if not (folder / p).is_file() or entry_of(folder / p) != entry), None)
 

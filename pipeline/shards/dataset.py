@@ -123,7 +123,7 @@ def is_committed(dataset: Dataset, number: int) -> bool:
         commit = read_commit(dataset.folder, shard_name(number))
     except ContentError:
         return False
-    return commit is not None and not commit.damaged(dataset.folder)
+    return commit is not None and not commit.first_damage(dataset.folder)
 
 
 def assets_of_all(dataset: Dataset) -> set[str]:
@@ -153,7 +153,7 @@ def _broken(folder: Path, name: str, *, digests: bool = False) -> bool:
         commit = read_commit(folder, name)
     except ContentError:
         return True
-    return commit is None or bool(commit.altered(folder) if digests else commit.damaged(folder))
+    return commit is None or bool(commit.first_change(folder) if digests else commit.first_damage(folder))
 
 
 def _fails(folder: Path, name: str, reasons: frozenset[str]) -> bool:

@@ -49,7 +49,7 @@ class Part:
     def whole(self) -> bool:
         """Tell whether it is as it was written; a power cut may have torn it."""
         try:
-            return not self.commit().altered(self.folder)
+            return not self.commit().first_change(self.folder)
         except (ContentError, FileNotFoundError):
             return False
 

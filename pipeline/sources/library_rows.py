@@ -53,7 +53,7 @@ class LibraryRows:
         self.joints += joint_rows(asset)
         self.parts += part_rows(asset)
 
-    def guarded(self, where: str, work: Callable[[], None]) -> LibraryRows:
+    def guard(self, where: str, work: Callable[[], None]) -> LibraryRows:
         """Do the work on one model; what goes wrong in it becomes a reject of it."""
         try:
             work()

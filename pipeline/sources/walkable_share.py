@@ -45,4 +45,4 @@ class Walker:
         labels, sizes = components(standing(free, radius))
         space = FreeSpace(floor, labels, radius)
         label = int(np.argmax(sizes[1:])) + 1 if len(sizes) > 1 else 0
-        return [round(float(share), 4) for share in space.shares(space.covered(label), len(rooms))]
+        return [round(float(share), 4) for share in space.shares(space.swept_floor(label), len(rooms))]

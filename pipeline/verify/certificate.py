@@ -120,7 +120,7 @@ class Certificate:
         total = sum(r.area for r in self.rooms)
         return sum(r.area * float(getattr(r, name)) for r in self.rooms) / total if total else 1.0
 
-    def closed(self) -> frozenset[str]:
+    def closed_rooms(self) -> frozenset[str]:
         """Return the rooms that the robot does not get into."""
         return frozenset(r.room_id for r in self.rooms if not r.connected)
 
@@ -137,7 +137,7 @@ class Certificate:
             breaches.append(("joint_blocked", ", ".join(stuck)))
         if self.reach < policy.reach - 1e-9:
             breaches.append(("out_of_reach", f"{self.reach:.3f} of the openable objects can be opened"))
-        if policy.connected and (lost := self.closed() - closed):
+        if policy.connected and (lost := self.closed_rooms() - closed):
             breaches.append(("room_cut_off", ", ".join(r.room_id for r in self.rooms if r.room_id in lost)))
         if policy.supported and not all(o.supported for o in self.objects):
             breaches.append(("unsupported", ", ".join(o.object_id for o in self.objects if not o.supported)))

@@ -55,8 +55,8 @@ def check_rooms(home: Home, spaces: dict[int, tuple[FreeSpace, int]]) -> dict[st
     small = taxonomy.load().small
     for level, (space, label) in spaces.items():
         rooms = [r for r in home.plan.rooms if r.level == level]
-        shares = space.shares(space.covered(label), len(rooms))
-        inside = space.floor.room[space.reached(label)]
+        shares = space.shares(space.swept_floor(label), len(rooms))
+        inside = space.floor.room[space.centres(label)]
         entered = np.bincount(inside[inside >= 0], minlength=len(rooms))
         for number, room in enumerate(rooms):
             own = tuple(p for p in home.in_room(room.room_id) if p.category not in small)

@@ -68,7 +68,7 @@ def test_the_third_term_pushes_furniture_off_the_way(scaling):
     guide = guidance(scaling, SQUARE)
     boxes = room((0.3, 0.0, 4.4, 0.5)).requires_grad_()
     there = torch.ones(1, 1, dtype=torch.bool)
-    blocked = guide.blocked(boxes_of(boxes), there, ~there)
+    blocked = guide.way_overlap(boxes_of(boxes), there, ~there)
     assert float(blocked.detach()) > 0
     (pushed,) = torch.autograd.grad(blocked.sum(), boxes)
     assert pushed[..., :2].abs().max() > 0

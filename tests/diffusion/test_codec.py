@@ -16,7 +16,7 @@ def rows_of(examples):
 
 def test_rows_survive_the_round_trip(examples, norm):
     codec, (rows, classes) = Codec(norm), rows_of(examples)
-    x = codec.normalised(rows, classes)
+    x = codec.normalise(rows, classes)
     torch.testing.assert_close(codec.metric(x, classes), rows, atol=1e-5, rtol=1e-5)
     torch.testing.assert_close(codec.metric(x[:, :8], classes), rows[:, :8], atol=1e-5, rtol=1e-5)
 
@@ -24,7 +24,7 @@ def test_rows_survive_the_round_trip(examples, norm):
 def test_sizes_are_measured_within_their_class(examples, norm):
     """Beds are larger than nightstands; as channels both lie around 0 with a spread of about 1."""
     codec, (rows, classes) = Codec(norm), rows_of(examples)
-    x = codec.normalised(rows, classes)
+    x = codec.normalise(rows, classes)
     torch.testing.assert_close((x[:, :2] ** 2).mean(), torch.tensor(1.0), atol=1e-3, rtol=0)
     for label in range(len(CLASSES)):
         mine = x[classes == label][:, SIZE]
@@ -49,7 +49,7 @@ def test_proposals_are_what_was_encoded(examples, norm):
     classes = torch.full((24,), codec.classes)
     classes[:n] = torch.from_numpy(example.classes)
     x = torch.zeros(24, CHANNELS)
-    x[:n] = codec.normalised(torch.from_numpy(example.continuous).float(), classes[:n])
+    x[:n] = codec.normalise(torch.from_numpy(example.continuous).float(), classes[:n])
     found = codec.proposals(x, classes, context)
     assert [p.category for p in found] == [CLASSES[c] for c in example.classes]
     for proposal, row in zip(found, example.continuous, strict=True):

@@ -175,7 +175,7 @@ def test_descending_lowers_the_penalty_where_the_printed_sign_climbs(norm):
         def phi(x, occupied=occupied, classes=classes, sweeps=sweeps):
             return float(articulated_collision(boxes_of(codec.metric(x, classes)), occupied, sweeps, rooms))
 
-        x = codec.normalised(metric, classes)
+        x = codec.normalise(metric, classes)
         start = phi(x)
         step = articulation_descent(codec, x, classes, sweeps, rooms, settings)
         climbed = x.clone()
@@ -184,7 +184,7 @@ def test_descending_lowers_the_penalty_where_the_printed_sign_climbs(norm):
         for _ in range(12):
             x = x.clone()
             x[..., :8] += articulation_descent(codec, x, classes, sweeps, rooms, settings)
-        assert torch.equal(x[..., 2:6], codec.normalised(metric, classes)[..., 2:6])  # heights and sizes stay
+        assert torch.equal(x[..., 2:6], codec.normalise(metric, classes)[..., 2:6])  # heights and sizes stay
         fell += phi(x) < 0.35 * start + 1e-9
     assert fell >= 18
 
@@ -195,7 +195,7 @@ def test_a_step_is_never_longer_than_its_clip(norm):
     metric[..., :2] = 30.0  # far outside
     metric[..., 3:7] = 1.0
     classes = torch.zeros(1, 3, dtype=torch.long)
-    step = articulation_descent(codec, codec.normalised(metric, classes), classes, None, rooms, SampleSettings(clip=0.15))
+    step = articulation_descent(codec, codec.normalise(metric, classes), classes, None, rooms, SampleSettings(clip=0.15))
     assert float((step[..., :2] * codec.reach).norm(dim=-1).max()) <= 0.15 + 1e-5
 
 
@@ -206,7 +206,7 @@ def test_a_new_size_keeps_the_back_where_it_is(norm):
     yaw = 0.7
     metric[..., 6], metric[..., 7] = math.cos(yaw), math.sin(yaw)
     classes = torch.tensor([[1]])
-    x = codec.normalised(metric, classes)
+    x = codec.normalise(metric, classes)
     moved = x.clone()
     moved[..., :6] += size_shift(codec, x, classes, torch.tensor([[[1.2, 0.5, 0.9]]]))
     after = codec.metric(moved, classes)

@@ -105,7 +105,7 @@ def test_the_asked_number_is_exact_even_from_a_net_that_knows_nothing(weights, c
     rooms = [make_context(i, n_target=count) for i in range(4)]
     keys = [(i, 0, 0) for i in range(4)]
     assert [len(p) for p in s.sample_rooms(rooms, keys)] == [count] * 4
-    assert any(len(p) != count for p in s.unguided().sample_rooms(rooms, keys))
+    assert any(len(p) != count for p in s.baseline().sample_rooms(rooms, keys))
 
 
 def test_demands_are_met(weights):
@@ -127,9 +127,9 @@ def test_the_baseline_ignores_library_and_count(weights):
     rooms = [make_context(i) for i in range(3)]
     asked = [make_context(i, n_target=9) for i in range(3)]
     keys = [(i, 0, 0) for i in range(3)]
-    plain = s.unguided()
+    plain = s.baseline()
     assert all(map(same, plain.sample_rooms(rooms, keys), plain.sample_rooms(asked, keys)))
-    assert all(map(same, plain.sample_rooms(rooms, keys), sampler(weights).unguided().sample_rooms(rooms, keys)))
+    assert all(map(same, plain.sample_rooms(rooms, keys), sampler(weights).baseline().sample_rooms(rooms, keys)))
 
 
 @pytest.mark.parametrize("kind", ["none", "heuristic", "joints"])

@@ -112,8 +112,8 @@ def test_it_learns(header, data):
 
 def loss(header, data, settings):
     net = Trainer(0, header, settings, 1, 1, CPU).net
-    drawn = draw(torch.Generator().manual_seed(0), len(data.held), 12)
-    drawn = drawn._replace(level=torch.full((len(data.held),), 4.0))
+    drawn = draw(torch.Generator().manual_seed(0), len(data.counts), 12)
+    drawn = drawn._replace(level=torch.full((len(data.counts),), 4.0))
     return denoising_loss(net, data.rooms, data.objects, drawn, settings)[-1]
 
 
@@ -167,9 +167,9 @@ def test_a_step_sees_rooms_of_like_size_and_every_room_as_often_as_its_weight(no
     trainer, rng = Trainer(0, header, SETTINGS, 6, 3, CPU), torch.Generator().manual_seed(0)
     seen = torch.zeros(30)
     for _ in range(1200):
-        rows, slots = trainer.chosen(rng, data)
+        rows, slots = trainer.draw_rows(rng, data)
         assert len(rows) * slots == SETTINGS.objects
-        assert all(data.held[rows] <= slots)
+        assert all(data.counts[rows] <= slots)
         seen += torch.bincount(rows, minlength=30)
     share = (seen / seen.sum()).numpy()
     assert abs(share - data.weights).max() < 0.01

@@ -72,9 +72,9 @@ def rooms(root, homes):
 
 
 def test_drafts_are_put_beside_the_rooms_of_their_floors(rooms):
-    assert [room.name for room in rooms.made["guided"]] == [room.name for room in rooms.real]
-    assert all(np.allclose(a.position, b.position) for a, b in zip(rooms.made["guided"], rooms.real, strict=True))
-    assert (len(rooms.real), len(rooms.train), len(rooms.made["shipped"])) == (60, 60, 40)
+    assert [room.name for room in rooms.samples["guided"]] == [room.name for room in rooms.real]
+    assert all(np.allclose(a.position, b.position) for a, b in zip(rooms.samples["guided"], rooms.real, strict=True))
+    assert (len(rooms.real), len(rooms.train), len(rooms.samples["shipped"])) == (60, 60, 40)
 
 
 def test_as_many_of_each_type_are_compared(rooms):
@@ -87,7 +87,7 @@ def test_as_many_of_each_type_are_compared(rooms):
 @pytest.fixture(scope="module")
 def table(rooms):
     rng = np.random.default_rng(1)
-    made = {"guided": [spoilt(rng, room) for room in rooms.real], "shipped": rooms.made["shipped"]}
+    made = {"guided": [spoilt(rng, room) for room in rooms.real], "shipped": rooms.samples["shipped"]}
     return realism_table(0, Beside(rooms.real, rooms.train, made), learning.fit(rooms.train), embeddings(""))
 
 

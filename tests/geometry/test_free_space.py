@@ -52,10 +52,10 @@ def test_a_door_joins_two_rooms_until_it_is_blocked():
     free = free_space(floor, nothing, 0.25, (0.02, 1.4))
     label = free.largest_label(floor.room == 0)
     assert (free.labels[floor.room == 1] == label).any()
-    assert np.all(free.shares(free.covered(label), 2) > 0.97)
+    assert np.all(free.shares(free.swept_floor(label), 2) > 0.97)
     blocked = prism(np.array([[x, y, z] for x in (3.5, 3.9) for y in (0.2, 1.6) for z in (0, 1)]))
     cut = free_space(floor, blocked, 0.25, (0.02, 1.4))
     label = cut.largest_label(floor.room == 0)
-    assert cut.shares(cut.covered(label), 2)[1] == 0
+    assert cut.shares(cut.swept_floor(label), 2)[1] == 0
     high = prism(np.array([[x, y, z] for x in (3.5, 3.9) for y in (0.2, 1.6) for z in (1.5, 2)]))
     assert np.array_equal(free_space(floor, high, 0.25, (0.02, 1.4)).labels, free.labels)

@@ -45,7 +45,7 @@ class Arranger:
         """Return the room's choice among alternatives of its rates."""
         return self.deal.choose(decision, self.rates[decision])
 
-    def wanted(self, group: str) -> list[str]:
+    def wishes(self, group: str) -> list[str]:
         """Return the categories of a group that the room wants; `second_chair` is one more chair.
 
         Some rooms are crowded and some bare: a room's wealth, 1 in the mean, multiplies its chances for extras.

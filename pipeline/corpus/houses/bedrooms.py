@@ -29,7 +29,7 @@ def furnish_bedroom(arranger: Arranger) -> None:
         bed = place_bed(arranger, "single_bed")
     if bed is not None:
         nightstands(arranger, bed, NIGHTSTANDS[arranger.choose("nightstands")])
-    pieces = arranger.wanted("pieces")
+    pieces = arranger.wishes("pieces")
     if bed is not None and "tv_stand" in pieces:
         tv_opposite(arranger, bed)
     at_walls(arranger, [p for p in pieces if p != "tv_stand"])
@@ -46,7 +46,7 @@ def furnish_kids_room(arranger: Arranger) -> None:
     bed = place_bed(arranger, arranger.choose("bed"))
     if bed is not None:
         nightstands(arranger, bed, NIGHTSTANDS[arranger.choose("nightstands")])
-    at_walls(arranger, arranger.wanted("pieces"))
+    at_walls(arranger, arranger.wishes("pieces"))
     extras(arranger)
     if arranger.wants("wall_lamp"):
         arranger.on_wall("wall_lamp", 1.5)
@@ -68,7 +68,7 @@ def at_walls(arranger: Arranger, pieces: list[str]) -> None:
 
 def extras(arranger: Arranger) -> None:
     """Put the smaller pieces that the room wants: seats into corners, the others to walls."""
-    for category in arranger.wanted("extras"):
+    for category in arranger.wishes("extras"):
         if category in SEATS:
             arranger.in_corner(category)
         else:

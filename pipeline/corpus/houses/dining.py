@@ -27,9 +27,9 @@ BEHIND = 0.3
 def furnish_dining(arranger: Arranger) -> None:
     """Furnish a dining room: the table group, then cabinets along the walls."""
     furnish_dining_corner(arranger)
-    for category in arranger.wanted("pieces"):
+    for category in arranger.wishes("pieces"):
         arranger.at_wall(category)
-    for category in arranger.wanted("extras"):
+    for category in arranger.wishes("extras"):
         arranger.in_corner(category)
 
 

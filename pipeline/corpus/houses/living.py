@@ -31,9 +31,9 @@ def furnish_living(arranger: Arranger, *, dining: bool) -> None:
         seats(arranger, lounge)
     if dining and arranger.wants("dining"):
         furnish_dining_corner(arranger)
-    for category in arranger.wanted("pieces"):
+    for category in arranger.wishes("pieces"):
         arranger.at_wall(category)
-    for category in arranger.wanted("extras"):
+    for category in arranger.wishes("extras"):
         arranger.in_corner(category)
     over = lounge.table[1] if lounge is not None and lounge.table is not None else None
     arranger.light([] if over is None else [(over.x, over.y)])
@@ -160,7 +160,7 @@ def seats(arranger: Arranger, lounge: Lounge) -> None:
             back = -(lounge.sofa.size[1] - side_table.size[1]) / 2 + float(abs(rng.normal(0, 0.05)))
             across = sign * (lounge.sofa.size[0] / 2 + side_table.size[0] / 2 + float(rng.uniform(0.02, 0.1)))
             space.try_add(side_table, shift_spot(lounge.spot, across, back))
-    wanted = arranger.wanted("seats")
+    wanted = arranger.wishes("seats")
     if "chinese_chairs" in wanted:
         wanted[wanted.index("chinese_chairs") :] = ["chinese_chair", "chinese_chair"]
     free = [-1, 1] if arranger.chance(0.5) else [1, -1]

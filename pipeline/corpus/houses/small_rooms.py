@@ -28,7 +28,7 @@ def furnish_hall(arranger: Arranger, *, rich: bool) -> None:
     if arranger.wants("shoe_cabinet"):
         arranger.at_wall("shoe_cabinet", corner=0.7, tries=5)
     if rich:
-        for category in arranger.wanted("pieces") or ["cabinet"]:
+        for category in arranger.wishes("pieces") or ["cabinet"]:
             arranger.at_wall(category, corner=0.8)
         if arranger.wants("stool"):
             arranger.in_corner("stool")
@@ -42,9 +42,9 @@ def furnish_hall(arranger: Arranger, *, rich: bool) -> None:
 def furnish_study(arranger: Arranger) -> None:
     """Furnish a study: a desk with a chair, shelves, a seat to read in."""
     arranger.pair_at_wall("desk", arranger.choose("desk_seat"))
-    for category in arranger.wanted("pieces"):
+    for category in arranger.wishes("pieces"):
         arranger.at_wall(category, corner=0.75)
-    for category in arranger.wanted("extras"):
+    for category in arranger.wishes("extras"):
         arranger.in_corner(category)
     arranger.light()
 
@@ -54,7 +54,7 @@ def furnish_balcony(arranger: Arranger) -> None:
     arranger.space.blind = True  # all its outer walls are windows
     if arranger.wants("washing_machine"):
         arranger.at_wall("washing_machine", corner=1.0)
-    for category in arranger.wanted("pieces"):
+    for category in arranger.wishes("pieces"):
         arranger.in_corner(category, front=0.0)
     arranger.space.blind = False
     arranger.light()
@@ -63,7 +63,7 @@ def furnish_balcony(arranger: Arranger) -> None:
 def furnish_utility(arranger: Arranger) -> None:
     """Furnish a laundry: machine, cabinet, shelf, bin."""
     arranger.at_wall("washing_machine", corner=1.0)
-    for category in arranger.wanted("pieces"):
+    for category in arranger.wishes("pieces"):
         arranger.at_wall(category, corner=0.9)
     arranger.light()
 
@@ -73,7 +73,7 @@ def furnish_storage(arranger: Arranger, *, rich: bool) -> None:
     arranger.at_wall(arranger.choose("first"), corner=0.9, tries=5)
     if not rich:
         return
-    for category in arranger.wanted("pieces"):
+    for category in arranger.wishes("pieces"):
         arranger.at_wall(category, corner=0.9)
     if arranger.wants("stool"):
         arranger.at_wall("stool", corner=0.9)

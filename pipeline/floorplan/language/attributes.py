@@ -129,7 +129,7 @@ def factor(c: Clause, k: int, e: Element) -> int:
 
 def compare(c: Clause, k: int, e: Element) -> int:
     """Read "at least 1.5 times as large as the largest bedroom"."""
-    left = c.listed() or c.subject or c.latest
+    left = c.rooms_in_front() or (c.objects if c.relative else ()) or c.subject or c.latest
     if e.value == "alike":
         rooms = c.latest if len(c.latest) > 1 else ids_of(c.run)
         c.state.say("area_equal", named_rooms(rooms if len(rooms) > 1 else c.subject), (), e, LIKE)
@@ -182,7 +182,7 @@ def has(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one answer per
         return j
     if thing.type in NO_PARTS or (thing.ids and thing.definite):
         return k + 1
-    ids = c.named(at)
+    ids = c.rooms_at(at)
     opened = thing.type in {"kitchen", "dining_room"} and kind in {*SOCIAL, "studio_room"}
     c.state.say("open" if opened else "door", ids, owners, e)
     c.measures(thing)

@@ -212,7 +212,7 @@ def _area(draft: Draft, mark: Mark, room: Named, k: int) -> None:
     draft.cite(mark.first, mark.last, f"rooms.{room.id}.area")
     if room.low is not None and room.high is not None and room.low > room.high:
         what = f"{room.id} is to have at least {room.low:g} and at most {room.high:g} m²"
-        raise ImpossibleError(what, "keep one of the two", draft.cited(f"rooms.{room.id}.area"))
+        raise ImpossibleError(what, "keep one of the two", draft.citations(f"rooms.{room.id}.area"))
 
 
 def _total(draft: Draft, mark: Mark) -> None:
@@ -224,7 +224,7 @@ def _total(draft: Draft, mark: Mark) -> None:
     low = max((x for x in (old.get("min"), box.get("min")) if x is not None), default=None)
     high = min((x for x in (old.get("max"), box.get("max")) if x is not None), default=None)
     if low is not None and high is not None and low > high * (1 + SAME):
-        raise ImpossibleError("two total areas are asked for", "keep one of the two", draft.cited("total_area"))
+        raise ImpossibleError("two total areas are asked for", "keep one of the two", draft.citations("total_area"))
     draft.fields["total_area"] = {**(old or box), "min": low, "max": high, "stated": True}
 
 

@@ -136,7 +136,7 @@ class Clause:
                 return None
         return None
 
-    def named(self, k: int) -> Group:
+    def rooms_at(self, k: int) -> Group:
         """Return the rooms of the phrase at k."""
         return tuple(name(self.state, self.sentence, k, self.storey(k)))
 
@@ -156,7 +156,7 @@ class Clause:
         ends = [self.place(x) for x in self.run[-2:]]
         return len(ends) < 2 or any(x.kind in {"and", "or"} for x in self.sentence[ends[0] : ends[1]])
 
-    def listed(self) -> Group:
+    def rooms_in_front(self) -> Group:
         """Return the rooms in front of a comparison: the last phrase, with those that an "and" joins to it."""
         return ids_of(self.run if self.coordinate() else self.run[-1:])
 

@@ -159,7 +159,7 @@ class Lexicon:
             elif at > start and word in self.adverbs:
                 only = only or word in self.sign("only")
                 at += 1
-            elif word in {"-", "/"} and at > start:
+            elif at > start and (word in {"-", "/"} or (word == "." and texts[at - 1] in self.abbreviations)):
                 at += 1
             else:
                 break
@@ -178,7 +178,7 @@ def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:
                 number = float(factor)
             for p in split(phrases):
                 if section == "conjugated":
-                    yield from ((form, Meaning(kind, value)) for form in e.verbs_of.conjugated(p) if kind != "known")
+                    yield from ((form, Meaning(kind, value)) for form in e.verbs_of.conjugate(p) if kind != "known")
                 elif kind in STRONG:
                     yield from ((form, Meaning(kind, value, plural=many and kind != "home")) for form, many in forms(e.plurals, p))
                 else:

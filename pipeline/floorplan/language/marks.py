@@ -75,7 +75,7 @@ def listen(prompt: str, language: Language) -> Words:
     lex = lexicon(language)
     tokens = tokenize(prompt)
     written = [fold(t.text) for t in tokens]
-    tokens, texts = repair(tokens, lex.compounds.completed(written, lex.vocabulary, lex.joins), lex)
+    tokens, texts = repair(tokens, lex.compounds.complete(written, lex.vocabulary, lex.joins), lex)
     texts = [lex.tenses.get(t, lex.behind.get(texts[k - 1], {}).get(t, t) if k else t) for k, t in enumerate(texts)]
     return Words(prompt, tokens, texts, lex)
 

@@ -62,6 +62,7 @@ def understand_rooms(plain: str, prompt: str, wishes: Sequence[Claim] = ()) -> F
     marks = _with_wishes(choose(amounts(segment(words), words)), wishes, words)
     said = [m for m in apply_frames(marks, words) if m.kind != "wish"]
     refuse(said, words)
+    people = [m for m in said if m.kind == "people"]
     marks = reorder([m for m in said if m.kind != "people"], words)
     parsed = sentences(marks, words)
     everything = [e for s in parsed for e in s]
@@ -69,7 +70,7 @@ def understand_rooms(plain: str, prompt: str, wishes: Sequence[Claim] = ()) -> F
         shown = re.sub(r"\s+", " ", prompt.strip())[:60]
         advice = "name rooms, e.g. living room, two bedrooms, bathroom"
         raise RefusedError(f"nothing in the prompt names a room or a home: {shown!r}", advice)
-    state = Reading(words, people=next((m for m in said if m.kind == "people"), None), looks=[e for e in everything if e.kind == "look"])
+    state = Reading(words, people=next(iter(people), None), looks=[e for e in everything if e.kind == "look"])
     for sentence in parsed:
         ban(sentence)
     settle(parsed)
@@ -82,7 +83,7 @@ def understand_rooms(plain: str, prompt: str, wishes: Sequence[Claim] = ()) -> F
         fault = error.errors()[0]
         where = ".".join(map(str, fault["loc"]))
         raise RefusedError(f"{where} cannot be {str(fault['input'])[:60]}: {fault['msg']}", "ask for a home of usual size") from error
-    return program.model_copy(update=_left_out(state, parsed, program.evidence, marks))
+    return program.model_copy(update=_left_out(state, parsed, program.evidence, sorted([*marks, *people[1:]], key=lambda m: m.first)))
 
 
 def _with_wishes(marks: Sequence[Mark], wishes: Sequence[Claim], words: Words) -> list[Mark]:
@@ -154,6 +155,8 @@ def _says(state: Reading, marks: Sequence[Mark], k: int) -> bool:
         return mark.value not in {"has", "in"} and mark.text not in state.heard.lexicon.sign("quiet")
     if mark.kind == "pron" and mark.value in {"it", "one"}:
         return False
+    if mark.kind == "owner" and any(m.text in state.heard.lexicon.sign("towards") for m in marks[max(0, k - 2) : k]):
+        return False  # "for my granny: ..." says who lives there
     if (mark.kind, mark.value) in {("adj", "closed"), ("adj", "plain")} or (k and mark.kind == "size" and marks[k - 1].kind == "amount"):
         return False  # what is not open is apart anyway; "20 m² groß"
     ahead = marks[k + 1] if k + 1 < len(marks) else None

@@ -240,6 +240,7 @@ def enter(c: Clause, e: Element, group: Group, j: int) -> int:
     into, then = c.near(j), next((i for i, x in enumerate(c.sentence[j : j + 2]) if c.says(x, "then")), None)
     further: Group = group[1:] if len(group) == 2 else ()
     if then is not None or (into is not None and into.kind == "cue" and into.value in {"in", "leads"} and c.says(e, "by")):
+        c.state.understood(into.first if into else j, into.last if into else j)
         further, j = c.after(j + 1 + (then or 0), "door", group)
     c.state.entrance = c.state.entrance or (group[0], e)
     if further:
@@ -256,7 +257,7 @@ def merge(c: Clause, k: int, e: Element) -> None:
     joined = written_on
     for i, x in enumerate(c.sentence[k + 1 :], k + 1):
         if x.kind == "np" and joined and x.type in SOCIAL and not x.banned and "closed" not in x.adjectives:
-            listed += c.named(i)
+            listed += c.rooms_at(i)
             joined = written_on
         elif x.kind == "and" or (x.kind == "comma" and e.type in SOCIAL and _closes(c, i)) or (x.value == "has" and len(listed) == 1):
             joined = True
@@ -297,7 +298,7 @@ def no_door(c: Clause) -> None:
         rooms = [k for k in range(first + 1, last) if c.sentence[k].kind == "np"]
         if flag is None:
             continue
-        named = [f"*{c.sentence[k].type}" if c.sentence[k].banned or not c.sentence[k].definite else c.named(k)[0] for k in rooms]
+        named = [f"*{c.sentence[k].type}" if c.sentence[k].banned or not c.sentence[k].definite else c.rooms_at(k)[0] for k in rooms]
         c.state.say("no_through", tuple(named) or ("*bedroom",), (), flag)
         c.state.understood(part[0].first, part[-1].last)
         c.sentence[first + 1 : last] = []

@@ -38,7 +38,7 @@ class Draft:
         if entry not in self.evidence[-40:]:
             self.evidence.append(entry)
 
-    def cited(self, prefix: str) -> list[Evidence]:
+    def citations(self, prefix: str) -> list[Evidence]:
         """Return the words of fields."""
         return [Evidence.model_validate(e) for e in self.evidence if e["field"].startswith(prefix)]
 
@@ -57,7 +57,7 @@ class Draft:
             self.links[key] = {"a": a, "b": b, "kind": kind, "stated": stated}
         self.cite(fact.first, fact.last, f"links.{a}-{b}")
 
-    def linked(self, a: str) -> set[str]:
+    def neighbours(self, a: str) -> set[str]:
         """Return the rooms that a room is joined to by an opening."""
         return {k[1] if k[0] == a else k[0] for k, v in self.links.items() if a in k and v["kind"] != "wall"}
 
@@ -141,12 +141,12 @@ def _ensuites(draft: Draft, stock: Inventory, fact: Fact) -> None:
 def _hosts(draft: Draft, stock: Inventory) -> list[Named]:
     """Return the bedrooms that an en suite bathroom may belong to, those without one first."""
     hosts = [r for r in stock.of("bedroom") if r.role == "primary"] or stock.of("bedroom")
-    return sorted(hosts, key=lambda r: any(stock.get(i).type == "bathroom" for i in draft.linked(r.id)))
+    return sorted(hosts, key=lambda r: any(stock.get(i).type == "bathroom" for i in draft.neighbours(r.id)))
 
 
 def _bath(draft: Draft, stock: Inventory, bed: Named, fact: Fact, known: Sequence[Named]) -> None:
     """Give a bedroom one of the known bathrooms that hangs on nothing yet, or a new one."""
-    free = sorted((r for r in known if not draft.linked(r.id)), key=lambda r: not r.role)
+    free = sorted((r for r in known if not draft.neighbours(r.id)), key=lambda r: not r.role)
     bath = free[0] if free else stock.add("bathroom", "", "en suite", bed.level)
     bath.open_slot = False
     _give(draft, stock, bath.id, bed.id, fact)
@@ -251,7 +251,7 @@ def _window(draft: Draft, stock: Inventory, fact: Fact) -> None:
     for a in fact.a:
         draft.cite(fact.first, fact.last, f"rooms.{a}.window")
         if stock.get(a).window not in {"auto", wish}:
-            raise ImpossibleError(f"{a} is to have a window and to have none", "keep one of the two", draft.cited(f"rooms.{a}.window"))
+            raise ImpossibleError(f"{a} is to have a window and to have none", "keep one of the two", draft.citations(f"rooms.{a}.window"))
         stock.get(a).window = wish
 
 
@@ -268,7 +268,7 @@ def _check_order(draft: Draft) -> None:
             visited |= here
             here = {b for a in here for b in larger.get(a, ())} - visited
         if start in here:
-            words = draft.cited("relations.area_order")
+            words = draft.citations("relations.area_order")
             raise ImpossibleError(f"{start} is to be larger than a room that is to be larger than it", "drop one of the two", words)
 
 
@@ -279,7 +279,7 @@ def _everything(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact
         return
     left_out = {i for f in facts if f.what == "except" for i in f.a} | set(fixed)
     for room in list(stock.rooms):
-        inner = bool(draft.linked(room.id)) and room.type in INNER
+        inner = bool(draft.neighbours(room.id)) and room.type in INNER
         if room.id not in left_out and not inner and room.type not in {*HALLS, "balcony", "staircase", "garage"}:
             draft.link(fixed[0], room.id, "open" if fact.what == "open" else "door", fact)
     if stock.get(fixed[0]).type in {*HALLS, "living_room"}:
@@ -290,14 +290,14 @@ def _suites(draft: Draft, stock: Inventory, facts: Sequence[Fact]) -> None:
     """Give each suite a bathroom of its own, directly or through its closet; place en suites that nobody placed."""
     for fact in facts:
         for bed in map(stock.get, fact.a if fact.what == "suite" else ()):
-            near = draft.linked(bed.id)
-            reach = near | {j for i in near if stock.get(i).type == "closet" for j in draft.linked(i)}
+            near = draft.neighbours(bed.id)
+            reach = near | {j for i in near if stock.get(i).type == "closet" for j in draft.neighbours(i)}
             if not any(stock.get(i).type == "bathroom" for i in reach):
                 own = [r for r in stock.of("bathroom") if r.role in {"ensuite", "primary"}]
                 slots = [r for r in stock.of("bathroom") if r.open_slot and (bed.level is None or r.level in {None, bed.level})]
                 _bath(draft, stock, bed, fact, own + slots)
     for bath in stock.of("bathroom"):
-        hosts = _hosts(draft, stock) if bath.role in {"ensuite", "primary"} and not draft.linked(bath.id) else []
+        hosts = _hosts(draft, stock) if bath.role in {"ensuite", "primary"} and not draft.neighbours(bath.id) else []
         if hosts and (bath.role == "ensuite" or hosts[0].role == "primary"):
             _give(draft, stock, bath.id, hosts[0].id, Fact("own", (bath.id,), (hosts[0].id,), 0.0, *(bath.span or (0, 1))))
 
@@ -330,7 +330,7 @@ def _apart(draft: Draft, state: Reading, fact: Fact) -> None:
     elif fact.what == "no_through":  # no way to the rooms of all leads through some; their own bathrooms and closets may lie behind them
         for one in expand(fact.a):
             for room in stock.rooms:
-                if room.id != one and room.type not in INNER and room.id not in draft.linked(one):
+                if room.id != one and room.type not in INNER and room.id not in draft.neighbours(one):
                     draft.forbid("through", room.id, None, one, fact)
     elif fact.what in {"away", "ban", "avoid"}:
         for a, b in itertools.product(expand(fact.a), expand(fact.b)):

@@ -45,7 +45,7 @@ def _np(c: Clause, k: int, e: Element) -> int:
         level = c.storey(k)
         ids = tuple(fresh(c.state, e, backward(c.sentence, k, None) if level is None else level, c.owner))
     else:
-        ids = c.named(k)
+        ids = c.rooms_at(k)
     if c.left_out and e.det & {"each", "all"} and set(ids) > set(c.left_out):
         ids, c.run = tuple(i for i in ids if i not in c.left_out), []
     _own(c, e, ids)
@@ -63,7 +63,7 @@ def _describe_rooms(c: Clause, k: int, e: Element, ids: tuple[str, ...]) -> None
     if e.adjectives & {"open", "combined"} and "closed_plan" not in c.state.flags:
         merge(c, k, e)
     elif e.type in SOCIAL and (j := c.written_as_one(k, e)):
-        c.state.say("merge", (*ids, *c.named(j)), (), e)
+        c.state.say("merge", (*ids, *c.rooms_at(j)), (), e)
     if "closed" in e.adjectives and e.type == "kitchen":
         c.state.say("closed", ids, (), e)
     if e.suite:
@@ -296,7 +296,7 @@ def _flag(c: Clause, k: int, e: Element) -> int:
         return _windows(c, k, e)
     if e.value == "too" and last is not None:  # "..., ebenso das Bad"
         ahead = c.near(k + 1)
-        rooms = c.named(k + 1) if ahead is not None and ahead.kind == "np" else c.listed()
+        rooms = c.rooms_at(k + 1) if ahead is not None and ahead.kind == "np" else c.rooms_in_front()
         c.state.say(last.what, rooms, last.b, e)
     elif e.value == "only":
         c.only = e
@@ -323,7 +323,7 @@ def _flag(c: Clause, k: int, e: Element) -> int:
 
 def _windows(c: Clause, k: int, e: Element) -> int:
     """Read "no windows in the bedroom", "the bath needs daylight"; return where to go on."""
-    rooms, negative = named_rooms((c.listed() if c.verb else c.latest) or c.latest or c.subject), c.negated(k)
+    rooms, negative = named_rooms((c.rooms_in_front() if c.verb else c.latest) or c.latest or c.subject), c.negated(k)
     if rooms:
         c.state.say("no_window" if negative else "window", rooms, (), e)
     c.deny()

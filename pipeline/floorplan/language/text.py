@@ -217,7 +217,7 @@ class Compounds(BaseModel):
         yield from ((w, n) for n, w in below.items() if n > 20)
         yield from ((start + w, 100 + n) for start in self.hundreds for n, w in below.items())
 
-    def completed(self, texts: list[str], known: Collection[str], joins: Collection[str]) -> list[str]:
+    def complete(self, texts: list[str], known: Collection[str], joins: Collection[str]) -> list[str]:
         """Return the words with "Arbeits- oder Gästezimmer" written out; the hyphen stays where it is."""
         expanded = list(texts)
         for k in range(len(texts) - 3 if self.tails else 0):
@@ -277,7 +277,7 @@ class Verbs(BaseModel):
         """Return the present, gerunds, participles and forms of "we" and "I", which are only known not to be errors."""
         return [*self.forms(infinitive)[0], *_with_ends(infinitive, self.known)]
 
-    def conjugated(self, phrase: str) -> Iterator[str]:
+    def conjugate(self, phrase: str) -> Iterator[str]:
         """Yield "dar a" as "dar a", "da a", "da al", "se da a", "dan al" ...: the forms that are left, prepositions with their article too."""
         verb, _, rest = phrase.partition(" ")
         if not self.infinitive(verb):  # "conectado con": of one or many, of both genders

@@ -19,10 +19,10 @@ class Distance(NamedTuple):
 
 
 class Nearness(NamedTuple):
-    """A distance that is not kept: `made` openings lie between the rooms."""
+    """A distance that is not kept: only so many `openings` lie between the rooms."""
 
     asked: Distance
-    made: int
+    openings: int
 
 
 def distances(program: FloorProgram) -> tuple[Distance, ...]:

@@ -25,10 +25,11 @@ ANGLE = 1.5  # how far leaves open [rad]
 ENTRANCE_WIDTH, GATE_WIDTH, BALCONY_WIDTH = 0.9, 2.4, 0.85
 KEPT_FREE = frozenset({"balcony", "wc", "staircase"})  # leaves open away from these
 SILL, WINDOW_HEIGHT = 0.9, 1.3
-BATH_SILL, BATH_WINDOW = 1.4, 0.8
+HIGH_SILL, HIGH_WINDOW = 1.4, 0.8
 LINTEL, LEAST_WINDOW = 0.1, 0.6  # between openings and ceilings; height of a window under a low one [m]
 WIDEST_WINDOW, NARROWEST_WINDOW = 2.4, 0.6
-WIDEST = {"bathroom": 0.7, "wc": 0.7, "utility": 0.7, "kitchen": 1.2}  # of those, and of kitchens, whose walls carry units [m]
+WIDEST_HIGH = {"bathroom": 0.7, "wc": 0.7, "utility": 0.7}  # of rooms whose windows sit high [m]
+WIDEST = WIDEST_HIGH | {"kitchen": 1.2}  # and of kitchens, whose walls carry units [m]
 DAYLIGHT = 0.125  # glass that a room has, as a share of its floor: what building codes ask for
 WIDEST_GLASS = 6.0  # of a balcony
 STEP = 0.05  # raster of the places that are tried [m]
@@ -251,9 +252,9 @@ def _windows(site: Site, room: RoomReq, walls: Sequence[Run], tries: Sequence[tu
     wanted = room.window == "required" or (room.window == "auto" and DEFAULTS[room.type].window)
     if not wanted or room.window == "forbidden":
         return
-    bath = room.type in {"bathroom", "wc", "utility"}
+    high = room.type in WIDEST_HIGH
     placed, glass = 0, 0.0
-    enough = 0.0 if bath else np.inf if room.type == "balcony" else DAYLIGHT * float(shapely.Polygon(site.rooms[room.id].polygon).area)
+    enough = 0.0 if high else np.inf if room.type == "balcony" else DAYLIGHT * float(shapely.Polygon(site.rooms[room.id].polygon).area)
     for run in sorted(walls, key=lambda r: -round(r.length, 3)):
         if placed >= 3 or (placed and (glass >= enough or run.length < 1.6)):
             break
@@ -264,7 +265,7 @@ def _windows(site: Site, room: RoomReq, walls: Sequence[Run], tries: Sequence[tu
             size = round(max(width * share, NARROWEST_WINDOW), 2)
             offset = _window_place(site, run, size, margin)
             if offset is not None:
-                sill, height = (BATH_SILL, BATH_WINDOW) if bath else (SILL, site.ceiling if room.type == "balcony" else WINDOW_HEIGHT)
+                sill, height = (HIGH_SILL, HIGH_WINDOW) if high else (SILL, site.ceiling if room.type == "balcony" else WINDOW_HEIGHT)
                 sill = min(sill, site.ceiling - LINTEL - LEAST_WINDOW)
                 height = site.under(sill + height) - sill
                 segment = run.segment(offset, size)

@@ -93,7 +93,7 @@ def read_object(task: ObjectTask, entry: Found) -> LibraryRows:
             rows.keep(task.out, asset, Scale(fit.scale, fit.category if fit.fitted else "file", fit.rms))
             rows.rejects += rejects
 
-    return rows.guarded(entry.source_id, work)
+    return rows.guard(entry.source_id, work)
 
 
 def _no_object(entry: Found, reason: str, detail: str) -> LibraryRows:

@@ -32,7 +32,7 @@ class ReadRoom:
     objects: list[Placed]
     supports: list[int] = field(default_factory=list)
 
-    def named(self, number: int) -> str:
+    def object_id(self, number: int) -> str:
         """Return the id of the room's object of that number; empty for -1."""
         return f"{self.objects[number].category}_{self.room_id}_{number}" if number >= 0 else ""
 
@@ -94,7 +94,7 @@ def object_row(scene_id: str, room: ReadRoom, number: int, source: str) -> Row:
     piece = room.objects[number]
     return {
         "scene_id": scene_id,
-        "object_id": room.named(number),
+        "object_id": room.object_id(number),
         "room_id": room.room_id,
         "category": piece.category,
         "asset_id": piece.asset_id,
@@ -103,7 +103,7 @@ def object_row(scene_id: str, room: ReadRoom, number: int, source: str) -> Row:
         "size": piece.pose.size.tolist(),
         "scale": piece.scale.tolist(),
         "openable": piece.openable,
-        "support": room.named(room.supports[number]) if room.supports else "",
+        "support": room.object_id(room.supports[number]) if room.supports else "",
         "latent": [0.0] * 32,
         "retrieval_distance": 0.0,
         "source_id": f"{source}#{piece.jid}",

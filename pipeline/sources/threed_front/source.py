@@ -131,7 +131,7 @@ def read_future(task: ModelTask, info: ModelInfo) -> LibraryRows:
             model.box, asset.category, asset.asset_id, (w, d, h), asset.openable, occupancy_bits(asset.meshes(), asset.size)
         )
 
-    return rows.guarded(info.model_id, work)
+    return rows.guard(info.model_id, work)
 
 
 def read_front(task: HouseTask, file: str) -> HouseRows:
