@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.floorplan.language.facts import SOCIAL
 from pipeline.floorplan.language.marks import ENDS, Mark, Words
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.text import spread
@@ -19,7 +18,6 @@ CONFLICTS = {
     "conflict": ("two counts are asked for: {!r}", "keep one of them"),
 }
 RELATIONS = {"near", "door", "open", "wall", "away", "apart", "leads", "between"}
-TURNED = {"least": "most", "most": "least"}
 NAMES = {"bedroom", "living_room", "kitchen"}  # what a home has, not a room that is ruled out
 
 
@@ -68,7 +66,7 @@ def _is_definite(marks: Sequence[Mark], k: int) -> bool:
 
 
 def ban(sentence: list[Element]) -> None:
-    """Mark the noun phrases that are ruled out, and turn bounds that a negation turns."""
+    """Mark the noun phrases that are ruled out."""
     for k, e in enumerate(sentence):
         if e.kind == "neg":
             j = _target(sentence, k + 1)
@@ -78,36 +76,13 @@ def ban(sentence: list[Element]) -> None:
             _any(sentence, k)
             if k + 1 == len(sentence) or sentence[k + 1].kind in {"comma", "close", "but"}:
                 _behind(sentence, k)
-        elif e.kind == "needless":
-            start = max((i + 1 for i in range(k) if sentence[i].kind in {"comma", "but"}), default=0)
-            j = None if any(x.kind == "np" for x in sentence[start:k]) else _target(sentence, k + 1)
-            if j is not None:  # "no es necesario un balcón"
-                e.kind = "used"
-                _list(sentence, j)
-            for i in range(k - 1, -1, -1) if j is None else ():
-                if sentence[i].kind == "np":
-                    sentence[i].banned, e.kind = True, "used"
-                    if not (i and sentence[i - 1].kind in {"and", "or"}):
-                        break
-                elif sentence[i].kind not in {"and", "or", "verb", "neg", "det"}:
-                    break
 
 
 def _negate(sentence: list[Element], k: int, j: int) -> None:
     """Apply the negation at k to the phrase at j."""
-    e, phrase, rest = sentence[k], sentence[j], sentence[j + 1 : j + 3]
-    if [x.kind for x in rest] == ["neg", "flag"] and rest[1].value == "daylight":
-        e.kind = rest[0].kind = "used"  # "no bathroom without a window": all have one
-        phrase.det.add("all")
-    elif any(m.bound in TURNED for m in phrase.amounts):
-        e.kind = "used"
-        for m in phrase.amounts:
-            m.bound = TURNED.get(m.bound, m.bound)
-    elif _relation_follows(sentence, j):
+    e, phrase = sentence[k], sentence[j]
+    if _relation_follows(sentence, j):
         _any(sentence, k)  # "no kitchen next to the bedroom"
-    elif phrase.adjectives & {"open", "combined"} and phrase.type in SOCIAL:
-        e.kind = "used"  # "no open kitchen" is a closed one
-        phrase.adjectives = (phrase.adjectives - {"open", "combined"}) | {"closed"}
     elif not phrase.definite or e.removes:
         e.kind = "used"
         _list(sentence, j)
