@@ -123,9 +123,7 @@ class AssetIndex:
         one matrix of distances.
         """
         rows, distances = self.nearest(categories, sizes, latents)
-        return [
-            None if row < 0 else self.fit(int(row), float(d), sizes[p]) for p, (row, d) in enumerate(zip(rows, distances, strict=True))
-        ]
+        return [None if row < 0 else self.fit(int(row), float(d), sizes[p]) for p, (row, d) in enumerate(zip(rows, distances, strict=True))]
 
     def nearest(
         self, categories: Sequence[str | None], sizes: NDArray[np.float64], latents: NDArray[np.float32] | NDArray[np.float64]

@@ -60,7 +60,9 @@ def settle(folder: Path, source: AssetSource, staging: Path, asset_ids: set[str]
     for asset_id in sorted(asset_ids):
         place = folder / ASSETS / asset_id
         wanted = record(source.entry(asset_id), asset_id, {}, flush=False)
-        if place.exists() and (wanted.first_change(place) or {p for p in place.rglob("*") if p.is_file()} != {place / p for p in wanted.files}):
+        if place.exists() and (
+            wanted.first_change(place) or {p for p in place.rglob("*") if p.is_file()} != {place / p for p in wanted.files}
+        ):
             shutil.rmtree(place)
         adopt(folder, source, staging, [asset_id])
         files |= {f"{ASSETS}/{asset_id}/{path}": entry for path, entry in wanted.files.items()}

@@ -30,19 +30,7 @@ BESIDES = {"wc", "hallway", "entry", "storage", "closet", "balcony", "staircase"
 STRANGERS = {"guest", "elder", "carer", "staff"}  # whose bedrooms are beside those of the people who live there
 LIVED = {"living_room", "bedroom", "office", "dining_room", "playroom", "library", "studio_room", "family_room"}
 GROUND = {"living_room", "kitchen", "dining_room", "garage", "entry", "wc", "utility"}
-SORTS = {
-    "storage",
-    "balcony",
-    "wc",
-    "utility",
-    "closet",
-    "garage",
-    "hallway",
-    "entry",
-    "office",
-    "family_room",
-    "playroom",
-}  # of many names
+SORTS = {"storage", "balcony", "wc", "utility", "closet", "garage", "hallway", "entry", "office", "family_room", "playroom"}  # of many names  # fmt: skip
 
 
 def assemble(state: Reading, parsed: list[list[Element]]) -> FloorProgram:

@@ -11,18 +11,7 @@ from pipeline.floorplan.language.spelling import repair, uninflected_meaning
 from pipeline.floorplan.language.text import Token, fold, tokenize
 
 STOPS = {".", "!", "?", ";"}
-PUNCTUATION = {
-    ",": "comma",
-    ":": "colon",
-    "(": "open",
-    ")": "close",
-    "/": "slash",
-    "&": "and",
-    "+": "and",
-    "•": "bullet",
-    "|": "comma",
-    "*": "bullet",
-}
+PUNCTUATION = {",": "comma", ":": "colon", "(": "open", ")": "close", "/": "slash", "&": "and", "+": "and", "•": "bullet", "|": "comma", "*": "bullet"}  # fmt: skip
 ENDS = {"stop", "line"}  # kinds of marks that end a sentence
 ARROWS = {"<->", "->", "=>", "→"}
 FOREIGN = STRONG | {"num", "adj", "cue"}  # what a word of another language may mean in a mixed prompt

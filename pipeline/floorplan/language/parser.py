@@ -153,9 +153,8 @@ def _says(state: Reading, marks: Sequence[Mark], k: int) -> bool:
         return False
     if mark.kind == "cue":
         return mark.value not in {"has", "in"} and mark.text not in state.heard.lexicon.sign("quiet")
-    if mark.kind == "pron" and mark.value in {"it", "one"}:
-        return False
-    if mark.kind == "owner" and any(m.text in state.heard.lexicon.sign("towards") for m in marks[max(0, k - 2) : k]):
+    dweller = mark.kind == "owner" and any(m.text in state.heard.lexicon.sign("towards") for m in marks[max(0, k - 2) : k])
+    if dweller or (mark.kind, mark.value) in {("pron", "it"), ("pron", "one")}:
         return False  # "for my granny: ..." says who lives there
     if (mark.kind, mark.value) in {("adj", "closed"), ("adj", "plain")} or (k and mark.kind == "size" and marks[k - 1].kind == "amount"):
         return False  # what is not open is apart anyway; "20 m² groß"

@@ -224,9 +224,6 @@ def through(c: Clause, k: int, e: Element) -> int:
     if not second:
         return max(j, k + 1)
     things, hosts = (second, first) if e.value == "thru" else (first, second)
-    if c.waiting is not None and c.waiting[0].value in {"from", "leads"}:  # "from the bedroom through the closet into the bath"
-        c.state.say("door", first, c.waiting[1], c.waiting[0])
-        c.waiting = None
     c.state.say("avoid" if c.deny() or e.value == "thru_not" else "door", things, hosts, e)
     c.goes_on(things)
     return j

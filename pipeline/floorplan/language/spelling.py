@@ -14,18 +14,7 @@ from pipeline.floorplan.language.text import HAN, Token, bare, fold, tokenize
 SHORTEST, LONG = 4, 8  # one error from SHORTEST letters on, two from LONG on
 ONE, USUAL = 1.2, 0.9  # how far a word with one error is at most, and with a usual one
 LONGEST = 30  # no word of a home is longer
-TINY = {
-    "cue",
-    "det",
-    "neg",
-    "join",
-    "verb",
-    "fill",
-    "num",
-    "bound",
-    "relative",
-    "pron",
-}  # what a word of two letters may be where words are run together
+TINY = {"cue", "det", "neg", "join", "verb", "fill", "num", "bound", "relative", "pron"}  # what a word of two letters may be where words are run together  # fmt: skip
 ROWS = ("qwertzuiop", "asdfghjkl", "yxcvbnm", "qwertyuiop", "zxcvbnm")
 NEIGHBOURS = frozenset(p for r in ROWS for a, b in itertools.pairwise(r) for p in ((a, b), (b, a)))
 
