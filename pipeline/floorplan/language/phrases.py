@@ -65,7 +65,7 @@ class Element:
 
 def heads(sentence: list[Element], k: int) -> bool:
     """Whether the level at k opens a new part of a sentence: "living room, kitchen, and upstairs two bedrooms"."""
-    after = next((x for x in sentence[k + 1 :] if x.kind not in {"det", "flag"}), None)
+    after = next((x for x in sentence[k + 1 :] if x.kind not in {"det", "flag", "comma"}), None)
     return k > 0 and sentence[k - 1].kind in {"comma", "and"} and after is not None and after.kind in {"np", "colon"}
 
 
@@ -293,6 +293,7 @@ def settle(parsed: list[list[Element]]) -> None:
     one = any((e.kind == "home" and e.value) or e.type == "studio_room" or (e.value == "rooms" and e.number == 1) for e in everything)
     if one and not any(e.type == "bedroom" and not e.banned for e in everything):
         for k, e in enumerate(everything):
-            had = k > 1 and e.size < 1.0 and (everything[k - 1].kind, everything[k - 1].value) == ("cue", "has")  # "with a small kitchen"
-            if e.kind == "np" and e.type == "kitchen" and (had or (e.mark is not None and e.mark.value == "kitchen/corner")):
+            ahead = everything[k + 1].kind if k + 1 < len(everything) else ""
+            little = e.size < 1.0 and ahead not in {"cue", "verb"}  # and nothing is said of it
+            if e.kind == "np" and e.type == "kitchen" and (little or (e.mark is not None and e.mark.value == "kitchen/corner")):
                 e.kind = "corner"

@@ -277,7 +277,7 @@ def _closes(c: Clause, k: int) -> bool:
 
 def merge_after(c: Clause, k: int, e: Element) -> None:
     """Read "open plan: living, dining, kitchen": what is named behind the words."""
-    social = [j for j, x in enumerate(c.sentence) if j >= k and x.kind == "np" and x.type in SOCIAL]
+    social = [j for j, x in enumerate(c.sentence) if j >= k and x.kind == "np" and x.type in SOCIAL and "closed" not in x.adjectives]
     listed = tuple(i for j in social for i in name(c.state, c.sentence, j, None))
     if len(listed) > 1:
         c.state.say("merge", listed, (), e)

@@ -235,3 +235,29 @@ def test_a_kitchen_that_is_open_is_an_open_kitchen(prompt):
 def test_a_studio_with_a_guest_room_has_no_other_bedroom(prompt):
     program = parse(prompt)
     assert [(r.type, r.role) for r in program.rooms if r.type in {"bedroom", "studio_room"}] == [("bedroom", "guest"), ("studio_room", "")]
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "A flat share for four: everyone has their own room, two bathrooms.",
+        "Eine WG für vier: jeder hat sein eigenes Zimmer, dazu zwei Bäder.",
+        "Un piso compartido para cuatro, cada uno con su habitación, dos baños.",
+        "Une colocation pour quatre, chacun a sa chambre, deux salles de bain.",
+        "四人合租,每人一间卧室,两个卫生间。",
+    ],
+)
+def test_who_shares_a_home_has_a_room_each(prompt):
+    program = parse(prompt)
+    assert sorted(r.type for r in program.rooms if r.stated) == ["bathroom"] * 2 + ["bedroom"] * 4
+    assert program.unparsed == ()
+
+
+def test_what_is_separate_is_no_part_of_what_is_open():
+    program = parse("Downstairs an open plan kitchen and dining room, a separate living room. One bedroom.")
+    assert [{k.a, k.b} for k in program.links if k.kind == "open"] == [{"kitchen", "dining"}]
+
+
+def test_a_storey_between_commas_opens_a_new_part():
+    program = parse("Maison avec quatre chambres à l'étage et, au rez-de-chaussée, salon, cuisine et buanderie.")
+    assert {r.type: r.level for r in program.rooms if r.stated} == {"bedroom": 1, "living_room": 0, "kitchen": 0, "utility": 0}
