@@ -184,15 +184,12 @@ def _numbers(marks: Sequence[Mark], words: Words) -> list[Mark]:
 
 
 def _relabel(marks: Sequence[Mark], words: Words) -> list[Mark]:
-    """Settle what depends on words far off: narrow plots, floors counted from the ground floor, studies where there are bedrooms."""
+    """Settle what depends on words far off: floors counted from the ground floor, studies where there are bedrooms."""
     lex, relabelled = words.lexicon, list(marks)
     ground = "floors_from_one" in lex.traits and any(m.kind == "level" and lex.sign("ground") & set(m.text.split()) for m in marks)
     bedrooms = any(m.kind == "room" and m.value.startswith("bedroom") and m.value != "bedroom/guest" for m in marks)
     for k, mark in enumerate(marks):
-        ahead = [m.kind for m in marks[k + 1 : k + 5] if m.kind not in {"adj", "num", "look", "size"}] if mark.value == "slim" else []
-        if ahead[:1] == ["home"] or ahead[:2] == ["room", "home"] or (mark.value == "slim" and k and marks[k - 1].kind == "home"):
-            relabelled[k] = replace(mark, kind="flag", value="narrow")  # "a narrow three-bedroom townhouse": a narrow room is only that
-        elif mark.kind == "level" and ground:  # with a ground floor, the first floor is the one above
+        if mark.kind == "level" and ground:  # with a ground floor, the first floor is the one above
             shifted = (n for n in (1, 2) if any(mark.text.endswith(t) for t in lex.sign(f"floor_{n}")))
             relabelled[k] = replace(mark, value=str(next(shifted, mark.value)))
         elif mark.kind == "every" and any(m.kind == "room" and m.text == mark.text.rsplit(" ", 1)[-1] for m in marks[:k]):
@@ -309,8 +306,6 @@ def _verbs_last(marks: list[Mark], words: Words) -> Iterator[Mark]:
         uncounted = mark.text in lex.sign("plural_article") | lex.sign("plural_dative") and ahead is not None and ahead.kind == "room"
         if uncounted and ahead is not None and any(ahead.text.endswith(t) for t in lex.sign("uncounted")):
             relabelled[k + 1] = replace(ahead, plural=mark.text in lex.sign("plural_article"))
-        if mark.kind == "det" and mark.text in lex.sign("to_be") and (ahead is None or ahead.kind in BREAKS | {"join"}):
-            relabelled[k] = replace(mark, kind="verb", value="")  # "sollen verbunden sein"
     for k, mark in enumerate(relabelled):
         if (
             mark.kind in HEADS
@@ -330,10 +325,6 @@ def _behind(marks: Sequence[Mark], lex: Lexicon) -> list[Mark]:
         behind = before is not None and (before.kind in {*HEADS, "post"} or (before.kind, before.value) == ("size", "post"))
         if behind and (mark.kind == "adj" or (mark.kind == "det" and mark.value in {"own", "another"})):
             relabelled.append(replace(mark, kind="post"))
-        elif behind and mark.text in lex.sign("single_bed") and before is not None and before.value.startswith("bedroom"):
-            relabelled.append(replace(mark, kind="post", value="plain"))
-        elif behind and mark.text in lex.sign("more") and before is not None and before.kind == "room":
-            relabelled.append(replace(mark, kind="post", value="another"))
         elif behind and mark.kind == "size":
             relabelled.append(replace(mark, value="post"))
         elif not (behind and mark.kind == "adverb" and mark.text in lex.sign("very")):
