@@ -45,7 +45,9 @@ def convert_joint(
         attribute(spec, "physics:lowerLimit", "float", joint.lower * unit)
         attribute(spec, "physics:upperLimit", "float", joint.upper * unit)
         for name, value in zip(("limitStiffness", "limitDamping"), STOP, strict=True):
-            attribute(spec, f"newton:{name}", "float", value * resistance.inertia / unit)  # Newton reads them by name; PhysX does not know them
+            attribute(
+                spec, f"newton:{name}", "float", value * resistance.inertia / unit
+            )  # Newton reads them by name; PhysX does not know them
     attribute(spec, "newton:armature", "float", resistance.armature)  # this and friction: PhysX, Newton and MuJoCo
     attribute(spec, "newton:friction", "float", resistance.friction)
     drive = "angular" if hinge else "linear"
