@@ -8,7 +8,7 @@ from PIL import Image
 
 from pipeline.entities.asset import Asset, Material, Mesh
 from pipeline.rendering.boxes import solid_link
-from pipeline.rendering.texture import display, face_colours
+from pipeline.rendering.texture import LINEAR, display, face_colours
 
 
 def quilt(blob):
@@ -51,6 +51,18 @@ def test_large_textures_are_averaged():
     stripes[::2] = 255
     spread = np.ptp(face_colours(quilt(png(stripes)))[:, 0])
     assert spread < 0.02
+
+
+def test_large_triangles_of_a_pattern_are_of_one_colour():
+    """Squares of 8 texels in two colours: where a spot falls is chance, what lies under a triangle is not."""
+    squares = np.kron(np.indices((8, 8)).sum(axis=0) % 2, np.ones((8, 8)))[..., None] * np.full(3, 255)
+    turned = [[0, 0], [4.3, 0.2], [0.1, 3.9], [0.6, 0.6], [7.9, 0.66], [7.6, 0.9]]  # many repeats; the second a sliver
+    sheet = quilt(png(squares))
+    (link,) = sheet.links
+    mesh = replace(link.visuals[0], uv=np.array(turned, np.float32))
+    colours = face_colours(replace(sheet, links=(replace(link, visuals=(mesh,)),)))
+    grey = LINEAR[127]
+    assert np.allclose(colours, grey, atol=0.02)
 
 
 def test_what_is_no_picture_leaves_the_material_s_colour():
