@@ -13,6 +13,9 @@ from pipeline.geometry.walls import LEAF_THICKNESS, Leaf
 
 Floats = NDArray[np.float64]
 
+ROOM = (
+    0.01  # [m] about the leaf that is its own: others may be in each other by a touch, but a door that grazes one sticks there in an engine
+)
 # A box around the levers: from the lock edge, out of each face, above the leaf's lower edge [m].
 LEVER_EDGE, LEVER_LENGTH, LEVER_OUT, LEVER_Z = 0.03, 0.16, 0.065, (0.9, 1.15)
 
@@ -25,7 +28,7 @@ def leaf_sweep(leaf: Leaf, elevation: float) -> Sweep:
     """
     step = 2 * math.acos(1.0 - BULGE / leaf.width)
     angles = np.linspace(0.0, leaf.angle, max(STEPS, math.ceil(leaf.angle / step)) + 1)
-    pieces = [(0.0, leaf.width, 0.0, leaf.bottom, leaf.top)]
+    pieces = [(0.0, leaf.width + ROOM, ROOM, leaf.bottom, leaf.top)]
     if leaf.top - leaf.bottom > LEVER_Z[1]:
         far = leaf.width - LEVER_EDGE
         pieces.append((far - LEVER_LENGTH, far, LEVER_OUT, leaf.bottom + LEVER_Z[0], leaf.bottom + LEVER_Z[1]))

@@ -9,6 +9,7 @@ import shapely
 from shapely.geometry import Point, Polygon
 
 from pipeline.entities.plan import Opening, Plan, Room, Swing
+from pipeline.geometry.door_sweeps import ROOM, leaf_sweep
 from pipeline.geometry.walls import LEAF_THICKNESS, SLAB, outer_panels, reveals, room_panels, shell
 
 
@@ -136,3 +137,13 @@ def test_reveals_look_into_the_hole():
 def test_storeys_are_apart():
     upper = replace(PLAN, rooms=(ROOMS[0], replace(ROOMS[1], level=1)), openings=())
     assert shapely.area(shell(upper, 0).outline) == pytest.approx(4.48 * 3.48)
+
+
+def test_a_sweep_has_room_about_its_leaf():
+    leaf = shell(PLAN, 0).leaves[0]
+    prisms = leaf_sweep(leaf, 0.0).prisms
+    swept = shapely.union_all([Polygon(c[:n]) for c, n in zip(prisms.corners, prisms.count, strict=True)])
+    for angle in np.linspace(0, leaf.angle, 8):
+        near, far, behind, _ = leaf.outline(angle)
+        tip = Polygon([near + 0.5 * (far - near), far, behind, behind + 0.5 * (near - far)])
+        assert swept.buffer(1e-6).contains(tip.buffer(0.5 * ROOM))
