@@ -261,3 +261,34 @@ def test_what_is_separate_is_no_part_of_what_is_open():
 def test_a_storey_between_commas_opens_a_new_part():
     program = parse("Maison avec quatre chambres à l'étage et, au rez-de-chaussée, salon, cuisine et buanderie.")
     assert {r.type: r.level for r in program.rooms if r.stated} == {"bedroom": 1, "living_room": 0, "kitchen": 0, "utility": 0}
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "A flat with three bedrooms; the largest one has its own bathroom.",
+        "Drei Schlafzimmer. Das größte hat ein eigenes Bad.",
+        "Tres dormitorios; el más grande con baño propio.",
+        "Trois chambres. La plus grande a sa propre salle de bain.",
+    ],
+)
+def test_the_largest_is_one_of_those_that_were_counted(prompt):
+    program = parse(prompt)
+    (own,) = (r for r in program.relations if r.kind == "ensuite")
+    assert [r.a for r in program.relations if r.kind == "largest"] == [own.b]
+    assert sum(r.type == "bedroom" for r in program.rooms) == 3
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "A house for us and our three kids.",
+        "Ein Haus für uns, unsere drei Kinder und den Hund.",
+        "Una casa para nosotros y nuestros tres hijos.",
+        "Une maison pour nous et nos trois enfants.",
+    ],
+)
+def test_who_lives_there_has_a_bedroom_for_two_and_one_for_each_child(prompt):
+    program = parse(prompt)
+    assert sum(r.type == "bedroom" for r in program.rooms) == 4
+    assert program.unparsed == ()
