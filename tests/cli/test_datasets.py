@@ -33,7 +33,7 @@ class Paper:
         self.library = SimpleNamespace(rows={f"asset_{k}": {"style": ""} for k in range(2)})
 
     @contextmanager
-    def timed(self, part):
+    def time(self, part):
         self.seconds[part] = 1.0
         yield
 

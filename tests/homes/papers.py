@@ -49,7 +49,7 @@ class Paper:
         return made.AssetSource(self.folder / "cache")
 
     @contextmanager
-    def timed(self, part):
+    def time(self, part):
         self.seconds[part] = 1.0
         yield
 
