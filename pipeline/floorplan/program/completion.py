@@ -97,9 +97,8 @@ def _add_missing(program: FloorProgram) -> tuple[RoomReq, ...]:
 
     if not program.only and not work:
         roles = {r.role for r in rooms if r.type == "bedroom"}
-        if (
-            len(roles) == 1 and roles < {"child", "guest", "elder", "carer", "staff"} and "studio_room" not in types
-        ):  # of others than those whose home it is
+        of_others = len(roles) == 1 and roles < {"child", "guest", "elder", "carer", "staff"}  # than those whose home it is
+        if of_others and "studio_room" not in types:
             types.discard("bedroom")
             add("bedroom", "bed")
         if not types & {"living_room", "family_room", "studio_room"} and "living" not in functions:
