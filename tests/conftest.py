@@ -6,7 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from pipeline.execution import pin_instructions
+
 ROOT = Path(__file__).parents[1]
+pin_instructions()  # as stages do: what tests make in their own process are the same bytes
 
 
 @pytest.fixture(scope="session", autouse=True)

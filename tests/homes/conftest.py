@@ -52,7 +52,7 @@ class Rules:
     settings: SampleSettings = field(default_factory=SampleSettings)
     slots: int = 24
 
-    def unguided(self):
+    def baseline(self):
         return replace(self, settings=replace(self.settings, quantity=False, articulation="none"))
 
     def sample_rooms(self, rooms, keys):
