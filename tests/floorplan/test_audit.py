@@ -71,7 +71,7 @@ def test_a_good_plan_has_no_fault(plan):
 
 
 BROKEN = {
-    "wall": lambda p: grown(p, "living", 0.3),
+    "wall": lambda p: grown(p, "wc", 0.3),
     "gap": lambda p: grown(grown(p, "bed_1", -0.6), "bed_2", -0.6),
     "clockwise": lambda p: room(p, "living", polygon=p.room("living").polygon[::-1]),
     "collinear": lambda p: room(p, "wc", polygon=np.insert(p.room("wc").polygon, 1, p.room("wc").polygon[:2].mean(axis=0), axis=0)),
@@ -79,7 +79,7 @@ BROKEN = {
     "slanted": lambda p: room(p, "wc", polygon=p.room("wc").polygon + np.eye(4, 2) * 0.05),
     "type": lambda p: room(p, "wc", type="closet"),
     "level": lambda p: room(p, "bath", level=0),
-    "area": lambda p: grown(p, "bed_1", -1.5),
+    "area": lambda p: grown(p, "bed_1", -0.9),
     "cut off": lambda p: without(p, "door"),
     "no entrance": lambda p: without(p, "entrance"),
     "entered elsewhere": lambda p: dataclasses.replace(p, entrance="kitchen"),
