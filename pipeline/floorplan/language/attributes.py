@@ -200,8 +200,6 @@ def _owners(c: Clause, k: int, e: Element, before: Element | None, thing: Elemen
     if before.value == "it" and c.state.homes and before.ids and all(i[0] != "*" and c.stock.get(i).whole for i in before.ids):
         return ()  # "a one-bedroom flat. It needs a study": the flat
     near = c.sentence[k - 1]
-    if near.kind == "comma" and e.text in c.state.heard.lexicon.sign("home_has"):
-        return ()  # "厨房不要开放式,要有阳台": the home
     if not c.run and near.kind == "np" and near.ids and set(near.ids) <= set(c.objects) and c.says(e, "with"):
         return named_rooms(tuple(near.ids))  # "the living room leads to a hall with two bedrooms"
     owners = named_rooms(tuple(c.run[-1].ids) if c.run else c.subject)

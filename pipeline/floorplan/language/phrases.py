@@ -137,8 +137,6 @@ def _elements(marks: list[Mark], lex: Lexicon) -> list[Element]:
             pre = []
         elif behind and mark.value in {"area", "length"} and not _ahead(marks, k, lex):
             elements[-1].amounts.append(mark)
-        elif mark.kind == "amount" and not pre and [e.kind for e in elements[-2:]] == ["np", "colon"] and not elements[-2].amounts:
-            elements[-2].amounts.append(mark)  # "kitchen: 12 m² dining room: 16 m²"
         elif mark.kind in PREMODIFIERS or (mark.kind == "amount" and mark.value == "area"):
             pre.append(mark)
         elif mark.kind in {"fill", "adverb", "look", "hyphen", "dash"} and pre:

@@ -61,8 +61,15 @@ def test_no_frame_and_no_reader_of_frames_knows_a_language():
 def test_strict_refuses_words_that_are_not_understood():
     prompt = "Two bedrooms and a flumox."
     assert [s.text for s in request(prompt).unparsed] == ["flumox"]
-    with pytest.raises(ImpossibleError, match="flumox"):
+    with pytest.raises(ImpossibleError, match="flumox") as caught:
         request(prompt, strict=True)
+    assert [(c.field, c.text) for c in caught.value.clashes] == [("unparsed", "flumox")]
+
+
+def test_strict_refuses_what_is_not_built_under_a_field_of_its_own():
+    with pytest.raises(ImpossibleError, match="not understood: 'flumox'; not built here: 'kitchen island'") as caught:
+        request("Two bedrooms, a flumox and a kitchen with a kitchen island.", strict=True)
+    assert {(c.field, c.text) for c in caught.value.clashes} == {("unparsed", "flumox"), ("unbuilt", "kitchen island")}
 
 
 @pytest.mark.parametrize(
