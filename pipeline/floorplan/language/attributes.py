@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from pipeline.floorplan.language.clause import LIGHT, LISTING, Clause, ids_of, named_rooms
 from pipeline.floorplan.language.facts import PERSONAL, SOCIAL, Group
+from pipeline.floorplan.language.lexicon import kinds
 from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.phrases import Element, heads
 from pipeline.floorplan.program.defaults import DEFAULTS
@@ -153,7 +154,7 @@ def compare(c: Clause, k: int, e: Element) -> int:
     return max(j, k + 1)
 
 
-HOSTS = {"living_room", "family_room", "studio_room", "dining_room", "kitchen", "hallway", "entry", "office", "garage", "media_room", "bathroom"}  # fmt: skip
+HOSTS = kinds("hosts")
 NO_PARTS = {"bedroom", "living_room", "family_room", "garage"}  # nothing that another room has
 
 

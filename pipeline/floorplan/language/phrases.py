@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from pipeline.floorplan.language.lexicon import Lexicon
+from pipeline.floorplan.language.lexicon import Lexicon, kinds
 from pipeline.floorplan.language.marks import Mark, Words
 
 PREMODIFIERS = {"det", "num", "ord", "adj", "size", "clf", "times"}
-DROPPED = {"fill", "adverb", "clf", "hyphen", "bullet", "unit", "times", "dash", "num", "ignored", "bound", "ord", "long", "enough", "fix", "activity"}  # fmt: skip
+DROPPED = kinds("dropped")
 ROLES = {"primary", "guest", "child", "shared"}  # said by an adjective
 HEADS = {"room", "suite"}
 ENDS = {"comma", "join", "clf", "stop", "open", "close", "slash"}

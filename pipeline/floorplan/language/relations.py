@@ -15,7 +15,7 @@ DENIED = {"near": "ban", "wall": "ban", "away": "near", "open": "not_open", "avo
 SECLUDED = {"storage", "closet", "wc", "bathroom", "balcony", "utility"}  # "X in Y": X opens off Y
 
 
-def relate(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911, PLR0912 - one answer per kind of relation
+def relate(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911, PLR0912, C901 - one answer per kind of relation
     """Read one relation; return where to go on."""
     if e.value == "has":
         return has(c, k, e)

@@ -8,13 +8,13 @@ import re
 from collections.abc import Sequence
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language.lexicon import FARTHER, LANGUAGES, STRONG, Language, Lexicon, Meaning, lexicon, unread
+from pipeline.floorplan.language.lexicon import FARTHER, LANGUAGES, STRONG, Language, Lexicon, Meaning, kinds, lexicon, unread
 from pipeline.floorplan.language.text import HAN, Token, bare, fold, tokenize
 
 SHORTEST, LONG = 4, 8  # one error from SHORTEST letters on, two from LONG on
 ONE, USUAL = 1.2, 0.9  # how far a word with one error is at most, and with a usual one
 LONGEST = 30  # no word of a home is longer
-TINY = {"cue", "det", "neg", "join", "verb", "fill", "num", "bound", "relative", "pron"}  # what a word of two letters may be where words are run together  # fmt: skip
+TINY = kinds("tiny")
 FAR, SURELY = 9.0, 1.5  # farther than any word is, and the distance from which on two words as near are no better than none
 
 

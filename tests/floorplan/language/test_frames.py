@@ -39,6 +39,14 @@ def test_every_sign_is_used_by_a_frame_or_by_a_reader():
     ("prompt", "said"),
     [
         ("A door between the kitchen and the study.", {"rooms": {"kitchen": 1, "office": 1}, "links": [["kitchen", "office", "door"]]}),
+        ("Three bedrooms; neither may be smaller than 10 m2.", {"rooms": {"bedroom": 3}, "areas": {"bedroom": [10, None]}}),
+        ("Zwei Schlafzimmer, keines davon darf kleiner als 12 m2 sein.", {"rooms": {"bedroom": 2}, "areas": {"bedroom": [12, None]}}),
+        ("两间卧室,都不能小于10平米。", {"rooms": {"bedroom": 2}, "areas": {"bedroom": [10, None]}}),
+        (
+            "Two bedrooms, neither may be smaller than the kitchen.",
+            {"rooms": {"bedroom": 2, "kitchen": 1}, "larger": [["bedroom", "kitchen", 1.0]]},
+        ),
+        ("A son whose room is next to the bathroom.", {"rooms": {"bedroom": 1, "bathroom": 1}, "links": [["bedroom", "bathroom", "any"]]}),
         ("Connect the kitchen, if you please, to the study.", {"rooms": {"kitchen": 1, "office": 1}}),
         ("3 bedrooms, 85 m2, one bathroom.", {"rooms": {"bedroom": 3, "bathroom": 1}, "total": 85}),
         ("Drei Schlafzimmer, 85 m2, ein Bad.", {"rooms": {"bedroom": 3, "bathroom": 1}, "total": 85}),
