@@ -39,7 +39,7 @@ TOUCHED = 0.005  # [m] how far a collider's surface may be off where hands and t
 BUMPED = 0.02  # ... where a robot comes with its body at most: the sides of furniture that does not open
 PADDED = 0.03  # ... the rounded edges of cushions and mattresses, whose boxes bear things on a level top
 GIVES = 0.035  # ... what one sits and lies on
-SOFT = 0.05  # ... a blanket with its fringe, and between cushions and slats: what is narrower no body enters
+SOFT = 0.05  # ... a blanket with its fringe
 LEFT_ALONE = 0.15  # ... from underneath, and leaves
 HELD = 0.02  # ... the outside of small things that no hand goes into
 ANY = 10.0  # [m]
@@ -100,7 +100,7 @@ def touch_tolerances(category: Category, *, opens: bool) -> Felt:
         return Felt()
     under = SEAT if category.tuck == "seat" else UNDER
     if category.super in CUSHIONED:
-        return Felt(GIVES, SOFT, LEFT_ALONE, under=under, box=PADDED, cell=SOFT, level=LEVEL, lift=PADDED)
+        return Felt(GIVES, SOFT, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED, level=LEVEL, lift=PADDED)
     return Felt(TOUCHED, BUMPED, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED)
 
 
