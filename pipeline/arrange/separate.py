@@ -7,7 +7,7 @@ is started over with an eye on the floor at every step, those first that found n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -44,7 +44,8 @@ class Found(Protocol):
         """Factor (3,) on the asset's own size."""
 
 
-BROKEN, UNREACHED = 0.6, 0.3  # a broken relation, and what a robot cannot open, beside 1 for a lost object of no size
+BROKEN = 0.6  # a broken relation, beside 1 for its object if that were lost
+UNREACHED = 0.3  # what a robot cannot open, beside 1 for a lost object of no size
 ALWAYS = 0.95  # share of the training examples from which on nothing else is known of a category than that it is there
 HIDDEN_ROUNDS = 3  # rounds that are spent on what a robot cannot open and no relation holds there
 Smaller = Callable[[str, float], Found | None]  # (asset_id, area [m2]) -> the closest asset with a smaller footprint
@@ -102,8 +103,8 @@ def separate(
         lost = [i for i in range(len(items)) if i not in there]
         strays = stray_units(runs, items, occupancy.poses, occupancy.there)
         wide = [i for i in strays if not any(i in run for run in runs)]
-        faults = len(apart) + len(strays)
-        score = _score(there, items, BROKEN * faults + UNREACHED * len(occupancy.unreached))
+        faults = BROKEN * _weight(items, (*apart, *strays)) + UNREACHED * len(occupancy.unreached)
+        score = _score(there, items, faults)
         if (sound or number == settings.rounds - 1) and (least is None or score < least):
             best, least = there, score
             astray = [
@@ -177,9 +178,14 @@ def _outcome(asked: Sequence[Item], best: Mapping[int, Placement], *, keep_count
     return Separated(tuple(best[i] for i in kept), tuple(rejects), moved, keep_count and len(kept) < len(asked))
 
 
+def _weight(items: Sequence[Item], which: Iterable[int]) -> float:
+    """Return what objects weigh against each other, be they lost or astray: beds more than plants, a TV stand more than a chair."""
+    return sum(1.0 + float(np.prod(items[i].placement.size[:2])) for i in which)
+
+
 def _score(placed: Mapping[int, Placement], items: Sequence[Item], faults: float) -> tuple[float, float]:
-    """Return (faults and what is left out, total displacement): less is better. Beds weigh more than plants."""
-    lost = sum(1.0 + float(np.prod(items[i].placement.size[:2])) for i in range(len(items)) if i not in placed)
+    """Return (faults and what is left out, total displacement): less is better."""
+    lost = _weight(items, (i for i in range(len(items)) if i not in placed))
     moved = sum(float(np.linalg.norm(p.position[:2] - items[i].wished[:2])) for i, p in placed.items())
     return round(lost + faults, 6), round(moved, 6)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.bonds import Bond, at_anchor
+from pipeline.arrange.bonds import KEPT, TURNED, Bond, at_anchor, nearest
 from pipeline.arrange.candidates import ALONE, at_anchor_poses, everywhere, hides, near_by, round_walls
 from pipeline.arrange.groups import Group, group_of, groups
 from pipeline.arrange.item import Item, wrap_yaw
@@ -20,6 +20,7 @@ from pipeline.arrange.world import FREE, conflicts, put
 Floats = NDArray[np.float64]
 
 SHIFT = 0.5  # a group goes no farther as one before it is tried without its members [m]
+STEPS = (0.0, -0.3, 0.3, -0.6, 0.6, -0.9, 0.9)  # what leads a group is tried so much farther from it [m]
 OPENS = 1.5  # what opens is placed as if it were so many times as large
 
 
@@ -60,7 +61,7 @@ def settle_all(occupancy: Occupancy, draft: Draft, first: Sequence[int], *, care
         member[group.members] = number
     clash = pairs & (member[:, None] != member[None]) & (member >= 0)[:, None] & (member >= 0)[None]
     order = sorted(range(len(fitted_groups)), key=lambda k: _rank(occupancy, fitted_groups[k], draft, first))
-    bound = {i for group in leading.values() for i in group.members.tolist()}
+    bound = {i for led in leading.values() for group in led for i in group.members.tolist()}
     stays = [k for k in order if bound.isdisjoint(fitted_groups[k].members.tolist())]
     free = [k for k in stays if bulk and not (at_fault[fitted_groups[k].members].any() or clash[fitted_groups[k].members].any())]
     for k in free:
@@ -69,10 +70,14 @@ def settle_all(occupancy: Occupancy, draft: Draft, first: Sequence[int], *, care
         for k in free:
             occupancy.leave(fitted_groups[k])
         free = []
-    for group in leading.values():
-        candidates = round_walls(occupancy.items[group.first], draft.pose(group.first), draft.walls, occupancy.site, occupancy.settings)
-        _put(occupancy, group, *candidates, careful=careful)
-    for k in (k for k in order if k not in set(free)):
+    runs = {run[0] for run in draft.runs}
+    for k in (k for k in order if fitted_groups[k].first in runs and k not in free):
+        strays += _settle_group(occupancy, draft, fitted_groups[k], careful=careful)
+    for led in leading.values():
+        lead = led[0].first
+        candidates = round_walls(occupancy.items[lead], draft.pose(lead), draft.walls, occupancy.site, occupancy.settings)
+        any(_put(occupancy, group, *candidates, careful=careful) for group in led)
+    for k in (k for k in order if k not in free and fitted_groups[k].first not in runs):
         left = [i for i in fitted_groups[k].members.tolist() if not occupancy.there[i]]
         whole = len(left) == len(fitted_groups[k].members)
         strays += _settle_group(occupancy, draft, fitted_groups[k], careful=careful) if whole else left
@@ -80,26 +85,51 @@ def settle_all(occupancy: Occupancy, draft: Draft, first: Sequence[int], *, care
         _settle_one(occupancy, draft, i, careful=careful)
 
 
-def _leading_groups(items: Sequence[Item], draft: Draft, fitted_groups: Sequence[Group], poses: Floats) -> dict[int, Group]:
-    """Return, by the number of its anchor's group, the group that is sought a wall as one for each who is `led`.
+def _leading_groups(items: Sequence[Item], draft: Draft, fitted_groups: Sequence[Group], poses: Floats) -> dict[int, list[Group]]:
+    """Return, by the number of its anchor's group, as what that group is sought a wall for each who is `led`: what is to be tried first comes first.
 
-    Who belongs to a wall across from the anchor leads it: a sofa goes where there is a wall for its screen.
+    Who belongs to a wall across from the anchor leads it: a sofa goes where there is a wall for its screen. A screen that goes by the
+    coffee table takes along the sofa, to which that belongs.
     """
-    across = {b.anchor: i for i, b in enumerate(draft.bonds) if b is not None and not b.rigid and items[i].habit.must}
-    by_anchor: dict[int, Group] = {}
-    for anchor in sorted({bond.anchor for i in draft.led if (bond := draft.bonds[i]) is not None}):
-        at = next((k for k, group in enumerate(fitted_groups) if group.first == anchor), None)
-        lead = across.get(anchor)
-        bond = None if lead is None else draft.bonds[lead]
-        if at is None:
+    number = {i: k for k, group in enumerate(fitted_groups) for i in group.members.tolist()}
+    across = {
+        number[bond.anchor]: (i, bond)
+        for i, bond in enumerate(draft.bonds)
+        if bond is not None and not bond.rigid and items[i].habit.must and bond.anchor in number
+    }
+    leading: dict[int, list[Group]] = {}
+    for i in sorted(draft.led):
+        bond = draft.bonds[i]
+        at = None if bond is None else number.get(bond.anchor)
+        if bond is None or at is None or at in leading:
             continue
-        if lead is not None and bond is not None and not items[anchor].habit.must:
-            together = poses.copy()
-            together[lead, [0, 1, 3]] = at_anchor(poses[anchor], bond.local)
-            by_anchor[at] = group_of([lead, *fitted_groups[at].members.tolist()], together)
-        elif items[anchor].habit.wants:
-            by_anchor[at] = fitted_groups[at]
-    return by_anchor
+        group = fitted_groups[at]
+        lead = across.get(at)
+        if lead is not None and not items[group.first].habit.must and (i == lead[0] or bond.anchor == group.first):
+            leading[at] = _led_by(*lead, group, draft, poses, items)
+        elif bond.anchor == group.first and items[group.first].habit.wants:
+            leading[at] = [group]
+    return leading
+
+
+def _led_by(lead: int, bond: Bond, group: Group, draft: Draft, poses: Floats, items: Sequence[Item]) -> list[Group]:
+    """Return a group behind who stands across from one of its members, at each distance at which he may stand; then the same of its anchor and that member alone."""
+    own, anchor = items[lead], items[bond.anchor]
+    relation = draft.learnt.modes(anchor.placement.category, own.placement.category)
+    way = bond.local[:2] / max(float(np.linalg.norm(bond.local[:2])), 1e-6)
+    places = []
+    for step in STEPS:
+        local = np.array([*(bond.local[:2] + step * way), bond.local[2]])
+        near = None if relation is None else nearest(relation[0], np.zeros(3), anchor.half, local, own.half)
+        if step == 0.0 or (near is not None and near[0] <= KEPT and near[1] <= TURNED):
+            places.append(at_anchor(poses[bond.anchor], local))
+    core = list(dict.fromkeys((group.first, bond.anchor)))
+    led, together = [], poses.copy()
+    for members in (group.members.tolist(), core) if len(core) < len(group.members) else (core,):
+        for place in places:
+            together[lead, [0, 1, 3]] = place
+            led.append(group_of([lead, *members], together))
+    return led
 
 
 def _rank(occupancy: Occupancy, group: Group, draft: Draft, first: Sequence[int]) -> tuple[int, int, int, float, int]:

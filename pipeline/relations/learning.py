@@ -58,7 +58,7 @@ def fit(rooms: Sequence[Arrangement], kinds: Mapping[str, str] | None = None) ->
     """Learn the relations of furnished rooms.
 
     `kinds` names the kind of a category, see `alike`, which is what stands for None: a pair that shares too few rooms to be learnt by itself takes what its
-    anchor has with all members of the kind, else what all anchors of the kind have with the member.
+    anchor has with all members of the kind, else what all anchors of the kind have with the member, as far as its own few are so.
     """
     things, kinds = _collect_things(rooms), alike() if kinds is None else kinds
     anchor, member = _together(things)
@@ -71,7 +71,8 @@ def fit(rooms: Sequence[Arrangement], kinds: Mapping[str, str] | None = None) ->
         for anchors, members in ((np.arange(len(group)), group), (group, np.arange(len(group)))):
             for pair, case in _cases(anchor, member, anchors[things.kind], members[things.kind]):
                 own = sorted((a, m) for a, m in rare if (anchors[a], members[m]) == pair and not learnt.get((a, m)))
-                learnt |= dict.fromkeys(own, _relation(things, *case) if own else None)
+                kind = _relation(things, *case) if own else None
+                learnt |= {(a, m): kind and _held_by(kind, things, *_of_pair(things, *case, a, m)) for a, m in own}
     named = [PairRelation(things.names[a], things.names[m], *relation) for (a, m), relation in learnt.items() if relation is not None]
     return relations([pair for pair in named if pair.strength >= LEAST_STRENGTH], walls.fit(rooms))
 
@@ -126,6 +127,19 @@ def _relation(things: _Things, anchor: Indices, member: Indices) -> _Learnt | No
         return None
     chances = [in_any_mode(modes, _nearest(things, anchor, member, mirror)).mean() for mirror in ((-1, 1), (1, -1), (-1, -1))]
     return _Learnt(modes, len(own.turn), float(in_any_mode(modes, own).mean()), float(np.mean(chances)))
+
+
+def _of_pair(things: _Things, anchor: Indices, member: Indices, a: int, m: int) -> tuple[Indices, Indices]:
+    """Return those anchors and members (P,) that are of classes `a` and `m`."""
+    own = (things.kind[anchor] == a) & (things.kind[member] == m)
+    return anchor[own], member[own]
+
+
+def _held_by(relation: _Learnt, things: _Things, anchor: Indices, member: Indices) -> _Learnt:
+    """Return a kind's relation without the modes in which none of these members stands, where they are enough to tell: no sofa sits beside its screen, as armchairs do."""
+    own = _nearest(things, anchor, member, (1, 1))
+    modes = tuple(mode for mode in relation.modes if in_any_mode((mode,), own).any())
+    return relation._replace(modes=modes) if modes and len(own.turn) >= LEAST_IN_MODE else relation
 
 
 def _nearest(things: _Things, anchor: Indices, member: Indices, mirror: tuple[int, int]) -> Frames:

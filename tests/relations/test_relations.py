@@ -8,7 +8,7 @@ import pytest
 
 from pipeline.errors import ContentError
 from pipeline.relations import files, learning
-from pipeline.relations.arrangement import Thing, from_rows
+from pipeline.relations.arrangement import Thing, from_rows, make_arrangement
 from tests.relations.making import bedroom, bedrooms
 
 
@@ -152,3 +152,17 @@ def test_what_is_too_rare_for_itself_is_learnt_from_its_kind():
     assert own.strength > 0.5
     assert kinds.pair("double_bed", "nightstand") == alone.pair("double_bed", "nightstand")
     assert learning.fit([*rooms[12:], *rare], {"double_bed": "bed"}).pair("kids_bed", "nightstand") is None
+
+
+def test_of_its_kind_the_rare_takes_what_its_own_few_are_like():
+    rooms = bedrooms(np.random.default_rng(1), 120)
+    known = learning.fit([*rooms[12:], *(_with_one_nightstand(room) for room in rooms[:12])])
+    assert {mode.side for mode in known.pair("kids_bed", "nightstand").modes} == {"left"}
+    assert {mode.side for mode in known.pair("double_bed", "nightstand").modes} == {"left", "right"}
+
+
+def _with_one_nightstand(room):
+    """A child's room: the same with the first nightstand alone, which is the left one."""
+    kept = [0, 1, *range(3, len(room.categories))]
+    things = [(room.categories[k].replace("double", "kids"), room.position[k], room.yaw[k], room.size[k]) for k in kept]
+    return make_arrangement(room.name, "kids_room", room.polygon, things)
