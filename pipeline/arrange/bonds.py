@@ -26,7 +26,8 @@ OVER = float(SIDES.index("over"))
 FLAT = [0, 1, 3]  # x, y, yaw of a pose
 LEVER = 0.5  # metres that a radian counts
 TIGHT = 0.5  # of a mode's spans, this share about their middles is where poses are put
-SQUARE = math.radians(15)  # a turn against the anchor is made a quarter turn when it is this near to one
+SQUARE = math.radians(15)  # a turn against the anchor is made a quarter turn when it is this near to one,
+FREELY = math.radians(6)  # unless turns in its mode differ by more
 KEPT, TURNED = 0.15, math.radians(15)  # off a mode by no more, a relation is kept [m, rad]
 ADJOINS = 0.7  # a member moves with its anchor when the gap between them is no wider [m]
 
@@ -156,9 +157,9 @@ def nearest(table: Floats, anchor: Floats, half: Floats, member: Floats, own: Fl
         metres = math.sqrt(out_off * out_off + side_off * side_off)
         if metres + LEVER * radians >= best[0] + LEVER * best[1]:
             continue
-        yaw = looks + row[11] + min(max(off, TIGHT * row[10]), TIGHT * row[12])
+        yaw = looks + row[11] + (off if row[10] <= off <= row[12] else 0.0)  # chairs that were left a little askew stay so
         quarter = round(yaw / (math.pi / 2)) * (math.pi / 2)
-        if abs(yaw - quarter) <= SQUARE:
+        if row[12] - row[10] < FREELY and abs(yaw - quarter) <= SQUARE:
             yaw = quarter
         w = abs(math.cos(yaw)) * own[0] + abs(math.sin(yaw)) * own[1]
         d = abs(math.sin(yaw)) * own[0] + abs(math.cos(yaw)) * own[1]

@@ -30,7 +30,7 @@ class Habit:
     """What is known of a category by itself.
 
     `backed`: the share of the training examples whose back is at a wall, `gap` then least, usual and most to it [m].
-    `corner` is the usual gap of its side to the wall of a corner [m], None for what has no place there.
+    `corner` is least, usual and most of its side's gap to the wall of a corner [m], None for what has no place there.
     `access` is where people come to it: before its front, or at both its sides. `kind` is its super-category.
     """
 
@@ -39,7 +39,7 @@ class Habit:
     gap: tuple[float, float, float]
     access: Literal["", "front", "sides"]
     kind: str
-    corner: float | None = None
+    corner: tuple[float, float, float] | None = None
 
     @property
     def must(self) -> bool:
@@ -91,8 +91,12 @@ def _habit(category: str, known: Relations) -> Habit:
     if mount == "wall":
         return Habit(mount, 1.0, gap, "", kind)
     access: Literal["front", "sides", ""] = "sides" if kind == "bed" else "front" if share >= WANT and kind != "other" else ""
-    sides = [w.gap.middle for w in known.walls.get(category, ()) if w.side in {"left", "right"} and w.share >= CORNERED]
-    return Habit(mount, share, gap, access, kind, max(GAP[0], min(sides)) if sides and min(sides) <= SNUG else None)
+    sides = [w.gap for w in known.walls.get(category, ()) if w.side in {"left", "right"} and w.share >= CORNERED]
+    snug = min(sides, key=lambda span: span.middle, default=None)
+    corner = None
+    if snug is not None and snug.middle <= SNUG:
+        corner = max(GAP[0], snug.low), max(GAP[0], snug.middle), max(GAP[0], snug.high)
+    return Habit(mount, share, gap, access, kind, corner)
 
 
 def _rows(pair: PairRelation) -> tuple[Floats, float]:

@@ -21,7 +21,7 @@ class SeparateSettings:
     """Separation: the nearest poses without collisions are searched, one object after the other."""
 
     touch: float = 0.0005  # prisms that are in each other by no more may stay [m]; below what the judge allows
-    snap_angle: float = 12.0  # a yaw is turned to the walls' directions when it is this near to one [deg]
+    snap_angle: float = 4.0  # a yaw is turned to the walls' directions when it is this near to one [deg]
     wall_reach: float = 0.5  # an object that wants a wall is put to one whose distance is below this [m]
     turn_cost: float = 0.3  # what turning costs, in metres of displacement per radian [m/rad]
     access_cost: float = 0.25  # what blocking the place in front of a door or drawer costs, in metres of displacement [m]

@@ -19,6 +19,7 @@ BEFORE_WINDOW = 1.5  # cost of hiding a window behind something high [m]
 BEFORE_HOLE = 0.8  # cost of leaning on a wall that is not there [m]
 ABOVE_SILL = 0.4  # what rises no more than this above a window's sill may stand before it [m]
 CORNER = 0.3  # a side this near to a wall is nearly in the corner [m]
+TOUCHING = 0.1  # a side this near to a wall is meant to be at it [m]
 SQUARELY = 0.99  # cosine of the angle at which a side faces a wall
 ANY_WALL = math.radians(100)  # a turn that goes on to the next wall, not to the one behind
 FAR = 1.0  # what belongs to a wall is put to one that is no farther; what would rather, within the wall_reach of the settings [m]
@@ -106,16 +107,19 @@ def at_wall(item: Item, pose: Floats, walls: Sequence[Edge], reach: float, turn_
 
 
 def in_corner(pose: Floats, item: Item, walls: Sequence[Edge]) -> Floats:
-    """Return a pose moved along its wall into the corner, where its side is nearly there and things of its category stand in corners."""
+    """Return a pose moved along its wall into the corner, where its side is nearly there and things of its category stand in corners: as near to it as they do."""
     if item.habit.corner is None:
         return pose
+    least, usual, most = item.habit.corner
     ahead = np.array([math.cos(pose[3]), math.sin(pose[3])])
     gaps = []
     for edge in walls:
         away = float(edge.inward @ ahead)
         s, off = float(edge.along_of(pose[:2])), float(edge.off(pose[:2]))
         if abs(away) > SQUARELY and 0.0 < s < edge.length and abs(off - float(item.half[0])) < CORNER:
-            gaps.append((off - float(item.half[0]) - item.habit.corner, away))
+            gap = off - float(item.half[0])
+            stays = max(usual, TOUCHING) < gap <= most
+            gaps.append((0.0 if stays else gap - min(max(gap, least), usual), away))
     if not gaps:
         return pose
     gap, away = min(gaps, key=lambda candidate: (round(abs(candidate[0]), 6), candidate[1]))

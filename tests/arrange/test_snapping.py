@@ -13,7 +13,7 @@ from pipeline.arrange.item import make_item
 from pipeline.entities.plan import Opening, Plan
 from pipeline.relations.arrangement import Thing
 from pipeline.relations.model import WallRelation, relations
-from pipeline.relations.modes import Span
+from pipeline.relations.modes import Mode, Span
 from pipeline.verify import Policy, verify_home
 from tests.arrange.known import LORE, RELATIONS, drafted, mode, pair
 from tests.geometry.furniture import LIBRARY, block, home, one_room
@@ -25,6 +25,7 @@ ASSETS = {
     "low_table": block("low_table", "coffee_table", (1.0, 0.5, 0.4)),
     "tv": block("tv", "tv_stand", (1.6, 0.4, 0.5)),
 }
+BROAD_TABLE = block("broad_table", "coffee_table", (1.2, 0.7, 0.4))
 CABINET = block("wardrobe", "wardrobe", (1.0, 0.6, 2.0))
 SEATS = ((-0.35, -0.55, math.pi), (0.35, -0.55, math.pi), (-0.35, 0.55, 0.0), (0.35, 0.55, 0.0))
 
@@ -201,6 +202,31 @@ def test_sofa_and_television_go_together_where_no_wall_is_before_the_sofa():
     assert local(low, sofa)[1] == pytest.approx(-(0.45 + 0.25 + 0.45), abs=0.1)
     back = tv.position[:2] + 0.2 * np.array([-math.sin(tv.yaw), math.cos(tv.yaw)])
     assert min(*back, 5.0 - back[0], 9.0 - back[1]) < 0.05
+
+
+def test_a_television_that_goes_by_the_coffee_table_takes_the_sofa_along():
+    by_table = pair("coffee_table", "tv_stand", mode("front", (0.6, 1.2, 2.0), ("middle", -0.1, 0.0, 0.1), math.pi))
+    pairs = [known for names, known in RELATIONS.pairs.items() if "tv_stand" not in names]
+    learnt = LearntRelations(relations([*pairs, by_table], [w for walls in RELATIONS.walls.values() for w in walls]))
+    wished = [
+        drafted(ASSETS["sofa"], 2.5, 8.4),
+        drafted(ASSETS["tv"], 0.3, 5.5, math.pi / 2, number=1),
+        drafted(BROAD_TABLE, 2.5, 7.2, number=2),
+    ]
+    sofa, tv, low = separate(site(room(5.0, 9.0), "room"), wished, ASSETS | {"broad_table": BROAD_TABLE}, learnt).placements
+    assert abs(local(tv, sofa)[0]) < 0.25
+    assert abs(math.remainder(tv.yaw - sofa.yaw - math.pi, math.tau)) < 1e-3
+    assert local(low, sofa)[1] == pytest.approx(-(0.45 + 0.35 + 0.45), abs=0.1)
+
+
+@pytest.mark.parametrize("spread", [0.0, 0.2])
+def test_chairs_stay_askew_where_chairs_are(spread):
+    turn = Span("anchor", math.pi - spread, math.pi, math.pi + spread)
+    seat = Mode("front", Span("outside", -0.2, -0.1, 0.1), Span("share", -0.1, 0.0, 0.1), turn, 1.0)
+    learnt = LearntRelations(relations([pair("dining_table", "dining_chair", seat)], []))
+    wished = [drafted(ASSETS["table"], 2.5, 2.0), drafted(ASSETS["chair"], 2.5, 1.45, math.pi - 0.15, number=1)]
+    table, chair = separate(site(room(), "room"), wished, ASSETS, learnt).placements
+    assert chair.yaw - table.yaw == pytest.approx(math.pi - (0.15 if spread else 0.0), abs=1e-3)
 
 
 @pytest.mark.parametrize("keep", [False, True])
