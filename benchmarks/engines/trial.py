@@ -19,6 +19,7 @@ Floats = NDArray[np.float64]
 REST, OPEN, SHUT, LEFT = 5.0, 2.5, 2.0, 0.5  # [s] at rest; pushing; pushing back; left alone
 AFTER = 1.5  # [s] by which a joint waits for those that must be open before it
 SAMPLE = 0.25  # [s] between looks at what lies about
+WIDE = 0.95  # share of its range from which on a joint is held open; what another blocks is let go, lest it creeps on with all that it carries
 PACE, LEAST = (
     1.0,
     0.2,
@@ -71,7 +72,7 @@ def _trial(engine: Engine, plan: dict[str, Any]) -> dict[str, Any]:
     together = np.zeros(len(joints))
     for _ in range(round((OPEN + AFTER) / engine.dt)):
         together = np.fmax(together, hand.push(push))
-    wide, _ = _rest(engine, push, fresh=False)
+    wide, _ = _rest(engine, np.where(engine.positions() >= WIDE * upper, push, 0.0), fresh=False)
     return {
         "steps_per_second": speed,
         "drift": drift.tolist(),

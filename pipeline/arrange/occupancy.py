@@ -30,7 +30,7 @@ class Occupancy:
 
     def __init__(self, site: Site, items: list[Item], settings: SeparateSettings, bound: Collection[int] = ()) -> None:
         self.site, self.items, self.settings, self.bound = site, items, settings, frozenset(bound)
-        self.world = make_world([item.shape for item in items], site.swung, site.polygon, site.ceiling)
+        self.world = make_world([item.shape for item in items], site.swung, site.shut, site.polygon, site.ceiling)
         self.poses = np.array([item.wished for item in items]).reshape(-1, 4)
         self.there = np.zeros(len(items), np.bool_)
         self.unreached: frozenset[int] = frozenset()

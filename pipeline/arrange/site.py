@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.plan import Opening, Plan
-from pipeline.geometry.door_sweeps import leaf_sweep
+from pipeline.geometry.door_sweeps import leaf_sweep, shut_leaf
 from pipeline.geometry.free_space import PASSABLE, Floor, FreeSpace, bare_floor, free_space
 from pipeline.geometry.prisms import Prisms, join_prisms
 from pipeline.geometry.robot import Robot
@@ -36,7 +36,7 @@ class EdgeOpening:
 class Site:
     """One room.
 
-    `polygon` (n, 2) [m]; floor at `elevation`, ceiling at `ceiling` [m]; `swung` are the prisms that room doors sweep;
+    `polygon` (n, 2) [m]; floor at `elevation`, ceiling at `ceiling` [m]; `swung` are the prisms that room doors sweep, `shut` those of closed ones;
     `doors` (D, 2) [m] the middles of the openings that one walks through; `openings` are per edge of the polygon the openings
     in it, as (start, end) [m along the edge], lower edge [m above the floor], and whether it is a window; `bare` is where the robot can stand on the empty floor.
     """
@@ -46,6 +46,7 @@ class Site:
     elevation: float
     ceiling: float
     swung: Prisms
+    shut: Prisms
     doors: Floats
     openings: tuple[tuple[EdgeOpening, ...], ...]
     floor: Floor
@@ -62,13 +63,14 @@ class Site:
         # Beyond each opening lies floor on which the robot can stand whole: one passes through, not up to the wall.
         # Wide openings must be free in the middle, seen from both of their rooms: so both agree on where to pass.
         floor = bare_floor([room], openings, 2 * robot.radius + cell, cell, PASS_WIDTH)
-        swung = join_prisms([leaf_sweep(leaf, elevation).prisms for leaf in leaves(plan) if leaf.opening_id in own])
+        doors = [leaf for leaf in leaves(plan) if leaf.opening_id in own]
         return cls(
             room_id,
             np.ascontiguousarray(room.polygon, np.float64),
             elevation,
             elevation + room.height,
-            swung,
+            join_prisms([leaf_sweep(leaf, elevation).prisms for leaf in doors]),
+            join_prisms([shut_leaf(leaf, elevation) for leaf in doors]),
             np.array([o.segment.mean(0) for o in openings if o.kind in PASSABLE]).reshape(-1, 2),
             _openings_by_edge(room.polygon, openings),
             floor,

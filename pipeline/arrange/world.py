@@ -28,7 +28,7 @@ class World(NamedTuple):
 
     `corners` (P, V, 2), `corner_count` (P,), `z` (P, 2) and `shell` (N, S, 2), `shell_count` (N,) (the body's hull in plan) are in the object's frame;
     `at`, `at_z`, `flat` (P, 4) and `box` (N, 4) are where it was placed last [m].
-    The room: `door`, `door_count`, `door_z`, `door_flat` are what its doors sweep; `polygon` (n, 2), `ceiling` (1,) [m].
+    The room: `door`, `door_count`, `door_z`, `door_flat` are what its doors sweep, from `shut` (1,) on what they take closed; `polygon` (n, 2), `ceiling` (1,) [m].
     `outline` (S, 2) and `wall` (4, 2) are scratch.
     """
 
@@ -46,19 +46,20 @@ class World(NamedTuple):
     door_count: Ints
     door_z: Floats
     door_flat: Floats
+    shut: Ints
     polygon: Floats
     ceiling: Floats
     outline: Floats
     wall: Floats
 
 
-def make_world(shapes: Sequence[Shape], swung: Prisms, polygon: Floats, ceiling: float) -> World:
+def make_world(shapes: Sequence[Shape], swung: Prisms, shut: Prisms, polygon: Floats, ceiling: float) -> World:
     """Gather the shapes of a room's objects, nothing placed yet."""
     groups = [part for s in shapes for part in (s.body, s.keep, s.access)]
     sizes = np.array([len(g) for g in groups], np.int64).reshape(-1, 3)
     ends = np.cumsum(sizes.ravel()).reshape(-1, 3)
     start = np.column_stack([ends[:, 0] - sizes[:, 0], ends]) if len(shapes) else np.zeros((0, 4), np.int64)
-    every = join_prisms(groups)
+    every, doors = join_prisms(groups), join_prisms([swung, shut])
     most = max((len(s.outline) for s in shapes), default=1)
     shell = np.zeros((len(shapes), most, 2))
     for i, s in enumerate(shapes):
@@ -75,10 +76,11 @@ def make_world(shapes: Sequence[Shape], swung: Prisms, polygon: Floats, ceiling:
         np.zeros((len(every), 2)),
         np.zeros((len(every), 4)),
         np.zeros((len(shapes), 4)),
-        np.ascontiguousarray(swung.corners),
-        swung.count,
-        np.ascontiguousarray(swung.z),
-        swung.boxes(),
+        np.ascontiguousarray(doors.corners),
+        doors.count,
+        np.ascontiguousarray(doors.z),
+        doors.boxes(),
+        np.array([len(swung)]),
         polygon,
         np.array([ceiling]),
         np.zeros((most, 2)),
@@ -133,10 +135,10 @@ def meet(world: World, a0: int, a1: int, b0: int, b1: int, tolerance: float) -> 
 
 
 @borrowing
-def meets_door(world: World, a0: int, a1: int, tolerance: float) -> bool:
-    """Tell whether any of the placed prisms a0 .. a1 - 1 is where a door of the room swings."""
+def meets_door(world: World, a0: int, a1: int, first: int, tolerance: float) -> bool:
+    """Tell whether any of the placed prisms a0 .. a1 - 1 is in one of the doors' from `first` on."""
     flat, at_z = world.flat, world.at_z
-    for j in range(world.door_count.shape[0]):
+    for j in range(first, world.door_count.shape[0]):
         for i in range(a0, a1):
             if min(flat[i, 2], world.door_flat[j, 2]) - max(flat[i, 0], world.door_flat[j, 0]) <= tolerance:
                 continue
@@ -175,7 +177,7 @@ def blocker(world: World, i: int, others: NDArray[np.bool_], tolerance: float) -
     for k in range(a[1], a[2]):
         if beyond(world.at[k, : world.corner_count[k]], world.polygon, world.wall) > tolerance:
             return WALL
-    if meets_door(world, a[0], a[1], tolerance):
+    if meets_door(world, a[0], a[1], 0, tolerance) or meets_door(world, a[1], a[2], world.shut[0], tolerance):
         return DOOR
     for j in range(others.shape[0]):
         if others[j] and j != i and collide(world, i, j, tolerance):

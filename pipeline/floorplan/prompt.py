@@ -13,6 +13,7 @@ from pipeline.floorplan.program.consistency import ImpossibleError, check
 from pipeline.floorplan.program.floor_program import Evidence, FloorProgram
 
 LOG = logging.getLogger(__name__)
+WHY = {"unparsed": "not understood", "unbuilt": "not built here"}
 
 
 def request(prompt: str, server: Server | None = None, *, strict: bool = False) -> FloorProgram:
@@ -21,10 +22,10 @@ def request(prompt: str, server: Server | None = None, *, strict: bool = False) 
     With `strict`, a prompt of which words were not understood, or ask for what nobody builds, is refused with them.
     """
     program = _read(prompt, server)
-    lost = {"not understood": program.unparsed, "not built here": program.unbuilt} if strict else {}
+    lost = {"unparsed": program.unparsed, "unbuilt": program.unbuilt} if strict else {}
     if any(lost.values()):
-        what = "; ".join(f"{why}: {', '.join(repr(s.text) for s in spans)}" for why, spans in lost.items() if spans)
-        words = [Evidence(start=s.start, end=s.end, text=s.text, field="unparsed") for spans in lost.values() for s in spans]
+        what = "; ".join(f"{WHY[field]}: {', '.join(repr(s.text) for s in spans)}" for field, spans in lost.items() if spans)
+        words = [Evidence(start=s.start, end=s.end, text=s.text, field=field) for field, spans in lost.items() for s in spans]
         raise ImpossibleError(what, "say it in other words, or leave out --strict", words)
     return program
 

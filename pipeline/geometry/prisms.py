@@ -2,7 +2,8 @@
 
 Objects only yaw, so a convex collider is covered by the convex hull of its plan projection over its z interval: exactly
 for upright boxes and cylinders, conservatively otherwise. Sweeps join neighbouring positions of a moving piece by
-their hull; positions are taken so close that an arc bulges less than `BULGE` beyond it.
+their hull, with the points where the tangents of arcs meet: all that moves is in them. Positions are taken so close that an arc bulges less than
+`BULGE` beyond its chord.
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ CORNERS = 12  # vertices kept per prism; rounder ones are covered by a polygon o
 STEPS = 12  # least number of positions per joint
 MOST_STEPS = 48
 BULGE = 0.002  # [m]
+MARGIN = 0.002  # [m] about what furniture moves: prisms may be in each other by a touch, but a door that grazes a cabinet sticks there in an engine.
+# Kitchen units stand no farther apart: with more, none would open beside another that stands out.
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,15 +122,18 @@ def prism(points: Floats, part: int = 0) -> Prisms | None:
     return cover if len(cover) else None
 
 
-def covering(points: Floats, first: int = 0) -> Prisms:
-    """Return the prisms that cover sets of points (S, N, 3), parts `first` and following; none where a projection is degenerate."""
-    corners, count, z = _cover(np.ascontiguousarray(points))
+def covering(points: Floats, first: int = 0, margin: float = 0.0) -> Prisms:
+    """Return the prisms that cover sets of points (S, N, 3), parts `first` and following; none where a projection is degenerate.
+
+    They reach `margin` [m] farther in plan, along both axes; not in height, for what moves lies between boards and on desks.
+    """
+    corners, count, z = _cover(np.ascontiguousarray(points), margin)
     there = np.flatnonzero(count)
     return Prisms(corners[there], count[there], z[there], first + there)
 
 
 @compiled
-def _cover(points: Floats) -> tuple[Floats, NDArray[np.int64], Floats]:
+def _cover(points: Floats, margin: float) -> tuple[Floats, NDArray[np.int64], Floats]:
     """Return corners (S, CORNERS, 2), their number, 0 where degenerate, and z (S, 2) of prisms over points (S, N, 3)."""
     sets = points.shape[0]
     corners, count, z = np.zeros((sets, CORNERS, 2)), np.zeros(sets, np.int64), np.zeros((sets, 2))
@@ -135,12 +141,24 @@ def _cover(points: Floats) -> tuple[Floats, NDArray[np.int64], Floats]:
         outline = hull(np.rint(points[s, :, :2] * 1e7) / 1e7)
         if len(outline) < 3:
             continue
+        if margin > 0.0:
+            outline = hull(_spread(outline, margin))
         outline = _fewer(outline, CORNERS)
         count[s] = len(outline)
         for k in range(CORNERS):
             corners[s, k] = outline[min(k, len(outline) - 1)]
         z[s, 0], z[s, 1] = points[s, :, 2].min(), points[s, :, 2].max()
     return corners, count, z
+
+
+@compiled
+def _spread(outline: Floats, margin: float) -> Floats:
+    """Return the corners (4 n, 2) of squares, 2 `margin` wide, about the corners of an outline (n, 2)."""
+    spread = np.empty((4 * len(outline), 2))
+    for k in range(len(spread)):
+        spread[k, 0] = outline[k // 4, 0] + (margin if k % 2 else -margin)
+        spread[k, 1] = outline[k // 4, 1] + (margin if k % 4 > 1 else -margin)
+    return spread
 
 
 @cached_on_asset
@@ -152,15 +170,15 @@ def solid(asset: Asset) -> Solid:
 def make_solid(asset: Asset) -> Solid:
     """Compute the prisms of an asset at rest and in motion."""
     pieces = [p for i, link in enumerate(asset.links) for points in _pieces(link) if (p := prism(points, i)) is not None]
-    return Solid(join_prisms(pieces), tuple(sweep_of(asset, j) for j in range(len(asset.joints))))
+    return Solid(join_prisms(pieces), tuple(sweep_of(asset, j, MARGIN) for j in range(len(asset.joints))))
 
 
 def _pieces(link: Link) -> list[Floats]:
     return [np.asarray(mesh.vertices, np.float64) for mesh in (link.colliders or link.visuals)]
 
 
-def sweep_of(asset: Asset, index: int) -> Sweep:
-    """Return what joint `index` moves over its range, the others at 0."""
+def sweep_of(asset: Asset, index: int, margin: float = 0.0) -> Sweep:
+    """Return what joint `index` moves over its range, the others at 0, and `margin` [m] about it."""
     joint = asset.joints[index]
     pieces = [points for i in moved_links(asset, index) for points in _pieces(asset.links[i])]
     lower, upper = joint_range(joint)
@@ -171,11 +189,28 @@ def sweep_of(asset: Asset, index: int) -> Sweep:
             continue
         positions = np.linspace(0.0, limit, _steps(joint, limit, pieces) + 1)
         motions = np.stack([joint_motion(joint, float(q)) for q in positions])
+        tangents = None if joint.type == "prismatic" else _tangents(joint, positions)
         for points in pieces:
-            moved = np.einsum("kij,pj->kpi", motions[:, :3, :3], points) + motions[:, None, :3, 3]
-            groups.append(covering(np.concatenate([moved[:-1], moved[1:]], axis=1), len(reached)))
+            moved = _moved(motions, points)
+            between = [] if tangents is None else [_moved(tangents, points)]
+            groups.append(covering(np.concatenate([moved[:-1], moved[1:], *between], axis=1), len(reached), margin))
         reached += positions[1:].tolist()
     return Sweep(join_prisms(groups), np.array(reached))
+
+
+def _moved(motions: Floats, points: Floats) -> Floats:
+    """Return points (N, 3) under each of S maps: (S, N, 3)."""
+    moved: Floats = np.einsum("kij,pj->kpi", motions[:, :3, :3], points) + motions[:, None, :3, 3]
+    return moved
+
+
+def _tangents(joint: Joint, positions: Floats) -> Floats:
+    """Return the maps (S, 4, 4) that take points of a hinged part to where the tangents of their arcs meet, between each position and the next."""
+    half = (positions[1] - positions[0]) / 2
+    away = np.eye(4)
+    away[:3, :3] += (1.0 / math.cos(half) - 1.0) * (np.eye(3) - np.outer(joint.axis, joint.axis))
+    away[:3, 3] = joint.origin - away[:3, :3] @ joint.origin
+    return np.stack([joint_motion(joint, float(q)) @ away for q in positions[:-1] + half])
 
 
 def _steps(joint: Joint, limit: float, pieces: list[Floats]) -> int:

@@ -14,7 +14,8 @@ from pipeline.arrange import Hanging, Laying, ThingsSettings, Window, lay_rug
 from pipeline.card import Hangs, cards
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Room
-from pipeline.geometry.prisms import solid
+from pipeline.geometry.door_sweeps import leaf_sweep
+from pipeline.geometry.prisms import join_prisms, solid
 from pipeline.geometry.walls import Leaf, leaves
 from pipeline.homes.library import Library
 from pipeline.homes.request import PARTS, layout_type
@@ -160,14 +161,13 @@ class _Dressing:
     def _hanging(self, laying: Laying) -> Hanging:
         """Return the room's walls with all that stands before them and all that moves there."""
         own = [o for o in self.home.plan.openings if self.room.room_id in o.rooms and o.level == self.room.level]
-        mine = [leaf for leaf in self.doors if leaf.opening_id in {o.opening_id for o in own}]
-        swept = [np.concatenate([leaf.outline(a) for a in np.linspace(0.0, leaf.angle, 5)]) for leaf in mine]
-        doors = [[*w.min(0), self.floor + leaf.bottom, *w.max(0), self.floor + leaf.top] for w, leaf in zip(swept, mine, strict=True)]
-        boxes = np.concatenate([laying.sweeps.boxes, np.array(doors).reshape(-1, 6)])
-        boxes = boxes[np.isfinite(boxes).all(1)]
+        ids = {o.opening_id for o in own}
+        swung = join_prisms([leaf_sweep(leaf, self.floor).prisms for leaf in self.doors if leaf.opening_id in ids])
+        boxes = laying.sweeps.boxes[np.isfinite(laying.sweeps.boxes).all(1)]
         rest = laying.rest.prisms
-        corners = np.concatenate([rest.corners, boxes[:, [0, 1, 3, 1, 3, 4, *[0, 4] * 9]].reshape(-1, 12, 2)])
-        return Hanging(self.room.polygon, own, corners, np.concatenate([rest.z, boxes[:, [2, 5]]]) - self.floor, self.room.height)
+        corners = np.concatenate([rest.corners, swung.corners, boxes[:, [0, 1, 3, 1, 3, 4, *[0, 4] * 9]].reshape(-1, 12, 2)])
+        heights = np.concatenate([rest.z, swung.z, boxes[:, [2, 5]]]) - self.floor
+        return Hanging(self.room.polygon, own, corners, heights, self.room.height)
 
     def _windows(self, hanging: Hanging, shares: Mapping[str, float]) -> None:
         mark = self.rng.random() / self.settings.rate

@@ -49,7 +49,8 @@ def weld_vertices(mesh: Mesh) -> tuple[NDArray[np.float32], NDArray[np.int32], N
 def split_nonmanifold(rows: NDArray[np.float32], faces: NDArray[np.int32]) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
     """Return rows (V, 3 and more), points first, and faces (F, 3) so that every point has one fan of faces about it: a manifold.
 
-    Boards of one mesh may meet in an edge or a corner. Each gets points of its own there, APART from the others', towards its own middle.
+    Boards of one mesh may meet in an edge or a corner. Each gets points of its own there, towards its own middle: the first by APART, every further
+    one by as much again, for faces that lie on each other have one middle.
     """
     count = len(faces)
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
@@ -74,7 +75,10 @@ def split_nonmanifold(rows: NDArray[np.float32], faces: NDArray[np.int32]) -> tu
     middle = np.stack([np.bincount(fan, np.repeat(rows[faces, k].mean(axis=1), 3)) for k in range(3)], axis=1) / np.bincount(fan)[:, None]
     away = middle - vertices[:, :3]
     away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
-    vertices[split, :3] += (APART * away[split]).astype(np.float32)
+    order = np.argsort(owner, kind="stable")
+    turn = np.empty(fans)
+    turn[order] = np.arange(1, fans + 1) - np.searchsorted(owner[order], owner[order])
+    vertices[split, :3] += (APART * turn[split, None] * away[split]).astype(np.float32)
     return vertices, fan.reshape(count, 3).astype(np.int32)
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
 from pipeline.geometry.contact import first_hits, group_boxes, wall_excesses
-from pipeline.geometry.door_sweeps import leaf_handles, leaf_sweep
+from pipeline.geometry.door_sweeps import leaf_handles, leaf_sweep, shut_leaf
 from pipeline.geometry.free_space import FreeSpace
 from pipeline.geometry.kinematics import grips, joint_range, moved_links, rotation
 from pipeline.geometry.polygons import contains
@@ -28,7 +28,7 @@ from pipeline.verify.settings import VerifySettings
 Floats = NDArray[np.float64]
 Walks = Mapping[int, tuple[FreeSpace, int]]
 
-WALL = "wall"  # blocker's name where a part meets a wall
+WALL, DOOR = "wall", "door"  # blocker's name where a part meets a wall, or a closed door's lever
 
 
 def check_joints(
@@ -36,6 +36,8 @@ def check_joints(
 ) -> list[JointCheck]:
     """Check every joint of every placed object, in order. What lies in a drawer comes out with it."""
     checks = []
+    levels = {o.opening_id: o.level for o in home.plan.openings}
+    shut = _group([shut_leaf(leaf, levels[leaf.opening_id] * home.plan.storey_height) for leaf in leaves(home.plan)])
     for g, placement in enumerate(home.placements):
         asset = assets[placement.asset_id]
         if not asset.joints:
@@ -49,6 +51,7 @@ def check_joints(
         for index, joint in enumerate(asset.joints):
             hits = _way(bodies, g, index, asset, moved[index], turn, carriers, settings)
             hits[(hits < 0) & (wall_excesses(moved[index].corners, moved[index].count, room) > settings.wall)] = -2
+            hits[(hits == -1) & (_hits(moved[index], -1, shut, settings.touch) >= 0)] = -3
             clear_upper, clear, blocker = _progress(bodies.solids[g].sweeps[index], moved[index], hits, home)
             handle, way = grips(asset)[index]
             grip = placement.position + turn @ (handle * placement.scale)
@@ -104,7 +107,8 @@ def _way(
     hits = _hits(moved, owner, free, settings.touch)
     still = np.flatnonzero(~np.isin(bodies.prisms.part, moved_links(asset, index)))
     still = still[(still >= bodies.start[owner]) & (still < bodies.start[owner + 1])]
-    frame = _only(bodies, still)
+    p = bodies.prisms
+    frame = _group([Prisms(p.corners[still], p.count[still], p.z[still], p.part[still])])
     reached = bodies.solids[owner].sweeps[index].reached
     # The stretches from rest upwards, then those from rest downwards, as the sweep numbers them.
     upward = np.concatenate([[0.0], reached[reached > 0]])
@@ -121,12 +125,11 @@ def _way(
     return hits
 
 
-def _only(bodies: Bodies, which: NDArray[np.int64]) -> Bodies:
-    """Return some prisms as one group."""
-    p = bodies.prisms
-    kept = Prisms(p.corners[which], p.count[which], p.z[which], p.part[which])
-    start = np.array([0, len(which)])
-    return Bodies(kept, start, kept.boxes(), group_boxes(kept, start), ())
+def _group(prisms: list[Prisms]) -> Bodies:
+    """Return prisms as one group."""
+    p = join_prisms(prisms)
+    start = np.array([0, len(p)])
+    return Bodies(p, start, p.boxes(), group_boxes(p, start), ())
 
 
 def check_leaves(home: Home, bodies: Bodies, walks: Walks, settings: VerifySettings) -> list[JointCheck]:
@@ -177,7 +180,7 @@ def _hits(moved: Prisms, owner: int, bodies: Bodies, touch: float) -> NDArray[np
 def _progress(sweep: Sweep, moved: Prisms, hits: NDArray[np.int64], home: Home) -> tuple[float, bool, str]:
     """Return the largest free position, whether the whole range is free, and what is touched first.
 
-    `hits` (P,) is per prism the object touched, -1 none, -2 a wall.
+    `hits` (P,) is per prism the object touched, -1 none, -2 a wall, -3 a closed door.
     """
     struck = np.flatnonzero(hits != -1)
     upward = sweep.reached > 0
@@ -186,7 +189,7 @@ def _progress(sweep: Sweep, moved: Prisms, hits: NDArray[np.int64], home: Home) 
         return end, True, ""
     order = struck[np.argsort(moved.part[struck], kind="stable")]
     first = int(order[0])
-    blocker = WALL if hits[first] == -2 else home.placements[int(hits[first])].object_id
+    blocker = {-2: WALL, -3: DOOR}.get(int(hits[first])) or home.placements[int(hits[first])].object_id
     step = int(moved.part[order[upward[moved.part[order]]]].min()) if upward[moved.part[order]].any() else int(upward.sum())
     reached = 0.0 if step == 0 else float(sweep.reached[min(step, int(upward.sum())) - 1])
     return reached, False, blocker

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pipeline.arrange import separate
 from pipeline.verify import Policy, verify_home
 from tests.arrange.known import LORE
-from tests.geometry.furniture import LIBRARY, home, one_room, placed, two_rooms
+from tests.geometry.furniture import LIBRARY, chest, home, one_room, placed, two_rooms
 from tests.judging import SETTINGS, site
 
 
@@ -94,6 +94,13 @@ def test_a_chair_may_stay_under_its_table():
     found = separate(site(plan, "room"), tucked, LIBRARY, LORE)
     assert max(found.moved) < 0.1
     assert abs(found.placements[1].position[1] - found.placements[0].position[1]) < 0.4 + 0.25
+
+
+def test_drawers_come_out_before_the_levers_of_closed_doors(monkeypatch):
+    monkeypatch.setitem(LIBRARY, "tall", chest("tall", size=(0.8, 0.5, 1.4)))
+    draft = [placed("tall", 3.59, 0.65, math.pi, room="living")]
+    found = separate(site(two_rooms(), "living"), draft, LIBRARY, LORE)
+    assert [j.clear for plan in (draft, found.placements) for j in judge(plan, two_rooms()).joints[:1]] == [False, True]
 
 
 def test_nightstands_go_beside_beds():

@@ -6,7 +6,7 @@ import numpy as np
 
 from pipeline.sources.meshes.mesh_solids import parts
 from pipeline.sources.meshes.near_boxes import CORNERS, FACES
-from pipeline.sources.meshes.recesses import MOST, stand_midway
+from pipeline.sources.meshes.recesses import FELT, MOST, stand_midway
 
 DOOR = ((-0.2, 0.0, 0.1), (0.2, 0.02, 0.7))
 
@@ -36,6 +36,10 @@ def test_a_framed_door_is_half_its_recess_off_on_both_sides():
     found = stand_midway(block(*DOOR), framed(0.008, 0.014))
     assert np.allclose([found.min(axis=0), found.max(axis=0)], [[-0.2, 0.004, 0.1], [0.2, 0.017, 0.7]], atol=1e-6)
     assert parts(found, FACES)[0].fill > 0.999
+
+
+def test_of_a_deep_recess_the_larger_part_is_what_is_felt():
+    assert np.isclose(stand_midway(block(*DOOR), framed(0.0102, 0.014))[:, 1].min(), 0.0102 - FELT)
 
 
 def test_no_face_stands_further_back_than_a_fingertip_feels():

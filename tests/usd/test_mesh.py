@@ -22,7 +22,7 @@ def test_boxes_that_meet_in_an_edge_have_corners_of_their_own():
     rows, made = split_nonmanifold(points, faces)
     assert set(edges(made).values()) == {2}
     assert len(np.unique(rows, axis=0)) == len(rows) == 16
-    assert np.abs(rows[made] - points[faces]).max() <= APART
+    assert np.abs(rows[made] - points[faces]).max() <= 2 * APART
 
 
 def test_faces_that_run_along_an_edge_the_same_way_are_of_two_surfaces():
@@ -31,6 +31,13 @@ def test_faces_that_run_along_an_edge_the_same_way_are_of_two_surfaces():
     assert len(rows) == 6
     assert not set(made[0]) & set(made[1])
     assert np.abs(rows[made[0]] - points[[0, 1, 2]]).max() <= APART
+
+
+def test_points_of_faces_that_lie_on_each_other_do_not():
+    triangle = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], np.float32)
+    rows, made = split_nonmanifold(triangle, np.array([(0, 1, 2), (0, 1, 2)], np.int32))
+    assert len(np.unique(rows, axis=0)) == len(rows) == 6
+    assert np.abs(rows[made] - triangle[[0, 1, 2]]).max() <= 2 * APART
 
 
 def test_what_is_whole_stays_as_it_is():

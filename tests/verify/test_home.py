@@ -41,6 +41,13 @@ def test_a_door_blocked_by_the_wall_beside_it():
     assert 0 < facing_wall.clear_upper < math.pi / 2
 
 
+def test_a_drawer_meets_the_lever_of_a_closed_door():
+    # In the living room, from which the door swings away: the drawer comes out along its wall, at the height of the lever.
+    joint = judge(placed("chest", 3.59, 0.65, math.pi, z=0.6, room="living"), plan=two_rooms()).joints[0]
+    assert (joint.clear, joint.blocker) == (False, "door")
+    assert judge(placed("chest", 3.54, 0.65, math.pi, z=0.6, room="living"), plan=two_rooms()).joints[0].clear
+
+
 def test_the_room_door_hits_a_chair():
     free = judge().joints[0]
     assert (free.object_id, free.part_class, free.clear) == ("entrance", "door_leaf", True)

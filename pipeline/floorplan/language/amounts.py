@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.floorplan.language.lexicon import Lexicon
+from pipeline.floorplan.language.lexicon import Lexicon, kinds
 from pipeline.floorplan.language.marks import Mark, Words
 
 FEET, SQUARE_FEET = 0.3048, 0.092903
 USUAL_HEIGHT = 15.0  # a length from here on, said of a room or a home, is an area ("60 metros")
 ALIKE = 3.0  # rooms of a kind differ by less in area
-LEADS = {"open", "colon", "fill", "bound", "adverb", "det", "verb", "cue", "hyphen", "dash", "bullet", "clf", "word"}  # between rooms and their areas  # fmt: skip
+LEADS = kinds("leads")
 BOUNDS = {"least": "least", "or_more": "least", "most": "most", "or_less": "most"}
 
 

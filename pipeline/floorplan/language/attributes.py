@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from pipeline.floorplan.language.clause import LIGHT, LISTING, Clause, ids_of, named_rooms
 from pipeline.floorplan.language.facts import PERSONAL, SOCIAL, Group
+from pipeline.floorplan.language.lexicon import kinds
 from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.phrases import Element, heads
 from pipeline.floorplan.program.defaults import DEFAULTS
@@ -153,7 +154,7 @@ def compare(c: Clause, k: int, e: Element) -> int:
     return max(j, k + 1)
 
 
-HOSTS = {"living_room", "family_room", "studio_room", "dining_room", "kitchen", "hallway", "entry", "office", "garage", "media_room", "bathroom"}  # fmt: skip
+HOSTS = kinds("hosts")
 NO_PARTS = {"bedroom", "living_room", "family_room", "garage"}  # nothing that another room has
 
 
@@ -200,8 +201,6 @@ def _owners(c: Clause, k: int, e: Element, before: Element | None, thing: Elemen
     if before.value == "it" and c.state.homes and before.ids and all(i[0] != "*" and c.stock.get(i).whole for i in before.ids):
         return ()  # "a one-bedroom flat. It needs a study": the flat
     near = c.sentence[k - 1]
-    if near.kind == "comma" and e.text in c.state.heard.lexicon.sign("home_has"):
-        return ()  # "厨房不要开放式,要有阳台": the home
     if not c.run and near.kind == "np" and near.ids and set(near.ids) <= set(c.objects) and c.says(e, "with"):
         return named_rooms(tuple(near.ids))  # "the living room leads to a hall with two bedrooms"
     owners = named_rooms(tuple(c.run[-1].ids) if c.run else c.subject)

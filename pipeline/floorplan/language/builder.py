@@ -8,6 +8,7 @@ from typing import Any
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.facts import HALLS, Fact, Named, Reading
+from pipeline.floorplan.language.lexicon import kinds
 from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.naming import ROLES
 from pipeline.floorplan.language.phrases import Element
@@ -25,12 +26,12 @@ NARROW = {"min_aspect": 1.5, "max_aspect": 2.1}
 OUTLINES: Mapping[str, dict[str, Any]] = {"shape_l": {"shape": "L"}, "shape_t": {"shape": "T"}, "rectangle": {"shape": "rectangle"}, "narrow": NARROW, "chamfered": {"corners": "chamfered"}}  # fmt: skip
 SHELL = {"ceiling": ("ceiling",), "walls": ("inner_wall", "outer_wall"), "inner_walls": ("inner_wall",), "outer_walls": ("outer_wall",)}
 LIMITS = {"ceiling": (1.8, 8.0), "inner_wall": (0.05, 0.6), "outer_wall": (0.05, 0.6)}  # [m]
-SMALL = {"wc", "hallway", "entry", "storage", "closet", "balcony", "staircase", "bathroom", "utility"}  # not meant by "every room at least"
-BESIDES = {"wc", "hallway", "entry", "storage", "closet", "balcony", "staircase", "utility", "garage"}  # not among "five rooms"
+SMALL = kinds("small")
+BESIDES = kinds("besides")
 STRANGERS = {"guest", "elder", "carer", "staff"}  # whose bedrooms are beside those of the people who live there
-LIVED = {"living_room", "bedroom", "office", "dining_room", "playroom", "library", "studio_room", "family_room"}
-GROUND = {"living_room", "kitchen", "dining_room", "garage", "entry", "wc", "utility"}
-SORTS = {"storage", "balcony", "wc", "utility", "closet", "garage", "hallway", "entry", "office", "family_room", "playroom"}  # of many names  # fmt: skip
+LIVED = kinds("lived")
+GROUND = kinds("ground")
+SORTS = kinds("sorts")
 
 
 def assemble(state: Reading, parsed: list[list[Element]]) -> FloorProgram:

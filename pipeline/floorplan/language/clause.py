@@ -226,8 +226,6 @@ class Clause:
                 here = {self.stock.get(i).level for i in named_rooms(left)} if cue in BESIDE else set()
                 ids = name(self.state, self.sentence, k, self.level if self.forward else here.pop() if len(here) == 1 else None)
                 self.measures(e)
-                if "largest" in e.adjectives and cue != "cmp":
-                    self.state.say("largest", tuple(ids), tuple(r.id for r in self.stock.of(e.type)), e)
                 group += [i for i in ids if i not in group and i not in left]
                 first, joined, end = first or e, "", k + 1
             elif not group and (standin := self._standin(k, e, left)) is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, field
 
 from pipeline.errors import RefusedError
@@ -11,11 +12,7 @@ from pipeline.floorplan.program.floor_program import MAX_ROOMS
 
 MOST = MAX_ROOMS + 1
 
-NAMES = {
-    "living_room": "living", "family_room": "family", "kitchen": "kitchen", "dining_room": "dining", "bedroom": "bed", "bathroom": "bath", "wc": "wc", "hallway": "hall", "entry": "entry", "closet": "closet", "utility": "utility", "storage": "storage",
-    "garage": "garage", "balcony": "balcony", "staircase": "stairs", "office": "office", "studio_room": "studio", "media_room": "media", "gym": "gym", "library": "library", "playroom": "playroom", "meeting_room": "meeting", "workshop": "workshop",
-    "sunroom": "sunroom",
-}  # fmt: skip
+SHORT = {"bedroom": "bed", "bathroom": "bath", "hallway": "hall", "staircase": "stairs"}  # ids of rooms that are not called as their type
 
 
 @dataclass(slots=True)
@@ -64,13 +61,9 @@ class Inventory:
         """Add a room."""
         if len(self.rooms) >= MOST:
             raise RefusedError(f"more than {MAX_ROOMS} rooms are asked for", f"ask for {MAX_ROOMS} at most")
-        count = len(self.of(kind)) + 1
-        base = NAMES[kind]
-        name = base if count == 1 else f"{base}_{count}"
-        while any(r.id == name for r in self.rooms):
-            count += 1
-            name = f"{base}_{count}"
-        room = Named(name, kind, role, surface, open_slot, level=level)
+        base, known = SHORT.get(kind, kind.removesuffix("_room")), {r.id for r in self.rooms}
+        names = (base if n == 1 else f"{base}_{n}" for n in itertools.count(len(self.of(kind)) + 1))
+        room = Named(next(n for n in names if n not in known), kind, role, surface, open_slot, level=level)
         self.rooms.append(room)
         return room
 

@@ -27,6 +27,18 @@ FOLDER = Path(__file__).resolve().parents[3] / "manifests" / "lexicon"
 Language = str  # the name of a file there
 LANGUAGES: tuple[Language, ...] = tuple(sorted(p.stem for p in FOLDER.glob("??.yaml")))
 STRONG = frozenset({"room", "suite", "home"})
+
+
+@functools.cache
+def _classes() -> Mapping[str, frozenset[str]]:
+    return {name: frozenset(some) for name, some in yaml_text.parse((FOLDER / "classes.yaml").read_text(encoding="utf-8")).items()}
+
+
+def kinds(name: str) -> frozenset[str]:
+    """Return a class of kinds of marks, or of types of rooms."""
+    return _classes()[name]
+
+
 SECTIONS = {  # section of a file -> kind of mark, the sections that win first
     "ignored": "ignored", "corrections": "fix", "enough": "enough", "wings": "wing", "zones": "zone", "activities": "activity", "rooms": "room",
     "suites": "suite", "homes": "home", "flags": "flag", "owners": "owner", "entrances": "enter", "outside": "outside", "needless": "needless",
@@ -37,7 +49,7 @@ SECTIONS = {  # section of a file -> kind of mark, the sections that win first
 }  # fmt: skip
 REPAIRED = {"room", "suite", "home", "num", "unit", "level", "zone"}  # kinds whose words are worth a repair
 CUES = {"door", "leads", "open", "near", "away", "between", "avoid"}
-FUNCTION = {"cue", "neg", "det", "pron", "adj", "size", "cmp", "factor", "bound", "join", "flag", "relative", "every", "owner", "via", "enter", "room"}  # fmt: skip
+FUNCTION = kinds("function")
 COMMON = 0.15  # how much farther words are that are only known not to be errors
 FARTHER = {True: 0.05, False: 0.1}  # words that build sentences, and those that mean nothing
 CHOICES = re.compile(r"\[([^\]]*)\]|([^\[]+)")

@@ -6,7 +6,7 @@ import functools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, Lexicon, Meaning, lexicon
+from pipeline.floorplan.language.lexicon import Language, Lexicon, Meaning, lexicon
 from pipeline.floorplan.language.spelling import repair, uninflected_meaning
 from pipeline.floorplan.language.text import Token, fold, tokenize
 
@@ -14,7 +14,6 @@ STOPS = {".", "!", "?", ";"}
 PUNCTUATION = {",": "comma", ":": "colon", "(": "open", ")": "close", "/": "slash", "&": "and", "+": "and", "•": "bullet", "|": "comma", "*": "bullet"}  # fmt: skip
 ENDS = {"stop", "line"}  # kinds of marks that end a sentence
 ARROWS = {"<->", "->", "=>", "→"}
-FOREIGN = STRONG | {"num", "adj", "cue"}  # what a word of another language may mean in a mixed prompt
 
 
 @dataclass(slots=True)
@@ -127,15 +126,6 @@ def _mark(words: Words, i: int) -> Mark:  # noqa: PLR0911 - one branch per case:
         return Mark("join", "and", 0.0, False, i, i + 1, text) if kind == "and" else Mark(kind, "", 0.0, False, i, i + 1, text)
     if (stem := uninflected_meaning(text, lex)) is not None:
         return _mark_of(words, i, i + 1, stem, only=False)
-    for other in LANGUAGES:
-        if other != lex.language:
-            foreign = lexicon(other).find(words.texts, i)
-            if (
-                foreign is not None
-                and foreign[1].kind in FOREIGN
-                and (foreign[1].kind in STRONG or foreign[0] > i + 1 or len(text) > 3 or (foreign[1].kind == "num" and len(text) > 2))
-            ):
-                return _mark_of(words, i, foreign[0], foreign[1], foreign[2])
     return Mark("word", "", 0.0, False, i, i + 1, text)
 
 

@@ -192,8 +192,8 @@ def _known_rooms(state: Reading, sentence: list[Element], k: int, level: int | N
         return _several(state, e, same)
     owned = e.type == "bathroom" and not bare_nouns and all(stock.owned(r.id) or r.role == "ensuite" for r in same)
     other = e.type == "storage" and all(e.text != r.surface for r in same)
-    if not e.det and (owned or other or _is_repeated(state, sentence, k)):
-        return [stock.add(e.type, "", e.text, level)]  # "a master with en suite, ..., bathroom", "bedroom, bedroom, bath"
+    if not e.det and (owned or other):
+        return [stock.add(e.type, "", e.text, level)]  # "a master with en suite, ..., bathroom"
     if len(same) > 1:
         same = [r for r in same if _word(e) in r.surface.split()] or same
         recent = [r for r in same if any(r.id in x.ids for x in sentence[:k])]
@@ -209,24 +209,7 @@ def _several(state: Reading, e: Element, same: list[Named]) -> list[Named]:
         return stock.of(e.type)
     if number > len(same):
         state.say("beyond", tuple(r.id for r in same), (), e, float(number))
-    if 0 < number < len(same):
-        loose = [r for r in same if r.open_slot]
-        return (loose if len(loose) >= number else same)[:number]
     return same
-
-
-def _is_repeated(state: Reading, sentence: list[Element], k: int) -> bool:
-    """Whether a list names the same kind of room again: "bedroom, bedroom, bath"."""
-    ahead = sentence[k + 1] if k + 1 < len(sentence) else None
-    bare_nouns = "bare_nouns" in state.heard.lexicon.traits  # "一间书房,书房远离卧室"
-    said = ahead is not None and (ahead.kind in {"verb", "neg"} or (ahead.kind in {"cue", "flag", "cmp"} and bare_nouns))
-    if sentence[k].type in ALONE or said:
-        return False
-    for j in range(k - 1, -1, -1):
-        e = sentence[j]
-        if e.kind not in {"np", "comma", "and", "amount", "open", "close"}:
-            return False
-    return False
 
 
 # what numbers and articles introduce
@@ -298,7 +281,7 @@ def _introduce_rooms(state: Reading, sentence: list[Element], k: int, level: int
     if role and role != "ensuite":
         if len(candidates) >= count and e.type != "bathroom":
             return [close(r, role, e.text) for r in candidates[:count]]
-    elif not role and slots and not _is_contrasted(sentence, k):
+    elif not role and slots:
         if len(slots) == count == len(same) and count > 1:
             return slots
         known = all(r.whole for r in slots) or (e.number is not None and count < len(slots) and len(slots) > 1)
@@ -311,12 +294,6 @@ def _introduce_rooms(state: Reading, sentence: list[Element], k: int, level: int
     for room in rooms:
         room.extra, room.span, room.secondary = "another" in e.det, (e.first, e.last), e.secondary
     return rooms
-
-
-def _is_contrasted(sentence: list[Element], k: int) -> bool:
-    """Whether a count is told apart from the one in front by an adjective: "3 hab dobles, 1 hab individual"."""
-    before = _before(sentence, k)
-    return before is not None and bool(before.said) and bool(sentence[k].said) and not before.said & sentence[k].said
 
 
 def count_of(state: Reading, text: str) -> int:

@@ -17,6 +17,7 @@ from pipeline.floorplan.language.builder import assemble
 from pipeline.floorplan.language.facts import Reading
 from pipeline.floorplan.language.frames import apply_frames
 from pipeline.floorplan.language.furnishing import Claim, read_furniture
+from pipeline.floorplan.language.lexicon import kinds
 from pipeline.floorplan.language.marks import Mark, Words, listen, reorder, segment
 from pipeline.floorplan.language.naming import introduce
 from pipeline.floorplan.language.phrases import Element, sentences, settle
@@ -30,11 +31,11 @@ from pipeline.floorplan.program.floor_program import Evidence, FloorProgram, Spa
 
 LONGEST = 20_000  # characters
 MOST_WORDS = 2_500  # and Chinese characters: reading takes time in proportion to them
-EMPTY = {"fill", "ignored", "adverb", "verb", "join", "but", "comma", "stop", "line", "colon", "open", "close", "slash", "bullet", "dash", "hyphen", "clf", "times", "relative", "home", "long", "bound", "enough", "fix", "unit", "to", "reciprocal", "look"}  # fmt: skip
+EMPTY = kinds("empty")
 READ = {"used"}  # what was read with its neighbours
 NOT_BUILT = {"unbuilt", "car"}  # a garage is one for one car
 # flags that hold wherever they stand, and such as only underline what is said
-STRESS = {"total", "only", "closed", "luxury", "wheelchair", "step_free", "single", "no_hall", "shape_l", "shape_t", "rectangle", "narrow", "chamfered"}  # fmt: skip
+STRESS = kinds("stress")
 POINTING = {"each", "other", "own", "another"}  # determiners that say something
 LEADING = {"num", "ord", "adj", "size", "det", "clf", "times", "amount", "fill", "look"}  # in front of a room
 

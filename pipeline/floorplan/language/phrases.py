@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from pipeline.floorplan.language.lexicon import Lexicon
+from pipeline.floorplan.language.lexicon import Lexicon, kinds
 from pipeline.floorplan.language.marks import Mark, Words
 
 PREMODIFIERS = {"det", "num", "ord", "adj", "size", "clf", "times"}
-DROPPED = {"fill", "adverb", "clf", "hyphen", "bullet", "unit", "times", "dash", "num", "ignored", "bound", "ord", "long", "enough", "fix", "activity"}  # fmt: skip
+DROPPED = kinds("dropped")
 ROLES = {"primary", "guest", "child", "shared"}  # said by an adjective
 HEADS = {"room", "suite"}
 ENDS = {"comma", "join", "clf", "stop", "open", "close", "slash"}
@@ -137,8 +137,6 @@ def _elements(marks: list[Mark], lex: Lexicon) -> list[Element]:
             pre = []
         elif behind and mark.value in {"area", "length"} and not _ahead(marks, k, lex):
             elements[-1].amounts.append(mark)
-        elif mark.kind == "amount" and not pre and [e.kind for e in elements[-2:]] == ["np", "colon"] and not elements[-2].amounts:
-            elements[-2].amounts.append(mark)  # "kitchen: 12 m² dining room: 16 m²"
         elif mark.kind in PREMODIFIERS or (mark.kind == "amount" and mark.value == "area"):
             pre.append(mark)
         elif mark.kind in {"fill", "adverb", "look", "hyphen", "dash"} and pre:

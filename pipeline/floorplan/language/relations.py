@@ -159,7 +159,6 @@ def _emit(c: Clause, e: Element, left: Group, group: Group) -> None:
         else:
             cue = "not_open" if kinds <= SOCIAL and not any(i[0] == "*" for i in (*left, *group)) else "away"
     if c.negative is not None:
-        left = _none(c, left)
         c.deny()
         what = (
             "avoid"
@@ -175,22 +174,12 @@ def _emit(c: Clause, e: Element, left: Group, group: Group) -> None:
         c.state.say(cue, left, group, e)
 
 
-def _none(c: Clause, left: Group) -> Group:
-    """Return all rooms of the kind that "no bedroom" names."""
-    named = c.run[-1] if c.run and c.negative is not None and 0 <= c.run[-1].first - c.negative.last < 2 else None
-    if named is None or named.definite or len(left) != 1:
-        return left
-    return tuple(r.id for r in c.stock.of(named.type)) or left
-
-
 def complete(c: Clause) -> None:
     """Give a relation that stood in front of its subject what followed."""
     assert c.waiting is not None
     (cue, group), c.waiting = c.waiting, None
     rooms = tuple(i for i in c.subject if i not in group)
-    if cue.value == "ensuite":
-        c.give(rooms, group, cue)
-    elif rooms and c.deny():
+    if rooms and c.deny():
         c.state.say("ban" if cue.value in {"near", "wall"} else "not_connected", rooms, group, cue)
     elif rooms:
         c.state.say("door" if cue.value == "from" else cue.value, rooms, group, cue)

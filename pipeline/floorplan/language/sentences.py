@@ -70,8 +70,6 @@ def _describe_rooms(c: Clause, k: int, e: Element, ids: tuple[str, ...]) -> None
         c.state.say("suite", ids, (), e)
     for what in e.adjectives & {"largest", "smallest"} if not c.factor else ():
         c.state.say(what, ids, same, e)
-    if "smaller" in e.adjectives:
-        c.state.say("area_order", tuple(i for i in same if i not in ids)[:1], ids, e, 1.0)
     if "equal" in e.adjectives and len(ids) > 1:
         c.state.say("area_equal", ids, (), e, LIKE)
 

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import functools
-import itertools
+import heapq
 import re
 from collections.abc import Sequence
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language.lexicon import FARTHER, LANGUAGES, STRONG, Language, Lexicon, Meaning, lexicon, unread
+from pipeline.floorplan.language.lexicon import FARTHER, LANGUAGES, STRONG, Language, Lexicon, Meaning, kinds, lexicon, unread
 from pipeline.floorplan.language.text import HAN, Token, bare, fold, tokenize
 
 SHORTEST, LONG = 4, 8  # one error from SHORTEST letters on, two from LONG on
 ONE, USUAL = 1.2, 0.9  # how far a word with one error is at most, and with a usual one
 LONGEST = 30  # no word of a home is longer
-TINY = {"cue", "det", "neg", "join", "verb", "fill", "num", "bound", "relative", "pron"}  # what a word of two letters may be where words are run together  # fmt: skip
-ROWS = ("qwertzuiop", "asdfghjkl", "yxcvbnm", "qwertyuiop", "zxcvbnm")
-NEIGHBOURS = frozenset(p for r in ROWS for a, b in itertools.pairwise(r) for p in ((a, b), (b, a)))
+TINY = kinds("tiny")
+FAR, SURELY = 9.0, 1.5  # farther than any word is, and the distance from which on two words as near are no better than none
 
 
 def repair(tokens: Sequence[Token], texts: Sequence[str], lex: Lexicon) -> tuple[list[Token], list[str]]:
@@ -36,7 +35,7 @@ def repair(tokens: Sequence[Token], texts: Sequence[str], lex: Lexicon) -> tuple
 
 
 @functools.lru_cache(maxsize=8192)
-def resolve(word: str, language: Language, *, every: bool = False) -> tuple[str, ...]:  # noqa: PLR0911 - one branch per case: a grammar
+def resolve(word: str, language: Language, *, every: bool = False) -> tuple[str, ...]:
     """Return the known words that an unknown one stands for, or itself: names of rooms, numbers and the like, or `every` word of the vocabulary."""
     lex = lexicon(language)
     if len(word) > LONGEST or len(word) < 3 or "\u3400" <= word[0] <= "\u9fff":
@@ -50,17 +49,10 @@ def resolve(word: str, language: Language, *, every: bool = False) -> tuple[str,
     near, cost = _nearest(word, language, every)
     if near and cost <= (ONE if near in _strong(language) else USUAL):
         return (near,)
-    parts = _split(word, lex)
-    if parts:
+    if parts := _split(word, lex):
         return parts
-    if near:
-        return (near,)
-    for ending in lex.endings:  # mistyped and inflected
-        if word.endswith(ending) and len(word) - len(ending) >= SHORTEST + 1:
-            near, _ = _nearest(word[: -len(ending)], language, every)
-            if near:
-                return (near,)
-    return (word,)
+    stems = (word.removesuffix(e) for e in lex.endings if word.endswith(e) and len(word) - len(e) > SHORTEST)  # mistyped and inflected
+    return (near or next((n for s in stems if (n := _nearest(s, language, every)[0])), word),)
 
 
 def uninflected_meaning(word: str, lex: Lexicon) -> Meaning | None:
@@ -110,26 +102,22 @@ def _strong(language: Language) -> frozenset[str]:
 
 
 def _nearest(word: str, language: Language, every: bool) -> tuple[str, float]:
-    """Return the one known word that is near enough, and how far it is; ("", 9.0) where there is none or two are as near."""
+    """Return the one known word that is near enough, and how far it is; ("", FAR) where there is none or two are as near."""
     allowed = 1 if len(word) < LONG - 1 else 2
-    best, least, tied = "", 9.0, False
     mask, shelves = _letters(word), _shelves(language)
-    for size in range(len(word) - allowed, len(word) + allowed + 1):
-        for target, letters, far in shelves.get(size, ()):
-            if (mask ^ letters).bit_count() > 2 * allowed or (far and not every):  # an edit changes two letters at most
-                continue
-            cost = _cost(word, target, far)
-            if cost < least:
-                best, least, tied = target, cost, False
-            elif cost == least and target != best:
-                tied = True
-    if tied and least > 1.5:
-        return "", 9.0
-    return best, least
+    near = (
+        (_cost(word, target, far), target)
+        for size in range(len(word) - allowed, len(word) + allowed + 1)
+        for target, letters, far in shelves.get(size, ())
+        if (every or not far) and (mask ^ letters).bit_count() <= 2 * allowed  # an edit changes two letters at most
+    )
+    best = heapq.nsmallest(2, near, key=lambda n: n[0])
+    tied = len(best) > 1 and best[0][0] == best[1][0] > SURELY
+    return (best[0][1], best[0][0]) if best and best[0][0] < FAR and not tied else ("", FAR)
 
 
 def _cost(word: str, target: str, far: float) -> float:
-    """Return how far a known word is: edits, usual slips cheaper, another first letter dearer; 9 where it is too far.
+    """Return how far a known word is: edits, usual slips cheaper, another first letter dearer; FAR where it is too far.
 
     `far`: how much farther it is than the name of a room, 0 for those; only they may be two errors away.
     """
@@ -137,19 +125,18 @@ def _cost(word: str, target: str, far: float) -> float:
     two = not far and len(target) >= LONG - 1 and (len(word) >= LONG or swapped)
     gap = distance(word, target, 2 if two else 1)
     usual, other = swapped or _slip(word, target), word[0] != target[0]
-    if gap > 1 + two or (short <= SHORTEST and not usual) or (short < SHORTEST - 1 and not swapped):
-        return 9.0
-    near = (word[0], target[0]) in NEIGHBOURS or (far and swapped and short >= SHORTEST)
-    if other and (gap > 1 or (len(word) < 6 and not near)):
-        return 9.0
+    if (
+        gap > 1 + two
+        or (short <= SHORTEST and not usual)
+        or (short < SHORTEST - 1 and not swapped)
+        or (other and (gap > 1 or len(word) < LONG - 2))
+    ):
+        return FAR
     return gap - (0.3 if usual else 0.0) + (0.2 if other else 0.0) + far
 
 
 def _slip(word: str, target: str) -> bool:
-    """Whether one usual error parts two words: a letter left out, doubled, or a neighbouring key."""
-    if len(word) == len(target):
-        wrong = [(a, b) for a, b in zip(word, target, strict=True) if a != b]
-        return len(wrong) == 1 and wrong[0] in NEIGHBOURS
+    """Whether one usual error parts two words: a letter left out, or doubled."""
     longer, shorter = sorted((word, target), key=len, reverse=True)
     gone = [k for k in range(len(longer)) if longer[:k] + longer[k + 1 :] == shorter]
     return any((k and longer is target) or longer[k] in longer[max(0, k - 1) : k] + longer[k + 1 : k + 2] for k in gone)
@@ -157,10 +144,7 @@ def _slip(word: str, target: str) -> bool:
 
 def _letters(word: str) -> int:
     """Return the set of a word's letters as bits."""
-    bits = 0
-    for char in word:
-        bits |= 1 << (ord(char) & 31)
-    return bits
+    return functools.reduce(lambda bits, char: bits | 1 << (ord(char) & 31), word, 0)
 
 
 @functools.cache
@@ -175,21 +159,12 @@ def _shelves(language: Language) -> dict[int, list[tuple[str, int, float]]]:
 
 def distance(a: str, b: str, most: int) -> int:
     """Edit distance with swaps of neighbours; anything above `most` counts as most + 1."""
-    if a == b:
-        return 0
-    before: list[int] = []
-    row = list(range(len(b) + 1))
-    for i, x in enumerate(a, 1):
-        now = [i]
-        for j, y in enumerate(b, 1):
-            cost = min(row[j] + 1, now[j - 1] + 1, row[j - 1] + (x != y))
-            if i > 1 and j > 1 and x == b[j - 2] and a[i - 2] == y:
-                cost = min(cost, before[j - 2] + 1)
-            now.append(cost)
-        if min(now) > most:
-            return most + 1
-        before, row = row, now
-    return row[-1]
+    same = next((k for k, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
+    a, b = a[same:], b[same:]
+    if not (a and b and most):
+        return min(len(a) + len(b), most + 1) if most else int(a != b)
+    swap = [(a[2:], b[2:])] if a[:2] == b[1::-1] and len(b) > 1 else []
+    return 1 + min(distance(x, y, most - 1) for x, y in [(a[1:], b), (a, b[1:]), (a[1:], b[1:]), *swap])
 
 
 ENOUGH = 0.5  # share of words that must be known
@@ -210,13 +185,10 @@ def detect(prompt: str) -> Language:
     foreign = _foreign(tokens)
     if han and han >= 0.3 * len(texts) and not foreign:
         return next(language for language in LANGUAGES if _han(language))
-    scores = {language: _score(language, texts, repaired=False) for language in LANGUAGES if not _han(language)}
-    best = max(scores, key=lambda x: scores[x][0])
-    if scores[best][1] < SURE * len(texts):  # typing errors, or another language
+    best, _, exact, close = _likeliest(texts, repaired=False)
+    if exact < SURE * len(texts):  # typing errors, or another language
         texts = texts[:REPAIRED]
-        scores = {language: _score(language, texts, repaired=True) for language in LANGUAGES if not _han(language)}
-        best = max(scores, key=lambda x: scores[x][0])
-    exact, close = scores[best][1], scores[best][2]
+        best, _, exact, close = _likeliest(texts, repaired=True)
     others = sum(t in unread() for t in texts)
     share = (exact + REPAIR * close + min(han, 2)) / len(texts)
     if foreign > 0.3 * len(texts) or share < ENOUGH or (others > 1 and others >= 0.15 * len(texts)):
@@ -243,6 +215,12 @@ def _quote_prompt(prompt: str, why: str) -> str:
 def _foreign(tokens: list[Token]) -> int:
     """Count words in a script that no language that is read uses."""
     return sum(t.text[0].isalpha() and not re.match(rf"[a-zà-ÿœß{HAN}]", t.text) for t in tokens)
+
+
+def _likeliest(texts: list[str], *, repaired: bool) -> tuple[Language, float, int, int]:
+    """Return the language of the best score, with (score, known words, words that are known once repaired)."""
+    scores = [(language, *_score(language, texts, repaired=repaired)) for language in LANGUAGES if not _han(language)]
+    return max(scores, key=lambda s: s[1])
 
 
 def _score(language: Language, texts: list[str], *, repaired: bool) -> tuple[float, int, int]:

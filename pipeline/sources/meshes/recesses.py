@@ -1,7 +1,7 @@
 """Upright boards whose faces are seen at two depths, a door with a frame about a panel: one box whose faces stand midway.
 
 A box over the frame would be the frame's whole thickness off at the panel, one at the panel as much at the frame; midway it is half
-of that off at both.
+of that off at both. Where a recess is so deep that neither would be within what a finger feels, the larger of the two is.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ Floats = NDArray[np.float64]
 
 BOARD, WIDE = 0.06, 0.08  # [m] a board is no thicker, and at least so wide and high
 LEAST = 0.004  # [m] that is left of it
-MOST = 0.005  # [m] behind what is proudest that a face may stand
+MOST = 0.0055  # [m] behind what is proudest that a face may stand
+FELT = 0.0048  # [m] from what is seen over half of a face and more that it may stand
 GRID = 16  # rays along a side of a board, each way
 QUARTERS = (0.25, 0.75)  # of a face's rays: what less than a quarter of it has is a detail
 SAME = 1e-4  # [m] between corners that are one; and to a face that rays may pass on either side
@@ -31,14 +32,19 @@ def stand_midway(hull: Floats, triangles: Floats) -> Floats:
     first, last = _depths(triangles, along, across, low, high)
     if not len(first):
         return hull
-    near = min(float(np.quantile(first, QUARTERS).mean()) - low[across], MOST)
-    far = min(high[across] - float(np.quantile(last, QUARTERS).mean()), MOST)
+    near, far = (min(_midway(depths), MOST) for depths in (first - low[across], high[across] - last))
     if extent[across] - near - far < LEAST:
         return hull
     moved = hull.copy()
     at_low = np.abs(hull[:, across] - low[across]) < SAME
     moved[:, across] = np.where(at_low, low[across] + max(near, 0.0), high[across] - max(far, 0.0))
     return moved
+
+
+def _midway(depths: Floats) -> float:
+    """Return the depth [m] midway between those (R,) of two parts of a face, no farther than FELT from that of the larger one."""
+    most = float(np.median(depths))
+    return min(max(float(np.quantile(depths, QUARTERS).mean()), most - FELT), most + FELT)
 
 
 def _depths(triangles: Floats, along: list[int], across: int, low: Floats, high: Floats) -> tuple[Floats, Floats]:

@@ -39,6 +39,14 @@ def test_every_sign_is_used_by_a_frame_or_by_a_reader():
     ("prompt", "said"),
     [
         ("A door between the kitchen and the study.", {"rooms": {"kitchen": 1, "office": 1}, "links": [["kitchen", "office", "door"]]}),
+        ("Three bedrooms; neither may be smaller than 10 m2.", {"rooms": {"bedroom": 3}, "areas": {"bedroom": [10, None]}}),
+        ("Zwei Schlafzimmer, keines davon darf kleiner als 12 m2 sein.", {"rooms": {"bedroom": 2}, "areas": {"bedroom": [12, None]}}),
+        ("两间卧室,都不能小于10平米。", {"rooms": {"bedroom": 2}, "areas": {"bedroom": [10, None]}}),
+        (
+            "Two bedrooms, neither may be smaller than the kitchen.",
+            {"rooms": {"bedroom": 2, "kitchen": 1}, "larger": [["bedroom", "kitchen", 1.0]]},
+        ),
+        ("A son whose room is next to the bathroom.", {"rooms": {"bedroom": 1, "bathroom": 1}, "links": [["bedroom", "bathroom", "any"]]}),
         ("Connect the kitchen, if you please, to the study.", {"rooms": {"kitchen": 1, "office": 1}}),
         ("3 bedrooms, 85 m2, one bathroom.", {"rooms": {"bedroom": 3, "bathroom": 1}, "total": 85}),
         ("Drei Schlafzimmer, 85 m2, ein Bad.", {"rooms": {"bedroom": 3, "bathroom": 1}, "total": 85}),
@@ -61,8 +69,15 @@ def test_no_frame_and_no_reader_of_frames_knows_a_language():
 def test_strict_refuses_words_that_are_not_understood():
     prompt = "Two bedrooms and a flumox."
     assert [s.text for s in request(prompt).unparsed] == ["flumox"]
-    with pytest.raises(ImpossibleError, match="flumox"):
+    with pytest.raises(ImpossibleError, match="flumox") as caught:
         request(prompt, strict=True)
+    assert [(c.field, c.text) for c in caught.value.clashes] == [("unparsed", "flumox")]
+
+
+def test_strict_refuses_what_is_not_built_under_a_field_of_its_own():
+    with pytest.raises(ImpossibleError, match="not understood: 'flumox'; not built here: 'kitchen island'") as caught:
+        request("Two bedrooms, a flumox and a kitchen with a kitchen island.", strict=True)
+    assert {(c.field, c.text) for c in caught.value.clashes} == {("unparsed", "flumox"), ("unbuilt", "kitchen island")}
 
 
 @pytest.mark.parametrize(
