@@ -37,7 +37,7 @@ def check_joints(
     """Check every joint of every placed object, in order. What lies in a drawer comes out with it."""
     checks = []
     levels = {o.opening_id: o.level for o in home.plan.openings}
-    shut = _group([shut_leaf(leaf, levels[leaf.opening_id] * home.plan.storey_height) for leaf in leaves(home.plan)])
+    shut = _groups([shut_leaf(leaf, levels[leaf.opening_id] * home.plan.storey_height) for leaf in leaves(home.plan)])
     for g, placement in enumerate(home.placements):
         asset = assets[placement.asset_id]
         if not asset.joints:
@@ -108,7 +108,7 @@ def _way(
     still = np.flatnonzero(~np.isin(bodies.prisms.part, moved_links(asset, index)))
     still = still[(still >= bodies.start[owner]) & (still < bodies.start[owner + 1])]
     p = bodies.prisms
-    frame = _group([Prisms(p.corners[still], p.count[still], p.z[still], p.part[still])])
+    frame = _groups([Prisms(p.corners[still], p.count[still], p.z[still], p.part[still])])
     reached = bodies.solids[owner].sweeps[index].reached
     # The stretches from rest upwards, then those from rest downwards, as the sweep numbers them.
     upward = np.concatenate([[0.0], reached[reached > 0]])
@@ -125,10 +125,10 @@ def _way(
     return hits
 
 
-def _group(prisms: list[Prisms]) -> Bodies:
-    """Return prisms as one group."""
+def _groups(prisms: list[Prisms]) -> Bodies:
+    """Return groups of prisms that are no objects."""
     p = join_prisms(prisms)
-    start = np.array([0, len(p)])
+    start = np.concatenate([[0], np.cumsum([len(group) for group in prisms], dtype=np.int64)])
     return Bodies(p, start, p.boxes(), group_boxes(p, start), ())
 
 
