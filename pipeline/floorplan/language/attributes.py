@@ -12,7 +12,7 @@ from pipeline.floorplan.language.phrases import Element, heads
 from pipeline.floorplan.program.defaults import DEFAULTS
 
 
-def level(c: Clause, k: int, e: Element) -> int:
+def level(c: Clause, k: int, e: Element) -> None:
     """Put rooms on a storey: those named before it, or, where it comes first, those that follow."""
     c.state.levels.append(e)
     ahead = c.near(k + 1)
@@ -20,27 +20,21 @@ def level(c: Clause, k: int, e: Element) -> int:
     if c.forward and part and (ahead is None or ahead.kind == "comma"):  # "upstairs two bedrooms, the kitchen downstairs"
         for room in (c.stock.get(i) for i in named_rooms(part)):
             room.level = int(e.value)
-        return k + 1
+        return
     if c.forward or heads(c.sentence, k) or ("*" in c.latest and ahead is not None and ahead.kind == "colon"):
         c.state.heights |= {"*": int(e.value)} if "*" in c.latest and not c.forward else {}
         c.forward, c.level, c.run = True, int(e.value), []
-        return k + 1
+        return
     owners = c.subject if c.objects and c.latest == c.objects else ()  # "a guest room with bath, downstairs"
     for room in (c.stock.get(i) for i in named_rooms((*c.latest, *owners))):
         room.level = int(e.value)
     c.state.heights |= {i.removeprefix("*zone_"): int(e.value) for i in c.latest if i.startswith("*")}
-    return k + 1
 
 
-def wing(c: Clause, k: int, e: Element) -> int:
+def wing(c: Clause, _: int, e: Element) -> None:
     """Read "the bedrooms in one wing": they are a zone."""
     c.state.understood(e.first, e.last)
-    _settle(c, e, ids_of(c.run))
-    c.run = []
-    return k + 1
-
-
-def _settle(c: Clause, e: Element, ids: tuple[str, ...]) -> None:
+    ids, c.run = ids_of(c.run), []
     if not ids or all(i.startswith("*") for i in ids):
         c.state.wings += tuple(i.removeprefix("*zone_") for i in ids if i != "*")
         return
@@ -48,12 +42,6 @@ def _settle(c: Clause, e: Element, ids: tuple[str, ...]) -> None:
     zone_name = zone_name or ("bedroom" if c.types(ids) == {"bedroom"} else f"wing_{len(c.state.wings) + 1}")
     c.state.zones.setdefault(zone_name, (ids, e))
     c.state.wings += (zone_name,)
-
-
-def zone(c: Clause, k: int, e: Element) -> int:
-    """Take the rooms of a zone into the list."""
-    c.zone(k, e)
-    return k + 1
 
 
 NAMED = {"doors", "corridors", "ceiling", "walls", "inner_walls", "outer_walls"}  # what a length may measure besides rooms
@@ -121,7 +109,7 @@ def _closes(c: Clause, k: int, mark: Mark, rooms: Group) -> bool:
     return (len(named) > 2 and times > LISTED) or (home and times > MORE) or (len(named) > 1 and times > LARGE)
 
 
-def factor(c: Clause, k: int, e: Element) -> int:
+def factor(c: Clause, k: int, e: Element) -> int | None:
     """Note a factor; "twice the living room" compares at once."""
     c.factor = e
     ahead = c.ahead(k + 1, "relative", "det")
@@ -158,20 +146,20 @@ HOSTS = kinds("hosts")
 NO_PARTS = {"bedroom", "living_room", "family_room", "garage"}  # nothing that another room has
 
 
-def has(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one answer per kind of owner
+def has(c: Clause, k: int, e: Element) -> int | None:  # noqa: PLR0911 - one answer per kind of owner
     """Read "X with its own bathroom", "the living room has a terrace": rooms that hang on the one named before."""
     before = next((x for x in reversed(c.sentence[:k]) if x.kind in {"np", "home", "pron", "every", "det", "level"}), None)
     at = next((j for j in range(k + 1, len(c.sentence)) if c.sentence[j].kind not in {*LIGHT, "amount"}), None)
     thing = c.sentence[at] if at is not None and c.sentence[at].kind == "np" else None
     owners = _owners(c, k, e, before, thing)
     if not owners:
-        return k + 1
+        return None
     kind = c.stock.get(owners[0]).type
     negative, c.negative = c.negated(k), None
     if kind == "bedroom":
-        return k + 1 if negative else _give(c, k, e, owners)
+        return None if negative else _give(c, k, e, owners)
     if thing is None or at is None or kind not in HOSTS or len(owners) > 1 or thing.banned or negative:
-        return k + 1
+        return None
     if kind == "kitchen" and thing.mark is not None and thing.mark.value == "dining_room/corner":  # "a kitchen with dining area"
         c.stock.get(owners[0]).functions.add("dining")
         c.state.understood(thing.first, thing.last)
@@ -182,7 +170,7 @@ def has(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911 - one answer per
         c.latest, c.run = group, [thing]
         return j
     if thing.type in NO_PARTS or (thing.ids and thing.definite):
-        return k + 1
+        return None
     ids = c.rooms_at(at)
     opened = thing.type in {"kitchen", "dining_room"} and kind in {*SOCIAL, "studio_room"}
     c.state.say("open" if opened else "door", ids, owners, e)
@@ -261,7 +249,7 @@ def _things(c: Clause, j: int, owners: Group) -> Group:
     x = c.sentence[j]
     ids = list(x.ids) or [r.id for r in c.stock.of(x.type) if x.definite]
     role = x.role if x.role == "primary" and len(owners) == 1 else ""
-    slots = [r for r in c.stock.of(x.type) if r.open_slot and r.id not in ids and not c.stock.owned(r.id)]
+    slots = [r for r in c.stock.of(x.type) if r.open_slot and r.id not in ids and r.id not in c.stock.belongings]
     while len(ids) < len(owners):
         if slots:
             room = slots.pop(0)

@@ -48,7 +48,6 @@ def assemble(state: Reading, parsed: list[list[Element]]) -> FloorProgram:
         draft.refuse(what, "keep one of the two counts", [(fact.first, fact.last), *(r.span for r in rooms)])
     join(draft, state)
     _amounts(draft, state)
-    _scale(draft, state)
     _whole(draft, state)
     _style(draft, state)
     return FloorProgram.model_validate(
@@ -283,13 +282,6 @@ def _whole(draft: Draft, state: Reading) -> None:
     _entrance(draft, state)
 
 
-def _scale(draft: Draft, state: Reading) -> None:
-    """Read "a small house": each of its rooms is so, by less."""
-    for e in (e for e in state.homes if e.number):
-        draft.fields["scale"] = round(math.sqrt(e.number or 1.0), 2)
-        draft.cite(e.first, e.last, "scale")
-
-
 def _levels(state: Reading) -> None:
     """Put zones, and what is spoken of as the rest, on their storey."""
     rooms = state.inventory.rooms
@@ -320,7 +312,10 @@ def _entrance(draft: Draft, state: Reading) -> None:
 
 
 def _style(draft: Draft, state: Reading) -> None:
-    """Set the style's knobs from words of mood and light."""
+    """Set the scale from "a small house" (each of its rooms is so, by less), the style's knobs from words of mood and light."""
+    for e in (e for e in state.homes if e.number):
+        draft.fields.setdefault("scale", round(math.sqrt(e.number or 1.0), 2))
+        draft.cite(e.first, e.last, "scale")
     knobs: dict[str, int] = {}
     for e in state.looks:
         look = state.heard.lexicon.looks[int(e.value)]

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from pipeline.floorplan.language.facts import FRONT, HALLS, PRIVATE, SOCIAL, Group, Reading
 from pipeline.floorplan.language.naming import name, point
-from pipeline.floorplan.language.phrases import Element, heads
+from pipeline.floorplan.language.phrases import Element, backward
 
 LIGHT = {"det", "size", "adj", "verb", "word", "flag"}  # between a relation and its room
 WIDE = {"leads", "between", "chain", "avoid", "except"}  # relations to lists
@@ -125,20 +125,9 @@ class Clause:
             self.subject = tuple(dict.fromkeys((*self.subject, *ids)))
         self.subject = self.subject or ids
 
-    def storey(self, k: int) -> int | None:
-        """Return the storey that is said of the phrase at k."""
-        if self.forward:
-            return self.level
-        for j, e in enumerate(self.sentence[k + 1 :], k + 1):
-            if e.kind == "level":
-                return None if heads(self.sentence, j) else int(e.value)
-            if e.kind not in {"np", "det", *LISTING}:
-                return None
-        return None
-
     def rooms_at(self, k: int) -> Group:
         """Return the rooms of the phrase at k."""
-        return tuple(name(self.state, self.sentence, k, self.storey(k)))
+        return tuple(name(self.state, self.sentence, k, backward(self.sentence, k, self.level if self.forward else None)))
 
     def point(self, e: Element, k: int, but: Group) -> Group:
         """Return the rooms that a pronoun stands for: after "but" the subject still, as an object what is not the subject `but`."""

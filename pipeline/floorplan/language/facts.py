@@ -67,10 +67,6 @@ class Inventory:
         self.rooms.append(room)
         return room
 
-    def owned(self, room_id: str) -> bool:
-        """Whether a room belongs to another one."""
-        return room_id in self.belongings
-
     def zone(self, name: str) -> list[str]:
         """Return the rooms that the name of a zone means."""
         return [r.id for r in self.rooms if r.type in ZONES.get(name, ()) or (r.type == "bedroom" and r.role == name)]
@@ -82,7 +78,6 @@ SOCIAL = {"kitchen", "dining_room", "living_room", "family_room"}
 PERSONAL = {"bathroom", "wc", "closet", "balcony", "office", "storage", "sunroom"}  # what a bedroom may have of its own
 PRIVATE = {"balcony", "garage", "bathroom", "wc", "closet", "storage", "utility", "bedroom"}  # nothing stands open to these
 ZONES = {"bedroom": ("bedroom",), "living": ("living_room", "dining_room", "family_room"), "work": ("office", "meeting_room")}
-ROLES = {"primary", "guest", "child"}  # said by an adjective
 FRONT = {"door", "near", "open", "wall", "from", "ensuite", "cmp", "via"}  # relations to one room, behind which a list begins anew
 GROUPS = {"no_ensuite", "door", "leads", "open", "near", "wall", "ban", "avoid", "away", "no_through"}  # may be said of all rooms
 Group = tuple[str, ...]

@@ -17,12 +17,10 @@ from pathlib import Path
 
 from pipeline import yaml_text
 from pipeline.errors import ContentError
-from pipeline.floorplan.language.marks import ENDS, Mark, Words, sentences_of
+from pipeline.floorplan.language.marks import ENDS, HEADS, LEADING, Mark, Words, sentences_of
 
 FILE = Path(__file__).resolve().parents[3] / "manifests" / "lexicon" / "frames.yaml"
 PHRASES, LISTS = frozenset("ABCD"), frozenset("LXY")
-LEADING = {"det", "num", "ord", "adj", "size", "clf", "times"}  # in front of a head
-HEADS = {"room", "suite"}
 SKIPPED = {"fill", "ignored", "adverb", "word", "look", "hyphen", "wish"}  # between atoms, where no atom names it
 CLOSERS = ENDS | {"comma", "close", "but", "open", "colon", "bullet", "dash"}
 SEPARATORS = {"comma", "join", "slash"}
@@ -131,11 +129,8 @@ def _apply_frame(frame: Frame, marks: list[Mark], names: Sequence[frozenset[str]
             end, slots = match
             rewritten += _read(frame, marks, k, end, slots)
             k = end
-    return (
-        (rewritten, True)
-        if len(rewritten) != len(marks) or any(a is not b for a, b in zip(rewritten, marks, strict=True))
-        else (marks, False)
-    )
+    changed = len(rewritten) != len(marks) or any(a is not b for a, b in zip(rewritten, marks, strict=True))
+    return (rewritten, True) if changed else (marks, False)
 
 
 @dataclass(frozen=True, slots=True)

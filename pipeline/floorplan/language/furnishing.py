@@ -24,7 +24,7 @@ from pipeline.floorplan.program.furniture import lexicon
 STOPS = frozenset(".;!?\n。;!?")
 COMMAS = STOPS | {",", "、"}
 FIGURES = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
-TEN, MOST = 10, 1e6  # the highest digit, and the most of any amount
+MOST, MOST_WORDS = 1e6, 6  # of any amount, and of a numeral
 NEAR, FAR, OWNED = 5, 7, 14  # words in which "everywhere", "free" and an owner are looked for
 TABLES, CHAIRS, MOST_SEATS = {"dining_table", "any_table"}, "any_chair", 16
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
@@ -47,14 +47,6 @@ class Claim:
     home: bool = False
     inward: bool = False
     plural: bool = False  # "armchairs": nobody counted them
-
-
-@functools.cache
-def _numbers() -> Mapping[str, int]:
-    """Return the number words of all languages; articles are none."""
-    articles = {w.text for kind in ("one", "article") for form in lexicon()["words"][kind] for w in stem_words(form)}
-    single = ((w, node[""]) for language in LANGUAGES for w, node in spoken(language).trie.items() if w.isascii() and "" in node)
-    return {w: int(m.number) for w, m in single if m.kind == "num" and w not in articles and m.number.is_integer()}
 
 
 @functools.cache
@@ -96,12 +88,18 @@ class Scan:
             self.language = ""
         lex = spoken(self.language) if self.language else None
         self.traits = lex.traits if lex is not None else frozenset[str]()
-        self.rooms: dict[int, bool] = {}  # where the words of rooms' names begin, and whether they are their first
-        self.counted: set[int] = set()  # where a word that rooms are counted by begins: "trois pièces"
         self.words = stem_words(prompt)
+        self.rooms: dict[int, bool] = {}  # where the words of rooms' names begin, and whether they are their first
+        said = {w: float(w.text.replace(",", ".")) for w in self.words if FIGURES.fullmatch(w.text)}
+        meanings = ((w, lex.trie.get(w.text, {}).get("")) for w in self.words) if lex is not None else ()
+        said |= {w: m.number for w, m in meanings if m is not None and m.kind == "num"}
+        self.numbers = {w.start: (w.end, min(value, MOST)) for w, value in said.items()}
+        self.counted: set[int] = set()  # where a word that rooms are counted by begins: "trois pièces"
         if lex is not None:
             prompt_words = listen(prompt, self.language)
             for m in segment(prompt_words):
+                place, end = prompt_words.tokens[m.first].start, prompt_words.tokens[max(m.first, m.last - 1)].end
+                self.numbers |= {place: (end, min(m.number, MOST))} if m.kind == "num" else {}
                 self.rooms |= {prompt_words.tokens[k].start: k == m.first for k in range(m.first, m.last)} if m.kind in STRONG else {}
                 self.counted |= {prompt_words.tokens[m.first].start} if (m.kind, m.value) == ("unit", "rooms") else set()
         if lex is not None and "characters" not in lex.traits:
@@ -178,20 +176,9 @@ class Scan:
 
     def number(self, k: int) -> tuple[int, float | None]:
         """Return (length, value) of a numeral at word k; of "8 to 10" only the first is read here."""
-        text = self.text(k)
-        if FIGURES.fullmatch(text):
-            return 1, min(float(text.replace(",", ".")), MOST)
-        if text in _numbers():
-            tens = _numbers()[text]
-            ones = _numbers().get(self.text(k + 1), 0) if tens >= 20 else 0
-            return (2, float(tens + ones)) if 0 < ones < 10 else (1, float(tens))
-        digits, run = lexicon()["digits"], list[int]()
-        while (char := self.text(k + len(run))) in digits:
-            run.append(digits[char])
-        if TEN in run:
-            front, behind = run[: run.index(TEN)], run[run.index(TEN) + 1 :]
-            return len(run), float(TEN * (front or [1])[0] + (behind or [0])[0])
-        return len(run), min(float("".join(map(str, run))), MOST) if run else None
+        inside = 0 <= k < len(self.words) and self.length(k, "name") < 2
+        end, value = self.numbers.get(self.words[k].start, (0, None)) if inside else (0, None)
+        return sum(w.start < end for w in self.words[k : k + MOST_WORDS]), value
 
     def amount(self, k: int) -> tuple[int, int, int | None] | None:
         """Return (length, least, most) of an amount at word k: bounds, ranges, articles, negations."""
@@ -228,9 +215,8 @@ class Scan:
         """Return all claims."""
         k = 0
         while k < len(self.words):
-            text = self.text(k)
-            self.negated = self.negated and text not in STOPS
-            if self.there[k] or text in _numbers() or text in lexicon()["digits"] or text[0].isdigit():
+            self.negated = self.negated and self.text(k) not in STOPS
+            if self.there[k] or self.words[k].start in self.numbers:
                 k += self.length(k, "small") or self._share(k) or self._things(k) or self._look(k) or 1
             else:
                 k += 1

@@ -158,6 +158,12 @@ class Lexicon:
         """Return the words of a closed class."""
         return self.classes.get(name, frozenset())
 
+    def count(self, text: str) -> int:
+        """Return how many "the other two" are; 0 where no number is said."""
+        meanings = (self.trie.get(w, {}).get("") for w in text.split())
+        said = next((int(m.number) for m in meanings if m is not None and m.kind == "num"), 0)
+        return said or (2 if self.sign("pair") & set(text.split()) else 0)
+
     def find(self, texts: list[str], start: int) -> tuple[int, Meaning, bool] | None:
         """Return (end, meaning, whether "only" was skipped) of the longest phrase at a word, adverbs inside it skipped."""
         node, best, at, only = self.trie, None, start, False

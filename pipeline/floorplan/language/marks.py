@@ -13,6 +13,8 @@ from pipeline.floorplan.language.text import Token, fold, tokenize
 STOPS = {".", "!", "?", ";"}
 PUNCTUATION = {",": "comma", ":": "colon", "(": "open", ")": "close", "/": "slash", "&": "and", "+": "and", "•": "bullet", "|": "comma", "*": "bullet"}  # fmt: skip
 ENDS = {"stop", "line"}  # kinds of marks that end a sentence
+HEADS = {"room", "suite"}
+LEADING = {"det", "num", "ord", "adj", "size", "clf", "times"}  # in front of a head
 ARROWS = {"<->", "->", "=>", "→"}
 
 
@@ -193,7 +195,6 @@ def _relabel(marks: Sequence[Mark], words: Words) -> list[Mark]:
 
 Bracket = tuple[tuple[str, ...], tuple[str, ...], str]  # "an ... grenzt": two parts and what they mean
 BREAKS = {"stop", "line", "colon", "comma"}
-HEADS = {"room", "suite"}
 LISTED = {"room", "det", "adj", "size", "num", "clf", "comma", "join"}
 FARTHEST = 14  # marks between the two parts of a bracket
 

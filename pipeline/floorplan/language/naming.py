@@ -156,7 +156,9 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
     if rooms and (many or not e.introduces):
         return rooms if many else rooms[:1]
     plain = [
-        r for r in same if not r.role and not state.inventory.owned(r.id) and not (r.extra and r.span is not None and r.span[0] > e.first)
+        r
+        for r in same
+        if not r.role and r.id not in state.inventory.belongings and not (r.extra and r.span is not None and r.span[0] > e.first)
     ]
     if e.type == "bathroom":
         slots = [r for r in same if r.open_slot and not r.role]
@@ -190,7 +192,7 @@ def _known_rooms(state: Reading, sentence: list[Element], k: int, level: int | N
         same = here if here or (not e.definite and not e.plural) else same
     if _many(e):
         return _several(state, e, same)
-    owned = e.type == "bathroom" and not bare_nouns and all(stock.owned(r.id) or r.role == "ensuite" for r in same)
+    owned = e.type == "bathroom" and not bare_nouns and all(r.id in stock.belongings or r.role == "ensuite" for r in same)
     other = e.type == "storage" and all(e.text != r.surface for r in same)
     if not e.det and (owned or other):
         return [stock.add(e.type, "", e.text, level)]  # "a master with en suite, ..., bathroom"
@@ -294,15 +296,6 @@ def _introduce_rooms(state: Reading, sentence: list[Element], k: int, level: int
     for room in rooms:
         room.extra, room.span, room.secondary = "another" in e.det, (e.first, e.last), e.secondary
     return rooms
-
-
-def count_of(state: Reading, text: str) -> int:
-    """Return how many "the other two" are; 0 where no number is said."""
-    meanings = (state.heard.lexicon.trie.get(w, {}).get("") for w in text.split())
-    return next(
-        (int(m.number) for m in meanings if m is not None and m.kind == "num"),
-        2 if state.heard.lexicon.sign("pair") & set(text.split()) else 0,
-    )
 
 
 def point(state: Reading, before: list[Element], e: Element, but: Group) -> Group:  # noqa: PLR0911 - one answer per pronoun

@@ -21,7 +21,7 @@ from pipeline.floorplan.language.lexicon import kinds
 from pipeline.floorplan.language.marks import Mark, Words, listen, reorder, segment
 from pipeline.floorplan.language.naming import introduce
 from pipeline.floorplan.language.phrases import Element, sentences, settle
-from pipeline.floorplan.language.revising import ban, choose, refuse
+from pipeline.floorplan.language.revising import ban, refuse
 from pipeline.floorplan.language.sentences import read
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import tokenize
@@ -60,7 +60,7 @@ def understand(prompt: str) -> FloorProgram:
 def understand_rooms(plain: str, prompt: str, wishes: Sequence[Claim] = ()) -> FloorProgram:
     """Return what a prompt says of rooms, and no more; `plain` is it without its wishes for furniture, all else in its place."""
     words = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
-    marks = _with_wishes(choose(amounts(segment(words), words)), wishes, words)
+    marks = _with_wishes(amounts(segment(words), words), wishes, words)
     said = [m for m in apply_frames(marks, words) if m.kind != "wish"]
     refuse(said, words)
     people = [m for m in said if m.kind == "people"]

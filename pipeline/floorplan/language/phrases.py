@@ -6,12 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from pipeline.floorplan.language.lexicon import Lexicon, kinds
-from pipeline.floorplan.language.marks import Mark, Words
+from pipeline.floorplan.language.marks import HEADS, LEADING, Mark, Words
 
-PREMODIFIERS = {"det", "num", "ord", "adj", "size", "clf", "times"}
 DROPPED = kinds("dropped")
 ROLES = {"primary", "guest", "child", "shared"}  # said by an adjective
-HEADS = {"room", "suite"}
 ENDS = {"comma", "join", "clf", "stop", "open", "close", "slash"}
 MOST_INDEX = 12
 LONGEST = 150  # marks of a sentence; a longer one is read in parts, cut at commas
@@ -137,7 +135,7 @@ def _elements(marks: list[Mark], lex: Lexicon) -> list[Element]:
             pre = []
         elif behind and mark.value in {"area", "length"} and not _ahead(marks, k, lex):
             elements[-1].amounts.append(mark)
-        elif mark.kind in PREMODIFIERS or (mark.kind == "amount" and mark.value == "area"):
+        elif mark.kind in LEADING or (mark.kind == "amount" and mark.value == "area"):
             pre.append(mark)
         elif mark.kind in {"fill", "adverb", "look", "hyphen", "dash"} and pre:
             elements += [_plain(mark, lex)] if mark.kind == "look" else []
@@ -222,11 +220,8 @@ def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool, lex: Lexicon) -> El
             phrase.part, phrase.number = int(phrase.number), None
         elif part.kind == "det":
             phrase.det.add("definite" if part.value == "partitive" else part.value)
-            numbers = [
-                m.number for w in part.text.split() if (m := lex.trie.get(w, {}).get("")) is not None and m.kind == "num" and m.number > 1
-            ]
             if part.value == "other" and phrase.number is None:
-                phrase.number = numbers[0] if numbers else 2.0 if lex.sign("pair") & set(part.text.split()) else None
+                phrase.number = count if (count := lex.count(part.text)) > 1 else None
         elif part.kind == "ord":
             phrase.ordinal = int(part.number)
         elif part.kind == "adj":

@@ -15,7 +15,7 @@ DENIED = {"near": "ban", "wall": "ban", "away": "near", "open": "not_open", "avo
 SECLUDED = {"storage", "closet", "wc", "bathroom", "balcony", "utility"}  # "X in Y": X opens off Y
 
 
-def relate(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911, PLR0912, C901 - one answer per kind of relation
+def relate(c: Clause, k: int, e: Element) -> int | None:  # noqa: PLR0911, PLR0912, C901 - one answer per kind of relation
     """Read one relation; return where to go on."""
     if e.value == "has":
         return has(c, k, e)
@@ -30,7 +30,7 @@ def relate(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911, PLR0912, C90
     ):
         c.goes_on(there if len(there) == 1 else c.state.topic)
         c.objects = ()
-        return k + 1
+        return None
     c.relative = c.relative or bool(c.state.heard.lexicon.sign("relative_cue") & set(e.text.split()[:3]))  # "que da al"
     left, group, j = _sides(c, k, e)
     if not group:
@@ -50,13 +50,8 @@ def relate(c: Clause, k: int, e: Element) -> int:  # noqa: PLR0911, PLR0912, C90
         c.goes_on(group)
         c.objects = ()
         return j
-    if (
-        not left
-        and e.value in {"leads", "door"}
-        and (c.says(e, "entered") or e.value == "leads")
-        and _first(c, k)
-        and c.types(group) <= HALLS
-    ):
+    first = not left and not any(x.kind in {"np", "pron", "level"} for x in c.sentence[:k])
+    if first and (e.value == "leads" or (e.value == "door" and c.says(e, "entered"))) and c.types(group) <= HALLS:
         return enter(c, e, group, j)  # "se entra a un vestíbulo ..."
     door = k > 0 and c.sentence[k - 1].value == "doors"
     if not left and door and e.value == "leads" and len(group) == 2:  # "a door connects the office and the kitchen"
@@ -86,10 +81,6 @@ def _sides(c: Clause, k: int, e: Element) -> tuple[Group, Group, int]:
     return tuple(i for i in left if i not in group), group, j
 
 
-def _first(c: Clause, k: int) -> bool:
-    return not any(x.kind in {"np", "pron", "level"} for x in c.sentence[:k])
-
-
 def _leads_on(c: Clause, j: int) -> bool:
     """Whether "from the garage" goes on with "you get into ..."."""
     ahead = c.ahead(j, "verb", "det", "flag", "adj", "word", "pron")
@@ -113,7 +104,7 @@ def _is_inverted(c: Clause, k: int, j: int) -> bool:
     return any(x.kind == "np" and not x.banned for x in c.sentence[j:])
 
 
-def _alone(c: Clause, k: int, e: Element) -> int:
+def _alone(c: Clause, k: int, e: Element) -> int | None:
     """Read a relation that nothing follows: "next to each other", "kitchen and bath adjacent"."""
     ahead = c.near(k + 1)
     mutual = ahead is not None and ahead.kind == "reciprocal"
@@ -126,7 +117,7 @@ def _alone(c: Clause, k: int, e: Element) -> int:
         return k + 1 + mutual
     if e.value == "between" and rest is None and e.text in c.state.heard.lexicon.sign("amid"):
         c.state.understood(e.first, e.last)  # "... as a buffer in between" points back at what was said
-    return k + 1
+    return None
 
 
 def reciprocal(c: Clause, e: Element) -> None:
@@ -160,14 +151,8 @@ def _emit(c: Clause, e: Element, left: Group, group: Group) -> None:
             cue = "not_open" if kinds <= SOCIAL and not any(i[0] == "*" for i in (*left, *group)) else "away"
     if c.negative is not None:
         c.deny()
-        what = (
-            "avoid"
-            if cue == "door" and c.says(e, "through")
-            else "ban"
-            if cue == "door" and c.says(e, "at")
-            else DENIED.get(cue, "not_connected")
-        )
-        c.state.say(what, left, group, e)
+        through, at = (cue == "door" and c.says(e, "through")), (cue == "door" and c.says(e, "at"))
+        c.state.say("avoid" if through else "ban" if at else DENIED.get(cue, "not_connected"), left, group, e)
     elif cue == "ensuite":
         c.give(left, group, e)
     else:

@@ -1,18 +1,15 @@
-"""What a prompt rules out, and which of "A or B" holds. Counts that it takes back ("one bedroom, no, make that two") are frames."""
+"""What a prompt rules out. Counts that it takes back ("one bedroom, no, make that two") are frames."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
-from pipeline.floorplan.language.marks import ENDS, Mark, Words
+from pipeline.floorplan.language.marks import HEADS, Mark, Words
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.text import spread
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import Evidence
 
-CHOICE = {"num", "det", "adj", "size", "clf", "times"}
-HEADS = {"room", "suite"}
 CONFLICTS = {
     "homes": ("{} homes are asked for", "ask for one home at a time"),
     "conflict": ("two counts are asked for: {!r}", "keep one of them"),
@@ -36,33 +33,6 @@ def refuse(marks: Sequence[Mark], words: Words) -> None:
             what, advice = CONFLICTS.get(mark.kind, ("no home has {!r}", "ask for numbers above zero"))
             said = f"{mark.number:g}" if mark.kind == "homes" else ("-" if minus else "") + evidence.text
             raise ImpossibleError(what.format(said), advice, [evidence])
-
-
-def choose(marks: Sequence[Mark]) -> list[Mark]:
-    """Of "a study or a guest room" take the first; the second is no more than words."""
-    relabelled = list(marks)
-    negated = False
-    for k, mark in enumerate(relabelled):
-        denied = mark.kind in {"neg", "except"} or (mark.kind == "cue" and mark.value in {"except", "avoid", "away"})
-        negated = (negated or denied) and mark.kind not in ENDS
-        j = next((j for j in range(k + 1, len(relabelled)) if relabelled[j].kind not in CHOICE), len(relabelled) - 1)
-        choice = (mark.kind, mark.value) == ("join", "or") and k and relabelled[k - 1].kind in HEADS and relabelled[j].kind in HEADS
-        if negated or not choice or _is_definite(relabelled, k - 1) or _is_definite(relabelled, j):
-            continue
-        ahead = next((m for m in relabelled[j + 1 :] if m.kind not in {"verb", "flag"}), None)
-        if ahead is None or ahead.kind not in {"neg", "needless", "cmp"}:  # "a kitchen or a bathroom must not lie beside it"
-            relabelled[k : j + 1] = [replace(m, kind="word") for m in relabelled[k : j + 1]]
-    return relabelled
-
-
-def _is_definite(marks: Sequence[Mark], k: int) -> bool:
-    """Whether the room at k was named before: it has a definite article, or a relation leads to it."""
-    j = k - 1
-    while j >= 0 and marks[j].kind in CHOICE:
-        if marks[j].kind == "det" and marks[j].value not in {"indefinite", "another", "some"}:
-            return True
-        j -= 1
-    return j >= 0 and marks[j].kind == "cue" and marks[j].value not in {"has", "in"}
 
 
 def ban(sentence: list[Element]) -> None:

@@ -129,13 +129,8 @@ def _ensuites(draft: Draft, stock: Inventory, fact: Fact) -> None:
         if room.type == "bathroom" and (hosts := _hosts(draft, stock)):
             _give(draft, stock, room.id, hosts[0].id, fact)
         elif room.type == "bedroom":
-            _bath(
-                draft,
-                stock,
-                room,
-                fact,
-                [r for r in stock.of("bathroom") if r.role == "ensuite" or ((r.open_slot or r.whole) and not r.role)],
-            )
+            known = [r for r in stock.of("bathroom") if r.role == "ensuite" or ((r.open_slot or r.whole) and not r.role)]
+            _bath(draft, stock, room, fact, known)
 
 
 def _hosts(draft: Draft, stock: Inventory) -> list[Named]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from pipeline.floorplan.language.attributes import LIKE, attach, compare, factor, level, measures_home, wing, zone
+from pipeline.floorplan.language.attributes import LIKE, attach, compare, factor, level, measures_home, wing
 from pipeline.floorplan.language.clause import Clause, ids_of, named_rooms
 from pipeline.floorplan.language.facts import GROUND_FLOOR, PERSONAL, SOCIAL, Reading
-from pipeline.floorplan.language.naming import count_of, fresh
+from pipeline.floorplan.language.naming import fresh
 from pipeline.floorplan.language.phrases import Element, backward
 from pipeline.floorplan.language.relations import complete, enter, merge, merge_after, no_door, relate
 
@@ -22,28 +22,28 @@ def read(state: Reading, sentence: list[Element]) -> None:
     k = 0
     while k < len(c.sentence):
         e = c.sentence[k]
-        k = READERS[e.kind](c, k, e) if e.kind in READERS else k + 1
+        k = (READERS[e.kind](c, k, e) if e.kind in READERS else None) or k + 1
     if c.waiting:
         complete(c)
     state.topic = named_rooms(c.subject) or state.topic
     state.past = [*state.past, *(tuple(e.ids) for e in c.sentence if e.ids and e.kind == "np")][-12:]
 
 
-# each reads one kind of element and returns where reading goes on
+# each reads one kind of element and returns where reading goes on, None for the next one
 
 
-def _np(c: Clause, k: int, e: Element) -> int:
+def _np(c: Clause, k: int, e: Element) -> None:
     if e.banned:
-        return _ban(c, k, e)
+        _ban(c, e)
+        return
     before = c.near(k - 1)
     said = before is not None and before.kind in {"np", "pron"} and not e.det and e.number is None
     if e.role == "ensuite" and e.type == "bathroom" and not e.ids and said:  # "one of them en suite"
         c.state.say("ensuite", (), c.latest, e)
-        return k + 1
+        return
     own = "own" in e.det or (bool(c.owning) and bool(c.run) and not e.det)
     if c.owner and not e.ids and own and e.type in {"bedroom", "bathroom", "kitchen"}:
-        level = c.storey(k)
-        ids = tuple(fresh(c.state, e, backward(c.sentence, k, None) if level is None else level, c.owner))
+        ids = tuple(fresh(c.state, e, backward(c.sentence, k, c.level if c.forward else None), c.owner))
     else:
         ids = c.rooms_at(k)
     if c.left_out and e.det & {"each", "all"} and set(ids) > set(c.left_out):
@@ -54,7 +54,6 @@ def _np(c: Clause, k: int, e: Element) -> int:
         c.state.amounts.append((mark, None if whole else ids))
     c.push(k, e, ids)
     _describe_rooms(c, k, e, ids)
-    return k + 1
 
 
 def _describe_rooms(c: Clause, k: int, e: Element, ids: tuple[str, ...]) -> None:
@@ -82,7 +81,7 @@ def _own(c: Clause, e: Element, ids: tuple[str, ...]) -> None:
     if room.type == "bedroom" and "own" in e.det:
         room.role = room.role or c.owner
         c.owning = room.id
-    elif c.owning and c.waiting is None and room.type == "bathroom" and not room.role and not c.stock.owned(room.id):
+    elif c.owning and c.waiting is None and room.type == "bathroom" and not room.role and room.id not in c.stock.belongings:
         if room.level in {None, c.stock.get(c.owning).level}:  # what is named upstairs later is not theirs
             c.give(ids, (c.owning,), e)
     elif c.owning and room.type == "kitchen":
@@ -90,76 +89,57 @@ def _own(c: Clause, e: Element, ids: tuple[str, ...]) -> None:
         c.state.say("door", ids, (c.owning,), e)
 
 
-def _ban(c: Clause, k: int, e: Element) -> int:
+def _ban(c: Clause, e: Element) -> None:
     c.state.understood(e.first, e.last)
     if e.role == "ensuite":
         c.state.say("no_ensuite", tuple(r.id for r in c.stock.of("bathroom")) or ("*bathroom",), (), e)
     elif not (e.type == "bedroom" and e.role) and not (e.type == "kitchen" and e.mark is not None and "/" in e.mark.value):
         c.state.banned.append((e.type, e))  # "no guest room" leaves the other bedrooms, "no kitchen-diner" a kitchen
-    return k + 1
 
 
-def _home(c: Clause, k: int, e: Element) -> int:
+def _home(c: Clause, k: int, e: Element) -> None:
     c.state.homes.append(e)
     if e.value and c.state.studio is None:
         c.state.studio = e
     for mark in e.amounts:
         attach(c, k, mark, home=True)
     c.run = []
-    return k + 1
 
 
-def _amount(c: Clause, k: int, e: Element) -> int:
-    if e.mark is not None:
+def _note(c: Clause, k: int, e: Element) -> None:
+    """Note an amount, people, "which", a negation, or a "but", which ends one: "not open, but next to the dining room"."""
+    if e.kind == "amount" and e.mark is not None:
         attach(c, k, e.mark)
-    return k + 1
+    elif e.kind == "owner":
+        c.owner, c.owning = e.value, ""
+    elif e.kind == "relative":
+        c.relative = not c.says(e, "where")
+    elif e.kind in {"neg", "but"}:
+        c.negative = e if e.kind == "neg" else None
 
 
-def _owner(c: Clause, k: int, e: Element) -> int:
-    c.owner, c.owning = e.value, ""
-    return k + 1
-
-
-def _verb(c: Clause, k: int, e: Element) -> int:
+def _verb(c: Clause, k: int, e: Element) -> None:
     before = next((x for x in reversed(c.sentence[:k]) if x.kind not in {"word", "flag"}), None)
     if before is not None and before.kind in {"and", "comma"} and c.subject and c.objects:
         c.run = []  # "the bedroom has a bath and is ...": the subject goes on
     c.verb, c.single = True, c.says(e, "singular")
-    return k + 1
 
 
-def _relative(c: Clause, k: int, e: Element) -> int:
-    c.relative = not c.says(e, "where")
-    return k + 1
-
-
-def _neg(c: Clause, k: int, e: Element) -> int:
-    c.negative = e
-    return k + 1
-
-
-def _comma(c: Clause, k: int, _: Element) -> int:
+def _comma(c: Clause, k: int, _: Element) -> None:
     ahead = c.near(k + 1)
     if c.negative is not c.sentence[k - 1] and (ahead is None or ahead.kind not in {"cue", "cmp", "or", "neg"}):
         c.negative = None
     if c.waiting and c.subject and c.waiting[0].value == "between":
         complete(c)
-    return k + 1
 
 
-def _and(c: Clause, k: int, _: Element) -> int:
+def _and(c: Clause, k: int, _: Element) -> None:
     ahead = [x.kind for x in c.sentence[k + 1 : k + 3]]
     if ahead[:1] == ["verb"] or ahead == ["np", "verb"]:
         c.negative = None  # "must not be open and should have a door to the hall"
-    return k + 1
 
 
-def _but(c: Clause, k: int, _: Element) -> int:
-    c.negative = None  # "not open, but next to the dining room"
-    return k + 1
-
-
-def _adj(c: Clause, k: int, e: Element) -> int:
+def _adj(c: Clause, k: int, e: Element) -> None:
     before, ahead = c.near(k - 1), c.near(k + 1)
     kind = before.kind if before is not None else ""
     social = tuple(i for x in c.run for i in named_rooms(tuple(x.ids)) if c.stock.get(i).type in SOCIAL)
@@ -174,18 +154,16 @@ def _adj(c: Clause, k: int, e: Element) -> int:
     ends = ahead is None or ahead.kind in {"comma", "and"}
     if e.value in {"largest", "smallest"} and len(c.latest) == 1 and (c.verb or (kind == "np" and ends)):  # "客厅最大"
         c.state.say(f"{e.value}_of_all", c.latest, (), e)
-    return k + 1
 
 
-def _size(c: Clause, k: int, e: Element) -> int:
+def _size(c: Clause, k: int, e: Element) -> None:
     """Read "the living room should be large"."""
     before = c.near(k - 1)
     if e.number is not None and before is not None and before.kind in {"np", "verb", "pron", "bound", "word"} and named_rooms(c.latest):
         c.state.say("size", named_rooms(c.latest), (), e, e.number)
-    return k + 1
 
 
-def _enter(c: Clause, k: int, e: Element) -> int:
+def _enter(c: Clause, k: int, e: Element) -> int | None:
     before = c.near(k - 1)
     if before is not None and before.kind == "np" and before.definite and c.run:  # "al baño se entra por el pasillo"
         return relate(c, k, replace(e, kind="cue", value="door"))
@@ -193,17 +171,17 @@ def _enter(c: Clause, k: int, e: Element) -> int:
     return max(enter(c, e, group or c.latest, j if group else k + 1), k + 1)
 
 
-def _outside(c: Clause, k: int, e: Element) -> int:
+def _outside(c: Clause, _: int, e: Element) -> None:
     here = [i for i in named_rooms((*c.latest, *c.subject)) if c.stock.get(i).type not in {"bathroom", "wc", "closet"}]
     c.state.outside = (c.owning or next(iter(here), ""), e)
-    return k + 1
 
 
-def _pron(c: Clause, k: int, e: Element) -> int:
+def _pron(c: Clause, k: int, e: Element) -> None:
     """Read a pronoun: the rooms that it stands for are spoken of next."""
     ahead = c.ahead(k + 1, "det", "verb")
     if e.value == "rest" and ahead is not None and ahead.kind in {"level", "colon"} and not c.parted():
-        return _every(c, k, e)
+        _every(c, k, e)
+        return
     specified = ahead is not None and (ahead.kind in {"owner", "level"} or (ahead.kind == "cue" and ahead.value in ONE_THAT))
     like = c.run[-1] if c.run and k and c.sentence[k - 1].kind in {"and", "comma"} else None
     if e.value == "one" and specified and like is not None and like.ids and (like.number == 1.0 or "indefinite" in like.det):
@@ -212,17 +190,16 @@ def _pron(c: Clause, k: int, e: Element) -> int:
         run = c.run
         c.stands_for(e, (room.id,))
         c.run, c.subject = run if level else [], (room.id,)
-        return k + 1
+        return
     group = c.point(e, k, c.subject if e.value == "it" and (c.objects or c.run) else ())
     spoken = [i for g in (c.subject, *reversed(c.state.past)) for i in named_rooms(g)]
     known = c.state.parted or any(c.stock.get(i).type == "bedroom" for i in spoken)
-    if e.value == "rest" and known and (count := count_of(c.state, e.text)):
+    if e.value == "rest" and known and (count := c.state.heard.lexicon.count(e.text)):
         group = _others(c, count)
     e.ids = list(group)
     if group:
         c.stands_for(e, group)
         c.subject = group if e.value != "it" or not c.subject else c.subject
-    return k + 1
 
 
 def _others(c: Clause, count: int) -> tuple[str, ...]:
@@ -236,28 +213,29 @@ def _others(c: Clause, count: int) -> tuple[str, ...]:
     return tuple(r.id for r in free[:count])
 
 
-def _det(c: Clause, k: int, e: Element) -> int:
+def _det(c: Clause, k: int, e: Element) -> None:
     """Read "both", "each", "all", "the other" where no room follows."""
     before, ahead = c.near(k - 1), c.near(k + 1)
     kind = ahead.kind if ahead is not None else ""
     behind = c.ahead(k + 1, "verb")
     each = e.value == "each" and kind in {"", "comma", "close"} and _one_each(c, before, e)
     if each or (e.value == "another" and kind == "pron" and _one_more(c, e)):
-        return k + 1
+        return
     if e.value == "other" and behind is not None and behind.kind in {"level", "colon"} and not c.parted():
-        return _every(c, k, e)
+        _every(c, k, e)
+        return
     if e.value == "all" and c.run and kind != "np":
         again = c.run[-1].det & {"all", "each"} and before is c.run[-1]  # "..., 所有卧室都从走廊进出"
         group = tuple(c.run[-1].ids) if again else ids_of(c.run)
         if again or len(c.run) > 1:  # "kitchen, two bedrooms, bath - all off the hall"
             c.stands_for(e, group)
             c.subject = group
-            return k + 1
+            return
     if e.value in {"other", "both", "each", "all"} and kind != "np":
         value = {"other": "rest", "both": "both"}.get(e.value, "group")
         e.kind, e.value = "pron", value
-        return _pron(c, k, e)
-    return k + 1
+        _pron(c, k, e)
+        return
 
 
 def _one_each(c: Clause, before: Element | None, e: Element) -> bool:
@@ -279,19 +257,19 @@ def _one_more(c: Clause, e: Element) -> bool:
     return True
 
 
-def _every(c: Clause, k: int, e: Element) -> int:
+def _every(c: Clause, k: int, e: Element) -> None:
     """Read "every room", "the rest": all rooms."""
     c.push(k, e, ("*",))
-    return k + 1
 
 
-def _flag(c: Clause, k: int, e: Element) -> int:
+def _flag(c: Clause, k: int, e: Element) -> None:
     """Read one flag."""
     c.state.flags.setdefault(e.value, e)
     before = c.near(k - 1)
     last = c.state.facts[-1] if c.state.facts else None
     if e.value == "daylight":
-        return _windows(c, k, e)
+        _windows(c, k, e)
+        return
     if e.value == "too" and last is not None:  # "..., ebenso das Bad"
         ahead = c.near(k + 1)
         rooms = c.rooms_at(k + 1) if ahead is not None and ahead.kind == "np" else c.rooms_in_front()
@@ -314,22 +292,20 @@ def _flag(c: Clause, k: int, e: Element) -> int:
         social = tuple(i for i in named_rooms(ids_of(c.run)) if c.stock.get(i).type in SOCIAL)
         if len(social) > 1:
             c.state.say("merge", social, (), e)
-            return k + 1
+            return
         merge_after(c, k + 1, e)
-    return k + 1
 
 
-def _windows(c: Clause, k: int, e: Element) -> int:
-    """Read "no windows in the bedroom", "the bath needs daylight"; return where to go on."""
+def _windows(c: Clause, k: int, e: Element) -> None:
+    """Read "no windows in the bedroom", "the bath needs daylight"."""
     rooms, negative = named_rooms((c.rooms_in_front() if c.verb else c.latest) or c.latest or c.subject), c.negated(k)
     if rooms:
         c.state.say("no_window" if negative else "window", rooms, (), e)
     c.deny()
-    return k + 1
 
 
-READERS: Mapping[str, Callable[[Clause, int, Element], int]] = {
-    "np": _np, "home": _home, "amount": _amount, "owner": _owner, "verb": _verb, "relative": _relative, "neg": _neg, "comma": _comma, "and": _and, "but": _but,
-    "adj": _adj, "size": _size, "enter": _enter, "outside": _outside, "level": level, "wing": wing, "zone": zone,
+READERS: Mapping[str, Callable[[Clause, int, Element], int | None]] = {
+    "np": _np, "home": _home, "amount": _note, "owner": _note, "verb": _verb, "relative": _note, "neg": _note, "comma": _comma, "and": _and, "but": _note,
+    "adj": _adj, "size": _size, "enter": _enter, "outside": _outside, "level": level, "wing": wing, "zone": Clause.zone,
     "pron": _pron, "det": _det, "every": _every, "flag": _flag, "cue": relate, "factor": factor, "cmp": compare,
 }  # fmt: skip
