@@ -1,4 +1,4 @@
-"""Runs every benchmark in this folder, one after the other: `make bench`, or `python benchmarks/run.py resume` for some."""
+"""Runs every benchmark in this folder, one after the other: `make bench`, or `python benchmarks/run.py rooms` for some."""
 
 import os
 import subprocess
