@@ -25,6 +25,7 @@ MOST = 12  # of one class in one room; more are counted as this
 ROOM_FEATURES = 6 + 2 * (len(KINDS) - 1)
 DRAWS = 9  # inventories that are drawn for a room, of which the first that meets what is asked is taken
 UNTOLD = -1
+SEVERAL, LIKELY = 2, 0.003  # so many of a class, or more, are drawn only where that is at least this likely
 
 
 class Inventory(nn.Module):
@@ -204,7 +205,7 @@ def _draw_counts(net: Inventory, about: Tensor, layout: Tensor, asks: Sequence[A
     """Draw inventories (B, D, C) from `uniform` (B, D, C).
 
     The later half of a room's draws are held to what is asked while they are made: a bounded group is cut at its most and
-    filled at its last class, a told number is never passed. Those before are true samples of what the net knows.
+    filled at its last class, a told number is never passed. Those before are samples of what the net knows, without its tail.
     """
     rooms, draws, classes = uniform.shape
     about = about.repeat_interleave(draws, 0)
@@ -218,13 +219,14 @@ def _draw_counts(net: Inventory, about: Tensor, layout: Tensor, asks: Sequence[A
         left = np.where(total >= 0, np.maximum(total - counts.sum(1), 0), UNTOLD)
         logits = net.logits(about, before, torch.from_numpy(left)[:, None], kinds, slice(c, c + 1))[:, 0]
         chance = logits.softmax(-1).double().numpy()
+        chance[:, SEVERAL:][chance[:, SEVERAL:] < LIKELY] = 0.0  # the net's tail: eight loveseats once in a thousand rooms
         least, most = _limits(asks, counts, c, draws)
         most = np.minimum(most, np.where(total >= 0, left, (full - counts.sum(1)).clip(0)))
         n = np.arange(MOST + 1)
         allowed = (n >= np.minimum(least, most)[:, None]) & (n <= most[:, None])
         chance = np.where(allowed | ~held_to[:, None], chance, 0.0)
         lost = chance.sum(1) <= 1e-300
-        chance[lost] = np.where(allowed[lost], 1.0, 0.0)
+        chance[lost, allowed[lost].argmax(1)] = 1.0  # of what the net never does, the least that is asked for
         ladder = np.cumsum(chance, 1)
         picked = (ladder <= (uniform[:, :, c].reshape(-1) * ladder[:, -1])[:, None]).sum(1).clip(0, MOST)
         counts[:, c] = picked

@@ -50,6 +50,16 @@ def test_rooms_hold_what_rooms_of_their_type_hold(net, rooms):
         np.testing.assert_allclose(made, real, atol=0.2)
 
 
+def test_the_tail_of_the_net_is_never_drawn_and_what_is_asked_for_all_the_same_is_the_least(rooms):
+    tailed = initial_inventory(rooms, len(LAYOUTS), 16, 0)
+    with torch.no_grad():
+        tailed.own[:] = torch.log(torch.tensor([0.7, 0.28, *[0.002] * 11]))
+    found = drawn(tailed, rooms, [Ask(None)] * 200)
+    assert found.max() == 1
+    asked = drawn(tailed, rooms, [Ask.of(None, (CategoryBounds(("dining_chair",), 2),), CLASSES)] * 200)
+    assert (asked[:, CHAIR] == 2).all()
+
+
 @pytest.mark.parametrize("total", [1, 3, 7, 24])
 def test_a_told_number_is_met_exactly(net, rooms, total):
     assert (drawn(net, rooms, [Ask(total)] * 20).sum(1) == total).all()
