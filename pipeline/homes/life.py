@@ -64,11 +64,10 @@ class RoomTries:
 
     def again(self, most: int) -> RoomJob | None:
         """Return the job of the next try, None when all `most` of them are spent."""
-        following = self.following(1, most)
-        if not following:
+        if not self.following(1, most):
             return None
         self.job = self.coming.pop(0)
-        return following[0]
+        return self.job
 
     def following(self, count: int, most: int) -> list[RoomJob]:
         """Return the jobs of the next `count` tries, as far as there are `most` in all; the same whenever they are asked for."""

@@ -247,7 +247,7 @@ def empties_of(dataset: Dataset) -> dict[str, list[tuple[str, str]]]:
             rows = tables.read(dataset.folder / table_path("rejects", number), TABLES["rejects"])
         else:
             parts = [Part(part_place(dataset.folder, number, i)) for i in sorted(parts_there(dataset.folder, number))]
-            rows = [row for part in parts if part.whole() for row in part.rows("rejects").to_pylist()]
+            rows = [row for part in parts if part.whole() for row in part.rows()["rejects"].to_pylist()]
         for row in rows:
             if row["what"] == EMPTY:
                 by_reason.setdefault(row["reason"], []).append((row["where"], row["detail"]))

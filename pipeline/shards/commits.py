@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from pipeline.errors import ContentError
@@ -54,11 +55,13 @@ class Commit:
         return next((p for p, entry in self.files.items() if not (folder / p).is_file() or entry_of(folder / p) != entry), None)
 
 
-def record(staging: Path, name: str, rows: Mapping[str, int], *, flush: bool = True) -> Commit:
-    """Digest every file below `staging`, and (with `flush`) send it to disk as `flush_all` does."""
+def record(
+    staging: Path, name: str, rows: Mapping[str, int], *, flush: bool = True, known: Mapping[str, Entry] = MappingProxyType({})
+) -> Commit:
+    """Digest every file below `staging` that is not `known` already, and (with `flush`) send it to disk as `flush_all` does."""
     paths = flush_all(staging) if flush else list(_below(staging))
-    entries = map(entry_of, paths)
-    files = {path.relative_to(staging).as_posix(): entry for path, entry in zip(paths, entries, strict=True)}
+    names = [path.relative_to(staging).as_posix() for path in paths]
+    files = {file: known.get(file) or entry_of(path) for file, path in zip(names, paths, strict=True)}
     return Commit(name, dict(sorted(files.items())), rows)
 
 

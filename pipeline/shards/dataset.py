@@ -40,7 +40,7 @@ from pipeline.shards.layout import (
     table_path,
 )
 from pipeline.shards.library import AssetSource, adopt, settle
-from pipeline.shards.parts import FILES, Part, indices_of, join, part_place, parts_there, write_part
+from pipeline.shards.parts import FILES, Part, join, part_place, parts_there, write_part
 from pipeline.shards.seal import SEAL, is_sealed, seal, vouches
 
 
@@ -170,12 +170,7 @@ def add_part(dataset: Dataset, number: int, content: ShardContent) -> int:
 
     Raises ContentError for a table or file that has no place in the shard, and for a home that is not of it.
     """
-    scenes, rejects = (TABLES[t].from_rows(content.rows.get(t, ())) for t in ("scenes", "rejects"))
-    indices = [i for some in indices_of(scenes, rejects) for i in some]
-    wanted = dataset.header.indices(number)
-    if not set(indices) <= set(wanted):
-        raise ContentError(f"{shard_name(number)} brings homes {indices}, not one of {list(wanted)}", "one home a part")
-    return write_part(dataset.folder, dataset.staging, number, content)
+    return write_part(dataset.folder, dataset.staging, number, content, dataset.header.indices(number))
 
 
 def commit_shard(dataset: Dataset, number: int) -> bool:
@@ -222,8 +217,7 @@ def _commit(dataset: Dataset, number: int) -> None:
     staging = dataset.staging / name
     shutil.rmtree(staging, ignore_errors=True)
     rows = {}
-    for table in TABLES:
-        data = join(parts, table)
+    for table, data in join(parts).items():
         rows[table] = data.num_rows
         if data.num_rows != sum(commit.rows[table] for commit in brought):  # this one was given up, and who took over removes the parts
             raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(folder / PARTS / name))
@@ -232,11 +226,15 @@ def _commit(dataset: Dataset, number: int) -> None:
         pq.write_table(data, path, compression="zstd", store_schema=True)
         if table == "objects":
             adopt(folder, dataset.source, dataset.staging, set(data["asset_id"].to_pylist()))
+    known = {}
     for part, part_commit in zip(parts, brought, strict=True):
-        for file in (f.removeprefix(f"{FILES}/") for f in part_commit.files if f.startswith(f"{FILES}/")):
-            (staging / file).parent.mkdir(parents=True, exist_ok=True)
-            link(part.folder / FILES / file, staging / file)  # the part stays whole until the shard is
-    commit = record(staging, name, rows)
+        for inside, entry in part_commit.files.items():
+            if inside.startswith(f"{FILES}/"):
+                file = inside.removeprefix(f"{FILES}/")
+                (staging / file).parent.mkdir(parents=True, exist_ok=True)
+                link(part.folder / inside, staging / file)  # the part stays whole until the shard is
+                known[file] = entry
+    commit = record(staging, name, rows, known=known)
     _remove_strangers(folder, name, commit)
     places = {(folder / file).parent for file in commit.files}
     for place in places:

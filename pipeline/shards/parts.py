@@ -1,7 +1,7 @@
 """Homes of shards that are not whole yet: what workers bring is on disk at once, so memory stays flat and a killed run loses little.
 
-A part is one home, or the rejects of one that stays empty: a folder with its rows (an Arrow file a table), its files and a commit
-file. It gets its name when all of that is there, and once it has it, it is never written again.
+A part is one home, or the rejects of one that stays empty: a folder with its rows (one file, an Arrow stream a table), its files and a
+commit file. It gets its name when all of that is there, and once it has it, it is never written again.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ import os
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pyarrow as pa
 
@@ -22,7 +21,7 @@ from pipeline.shards.content import ShardContent
 from pipeline.shards.layout import EMPTY, PARTS, TABLES, index_of, require_inside, shard_name
 
 COMMIT = "part.json"
-ROWS, FILES = "rows", "files"
+ROWS, FILES = "rows.arrow", "files"
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,13 +30,10 @@ class Part:
 
     folder: Path
 
-    def rows(self, table: str) -> pa.Table:
-        """Read the rows of a table."""
-        path = self.folder / ROWS / f"{table}.arrow"
-        if not path.exists():  # a table that it has no row of
-            return TABLES[table].from_rows(())
-        with pa.ipc.open_file(path) as reader:
-            return reader.read_all()
+    def rows(self) -> dict[str, pa.Table]:
+        """Read its rows, by table."""
+        with pa.OSFile(str(self.folder / ROWS)) as file:
+            return {table: pa.ipc.open_stream(file).read_all() for table in TABLES}
 
     def commit(self) -> Commit:
         """Return what was written. Raises FileNotFoundError where it is gone, ContentError where it is torn."""
@@ -67,10 +63,10 @@ def parts_there(folder: Path, number: int) -> set[int]:
         return set()
 
 
-def write_part(folder: Path, staging: Path, number: int, content: ShardContent) -> int:
+def write_part(folder: Path, staging: Path, number: int, content: ShardContent, wanted: range) -> int:
     """Put one home of shard `number` aside and return its index; where it is there already, that stays.
 
-    Raises ContentError for a table or file that has no place in the shard, and for more or less than one home.
+    Raises ContentError for a table or file that has no place in the shard, for more or less than one home, and for one that is not `wanted`.
     """
     name = shard_name(number)
     unknown = sorted(content.rows.keys() - TABLES.keys())
@@ -85,12 +81,14 @@ def write_part(folder: Path, staging: Path, number: int, content: ShardContent) 
             f"a part of {name} brings homes {[*homes, *empty]}", "one scenes row, or a rejects row that says why there is none"
         )
     (index,) = homes + empty
+    if index not in wanted:
+        raise ContentError(f"{name} brings home {index}, which is not one of its own", f"it has {wanted.start} to {wanted.stop - 1}")
     place = staging / f"{index:08d}"
     shutil.rmtree(place, ignore_errors=True)
-    (place / ROWS).mkdir(parents=True)
-    for table, data in tables.items():
-        if data.num_rows:
-            with pa.ipc.new_file(place / ROWS / f"{table}.arrow", data.schema) as writer:
+    place.mkdir(parents=True)
+    with pa.OSFile(str(place / ROWS), "wb") as rows:
+        for data in tables.values():
+            with pa.ipc.new_stream(rows, data.schema) as writer:
                 writer.write_table(data)
     for file, data in content.files.items():
         path = place / FILES / file
@@ -115,7 +113,7 @@ def indices_of(scenes: pa.Table, rejects: pa.Table) -> tuple[tuple[int, ...], tu
     return tuple(scenes["index"].to_pylist()), tuple(empty)
 
 
-def join(parts: list[Part], table: str) -> pa.Table:
-    """Return the rows of a table of several parts, as if they had been made together."""
-    joined: Any = pa.concat_tables([part.rows(table) for part in parts])
-    return joined.combine_chunks()
+def join(parts: list[Part]) -> dict[str, pa.Table]:
+    """Return the rows of several parts by table, as if they had been made together."""
+    rows = [part.rows() for part in parts]
+    return {table: pa.concat_tables([some[table] for some in rows]).combine_chunks() for table in TABLES}

@@ -71,7 +71,7 @@ def test_a_write_that_fails_ends_the_run_and_nothing_is_lost(tmp_path, monkeypat
     while True:
         folder, failing = tmp_path / f"cut-{steps}", Failing(steps, error, lasting)
         with monkeypatch.context() as patched:
-            for owner, name in (*STEPS, (pq, "write_table"), (pa.ipc, "new_file")):
+            for owner, name in (*STEPS, (pq, "write_table"), (pa.ipc, "new_stream")):
                 patched.setattr(owner, name, failing.around(getattr(owner, name)))
             try:
                 made.fill(folder, small)
