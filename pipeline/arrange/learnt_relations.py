@@ -74,6 +74,10 @@ class LearntRelations:
             self._modes[key] = _rows(pair) if pair is not None and pair.strength >= STRENGTH and pair.modes else None
         return self._modes[key]
 
+    def distance(self, one: str, other: str) -> float:
+        """Return how far things of two categories keep from each other [m], 0 where it does not matter."""
+        return self.known.distances.get((min(one, other), max(one, other)), 0.0)
+
 
 def _habit(category: str, known: Relations) -> Habit:
     entry = taxonomy.load().categories.get(category)

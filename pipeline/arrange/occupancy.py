@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pipeline.arrange.groups import Group
 from pipeline.arrange.item import Item
+from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
 from pipeline.arrange.world import compose_pose, free_poses, make_world, put
@@ -28,9 +29,13 @@ OUT_OF_REACH = (2.0, 0.7)  # cost of what a robot cannot open where it stands [m
 class Occupancy:
     """The objects of a room, of which those of `there` (N,) stand at `poses` (N, 4); a relation holds those of `bound` where they are."""
 
-    def __init__(self, site: Site, items: list[Item], settings: SeparateSettings, bound: Collection[int] = ()) -> None:
+    def __init__(
+        self, site: Site, items: list[Item], settings: SeparateSettings, learnt: LearntRelations, bound: Collection[int] = ()
+    ) -> None:
         self.site, self.items, self.settings, self.bound = site, items, settings, frozenset(bound)
-        self.world = make_world([item.shape for item in items], site.swung, site.shut, site.polygon, site.ceiling)
+        names = [item.placement.category for item in items]
+        distances = np.array([[learnt.distance(one, other) for other in names] for one in names]).reshape(len(names), len(names))
+        self.world = make_world([item.shape for item in items], site.swung, site.shut, site.polygon, site.ceiling, distances)
         self.poses = np.array([item.wished for item in items]).reshape(-1, 4)
         self.there = np.zeros(len(items), np.bool_)
         self.unreached: frozenset[int] = frozenset()
@@ -61,9 +66,14 @@ class Occupancy:
 
         Free of what stands, or of the objects of `among` (N,), at which they were placed last.
         """
-        totals, _ = self._totals(group, poses, costs, 0, self.there if among is None else among)
-        k = int(np.argmin(np.round(totals, 9))) if len(totals) else 0
-        return (poses[k], float(totals[k])) if len(totals) and np.isfinite(totals[k]) else None
+        others = self.there if among is None else among
+        start, best, least = 0, None, np.inf
+        while start < len(poses) and costs[start] < least:
+            totals, start = self._totals(group, poses, costs, start, others)
+            k = int(np.argmin(np.round(totals, 9)))
+            if totals[k] < least:
+                best, least = poses[k], float(totals[k])
+        return None if best is None else (best, least)
 
     def settle(self, group: Group, poses: Floats, costs: Floats) -> bool:
         """Let a group stand at the cheapest of its poses that is free and leaves the floor in one piece; tell whether there is one.
@@ -127,6 +137,7 @@ class Occupancy:
             others,
             settings.touch,
             settings.access_cost,
+            settings.nearness_cost,
         )
 
     def _bodies(self) -> Prisms:

@@ -156,7 +156,7 @@ def _arrange_once(
     walls = edges(site)
     runs, laid = lay_runs(items, walls, site)
     poses, bonds = exact_poses(items, site, walls, learnt, settings, laid)
-    occupancy = Occupancy(site, items, settings, [i for i, bond in enumerate(bonds) if bond is not None])
+    occupancy = Occupancy(site, items, settings, learnt, [i for i, bond in enumerate(bonds) if bond is not None])
     settle_all(occupancy, Draft(poses, bonds, runs, walls, learnt, led), first, careful=number > 0, bulk=number <= 1)
     if number > 0:
         return occupancy, True, bonds, runs

@@ -25,6 +25,7 @@ class SeparateSettings:
     wall_reach: float = 0.5  # an object that wants a wall is put to one whose distance is below this [m]
     turn_cost: float = 0.3  # what turning costs, in metres of displacement per radian [m/rad]
     access_cost: float = 0.25  # what blocking the place in front of a door or drawer costs, in metres of displacement [m]
+    nearness_cost: float = 2.0  # what a metre costs by which things are nearer to each other than in training, in metres of displacement
     access_depth: float = 0.55  # depth of that place beyond the opened part [m]
     candidates: int = 16  # free poses that are weighed against each other per object
     rounds: int = 5  # times a room is started over, those first that found nothing free; from the third on as smaller assets

@@ -19,7 +19,7 @@ from pipeline.arrange.world import FREE, conflicts, put
 
 Floats = NDArray[np.float64]
 
-SHIFT = 0.5  # a group goes no farther as one before it is tried without its members [m]
+SHIFT = 1.0  # a group goes no farther as one before it is tried without its members [m]
 STEPS = (0.0, -0.3, 0.3, -0.6, 0.6, -0.9, 0.9)  # what leads a group is tried so much farther from it [m]
 OPENS = 1.5  # what opens is placed as if it were so many times as large
 
@@ -49,17 +49,17 @@ def settle_all(occupancy: Occupancy, draft: Draft, first: Sequence[int], *, care
 
     `careful`: the floor must hang together with each group that is added. `bulk`: those that are free where they belong come first, all at once.
     """
-    pairs, alone = conflicts(occupancy.world, draft.poses, occupancy.settings.touch)
+    pairs, near, alone = conflicts(occupancy.world, draft.poses, occupancy.settings.touch)
     fitted_groups, strays, poses = _resolve_overlaps(occupancy, draft, groups(occupancy.items, draft.poses, draft.bonds, draft.runs), pairs)
     leading = _leading_groups(occupancy.items, draft, fitted_groups, poses)
     if not np.array_equal(poses, draft.poses):
         draft = replace(draft, poses=poses)
-        pairs, alone = conflicts(occupancy.world, poses, occupancy.settings.touch)
+        pairs, near, alone = conflicts(occupancy.world, poses, occupancy.settings.touch)
     at_fault = (alone != FREE) | np.array([hides(i, p, draft.walls) for i, p in zip(occupancy.items, draft.poses, strict=True)], np.bool_)
     member = np.full(len(occupancy.items), -1)
     for number, group in enumerate(fitted_groups):
         member[group.members] = number
-    clash = pairs & (member[:, None] != member[None]) & (member >= 0)[:, None] & (member >= 0)[None]
+    clash = (pairs | near) & (member[:, None] != member[None]) & (member >= 0)[:, None] & (member >= 0)[None]
     order = sorted(range(len(fitted_groups)), key=lambda k: _rank(occupancy, fitted_groups[k], draft, first))
     bound = {i for led in leading.values() for group in led for i in group.members.tolist()}
     stays = [k for k in order if bound.isdisjoint(fitted_groups[k].members.tolist())]

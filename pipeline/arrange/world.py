@@ -20,6 +20,7 @@ Ints = NDArray[np.int64]
 
 SOFT = 0.1  # a body may reach this far into an access place at no cost [m]
 SOFT_WALL = 0.15  # and a wall this far [m]
+NEARER = 0.05  # things that are nearer to each other than such things are by no more may stay [m]
 FREE, WALL, DOOR = -1, -2, -3  # what blocks an object, beside another's index
 
 
@@ -27,7 +28,8 @@ class World(NamedTuple):
     """N objects of P prisms. `start` (N, 4): bodies from start[i, 0], keeps from start[i, 1], access places from start[i, 2] to start[i, 3].
 
     `corners` (P, V, 2), `corner_count` (P,), `z` (P, 2) and `shell` (N, S, 2), `shell_count` (N,) (the body's hull in plan) are in the object's frame;
-    `at`, `at_z`, `flat` (P, 4) and `box` (N, 4) are where it was placed last [m].
+    `at`, `at_z`, `flat` (P, 4), `box` and, without keeps and access places, `body` (N, 4) are where it was placed last [m].
+    `distances` (N, N) is how far each keeps from each [m], 0 where it does not matter.
     The room: `door`, `door_count`, `door_z`, `door_flat` are what its doors sweep, from `shut` (1,) on what they take closed; `polygon` (n, 2), `ceiling` (1,) [m].
     `outline` (S, 2) and `wall` (4, 2) are scratch.
     """
@@ -42,6 +44,8 @@ class World(NamedTuple):
     at_z: Floats
     flat: Floats
     box: Floats
+    body: Floats
+    distances: Floats
     door: Floats
     door_count: Ints
     door_z: Floats
@@ -53,8 +57,8 @@ class World(NamedTuple):
     wall: Floats
 
 
-def make_world(shapes: Sequence[Shape], swung: Prisms, shut: Prisms, polygon: Floats, ceiling: float) -> World:
-    """Gather the shapes of a room's objects, nothing placed yet."""
+def make_world(shapes: Sequence[Shape], swung: Prisms, shut: Prisms, polygon: Floats, ceiling: float, distances: Floats) -> World:
+    """Gather the shapes of a room's objects, nothing placed yet; `distances` (N, N) [m] are those that they keep."""
     groups = [part for s in shapes for part in (s.body, s.keep, s.access)]
     sizes = np.array([len(g) for g in groups], np.int64).reshape(-1, 3)
     ends = np.cumsum(sizes.ravel()).reshape(-1, 3)
@@ -76,6 +80,8 @@ def make_world(shapes: Sequence[Shape], swung: Prisms, shut: Prisms, polygon: Fl
         np.zeros((len(every), 2)),
         np.zeros((len(every), 4)),
         np.zeros((len(shapes), 4)),
+        np.zeros((len(shapes), 4)),
+        distances,
         np.ascontiguousarray(doors.corners),
         doors.count,
         np.ascontiguousarray(doors.z),
@@ -94,6 +100,8 @@ def put(world: World, i: int, pose: Floats) -> None:
     c, s = math.cos(pose[3]), math.sin(pose[3])
     left, low, right, high = np.inf, np.inf, -np.inf, -np.inf
     for k in range(world.start[i, 0], world.start[i, 3]):
+        if k == world.start[i, 1]:
+            world.body[i, 0], world.body[i, 1], world.body[i, 2], world.body[i, 3] = left, low, right, high
         x0, y0, x1, y1 = np.inf, np.inf, -np.inf, -np.inf
         for v in range(world.corner_count[k]):
             x = c * world.corners[k, v, 0] - s * world.corners[k, v, 1] + pose[0]
@@ -104,6 +112,8 @@ def put(world: World, i: int, pose: Floats) -> None:
         world.at_z[k, 0], world.at_z[k, 1] = world.z[k, 0] + pose[2], world.z[k, 1] + pose[2]
         left, low, right, high = min(left, x0), min(low, y0), max(right, x1), max(high, y1)
     world.box[i, 0], world.box[i, 1], world.box[i, 2], world.box[i, 3] = left, low, right, high
+    if world.start[i, 1] == world.start[i, 3]:
+        world.body[i, 0], world.body[i, 1], world.body[i, 2], world.body[i, 3] = left, low, right, high
 
 
 @borrowing
@@ -204,18 +214,31 @@ def hindrance(world: World, i: int, others: NDArray[np.bool_]) -> int:
     return broken
 
 
-def conflicts(world: World, poses: Floats, tolerance: float) -> tuple[NDArray[np.bool_], Ints]:
-    """Place all N objects; return which pairs (N, N) break a hard rule, and of each (N,) whether WALL or DOOR is in its way, else FREE."""
+@borrowing
+def shortfall(world: World, i: int, j: int) -> float:
+    """Return by how much two placed objects are nearer to each other than such things are [m]."""
+    wanted = world.distances[i, j]
+    if wanted == 0.0:
+        return 0.0
+    x = max(0.0, world.body[i, 0] - world.body[j, 2], world.body[j, 0] - world.body[i, 2])
+    y = max(0.0, world.body[i, 1] - world.body[j, 3], world.body[j, 1] - world.body[i, 3])
+    return float(max(0.0, wanted - math.sqrt(x * x + y * y)))
+
+
+def conflicts(world: World, poses: Floats, tolerance: float) -> tuple[NDArray[np.bool_], NDArray[np.bool_], Ints]:
+    """Place all N objects; return which pairs (N, N) break a hard rule, which are too near to each other, and of each (N,) whether WALL or DOOR is in its way, else FREE."""
     n = poses.shape[0]
-    pairs = np.zeros((n, n), np.bool_)
+    pairs, near = np.zeros((n, n), np.bool_), np.zeros((n, n), np.bool_)
     alone = np.full(n, FREE)
-    _conflicts(world, poses, tolerance, np.zeros(n, np.bool_), pairs, alone)
-    return pairs, alone
+    _conflicts(world, poses, tolerance, np.zeros(n, np.bool_), pairs, near, alone)
+    return pairs, near, alone
 
 
 @borrowing
-def _conflicts(world: World, poses: Floats, tolerance: float, nobody: NDArray[np.bool_], pairs: NDArray[np.bool_], alone: Ints) -> None:
-    """Write `pairs` (N, N), which start as False, and `alone` (N,)."""
+def _conflicts(
+    world: World, poses: Floats, tolerance: float, nobody: NDArray[np.bool_], pairs: NDArray[np.bool_], near: NDArray[np.bool_], alone: Ints
+) -> None:
+    """Write `pairs` and `near` (N, N), and `alone` (N,)."""
     n = poses.shape[0]
     for i in range(n):
         put(world, i, poses[i])
@@ -224,6 +247,8 @@ def _conflicts(world: World, poses: Floats, tolerance: float, nobody: NDArray[np
         for j in range(i):
             pairs[i, j] = collide(world, i, j, tolerance)
             pairs[j, i] = pairs[i, j]
+            near[i, j] = shortfall(world, i, j) > NEARER
+            near[j, i] = near[i, j]
 
 
 @borrowing
@@ -247,6 +272,7 @@ def free_poses(
     others: NDArray[np.bool_],
     tolerance: float,
     access_cost: float,
+    nearness_cost: float,
 ) -> tuple[Floats, int]:
     """Return the cost (C,) of poses of a group from `first` on, inf where not free, until `wanted` are found; and where it stopped.
 
@@ -255,15 +281,17 @@ def free_poses(
     """
     totals = np.full(poses.shape[0], np.inf)
     own = np.empty((members.shape[0], 4))
-    return totals, int(_free_poses(world, members, offsets, poses, costs, first, wanted, others, tolerance, access_cost, own, totals))
+    return totals, int(
+        _free_poses(world, members, offsets, poses, costs, first, wanted, others, tolerance, (access_cost, nearness_cost), own, totals)
+    )
 
 
 @borrowing
 def _free_poses(
     world: World, members: Ints, offsets: Floats, poses: Floats, costs: Floats, first: int, wanted: int, others: NDArray[np.bool_],
-    tolerance: float, access_cost: float, own: Floats, found: Floats,
+    tolerance: float, soft: tuple[float, float], own: Floats, found: Floats,
 ) -> int:  # fmt: skip
-    """Write the costs to `found` (C,), return where it stopped; `own` (K, 4) is scratch."""
+    """Write the costs to `found` (C,), return where it stopped; `soft` are the costs of access and of nearness, `own` (K, 4) is scratch."""
     have = 0
     last = FREE  # what was in the way of the pose before is likely to be in the way of this one
     for k in range(first, poses.shape[0]):
@@ -286,9 +314,12 @@ def _free_poses(
                 break
         if not free:
             continue
-        broken = 0
+        broken, missing = 0, 0.0
         for m in range(members.shape[0]):
             broken += hindrance(world, members[m], others)
-        found[k] = costs[k] + access_cost * broken
+            for j in range(others.shape[0]):
+                if others[j] and j != members[m]:
+                    missing = max(missing, shortfall(world, members[m], j))
+        found[k] = costs[k] + soft[0] * broken + soft[1] * missing
         have += 1
     return len(poses)

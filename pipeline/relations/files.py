@@ -11,7 +11,7 @@ from pipeline.manifest import write_bytes
 from pipeline.relations.model import PairRelation, Relations, WallRelation, relations
 from pipeline.relations.modes import Mode, Span
 
-VERSION = 1
+VERSION = 2
 DIGITS = 4
 
 
@@ -26,7 +26,8 @@ def to_json(known: Relations) -> dict[str, Any]:
         for sides in known.walls.values()
         for w in sides
     ]
-    return {"version": VERSION, "pairs": pairs, "walls": walls}
+    distances = [[*names, distance] for names, distance in known.distances.items()]
+    return {"version": VERSION, "pairs": pairs, "walls": walls, "distances": distances}
 
 
 def of_json(tree: Any) -> Relations:
@@ -36,15 +37,16 @@ def of_json(tree: Any) -> Relations:
             raise ContentError(f"relations of version {tree['version']}, not {VERSION}", "run `dvc repro preprocess`")
         pairs = [PairRelation(a, m, tuple(_mode(r) for r in modes), n, share, chance) for a, m, n, share, chance, modes in tree["pairs"]]
         walls = [WallRelation(c, s, Span(*gap), Span(*turn), n, share, chance) for c, s, n, share, chance, gap, turn in tree["walls"]]
+        distances = {(str(a), str(b)): float(distance) for a, b, distance in tree["distances"]}
     except (KeyError, TypeError, ValueError) as error:
         raise ContentError(f"no relations ({type(error).__name__}: {error})", "run `dvc repro preprocess`") from error
-    return relations(pairs, walls)
+    return relations(pairs, walls, distances)
 
 
 def save(path: Path, known: Relations) -> None:
-    """Write relations, a line for each pair and wall."""
+    """Write relations, a line for each pair, wall and distance."""
     tree = to_json(known)
-    lines = {key: ",\n".join(f"  {json.dumps(row)}" for row in tree[key]) for key in ("pairs", "walls")}
+    lines = {key: ",\n".join(f"  {json.dumps(row)}" for row in tree[key]) for key in ("pairs", "walls", "distances")}
     parts = [f'"version": {VERSION}', *(f'"{key}": [\n{text}\n]' for key, text in lines.items())]
     write_bytes(path, ("{" + ",\n".join(parts) + "}\n").encode())
 

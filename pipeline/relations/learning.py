@@ -26,6 +26,7 @@ LEAST_MODE = 0.03  # share of the members, and
 LEAST_IN_MODE = 8  # number of them that make a mode
 LEAST_STRENGTH = 0.3  # relations weaker than this are not kept
 ALIKE = ("bed", "chair", "sofa")  # super-categories whose members stand to other things as each other do; tables and cabinets do not
+WALK = (0.3, 0.8)  # a gap that nearly all things of two kinds keep says nothing when it is narrower, and no more when it is wider [m]
 TAILS = (5.0, 50.0, 95.0)  # percentiles of a span
 
 
@@ -74,7 +75,23 @@ def fit(rooms: Sequence[Arrangement], kinds: Mapping[str, str] | None = None) ->
                 kind = _relation(things, *case) if own else None
                 learnt |= {(a, m): kind and _held_by(kind, things, *_of_pair(things, *case, a, m)) for a, m in own}
     named = [PairRelation(things.names[a], things.names[m], *relation) for (a, m), relation in learnt.items() if relation is not None]
-    return relations([pair for pair in named if pair.strength >= LEAST_STRENGTH], walls.fit(rooms))
+    kept = [pair for pair in named if pair.strength >= LEAST_STRENGTH]
+    return relations(kept, walls.fit(rooms), _distances(things, anchor, member))
+
+
+def _distances(things: _Things, anchor: Indices, member: Indices) -> dict[tuple[str, str], float]:
+    """Return how far things that stand on the floor keep from each other, where that is far enough to walk between them."""
+    known = taxonomy.load().categories
+    floor = np.array([name in known and known[name].mount == "floor" for name in things.names], np.bool_)
+    there = floor[things.kind[anchor]] & floor[things.kind[member]]
+    distances: dict[tuple[str, str], float] = {}
+    for (a, m), case in _cases(anchor[there], member[there], things.kind, things.kind):
+        if a != m:
+            pair = things.names[min(a, m)], things.names[max(a, m)]
+            gap = np.maximum(_nearest(things, *case, (1, 1)).gaps(), 0.0)
+            kept = round(float(np.percentile(np.linalg.norm(gap, axis=1), TAILS[0])), 3)
+            distances[pair] = min(kept, distances.get(pair, kept))
+    return {pair: min(distance, WALK[1]) for pair, distance in distances.items() if distance >= WALK[0]}
 
 
 def _collect_things(rooms: Sequence[Arrangement]) -> _Things:

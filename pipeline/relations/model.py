@@ -56,10 +56,14 @@ class WallRelation(Tendency):
 
 @dataclass(frozen=True)
 class Relations:
-    """All relations; `pairs` by (anchor, member), `walls` by category, strongest side first."""
+    """All relations; `pairs` by (anchor, member), `walls` by category, strongest side first.
+
+    `distances` [m], by two names in order, is the gap that such things keep in all but a few rooms, where it is one to walk through.
+    """
 
     pairs: Mapping[tuple[str, str], PairRelation]
     walls: Mapping[str, tuple[WallRelation, ...]]
+    distances: Mapping[tuple[str, str], float] = field(default_factory=dict)
     _anchors: dict[str, tuple[PairRelation, ...]] = field(default_factory=dict, repr=False, compare=False)
 
     def pair(self, anchor: str, member: str) -> PairRelation | None:
@@ -100,10 +104,14 @@ class Relations:
         return min(candidates, key=lambda f: f[1].metres + 0.5 * f[1].radians) if candidates else None
 
 
-def relations(pairs: Iterable[PairRelation], walls: Iterable[WallRelation]) -> Relations:
+def relations(
+    pairs: Iterable[PairRelation], walls: Iterable[WallRelation], distances: Mapping[tuple[str, str], float] | None = None
+) -> Relations:
     """Return relations by their names, the walls' strongest side first."""
     by_category: dict[str, list[WallRelation]] = {}
     for wall in sorted(walls, key=lambda w: (w.category, -w.strength, w.side)):
         by_category.setdefault(wall.category, []).append(wall)
     named = {(p.anchor, p.member): p for p in pairs}
-    return Relations(dict(sorted(named.items())), {name: tuple(sides) for name, sides in by_category.items()})
+    return Relations(
+        dict(sorted(named.items())), {name: tuple(sides) for name, sides in by_category.items()}, dict(sorted((distances or {}).items()))
+    )

@@ -1,6 +1,7 @@
 """Relations that a draft nearly holds are exact afterwards, and groups stay together when they have to move."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -217,6 +218,22 @@ def test_a_television_that_goes_by_the_coffee_table_takes_the_sofa_along():
     assert abs(local(tv, sofa)[0]) < 0.25
     assert abs(math.remainder(tv.yaw - sofa.yaw - math.pi, math.tau)) < 1e-3
     assert local(low, sofa)[1] == pytest.approx(-(0.45 + 0.35 + 0.45), abs=0.1)
+
+
+@pytest.mark.parametrize("kept", [0.0, 0.7])
+def test_sofa_and_coffee_table_keep_their_distance_from_the_dining_table(kept):
+    learnt = LearntRelations(replace(RELATIONS, distances={("coffee_table", "dining_table"): kept}))
+    wished = [
+        drafted(ASSETS["table"], 3.0, 2.0),
+        drafted(ASSETS["sofa"], 3.0, 4.2),
+        drafted(ASSETS["low_table"], 3.0, 3.05, number=1),
+        drafted(ASSETS["chair"], 2.6, 1.4, math.pi, number=2),
+    ]
+    table, sofa, low, chair = separate(site(room(6.0, 8.0), "room"), wished, ASSETS, learnt).placements
+    gap = abs(low.position[1] - table.position[1]) - (low.size[1] + table.size[1]) / 2
+    assert gap == pytest.approx(kept, abs=0.1) if kept else gap < 0.6
+    assert local(low, sofa) == pytest.approx((0.0, -(0.45 + 0.25 + 0.45)), abs=0.1)  # what belongs together goes together
+    assert np.hypot(*local(chair, table)) < 1.0
 
 
 @pytest.mark.parametrize("spread", [0.0, 0.2])

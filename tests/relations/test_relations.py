@@ -5,6 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from shapely import affinity
+from shapely.geometry import box
 
 from pipeline.errors import ContentError
 from pipeline.relations import files, learning
@@ -26,6 +28,14 @@ def local(anchor, pose):
     return c * dx + s * dy, c * dy - s * dx
 
 
+def outline(thing):
+    return affinity.translate(
+        affinity.rotate(box(*(-0.5 * s for s in thing.size[:2]), *(0.5 * s for s in thing.size[:2])), thing.yaw, (0, 0), use_radians=True),
+        thing.x,
+        thing.y,
+    )
+
+
 def test_nightstands_stand_left_and_right_of_a_bed_flush_with_its_head(known):
     pair = known.pair("double_bed", "nightstand")
     assert {mode.side for mode in pair.modes} == {"left", "right"}
@@ -39,6 +49,18 @@ def test_nightstands_stand_left_and_right_of_a_bed_flush_with_its_head(known):
 def test_what_only_shares_the_walls_has_no_relation(known):
     assert known.pair("double_bed", "plant") is None
     assert known.pair("plant", "nightstand") is None
+
+
+def test_how_far_things_keep_from_each_other_is_known_where_one_walks_between_them(known):
+    gaps = []
+    for room in bedrooms(np.random.default_rng(0), 120):
+        things = {name: room.thing(k) for k, name in enumerate(room.categories)}
+        if {"double_bed", "tv_stand"} <= things.keys():
+            bed, tv = (outline(things[name]) for name in ("double_bed", "tv_stand"))
+            gaps.append(bed.distance(tv))
+    assert known.distances["double_bed", "tv_stand"] == pytest.approx(min(np.percentile(gaps, 5), learning.WALK[1]), abs=0.05)
+    assert ("double_bed", "nightstand") not in known.distances
+    assert all(learning.WALK[0] <= distance <= learning.WALK[1] for distance in known.distances.values())
 
 
 def test_a_tv_stand_looks_at_the_bed_whatever_the_room_is_deep(known):
@@ -113,12 +135,19 @@ def test_the_same_rooms_give_the_same_relations_and_json_keeps_them(known, tmp_p
     assert files.to_json(back) == files.to_json(known)
     assert back.pairs.keys() == known.pairs.keys()
     assert back.walls.keys() == known.walls.keys()
+    assert back.distances == known.distances
 
 
 def test_files_that_hold_no_relations_are_refused(tmp_path):
     with pytest.raises(ContentError, match="missing"):
         files.load(tmp_path / "relations.json")
-    for text in ("", "[]", "{}", json.dumps({"version": 99}), json.dumps({"version": 1, "pairs": [["a"]], "walls": []})):
+    for text in (
+        "",
+        "[]",
+        "{}",
+        json.dumps({"version": 99}),
+        json.dumps({"version": files.VERSION, "pairs": [["a"]], "walls": [], "distances": []}),
+    ):
         (tmp_path / "relations.json").write_text(text)
         with pytest.raises(ContentError):
             files.load(tmp_path / "relations.json")
