@@ -73,7 +73,7 @@ def test_nothing_to_read():
 
 def test_limits_are_taken_back():
     before = [resource.getrlimit(kind) for kind in LIMITS], signal.getsignal(signal.SIGPROF)
-    with pytest.raises(OutOfTimeError), enforce(Budget(seconds=0.05, mebibytes=512)):
+    with pytest.raises(OutOfTimeError), enforce(Budget(seconds=0.5, mebibytes=512)):
         step(0, "spin")
     assert ([resource.getrlimit(kind) for kind in LIMITS], signal.getsignal(signal.SIGPROF)) == before
 
