@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 REST, OPEN, SHUT, LEFT = 5.0, 2.5, 2.0, 0.5  # [s] at rest; pushing; pushing back; left alone
 AFTER = 1.5  # [s] by which a joint waits for those that must be open before it
 SAMPLE = 0.25  # [s] between looks at what lies about
-WIDE = 0.95  # share of its range from which on a joint is held open; what another blocks is let go, lest it creeps on with all that it carries
+WIDE = 0.95  # share of its range from which on a joint is held open; what another blocks is let go, or it creeps on
 PACE, LEAST = (
     1.0,
     0.2,
