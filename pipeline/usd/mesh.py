@@ -46,7 +46,7 @@ def weld_vertices(mesh: Mesh) -> tuple[NDArray[np.float32], NDArray[np.int32], N
     return kept[:, :3], faces, None if mesh.uv is None else kept[:, 3:]
 
 
-def split_nonmanifold(rows: NDArray[np.float32], faces: NDArray[np.int32]) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+def split_nonmanifold(rows: NDArray[np.floating], faces: NDArray[np.int32]) -> tuple[NDArray[np.floating], NDArray[np.int32]]:
     """Return rows (V, 3 and more), points first, and faces (F, 3) so that every point has one fan of faces about it: a manifold.
 
     Boards of one mesh may meet in an edge or a corner. Each gets points of its own there, towards its own middle: the first by APART, every further
@@ -80,6 +80,20 @@ def split_nonmanifold(rows: NDArray[np.float32], faces: NDArray[np.int32]) -> tu
     turn[order] = np.arange(1, fans + 1) - np.searchsorted(owner[order], owner[order])
     vertices[split, :3] += (APART * turn[split, None] * away[split]).astype(np.float32)
     return vertices, fan.reshape(count, 3).astype(np.int32)
+
+
+def split_polygons(
+    rows: NDArray[np.floating], counts: NDArray[np.int32], indices: NDArray[np.int32]
+) -> tuple[NDArray[np.floating], NDArray[np.int32]]:
+    """Return rows (V, 3 and more) and indices of convex polygons, corners per polygon, as `split_nonmanifold` does for triangles."""
+    triangles = counts - 2
+    first = np.repeat(np.cumsum(counts) - counts, triangles)  # corner of each polygon, from which its triangles fan out
+    turn = np.arange(len(first)) - np.repeat(np.cumsum(triangles) - triangles, triangles)
+    corners = np.stack([first, first + turn + 1, first + turn + 2], axis=1)
+    rows, faces = split_nonmanifold(rows, indices[corners])
+    split = np.empty_like(indices)
+    split[corners] = faces
+    return rows, split
 
 
 @compiled

@@ -18,7 +18,7 @@ from pipeline.rendering import fittings, palette
 from pipeline.usd.articulation import convert_asset
 from pipeline.usd.layer import attribute, label, prim
 from pipeline.usd.material import Palette, bind
-from pipeline.usd.mesh import convert_box, convert_mesh, convert_polygons, flat_normals
+from pipeline.usd.mesh import convert_box, convert_mesh, convert_polygons, flat_normals, split_polygons
 from pipeline.usd.physics import convert_collider, hide
 from pipeline.usd.prim_templates import cast, group, mesh_attributes, mould, transform_ops
 
@@ -227,7 +227,8 @@ def _panels(path: str, panels: Iterable[Panel], material: Material, materials: P
     every = np.concatenate(corners).astype(np.float32)
     normals = np.repeat(flat_normals(every, counts, np.arange(len(every), dtype=np.int32)), counts, axis=0)
     rows, index = np.unique(np.concatenate([every, normals.round(5)], axis=1), axis=0, return_inverse=True)  # one corner a plane
-    topology = f"int[] faceVertexCounts = {counts.tolist()}\nint[] faceVertexIndices = {index.reshape(-1).tolist()}\n"
+    rows, indices = split_polygons(rows, counts, index.reshape(-1).astype(np.int32))  # a door above a wall: its sides meet no edge of that
+    topology = f"int[] faceVertexCounts = {counts.tolist()}\nint[] faceVertexIndices = {indices.tolist()}\n"
     shape = mesh_attributes(rows[:, :3], rows[:, 3:], "vertex")
     return cast(_panels_form(material, materials.path(material)), path, shape + topology)
 

@@ -7,7 +7,7 @@ from collections import Counter
 import numpy as np
 
 from pipeline.rendering.boxes import box, join_meshes
-from pipeline.usd.mesh import APART, split_nonmanifold, weld_vertices
+from pipeline.usd.mesh import APART, split_nonmanifold, split_polygons, weld_vertices
 
 
 def edges(faces):
@@ -45,3 +45,13 @@ def test_what_is_whole_stays_as_it_is():
     rows, made = split_nonmanifold(points, faces)
     assert rows is points
     assert made is faces
+
+
+def test_walls_above_each_other_that_share_a_corner_alone_have_one_each():
+    points = np.array([(0, 0, 0), (3, 0, 0), (3, 0, 3), (0, 0, 3), (1, 0, 3), (1, 0, 6), (0, 0, 6), (5, 0, 0), (5, 0, 3)], np.float32)
+    below, beside, above = [0, 1, 2, 3], [1, 7, 8, 2], [3, 4, 5, 6]  # a door beside the upper one: it meets no edge of the lower
+    rows, made = split_polygons(points, np.full(3, 4, np.int32), np.array([*below, *beside, *above], np.int32))
+    first, second, third = map(set, made.reshape(3, 4).tolist())
+    assert (len(first & second), len(first & third), len(rows)) == (2, 0, 10)
+    assert len(np.unique(rows, axis=0)) == 10
+    assert np.abs(rows[made] - points[[*below, *beside, *above]]).max() <= 2 * APART

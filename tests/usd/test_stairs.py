@@ -12,6 +12,7 @@ import pytest
 from pxr import Usd, UsdGeom, UsdPhysics
 
 from pipeline.entities.home import Home
+from pipeline.entities.plan import Opening, Plan, Room
 from pipeline.floorplan import complete, solve
 from pipeline.floorplan.program.floor_program import FloorProgram, RoomReq
 from pipeline.geometry.stairs import steps
@@ -49,6 +50,34 @@ def test_steps_collide_and_reach_the_upper_floor(house):
     tops = sorted(heights(stage, p.GetPath())[1] for p in solids if p.GetName().startswith(("step", "landing")))
     assert tops[-1] == plan.storey_height
     assert max(np.diff([0.0, *tops])) <= 0.2 + 1e-6
+
+
+def fans(faces):
+    """Return by corner how many groups of polygons there meet in no edge."""
+    links = {}
+    for face in faces:
+        for before, corner, after in zip(face[-1:] + face[:-1], face, face[1:] + face[:1], strict=True):
+            near = {before, after}
+            apart = []
+            for group in links.get(corner, []):
+                if group & near:
+                    near |= group
+                else:
+                    apart.append(group)
+            links[corner] = [*apart, near]
+    return {corner: len(groups) for corner, groups in links.items()}
+
+
+def test_walls_of_a_staircase_meet_in_edges(tmp_path):
+    hall = np.array([[0, -2], [5, -2], [5, -0.12], [0, -0.12]], float)
+    shaft = Room("stairs", "staircase", np.array([[0, 0], [2.9, 0], [2.9, 2.1], [0, 2.1]], float))
+    rooms = (shaft, Room("below", "hallway", hall), Room("above", "hallway", hall, 1))
+    plan = Plan(rooms, (Opening("door", "open", ("stairs", "above"), np.array([[0.85, -0.06], [2.05, -0.06]]), 2.4, level=1),), "below")
+    stage = Usd.Stage.Open(str(write_home(Home("house", 0, 0, "", "", plan, ()), {}, tmp_path / "house.usda")))
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/World/Rooms/stairs/wall"))
+    ends = np.cumsum(mesh.GetFaceVertexCountsAttr().Get())
+    faces = [face.tolist() for face in np.split(np.array(mesh.GetFaceVertexIndicesAttr().Get()), ends[:-1])]
+    assert set(fans(faces).values()) == {1}
 
 
 # In a process of its own: mujoco's USD plug-ins change what usd-core knows, and it logs to the working directory.
