@@ -145,7 +145,7 @@ def report(engine: str, records: list[dict[str, Any]], *, faults: bool) -> None:
     print(
         f"{engine:10s} {opens.sum()} of {len(joints)} joints open one at a time, {(together >= OPEN).sum()} all at once; {shuts.sum()} shut, "
         f"{stays.sum()} stay shut; {(~still['moved_shut']).sum()} / {(~still['moved_open']).sum()} of {len(bodies)} things move (shut / open); "
-        f"load {np.mean([r['load'] for r in records]):.1f} s of CPU, {np.mean([r['steps_per_second'] for r in records]):.0f} steps/s",
+        f"load {np.mean([r['load'] for r in records]):.1f} s of CPU, {np.mean([r['steps_per_second'] for r in records]):.0f} steps/s, {np.mean([r['alone_steps_per_second'] for r in records]):.0f} left alone",
         flush=True,
     )
     for k in np.flatnonzero(~(opens & shuts & stays)) if faults else ():

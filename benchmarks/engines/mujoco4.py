@@ -41,6 +41,10 @@ class MuJoCoEngine:
         self.data.qfrc_applied[self.dofs[self.known]] = force[self.known]
         mujoco.mj_step(self.model, self.data)
 
+    def idle(self) -> None:
+        """Advance by DT."""
+        mujoco.mj_step(self.model, self.data)
+
     def positions(self) -> np.ndarray:
         """Return the joints' positions (J,)."""
         return np.where(self.known, self.data.qpos[self.places], np.nan)

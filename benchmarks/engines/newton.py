@@ -59,6 +59,10 @@ class NewtonEngine:
         self.solver.step(first, second, self.control, None, DT)
         self.states = second, first
 
+    def idle(self) -> None:
+        """Advance by DT; on a CPU nothing sleeps in Newton."""
+        self.step(np.zeros(len(self.dofs)))
+
     def positions(self) -> np.ndarray:
         """Return the joints' positions (J,)."""
         return np.where(self.known, self.states[0].joint_q.numpy()[self.places], np.nan)

@@ -102,6 +102,10 @@ class PhysXEngine:
             arm["f"].write(arm["f0"])
         self.physx.step_sync(DT)
 
+    def idle(self) -> None:
+        """Advance by DT; forces that are written, zeros too, would wake their articulations."""
+        self.physx.step_sync(DT)
+
     def positions(self) -> np.ndarray:
         """Return the joints' positions (J,)."""
         joint_positions = np.full(self.count, np.nan)

@@ -19,6 +19,7 @@ Floats = NDArray[np.float64]
 REST, OPEN, SHUT, LEFT = 5.0, 2.5, 2.0, 0.5  # [s] at rest; pushing; pushing back; left alone
 AFTER = 1.5  # [s] by which a joint waits for those that must be open before it
 SAMPLE = 0.25  # [s] between looks at what lies about
+SETTLE, ALONE = 1.0, 2.0  # [s] left alone until what may sleep does; then for the speed of that
 WIDE = 0.95  # share of its range from which on a joint is held open; what another blocks is let go, or it creeps on
 PACE, LEAST = (
     1.0,
@@ -36,6 +37,9 @@ class Engine(Protocol):
 
     def step(self, force: Floats) -> None:
         """Advance by `dt` under generalised forces (J,) [N m or N]."""
+
+    def idle(self) -> None:
+        """Advance by `dt` and touch nothing: what lies still may sleep, where an engine knows sleep."""
 
     def positions(self) -> Floats:
         """Return the joints' positions (J,) [rad or m]; nan for a joint that the engine does not have."""
@@ -62,6 +66,7 @@ def _trial(engine: Engine, plan: dict[str, Any]) -> dict[str, Any]:
     upper = np.array([j["upper"] for j in joints])
     rest, speed = _rest(engine, np.zeros(len(joints)))
     drift = np.abs(engine.positions()) / np.maximum(upper, 1e-9)
+    alone = _alone(engine)
     opened, closed, left = (np.full(len(joints), np.nan) for _ in range(3))
     for group in plan["groups"]:
         members, before = np.array(group["joints"], int), np.array(group["before"], int)
@@ -75,6 +80,7 @@ def _trial(engine: Engine, plan: dict[str, Any]) -> dict[str, Any]:
     wide, _ = _rest(engine, np.where(engine.positions() >= WIDE * upper, push, 0.0), fresh=False)
     return {
         "steps_per_second": speed,
+        "alone_steps_per_second": alone,
         "drift": drift.tolist(),
         "opened": (opened / upper).tolist(),
         "closed": (closed / upper).tolist(),
@@ -124,6 +130,18 @@ def _push(
     for _ in range(round(LEFT / engine.dt)):
         hand.push(force)
     return reached, back, engine.positions()
+
+
+def _alone(engine: Engine) -> float:
+    """Return the steps per second of a home that nobody touches."""
+    engine.reset()
+    for _ in range(round(SETTLE / engine.dt)):
+        engine.idle()
+    start = time.process_time()
+    steps = round(ALONE / engine.dt)
+    for _ in range(steps):
+        engine.idle()
+    return steps / max(time.process_time() - start, 1e-9)
 
 
 def _rest(engine: Engine, force: Floats, *, fresh: bool = True) -> tuple[list[list[float]], float]:

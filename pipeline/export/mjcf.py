@@ -29,7 +29,7 @@ def model_xml(model: Model) -> bytes:
 
 def scene_xml(scene: Scene, folders: Mapping[str, str]) -> bytes:
     """Return a home; `folders` say where each model's meshes lie, as seen from the home's file."""
-    root = _root(scene.scene_id)
+    root = _root(scene.scene_id, scene.asleep)
     writer = _Writer(root, scene.models, folders)
     for placed in scene.placed:
         writer.place(placed)
@@ -136,10 +136,13 @@ class _Writer:
         SubElement(element, "joint", {"name": f"{placed.name}/{joint.name}", "type": joint.kind, **about})
 
 
-def _root(name: str) -> Element:
+def _root(name: str, asleep: float = 0.0) -> Element:
     root = Element("mujoco", model=name)
     SubElement(root, "compiler", angle="radian", autolimits="true")
-    SubElement(root, "option", timestep=numbers([TIMESTEP]), integrator="implicitfast")
+    option = SubElement(root, "option", timestep=numbers([TIMESTEP]), integrator="implicitfast")
+    if asleep:
+        option.set("sleep_tolerance", numbers([asleep]))
+        SubElement(option, "flag", sleep="enable")
     visual = SubElement(root, "visual")
     SubElement(visual, "headlight", ambient="0.45 0.45 0.45", diffuse="0.5 0.5 0.5", specular="0.1 0.1 0.1")
     default = SubElement(root, "default")

@@ -153,8 +153,9 @@ class Placed:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
-    """A home: its models by name, and where they are."""
+    """A home: its models by name, and where they are; what is slower than `asleep` [m/s] may sleep."""
 
     scene_id: str
     models: Mapping[str, Model]
     placed: tuple[Placed, ...]
+    asleep: float = 0.0

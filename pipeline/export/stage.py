@@ -47,7 +47,8 @@ def read_home(path: Path, scene_id: str, asset: Callable[[Path], Model]) -> Scen
         support = prim.GetRelationship("sfgen:support")
         on = support.GetTargets()[0].name if support and support.GetTargets() else ""
         placed.append(Placed(prim.GetName() if source else model.name, kind, model.name, rigid, scale, on))
-    return Scene(scene_id, models, tuple(placed))
+    asleep = stage.GetAttributeAtPath("/PhysicsScene.mjc:option:sleep_tolerance")
+    return Scene(scene_id, models, tuple(placed), float(asleep.Get()) if asleep else 0.0)
 
 
 def read_asset(path: Path) -> Model:

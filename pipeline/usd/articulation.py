@@ -16,7 +16,7 @@ from pipeline.usd.joints import convert_fixed, convert_joint
 from pipeline.usd.layer import apply, identifiers, label, prim, relationship
 from pipeline.usd.material import bind
 from pipeline.usd.mesh import convert_box, convert_mesh
-from pipeline.usd.physics import convert_body, convert_collider, convert_filter, hide, volume
+from pipeline.usd.physics import convert_body, convert_collider, convert_filter, convert_iterations, hide, volume
 from pipeline.usd.resistance import resistance
 
 RESERVED = ("joints", "materials")  # scopes beside the links
@@ -63,6 +63,8 @@ def convert_asset(root: Sdf.PrimSpec, asset: Asset, materials: Sequence[Sdf.Path
     for i, (spec, link) in enumerate(zip(links, asset.links, strict=True)):
         if asset.articulated or free:
             convert_body(spec, link)
+            if not asset.articulated:
+                convert_iterations(spec, "RigidBody")
         if i in moving:
             part = moving[i].part_class
             label(spec, "class", [MOVERS.get(part, HANDLES.get(part, "part"))])
@@ -70,6 +72,7 @@ def convert_asset(root: Sdf.PrimSpec, asset: Asset, materials: Sequence[Sdf.Path
         _convert_pieces(spec, link, asset, materials, weigh=asset.articulated or free)
     if asset.articulated:
         apply(root, ["PhysicsArticulationRootAPI"])
+        convert_iterations(root, "Articulation")
         scope = prim(root, "joints", "Scope")
         if not free:
             convert_fixed(scope, root.path, links[0].path)

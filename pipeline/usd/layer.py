@@ -19,6 +19,7 @@ VALUE_TYPES = {
     name: getattr(Sdf.ValueTypeNames, attribute)
     for name, attribute in {
         "bool": "Bool",
+        "int": "Int",
         "int[]": "IntArray",
         "float": "Float",
         "float3": "Float3",

@@ -13,7 +13,10 @@ from pxr import Sdf, Vt
 from pipeline.entities.asset import Asset
 from pipeline.usd.layer import apply, attribute, new_layer, over, relationship, save
 
+SCENE = Sdf.Path("/PhysicsScene")
 ROOT_API = "PhysicsArticulationRootAPI"
+# [m/s] below which a thing sleeps until something touches it: a thing that creeps 5 mm in 5 s is ten times as fast, and stays awake.
+ASLEEP = 1e-4
 STOP = ((0.008, 1.0), (0.99, 0.999, 1e-4, 0.5, 2.0))  # solref and solimp of the limits: hard stops even for light knobs and buttons
 
 
@@ -36,6 +39,8 @@ def home_overlay(source: Sdf.Layer, name: str) -> Sdf.Layer:
     layer = new_layer(source.defaultPrim, ".usda")
     layer.subLayerPaths.append(f"./{name}")
     root = over(layer, source.defaultPrim)
+    if source.GetPrimAtPath(SCENE):
+        _let_sleep(over(layer, SCENE.name))
     objects = world.nameChildren.get("Objects")
     if objects is not None:
         scope = over(root, "Objects")
@@ -48,6 +53,12 @@ def home_overlay(source: Sdf.Layer, name: str) -> Sdf.Layer:
         for spec in doors.nameChildren:
             _convert(over(scope, spec.name), spec)
     return layer
+
+
+def _let_sleep(scene: Sdf.PrimSpec) -> None:
+    """Let what lies still sleep, which of a home is nearly all."""
+    attribute(scene, "mjc:flag:sleep", "bool", True, uniform=True)
+    attribute(scene, "mjc:option:sleep_tolerance", "double", ASLEEP, uniform=True)
 
 
 def _convert(root: Sdf.PrimSpec, source: Sdf.PrimSpec) -> None:

@@ -1,4 +1,4 @@
-"""Bodies, masses, colliders: UsdPhysics without any engine's own schemas."""
+"""Bodies, masses, colliders: UsdPhysics, and what an engine has to be told in its own words."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ from pipeline.usd.layer import apply, attribute, prim, relationship
 
 GRAVITY = 9.81  # [m/s2]
 LEAST_INERTIA = 1e-7  # engines divide by it [kg m2]
+# Iterations of PhysX's solver over positions and velocities: for chains of two joints and stacks of a few things, a quarter of the 32 that
+# Omniverse takes for articulations is enough (16 for bodies). With 4 and 1, things in drawers that are pulled out slid 2 cm.
+ITERATIONS = (8, 1)
 
 
 def convert_scene(layer: Sdf.Layer, name: str = "PhysicsScene") -> Sdf.PrimSpec:
@@ -36,6 +39,13 @@ def convert_body(spec: Sdf.PrimSpec, link: Link) -> None:
     attribute(spec, "physics:centerOfMass", "point3f", Gf.Vec3f(*map(float, link.com)))
     attribute(spec, "physics:diagonalInertia", "float3", Gf.Vec3f(*map(float, moments)))
     attribute(spec, "physics:principalAxes", "quatf", quaternion(rotation))
+
+
+def convert_iterations(spec: Sdf.PrimSpec, schema: str) -> None:
+    """Say how long PhysX works on an "Articulation", at its root, or on a "RigidBody"."""
+    apply(spec, [f"Physx{schema}API"])
+    for kind, count in zip(("Position", "Velocity"), ITERATIONS, strict=True):
+        attribute(spec, f"physx{schema}:solver{kind}IterationCount", "int", count)
 
 
 def convert_collider(spec: Sdf.PrimSpec, mass: float | None = None) -> None:

@@ -40,13 +40,14 @@ for path in sys.argv[1:]:
               *model.jnt_solref[joints].T, *model.jnt_solimp[joints].T, *model.jnt_range[joints].T]
     bodies = [model.body(model.jnt_bodyid[j]).name.removeprefix("/World/Objects/").removeprefix("/World/Doors/") for j in joints]
     frictions = sorted(model.geom_friction[model.geom_contype > 0, 0].round(6).tolist())
-    found.append([dict(zip(bodies, np.transpose(values).tolist())), model.nexclude, frictions])
+    asleep = [bool(model.opt.enableflags & int(mujoco.mjtEnableBit.mjENBL_SLEEP)), model.opt.sleep_tolerance]
+    found.append([dict(zip(bodies, np.transpose(values).tolist())), model.nexclude, frictions, asleep])
 print(json.dumps(found))
 """
 
 
 def test_mujoco_finds_in_mjcf_what_it_finds_in_usd(export, furnished):
-    """Damping, friction, springs, stops of every joint, and which bodies pass: MuJoCo's own reading of the stage beside ours."""
+    """Damping, friction, springs, stops of every joint, which bodies pass, what sleeps: MuJoCo's own reading of the stage beside ours."""
     pytest.importorskip("mujoco")
     home = sfgen.load(furnished)[0]
     overlay = home.usd.with_name(f"{home.scene_id}.mujoco.usda")
@@ -59,6 +60,7 @@ def test_mujoco_finds_in_mjcf_what_it_finds_in_usd(export, furnished):
         assert np.allclose(values, theirs[0][name], rtol=1e-6, atol=1e-9), name
     assert mine[1] == theirs[1] > 0
     assert mine[2] == theirs[2]
+    assert mine[3] == theirs[3] == [True, pytest.approx(1e-4)]
 
 
 def test_mujoco_loads_each_asset_alone(export):

@@ -12,7 +12,7 @@ from pipeline.errors import ContentError
 from pipeline.rendering.boxes import box, solid_link
 from pipeline.usd import write_library
 from pipeline.usd.check import check_stage
-from pipeline.usd.physics import gravity_load
+from pipeline.usd.physics import ITERATIONS, gravity_load
 from pipeline.usd.resistance import resistance
 
 
@@ -75,6 +75,14 @@ def test_slides_are_in_metres_and_hinges_in_degrees(library, cabinet):
     assert fixed.GetBody0Rel().GetTargets() == ["/cabinet_a"]
     assert fixed.GetBody1Rel().GetTargets() == ["/cabinet_a/base"]
     assert stage.GetDefaultPrim().HasAPI(UsdPhysics.ArticulationRootAPI)
+
+
+def test_physx_is_told_at_the_root_how_long_to_solve(library):
+    said = "physxArticulation:solverPositionIterationCount"
+    stage = open_asset(library, "cabinet_a")
+    assert {str(p.GetPath()): p.GetAttribute(said).Get() for p in stage.Traverse() if p.HasAttribute(said)} == {"/cabinet_a": ITERATIONS[0]}
+    static = open_asset(library, "chair_a")
+    assert not any(p.HasAttribute(said) for p in static.Traverse())
 
 
 def test_base_and_movers_do_not_collide(library):

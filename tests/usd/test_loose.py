@@ -11,6 +11,7 @@ from pxr import Usd, UsdPhysics
 from pipeline.entities.home import Home, Placement
 from pipeline.usd import write_home, write_library, write_mujoco_overlay
 from pipeline.usd.check import check_stage
+from pipeline.usd.physics import ITERATIONS
 from tests.geometry import furniture
 
 # In a process of its own, as in test_mujoco.
@@ -27,12 +28,13 @@ start = data.xpos.copy()
 for _ in range(1000):
     mujoco.mj_step(model, data)
 rest = np.linalg.norm(data.xpos - start, axis=1)
+asleep = int((data.tree_asleep >= 0).sum())
 slide = next(j for j in range(model.njnt) if model.jnt_type[j] == mujoco.mjtJoint.mjJNT_SLIDE)
 for _ in range(1500):
     data.qfrc_applied[model.jnt_dofadr[slide]] = 25.0
     mujoco.mj_step(model, data)
 print(json.dumps({
-    "free": {names[b]: float(rest[b]) for b in free}, "open": float(data.qpos[model.jnt_qposadr[slide]]),
+    "asleep": asleep, "trees": model.ntree, "free": {names[b]: float(rest[b]) for b in free}, "open": float(data.qpos[model.jnt_qposadr[slide]]),
     "moved": {names[b]: (data.xpos[b] - start[b]).tolist() for b in free},
 }))
 """
@@ -62,6 +64,7 @@ def test_a_thing_is_a_body_and_says_what_it_stands_on(stage):
     assert cup.GetRelationship("sfgen:support").GetTargets() == ["/World/Objects/tray_chest_0"]
     assert cup.GetChild("base").HasAPI(UsdPhysics.RigidBodyAPI)
     assert cup.GetChild("base").GetAttribute("physics:mass").Get() == pytest.approx(10.0)
+    assert cup.GetChild("base").GetAttribute("physxRigidBody:solverPositionIterationCount").Get() == ITERATIONS[0]
     assert not cup.HasAPI(UsdPhysics.ArticulationRootAPI)
     assert flip.HasAPI(UsdPhysics.ArticulationRootAPI)
     assert not flip.GetChild("joints").GetChild("world_fixed")
@@ -78,5 +81,6 @@ def test_things_stay_where_they_stand_and_drawers_take_theirs_along(stage, tmp_p
     assert max(found["free"].values()) < 0.01
     assert found["open"] == pytest.approx(0.3, abs=0.01)
     moved = {name.split("/")[3]: value for name, value in found["moved"].items()}
-    assert moved["book_0"][1] < -0.2  # in the drawer
+    assert found["asleep"] == found["trees"]
+    assert moved["book_0"][1] < -0.2  # in the drawer, which woke it
     assert abs(moved["cup_0"][1]) < 0.01  # on top

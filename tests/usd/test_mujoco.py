@@ -23,6 +23,7 @@ start = data.xpos[fixed].copy()
 for _ in range(300):
     mujoco.mj_step(model, data)
 drift = float(np.abs(data.qpos).max())
+asleep = int((data.tree_asleep >= 0).sum())
 reached = {}
 for j in range(model.njnt):
     ends = []
@@ -35,7 +36,7 @@ for j in range(model.njnt):
     limited = bool(model.jnt_limited[j])
     reached[model.joint(j).name] = [*ends, float(model.jnt_range[j][1]) if limited else None]
 print(json.dumps({
-    "bodies": model.nbody, "fixed": len(fixed), "moved": float(np.abs(data.xpos[fixed] - start).max()), "drift": drift,
+    "bodies": model.nbody, "trees": model.ntree, "asleep": asleep, "fixed": len(fixed), "moved": float(np.abs(data.xpos[fixed] - start).max()), "drift": drift,
     "reached": reached, "free": int((model.jnt_type == mujoco.mjtJoint.mjJNT_FREE).sum()),
     "mass": {model.body(b).name: float(model.body_mass[b]) for b in range(1, model.nbody)},
 }))
@@ -70,6 +71,10 @@ def test_what_is_fixed_stays_and_nothing_falls_open(run):
     assert run["free"] == 0
     assert run["moved"] < 1e-9
     assert run["drift"] < 0.005
+
+
+def test_what_stands_still_sleeps_until_it_is_pushed(run):
+    assert run["asleep"] == run["trees"] == 4 + 3 * 3  # and each of them woke: test_every_joint_moves_through_its_range
 
 
 def test_bodies_weigh_what_the_assets_say(run, cabinet):
