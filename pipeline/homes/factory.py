@@ -5,10 +5,8 @@ A home is a function of (program, seed, index, weights).
 
 from __future__ import annotations
 
-import ctypes
 import functools
 import gc
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -19,7 +17,7 @@ from pipeline.arrange import LearntRelations, PostoptSettings
 from pipeline.diffusion.sampling import Sampler
 from pipeline.diffusion.settings import SampleSettings
 from pipeline.errors import ContentError, RefusedError
-from pipeline.execution import tell
+from pipeline.execution import give_memory_back, tell
 from pipeline.floorplan.program.priors import PriorSettings
 from pipeline.homes.asset_cache import AssetCache
 from pipeline.homes.furnish import HomeDraft, draft_rooms
@@ -114,10 +112,7 @@ def forget_factory() -> None:
 
 @contextmanager
 def _tidied_once() -> Iterator[None]:
-    """Look for garbage at the end of the block alone, and only among what the block has made: a home hardly leaves cycles, and looking costs 1 % of its time.
-
-    Then give free memory back to the system, where the C library is glibc: its holes would grow from batch to batch.
-    """
+    """Look for garbage at the end of the block alone, and only among what the block has made: a home hardly leaves cycles, and looking costs 1 % of its time."""
     enabled = gc.isenabled()
     gc.disable()
     try:
@@ -125,8 +120,7 @@ def _tidied_once() -> Iterator[None]:
     finally:
         gc.collect()
         gc.freeze()
-        if sys.platform == "linux" and (trim := getattr(ctypes.CDLL(None), "malloc_trim", None)):
-            trim(0)
+        give_memory_back()
         if enabled:
             gc.enable()
 

@@ -15,6 +15,7 @@ from pipeline.diffusion.context import CategoryBounds, Proposal, RoomContext
 from pipeline.diffusion.sampling import Sampler
 from pipeline.entities.home import Placement
 from pipeline.entities.plan import Plan
+from pipeline.execution import give_memory_back
 from pipeline.homes.parts import split_room
 from pipeline.homes.request import Request, RoomJob
 from pipeline.homes.resources import Resources
@@ -52,7 +53,9 @@ class HomeDraft:
 def draft_rooms(resources: Resources, jobs: Sequence[RoomJob]) -> list[Draft]:
     """Furnish a batch of rooms with what is loaded, timed as "sample"; nothing is moved yet."""
     with resources.time("sample"):
-        return furnish(jobs, resources.sampler, resources.index, categories.load(), resources.library.finish)
+        drafts = furnish(jobs, resources.sampler, resources.index, categories.load(), resources.library.finish)
+        give_memory_back()  # some 30 MiB of the sampler's, before previews take as much
+    return drafts
 
 
 def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxonomy: Taxonomy, finish_of: FinishOf) -> list[Draft]:

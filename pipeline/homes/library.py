@@ -21,7 +21,7 @@ from pipeline.retrieval.surface_colour import finish_of
 from schemas.assets import ASSET_JOINTS, ASSETS
 
 MEMORY = 700  # of a process that makes homes [MiB]
-BESIDE = 680  # of that, what modules, models, tables and the homes in the making take, measured [MiB]
+BESIDE = 690  # of that, what modules, models, tables and the homes in the making take at their peaks, measured [MiB]
 READ = 1.5  # bytes in memory for a byte of an asset file, and what is derived from it, measured
 LEAN = 8  # assets that are kept without meshes, for each that is kept whole: with what was derived they are a quarter as large, and are asked for all the time
 

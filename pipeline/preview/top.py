@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -21,6 +22,7 @@ from pipeline.taxonomy import load
 MARGIN = 0.45  # around the outer walls [m]
 BACKGROUND = (0.955, 0.955, 0.945)
 SAMPLES = 2  # per pixel and axis
+BANDS = 4  # of a picture, drawn one after the other
 
 
 def top_view(home: Home, assets: Mapping[str, Asset], size: int = 1024, *, reaches: bool = True) -> Image.Image:
@@ -71,12 +73,23 @@ def _storey(home: Home, assets: Mapping[str, Asset], level: int, built: Shell, v
 def _solids(
     home: Home, assets: Mapping[str, Asset], level: int, built: Shell, view: View, standing: Sequence[Placement]
 ) -> tuple[Image.Image, NDArray[np.float32], NDArray[np.int32]]:
-    """Draw walls, floors and what stands on them: the fine image, and depths and items at the final resolution; fine ones take 20 MB."""
+    """Draw walls, floors and what stands on them: the fine image, and depths and items at the final resolution.
+
+    Drawn in BANDS, one below the other: the fine depths and items of a whole picture would take 20 MB.
+    """
     ground, elevation = building(home.plan, level, built), level * home.plan.storey_height
-    frame = render(view, ground.faces, ground.colours, ground.items, BACKGROUND)
-    for number, p in enumerate(standing, 1):
-        draw_roof(frame, view, assets[p.asset_id], p.position - (0.0, 0.0, elevation), p.yaw, p.scale, number)
-    return Image.fromarray(frame.colour), frame.depth[::SAMPLES, ::SAMPLES].copy(), frame.item[::SAMPLES, ::SAMPLES].copy()
+    image = Image.new("RGB", (view.width, view.height))
+    depths, items = [], []
+    edges = SAMPLES * np.linspace(0, view.height // SAMPLES, BANDS + 1).astype(int)
+    for top, bottom in itertools.pairwise(edges.tolist()):
+        band = view.rows(top, bottom)
+        frame = render(band, ground.faces, ground.colours, ground.items, BACKGROUND)
+        for number, p in enumerate(standing, 1):
+            draw_roof(frame, band, assets[p.asset_id], p.position - (0.0, 0.0, elevation), p.yaw, p.scale, number)
+        image.paste(Image.fromarray(frame.colour), (0, top))
+        depths.append(frame.depth[::SAMPLES, ::SAMPLES].copy())
+        items.append(frame.item[::SAMPLES, ::SAMPLES].copy())
+    return image, np.concatenate(depths), np.concatenate(items)
 
 
 def _shade(image: Image.Image, depth: NDArray[np.float32], item: NDArray[np.int32]) -> Image.Image:

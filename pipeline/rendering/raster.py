@@ -5,7 +5,7 @@ Camera frame: u to the right and v down, in pixels; depth grows towards the view
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,11 @@ class View:
         out[..., 1] = local[..., 1] * self.scale + self.height / 2
         out[..., 2] = local[..., 2]
         return out
+
+    def rows(self, top: int, bottom: int) -> View:
+        """Return the view of the rows from `top` to before `bottom` alone."""
+        down = ((top + bottom) / 2 - self.height / 2) / self.scale
+        return replace(self, centre=self.centre + down * self.axes[1], height=bottom - top)
 
 
 @dataclass(frozen=True, slots=True)

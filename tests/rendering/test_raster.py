@@ -22,6 +22,17 @@ def test_a_square_covers_exactly_its_pixels_with_no_seam():
     assert np.isneginf(frame.depth[frame.item < 0]).all()
 
 
+def test_bands_of_a_view_are_the_view():
+    rng = np.random.Generator(np.random.Philox(5))
+    triangles, colours = rng.uniform(0, 4, (40, 3, 3)), rng.uniform(0, 1, (40, 3)).astype(np.float32)
+    for view in (VIEW, oblique(triangles.reshape(-1, 3), 0.6, 0.9, 64)):
+        whole = render(view, triangles, colours)
+        bands = [render(view.rows(*rows), triangles, colours) for rows in ((0, 10), (10, 38), (38, 64))]
+        together = np.concatenate([band.item for band in bands])
+        assert (together >= 0).any()
+        assert (together != whole.item).mean() < 0.003  # edges that go through the centres of pixels
+
+
 def test_areas_match_the_shoelace_formula():
     rng = np.random.Generator(np.random.Philox(3))
     for _ in range(20):
