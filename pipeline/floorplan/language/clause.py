@@ -1,4 +1,4 @@
-"""One sentence while it is read from left to right: what its words so far are about, who stands in front of a relation and who behind it."""
+"""One sentence while it is read: what its words so far are about, who stands in front of a relation and behind it, sizes against each other, storeys."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ from collections.abc import Iterable
 
 from pipeline.floorplan.language.facts import FRONT, HALLS, PRIVATE, SOCIAL, Group, Reading
 from pipeline.floorplan.language.naming import name, point
-from pipeline.floorplan.language.phrases import Element, backward
+from pipeline.floorplan.language.phrases import Element, backward, heads
 
 LIGHT = {"det", "size", "adj", "verb", "word", "flag"}  # between a relation and its room
 WIDE = {"leads", "between", "chain", "avoid", "except"}  # relations to lists
 STANDINS = {"it", "both", "group", "one", "rest", "some", "each", "all", "self", "pair"}
 LISTING = {"comma", "and", "or"}
+LIKE = 0.15  # two rooms are alike where they differ by less
 BESIDE = {"near", "wall"}  # what such a relation joins lies on one storey
 
 
@@ -305,3 +306,74 @@ class Clause:
         if ahead.kind == "cue":
             return ahead.value != "except" and (ahead.value != "has" or self.says(ahead, "having")) and cue != "avoid"
         return ahead.kind in {"verb", "cmp", "neg", "factor"}
+
+
+# sizes against each other
+
+
+def factor(c: Clause, k: int, e: Element) -> int | None:
+    """Note a factor; "twice the living room" compares at once."""
+    c.factor = e
+    ahead = c.ahead(k + 1, "relative", "det")
+    return compare(c, k, e) if ahead is not None and ahead.kind == "np" else k + 1
+
+
+def compare(c: Clause, k: int, e: Element) -> int:
+    """Read "at least 1.5 times as large as the largest bedroom"."""
+    left = c.rooms_in_front() or (c.objects if c.relative else ()) or c.subject or c.latest
+    if e.value == "alike":
+        rooms = c.latest if len(c.latest) > 1 else ids_of(c.run)
+        c.state.say("area_equal", named_rooms(rooms if len(rooms) > 1 else c.subject), (), e, LIKE)
+        return k + 1
+    right, j = c.after(k + 1, "cmp", left)
+    behind = c.near(j)
+    if c.factor is None and behind is not None and behind.kind == "factor":
+        c.factor, j = behind, j + 1
+    value = (c.factor.number or 1.0) if c.factor else 1.0
+    if left and right:
+        c.state.understood(e.first, e.last)
+        c.state.understood(*((c.factor.first, c.factor.last) if c.factor else (e.first, e.last)))
+        turned = (e.value == "smaller") != (value < 1.0)
+        a, b = (right, left) if turned != (c.negative is not None) else (left, right)  # "half the size of", "not larger than"
+        if e.value == "equal":
+            c.state.say("area_equal", (*a, *b), (), e, LIKE)
+        for x in a if e.value != "equal" else ():
+            c.state.say("area_order", (x,), tuple(i for i in b if i != x), e, 1.0 / value if value < 1.0 else value)
+        c.deny()
+    c.factor, c.latest, c.run = None, right, []
+    return max(j, k + 1)
+
+
+# where rooms lie: storeys and wings
+
+
+def level(c: Clause, k: int, e: Element) -> None:
+    """Put rooms on a storey: those named before it, or, where it comes first, those that follow."""
+    c.state.levels.append(e)
+    ahead = c.near(k + 1)
+    part = c.part(k)
+    if c.forward and part and (ahead is None or ahead.kind == "comma"):  # "upstairs two bedrooms, the kitchen downstairs"
+        for room in (c.stock.get(i) for i in named_rooms(part)):
+            room.level = int(e.value)
+        return
+    if c.forward or heads(c.sentence, k) or ("*" in c.latest and ahead is not None and ahead.kind == "colon"):
+        c.state.heights |= {"*": int(e.value)} if "*" in c.latest and not c.forward else {}
+        c.forward, c.level, c.run = True, int(e.value), []
+        return
+    owners = c.subject if c.objects and c.latest == c.objects else ()  # "a guest room with bath, downstairs"
+    for room in (c.stock.get(i) for i in named_rooms((*c.latest, *owners))):
+        room.level = int(e.value)
+    c.state.heights |= {i.removeprefix("*zone_"): int(e.value) for i in c.latest if i.startswith("*")}
+
+
+def wing(c: Clause, _: int, e: Element) -> None:
+    """Read "the bedrooms in one wing": they are a zone."""
+    c.state.understood(e.first, e.last)
+    ids, c.run = ids_of(c.run), []
+    if not ids or all(i.startswith("*") for i in ids):
+        c.state.wings += tuple(i.removeprefix("*zone_") for i in ids if i != "*")
+        return
+    zone_name = next((n for n, (members, _) in c.state.zones.items() if members and set(members) == set(ids)), None)
+    zone_name = zone_name or ("bedroom" if c.types(ids) == {"bedroom"} else f"wing_{len(c.state.wings) + 1}")
+    c.state.zones.setdefault(zone_name, (ids, e))
+    c.state.wings += (zone_name,)

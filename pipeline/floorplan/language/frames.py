@@ -17,6 +17,7 @@ from pathlib import Path
 
 from pipeline import yaml_text
 from pipeline.errors import ContentError
+from pipeline.floorplan.language.lexicon import Lexicon, lexicon
 from pipeline.floorplan.language.marks import ENDS, HEADS, LEADING, Mark, Words, sentences_of
 
 FILE = Path(__file__).resolve().parents[3] / "manifests" / "lexicon" / "frames.yaml"
@@ -28,6 +29,9 @@ TOWARDS = {"into", "single", "det/indefinite", "det/another"}  # in front of eac
 MOST_SKIPPED = 3
 HOMES = {"large": 35.0, "vast": 60.0}  # [m2] from here on an area is no bedroom's, and no living room's
 ROOMY = 8.0  # [m2] a figure behind a room that is an area, and no count or name
+Bracket = tuple[tuple[str, ...], tuple[str, ...], str]  # "an ... grenzt": two parts and what they mean
+BREAKS = {"stop", "line", "colon", "comma"}
+FARTHEST = 14  # marks between the two parts of a bracket
 Slots = dict[str, tuple[int, int]]
 
 
@@ -251,3 +255,130 @@ def _change_mark(mark: Mark, change: str) -> Mark:
     kind, _, value = change.partition("/")
     number = float(int(max(mark.number, 1.0))) if kind == "num" else mark.number
     return replace(mark, kind=kind, value=value, number=number) if change else mark
+
+
+# word order: relations in two parts, adjectives behind their noun
+
+
+def reorder(marks: list[Mark], words: Words) -> list[Mark]:
+    """Return the marks in the order that the reader reads."""
+    reordered, traits = _join_brackets(marks, words), words.lexicon.traits
+    if "verb_last" in traits:
+        return list(_verbs_last(reordered, words))
+    return _behind(reordered, words.lexicon) if "adjectives_behind" in traits else reordered
+
+
+def _join_brackets(marks: list[Mark], words: Words) -> list[Mark]:
+    """Make one relation of its two parts: "an ... grenzt" stands where "an" stood."""
+    reordered, lex = list(marks), words.lexicon
+    k = 0
+    while k < len(reordered) if lex.frames else False:
+        bracket = _bracket(reordered, k, lex)
+        if bracket is not None:
+            cue, start, second, end = bracket
+            only = any(m.text in lex.sign("only") for m in reordered[max(0, k - 2) : k])
+            kind = "cmp" if cue in {"larger", "smaller"} else "cue"
+            first = replace(reordered[k], kind=kind, value=cue, last=reordered[start - 1].last, number=0.0, only=reordered[k].only or only)
+            inside = reordered[start:second]
+            none = [inside.pop()] if inside and inside[-1].kind == "neg" else []  # "厨房与卧室不相通"
+            reordered[k:end] = [*none, first, *inside, *(m for m in reordered[second:end] if m.kind in BREAKS)]
+            k += len(none)
+        k += 1
+    return reordered
+
+
+def _bracket(marks: list[Mark], k: int, lex: Lexicon) -> tuple[str, int, int, int] | None:
+    """Return (relation, end of its first part, place and end of the second) of a bracket that begins at mark k."""
+    for first, second, cue in _brackets(lex.language).get(_bare_word(marks[k].text.split(" ", 1)[0], lex), ()):
+        start = _matches(marks, k, first, lex)
+        named = False
+        for j in range(start, min(len(marks), start + FARTHEST)) if start is not None else ():
+            mark, end = marks[j], _matches(marks, j, second, lex)
+            comma = mark.kind == "comma" and cue.startswith("thru")
+            article = first[0] in lex.sign("article_first") and mark.text.split(" ", 1)[0] in lex.sign("otherwise")
+            other = mark.kind == "cue" and mark.value not in {"has", "in", "door"} and end is None
+            again = named and end is None and cue == "open" and _matches(marks, j, first, lex) is not None
+            if (mark.kind in BREAKS and not comma) or article or other or again:
+                break
+            if named and end is not None and not _goes_on(marks, end, second, lex):
+                return cue, start or 0, j, end
+            named = named or mark.kind in {*HEADS, "pron", "every", "zone"}
+    return None
+
+
+def _goes_on(marks: list[Mark], end: int, second: tuple[str, ...], lex: Lexicon) -> bool:
+    """Whether the second part has an object of its own: "ins Bad geht man über den Flur", "卫生间和洗衣房都不能挨着餐厅"."""
+    if end >= len(marks):
+        return False
+    if set(second) <= lex.sign("way_through"):
+        return marks[end].kind not in BREAKS | {"join"}
+    return "characters" in lex.traits and marks[end - 1].kind == "cue" and marks[end].kind in HEADS | {"num", "zone"}
+
+
+@functools.cache
+def _brackets(language: str) -> dict[str, tuple[Bracket, ...]]:
+    """Return the brackets of a language by their first word, prepositions without the article that melted into them."""
+    by_word: dict[str, dict[Bracket, None]] = {}
+    lex = lexicon(language)
+    for first, second, cue in (b for some in lex.frames.values() for b in some):
+        plain = tuple(_bare_word(w, lex) for w in first), tuple(_bare_word(w, lex) for w in second), cue
+        by_word.setdefault(plain[0][0], {})[plain] = None
+    return {word: tuple(sorted(brackets, key=lambda f: -len(f[0]) - len(f[1]))) for word, brackets in by_word.items()}
+
+
+def _bare_word(word: str, lex: Lexicon) -> str:
+    return lex.compounds.melted.get(word, word)
+
+
+def _matches(marks: list[Mark], k: int, wanted: tuple[str, ...], lex: Lexicon) -> int | None:
+    """Return where the marks go on after the words wanted, where they stand at k; adverbs between them are skipped."""
+    need = list(wanted)
+    while need and k < len(marks):
+        have = [_bare_word(w, lex) for w in marks[k].text.split()]
+        if have == need[: len(have)]:
+            need = need[len(have) :]
+        elif have[: len(need)] == need and set(have[len(need) :]) <= lex.sign("article"):  # "in die Küche übergeht"
+            need = []
+        elif len(need) == len(wanted) or marks[k].kind not in {"adverb", "flag", "comma"}:
+            return None
+        k += 1
+    return None if need else k
+
+
+def _verbs_last(marks: list[Mark], words: Words) -> Iterator[Mark]:
+    """Yield the marks with plurals that only articles tell, and articles out of prepositions."""
+    relabelled, lex = list(marks), words.lexicon
+    for k in range(len(relabelled)):
+        mark, ahead = relabelled[k], relabelled[k + 1] if k + 1 < len(relabelled) else None
+        if mark.kind == "room" and any(words.tokens[mark.last - 1].text.lower().endswith(t) for t in lex.sign("dative")):
+            relabelled[k] = replace(mark, plural=True)
+        described = k > 1 and relabelled[k - 1].kind in {"adj", "size"} and any(m.kind == "num" for m in relabelled[max(0, k - 4) : k])
+        if (mark.kind, mark.value) == ("unit", "rooms") and described:
+            relabelled[k] = replace(mark, kind="room", value="bedroom", plural=True)  # "vier gleich große Zimmer"
+        uncounted = mark.text in lex.sign("plural_article") | lex.sign("plural_dative") and ahead is not None and ahead.kind == "room"
+        if uncounted and ahead is not None and any(ahead.text.endswith(t) for t in lex.sign("uncounted")):
+            relabelled[k + 1] = replace(ahead, plural=mark.text in lex.sign("plural_article"))
+    for k, mark in enumerate(relabelled):
+        if (
+            mark.kind in HEADS
+            and k
+            and relabelled[k - 1].kind == "cue"
+            and relabelled[k - 1].text.rsplit(" ", 1)[-1] in lex.sign("with_article")
+        ):
+            yield Mark("det", "definite", 0.0, False, mark.first, mark.first, "")  # "ins Bad" means a bathroom that is known
+        yield mark
+
+
+def _behind(marks: Sequence[Mark], lex: Lexicon) -> list[Mark]:
+    """Read adjectives behind their noun: "dormitorio principal", "cocina abierta", "baño propio"."""
+    relabelled: list[Mark] = []
+    for mark in marks:
+        before = relabelled[-1] if relabelled else None
+        behind = before is not None and (before.kind in {*HEADS, "post"} or (before.kind, before.value) == ("size", "post"))
+        if behind and (mark.kind == "adj" or (mark.kind == "det" and mark.value in {"own", "another"})):
+            relabelled.append(replace(mark, kind="post"))
+        elif behind and mark.kind == "size":
+            relabelled.append(replace(mark, value="post"))
+        elif not (behind and mark.kind == "adverb" and mark.text in lex.sign("very")):
+            relabelled.append(mark)
+    return relabelled

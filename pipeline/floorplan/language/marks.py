@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from pipeline.floorplan.language.lexicon import Language, Lexicon, Meaning, lexicon
+from pipeline.floorplan.language.lexicon import Language, Lexicon, Meaning, kinds, lexicon
 from pipeline.floorplan.language.spelling import repair, uninflected_meaning
 from pipeline.floorplan.language.text import Token, fold, tokenize
 
@@ -15,6 +14,11 @@ PUNCTUATION = {",": "comma", ":": "colon", "(": "open", ")": "close", "/": "slas
 ENDS = {"stop", "line"}  # kinds of marks that end a sentence
 HEADS = {"room", "suite"}
 LEADING = {"det", "num", "ord", "adj", "size", "clf", "times"}  # in front of a head
+FEET, SQUARE_FEET = 0.3048, 0.092903
+USUAL_HEIGHT = 15.0  # a length from here on, said of a room or a home, is an area ("60 metros")
+ALIKE = 3.0  # rooms of a kind differ by less in area
+LEADS = kinds("leads")
+BOUNDS = {"least": "least", "or_more": "least", "most": "most", "or_less": "most"}
 ARROWS = {"<->", "->", "=>", "→"}
 
 
@@ -193,131 +197,156 @@ def _relabel(marks: Sequence[Mark], words: Words) -> list[Mark]:
     return relabelled
 
 
-Bracket = tuple[tuple[str, ...], tuple[str, ...], str]  # "an ... grenzt": two parts and what they mean
-BREAKS = {"stop", "line", "colon", "comma"}
-LISTED = {"room", "det", "adj", "size", "num", "clf", "comma", "join"}
-FARTHEST = 14  # marks between the two parts of a bracket
+# amounts: figures whose unit or meaning stands elsewhere too
 
 
-def reorder(marks: list[Mark], words: Words) -> list[Mark]:
-    """Return the marks in the order that the reader reads."""
-    reordered, traits = _join_brackets(marks, words), words.lexicon.traits
-    if "verb_last" in traits:
-        return list(_verbs_last(reordered, words))
-    return _behind(reordered, words.lexicon) if "adjectives_behind" in traits else reordered
+def _kind_at(marks: Sequence[Mark], k: int) -> str:
+    return marks[k].kind if 0 <= k < len(marks) else "stop"
 
 
-def _join_brackets(marks: list[Mark], words: Words) -> list[Mark]:
-    """Make one relation of its two parts: "an ... grenzt" stands where "an" stood."""
-    reordered, lex = list(marks), words.lexicon
+def amounts(marks: Sequence[Mark], words: Words) -> list[Mark]:
+    """Return the marks with amounts put together."""
+    return _dealt(combine_amounts(_share_units(marks), words))
+
+
+def _is_separator(mark: Mark) -> bool:
+    return mark.kind in {"comma", "slash"} or (mark.kind == "join" and mark.value == "and")
+
+
+def _share_units(marks: Sequence[Mark]) -> list[Mark]:
+    """Give each of "14, 12 and 10 m2" its unit."""
+    with_units = list(marks)
+    for k in range(len(with_units) - 1, 2, -1):
+        before, number = with_units[k - 3], with_units[k - 1]
+        row = (
+            (with_units[k].kind, with_units[k].value) == ("unit", "area")
+            and _is_separator(with_units[k - 2])
+            and before.kind == number.kind == "num"
+        )
+        if row and max(before.number, number.number) < ALIKE * min(before.number, number.number):
+            with_units.insert(k - 2, replace(with_units[k], first=before.last, last=before.last))
+    return with_units
+
+
+def _dealt(marks: Sequence[Mark]) -> list[Mark]:
+    """Make one amount of those that several rooms share out: "two bedrooms (14 m2 and 12 m2)"; rooms nobody counted are so many."""
+    merged: list[Mark] = []
     k = 0
-    while k < len(reordered) if lex.frames else False:
-        bracket = _bracket(reordered, k, lex)
-        if bracket is not None:
-            cue, start, second, end = bracket
-            only = any(m.text in lex.sign("only") for m in reordered[max(0, k - 2) : k])
-            kind = "cmp" if cue in {"larger", "smaller"} else "cue"
-            first = replace(reordered[k], kind=kind, value=cue, last=reordered[start - 1].last, number=0.0, only=reordered[k].only or only)
-            inside = reordered[start:second]
-            none = [inside.pop()] if inside and inside[-1].kind == "neg" else []  # "厨房与卧室不相通"
-            reordered[k:end] = [*none, first, *inside, *(m for m in reordered[second:end] if m.kind in BREAKS)]
-            k += len(none)
-        k += 1
-    return reordered
-
-
-def _bracket(marks: list[Mark], k: int, lex: Lexicon) -> tuple[str, int, int, int] | None:
-    """Return (relation, end of its first part, place and end of the second) of a bracket that begins at mark k."""
-    for first, second, cue in _brackets(lex.language).get(_plain(marks[k].text.split(" ", 1)[0], lex), ()):
-        start = _matches(marks, k, first, lex)
-        named = False
-        for j in range(start, min(len(marks), start + FARTHEST)) if start is not None else ():
-            mark, end = marks[j], _matches(marks, j, second, lex)
-            comma = mark.kind == "comma" and cue.startswith("thru")
-            article = first[0] in lex.sign("article_first") and mark.text.split(" ", 1)[0] in lex.sign("otherwise")
-            other = mark.kind == "cue" and mark.value not in {"has", "in", "door"} and end is None
-            again = named and end is None and cue == "open" and _matches(marks, j, first, lex) is not None
-            if (mark.kind in BREAKS and not comma) or article or other or again:
-                break
-            if named and end is not None and not _goes_on(marks, end, second, lex):
-                return cue, start or 0, j, end
-            named = named or mark.kind in {*HEADS, "pron", "every", "zone"}
-    return None
-
-
-def _goes_on(marks: list[Mark], end: int, second: tuple[str, ...], lex: Lexicon) -> bool:
-    """Whether the second part has an object of its own: "ins Bad geht man über den Flur", "卫生间和洗衣房都不能挨着餐厅"."""
-    if end >= len(marks):
-        return False
-    if set(second) <= lex.sign("way_through"):
-        return marks[end].kind not in BREAKS | {"join"}
-    return "characters" in lex.traits and marks[end - 1].kind == "cue" and marks[end].kind in HEADS | {"num", "zone"}
-
-
-@functools.cache
-def _brackets(language: str) -> dict[str, tuple[Bracket, ...]]:
-    """Return the brackets of a language by their first word, prepositions without the article that melted into them."""
-    by_word: dict[str, dict[Bracket, None]] = {}
-    lex = lexicon(language)
-    for first, second, cue in (b for some in lex.frames.values() for b in some):
-        plain = tuple(_plain(w, lex) for w in first), tuple(_plain(w, lex) for w in second), cue
-        by_word.setdefault(plain[0][0], {})[plain] = None
-    return {word: tuple(sorted(brackets, key=lambda f: -len(f[0]) - len(f[1]))) for word, brackets in by_word.items()}
-
-
-def _plain(word: str, lex: Lexicon) -> str:
-    return lex.compounds.melted.get(word, word)
-
-
-def _matches(marks: list[Mark], k: int, wanted: tuple[str, ...], lex: Lexicon) -> int | None:
-    """Return where the marks go on after the words wanted, where they stand at k; adverbs between them are skipped."""
-    need = list(wanted)
-    while need and k < len(marks):
-        have = [_plain(w, lex) for w in marks[k].text.split()]
-        if have == need[: len(have)]:
-            need = need[len(have) :]
-        elif have[: len(need)] == need and set(have[len(need) :]) <= lex.sign("article"):  # "in die Küche übergeht"
-            need = []
-        elif len(need) == len(wanted) or marks[k].kind not in {"adverb", "flag", "comma"}:
-            return None
-        k += 1
-    return None if need else k
-
-
-def _verbs_last(marks: list[Mark], words: Words) -> Iterator[Mark]:
-    """Yield the marks with plurals that only articles tell, and articles out of prepositions."""
-    relabelled, lex = list(marks), words.lexicon
-    for k in range(len(relabelled)):
-        mark, ahead = relabelled[k], relabelled[k + 1] if k + 1 < len(relabelled) else None
-        if mark.kind == "room" and any(words.tokens[mark.last - 1].text.lower().endswith(t) for t in lex.sign("dative")):
-            relabelled[k] = replace(mark, plural=True)
-        described = k > 1 and relabelled[k - 1].kind in {"adj", "size"} and any(m.kind == "num" for m in relabelled[max(0, k - 4) : k])
-        if (mark.kind, mark.value) == ("unit", "rooms") and described:
-            relabelled[k] = replace(mark, kind="room", value="bedroom", plural=True)  # "vier gleich große Zimmer"
-        uncounted = mark.text in lex.sign("plural_article") | lex.sign("plural_dative") and ahead is not None and ahead.kind == "room"
-        if uncounted and ahead is not None and any(ahead.text.endswith(t) for t in lex.sign("uncounted")):
-            relabelled[k + 1] = replace(ahead, plural=mark.text in lex.sign("plural_article"))
-    for k, mark in enumerate(relabelled):
-        if (
-            mark.kind in HEADS
-            and k
-            and relabelled[k - 1].kind == "cue"
-            and relabelled[k - 1].text.rsplit(" ", 1)[-1] in lex.sign("with_article")
+    while k < len(marks):
+        end = k
+        while (
+            end + 2 < len(marks)
+            and _is_separator(marks[end + 1])
+            and all((m.kind, m.value) == ("amount", "area") for m in marks[end : end + 3 : 2])
         ):
-            yield Mark("det", "definite", 0.0, False, mark.first, mark.first, "")  # "ins Bad" means a bathroom that is known
-        yield mark
+            end += 2
+        row, after = marks[k : end + 1 : 2], marks[end + 1] if end + 1 < len(marks) else None
+        sizes = [m.number for m in row]
+        total = any(m.total or m.bound in {"least", "most"} for m in row) or (after is not None and "home" in {after.kind, after.value})
+        place = _in_front(merged) if len(row) > 1 and not total and max(sizes) < ALIKE * min(sizes) else None
+        merged.append(marks[k])
+        if place is not None:
+            merged[-1] = replace(marks[k], last=row[-1].last, parts=tuple(sizes))
+            if not any(m.kind == "num" for m in (*merged[max(0, place - 3) : place], *merged[place + 1 : place + 2])):
+                merged.insert(place, Mark("num", "", float(len(row)), False, merged[place].first, merged[place].first, ""))
+            k = end
+        k += 1
+    return merged
 
 
-def _behind(marks: Sequence[Mark], lex: Lexicon) -> list[Mark]:
-    """Read adjectives behind their noun: "dormitorio principal", "cocina abierta", "baño propio"."""
-    relabelled: list[Mark] = []
-    for mark in marks:
-        before = relabelled[-1] if relabelled else None
-        behind = before is not None and (before.kind in {*HEADS, "post"} or (before.kind, before.value) == ("size", "post"))
-        if behind and (mark.kind == "adj" or (mark.kind == "det" and mark.value in {"own", "another"})):
-            relabelled.append(replace(mark, kind="post"))
-        elif behind and mark.kind == "size":
-            relabelled.append(replace(mark, value="post"))
-        elif not (behind and mark.kind == "adverb" and mark.text in lex.sign("very")):
-            relabelled.append(mark)
-    return relabelled
+def _in_front(marks: Sequence[Mark]) -> int | None:
+    """Return the place of the room that the amounts behind the marks are said of."""
+    j = next((j for j in range(len(marks) - 1, -1, -1) if marks[j].kind not in LEADS), None)
+    if j and marks[j].kind == "num":
+        j -= 1  # "卧室三间"
+    return j if j is not None and marks[j].kind == "room" else None
+
+
+def combine_amounts(marks: Sequence[Mark], words: Words) -> list[Mark]:
+    """Put amounts together: "at least 18 m²", "10 to 12 m²", "4 x 5 m", "seven square metres or more"."""
+    merged: list[Mark] = []
+    k = 0
+    while k < len(marks):
+        amount = _Amount(marks, words.lexicon).read(k)
+        if amount is None:
+            merged.append(marks[k])
+            k += 1
+        else:
+            mark, end = amount
+            mark.first, mark.last = marks[k].first, marks[end - 1].last
+            mark.text = " ".join(words.texts[mark.first : mark.last])
+            if mark.value == "share" and _kind_at(marks, end) == "cmp":  # "30 % larger than"
+                times = 1.0 + mark.number if marks[end].value == "larger" else 1.0 / max(1.0 - mark.number, 0.1)
+                mark = replace(mark, kind="factor", value="", number=times)
+            merged.append(mark)
+            k = end
+    return merged
+
+
+class _Amount:
+    """Reads one amount: limits in front, a number or a range or sides, a unit, limits behind."""
+
+    def __init__(self, marks: Sequence[Mark], lex: Lexicon) -> None:
+        self.marks, self.lex = marks, lex
+        self.bound, self.ranged, self.total = "", False, False
+
+    def read(self, k: int) -> tuple[Mark, int] | None:
+        """Return the amount that begins at mark k, and where it ends."""
+        i = self._lead(k)
+        if _kind_at(self.marks, i) != "num" or i - k > 4:
+            return None
+        low, high, side, unit, i = self._numbers(i)
+        if unit is None:
+            return None
+        i = self._limits(i, unit)
+        factor, value = unit.number, unit.value
+        if side is not None and value == "length":
+            return Mark("amount", "area", low * factor * factor, bound=self.bound, side=side * factor), i
+        if value == "length" and factor >= FEET - 0.01 and low * factor >= USUAL_HEIGHT:
+            value, factor = "area", (1.0 if factor == 1.0 else SQUARE_FEET)
+        top = None if high is None else high * factor
+        return Mark("amount", value, low * factor, high=top, bound=self.bound, total=self.total), i
+
+    def _lead(self, k: int) -> int:
+        i = k
+        while i < len(self.marks):
+            mark = self.marks[i]
+            limit, start = self.lex.bounds.get(mark.text), mark.text in self.lex.range_from
+            light = i > k and mark.kind in {"fill", "det"} and mark.value in {"", "unbuilt", "indefinite"}
+            if limit is None and not start and not light:
+                break
+            self.bound = BOUNDS.get(limit, self.bound or "about") if limit else self.bound
+            self.ranged = self.ranged or start
+            self.total = self.total or (mark.kind, mark.value) == ("flag", "total")
+            i += 1
+        return i
+
+    def _numbers(self, i: int) -> tuple[float, float | None, float | None, Mark | None, int]:
+        marks, low, i = self.marks, self.marks[i].number, i + 1
+        high = side = unit = None
+        i += _kind_at(marks, i) in {"hyphen", "dash"} and _kind_at(marks, i + 1) == "unit"
+        if _kind_at(marks, i) == "unit":
+            unit, i = marks[i], i + 1
+        crossed = i < len(marks) and (marks[i].kind == "times" or marks[i].text in {"x", *self.lex.sign("crossing")})
+        if crossed and unit is None and _kind_at(marks, i + 1) == "num" and _kind_at(marks, i + 2) in {"comma", "stop", "line", "join"}:
+            return low * marks[i + 1].number, None, min(low, marks[i + 1].number), Mark("unit", "length", 1.0), i + 2  # "4x5"
+        if _kind_at(marks, i + 1) == "num" and _kind_at(marks, i + 2) == "unit" and marks[i].kind != "comma":
+            second, after = marks[i + 1].number, marks[i + 2]
+            joins = marks[i].kind == "dash" or marks[i].text in self.lex.range_to
+            if (unit is None or after.value == unit.value) and crossed:
+                return low * second, None, min(low, second), after, i + 3
+            if (unit is None or after.value == unit.value) and joins and (second > low or (self.ranged and low > 0)):
+                low, high = sorted((low, second))
+                unit, i = after, i + 3
+        return low, high, side, unit, i
+
+    def _limits(self, i: int, unit: Mark) -> int:
+        marks = self.marks
+        if i + 1 < len(marks) and marks[i].value == "total" and self.lex.bounds.get(marks[i + 1].text, "about") != "about":
+            self.total, i = True, i + 1  # "50 m2 in total at most"
+        compared = unit.value == "share" and _kind_at(marks, i) in {"cmp", "adj", "size"}  # "30 % larger than"
+        behind = self.lex.bounds.get(marks[i].text, "about") if i < len(marks) and not compared else "about"
+        added = i < len(marks) and marks[i].text == "+" and _kind_at(marks, i + 1) in {"room", "suite", "det", "adj", "size", "pron"}
+        if behind != "about" and not added and _kind_at(marks, i + 1) != "num":
+            self.bound, i = BOUNDS[behind], i + 1
+        return i

@@ -309,7 +309,7 @@ def point(state: Reading, before: list[Element], e: Element, but: Group) -> Grou
     pair: Group = next((g for g in reversed(groups) if len(g) == 2), ())
     single = tuple(dict.fromkeys(i for g in reversed(groups) for i in g if i not in but))
     if e.value == "both":
-        return pair if (pair and pair == groups[-1]) or len(single) < 2 else single[:2]
+        return groups[-1] if groups and len(groups[-1]) > 1 else pair if len(single) < 2 else single[:2]
     plural: Group = next((g for g in reversed(groups) if len(g) > 1), groups[-1] if groups else ())
     if not plural or plural[0].startswith("*"):
         return plural

@@ -11,17 +11,15 @@ from dataclasses import replace
 from pydantic import ValidationError
 
 from pipeline.errors import RefusedError, UsageError
-from pipeline.floorplan.language.amounts import amounts
 from pipeline.floorplan.language.attaching import attach
 from pipeline.floorplan.language.builder import assemble
 from pipeline.floorplan.language.facts import Reading
-from pipeline.floorplan.language.frames import apply_frames
+from pipeline.floorplan.language.frames import apply_frames, reorder
 from pipeline.floorplan.language.furnishing import Claim, read_furniture
 from pipeline.floorplan.language.lexicon import kinds
-from pipeline.floorplan.language.marks import Mark, Words, listen, reorder, segment
+from pipeline.floorplan.language.marks import Mark, Words, amounts, listen, segment
 from pipeline.floorplan.language.naming import introduce
-from pipeline.floorplan.language.phrases import Element, sentences, settle
-from pipeline.floorplan.language.revising import ban, refuse
+from pipeline.floorplan.language.phrases import Element, ban, refuse, sentences, settle
 from pipeline.floorplan.language.sentences import read
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import tokenize
@@ -151,7 +149,7 @@ def _says(state: Reading, marks: Sequence[Mark], k: int) -> bool:
     """Whether the mark at k says something by itself."""
     mark = marks[k]
     if mark.kind in EMPTY or (mark.kind == "det" and mark.value not in POINTING):
-        return False
+        return k > 0 and (mark.kind, mark.value, marks[k - 1].kind) == ("join", "to", "join")  # "and to a study": something leads there
     if mark.kind == "cue":
         return mark.value not in {"has", "in"} and mark.text not in state.heard.lexicon.sign("quiet")
     dweller = mark.kind == "owner" and any(m.text in state.heard.lexicon.sign("towards") for m in marks[max(0, k - 2) : k])

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from pipeline.floorplan.language.attributes import LIKE, attach, compare, factor, level, measures_home, wing
-from pipeline.floorplan.language.clause import Clause, ids_of, named_rooms
-from pipeline.floorplan.language.facts import GROUND_FLOOR, PERSONAL, SOCIAL, Reading
+from pipeline.floorplan.language.clause import LIKE, Clause, compare, factor, ids_of, level, named_rooms, wing
+from pipeline.floorplan.language.facts import GROUND_FLOOR, PERSONAL, SOCIAL, Group, Reading
+from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.naming import fresh
 from pipeline.floorplan.language.phrases import Element, backward
 from pipeline.floorplan.language.relations import complete, enter, merge, merge_after, no_door, relate
+from pipeline.floorplan.program.defaults import DEFAULTS
 
+NAMED = {"doors", "corridors", "ceiling", "walls", "inner_walls", "outer_walls"}  # what a length may measure besides rooms
+HUGE, LARGE, MORE, LISTED = 5.0, 2.5, 1.6, 1.3  # times the usual area of the room in front: from there on an area is the home's
 ONE_THAT = {"in", "ensuite", "near", "door"}  # what tells the second of "one bathroom for guests and one inside the master"
 
 
@@ -50,7 +53,7 @@ def _np(c: Clause, k: int, e: Element) -> None:
         ids, c.run = tuple(i for i in ids if i not in c.left_out), []
     _own(c, e, ids)
     for mark in e.amounts:
-        whole = (e.compound and mark.last <= e.first) or measures_home(c, k, mark, tuple(e.ids))
+        whole = (e.compound and mark.last <= e.first) or _measures_home(c, k, mark, tuple(e.ids))
         c.state.amounts.append((mark, None if whole else ids))
     c.push(k, e, ids)
     _describe_rooms(c, k, e, ids)
@@ -102,14 +105,14 @@ def _home(c: Clause, k: int, e: Element) -> None:
     if e.value and c.state.studio is None:
         c.state.studio = e
     for mark in e.amounts:
-        attach(c, k, mark, home=True)
+        _attach(c, k, mark, home=True)
     c.run = []
 
 
 def _note(c: Clause, k: int, e: Element) -> None:
     """Note an amount, people, "which", a negation, or a "but", which ends one: "not open, but next to the dining room"."""
     if e.kind == "amount" and e.mark is not None:
-        attach(c, k, e.mark)
+        _attach(c, k, e.mark)
     elif e.kind == "owner":
         c.owner, c.owning = e.value, ""
     elif e.kind == "relative":
@@ -302,6 +305,66 @@ def _windows(c: Clause, k: int, e: Element) -> None:
     if rooms:
         c.state.say("no_window" if negative else "window", rooms, (), e)
     c.deny()
+
+
+def _usual(c: Clause, ids: Group) -> float:
+    """Return the usual area of rooms together [m2]."""
+    return sum(DEFAULTS[c.stock.get(i).type].area for i in ids)
+
+
+def _measures_home(c: Clause, k: int, mark: Mark, ids: Group) -> bool:
+    """Whether an area right at the room k measures the home: "... kitchen and bath 85 m²"."""
+    if mark.value != "area" or not ids:
+        return False
+    rooms = [x for x in c.sentence if x.kind == "np"]
+    times = mark.number / _usual(c, ids)
+    before, behind = c.near(k - 1), c.near(k + 1)
+    if mark.total or (behind is not None and behind.value == "total"):
+        return True
+    if sum(bool(x.amounts) for x in rooms) != 1:
+        return False
+    home = any(x.kind == "home" and not x.amounts for x in c.sentence[:k])
+    home_before = before is not None and before.kind == "home" and not before.amounts and len(ids) > 1
+    if home_before and times > MORE:  # "un piso de tres dormitorios de unos 95 metros cuadrados"
+        return True
+    last = not any(x.first >= mark.last for x in rooms)
+    near = len(rooms) > 2 or (home and mark.first == c.sentence[k].last and mark.text[0].isdigit())
+    return (times > HUGE and (home or rooms[0] is not c.sentence[k])) or (near and last and times > LARGE)
+
+
+def _attach(c: Clause, k: int, mark: Mark, *, home: bool = False) -> None:
+    """Attach an amount that stands by itself, or behind the word for the home."""
+    state = c.state
+    around = c.sentence[max(0, k - 2) : k + 2]
+    before, ahead = c.near(k - 1), c.near(k + 1)
+    rooms = () if home else tuple(i for i in named_rooms(c.latest) if not i.startswith("<"))
+    if mark.value == "storeys":
+        state.storeys = state.storeys or ((int(mark.number), mark) if mark.number >= 1 else None)
+    elif mark.value == "rooms":  # of one and a half, the half is to sleep in
+        state.rooms = state.rooms or (2 if mark.number == 1.5 else int(mark.number), mark)
+    elif mark.total or any(x.kind == "flag" and x.value == "total" for x in around):
+        state.amounts.append((mark, None))
+    elif mark.value == "length":
+        named = next((x for x in reversed(c.sentence[:k]) if x.kind in {"flag", "np"} and x.value not in {"wide", "only"}), None)
+        what = next((x.value for x in (named, ahead) if x is not None and x.kind == "flag" and x.value in NAMED), "")
+        state.amounts.append((replace(mark, value=what), None) if what else (mark, rooms or None))
+    elif mark.value == "area" and before is not None and (before.kind, before.value) == ("cue", "in") and not home:
+        state.amounts.append((mark, None))  # "ten rooms in 40 m2"
+    elif mark.value == "area" and c.latest == ("*",) and before is not None and before.kind in {"every", "verb", "det"}:
+        state.amounts.append((mark, c.latest))  # "every room at least 9 m2"
+    elif mark.value != "car":
+        state.amounts.append((mark, rooms if rooms and not _closes(c, k, mark, rooms) else None))
+
+
+def _closes(c: Clause, k: int, mark: Mark, rooms: Group) -> bool:
+    """Whether an area set off by a comma is the home's: more than the room in front would take."""
+    before = next((x.kind for x in reversed(c.sentence[:k]) if x.kind != "word"), "")
+    named = [x for x in c.sentence[:k] if x.kind == "np"]
+    if mark.value != "area" or before not in {"comma", "and"} or any(x.amounts for x in named):
+        return False
+    times = mark.number / _usual(c, rooms)
+    home = any(x.kind == "home" for x in c.sentence[:k])
+    return (len(named) > 2 and times > LISTED) or (home and times > MORE) or (len(named) > 1 and times > LARGE)
 
 
 READERS: Mapping[str, Callable[[Clause, int, Element], int | None]] = {

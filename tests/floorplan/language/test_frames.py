@@ -40,6 +40,17 @@ def test_every_sign_is_used_by_a_frame_or_by_a_reader():
     [
         ("A door between the kitchen and the study.", {"rooms": {"kitchen": 1, "office": 1}, "links": [["kitchen", "office", "door"]]}),
         ("Three bedrooms; neither may be smaller than 10 m2.", {"rooms": {"bedroom": 3}, "areas": {"bedroom": [10, None]}}),
+        (
+            "The living room is larger than the kitchen, and neither may be smaller than 12 m2.",
+            {"rooms": {"living_room": 1, "kitchen": 1}, "areas": {"living_room": [12, None], "kitchen": [12, None]}},
+        ),
+        (
+            "Deux chambres doivent donner sur le couloir, le couloir doit mener à la cuisine.",
+            {
+                "rooms": {"bedroom": 2, "hallway": 1, "kitchen": 1},
+                "links": [["bedroom", "hallway", "door", 2], ["hallway", "kitchen", "door"]],
+            },
+        ),
         ("Zwei Schlafzimmer, keines davon darf kleiner als 12 m2 sein.", {"rooms": {"bedroom": 2}, "areas": {"bedroom": [12, None]}}),
         ("两间卧室,都不能小于10平米。", {"rooms": {"bedroom": 2}, "areas": {"bedroom": [10, None]}}),
         (

@@ -3,9 +3,8 @@
 import pytest
 import yaml
 
-from pipeline.floorplan.language.amounts import combine_amounts
 from pipeline.floorplan.language.lexicon import FOLDER, LANGUAGES, lexicon
-from pipeline.floorplan.language.marks import listen, segment
+from pipeline.floorplan.language.marks import combine_amounts, listen, segment
 from pipeline.floorplan.language.parser import parse
 from pipeline.floorplan.language.spelling import distance, resolve
 from pipeline.floorplan.language.text import Verbs, clean, fold, tokenize
