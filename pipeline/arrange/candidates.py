@@ -61,7 +61,7 @@ def round_walls(item: Item, target: Floats, walls: Sequence[Edge], site: Site, s
 
 
 def everywhere(item: Item, target: Floats, walls: Sequence[Edge], site: Site, settings: SeparateSettings) -> tuple[Floats, Floats]:
-    """Return a grid over the room in the four directions of its longest wall, as `near_by` does; none for what belongs to a wall."""
+    """Return a grid over the room in the four directions of its longest wall, and poses along the walls, as `near_by` does; none for what belongs to a wall."""
     if item.mount == "wall" or item.habit.must:
         return np.zeros((0, 4)), np.zeros(0)
     base = max(walls, key=lambda edge: round(edge.length, 6)).yaw
@@ -71,12 +71,10 @@ def everywhere(item: Item, target: Floats, walls: Sequence[Edge], site: Site, se
     points = points[shapely.contains_xy(shapely.Polygon(site.polygon), points[:, 0], points[:, 1])]
     yaws = np.array([wrap_yaw(float(base) + k * math.pi / 2) for k in range(4)])
     spread, turns = np.repeat(points, 4, axis=0), np.tile(yaws, len(points))
-    cost = (
-        np.linalg.norm(spread - target[:2], axis=1)
-        + settings.turn_cost * yaw_difference(turns, float(target[3]))
-        + OFF_WALL * item.habit.backed
-    )
-    return _rank_poses(item, _stack_poses(spread, turns, target[2]), cost, site)
+    free, backed = _stack_poses(spread, turns, target[2]), _along_walls(item, target, walls, np.zeros((0, 4, 2)))
+    cost = np.concatenate([np.linalg.norm(spread - target[:2], axis=1) + OFF_WALL * item.habit.backed, backed[1]])
+    poses = np.concatenate([free, backed[0]])
+    return _rank_poses(item, poses, cost + settings.turn_cost * yaw_difference(poses[:, 3], float(target[3])), site)
 
 
 def at_anchor_poses(

@@ -10,12 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.learnt_relations import Habit, LearntRelations
-from pipeline.arrange.shapes import Shape, shape
+from pipeline.arrange.shapes import Grip, Shape, shape
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
+from pipeline.geometry.prisms import join_prisms
 
 Floats = NDArray[np.float64]
 
+FIXTURES = frozenset({"kitchen", "appliance", "bath"})  # super-categories of what one stands before to use it
+FORWARD, NOTHING = np.array([0.0, -1.0]), join_prisms([])
 OTHER_WALL = 0.8  # turn from which two things stand at different walls [rad]
 
 
@@ -38,6 +41,13 @@ class Item:
     def area(self) -> float:
         """The area of its box in plan [m2]; what hangs takes none."""
         return 4.0 * float(self.half[0] * self.half[1]) if self.habit.mount == "floor" else 0.0
+
+    @property
+    def grips(self) -> tuple[Grip, ...]:
+        """The handles of which a robot must reach one; of a fixture that has none the middle of its front."""
+        if self.shape.grips or self.habit.access != "front" or self.habit.kind not in FIXTURES:
+            return self.shape.grips
+        return (Grip(np.array([0.0, -self.half[1]]), FORWARD, NOTHING),)
 
     def at(self, pose: Floats) -> Placement:
         """Return its placement at a pose."""

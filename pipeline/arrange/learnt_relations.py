@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -74,9 +75,11 @@ class LearntRelations:
             self._modes[key] = _rows(pair) if pair is not None and pair.strength >= STRENGTH and pair.modes else None
         return self._modes[key]
 
-    def distance(self, one: str, other: str) -> float:
-        """Return how far things of two categories keep from each other [m], 0 where it does not matter."""
-        return self.known.distances.get((min(one, other), max(one, other)), 0.0)
+    def distances(self, categories: Sequence[str]) -> Floats:
+        """Return how far things of N categories keep from each other (N, N) [m], 0 where it does not matter."""
+        known = self.known.distances
+        apart = [known.get((min(one, other), max(one, other)), 0.0) for one in categories for other in categories]
+        return np.array(apart).reshape(len(categories), len(categories))
 
 
 def _habit(category: str, known: Relations) -> Habit:

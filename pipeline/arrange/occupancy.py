@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.groups import Group
 from pipeline.arrange.item import Item
-from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
 from pipeline.arrange.world import compose_pose, free_poses, make_world, put
@@ -23,18 +23,25 @@ Floats = NDArray[np.float64]
 SPREAD = 0.12  # when a pose cuts the floor, poses nearer to it than this are not tried [m]; more after every try
 TRIES = 24  # poses whose floor is looked at per group
 UNIT = np.ones(3)
-OUT_OF_REACH = (2.0, 0.7)  # cost of what a robot cannot open where it stands [m]; at its anchor: less than to leave it
+OUT_OF_REACH = (2.0, 0.7)  # cost of what a robot cannot use where it stands [m]; at its anchor: less than to leave it
+
+
+class Place(NamedTuple):
+    """Where a group could stand: the pose (4,) of its first member, what that costs [m], and whom a robot does not get to then."""
+
+    pose: Floats
+    cost: float
+    unreached: frozenset[int]
 
 
 class Occupancy:
-    """The objects of a room, of which those of `there` (N,) stand at `poses` (N, 4); a relation holds those of `bound` where they are."""
+    """The objects of a room, of which those of `there` (N,) stand at `poses` (N, 4); a relation holds those of `bound` where they are.
 
-    def __init__(
-        self, site: Site, items: list[Item], settings: SeparateSettings, learnt: LearntRelations, bound: Collection[int] = ()
-    ) -> None:
+    `distances` (N, N) is how far each keeps from each [m].
+    """
+
+    def __init__(self, site: Site, items: list[Item], settings: SeparateSettings, distances: Floats, bound: Collection[int] = ()) -> None:
         self.site, self.items, self.settings, self.bound = site, items, settings, frozenset(bound)
-        names = [item.placement.category for item in items]
-        distances = np.array([[learnt.distance(one, other) for other in names] for one in names]).reshape(len(names), len(names))
         self.world = make_world([item.shape for item in items], site.swung, site.shut, site.polygon, site.ceiling, distances)
         self.poses = np.array([item.wished for item in items]).reshape(-1, 4)
         self.there = np.zeros(len(items), np.bool_)
@@ -75,18 +82,17 @@ class Occupancy:
                 best, least = poses[k], float(totals[k])
         return None if best is None else (best, least)
 
-    def settle(self, group: Group, poses: Floats, costs: Floats) -> bool:
-        """Let a group stand at the cheapest of its poses that is free and leaves the floor in one piece; tell whether there is one.
+    def place(self, group: Group, poses: Floats, costs: Floats, best: Place | None = None) -> Place | None:
+        """Return the cheapest place of a group that is free and leaves the floor in one piece, where there is one that is cheaper than `best`; else that.
 
-        What then has no handle within reach any more, the group itself or others, costs `OUT_OF_REACH` each.
+        What a robot does not get to any more then, the group itself or others, costs `OUT_OF_REACH` each.
         """
         start, tries = 0, 0
         failed: list[list[float]] = []
-        best: tuple[float, Floats, frozenset[int]] | None = None
-        while start < len(poses) and tries < TRIES and (best is None or costs[start] < best[0]):
+        while start < len(poses) and tries < TRIES and (best is None or costs[start] < best.cost):
             totals, start = self._totals(group, poses, costs, start, self.there)
             for k in np.argsort(np.round(totals, 9), kind="stable")[: int(np.isfinite(totals).sum())]:
-                if tries >= TRIES or (best is not None and totals[k] >= best[0]):
+                if tries >= TRIES or (best is not None and totals[k] >= best.cost):
                     break
                 apart = SPREAD * (1.0 + 0.15 * tries)
                 x, y, _, yaw = poses[k].tolist()
@@ -100,27 +106,31 @@ class Occupancy:
                     if unreached is None
                     else float(totals[k]) + sum(OUT_OF_REACH[i in self.bound] for i in unreached - self.unreached)
                 )
-                if unreached is not None and (best is None or total < best[0]):
-                    best = total, poses[k], unreached
+                if unreached is not None and (best is None or total < best.cost):
+                    best = Place(poses[k], total, unreached)
                 if unreached == self.unreached:
                     break
                 failed.append([x, y, yaw])
                 tries += 1
-        if best is None:
-            return False
-        self.stand(group, best[1])
-        self.unreached = best[2]
-        return True
+        return best
+
+    def settle(self, group: Group, place: Place) -> None:
+        """Let a group stand at a place."""
+        self.stand(group, place.pose)
+        self.unreached = place.unreached
 
     def out_of_reach(self) -> frozenset[int] | None:
-        """Return the objects that stand and open, and have no handle within a robot's reach; None where the floor falls apart.
+        """Return the objects that stand, and have no handle or front within a robot's reach; None where the floor falls apart.
 
-        It does when doors are no longer joined, or the robot does not get from them into the room.
+        It does when doors are no longer joined, or the robot does not get from them into the room. Nothing is out of reach where it gets into the
+        empty room by no door.
         """
         space = self.site.free_space(self._bodies())
         label, doors = self.site.gate(space)
         if doors < self.doors or (self.enters and not self._enters(space, label)):
             return None
+        if not self.enters:
+            return frozenset()
         there = np.flatnonzero(self.there).tolist()
         return frozenset(i for i in there if i in self.unreached or not self._usable(i, space, label))
 
@@ -136,8 +146,7 @@ class Occupancy:
             settings.candidates,
             others,
             settings.touch,
-            settings.access_cost,
-            settings.nearness_cost,
+            (settings.access_cost, settings.nearness_cost),
         )
 
     def _bodies(self) -> Prisms:
@@ -151,9 +160,9 @@ class Occupancy:
         return label > 0 and bool((space.labels[self.site.floor.room >= 0] == label).any())
 
     def _usable(self, i: int, space: FreeSpace, label: int) -> bool:
-        """Whether a robot can stand at one of an item's handles, if it has any."""
+        """Whether a robot can stand at one of an item's handles, or before its front, where that matters."""
         site, pose = self.site, self.poses[i]
-        grips = self.items[i].shape.grips
+        grips = self.items[i].grips
         c, s = np.cos(pose[3]), np.sin(pose[3])
         T = np.array([[c, s], [-s, c]])
         return not grips or any(

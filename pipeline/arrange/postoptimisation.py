@@ -21,7 +21,7 @@ class Arranged:
     """A finished room.
 
     `ratio_sampled` is the controlled ratio of what the layout model placed, `ratio` that of `placements`, both 1 where none is asked for;
-    `exchanges` counts the replacements of algorithm 2. `failed`: a count that was to be kept is not, or the target is not reached.
+    `exchanges` counts the replacements of algorithm 2; `unreached` are the ids of what a robot cannot use where it stands. `failed`: a count that was to be kept is not, or the target is not reached.
     """
 
     placements: tuple[Placement, ...]
@@ -30,6 +30,7 @@ class Arranged:
     ratio_sampled: float
     ratio: float
     exchanges: int
+    unreached: frozenset[str]
     failed: str
 
 
@@ -55,6 +56,7 @@ def post_optimise(
     current: Sequence[Placement] = placements
     rejects: list[Reject] = []
     exchanges = 0
+    unreached: frozenset[str] = frozenset()
     result: Separated | None = None
     reached = sampled
     for _ in range(PASSES):
@@ -66,7 +68,7 @@ def post_optimise(
             current = controlled.placements
         result = separate(site, current, assets, learnt, settings.separate, smaller, keep_count=keep_count)
         rejects += result.rejects
-        current = result.placements
+        current, unreached = result.placements, result.unreached
         if target is None:
             break
         reached = ratio(current)
@@ -77,7 +79,7 @@ def post_optimise(
     failed = "count_missed" if keep_count and len(kept) < len(placements) else ""
     if not failed and target is not None and reached < target:
         failed = "walkable_missed"
-    return Arranged(tuple(current), tuple(rejects), moved, sampled, reached, exchanges, failed)
+    return Arranged(tuple(current), tuple(rejects), moved, sampled, reached, exchanges, unreached, failed)
 
 
 def _distance(a: Placement, b: Placement) -> float:

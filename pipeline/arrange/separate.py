@@ -45,7 +45,7 @@ class Found(Protocol):
 
 
 BROKEN = 0.6  # a broken relation, beside 1 for its object if that were lost
-UNREACHED = 0.3  # what a robot cannot open, beside 1 for a lost object of no size
+UNREACHED = 0.3  # what a robot cannot use at its anchor, beside 1 for a lost object of no size; elsewhere it is as good as lost
 ALWAYS = 0.95  # share of the training examples from which on nothing else is known of a category than that it is there
 HIDDEN_ROUNDS = 3  # rounds that are spent on what a robot cannot open and no relation holds there
 Smaller = Callable[[str, float], Found | None]  # (asset_id, area [m2]) -> the closest asset with a smaller footprint
@@ -62,14 +62,15 @@ class Reject:
 
 @dataclass(frozen=True, slots=True)
 class Separated:
-    """The outcome for one room: `placements` in the order they came, `rejects`, how far each moved [m], and `failed`.
+    """The outcome for one room: `placements` in the order they came, `rejects`, how far each moved [m], `unreached`, `failed`.
 
-    `failed` is set when an object had to be left out although the count was to be kept.
+    `unreached` are the ids of what a robot cannot use where it stands; `failed` is set when an object had to be left out although the count was to be kept.
     """
 
     placements: tuple[Placement, ...]
     rejects: tuple[Reject, ...]
     moved: tuple[float, ...]
+    unreached: frozenset[str]
     failed: bool
 
 
@@ -90,23 +91,28 @@ def separate(
     settings = settings or SeparateSettings()
     asked = [make_item(p, assets, learnt, settings.access_depth) for p in placements]
     items = list(asked)
+    distances = learnt.distances([item.placement.category for item in items])
     losses = [0] * len(items)
     first: list[int] = []
     led: frozenset[int] = frozenset()
     best: dict[int, Placement] = {}
     astray: list[int] = []
+    unreached: frozenset[int] = frozenset()
     least: tuple[float, float] | None = None
     for number in range(max(1, settings.rounds)):
-        occupancy, sound, bonds, runs = _arrange_once(site, items, first, led, learnt, settings, number)
+        occupancy, sound, bonds, runs = _arrange_once(site, items, first, led, learnt, distances, settings, number)
         apart = broken(bonds, items, occupancy.poses, occupancy.there, learnt)
         there = {i: items[i].at(occupancy.poses[i]) for i in np.flatnonzero(occupancy.there).tolist()}
         lost = [i for i in range(len(items)) if i not in there]
         strays = stray_units(runs, items, occupancy.poses, occupancy.there)
         wide = [i for i in strays if not any(i in run for run in runs)]
-        faults = BROKEN * _weight(items, (*apart, *strays)) + UNREACHED * len(occupancy.unreached)
+        useless = [i for i in occupancy.unreached if bonds[i] is None]
+        faults = (
+            BROKEN * _weight(items, (*apart, *strays)) + _weight(items, useless) + UNREACHED * (len(occupancy.unreached) - len(useless))
+        )
         score = _score(there, items, faults)
         if (sound or number == settings.rounds - 1) and (least is None or score < least):
-            best, least = there, score
+            best, least, unreached = there, score, occupancy.unreached
             astray = [
                 i for i in broken(bonds, items, occupancy.poses, occupancy.there, learnt, REACH) if _only_there(items, bonds[i], i, learnt)
             ]
@@ -132,7 +138,7 @@ def separate(
         ]
     for i in () if keep_count else astray:
         del best[i]
-    return _outcome(asked, best, keep_count=keep_count)
+    return _outcome(asked, best, unreached, keep_count=keep_count)
 
 
 def _only_there(items: Sequence[Item], bond: Bond | None, i: int, learnt: LearntRelations) -> bool:
@@ -149,6 +155,7 @@ def _arrange_once(
     first: Sequence[int],
     led: Collection[int],
     learnt: LearntRelations,
+    distances: NDArray[np.float64],
     settings: SeparateSettings,
     number: int,
 ) -> tuple[Occupancy, bool, list[Bond | None], list[list[int]]]:
@@ -156,7 +163,7 @@ def _arrange_once(
     walls = edges(site)
     runs, laid = lay_runs(items, walls, site)
     poses, bonds = exact_poses(items, site, walls, learnt, settings, laid)
-    occupancy = Occupancy(site, items, settings, learnt, [i for i, bond in enumerate(bonds) if bond is not None])
+    occupancy = Occupancy(site, items, settings, distances, [i for i, bond in enumerate(bonds) if bond is not None])
     settle_all(occupancy, Draft(poses, bonds, runs, walls, learnt, led), first, careful=number > 0, bulk=number <= 1)
     if number > 0:
         return occupancy, True, bonds, runs
@@ -165,7 +172,7 @@ def _arrange_once(
     return occupancy, unreached is not None, bonds, runs
 
 
-def _outcome(asked: Sequence[Item], best: Mapping[int, Placement], *, keep_count: bool) -> Separated:
+def _outcome(asked: Sequence[Item], best: Mapping[int, Placement], unreached: Collection[int], *, keep_count: bool) -> Separated:
     rejects: list[Reject] = []
     for i, item in enumerate(asked):
         what = item.placement
@@ -175,7 +182,8 @@ def _outcome(asked: Sequence[Item], best: Mapping[int, Placement], *, keep_count
             rejects.append(Reject(what.object_id, "shrunk_to_fit", f"{what.asset_id} gave way to {best[i].asset_id}"))
     kept = sorted(best)
     moved = tuple(float(np.linalg.norm(best[i].position[:2] - asked[i].wished[:2])) for i in kept)
-    return Separated(tuple(best[i] for i in kept), tuple(rejects), moved, keep_count and len(kept) < len(asked))
+    out_of_reach = frozenset(best[i].object_id for i in kept if i in unreached)
+    return Separated(tuple(best[i] for i in kept), tuple(rejects), moved, out_of_reach, keep_count and len(kept) < len(asked))
 
 
 def _weight(items: Sequence[Item], which: Iterable[int]) -> float:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+import math
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from pipeline.arrange.candidates import ALONE, at_anchor_poses, everywhere, hide
 from pipeline.arrange.groups import Group, group_of, groups
 from pipeline.arrange.item import Item, wrap_yaw
 from pipeline.arrange.learnt_relations import LearntRelations
-from pipeline.arrange.occupancy import Occupancy
+from pipeline.arrange.occupancy import Occupancy, Place
 from pipeline.arrange.walls import Edge
 from pipeline.arrange.world import FREE, conflicts, put
 
@@ -75,8 +76,8 @@ def settle_all(occupancy: Occupancy, draft: Draft, first: Sequence[int], *, care
         strays += _settle_group(occupancy, draft, fitted_groups[k], careful=careful)
     for led in leading.values():
         lead = led[0].first
-        candidates = round_walls(occupancy.items[lead], draft.pose(lead), draft.walls, occupancy.site, occupancy.settings)
-        any(_put(occupancy, group, *candidates, careful=careful) for group in led)
+        poses, costs = round_walls(occupancy.items[lead], draft.pose(lead), draft.walls, occupancy.site, occupancy.settings)
+        any(_put(occupancy, group, poses, costs, careful=careful) for group in led)
     for k in (k for k in order if k not in free and fitted_groups[k].first not in runs):
         left = [i for i in fitted_groups[k].members.tolist() if not occupancy.there[i]]
         whole = len(left) == len(fitted_groups[k].members)
@@ -180,35 +181,76 @@ def _beside(occupancy: Occupancy, draft: Draft, i: int, group: Group, poses: Flo
 
 
 def _settle_group(occupancy: Occupancy, draft: Draft, group: Group, *, careful: bool) -> list[int]:
-    """Place a group as one near its target; else its anchor alone. Return the members that are then still to be placed."""
-    first = group.first
+    """Place a group as one near its target; else its anchor alone. Return the members that are then still to be placed.
+
+    A group that would keep a robot from something goes to another part of the room, or its anchor does without it where that is cheaper.
+    """
+    first, alone = group.first, group_of([group.first], draft.poses)
     if len(group.members) == 1:
         _settle_one(occupancy, draft, first, careful=careful)
         return []
-    poses, costs = _near(occupancy, draft, first)
-    close = costs <= SHIFT
-    if _put(occupancy, group, poses[close], costs[close], careful=careful):
-        return []
-    _settle_one(occupancy, draft, first, careful=careful)
-    return [int(i) for i in group.members[1:]]
+    near = _near(occupancy, draft, first)
+    rest = [int(i) for i in group.members[1:]]
+    ways = [lambda: _close(occupancy, first, *near), lambda: _anywhere(occupancy, draft, first)][: 1 + careful]
+    place = _find(occupancy, group, ways, careful=careful)
+    if place is None:
+        _settle_one(occupancy, draft, first, near, careful=careful)
+        return rest
+    if not place.unreached <= occupancy.unreached:
+        lone = _find(occupancy, alone, ways, careful=careful)
+        if lone is not None and lone.cost + ALONE * len(rest) < place.cost:
+            occupancy.settle(alone, lone)
+            return rest
+    occupancy.settle(group, place)
+    return []
 
 
-def _settle_one(occupancy: Occupancy, draft: Draft, i: int, *, careful: bool) -> None:
-    """Place one object: near its target or elsewhere at its anchor, else all over the room."""
+def _settle_one(occupancy: Occupancy, draft: Draft, i: int, near: tuple[Floats, Floats] | None = None, *, careful: bool) -> None:
+    """Place one object: near its target or elsewhere at its anchor, which is `near`, else all over the room."""
+    ways = [lambda: near or _near(occupancy, draft, i), lambda: _anywhere(occupancy, draft, i)]
     alone = group_of([i], draft.poses)
-    poses, costs = _near(occupancy, draft, i)
-    if not _put(occupancy, alone, poses, costs, careful=careful):
-        poses, costs = everywhere(occupancy.items[i], _target(occupancy, draft, i), draft.walls, occupancy.site, occupancy.settings)
-        _put(occupancy, alone, poses, costs, careful=careful)
+    place = _find(occupancy, alone, ways, careful=careful)
+    if place is not None:
+        occupancy.settle(alone, place)
 
 
 def _put(occupancy: Occupancy, group: Group, poses: Floats, costs: Floats, *, careful: bool) -> bool:
-    if careful:
-        return occupancy.settle(group, poses, costs)
-    best = occupancy.nearest(group, poses, costs)
-    if best is not None:
-        occupancy.stand(group, best[0])
-    return best is not None
+    """Let a group stand at the best of these poses; tell whether there is one."""
+    place = _find(occupancy, group, [lambda: (poses, costs)], careful=careful)
+    if place is not None:
+        occupancy.settle(group, place)
+    return place is not None
+
+
+def _find(occupancy: Occupancy, group: Group, ways: Sequence[Callable[[], tuple[Floats, Floats]]], *, careful: bool) -> Place | None:
+    """Return the best place of a group by the first of several ways of looking for poses; by the next too where none is found, or it would keep a robot from something."""
+    place: Place | None = None
+    for way in ways:
+        poses, costs = way()
+        if careful:
+            place = occupancy.place(group, poses, costs, place)
+        elif (best := occupancy.nearest(group, poses, costs)) is not None:
+            place = Place(*best, occupancy.unreached)
+        if place is not None and place.unreached <= occupancy.unreached:
+            break
+    return place
+
+
+def _close(occupancy: Occupancy, first: int, poses: Floats, costs: Floats) -> tuple[Floats, Floats]:
+    """Return those of the poses near the target of its first member to which a group goes as one, of what stands free the same with a quarter turn too."""
+    poses, costs = poses[costs <= SHIFT], costs[costs <= SHIFT]
+    if occupancy.items[first].habit.wants or not len(poses):
+        return poses, costs
+    turns = [np.array([0.0, 0.0, 0.0, side * math.pi / 2]) for side in (1, -1)]
+    poses = np.concatenate([poses, *(poses + turn for turn in turns)])
+    costs = np.concatenate([costs, *(costs + occupancy.settings.turn_cost * math.pi / 2 for _ in turns)])
+    order = np.argsort(np.round(costs, 9), kind="stable")
+    return np.ascontiguousarray(poses[order]), costs[order]
+
+
+def _anywhere(occupancy: Occupancy, draft: Draft, i: int) -> tuple[Floats, Floats]:
+    """Return poses of an object all over the room; none for what belongs to a wall."""
+    return everywhere(occupancy.items[i], _target(occupancy, draft, i), draft.walls, occupancy.site, occupancy.settings)
 
 
 def _target(occupancy: Occupancy, draft: Draft, i: int) -> Floats:

@@ -80,7 +80,7 @@ def make_world(shapes: Sequence[Shape], swung: Prisms, shut: Prisms, polygon: Fl
         np.zeros((len(every), 2)),
         np.zeros((len(every), 4)),
         np.zeros((len(shapes), 4)),
-        np.zeros((len(shapes), 4)),
+        np.tile([np.inf, np.inf, -np.inf, -np.inf], (len(shapes), 1)),
         distances,
         np.ascontiguousarray(doors.corners),
         doors.count,
@@ -100,8 +100,6 @@ def put(world: World, i: int, pose: Floats) -> None:
     c, s = math.cos(pose[3]), math.sin(pose[3])
     left, low, right, high = np.inf, np.inf, -np.inf, -np.inf
     for k in range(world.start[i, 0], world.start[i, 3]):
-        if k == world.start[i, 1]:
-            world.body[i, 0], world.body[i, 1], world.body[i, 2], world.body[i, 3] = left, low, right, high
         x0, y0, x1, y1 = np.inf, np.inf, -np.inf, -np.inf
         for v in range(world.corner_count[k]):
             x = c * world.corners[k, v, 0] - s * world.corners[k, v, 1] + pose[0]
@@ -111,9 +109,9 @@ def put(world: World, i: int, pose: Floats) -> None:
         world.flat[k, 0], world.flat[k, 1], world.flat[k, 2], world.flat[k, 3] = x0, y0, x1, y1
         world.at_z[k, 0], world.at_z[k, 1] = world.z[k, 0] + pose[2], world.z[k, 1] + pose[2]
         left, low, right, high = min(left, x0), min(low, y0), max(right, x1), max(high, y1)
+        if k + 1 == world.start[i, 1]:
+            world.body[i, 0], world.body[i, 1], world.body[i, 2], world.body[i, 3] = left, low, right, high
     world.box[i, 0], world.box[i, 1], world.box[i, 2], world.box[i, 3] = left, low, right, high
-    if world.start[i, 1] == world.start[i, 3]:
-        world.body[i, 0], world.body[i, 1], world.body[i, 2], world.body[i, 3] = left, low, right, high
 
 
 @borrowing
@@ -271,19 +269,16 @@ def free_poses(
     wanted: int,
     others: NDArray[np.bool_],
     tolerance: float,
-    access_cost: float,
-    nearness_cost: float,
+    soft: tuple[float, float],
 ) -> tuple[Floats, int]:
     """Return the cost (C,) of poses of a group from `first` on, inf where not free, until `wanted` are found; and where it stopped.
 
     `members` (K,) move as one, at `offsets` (K, 4) from the group's pose; `others` (N,) are the objects that stand. Poses are
-    given in ascending order of `costs`, to which the soft rules add.
+    given in ascending order of `costs`, to which the soft rules add: `soft` are the cost of each access place taken and of a metre too near [m].
     """
     totals = np.full(poses.shape[0], np.inf)
     own = np.empty((members.shape[0], 4))
-    return totals, int(
-        _free_poses(world, members, offsets, poses, costs, first, wanted, others, tolerance, (access_cost, nearness_cost), own, totals)
-    )
+    return totals, int(_free_poses(world, members, offsets, poses, costs, first, wanted, others, tolerance, soft, own, totals))
 
 
 @borrowing
@@ -291,7 +286,7 @@ def _free_poses(
     world: World, members: Ints, offsets: Floats, poses: Floats, costs: Floats, first: int, wanted: int, others: NDArray[np.bool_],
     tolerance: float, soft: tuple[float, float], own: Floats, found: Floats,
 ) -> int:  # fmt: skip
-    """Write the costs to `found` (C,), return where it stopped; `soft` are the costs of access and of nearness, `own` (K, 4) is scratch."""
+    """Write the costs to `found` (C,), return where it stopped; `own` (K, 4) is scratch."""
     have = 0
     last = FREE  # what was in the way of the pose before is likely to be in the way of this one
     for k in range(first, poses.shape[0]):

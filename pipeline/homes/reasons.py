@@ -23,7 +23,11 @@ REASONS: dict[str, Reason] = {
     "lacks_essential": Reason("room", "tried again", "without what makes the room: a bedroom without a bed"),
     "too_few_left": Reason("room", "tried again", "too many of its objects had to go"),
     "joint_blocked": Reason("home", "tried again", "a joint does not move through its range"),
-    "out_of_reach": Reason("home", "tried again", "fewer openable objects can be opened than the policy asks for"),
+    "out_of_reach": Reason(
+        "room, home",
+        "tried again",
+        "a robot cannot use what makes the room; of a home: opens a smaller share of what opens than the policy asks for",
+    ),
     "room_cut_off": Reason("home", "tried again", "a room cannot be reached from the entrance"),
     "refused": Reason(
         "index", "left empty", "the request cannot be met: it contradicts itself, or asks for what no plan or no library has"

@@ -38,6 +38,7 @@ class RoomResult:
     binding: bool = False
     free: float = 1.0  # measured free floor where a share is asked for, else 1
     openers: frozenset[str] = frozenset()  # assets of its objects that open
+    unreached: frozenset[str] = frozenset()  # ids of objects that a robot cannot use where they stand
 
     def rank(self) -> tuple[bool, bool, int]:
         """Order results of one room: without failure first, then wishes met, then the number of objects."""
@@ -46,25 +47,32 @@ class RoomResult:
     def without(self, violating: Mapping[str, Violation], taxonomy: Taxonomy) -> RoomResult:
         """Return the result less the objects of these ids, judged again."""
         left = tuple(p for p in self.placements if p.object_id not in violating)
-        failure, detail, binding = shortcoming(self.draft, left, taxonomy, self.openers, self.free)
+        failure, detail, binding = shortcoming(self.draft, left, taxonomy, self.openers, self.free, self.unreached)
         return replace(self, placements=left, failure=failure, detail=detail, binding=binding)
 
 
 def shortcoming(
-    draft: Draft, placements: tuple[Placement, ...], taxonomy: Taxonomy, openers: frozenset[str] = frozenset(), free: float = 1.0
+    draft: Draft,
+    placements: tuple[Placement, ...],
+    taxonomy: Taxonomy,
+    openers: frozenset[str] = frozenset(),
+    free: float = 1.0,
+    unreached: frozenset[str] = frozenset(),
 ) -> tuple[str, str, bool]:
     """Return (reason code, detail, binding) of what a room lacks, ("", "", False) when nothing.
 
-    `openers` are the assets of the draft that open, `free` is the room's free floor.
+    `openers` are the assets of the draft that open, `free` is the room's free floor, `unreached` are the ids of what a robot cannot use.
     """
     job = draft.job
     unmet = _unmet(job, placements, openers, free)
     if unmet:
         return *unmet, True
-    there = {p.category for p in placements}
+    there, usable = {p.category for p in placements}, {p.category for p in placements if p.object_id not in unreached}
     for group in job.essentials(taxonomy):
         if not there.intersection(group):
             return "lacks_essential", f"none of {', '.join(group[:3])}", False
+        if not usable.intersection(group):
+            return "out_of_reach", f"{', '.join(sorted(there.intersection(group)))} cannot be used where it stands", False
     if len(placements) < KEPT * len(draft.placements):
         return "too_few_left", f"{len(placements)} of {len(draft.placements)} objects", False
     return "", "", False
@@ -107,8 +115,8 @@ def finish(
     rejects += [("object", r.reason, f"{r.object_id}: {r.detail}") for r in arranged.rejects]
     free = arranged.ratio
     openers = frozenset(p.asset_id for p in placements if assets[p.asset_id].openable)
-    failure, detail, binding = shortcoming(draft, placements, taxonomy, openers, free)
-    return RoomResult(draft, placements, tuple(rejects), failure, detail, binding, free, openers)
+    failure, detail, binding = shortcoming(draft, placements, taxonomy, openers, free, arranged.unreached)
+    return RoomResult(draft, placements, tuple(rejects), failure, detail, binding, free, openers, arranged.unreached)
 
 
 def _bounds_in_words(least: int, most: int | None) -> str:

@@ -31,3 +31,19 @@ def test_the_arranger_has_the_robot_and_the_raster_of_the_judge(monkeypatch, cha
     site = seen.value.args[0]
     assert site.robot == replace(settings.robot, radius=settings.robot.radius + finishing.MARGIN)
     assert site.floor.raster.cell == settings.cell
+
+
+def test_a_room_whose_only_cooker_nobody_gets_to_is_tried_again():
+    job = SimpleNamespace(
+        bounds=(None, None),
+        furniture=Furniture(),
+        walkable=None,
+        room=SimpleNamespace(type="kitchen"),
+        essentials=lambda _: (("oven",), ("sink_cabinet",)),
+    )
+    placements = tuple(
+        SimpleNamespace(category=c, object_id=i, asset_id=i) for i, c in (("one", "oven"), ("two", "oven"), ("basin", "sink_cabinet"))
+    )
+    draft = SimpleNamespace(job=job, placements=placements)
+    for unreached, failure in ((set(), ""), ({"one"}, ""), ({"one", "two"}, "out_of_reach"), ({"basin"}, "out_of_reach")):
+        assert finishing.shortcoming(draft, placements, taxonomy.load(), unreached=frozenset(unreached))[0] == failure
