@@ -106,16 +106,11 @@ def separate(
         lost = [i for i in range(len(items)) if i not in there]
         strays = stray_units(runs, items, occupancy.poses, occupancy.there)
         wide = [i for i in strays if not any(i in run for run in runs)]
-        useless = [i for i in occupancy.unreached if bonds[i] is None]
-        faults = (
-            BROKEN * _weight(items, (*apart, *strays)) + _weight(items, useless) + UNREACHED * (len(occupancy.unreached) - len(useless))
-        )
-        score = _score(there, items, faults)
+        score = _score(there, items, BROKEN * _weight(items, (*apart, *strays)) + _useless(items, bonds, occupancy.unreached))
         if (sound or number == settings.rounds - 1) and (least is None or score < least):
             best, least, unreached = there, score, occupancy.unreached
-            astray = [
-                i for i in broken(bonds, items, occupancy.poses, occupancy.there, learnt, REACH) if _only_there(items, bonds[i], i, learnt)
-            ]
+            far = broken(bonds, items, occupancy.poses, occupancy.there, learnt, REACH)
+            astray = [i for i in far if _only_there(items, bonds[i], i, learnt)]
         hidden = [i for i in occupancy.unreached if number == 0 or (bonds[i] is None and number < HIDDEN_ROUNDS)]
         if sound and not (lost or apart or hidden or wide):
             break
@@ -189,6 +184,12 @@ def _outcome(asked: Sequence[Item], best: Mapping[int, Placement], unreached: Co
 def _weight(items: Sequence[Item], which: Iterable[int]) -> float:
     """Return what objects weigh against each other, be they lost or astray: beds more than plants, a TV stand more than a chair."""
     return sum(1.0 + float(np.prod(items[i].placement.size[:2])) for i in which)
+
+
+def _useless(items: Sequence[Item], bonds: Sequence[Bond | None], unreached: Collection[int]) -> float:
+    """Return what counts for those whom a robot cannot use: UNREACHED at an anchor; elsewhere they are as good as lost."""
+    alone = [i for i in unreached if bonds[i] is None]
+    return _weight(items, alone) + UNREACHED * (len(unreached) - len(alone))
 
 
 def _score(placed: Mapping[int, Placement], items: Sequence[Item], faults: float) -> tuple[float, float]:
