@@ -216,6 +216,8 @@ class Clause:
                 here = {self.stock.get(i).level for i in named_rooms(left)} if cue in BESIDE else set()
                 ids = name(self.state, self.sentence, k, self.level if self.forward else here.pop() if len(here) == 1 else None)
                 self.measures(e)
+                if self.sentence[k - 1].kind == "to":  # "open to the dining room and to the kitchen"
+                    self.state.understood(self.sentence[k - 1].first, self.sentence[k - 1].last)
                 group += [i for i in ids if i not in group and i not in left]
                 first, joined, end = first or e, "", k + 1
             elif not group and (standin := self._standin(k, e, left)) is not None:
