@@ -223,7 +223,7 @@ def _put(occupancy: Occupancy, group: Group, poses: Floats, costs: Floats, *, ca
 
 
 def _find(occupancy: Occupancy, group: Group, ways: Sequence[Callable[[], tuple[Floats, Floats]]], *, careful: bool) -> Place | None:
-    """Return the best place of a group by the first of several ways of looking for poses; by the next too where none is found, or it would keep a robot from something."""
+    """Return the best place of a group by the first of several ways of looking for poses; by the next too where none is found, or it would keep a robot from what is worth more than SHIFT."""
     place: Place | None = None
     for way in ways:
         poses, costs = way()
@@ -231,7 +231,7 @@ def _find(occupancy: Occupancy, group: Group, ways: Sequence[Callable[[], tuple[
             place = occupancy.place(group, poses, costs, place)
         elif (best := occupancy.nearest(group, poses, costs)) is not None:
             place = Place(*best, occupancy.unreached)
-        if place is not None and place.unreached <= occupancy.unreached:
+        if place is not None and (place.cost <= SHIFT or place.unreached <= occupancy.unreached):
             break
     return place
 

@@ -154,10 +154,6 @@ class HomeLife:
         self.rejects.extend(self._reject(job, reject) for reject in result.rejects)
         self._check(result, self.rooms[job.room_id].keep(result))
 
-    def following(self, job: RoomJob, count: int) -> list[RoomJob]:
-        """Return the jobs of up to `count` tries that come after the one that waits."""
-        return self.rooms[job.room_id].following(count, self.resources.shard.room_attempts)
-
     def _check(self, result: RoomResult, best: RoomResult) -> None:
         """Where a result is not good enough the room is tried again; a wish that even the best leaves unmet needs another plan."""
         if not result.failure or self.refusal:
@@ -275,8 +271,8 @@ def make_homes(resources: Resources, requests: Sequence[Request], first: Mapping
     while any(home.state in {State.PLANNED, State.FINISHED} for home in homes):
         jobs = [(home, job) for home in homes for job in home.waiting.values() if job not in home.drafted]
         # Fewer rooms than QUAD cost as much as QUAD of them, and a room that has failed often fails again.
-        ahead = QUAD // len(jobs) - 1 if jobs else 0
-        jobs += [(home, later) for home, job in jobs if job.attempt for later in home.following(job, ahead)]
+        ahead, most = QUAD // len(jobs) - 1 if jobs else 0, resources.shard.room_attempts
+        jobs += [(home, later) for home, job in jobs if job.attempt for later in home.rooms[job.room_id].following(ahead, most)]
         for (home, job), draft in zip(jobs, draft_rooms(resources, [job for _, job in jobs]), strict=True):
             home.drafted[job] = draft
         for home in homes:
