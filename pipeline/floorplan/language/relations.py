@@ -61,7 +61,7 @@ def relate(c: Clause, k: int, e: Element) -> int | None:  # noqa: PLR0911, PLR09
         return j
     if not left and c.negative is not None and c.waiting is not None and c.waiting[0].value == "from":
         left, c.waiting = c.waiting[1], None  # "from the kitchen no door may lead into the bedroom"
-    if not left or _is_inverted(c, k, j):
+    if not left:  # "off the foyer are a wc and the living room"
         c.waiting = (e, group)
         c.subject, c.latest, c.run, c.verb = (), group, [], False
         return j
@@ -95,15 +95,6 @@ def _inside(c: Clause, left: Group, group: Group) -> bool:
     if not kinds or not hosts:
         return False
     return kinds == {"balcony"} or hosts <= HALLS or (kinds <= SECLUDED and hosts <= {*HALLS, "bedroom", "kitchen", "utility"})
-
-
-def _is_inverted(c: Clause, k: int, j: int) -> bool:
-    """Whether the subject follows: "off the foyer are a wc and the living room", "next to the kitchen, a pantry"."""
-    behind = c.near(j)
-    before = any(x.kind in {"np", "pron", "every", "zone", "home"} for x in c.sentence[:k])
-    if before and (c.run or not (c.sentence[k - 1].kind in LISTING and behind is not None and behind.kind == "verb")):
-        return False
-    return any(x.kind == "np" and not x.banned for x in c.sentence[j:])
 
 
 def _alone(c: Clause, k: int, e: Element) -> int | None:

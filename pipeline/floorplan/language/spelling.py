@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.lexicon import FARTHER, LANGUAGES, STRONG, Language, Lexicon, Meaning, kinds, lexicon, unread
-from pipeline.floorplan.language.text import HAN, Token, bare, fold, tokenize
+from pipeline.floorplan.language.text import HAN, Token, bare, fold, is_han, tokenize
 
 SHORTEST, LONG = 4, 8  # one error from SHORTEST letters on, two from LONG on
 ONE, USUAL = 1.2, 0.9  # how far a word with one error is at most, and with a usual one
@@ -38,7 +38,7 @@ def repair(tokens: Sequence[Token], texts: Sequence[str], lex: Lexicon) -> tuple
 def resolve(word: str, language: Language, *, every: bool = False) -> tuple[str, ...]:
     """Return the known words that an unknown one stands for, or itself: names of rooms, numbers and the like, or `every` word of the vocabulary."""
     lex = lexicon(language)
-    if len(word) > LONGEST or len(word) < 3 or "\u3400" <= word[0] <= "\u9fff":
+    if len(word) > LONGEST or len(word) < 3 or is_han(word[0]):
         return (word,)
     stem = _stem(word, lex)
     if stem:
@@ -181,7 +181,7 @@ def detect(prompt: str) -> Language:
     texts = [fold(t.text) for t in tokens if any(c.isalpha() for c in t.text)][:MOST]
     if not texts:
         raise RefusedError(_quote_prompt(prompt, "no words in the prompt"), f"say in {_read()} which rooms you want")
-    han = sum("\u3400" <= t[0] <= "\u9fff" for t in texts)
+    han = sum(is_han(t[0]) for t in texts)
     foreign = _foreign(tokens)
     if han and han >= 0.3 * len(texts) and not foreign:
         return next(language for language in LANGUAGES if _han(language))

@@ -100,6 +100,11 @@ def _number(raw: str) -> float | None:
         return None
 
 
+def is_han(char: str) -> bool:
+    """Whether a character is a Chinese one."""
+    return "\u3400" <= char <= "\u9fff"
+
+
 def fold(word: str) -> str:
     """Return a word without accents; umlauts and sharp s as two letters."""
     if word.isascii():
@@ -116,9 +121,9 @@ def bare(word: str) -> str:
 def words(phrase: str) -> tuple[str, ...]:
     """Return the folded words of a phrase of a lexicon."""
     plain, ascii_only = phrase.replace("-", " "), phrase.isascii()
-    if not ascii_only and all("\u3400" <= c <= "\u9fff" for c in phrase):
+    if not ascii_only and all(map(is_han, phrase)):
         return tuple(phrase.translate(ALIKE))
-    if plain.replace(" ", "").isalpha() and (ascii_only or not any("\u3400" <= c <= "\u9fff" for c in plain)):
+    if plain.replace(" ", "").isalpha() and (ascii_only or not any(map(is_han, plain))):
         return tuple(fold(w) for w in plain.split())
     return tuple(fold(t.text) for t in tokenize(phrase) if t.text != "-")
 
