@@ -25,6 +25,7 @@ from pipeline.corpus.partnet_writer import write_partnet
 from pipeline.corpus.settings import CorpusSettings
 from pipeline.entry import run
 from pipeline.execution import cores, track
+from pipeline.floorplan import warm
 
 RAW = Path("data/raw")
 BATCH = 10
@@ -49,6 +50,7 @@ def make(target: Path, seed: int, settings: CorpusSettings, workers: int) -> dic
     for leftover in (making, old):
         shutil.rmtree(leftover, ignore_errors=True)
     making.mkdir(parents=True)
+    warm()  # before workers start, which would each compile the planner
     jobs = list(tasks(making, seed, settings))
     total = sum(n for n, _ in jobs)
     tallies: list[HouseTally] = []

@@ -1,4 +1,4 @@
-"""Beds for one and two: panel, padded, buttoned, slatted, four-poster, sleigh, metal and platform beds. The head is at the back (+y)."""
+"""Beds for one and two: panel, padded, buttoned, slatted, sleigh, metal and platform beds. The head is at the back (+y)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pipeline.corpus.furniture.bent import curve, sheet, tube
 from pipeline.corpus.furniture.finishes import BEDDING, MATTRESS, Scheme, cane
 from pipeline.corpus.furniture.legs import leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, cushion, pillow, revolve, rod
+from pipeline.corpus.furniture.solids import Solid, box, cushion, pillow, rod
 from pipeline.corpus.furniture.storage import Size
 from pipeline.corpus.furniture.upholstery import Span, channels, duvet, throw_pillow, tufted_panel
 
@@ -25,11 +25,11 @@ def bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     if form == "platform":
         return _platform(rng, size, scheme)
     soft = form in SOFT
-    lift = float(rng.uniform(0.1, 0.16)) if form != "canopy" else 0.16
+    lift = float(rng.uniform(0.1, 0.16))
     rail_top = min(lift + float(rng.uniform(0.15, 0.2)), 0.4 * h)
     top = min(rail_top + 0.17, 0.55 * h + 0.05)
     head = {"upholstered": 0.1, "tufted": 0.12, "wing": 0.1, "sleigh": 0.16, "metal": 0.05}.get(form, 0.06)
-    foot = {"sleigh": 0.12, "metal": 0.05, "canopy": 0.06}.get(form, 0.0)
+    foot = {"sleigh": 0.12, "metal": 0.05}.get(form, 0.0)
     parts = _head(rng, form, x, (y[1] - head, y[1]), lift, h, scheme)
     side = 0.07 if soft else 0.032
     rail = (y[0] + foot, y[1] - head)
@@ -52,9 +52,9 @@ def bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     frame.append(box(inner_x, inner_y, (low - 0.03, low)))
     parts += pieces("frame", frame, cloth)
     if foot:
-        parts += _foot(form, x, (y[0], y[0] + foot), lift, min(0.62 * h, top + 0.16), h, scheme)
+        parts += _foot(form, x, (y[0], y[0] + foot), lift, h, scheme)
     kind = "bun" if scheme.manner.ornament > 0.5 and lift < 0.16 else "square" if form in ("panel", "slatted") else "tapered"
-    if form not in ("canopy", "metal", "sleigh"):
+    if form not in ("metal", "sleigh"):
         feet = [s.moved((0, -0.04, 0)) for s in legs(kind, (w / 2 - 0.07, d / 2 - 0.12), lift, 0.055)]
         parts += pieces("feet", feet, leg_finish(scheme, kind))
     return Shape(parts + bedding(rng, inner_x, inner_y, low, top, scheme, h - top))
@@ -101,7 +101,7 @@ def bedding(rng: np.random.Generator, x: Span, y: Span, low: float, top: float, 
 def _head(rng: np.random.Generator, form: str, x: Span, y: Span, lift: float, h: float, scheme: Scheme) -> tuple[Piece, ...]:  # noqa: PLR0911 - one return per form
     """Return a headboard over `x`, `y` up to `h`."""
     w = x[1] - x[0]
-    wood = scheme.timber if form in ("slatted", "canopy", "sleigh") else scheme.body
+    wood = scheme.timber if form in ("slatted", "sleigh") else scheme.body
     if form == "upholstered":
         count = max(2, round(w / 0.45))
         xs = np.linspace(x[0], x[1], count + 1)
@@ -123,32 +123,27 @@ def _head(rng: np.random.Generator, form: str, x: Span, y: Span, lift: float, h:
         return pieces("headboard", _scroll(x, y[0] + 0.03, lift, h), wood) + _sleigh_posts(x, y, lift, 0.75 * h, scheme)
     if form == "metal":
         return pieces("headboard", _hoop(x, (y[0] + y[1]) / 2, h, scheme), scheme.handle)
-    post = 0.06 if form == "canopy" else 0.05
-    parts = (
-        pieces("posts", [box((a, a + post), y, (0, h), 0.006) for a in (x[0], x[1] - post)], wood)
-        if form != "canopy"
-        else _posters(x, y, h, scheme)
-    )
+    post = 0.05
+    parts = pieces("posts", [box((a, a + post), y, (0, h), 0.006) for a in (x[0], x[1] - post)], wood)
     inner = (x[0] + post, x[1] - post)
-    crown = h if form != "canopy" else min(0.62 * h, 1.25)
     if form == "slatted":
         count = max(5, round(w / 0.11))
         xs = np.linspace(inner[0] + 0.05, inner[1] - 0.05, count)
-        rails = [box(inner, (y[0] + 0.01, y[1] - 0.01), z, 0.004) for z in ((lift + 0.14, lift + 0.21), (crown - 0.09, crown - 0.005))]
+        rails = [box(inner, (y[0] + 0.01, y[1] - 0.01), z, 0.004) for z in ((lift + 0.14, lift + 0.21), (h - 0.09, h - 0.005))]
         return parts + pieces(
             "headboard",
-            rails + [box((a - 0.014, a + 0.014), (y[0] + 0.018, y[1] - 0.018), (lift + 0.21, crown - 0.09), 0.002) for a in xs],
+            rails + [box((a - 0.014, a + 0.014), (y[0] + 0.018, y[1] - 0.018), (lift + 0.21, h - 0.09), 0.002) for a in xs],
             wood,
         )
     weave = rng.random() < scheme.manner.cane
     field = (inner[0] + 0.07, inner[1] - 0.07)
     deep = (y[0] + 0.012, y[1] - 0.008)
-    boards = [box((inner[0], field[0]), deep, (lift, crown - 0.02), 0.003), box((field[1], inner[1]), deep, (lift, crown - 0.02), 0.003)]
-    boards += [box(field, deep, z, 0.003) for z in ((lift, lift + 0.3), (crown - 0.1, crown - 0.02))]
-    panel = box(field, (deep[0] + 0.012, deep[1] - 0.006), (lift + 0.3, crown - 0.1))
+    boards = [box((inner[0], field[0]), deep, (lift, h - 0.02), 0.003), box((field[1], inner[1]), deep, (lift, h - 0.02), 0.003)]
+    boards += [box(field, deep, z, 0.003) for z in ((lift, lift + 0.3), (h - 0.1, h - 0.02))]
+    panel = box(field, (deep[0] + 0.012, deep[1] - 0.006), (lift + 0.3, h - 0.1))
     parts += pieces("headboard", boards, wood) + pieces("panel", panel, cane(rng) if weave else scheme.front)
     if form == "panel":
-        parts += pieces("cap", box((x[0] + post, x[1] - post), y, (crown - 0.02, crown), 0.005), wood)
+        parts += pieces("cap", box((x[0] + post, x[1] - post), y, (h - 0.02, h), 0.005), wood)
     return parts
 
 
@@ -194,30 +189,8 @@ def _hoop(x: Span, y: float, h: float, scheme: Scheme) -> list[Solid]:
     return solids
 
 
-def _posters(x: Span, y: Span, h: float, scheme: Scheme) -> tuple[Piece, ...]:
-    """Return two tall posts of a four-poster: turned where there is ornament, else square."""
-    solids: list[Solid] = []
-    middle = (y[0] + y[1]) / 2
-    for a in (x[0] + 0.03, x[1] - 0.03):
-        if scheme.manner.ornament > 0.5:
-            block = box((a - 0.03, a + 0.03), (middle - 0.03, middle + 0.03), (0.0, 0.45), 0.004)
-            steps = [
-                (0.022, 0.45),
-                (0.03, 0.5),
-                (0.018, 0.58),
-                (0.028, 0.75 + 0.1 * h),
-                (0.018, h - 0.14),
-                (0.028, h - 0.08),
-                (0.028, h - 0.05),
-            ]
-            solids += [block, *revolve(steps, 12, (a, middle))]
-        else:
-            solids.append(box((a - 0.025, a + 0.025), (middle - 0.025, middle + 0.025), (0, h - 0.05), 0.004))
-    return pieces("posters", solids, scheme.timber)
-
-
-def _foot(form: str, x: Span, y: Span, lift: float, top: float, h: float, scheme: Scheme) -> tuple[Piece, ...]:
-    """Return a footboard; a four-poster's carries the frame of the canopy."""
+def _foot(form: str, x: Span, y: Span, lift: float, h: float, scheme: Scheme) -> tuple[Piece, ...]:
+    """Return a footboard."""
     if form == "sleigh":
         tall = min(0.62 * h, 0.72)
         board = [s.mirrored().turned("z", math.pi) for s in _scroll(x, -y[1] + 0.03, lift, tall)]
@@ -226,16 +199,7 @@ def _foot(form: str, x: Span, y: Span, lift: float, top: float, h: float, scheme
             [box((a, a + 0.043), (y[1] - 0.075, y[1] - 0.005), (0, 0.75 * tall), 0.008) for a in (x[0], x[1] - 0.043)],
             scheme.timber,
         )
-    if form == "metal":
-        return pieces("footboard", _hoop(x, (y[0] + y[1]) / 2, min(0.72 * h, 0.7), scheme), scheme.handle)
-    parts = _posters(x, y, h, scheme)
-    rail = box((x[0] + 0.06, x[1] - 0.06), (y[0] + 0.01, y[1] - 0.01), (lift, min(top, lift + 0.3)), 0.004)
-    parts += pieces("footboard", rail, scheme.body)
-    z = (h - 0.05, h)
-    deep = -y[0]  # the frame of the canopy runs from the foot to the head, alike at both ends
-    frame = [box((a, a + 0.06), (-deep, deep), z, 0.004) for a in (x[0], x[1] - 0.06)]
-    frame += [box((x[0] + 0.06, x[1] - 0.06), (b, b + 0.06), z, 0.004) for b in (-deep, deep - 0.06)]
-    return parts + pieces("canopy", frame, scheme.timber)
+    return pieces("footboard", _hoop(x, (y[0] + y[1]) / 2, min(0.72 * h, 0.7), scheme), scheme.handle)
 
 
 def _platform(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:

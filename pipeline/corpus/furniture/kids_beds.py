@@ -1,4 +1,4 @@
-"""Children's beds: with rails, bunks, lofts, houses, cars, and day beds. The wall is at the back (+y)."""
+"""Children's beds: with rails, bunks, lofts and cars. The wall is at the back (+y)."""
 
 from __future__ import annotations
 
@@ -8,14 +8,13 @@ from pipeline.corpus.furniture.beds import bedding
 from pipeline.corpus.furniture.bent import prism
 from pipeline.corpus.furniture.finishes import PLASTIC, Scheme
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, cushion, rod
+from pipeline.corpus.furniture.solids import Solid, box, rod
 from pipeline.corpus.furniture.storage import Size
-from pipeline.corpus.furniture.upholstery import throw_pillow
 
 
 def kids_bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a bed of one of the forms. Where it is wide the sleeper lies along x."""
-    return {"rails": _rail_bed, "bunk": _bunk, "loft": _bunk, "house": _house, "car": _car, "couch": _couch}[form](rng, size, scheme, form)
+    return {"rails": _rail_bed, "bunk": _bunk, "loft": _bunk, "car": _car}[form](rng, size, scheme, form)
 
 
 def _rail_bed(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Shape:  # noqa: ARG001 - one signature for all
@@ -91,26 +90,6 @@ def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Sh
     return Shape(parts + pieces("ladder", ladder, scheme.timber))
 
 
-def _house(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Shape:  # noqa: ARG001 - one signature for all
-    """Build a low bed inside a frame with a pitched roof."""
-    w, d, h = size
-    t = 0.05
-    x, y = (-w / 2, w / 2), (-d / 2, d / 2)
-    eaves = 0.7 * h
-    solids = [box((px, px + t), (py, py + t), (0, eaves), 0.005) for px in (x[0], x[1] - t) for py in (y[0], y[1] - t)]
-    solids.append(box((-t / 2, t / 2), y, (h - t, h), 0.004))
-    for py in (y[0], y[1] - t):
-        for s in (-1, 1):
-            rafter = np.array([(s * w / 2, eaves), (s * (w / 2 - 1.3 * t), eaves), (s * t / 2, h - t), (s * t / 2, h - 0.1 * t)])
-            solids.append(prism(rafter if s < 0 else rafter[::-1], "y", (py + 0.004, py + t - 0.004)))
-    solids += [box((px, px + t), (y[0] + t, y[1] - t), (eaves - t, eaves), 0.004) for px in (x[0], x[1] - t)]
-    rails = [box((px, px + 0.026), (y[0] + t, y[1] - t), (0.1, 0.36), 0.004) for px in (x[0] + 0.012, x[1] - 0.038)]
-    rails += [box((x[0] + t, x[1] - t), (py, py + 0.026), (0.1, 0.36 if py > 0 else 0.26), 0.004) for py in (y[0] + 0.012, y[1] - 0.038)]
-    rails.append(box((x[0] + 0.038, x[1] - 0.038), (y[0] + 0.038, y[1] - 0.038), (0.14, 0.16)))
-    parts = pieces("house", solids, scheme.timber) + pieces("rails", rails, scheme.front)
-    return Shape(parts + bedding(rng, (x[0] + t, x[1] - t), (y[0] + t, y[1] - t), 0.16, 0.34, scheme))
-
-
 def _car(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Shape:  # noqa: ARG001 - one signature for all
     """Build a bed between two boards cut like a car, with wheels; the bonnet is at the front."""
     w, d, h = size
@@ -137,29 +116,3 @@ def _car(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Sha
     lamps = [rod((px, -d / 2 - 0.012, 0.42 * body), (px, -d / 2, 0.42 * body), 0.07, n=14) for px in (-0.3 * w, 0.3 * w)]
     parts += pieces("lamps", lamps, scheme.second)
     return Shape(parts + bedding(rng, inner, (-d / 2 + 0.035, d / 2 - 0.035), 0.16, 0.16 + 0.55 * (body - 0.16), scheme))
-
-
-def _couch(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Shape:  # noqa: ARG001 - one signature for all
-    """Build a day bed: a back along the wall and two ends of equal height, pillows along the back, a drawer board below."""
-    w, d, h = size
-    t = 0.04
-    x, y = (-w / 2, w / 2), (-d / 2, d / 2)
-    low = min(0.3, 0.36 * h)
-    boards = [box((x[0], x[1]), (y[1] - t, y[1]), (0, h), 0.008)]
-    boards += [box((px, px + t), (y[0] + 0.02, y[1] - t), (0, 0.82 * h), 0.012) for px in (x[0], x[1] - t)]
-    inner = (x[0] + t, x[1] - t)
-    boards += [box(inner, (y[0] + 0.03, y[0] + 0.055), (0.04, low), 0.004), box(inner, (y[0] + 0.055, y[1] - t), (low - 0.06, low - 0.04))]
-    half = (inner[0] + inner[1]) / 2
-    fronts = [box((a + 0.006, b - 0.006), (y[0], y[0] + 0.029), (0.05, low - 0.01), 0.003) for a, b in ((inner[0], half), (half, inner[1]))]
-    parts = pieces("frame", boards, scheme.front) + pieces("fronts", fronts, scheme.body)
-    top = low + 0.16
-    parts += pieces("mattress", cushion(inner, (y[0] + 0.06, y[1] - t - 0.002), (low - 0.04, top), 0.05, 3, 0.02), scheme.soft)
-    size_ = min(0.46, 0.9 * (h - top) + 0.12)
-    count = max(1, min(round(w / 0.7), int((inner[1] - inner[0]) / (size_ + 0.12))))
-    for px in np.linspace(inner[0] + 0.5 * size_ + 0.02, inner[1] - 0.5 * size_ - 0.02, count):
-        parts += pieces(
-            "pillows",
-            throw_pillow((float(px), y[1] - t - 0.02 - 0.32 * size_, top + 0.002), size_, 0.34, float(rng.uniform(-0.1, 0.1))),
-            scheme.second,
-        )
-    return Shape(parts)

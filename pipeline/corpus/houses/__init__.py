@@ -1,1 +1,1 @@
-"""Furnished houses: plans of their own, furniture by rules with noise, and the mess of real files."""
+"""Furnished houses: plans from the factory's planner, furniture by rules with noise, and the mess of real files."""

@@ -10,10 +10,13 @@ from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.corpus.furniture.lines import lines
 from pipeline.seeds import generator
 
+UNSEEN = {"suitcase", "briefcase", "bucket", "safe", "drawer_organiser"}  # read where real data have them; no home holds one
 
-def test_every_category_of_the_taxonomy_has_static_models():
+
+def test_every_category_of_the_taxonomy_has_static_models_but_what_no_home_holds():
     made = catalogue(0)
-    assert {m.category for m in made.future} == set(taxonomy.load().categories) == set(lines()) == set(sizes.load())
+    assert {m.category for m in made.future} == set(lines()) == set(taxonomy.load().categories) - UNSEEN
+    assert set(sizes.load()) == set(taxonomy.load().categories)
 
 
 def test_numbers_at_size_one():

@@ -201,7 +201,7 @@ def _same(a, b):
     )
 
 
-def test_no_two_of_a_thousand_plans_are_alike():
-    plans = [make_plan(generator(7, "house", index), agenda(7, index).rooms) for index in range(1000)]
+def test_no_two_of_two_hundred_plans_are_alike():
+    plans = [make_plan(generator(7, "house", index), agenda(7, index).rooms) for index in range(200)]
     digests = {digest([[r.type, r.polygon.tolist()] for r in plan.rooms]) for plan in plans}
     assert len(digests) == len(plans)
