@@ -24,13 +24,17 @@ OTHER_WALL = 0.8  # turn from which two things stand at different walls [rad]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Item:
-    """An object: `wished` (x, y, z, yaw) is where the layout model wants it, `half` (2,) are its half extents in plan [m]."""
+    """An object: `wished` (x, y, z, yaw) is where the layout model wants it, `half` (2,) are its half extents in plan [m].
+
+    `grips` are the handles of which a robot must reach one; of a fixture that has none the middle of its front.
+    """
 
     placement: Placement
     shape: Shape
     habit: Habit
     wished: Floats
     half: Floats
+    grips: tuple[Grip, ...]
 
     @property
     def mount(self) -> str:
@@ -42,13 +46,6 @@ class Item:
         """The area of its box in plan [m2]; what hangs takes none."""
         return 4.0 * float(self.half[0] * self.half[1]) if self.habit.mount == "floor" else 0.0
 
-    @property
-    def grips(self) -> tuple[Grip, ...]:
-        """The handles of which a robot must reach one; of a fixture that has none the middle of its front."""
-        if self.shape.grips or self.habit.access != "front" or self.habit.kind not in FIXTURES:
-            return self.shape.grips
-        return (Grip(np.array([0.0, -self.half[1]]), FORWARD, NOTHING),)
-
     def at(self, pose: Floats) -> Placement:
         """Return its placement at a pose."""
         return replace(self.placement, position=np.round(pose[:3], 4) + 0.0, yaw=wrap_yaw(float(pose[3])))
@@ -59,7 +56,10 @@ def make_item(placement: Placement, assets: Mapping[str, Asset], learnt: LearntR
     wished = np.array([*placement.position, placement.yaw])
     habit = learnt.habit(placement.category)
     asset_shape = shape(assets[placement.asset_id], placement.scale, access_depth, habit.access)
-    return Item(placement, asset_shape, habit, wished, np.asarray(placement.size[:2]) / 2)
+    half, grips = np.asarray(placement.size[:2]) / 2, asset_shape.grips
+    if not grips and habit.access == "front" and habit.kind in FIXTURES:
+        grips = (Grip(np.array([0.0, -half[1]]), FORWARD, NOTHING),)
+    return Item(placement, asset_shape, habit, wished, half, grips)
 
 
 def wrap_yaw(yaw: float) -> float:

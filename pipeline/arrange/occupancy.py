@@ -46,6 +46,7 @@ class Occupancy:
         self.poses = np.array([item.wished for item in items]).reshape(-1, 4)
         self.there = np.zeros(len(items), np.bool_)
         self.unreached: frozenset[int] = frozenset()
+        self.handles: dict[tuple[int, int], tuple[bytes, tuple[Floats, Floats, Prisms]]] = {}
         label, self.doors = site.gate(site.bare)
         self.enters = self._enters(site.bare, label)
 
@@ -161,20 +162,23 @@ class Occupancy:
 
     def _usable(self, i: int, space: FreeSpace, label: int) -> bool:
         """Whether a robot can stand at one of an item's handles, or before its front, where that matters."""
-        site, pose = self.site, self.poses[i]
         grips = self.items[i].grips
-        c, s = np.cos(pose[3]), np.sin(pose[3])
-        T = np.array([[c, s], [-s, c]])
+        site = self.site
         return not grips or any(
-            stand_pose(
-                grip.point @ T + pose[:2],
-                grip.heading @ T,
-                grip.swept.placed(pose[:3], float(pose[3]), UNIT),
-                site.elevation,
-                space,
-                label,
-                site.robot,
-            )
-            is not None
-            for grip in grips
+            stand_pose(*self._placed(i, k), site.elevation, space, label, site.robot) is not None for k in range(len(grips))
         )
+
+    def _placed(self, i: int, k: int) -> tuple[Floats, Floats, Prisms]:
+        """Return handle `k` of an item where it stands: point, heading and what the part sweeps; what has not moved since is not placed again."""
+        pose = self.poses[i]
+        key = pose.tobytes()
+        kept = self.handles.get((i, k))
+        if kept is None or kept[0] != key:
+            grip = self.items[i].grips[k]
+            c, s = np.cos(pose[3]), np.sin(pose[3])
+            T = np.array([[c, s], [-s, c]])
+            kept = self.handles[i, k] = (
+                key,
+                (grip.point @ T + pose[:2], grip.heading @ T, grip.swept.placed(pose[:3], float(pose[3]), UNIT)),
+            )
+        return kept[1]
