@@ -22,6 +22,7 @@ GAP = (0.004, 0.012, 0.035)  # and its gap to the wall [m]
 CORNERED = 0.25  # share of the training examples with a side at a wall, and
 SNUG = 0.1  # usual gap there [m], from which on a category belongs into corners when it is drafted near one
 STRENGTH = 0.5  # relations that are weaker bind nobody
+RARE = 0.1  # modes in which fewer stand, as a share of those in the commonest, bind nobody: a desk's chair on the other side of the room
 
 Mount = Literal["floor", "wall", "ceiling"]
 
@@ -107,7 +108,8 @@ def _habit(category: str, known: Relations) -> Habit:
 
 
 def _rows(pair: PairRelation) -> tuple[Floats, float]:
-    return np.array([_row(mode) for mode in pair.modes]), pair.strength
+    least = RARE * max(mode.weight for mode in pair.modes)
+    return np.array([_row(mode) for mode in pair.modes if mode.weight >= least]), pair.strength
 
 
 def _row(mode: Mode) -> list[float]:
