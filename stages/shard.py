@@ -11,7 +11,7 @@ from typing import Any
 from pipeline.errors import SfgenError, UsageError
 from pipeline.execution import Progress, Voice, cores
 from pipeline.homes.factory import Factory, open_factory
-from pipeline.homes.jit_warmup import warm_up
+from pipeline.homes.jit_warmup import warm_up_workers
 from pipeline.homes.library import MEMORY
 from pipeline.homes.outcomes import Empty
 from pipeline.homes.production import FAILURES, Recipe, Tally, fill
@@ -53,9 +53,9 @@ def main(
     again = shlex.join(["sfgen", "shard", "--count", str(count), "--seed", str(seed), *(["--prompts", str(prompts)] if prompts else [])])
     recipe = Recipe(opened, cache_assets=scheduler is None, digests=factory.digests)
     with open_or_create(folder, header, factory.asset_cache, address=place) as dataset:
-        if dataset.missing():
-            warm_up(progress, root)
         where: dict[str, Any] = {"workers": workers or cores(), "scheduler": scheduler}
+        if dataset.missing() and not scheduler:
+            warm_up_workers(progress, root, opened, where["workers"])
         tally = fill(dataset, recipe, order.wish, **where, strict=strict, progress=progress, again=f"{again} --only {{index}}")
     progress.close()
     return tell(tally, header, address or str(folder), progress, voice)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import importlib
+import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -38,6 +39,16 @@ def source_digest(root: Path) -> str:
 CONFIG: Any = numba.config
 if not CONFIG.CACHE_DIR:
     CONFIG.CACHE_DIR = str(ROOT / "__pycache__" / "numba" / source_digest(ROOT))
+
+
+def cache_folder() -> Path | None:
+    """Return where what is compiled is kept; None where nothing can be written there."""
+    folder = Path(CONFIG.CACHE_DIR)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return None
+    return folder if os.access(folder, os.W_OK) else None
 
 
 def is_cold() -> bool:

@@ -59,8 +59,8 @@ class Trees:
         pairs = np.argwhere(np.triu((spec.need > 0) | (spec.ban > 0) | (spec.apart > 0), 1))
         one, other = pairs.T
         self.wishes = Wishes(
-            np.column_stack([pairs, spec.need[one, other], spec.ban[one, other]]), spec.apart[one, other], spec.outside, spec.corner, spec.strict,
-            spec.least, square, spec.stair, spec.stair_room, spec.flight, spec.between, spec.habitable, spec.useful, tree(spec.link, spec.root), spec.near,
+            np.ascontiguousarray(np.column_stack([pairs, spec.need[one, other], spec.ban[one, other]])), spec.apart[one, other], spec.outside,
+            spec.corner, spec.strict, spec.least, square, spec.stair, spec.stair_room, spec.flight, spec.between, spec.habitable, spec.useful, tree(spec.link, spec.root), spec.near,
             self.gross, flexible, request.weights, spec.unit,
         )  # fmt: skip
 
