@@ -49,7 +49,7 @@ deps: $(DEV) ## write the code that each stage runs into dvc.yaml
 bench: $(READY) ## every benchmark in benchmarks/
 	python benchmarks/run.py
 
-weights: $(READY) ## train the released weights anew, into weights/: hours; a killed run goes on
+weights: $(READY) ## train the released weights further, into weights/: an hour; a killed run goes on
 	python .ci/scratch.py build/release release
 	cd build/release && dvc repro train
 	cp build/release/models/vae.safetensors build/release/models/denoiser.safetensors weights/
