@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.corpus.furniture.bent import arc, lean, prism, tube
+from pipeline.corpus.furniture.bent import lean, prism
 from pipeline.corpus.furniture.finishes import Finish, Scheme, cane
 from pipeline.corpus.furniture.shape import Piece, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, box, circle, rod, slab
+from pipeline.corpus.furniture.solids import Solid, beam, box, rod
 from pipeline.corpus.furniture.upholstery import upright_pad
 
 
@@ -45,7 +45,7 @@ def posts(frame: Frame, *, turned: bool = False) -> list[Solid]:
 
 
 def back(rng: np.random.Generator, kind: str, frame: Frame, scheme: Scheme) -> tuple[Piece, ...]:
-    """Return a back of one kind: slat, ladder, panel, splat, spindle, cane, cross, pad, medallion."""
+    """Return a back of one kind: slat, ladder, panel, splat, spindle, cane, cross, pad."""
     t = frame.thick
     soft: list[Solid] = []
     wood: list[Solid] = []
@@ -54,8 +54,6 @@ def back(rng: np.random.Generator, kind: str, frame: Frame, scheme: Scheme) -> t
         soft = upright_pad(
             rng, scheme, (-frame.x, frame.x), (frame.y - 0.035, frame.y + 0.03), (frame.low + 0.08 * (frame.high - frame.low), frame.high)
         )
-    elif kind == "medallion":
-        wood, soft = _medallion(frame)
     else:
         wood = posts(frame, turned=kind in ("spindle", "ladder") and scheme.manner.ornament > 0.3)
         wood.append(frame.bar(0.86, 1.0, t))
@@ -119,16 +117,3 @@ def _cross(frame: Frame) -> list[Solid]:
     for s, dy in ((-1, -0.009), (1, 0.009)):
         bars.append(rod((-s * x, frame.y + dy, z[0]), (s * x, frame.y + dy, z[1]), 0.009, n=8))
     return bars
-
-
-def _medallion(frame: Frame) -> tuple[list[Solid], list[Solid]]:
-    """Build an oval frame around an upholstered oval, on two short posts."""
-    rise = frame.high - frame.low
-    x, middle = frame.x * 0.94, frame.low + 0.57 * rise
-    squash = 0.43 * rise / x
-    edge = arc((0.0, middle), x - 0.016, 0, 2 * np.pi, 20, squash)[:-1]
-    hoop = tube(np.column_stack([edge[:, 0], np.full(20, frame.y), middle + (edge[:, 1] - middle)]), 0.016, 8, closed=True)
-    disc = slab(circle(x - 0.034, 20, squash=(squash * (x - 0.016) - 0.018) / (x - 0.034)), (-0.03, 0.02), 0.02)
-    pad = disc.turned("x", np.pi / 2).moved((0, frame.y, middle))
-    feet = [rod((s * 0.62 * x, frame.y, frame.low), (s * 0.62 * x, frame.y, frame.low + 0.21 * rise), 0.015, n=8) for s in (-1, 1)]
-    return hoop + feet, [pad]

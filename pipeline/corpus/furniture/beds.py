@@ -1,4 +1,4 @@
-"""Beds for one and two: panel, padded, buttoned, slatted, sleigh, metal and platform beds. The head is at the back (+y)."""
+"""Beds for one and two: panel, padded, buttoned, slatted, metal and platform beds. The head is at the back (+y)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from pipeline.corpus.furniture.bent import curve, sheet, tube
+from pipeline.corpus.furniture.bent import tube
 from pipeline.corpus.furniture.finishes import BEDDING, MATTRESS, Scheme, cane
 from pipeline.corpus.furniture.legs import leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
@@ -28,8 +28,8 @@ def bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     lift = float(rng.uniform(0.1, 0.16))
     rail_top = min(lift + float(rng.uniform(0.15, 0.2)), 0.4 * h)
     top = min(rail_top + 0.17, 0.55 * h + 0.05)
-    head = {"upholstered": 0.1, "tufted": 0.12, "wing": 0.1, "sleigh": 0.16, "metal": 0.05}.get(form, 0.06)
-    foot = {"sleigh": 0.12, "metal": 0.05}.get(form, 0.0)
+    head = {"upholstered": 0.1, "tufted": 0.12, "wing": 0.1, "metal": 0.05}.get(form, 0.06)
+    foot = 0.05 if form == "metal" else 0.0
     parts = _head(rng, form, x, (y[1] - head, y[1]), lift, h, scheme)
     side = 0.07 if soft else 0.032
     rail = (y[0] + foot, y[1] - head)
@@ -52,9 +52,9 @@ def bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     frame.append(box(inner_x, inner_y, (low - 0.03, low)))
     parts += pieces("frame", frame, cloth)
     if foot:
-        parts += _foot(form, x, (y[0], y[0] + foot), lift, h, scheme)
+        parts += pieces("footboard", _hoop(x, y[0] + foot / 2, min(0.72 * h, 0.7), scheme), scheme.handle)
     kind = "bun" if scheme.manner.ornament > 0.5 and lift < 0.16 else "square" if form in ("panel", "slatted") else "tapered"
-    if form not in ("metal", "sleigh"):
+    if form != "metal":
         feet = [s.moved((0, -0.04, 0)) for s in legs(kind, (w / 2 - 0.07, d / 2 - 0.12), lift, 0.055)]
         parts += pieces("feet", feet, leg_finish(scheme, kind))
     return Shape(parts + bedding(rng, inner_x, inner_y, low, top, scheme, h - top))
@@ -101,7 +101,7 @@ def bedding(rng: np.random.Generator, x: Span, y: Span, low: float, top: float, 
 def _head(rng: np.random.Generator, form: str, x: Span, y: Span, lift: float, h: float, scheme: Scheme) -> tuple[Piece, ...]:  # noqa: PLR0911 - one return per form
     """Return a headboard over `x`, `y` up to `h`."""
     w = x[1] - x[0]
-    wood = scheme.timber if form in ("slatted", "sleigh") else scheme.body
+    wood = scheme.timber if form == "slatted" else scheme.body
     if form == "upholstered":
         count = max(2, round(w / 0.45))
         xs = np.linspace(x[0], x[1], count + 1)
@@ -119,8 +119,6 @@ def _head(rng: np.random.Generator, form: str, x: Span, y: Span, lift: float, h:
         parts = pieces("headboard", cushion((x[0] + 0.06, x[1] - 0.06), y, (lift, h), 0.04, 3), scheme.soft)
         wings = [cushion((a, a + 0.058), (y[0] - 0.16, y[1]), (lift + 0.3, h - 0.02), 0.026, 2) for a in (x[0], x[1] - 0.058)]
         return parts + pieces("wings", wings, scheme.soft)
-    if form == "sleigh":
-        return pieces("headboard", _scroll(x, y[0] + 0.03, lift, h), wood) + _sleigh_posts(x, y, lift, 0.75 * h, scheme)
     if form == "metal":
         return pieces("headboard", _hoop(x, (y[0] + y[1]) / 2, h, scheme), scheme.handle)
     post = 0.05
@@ -147,23 +145,6 @@ def _head(rng: np.random.Generator, form: str, x: Span, y: Span, lift: float, h:
     return parts
 
 
-def _scroll(x: Span, y: float, lift: float, h: float) -> list[Solid]:
-    """Return a board that rises from the rail and rolls outwards at its top."""
-    wide, r = x[1] - x[0] - 0.09, 0.05
-    path = curve([np.array(p) for p in ((y, lift), (y - 0.006, 0.55 * h), (y + 0.035, h - 2 * r + 0.01))], 3)
-    middle = (x[0] + x[1]) / 2
-    roll = rod((middle - wide / 2 - 0.02, y + 0.06, h - r), (middle + wide / 2 + 0.02, y + 0.06, h - r), r, n=16)
-    return [s.moved((middle, 0, 0)) for s in sheet(path, 0.035, wide)] + [roll]
-
-
-def _sleigh_posts(x: Span, y: Span, lift: float, h: float, scheme: Scheme) -> tuple[Piece, ...]:
-    return (
-        pieces("posts", [box((a, a + 0.043), (y[0] + 0.005, y[0] + 0.075), (0, h), 0.008) for a in (x[0], x[1] - 0.043)], scheme.timber)
-        if lift
-        else ()
-    )
-
-
 def _hoop(x: Span, y: float, h: float, scheme: Scheme) -> list[Solid]:
     """Return a bent tube with bars in it, and knobs where there is ornament."""
     r = 0.017
@@ -187,19 +168,6 @@ def _hoop(x: Span, y: float, h: float, scheme: Scheme) -> list[Solid]:
         if top > z + 0.06:
             solids.append(rod((at, y, z + 0.7 * r), (at, y, top), 0.4 * r, n=6))
     return solids
-
-
-def _foot(form: str, x: Span, y: Span, lift: float, h: float, scheme: Scheme) -> tuple[Piece, ...]:
-    """Return a footboard."""
-    if form == "sleigh":
-        tall = min(0.62 * h, 0.72)
-        board = [s.mirrored().turned("z", math.pi) for s in _scroll(x, -y[1] + 0.03, lift, tall)]
-        return pieces("footboard", board, scheme.timber) + pieces(
-            "posts",
-            [box((a, a + 0.043), (y[1] - 0.075, y[1] - 0.005), (0, 0.75 * tall), 0.008) for a in (x[0], x[1] - 0.043)],
-            scheme.timber,
-        )
-    return pieces("footboard", _hoop(x, (y[0] + y[1]) / 2, min(0.72 * h, 0.7), scheme), scheme.handle)
 
 
 def _platform(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:

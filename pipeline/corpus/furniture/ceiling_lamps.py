@@ -22,12 +22,12 @@ THIN = 0.0035  # radius of a cord
 
 
 def pendant_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a shade or globe on a cord, a bar over a table, a cluster, a chandelier, a lantern, a sputnik, a cage, or hoops of light."""
+    """Build a shade or globe on a cord, a bar over a table, a cluster, a chandelier, a lantern, a sputnik, or a cage."""
     w, d, h = size
     if form == "linear" and d > w:  # built along x, turned to the longer side
         return turned_along(pendant_lamp(rng, form, (d, w, h), scheme))
     metal = scheme.handle
-    build = {"linear": _linear, "cluster": _cluster, "chandelier": _chandelier, "sputnik": _sputnik, "hoops": _hoops}.get(form)
+    build = {"linear": _linear, "cluster": _cluster, "chandelier": _chandelier, "sputnik": _sputnik}.get(form)
     if build:
         return Shape(build(rng, size, scheme))
     kind = {"globe": "globe", "lantern": "lantern", "cage": "cage"}.get(form) or shade_word(rng, scheme, "globe lantern cage crystal paper")
@@ -141,34 +141,6 @@ def _sputnik(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
         globe = revolve([(r * math.cos(p), r * math.sin(p)) for p in np.linspace(-1.4, 1.4, 7)], 12)
         parts += pieces("globes", [s.moved(at) for s in globe], GLOW)
     return parts + pieces("cord", cord((0, 0), (middle + 0.8 * r, h - 0.024)), metal) + pieces("rose", rose(h), metal)
-
-
-def _hoops(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
-    """Two or three lit hoops of different size below each other on thin wires."""
-    w, d, h = size
-    metal = scheme.handle
-    count = 2 if h < 0.8 else 3
-    parts = pieces("rose", rose(h, 0.09), metal)
-    for k in range(count):
-        r = w / 2 * (1.0, 0.68, 0.42)[k]
-        z = 0.22 * h * k
-        squash = np.array([1.0, d / w, 1.0])
-        parts += pieces("hoop", [s.scaled(squash) for s in ring((r, r), (r - 0.018, r - 0.018), (z + 0.014, z + 0.045), 30)], metal)
-        parts += pieces("light", [s.scaled(squash) for s in ring((r - 0.001, r - 0.001), (r - 0.017, r - 0.017), (z, z + 0.014), 30)], GLOW)
-        parts += pieces(
-            "wires",
-            [
-                rod(
-                    ((r - 0.009) * math.cos(a), (r - 0.009) * math.sin(a) * d / w, z + 0.045),
-                    (0.05 * math.cos(a), 0.05 * math.sin(a), h - 0.024),
-                    0.0015,
-                    n=4,
-                )
-                for a in turns(3, 0.5 * k)
-            ],
-            metal,
-        )
-    return parts
 
 
 def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.bent import turns
 from pipeline.corpus.furniture.casework import Cell, Column, case
 from pipeline.corpus.furniture.finishes import Finish, Scheme
-from pipeline.corpus.furniture.legs import WIDE, draw_kind, inside, leg_finish, legs, pedestal
+from pipeline.corpus.furniture.legs import WIDE, draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, beam, box, circle, revolve, rod, rounded_rectangle, slab
 from pipeline.corpus.furniture.storage import Size, case_style, front_style
@@ -90,34 +90,23 @@ def _brace(kind: str, half: tuple[float, float], h: float, finish: Finish) -> tu
     return pieces("beam", box((-half[0] + 0.032, half[0] - 0.032), (-0.02, 0.02), (h - 0.045, h - 0.001), 0.002), finish)
 
 
-def dining_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:  # noqa: PLR0911 - one return per form
-    """Four legs, trestles, a round pedestal, slab sides, a crossed base, a farm table, a tulip foot, a drum, or a bar."""
+def dining_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+    """Four legs, slab sides, a crossed base, a tulip foot, a drum, or a bar."""
     w, d, h = size
     t = float(rng.uniform(0.026, 0.042))
     if form == "legs":
         return legged_table(rng, size, scheme, without="block")
-    if form == "farm":
-        return _farm(rng, size, scheme)
     material = top_finish(rng, scheme, stone=1.8)
-    if form in ("pedestal", "tulip", "drum"):
+    if form in ("tulip", "drum"):
         parts = pieces("top", top(circle(w / 2, 36), (h - t, h), scheme), material)
         if form == "drum":
             return Shape(parts + fluted_drum(0.3 * w, h - t, scheme))
-        foot = trumpet(0.32 * w, h - t) if form == "tulip" else pedestal(rng, scheme, min(0.32 * w, 0.4), h - t)
-        metal = form == "tulip" or (scheme.accent is scheme.handle and scheme.manner.ornament < 0.5)
-        return Shape(parts + pieces("pedestal", foot, scheme.front if form == "tulip" else scheme.handle if metal else scheme.timber))
+        return Shape(parts + pieces("pedestal", trumpet(0.32 * w, h - t), scheme.front))
     parts = pieces("top", top(outline(rng, scheme, w, d), (h - t, h), scheme), material)
     solids: list[Solid] = []
     x = 0.32 * w
     if form == "bar":
         return Shape(parts + _bar(size, t, scheme))
-    if form == "trestle":
-        for s in (-1, 1):
-            solids += [beam((s * x, sy * 0.38 * d, 0.05), (s * x, sy * 0.1 * d, h - t - 0.05), 0.05, 0.06) for sy in (-1, 1)]
-            solids.append(box((s * x - 0.03, s * x + 0.03), (-0.42 * d, 0.42 * d), (0.0, 0.05), 0.006))
-            solids.append(box((s * x - 0.03, s * x + 0.03), (-0.38 * d, 0.38 * d), (h - t - 0.05, h - t), 0.006))
-        solids.append(box((-x + 0.026, x - 0.026), (-0.014, 0.014), (0.1, 0.17), 0.004))
-        return Shape(parts + pieces("trestle", solids, scheme.timber))
     if form == "cross":
         bars = [((s * 0.30 * w, -0.32 * d), (-s * 0.14 * w, 0.3 * d)) for s in (-1, 1)]
         for k, ((x0, y0), (x1, y1)) in enumerate(bars):
@@ -137,24 +126,6 @@ def dining_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     solids += [box((s * x - thick / 2, s * x + thick / 2), (-0.4 * d, 0.4 * d), (0, h - t), 0.006) for s in (-1, 1)]
     solids.append(box((-x + thick / 2, x - thick / 2), (-0.016, 0.016), (0.55 * h, h - t), 0.003))
     return Shape(parts + pieces("slabs", solids, scheme.body))
-
-
-def _farm(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
-    """Planks with breadboard ends on four stout turned legs and a deep apron."""
-    w, d, h = size
-    t = 0.036
-    end = min(0.1, 0.08 * w)
-    ys = np.linspace(-d / 2, d / 2, max(4, round(d / 0.16)) + 1)
-    planks = [
-        box((-w / 2 + end + 0.001, w / 2 - end - 0.001), (a + 0.0006, b - 0.0006), (h - t, h), 0.003) for a, b in itertools.pairwise(ys)
-    ]
-    planks += [box((s * (w / 2 - end / 2) - end / 2, s * (w / 2 - end / 2) + end / 2), (-d / 2, d / 2), (h - t, h), 0.004) for s in (-1, 1)]
-    kind = "turned" if scheme.manner.ornament > 0.2 else "block"
-    thick = 0.082
-    half = inside(kind, (w / 2 - 0.05, d / 2 - 0.05), h - t, thick)
-    under = scheme.front if rng.random() < 0.5 else scheme.timber
-    parts = pieces("top", planks, scheme.timber) + pieces("legs", legs(kind, half, h - t, thick), under)
-    return Shape(parts + pieces("apron", rails(half, (h - t - 0.1, h - t), 0.52 * thick + (0.012 if kind == "block" else 0.0)), under))
 
 
 def trumpet(radius: float, height: float) -> list[Solid]:

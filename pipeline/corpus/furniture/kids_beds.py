@@ -1,4 +1,4 @@
-"""Children's beds: with rails, bunks, lofts and cars. The wall is at the back (+y)."""
+"""Children's beds: with rails, bunks and cars. The wall is at the back (+y)."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from pipeline.corpus.furniture.storage import Size
 
 def kids_bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a bed of one of the forms. Where it is wide the sleeper lies along x."""
-    return {"rails": _rail_bed, "bunk": _bunk, "loft": _bunk, "car": _car}[form](rng, size, scheme, form)
+    return {"rails": _rail_bed, "bunk": _bunk, "car": _car}[form](rng, size, scheme)
 
 
-def _rail_bed(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Shape:  # noqa: ARG001 - one signature for all
+def _rail_bed(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
     w, d, h = size
     lift, t = 0.12, 0.045
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
@@ -56,17 +56,16 @@ def _rail_bed(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -
     return Shape(parts + bedding(rng, (x[0] + t, x[1] - t), (y[0] + t, y[1] - t), lift + 0.08, low + 0.06, scheme))
 
 
-def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Shape:
-    """Two berths over each other and a ladder at the front; a loft has a desk below instead of the lower berth."""
+def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
+    """Two berths over each other and a ladder at the front."""
     w, d, h = size
     t = 0.06
     x, y = (-w / 2, w / 2), (-d / 2 + 0.07, d / 2)
     posts = [box((px, px + t), (py, py + t), (0, h), 0.008) for px in (x[0], x[1] - t) for py in (y[0], y[1] - t)]
     parts = pieces("posts", posts, scheme.front)
     upper = 0.24 + 0.48 * h
-    levels = (upper,) if form == "loft" else (0.2, upper)
     inner_x, inner_y = (x[0] + t, x[1] - t), (y[0] + 0.034, y[1] - 0.034)
-    for z in levels:
+    for z in (0.2, upper):
         boards = [box(inner_x, (py, py + 0.026), (z, z + 0.15), 0.004) for py in (y[0] + 0.008, y[1] - 0.034)]
         boards += [box((px, px + 0.026), (y[0] + t, y[1] - t), (z, z + 0.15), 0.004) for px in (x[0] + 0.008, x[1] - 0.034)]
         boards.append(box(inner_x, inner_y, (z + 0.02, z + 0.04)))
@@ -77,11 +76,6 @@ def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Sh
             boards += [box((x[0] + t, x[1] - 0.64), (y[0] + 0.008, y[0] + 0.034), (guard, guard + 0.06), 0.004)]
         parts += pieces("berth", boards, scheme.front)
         parts += tuple(p for p in bedding(rng, inner_x, inner_y, z + 0.04, z + 0.19, scheme) if p.name not in ("throw", "cushion"))
-    if form == "loft" and upper > 0.7:
-        parts += pieces(
-            "desk", box((x[0] + t, x[1] - 0.7), (y[1] - 0.5, y[1] - t), (0.66 * upper, 0.66 * upper + 0.024), 0.003), scheme.timber
-        )
-        parts += pieces("desk_leg", box((x[1] - 0.74, x[1] - 0.7), (y[1] - 0.48, y[1] - 0.08), (0, 0.66 * upper), 0.003), scheme.timber)
     lx = (x[1] - 0.56, x[1] - 0.14)
     ladder: list[Solid] = [box((px - 0.02, px + 0.02), (-d / 2, -d / 2 + 0.06), (0, min(h, upper + 0.45)), 0.006) for px in lx]
     ladder += [
@@ -90,7 +84,7 @@ def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Sh
     return Shape(parts + pieces("ladder", ladder, scheme.timber))
 
 
-def _car(rng: np.random.Generator, size: Size, scheme: Scheme, form: str) -> Shape:  # noqa: ARG001 - one signature for all
+def _car(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
     """Build a bed between two boards cut like a car, with wheels; the bonnet is at the front."""
     w, d, h = size
     x = w / 2

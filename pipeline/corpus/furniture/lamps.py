@@ -11,7 +11,7 @@ from pipeline.corpus.furniture.bent import curve, tube, turns
 from pipeline.corpus.furniture.finishes import GLOW, Scheme
 from pipeline.corpus.furniture.shades import shade, shade_word
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import box, circle, revolve, ring, rod, slab
+from pipeline.corpus.furniture.solids import box, circle, revolve, rod, slab
 from pipeline.corpus.furniture.storage import Size
 
 
@@ -21,19 +21,11 @@ def turned_along(shape: Shape) -> Shape:
 
 
 def floor_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a shade on a pole, on three legs, or on an arc, a column of paper, globes on a stem, or a reading lamp."""
-    w, d, h = size
-    if form in ("arc", "reading") and d > w:
-        return turned_along(floor_lamp(rng, form, (d, w, h), scheme))
+    """Build a shade on a pole or on three legs, or globes on a stem."""
+    w, _, h = size
     r = w / 2
-    if form == "arc":
-        return Shape(_arc_lamp(rng, size, scheme))
-    if form == "paper":
-        return Shape(_paper_column(size, scheme))
     if form == "globes":
         return Shape(_stem_of_globes(rng, size, scheme))
-    if form == "reading":
-        return Shape(_reading_lamp(rng, size, scheme))
     kind = shade_word(rng, scheme, "globe cage lantern paper crystal mushroom cylinder")
     tall = min(0.26 * h, 0.95 * w)
     parts = shade(rng, scheme, kind, r, (h - tall, h))
@@ -76,28 +68,6 @@ def _pole(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> 
     return pieces("pole", pole, metal)
 
 
-def _paper_column(size: Size, scheme: Scheme) -> tuple[Piece, ...]:
-    """Build a column of paper in waves on a wooden foot, a hoop at its top."""
-    w, _, h = size
-    r = w / 2
-    foot = [slab(circle(0.86 * r, 24), (0.0, 0.02), 0.003)]
-    rims = [
-        ring(
-            (0.8 * r + 0.12 * r * math.sin(2.4 * k), 0.8 * r + 0.12 * r * math.sin(2.4 * (k + 1))),
-            (0.8 * r + 0.12 * r * math.sin(2.4 * k) - 0.006, 0.8 * r + 0.12 * r * math.sin(2.4 * (k + 1)) - 0.006),
-            (0.02 + k * (h - 0.03) / 6, 0.02 + (k + 1) * (h - 0.03) / 6),
-            18,
-        )
-        for k in range(6)
-    ]
-    hoops_ = [s for z in (h - 0.01,) for s in ring((r, r), (r - 0.012, r - 0.012), (z, z + 0.01), 18)]
-    return (
-        pieces("foot", foot, scheme.timber)
-        + pieces("paper", [s for rim in rims for s in rim], GLOW)
-        + pieces("hoop", hoops_, scheme.timber)
-    )
-
-
 def _stem_of_globes(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
     """Build three lit globes on arms around a stem."""
     w, d, h = size
@@ -113,34 +83,6 @@ def _stem_of_globes(rng: np.random.Generator, size: Size, scheme: Scheme) -> tup
             "arms", rod((0.01 * u[0], 0.01 * u[1], z * h), (x - q * u[0] * 0.99, y - q * u[1] * 0.99, z * h), 0.006, n=6), metal
         )
     return parts
-
-
-def _reading_lamp(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
-    """Build a stem on a foot, a bent arm, a cone at its end."""
-    w, d, h = size
-    metal = scheme.handle
-    q = min(0.5 * d, 0.4 * w)
-    x0 = -w / 2 + q
-    foot = revolve([(q, 0.0), (q, 0.02), (0.014, 0.03), (0.011, 0.86 * h)], 20, (x0, 0.0))
-    arm = tube(curve([(x0, 0, 0.86 * h), (x0 + 0.06 * w, 0, 0.95 * h), (0.1 * w, 0, h - 0.03), (0.32 * w, 0, h - 0.05)], 2), 0.009, 8)
-    q = min(0.2 * w, 0.5 * d)
-    head = shade(rng, scheme, "cone", q, (h - 0.05 - 1.3 * q, h - 0.05), (w / 2 - q, 0.0), 16)
-    return pieces("foot", foot, metal) + pieces("arm", arm, metal) + head
-
-
-def _arc_lamp(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
-    """Build a heavy foot, a bow of steel, a dome at its end."""
-    w, d, h = size
-    r = min(0.3 * w, 0.5 * d, 0.2)
-    foot_r = min(0.5 * d, 0.34 * w)
-    x = -w / 2 + foot_r
-    metal = scheme.handle
-    base = revolve([(foot_r, 0.0), (foot_r, 0.03), (0.9 * foot_r, 0.04)], 28, (x, 0.0))
-    bow = curve([(x, 0, 0.04), (x, 0, 0.55 * h), (x + 0.12 * w, 0, 0.86 * h), (0.05 * w, 0, h - 0.012), (w / 2 - r, 0, 0.9 * h)], 3)
-    top = 0.9 * h - 0.05
-    parts = pieces("foot", base, scheme.stone if scheme.manner.stone > 0.2 else metal) + pieces("bow", tube(bow, 0.011, 8), metal)
-    parts += pieces("drop", rod((w / 2 - r, 0, top), (w / 2 - r, 0, 0.9 * h - 0.008), 0.006, n=6), metal)
-    return parts + shade(rng, scheme, "dome", r, (top - 0.9 * r, top), (w / 2 - r, 0.0))
 
 
 def wall_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:

@@ -1,4 +1,4 @@
-"""Easy chairs: framed, winged, swivelling, tubs, slings, cane and hanging ones. The front is -y. Lengths in metres."""
+"""Easy chairs: framed, winged, swivelling, tubs, cane ones. The front is -y. Lengths in metres."""
 
 from __future__ import annotations
 
@@ -6,20 +6,18 @@ import math
 
 import numpy as np
 
-from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, split_bent_quads, tube, turns, upright, wall
+from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, tube, turns, upright, wall
 from pipeline.corpus.furniture.finishes import PLASTIC, Finish, Scheme, cane, shade
 from pipeline.corpus.furniture.legs import draw_kind, leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, beam, box, cushion, revolve, rod, slab, stack
 from pipeline.corpus.furniture.storage import Size
-from pipeline.corpus.furniture.upholstery import seat_cushion, throw_pillow, upright_pad
+from pipeline.corpus.furniture.upholstery import seat_cushion, upright_pad
 
 
 def lounge_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build an easy chair in a wooden frame, an office chair, a wing chair, a recliner's shell, a tub, a sling, a cane or a hanging chair."""
-    build = {
-        "easy": _easy, "office": _office, "wing": _wing, "lounger": _lounger, "tub": _tub, "sling": _sling, "rattan": _rattan, "hanging": _hanging,
-    }[form]  # fmt: skip
+    """Build an easy chair in a wooden frame, an office chair, a wing chair, a recliner's shell, a tub or a cane chair."""
+    build = {"easy": _easy, "office": _office, "wing": _wing, "lounger": _lounger, "tub": _tub, "rattan": _rattan}[form]
     return Shape(build(rng, size, scheme))
 
 
@@ -190,50 +188,6 @@ def _tub(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, .
     return parts + pieces("seat", stack(rings), scheme.soft if rng.random() < 0.7 else scheme.second)
 
 
-def _sling(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
-    """Leather slung in a bent frame of steel or wood."""
-    w, d, h = size
-    seat, x, y = min(0.38, 0.44 * h), w / 2, d / 2
-    r = 0.014
-    finish = scheme.handle if rng.random() < 0.6 else scheme.timber
-    arm = seat + 0.2
-    frame: list[Solid] = []
-    for s in (-1, 1):
-        px = s * (x - r)
-        loop = [
-            (px, -y + r, r),
-            (px, -y + r, arm - 0.04),
-            (px, -y + 0.05, arm),
-            (px, 0.55 * y, arm),
-            (px, 0.62 * y, arm - 0.05),
-            (px, y - 0.06, r + 0.005),
-            (px, y - 0.1, r),
-            (px, -y + 0.04, r),
-        ]
-        frame += [*tube(loop[:6], r, 8), rod((px, y - 0.07, r), (px, -y + 2 * r, r), r, n=8)]
-    frame += [
-        rod((-x + 2 * r, a, b), (x - 2 * r, a, b), r, n=8)
-        for a, b in ((-y + 0.1, seat - 0.02), (0.52 * y, seat - 0.09), (y - 0.06, h - 0.03))
-    ]
-    for s in (-1, 1):
-        px = s * (x - 3.6 * r)
-        frame += tube([(px, -y + 0.1, seat - 0.02 - r), (px, 0.52 * y, seat - 0.09 - r), (px, y - 0.06 + r, h - 0.03)], 0.9 * r, 8)
-    path = curve(
-        [
-            np.array(p)
-            for p in (
-                (-y + 0.085, seat + 0.006),
-                (0.1 * y, seat - 0.055),
-                (0.46 * y, seat - 0.03),
-                (0.66 * y, seat + 0.3 * (h - seat)),
-                (y - 0.075, h),
-            )
-        ],
-        3,
-    )
-    return pieces("frame", frame, finish) + pieces("sling", sheet(path, 0.02, 2 * (x - 5 * r)), scheme.soft)
-
-
 def _rattan(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
     """Build a round back of cane in a bent frame, a cushion on a woven seat."""
     w, d, h = size
@@ -255,50 +209,3 @@ def _rattan(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece
     )
     pad = revolve([(0.9, seat - 0.05), (1.0, seat - 0.03), (1.0, seat + 0.01), (0.92, seat + 0.035), (0.5, seat + 0.045)], 24)
     return parts + pieces("pad", [s.scaled(np.array([0.8 * x, 0.74 * y, 1])) for s in pad], scheme.soft)
-
-
-def _hanging(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
-    """Build an egg of cane that hangs from a bow on a round foot, a cushion in it."""
-    w, d, h = size
-    x, y = w / 2, d / 2
-    foot = revolve([(0.36 * w, 0.0), (0.36 * w, 0.012), (0.34 * w, 0.02)], 24, (0.0, 0.08 * d))
-    bow = curve(
-        [(0, 0.40 * d, 0.02), (0, y - 0.022, 0.4 * h), (0, 0.42 * d, 0.86 * h), (0, 0.2 * d, h - 0.022), (0, -0.1 * d, h - 0.06)], 2
-    )
-    parts = pieces("stand", foot + tube(bow, 0.02, 8), scheme.handle)
-    parts += pieces("base", box((-0.03, 0.03), (0.3 * d, 0.42 * d + 0.02), (0.0, 0.02)), scheme.handle)
-    low, high = 0.16 * h, 0.9 * h
-    weave = cane(rng)
-    rows = 5
-    for k in range(rows):
-        a, b = (-0.62 + 1.12 * q for q in (k / rows, (k + 1) / rows))
-        radii = [math.cos(a * math.pi / 2) * (x - 0.02), math.cos(b * math.pi / 2) * (x - 0.02)]
-        zs = [low + (high - low) * (a + 0.62) / 1.12, low + (high - low) * (b + 0.62) / 1.12]
-        steps = 10
-        spread = math.pi * (0.5 if k else 1.0)
-        for j in range(steps):
-            t = (
-                [math.pi / 2 - spread * 1.28 + 2 * spread * 1.28 * (j + q) / steps for q in (0, 1)]
-                if k
-                else [2 * math.pi * (j + q) / steps for q in (0, 1)]
-            )
-            parts += pieces("egg", _stave(radii, zs, t, 0.4 * d / (x - 0.02)).moved((0, -0.1 * d, 0)), weave)
-    r0 = math.cos(-0.62 * math.pi / 2) * (x - 0.02)
-    parts += pieces(
-        "egg_floor",
-        slab(np.array([(r0 * math.cos(a), r0 * 0.4 * d / (x - 0.02) * math.sin(a) - 0.1 * d) for a in turns(16)]), (low - 0.012, low)),
-        weave,
-    )
-    parts += pieces("pad", cushion((-0.66 * r0, 0.66 * r0), (-0.26 * d, 0.06 * d), (low, low + 0.1), 0.045, 3), scheme.soft)
-    parts += pieces("pillow", throw_pillow((0.0, -0.04 * d, low + 0.1), min(0.4, 0.45 * w), 0.3, 0.0), scheme.second)
-    return parts + pieces("chain", rod((0, -0.1 * d, high - 0.004), (0, -0.1 * d, h - 0.075), 0.006, n=6), scheme.handle)
-
-
-def _stave(radii: list[float], zs: list[float], t: list[float], squash: float) -> Solid:
-    """Return one curved panel of a basket as a thin convex stave."""
-    rings = []
-    for r, z in zip(radii, zs, strict=True):
-        a, b = (np.array([r * math.cos(q), squash * r * math.sin(q)]) for q in t)
-        i, j = (np.array([(r - 0.012) * math.cos(q), squash * (r - 0.012) * math.sin(q)]) for q in t)
-        rings.append(np.column_stack([np.array([a, b, j, i]), np.full(4, z)]))
-    return split_bent_quads(stack(rings))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.bent import blades, curve, tube, turns
 from pipeline.corpus.furniture.finishes import CERAMIC, LEAF, SOIL, Finish, Scheme, shade
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab, stack
+from pipeline.corpus.furniture.solids import Solid, circle, ring, rod, slab
 from pipeline.corpus.furniture.storage import Size
 
 GOLDEN = math.pi * (3 - math.sqrt(5))
@@ -22,22 +22,12 @@ Points = NDArray[np.float64]
 
 
 def plant(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a bush, a palm, upright swords, a monstera, a fiddle fig, a fern, a cactus, or an olive tree in a pot."""
+    """Build a bush, a palm, a monstera, a fiddle fig, or an olive tree in a pot."""
     w, d, h = size
-    slim = form in ("cactus", "swords")
-    pot_r = min((0.42 if slim else 0.3) * min(w, d), 0.2)
+    pot_r = min(0.3 * min(w, d), 0.2)
     pot_h = min(0.34 * h, 0.36, 1.9 * pot_r)
     pot, crown = _pot(rng, pot_r, pot_h, scheme)
-    grow = {
-        "bush": _bush,
-        "palm": _palm,
-        "swords": _swords,
-        "monstera": _monstera,
-        "fig": _fig,
-        "fern": _fern,
-        "cactus": _cactus,
-        "olive": _olive,
-    }[form]
+    grow = {"bush": _bush, "palm": _palm, "monstera": _monstera, "fig": _fig, "olive": _olive}[form]
     green = Finish("leaf", shade(rng, LEAF.color, 0.28), 0.55, pattern="leaf", density=300)
     return Shape(pot + grow(rng, (w / 2, d / 2), crown, h, pot_r, green))
 
@@ -156,28 +146,6 @@ def _palm(rng: np.random.Generator, half: tuple[float, float], crown: float, h: 
     return pieces("stems", stems, green) + _leaves(roots, tips, 0.022 + 0.02 * min(half), green, belly=0.35, n=4)
 
 
-def _swords(rng: np.random.Generator, half: tuple[float, float], crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
-    """Stiff upright leaves, each of two blades, the upper one leaning on."""
-    leaves: list[Solid] = []
-    count = 15
-    for k in range(count):
-        a, out = k * GOLDEN, math.sqrt((k + 0.5) / count)
-        root = np.array([0.55 * pot * out * math.cos(a), 0.55 * pot * out * math.sin(a), crown - 0.008])
-        top = h - (h - crown) * 0.5 * out**2 * float(rng.uniform(0.6, 1.1))
-        tip = np.array([half[0] * 0.9 * out * math.cos(a), half[1] * 0.9 * out * math.sin(a), top])
-        wide = 0.05 + 0.12 * pot
-        flat = float(rng.uniform(0, math.pi))
-        side = np.array([math.cos(flat), math.sin(flat), 0.0]) * wide / 2
-        deep = np.array([-math.sin(flat), math.cos(flat), 0.0]) * 0.004
-        middle = root + 0.6 * (tip - root)
-
-        def section(at: Points, f: float, side: Points = side, deep: Points = deep) -> Points:
-            return np.array([at - f * side, at - f * deep, at + f * side, at + f * deep])
-
-        leaves += [stack([section(root, 0.6), section(middle, 1.0)]), stack([section(middle, 1.0), section(tip, 0.06)])]
-    return pieces("leaves", leaves, green)
-
-
 def _big_leaf(base: Points, direction: float, droop: float, size: float) -> tuple[list[Points], list[Points]]:
     """Return the roots and tips of one large split leaf: a fan of lobes about its midrib."""
     u = np.array([math.cos(direction), math.sin(direction), 0.0])
@@ -235,68 +203,6 @@ def _fig(rng: np.random.Generator, half: tuple[float, float], crown: float, h: f
     return pieces("trunk", tube(trunk, np.linspace(0.016, 0.009, len(trunk)), 7), BARK) + _leaves(
         roots, tips, 0.36 * min(half) + 0.03, green, belly=0.62
     )
-
-
-def _fern(rng: np.random.Generator, half: tuple[float, float], crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
-    """Fronds that rise and bend over the rim, narrow leaflets in rows."""
-    roots: list[Points] = []
-    tips: list[Points] = []
-    count = 15
-    for k in range(count):
-        a, out = k * GOLDEN, 0.4 + 0.6 * (k + 0.5) / count
-        c, s = math.cos(a), math.sin(a)
-        reach = np.array([half[0] * c, half[1] * s]) * out
-        top = h - (h - crown) * 0.45 * (out - 0.4) * float(rng.uniform(0.9, 1.2))
-        path = curve(
-            [
-                np.array([0.2 * pot * c, 0.2 * pot * s, crown - 0.004]),
-                np.array([*(0.35 * reach), crown + 0.75 * (top - crown)]),
-                np.array([*(0.72 * reach), top]),
-                np.array([*reach, top - 0.3 * (top - crown)]),
-            ],
-            2,
-        )
-        for j in range(len(path) - 1):
-            roots.append(path[j])
-            tips.append(path[j + 1] + 0.12 * (path[j + 1] - path[j]))
-            along = path[j + 1] - path[j]
-            side = np.cross(along, (0, 0, 1.0))
-            side = side / max(float(np.linalg.norm(side)), 1e-6) * 0.2 * min(half) * (1 - 0.55 * j / len(path))
-            if j:
-                for q in (-1, 1):
-                    roots.append(path[j])
-                    tips.append(path[j] + q * side + 0.5 * along - np.array([0, 0, 0.1 * 0.2 * min(half)]))
-    return _leaves(roots, tips, 0.02 + 0.05 * min(half), green, belly=0.4, n=4)
-
-
-def _cactus(rng: np.random.Generator, half: tuple[float, float], crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
-    """Build a ribbed column with one or two arms."""
-    r = min(0.24 * min(half), 0.6 * pot)
-    body = [(0.8 * r, crown - 0.01), (r, crown + 0.15 * (h - crown)), (r, h - 0.8 * r), (0.75 * r, h - 0.25 * r), (0.3 * r, h)]
-    parts = pieces("column", revolve(body, 12), green)
-    for s, share in ((-1, 0.4), (1, 0.55)):
-        z = crown + share * (h - crown)
-        out = half[0] - 0.55 * r
-        path = curve(
-            [
-                (s * 0.97 * r, 0, z),
-                (s * (0.5 * out + 0.5 * r), 0, z + 0.02),
-                (s * out, 0, z + 0.5 * out),
-                (s * out, 0, z + 0.6 * out + 0.16 * (h - crown)),
-            ],
-            2,
-        )
-        arm = tube(path, [0.36 * r, 0.42 * r, 0.46 * r, 0.48 * r, 0.48 * r, 0.44 * r, 0.28 * r], 10)
-        parts += pieces("arms", arm if s < 0 else [q.turned("z", 0.5 * math.pi) for q in arm], green)
-    ribs = [
-        box(
-            (r * math.cos(a) - 0.004, r * math.cos(a) + 0.004),
-            (r * math.sin(a) - 0.004, r * math.sin(a) + 0.004),
-            (crown + 0.2 * (h - crown), h - 0.9 * r),
-        )
-        for a in turns(12)
-    ]
-    return parts + pieces("ribs", ribs, Finish("spine", (0.45, 0.45, 0.28), 0.8, density=300))
 
 
 def _olive(rng: np.random.Generator, half: tuple[float, float], crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:

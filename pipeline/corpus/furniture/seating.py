@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 
 import numpy as np
@@ -23,8 +22,8 @@ TUBE = 0.011  # radius of bent steel
 
 
 def dining_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a chair: framed (wood, upholstered, spindle, medallion, cafe), a shell, a wishbone, a cantilever, or one that folds."""
-    build = {"shell": _shell_chair, "wishbone": _wishbone, "cantilever": _cantilever, "folding": _folding}.get(form)
+    """Build a chair: framed (wood, upholstered, spindle, cafe), a shell, a wishbone, or a cantilever."""
+    build = {"shell": _shell_chair, "wishbone": _wishbone, "cantilever": _cantilever}.get(form)
     return Shape(build(rng, size, scheme) if build else _frame_chair(rng, form, size, scheme))
 
 
@@ -61,7 +60,7 @@ def _frame_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         piping = scheme.second if rng.random() < scheme.manner.piping else None
         parts += seat_cushion(span_x, span_y, (seat - top, seat + 0.02), 0.04, scheme.soft, piping, 0.018)
     frame = Frame(x - 0.012, back_y, under + rail, h, rise / (h - seat), thick, wood)
-    kinds = {"wood": "slat ladder panel cane", "upholstered": "pad", "spindle": "spindle", "medallion": "medallion", "cafe": "cross"}[form]
+    kinds = {"wood": "slat ladder panel cane", "upholstered": "pad", "spindle": "spindle", "cafe": "cross"}[form]
     if form == "wood" and scheme.style in ORIENTAL:
         kinds = "splat"
     elif form == "wood" and scheme.style in CLASSIC:
@@ -196,31 +195,8 @@ def _cantilever(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[P
     return parts + pieces("back", lean([pad], seat + 0.02, slope), panel)
 
 
-def _folding(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
-    """Two crossed frames with slats for a seat and a back."""
-    w, d, h = size
-    seat, x, y = min(0.45, 0.55 * h), w / 2, d / 2
-    wood, metal = (scheme.front, scheme.handle)
-    t = 0.02
-    long = [beam((s * (x - 0.6 * t), -y + 0.02, 0), (s * (x - 0.6 * t), y - 0.02, h), t, 0.032) for s in (-1, 1)]
-    short = [beam((s * (x - 1.75 * t), y - 0.05, 0), (s * (x - 1.75 * t), -y + 0.06, seat - 0.026), t, 0.03) for s in (-1, 1)]
-    bars = [rod((-x + 2.4 * t, sy, z), (x - 2.4 * t, sy, z), 0.007, n=6) for sy, z in ((y - 0.09, 0.08), (-y + 0.1, seat - 0.09))]
-    parts = pieces("frames", long + short, metal if rng.random() < 0.4 else wood) + pieces("bars", bars, metal)
-    reach = -y + 0.02 + (2 * y - 0.04) * seat / h  # where the long frame passes the seat
-    ys = np.linspace(-y, reach - 0.045, 6)
-    parts += pieces(
-        "seat",
-        [box((-x + 1.3 * t, x - 1.3 * t), (a + 0.003, b - 0.003), (seat - 0.024, seat), 0.003) for a, b in itertools.pairwise(ys)],
-        wood,
-    )
-    slope = (2 * y - 0.04) / h
-    at = -y + 0.02 + slope * 0.7 * h
-    boards = [box((-x + 1.3 * t, x - 1.3 * t), (at - 0.007, at + 0.007), (q * h, (q + 0.09) * h), 0.003) for q in (0.7, 0.81, 0.92)]
-    return parts + pieces("back", lean(boards, 0.7 * h, slope), wood)
-
-
 def chinese_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build an official's hat chair with a yoke, a rose chair with a low square back, or a horseshoe armchair."""
+    """Build an official's hat chair with a yoke, or a rose chair with a low square back."""
     w, d, h = size
     seat = min(0.5, 0.55 * h)
     x, y = 0.5 * w - 0.03, 0.5 * d - 0.03
@@ -237,7 +213,7 @@ def chinese_chair(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     apron += [box((s * x - 0.006, s * x + 0.006), (-y + 0.02, y - 0.02), (seat - 0.08, seat - board), 0.002) for s in (-1, 1)]
     parts += pieces("apron", apron, wood)
     arm = seat + (0.5 if form != "rose" else 0.62) * (h - seat)
-    upper, top = (_bow(x, y, seat, arm, h), h - 2 * 0.0145) if form == "horseshoe" else _yoke(form, x, y, seat, arm, h)
+    upper, top = _yoke(form, x, y, seat, arm, h)
     parts += pieces("frame", upper, wood)
     splat = box((-0.085, 0.085), (y - 0.007, y + 0.007), (seat, top - 0.004 if form != "rose" else seat + 0.6 * (top - seat)), 0.003)
     parts += pieces("splat", splat, wood)
@@ -252,28 +228,6 @@ def chinese_chair(rng: np.random.Generator, form: str, size: Size, scheme: Schem
             0.008,
         )
     return Shape(parts)
-
-
-def _bow(x: float, y: float, seat: float, arm: float, h: float) -> list[Solid]:
-    """Build the rail of a horseshoe armchair, which rises to the back, and its posts."""
-    r = 0.0145
-    upper: list[Solid] = []
-    bow = arc((0.0, 0.12 * y), x + 0.012, 0.0, math.pi, 10, (0.88 * y) / (x + 0.012))
-    high = np.interp(bow[:, 1], [0.12 * y, y], [arm, h - r])
-    path = np.column_stack([bow, high])
-    start = np.array([x + 0.012, -y, arm - 0.01])
-    upper += tube(np.concatenate([[start], path, [start * np.array([-1, 1, 1])]]), r, 8)
-    upper += [
-        rod(
-            (s * x, t * y, seat),
-            (s * (x + 0.01 * (t < 0)), t * y * (1.0 if t < 0 else 0.55), (arm - 0.01 if t < 0 else arm + 0.1 * (h - arm)) - r),
-            0.014,
-            n=8,
-        )
-        for s in (-1, 1)
-        for t in (-1, 1)
-    ]
-    return upper
 
 
 def _yoke(form: str, x: float, y: float, seat: float, arm: float, h: float) -> tuple[list[Solid], float]:

@@ -10,13 +10,13 @@ from pipeline.corpus.furniture.bent import arc, band, prism, turns
 from pipeline.corpus.furniture.dining_tables import cased_table, legged_table, top, top_finish, trumpet
 from pipeline.corpus.furniture.finishes import GLASS, Scheme, cane
 from pipeline.corpus.furniture.legs import draw_kind, inside, leg_finish, legs, pedestal
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, rounded_rectangle, slab
+from pipeline.corpus.furniture.shape import Shape, pieces
+from pipeline.corpus.furniture.solids import Solid, circle, ring, rod, rounded_rectangle, slab
 from pipeline.corpus.furniture.storage import Size
 
 
 def coffee_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Legs with a lower shelf, a case with drawers, two planks or a round tray."""
+    """Legs with a lower shelf, a case with drawers, or a round tray."""
     w, d, h = size
     if form == "drawer":
         count = 2 if w > 0.9 else 1
@@ -27,41 +27,17 @@ def coffee_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
             lower = slab(rounded_rectangle((-0.36 * w, 0.36 * w), (-0.34 * d, 0.34 * d), 0.02, 2), (0.26 * h, 0.26 * h + 0.016), 0.003)
             return Shape(shape.base + pieces("shelf", lower, cane(rng) if rng.random() < scheme.manner.cane else scheme.body))
         return shape
-    if form == "tray":
-        rim = ring((w / 2, w / 2), (w / 2 - 0.012, w / 2 - 0.012), (h - 0.05, h), 36)
-        parts = pieces("rim", rim, scheme.handle) + pieces(
-            "tray", slab(circle(w / 2 - 0.0125, 36), (h - 0.05, h - 0.03), 0.002), top_finish(rng, scheme)
-        )
-        kind = draw_kind(rng, scheme, "plank cross sled block bun horse pipe")
-        half = inside(kind, (0.36 * w, 0.36 * w), h - 0.05, 0.04)
-        return Shape(parts + pieces("legs", legs(kind, half, h - 0.05, 0.04), leg_finish(scheme, kind)))
-    return Shape(_planks(size, scheme))
-
-
-def _planks(size: Size, scheme: Scheme) -> tuple[Piece, ...]:
-    """Build two planks on posts, one lower than the other."""
-    w, d, h = size
-    t, wide = 0.05, 0.5 * w
-    spans = ((-w / 2, -w / 2 + wide + 0.12 * w), (w / 2 - wide - 0.06 * w, w / 2))
-    parts = pieces(
-        "top",
-        [
-            slab(rounded_rectangle(spans[0], (-d / 2, 0.25 * d), 0.02, 3), (h - t, h), 0.005),
-            slab(rounded_rectangle(spans[1], (-0.3 * d, d / 2), 0.02, 3), (0.68 * h - t, 0.68 * h), 0.005),
-        ],
-        scheme.body,
+    rim = ring((w / 2, w / 2), (w / 2 - 0.012, w / 2 - 0.012), (h - 0.05, h), 36)
+    parts = pieces("rim", rim, scheme.handle) + pieces(
+        "tray", slab(circle(w / 2 - 0.0125, 36), (h - 0.05, h - 0.03), 0.002), top_finish(rng, scheme)
     )
-    legs_ = [
-        box((spans[0][0] + 0.03, spans[0][0] + 0.07), (-0.42 * d, 0.18 * d), (0, h - t), 0.004),
-        box((spans[0][1] - 0.05, spans[0][1] - 0.01), (-0.42 * d, -0.302 * d), (0, h - t), 0.004),
-    ]
-    legs_.append(box((spans[1][1] - 0.07, spans[1][1] - 0.03), (-0.22 * d, 0.42 * d), (0, 0.68 * h - t), 0.004))
-    legs_.append(box((spans[1][0] + 0.02, spans[1][0] + 0.06), (0.3 * d, 0.42 * d), (0, 0.68 * h - t), 0.004))
-    return parts + pieces("legs", legs_, scheme.accent)
+    kind = draw_kind(rng, scheme, "plank cross sled block bun horse pipe")
+    half = inside(kind, (0.36 * w, 0.36 * w), h - 0.05, 0.04)
+    return Shape(parts + pieces("legs", legs(kind, half, h - 0.05, 0.04), leg_finish(scheme, kind)))
 
 
 def corner_side_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Legs with a shelf, a pedestal, a drawer or an hourglass."""
+    """Legs with a shelf, a pedestal or a drawer."""
     w, d, h = size
     if form == "drawer":
         return cased_table(rng, size, scheme, drawer_height=0.12, count=1)
@@ -73,9 +49,6 @@ def corner_side_table(rng: np.random.Generator, form: str, size: Size, scheme: S
         return shape
     material = top_finish(rng, scheme, stone=1.6)
     parts = pieces("top", top(circle(w / 2, 32), (h - 0.024, h), scheme), material)
-    if form == "hourglass":
-        body = [(0.46, 0.0), (0.46, 0.03), (0.36, 0.2), (0.24, 0.5), (0.36, 0.8), (0.46, 1.0)]
-        return Shape(parts + pieces("body", revolve([(a * w, b * (h - 0.024)) for a, b in body], 24), scheme.front))
     return Shape(parts + pieces("pedestal", pedestal(rng, scheme, 0.36 * w, h - 0.024), scheme.accent))
 
 

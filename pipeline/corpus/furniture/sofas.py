@@ -253,22 +253,13 @@ def l_shaped_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Schem
 
 
 def lazy_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a bean bag in the shape of a drop, a floor chair of two thick pads, or a soft block seat with a rolled back."""
+    """Build a bean bag in the shape of a drop, or a soft block seat with a rolled back."""
     w, d, h = size
     x, y = w / 2, d / 2
     if form == "bean":
         steps = ((0.78, 0.0), (0.92, 0.08), (0.99, 0.2), (1.0, 0.32), (0.94, 0.5), (0.78, 0.7), (0.55, 0.87), (0.3, 0.97), (0.14, 1.0))
         drop = [q.scaled(np.array([1.0, y / x, 1.0])) for q in revolve([(a * x, b * h) for a, b in steps], 26)]
         return Shape(pieces("bag", lean(drop, 0.0, 0.22), scheme.soft))
-    if form == "floor":
-        thick = min(0.16, 0.3 * h)
-        slope = 0.3
-        front = y - 0.15 - slope * h
-        pads = [
-            cushion((-x, x), (front, front + 0.15), (a + 0.001, b - 0.001), 0.05, 3) for a, b in itertools.pairwise(np.linspace(0.0, h, 4))
-        ]
-        parts = pieces("seat", cushion((-x, x), (-y, front - 0.003), (0, thick), 0.06, 3, 0.02), scheme.soft)
-        return Shape(parts + pieces("back", lean(pads, 0.0, slope), scheme.soft))
     seat = min(0.38, 0.52 * h)
     parts = pieces("body", cushion((-x, x), (-y, y), (0, seat), 0.11, 4, 0.03), scheme.soft)
     parts += pieces("back", cushion((-x, x), (y - 0.3 * d, y), (seat - 0.012, h), 0.12, 4), scheme.soft)

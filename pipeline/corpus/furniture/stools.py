@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from pipeline.corpus.furniture.bent import arc, curve, sheet, tube, turns, wall
+from pipeline.corpus.furniture.bent import arc, tube, turns, wall
 from pipeline.corpus.furniture.finishes import Finish, Scheme
 from pipeline.corpus.furniture.legs import METAL, draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Shape, pieces
@@ -50,9 +50,9 @@ def dressing_chair(rng: np.random.Generator, form: str, size: Size, scheme: Sche
 
 
 def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
-    """Build a high seat on four legs, on a column, or a saddle without a back; a foot rest goes around it."""
+    """Build a high seat on four legs or on a column; a foot rest goes around it."""
     w, d, h = size
-    seat = h if h < 0.85 or form == "saddle" else 0.72 * h
+    seat = h if h < 0.85 else 0.72 * h
     x, y = w / 2, d / 2
     metal = scheme.handle
     parts: tuple[Piece, ...]
@@ -92,14 +92,6 @@ def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
             rod((s * a, -b + 0.012, z + 0.04), (s * a, b - 0.012, z + 0.04), 0.009, n=8) for s in (-1, 1)
         ]
         parts += pieces("foot_rest", rest, metal if kind in METAL else finish)
-    if form == "saddle":
-        path = curve([np.array(p) for p in ((-y, seat - 0.028), (-0.5 * y, seat - 0.045), (0.5 * y, seat - 0.045), (y, seat - 0.01))], 3)
-        bent = list(sheet(path, 0.032, w))
-        return Shape(
-            parts
-            + pieces("seat", bent, scheme.body)
-            + pieces("block", box((-0.3 * w, 0.3 * w), (-0.3 * d, 0.3 * d), (top, seat - 0.0625), 0.003), scheme.body)
-        )
     parts += seat_cushion(
         (-x, x), (-y, 0.84 * y), (top, seat), 0.03, scheme.soft, scheme.second if rng.random() < scheme.manner.piping else None
     )
