@@ -18,7 +18,8 @@ class StyleSpec:
     """What a style reaches for; words are drawn from with equal chances, a repeated word more often.
 
     `share`: how often it comes. `woods`, `lacquers` ("" for none), `fabrics`, `metals`: names of colours. `legs`: leg forms of
-    legs.py. `cloths`: patterns of covers. `stones`: table tops other than wood. `shades`: forms of lamp shades. Chances in [0, 1]:
+    legs.py. `cloths`: patterns of covers. `stones`: table tops other than wood. `shades`: forms of lamp shades. `fronts` and
+    `handles`: those of doors and drawers (panels.py). Chances in [0, 1]:
     `paint` lacquer instead of wood, `tube` metal legs, `stone` tops, `piping` and `tufts` of cushions, `ornament` mouldings, turnings
     and carved aprons, `cane` woven panels. `soft` [m]: radius of cushions, `edge` [m]: of boards; `slim`: factor on thicknesses.
     """
@@ -32,6 +33,8 @@ class StyleSpec:
     cloths: str = "weave"
     stones: str = "marble"
     shades: str = "drum"
+    fronts: str = "slab slab shaker"
+    handles: str = "bar flat knob edge"
     paint: float = 0.4
     tube: float = 0.4
     stone: float = 0.15

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,35 +22,10 @@ def pick(rng: np.random.Generator, words: str) -> str:
     return str(rng.choice(words.split()))
 
 
-# What fronts and handles each style reaches for.
-FRONT_TASTES: Mapping[str, tuple[str, str]] = {
-    "Modern": ("slab slab slab reeded", "bar long groove flat edge"),
-    "Nordic": ("slab slab cane slats", "knob flat edge groove"),
-    "Minimalist": ("slab", "groove none edge groove"),
-    "Light Luxury": ("slab reeded slab raised", "long bar flat knob"),
-    "Industrial": ("slab shaker slab", "cup bar flat cup"),
-    "Japanese": ("slats reeded slab slab", "edge groove knob"),
-    "American Country": ("shaker raised shaker", "cup knob cup knob"),
-    "New Chinese": ("shaker slab raised slats", "ring ring bar"),
-    "Vintage/Retro": ("cane slab reeded slab", "knob ring cup edge"),
-    "Mediterranean": ("slats raised shaker", "knob ring cup"),
-    "European": ("raised shaker slab", "knob bar ring"),
-    "European Classic": ("raised raised shaker", "ring knob"),
-    "Neoclassical": ("raised shaker reeded", "ring knob bar"),
-    "Chinoiserie": ("shaker slab raised", "ring"),
-    "Ming Qing": ("shaker slab slats", "ring"),
-    "Southeast Asia": ("cane slats cane", "knob ring"),
-    "Korean": ("slab slab cane", "groove knob edge"),
-    "Kids": ("slab slab shaker", "knob groove"),
-}
-ANY_TASTE = ("slab slab shaker", "bar flat knob edge")
-
-
 def front_style(rng: np.random.Generator, scheme: Scheme, panels: str = "") -> FrontStyle:
     """Draw how the fronts of a model look: as its style has it, unless `panels` are named."""
-    by_style = FRONT_TASTES.get(scheme.style, ANY_TASTE)
-    panel: PanelStyle = pick(rng, panels or by_style[0])  # type: ignore[assignment]
-    handle: HandleStyle = pick(rng, by_style[1])  # type: ignore[assignment]
+    panel: PanelStyle = pick(rng, panels or scheme.manner.fronts)  # type: ignore[assignment]
+    handle: HandleStyle = pick(rng, scheme.manner.handles)  # type: ignore[assignment]
     return FrontStyle(panel, handle, scheme.front, scheme.handle)
 
 
