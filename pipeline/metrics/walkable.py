@@ -22,26 +22,6 @@ def success_rate(ratios: Sequence[float], tau: float) -> Rate:
     return rate(sum(r >= tau - 1e-9 for r in ratios), len(ratios))
 
 
-def success_rates(ratios: Sequence[float], taus: Sequence[float]) -> dict[str, Rate]:
-    """Return SR(tau) over the same rooms for several thresholds, keyed by tau as text."""
-    return {f"{tau:.2f}": success_rate(ratios, tau) for tau in taus}
-
-
-def from_rooms(rooms: Iterable[Row]) -> dict[str, dict[str, Rate]]:
-    """Return SR(tau) per meaning from rooms that carry a target, each judged at its own target."""
-    wanted = [r for r in rooms if r["walkable_target"] is not None]
-    targets = sorted({round(float(r["walkable_target"]), 4) for r in wanted})
-    return {
-        meaning: {
-            f"{tau:.2f}": success_rate(
-                [float(r[f"walkable_{meaning}"]) for r in wanted if abs(float(r["walkable_target"]) - tau) < 5e-5], tau
-            )
-            for tau in targets
-        }
-        for meaning in MEANINGS
-    }
-
-
 def means(rng: np.random.Generator, rooms: Iterable[Row]) -> dict[str, Mean]:
     """Return the mean R_walkable over rooms, in both meanings."""
     listed = list(rooms)

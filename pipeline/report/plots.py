@@ -6,7 +6,6 @@ import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-INK = "#1d2530"
 COLOURS = ("#8a94a3", "#c8643c", "#2f7f86", "#7a5ea8")
 
 

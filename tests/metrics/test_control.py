@@ -22,16 +22,16 @@ def test_quantity_reads_rooms_that_were_asked():
 
 def test_walkable_success_falls_with_tau():
     ratios = np.random.default_rng(0).uniform(size=60).tolist()
-    rates = [r["rate"] for r in walkable.success_rates(ratios, [0.1, 0.4, 0.7, 0.95]).values()]
+    rates = [walkable.success_rate(ratios, tau)["rate"] for tau in (0.1, 0.4, 0.7, 0.95)]
     assert rates == sorted(rates, reverse=True)
     assert walkable.success_rate([0.8], 0.8)["rate"] == 1.0
 
 
 def test_walkable_tells_both_meanings_apart():
     rows = [room_row(3, walkable_paper=0.8, walkable_free=0.5, walkable_target=0.7), room_row(3, walkable_target=None)]
-    found = walkable.from_rooms(rows)
-    assert found["paper"]["0.70"]["rate"] == 1.0
-    assert found["free"]["0.70"] == {"rate": 0.0, "low": 0.0, "high": pytest.approx(0.793, abs=1e-3), "successes": 0, "n": 1}
+    assert walkable.success_rate([rows[0]["walkable_paper"]], 0.7)["rate"] == 1.0
+    below = {"rate": 0.0, "low": 0.0, "high": pytest.approx(0.793, abs=1e-3), "successes": 0, "n": 1}
+    assert walkable.success_rate([rows[0]["walkable_free"]], 0.7) == below
     means = walkable.means(np.random.default_rng(0), rows)
     assert (means["paper"]["mean"], means["free"]["mean"]) == (0.9, 0.75)
 

@@ -43,17 +43,6 @@ def top(edge: NDArray[np.float64], z: tuple[float, float], scheme: Scheme) -> li
     return [slab(edge * 0.965, (z[0], cut), 0.003), slab(edge, (cut, z[1]), min(ease, 0.4 * (z[1] - cut)))]
 
 
-def apron(w: float, d: float, z: tuple[float, float], inset: float, thick: float = 0.02) -> list[Solid]:
-    """Return the four rails under a table top, their outer faces `inset` from the edges of w x d."""
-    x, y = w / 2 - inset, d / 2 - inset
-    return [
-        box((-x, x), (-y, -y + thick), z, 0.002),
-        box((-x, x), (y - thick, y), z, 0.002),
-        box((-x, -x + thick), (-y + thick, y - thick), z, 0.002),
-        box((x - thick, x), (-y + thick, y - thick), z, 0.002),
-    ]
-
-
 def legged_table(rng: np.random.Generator, size: Size, scheme: Scheme, *, without: str = "") -> Shape:
     """Build a top on legs of the style's form, joined by rails between them."""
     w, d, h = size

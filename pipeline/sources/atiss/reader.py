@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from pipeline import taxonomy
@@ -34,7 +33,6 @@ from pipeline.sources.threed_front.poses import Pose, to_ours
 from pipeline.sources.threed_front.rows import ReadRoom
 from pipeline.sources.walkable_share import Walker
 
-Floats = NDArray[np.float64]
 House = tuple[str, tuple[tuple[str, str], ...]]  # its id, and (folder of the kind, folder of the room) of each room
 
 

@@ -8,7 +8,6 @@ from collections.abc import Mapping
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from pipeline.entities.plan import Opening, Room
@@ -29,7 +28,6 @@ from pipeline.sources.threed_front.rows import ReadRoom, object_row, opening_row
 from pipeline.sources.walkable_share import Walker
 from pipeline.taxonomy import Taxonomy
 
-Floats = NDArray[np.float64]
 # Absurd counts: real houses have up to some 30 rooms, 60 openings, 60 objects in a room, 2,000 floor triangles.
 MAX_ROOMS, MAX_CHILDREN, MAX_HOLES = 300, 20_000, 1000
 MAX_TRIANGLES = 20_000  # of one room
