@@ -25,11 +25,13 @@ ASIDE = 2.0  # and a metre along the anchor's side, away from such a place [m]
 ALONE = 0.8  # cost of standing away from the anchor [m]
 RINGS = (0.02, 0.05, 0.08, 0.12, 0.16, 0.2, 0.25, 0.3, 0.4, 0.5, 0.65, 0.8, 1.0)  # radii of the poses tried near by [m]
 WAYS = 16
+SQUARE = 0.1  # what is turned to within this stands straight across [rad]
 GRID = 0.25  # of poses tried all over the room [m]
 STRIDE = 0.1  # of poses tried along walls [m]
 SEAM = 0.002  # between neighbours [m]
 ALONG = np.array([0.0, *(s * k for k in (0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8) for s in (1, -1))])
 OUT = np.array([0.0, -0.06, -0.12, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3])
+DRAWN_OUT = np.array([0.4, 0.5, 0.6])  # a chair before drawers stands clear of them [m]
 
 
 def near_by(
@@ -58,6 +60,20 @@ def round_walls(item: Item, target: Floats, walls: Sequence[Edge], site: Site, s
     """Return poses (C, 4) along all the walls, and their costs (C,), the cheapest first: for what takes along who stands across from it."""
     poses, cost = _along_walls(item, target, walls, np.zeros((0, 4, 2)))
     return _rank_poses(item, poses, cost + settings.turn_cost * yaw_difference(poses[:, 3], float(target[3])), site)
+
+
+def steps_to_walls(item: Item, across: Item, offset: Floats, walls: Sequence[Edge]) -> list[tuple[float, Edge]]:
+    """Return how much farther from an item one that looks at it from `offset` (4,) in its frame has its back at a wall [m], and the item's wall then, the least step first.
+
+    Nothing for one that would not rather be at a wall.
+    """
+    if not across.habit.wants or abs(math.remainder(float(offset[3]) - math.pi, math.tau)) > SQUARE:
+        return []
+    taken = item.habit.gap[1] + float(item.half[1]) - float(offset[1]) + float(across.half[1]) + across.habit.gap[1]
+    facing = [
+        (edge, float(other.off(edge.start))) for edge in walls for other in walls if yaw_difference(edge.yaw, other.yaw) > math.pi - SQUARE
+    ]
+    return sorted(((depth - taken, edge) for edge, depth in facing if depth > 0.0), key=lambda step: (round(abs(step[0]), 6), step[1].yaw))
 
 
 def everywhere(item: Item, target: Floats, walls: Sequence[Edge], site: Site, settings: SeparateSettings) -> tuple[Floats, Floats]:
@@ -99,12 +115,13 @@ def at_anchor_poses(
     beyond = np.abs(local) - anchor.half  # the side on which it stands is the one that it is farther out of
     out = np.where((beyond[:, 0] > beyond[:, 1])[:, None], np.sign(local) * [1, 0], np.sign(local) * [0, 1])
     along = np.stack([-out[:, 1], out[:, 0]], 1)
-    steps = out[:, None, None] * OUT[None, None, :, None] + along[:, None, None] * ALONG[None, :, None, None]
+    outwards = np.concatenate([OUT, DRAWN_OUT]) if anchor.shape.opens else OUT
+    steps = out[:, None, None] * outwards[None, None, :, None] + along[:, None, None] * ALONG[None, :, None, None]
     spots = (local[:, None, None] + steps).reshape(-1, 2)
     points = at[:2] + np.column_stack([c * spots[:, 0] - s * spots[:, 1], s * spots[:, 0] + c * spots[:, 1]])
-    aside = np.tile(ASIDE * np.abs(ALONG[:, None]) + np.abs(OUT[None]), (len(modes), 1, 1)).ravel()
-    yaws = np.repeat(modes[:, 2], len(ALONG) * len(OUT))
-    away = np.repeat(np.linalg.norm(modes[:, :2] - target[:2], axis=1), len(ALONG) * len(OUT))
+    aside = np.tile(ASIDE * np.abs(ALONG[:, None]) + np.abs(outwards[None]), (len(modes), 1, 1)).ravel()
+    yaws = np.repeat(modes[:, 2], len(ALONG) * len(outwards))
+    away = np.repeat(np.linalg.norm(modes[:, :2] - target[:2], axis=1), len(ALONG) * len(outwards))
     cost = BESIDE * away + aside + 0.5 * settings.turn_cost * yaw_difference(yaws, float(target[3]))
     order = np.argsort(np.round(cost, 9), kind="stable")
     return np.ascontiguousarray(_stack_poses(points, yaws, target[2])[order]), cost[order]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import KEPT, TURNED, Bond, at_anchor, nearest
-from pipeline.arrange.candidates import ALONE, at_anchor_poses, everywhere, hides, near_by, round_walls
+from pipeline.arrange.candidates import ALONE, at_anchor_poses, everywhere, hides, near_by, round_walls, steps_to_walls
 from pipeline.arrange.groups import Group, group_of, groups
 from pipeline.arrange.item import Item, wrap_yaw
 from pipeline.arrange.learnt_relations import LearntRelations
@@ -19,6 +19,7 @@ from pipeline.arrange.walls import Edge
 from pipeline.arrange.world import FREE, conflicts, put
 
 Floats = NDArray[np.float64]
+Led = tuple[Group, Sequence[Edge]]  # a group, and the walls at one of which its first member is to stand
 
 SHIFT = 1.0  # a group goes no farther as one before it is tried without its members [m]
 STEPS = (0.0, -0.3, 0.3, -0.6, 0.6, -0.9, 0.9)  # what leads a group is tried so much farther from it [m]
@@ -62,7 +63,7 @@ def settle_all(occupancy: Occupancy, draft: Draft, first: Sequence[int], *, care
         member[group.members] = number
     clash = (pairs | near) & (member[:, None] != member[None]) & (member >= 0)[:, None] & (member >= 0)[None]
     order = sorted(range(len(fitted_groups)), key=lambda k: _rank(occupancy, fitted_groups[k], draft, first))
-    bound = {i for led in leading.values() for group in led for i in group.members.tolist()}
+    bound = {i for led in leading.values() for group, _ in led for i in group.members.tolist()}
     stays = [k for k in order if bound.isdisjoint(fitted_groups[k].members.tolist())]
     free = [k for k in stays if bulk and not (at_fault[fitted_groups[k].members].any() or clash[fitted_groups[k].members].any())]
     for k in free:
@@ -75,9 +76,7 @@ def settle_all(occupancy: Occupancy, draft: Draft, first: Sequence[int], *, care
     for k in (k for k in order if fitted_groups[k].first in runs and k not in free):
         strays += _settle_group(occupancy, draft, fitted_groups[k], careful=careful)
     for led in leading.values():
-        lead = led[0].first
-        poses, costs = round_walls(occupancy.items[lead], draft.pose(lead), draft.walls, occupancy.site, occupancy.settings)
-        any(_put(occupancy, group, poses, costs, careful=careful) for group in led)
+        any(_put_at_walls(occupancy, draft, *way, careful=careful) for way in led)
     for k in (k for k in order if k not in free and fitted_groups[k].first not in runs):
         left = [i for i in fitted_groups[k].members.tolist() if not occupancy.there[i]]
         whole = len(left) == len(fitted_groups[k].members)
@@ -86,8 +85,8 @@ def settle_all(occupancy: Occupancy, draft: Draft, first: Sequence[int], *, care
         _settle_one(occupancy, draft, i, careful=careful)
 
 
-def _leading_groups(items: Sequence[Item], draft: Draft, fitted_groups: Sequence[Group], poses: Floats) -> dict[int, list[Group]]:
-    """Return, by the number of its anchor's group, as what that group is sought a wall for each who is `led`: what is to be tried first comes first.
+def _leading_groups(items: Sequence[Item], draft: Draft, fitted_groups: Sequence[Group], poses: Floats) -> dict[int, list[Led]]:
+    """Return, by the number of its anchor's group, as what and at which walls that group is sought a place for each who is `led`: what is to be tried first comes first.
 
     Who belongs to a wall across from the anchor leads it: a sofa goes where there is a wall for its screen. A screen that goes by the
     coffee table takes along the sofa, to which that belongs.
@@ -98,7 +97,7 @@ def _leading_groups(items: Sequence[Item], draft: Draft, fitted_groups: Sequence
         for i, bond in enumerate(draft.bonds)
         if bond is not None and not bond.rigid and items[i].habit.must and bond.anchor in number
     }
-    leading: dict[int, list[Group]] = {}
+    leading: dict[int, list[Led]] = {}
     for i in sorted(draft.led):
         bond = draft.bonds[i]
         at = None if bond is None else number.get(bond.anchor)
@@ -109,28 +108,34 @@ def _leading_groups(items: Sequence[Item], draft: Draft, fitted_groups: Sequence
         if lead is not None and not items[group.first].habit.must and (i == lead[0] or bond.anchor == group.first):
             leading[at] = _led_by(*lead, group, draft, poses, items)
         elif bond.anchor == group.first and items[group.first].habit.wants:
-            leading[at] = [group]
+            leading[at] = [(group, draft.walls)]
     return leading
 
 
-def _led_by(lead: int, bond: Bond, group: Group, draft: Draft, poses: Floats, items: Sequence[Item]) -> list[Group]:
-    """Return a group behind who stands across from one of its members, at each distance at which he may stand; then the same of its anchor and that member alone."""
+def _led_by(lead: int, bond: Bond, group: Group, draft: Draft, poses: Floats, items: Sequence[Item]) -> list[Led]:
+    """Return a group behind who stands across from one of its members, at each distance at which he may stand; then the same of its anchor and that member alone.
+
+    Before all others come those whose anchor has its back at a wall then, where such things would rather be: nobody puts a sofa into mid-room before a free wall.
+    """
     own, anchor = items[lead], items[bond.anchor]
     relation = draft.learnt.modes(anchor.placement.category, own.placement.category)
     way = bond.local[:2] / max(float(np.linalg.norm(bond.local[:2])), 1e-6)
-    places = []
-    for step in STEPS:
+    members, core = group.members.tolist(), list(dict.fromkeys((group.first, bond.anchor)))
+    sets, together = [members, core] if len(core) < len(members) else [core], poses.copy()
+
+    def led(step: float, of: Sequence[int]) -> Group | None:
         local = np.array([*(bond.local[:2] + step * way), bond.local[2]])
         near = None if relation is None else nearest(relation[0], np.zeros(3), anchor.half, local, own.half)
-        if step == 0.0 or (near is not None and near[0] <= KEPT and near[1] <= TURNED):
-            places.append(at_anchor(poses[bond.anchor], local))
-    core = list(dict.fromkeys((group.first, bond.anchor)))
-    led, together = [], poses.copy()
-    for members in (group.members.tolist(), core) if len(core) < len(group.members) else (core,):
-        for place in places:
-            together[lead, [0, 1, 3]] = place
-            led.append(group_of([lead, *members], together))
-    return led
+        if step != 0.0 and (near is None or near[0] > KEPT or near[1] > TURNED):
+            return None
+        together[lead, [0, 1, 3]] = at_anchor(poses[bond.anchor], local)
+        return group_of([lead, *of], together)
+
+    free = led(0.0, [group.first])
+    backed = [] if free is None else steps_to_walls(own, items[group.first], free.offsets[1], draft.walls)
+    ways: list[tuple[float, Sequence[int], Sequence[Edge]]] = [(step, of, [edge]) for of in sets for step, edge in backed]
+    ways += [(step, of, draft.walls) for of in sets for step in STEPS]
+    return [(moved, walls) for step, of, walls in ways if (moved := led(step, of)) is not None]
 
 
 def _rank(occupancy: Occupancy, group: Group, draft: Draft, first: Sequence[int]) -> tuple[int, int, int, float, int]:
@@ -214,8 +219,10 @@ def _settle_one(occupancy: Occupancy, draft: Draft, i: int, near: tuple[Floats, 
         occupancy.settle(alone, place)
 
 
-def _put(occupancy: Occupancy, group: Group, poses: Floats, costs: Floats, *, careful: bool) -> bool:
-    """Let a group stand at the best of these poses; tell whether there is one."""
+def _put_at_walls(occupancy: Occupancy, draft: Draft, group: Group, walls: Sequence[Edge], *, careful: bool) -> bool:
+    """Let a group stand where its first member has its back at one of these walls; tell whether there is such a place."""
+    first = group.first
+    poses, costs = round_walls(occupancy.items[first], draft.pose(first), walls, occupancy.site, occupancy.settings)
     place = _find(occupancy, group, [lambda: (poses, costs)], careful=careful)
     if place is not None:
         occupancy.settle(group, place)

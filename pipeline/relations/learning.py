@@ -28,6 +28,7 @@ LEAST_STRENGTH = 0.3  # relations weaker than this are not kept
 ALIKE = ("bed", "chair", "sofa")  # super-categories whose members stand to other things as each other do; tables and cabinets do not
 WALK = (0.3, 0.8)  # a gap that nearly all things of two kinds keep says nothing when it is narrower, and no more when it is wider [m]
 TAILS = (5.0, 50.0, 95.0)  # percentiles of a span
+STRAYS, STRAY = 3.0, 0.5  # who is farther off than most by so many times the quartiles' distance, and by no less than this, is a stray [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +77,7 @@ def fit(rooms: Sequence[Arrangement], kinds: Mapping[str, str] | None = None) ->
                 learnt |= {(a, m): kind and _held_by(kind, things, *_of_pair(things, *case, a, m)) for a, m in own}
     named = [PairRelation(things.names[a], things.names[m], *relation) for (a, m), relation in learnt.items() if relation is not None]
     kept = [pair for pair in named if pair.strength >= LEAST_STRENGTH]
-    return relations(kept, walls.fit(rooms), _distances(things, anchor, member))
+    return relations(kept, walls.fit(rooms, kinds), _distances(things, anchor, member))
 
 
 def _distances(things: _Things, anchor: Indices, member: Indices) -> dict[tuple[str, str], float]:
@@ -234,9 +235,15 @@ def _mode(frames: Frames, side: int, count: int) -> Mode:
 
 def _span(reference: str, values: Floats, unit: float) -> tuple[float, Span]:
     """Return how wide a span is [m], and the span; a reference of fewer parts wins where it is hardly wider."""
-    low, middle, high = np.percentile(values, TAILS)
+    low, middle, high = np.percentile(values[_close(values)] if reference == "outside" else values, TAILS)
     handicap = {"middle": 0.0, "outside": 0.0, "share": 0.02}.get(reference, 0.005)
     return float((high - low) * unit + handicap), Span(reference, *(round(float(v), 4) for v in (low, middle, high)))
+
+
+def _close(gaps: Floats) -> NDArray[np.bool_]:
+    """Tell which gaps (N,) [m] are like the others: a few strays, too few to make a mode, would stretch the one they are counted to all over the room."""
+    first, third = np.percentile(gaps, (25, 75))
+    return np.asarray(gaps <= third + max(STRAYS * float(third - first), STRAY))
 
 
 def _turn(reference: str, values: Floats) -> Span:

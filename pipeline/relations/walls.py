@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,15 +48,21 @@ def measure(room: Arrangement) -> tuple[Floats, Floats]:
     return gap, np.where(np.isfinite(gap), turn, 0.0)
 
 
-def fit(rooms: Sequence[Arrangement]) -> Iterator[WallRelation]:
-    """Yield for each category the sides that stand at a wall more often than others do."""
+def fit(rooms: Sequence[Arrangement], kinds: Mapping[str, str]) -> Iterator[WallRelation]:
+    """Yield for each category the sides that stand at a wall more often than others do.
+
+    `kinds` names the kind of a category: one of which there are too few to tell stands to walls as all of its kind do together.
+    """
     names = np.array([name for room in rooms for name in room.categories])
     measures = [measure(room) for room in rooms if room.categories]
     if not measures:
         return
     gaps, turns = np.concatenate([g for g, _ in measures]), np.concatenate([t for _, t in measures])
+    kind = np.array([kinds.get(name, "") for name in names.tolist()])
     for name in sorted(set(names.tolist())):
         own = names == name
+        if own.sum() < LEAST_CASES and name in kinds:
+            own = kind == kinds[name]
         if own.sum() >= LEAST_CASES:
             for side in range(4):
                 relation = _relation(name, side, gaps[own], turns[own])

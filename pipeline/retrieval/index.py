@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from pipeline.errors import ContentError
 from pipeline.retrieval.box_merging import merged_boxes
+from pipeline.retrieval.knee_room import SAT_AT, has_knee_room
 from pipeline.retrieval.settings import RetrievalSettings
 
 Row = Mapping[str, Any]
@@ -33,7 +34,7 @@ class AssetIndex:
     """All assets of the library, ordered by asset_id.
 
     `sizes` (A, 3) [m]; `latents` (A, 32), standardised by `mean` and `spread`; `sweeps` (A, K, 2, 3) [m] object frame,
-    NaN where an asset has fewer than K boxes; `shelves` lists the rows of each category; `styles` (A,) are "" where there is none.
+    NaN where an asset has fewer than K boxes; `shelves` lists the rows of each category that can be used; `styles` (A,) are "" where there is none.
     """
 
     asset_ids: tuple[str, ...]
@@ -97,12 +98,15 @@ class AssetIndex:
         mean = raw.mean(0)
         # A latent channel that the encoder does not use must not be blown up by its tiny spread.
         spread = np.maximum(raw.std(0), 0.05)
-        names = tuple(str(r["category"]) for r in rows)
+        names, sizes = tuple(str(r["category"]) for r in rows), np.array([r["size"] for r in rows], float).reshape(-1, 3)
         shelves = {name: np.flatnonzero(np.array(names) == name) for name in sorted(set(names))}
+        for name in set(SAT_AT).intersection(shelves):
+            seats = [row for row in shelves[name] if has_knee_room(sizes[row], boxes[row][~np.isnan(boxes[row]).any((1, 2))])]
+            shelves[name] = np.array(seats, np.int64) if seats else shelves[name]
         return cls(
             tuple(str(r["asset_id"]) for r in rows),
             names,
-            np.array([r["size"] for r in rows], float).reshape(-1, 3),
+            sizes,
             (raw - mean) / spread,
             mean,
             spread,

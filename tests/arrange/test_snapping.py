@@ -16,8 +16,8 @@ from pipeline.relations.arrangement import Thing
 from pipeline.relations.model import WallRelation, relations
 from pipeline.relations.modes import Mode, Span
 from pipeline.verify import Policy, verify_home
-from tests.arrange.known import LORE, RELATIONS, drafted, mode, pair
-from tests.geometry.furniture import LIBRARY, block, home, one_room
+from tests.arrange.known import LORE, RELATIONS, drafted, mode, pair, wall
+from tests.geometry.furniture import LIBRARY, block, chest, home, one_room
 from tests.judging import SETTINGS, site
 
 ASSETS = {
@@ -215,6 +215,27 @@ def test_sofa_and_television_go_together_where_no_wall_is_before_the_sofa():
     assert local(low, sofa)[1] == pytest.approx(-(0.45 + 0.25 + 0.45), abs=0.1)
     back = tv.position[:2] + 0.2 * np.array([-math.sin(tv.yaw), math.cos(tv.yaw)])
     assert min(*back, 5.0 - back[0], 9.0 - back[1]) < 0.05
+
+
+def test_a_sofa_that_goes_with_its_television_goes_to_a_wall_where_one_is_across_from_a_screen():
+    """From one of the long walls to the other is just what such sofas keep; in mid-room the sofa would be nearer to the draft."""
+    wished = [drafted(ASSETS["sofa"], 2.2, 8.4), drafted(ASSETS["tv"], 0.3, 5.5, math.pi / 2, number=1)]
+    sofa, tv = arranged(wished, room(4.5, 9.0))
+    assert abs(local(tv, sofa)[0]) < 0.15
+    assert abs(math.remainder(tv.yaw - sofa.yaw - math.pi, math.tau)) < 1e-3
+    for thing, depth in ((sofa, 0.45), (tv, 0.2)):
+        back = thing.position[:2] + depth * np.array([-math.sin(thing.yaw), math.cos(thing.yaw)])
+        assert min(*back, 4.5 - back[0], 9.0 - back[1]) < 0.05
+
+
+def test_a_chair_before_a_drawer_stands_at_the_desk_clear_of_it():
+    at = mode("front", (-0.2, -0.1, 0.1), ("middle", -0.1, 0.0, 0.1), math.pi, 1.0)
+    learnt = LearntRelations(relations([pair("desk", "dining_chair", at)], [wall("desk")]))
+    desk = chest("desk", "desk", (1.2, 0.6, 0.75), travel=0.38)
+    wished = [drafted(desk, 2.5, 3.68), drafted(LIBRARY["chair"], 2.5, 3.2, math.pi, number=1)]
+    found = separate(site(room(), "room"), wished, ASSETS | {"desk": desk}, learnt).placements
+    assert abs(local(found[1], found[0])[0]) < 0.3
+    assert 0.38 <= -local(found[1], found[0])[1] - 0.3 - 0.25 < 0.45
 
 
 def test_a_television_that_goes_by_the_coffee_table_takes_the_sofa_along():

@@ -183,6 +183,27 @@ def test_what_is_too_rare_for_itself_is_learnt_from_its_kind():
     assert learning.fit([*rooms[12:], *rare], {"double_bed": "bed"}).pair("kids_bed", "nightstand") is None
 
 
+def test_what_is_too_rare_for_itself_stands_to_walls_as_its_kind():
+    rooms = bedrooms(np.random.default_rng(1), 120)
+    rare = [
+        replace(room, categories=tuple("kids_bed" if name == "double_bed" else name for name in room.categories)) for room in rooms[:12]
+    ]
+    known = learning.fit([*rooms[12:], *rare]).walls
+    assert [wall.side for wall in known["kids_bed"]] == ["back"]
+    assert known["kids_bed"][0].share == pytest.approx(known["double_bed"][0].share, abs=0.05)
+    assert "kids_bed" not in learning.fit([*rooms[12:], *rare], {}).walls
+
+
+def test_a_few_strays_do_not_stretch_a_mode():
+    rooms = bedrooms(np.random.default_rng(2), 120)
+    for k, room in enumerate(rooms[:7]):  # too few for a mode of their own, too many for a tail of one in twenty
+        c, s = np.cos(room.yaw[0]), np.sin(room.yaw[0])
+        room.position[2, :2] += (1.0 + 0.15 * k) * np.array([c, s])
+    modes = learning.fit(rooms).pair("double_bed", "nightstand").modes
+    assert {mode.side for mode in modes} == {"left", "right"}
+    assert all(mode.outwards.high < 0.15 for mode in modes)
+
+
 def test_of_its_kind_the_rare_takes_what_its_own_few_are_like():
     rooms = bedrooms(np.random.default_rng(1), 120)
     known = learning.fit([*rooms[12:], *(_with_one_nightstand(room) for room in rooms[:12])])
