@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 
 import numpy as np
-from numpy.typing import NDArray
 
 
 def key(seed: int, name: str, *keys: int | str) -> int:
@@ -17,8 +16,3 @@ def key(seed: int, name: str, *keys: int | str) -> int:
 def generator(seed: int, name: str, *keys: int | str) -> np.random.Generator:
     """Return a numpy generator (Philox) for one step, e.g. `generator(seed, "plan", index, attempt)`."""
     return np.random.Generator(np.random.Philox(key=key(seed, name, *keys)))
-
-
-def normal(seed: int, name: str, *keys: int | str, shape: tuple[int, ...]) -> NDArray[np.float32]:
-    """Draw standard normal noise of `shape` that depends on nothing but its arguments."""
-    return generator(seed, name, *keys).standard_normal(shape, dtype=np.float32)

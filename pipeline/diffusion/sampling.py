@@ -22,6 +22,7 @@ from pipeline.diffusion.floor import Floor, floor_tokens
 from pipeline.diffusion.guidance import Guide
 from pipeline.diffusion.inventory import DRAWS, Ask, Inventory, draw_inventories, room_features
 from pipeline.diffusion.schedule import levels, paper_levels
+from pipeline.diffusion.set_transformer import FEW
 from pipeline.diffusion.settings import SampleSettings
 from pipeline.diffusion.solver import denoise
 from pipeline.errors import ContentError
@@ -29,7 +30,6 @@ from pipeline.errors import ContentError
 Key = tuple[int, int, int]  # home index, room number, attempt
 # Slots and floor tokens that the rooms of a batch are padded to: few shapes, for an evaluation costs more by its operations than by its rooms.
 SLOTS, TOKENS = (6, 12, 24, 32), (16, 32)
-QUAD = 4  # batches are filled up to multiples of so many rooms: products of fewer rows are summed in another order
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ class Sampler:
     """A trained layout model, ready to furnish rooms.
 
     The answer for a room depends on nothing but the weights, the settings, the seed, its key and its context: noise is
-    keyed, a batch holds rooms of one shape, and matrix products give a row the same bits from QUAD rows on.
+    keyed, a batch holds rooms of one shape, and matrix products give a row the same bits whatever the other rows, from FEW rows on.
     """
 
     net: Denoiser
@@ -74,7 +74,7 @@ class Sampler:
         with one_thread():
             for start in range(0, len(rooms), self.settings.batch):
                 part = range(start, min(start + self.settings.batch, len(rooms)))
-                padded = pad_batch(part)
+                padded = [*part, *[part[0]] * (FEW - len(part))]
                 features = torch.from_numpy(np.stack([room_features(floors[i], rooms[i].height) for i in padded]))
                 told = [rooms[i].n_target if self.settings.quantity else None for i in padded]
                 asks = [
@@ -93,13 +93,12 @@ class Sampler:
         layouts = self._layouts(rooms)
         with one_thread(), torch.no_grad():
             for slots, tokens, part in self._batches(floors, inventories):
-                padded = pad_batch(part)
-                conditioning = room_batch([floors[i] for i in padded], [layouts[i] for i in padded], [rooms[i].height for i in padded])
-                classes = np.full((len(padded), slots), len(self.header.norm.classes))
-                for row, i in enumerate(padded):
+                conditioning = room_batch([floors[i] for i in part], [layouts[i] for i in part], [rooms[i].height for i in part])
+                classes = np.full((len(part), slots), len(self.header.norm.classes))
+                for row, i in enumerate(part):
                     classes[row, : len(inventories[i])] = inventories[i]
-                batch = conditioning.first(tokens), torch.from_numpy(classes), [keys[i] for i in padded]
-                for i, x0, mine in zip(part, self._batch(*batch), batch[1], strict=False):  # the padding is left over
+                batch = conditioning.first(tokens), torch.from_numpy(classes), [keys[i] for i in part]
+                for i, x0, mine in zip(part, self._batch(*batch), batch[1], strict=True):
                     proposals[i] = self.net.codec.proposals(x0, mine, rooms[i])
         return proposals
 
@@ -126,9 +125,11 @@ class Sampler:
         def steer(x0: Tensor, level: float) -> Tensor:
             return guide.steer(self.net.codec, x0, level)
 
-        def noise(draw: int) -> Tensor:
+        rngs = [seeds.generator(self.seed, "diffusion", *key) for key in keys]
+
+        def noise() -> Tensor:
             shape = (classes.shape[1], CHANNELS)
-            return torch.from_numpy(np.stack([seeds.normal(self.seed, "diffusion", draw, *key, shape=shape) for key in keys])).to(device)
+            return torch.from_numpy(np.stack([rng.standard_normal(shape, np.float32) for rng in rngs])).to(device)
 
         count = self.settings.evaluations
         return denoise(expect, steer, noise, levels(count) if count else paper_levels(), self.settings.eta).cpu()
@@ -139,11 +140,6 @@ class Sampler:
         if unknown:
             raise ContentError(f"the layout model knows no room type {unknown[0]!r}", f"use one of {', '.join(self.header.layouts)}")
         return [self.header.layouts.index(r.layout_type) for r in rooms]
-
-
-def pad_batch(part: Sequence[int]) -> list[int]:
-    """Return the rooms of a batch, the first of them repeated until they are a multiple of QUAD."""
-    return [*part, *[part[0]] * (-len(part) % QUAD)]
 
 
 def openable_classes(classes: Sequence[str]) -> Tensor:

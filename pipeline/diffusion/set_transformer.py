@@ -45,6 +45,7 @@ OWN_WAYS = (
 )
 MOST = 8.0  # of a clean channel, in standard deviations
 HIDDEN = -1e9  # score of what is not there
+FEW = 4  # products of fewer rows are summed in another order
 Geometry = slice(0, 8)
 
 
@@ -100,7 +101,7 @@ class Pass(nn.Module):
         walls = torch.cat([self.walls(torch.cat([wall.far, wall.near, kind], -1)), wall.near], -1)
         pair_bias = self.by_layer(self.pair_bias(pairs).masked_fill(slots.padding[:, None, :, None], HIDDEN))
         wall_bias = self.by_layer(self.wall_bias(walls).masked_fill(~rooms.mask[:, None, :, None], HIDDEN))
-        modulation = self.modulation(condition)[:, None].chunk(MODULATIONS * self.layers + 2, -1)
+        modulation = by_room(self.modulation, condition)[:, None].chunk(MODULATIONS * self.layers + 2, -1)
         axis = boxes.axis
         own_guess = torch.cat([invariants(boxes.centre / 3, axis), boxes.bottom[..., None], boxes.height[..., None]], -1)
         tokens = tokens + self.guess(own_guess)
@@ -165,14 +166,14 @@ class SetTransformer(nn.Module):
         pooled = tokens.sum(1) / rooms.mask.sum(1, keepdim=True).clamp_min(1)
         inventory = (self.kind(classes) * (classes < self.codec.classes)[..., None]).sum(1) / 4
         size = torch.cat([reach / 3, area.clamp_min(0.5).log()[:, None] - 2, rooms.height[:, None] - 2.7], -1)
-        room = self.room(torch.cat([pooled, inventory, size], -1)) + self.layout(rooms.layout)
+        room = by_room(self.room, torch.cat([pooled, inventory, size], -1)) + self.layout(rooms.layout)
         parts = self.settings.passes * (2 * self.settings.layers + 1)
         return FloorCode(split_heads(self.floor_keys(tokens), parts, self.settings.heads), room)
 
     def forward(self, x: Tensor, classes: Tensor, level: Tensor, rooms: RoomBatch, code: FloorCode | None = None) -> tuple[Tensor, ...]:
         """Return what each pass answers (B, N, 40): v = alpha eps - sigma x0, of slots x at levels (B,), the last one best."""
         code = code or self.floor_code(rooms, classes)
-        condition = nn.functional.silu(self.level(level_features(level)) + code.room)
+        condition = nn.functional.silu(by_room(self.level, level_features(level)) + code.room)
         alpha, sigma = torch.sigmoid(level).sqrt()[:, None, None], torch.sigmoid(-level).sqrt()[:, None, None]
         spread = sigma[:, 0, 0].clamp_min(3e-3)
         front = torch.stack([x[..., 7], -x[..., 6]], -1)
@@ -193,6 +194,12 @@ class SetTransformer(nn.Module):
         alpha, sigma = torch.sigmoid(level).sqrt()[:, None, None], torch.sigmoid(-level).sqrt()[:, None, None]
         answer: Tensor = self(x, classes, level, rooms, code)[-1]
         return clamp_channels(alpha * x - sigma * answer)
+
+
+def by_room(layer: nn.Module, x: Tensor) -> Tensor:
+    """Apply a layer to a row (B, d) for each room, so that a room's answer has the same bits whichever others share its batch."""
+    answers: Tensor = layer(torch.cat([x, x[:1].expand(FEW - len(x), -1)]) if len(x) < FEW else x)
+    return answers[: len(x)]
 
 
 def clamp_channels(x0: Tensor) -> Tensor:

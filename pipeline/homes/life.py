@@ -13,11 +13,10 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from pipeline import seeds, taxonomy
-from pipeline.diffusion.sampling import QUAD
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Plan
 from pipeline.errors import ContentError, RefusedError, SfgenError
@@ -50,11 +49,10 @@ class State(Enum):
 
 @dataclass(slots=True)
 class RoomTries:
-    """The tries of one room under one plan: the job of the latest, the best result so far, and the jobs of tries that may come."""
+    """The tries of one room under one plan: the job of the latest, and the best result so far."""
 
     job: RoomJob
     best: RoomResult | None = None
-    coming: list[RoomJob] = field(default_factory=list)
 
     def keep(self, result: RoomResult) -> RoomResult:
         """Take a result where it is better than those before it; return the best."""
@@ -64,17 +62,10 @@ class RoomTries:
 
     def again(self, most: int) -> RoomJob | None:
         """Return the job of the next try, None when all `most` of them are spent."""
-        if not self.following(1, most):
+        if self.job.attempt + 1 >= most:
             return None
-        self.job = self.coming.pop(0)
+        self.job = replace(self.job, attempt=self.job.attempt + 1)
         return self.job
-
-    def following(self, count: int, most: int) -> list[RoomJob]:
-        """Return the jobs of the next `count` tries, as far as there are `most` in all; the same whenever they are asked for."""
-        left = most - 1 - self.job.attempt
-        while len(self.coming) < min(count, left):
-            self.coming.append(replace(self.job, attempt=self.job.attempt + 1 + len(self.coming)))
-        return self.coming[: min(count, left)]
 
 
 class HomeLife:
@@ -270,9 +261,6 @@ def make_homes(resources: Resources, requests: Sequence[Request], first: Mapping
     homes = [HomeLife(resources, request, first.get(request.index)) for request in requests]
     while any(home.state in {State.PLANNED, State.FINISHED} for home in homes):
         jobs = [(home, job) for home in homes for job in home.waiting.values() if job not in home.drafted]
-        # Fewer rooms than QUAD cost as much as QUAD of them, and a room that has failed often fails again.
-        ahead, most = QUAD // len(jobs) - 1 if jobs else 0, resources.shard.room_attempts
-        jobs += [(home, later) for home, job in jobs if job.attempt for later in home.rooms[job.room_id].following(ahead, most)]
         for (home, job), draft in zip(jobs, draft_rooms(resources, [job for _, job in jobs]), strict=True):
             home.drafted[job] = draft
         for home in homes:

@@ -25,15 +25,6 @@ def test_a_room_keeps_the_better_of_its_tries_and_has_no_more_than_its_budget(jo
     assert [tries.again(3).attempt, tries.again(3).attempt, tries.again(3)] == [1, 2, None]
 
 
-def test_tries_that_are_drafted_ahead_are_those_that_come(job):
-    tries = RoomTries(job)
-    ahead = tries.following(3, 4)
-    assert [later.attempt for later in ahead] == [1, 2, 3]
-    assert tries.again(4) is ahead[0]
-    assert tries.following(5, 4) == ahead[1:]
-    assert [tries.again(4), tries.again(4), tries.again(4)] == [*ahead[1:], None]
-
-
 def test_no_two_tries_of_a_room_share_a_draw(job):
     most = ShardSettings().room_attempts
     draws = [replace(job, plan_attempt=plan, attempt=k).draw for plan in range(3) for k in range(most)]

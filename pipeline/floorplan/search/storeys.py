@@ -27,7 +27,7 @@ HALL_HEED = 0.25  # how much an unstated hallway's usual area counts beside that
 FLIGHTS = (2.85, 2.1)  # what two flights side by side take, with their landings [m]: 16 risers of 0.18 m, treads of 0.27 m
 SOFTER = (1.0, 0.3, 0.1, 0.03)  # factors on the weights of all terms then: what must be comes before what should
 EASED_HALL = 1.95  # how much larger than its target an unstated hallway may be then
-EASED_WIDTH = 1.2  # least width of rooms then [m]
+NARROWEST = 1.2  # clear width that rooms keep, where theirs is not less anyway [m]: what stands along one wall, and a robot before it
 STATED = 0.10  # how far a stated target may be missed
 EDGE = 0.012  # hard bounds are drawn in by this share, so that rounding cannot cross them
 MOST_STRETCH = 1.4  # how far usual areas are stretched under a larger storey
@@ -161,14 +161,15 @@ def _links(program: FloorProgram, index: Mapping[str, int], target: NDArray[np.f
 
 def _strict_widths(rooms: Sequence[RoomReq], least: NDArray[np.int64], half: Halves, ease: int) -> NDArray[np.int64]:
     """Return the widths below which no room may fall [cells]: less than the usual least ones, where nobody stated them."""
-    strict = np.maximum((0.8 * least).astype(np.int64), 3)
+    narrowest = cells(NARROWEST + 2 * half.inner)
+    strict = np.maximum((0.8 * least).astype(np.int64), np.minimum(least, narrowest))
     for i, r in enumerate(rooms):
         if r.min_width is not None or r.type in {"hallway", "entry"}:
             strict[i] = least[i]
-        elif ease:
-            strict[i] = min(strict[i], cells(EASED_WIDTH + 2 * half.inner))
-        if r.type == "wc":
+        elif r.type == "wc":
             strict[i] = cells(0.85 + 2 * half.inner)
+        elif ease:
+            strict[i] = min(strict[i], narrowest)
     return strict
 
 
