@@ -6,50 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from pipeline.corpus.houses import rates
 from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, Footprint, Link, LinkKind, Range, RoomReq, Shell, Style
 
-# Area by 3D-FRONT room type: mean, spread, least, most [m2]. From 12 real scenes (83 rooms); spreads widened.
-AREAS: dict[str, tuple[float, float, float, float]] = {
-    "MasterBedroom": (16.6, 3.6, 11.0, 25.0),
-    "SecondBedroom": (12.2, 1.9, 9.2, 16.0),
-    "Bedroom": (14.0, 2.8, 10.5, 20.5),
-    "ElderlyRoom": (12.0, 1.5, 10.0, 15.0),
-    "KidsRoom": (10.6, 1.6, 8.5, 14.0),
-    "Library": (8.9, 1.0, 7.6, 11.0),
-    "LivingDiningRoom": (33.5, 7.0, 19.0, 56.0),
-    "LivingRoom": (17.0, 2.6, 13.5, 24.0),
-    "DiningRoom": (17.5, 2.6, 12.0, 23.0),
-    "Kitchen": (6.6, 1.3, 4.6, 9.5),
-    "Bathroom": (4.9, 0.9, 3.6, 7.5),
-    "SecondBathroom": (4.3, 0.7, 3.4, 6.0),
-    "MasterBathroom": (4.4, 0.7, 3.5, 6.0),
-    "CloakRoom": (3.8, 0.5, 3.0, 5.0),
-    "StorageRoom": (2.9, 0.5, 2.2, 4.0),
-    "LaundryRoom": (3.6, 0.6, 2.6, 5.0),
-    "Hallway": (3.5, 0.3, 3.0, 4.0),
-    "Balcony": (3.1, 0.7, 1.8, 4.8),
-}
-
-
-BEDROOMS = ("MasterBedroom", "SecondBedroom", "Bedroom", "ElderlyRoom", "KidsRoom")
+ROOMS = rates.load()["rooms"]
+AREAS: dict[str, tuple[float, float, float, float]] = {name: room["area"] for name, room in ROOMS.items() if "area" in room}
+BEDROOMS = tuple(name for name, room in ROOMS.items() if room["plan"] == "bedroom")
 PRIVATE = (*BEDROOMS, "Library")
-
-
-# The planner's word for each type of room.
-KINDS: dict[str, str] = {
-    **dict.fromkeys(BEDROOMS, "bedroom"),
-    **dict.fromkeys(("LivingDiningRoom", "LivingRoom"), "living_room"),
-    **dict.fromkeys(("Bathroom", "SecondBathroom", "MasterBathroom"), "bathroom"),
-    **dict.fromkeys(("Corridor", "Aisle"), "hallway"),
-    "Library": "office",
-    "DiningRoom": "dining_room",
-    "Kitchen": "kitchen",
-    "CloakRoom": "closet",
-    "StorageRoom": "storage",
-    "LaundryRoom": "utility",
-    "Hallway": "entry",
-    "Balcony": "balcony",
-}
 LOW, HIGH = 0.85, 1.12
 """Rooms are built no smaller than this part of the least area of their type, no larger than this part of the largest."""
 FEW = 3
@@ -79,7 +42,7 @@ class Apartment:
         if room_type in AREAS:
             _, _, least, most = AREAS[room_type]
             size = Range(min=LOW * least, max=HIGH * most, target=area(self.rng, room_type))
-        self.rooms.append(RoomReq.model_validate({"id": name, "type": KINDS[room_type], "area": size}))
+        self.rooms.append(RoomReq.model_validate({"id": name, "type": ROOMS[room_type]["plan"], "area": size}))
         self.types[name] = room_type
         if host:
             self.links.append(Link(a=host, b=name, kind=kind, stated=True))

@@ -21,20 +21,7 @@ BLOCK = 32
 MOST_PRIVATE = 5
 """Rooms that a plan can hold beside the living rooms."""
 CORRIDORS = ("Hallway", "Aisle", "Corridor")
-# What furnishes a room of a type: types that one recipe furnishes share their decisions' strata.
-KINDS = {
-    **dict.fromkeys(("MasterBedroom", "SecondBedroom", "Bedroom", "ElderlyRoom"), "bedroom"),
-    **dict.fromkeys(("LivingDiningRoom", "LivingRoom"), "living"),
-    **dict.fromkeys(CORRIDORS, "hallway"),
-    **dict.fromkeys(("CloakRoom", "StorageRoom"), "storage"),
-    **dict.fromkeys(("Kitchen",), "kitchen"),
-    **dict.fromkeys(("Bathroom", "SecondBathroom", "MasterBathroom"), "bathroom"),
-    "DiningRoom": "dining",
-    "KidsRoom": "kids_room",
-    "Library": "study",
-    "Balcony": "balcony",
-    "LaundryRoom": "utility",
-}
+KINDS: Mapping[str, str] = {name: room["chances"] for name, room in rates.load()["rooms"].items()}  # whose chances furnish a type of room
 
 
 @dataclass(frozen=True, slots=True)
