@@ -21,6 +21,7 @@ class RoomType:
     gets windows where it has one, `habitable` whether daylight matters (energy terms 6 and 7), `useful` whether its area counts as useful
     (term 9), `through` whether one may walk through it to another room, `square` whether a square shape is wanted (term 3).
     `furnished_as` is the layout type, "": it stays empty; `functions` what it serves as where that may be several things; `unwanted` what it has not, though others furnished so have.
+    `entered_from` are the types that it is entered from where nobody says, the usual one first, () for any hub; what `belongs` is entered from what it lies next to.
     """
 
     area: float
@@ -34,6 +35,8 @@ class RoomType:
     furnished_as: str = ""
     functions: tuple[str, ...] = ()
     unwanted: tuple[str, ...] = ()
+    entered_from: tuple[str, ...] = ()
+    belongs: bool = False
 
 
 @dataclass(frozen=True, slots=True)

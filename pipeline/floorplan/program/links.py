@@ -8,39 +8,9 @@ from pipeline.floorplan.program.defaults import DEFAULTS, HUBS
 from pipeline.floorplan.program.distance import Distance, distances, nearness
 from pipeline.floorplan.program.floor_program import FloorProgram, Link, Relation, RoomReq
 
-PARENTS: dict[str, tuple[str, ...]] = {
-    "living_room": ("entry", "hallway", "dining_room", "kitchen"),
-    "family_room": ("living_room", "kitchen", "dining_room", "hallway", "entry"),
-    "kitchen": ("dining_room", "living_room", "studio_room", "family_room", "entry", "hallway", "office"),
-    "dining_room": ("living_room", "kitchen", "family_room", "hallway", "entry"),
-    "bedroom": ("hallway", "living_room", "family_room", "entry", "studio_room", "dining_room", "kitchen"),
-    "bathroom": ("hallway", "entry", "studio_room", "living_room", "family_room", "bedroom", "office", "kitchen"),
-    "wc": ("entry", "hallway", "living_room", "family_room", "studio_room", "office", "kitchen"),
-    "hallway": ("entry", "living_room", "staircase", "hallway", "family_room", "dining_room", "kitchen"),
-    "entry": ("living_room", "hallway", "studio_room", "kitchen", "dining_room"),
-    "closet": ("bedroom", "hallway", "entry", "living_room", "studio_room"),
-    "utility": ("kitchen", "hallway", "entry", "living_room", "bathroom"),
-    "storage": ("hallway", "entry", "kitchen", "utility", "office", "living_room", "studio_room"),
-    "garage": ("utility", "entry", "hallway", "kitchen", "living_room"),
-    "balcony": ("living_room", "studio_room", "family_room", "dining_room", "kitchen", "bedroom"),
-    "staircase": ("entry", "hallway", "living_room", "family_room", "dining_room", "kitchen"),
-    "media_room": ("living_room", "family_room", "hallway", "entry", "dining_room", "kitchen"),
-    "sunroom": ("living_room", "family_room", "dining_room", "kitchen", "hallway"),
-}
 ANY_HUB = ("hallway", "entry", "living_room", "family_room", "studio_room", "dining_room", "kitchen", "office", "staircase")
 # Who stands for a group of joined rooms when the group is attached to the rest.
 FRONT = (*HUBS, "library", "media_room", "playroom", "gym", "meeting_room", "sunroom", "utility", "bedroom", "storage", "closet")
-BELONGING = {
-    "balcony",
-    "closet",
-    "storage",
-    "utility",
-    "garage",
-    "sunroom",
-    "kitchen",
-    "dining_room",
-    "wc",
-}  # are entered from what they lie next to
 BUDGET = 600  # sets of links that are tried before `hops` relations are given up
 
 
@@ -209,8 +179,8 @@ def _host_links(program: FloorProgram, front: RoomReq, main: frozenset[str], lin
     """Yield the links by which a room may hang on one of `main`, the usual one first."""
     beside = {k.beyond(front.id) for k in links if not k.opens}
     second = front.type == "kitchen" and front.role not in {"", "primary"}  # a kitchen of somebody's own stands by itself
-    usual = PARENTS["bedroom"][1:] if second else PARENTS.get(front.type, ANY_HUB)
-    if front.type in BELONGING:
+    usual = DEFAULTS["bedroom"].entered_from[1:] if second else DEFAULTS[front.type].entered_from or ANY_HUB
+    if DEFAULTS[front.type].belongs:
         near = {r.type for r in program.rooms if r.id in beside}
         usual = tuple(sorted(usual, key=lambda t: t not in near))
     for wanted in usual:
