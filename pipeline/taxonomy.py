@@ -78,20 +78,20 @@ class Layout:
 
 @dataclass(frozen=True, slots=True)
 class Rooms:
-    """manifests/rooms.yaml. `functions` are the layout types of what rooms may serve as; `empty` are 3D-FRONT's types that are read, but not furnished; `materials` 3D-FUTURE's."""
+    """manifests/rooms.yaml. `functions` are the layout types of what rooms may serve as; `empty` are 3D-FRONT's types that are read, but not furnished; `materials` 3D-FUTURE's, with densities [kg/m3]."""
 
     types: Mapping[str, RoomType]
     layouts: Mapping[str, Layout]
     functions: Mapping[str, str]
     empty: tuple[str, ...]
-    materials: tuple[str, ...]
+    materials: Mapping[str, float | None]
 
 
 @dataclass(frozen=True, slots=True)
 class Taxonomy:
     """Categories by name, types of rooms, layout types by `functions`, and `front_rooms`: the layout type of each of 3D-FRONT's, None for one that stays empty.
 
-    `styles` and `materials` map lower case to the spelling.
+    `styles` and `materials` map lower case to the spelling; `densities` [kg/m3] are those of materials.
     """
 
     categories: Mapping[str, Category]
@@ -101,6 +101,7 @@ class Taxonomy:
     front_rooms: Mapping[str, str | None]
     styles: Mapping[str, str]
     materials: Mapping[str, str]
+    densities: Mapping[str, float | None]
 
     @property
     def layout_types(self) -> tuple[str, ...]:
@@ -151,4 +152,6 @@ def load() -> Taxonomy:
     rooms = params.build(Rooms, yaml_text.parse(PATH.read_text(encoding="utf-8")), "rooms", "manifests/rooms.yaml")
     front: dict[str, str | None] = {name: kind for kind, layout in rooms.layouts.items() for name in layout.front}
     styles, materials = ({n.lower(): n for n in names} for names in (style.load().styles, rooms.materials))
-    return Taxonomy(cards(), rooms.types, rooms.layouts, rooms.functions, {**front, **dict.fromkeys(rooms.empty)}, styles, materials)
+    return Taxonomy(
+        cards(), rooms.types, rooms.layouts, rooms.functions, {**front, **dict.fromkeys(rooms.empty)}, styles, materials, rooms.materials
+    )

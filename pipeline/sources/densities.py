@@ -1,29 +1,11 @@
-"""Densities [kg/m3] by which masses are estimated: of the material that a model names, else typical of its kind.
-
-Values are those of usual materials (softwood board 600, particle board 650, glass 2500, marble 2700, upholstery with
-foam and frame 90); metal furniture is tube and sheet, so its closed volumes weigh far less than solid steel.
-"""
+"""Densities [kg/m3] by which masses are estimated: of the material that a model names, else typical of its kind."""
 
 from __future__ import annotations
 
+from pipeline import taxonomy
 from pipeline.card import cards
 
-MATERIALS: dict[str, float] = {
-    "cloth": 90.0,
-    "rough cloth": 90.0,
-    "leather": 120.0,
-    "smooth leather": 120.0,
-    "suede": 110.0,
-    "glass": 2500.0,
-    "metal": 1500.0,
-    "solid wood": 650.0,
-    "wood": 600.0,
-    "plywood": 600.0,
-    "composite board": 650.0,
-    "bamboo rattan": 400.0,
-    "stone": 2600.0,
-    "marble": 2700.0,
-}
+MATERIALS = {name.lower(): density for name, density in taxonomy.load().densities.items() if density is not None}
 KINDS: dict[str, float] = {
     "bed": 110.0,
     "sofa": 90.0,
