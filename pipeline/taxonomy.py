@@ -22,6 +22,7 @@ class RoomType:
     (term 9), `through` whether one may walk through it to another room, `square` whether a square shape is wanted (term 3).
     `furnished_as` is the layout type, "": it stays empty; `functions` what it serves as where that may be several things; `unwanted` what it has not, though others furnished so have.
     `entered_from` are the types that it is entered from where nobody says, the usual one first, () for any hub; what `belongs` is entered from what it lies next to.
+    `floor` and `wall` are names of rendering/palette.py.
     """
 
     area: float
@@ -37,6 +38,8 @@ class RoomType:
     unwanted: tuple[str, ...] = ()
     entered_from: tuple[str, ...] = ()
     belongs: bool = False
+    floor: str = "oak"
+    wall: str = "plaster"
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ from pipeline.rendering import palette
 WALL = (0.20, 0.21, 0.24)
 WINDOW = (0.62, 0.76, 0.86)
 WALL_TOP = 2.4  # depth at which cut walls are drawn: above furniture [m]
-WOOD = frozenset(m.name for m in (palette.OAK, palette.LIGHT_OAK, palette.WALNUT))
+WOOD = frozenset(palette.FLOORS[name].name for name in ("oak", "light_oak", "walnut"))
 PLANK = (1.35, 0.19)  # length, width [m]
 TILE = (0.45, 0.45)
 GRAIN = 0.03  # how much planks and tiles differ
@@ -83,7 +83,7 @@ def pattern(piece: NDArray[np.float64], material: Material) -> tuple[NDArray[np.
     """Cut an axis-parallel rectangle into planks or tiles: rings (K, n, 2) and their shades (K,) in [-1, 1]; other shapes stay whole."""
     (x0, y0), (x1, y1) = piece.min(axis=0), piece.max(axis=0)
     rectangle = len(piece) == 4 and abs((x1 - x0) * (y1 - y0) - Polygon(piece).area) < 1e-6
-    if not rectangle or material.name == palette.CONCRETE.name:
+    if not rectangle or material.name == palette.FLOORS["concrete"].name:
         return piece[None], np.zeros(1)
     length, width = PLANK if material.name in WOOD else TILE
     rows = np.arange(int(np.floor(y0 / width)), int(np.ceil(y1 / width)))[:, None]

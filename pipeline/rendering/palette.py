@@ -2,57 +2,35 @@
 
 from __future__ import annotations
 
-from types import MappingProxyType
-
+from pipeline import taxonomy
 from pipeline.entities.asset import Material
 from pipeline.entities.plan import Opening, Plan
 
-OAK = Material("oak_floor", (0.42, 0.27, 0.15), 0.45)
-LIGHT_OAK = Material("light_oak_floor", (0.55, 0.40, 0.25), 0.5)
-WALNUT = Material("walnut_floor", (0.24, 0.14, 0.08), 0.4)
-TILE = Material("tile_floor", (0.52, 0.55, 0.56), 0.25)
-SLATE = Material("slate_floor", (0.25, 0.27, 0.29), 0.35)
-STONE = Material("stone_floor", (0.48, 0.44, 0.38), 0.4)
+FLOORS = {
+    name: Material(f"{name}_floor", color, roughness)
+    for name, color, roughness in (
+        ("oak", (0.42, 0.27, 0.15), 0.45),
+        ("light_oak", (0.55, 0.40, 0.25), 0.5),
+        ("walnut", (0.24, 0.14, 0.08), 0.4),
+        ("tile", (0.52, 0.55, 0.56), 0.25),
+        ("slate", (0.25, 0.27, 0.29), 0.35),
+        ("stone", (0.48, 0.44, 0.38), 0.4),
+        ("concrete", (0.36, 0.36, 0.35), 0.7),
+    )
+}
+WALLS = {
+    name: Material(f"wall_{name}", color, roughness)
+    for name, color, roughness in (
+        ("bedroom", (0.70, 0.74, 0.78), 0.9),
+        ("kids_room", (0.72, 0.80, 0.72), 0.9),
+        ("kitchen", (0.82, 0.78, 0.66), 0.7),
+        ("bathroom", (0.68, 0.80, 0.84), 0.3),
+        ("study", (0.66, 0.70, 0.62), 0.9),
+        ("plaster", (0.83, 0.81, 0.77), 0.9),
+    )
+}
+OAK, PLASTER = FLOORS["oak"], WALLS["plaster"]
 STEP = Material("step", (0.50, 0.36, 0.22), 0.5)
-CONCRETE = Material("concrete_floor", (0.36, 0.36, 0.35), 0.7)
-
-FLOORS = MappingProxyType(
-    {
-        "bedroom": LIGHT_OAK,
-        "kids_room": LIGHT_OAK,
-        "playroom": LIGHT_OAK,
-        "studio_room": LIGHT_OAK,
-        "kitchen": TILE,
-        "bathroom": SLATE,
-        "wc": SLATE,
-        "hallway": STONE,
-        "entry": STONE,
-        "staircase": STONE,
-        "office": WALNUT,
-        "study": WALNUT,
-        "library": WALNUT,
-        "media_room": WALNUT,
-        "balcony": CONCRETE,
-        "garage": CONCRETE,
-        "utility": CONCRETE,
-        "workshop": CONCRETE,
-        "storage": CONCRETE,
-        "closet": LIGHT_OAK,
-    }
-)
-WALLS = MappingProxyType(
-    {
-        "bedroom": Material("wall_bedroom", (0.70, 0.74, 0.78), 0.9),
-        "kids_room": Material("wall_kids_room", (0.72, 0.80, 0.72), 0.9),
-        "playroom": Material("wall_kids_room", (0.72, 0.80, 0.72), 0.9),
-        "kitchen": Material("wall_kitchen", (0.82, 0.78, 0.66), 0.7),
-        "bathroom": Material("wall_bathroom", (0.68, 0.80, 0.84), 0.3),
-        "wc": Material("wall_bathroom", (0.68, 0.80, 0.84), 0.3),
-        "office": Material("wall_study", (0.66, 0.70, 0.62), 0.9),
-        "study": Material("wall_study", (0.66, 0.70, 0.62), 0.9),
-    }
-)
-PLASTER = Material("wall_plaster", (0.83, 0.81, 0.77), 0.9)
 FACADE = Material("facade", (0.62, 0.58, 0.52), 0.95)
 CEILING = Material("ceiling", (0.88, 0.88, 0.86), 0.95)
 JAMB = Material("jamb", (0.80, 0.79, 0.76), 0.6)
@@ -64,8 +42,8 @@ GLASS = Material("window_glass", (0.85, 0.93, 0.95), 0.02, 0.0, 0.18)
 
 
 def floor(room_type: str) -> Material:
-    """Return the floor of a room type; oak where nothing else is usual."""
-    return FLOORS.get(room_type, OAK)
+    """Return the floor of a type of room; oak where nothing else is usual."""
+    return FLOORS[taxonomy.load().types[room_type].floor] if room_type in taxonomy.load().types else OAK
 
 
 def threshold(plan: Plan, opening: Opening) -> Material:
@@ -75,8 +53,8 @@ def threshold(plan: Plan, opening: Opening) -> Material:
 
 
 def wall(room_type: str) -> Material:
-    """Return the walls' material of a room type."""
-    return WALLS.get(room_type, PLASTER)
+    """Return the walls' material of a type of room."""
+    return WALLS[taxonomy.load().types[room_type].wall] if room_type in taxonomy.load().types else PLASTER
 
 
 def to_srgb(linear: tuple[float, float, float]) -> tuple[float, float, float]:
