@@ -13,6 +13,7 @@ from pipeline.homes.draft_store import read_drafts
 from pipeline.homes.drafts import drafts_of
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.furnish import HomeDraft
+from pipeline.homes.jit_warmup import warm_up_workers
 from pipeline.homes.production import Recipe, fill
 from pipeline.homes.reproduction import made_with
 from pipeline.homes.request import Request
@@ -32,6 +33,8 @@ def main(root: Path) -> None:
     progress = Progress(len(asked), "postopt")
     with open_or_create(root / "data" / "shards", header, factory.asset_cache, discard=True) as dataset:
         recipe = Recipe(partial(open_factory, root, seed), partial(first_drafts, root))
+        if dataset.missing():
+            warm_up_workers(progress, root, recipe.opened, cores())
         tally = fill(dataset, recipe, lambda index: asked[index], workers=cores(), progress=progress)
     progress.close()
     for line in tally.lines():

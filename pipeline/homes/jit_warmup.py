@@ -38,10 +38,9 @@ def warm_up_workers(progress: Progress, root: Path, opened: Callable[[], Factory
 
     `opened` opens the factory there. Where that fails, or nothing can be kept, workers compile for themselves. One worker is this process.
     """
-    folder = cache_folder()
     if workers == 1:
         warm_up(progress, root)
-    elif folder is not None and not (folder / WHOLE).exists():
+    elif (folder := cache_folder()) is not None and not (folder / WHOLE).exists():
         progress.say("compiling, once on this machine: a minute")
         process = multiprocessing.get_context("spawn").Process(target=_make_homes, args=(opened, folder / WHOLE), daemon=True)
         process.start()

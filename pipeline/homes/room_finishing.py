@@ -10,7 +10,6 @@ from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 from pipeline.floorplan.program.furniture import matching_categories
 from pipeline.homes.furnish import Draft
-from pipeline.homes.request import RoomJob
 from pipeline.homes.rounding import round_placement
 from pipeline.homes.violations import Violation
 from pipeline.retrieval.index import AssetIndex
@@ -46,53 +45,42 @@ class RoomResult:
 
     def without(self, violating: Mapping[str, Violation], taxonomy: Taxonomy) -> RoomResult:
         """Return the result less the objects of these ids, judged again."""
-        left = tuple(p for p in self.placements if p.object_id not in violating)
-        failure, detail, binding = shortcoming(self.draft, left, taxonomy, self.openers, self.free, self.unreached)
-        return replace(self, placements=left, failure=failure, detail=detail, binding=binding)
+        return replace(self, placements=tuple(p for p in self.placements if p.object_id not in violating)).judged(taxonomy)
 
+    def judged(self, taxonomy: Taxonomy) -> RoomResult:
+        """Return the result with what it lacks."""
+        unmet = self._unmet()
+        failure, detail = unmet or self._lacking(taxonomy)
+        return replace(self, failure=failure, detail=detail, binding=unmet is not None)
 
-def shortcoming(
-    draft: Draft,
-    placements: tuple[Placement, ...],
-    taxonomy: Taxonomy,
-    openers: frozenset[str] = frozenset(),
-    free: float = 1.0,
-    unreached: frozenset[str] = frozenset(),
-) -> tuple[str, str, bool]:
-    """Return (reason code, detail, binding) of what a room lacks, ("", "", False) when nothing.
+    def _lacking(self, taxonomy: Taxonomy) -> tuple[str, str]:
+        """Return (reason code, detail) of what a room of its type should have, whatever was wished for; ("", "") when nothing is missing."""
+        there, usable = {p.category for p in self.placements}, {p.category for p in self.placements if p.object_id not in self.unreached}
+        for group in self.draft.job.essentials(taxonomy):
+            if not there.intersection(group):
+                return "lacks_essential", f"none of {', '.join(group[:3])}"
+            if not usable.intersection(group):
+                return "out_of_reach", f"{', '.join(sorted(there.intersection(group)))} cannot be used where it stands"
+        if len(self.placements) < KEPT * len(self.draft.placements):
+            return "too_few_left", f"{len(self.placements)} of {len(self.draft.placements)} objects"
+        return "", ""
 
-    `openers` are the assets of the draft that open, `free` is the room's free floor, `unreached` are the ids of what a robot cannot use.
-    """
-    job = draft.job
-    unmet = _unmet(job, placements, openers, free)
-    if unmet:
-        return *unmet, True
-    there, usable = {p.category for p in placements}, {p.category for p in placements if p.object_id not in unreached}
-    for group in job.essentials(taxonomy):
-        if not there.intersection(group):
-            return "lacks_essential", f"none of {', '.join(group[:3])}", False
-        if not usable.intersection(group):
-            return "out_of_reach", f"{', '.join(sorted(there.intersection(group)))} cannot be used where it stands", False
-    if len(placements) < KEPT * len(draft.placements):
-        return "too_few_left", f"{len(placements)} of {len(draft.placements)} objects", False
-    return "", "", False
-
-
-def _unmet(job: RoomJob, placements: tuple[Placement, ...], openers: frozenset[str], free: float) -> tuple[str, str] | None:
-    """Return (reason code, detail) of the first wish that is not met."""
-    least, most = job.bounds
-    if len(placements) < (least or 0) or (most is not None and len(placements) > most):
-        return "count_missed", f"{len(placements)} objects, asked for {_bounds_in_words(least or 0, most)}"
-    for wish in job.furniture.counts:
-        have = sum(p.category in matching_categories(wish, job.room.type) for p in placements)
-        if have < wish.min or (wish.max is not None and have > wish.max):
-            return "category_missed", f"{have} {wish.category}, asked for {_bounds_in_words(wish.min, wish.max)}"
-    opening = sum(p.asset_id in openers for p in placements)
-    if opening < (job.furniture.openable or 0):
-        return "openable_missed", f"{opening} objects open, asked for {job.furniture.openable}"
-    if job.walkable is not None and free < job.walkable:
-        return "walkable_missed", f"{free:.3f} of the floor is free, asked for {job.walkable:.3f}"
-    return None
+    def _unmet(self) -> tuple[str, str] | None:
+        """Return (reason code, detail) of the first wish that is not met."""
+        job, placements = self.draft.job, self.placements
+        least, most = job.bounds
+        if len(placements) < (least or 0) or (most is not None and len(placements) > most):
+            return "count_missed", f"{len(placements)} objects, asked for {_bounds_in_words(least or 0, most)}"
+        for wish in job.furniture.counts:
+            have = sum(p.category in matching_categories(wish, job.room.type) for p in placements)
+            if have < wish.min or (wish.max is not None and have > wish.max):
+                return "category_missed", f"{have} {wish.category}, asked for {_bounds_in_words(wish.min, wish.max)}"
+        opening = sum(p.asset_id in self.openers for p in placements)
+        if opening < (job.furniture.openable or 0):
+            return "openable_missed", f"{opening} objects open, asked for {job.furniture.openable}"
+        if job.walkable is not None and self.free < job.walkable:
+            return "walkable_missed", f"{self.free:.3f} of the floor is free, asked for {job.walkable:.3f}"
+        return None
 
 
 def finish(
@@ -113,10 +101,9 @@ def finish(
     arranged = post_optimise(site, placements, assets, learnt, settings, smaller, target=job.walkable, keep_count=counted)
     placements = tuple(round_placement(p) for p in arranged.placements)
     rejects += [("object", r.reason, f"{r.object_id}: {r.detail}") for r in arranged.rejects]
-    free = arranged.ratio
     openers = frozenset(p.asset_id for p in placements if assets[p.asset_id].openable)
-    failure, detail, binding = shortcoming(draft, placements, taxonomy, openers, free, arranged.unreached)
-    return RoomResult(draft, placements, tuple(rejects), failure, detail, binding, free, openers, arranged.unreached)
+    result = RoomResult(draft, placements, tuple(rejects), free=arranged.ratio, openers=openers, unreached=arranged.unreached)
+    return result.judged(taxonomy)
 
 
 def _bounds_in_words(least: int, most: int | None) -> str:

@@ -46,4 +46,5 @@ def test_a_room_whose_only_cooker_nobody_gets_to_is_tried_again():
     )
     draft = SimpleNamespace(job=job, placements=placements)
     for unreached, failure in ((set(), ""), ({"one"}, ""), ({"one", "two"}, "out_of_reach"), ({"basin"}, "out_of_reach")):
-        assert finishing.shortcoming(draft, placements, taxonomy.load(), unreached=frozenset(unreached))[0] == failure
+        result = finishing.RoomResult(draft, placements, unreached=frozenset(unreached)).judged(taxonomy.load())
+        assert result.failure == failure
