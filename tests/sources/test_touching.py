@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from pipeline import taxonomy
 from pipeline.sources.meshes.feet import without_feet
 from pipeline.sources.meshes.mesh_solids import convex
 from pipeline.sources.meshes.near_boxes import CORNERS
-from pipeline.sources.meshes.touching import FELT, Felt, felt_of, fewer, simpler
+from pipeline.sources.meshes.touching import FELT, Felt, felt_of, fewer, simpler, touch_tolerances
 
 
 def block(low, high):
@@ -179,3 +180,14 @@ def test_a_lid_keeps_its_knob():
         np.concatenate([np.column_stack([0.018 * np.cos(turns), 0.018 * np.sin(turns), np.full(24, z)]) for z in (0.013, 0.04)]), 1.0
     )
     assert len(simpler([disc, knob], Felt(vessel=True))) == 2
+
+
+def test_spindles_of_a_bed_are_one_and_table_legs_stay():
+    spindles = [block((x, 1.0, 0.45), (x + 0.014, 1.012, 1.0)) for x in np.arange(-0.6, 0.61, 0.133)]
+    rails = [block((-0.62, 1.0, z), (0.63, 1.02, z + 0.03)) for z in (0.45, 0.97)]
+    mattress = block((-0.62, -1.0, 0), (0.63, 1.0, 0.5))
+    categories = taxonomy.load().categories
+    assert len(simpler([*spindles, *rails, mattress], touch_tolerances(categories["double_bed"], opens=False))) == 2
+    legs = [block((x, y, 0), (x + 0.04, y + 0.04, 0.7)) for x in (0, 0.5) for y in (0, 0.4)]
+    top = block((0, 0, 0.7), (0.54, 0.44, 0.72))
+    assert len(simpler([*legs, top], touch_tolerances(categories["dining_table"], opens=False))) == 5

@@ -16,6 +16,7 @@ from pipeline.sources.meshes.merging import merge_pieces
 from pipeline.sources.meshes.mesh_solids import Part, convex, mass_properties, parts_with_meshes
 from pipeline.sources.meshes.near_boxes import simplify_to_box
 from pipeline.sources.meshes.recesses import stand_midway
+from pipeline.sources.meshes.sides import with_few_sides
 from pipeline.sources.meshes.touching import TOUCHED, Felt, simpler
 from pipeline.sources.settings import ModelLimits
 
@@ -131,7 +132,7 @@ def link(
     if how.sides <= TOUCHED:
         seen = [m.vertices[m.faces].astype(np.float64) for m in visuals if not m.part]
         boxes = [(stand_midway(hull, np.concatenate(seen)), faces) for hull, faces in boxes] if seen else boxes
-    colliders = tuple(_piece(k, *box) for k, box in enumerate(boxes))
+    colliders = tuple(_piece(k, *with_few_sides(*box, how.sides)) for k, box in enumerate(boxes))
     return Link(name, visuals, colliders, round(max(mass, MINIMUM), 5), np.round(com, 6), np.round(inertia, 9) + least)
 
 

@@ -26,7 +26,7 @@ from pipeline.sources.meshes.rings import STAVES, is_ring, same_height, sectors
 Floats = NDArray[np.float64]
 Allowed = Callable[[Floats, Floats], Floats]  # points (P, 3), normals (P, 3) there -> how far each may be off (P,) [m]
 
-CORNERS = 8  # of the outline that a soft thing lies on, at most
+CORNERS = 8  # of the outline on which a soft thing lies, and of a level top, at most
 SOLE = 0.8  # share of its outline that a soft thing lies on
 RISE = 0.12  # share of its height below which it has no other corners: PhysX tilts what all but lies on a rounded edge
 ROOMY = 50.0  # boards across each other: their box holds so many times what they do, and no hull of theirs is looked at
@@ -39,14 +39,15 @@ TOUCHED = 0.005  # [m] how far a collider's surface may be off where hands and t
 BUMPED = 0.02  # ... where a robot comes with its body at most: the sides of furniture that does not open
 PADDED = 0.03  # ... the rounded edges of cushions and mattresses, whose boxes bear things on a level top
 GIVES = 0.035  # ... what one sits and lies on
-SOFT = 0.05  # ... a blanket with its fringe
+SOFT = 0.05  # ... a blanket with its fringe, what hangs on a wall
+BETWEEN = 0.065  # ... from the spindles of a chair's back or a bed's end, between which nothing comes
 LEFT_ALONE = 0.15  # ... from underneath, and leaves
 HELD = 0.02  # ... the outside of small things that no hand goes into
 ANY = 10.0  # [m]
-HOLLOW, DEEP = 0.25, 0.45  # shares of a vessel's width and height that it may be off within
+HOLLOW, DEEP = 0.3, 0.55  # shares of a vessel's width and height that it may be off within
 OUTWARD = 0.1  # of the normal of a floor within
 UNDER = 0.2  # [m] above the floor below which furniture's legs and plinths are one block: no hand comes there
-SEAT = 0.4  # [m] the same under a seat, whose legs a robot stands before
+SEAT = 0.4  # [m] the same under a seat or a mattress, whose legs a robot stands before
 CUSHIONED = frozenset(("bed", "chair", "sofa", "stool"))  # super-categories on which one sits and lies: what things lie on there gives way
 REACH = 0.05  # [m] between pieces that may become one across what lies between them: shelves on both sides of a board
 POT = 0.4  # share of a plant's height up to which it is as hard as other things
@@ -90,18 +91,18 @@ FELT = MappingProxyType(  # by what cards say
 
 def touch_tolerances(category: Category, *, opens: bool) -> Felt:
     """Return how truly a thing of a category is felt: hands come to what is small and to what opens, bodies to other furniture."""
-    if category.felt == "closed" and category.loose:
-        return replace(FELT["closed"], sides=HELD, down=HELD)
     if category.felt:
-        return FELT[category.felt]
+        felt = FELT[category.felt]
+        if category.felt != "closed" or not (category.loose or category.mount == "wall"):
+            return felt
+        return replace(felt, sides=HELD, down=HELD) if category.loose else replace(felt, sides=SOFT, down=LEFT_ALONE)
     if category.loose:
         return Felt(vessel=True)
     if opens:
         return Felt()
-    under = SEAT if category.tuck == "seat" else UNDER
     if category.super in CUSHIONED:
-        return Felt(GIVES, SOFT, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED, level=LEVEL, lift=PADDED)
-    return Felt(TOUCHED, BUMPED, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED)
+        return Felt(GIVES, BETWEEN, LEFT_ALONE, under=SEAT, box=PADDED, cell=BUMPED, level=LEVEL, lift=PADDED)
+    return Felt(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, box=PADDED, cell=BUMPED)
 
 
 def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
@@ -148,8 +149,15 @@ def felt_of(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
 def _level_top(part: Part, lift: float) -> Part:
     """Return a cushion with a level top: what lies on a swell rolls, where a real one gives way."""
     top = float(part.hull[:, 2].max())
-    upper = part.hull[part.hull[:, 2] > top - lift]
-    return convex(np.concatenate([part.hull, np.column_stack([upper[:, :2], np.full(len(upper), top)])]), part.volume) or part
+    upper = _outline(part.hull[part.hull[:, 2] > top - lift])
+    level = np.column_stack([upper[:, :2], np.full(len(upper), top)])  # all of its corners stay, however many the sides have
+    return convex(np.concatenate([extremes(part.hull, MAX_HULL - len(level)), level]), part.volume) or part
+
+
+def _outline(points: Floats) -> Floats:
+    """Return those of points (N, 3) that are farthest out, seen from above, at most CORNERS."""
+    turns = 2 * np.pi * np.arange(CORNERS) / CORNERS
+    return np.asarray(points[np.unique(np.argmax(points[:, :2] @ [np.cos(turns), np.sin(turns)], axis=0))])
 
 
 def _tolerance(pieces: Sequence[Part], how: Felt) -> Allowed:
@@ -213,8 +221,7 @@ def _hollows(pieces: Sequence[Part], how: Felt) -> list[_Hollow]:
 
 def _flat(part: Part) -> Part:
     """Return a soft thing as it lies: its outline, drawn in a little, on what bears it."""
-    turns = 2 * np.pi * np.arange(CORNERS) / CORNERS
-    around = part.hull[np.unique(np.argmax(part.hull[:, :2] @ [np.cos(turns), np.sin(turns)], axis=0))]
+    around = _outline(part.hull)
     middle = (part.hull.min(axis=0) + part.hull.max(axis=0)) / 2
     low, high = part.hull[:, 2].min(), part.hull[:, 2].max()
     sole = np.column_stack([middle[:2] + SOLE * (around[:, :2] - middle[:2]), np.full(len(around), low)])
