@@ -21,7 +21,8 @@ import urllib.error
 import urllib.parse
 import urllib.request
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from concurrent.futures import Future
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -39,11 +40,10 @@ SECONDS = 60.0  # for all turns together
 MOST_BYTES = 1_000_000  # of one reply
 MOST_TOKENS = 4000
 REPAIRS = 2
-CHUNK = 16_384
-RETRIES, PAUSE = 2, 0.5  # times that a busy server is asked again, and the first pause [s], which doubles
+PAUSES = (0.5, 1.0)  # [s] before a busy server is asked again
 BUSY = frozenset({408, 429, 500, 502, 503, 504})
 UNSUPPORTED = frozenset({400, 404, 415, 422, 501})  # what servers answer that know no JSON Schema, or name other parameters
-OTHER_NAMES = ("max_completion_tokens", "temperature", "seed")  # what such a server complains of
+INVALID = (ValueError, TypeError, RecursionError)  # what a reply that is no program raises; pydantic's and JSON's errors are ValueErrors
 MOST_ENTRIES = 200  # links, forbids, relations
 CACHE = Path(__file__).resolve().parents[3] / ".cache"
 EXAMPLES = Path(__file__).resolve().parents[3] / "manifests" / "prompts" / "examples.yaml"
@@ -93,42 +93,31 @@ def server_from_env(environment: Mapping[str, str] = os.environ) -> Server | Non
 
 
 def ask(prompt: str, server: Server) -> FloorProgram:
-    """Return what the model understood, validated but not completed; from the cache where it has been asked before.
+    """Return what the model understood, validated but not completed; its reply is kept, and read again where it has been asked before.
 
     Raises UnansweredError.
     """
     entry = None if server.cache is None else server.cache / f"{digest([prompt, server.model, instructions()])}.json"
-    known = _read_cache(entry, prompt)
-    if known is not None:
-        return known
-    program = _ask_server(prompt, server)
+    with contextlib.suppress(OSError, *INVALID):  # a damaged entry is none
+        if entry is not None and entry.stat().st_size <= MOST_BYTES:
+            return validate_reply(entry.read_text(encoding="utf-8"), prompt)
+    reply, program = _ask_server(prompt, server)
     if entry is not None:
         with contextlib.suppress(OSError):  # a cache that cannot be written is no reason to fail
-            write_bytes(entry, program.model_dump_json(exclude_defaults=True).encode())
+            write_bytes(entry, reply.encode())
     return program
 
 
-def _read_cache(entry: Path | None, prompt: str) -> FloorProgram | None:
-    """Return the program of a cache entry; a damaged one is none."""
-    if entry is None:
-        return None
-    try:
-        if entry.stat().st_size > MOST_BYTES:
-            return None
-        return validate_reply(entry.read_text(encoding="utf-8"), prompt, ours=True)
-    except (OSError, ValueError, TypeError, RecursionError):
-        return None
-
-
-def _ask_server(prompt: str, server: Server) -> FloorProgram:
+def _ask_server(prompt: str, server: Server) -> tuple[str, FloorProgram]:
+    """Return the first valid reply, and its program."""
     messages = [{"role": "system", "content": instructions()}, {"role": "user", "content": prompt}]
     deadline = time.monotonic() + server.seconds
     fault = ""
     for _ in range(1 + REPAIRS):
         reply = _answer(messages, server, deadline)
         try:
-            return validate_reply(reply, prompt)
-        except (ValueError, TypeError, RecursionError) as error:  # pydantic's ValidationError and JSON errors are ValueErrors
+            return reply, validate_reply(reply, prompt)
+        except INVALID as error:
             fault = _explain(error)
         messages += [
             {"role": "assistant", "content": reply[:4000]},
@@ -176,8 +165,8 @@ def _mark_stated(answer: Any) -> Any:
     return fields
 
 
-def validate_reply(reply: str, prompt: str, *, ours: bool = False) -> FloorProgram:
-    """Return the program of a reply, its quotes looked up in the prompt; `ours`: it was looked up before. Raises ValueError, TypeError."""
+def validate_reply(reply: str, prompt: str) -> FloorProgram:
+    """Return the program of a reply, its quotes looked up in the prompt. Raises ValueError, TypeError, RecursionError."""
     text = reply.strip()
     if text.startswith("```"):
         text = text.strip("`").removeprefix("json").strip()
@@ -187,7 +176,7 @@ def validate_reply(reply: str, prompt: str, *, ours: bool = False) -> FloorProgr
     for name in OURS:
         answer.pop(name, None)
     quotes = answer.pop("evidence", None)
-    program = FloorProgram.model_validate(answer if ours else _mark_stated(answer))
+    program = FloorProgram.model_validate(_mark_stated(answer))
     if not program.rooms:
         raise ValueError("rooms: there are none")
     if (
@@ -198,7 +187,7 @@ def validate_reply(reply: str, prompt: str, *, ours: bool = False) -> FloorProgr
     ids = [r.id for r in program.rooms]
     if len(set(ids)) != len(ids):
         raise ValueError("rooms: ids repeat")
-    return attach_evidence(program, prompt, quotes, ours=ours)
+    return attach_evidence(program, prompt, quotes)
 
 
 def _explain(error: Exception) -> str:
@@ -207,114 +196,69 @@ def _explain(error: Exception) -> str:
     return str(error)[:300] or type(error).__name__
 
 
-@dataclass(frozen=True, slots=True)
-class _Dialect:
-    """What a server understands: a JSON Schema, only that JSON is wanted, or neither; which names its parameters have."""
-
-    formats: tuple[str, ...] = ("json_schema", "json_object", "")
-    renamed: bool = False
-
-    def narrower(self, complaint: str) -> _Dialect | None:
-        """Return what to try after a complaint; None where nothing is left."""
-        if not self.renamed and any(name in complaint for name in OTHER_NAMES):
-            return replace(self, renamed=True)
-        return replace(self, formats=self.formats[1:]) if len(self.formats) > 1 else None
-
-    def parameters(self) -> dict[str, Any]:
-        """Return what a request says beside model and messages."""
-        named = {"max_completion_tokens": MOST_TOKENS} if self.renamed else {"max_tokens": MOST_TOKENS, "temperature": 0, "seed": 0}
-        schemas = {"json_schema": {"name": "FloorProgram", "schema": schema()}} if self.formats[0] == "json_schema" else {}
-        return named | ({"response_format": {"type": self.formats[0], **schemas}} if self.formats[0] else {})
+def _variants() -> list[dict[str, Any]]:
+    """Return what a request says beside model and messages, for servers that know a JSON Schema, that know JSON, or neither or other names."""
+    usual: dict[str, Any] = {"max_tokens": MOST_TOKENS, "temperature": 0, "seed": 0}
+    strict = {"type": "json_schema", "json_schema": {"name": "FloorProgram", "schema": schema()}}
+    return [usual | {"response_format": strict}, usual | {"response_format": {"type": "json_object"}}, {}]
 
 
 def _answer(messages: list[dict[str, str]], server: Server, deadline: float) -> str:
     """Return the text of one reply: patient with a busy server, and with one that knows fewer or other parameters."""
-    dialect, busy = _Dialect(), 0
+    variants, pauses = _variants(), list(PAUSES)
     while True:
+        body = {"model": server.model, "messages": messages, **variants[0]}
         try:
-            raw = _within(lambda dialect=dialect: _post(messages, server, deadline, dialect), server, deadline)  # type: ignore[misc]
+            raw = _within(functools.partial(_post, body, server), deadline)
+            content = json.loads(raw)["choices"][0]["message"]["content"]
             break
         except urllib.error.HTTPError as error:
-            narrower = dialect.narrower(_complaint(error)) if error.code in UNSUPPORTED else None
-            if narrower is not None:
-                dialect = narrower
-            elif error.code in BUSY and busy < RETRIES:
-                time.sleep(max(0.0, min(PAUSE * 2**busy, deadline - time.monotonic())))
-                busy += 1
+            if error.code in UNSUPPORTED and len(variants) > 1:
+                del variants[0]
+            elif error.code in BUSY and pauses:
+                time.sleep(max(0.0, min(pauses.pop(0), deadline - time.monotonic())))
             else:
                 raise UnansweredError(f"the server answered {error.code}") from error
-    try:
-        content = json.loads(raw)["choices"][0]["message"]["content"]
-    except (ValueError, KeyError, IndexError, TypeError, RecursionError) as error:
-        raise UnansweredError("the server's reply is not a chat completion") from error
+        except (KeyError, IndexError, *INVALID) as error:
+            raise UnansweredError("the server's reply is not a chat completion") from error
     if not isinstance(content, str):
         raise UnansweredError("the server's reply holds no text")
     return content
 
 
-def _complaint(error: urllib.error.HTTPError) -> str:
-    """Return what a server says of a request that it refuses; "" where it says nothing."""
-    try:
-        return error.read(CHUNK).decode(errors="replace")
-    except (OSError, http.client.HTTPException, ValueError):
-        return ""
-
-
-def _within(call: Callable[[], bytes], server: Server, deadline: float) -> bytes:
-    """Call in a thread and wait no longer than the deadline: a server that drips its headers holds a socket up for ever."""
-    outcome: list[bytes | BaseException] = []
+def _within(call: Callable[[], bytes], deadline: float) -> bytes:
+    """Call in a thread and wait no longer than the deadline: a server that drips its reply holds a socket up for ever."""
+    outcome: Future[bytes] = Future()
 
     def run() -> None:
         try:
-            outcome.append(call())
+            outcome.set_result(call())
         except Exception as error:  # noqa: BLE001 - raised again where the answer is waited for
-            outcome.append(error)
+            outcome.set_exception(error)
 
-    worker = threading.Thread(target=run, daemon=True)
-    worker.start()
-    worker.join(max(0.0, deadline - time.monotonic()))
-    if not outcome:
-        raise UnansweredError(f"no answer within {server.seconds:g} s")
-    if isinstance(outcome[0], BaseException):
-        raise outcome[0]
-    return outcome[0]
+    threading.Thread(target=run, daemon=True).start()
+    try:
+        return outcome.result(max(0.0, deadline - time.monotonic()))
+    except TimeoutError as error:
+        raise UnansweredError("no answer in time") from error
 
 
-def _post(messages: list[dict[str, str]], server: Server, deadline: float, dialect: _Dialect) -> bytes:
+def _post(body: Mapping[str, Any], server: Server) -> bytes:
     """Post one request and return the reply's body. HTTPError passes; other failures are UnansweredError."""
-    body = {"model": server.model, "messages": messages, **dialect.parameters()}
     headers = {"Content-Type": "application/json", **({"Authorization": f"Bearer {server.key}"} if server.key else {})}
     asked = urllib.request.Request(  # noqa: S310 - `server_from_env` admits http and https only
         f"{server.base_url}/chat/completions", json.dumps(body).encode(), headers, method="POST"
     )
-    left = deadline - time.monotonic()
-    if left <= 0:
-        raise UnansweredError(f"no answer within {server.seconds:g} s")
     try:
-        with _OPENER.open(asked, timeout=left) as response:
-            if response.headers.get("Content-Encoding", "identity").strip().lower() not in {"identity", ""}:
-                raise UnansweredError("the reply is compressed, which was not asked for")
-            return _read(response, server, deadline)
+        with _OPENER.open(asked, timeout=server.seconds) as response:
+            reply: bytes = response.read(server.most_bytes + 1)
     except urllib.error.HTTPError:
         raise
     except (OSError, http.client.HTTPException, ValueError) as error:
         raise UnansweredError(f"{type(error).__name__}: {str(error)[:200]}") from error
-
-
-def _read(response: http.client.HTTPResponse, server: Server, deadline: float) -> bytes:
-    """Read a reply in pieces, within its bounds of time and size."""
-    parts: list[bytes] = []
-    size = 0
-    while True:
-        if time.monotonic() > deadline:
-            raise UnansweredError(f"no whole answer within {server.seconds:g} s")
-        part = response.read1(CHUNK)
-        if not part:
-            return b"".join(parts)
-        size += len(part)
-        if size > server.most_bytes:
-            raise UnansweredError(f"the reply is longer than {server.most_bytes} bytes")
-        parts.append(part)
+    if len(reply) > server.most_bytes:
+        raise UnansweredError(f"the reply is longer than {server.most_bytes} bytes")
+    return reply
 
 
 class _NoRedirect(urllib.request.HTTPRedirectHandler):
@@ -331,14 +275,13 @@ LOG = logging.getLogger(__name__)
 MOST_QUOTES, LONGEST_FIELD = 400, 80
 
 
-def attach_evidence(program: FloorProgram, prompt: str, quotes: object, *, ours: bool = False) -> FloorProgram:
+def attach_evidence(program: FloorProgram, prompt: str, quotes: object) -> FloorProgram:
     """Return the program with its evidence: each quote of the model at its place in the prompt, whatever offsets it gave.
 
     Rooms that it quotes nothing for get the words that the built-in parser reads their type from. Rooms, links and a total area that
     have no words at all stay, as defaults (`stated: false`), and a warning names them. Quotes that the prompt does not hold are dropped.
-    `ours`: the quotes were looked up before and come from the cache.
     """
-    evidence = list(_looked_up(prompt, quotes, ours))
+    evidence = _looked_up(prompt, quotes)
     fields = {e.field for e in evidence}
     bare = [r for r in program.rooms if r.stated and not any(f == f"rooms.{r.id}" or f.startswith(f"rooms.{r.id}.") for f in fields)]
     for e, room in _read_off(prompt, bare):
@@ -363,7 +306,7 @@ def attach_evidence(program: FloorProgram, prompt: str, quotes: object, *, ours:
     )
 
 
-def _looked_up(prompt: str, quotes: object, ours: bool) -> list[Evidence]:
+def _looked_up(prompt: str, quotes: object) -> list[Evidence]:
     """Return the quotes that stand in the prompt; anything else that the model put there is passed over."""
     spans = []
     for quote in quotes[:MOST_QUOTES] if isinstance(quotes, list) else []:
@@ -372,8 +315,7 @@ def _looked_up(prompt: str, quotes: object, ours: bool) -> list[Evidence]:
             continue
         pattern = r"\s+".join(re.escape(w) for w in text.split())
         if match := re.search(pattern, prompt, re.IGNORECASE):
-            kept = ours and quote.get("source", "rule") == "rule"
-            spans.append(Evidence(start=match.start(), end=match.end(), text=match.group(), field=field, source="rule" if kept else "llm"))
+            spans.append(Evidence(start=match.start(), end=match.end(), text=match.group(), field=field, source="llm"))
     return spans
 
 

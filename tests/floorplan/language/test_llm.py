@@ -94,7 +94,7 @@ def dripping_headers(handler):
 
 @pytest.fixture
 def serve(monkeypatch):
-    monkeypatch.setattr(llm, "PAUSE", 0.01)
+    monkeypatch.setattr(llm, "PAUSES", (0.01, 0.02))
     servers = []
 
     def start(*answers, **limits):
@@ -315,13 +315,12 @@ def test_the_worked_examples_are_valid_and_quote_their_requests():
 
 
 @pytest.mark.parametrize("complaint", ["use max_completion_tokens", "'temperature' does not support 0"])
-def test_a_server_with_other_parameters_is_asked_by_them(serve, complaint):
-    http, server = serve(raw(json.dumps({"error": complaint}).encode(), 400), says(GOOD))
+def test_a_server_with_other_parameters_is_asked_with_none(serve, complaint):
+    http, server = serve(*[raw(json.dumps({"error": complaint}).encode(), 400)] * 2, says(GOOD))
     assert len(request(PROMPT, server).rooms) == 4
-    first, second = (asked for _, _, asked in http.seen)
+    first, _, last = (asked for _, _, asked in http.seen)
     assert "max_tokens" in first
-    assert "max_completion_tokens" in second
-    assert not {"max_tokens", "temperature", "seed"} & set(second)
+    assert set(last) == {"model", "messages"}
 
 
 def test_a_server_that_knows_no_format_is_asked_without(serve):
