@@ -266,15 +266,6 @@ class Clause:
         self.state.zones.setdefault(e.value, (tuple(members), e))
         self.push(k, e, tuple(e.ids))
 
-    def written_as_one(self, k: int, e: Element) -> int:
-        """Return the place of the room that is written as one with that at k, "kitchen/living", "salón-cocina"; 0 for none."""
-        j = next((j for j, x in enumerate(self.sentence[k + 1 : k + 3], k + 1) if x.kind == "np"), 0)
-        if not j or self.sentence[j].type not in SOCIAL - {e.type}:
-            return 0
-        tokens = self.state.heard.tokens
-        between = self.state.heard.prompt[tokens[e.last - 1].end : tokens[self.sentence[j].first].start]
-        return j if between in {"/", "-", "–", "/-"} else 0
-
     def _continues(self, k: int, cue: str, joined: str, first: Element, left: Group, count: int) -> bool:  # noqa: PLR0911 - one answer per case
         """Whether a list after a relation goes on with the phrase at k, or a new statement begins there."""
         e = self.sentence[k]

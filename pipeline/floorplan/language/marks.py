@@ -82,10 +82,13 @@ def segment(words: Words) -> list[Mark]:
         mark = _mark(words, i)
         if mark.last > i:
             i = mark.last
-            if mark.kind != "hyphen":
-                marks.append(mark)
+            marks.append(mark)
         else:
             i += 1
+    written_as_one = [
+        k for k, m in enumerate(marks) if m.kind == "hyphen" and [x.kind for x in marks[k - 1 : k + 2 : 2]] == ["room", "room"]
+    ]
+    marks = [m for k, m in enumerate(marks) if m.kind != "hyphen" or k in written_as_one]
     return _relabel(_numbers(_articles(marks, words), words), words)
 
 

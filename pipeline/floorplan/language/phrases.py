@@ -195,7 +195,7 @@ def _phrases(marks: list[Mark], k: int, pre: list[Mark], elements: list[Element]
     names = mark.value.split("+") if mark.kind == "room" else [mark.value]
     for part in names[:-1]:
         elements += [_phrase(replace(mark, value=part), front, compound, lex), Element("and", "", mark.first, mark.first, "")]
-        elements[-2].adjectives.update({"combined"} if part != "bedroom" else ())
+        elements[-2].adjectives.update({"melted"} if part != "bedroom" else ())
         front = [p for p in front if p.kind != "num"]
     phrase = _phrase(replace(mark, value=names[-1]), front, compound, lex)
     k = _behind(marks, k + 1, phrase, postposed)

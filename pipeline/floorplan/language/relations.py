@@ -7,7 +7,6 @@ import itertools
 from pipeline.floorplan.language.clause import LIGHT, LISTING, Clause, ids_of, named_rooms
 from pipeline.floorplan.language.facts import HALLS, PERSONAL, SOCIAL, Group
 from pipeline.floorplan.language.lexicon import kinds
-from pipeline.floorplan.language.naming import name
 from pipeline.floorplan.language.phrases import Element
 
 MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two rooms at the end: "kitchen and bath adjacent"
@@ -212,42 +211,6 @@ def enter(c: Clause, e: Element, group: Group, j: int) -> int:
     c.goes_on(further or group)
     c.waiting = None
     return j
-
-
-def merge(c: Clause, k: int, e: Element) -> None:
-    """Read "open kitchen/living room" and "combined kitchen and living room"; an open kitchen alone is open to where one lives."""
-    listed = list(e.ids)
-    written_on = "bare_nouns" in c.state.heard.lexicon.traits  # "客厅餐厅厨房" needs no comma
-    joined = written_on
-    for i, x in enumerate(c.sentence[k + 1 :], k + 1):
-        if x.kind == "np" and joined and x.type in SOCIAL and not x.banned and "closed" not in x.adjectives:
-            listed += c.rooms_at(i)
-            joined = written_on
-        elif x.kind == "and" or (x.kind == "comma" and e.type in SOCIAL and _closes(c, i)) or (x.value == "has" and len(listed) == 1):
-            joined = True
-        else:
-            break
-    if len(set(listed)) < 2 and e.mark is not None and e.last > e.mark.last and k > 1 and c.sentence[k - 1].kind == "and":
-        listed += [i for i in c.sentence[k - 2].ids if c.sentence[k - 2].type in SOCIAL]  # "cocina y salón abiertos"
-    if len(set(listed)) > 1 and e.type in SOCIAL:
-        c.state.say("merge", tuple(listed), (), e)
-    elif e.type == "kitchen":
-        c.state.say("open_kitchen", tuple(e.ids), (), e)
-
-
-def _closes(c: Clause, k: int) -> bool:
-    """Whether a comma parts a list of social rooms that an "and" closes: "open-plan living, dining and kitchen area"."""
-    rest = [x for x in c.sentence[k + 1 :] if x.kind not in {"comma", "det"}]
-    end = next((i for i, x in enumerate(rest) if not (x.kind == "np" and x.type in SOCIAL and "closed" not in x.adjectives)), len(rest))
-    return [x.kind for x in rest[end : end + 2]] == ["and", "np"] and rest[end + 1].type in SOCIAL
-
-
-def merge_after(c: Clause, k: int, e: Element) -> None:
-    """Read "open plan: living, dining, kitchen": what is named behind the words."""
-    social = [j for j, x in enumerate(c.sentence) if j >= k and x.kind == "np" and x.type in SOCIAL and "closed" not in x.adjectives]
-    listed = tuple(i for j in social for i in name(c.state, c.sentence, j, None))
-    if len(listed) > 1:
-        c.state.say("merge", listed, (), e)
 
 
 def no_door(c: Clause) -> None:

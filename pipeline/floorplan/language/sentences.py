@@ -10,7 +10,7 @@ from pipeline.floorplan.language.facts import GROUND_FLOOR, PERSONAL, SOCIAL, Gr
 from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.naming import fresh
 from pipeline.floorplan.language.phrases import Element, backward
-from pipeline.floorplan.language.relations import complete, enter, merge, merge_after, no_door, relate
+from pipeline.floorplan.language.relations import complete, enter, no_door, relate
 from pipeline.floorplan.program.defaults import DEFAULTS
 
 NAMED = {"doors", "corridors", "ceiling", "walls", "inner_walls", "outer_walls"}  # what a length may measure besides rooms
@@ -62,10 +62,10 @@ def _np(c: Clause, k: int, e: Element) -> None:
 def _describe_rooms(c: Clause, k: int, e: Element, ids: tuple[str, ...]) -> None:
     """Record what adjectives say of rooms."""
     same = tuple(r.id for r in c.stock.of(e.type))
-    if e.adjectives & {"open", "combined"} and "closed_plan" not in c.state.flags:
-        merge(c, k, e)
-    elif e.type in SOCIAL and (j := c.written_as_one(k, e)):
-        c.state.say("merge", (*ids, *c.rooms_at(j)), (), e)
+    if "melted" in e.adjectives:  # "lounge diner"
+        c.state.say("merge", (*ids, *c.rooms_at(k + 2)), (), e)
+    elif e.adjectives & {"open", "combined"} and e.type == "kitchen" and "closed_plan" not in c.state.flags:
+        c.state.say("open_kitchen", ids, (), e)
     if "closed" in e.adjectives and e.type == "kitchen":
         c.state.say("closed", ids, (), e)
     if e.suite:
@@ -145,15 +145,6 @@ def _and(c: Clause, k: int, _: Element) -> None:
 def _adj(c: Clause, k: int, e: Element) -> None:
     before, ahead = c.near(k - 1), c.near(k + 1)
     kind = before.kind if before is not None else ""
-    social = tuple(i for x in c.run for i in named_rooms(tuple(x.ids)) if c.stock.get(i).type in SOCIAL)
-    alone = len(social) == len(ids_of(c.run))
-    if (
-        e.value in {"open", "combined"}
-        and len(social) > 1
-        and not c.negated(k)
-        and (kind in {"np", "reciprocal", "open"} or (kind == "verb" and alone))
-    ):
-        c.state.say("merge", social, (), e)  # "living and dining room open"
     ends = ahead is None or ahead.kind in {"comma", "and"}
     if e.value in {"largest", "smallest"} and len(c.latest) == 1 and (c.verb or (kind == "np" and ends)):  # "客厅最大"
         c.state.say(f"{e.value}_of_all", c.latest, (), e)
@@ -295,8 +286,6 @@ def _flag(c: Clause, k: int, e: Element) -> None:
         social = tuple(i for i in named_rooms(ids_of(c.run)) if c.stock.get(i).type in SOCIAL)
         if len(social) > 1:
             c.state.say("merge", social, (), e)
-            return
-        merge_after(c, k + 1, e)
 
 
 def _windows(c: Clause, k: int, e: Element) -> None:
