@@ -248,10 +248,6 @@ class Clause:
         if e.kind in {"pron", "det"} and e.value in STANDINS and not (e.kind == "det" and phrase):
             ids = self.point(e, k, left)
             return tuple(i for i in ids if i not in left), k + 1
-        if e.kind == "owner" and not phrase and (ahead is None or ahead.kind != "word"):  # "next to the parents'"
-            theirs = [r.id for r in self.stock.of("bedroom") if r.role == e.value and r.id not in left]
-            e.ids = theirs or [self.stock.add("bedroom", e.value, e.text, None).id]
-            return tuple(e.ids), k + 1
         if e.kind == "zone":
             self.zone(k, e)
             return tuple(e.ids), k + 1

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-
 from pipeline.floorplan.language.clause import LIGHT, LISTING, Clause, ids_of, named_rooms
 from pipeline.floorplan.language.facts import HALLS, PERSONAL, SOCIAL, Group
 from pipeline.floorplan.language.lexicon import kinds
@@ -16,7 +14,7 @@ NO_PARTS = {"bedroom", "living_room", "family_room", "garage"}  # nothing that a
 SECLUDED = {"storage", "closet", "wc", "bathroom", "balcony", "utility"}  # "X in Y": X opens off Y
 
 
-def relate(c: Clause, k: int, e: Element) -> int | None:  # noqa: PLR0911, PLR0912, C901 - one answer per kind of relation
+def relate(c: Clause, k: int, e: Element) -> int | None:  # noqa: PLR0911 - one answer per kind of relation
     """Read one relation; return where to go on."""
     if e.value == "has":
         return has(c, k, e)
@@ -51,15 +49,6 @@ def relate(c: Clause, k: int, e: Element) -> int | None:  # noqa: PLR0911, PLR09
         c.goes_on(group)
         c.objects = ()
         return j
-    first = not left and not any(x.kind in {"np", "pron", "level"} for x in c.sentence[:k])
-    if first and (e.value == "leads" or (e.value == "door" and c.says(e, "entered"))) and c.types(group) <= HALLS:
-        return enter(c, e, group, j)  # "se entra a un vestíbulo ..."
-    door = k > 0 and c.sentence[k - 1].value == "doors"
-    if not left and door and e.value == "leads" and len(group) == 2:  # "a door connects the office and the kitchen"
-        c.state.say("door", group[:1], group[1:], e)
-        return j
-    if not left and c.negative is not None and c.waiting is not None and c.waiting[0].value == "from":
-        left, c.waiting = c.waiting[1], None  # "from the kitchen no door may lead into the bedroom"
     if not left:  # "off the foyer are a wc and the living room"
         c.waiting = (e, group)
         c.subject, c.latest, c.run, c.verb = (), group, [], False
@@ -100,14 +89,10 @@ def _alone(c: Clause, k: int, e: Element) -> int | None:
     """Read a relation that nothing follows: "next to each other", "kitchen and bath adjacent"."""
     ahead = c.near(k + 1)
     mutual = ahead is not None and ahead.kind == "reciprocal"
-    rest = next((x for x in c.sentence[k + 1 :] if x.kind not in {"det", "verb"} and x.value != "doors"), None)
-    ends = rest is None or rest.kind in {"comma", "but", "close"}  # "cocina y salón comunicados por una puerta corredera"
-    rooms = ids_of(c.run) or c.subject
-    pair = ends and e.value in MUTUAL and not c.says(e, "into") and len(rooms) > 1 and "*" not in rooms and c.coordinate()
-    if (mutual or pair or (e.value == "wall" and rooms)) and e.text != "by":
+    if mutual or (e.value == "wall" and c.run):
         reciprocal(c, e)
         return k + 1 + mutual
-    if e.value == "between" and rest is None and e.text in c.state.heard.lexicon.sign("amid"):
+    if e.value == "between" and e.text in c.state.heard.lexicon.sign("amid"):
         c.state.understood(e.first, e.last)  # "... as a buffer in between" points back at what was said
     return None
 
@@ -121,9 +106,7 @@ def reciprocal(c: Clause, e: Element) -> None:
         c.state.say("merge" if e.value == "open" else e.value, rooms, (), e)
         c.subject = c.latest = rooms
         return
-    denied = c.negative is not None and e.value in {"door", "open"}
-    c.deny()
-    if denied:
+    if c.deny() and e.value in {"door", "open"}:
         c.state.say("not_connected" if e.value == "door" else "not_open", rooms[:1], rooms[1:], e)
         return
     c.state.say("ban", rooms, rooms, e)
@@ -200,42 +183,16 @@ def enter(c: Clause, e: Element, group: Group, j: int) -> int:
     group = named_rooms(group)
     if not group:
         return j
-    into, then = c.near(j), next((i for i, x in enumerate(c.sentence[j : j + 2]) if c.says(x, "then")), None)
-    further: Group = group[1:] if len(group) == 2 else ()
-    if then is not None or (into is not None and into.kind == "cue" and into.value in {"in", "leads"} and c.says(e, "by")):
-        c.state.understood(into.first if into else j, into.last if into else j)
-        further, j = c.after(j + 1 + (then or 0), "door", group)
     c.state.entrance = c.state.entrance or (group[0], e)
-    if further:
-        c.state.say("door", further, group[:1], e)
-    c.goes_on(further or group)
+    c.goes_on(group)
     c.waiting = None
     return j
-
-
-def no_door(c: Clause) -> None:
-    """Read "no door between kitchen and bedroom", "no walk-through bedrooms"; the words are taken out."""
-    ends = [-1, *(k for k, e in enumerate(c.sentence) if e.kind in {"comma", "but"}), len(c.sentence)]
-    for first, last in itertools.pairwise(ends):
-        part = c.sentence[first + 1 : last]
-        none = next((j for j, e in enumerate(part) if e.kind in {"neg", "used"}), None)
-        if none is None:
-            continue
-        flag = next((e for e in part if e.value == "thoroughfare"), None)
-        rooms = [k for k in range(first + 1, last) if c.sentence[k].kind == "np"]
-        if flag is None:
-            continue
-        named = [f"*{c.sentence[k].type}" if c.sentence[k].banned or not c.sentence[k].definite else c.rooms_at(k)[0] for k in rooms]
-        c.state.say("no_through", tuple(named) or ("*bedroom",), (), flag)
-        c.state.understood(part[0].first, part[-1].last)
-        c.sentence[first + 1 : last] = []
-        return
 
 
 # who has what
 
 
-def has(c: Clause, k: int, e: Element) -> int | None:  # noqa: PLR0911 - one answer per kind of owner
+def has(c: Clause, k: int, e: Element) -> int | None:
     """Read "X with its own bathroom", "the living room has a terrace": rooms that hang on the one named before."""
     before = next((x for x in reversed(c.sentence[:k]) if x.kind in {"np", "home", "pron", "every", "det", "level"}), None)
     at = next((j for j in range(k + 1, len(c.sentence)) if c.sentence[j].kind not in {*LIGHT, "amount"}), None)
@@ -249,10 +206,6 @@ def has(c: Clause, k: int, e: Element) -> int | None:  # noqa: PLR0911 - one ans
         return None if negative else _give(c, k, e, owners)
     if thing is None or at is None or kind not in HOSTS or len(owners) > 1 or thing.banned or negative:
         return None
-    if kind == "kitchen" and thing.mark is not None and thing.mark.value == "dining_room/corner":  # "a kitchen with dining area"
-        c.stock.get(owners[0]).functions.add("dining")
-        c.state.understood(thing.first, thing.last)
-        return at + 1
     if kind == "hallway" and thing.type == "bedroom" and not thing.definite:  # "a corridor with two bedrooms and a bathroom"
         group, j = c.after(at, "leads", owners)
         c.state.say("door", group, owners, e)

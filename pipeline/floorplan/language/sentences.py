@@ -10,7 +10,7 @@ from pipeline.floorplan.language.facts import GROUND_FLOOR, PERSONAL, SOCIAL, Gr
 from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.naming import fresh
 from pipeline.floorplan.language.phrases import Element, backward
-from pipeline.floorplan.language.relations import complete, enter, no_door, relate
+from pipeline.floorplan.language.relations import complete, enter, relate
 from pipeline.floorplan.program.defaults import DEFAULTS
 
 NAMED = {"doors", "corridors", "ceiling", "walls", "inner_walls", "outer_walls"}  # what a length may measure besides rooms
@@ -21,7 +21,6 @@ ONE_THAT = {"in", "ensuite", "near", "door"}  # what tells the second of "one ba
 def read(state: Reading, sentence: list[Element]) -> None:
     """Read one sentence."""
     c = Clause(state, sentence)
-    no_door(c)
     k = 0
     while k < len(c.sentence):
         e = c.sentence[k]
@@ -278,6 +277,8 @@ def _flag(c: Clause, k: int, e: Element) -> None:
         for level in range(1, storeys):
             c.stock.add(room.type, "", e.text, level)
         c.state.levels.append(Element("level", str(storeys - 1), e.first, e.last, e.text))
+    elif e.value == "no_through":
+        c.state.say("no_through", named_rooms(c.latest) or ("*bedroom",), (), e)
     elif e.value == "open_plan" and c.negated(k):
         c.state.flags["closed_plan"] = e
         c.state.understood(e.first, e.last)
