@@ -224,8 +224,6 @@ class Clause:
                 return standin
             elif e.kind == "cue" and e.value in {"in", "leads"} and joined and cue in WIDE and not (joined == "comma" and self.relative):
                 joined = "and"  # "leads to the bath and into the kitchen"
-            elif group and (e.value == "has" or e.kind == "to") and cue == "leads" and self.says(self.sentence[end - 2], "connect"):
-                joined = "and"  # "connects the kitchen with the garage"
             elif e.kind in LISTING:
                 joined = "comma" if e.kind == "comma" and joined != "and" else "and"
             elif not self._passed(e, bool(group), joined, cue):

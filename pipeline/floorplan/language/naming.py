@@ -109,6 +109,7 @@ def _others(state: Reading, sentence: list[Element], k: int, role: str, level: i
         mentioned |= {g[0] for g in state.past if len(g) == 1}
         rest = [r for r in rest if r.open_slot or r.id not in mentioned]
         rest += [stock.add(e.type, role, e.text, level) for _ in range(int(e.number) - len(rest))]
+        return rest[-int(e.number) :]
     return (rest if _many(e) else [close(r, "", e.text) for r in rest[:1]]) or [stock.add(e.type, role, e.text, level)]
 
 

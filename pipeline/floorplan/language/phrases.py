@@ -328,7 +328,6 @@ def ban(sentence: list[Element]) -> None:
             if j is not None:
                 _negate(sentence, k, j)
                 continue
-            _any(sentence, k)
             if k + 1 == len(sentence) or sentence[k + 1].kind in {"comma", "close", "but"}:
                 _negated_behind(sentence, k)
 
@@ -337,8 +336,8 @@ def _negate(sentence: list[Element], k: int, j: int) -> None:
     """Apply the negation at k to the phrase at j."""
     e, phrase, behind = sentence[k], sentence[j], next((x for x in sentence[j + 1 :] if x.kind != "verb"), None)
     if behind is not None and behind.kind == "cue" and behind.value in RELATIONS:  # the relation is what is negated
-        _any(sentence, k)  # "no kitchen next to the bedroom"
-    elif not phrase.definite or e.removes:
+        return
+    if not phrase.definite or e.removes:
         e.kind = "used"
         _list(sentence, j)
 
@@ -352,17 +351,6 @@ def _target(sentence: list[Element], k: int) -> int | None:
         if e.kind not in {"verb", "adj", "det", "owner", "size", "word", "relative"} and not colon and (e.kind, e.value) != ("cue", "has"):
             return None
     return None
-
-
-def _any(sentence: list[Element], k: int) -> None:
-    """Let "a bedroom" behind a negated relation mean any bedroom, not a new one: "must not be reached through a bedroom"."""
-    cue = False
-    for e in sentence[k + 1 :]:
-        if e.kind in {"comma", "but"}:
-            return
-        cue = cue or (e.kind == "cue" and e.value in RELATIONS)
-        if cue and e.kind == "np" and "indefinite" in e.det and e.number is None:
-            e.det = {"all"}
 
 
 def _negated_behind(sentence: list[Element], k: int) -> None:

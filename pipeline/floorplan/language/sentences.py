@@ -15,7 +15,6 @@ from pipeline.floorplan.program.defaults import DEFAULTS
 
 NAMED = {"doors", "corridors", "ceiling", "walls", "inner_walls", "outer_walls"}  # what a length may measure besides rooms
 HUGE, LARGE, MORE, LISTED = 5.0, 2.5, 1.6, 1.3  # times the usual area of the room in front: from there on an area is the home's
-ONE_THAT = {"in", "ensuite", "near", "door"}  # what tells the second of "one bathroom for guests and one inside the master"
 
 
 def read(state: Reading, sentence: list[Element]) -> None:
@@ -157,9 +156,6 @@ def _size(c: Clause, k: int, e: Element) -> None:
 
 
 def _enter(c: Clause, k: int, e: Element) -> int | None:
-    before = c.near(k - 1)
-    if before is not None and before.kind == "np" and before.definite and c.run:  # "al baño se entra por el pasillo"
-        return relate(c, k, replace(e, kind="cue", value="door"))
     group, j = c.after(k + 1, "enter", ())
     return max(enter(c, e, group or c.latest, j if group else k + 1), k + 1)
 
@@ -171,39 +167,11 @@ def _outside(c: Clause, _: int, e: Element) -> None:
 
 def _pron(c: Clause, k: int, e: Element) -> None:
     """Read a pronoun: the rooms that it stands for are spoken of next."""
-    ahead = c.ahead(k + 1, "det", "verb")
-    if e.value == "rest" and ahead is not None and ahead.kind in {"level", "colon"} and not c.parted():
-        _every(c, k, e)
-        return
-    specified = ahead is not None and (ahead.kind in {"owner", "level"} or (ahead.kind == "cue" and ahead.value in ONE_THAT))
-    like = c.run[-1] if c.run and k and c.sentence[k - 1].kind in {"and", "comma"} else None
-    if e.value == "one" and specified and like is not None and like.ids and (like.number == 1.0 or "indefinite" in like.det):
-        room = c.stock.add(c.stock.get(like.ids[0]).type, "", e.text, None)  # "one bathroom for guests and one inside the master"
-        level = ahead is not None and ahead.kind == "level"
-        run = c.run
-        c.stands_for(e, (room.id,))
-        c.run, c.subject = run if level else [], (room.id,)
-        return
     group = c.point(e, k, c.subject if e.value == "it" and (c.objects or c.run) else ())
-    spoken = [i for g in (c.subject, *reversed(c.state.past)) for i in named_rooms(g)]
-    known = c.state.parted or any(c.stock.get(i).type == "bedroom" for i in spoken)
-    if e.value == "rest" and known and (count := c.state.heard.lexicon.count(e.text)):
-        group = _others(c, count)
     e.ids = list(group)
     if group:
         c.stands_for(e, group)
         c.subject = group if e.value != "it" or not c.subject else c.subject
-
-
-def _others(c: Clause, count: int) -> tuple[str, ...]:
-    """Return so many rooms that nothing was said of, of the type of which one was told apart (else bedrooms), new ones where they are too few."""
-    spoken = {i for x in c.sentence for i in x.ids} | {i for g in c.state.past[-1:] for i in g}
-    kind = c.state.parted or "bedroom"
-    same = c.stock.of(kind)
-    free = [r for r in same if r.open_slot] or [r for r in same if r.id not in spoken]
-    while len(free) < count:
-        free.append(c.stock.add(kind, "", "other", None))
-    return tuple(r.id for r in free[:count])
 
 
 def _det(c: Clause, k: int, e: Element) -> None:
@@ -258,19 +226,11 @@ def _every(c: Clause, k: int, e: Element) -> None:
 def _flag(c: Clause, k: int, e: Element) -> None:
     """Read one flag."""
     c.state.flags.setdefault(e.value, e)
-    before = c.near(k - 1)
-    last = c.state.facts[-1] if c.state.facts else None
     if e.value == "daylight":
         _windows(c, k, e)
         return
-    if e.value == "too" and last is not None:  # "..., ebenso das Bad"
-        ahead = c.near(k + 1)
-        rooms = c.rooms_at(k + 1) if ahead is not None and ahead.kind == "np" else c.rooms_in_front()
-        c.state.say(last.what, rooms, last.b, e)
-    elif e.value == "only":
+    if e.value == "only":
         c.only = e
-        if last is not None and last.what in {"door", "leads"} and before is not None and before.kind == "np":
-            c.state.say("only", last.a, (), e)
     elif e.value == "each_floor" and len(named_rooms(c.latest)) == 1:  # "a toilet on each floor": one more for every storey but the first
         room = c.stock.get(c.latest[0])
         room.level, storeys = GROUND_FLOOR, c.state.storeys[0] if c.state.storeys else 2
