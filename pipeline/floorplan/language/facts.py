@@ -26,7 +26,6 @@ class Named:
     open_slot: bool = False
     whole: bool = False  # one of a count of all such rooms: "a two-bedroom flat"
     extra: bool = False  # "another bathroom": none of those named in front
-    secondary: bool = False  # beside the main one: "次卧"
     index: int = 0
     stated: bool = True
     span: tuple[int, int] | None = None  # the words that named it first, as tokens

@@ -352,9 +352,6 @@ def _verbs_last(marks: list[Mark], words: Words) -> Iterator[Mark]:
         mark, ahead = relabelled[k], relabelled[k + 1] if k + 1 < len(relabelled) else None
         if mark.kind == "room" and any(words.tokens[mark.last - 1].text.lower().endswith(t) for t in lex.sign("dative")):
             relabelled[k] = replace(mark, plural=True)
-        described = k > 1 and relabelled[k - 1].kind in {"adj", "size"} and any(m.kind == "num" for m in relabelled[max(0, k - 4) : k])
-        if (mark.kind, mark.value) == ("unit", "rooms") and described:
-            relabelled[k] = replace(mark, kind="room", value="bedroom", plural=True)  # "vier gleich große Zimmer"
         uncounted = mark.text in lex.sign("plural_article") | lex.sign("plural_dative") and ahead is not None and ahead.kind == "room"
         if uncounted and ahead is not None and any(ahead.text.endswith(t) for t in lex.sign("uncounted")):
             relabelled[k + 1] = replace(ahead, plural=mark.text in lex.sign("plural_article"))

@@ -134,10 +134,6 @@ def _indexed_room(state: Reading, e: Element, role: str, level: int | None) -> N
 
 def _ordinal(state: Reading, e: Element, role: str, level: int | None) -> list[Named]:
     stock, same = state.inventory, state.inventory.of(e.type)
-    if e.secondary and (e.number or 1) > 1:  # "次卧两间"
-        slots = [r for r in same if r.open_slot and not r.role][: int(e.number or 1)]
-        rooms = [close(r, role, e.text) for r in slots]
-        return rooms + [stock.add(e.type, role, e.text, level) for _ in range(int(e.number or 1) - len(rooms))]
     if len(same) >= e.ordinal:
         rest = same if e.ordinal == 1 else [r for r in same if r.role != "primary"]
         loose = [r for r in rest if r.open_slot] or rest[-1:]
@@ -172,7 +168,6 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
         if r.open_slot
         and (e.definite or r.whole or _is_spelt_out(sentence, k, r) or listed is None or r.id not in listed.ids)
         and ((e.definite and level is None) or r.level is None or r.level == level)  # counted on another storey: others
-        and not (role == "primary" and r.secondary)
     ]
     if slots:
         return [close(r, role, e.text) for r in slots[: int(e.number or len(slots)) if many else 1]]
@@ -295,7 +290,7 @@ def _introduce_rooms(state: Reading, sentence: list[Element], k: int, level: int
         return same[:1]
     rooms = _new(state, e, count, role, level)
     for room in rooms:
-        room.extra, room.span, room.secondary = "another" in e.det, (e.first, e.last), e.secondary
+        room.extra, room.span = "another" in e.det, (e.first, e.last)
     return rooms
 
 

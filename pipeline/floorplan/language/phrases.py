@@ -41,7 +41,6 @@ class Element:
     size: float = 1.0
     amounts: list[Mark] = field(default_factory=list)
     suite: bool = False
-    secondary: bool = False
     compound: bool = False  # "a two-bedroom flat": the number is the whole count
     removes: bool = False  # a negation of what was there
     functions: set[str] = field(default_factory=set)
@@ -212,7 +211,7 @@ def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool, lex: Lexicon) -> El
     phrase = Element(
         "np", "", mark.first, mark.last, mark.text, type=kind, plural=mark.plural, compound=compound, mark=mark, taken=list(pre)
     )
-    phrase.suite, phrase.secondary = mark.kind == "suite", mark.text in lex.sign("second_bedroom")
+    phrase.suite = mark.kind == "suite"
     phrase.functions = {*mark.functions, *(["dining"] if role == "diner" else [])}
     phrase.role = "" if role in {"diner", "corner"} else role
     for part in pre:

@@ -94,8 +94,6 @@ def join(draft: Draft, state: Reading) -> None:
     for fact in facts:
         if fact.what == "own":
             _belongings(draft, stock, fact, ways)
-        elif fact.what == "ensuite":
-            _ensuites(draft, stock, fact)
     _merge_rooms(draft, stock, facts)
     for fact in facts:
         if any(i[0] in "*<" for i in fact.a + fact.b):
@@ -119,18 +117,6 @@ def _belongings(draft: Draft, stock: Inventory, fact: Fact, ways: Sequence[tuple
     for thing, owner in zip(fact.a, owners, strict=False):
         if not any(thing in way.a and owner not in way.b for way, _ in ways):
             _give(draft, stock, thing, owner, fact)
-
-
-def _ensuites(draft: Draft, stock: Inventory, fact: Fact) -> None:
-    """Give bathrooms that are en suite to bedrooms without one, and bedrooms one of the bathrooms that were counted, or a new one."""
-    rooms = [stock.get(i) for i in fact.b if not i.startswith("*")]
-    baths = [r for r in rooms if r.type == "bathroom"]
-    for room in baths or [r for r in rooms if r.type == "bedroom"]:
-        if room.type == "bathroom" and (hosts := _hosts(draft, stock)):
-            _give(draft, stock, room.id, hosts[0].id, fact)
-        elif room.type == "bedroom":
-            known = [r for r in stock.of("bathroom") if r.role == "ensuite" or ((r.open_slot or r.whole) and not r.role)]
-            _bath(draft, stock, room, fact, known)
 
 
 def _hosts(draft: Draft, stock: Inventory) -> list[Named]:
@@ -202,10 +188,6 @@ def _relate_rooms(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fa
         others = tuple(r.id for kind in MERGE_ORDER for r in stock.of(kind) if r.id not in fact.a) if what == "closed" else fact.b
         for room, other in itertools.product(fact.a, others):
             draft.forbid("connected" if what == "not_connected" else "open", room, other, None, fact)
-    elif what == "size":
-        for room in fact.a:
-            stock.get(room).size = fact.value
-            draft.cite(fact.first, fact.last, f"rooms.{room}.area")
     elif what == "largest" and a:
         draft.relate("largest", a, stock.get(a).type, 1.0, fact)
     else:

@@ -40,7 +40,9 @@ def _np(c: Clause, k: int, e: Element) -> None:
     before = c.near(k - 1)
     said = before is not None and before.kind in {"np", "pron"} and not e.det and e.number is None
     if e.role == "ensuite" and e.type == "bathroom" and not e.ids and said:  # "one of them en suite"
-        c.state.say("ensuite", (), c.latest, e)
+        c.stock.get(c.latest[0]).role = "ensuite"
+        hosts = sorted(c.stock.of("bedroom"), key=lambda r: r.role != "primary")
+        c.give(c.latest[:1], tuple(r.id for r in hosts[:1]), e)
         return
     own = "own" in e.det or (bool(c.owning) and bool(c.run) and not e.det)
     if c.owner and not e.ids and own and e.type in {"bedroom", "bathroom", "kitchen"}:
@@ -146,13 +148,6 @@ def _adj(c: Clause, k: int, e: Element) -> None:
     ends = ahead is None or ahead.kind in {"comma", "and"}
     if e.value in {"largest", "smallest"} and len(c.latest) == 1 and (c.verb or (kind == "np" and ends)):  # "客厅最大"
         c.state.say(f"{e.value}_of_all", c.latest, (), e)
-
-
-def _size(c: Clause, k: int, e: Element) -> None:
-    """Read "the living room should be large"."""
-    before = c.near(k - 1)
-    if e.number is not None and before is not None and before.kind in {"np", "verb", "pron", "bound", "word"} and named_rooms(c.latest):
-        c.state.say("size", named_rooms(c.latest), (), e, e.number)
 
 
 def _enter(c: Clause, k: int, e: Element) -> int | None:
@@ -319,6 +314,6 @@ def _closes(c: Clause, k: int, mark: Mark, rooms: Group) -> bool:
 
 READERS: Mapping[str, Callable[[Clause, int, Element], int | None]] = {
     "np": _np, "home": _home, "amount": _note, "owner": _note, "verb": _verb, "relative": _note, "neg": _note, "comma": _comma, "and": _and, "but": _note,
-    "adj": _adj, "size": _size, "enter": _enter, "outside": _outside, "level": level, "wing": wing, "zone": Clause.zone,
+    "adj": _adj, "enter": _enter, "outside": _outside, "level": level, "wing": wing, "zone": Clause.zone,
     "pron": _pron, "det": _det, "every": _every, "flag": _flag, "cue": relate, "factor": factor, "cmp": compare,
 }  # fmt: skip
