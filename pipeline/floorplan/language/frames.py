@@ -276,9 +276,8 @@ def _join_brackets(marks: list[Mark], words: Words) -> list[Mark]:
         bracket = _bracket(reordered, k, lex)
         if bracket is not None:
             cue, start, second, end = bracket
-            only = any(m.text in lex.sign("only") for m in reordered[max(0, k - 2) : k])
             kind = "cmp" if cue in {"larger", "smaller"} else "cue"
-            first = replace(reordered[k], kind=kind, value=cue, last=reordered[start - 1].last, number=0.0, only=reordered[k].only or only)
+            first = replace(reordered[k], kind=kind, value=cue, last=reordered[start - 1].last, number=0.0, only=reordered[k].only)
             inside = reordered[start:second]
             none = [inside.pop()] if inside and inside[-1].kind == "neg" else []  # "厨房与卧室不相通"
             reordered[k:end] = [*none, first, *inside, *(m for m in reordered[second:end] if m.kind in BREAKS)]

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import bisect
 import functools
-import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -17,16 +16,16 @@ from pipeline.errors import RefusedError
 from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG
 from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.marks import listen, segment
-from pipeline.floorplan.language.spelling import detect, resolve
-from pipeline.floorplan.language.text import Stemmed, stem, stem_words
+from pipeline.floorplan.language.spelling import detect
+from pipeline.floorplan.language.text import fold, tokenize, words
 from pipeline.floorplan.program.furniture import lexicon
 
 STOPS = frozenset(".;!?\n。;!?")
 COMMAS = STOPS | {",", "、"}
-FIGURES = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
 MOST, MOST_WORDS = 1e6, 6  # of any amount, and of a numeral
 NEAR, FAR, OWNED = 5, 7, 14  # words in which "everywhere", "free" and an owner are looked for
 TABLES, CHAIRS, MOST_SEATS = {"dining_table", "any_table"}, "any_chair", 16
+ENDINGS = ("en", "es", "as", "os", "em", "e", "n", "s", "a", "o")  # of plurals, cases and genders
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
 
 
@@ -49,6 +48,19 @@ class Claim:
     plural: bool = False  # "armchairs": nobody counted them
 
 
+@functools.lru_cache(maxsize=8192)
+def stem(word: str) -> str:
+    """Return a word without the endings that any of the languages may put to it."""
+    for _ in range(2 if word.isalpha() else 0):
+        word = word.removesuffix(next((e for e in ENDINGS if word.endswith(e) and len(word) - len(e) >= 3), ""))
+    return word
+
+
+def stemmed(form: str) -> tuple[str, ...]:
+    """Return the stems of the words of a form; what stands before it tells that it needs an owner."""
+    return tuple(map(stem, words(form.removeprefix("@"))))
+
+
 @functools.cache
 def _phrases() -> Mapping[str, tuple[tuple[tuple[str, ...], str, str, bool], ...]]:
     """Return by first stem: (stems, kind, name, whether an owner is needed), the longest first."""
@@ -60,7 +72,7 @@ def _phrases() -> Mapping[str, tuple[tuple[tuple[str, ...], str, str, bool], ...
     listed += [("owner", name, form) for name, some in data["owners"].items() for form in some]
     table: dict[str, list[tuple[tuple[str, ...], str, str, bool]]] = {}
     for kind, name, form in listed:
-        stems = tuple(w.stem for w in stem_words(form.removeprefix("@")))
+        stems = stemmed(form)
         table.setdefault(stems[0], []).append((stems, kind, name, form.startswith("@")))
     return {k: tuple(sorted(v, key=lambda p: -len(p[0]))) for k, v in table.items()}
 
@@ -73,7 +85,17 @@ def _stems() -> frozenset[str]:
 @functools.cache
 def _name_stems(name: str, language: str) -> frozenset[str]:
     """Return the first stems of what a language calls a thing."""
-    return frozenset(stem_words(form.removeprefix("@"))[0].stem for form in lexicon()["names"].get(name, {}).get(language, ()))
+    return frozenset(stemmed(form)[0] for form in lexicon()["names"].get(name, {}).get(language, ()))
+
+
+@dataclass(frozen=True, slots=True)
+class _Word:
+    """A word as it is read, without the ends of plurals, cases and genders, and its place in the prompt."""
+
+    text: str
+    stem: str
+    start: int
+    end: int
 
 
 class Scan:
@@ -86,24 +108,18 @@ class Scan:
             self.language = detect(prompt)
         except RefusedError:
             self.language = ""
-        lex = spoken(self.language) if self.language else None
-        self.traits = lex.traits if lex is not None else frozenset[str]()
-        self.words = stem_words(prompt)
-        self.rooms: dict[int, bool] = {}  # where the words of rooms' names begin, and whether they are their first
-        said = {w: float(w.text.replace(",", ".")) for w in self.words if FIGURES.fullmatch(w.text)}
-        meanings = ((w, lex.trie.get(w.text, {}).get("")) for w in self.words) if lex is not None else ()
-        said |= {w: m.number for w, m in meanings if m is not None and m.kind == "num"}
-        self.numbers = {w.start: (w.end, min(value, MOST)) for w, value in said.items()}
-        self.counted: set[int] = set()  # where a word that rooms are counted by begins: "trois pièces"
-        if lex is not None:
-            prompt_words = listen(prompt, self.language)
-            for m in segment(prompt_words):
-                place, end = prompt_words.tokens[m.first].start, prompt_words.tokens[max(m.first, m.last - 1)].end
-                self.numbers |= {place: (end, min(m.number, MOST))} if m.kind == "num" else {}
-                self.rooms |= {prompt_words.tokens[k].start: k == m.first for k in range(m.first, m.last)} if m.kind in STRONG else {}
-                self.counted |= {prompt_words.tokens[m.first].start} if (m.kind, m.value) == ("unit", "rooms") else set()
-        if lex is not None and "characters" not in lex.traits:
-            self.words = [w for word in self.words for w in self._mended(word)]
+        heard = listen(prompt, self.language) if self.language else None
+        self.traits = heard.lexicon.traits if heard is not None else frozenset[str]()
+        tokens, marks = (heard.tokens, segment(heard)) if heard is not None else (tokenize(prompt), [])
+        written = [fold(t.text) for t in tokens]
+        texts = [w if stem(w) in _stems() else read for w, read in zip(written, heard.texts if heard is not None else written, strict=True)]
+        self.words = [_Word(text, stem(text), t.start, t.end) for t, text in zip(tokens, texts, strict=True) if text != "-"]
+        self.rooms = {
+            tokens[k].start: k == m.first for m in marks if m.kind in STRONG for k in range(m.first, m.last)
+        }  # first words or not
+        self.numbers = {t.start: (t.end, min(t.number, MOST)) for t in tokens if t.number is not None}
+        self.numbers |= {tokens[m.first].start: (tokens[m.last - 1].end, min(m.number, MOST)) for m in marks if m.kind == "num"}
+        self.counted = {tokens[m.first].start for m in marks if (m.kind, m.value) == ("unit", "rooms")}  # "trois pièces" are rooms
         stems, storeys = [w.stem for w in self.words], set(lexicon()["storeys"])
         self.there = [
             [
@@ -117,12 +133,6 @@ class Scan:
         ]
         self.stops = [-1, *(k for k, w in enumerate(self.words) if w.text in STOPS)]
         self.negated = False  # "no TV or armchairs": the negation goes on
-
-    def _mended(self, word: Stemmed) -> Iterator[Stemmed]:
-        """Yield a word with its typing errors repaired."""
-        known = not word.text.isalpha() or word.text in spoken(self.language).vocabulary or word.stem in _stems()
-        parts = (word.text,) if known else resolve(word.text, self.language, every=True)
-        yield from [word] if parts == (word.text,) else (Stemmed(p, stem(p), word.start, word.end) for p in parts)
 
     def _other(self, k: int, name: str) -> bool:
         """Whether word k names a room, or is another word of the prompt's language: "Büro" is no "buró", "never" no "nevera"."""
@@ -281,7 +291,7 @@ class Scan:
         elif read is None:
             last = self.text(name_at + length - 1)
             shown = any(
-                stem_words(f)[-1].text == last for some in lexicon()["names"].get(name, {}).values() for f in some
+                words(f)[-1] == last for some in lexicon()["names"].get(name, {}).values() for f in some
             )  # "drawers", "lavavajillas"
             least = 2 if last.endswith("s") and last[0].isascii() and not shown else 1
         self.negated = most == 0
@@ -314,7 +324,7 @@ class Scan:
 
     def _part_of_a_room(self, k: int, length: int) -> bool:
         """Whether a thing's name is part of a room's: "tv room", "walk-in wardrobe", "bed 2 11 sqm"."""
-        numbered = bool(self.length(k, "numbered")) and FIGURES.fullmatch(self.text(k + length)) is not None
+        numbered = bool(self.length(k, "numbered")) and self.text(k + length).isdigit()
         return numbered or self.text(k + length) in lexicon()["words"]["rooms"] or self.length(k - 2, "walk_in") > 1
 
     def _look(self, k: int) -> int:

@@ -89,22 +89,7 @@ def segment(words: Words) -> list[Mark]:
         k for k, m in enumerate(marks) if m.kind == "hyphen" and [x.kind for x in marks[k - 1 : k + 2 : 2]] == ["room", "room"]
     ]
     marks = [m for k, m in enumerate(marks) if m.kind != "hyphen" or k in written_as_one]
-    return _relabel(_numbers(_articles(marks, words), words), words)
-
-
-def _articles(marks: list[Mark], words: Words) -> list[Mark]:
-    """Tell an article from the pronoun that an accent sets apart ("el" and "él"): in front of a name it is the article."""
-    if "accented_pronouns" not in words.lexicon.traits:
-        return marks
-    relabelled = list(marks)
-    for k, mark in enumerate(marks[:-1]):
-        plain = mark.kind == "pron" and mark.text in words.lexicon.sign("accented_pronoun") and words.tokens[mark.first].text == mark.text
-        if plain and marks[k + 1].kind in NAMES:
-            relabelled[k] = replace(mark, kind="det", value="definite")
-    return relabelled
-
-
-NAMES = {"room", "suite", "home", "adj", "size", "num", "ord", "fill", "owner", "word", "zone", "unit"}  # behind an article
+    return _relabel(_numbers(marks, words), words)
 
 
 def _mark(words: Words, i: int) -> Mark:  # noqa: PLR0911 - one branch per case: a grammar
@@ -148,38 +133,32 @@ def _numbers(marks: Sequence[Mark], words: Words) -> list[Mark]:
     merged: list[Mark] = []
     k = 0
     while k < len(marks):
-        mark = marks[k]
-        if mark.kind != "num" or mark.value == "figure":
-            merged.append(mark)
-            k += 1
-            continue
-        total, current, end = 0.0, mark.number, k + 1
-        if mark.number >= 100:
-            total, current = mark.number, 0.0
-        while end < len(marks):
-            ahead = marks[end]
-            joined = ahead.kind == "join" and ahead.value == "and" and end + 1 < len(marks) and marks[end + 1].kind == "num"
-            if joined and (current >= 20 or (total >= 100 and not current)) and marks[end + 1].value != "figure":
-                ahead, step = marks[end + 1], 2
-            else:
-                step = 1
-            if ahead.kind != "num" or ahead.value == "figure":
-                break
-            value = ahead.number
-            if value >= 100:
-                total, current = total + max(current, 1.0) * value, 0.0
-            elif value == 10 and "characters" in words.lexicon.traits and 0 < current < 10:
-                current *= 10
-            elif current == 0 or (current % 10 == 0 and value < 10 and current >= 10):
-                current += value
-            else:
-                break
-            end += step
-        merged.append(
-            replace(mark, number=total + current, last=marks[end - 1].last, text=" ".join(words.texts[mark.first : marks[end - 1].last]))
-        )
+        end, number = _number(marks, k, "characters" in words.lexicon.traits)
+        text = " ".join(words.texts[marks[k].first : marks[end - 1].last])
+        merged.append(marks[k] if end == k + 1 else replace(marks[k], number=number, last=marks[end - 1].last, text=text))
         k = end
     return merged
+
+
+def _number(marks: Sequence[Mark], k: int, written_by_tens: bool) -> tuple[int, float]:
+    """Return where the number words end that begin at mark k, and their value; where there are none, the mark itself."""
+    total = current = 0.0
+    end = k
+    while end < len(marks):
+        joined = end > k and (current >= 20 or (total >= 100 and not current)) and (marks[end].kind, marks[end].value) == ("join", "and")
+        word = marks[end + joined] if end + joined < len(marks) else None
+        if word is None or word.kind != "num" or word.value == "figure":
+            break
+        if word.number >= 100:
+            total, current = total + max(current, 1.0) * word.number, 0.0
+        elif word.number == 10 and written_by_tens and 0 < current < 10:
+            current *= 10
+        elif current % 10 == 0 and (not current or word.number < 10):
+            current += word.number
+        else:
+            break
+        end += 1 + joined
+    return max(end, k + 1), total + current
 
 
 def _relabel(marks: Sequence[Mark], words: Words) -> list[Mark]:

@@ -128,38 +128,6 @@ def words(phrase: str) -> tuple[str, ...]:
     return tuple(fold(t.text) for t in tokenize(phrase) if t.text != "-")
 
 
-PLAIN_WORD = re.compile(rf"\d+(?:[.,]\d+)?|[{HAN}]|[^\W\d_{HAN}]+(?:'[^\W\d_]+)?|[%.,;:!?()\n+&、。;,!?]")
-ENDINGS = ("en", "es", "as", "os", "em", "e", "n", "s", "a", "o")  # of plurals, cases and genders
-
-
-@dataclass(frozen=True, slots=True)
-class Stemmed:
-    """A word, folded (no accents, lower case), its stem, and its place in the prompt."""
-
-    text: str
-    stem: str
-    start: int
-    end: int
-
-
-@functools.lru_cache(maxsize=8192)
-def stem(word: str) -> str:
-    """Return a word without the endings that any of the languages may put to it."""
-    for _ in range(2 if word.isalpha() else 0):
-        word = word.removesuffix(next((e for e in ENDINGS if word.endswith(e) and len(word) - len(e) >= 3), ""))
-    return word
-
-
-def stem_words(text: str) -> list[Stemmed]:
-    """Split a text into words of whatever language; Chinese into single characters. Hyphens part words."""
-    stems = []
-    for match in PLAIN_WORD.finditer(text):
-        lower = unicodedata.normalize("NFKC", match.group()).lower().replace("ß", "ss")
-        folded = "".join(c for c in unicodedata.normalize("NFD", lower) if not unicodedata.combining(c))
-        stems.append(Stemmed(folded, stem(folded), match.start(), match.end()))
-    return stems
-
-
 def spread(tokens: Sequence[Token]) -> tuple[int, int]:
     """Return the stretch of the prompt that tokens cover, in any order."""
     return min(t.start for t in tokens), max(t.end for t in tokens)
