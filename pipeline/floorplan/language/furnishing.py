@@ -118,6 +118,8 @@ class Scan:
             tokens[k].start: k == m.first for m in marks if m.kind in STRONG for k in range(m.first, m.last)
         }  # first words or not
         self.numbers = {t.start: (t.end, min(t.number, MOST)) for t in tokens if t.number is not None}
+        alone = ((w, heard.lexicon.trie.get(w.text, {}).get("")) for w in self.words) if heard is not None else ()  # "for two desks"
+        self.numbers |= {w.start: (w.end, min(m.number, MOST)) for w, m in alone if m is not None and m.kind == "num"}
         self.numbers |= {tokens[m.first].start: (tokens[m.last - 1].end, min(m.number, MOST)) for m in marks if m.kind == "num"}
         self.counted = {tokens[m.first].start for m in marks if (m.kind, m.value) == ("unit", "rooms")}  # "trois pièces" are rooms
         stems, storeys = [w.stem for w in self.words], set(lexicon()["storeys"])

@@ -40,9 +40,11 @@ def _np(c: Clause, k: int, e: Element) -> None:
     before = c.near(k - 1)
     said = before is not None and before.kind in {"np", "pron"} and not e.det and e.number is None
     if e.role == "ensuite" and e.type == "bathroom" and not e.ids and said:  # "one of them en suite"
-        c.stock.get(c.latest[0]).role = "ensuite"
-        hosts = sorted(c.stock.of("bedroom"), key=lambda r: r.role != "primary")
-        c.give(c.latest[:1], tuple(r.id for r in hosts[:1]), e)
+        baths = named_rooms(c.latest)
+        hosts = sorted(c.stock.of("bedroom"), key=lambda r: r.role != "primary")[: len(baths)]
+        for bath in map(c.stock.get, baths):
+            bath.role = "ensuite"
+        c.give(baths, tuple(r.id for r in hosts), e)
         return
     own = "own" in e.det or (bool(c.owning) and bool(c.run) and not e.det)
     if c.owner and not e.ids and own and e.type in {"bedroom", "bathroom", "kitchen"}:
