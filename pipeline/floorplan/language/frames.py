@@ -17,7 +17,7 @@ from pathlib import Path
 
 from pipeline import yaml_text
 from pipeline.errors import ContentError
-from pipeline.floorplan.language.lexicon import Lexicon, lexicon
+from pipeline.floorplan.language.lexicon import Lexicon
 from pipeline.floorplan.language.marks import ENDS, HEADS, LEADING, Mark, Words, sentences_of
 
 FILE = Path(__file__).resolve().parents[3] / "manifests" / "lexicon" / "frames.yaml"
@@ -29,7 +29,6 @@ TOWARDS = {"into", "single", "det/indefinite", "det/another"}  # in front of eac
 MOST_SKIPPED = 3
 HOMES = {"large": 35.0, "vast": 60.0}  # [m2] from here on an area is no bedroom's, and no living room's
 ROOMY = 8.0  # [m2] a figure behind a room that is an area, and no count or name
-Bracket = tuple[tuple[str, ...], tuple[str, ...], str]  # "an ... grenzt": two parts and what they mean
 BREAKS = {"stop", "line", "colon", "comma"}
 FARTHEST = 14  # marks between the two parts of a bracket
 Slots = dict[str, tuple[int, int]]
@@ -288,7 +287,7 @@ def _join_brackets(marks: list[Mark], words: Words) -> list[Mark]:
 
 def _bracket(marks: list[Mark], k: int, lex: Lexicon) -> tuple[str, int, int, int] | None:
     """Return (relation, end of its first part, place and end of the second) of a bracket that begins at mark k."""
-    for first, second, cue in _brackets(lex.language).get(_bare_word(marks[k].text.split(" ", 1)[0], lex), ()):
+    for first, second, cue in lex.frames.get(_bare_word(marks[k].text.split(" ", 1)[0], lex), ()):
         start = _matches(marks, k, first, lex)
         named = False
         for j in range(start, min(len(marks), start + FARTHEST)) if start is not None else ():
@@ -312,17 +311,6 @@ def _goes_on(marks: list[Mark], end: int, second: tuple[str, ...], lex: Lexicon)
     if set(second) <= lex.sign("way_through"):
         return marks[end].kind not in BREAKS | {"join"}
     return "characters" in lex.traits and marks[end - 1].kind == "cue" and marks[end].kind in HEADS | {"num", "zone"}
-
-
-@functools.cache
-def _brackets(language: str) -> dict[str, tuple[Bracket, ...]]:
-    """Return the brackets of a language by their first word, prepositions without the article that melted into them."""
-    by_word: dict[str, dict[Bracket, None]] = {}
-    lex = lexicon(language)
-    for first, second, cue in (b for some in lex.frames.values() for b in some):
-        plain = tuple(_bare_word(w, lex) for w in first), tuple(_bare_word(w, lex) for w in second), cue
-        by_word.setdefault(plain[0][0], {})[plain] = None
-    return {word: tuple(sorted(brackets, key=lambda f: -len(f[0]) - len(f[1]))) for word, brackets in by_word.items()}
 
 
 def _bare_word(word: str, lex: Lexicon) -> str:

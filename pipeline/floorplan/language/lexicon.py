@@ -302,8 +302,9 @@ def _brackets(entries: _Entries, lex: Lexicon) -> dict[str, float]:
             first, second = phrase.split("...")
             for a in _spellings(first.strip(), {}):
                 pairs += [(_normal_tense(a, lex), _normal_tense(b, lex), cue) for b in _spellings(second.strip(), {})]
-    pairs.sort(key=lambda f: -len(f[0]) - len(f[1]))
-    lex.frames = {word: tuple(f for f in pairs if f[0][0] == word) for word in {f[0][0] for f in pairs}}
+    plain = {tuple(tuple(lex.compounds.melted.get(w, w) for w in side) for side in (a, b)): cue for a, b, cue in pairs}
+    longest = sorted(plain.items(), key=lambda p: -len(p[0][0]) - len(p[0][1]))
+    lex.frames = {word: tuple((a, b, cue) for (a, b), cue in longest if a[0] == word) for word in {a[0] for a, _ in plain}}
     lex.vocabulary.update(w for a, b, _ in pairs for w in (*a, *b))
     return {w: FARTHER[True] for a, b, _ in pairs for w in (*a, *b)}
 

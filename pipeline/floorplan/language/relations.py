@@ -101,17 +101,11 @@ def reciprocal(c: Clause, e: Element) -> None:
     """Read "next to each other", "the two bedrooms must not share a wall with one another"."""
     rooms = c.latest if len(c.latest) > 1 and e.value != "open" else ids_of(c.run)
     rooms = rooms if len(rooms) > 1 else c.subject
-    away = e.value in {"away", "apart"}
-    if c.negative is None and not away:
-        c.state.say("merge" if e.value == "open" else e.value, rooms, (), e)
-        c.subject = c.latest = rooms
+    if c.negative is not None or e.value in {"away", "apart"}:
+        _emit(c, e, rooms[:1], rooms[1:])
         return
-    if c.deny() and e.value in {"door", "open"}:
-        c.state.say("not_connected" if e.value == "door" else "not_open", rooms[:1], rooms[1:], e)
-        return
-    c.state.say("ban", rooms, rooms, e)
-    if away:
-        c.state.say("away", rooms[:1], rooms[1:], e)
+    c.state.say("merge" if e.value == "open" else e.value, rooms, (), e)
+    c.subject = c.latest = rooms
 
 
 def _emit(c: Clause, e: Element, left: Group, group: Group) -> None:
@@ -139,10 +133,8 @@ def complete(c: Clause) -> None:
     assert c.waiting is not None
     (cue, group), c.waiting = c.waiting, None
     rooms = tuple(i for i in c.subject if i not in group)
-    if rooms and c.deny():
-        c.state.say("ban" if cue.value in {"near", "wall"} else "not_connected", rooms, group, cue)
-    elif rooms:
-        c.state.say("door" if cue.value == "from" else cue.value, rooms, group, cue)
+    if rooms:
+        _emit(c, cue, rooms, group)
 
 
 # ways
