@@ -171,8 +171,8 @@ def _amounts(draft: Draft, state: Reading) -> None:
         if ids == ("*",):
             rooms = [r for r in state.inventory.rooms if r.type not in SMALL or mark.bound == "most"]
         if mark.value == "area" and mark.number > 0:
-            for k, room in enumerate(rooms):
-                _area(draft, mark, room, k)
+            for room in rooms:
+                _area(draft, mark, room)
             if not rooms:
                 _total(draft, mark)
         elif mark.value in SHELL:
@@ -193,8 +193,8 @@ def _range(mark: Mark) -> dict[str, float]:
     return {{"least": "min", "most": "max"}.get(mark.bound, "target"): mark.number}
 
 
-def _area(draft: Draft, mark: Mark, room: Named, k: int) -> None:
-    box = {"target": mark.parts[min(k, len(mark.parts) - 1)]} if mark.parts else _range(mark)
+def _area(draft: Draft, mark: Mark, room: Named) -> None:
+    box = _range(mark)
     room.low, room.high, room.target = box.get("min", room.low), box.get("max", room.high), box.get("target", room.target)
     room.min_width = mark.side if mark.side is not None else room.min_width
     draft.cite(mark.first, mark.last, f"rooms.{room.id}.area")

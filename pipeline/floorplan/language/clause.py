@@ -6,6 +6,7 @@ import itertools
 from collections.abc import Iterable
 
 from pipeline.floorplan.language.facts import FRONT, HALLS, PRIVATE, SOCIAL, Group, Reading
+from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.naming import name, point
 from pipeline.floorplan.language.phrases import Element, backward, heads
 
@@ -98,9 +99,14 @@ class Clause:
 
     def measures(self, e: Element) -> None:
         """Note the areas of a phrase."""
-        for mark in e.amounts:
-            self.state.amounts.append((mark, tuple(e.ids)))
+        self.state.amounts += self.shares(e, tuple(e.ids))
         e.amounts = []
+
+    def shares(self, e: Element, ids: Group) -> list[tuple[Mark, Group | None]]:
+        """Return the amounts of a phrase, each with its rooms: of several areas one each."""
+        areas = [m for m in e.amounts if m.is_size]
+        dealt = [(m, ids[k : k + 1] if len(areas) > 1 else ids) for k, m in enumerate(areas)]
+        return [*dealt, *((m, ids) for m in e.amounts if not m.is_size)]
 
     def goes_on(self, rooms: Group, objects: Group = (), subject: Group = ()) -> None:
         """Set what is spoken of behind a relation."""

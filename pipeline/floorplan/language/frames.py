@@ -110,6 +110,7 @@ def _names(mark: Mark, signs: Mapping[str, frozenset[str]]) -> frozenset[str]:
         own |= ({"some"} if mark.number > 1.0 else set()) | ({"some_of"} if mark.value == "some" else set())
     elif mark.kind == "amount":
         own |= {"bounded"} if mark.bound in {"least", "most"} else set()
+        own |= {"plain_area"} if mark.is_size else set()
         own |= {name for name, least in HOMES.items() if mark.value == "area" and mark.number >= least}
         if mark.value == "rooms":
             own |= signs.get(mark.text.rsplit(" ", 1)[-1], frozenset()) | ({"one_room"} if mark.number == 1.0 else set())  # "3 ZKB"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from pipeline.floorplan.language.lexicon import Language, Lexicon, Meaning, kinds, lexicon
+from pipeline.floorplan.language.lexicon import Language, Lexicon, Meaning, lexicon
 from pipeline.floorplan.language.spelling import repair, uninflected_meaning
 from pipeline.floorplan.language.text import Token, fold, tokenize
 
@@ -16,8 +16,6 @@ HEADS = {"room", "suite"}
 LEADING = {"det", "num", "ord", "adj", "size", "clf", "times"}  # in front of a head
 FEET, SQUARE_FEET = 0.3048, 0.092903
 USUAL_HEIGHT = 15.0  # a length from here on, said of a room or a home, is an area ("60 metros")
-ALIKE = 3.0  # rooms of a kind differ by less in area
-LEADS = kinds("leads")
 BOUNDS = {"least": "least", "or_more": "least", "most": "most", "or_less": "most"}
 ARROWS = {"<->", "->", "=>", "→"}
 
@@ -39,7 +37,11 @@ class Mark:
     total: bool = False  # said of everything together
     side: float | None = None  # the shorter side of "4 x 5 m"
     functions: tuple[str, ...] = ()  # what a room serves as besides
-    parts: tuple[float, ...] = ()  # "bedrooms of 14, 12 and 10 m2": one each
+
+    @property
+    def is_size(self) -> bool:
+        """Whether it is an area that some room has, and no limit."""
+        return (self.kind, self.value) == ("amount", "area") and self.bound not in {"least", "most"}
 
 
 @dataclass
@@ -187,64 +189,6 @@ def _kind_at(marks: Sequence[Mark], k: int) -> str:
 
 
 def amounts(marks: Sequence[Mark], words: Words) -> list[Mark]:
-    """Return the marks with amounts put together."""
-    return _dealt(combine_amounts(_share_units(marks), words))
-
-
-def _is_separator(mark: Mark) -> bool:
-    return mark.kind in {"comma", "slash"} or (mark.kind == "join" and mark.value == "and")
-
-
-def _share_units(marks: Sequence[Mark]) -> list[Mark]:
-    """Give each of "14, 12 and 10 m2" its unit."""
-    with_units = list(marks)
-    for k in range(len(with_units) - 1, 2, -1):
-        before, number = with_units[k - 3], with_units[k - 1]
-        row = (
-            (with_units[k].kind, with_units[k].value) == ("unit", "area")
-            and _is_separator(with_units[k - 2])
-            and before.kind == number.kind == "num"
-        )
-        if row and max(before.number, number.number) < ALIKE * min(before.number, number.number):
-            with_units.insert(k - 2, replace(with_units[k], first=before.last, last=before.last))
-    return with_units
-
-
-def _dealt(marks: Sequence[Mark]) -> list[Mark]:
-    """Make one amount of those that several rooms share out: "two bedrooms (14 m2 and 12 m2)"; rooms nobody counted are so many."""
-    merged: list[Mark] = []
-    k = 0
-    while k < len(marks):
-        end = k
-        while (
-            end + 2 < len(marks)
-            and _is_separator(marks[end + 1])
-            and all((m.kind, m.value) == ("amount", "area") for m in marks[end : end + 3 : 2])
-        ):
-            end += 2
-        row, after = marks[k : end + 1 : 2], marks[end + 1] if end + 1 < len(marks) else None
-        sizes = [m.number for m in row]
-        total = any(m.total or m.bound in {"least", "most"} for m in row) or (after is not None and "home" in {after.kind, after.value})
-        place = _in_front(merged) if len(row) > 1 and not total and max(sizes) < ALIKE * min(sizes) else None
-        merged.append(marks[k])
-        if place is not None:
-            merged[-1] = replace(marks[k], last=row[-1].last, parts=tuple(sizes))
-            if not any(m.kind == "num" for m in (*merged[max(0, place - 3) : place], *merged[place + 1 : place + 2])):
-                merged.insert(place, Mark("num", "", float(len(row)), False, merged[place].first, merged[place].first, ""))
-            k = end
-        k += 1
-    return merged
-
-
-def _in_front(marks: Sequence[Mark]) -> int | None:
-    """Return the place of the room that the amounts behind the marks are said of."""
-    j = next((j for j in range(len(marks) - 1, -1, -1) if marks[j].kind not in LEADS), None)
-    if j and marks[j].kind == "num":
-        j -= 1  # "卧室三间"
-    return j if j is not None and marks[j].kind == "room" else None
-
-
-def combine_amounts(marks: Sequence[Mark], words: Words) -> list[Mark]:
     """Put amounts together: "at least 18 m²", "10 to 12 m²", "4 x 5 m", "seven square metres or more"."""
     merged: list[Mark] = []
     k = 0

@@ -137,6 +137,8 @@ def _elements(marks: list[Mark], lex: Lexicon) -> list[Element]:
             pre = []
         elif behind and mark.value in {"area", "length"} and not _ahead(marks, k, lex):
             elements[-1].amounts.append(mark)
+            areas = sum(m.is_size for m in elements[-1].amounts)
+            elements[-1].number = elements[-1].number or (areas if areas > 1 else None)  # "bedrooms of 14 and 12 m2" are two
         elif mark.kind in LEADING or (mark.kind == "amount" and mark.value == "area"):
             pre.append(mark)
         elif mark.kind in {"fill", "adverb", "look", "hyphen", "dash"} and pre:
@@ -327,8 +329,6 @@ def ban(sentence: list[Element]) -> None:
             if j is not None:
                 _negate(sentence, k, j)
                 continue
-            if k + 1 == len(sentence) or sentence[k + 1].kind in {"comma", "close", "but"}:
-                _negated_behind(sentence, k)
 
 
 def _negate(sentence: list[Element], k: int, j: int) -> None:
@@ -350,14 +350,6 @@ def _target(sentence: list[Element], k: int) -> int | None:
         if e.kind not in {"verb", "adj", "det", "owner", "size", "word", "relative"} and not colon and (e.kind, e.value) != ("cue", "has"):
             return None
     return None
-
-
-def _negated_behind(sentence: list[Element], k: int) -> None:
-    """Mark what a negation behind it rules out: "Kinderzimmer gibt es keine", "balcony: no"; not what it says of a room that is counted."""
-    e = next((x for x in reversed(sentence[:k]) if x.kind not in {"verb", "colon", "det", "word"}), None)
-    if e is not None and e.kind == "np":
-        e.banned = e.number is None and not e.definite and not e.amounts
-        sentence[k].kind = "used" if e.banned else "neg"
 
 
 def _list(sentence: list[Element], j: int) -> None:

@@ -54,9 +54,9 @@ def _np(c: Clause, k: int, e: Element) -> None:
     if c.left_out and e.det & {"each", "all"} and set(ids) > set(c.left_out):
         ids, c.run = tuple(i for i in ids if i not in c.left_out), []
     _own(c, e, ids)
-    for mark in e.amounts:
+    for mark, rooms in c.shares(e, ids):
         whole = (e.compound and mark.last <= e.first) or _measures_home(c, k, mark, tuple(e.ids))
-        c.state.amounts.append((mark, None if whole else ids))
+        c.state.amounts.append((mark, None if whole else rooms))
     c.push(k, e, ids)
     _describe_rooms(c, k, e, ids)
 
