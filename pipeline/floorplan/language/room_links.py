@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import graphlib
 import itertools
 from collections.abc import Iterable, Sequence
 from typing import Any, NoReturn
@@ -238,15 +239,11 @@ def _check_order(draft: Draft) -> None:
     for r in draft.relations:
         if r["kind"] == "area_order" and r["value"] >= 1.0:
             larger.setdefault(r["a"], set()).add(r["b"])
-    for start, below in larger.items():
-        visited: set[str] = set()
-        here = set(below)
-        while here and start not in here:
-            visited |= here
-            here = {b for a in here for b in larger.get(a, ())} - visited
-        if start in here:
-            words = draft.citations("relations.area_order")
-            raise ImpossibleError(f"{start} is to be larger than a room that is to be larger than it", "drop one of the two", words)
+    try:
+        graphlib.TopologicalSorter(larger).prepare()
+    except graphlib.CycleError as error:
+        what = f"{error.args[1][0]} is to be larger than a room that is to be larger than it"
+        raise ImpossibleError(what, "drop one of the two", draft.citations("relations.area_order")) from error
 
 
 def _everything(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact]) -> None:

@@ -55,7 +55,7 @@ def _np(c: Clause, k: int, e: Element) -> None:
         ids, c.run = tuple(i for i in ids if i not in c.left_out), []
     _own(c, e, ids)
     for mark, rooms in c.shares(e, ids):
-        whole = (e.compound and mark.last <= e.first) or _measures_home(c, k, mark, tuple(e.ids))
+        whole = (e.compound and mark.last <= e.first) or _measures_home(c, k, mark, tuple(e.ids), set_off=False)
         c.state.amounts.append((mark, None if whole else rooms))
     c.push(k, e, ids)
     _describe_rooms(c, k, e, ids)
@@ -254,29 +254,20 @@ def _windows(c: Clause, k: int, e: Element) -> None:
     c.deny()
 
 
-def _usual(c: Clause, ids: Group) -> float:
-    """Return the usual area of rooms together [m2]."""
-    return sum(DEFAULTS[c.stock.get(i).type].area for i in ids)
-
-
-def _measures_home(c: Clause, k: int, mark: Mark, ids: Group) -> bool:
-    """Whether an area right at the room k measures the home: "... kitchen and bath 85 m²"."""
-    if mark.value != "area" or not ids:
-        return False
-    rooms = [x for x in c.sentence if x.kind == "np"]
-    times = mark.number / _usual(c, ids)
-    before, behind = c.near(k - 1), c.near(k + 1)
-    if mark.total or (behind is not None and behind.value == "total"):
+def _measures_home(c: Clause, k: int, mark: Mark, ids: Group, *, set_off: bool) -> bool:
+    """Whether an area is the home's: more than the rooms in front would take, right behind them or `set_off` by a comma."""
+    rooms, behind = [x for x in c.sentence if x.kind == "np"], c.near(k + 1)
+    if mark.value == "area" and (mark.total or (behind is not None and behind.value == "total")):
         return True
-    if sum(bool(x.amounts) for x in rooms) != 1:
+    if mark.value != "area" or not ids or sum(bool(x.amounts) for x in rooms) != (not set_off):
         return False
+    times = mark.number / sum(DEFAULTS[c.stock.get(i).type].area for i in ids)
     home = any(x.kind == "home" and not x.amounts for x in c.sentence[:k])
-    home_before = before is not None and before.kind == "home" and not before.amounts and len(ids) > 1
-    if home_before and times > MORE:  # "un piso de tres dormitorios de unos 95 metros cuadrados"
-        return True
-    last = not any(x.first >= mark.last for x in rooms)
-    near = len(rooms) > 2 or (home and mark.first == c.sentence[k].last and mark.text[0].isdigit())
-    return (times > HUGE and (home or rooms[0] is not c.sentence[k])) or (near and last and times > LARGE)
+    named = [x for x in rooms if x.first < mark.first]
+    if set_off:
+        return (len(named) > 2 and times > LISTED) or (home and times > MORE) or (len(named) > 1 and times > LARGE)
+    closes = len(named) == len(rooms) and (len(rooms) > 2 or (home and mark.text[0].isdigit()))
+    return (times > HUGE and (home or len(named) > 1)) or (closes and times > LARGE)
 
 
 def _attach(c: Clause, k: int, mark: Mark, *, home: bool = False) -> None:
@@ -300,18 +291,9 @@ def _attach(c: Clause, k: int, mark: Mark, *, home: bool = False) -> None:
     elif mark.value == "area" and c.latest == ("*",) and before is not None and before.kind in {"every", "verb", "det"}:
         state.amounts.append((mark, c.latest))  # "every room at least 9 m2"
     elif mark.value != "car":
-        state.amounts.append((mark, rooms if rooms and not _closes(c, k, mark, rooms) else None))
-
-
-def _closes(c: Clause, k: int, mark: Mark, rooms: Group) -> bool:
-    """Whether an area set off by a comma is the home's: more than the room in front would take."""
-    before = next((x.kind for x in reversed(c.sentence[:k]) if x.kind != "word"), "")
-    named = [x for x in c.sentence[:k] if x.kind == "np"]
-    if mark.value != "area" or before not in {"comma", "and"} or any(x.amounts for x in named):
-        return False
-    times = mark.number / _usual(c, rooms)
-    home = any(x.kind == "home" for x in c.sentence[:k])
-    return (len(named) > 2 and times > LISTED) or (home and times > MORE) or (len(named) > 1 and times > LARGE)
+        before = next((x for x in reversed(c.sentence[:k]) if x.kind != "word"), None)
+        set_off = before is not None and before.kind in {"comma", "and"}
+        state.amounts.append((mark, rooms if rooms and not (set_off and _measures_home(c, k, mark, rooms, set_off=True)) else None))
 
 
 READERS: Mapping[str, Callable[[Clause, int, Element], int | None]] = {

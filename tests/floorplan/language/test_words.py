@@ -3,8 +3,9 @@
 import pytest
 import yaml
 
+from pipeline.floorplan.language import marks
 from pipeline.floorplan.language.lexicon import FOLDER, LANGUAGES, lexicon
-from pipeline.floorplan.language.marks import combine_amounts, listen, segment
+from pipeline.floorplan.language.marks import listen, segment
 from pipeline.floorplan.language.parser import parse
 from pipeline.floorplan.language.spelling import distance, resolve
 from pipeline.floorplan.language.text import Verbs, clean, fold, tokenize
@@ -12,7 +13,7 @@ from pipeline.floorplan.language.text import Verbs, clean, fold, tokenize
 
 def amounts(text, language="en"):
     heard = listen(text, language)
-    return [m for m in combine_amounts(segment(heard), heard) if m.kind == "amount"]
+    return [m for m in marks.amounts(segment(heard), heard) if m.kind == "amount"]
 
 
 @pytest.mark.parametrize(
