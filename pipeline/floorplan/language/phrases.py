@@ -138,7 +138,8 @@ def _elements(marks: list[Mark], lex: Lexicon) -> list[Element]:
         elif behind and mark.value in {"area", "length"} and not _ahead(marks, k, lex):
             elements[-1].amounts.append(mark)
             areas = sum(m.is_size for m in elements[-1].amounts)
-            elements[-1].number = elements[-1].number or (areas if areas > 1 else None)  # "bedrooms of 14 and 12 m2" are two
+            if areas > 1 and elements[-1].number in {None, areas - 1}:  # "bedrooms of 14 and 12 m2" are two
+                elements[-1].number = areas
         elif mark.kind in LEADING or (mark.kind == "amount" and mark.value == "area"):
             pre.append(mark)
         elif mark.kind in {"fill", "adverb", "look", "hyphen", "dash"} and pre:

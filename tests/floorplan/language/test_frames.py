@@ -14,7 +14,7 @@ from pipeline.floorplan.program.consistency import ImpossibleError
 KINDS = {
     "wish", "people", "fill", "ignored", "needless", "activity", "adj", "amount", "bound", "but", "clf", "close", "cmp", "colon", "comma", "cue", "dash", "det", "enough", "enter", "every", "factor", "fix", "flag", "home", "hyphen", "join", "level", "look", "neg", "num",
     "open", "ord", "outside", "owner", "post", "pron", "reciprocal", "relative", "room", "size", "slash", "suite", "times", "to", "unit", "verb", "via", "wing", "zone",
-    "single", "two", "many", "some", "zero", "small", "bounded", "large", "vast", "one_room", "lone", "some_of", "halved", "roomy", "^", "$",
+    "single", "two", "many", "some", "zero", "small", "bounded", "plain_area", "large", "vast", "one_room", "lone", "some_of", "halved", "roomy", "^", "$",
 }  # fmt: skip
 
 
