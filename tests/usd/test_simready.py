@@ -1,0 +1,49 @@
+"""Assets go into the folder, and get the provenance, that SimReady's rules NP.005 and SR.004 ask for."""
+
+from __future__ import annotations
+
+import datetime as dt
+import json
+import runpy
+from pathlib import Path
+
+import pytest
+from pxr import Usd
+
+from pipeline.usd import write_library
+from pipeline.usd.check import check_stage
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "simready_assets.py"
+OWN = {"asset_name", "asset_type", "asset_license", "category", "source_file", "rigid_body_count", "asset_extents", "mass"}  # of SR.004
+
+
+@pytest.fixture(scope="module")
+def packaged(tmp_path_factory, cabinet):
+    folder = tmp_path_factory.mktemp("simready")
+    write_library([cabinet], folder / "library")
+    package = runpy.run_path(str(EXAMPLE))["package"]
+    asset = folder / "library" / cabinet.asset_id
+    return asset, package(asset, folder / "out", "somebody", dt.date(2026, 11, 23))
+
+
+def test_the_interface_is_the_one_usd_file_of_its_folder_and_composes_as_before(packaged):
+    asset, path = packaged
+    assert path.parent.parent.name == asset.name
+    assert [p.name for p in path.parent.iterdir() if p.suffix.startswith(".usd")] == [path.name]
+    before, now = (Usd.Stage.Open(str(p)) for p in (asset / f"{asset.name}.usda", path))
+    for stage in (before, now):
+        stage.GetDefaultPrim().GetVariantSet("MuJoCo").SetVariantSelection("Enabled")
+    assert [(p.GetPath(), p.GetAppliedSchemas()) for p in now.Traverse()] == [
+        (p.GetPath(), p.GetAppliedSchemas()) for p in before.Traverse()
+    ]
+    check_stage(path)
+
+
+def test_every_field_of_provenance_is_said_once(packaged):
+    _, path = packaged
+    stage = Usd.Stage.Open(str(path))
+    about = stage.GetRootLayer().customLayerData
+    within, beside = {**about, **about["SimReady_Metadata"]}, json.loads(path.with_suffix(".json").read_text())
+    assert all(within[name] for name in OWN)
+    assert beside == {"author": "somebody", "qcode": "Q14745", "usd_date_generated": "2026-11-23"}
+    assert not set(within) & set(beside)
