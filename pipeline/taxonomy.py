@@ -14,13 +14,22 @@ PATH = Path(__file__).resolve().parent.parent / "manifests" / "rooms.yaml"
 
 
 @dataclass(frozen=True, slots=True)
+class Usual:
+    """One thing of these categories is asked for in a `share` of the rooms that would do without."""
+
+    of: tuple[str, ...]
+    share: float
+
+
+@dataclass(frozen=True, slots=True)
 class RoomType:
     """What a room of a plan is like unless the request says otherwise.
 
     `area` [m2] between inner wall faces, `width` [m] the least clear width, `exterior` whether it needs an outside wall, `window` whether it
     gets windows where it has one, `habitable` whether daylight matters (energy terms 6 and 7), `useful` whether its area counts as useful
     (term 9), `through` whether one may walk through it to another room, `square` whether a square shape is wanted (term 3).
-    `furnished_as` is the layout type, "": it stays empty; `functions` what it serves as where that may be several things; `unwanted` what it has not, though others furnished so have.
+    `furnished_as` is the layout type, "": it stays empty; `functions` what it serves as where that may be several things; `unwanted` what it has not, though others furnished so have,
+    and `usual` what it has oftener than they.
     `entered_from` are the types that it is entered from where nobody says, the usual one first, () for any hub; what `belongs` is entered from what it lies next to.
     `floor` and `wall` are names of rendering/palette.py.
     """
@@ -36,6 +45,7 @@ class RoomType:
     furnished_as: str = ""
     functions: tuple[str, ...] = ()
     unwanted: tuple[str, ...] = ()
+    usual: tuple[Usual, ...] = ()
     entered_from: tuple[str, ...] = ()
     belongs: bool = False
     floor: str = "oak"
@@ -55,16 +65,17 @@ class Rug:
 
 
 @dataclass(frozen=True, slots=True)
-class Usual:
-    """One thing of these categories is asked for in a `share` of the rooms that would do without."""
+class Company:
+    """A room that holds something `of` these categories `also` holds `least` things of those."""
 
     of: tuple[str, ...]
-    share: float
+    also: tuple[str, ...]
+    least: int = 1
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """A room as the layout model furnishes it: 3D-FRONT's types that are so, of which categories it `needs` one of each group, or `usual`ly has one; of the groups in `together` it holds some of each or nothing.
+    """A room as the layout model furnishes it: 3D-FRONT's types that are so, of which categories it `needs` one of each group, or `usual`ly has one; `company` says what is not there without something else.
 
     `part` [m2] is the floor that it usually takes of a room that serves as others too. What made ones hold besides: a rug, shares of rooms with things at all windows, expected numbers on the walls.
     """
@@ -72,7 +83,7 @@ class Layout:
     front: tuple[str, ...]
     needs: tuple[tuple[str, ...], ...] = ()
     usual: tuple[Usual, ...] = ()
-    together: tuple[tuple[str, ...], ...] = ()
+    company: tuple[Company, ...] = ()
     part: float = 5.0
     rug: Rug | None = None
     windows: Mapping[str, float] = field(default_factory=dict)

@@ -60,7 +60,7 @@ class RoomContext:
     """A room to furnish.
 
     `polygon` (n, 2) [m, world], inner wall faces, counter-clockwise. `n_target` is the exact number of objects that is
-    asked for, or None; `category_bounds` bound the numbers of categories; of the groups in `together` it holds some of each, or nothing. `elevation` [m] is the z of the floor, `height` [m] that of the ceiling above it.
+    asked for, or None; `category_bounds` bound the numbers of categories; where it holds something of the first of two groups in `company`, it holds so many things of the second. `elevation` [m] is the z of the floor, `height` [m] that of the ceiling above it.
     """
 
     layout_type: str
@@ -70,7 +70,7 @@ class RoomContext:
     elevation: float = 0.0
     height: float = 2.7
     category_bounds: tuple[CategoryBounds, ...] = ()
-    together: tuple[tuple[str, ...], ...] = ()
+    company: tuple[tuple[tuple[str, ...], tuple[str, ...], int], ...] = ()
 
     @classmethod
     def of(

@@ -75,13 +75,13 @@ class Inventory(nn.Module):
 class Ask:
     """What is asked of one room: the exact number of objects or None, bounds on groups of classes (classes, least, most or None), most objects.
 
-    `together`: groups of classes of which a room holds some of each or nothing, as far as the rest lets it.
+    `company`: pairs of groups of classes; a room that holds something of the first holds so many of the second, as far as the rest lets it.
     """
 
     total: int | None
     bounds: tuple[tuple[tuple[int, ...], int, int | None], ...] = ()
     most: int = 24
-    together: tuple[tuple[int, ...], ...] = ()
+    company: tuple[tuple[tuple[int, ...], tuple[int, ...], int], ...] = ()
 
     @classmethod
     def of(
@@ -90,13 +90,20 @@ class Ask:
         category_bounds: Sequence[CategoryBounds],
         classes: Sequence[str],
         most: int = 24,
-        together: Sequence[Sequence[str]] = (),
+        company: Sequence[tuple[Sequence[str], Sequence[str], int]] = (),
     ) -> Ask:
         """Read what a room context asks for, in class indices. A least number that a total cannot hold is cut by nobody: both are asked."""
         order = {name: k for k, name in enumerate(classes)}
         groups = ((tuple(sorted({order[c] for c in d.categories if c in order})), d.least, d.most) for d in category_bounds)
-        whole = tuple(tuple(order[c] for c in group if c in order) for group in together)
-        return cls(total, tuple(group for group in groups if group[0]), most, whole if all(whole) else ())
+        pairs = ((tuple(order[c] for c in of if c in order), tuple(order[c] for c in also if c in order), n) for of, also, n in company)
+        return cls(total, tuple(group for group in groups if group[0]), most, tuple(pair for pair in pairs if pair[0] and pair[1]))
+
+    def completed(self, counts: NDArray[np.int64]) -> Ask:
+        """Return the same with both asked for where an inventory (C,) holds one without the other: a desk gets its chair, it does not go."""
+        alone = [((of, 1), (also, n)) for of, also, n in self.company if counts[list(of)].any() and counts[list(also)].sum() < n]
+        barred = {c for members, _, most in self.bounds if most == 0 for c in members}
+        both = [(group, n, None) for pair in alone if not any(set(group) <= barred for group, _ in pair) for group, n in pair]
+        return replace(self, bounds=(*self.bounds, *both)) if self.total is None else self
 
     def sized(self, usual: int) -> Ask:
         """Return the same with the number `usual` told, where nobody told one and no more than single things, or none, are asked for."""
@@ -110,9 +117,8 @@ class Ask:
         for members, least, most in self.bounds:
             have = counts[:, list(members)].sum(1)
             good &= (have >= least) & (have <= (np.inf if most is None else most))
-        some = [counts[:, list(group)].any(1) for group in self.together]
-        for held in some[1:]:
-            good &= held == some[0]
+        for of, also, n in self.company:
+            good &= ~counts[:, list(of)].any(1) | (counts[:, list(also)].sum(1) >= n)
         return good
 
 
@@ -192,9 +198,9 @@ def draw_inventories(
     lacking = [i for i, mine in enumerate(inventories) if not (met[i] and mine.any())]
     if not lacking:
         return inventories
-    asks = [asks[i] if met[i] else asks[i].sized(int(inventories[i].sum())) for i in lacking]
+    asks = [asks[i] if met[i] else asks[i].completed(inventories[i]).sized(int(inventories[i].sum())) for i in lacking]
     for i, ask, mine in zip(lacking, asks, _draw_counts(net, about[lacking], layout[lacking], asks, uniform[lacking, 1:]), strict=True):
-        good, apart = (np.flatnonzero(a.met_by(mine) & (mine.sum(1) > 0)) for a in (ask, replace(ask, together=())))
+        good, apart = (np.flatnonzero(a.met_by(mine) & (mine.sum(1) > 0)) for a in (ask, replace(ask, company=())))
         good = good if len(good) else apart
         usual: NDArray[np.float64] = net.own[:, layout[i]].softmax(-1).double().numpy() @ np.arange(MOST + 1, dtype=float)
         inventories[i] = mine[good[0]] if len(good) else repair_counts(mine[-1], ask, usual)

@@ -78,7 +78,7 @@ class Sampler:
                 features = torch.from_numpy(np.stack([room_features(floors[i], rooms[i].height) for i in padded]))
                 told = [rooms[i].n_target if self.settings.quantity else None for i in padded]
                 asks = [
-                    Ask.of(n, rooms[i].category_bounds, classes, self.slots, rooms[i].together) for n, i in zip(told, padded, strict=True)
+                    Ask.of(n, rooms[i].category_bounds, classes, self.slots, rooms[i].company) for n, i in zip(told, padded, strict=True)
                 ]
                 uniform = np.stack([seeds.generator(self.seed, "inventory", *keys[i]).random((DRAWS, len(classes))) for i in padded])
                 kinds = torch.tensor([layouts[i] for i in padded])

@@ -83,10 +83,8 @@ def _parts(job: RoomJob, whole: RoomContext, taxonomy: Taxonomy, rng: np.random.
     counts = _split_count(job.count, [shapely.Polygon(part.polygon).area for part in parts])
     kinds = [part.layout_type for part in parts]
     asked = [(*category_bounds(job, kind, kinds, taxonomy), *usual_bounds(job, kind, taxonomy, rng)) for kind in kinds]
-    whole_or_none = [taxonomy.layouts[kind].together if kind in taxonomy.layouts else () for kind in kinds]
-    return [
-        replace(part, n_target=n, category_bounds=b, together=t) for part, n, b, t in zip(parts, counts, asked, whole_or_none, strict=True)
-    ]
+    company = [tuple((c.of, c.also, c.least) for c in taxonomy.layouts[kind].company) if kind in taxonomy.layouts else () for kind in kinds]
+    return [replace(part, n_target=n, category_bounds=b, company=c) for part, n, b, c in zip(parts, counts, asked, company, strict=True)]
 
 
 def _split_count(count: int | None, areas: Sequence[float]) -> list[int | None]:
@@ -129,12 +127,16 @@ def _host(bounds: CategoryBounds, kinds: Sequence[str], taxonomy: Taxonomy) -> s
 
 
 def usual_bounds(job: RoomJob, kind: str, taxonomy: Taxonomy, rng: np.random.Generator) -> tuple[CategoryBounds, ...]:
-    """Return what a room like this is asked to hold because most do, on its first tries; nothing where a number of objects, or some of these, is wished for."""
-    marks = {usual: rng.random() for usual in taxonomy.layouts[kind].usual} if kind in taxonomy.layouts else {}
-    settled = {c for bounds in job.category_bounds for c in bounds.categories} | set(job.exclusions(taxonomy))
+    """Return what a room, or its part of layout type `kind`, is asked to hold because most do, on its first tries; nothing where a number of objects, or some of these, is wished for."""
+    own = taxonomy.types[job.room.type].usual if job.room.type in taxonomy.types else ()
+    asked = [usual for usual in own if _host(CategoryBounds(usual.of), job.kinds, taxonomy) == kind]
+    asked += taxonomy.layouts[kind].usual if kind in taxonomy.layouts else ()
+    marks = [(usual, rng.random()) for usual in asked]
     if job.count is not None or job.attempt >= FREE_CHOICE:
         return ()
-    return tuple(CategoryBounds(usual.of, 1) for usual, mark in marks.items() if mark < usual.share and settled.isdisjoint(usual.of))
+    settled, out = {c for bounds in job.category_bounds for c in bounds.categories}, set(job.exclusions(taxonomy))
+    drawn = [usual.of for usual, mark in marks if mark < usual.share and settled.isdisjoint(usual.of)]
+    return tuple(CategoryBounds(of, 1) for group in dict.fromkeys(drawn) if (of := tuple(c for c in group if c not in out)))
 
 
 def _essential(group: tuple[str, ...], least: int, attempt: int) -> list[CategoryBounds]:

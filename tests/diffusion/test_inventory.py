@@ -84,20 +84,32 @@ def test_free_draws_that_meet_a_wish_are_not_distorted(net, rooms):
     assert (drawn(net, rooms, [wish] * 60) == drawn(net, rooms, [Ask(None)] * 60)).all(1).mean() > 0.9
 
 
-def test_what_comes_together_is_there_as_a_whole_or_not_at_all(rooms):
+def test_what_is_not_there_alone_gets_company_and_does_not_go(rooms):
     either = Inventory(len(CLASSES), len(LAYOUTS), 16)  # none or one of each class, by the toss of a coin
     with torch.no_grad():
         either.own[..., 2:] = -30.0
-    bound, pair = (CategoryBounds(("wardrobe",), 0, 1),), (("nightstand",), ("double_bed", "unknown"))
-    ask = Ask.of(None, bound, CLASSES, together=pair)
+    bound, pair = (CategoryBounds(("wardrobe",), 0, 1),), ((("nightstand",), ("double_bed", "unknown"), 1),)
+    ask = Ask.of(None, bound, CLASSES, company=pair)
     free, asked = drawn(either, rooms, [Ask(None)] * 60), drawn(either, rooms, [ask] * 60)
     whole = ask.met_by(free)
-    assert 15 < whole.sum() < 45
+    assert 30 < whole.sum() < 58
     assert (asked[whole] == free[whole]).all()
     assert ask.met_by(asked).all()
-    assert {tuple(row) for row in asked[:, [NIGHTSTAND, BED]]} == {(0, 0), (1, 1)}
-    never = Ask.of(None, (*bound, CategoryBounds(("nightstand",), 0, 0), CategoryBounds(("double_bed",), 1)), CLASSES, together=pair)
+    assert {tuple(row) for row in asked[:, [NIGHTSTAND, BED]]} == {(0, 0), (0, 1), (1, 1)}
+    assert (asked[:, NIGHTSTAND] >= free[:, NIGHTSTAND]).all(), "who was drawn without company stays, and gets it"
+    never = Ask.of(None, (*bound, CategoryBounds(("nightstand",), 0, 0), CategoryBounds(("double_bed",), 1)), CLASSES, company=pair)
     assert (drawn(either, rooms, [never] * 20)[:, [NIGHTSTAND, BED]] == [0, 1]).all(), "what is asked for outright goes before"
+
+
+def test_company_may_be_of_several(net, rooms):
+    """Dining rooms of the small world hold four chairs at a table; five are as rare as they are asked for."""
+    ask = Ask.of(None, (), CLASSES, company=((("dining_table",), ("dining_chair",), 5),))
+    free, asked = drawn(net, rooms, [Ask(None)] * 60), drawn(net, rooms, [ask] * 60)
+    tables = free[:, CLASSES.index("dining_table")] > 0
+    assert tables.any()
+    assert (asked[tables][:, CLASSES.index("dining_table")] > 0).all()
+    assert (asked[tables][:, CHAIR] >= 5).all()
+    assert (asked[~tables] == free[~tables]).all()
 
 
 def test_what_no_draw_meets_is_mended():

@@ -85,13 +85,26 @@ def test_a_share_of_rooms_is_asked_for_what_is_usual():
         assert not any(usual_bounds(silent, silent.layout_type, words, rng) for _ in range(20))
 
 
-def test_a_part_is_told_what_comes_together_in_rooms_of_its_kind():
+def test_a_studio_is_asked_for_a_wardrobe_oftener_than_a_bedroom_and_never_for_a_childs():
+    words = taxonomy.load()
+    studio = replace(job("studio_room"), layout_type="bedroom+living_room")
+    rng = np.random.default_rng(0)
+    asked = [usual_bounds(studio, "bedroom", words, rng) for _ in range(400)]
+    assert set(asked) == {(), (CategoryBounds(("wardrobe", "cabinet"), 1),)}
+    own, others = words.types["studio_room"].usual[0].share, words.layouts["bedroom"].usual[0].share
+    assert abs(np.mean([bool(a) for a in asked]) - (1 - (1 - own) * (1 - others))) < 0.06
+    elsewhere = {c for _ in range(50) for bounds in usual_bounds(studio, "living_room", words, rng) for c in bounds.categories}
+    assert elsewhere == {"tv_stand", "coffee_table"}
+
+
+def test_a_part_is_told_what_is_not_alone_in_rooms_of_its_kind():
     words = taxonomy.load()
     studio = job("living_room+bedroom")
     whole = RoomContext.of(studio.plan, "room", studio.layout_type)
-    found = {part.layout_type: part.together for part in _parts(studio, whole, words, np.random.default_rng(0))}
-    assert found == {"living_room": words.layouts["living_room"].together, "bedroom": ()}
-    assert ("dining_table",) in found["living_room"]
+    found = {part.layout_type: part.company for part in _parts(studio, whole, words, np.random.default_rng(0))}
+    assert found == {kind: tuple((c.of, c.also, c.least) for c in words.layouts[kind].company) for kind in ("living_room", "bedroom")}
+    assert ("dining_table",) in [of for of, *_ in found["living_room"]]
+    assert [of for of, *_ in found["bedroom"]] == [("desk",)]
 
 
 def test_what_is_wished_for_stands_in_the_part_where_it_usually_does():
