@@ -106,7 +106,7 @@ def test_area_is_absolute():
 
 def test_squareness():
     box = np.array([[0, 0, 6, 2], [0, 0, 3, 3]])
-    assert energy.squareness(box, np.array([1, 1])) == pytest.approx(4.0 * 2.0 / 2)
+    assert energy.squareness(box, np.array([1, 1])) == pytest.approx(4.0 * (2.0 + energy.STEEP * (3.0 - energy.SLIM)) / 2)
     assert energy.squareness(box, np.array([0, 1])) == 0.0
 
 

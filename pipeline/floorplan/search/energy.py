@@ -58,6 +58,7 @@ WEIGHTS = Terms(
 )
 TONGUE = 0.76  # m between inner faces: no part of a room is narrower
 TOGETHER = 12.0  # weight of what belongs together, beside the twelve
+SLIM, STEEP = 2.2, 4.0  # ratio of sides from which on a room is a corridor, and how much more it costs then
 SPLIT = 4.5  # m2 charged when a room falls apart at a neck; the legacy solver charges 45 in its units of 0.25 m2 x 0.4
 
 
@@ -124,12 +125,13 @@ def area(areas: Floats, target: Floats, heed: Floats) -> float:
 
 @borrowing
 def squareness(box: Ints, square: Ints) -> float:
-    """Term 3: mean over square types of max(w/h, h/w) - 1 of bounding boxes."""
+    """Term 3: mean over square types of q - 1 with q = max(w/h, h/w) of the bounding box; what is beyond SLIM counts STEEP times more."""
     total, count = 0.0, 0
     for i in range(square.size):
         if square[i] > 0:
             w, h = box[i, 2] - box[i, 0], box[i, 3] - box[i, 1]
-            total += max(w, h) / max(min(w, h), 1) - 1.0
+            ratio = max(w, h) / max(min(w, h), 1)
+            total += ratio - 1.0 + STEEP * max(ratio - SLIM, 0.0)
             count += 1
     return total / max(count, 1) * 4.0
 
