@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from pipeline.export.model import Floats, Hull, Material, Model, Surface
+from pipeline.rendering import palette
 
 MATERIALS = "materials.mtl"
 
@@ -47,8 +48,7 @@ def hull_obj(hull: Hull) -> str:
 
 def display(color: Sequence[float]) -> list[float]:
     """Convert a linear colour to sRGB, which MJCF, URDF and OBJ mean."""
-    linear = np.clip(np.asarray(color, np.float64), 0, 1)
-    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055).round(5).tolist()  # type: ignore[no-any-return]
+    return palette.display(np.clip(np.asarray(color, np.float64), 0, 1)).round(5).tolist()  # type: ignore[no-any-return]
 
 
 def numbers(values: NDArray[np.floating] | Sequence[float]) -> str:

@@ -75,7 +75,7 @@ def fans(rings: NDArray[np.float64], height: float) -> NDArray[np.float64]:
 
 def pale(material: Material) -> tuple[float, float, float]:
     """Return the display colour of a floor material."""
-    red, green, blue = ((1 - PALENESS) * c + PALENESS for c in palette.to_srgb(material.base_color))
+    red, green, blue = ((1 - PALENESS) * c + PALENESS for c in palette.display(np.array(material.base_color)).tolist())
     return red, green, blue
 
 

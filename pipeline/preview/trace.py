@@ -19,6 +19,7 @@ from pipeline.errors import UsageError
 from pipeline.preview.denoise import Guides, denoise
 from pipeline.preview.triangles import Batch, home_batches
 from pipeline.rendering.normals import corner_normals
+from pipeline.rendering.palette import display
 from pipeline.rendering.raster import face_normals, fill
 
 ELEVATION = math.radians(56)  # of the camera above the horizon
@@ -209,5 +210,4 @@ def tone_map(image: NDArray[np.float32], size: tuple[int, int]) -> PilImage:
 
     exposed = np.maximum(image * EXPOSURE, 0.0)
     toned = np.where(exposed < 0.6, exposed, 0.6 + 0.4 * (exposed - 0.6) / (exposed - 0.6 + 0.4))
-    encoded = np.where(toned <= 0.0031308, 12.92 * toned, 1.055 * np.maximum(toned, 1e-6) ** (1 / 2.4) - 0.055)
-    return Image.fromarray((np.clip(encoded, 0, 1) * 255 + 0.5).astype(np.uint8)).resize(size, Image.Resampling.BOX)
+    return Image.fromarray((np.clip(display(toned), 0, 1) * 255 + 0.5).astype(np.uint8)).resize(size, Image.Resampling.BOX)

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from pipeline.entities.asset import Asset
 from pipeline.geometry.compiled import borrowing
 from pipeline.geometry.memo import cached_on_asset
+from pipeline.rendering.palette import display
 from pipeline.rendering.pose import asset_triangles
 from pipeline.rendering.raster import AMBIENT, LIGHT, Frame, View, fill_triangle, render, top_down
-from pipeline.rendering.texture import display, face_colours
+from pipeline.rendering.texture import face_colours
 
 FINENESS, MOST = 250.0, 640  # pixels per metre, and pixels a side, at which it is tried what is seen
 TO_LIGHT = LIGHT / np.linalg.norm(LIGHT)

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
 from pipeline import taxonomy
 from pipeline.entities.asset import Material
 from pipeline.entities.plan import Opening, Plan
+
+Number = TypeVar("Number", np.float32, np.float64)
 
 FLOORS = {
     name: Material(f"{name}_floor", color, roughness)
@@ -57,10 +64,6 @@ def wall(room_type: str) -> Material:
     return WALLS[taxonomy.load().types[room_type].wall] if room_type in taxonomy.load().types else PLASTER
 
 
-def to_srgb(linear: tuple[float, float, float]) -> tuple[float, float, float]:
-    """Encode linear RGB for display (IEC 61966-2-1)."""
-
-    def encode(value: float) -> float:
-        return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
-
-    return encode(linear[0]), encode(linear[1]), encode(linear[2])
+def display(linear: NDArray[Number]) -> NDArray[Number]:
+    """Encode linear values from 0 to 1 as sRGB (IEC 61966-2-1)."""
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-6) ** (1 / 2.4) - 0.055)

@@ -42,12 +42,6 @@ def face_colours(asset: Asset, chosen: NDArray[np.bool_] | None = None) -> NDArr
     return np.concatenate(parts) if parts else np.zeros((0, 3), np.float32)
 
 
-def display(linear: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Encode linear RGB for display (IEC 61966-2-1)."""
-    curve = 1.055 * np.maximum(linear, 1e-6) ** np.float32(1 / 2.4) - 0.055
-    return np.where(linear <= 0.0031308, 12.92 * linear, curve).astype(np.float32)
-
-
 def _mesh_colours(asset: Asset, mesh: Mesh, faces: NDArray[np.int32]) -> NDArray[np.float32]:
     material = asset.materials[mesh.material] if asset.materials else Material("none", GREY)
     plain = np.tile(np.array(material.base_color, np.float32), (len(faces), 1))

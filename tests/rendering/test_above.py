@@ -8,9 +8,10 @@ import pytest
 from pipeline.entities.asset import Asset, Material
 from pipeline.rendering.above import draw_roof, roof
 from pipeline.rendering.boxes import box, solid_link
+from pipeline.rendering.palette import display
 from pipeline.rendering.pose import asset_triangles, placement_transform
 from pipeline.rendering.raster import render, top_down
-from pipeline.rendering.texture import display, face_colours
+from pipeline.rendering.texture import face_colours
 
 NOWHERE = np.zeros((0, 3, 3)), np.zeros((0, 3), np.float32)
 

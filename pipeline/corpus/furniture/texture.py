@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture import patterns
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.shape import Piece
+from pipeline.rendering.palette import display
 from pipeline.style import Color
 
 FINEST = 256.0  # [pixels per metre]
@@ -121,7 +122,7 @@ def paint(rng: np.random.Generator, sheet: Atlas) -> bytes:
         else:
             tone = patterns.tones(rng, finish.pattern, spot.shape, sheet.scale)
             spot[:] = k * shades + np.minimum(tone * shades, shades - 1).astype(np.uint8)
-    return png(image, np.round(255 * to_srgb(np.clip(palette, 0, 1))).astype(np.uint8))
+    return png(image, np.round(255 * display(np.clip(palette, 0, 1))).astype(np.uint8))
 
 
 def _colors(finish: Finish, tones: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -132,15 +133,10 @@ def _colors(finish: Finish, tones: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(color * (1 + patterns.CONTRAST[finish.pattern] * (2 * tones[:, None] - 1)))
 
 
-def to_srgb(linear: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Encode linear values in [0, 1] as sRGB (IEC 61966-2-1)."""
-    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.power(np.maximum(linear, 1e-9), 1 / 2.4) - 0.055)
-
-
 @functools.cache
 def srgb(color: Color) -> tuple[float, float, float]:
     """Encode one colour."""
-    r, g, b = (round(float(v), 4) for v in to_srgb(np.array(color)))
+    r, g, b = (round(float(v), 4) for v in display(np.array(color)))
     return (r, g, b)
 
 
