@@ -100,8 +100,9 @@ def touch_tolerances(category: Category, *, opens: bool) -> Felt:
         return Felt(vessel=True)
     if opens:
         return Felt()
-    if category.super in CUSHIONED:
-        return Felt(GIVES, BETWEEN, LEFT_ALONE, under=SEAT, box=PADDED, cell=BUMPED, level=LEVEL, lift=PADDED)
+    if category.super in CUSHIONED:  # under a sofa's arm the drawer of a side table comes out
+        under = SEAT if category.tuck == "seat" or category.super == "bed" else UNDER
+        return Felt(GIVES, BETWEEN, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED, level=LEVEL, lift=PADDED)
     return Felt(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, box=PADDED, cell=BUMPED)
 
 
