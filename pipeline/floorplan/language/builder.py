@@ -15,7 +15,7 @@ from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.room_links import Draft, join
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.defaults import DEFAULTS
-from pipeline.floorplan.program.floor_program import MAX_ROOMS, FloorProgram, Style
+from pipeline.floorplan.program.floor_program import MAX_ROOMS, Evidence, FloorProgram, Style
 
 ABOUT = 0.1  # "about 75 m2" allows this much either way
 SAME = 0.02  # two totals that differ by less are one, said twice
@@ -79,7 +79,7 @@ def _room(room: Named) -> dict[str, Any]:
     }
 
 
-def _room_evidence(parsed: list[list[Element]], state: Reading) -> list[dict[str, Any]]:
+def _room_evidence(parsed: list[list[Element]], state: Reading) -> list[Evidence]:
     """Return the evidence for the rooms themselves."""
     known, cited = {r.id for r in state.inventory.rooms}, Draft(state.heard)
     for e in (e for s in parsed for e in s if e.ids and e.kind in {"np", "pron", "det"} and e.last > e.first):

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pipeline.floorplan.language.lexicon import Language, Lexicon, Meaning, lexicon
 from pipeline.floorplan.language.spelling import repair, uninflected_meaning
 from pipeline.floorplan.language.text import Token, fold, tokenize
+from pipeline.floorplan.program.floor_program import Evidence
 
 STOPS = {".", "!", "?", ";"}
 PUNCTUATION = {",": "comma", ":": "colon", "(": "open", ")": "close", "/": "slash", "&": "and", "+": "and", "•": "bullet", "|": "comma", "*": "bullet"}  # fmt: skip
@@ -52,6 +53,12 @@ class Words:
     tokens: list[Token]
     texts: list[str]
     lexicon: Lexicon
+
+    def quote(self, first: int, last: int, field: str) -> Evidence:
+        """Return the words of tokens[first:last], of one at least, as evidence of a field."""
+        tokens = self.tokens[first:last] or self.tokens[first : first + 1]
+        start, end = min(t.start for t in tokens), max(t.end for t in tokens)
+        return Evidence(start=start, end=end, text=self.prompt[start:end], field=field)
 
 
 def sentences_of(marks: Sequence[Mark]) -> Iterator[list[Mark]]:

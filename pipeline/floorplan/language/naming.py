@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from pipeline.floorplan.language.facts import Group, Named, Reading
 from pipeline.floorplan.language.phrases import Element, backward, heads
-from pipeline.floorplan.language.text import spread
 from pipeline.floorplan.program.consistency import ImpossibleError
-from pipeline.floorplan.program.floor_program import MAX_ROOMS, Evidence
+from pipeline.floorplan.program.floor_program import MAX_ROOMS
 
 ALONE = {"living_room", "kitchen", "dining_room", "hallway", "entry", "utility", "garage", "staircase", "family_room", "studio_room"}
 PLURAL_NAMES = {"staircase", "closet", "storage"}  # their plural often means one
@@ -234,8 +233,7 @@ def introduce(state: Reading, sentences: list[list[Element]]) -> None:
 def _few(state: Reading, e: Element) -> None:
     """Refuse more rooms than a program holds, with the words."""
     if (e.number or 0) > MAX_ROOMS:
-        start, end = spread(state.heard.tokens[max(e.first - 1, 0) : e.last])
-        words = [Evidence(start=start, end=end, text=state.heard.prompt[start:end], field="rooms")]
+        words = [state.heard.quote(max(e.first - 1, 0), e.last, "rooms")]
         raise ImpossibleError(f"{e.number:g} {e.type.replace('_', ' ')}s are asked for", f"ask for {MAX_ROOMS} rooms at most", words)
 
 
@@ -266,14 +264,6 @@ def _introduce_rooms(state: Reading, sentence: list[Element], k: int, level: int
     if e.number is not None and not role and "another" not in e.det and count > len(same) and any(r.whole for r in same):
         state.say("beyond", tuple(r.id for r in same), (), e, float(count))
         return same
-    before = [x for x in sentence[:k] if x.kind in {"np", "cue", "comma", "and", "pron"}][-2:]
-    had = (
-        len(before) > 1
-        and (before[1].kind, before[1].value) == ("cue", "has")
-        and (before[0].type == "bedroom" or before[0].kind == "pron")
-    )
-    if slots and e.type == "bathroom" and count == 1 and had and not any(r.id in x.ids for r in slots for x in sentence[:k]):
-        return []  # "three baths. Two of the bedrooms have an en suite": of those that were counted
     if slots and k > 1 and sentence[k - 1].kind == "verb" and (sentence[k - 2].kind, sentence[k - 2].value) == ("pron", "one"):
         return [close(r, role, e.text) for r in slots[:count]]  # "four bedrooms, one of which is a guest room"
     if role and role != "ensuite":

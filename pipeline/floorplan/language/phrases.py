@@ -7,9 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from pipeline.floorplan.language.lexicon import Lexicon, kinds
 from pipeline.floorplan.language.marks import HEADS, LEADING, Mark, Words
-from pipeline.floorplan.language.text import spread
 from pipeline.floorplan.program.consistency import ImpossibleError
-from pipeline.floorplan.program.floor_program import Evidence
 
 DROPPED = kinds("dropped")
 ROLES = {"primary", "guest", "child", "shared"}  # said by an adjective
@@ -315,8 +313,7 @@ def refuse(marks: Sequence[Mark], words: Words) -> None:
         none = mark.kind == "amount" and not mark.number and mark.value in {"area", "rooms"}
         empty = (mark.kind, mark.value) == ("unit", "rooms") and k and marks[k - 1].kind == "neg" and not named
         if mark.kind in CONFLICTS or (minus and lead) or none or empty:
-            start, end = spread(words.tokens[marks[k - 1 if empty else k].first : max(mark.last, mark.first + 1)])
-            evidence = Evidence(start=start, end=end, text=words.prompt[start:end], field="rooms")
+            evidence = words.quote(marks[k - 1 if empty else k].first, max(mark.last, mark.first + 1), "rooms")
             what, advice = CONFLICTS.get(mark.kind, ("no home has {!r}", "ask for numbers above zero"))
             said = f"{mark.number:g}" if mark.kind == "homes" else ("-" if minus else "") + evidence.text
             raise ImpossibleError(what.format(said), advice, [evidence])

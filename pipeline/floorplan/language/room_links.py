@@ -9,7 +9,6 @@ from typing import Any, NoReturn
 
 from pipeline.floorplan.language.facts import HALLS, Fact, Group, Inventory, Named, Reading
 from pipeline.floorplan.language.marks import Words
-from pipeline.floorplan.language.text import spread
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import Evidence
 
@@ -24,29 +23,28 @@ class Draft:
     """The program while it is put together, as plain data for pydantic."""
 
     def __init__(self, words: Words) -> None:
-        self.prompt, self.tokens = words.prompt, words.tokens
+        self.words = words
         self.links: dict[tuple[str, str], dict[str, Any]] = {}
         self.forbids: list[dict[str, Any]] = []
         self.relations: list[dict[str, Any]] = []
-        self.evidence: list[dict[str, Any]] = []
+        self.evidence: list[Evidence] = []
         self.zones: list[dict[str, Any]] = []
         self.fields: dict[str, Any] = {}
 
     def cite(self, first: int, last: int, field: str) -> None:
         """Note that `field` was read from tokens[first:last]."""
-        start, end = spread(self.tokens[first:last] or self.tokens[first : first + 1])
-        entry = {"start": start, "end": end, "text": self.prompt[start:end], "field": field}
+        entry = self.words.quote(first, last, field)
         if entry not in self.evidence[-40:]:
             self.evidence.append(entry)
 
     def citations(self, prefix: str) -> list[Evidence]:
         """Return the words of fields."""
-        return [Evidence.model_validate(e) for e in self.evidence if e["field"].startswith(prefix)]
+        return [e for e in self.evidence if e.field.startswith(prefix)]
 
     def refuse(self, what: str, advice: str, spans: Iterable[tuple[int, int] | None], field: str = "rooms") -> NoReturn:
         """Refuse a prompt, with the words tokens[first:last] that cannot be met."""
-        places = sorted({spread(self.tokens[first:last]) for first, last in filter(None, spans)})
-        raise ImpossibleError(what, advice, [Evidence(start=s, end=e, text=self.prompt[s:e], field=field) for s, e in places])
+        places = {self.words.quote(first, last, field) for first, last in filter(None, spans)}
+        raise ImpossibleError(what, advice, sorted(places, key=lambda e: (e.start, e.end)))
 
     def link(self, a: str, b: str, kind: str, fact: Fact, *, stated: bool = True) -> None:
         """Add a link, or sharpen the one there is."""

@@ -176,8 +176,7 @@ def _det(c: Clause, k: int, e: Element) -> None:
     before, ahead = c.near(k - 1), c.near(k + 1)
     kind = ahead.kind if ahead is not None else ""
     behind = c.ahead(k + 1, "verb")
-    each = e.value == "each" and kind in {"", "comma", "close"} and _one_each(c, before, e)
-    if each or (e.value == "another" and kind == "pron" and _one_more(c, e)):
+    if e.value == "each" and kind in {"", "comma", "close"} and _one_each(c, before, e):
         return
     if e.value == "other" and behind is not None and behind.kind in {"level", "colon"} and not c.parted():
         _every(c, k, e)
@@ -203,15 +202,6 @@ def _one_each(c: Clause, before: Element | None, e: Element) -> bool:
         return False
     thing = c.stock.get(c.latest[0])
     c.give((thing.id, *(c.stock.add(thing.type, "", e.text, None).id for _ in owners[1:])), owners, e)
-    return True
-
-
-def _one_more(c: Clause, e: Element) -> bool:
-    """Read "The master has its own bath, the kids' rooms share another one."."""
-    like = next((g for g in reversed(c.state.past) if len(g) == 1 and not c.types(g) & c.types(c.subject)), ())
-    if not like or not c.types(like) <= PERSONAL:
-        return False
-    c.stands_for(e, (c.stock.add(c.stock.get(like[0]).type, "", e.text, None).id,))
     return True
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import re
 import unicodedata
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from pydantic import BaseModel, ConfigDict
@@ -126,11 +126,6 @@ def words(phrase: str) -> tuple[str, ...]:
     if plain.replace(" ", "").isalpha() and (ascii_only or not any(map(is_han, plain))):
         return tuple(fold(w) for w in plain.split())
     return tuple(fold(t.text) for t in tokenize(phrase) if t.text != "-")
-
-
-def spread(tokens: Sequence[Token]) -> tuple[int, int]:
-    """Return the stretch of the prompt that tokens cover, in any order."""
-    return min(t.start for t in tokens), max(t.end for t in tokens)
 
 
 SHORTEST = 3  # letters of a part of a compound
