@@ -61,17 +61,14 @@ def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> 
     return e.ids
 
 
-def _resolve_phrase(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per kind of phrase
+def _resolve_phrase(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:
     e, stock, role = sentence[k], state.inventory, _role(sentence[k])
     same = stock.of(e.type)
     suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), None) if e.type == "bedroom" and not role else None
     if suites and not e.ordinal and e.number is None:
         return [stock.get(i) for i in suites]
-    if (
-        e.type == "hallway"
-        and e.definite
-        and (halls := [r for r in stock.rooms if r.type in {"hallway", "entry"} and _word(e) in r.surface.split()])
-    ):
+    halls = [r for r in stock.rooms if r.type in {"hallway", "entry"} and _word(e) in r.surface.split()]
+    if e.type == "hallway" and e.definite and halls:
         return halls[:1]
     if e.part:
         state.parted = e.type
@@ -193,8 +190,7 @@ def _known_rooms(state: Reading, sentence: list[Element], k: int, level: int | N
         return [stock.add(e.type, "", e.text, level)]  # "a master with en suite, ..., bathroom"
     if len(same) > 1:
         same = [r for r in same if _word(e) in r.surface.split()] or same
-        recent = [r for r in same if any(r.id in x.ids for x in sentence[:k])]
-        return (recent[-1:] if e.definite and recent else [r for r in same if not r.role] or same)[:1]
+        return ([r for r in same if not r.role] or same)[:1]
     return same
 
 

@@ -134,8 +134,6 @@ def _comma(c: Clause, k: int, _: Element) -> None:
     ahead = c.near(k + 1)
     if c.negative is not c.sentence[k - 1] and (ahead is None or ahead.kind not in {"cue", "cmp", "or", "neg"}):
         c.negative = None
-    if c.waiting and c.subject and c.waiting[0].value == "between":
-        complete(c)
 
 
 def _and(c: Clause, k: int, _: Element) -> None:
