@@ -67,9 +67,9 @@ def wall_relations(boxes: Boxes, rooms: RoomBatch, blur: Tensor) -> Relations:
     normal = rooms.normal[:, None]
     along = torch.stack([normal[..., 1], -normal[..., 0]], -1)
     centre = boxes.centre[:, :, None]
-    distance = ((centre - start) * normal).sum(-1)
-    before, after = ((centre - start) * along).sum(-1), ((stop - centre) * along).sum(-1)
-    side, facing = (boxes.axis[:, :, None] * normal).sum(-1), (boxes.front[:, :, None] * normal).sum(-1)
+    distance = dot(centre - start, normal)
+    before, after = dot(centre - start, along), dot(stop - centre, along)
+    side, facing = dot(boxes.axis[:, :, None], normal), dot(boxes.front[:, :, None], normal)
     half = boxes.half[:, :, None]
     deep, wide = half[..., 0] * side.abs() + half[..., 1] * facing.abs(), half[..., 0] * facing.abs() + half[..., 1] * side.abs()
     gap = distance - deep
@@ -78,12 +78,10 @@ def wall_relations(boxes: Boxes, rooms: RoomBatch, blur: Tensor) -> Relations:
         torch.tanh((before - wide) / 0.15), torch.tanh((after - wide) / 0.15), torch.tanh(before), torch.tanh(after), facing, side,
         boxes.bottom[:, :, None].expand_as(distance) / 2, boxes.height[:, :, None].expand_as(distance) / 2,
     ]  # fmt: skip
-    metres, ends = blur[:, None, None, 0], blur[:, None, None, 1]
-    off = in_noise([gap / metres, (before - wide) / metres, (after - wide) / metres])
-    near = torch.cat([off, in_noise([side / ends, facing / ends])], -1)
+    near = in_noise(torch.stack([gap, before - wide, after - wide], -1), torch.stack([side, facing], -1), blur)
     normals, alongs = normal.expand_as(centre - start), along.expand_as(centre - start)
     middle = ((start + stop) / 2 - centre) / 3
-    moves = [off[..., 0:1] * normals, off[..., 1:2] * alongs, off[..., 2:3] * alongs, normals, alongs, middle]
+    moves = [near[..., :1] * normals, near[..., 1:2] * alongs, near[..., 2:3] * alongs, normals, alongs, middle]
     turns = [near[..., 3:4] * normals, near[..., 4:5] * alongs, normals, alongs]
     return Relations(torch.stack(columns, -1), near / 3, torch.stack(moves, -2), torch.stack(turns, -2))
 
@@ -91,38 +89,37 @@ def wall_relations(boxes: Boxes, rooms: RoomBatch, blur: Tensor) -> Relations:
 def pair_relations(boxes: Boxes, blur: Tensor) -> Relations:
     """Relate each box i (second dimension) to every box j (third)."""
     apart = boxes.centre[:, None] - boxes.centre[:, :, None]
-    axis, front, half = boxes.axis, boxes.front, boxes.half
-    axis_i, front_i, axis_j, front_j = axis[:, :, None], front[:, :, None], axis[:, None], front[:, None]
-    places = [(apart * d).sum(-1) for d in (axis_i, front_i, axis_j, front_j)]
-    same, turned = (axis_i * axis_j).sum(-1), (axis_i * front_j).sum(-1)
-    w_i, d_i, w_j, d_j = half[:, :, None, 0], half[:, :, None, 1], half[:, None, :, 0], half[:, None, :, 1]
-    gaps = [
-        places[0].abs() - w_i - w_j * same.abs() - d_j * turned.abs(),
-        places[1].abs() - d_i - d_j * same.abs() - w_j * turned.abs(),
-        places[2].abs() - w_j - w_i * same.abs() - d_i * turned.abs(),
-        places[3].abs() - d_j - d_i * same.abs() - w_i * turned.abs(),
-    ]
+    frames = torch.stack([boxes.axis, boxes.front], -2)
+    others = frames[:, None].expand(*apart.shape[:3], 2, 2)
+    ways = torch.cat([frames[:, :, None].expand_as(others), others], -2)  # axis and front of i, axis and front of j
+    places = dot(apart[..., None, :], ways)
+    angles = dot(boxes.axis[:, :, None, None], others)  # same, turned
+    half_i, half_j = boxes.half[:, :, None].expand_as(apart), boxes.half[:, None].expand_as(apart)
+    own, wide, deep = (torch.cat(pair, -1) for pair in ((half_i, half_j), (half_j, half_i), (half_j.flip(-1), half_i.flip(-1))))
+    same, turned = angles.abs().split(1, -1)
+    gaps = places.abs() - own - wide * same - deep * turned
     rise = boxes.bottom[:, None] - boxes.bottom[:, :, None]
     above = torch.maximum(rise - boxes.height[:, :, None], -rise - boxes.height[:, None])
+    distance = torch.linalg.vector_norm(apart + 1e-6, dim=-1)
+    upright = [rise / 2, torch.tanh(above / 0.2), distance / 3, boxes.height[:, None].expand_as(rise) / 2]
     columns = [
-        *(v / 2 for v in places), *(torch.tanh(v / 0.3) for v in places),
-        *(torch.tanh(g / 0.08) for g in gaps), *(torch.tanh(g / 0.4) for g in gaps), same, turned, rise / 2, torch.tanh(above / 0.2),
-        torch.linalg.vector_norm(apart + 1e-6, dim=-1) / 3, boxes.height[:, None].expand_as(rise) / 2,
+        places / 2, torch.tanh(places / 0.3), torch.tanh(gaps / 0.08), torch.tanh(gaps / 0.4), angles, torch.stack(upright, -1),
     ]  # fmt: skip
-    metres, ends = blur[:, None, None, 0], blur[:, None, None, 1]
-    off = in_noise([*(g / metres for g in gaps), *(v / metres for v in places)])
-    near = torch.cat([off, in_noise([same / ends, turned / ends])], -1)
-    ways = [d.expand_as(apart) for d in (axis_i, front_i, axis_j, front_j)]
-    closing = [off[..., k : k + 1] * (places[k] / 0.05).clamp(-1, 1)[..., None] * ways[k] for k in range(4)]
-    centring = [off[..., 4 + k : 5 + k] * ways[k] for k in range(4)]
-    moves = [*closing, *centring, ways[2], ways[3], apart / 3]
-    turns = [near[..., 8:9] * ways[2], near[..., 9:10] * ways[3], ways[2], ways[3]]
-    return Relations(torch.stack(columns, -1), near / 3, torch.stack(moves, -2), torch.stack(turns, -2))
+    near = in_noise(torch.cat([gaps, places], -1), angles, blur)
+    closing = (near[..., :4] * (places / 0.05).clamp(-1, 1))[..., None] * ways
+    moves = [closing, near[..., 4:8, None] * ways, others, apart[..., None, :] / 3]
+    turns = [near[..., 8:, None] * others, others]
+    return Relations(torch.cat(columns, -1), near / 3, torch.cat(moves, -2), torch.cat(turns, -2))
 
 
-def in_noise(values: list[Tensor]) -> Tensor:
-    """Stack multiples of the noise, cut at 3: what is farther away is not a matter of noise."""
-    return torch.stack(values, -1).clamp(-3, 3)
+def dot(a: Tensor, b: Tensor) -> Tensor:
+    """Return products of vectors (..., 2): for two numbers a sum is slower than an addition."""
+    return a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1]
+
+
+def in_noise(lengths: Tensor, angles: Tensor, blur: Tensor) -> Tensor:
+    """Return lengths (B, N, K, P) [m] and angles (B, N, K, Q) in units of the noise (B, 2), cut at 3: what is farther away is not a matter of noise."""
+    return torch.cat([lengths / blur[:, None, None, :1], angles / blur[:, None, None, 1:]], -1).clamp(-3, 3)
 
 
 def axis_deviations(boxes: Boxes, rooms: RoomBatch, blur: Tensor) -> Tensor:
