@@ -79,7 +79,7 @@ class Clause:
 
     def types(self, group: Group) -> set[str]:
         """Return the types of the rooms of a group."""
-        return {self.stock.get(i).type for i in group if i[0] not in "*<"}
+        return {self.stock.get(i).type for i in group if i[0] != "*"}
 
     def deny(self) -> bool:
         """Take the negation that is open, if there is one: what is said next is what it rules out."""

@@ -37,7 +37,6 @@ class Mark:
     bound: str = ""
     total: bool = False  # said of everything together
     side: float | None = None  # the shorter side of "4 x 5 m"
-    functions: tuple[str, ...] = ()  # what a room serves as besides
 
     @property
     def is_size(self) -> bool:

@@ -298,7 +298,7 @@ def point(state: Reading, before: list[Element], e: Element, but: Group) -> Grou
     kind = state.inventory.get(plural[0]).type
     kind = state.parted if e.value == "rest" and any(r.open_slot for r in state.inventory.of(state.parted)) else kind
     if e.value == "group" and len(plural) == 1:
-        same = [i for g in groups for i in g if i[0] not in "*<" and state.inventory.get(i).type == kind]
+        same = [i for g in groups for i in g if i[0] != "*" and state.inventory.get(i).type == kind]
         return tuple(dict.fromkeys(same))
     free = [r for r in state.inventory.of(kind) if r.open_slot]
     if e.value in {"rest", "some"}:

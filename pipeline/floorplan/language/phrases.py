@@ -35,7 +35,6 @@ class Element:
     part: int = 0  # "two of the four": 2
     det: set[str] = field(default_factory=set)
     adjectives: set[str] = field(default_factory=set)
-    said: set[str] = field(default_factory=set)  # adjectives as written
     size: float = 1.0
     amounts: list[Mark] = field(default_factory=list)
     suite: bool = False
@@ -213,7 +212,7 @@ def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool, lex: Lexicon) -> El
         "np", "", mark.first, mark.last, mark.text, type=kind, plural=mark.plural, compound=compound, mark=mark, taken=list(pre)
     )
     phrase.suite = mark.kind == "suite"
-    phrase.functions = {*mark.functions, *(["dining"] if role == "diner" else [])}
+    phrase.functions = {"dining"} if role == "diner" else set()
     phrase.role = "" if role in {"diner", "corner"} else role
     for part in pre:
         if part.kind == "num":
@@ -229,7 +228,6 @@ def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool, lex: Lexicon) -> El
             phrase.ordinal = int(part.number)
         elif part.kind == "adj":
             phrase.adjectives.add(part.value)
-            phrase.said.add(part.text)
             if part.value in ROLES and not phrase.role and kind in {"bedroom", "bathroom", "kitchen", "office"}:
                 phrase.role = part.value
         elif part.kind == "size":
@@ -251,7 +249,6 @@ def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> 
                 phrase.role = phrase.role or mark.value
             else:
                 phrase.adjectives.add(mark.value)
-                phrase.said.add(mark.text)
             phrase.last = mark.last
         elif mark.kind == "size" and mark.value == "post":
             phrase.size = mark.number

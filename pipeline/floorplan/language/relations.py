@@ -7,7 +7,6 @@ from pipeline.floorplan.language.facts import HALLS, PERSONAL, SOCIAL, Group
 from pipeline.floorplan.language.lexicon import kinds
 from pipeline.floorplan.language.phrases import Element
 
-MUTUAL = {"near", "wall", "away", "apart", "open", "door"}  # may be said of two rooms at the end: "kitchen and bath adjacent"
 DENIED = {"near": "ban", "wall": "ban", "away": "near", "open": "not_open", "avoid": "avoid"}  # what "not" makes of a relation
 HOSTS = kinds("hosts")
 NO_PARTS = {"bedroom", "living_room", "family_room", "garage"}  # nothing that another room has

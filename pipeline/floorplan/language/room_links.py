@@ -95,7 +95,7 @@ def join(draft: Draft, state: Reading) -> None:
             _belongings(draft, stock, fact, ways)
     _merge_rooms(draft, stock, facts)
     for fact in facts:
-        if any(i[0] in "*<" for i in fact.a + fact.b):
+        if any(i[0] == "*" for i in fact.a + fact.b):
             continue
         if fact.what in KINDS:
             _link_rooms(draft, stock, fact, facts)

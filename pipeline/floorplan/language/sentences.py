@@ -263,7 +263,7 @@ def _attach(c: Clause, k: int, mark: Mark, *, home: bool = False) -> None:
     state = c.state
     around = c.sentence[max(0, k - 2) : k + 2]
     before, ahead = c.near(k - 1), c.near(k + 1)
-    rooms = () if home else tuple(i for i in named_rooms(c.latest) if not i.startswith("<"))
+    rooms = () if home else named_rooms(c.latest)
     if mark.value == "storeys":
         state.storeys = state.storeys or ((int(mark.number), mark) if mark.number >= 1 else None)
     elif mark.value == "rooms":  # of one and a half, the half is to sleep in
