@@ -20,6 +20,7 @@ from pipeline.arrange.walls import Edge, at_wall, hides_window, opening_cost
 Floats = NDArray[np.float64]
 
 OFF_WALL = 1.0  # cost of standing free for what always belongs to a wall [m]; less for what seldom does
+OFF_ITS_WALL = 3.0  # and for what belongs to one: a wardrobe goes to a wall 3 m away before it stands free
 BESIDE = 0.2  # a metre towards another place at the anchor costs this much [m]
 ASIDE = 2.0  # and a metre along the anchor's side, away from such a place [m]
 ALONE = 0.8  # cost of standing away from the anchor [m]
@@ -43,7 +44,8 @@ def near_by(
     """
     candidates, costs = [target[None]], [_opening_cost(item, target[None], walls)]
     if item.mount != "wall":
-        off = OFF_WALL * item.habit.backed if item.habit.wants and _at_wall(item, target, walls) else 0.0
+        backed = item.habit.wants and _at_wall(item, target, walls)
+        off = (OFF_ITS_WALL if item.habit.must else OFF_WALL) * item.habit.backed if backed else 0.0
         angles = np.arange(WAYS) * (2 * math.pi / WAYS) + target[3]
         ring = np.stack([np.cos(angles), np.sin(angles)], 1)
         shifts = np.concatenate([r * ring for r in RINGS])

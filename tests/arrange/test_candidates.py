@@ -1,6 +1,7 @@
 import math
 
 import numpy as np
+import pytest
 
 from pipeline.arrange.candidates import hides, near_by
 from pipeline.arrange.item import make_item
@@ -26,3 +27,21 @@ def test_what_hangs_pays_for_a_door_only_at_the_wall_that_has_it():
     _, costs = near_by(item, middle, walls, np.zeros((0, 4, 2)), room, SeparateSettings())
     assert not np.isnan(costs).any()
     assert (np.diff(costs) >= 0).all()
+
+
+@pytest.mark.parametrize(("share", "walls_first"), [(0.98, 2.5), (0.6, 0.5)])
+def test_what_belongs_to_a_wall_goes_to_a_wall_across_the_room_before_it_stands_free(share, walls_first):
+    closet = block("closet", "wardrobe", (1.0, 0.6, 2.0))
+    room = site(one_room(np.array([[0.0, 0.0], [5.0, 0.0], [5.0, 4.0], [0.0, 4.0]])))
+    target = np.array([4.5, 3.68, 0.0, 0.0])
+    learnt = LearntRelations(relations([], [wall("wardrobe", share)]))
+    item = make_item(drafted(closet, *target[:2]), {"closet": closet}, learnt, 0.5)
+    poses, _ = near_by(item, target, edges(room), np.zeros((0, 4, 2)), room, SeparateSettings())
+    depth = np.column_stack([poses[:, 0], 5.0 - poses[:, 0], poses[:, 1], 4.0 - poses[:, 1]]).min(1)
+    backed = depth < 0.33
+    first = int(np.argmin(backed))
+    assert not backed[first]
+    far = np.linalg.norm(poses[backed, :2] - target[:2], axis=1)
+    nearer = np.linalg.norm(poses[:first, :2] - target[:2], axis=1).max()
+    assert nearer > walls_first
+    assert far.max() > nearer
