@@ -161,7 +161,8 @@ def test_litter_is_all_there_and_changes_nothing_real():
 
 def test_disturbed_houses_have_replaced_mirrored_and_misplaced_pieces_at_their_rates():
     rng = generator(1, "test-mess")
-    pairs = [(a, b) for home in houses(24) for a, b in zip(home.items, corruption.disturb(rng, home, stock()).items, strict=True)]
+    homes = houses(24) * 4  # one in 250 pieces is mirrored
+    pairs = [(a, b) for home in homes for a, b in zip(home.items, corruption.disturb(rng, home, stock()).items, strict=True)]
     replaced = np.mean([a.model is not b.model for a, b in pairs if a.support < 0])
     moved = np.mean([a.position != b.position for a, b in pairs if a.support < 0])
     assert 0.02 < replaced < 0.15
