@@ -88,7 +88,7 @@ def furnish_as_real(factory: Factory, jobs: Sequence[RoomJob], names: Sequence[s
             inside.setdefault(f"{row['scene_id']}/{row['room_id']}", []).append(own)
     contexts = [RoomContext.of(job.plan, job.room_id, job.layout_type) for job in jobs]
     return [
-        retrieve(job, context, inside[name], factory.index, known, factory.library.finish, factory.seed).placements
+        retrieve(job, context, inside[name], factory.index, known, factory.seed).placements
         for job, context, name in zip(jobs, contexts, names, strict=True)
     ]
 

@@ -75,9 +75,10 @@ ASSET_PARTS = Table(
 
 LATENTS = Table(
     "latents",
-    "One row per asset: its shape latent.",
+    "One row per asset: its shape latent, and the colour that most of it has.",
     (
         Column("asset_id", pa.string(), "row of the assets table"),
         Column("latent", pa.list_(pa.float32(), 32), "posterior mean of the point-cloud VAE"),
+        Column("finish", VEC3, "colour of most of the surface, CIELAB under D65; null where there is no surface", nullable=True),
     ),
 )

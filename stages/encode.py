@@ -1,6 +1,6 @@
 """DVC stage `encode`: a point-cloud VAE over the assets' surfaces; stores the mean of the posterior.
 
-Reads data/tables/assets.parquet and data/assets/, writes data/latents/latents.parquet, models/vae.safetensors and
+Reads data/tables/assets.parquet and data/assets/, writes data/latents/latents.parquet (with the assets' finishes), models/vae.safetensors and
 metrics/encode.json.
 """
 
@@ -27,6 +27,7 @@ from pipeline.latents.training import encode, init_vae, train
 from pipeline.latents.vae import PointVae, chamfer
 from pipeline.latents.weights import load_vae, save_vae
 from pipeline.manifest import write_json
+from pipeline.rendering.surface_colour import finish_of
 from schemas.assets import ASSETS, LATENTS
 
 Row = dict[str, Any]
@@ -45,7 +46,7 @@ def main(root: Path) -> None:
     # Assets that are one model at several scales (PartNet objects serving several categories) have one shape.
     shapes = {(r["source"], r["source_id"]): r for r in reversed(rows)}
     order = sorted(shapes)
-    first, second = clouds(root / "data/assets", [shapes[k] for k in order], settings.points, seed)
+    first, second, finishes = surfaces(root / "data/assets", [shapes[k] for k in order], settings.points, seed)
     learnt = [i for i, k in enumerate(order) if shapes[k]["split"] == "train"] or list(range(len(order)))
     net, untrained = init_vae(seed, settings), init_vae(seed, settings)
     if settings.start == "released":
@@ -56,7 +57,8 @@ def main(root: Path) -> None:
     save_vae(root / "models/vae.safetensors", net, settings)
     means = encode(net, first, device).numpy()
     at = {k: i for i, k in enumerate(order)}
-    latents = [{"asset_id": r["asset_id"], "latent": means[at[r["source"], r["source_id"]]].tolist()} for r in rows]
+    places = [at[r["source"], r["source_id"]] for r in rows]
+    latents = [{"asset_id": r["asset_id"], "latent": means[k].tolist(), "finish": finishes[k]} for r, k in zip(rows, places, strict=True)]
     tables.write(root / "data/latents/latents.parquet", LATENTS, latents)
     held_out = [i for i, k in enumerate(order) if shapes[k]["split"] != "train"]
     served: dict[tuple[str, str], set[str]] = {}
@@ -78,15 +80,18 @@ def main(root: Path) -> None:
     write_json(root / "metrics/encode.json", report)
 
 
-def clouds(folder: Path, rows: list[Row], points: int, seed: int) -> tuple[torch.Tensor, torch.Tensor]:
-    """Return two independent surface samples (M, P, 3) of each row's asset; the first is the one that is stored."""
+def surfaces(folder: Path, rows: list[Row], points: int, seed: int) -> tuple[torch.Tensor, torch.Tensor, list[list[float] | None]]:
+    """Return two independent surface samples (M, P, 3) of each row's asset, the first of which is stored, and its finish (3,), None where it has none."""
+    finishes: list[list[float] | None] = []
     samples: tuple[list[np.ndarray[Any, Any]], list[np.ndarray[Any, Any]]] = ([], [])
     for row in tqdm(rows, desc="surfaces", unit="asset"):
-        corners = triangles(load_asset(folder / row["file"]))
+        asset = load_asset(folder / row["file"])
+        corners, finish = triangles(asset), finish_of(asset)
+        finishes.append(None if np.isnan(finish).any() else finish.tolist())
         for number, sample in enumerate(samples):
             rng = seeds.generator(seed, "surface", row["source"], row["source_id"], number)
             sample.append(surface_points(rng, corners, points))
-    return torch.from_numpy(np.stack(samples[0])), torch.from_numpy(np.stack(samples[1]))
+    return torch.from_numpy(np.stack(samples[0])), torch.from_numpy(np.stack(samples[1])), finishes
 
 
 def load_released(path: Path, settings: EncodeSettings) -> PointVae:

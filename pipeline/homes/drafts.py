@@ -64,7 +64,7 @@ def drafts_of(tables: Mapping[str, list[Row]], requests: Sequence[Request], reso
                 job,
                 home.in_room(job.room_id),
                 tuple(lost.get(f"{home.scene_id}/{job.room_id}#0", ())),
-                taste_of(job, resources.seed, resources.index, resources.library.finish),
+                taste_of(job, resources.seed, resources.index),
             )
             for job in jobs
         )

@@ -21,7 +21,7 @@ from pipeline.homes.request import Request, RoomJob
 from pipeline.homes.resources import Resources
 from pipeline.homes.rounding import round_placement
 from pipeline.retrieval.index import AssetIndex, Match
-from pipeline.retrieval.taste import FinishOf, Taste, draw_finishes, draw_style, tasteful
+from pipeline.retrieval.taste import Taste, draw_finishes, draw_style, tasteful
 from pipeline.retrieval.wall_alignment import keep_at_walls
 from pipeline.taxonomy import Taxonomy
 
@@ -53,13 +53,13 @@ class HomeDraft:
 def draft_rooms(resources: Resources, jobs: Sequence[RoomJob]) -> list[Draft]:
     """Furnish a batch of rooms with what is loaded, timed as "sample"; nothing is moved yet."""
     with resources.time("sample"):
-        drafts = furnish(jobs, resources.sampler, resources.index, categories.load(), resources.library.finish)
+        drafts = furnish(jobs, resources.sampler, resources.index, categories.load())
         give_memory_back()  # some 30 MiB of the sampler's, before previews take as much
     return drafts
 
 
-def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxonomy: Taxonomy, finish_of: FinishOf) -> list[Draft]:
-    """Return what the layout model places in each room, as assets of the library with the finishes that `finish_of` tells.
+def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxonomy: Taxonomy) -> list[Draft]:
+    """Return what the layout model places in each room, as assets of the library.
 
     Draws are keyed by (seed, home, room, attempt) alone, so a room does not depend on which rooms share its batch.
     """
@@ -72,7 +72,7 @@ def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxono
     keys = [(job.index, job.number + PART * k, job.draw) for job, parts in zip(jobs, rooms, strict=True) for k in range(len(parts))]
     proposals = iter(sampler.sample_rooms(contexts, keys))
     return [
-        retrieve(job, whole, [p for _ in parts for p in next(proposals)], index, taxonomy, finish_of, sampler.seed)
+        retrieve(job, whole, [p for _ in parts for p in next(proposals)], index, taxonomy, sampler.seed)
         for job, whole, parts in zip(jobs, wholes, rooms, strict=True)
     ]
 
@@ -95,11 +95,11 @@ def _split_count(count: int | None, areas: Sequence[float]) -> list[int | None]:
     return [int(n) for n in np.diff(passed, prepend=0)]
 
 
-def taste_of(job: RoomJob, seed: int, index: AssetIndex, finish_of: FinishOf) -> Taste:
+def taste_of(job: RoomJob, seed: int, index: AssetIndex) -> Taste:
     """Draw the taste of a room: the style is its home's, or the one that is wished for; the finishes are its own. Tries share it."""
     wish = job.furniture.style or ""
     style = wish or draw_style(seeds.generator(seed, "style", job.index), index)
-    finishes = draw_finishes(seeds.generator(seed, "finish", job.index, job.number), index, style, finish_of)
+    finishes = draw_finishes(seeds.generator(seed, "finish", job.index, job.number), index, style)
     return Taste(style, bool(wish), finishes)
 
 
@@ -153,17 +153,16 @@ def retrieve(
     proposals: Sequence[Proposal],
     index: AssetIndex,
     taxonomy: Taxonomy,
-    finish_of: FinishOf,
     seed: int,
 ) -> Draft:
     """Replace each proposal by the nearest asset that suits the room's taste, standing on the floor, hanging from the ceiling, or at its wall.
 
     Object ids carry the room's id and the slot, so they are unique in the home.
     """
-    taste = taste_of(job, seed, index, finish_of)
+    taste = taste_of(job, seed, index)
     if not proposals:
         return Draft(job, (), taste=taste)
-    matches = _matches(job, index, taste, proposals, finish_of)
+    matches = _matches(job, index, taste, proposals)
     placements: list[Placement] = []
     lost: list[str] = []
     for number, (proposal, match) in enumerate(zip(proposals, matches, strict=True)):
@@ -188,14 +187,14 @@ def retrieve(
     return Draft(job, tuple(placements), tuple(lost), taste)
 
 
-def _matches(job: RoomJob, index: AssetIndex, taste: Taste, proposals: Sequence[Proposal], finish: FinishOf) -> list[Match | None]:
+def _matches(job: RoomJob, index: AssetIndex, taste: Taste, proposals: Sequence[Proposal]) -> list[Match | None]:
     """Return the assets; where more shall open, the objects that lose least by it get assets that do."""
     categories = [p.category for p in proposals]
     sizes, latents, positions = (np.array([getattr(p, name) for p in proposals]) for name in ("size", "latent", "position"))
-    matches = tasteful(index, taste, categories, sizes, latents, positions, finish)
+    matches = tasteful(index, taste, categories, sizes, latents, positions)
     lacking = (job.furniture.openable or 0) - sum(m.openable for m in matches if m)
     if lacking > 0:
-        opening = tasteful(index.openers(), taste, categories, sizes, latents, positions, finish)
+        opening = tasteful(index.openers(), taste, categories, sizes, latents, positions)
         still = [k for k, (m, o) in enumerate(zip(matches, opening, strict=True)) if m and o and not m.openable]
         for k in sorted(still, key=lambda k: (_distance(opening[k]) - _distance(matches[k]), k))[:lacking]:
             matches[k] = opening[k]

@@ -9,15 +9,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from pipeline import tables
 from pipeline.entities.asset import Asset, Link
 from pipeline.entities.files import load_asset
 from pipeline.errors import ContentError
 from pipeline.manifest import digest
-from pipeline.retrieval.surface_colour import finish_of
 from schemas.assets import ASSET_JOINTS, ASSETS
 
 MEMORY = 700  # of a process that makes homes [MiB]
@@ -41,7 +37,6 @@ class Library(Mapping[str, Asset]):
         self._whole: OrderedDict[str, tuple[Asset, int]] = OrderedDict()  # as read, and the bytes of its file
         self._bytes = 0
         self._lean: OrderedDict[str, Asset] = OrderedDict()
-        self._finishes: dict[str, NDArray[np.float64]] = {}
         self._shelves: dict[str, list[str]] = {}
         for asset_id in sorted(self.rows):
             self._shelves.setdefault(self.rows[asset_id]["category"], []).append(asset_id)
@@ -81,12 +76,6 @@ class Library(Mapping[str, Asset]):
 
     def __len__(self) -> int:
         return len(self.rows)
-
-    def finish(self, asset_id: str) -> NDArray[np.float64]:
-        """Return the finish (3,) of an asset (see `finish_of`): so many are looked at for each that is placed that they are kept apart."""
-        if asset_id not in self._finishes:
-            self._finishes[asset_id] = finish_of(self[asset_id])
-        return self._finishes[asset_id]
 
     def of(self, category: str) -> list[str]:
         """Return the ids of a category's assets, sorted."""

@@ -16,6 +16,7 @@ from pipeline.retrieval.knee_room import SAT_AT, has_knee_room
 from pipeline.retrieval.settings import RetrievalSettings
 
 Row = Mapping[str, Any]
+UNKNOWN = (np.nan,) * 3  # finish
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +35,7 @@ class AssetIndex:
     """All assets of the library, ordered by asset_id.
 
     `sizes` (A, 3) [m]; `latents` (A, 32), standardised by `mean` and `spread`; `sweeps` (A, K, 2, 3) [m] object frame,
-    NaN where an asset has fewer than K boxes; `shelves` lists the rows of each category that can be used; `styles` (A,) are "" where there is none.
+    NaN where an asset has fewer than K boxes; `shelves` lists the rows of each category that can be used; `styles` (A,) are "" where there is none, `finishes` (A, 3) CIELAB, NaN likewise.
     """
 
     asset_ids: tuple[str, ...]
@@ -49,6 +50,7 @@ class AssetIndex:
     shelves: Mapping[str, NDArray[np.int64]]
     settings: RetrievalSettings
     styles: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, "<U1"))
+    finishes: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 3)))
     style: str = ""
     style_cost: float = 0.0
 
@@ -83,7 +85,7 @@ class AssetIndex:
             raise ContentError(
                 "the library holds no furniture", "look at data/tables/rejects.parquet for why, then run `dvc repro preprocess` again"
             )
-        known = {r["asset_id"]: r["latent"] for r in latents}
+        known = {r["asset_id"]: (r["latent"], r.get("finish") or UNKNOWN) for r in latents}
         lost = [r["asset_id"] for r in rows if r["asset_id"] not in known]
         if lost:
             raise ContentError(f"{len(lost)} assets have no latent ({lost[0]} ...)", "run `dvc repro encode` again")
@@ -94,7 +96,8 @@ class AssetIndex:
         for i, row in enumerate(rows):
             merged = merged_boxes(np.array(swept.get(row["asset_id"], []), float).reshape(-1, 2, 3), settings.sweep_boxes)
             boxes[i, : len(merged)] = merged
-        raw = np.array([known[r["asset_id"]] for r in rows], float).reshape(len(rows), -1)
+        shapes, finishes = zip(*(known[r["asset_id"]] for r in rows), strict=True)
+        raw = np.array(shapes, float).reshape(len(rows), -1)
         mean = raw.mean(0)
         # A latent channel that the encoder does not use must not be blown up by its tiny spread.
         spread = np.maximum(raw.std(0), 0.05)
@@ -116,6 +119,7 @@ class AssetIndex:
             shelves,
             settings,
             np.array([str(r.get("style", "")) for r in rows], np.str_),
+            np.array(finishes, float),
         )
 
     def match(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,8 +13,6 @@ from pipeline.retrieval.index import AssetIndex, Match
 
 Floats = NDArray[np.float64]
 STEP, MOST_STEPS = 30.0, 2.0  # how far off a finish has to be to count once [CIELAB]; it counts so many times at most
-
-FinishOf = Callable[[str], Floats]  # CIELAB (3,) of an asset, NaN where it has none
 
 # Groups of categories whose finishes go together in a room (`finish` of their cards), and those from which the room's is drawn, the first that the library has.
 TIMBER, KITCHEN, SOFT = "timber", "kitchen", "soft"
@@ -40,7 +38,7 @@ def draw_style(rng: np.random.Generator, index: AssetIndex) -> str:
     return str(rng.choice(styles, p=count / count.sum())) if len(styles) else ""
 
 
-def draw_finishes(rng: np.random.Generator, index: AssetIndex, style: str, finish_of: FinishOf) -> dict[str, Floats]:
+def draw_finishes(rng: np.random.Generator, index: AssetIndex, style: str) -> dict[str, Floats]:
     """Draw a room's finish for each group: that of some asset of the style, of any asset where the style has none."""
     finishes: dict[str, Floats] = {}
     for group, categories in SOURCES.items():
@@ -48,7 +46,7 @@ def draw_finishes(rng: np.random.Generator, index: AssetIndex, style: str, finis
         rows = [int(k) for name in categories for k in index.shelves.get(name, ())]
         rows = [k for k in rows if style and index.styles[k] == style] or rows
         if rows:
-            finishes[group] = finish_of(index.asset_ids[rows[int(mark * len(rows))]])
+            finishes[group] = index.finishes[rows[int(mark * len(rows))]]
     return finishes
 
 
@@ -72,7 +70,6 @@ def tasteful(
     sizes: Floats,
     latents: NDArray[np.float32] | Floats,
     positions: Floats,
-    finish_of: FinishOf,
 ) -> list[Match | None]:
     """Return an asset for each of P asks, None where the library has nothing of that category: the nearest that suits the taste.
 
@@ -94,7 +91,7 @@ def tasteful(
         finish = taste.finishes.get(cards()[category].finish if category in cards() else "")
         off = np.zeros(len(best))
         if finish is not None:
-            off = np.array([np.linalg.norm(finish_of(index.asset_ids[shelf[j]]) - finish) for j in best])
+            off = np.linalg.norm(index.finishes[shelf[best]] - finish, axis=1)
         cost = far[best] + s.prefer_finish * np.minimum(np.nan_to_num(off) / STEP, MOST_STEPS)
         j = int(best[cost.argmin()])
         matches.append(index.fit(int(shelf[j]), float(far[j]), asked[k]))

@@ -45,12 +45,6 @@ def test_textures_are_read_when_they_are_asked_for(tmp_path):
     assert dict(made["a"].textures) == {"wood.png": b"grain"}
 
 
-def test_the_finish_is_read_once(library, monkeypatch):
-    found = library.finish("a")
-    monkeypatch.setattr(type(library), "__getitem__", lambda *_: pytest.fail("read again"))
-    assert library.finish("a") is found
-
-
 def test_more_memory_keeps_more():
     assert kept_within(100) == kept_within(0) > 0
     assert kept_within(2000) - kept_within(1000) > 500 << 20

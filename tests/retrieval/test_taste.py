@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from pipeline.entities.asset import Asset, Link, Material, Mesh
+from pipeline.rendering.surface_colour import finish_of
 from pipeline.retrieval.index import AssetIndex
-from pipeline.retrieval.surface_colour import finish_of as computed
 from pipeline.retrieval.taste import TIMBER, Taste, draw_finishes, draw_style, sets, tasteful
 from tests.geometry.furniture import box
 
 DARK, LIGHT = np.array([30.0, 10.0, 10.0]), np.array([80.0, 5.0, 20.0])
-FINISHES = {"dark": DARK, "light": LIGHT, "plain": np.full(3, np.nan)}
+FINISHES = {"dark": DARK.tolist(), "light": LIGHT.tolist(), "plain": None}
 
 
 def row(asset_id, category, size, style=""):
@@ -35,16 +35,14 @@ ROWS = [
     row("desk_plain", "desk", [0.6, 0.4, 0.75]),
     row("table_dark", "dining_table", [1.4, 0.8, 0.75], "Nordic"),
 ]
-INDEX = AssetIndex.from_tables(ROWS, [{"asset_id": r["asset_id"], "latent": np.zeros(32)} for r in ROWS])
-
-
-def finish_of(asset_id):
-    return FINISHES[asset_id.split("_")[1]]
+INDEX = AssetIndex.from_tables(
+    ROWS, [{"asset_id": r["asset_id"], "latent": np.zeros(32), "finish": FINISHES[r["asset_id"].split("_")[1]]} for r in ROWS]
+)
 
 
 def asked(taste, asks, index=INDEX):
     names, sizes, positions = zip(*asks, strict=True)
-    found = tasteful(index, taste, names, np.array(sizes), np.zeros((len(asks), 32)), np.array(positions), finish_of)
+    found = tasteful(index, taste, names, np.array(sizes), np.zeros((len(asks), 32)), np.array(positions))
     return [m.asset_id if m else None for m in found]
 
 
@@ -79,7 +77,7 @@ def test_chairs_at_one_table_are_one_model_of_one_size():
 def test_draws_are_of_the_style_and_depend_on_the_generator_alone():
     styles = {draw_style(np.random.default_rng(seed), INDEX) for seed in range(20)}
     assert styles == {"Nordic", "Modern"}
-    found = draw_finishes(np.random.default_rng(1), INDEX, "Nordic", finish_of)
+    found = draw_finishes(np.random.default_rng(1), INDEX, "Nordic")
     assert found[TIMBER] == pytest.approx(DARK)
     assert set(found) == {TIMBER}  # the library has neither kitchen units nor sofas
 
@@ -89,7 +87,7 @@ def test_the_finish_is_the_colour_of_most_of_the_surface():
     big, small = box((0, 0, 0), (1, 1, 1)), replace(box((0, 0, 1), (0.1, 0.1, 1.1)), material=1)
     link = Link("base", (big, small), (big, small), 1.0, np.zeros(3), np.eye(3))
     asset = Asset("a", "desk", np.ones(3), (link,), (), (wood, steel), "test", "a", "CC0-1.0")
-    lightness, red, yellow = computed(asset)
+    lightness, red, yellow = finish_of(asset)
     assert (lightness, red > 0, yellow > 0) == (pytest.approx(56.3, abs=3.0), True, True)
     empty = replace(link, visuals=(Mesh("none", np.zeros((0, 3), np.float32), np.zeros((0, 3), np.int32)),))
-    assert np.isnan(computed(replace(asset, links=(empty,)))).all()
+    assert np.isnan(finish_of(replace(asset, links=(empty,)))).all()

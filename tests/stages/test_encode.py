@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from pipeline import params, seeds, tables
-from pipeline.entities.files import save_asset
+from pipeline.entities.files import load_asset, save_asset
 from pipeline.errors import ContentError
 from pipeline.latents.weights import load_vae
+from pipeline.rendering.surface_colour import finish_of
 from schemas.assets import ASSETS, LATENTS
 from stages import encode
 from tests.latents.test_surface import box_asset
@@ -51,6 +52,15 @@ def test_every_asset_has_a_latent_and_shapes_share_it(root):
     assert all(rows[f"p{i}_cabinet"] == rows[f"p{i}_wardrobe"] for i in range(10))
     assert len({tuple(v) for v in rows.values()}) == 10
     assert np.isfinite(list(rows.values())).all()
+
+
+def test_every_asset_has_the_finish_that_its_surface_has(root):
+    rows = tables.read(root / "data/latents/latents.parquet", LATENTS)
+    own = {
+        r["asset_id"]: finish_of(load_asset(root / "data/assets" / r["file"]))
+        for r in tables.read(root / "data/tables/assets.parquet", ASSETS)
+    }
+    assert all(row["finish"] == pytest.approx(own[row["asset_id"]]) for row in rows)
 
 
 def test_the_report_compares_trained_and_untrained(root):

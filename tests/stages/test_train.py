@@ -69,7 +69,7 @@ def make_root(root, steps=4, houses=9, workers=1):
         "handle": [0.0] * 3,
     }
     tables.write(root / "data/tables/asset_joints.parquet", ASSET_JOINTS, [blank(ASSET_JOINTS, asset_id="nightstand", joint_id="j", **box)])
-    latents = [{"asset_id": a, "latent": rng.normal(0, 1, 32).tolist()} for a in ("double_bed", "nightstand")]
+    latents = [{"asset_id": a, "latent": rng.normal(0, 1, 32).tolist(), "finish": None} for a in ("double_bed", "nightstand")]
     tables.write(root / "data/latents/latents.parquet", LATENTS, latents)
     write_params(root, steps, workers)
 
