@@ -56,20 +56,15 @@ def main(root: Path) -> None:
             pass
     save_vae(root / "models/vae.safetensors", net, settings)
     means = encode(net, first, device).numpy()
-    at = {k: i for i, k in enumerate(order)}
-    places = [at[r["source"], r["source_id"]] for r in rows]
-    latents = [{"asset_id": r["asset_id"], "latent": means[k].tolist(), "finish": finishes[k]} for r, k in zip(rows, places, strict=True)]
+    known = {k: {"latent": mean.tolist(), "finish": finish} for k, mean, finish in zip(order, means, finishes, strict=True)}
+    latents = [{"asset_id": r["asset_id"], **known[r["source"], r["source_id"]]} for r in rows]
     tables.write(root / "data/latents/latents.parquet", LATENTS, latents)
     held_out = [i for i, k in enumerate(order) if shapes[k]["split"] != "train"]
     served: dict[tuple[str, str], set[str]] = {}
     for row in rows:
         served.setdefault((row["source"], row["source_id"]), set()).add(row["category"])
-    report = {
-        "shapes": len(order),
-        "assets": len(rows),
-        **rebuilt(net.cpu(), first),
-        "chamfer_two_samples": round(two_samples(first, second), 6),
-    }
+    counts = {"shapes": len(order), "assets": len(rows)}
+    report = {**counts, **rebuilt(net.cpu(), first), "chamfer_two_samples": round(two_samples(first, second), 6)}
     for name, model in (("trained", net), ("untrained", untrained)):
         stored, queries = (encode(model, cloud, device).numpy() for cloud in (first, second))
         for part, asked in (("held_out", held_out), ("all", list(range(len(order))))):
