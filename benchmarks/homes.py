@@ -14,9 +14,11 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from statistics import fmean
 
 ROOT = Path(__file__).resolve().parents[1]
 PROMPT = "a two-bedroom apartment with an open kitchen"
+ALONE = 12  # homes that are made one by one
 
 
 def homes(count: int) -> None:
@@ -26,10 +28,16 @@ def homes(count: int) -> None:
     from pipeline.homes.request import Request
 
     factory = open_factory(ROOT, 17)
-    for _ in range(2):  # compiles and reads assets; then a home alone, of a process that has made one
-        factory.seconds.clear()
-        factory.make([Request(10_000)])
-    print(f"a home alone, again in the same process: {sum(factory.seconds.values()):.2f} CPU s")
+    factory.make([Request(10_000)])  # compiles, and reads the first assets
+    for what, prompt in (("that prompt", PROMPT), ("the prior", "")):
+        alone = []
+        for index in range(20_000, 20_000 + ALONE):
+            factory.seconds.clear()
+            factory.make([Request(index, prompt)])
+            alone.append(sum(factory.seconds.values()))
+        print(
+            f"a home alone, in a process that has made one, of {what}: {fmean(alone):.2f} CPU s ({min(alone):.2f} to {max(alone):.2f}, {ALONE} homes)"
+        )
     factory.seconds.clear()
     start = time.perf_counter()
     successes = []
