@@ -75,7 +75,8 @@ def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
     if not weights.is_file():
         raise ContentError(f"there are no trained weights ({weights} is missing)", f"type `make run` in {root}")
     library = Library.read(data / "tables", data / "assets")
-    latents = tables.read(data / "latents" / "latents.parquet", LATENTS)
+    latents_file = data / "latents" / "latents.parquet"
+    latents = tables.read(latents_file, LATENTS)
     index = AssetIndex.from_tables(library.rows.values(), latents, library.joints, params.section(RetrievalSettings, tree, "retrieval"))
     names = ("sample", "retrieval", "postopt", "verify", "prior", "shard")
     return Factory(
@@ -89,6 +90,7 @@ def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
         params.section(PriorSettings, tree, "prior"),
         {
             "code": code_digest(root),
+            "latents": sha256_file(latents_file),
             "library": library.digest(),
             "params": digest({name: tree[name] for name in names}),
             "relations": sha256_file(relations),

@@ -10,7 +10,7 @@ import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -22,6 +22,7 @@ from pipeline.homes.factory import Factory, forget_factory
 from pipeline.homes.furnish import HomeDraft
 from pipeline.homes.outcomes import Empty, Outcome
 from pipeline.homes.request import Request
+from pipeline.homes.settings import ShardSettings
 from pipeline.shards import (
     EMPTY,
     TABLES,
@@ -38,20 +39,22 @@ from pipeline.shards.parts import Part, part_place, parts_there
 
 LEAST = 4  # homes of a chunk: fewer fill the sampler's batches badly
 WAIT = 0.5  # seconds between two looks at what other commands have done
-FAILURES = frozenset({"internal", "worker_lost"})  # reasons that are the factory's or the machine's, not the home's: worth another try
+# Reasons that are the factory's or the machine's, not the home's: worth another try.
+FAILURES = frozenset({"internal", "shard_deadline", "worker_lost"})
 SPARE = 16 << 20  # bytes of disk below which an unknown error is taken for a full disk
 
 
 @dataclass(frozen=True, slots=True)
 class Chunk:
-    """The unit of work: some consecutive homes of a shard."""
+    """The unit of work: some consecutive homes of a shard. They stay empty where it is `overdue`: the shard has had its time."""
 
     shard: int
     requests: tuple[Request, ...]
+    overdue: bool = False
 
     def pieces(self) -> list[Chunk]:
         """Return a chunk for each home."""
-        return [Chunk(self.shard, (request,)) for request in self.requests]
+        return [replace(self, requests=(request,)) for request in self.requests]
 
     def __str__(self) -> str:
         return f"homes {self.requests[0].index} to {self.requests[-1].index} of {shard_name(self.shard)}"
@@ -141,10 +144,12 @@ def fill(
         for reason, cases in empties_of(dataset).items():
             raise ContentError(f"{cases[0][0]} stays empty ({reason}: {cases[0][1]})", "leave --strict out")
     watch = _Watch(tally, progress)
+    spent = dict.fromkeys(missing, 0.0)  # CPU seconds by shard
     while missing:
+        found = chunks(dataset, missing, asked, factory.chunk, workers)
         done = map_jobs(
             partial(make_chunk, recipe),
-            chunks(dataset, missing, asked, factory.chunk, workers),
+            (replace(c, overdue=spent[c.shard] > allowed_seconds(dataset, factory.shard, c.shard)) for c in found),
             workers=min(workers, -(-todo // LEAST)),
             scheduler=scheduler,
             split=Chunk.pieces,
@@ -155,6 +160,7 @@ def fill(
         with closing(done):  # an error stops the workers at once
             for chunk, answer in done:
                 batch = lost_batch(chunk, answer, factory.seed) if isinstance(answer, Lost) else answer
+                spent[chunk.shard] += sum(batch.seconds.values())
                 for empty in batch.empties:
                     if strict:
                         raise empty.error
@@ -196,12 +202,22 @@ def chunks(dataset: Dataset, missing: Sequence[int], asked: Callable[[int], Requ
             yield Chunk(number, tuple(run))
 
 
+def allowed_seconds(dataset: Dataset, settings: ShardSettings, number: int) -> float:
+    """Return the CPU seconds that a shard may take before its other homes stay empty."""
+    return settings.shard_seconds * len(dataset.header.indices(number))
+
+
 def make_chunk(recipe: Recipe, chunk: Chunk) -> Batch:
     """Make one chunk: the step that workers run."""
     factory = recipe.factory()
     factory.seconds.clear()
-    first = recipe.drafts(factory, chunk.requests) if recipe.drafts else None
-    outcomes = attempt(factory, chunk.requests, first)
+    outcomes: Sequence[Outcome | Empty]
+    if chunk.overdue:
+        late = ContentError(f"{shard_name(chunk.shard)} took too long before it was begun", "`sfgen repair` goes on with it")
+        outcomes = [Empty(request.index, "shard_deadline", late) for request in chunk.requests]
+    else:
+        first = recipe.drafts(factory, chunk.requests) if recipe.drafts else None
+        outcomes = attempt(factory, chunk.requests, first)
     brought = [(o.rows(factory.seed), {}) if isinstance(o, Empty) else (o.rows, o.files) for o in outcomes]
     homes = tuple(gather(chunk.shard, [home]) for home in brought)
     if recipe.cache_assets:

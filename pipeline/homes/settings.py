@@ -20,6 +20,7 @@ class ShardSettings:
     home_attempts: int = 8  # plans tried for one index before it stays empty
     plan_draws: int = 8  # drawings of one of them that the judge may find unsound
     home_seconds: float = 300.0  # CPU seconds that one home may take, and seconds that a worker may keep silent [s]
+    shard_seconds: float = 30.0  # CPU seconds that the homes of a shard may take in the mean: beyond it the others of it stay empty [s]
     licence: str = "CC0-1.0"  # of what is made; with research-only assets, name theirs
     preview: int = 768  # side of the top views [px]
 

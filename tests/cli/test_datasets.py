@@ -27,7 +27,7 @@ class Paper:
 
     def __init__(self, seed, weights="w"):
         self.seed, self.seconds = seed, {}
-        self.shard = SimpleNamespace(home_seconds=300.0, homes=4, licence="CC0-1.0")
+        self.shard = SimpleNamespace(home_seconds=300.0, shard_seconds=30.0, homes=4, licence="CC0-1.0")
         self.digests = {"weights": weights}
         self.asked = []
         self.library = SimpleNamespace(rows={f"asset_{k}": {"style": ""} for k in range(2)})

@@ -32,11 +32,11 @@ class Paper:
 
     chunk = 4
 
-    def __init__(self, folder, die=None, hang=None, die_once=(), stumble=(), crowd=0, stop=None):
+    def __init__(self, folder, die=None, hang=None, die_once=(), stumble=(), crowd=0, stop=None, shard_seconds=30.0):
         self.folder, self.seed, self.seconds = Path(folder), HEADER.seed, {}
         self.die, self.hang, self.die_once, self.stumble = die, hang, die_once, stumble
         self.crowd, self.stop = crowd, stop
-        self.shard = SimpleNamespace(home_seconds=2.0)
+        self.shard = SimpleNamespace(home_seconds=2.0, shard_seconds=shard_seconds)
 
     @property
     def digests(self):

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -17,8 +18,8 @@ import papers
 
 from pipeline.errors import ContentError
 from pipeline.execution import Progress
-from pipeline.homes.production import Chunk, Recipe, fill, make_chunk
-from pipeline.shards import open_or_create
+from pipeline.homes.production import FAILURES, Chunk, Recipe, fill, make_chunk
+from pipeline.shards import forget_altered, open_or_create, scene_id, shard_name
 from sfgen.check import check
 
 ROOT = Path(__file__).parents[2]
@@ -84,6 +85,24 @@ def test_the_home_that_costs_three_workers_is_recorded_and_the_rest_is_made(tmp_
     assert word in detail
     assert check(tmp_path / "set").empty == 1
     assert filled(tmp_path / "set").empty == tally.empty  # another run neither repeats nor forgets it
+
+
+def test_a_shard_that_takes_too_long_leaves_its_other_homes_empty_and_repair_may_try_them_again(tmp_path):
+    header = replace(papers.HEADER, shard_size=8)  # shards of 8 and 2 homes; a chunk is 4, and says that it took a second
+
+    def run(limit):
+        recipe = Recipe(functools.partial(papers.open_paper, str(tmp_path), shard_seconds=limit))
+        with open_or_create(tmp_path / "set", header, papers.made.AssetSource(tmp_path / "cache")) as dataset:
+            forgotten = forget_altered(dataset, FAILURES) if limit > 1 else []
+            return forgotten, fill(dataset, recipe, papers.request, progress=Progress(10, "homes", voice="quiet"))
+
+    (_, tally), shard = run(0.1), shard_name(0)
+    late = [scene_id(header.seed, index) for index in range(4, 8)]
+    assert (tally.homes, [scene for scene, _ in tally.empty["shard_deadline"]]) == (6, late)
+    assert check(tmp_path / "set").empty == 4
+    assert run(0.1)[1].empty == tally.empty  # another run neither repeats nor forgets them
+    forgotten, again = run(2.0)
+    assert (forgotten, again.homes, again.empty) == ([shard], 8, {})
 
 
 def test_an_unknown_error_costs_one_home_and_a_full_disk_the_run(tmp_path, monkeypatch):
