@@ -75,7 +75,7 @@ class Company:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """A room as the layout model furnishes it: 3D-FRONT's types that are so, of which categories it `needs` one of each group, or `usual`ly has one; `company` says what is not there without something else.
+    """A room as the layout model furnishes it: 3D-FRONT's types that are so, of which categories it `needs` one of each group, or `usual`ly has one.
 
     `part` [m2] is the floor that it usually takes of a room that serves as others too. What made ones hold besides: a rug, shares of rooms with things at all windows, expected numbers on the walls.
     """
@@ -83,7 +83,6 @@ class Layout:
     front: tuple[str, ...]
     needs: tuple[tuple[str, ...], ...] = ()
     usual: tuple[Usual, ...] = ()
-    company: tuple[Company, ...] = ()
     part: float = 5.0
     rug: Rug | None = None
     windows: Mapping[str, float] = field(default_factory=dict)
@@ -92,11 +91,12 @@ class Layout:
 
 @dataclass(frozen=True, slots=True)
 class Rooms:
-    """manifests/rooms.yaml. `functions` are the layout types of what rooms may serve as; `empty` are 3D-FRONT's types that are read, but not furnished; `materials` 3D-FUTURE's, with densities [kg/m3]."""
+    """manifests/rooms.yaml. `functions` are the layout types of what rooms may serve as; `company` says what is not in a room without something else; `empty` are 3D-FRONT's types that are read, but not furnished; `materials` 3D-FUTURE's, with densities [kg/m3]."""
 
     types: Mapping[str, RoomType]
     layouts: Mapping[str, Layout]
     functions: Mapping[str, str]
+    company: tuple[Company, ...]
     empty: tuple[str, ...]
     materials: Mapping[str, float | None]
 
@@ -112,6 +112,7 @@ class Taxonomy:
     types: Mapping[str, RoomType]
     layouts: Mapping[str, Layout]
     functions: Mapping[str, str]
+    company: tuple[Company, ...]
     front_rooms: Mapping[str, str | None]
     styles: Mapping[str, str]
     materials: Mapping[str, str]
@@ -167,5 +168,13 @@ def load() -> Taxonomy:
     front: dict[str, str | None] = {name: kind for kind, layout in rooms.layouts.items() for name in layout.front}
     styles, materials = ({n.lower(): n for n in names} for names in (style.load().styles, rooms.materials))
     return Taxonomy(
-        cards(), rooms.types, rooms.layouts, rooms.functions, {**front, **dict.fromkeys(rooms.empty)}, styles, materials, rooms.materials
+        cards(),
+        rooms.types,
+        rooms.layouts,
+        rooms.functions,
+        rooms.company,
+        {**front, **dict.fromkeys(rooms.empty)},
+        styles,
+        materials,
+        rooms.materials,
     )

@@ -99,11 +99,21 @@ class Ask:
         return cls(total, tuple(group for group in groups if group[0]), most, tuple(pair for pair in pairs if pair[0] and pair[1]))
 
     def completed(self, counts: NDArray[np.int64]) -> Ask:
-        """Return the same with both asked for where an inventory (C,) holds one without the other: a desk gets its chair, it does not go."""
-        alone = [((of, 1), (also, n)) for of, also, n in self.company if counts[list(of)].any() and counts[list(also)].sum() < n]
+        """Return the same with company asked for, where an inventory (C,) holds something without it, or something is asked for that goes with it: a desk gets its chair, it does not go.
+
+        What is said of the company itself stands.
+        """
+        if self.total is not None:
+            return self
+        said = {c for members, least, most in self.bounds if least or most is not None for c in members}
         barred = {c for members, _, most in self.bounds if most == 0 for c in members}
-        both = [(group, n, None) for pair in alone if not any(set(group) <= barred for group, _ in pair) for group, n in pair]
-        return replace(self, bounds=(*self.bounds, *both)) if self.total is None else self
+        both: list[tuple[tuple[int, ...], int, int | None]] = []
+        for of, also, n in self.company:
+            asked = any(least and set(members) <= set(of) for members, least, _ in self.bounds)
+            alone = bool(counts[list(of)].any()) and counts[list(also)].sum() < n and not set(of) <= barred
+            if (asked or alone) and said.isdisjoint(also):
+                both += [(also, n, None)] if asked else [(of, 1, None), (also, n, None)]
+        return replace(self, bounds=(*self.bounds, *both))
 
     def sized(self, usual: int) -> Ask:
         """Return the same with the number `usual` told, where nobody told one and no more than single things, or none, are asked for."""
@@ -193,25 +203,29 @@ def draw_inventories(
     rooms then hold what they need and no more than rooms of their type do. `repair_counts` mends what no draw meets.
     """
     about = net.about(features, layout)
-    inventories = list(_draw_counts(net, about, layout, [Ask(None, most=ask.most) for ask in asks], uniform[:, :1])[:, 0])
+    free = [Ask(None, most=ask.most) for ask in asks]
+    inventories = list(_draw_counts(net, about, layout, free, uniform[:, :1], np.zeros((len(asks), net.classes)))[:, 0])
     met = [bool(ask.met_by(mine[None])[0]) for ask, mine in zip(asks, inventories, strict=True)]
     lacking = [i for i, mine in enumerate(inventories) if not (met[i] and mine.any())]
     if not lacking:
         return inventories
     asks = [asks[i] if met[i] else asks[i].completed(inventories[i]).sized(int(inventories[i].sum())) for i in lacking]
-    for i, ask, mine in zip(lacking, asks, _draw_counts(net, about[lacking], layout[lacking], asks, uniform[lacking, 1:]), strict=True):
+    usual = np.array([net.own[:, layout[i]].softmax(-1).double().numpy() @ np.arange(MOST + 1.0) for i in lacking])
+    drawn = _draw_counts(net, about[lacking], layout[lacking], asks, uniform[lacking, 1:], usual)
+    for i, ask, mine, own in zip(lacking, asks, drawn, usual, strict=True):
         good, apart = (np.flatnonzero(a.met_by(mine) & (mine.sum(1) > 0)) for a in (ask, replace(ask, company=())))
         good = good if len(good) else apart
-        usual: NDArray[np.float64] = net.own[:, layout[i]].softmax(-1).double().numpy() @ np.arange(MOST + 1, dtype=float)
-        inventories[i] = mine[good[0]] if len(good) else repair_counts(mine[-1], ask, usual)
+        inventories[i] = mine[good[0]] if len(good) else repair_counts(mine[-1], ask, own)
     return inventories
 
 
-def _draw_counts(net: Inventory, about: Tensor, layout: Tensor, asks: Sequence[Ask], uniform: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Draw inventories (B, D, C) from `uniform` (B, D, C).
+def _draw_counts(
+    net: Inventory, about: Tensor, layout: Tensor, asks: Sequence[Ask], uniform: NDArray[np.float64], usual: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Draw inventories (B, D, C) from `uniform` (B, D, C); `usual` (B, C) is how many of each class rooms of these types hold.
 
     The later half of a room's draws are held to what is asked while they are made: a bounded group is cut at its most and
-    filled at its last class, a told number is never passed. Those before are samples of what the net knows, without its tail.
+    filled with what is most usual of it, a told number is never passed. Those before are samples of what the net knows, without its tail.
     """
     rooms, draws, classes = uniform.shape
     about = about.repeat_interleave(draws, 0)
@@ -226,7 +240,7 @@ def _draw_counts(net: Inventory, about: Tensor, layout: Tensor, asks: Sequence[A
         logits = net.logits(about, before, torch.from_numpy(left)[:, None], kinds, slice(c, c + 1))[:, 0]
         chance = logits.softmax(-1).double().numpy()
         chance[:, SEVERAL:][chance[:, SEVERAL:] < LIKELY] = 0.0  # the net's tail: eight loveseats once in a thousand rooms
-        least, most = _limits(asks, counts, c, draws)
+        least, most = _limits(asks, counts, c, usual)
         most = np.minimum(most, np.where(total >= 0, left, (full - counts.sum(1)).clip(0)))
         n = np.arange(MOST + 1)
         allowed = (n >= np.minimum(least, most)[:, None]) & (n <= most[:, None])
@@ -240,8 +254,11 @@ def _draw_counts(net: Inventory, about: Tensor, layout: Tensor, asks: Sequence[A
     return counts.reshape(rooms, draws, classes)
 
 
-def _limits(asks: Sequence[Ask], counts: NDArray[np.int64], c: int, draws: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _limits(
+    asks: Sequence[Ask], counts: NDArray[np.int64], c: int, usual: NDArray[np.float64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the least and the most (B * DRAWS,) of class c that bounds on its groups leave, given the counts so far."""
+    draws = len(counts) // len(asks)
     least, most = np.zeros(len(counts), np.int64), np.full(len(counts), MOST)
     for i, ask in enumerate(asks):
         part = slice(i * draws, (i + 1) * draws)
@@ -249,7 +266,7 @@ def _limits(asks: Sequence[Ask], counts: NDArray[np.int64], c: int, draws: int) 
             if c not in members:
                 continue
             have = counts[part][:, list(members)].sum(1)
-            if c == members[-1]:
+            if c == max(members, key=lambda k: usual[i, k]):
                 least[part] = np.maximum(least[part], (low - have).clip(0))
             if high is not None:
                 most[part] = np.minimum(most[part], (high - have).clip(0))

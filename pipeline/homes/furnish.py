@@ -83,8 +83,8 @@ def _parts(job: RoomJob, whole: RoomContext, taxonomy: Taxonomy, rng: np.random.
     counts = _split_count(job.count, [shapely.Polygon(part.polygon).area for part in parts])
     kinds = [part.layout_type for part in parts]
     asked = [(*category_bounds(job, kind, kinds, taxonomy), *usual_bounds(job, kind, taxonomy, rng)) for kind in kinds]
-    company = [tuple((c.of, c.also, c.least) for c in taxonomy.layouts[kind].company) if kind in taxonomy.layouts else () for kind in kinds]
-    return [replace(part, n_target=n, category_bounds=b, company=c) for part, n, b, c in zip(parts, counts, asked, company, strict=True)]
+    company = tuple((c.of, c.also, c.least) for c in taxonomy.company)
+    return [replace(part, n_target=n, category_bounds=b, company=company) for part, n, b in zip(parts, counts, asked, strict=True)]
 
 
 def _split_count(count: int | None, areas: Sequence[float]) -> list[int | None]:

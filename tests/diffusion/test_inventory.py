@@ -101,6 +101,22 @@ def test_what_is_not_there_alone_gets_company_and_does_not_go(rooms):
     assert (drawn(either, rooms, [never] * 20)[:, [NIGHTSTAND, BED]] == [0, 1]).all(), "what is asked for outright goes before"
 
 
+def test_what_is_asked_for_comes_with_its_company_and_what_is_said_of_that_stands(rooms):
+    """A desk that is asked for had no chair: only what was drawn unasked got company."""
+    seldom = Inventory(len(CLASSES), len(LAYOUTS), 16)  # nothing, nearly always; beds rather than chairs
+    with torch.no_grad():
+        seldom.own[..., 1:] = -12.0
+        seldom.own[BED, :, 1] = -9.0
+    pair = ((("nightstand",), ("dining_chair", "double_bed", "unknown"), 1),)
+    wish = CategoryBounds(("nightstand",), 1)
+    asked = drawn(seldom, rooms, [Ask.of(None, (wish,), CLASSES, company=pair)] * 30)
+    chair = CLASSES.index("dining_chair")
+    assert (asked[:, [NIGHTSTAND, BED]] == 1).all(), "of a group comes what rooms of the type hold most of"
+    assert (asked.sum(1) == 2).all()
+    bare = Ask.of(None, (wish, CategoryBounds(("double_bed", "dining_chair"), 0, 0)), CLASSES, company=pair)
+    assert (drawn(seldom, rooms, [bare] * 30)[:, [NIGHTSTAND, BED, chair]] == [1, 0, 0]).all()
+
+
 def test_company_may_be_of_several(net, rooms):
     """Dining rooms of the small world hold four chairs at a table; five are as rare as they are asked for."""
     ask = Ask.of(None, (), CLASSES, company=((("dining_table",), ("dining_chair",), 5),))

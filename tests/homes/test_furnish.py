@@ -97,14 +97,13 @@ def test_a_studio_is_asked_for_a_wardrobe_oftener_than_a_bedroom_and_never_for_a
     assert elsewhere == {"tv_stand", "coffee_table"}
 
 
-def test_a_part_is_told_what_is_not_alone_in_rooms_of_its_kind():
+def test_every_part_is_told_what_is_not_alone():
     words = taxonomy.load()
     studio = job("living_room+bedroom")
     whole = RoomContext.of(studio.plan, "room", studio.layout_type)
-    found = {part.layout_type: part.company for part in _parts(studio, whole, words, np.random.default_rng(0))}
-    assert found == {kind: tuple((c.of, c.also, c.least) for c in words.layouts[kind].company) for kind in ("living_room", "bedroom")}
-    assert ("dining_table",) in [of for of, *_ in found["living_room"]]
-    assert [of for of, *_ in found["bedroom"]] == [("desk",)]
+    told = [part.company for part in _parts(studio, whole, words, np.random.default_rng(0))]
+    assert told == [tuple((c.of, c.also, c.least) for c in words.company)] * 2
+    assert {("desk",), ("dining_table",)} <= {of for of, *_ in told[0]}
 
 
 def test_what_is_wished_for_stands_in_the_part_where_it_usually_does():
