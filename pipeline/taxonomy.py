@@ -15,10 +15,11 @@ PATH = Path(__file__).resolve().parent.parent / "manifests" / "rooms.yaml"
 
 @dataclass(frozen=True, slots=True)
 class Usual:
-    """One thing of these categories is asked for in a `share` of the rooms that would do without."""
+    """One thing of these categories is asked for in a `share` of the rooms that would do without and have this much `floor` [m2]."""
 
     of: tuple[str, ...]
     share: float
+    floor: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -135,7 +135,7 @@ def usual_bounds(job: RoomJob, kind: str, taxonomy: Taxonomy, rng: np.random.Gen
     if job.count is not None or job.attempt >= FREE_CHOICE:
         return ()
     settled, out = {c for bounds in job.category_bounds for c in bounds.categories}, set(job.exclusions(taxonomy))
-    drawn = [usual.of for usual, mark in marks if mark < usual.share and settled.isdisjoint(usual.of)]
+    drawn = [usual.of for usual, mark in marks if mark < usual.share and job.room.area >= usual.floor and settled.isdisjoint(usual.of)]
     return tuple(CategoryBounds(of, 1) for group in dict.fromkeys(drawn) if (of := tuple(c for c in group if c not in out)))
 
 

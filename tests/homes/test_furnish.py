@@ -10,9 +10,9 @@ from pipeline.homes.furnish import _parts, category_bounds, usual_bounds
 from pipeline.homes.request import RoomJob
 
 
-def job(layout_type, count=None, wishes=()):
+def job(layout_type, count=None, wishes=(), sides=(4, 3)):
     counts = [{"category": c, "min": d.least, "max": d.most} for d in wishes for c in d.categories]
-    plan = Plan((Room("room", layout_type, np.array([[0, 0], [4, 0], [4, 3], [0, 3.0]])),), (), "room")
+    plan = Plan((Room("room", layout_type, np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * np.array(sides, float)),), (), "room")
     return RoomJob(plan, "room", layout_type, 0, 0, count=count, furniture=Furniture.model_validate({"counts": counts}))
 
 
@@ -95,6 +95,15 @@ def test_a_studio_is_asked_for_a_wardrobe_oftener_than_a_bedroom_and_never_for_a
     assert abs(np.mean([bool(a) for a in asked]) - (1 - (1 - own) * (1 - others))) < 0.06
     elsewhere = {c for _ in range(50) for bounds in usual_bounds(studio, "living_room", words, rng) for c in bounds.categories}
     assert elsewhere == {"tv_stand", "coffee_table"}
+
+
+def test_a_studio_is_asked_for_a_table_where_the_floor_is_enough():
+    words = taxonomy.load()
+    rng = np.random.default_rng(0)
+    for sides, there in (((4, 3), False), ((6, 5), True)):
+        studio = replace(job("studio_room", sides=sides), layout_type="bedroom+living_room")
+        asked = {c for _ in range(30) for bounds in usual_bounds(studio, "living_room", words, rng) for c in bounds.categories}
+        assert ("dining_table" in asked) == there
 
 
 def test_every_part_is_told_what_is_not_alone():
