@@ -41,9 +41,9 @@ class Clause:
         self.waiting: tuple[Element, Group] | None = None  # a relation in front of its subject: "next to the kitchen lies ..."
         self.negative: Element | None = None
         self.verb = self.relative = self.single = False
+        self.owner = self.owning = ""
         self.only: Element | None = None
         self.factor: Element | None = None
-        self.owner = self.owning = ""
         first = next(
             (e for e in sentence if e.kind in {"np", "level", "zone", "every", "pron"} or e.value in {"other", "both", "all"}), None
         )
@@ -62,10 +62,6 @@ class Clause:
     def says(self, e: Element, sign: str) -> bool:
         """Whether a word of an element belongs to a closed class."""
         return bool(self.state.heard.lexicon.sign(sign) & set(e.text.split()))
-
-    def parted(self) -> bool:
-        """Whether some of a count were told apart, and others are left of it: "one is downstairs, the others upstairs"."""
-        return any(r.open_slot for r in self.stock.of(self.state.parted))
 
     def part(self, k: int) -> Group:
         """Return the rooms named between the last comma and k."""
@@ -228,8 +224,6 @@ class Clause:
                 first, joined, end = first or e, "", k + 1
             elif not group and (standin := self._standin(k, e, left)) is not None:
                 return standin
-            elif e.kind == "cue" and e.value in {"in", "leads"} and joined and cue in WIDE and not (joined == "comma" and self.relative):
-                joined = "and"  # "leads to the bath and into the kitchen"
             elif e.kind in LISTING:
                 joined = "comma" if e.kind == "comma" and joined != "and" else "and"
             elif not self._passed(e, bool(group), joined, cue):
@@ -319,18 +313,13 @@ def compare(c: Clause, k: int, e: Element) -> int:
         c.state.say("area_equal", named_rooms(rooms if len(rooms) > 1 else c.subject), (), e, LIKE)
         return k + 1
     right, j = c.after(k + 1, "cmp", left)
-    behind = c.near(j)
-    if c.factor is None and behind is not None and behind.kind == "factor":
-        c.factor, j = behind, j + 1
     value = (c.factor.number or 1.0) if c.factor else 1.0
     if left and right:
         c.state.understood(e.first, e.last)
         c.state.understood(*((c.factor.first, c.factor.last) if c.factor else (e.first, e.last)))
         turned = (e.value == "smaller") != (value < 1.0)
         a, b = (right, left) if turned != (c.negative is not None) else (left, right)  # "half the size of", "not larger than"
-        if e.value == "equal":
-            c.state.say("area_equal", (*a, *b), (), e, LIKE)
-        for x in a if e.value != "equal" else ():
+        for x in a:
             c.state.say("area_order", (x,), tuple(i for i in b if i != x), e, 1.0 / value if value < 1.0 else value)
         c.deny()
     c.factor, c.latest, c.run = None, right, []

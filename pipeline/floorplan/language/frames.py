@@ -307,11 +307,9 @@ def _bracket(marks: list[Mark], k: int, lex: Lexicon) -> tuple[str, int, int, in
 
 def _goes_on(marks: list[Mark], end: int, second: tuple[str, ...], lex: Lexicon) -> bool:
     """Whether the second part has an object of its own: "ins Bad geht man über den Flur", "卫生间和洗衣房都不能挨着餐厅"."""
-    if end >= len(marks):
-        return False
     if set(second) <= lex.sign("way_through"):
-        return marks[end].kind not in BREAKS | {"join"}
-    return "characters" in lex.traits and marks[end - 1].kind == "cue" and marks[end].kind in HEADS | {"num", "zone"}
+        return end < len(marks) and marks[end].kind not in BREAKS | {"join"}
+    return end < len(marks) and "characters" in lex.traits and marks[end - 1].kind == "cue" and marks[end].kind in HEADS | {"num", "zone"}
 
 
 def _bare_word(word: str, lex: Lexicon) -> str:

@@ -137,7 +137,8 @@ def _consumed_tokens(state: Reading, parsed: list[list[Element]], places: Sequen
                     or (e.kind == "owner" and (e.value in roles or any(x.kind in {"np", "home"} for x in part[:k])))
                     or (e.kind == "every" and (starred or has_statement))
                     or (e.kind == "flag" and e.value in STRESS)
-                    or (has_statement and (e.kind in {"flag", "det", "pron"} or (e.kind, e.value) in {("cue", "from"), ("adj", "open")}))
+                    or (has_statement and (e.kind == "flag" or (e.kind, e.value) in {("cue", "from"), ("adj", "open")}))
+                    or (has_statement and e.kind in {"det", "pron"} and (e.ids or e.value != "each"))
                 ):
                     cited.update(range(e.first, e.last))
                 elif e.kind == "corner" or (e.kind == "np" and (e.ids or e.banned)):

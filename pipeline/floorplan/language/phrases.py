@@ -259,10 +259,7 @@ def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> 
             else:
                 phrase.index = int(mark.number)
             k += counted
-        elif mark.kind in {"colon", "times"} and ahead is not None and ahead.kind == "num":
-            if mark.kind == "colon" and k + 2 < len(marks) and marks[k + 2].kind not in ENDS:
-                return k
-        elif mark.kind != "clf":
+        elif mark.kind != "clf" and not (mark.kind in {"colon", "times"} and ahead is not None and ahead.kind == "num"):
             return k
         phrase.taken.append(mark)
         k += 1
@@ -364,8 +361,6 @@ def _list(sentence: list[Element], j: int) -> None:
         rest = next((x for x in sentence[i + 1 :] if x.kind not in {"np", "comma", "det"}), None)
         if joined == "comma" and not titled and (rest is None or rest.kind != "or"):
             return
-        statement = sentence[i + 1] if i + 1 < len(sentence) and sentence[i + 1].kind in {"cue", "verb", "neg"} and joined != "or" else None
-        had = next((x for x in sentence[i + 1 :] if x.kind == "np"), None)
-        if statement is not None and not (statement.value == "has" and had is not None and had.type in NAMES):
-            return  # it has a statement of its own, unless it is the home that has what follows
+        if i + 1 < len(sentence) and sentence[i + 1].kind in {"cue", "verb", "neg"} and joined != "or":
+            return  # it has a statement of its own
         e.banned, joined = True, ""

@@ -21,14 +21,6 @@ def relate(c: Clause, k: int, e: Element) -> int | None:  # noqa: PLR0911 - one 
         return except_rooms(c, k, e)
     if e.value.startswith("thru"):
         return through(c, k, e)
-    if (
-        e.value == "from"
-        and c.says(e, "there")
-        and (there := named_rooms(c.objects or (c.latest if k else ()) or (c.state.past or [()])[-1]))
-    ):
-        c.goes_on(there if len(there) == 1 else c.state.topic)
-        c.objects = ()
-        return None
     c.relative = c.relative or bool(c.state.heard.lexicon.sign("relative_cue") & set(e.text.split()[:3]))  # "que da al"
     left, group, j = _sides(c, k, e)
     if not group:
@@ -142,8 +134,6 @@ def complete(c: Clause) -> None:
 def except_rooms(c: Clause, k: int, e: Element) -> int:
     """Read "all rooms but the pantry open off the hall": those that are left out, and who goes on."""
     group, j = c.after(k + 1, "except", ())
-    if not group:
-        return max(j, k + 1)
     c.state.say("except", group, (), e)
     c.left_out = group
     each = next((x for x in c.sentence[:k] if x.kind == "every" or (x.kind == "np" and set(x.ids) > set(group))), None)

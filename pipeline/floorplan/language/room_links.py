@@ -295,11 +295,7 @@ def _apart(draft: Draft, state: Reading, fact: Fact) -> None:
         zones = {f"*zone_{n}": list(members) or stock.zone(n) for n, (members, _) in state.zones.items()}
         return [x for i in ids for x in zones.get(i, [r.id for r in stock.rooms if not i[1:] or r.type == i[1:]] if i[0] == "*" else [i])]
 
-    if fact.what == "no_ensuite":
-        for bed in (r for r in stock.of("bedroom") if not fact.b or r.id in fact.b):
-            for bath in stock.of("bathroom"):
-                draft.forbid("connected", bath.id, bed.id, None, fact)
-    elif fact.what == "no_through":  # no way to the rooms of all leads through some; their own bathrooms and closets may lie behind them
+    if fact.what == "no_through":  # no way to the rooms of all leads through some; their own bathrooms and closets may lie behind them
         for one in expand(fact.a):
             for room in stock.rooms:
                 if room.id != one and room.type not in INNER and room.id not in draft.neighbours(one):

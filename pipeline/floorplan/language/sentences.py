@@ -6,10 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from pipeline.floorplan.language.clause import LIKE, Clause, compare, factor, ids_of, level, named_rooms, wing
-from pipeline.floorplan.language.facts import GROUND_FLOOR, PERSONAL, SOCIAL, Group, Reading
+from pipeline.floorplan.language.facts import PERSONAL, SOCIAL, Group, Reading
 from pipeline.floorplan.language.marks import Mark
-from pipeline.floorplan.language.naming import fresh
-from pipeline.floorplan.language.phrases import Element, backward
+from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.relations import complete, enter, relate
 from pipeline.floorplan.program.defaults import DEFAULTS
 
@@ -38,7 +37,7 @@ def _np(c: Clause, k: int, e: Element) -> None:
         _ban(c, e)
         return
     before = c.near(k - 1)
-    said = before is not None and before.kind in {"np", "pron"} and not e.det and e.number is None
+    said = before is not None and before.kind in {"np", "pron"} and not e.det
     if e.role == "ensuite" and e.type == "bathroom" and not e.ids and said:  # "one of them en suite"
         baths = named_rooms(c.latest)
         hosts = sorted(c.stock.of("bedroom"), key=lambda r: r.role != "primary")[: len(baths)]
@@ -46,11 +45,7 @@ def _np(c: Clause, k: int, e: Element) -> None:
             bath.role = "ensuite"
         c.give(baths, tuple(r.id for r in hosts), e)
         return
-    own = "own" in e.det or (bool(c.owning) and bool(c.run) and not e.det)
-    if c.owner and not e.ids and own and e.type in {"bedroom", "bathroom", "kitchen"}:
-        ids = tuple(fresh(c.state, e, backward(c.sentence, k, c.level if c.forward else None), c.owner))
-    else:
-        ids = c.rooms_at(k)
+    ids = c.rooms_at(k)
     if c.left_out and e.det & {"each", "all"} and set(ids) > set(c.left_out):
         ids, c.run = tuple(i for i in ids if i not in c.left_out), []
     _own(c, e, ids)
@@ -136,12 +131,6 @@ def _comma(c: Clause, k: int, _: Element) -> None:
         c.negative = None
 
 
-def _and(c: Clause, k: int, _: Element) -> None:
-    ahead = [x.kind for x in c.sentence[k + 1 : k + 3]]
-    if ahead[:1] == ["verb"] or ahead == ["np", "verb"]:
-        c.negative = None  # "must not be open and should have a door to the hall"
-
-
 def _adj(c: Clause, k: int, e: Element) -> None:
     before, ahead = c.near(k - 1), c.near(k + 1)
     kind = before.kind if before is not None else ""
@@ -174,9 +163,9 @@ def _det(c: Clause, k: int, e: Element) -> None:
     before, ahead = c.near(k - 1), c.near(k + 1)
     kind = ahead.kind if ahead is not None else ""
     behind = c.ahead(k + 1, "verb")
-    if e.value == "each" and kind in {"", "comma", "close"} and _one_each(c, before, e):
+    if e.value == "each" and c.ends(k + 1) and _one_each(c, before, e):
         return
-    if e.value == "other" and behind is not None and behind.kind in {"level", "colon"} and not c.parted():
+    if e.value == "other" and behind is not None and behind.kind == "level" and not any(r.open_slot for r in c.stock.of(c.state.parted)):
         _every(c, k, e)
         return
     if e.value == "all" and c.run and kind != "np":
@@ -196,11 +185,11 @@ def _det(c: Clause, k: int, e: Element) -> None:
 def _one_each(c: Clause, before: Element | None, e: Element) -> bool:
     """Read "three bedrooms. And a bathroom for each."."""
     owners = next((g for g in reversed(c.state.past) if len(g) > 1 and c.types(g) == {"bedroom"}), ())
-    if before is None or before.kind != "np" or len(c.latest) != 1 or not owners or not c.types(c.latest) <= PERSONAL:
+    if before is None or before.kind != "np" or len(c.latest) != 1 or not c.types(c.latest) <= PERSONAL:
         return False
     thing = c.stock.get(c.latest[0])
     c.give((thing.id, *(c.stock.add(thing.type, "", e.text, None).id for _ in owners[1:])), owners, e)
-    return True
+    return bool(owners)
 
 
 def _every(c: Clause, k: int, e: Element) -> None:
@@ -216,12 +205,6 @@ def _flag(c: Clause, k: int, e: Element) -> None:
         return
     if e.value == "only":
         c.only = e
-    elif e.value == "each_floor" and len(named_rooms(c.latest)) == 1:  # "a toilet on each floor": one more for every storey but the first
-        room = c.stock.get(c.latest[0])
-        room.level, storeys = GROUND_FLOOR, c.state.storeys[0] if c.state.storeys else 2
-        for level in range(1, storeys):
-            c.stock.add(room.type, "", e.text, level)
-        c.state.levels.append(Element("level", str(storeys - 1), e.first, e.last, e.text))
     elif e.value == "no_through":
         c.state.say("no_through", named_rooms(c.latest) or ("*bedroom",), (), e)
     elif e.value == "open_plan" and c.negated(k):
@@ -285,7 +268,7 @@ def _attach(c: Clause, k: int, mark: Mark, *, home: bool = False) -> None:
 
 
 READERS: Mapping[str, Callable[[Clause, int, Element], int | None]] = {
-    "np": _np, "home": _home, "amount": _note, "owner": _note, "verb": _verb, "relative": _note, "neg": _note, "comma": _comma, "and": _and, "but": _note,
+    "np": _np, "home": _home, "amount": _note, "owner": _note, "verb": _verb, "relative": _note, "neg": _note, "comma": _comma, "but": _note,
     "adj": _adj, "enter": _enter, "outside": _outside, "level": level, "wing": wing, "zone": Clause.zone,
     "pron": _pron, "det": _det, "every": _every, "flag": _flag, "cue": relate, "factor": factor, "cmp": compare,
 }  # fmt: skip
