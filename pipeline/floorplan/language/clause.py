@@ -313,10 +313,13 @@ def compare(c: Clause, k: int, e: Element) -> int:
         c.state.say("area_equal", named_rooms(rooms if len(rooms) > 1 else c.subject), (), e, LIKE)
         return k + 1
     right, j = c.after(k + 1, "cmp", left)
+    behind = c.near(j)
+    if c.factor is None and behind is not None and behind.kind == "factor":  # "客厅要比厨房大一倍"
+        c.factor, j = behind, j + 1
     value = (c.factor.number or 1.0) if c.factor else 1.0
     if left and right:
-        c.state.understood(e.first, e.last)
-        c.state.understood(*((c.factor.first, c.factor.last) if c.factor else (e.first, e.last)))
+        for said in filter(None, (e, c.factor)):
+            c.state.understood(said.first, said.last)
         turned = (e.value == "smaller") != (value < 1.0)
         a, b = (right, left) if turned != (c.negative is not None) else (left, right)  # "half the size of", "not larger than"
         for x in a:
@@ -334,16 +337,13 @@ def level(c: Clause, k: int, e: Element) -> None:
     c.state.levels.append(e)
     ahead = c.near(k + 1)
     part = c.part(k)
-    if c.forward and part and (ahead is None or ahead.kind == "comma"):  # "upstairs two bedrooms, the kitchen downstairs"
-        for room in (c.stock.get(i) for i in named_rooms(part)):
-            room.level = int(e.value)
-        return
-    if c.forward or heads(c.sentence, k) or ("*" in c.latest and ahead is not None and ahead.kind == "colon"):
+    closes = c.forward and part and (ahead is None or ahead.kind == "comma")  # "upstairs two bedrooms, the kitchen downstairs"
+    if not closes and (c.forward or heads(c.sentence, k) or ("*" in c.latest and ahead is not None and ahead.kind == "colon")):
         c.state.heights |= {"*": int(e.value)} if "*" in c.latest and not c.forward else {}
         c.forward, c.level, c.run = True, int(e.value), []
         return
     owners = c.subject if c.objects and c.latest == c.objects else ()  # "a guest room with bath, downstairs"
-    for room in (c.stock.get(i) for i in named_rooms((*c.latest, *owners))):
+    for room in map(c.stock.get, named_rooms(part if closes else (*c.latest, *owners))):
         room.level = int(e.value)
     c.state.heights |= {i.removeprefix("*zone_"): int(e.value) for i in c.latest if i.startswith("*")}
 

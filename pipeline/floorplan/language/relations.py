@@ -80,23 +80,14 @@ def _alone(c: Clause, k: int, e: Element) -> int | None:
     """Read a relation that nothing follows: "next to each other", "kitchen and bath adjacent"."""
     ahead = c.near(k + 1)
     mutual = ahead is not None and ahead.kind == "reciprocal"
-    if mutual or (e.value == "wall" and c.run):
-        reciprocal(c, e)
+    if mutual or (e.value == "wall" and c.run):  # "the two bedrooms must not share a wall with one another"
+        rooms = next((g for g in (c.latest, ids_of(c.run)) if len(g) > 1), c.subject)
+        _emit(c, e, rooms[:1], rooms[1:])
+        c.subject = c.latest = rooms
         return k + 1 + mutual
     if e.value == "between" and e.text in c.state.heard.lexicon.sign("amid"):
         c.state.understood(e.first, e.last)  # "... as a buffer in between" points back at what was said
     return None
-
-
-def reciprocal(c: Clause, e: Element) -> None:
-    """Read "next to each other", "the two bedrooms must not share a wall with one another"."""
-    rooms = c.latest if len(c.latest) > 1 and e.value != "open" else ids_of(c.run)
-    rooms = rooms if len(rooms) > 1 else c.subject
-    if c.negative is not None or e.value in {"away", "apart"}:
-        _emit(c, e, rooms[:1], rooms[1:])
-        return
-    c.state.say("merge" if e.value == "open" else e.value, rooms, (), e)
-    c.subject = c.latest = rooms
 
 
 def _emit(c: Clause, e: Element, left: Group, group: Group) -> None:
