@@ -7,13 +7,14 @@ import itertools
 from collections.abc import Iterable, Sequence
 from typing import Any, NoReturn
 
-from pipeline.floorplan.language.facts import HALLS, Fact, Group, Inventory, Named, Reading
+from pipeline.floorplan.language.facts import HALLS, Fact, Group, Inventory, Reading
 from pipeline.floorplan.language.marks import Words
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import Evidence
 
 MERGE_ORDER = ("living_room", "family_room", "dining_room", "kitchen", "studio_room")
 OPPOSITE, FAR, WINGS = 0.45, 0.35, 0.2  # "at the other end", "away from" and "in another wing", as shares of the diagonal
+ENSUITE = {"ensuite", "primary"}  # roles of bathrooms that belong to a bedroom
 KINDS = {"door": "door", "leads": "door", "near": "any", "open": "open", "wall": "wall"}
 ASIDE = {"balcony", "garage", "hallway", "staircase"}  # not meant when the largest room is spoken of
 INNER = {"closet", "bathroom", "balcony", "storage", "wc", "utility", "garage"}  # may lie behind another room
@@ -87,9 +88,7 @@ def pairs(a: Group, b: Group) -> list[tuple[str, str]]:
 def join(draft: Draft, state: Reading) -> None:
     """Write all facts into the program."""
     stock, facts = state.inventory, state.facts
-    ways = [
-        (way, only) for way, only in itertools.pairwise(facts) if only.what == "only" and way.what in {"door", "leads"} and way.a == only.a
-    ]
+    ways = [way for way, only in itertools.pairwise(facts) if only.what == "only" and way.what in {"door", "leads"} and way.a == only.a]
     for fact in facts:
         if fact.what == "own":
             _belongings(draft, stock, fact, ways)
@@ -110,27 +109,12 @@ def join(draft: Draft, state: Reading) -> None:
         _apart(draft, state, fact)
 
 
-def _belongings(draft: Draft, stock: Inventory, fact: Fact, ways: Sequence[tuple[Fact, Fact]]) -> None:
+def _belongings(draft: Draft, stock: Inventory, fact: Fact, ways: Sequence[Fact]) -> None:
     """Join each room to the one it belongs to, unless it is reached only through another one of its owner's."""
     owners = fact.b if len(fact.b) == len(fact.a) else fact.b[:1] * len(fact.a)
     for thing, owner in zip(fact.a, owners, strict=False):
-        if not any(thing in way.a and owner not in way.b for way, _ in ways):
+        if not any(thing in way.a and owner not in way.b for way in ways):
             _give(draft, stock, thing, owner, fact)
-
-
-def _hosts(draft: Draft, stock: Inventory) -> list[Named]:
-    """Return the bedrooms that an en suite bathroom may belong to, those without one first."""
-    hosts = [r for r in stock.of("bedroom") if r.role == "primary"] or stock.of("bedroom")
-    return sorted(hosts, key=lambda r: any(stock.get(i).type == "bathroom" for i in draft.neighbours(r.id)))
-
-
-def _bath(draft: Draft, stock: Inventory, bed: Named, fact: Fact, known: Sequence[Named]) -> None:
-    """Give a bedroom one of the known bathrooms that hangs on nothing yet, or a new one."""
-    free = sorted((r for r in known if not draft.neighbours(r.id)), key=lambda r: not r.role)
-    bath = free[0] if free else stock.add("bathroom", "", "en suite", bed.level)
-    bath.open_slot = False
-    _give(draft, stock, bath.id, bed.id, fact)
-    draft.cite(fact.first, fact.last, f"rooms.{bath.id}")
 
 
 def _give(draft: Draft, stock: Inventory, thing: str, owner: str, fact: Fact) -> None:
@@ -260,18 +244,25 @@ def _everything(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact
 
 def _suites(draft: Draft, stock: Inventory, facts: Sequence[Fact]) -> None:
     """Give each suite a bathroom of its own, directly or through its closet; place en suites that nobody placed."""
-    for fact in facts:
-        for bed in map(stock.get, fact.a if fact.what == "suite" else ()):
-            near = draft.neighbours(bed.id)
-            reach = near | {j for i in near if stock.get(i).type == "closet" for j in draft.neighbours(i)}
-            if not any(stock.get(i).type == "bathroom" for i in reach):
-                own = [r for r in stock.of("bathroom") if r.role in {"ensuite", "primary"}]
-                slots = [r for r in stock.of("bathroom") if r.open_slot and (bed.level is None or r.level in {None, bed.level})]
-                _bath(draft, stock, bed, fact, own + slots)
-    for bath in stock.of("bathroom"):
-        hosts = _hosts(draft, stock) if bath.role in {"ensuite", "primary"} and not draft.neighbours(bath.id) else []
-        if hosts and (bath.role == "ensuite" or hosts[0].role == "primary"):
-            _give(draft, stock, bath.id, hosts[0].id, Fact("own", (bath.id,), (hosts[0].id,), 0.0, *(bath.span or (0, 1))))
+    for fact, bed in ((f, stock.get(i)) for f in facts if f.what == "suite" for i in f.a):
+        near = draft.neighbours(bed.id)
+        reach = near | {j for i in near if stock.get(i).type == "closet" for j in draft.neighbours(i)}
+        if not any(stock.get(i).type == "bathroom" for i in reach):
+            known = [
+                r
+                for r in stock.of("bathroom")
+                if r.role in ENSUITE or (r.open_slot and (bed.level is None or r.level in {None, bed.level}))
+            ]
+            free = [r for r in known if not draft.neighbours(r.id)]
+            bath = min(free, key=lambda r: not r.role) if free else stock.add("bathroom", "", "en suite", bed.level)
+            bath.open_slot = False
+            _give(draft, stock, bath.id, bed.id, fact)
+            draft.cite(fact.first, fact.last, f"rooms.{bath.id}")
+    for bath in (r for r in stock.of("bathroom") if r.role in ENSUITE and not draft.neighbours(r.id)):
+        beds = [r for r in stock.of("bedroom") if r.role == "primary"] or stock.of("bedroom")
+        beds = sorted(beds, key=lambda r: any(stock.get(i).type == "bathroom" for i in draft.neighbours(r.id)))
+        if beds and (bath.role == "ensuite" or beds[0].role == "primary"):
+            _give(draft, stock, bath.id, beds[0].id, Fact("own", (bath.id,), (beds[0].id,), 0.0, *(bath.span or (0, 1))))
 
 
 def _zones(draft: Draft, state: Reading) -> None:
