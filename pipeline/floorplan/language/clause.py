@@ -112,7 +112,7 @@ class Clause:
     def stands_for(self, e: Element, ids: Group) -> None:
         """Let an element that is no phrase be the list in front of the next relation."""
         e.ids, self.latest = list(ids), ids
-        self.run = [Element("np", "", e.first, e.last, e.text, ids=list(ids))]
+        self.run = [Element("np", first=e.first, last=e.last, text=e.text, ids=list(ids))]
 
     def push(self, k: int, e: Element, ids: Group) -> None:
         """Take a group into the list in front of the next relation."""
@@ -278,7 +278,7 @@ class Clause:
             halls = bool(self.types(self.latest or self.subject) & HALLS)
             if self.relative and e.introduces and first.definite and not halls:
                 return False  # "a living room that opens to the kitchen, one bedroom and one bath"
-            if e.number is not None and first.number is None and not any(x.kind == "and" for x in self.sentence[k:]):
+            if e.number and not first.number and not any(x.kind == "and" for x in self.sentence[k:]):
                 return False
         if cue in WIDE:
             return cue != "between"

@@ -18,7 +18,7 @@ def _role(e: Element) -> str:
 
 
 def _many(e: Element) -> bool:
-    return e.plural or bool(e.det & {"all", "both", "each"}) or (e.number or 0) > 1
+    return e.plural or bool(e.det & {"all", "both", "each"}) or e.number > 1
 
 
 def _word(e: Element) -> str:
@@ -65,14 +65,14 @@ def _resolve_phrase(state: Reading, sentence: list[Element], k: int, level: int 
     e, stock, role = sentence[k], state.inventory, _role(sentence[k])
     same = stock.of(e.type)
     suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), None) if e.type == "bedroom" and not role else None
-    if suites and not e.ordinal and e.number is None:
+    if suites and not e.ordinal and not e.number:
         return [stock.get(i) for i in suites]
     halls = [r for r in stock.rooms if r.type in {"hallway", "entry"} and _word(e) in r.surface.split()]
     if e.type == "hallway" and e.definite and halls:
         return halls[:1]
     if e.part:
         state.parted = e.type
-        _fill(state, e, max(int(e.number or 0), e.part))
+        _fill(state, e, max(int(e.number), e.part))
         same = stock.of(e.type)
         return [close(r, role, e.text) for r in ([r for r in same if r.open_slot] or same)[: e.part]]
     if e.index:
@@ -101,7 +101,7 @@ def _others(state: Reading, sentence: list[Element], k: int, role: str, level: i
     same = stock.of(e.type)
     mentioned = {i for g in state.past[-1:] for i in g} | {i for x in sentence[:k] for i in x.ids} | set(state.topic)
     rest = [r for r in same if r.open_slot] or [r for r in same if r.id not in mentioned] or ([] if len(same) == 1 else same[-1:])
-    if e.number is not None and e.type == "bedroom":
+    if e.number and e.type == "bedroom":
         mentioned |= {g[0] for g in state.past if len(g) == 1}
         rest = [r for r in rest if r.open_slot or r.id not in mentioned]
         rest += [stock.add(e.type, role, e.text, level) for _ in range(int(e.number) - len(rest))]
@@ -155,7 +155,7 @@ def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: 
     ]
     if e.type == "bathroom":
         slots = [r for r in same if r.open_slot and not r.role]
-        known = slots or (plain if len(plain) == 1 and (e.definite or (bare_nouns and not e.det and e.number is None)) else [])
+        known = slots or (plain if len(plain) == 1 and (e.definite or (bare_nouns and not e.det and not e.number)) else [])
         return [close(known[0], role, e.text)] if known and role not in {"ensuite", "primary"} else []
     listed = _before(sentence, k, "cue", "colon", "open", "verb", "comma")  # "two bedrooms and a guest room": none of the two
     slots = [
@@ -219,7 +219,7 @@ def introduce(state: Reading, sentences: list[list[Element]]) -> None:
                 if e.kind == "level" and (not (level is None and k) or heads(sentence, k)):
                     level = int(e.value)
                 suites = suites or (e.kind == "np" and e.suite)
-                theirs = e.suite or (suites and e.type == "bedroom" and e.number is None)
+                theirs = e.suite or (suites and e.type == "bedroom" and not e.number)
                 if e.kind == "np" and e.introduces and not e.ids and not theirs and _whole(sentence, k) == whole:
                     _few(state, e)
                     rooms = _count_all(state, e) if whole else _introduce_rooms(state, sentence, k, backward(sentence, k, level))
@@ -228,7 +228,7 @@ def introduce(state: Reading, sentences: list[list[Element]]) -> None:
 
 def _few(state: Reading, e: Element) -> None:
     """Refuse more rooms than a program holds, with the words."""
-    if (e.number or 0) > MAX_ROOMS:
+    if e.number > MAX_ROOMS:
         words = [state.heard.quote(max(e.first - 1, 0), e.last, "rooms")]
         raise ImpossibleError(f"{e.number:g} {e.type.replace('_', ' ')}s are asked for", f"ask for {MAX_ROOMS} rooms at most", words)
 
@@ -239,7 +239,7 @@ def _whole(sentence: list[Element], k: int) -> bool:
     if e.compound and not e.role:
         return True
     near = [*sentence[k + 1 : k + 2], *(sentence[max(0, k - 1) : k] if e.type == "bedroom" and not e.role else [])]
-    return any(x.kind == "flag" and x.value == "total" for x in near) and e.number is not None and not e.amounts
+    return any(x.kind == "flag" and x.value == "total" for x in near) and e.number > 0 and not e.amounts
 
 
 def _count_all(state: Reading, e: Element) -> list[Named]:
@@ -257,7 +257,7 @@ def _introduce_rooms(state: Reading, sentence: list[Element], k: int, level: int
     same = stock.of(e.type)
     slots = [r for r in same if r.open_slot and (level is None or r.level in {None, level}) and not r.role]
     candidates = [r for r in slots if r.whole or _is_spelt_out(sentence, k, r)]
-    if e.number is not None and not role and "another" not in e.det and count > len(same) and any(r.whole for r in same):
+    if e.number and not role and "another" not in e.det and count > len(same) and any(r.whole for r in same):
         state.say("beyond", tuple(r.id for r in same), (), e, float(count))
         return same
     if slots and k > 1 and sentence[k - 1].kind == "verb" and (sentence[k - 2].kind, sentence[k - 2].value) == ("pron", "one"):
@@ -268,10 +268,10 @@ def _introduce_rooms(state: Reading, sentence: list[Element], k: int, level: int
     elif not role and slots:
         if len(slots) == count == len(same) and count > 1:
             return slots
-        known = all(r.whole for r in slots) or (e.number is not None and count < len(slots) and len(slots) > 1)
+        known = all(r.whole for r in slots) or (e.number and count < len(slots) and len(slots) > 1)
         if known and count <= len(slots) and _before(sentence, k, "cue", "colon", "open", "verb", "comma") is None:
             return [close(r, "", e.text, level) for r in slots[:count]]
-    once = count == 1 and e.number is None and not role and e.type in ALONE and "another" not in e.det
+    once = count == 1 and not e.number and not role and e.type in ALONE and "another" not in e.det
     if once and same:
         return same[:1]
     rooms = _new(state, e, count, role, level)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 from pipeline.floorplan.language.lexicon import Lexicon, kinds
 from pipeline.floorplan.language.marks import HEADS, LEADING, Mark, Words
@@ -18,18 +19,11 @@ SHORT = 48  # characters: a prompt of such lines is a list
 
 
 @dataclass(slots=True)
-class Element:
-    """A noun phrase (kind "np") or another thing said, read from tokens[first:last]."""
+class Element(Mark):
+    """A mark with all that belongs to it: a noun phrase (kind "np"; `number`: how many, 0 where it is not said) or another thing said."""
 
-    kind: str
-    value: str = ""
-    first: int = 0
-    last: int = 0
-    text: str = ""
-    number: float | None = None
     type: str = ""
     role: str = ""
-    plural: bool = False
     ordinal: int = 0
     index: int = 0
     part: int = 0  # "two of the four": 2
@@ -41,11 +35,9 @@ class Element:
     compound: bool = False  # "a two-bedroom flat": the number is the whole count
     removes: bool = False  # a negation of what was there
     functions: set[str] = field(default_factory=set)
-    only: bool = False
     banned: bool = False
     ids: list[str] = field(default_factory=list)
     taken: list[Mark] = field(default_factory=list)  # what stands in front of its head and behind it
-    mark: Mark | None = None
 
     @property
     def definite(self) -> bool:
@@ -57,7 +49,7 @@ class Element:
         """Whether the phrase makes rooms of its own."""
         if self.definite or self.part or "own" in self.det or self.banned or self.ordinal:
             return False
-        return self.number is not None or bool(self.det & {"indefinite", "another"})
+        return bool(self.number or self.det & {"indefinite", "another"})
 
 
 def heads(sentence: list[Element], k: int) -> bool:
@@ -135,7 +127,7 @@ def _elements(marks: list[Mark], lex: Lexicon) -> list[Element]:
         elif behind and mark.value in {"area", "length"} and not _ahead(marks, k, lex):
             elements[-1].amounts.append(mark)
             areas = sum(m.is_size for m in elements[-1].amounts)
-            if areas > 1 and elements[-1].number in {None, areas - 1}:  # "bedrooms of 14 and 12 m2" are two
+            if areas > 1 and elements[-1].number in {0.0, areas - 1}:  # "bedrooms of 14 and 12 m2" are two
                 elements[-1].number = areas
         elif mark.kind in LEADING or (mark.kind == "amount" and mark.value == "area"):
             pre.append(mark)
@@ -184,7 +176,12 @@ def _plain(mark: Mark, lex: Lexicon) -> Element:
     if mark.kind == "join":
         kind = "comma" if mark.text in lex.sign("also") else mark.value
     removes = mark.kind == "neg" and mark.text in lex.sign("removes")
-    return Element(kind, mark.value, mark.first, mark.last, mark.text, number=mark.number, only=mark.only, removes=removes, mark=mark)
+    return _element(mark, kind=kind, removes=removes)
+
+
+def _element(mark: Mark, **more: Any) -> Element:
+    """Return a mark as an element."""
+    return Element(**{**{f.name: getattr(mark, f.name) for f in fields(mark)}, **more})
 
 
 def _phrases(marks: list[Mark], k: int, pre: list[Mark], elements: list[Element], lex: Lexicon, postposed: bool) -> int:
@@ -193,7 +190,7 @@ def _phrases(marks: list[Mark], k: int, pre: list[Mark], elements: list[Element]
     compound = k + 1 < len(marks) and marks[k + 1].kind == "home"
     names = mark.value.split("+") if mark.kind == "room" else [mark.value]
     for part in names[:-1]:
-        elements += [_phrase(replace(mark, value=part), front, compound, lex), Element("and", "", mark.first, mark.first, "")]
+        elements += [_phrase(replace(mark, value=part), front, compound, lex), Element("and", first=mark.first, last=mark.first)]
         elements[-2].adjectives.update({"melted"} if part != "bedroom" else ())
         front = [p for p in front if p.kind != "num"]
     phrase = _phrase(replace(mark, value=names[-1]), front, compound, lex)
@@ -208,9 +205,7 @@ def _phrases(marks: list[Mark], k: int, pre: list[Mark], elements: list[Element]
 def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool, lex: Lexicon) -> Element:
     """Put a noun phrase together from its head and what stands in front of it."""
     kind, _, role = mark.value.partition("/") if mark.kind == "room" else ("bedroom", "", mark.value)
-    phrase = Element(
-        "np", "", mark.first, mark.last, mark.text, type=kind, plural=mark.plural, compound=compound, mark=mark, taken=list(pre)
-    )
+    phrase = _element(mark, kind="np", type=kind, number=0.0, compound=compound, taken=list(pre))
     phrase.suite = mark.kind == "suite"
     phrase.functions = {"dining"} if role == "diner" else set()
     phrase.role = "" if role in {"diner", "corner"} else role
@@ -218,12 +213,12 @@ def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool, lex: Lexicon) -> El
         if part.kind == "num":
             phrase.banned = phrase.banned or part.number == 0
             phrase.number = part.number if part.number == int(part.number) and part.number > 0 else phrase.number
-        elif part.kind == "det" and part.value == "partitive" and phrase.number is not None:
-            phrase.part, phrase.number = int(phrase.number), None
+        elif part.kind == "det" and part.value == "partitive" and phrase.number:
+            phrase.part, phrase.number = int(phrase.number), 0.0
         elif part.kind == "det":
             phrase.det.add("definite" if part.value == "partitive" else part.value)
-            if part.value == "other" and phrase.number is None:
-                phrase.number = count if (count := lex.count(part.text)) > 1 else None
+            if part.value == "other" and not phrase.number:
+                phrase.number = count if (count := lex.count(part.text)) > 1 else 0.0
         elif part.kind == "ord":
             phrase.ordinal = int(part.number)
         elif part.kind == "adj":
@@ -269,7 +264,7 @@ def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> 
 def _counts(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> bool:
     """Whether the number at k belongs to the phrase in front of it rather than to what follows."""
     number = marks[k].number
-    if (phrase.number is not None and not postposed) or number != int(number) or not 0 < number <= MOST_INDEX:
+    if (phrase.number and not postposed) or number != int(number) or not 0 < number <= MOST_INDEX:
         return False
     after, further = (marks[j].kind if j < len(marks) else "stop" for j in (k + 1, k + 2))
     if after == "clf":
@@ -285,7 +280,7 @@ def settle(parsed: list[list[Element]]) -> None:
         for k, e in enumerate(everything):
             ahead = everything[k + 1].kind if k + 1 < len(everything) else ""
             little = e.size < 1.0 and ahead not in {"cue", "verb"}  # and nothing is said of it
-            if e.kind == "np" and e.type == "kitchen" and (little or (e.mark is not None and e.mark.value == "kitchen/corner")):
+            if e.kind == "np" and e.type == "kitchen" and (little or e.value == "kitchen/corner"):
                 e.kind = "corner"
 
 
@@ -337,7 +332,7 @@ def _target(sentence: list[Element], k: int) -> int | None:
     """Return the noun phrase that a negation in front of k rules out; None where it turns a relation or says nothing of rooms."""
     for j, e in enumerate(sentence[k:], k):
         if e.kind == "np":
-            return None if e.number is not None and any(x.kind == "colon" for x in sentence[k:j]) else j
+            return None if e.number and any(x.kind == "colon" for x in sentence[k:j]) else j
         colon = e.kind == "colon" and all(x.kind in {"verb", "word"} for x in sentence[k:j])  # "not needed: balcony, garage"
         if e.kind not in {"verb", "adj", "det", "owner", "size", "word", "relative"} and not colon and (e.kind, e.value) != ("cue", "has"):
             return None
@@ -354,7 +349,7 @@ def _list(sentence: list[Element], j: int) -> None:
         if e.kind in {"comma", "and", "or"}:
             joined = e.kind if joined != "or" else joined
             continue
-        if e.kind != "np" or not joined or e.number is not None or e.amounts or e.definite or e.det & {"own", "another"}:
+        if e.kind != "np" or not joined or e.number or e.amounts or e.definite or e.det & {"own", "another"}:
             return
         if (joined == "and" and "indefinite" in e.det) or e.adjectives & {"open", "combined"}:
             return  # "no balcony and a garage"

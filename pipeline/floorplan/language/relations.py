@@ -234,7 +234,7 @@ def _give(c: Clause, k: int, e: Element, owners: Group) -> int:
         j += 1
     if given:
         c.latest, c.subject, c.objects, c.verb = given, owners, given, False
-        c.run = [Element("np", "", e.first, e.last, "", ids=list(given), type=c.stock.get(given[0]).type)]
+        c.run = [Element("np", first=e.first, last=e.last, ids=list(given), type=c.stock.get(given[0]).type)]
     return end
 
 
@@ -255,7 +255,7 @@ def _theirs(c: Clause, j: int, owners: Group, joined: str) -> bool:
     if joined == "comma" and not own:
         rest = next((y for y in c.sentence[j + 1 :] if not (y.kind in {"comma", "det"} or (y.kind == "np" and y.type in PERSONAL))), None)
         return rest is not None and rest.kind == "and"  # "with a bath, closet and balcony"
-    return not joined or own or not ("another" in x.det or x.number is not None or x.type == "wc")
+    return not joined or own or not ("another" in x.det or x.number or x.type == "wc")
 
 
 def _things(c: Clause, j: int, owners: Group) -> Group:

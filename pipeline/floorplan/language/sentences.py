@@ -93,7 +93,7 @@ def _ban(c: Clause, e: Element) -> None:
     c.state.understood(e.first, e.last)
     if e.role == "ensuite":
         c.state.say("no_ensuite", tuple(r.id for r in c.stock.of("bathroom")) or ("*bathroom",), (), e)
-    elif not (e.type == "bedroom" and e.role) and not (e.type == "kitchen" and e.mark is not None and "/" in e.mark.value):
+    elif not (e.type == "bedroom" and e.role) and not (e.type == "kitchen" and "/" in e.value):
         c.state.banned.append((e.type, e))  # "no guest room" leaves the other bedrooms, "no kitchen-diner" a kitchen
 
 
@@ -108,8 +108,8 @@ def _home(c: Clause, k: int, e: Element) -> None:
 
 def _note(c: Clause, k: int, e: Element) -> None:
     """Note an amount, people, "which", a negation, or a "but", which ends one: "not open, but next to the dining room"."""
-    if e.kind == "amount" and e.mark is not None:
-        _attach(c, k, e.mark)
+    if e.kind == "amount":
+        _attach(c, k, e)
     elif e.kind == "owner":
         c.owner, c.owning = e.value, ""
     elif e.kind == "relative":
