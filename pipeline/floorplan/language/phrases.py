@@ -15,6 +15,7 @@ ROLES = {"primary", "guest", "child", "shared"}  # said by an adjective
 ENDS = {"comma", "join", "clf", "stop", "open", "close", "slash"}
 MOST_INDEX = 12
 LONGEST = 150  # marks of a sentence; a longer one is read in parts, cut at commas
+MARKS = tuple(f.name for f in fields(Mark))
 SHORT = 48  # characters: a prompt of such lines is a list
 
 
@@ -181,7 +182,7 @@ def _plain(mark: Mark, lex: Lexicon) -> Element:
 
 def _element(mark: Mark, **more: Any) -> Element:
     """Return a mark as an element."""
-    return Element(**{**{f.name: getattr(mark, f.name) for f in fields(mark)}, **more})
+    return Element(**{**{name: getattr(mark, name) for name in MARKS}, **more})
 
 
 def _phrases(marks: list[Mark], k: int, pre: list[Mark], elements: list[Element], lex: Lexicon, postposed: bool) -> int:
