@@ -43,9 +43,12 @@ def resistance(asset: Asset, joint_index: int) -> Resistance:
     mass = sum(link.mass for link in links)
     load = max(0.0, gravity_load(asset, joint_index))
     if joint.type == "prismatic":
-        damping = min(SLIDE_DAMPING, DECAY * (mass + SLIDE_ARMATURE))
         if joint.part_class == "slider_button" and 0 < joint.upper < np.inf:
-            return Resistance(damping, 0.0, SLIDE_ARMATURE, mass + SLIDE_ARMATURE, max(BUTTON, load / SAG) / joint.upper)
+            stiffness = max(BUTTON, load / SAG) / joint.upper
+            # As fast as may be without swinging: a lever that bobs for two seconds keeps a whole kitchen awake.
+            damping = 2 * float(np.sqrt(stiffness * (mass + SLIDE_ARMATURE)))
+            return Resistance(damping, 0.0, SLIDE_ARMATURE, mass + SLIDE_ARMATURE, stiffness)
+        damping = min(SLIDE_DAMPING, DECAY * (mass + SLIDE_ARMATURE))
         return Resistance(damping, min(SLIDE_FRICTION, SLIDE_DRAG * GRAVITY * mass) + HOLD * load, SLIDE_ARMATURE, mass + SLIDE_ARMATURE)
     away = [link.com - joint.origin for link in links]
     arms = [r - (r @ joint.axis) * joint.axis for r in away]

@@ -174,6 +174,7 @@ def test_gravity_does_not_open_what_hangs_or_looks_up(cabinet):
     assert held(shut).friction <= 0.1
     button = held((0, 1, 0), "prismatic", "slider_button")
     assert button.stiffness > 0, "buttons spring back"
+    assert button.damping == pytest.approx(2 * math.sqrt(button.stiffness * button.inertia)), "... and do not swing"
     assert gravity_load(cabinet, 0) == pytest.approx(0.0)
     key = replace(cabinet, joints=(joint("prismatic", "slider_button", (0, 0, -1)), *cabinet.joints[1:]))
     assert gravity_load(key, 0) == pytest.approx(9.81 * cabinet.links[1].mass)
