@@ -19,7 +19,7 @@ from pipeline.sources.articulated.shape_reader import unique_name
 from pipeline.sources.densities import density
 from pipeline.sources.meshes.colliders import POCKET, Solids, bodies_solids, link, matter_volume, solids
 from pipeline.sources.meshes.inertials import Inertial, combine_inertials, inertia_flaw, mass_flaw
-from pipeline.sources.meshes.touching import BUMPED, LEFT_ALONE, UNDER, touch_tolerances
+from pipeline.sources.meshes.touching import ANY, BUMPED, LEFT_ALONE, OVER, UNDER, touch_tolerances
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
 from pipeline.taxonomy import Taxonomy
@@ -54,7 +54,8 @@ def assets(
         category = taxonomy.categories[fit.category]
         kind, how = category.super, touch_tolerances(category, opens=True)
         lowest = min([UNDER, *(float((body.points()[:, 2] - middle[2]).min()) * fit.scale for body in bodies[1:])])
-        below = how if category.loose else replace(how, sides=BUMPED, down=LEFT_ALONE, under=lowest)
+        over = OVER if category.mount == "floor" else ANY
+        below = how if category.loose else replace(how, sides=BUMPED, down=LEFT_ALONE, under=lowest, over=over)
         links: list[Link] = []
         weighed = []
         for body, solid in zip(bodies, matter, strict=True):

@@ -22,6 +22,7 @@ from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, c
 from pipeline.sources.meshes.near_boxes import NEAR
 from pipeline.sources.meshes.reach import make_reach_test
 from pipeline.sources.meshes.rings import STAVES, is_ring, same_height, sectors
+from pipeline.sources.meshes.rows import blocks
 
 Floats = NDArray[np.float64]
 Allowed = Callable[[Floats, Floats], Floats]  # points (P, 3), normals (P, 3) there -> how far each may be off (P,) [m]
@@ -47,6 +48,7 @@ ANY = 10.0  # [m]
 HOLLOW, DEEP = 0.3, 0.55  # shares of a vessel's width and height that it may be off within
 OUTWARD = 0.1  # of the normal of a floor within
 UNDER = 0.2  # [m] above the floor below which furniture's legs and plinths are one block: no hand comes there
+OVER = 2.0  # [m] above the floor that furniture stands on, where nothing of a robot comes
 SEAT = 0.4  # [m] the same under a seat or a mattress, whose legs a robot stands before
 CUSHIONED = frozenset(("bed", "chair", "sofa", "stool"))  # super-categories on which one sits and lies: what things lie on there gives way
 REACH = 0.05  # [m] between pieces that may become one across what lies between them: shelves on both sides of a board
@@ -58,7 +60,7 @@ Offer = tuple[float, tuple[int, ...]]  # how much changes, who becomes one
 class Felt:
     """How far a surface may be off [m]: where things lie (faces upwards), at the sides, from below; `yielding` grows with height to LEFT_ALONE.
 
-    What is `closed` is not reached into: the staves of a ring are one disc. Lower than `under` [m] only what faces upwards is felt.
+    What is `closed` is not reached into: the staves of a ring are one disc. Lower than `under` [m] only what faces upwards is felt, higher than `over` nothing.
     A `vessel` is felt from without; within it is but hollow. What is `soft` lies flat. What nobody touches is one piece, `whole`.
     Things lie on what faces upwards by `level`; what is less than `lift` [m] below the top of a piece is drawn up to it. Boxes may stand out by `box` [m] at their corners.
     Nothing comes through gaps narrower than `cell` [m]; see `make_reach_test`.
@@ -70,6 +72,7 @@ class Felt:
     yielding: bool = False
     closed: bool = False
     under: float = 0.0
+    over: float = ANY
     vessel: bool = False
     soft: bool = False
     whole: bool = False
@@ -103,7 +106,8 @@ def touch_tolerances(category: Category, *, opens: bool) -> Felt:
     if category.super in CUSHIONED:  # under a sofa's arm the drawer of a side table comes out
         under = SEAT if category.tuck == "seat" or category.super == "bed" else UNDER
         return Felt(GIVES, BETWEEN, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED, level=LEVEL, lift=PADDED)
-    return Felt(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, box=PADDED, cell=BUMPED)
+    over = OVER if category.mount == "floor" else ANY
+    return Felt(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, over=over, box=PADDED, cell=BUMPED)
 
 
 def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
@@ -123,6 +127,8 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
         pieces = discs(pieces)
     if how.sides <= TOUCHED:
         pieces = without_feet(pieces)
+    elif how.up <= TOUCHED:
+        pieces = blocks(pieces)
     allowed = _tolerance(pieces, how)
     fewer_pieces = felt_of(fewer(pieces, allowed, max(how.up, how.sides, REACH), rings=how.up < SOFT), allowed)
     return tuple(_level_top(p, how.lift) for p in fewer_pieces) if how.lift else fewer_pieces
@@ -177,7 +183,7 @@ def _tolerance(pieces: Sequence[Part], how: Felt) -> Allowed:
         for hollow in hollows:
             tolerance = np.where(hollow.within(at, normals), np.maximum(tolerance, hollow.depth), tolerance)
         tolerance = np.where(tolerance <= TOUCHED, np.minimum(tolerance, least), tolerance)
-        away = (at[:, 2] < low[2] + how.under) & (normals[:, 2] <= how.level)
+        away = (at[:, 2] < low[2] + how.under) & (normals[:, 2] <= how.level) | (at[:, 2] > low[2] + how.over)
         return np.asarray(np.where(away if comes is None else away | ~comes(at), ANY, tolerance))
 
     return tolerance_at
