@@ -2,7 +2,7 @@
 
 Both ways, on assets of data/assets, each kind in turn: points on the colliders that lie in no other collider of their link, to the
 nearest triangle that is seen; and points that are seen on handles, moving parts, tops and small things, to the colliders (how far
-outside of all they are). Where nothing comes from outside (pipeline/sources/meshes/reach.py) there is nothing to touch. Largest and 95th percentile [mm] by what is touched; build/surfaces.json keeps every asset's.
+outside of all they are). Where nothing comes from outside (pipeline/sources/meshes/reach.py), nor above 2 m, there is nothing to touch. Largest and 95th percentile [mm] by what is touched; build/surfaces.json keeps every asset's.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from pipeline.card import Category  # noqa: E402
 from pipeline.entities.asset import Asset, Link  # noqa: E402
 from pipeline.entities.files import load_asset  # noqa: E402
 from pipeline.sources.meshes.reach import make_reach_test  # noqa: E402
+from pipeline.sources.meshes.touching import OVER  # noqa: E402
 
 Floats = NDArray[np.float64]
 Reached = Callable[[Floats], NDArray[np.bool_]]
@@ -112,6 +113,8 @@ def _surface_kinds(
         kinds[inwards | (normals[:, 2] > UP) & (points[:, 2] < high[2] - RIM)] = "insides"
     kinds[np.char.endswith(parts, "handle")] = "handles"
     kinds[~comes(points + OFF * normals)] = ""
+    if card.mount == "floor" and not card.loose:
+        kinds[points[:, 2] > OVER] = ""
     return kinds
 
 
