@@ -99,14 +99,14 @@ def _by_use(wall: Mapping[int, Edge | None], items: Sequence[Item], walls: Seque
 def _join_lone_units(
     wall: Mapping[int, Edge | None], items: Sequence[Item], ordered: Sequence[Edge], depth: float, site: Site
 ) -> dict[int, Edge | None]:
-    """Return the walls with each unit that is alone at its own sent to a run with room for it, the longest first."""
+    """Return the walls with each unit that is alone at its own sent to others with room beside them, where most are first."""
     at = dict(wall)
     for i in sorted(at, key=lambda i: (items[i].area, i)):
         if at[i] is None or sum(edge is at[i] for edge in at.values()) > 1:
             continue
         for edge in ordered:
             units = [k for k in at if at[k] is edge]
-            if edge is not at[i] and len(units) > 1 and any(st.room(items) >= 0.0 for st in _stretches(edge, depth, site, (), [*units, i])):
+            if edge is not at[i] and units and any(st.room(items) >= 0.0 for st in _stretches(edge, depth, site, (), [*units, i])):
                 at[i] = edge
                 break
     return at

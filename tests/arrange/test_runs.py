@@ -88,6 +88,11 @@ def test_a_unit_that_is_drafted_alone_at_another_wall_joins_the_run_where_it_has
         assert right.position[0] - left.position[0] - (left.size[0] + right.size[0]) / 2 == pytest.approx(0.002, abs=0.0005)
 
 
+def test_two_units_each_alone_at_a_wall_come_to_stand_side_by_side():
+    found = arranged([drafted(ASSETS["sink"], 2.0, 2.65), drafted(ASSETS["cooker"], 0.4, 1.0, math.pi / 2, number=1)])
+    assert in_one_run(found.values())
+
+
 def test_a_unit_that_the_run_has_no_room_for_stays_at_its_wall():
     wished = [drafted(ASSETS[name], 0.5 + 0.8 * k, 2.65, number=k) for k, name in enumerate(("sink", "base", "cooker", "base", "base"))]
     found = separate(site(room(), "room"), [*wished, drafted(ASSETS["fridge"], 4.1, 1.0, -math.pi / 2, number=5)], ASSETS, LORE)
