@@ -90,6 +90,9 @@ def shard(
         int | None, typer.Option(min=0, help="Make the home of this index alone and write nothing: shows what is wrong with it.")
     ] = None,
     memory: Annotated[int, typer.Option(min=600, help="Memory of a worker in MiB; with more, more of the library stays read.")] = 700,
+    preview: Annotated[
+        int | None, typer.Option(min=0, max=4096, help="Side of the views from above in pixels, 0 for none. [default: shard.preview, 768]")
+    ] = None,
     quiet: Quiet = False,
     json: Machine = False,
 ) -> int:
@@ -106,7 +109,7 @@ def shard(
     begin("homes", voice(quiet=quiet, json=json))
     place: dict[str, Any] = {"address": out} if out and "://" in out else {"out": Path(out) if out else None}
     options = {**place, "seed": seed, "workers": workers, "prompts": prompts, "scheduler": scheduler, "strict": strict, "only": only}
-    options["memory"] = memory
+    options |= {"memory": memory, "preview": preview}
     code: int = stage("shard").main(root, count=count, **options, voice=voice(quiet=quiet, json=json))
     return code
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sfgen.homes import Home, Joint, Opening, PlacedObject, Room, records, require_columns
 from sfgen.place import DatasetError, Place
 
-FORMAT = "sfgen-dataset-2"
+FORMAT = "sfgen-dataset-3"
 SCHEMA_VERSION = "2"
 TABLES = ("scenes", "rooms", "openings", "objects", "joints", "rejects")
 RECORDS = {"rooms": Room, "openings": Opening, "objects": PlacedObject, "joints": Joint}

@@ -47,7 +47,8 @@ def main(
     progress.phase("reading the layout model and the library")
     factory = open_factory(root, seed)
     asked = digest([wish.prompt, wish.program, wish.plan])
-    header = Header(seed, 1, factory.shard.homes, factory.shard.licence, {**factory.digests, "prompts": asked}, made_with())
+    digests = {**factory.digests, "prompts": asked}
+    header = Header(seed, 1, factory.shard.homes, factory.shard.licence, digests, made_with(), factory.shard.preview)
     warm_up(progress, root)
     listen(lambda note: progress.phase(note[0]))
     (outcome,) = factory.make([wish])  # before the folder is touched: a request may yet be refused

@@ -29,7 +29,7 @@ def main(root: Path) -> None:
     asked = requests_of(params.section(DatasetSettings, tree, "dataset"), root, seed)
     factory = open_factory(root, seed)
     named = {**factory.digests, "prompts": digest([request.prompt for request in asked])}
-    header = Header(seed, len(asked), factory.shard.homes, factory.shard.licence, named, made_with())
+    header = Header(seed, len(asked), factory.shard.homes, factory.shard.licence, named, made_with(), factory.shard.preview)
     progress = Progress(len(asked), "postopt")
     with open_or_create(root / "data" / "shards", header, factory.asset_cache, discard=True) as dataset:
         recipe = Recipe(partial(open_factory, root, seed), partial(first_drafts, root))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -34,18 +35,20 @@ def main(
     strict: bool = False,
     only: int | None = None,
     memory: int = MEMORY,
+    preview: int | None = None,
     voice: Voice = "plain",
 ) -> int:
     """Fill the folder `out` (by default datasets/<seed>) with `count` homes; returns the exit code: 1 when some could not be made.
 
-    What is committed goes to the `address` too (s3://...), where one is given. `memory` [MiB] is what a worker may take.
+    What is committed goes to the `address` too (s3://...), where one is given. `memory` [MiB] is what a worker may take, `preview` [px] the
+    side of the top views, where it is not that of params.yaml; 0: none.
     """
     progress = Progress(count, "homes", voice=voice)
     place = Address(address) if address else None
     order = read_order(prompts, seed, progress, strict=strict)
     folder = out or Path("datasets") / str(seed)
     progress.say("reading the layout model and the library")
-    opened = partial(open_factory, root, seed, memory)
+    opened = partial(open_factory, root, seed, memory, preview)
     factory = opened()
     if only is not None:
         return try_one(root, seed, order.wish(only))
@@ -66,25 +69,28 @@ def repair(root: Path, *, folder: Path, prompts: Path | None = None, workers: in
     seed, count = identity(folder)
     factory, progress = open_factory(root, seed), Progress(count, "homes", voice=voice)
     known = [(header_of(factory, seed, count, words), asked) for words, asked in orders(root, seed, prompts)]
-    there = [header for header, _ in known if vouches(folder, header)] or [read_header(folder)]
-    asked = next((asked for header, asked in known if header == there[0]), None)
+    plain = [replace(header, preview=0) for header, _ in known]
+    there = next((header for header in [*(header for header, _ in known), *plain] if vouches(folder, header)), None) or read_header(folder)
+    asked = next((asked for header, asked in known if replace(header, preview=there.preview) == there), None)
     if asked is None:
-        what = "; ".join(there[0].differences(known[0][0]))
+        what = "; ".join(there.differences(known[0][0]))
         raise UsageError(
             f"{folder} was made otherwise than it would be here ({what})", "use its checkout and models, and give its --prompts"
         )
-    with open_or_create(folder, there[0], factory.asset_cache) as dataset:
+    opened = partial(open_factory, root, seed, MEMORY, there.preview)
+    with open_or_create(folder, there, factory.asset_cache) as dataset:
         for name in forget_altered(dataset, FAILURES):
             progress.say(f"{name} is made again")
-        recipe = Recipe(partial(open_factory, root, seed), digests=factory.digests)
+        recipe = Recipe(opened, digests=factory.digests)
         tally = fill(dataset, recipe, asked, workers=workers or cores(), progress=progress)
     progress.close()
-    return tell(tally, there[0], str(folder), progress, voice)
+    return tell(tally, there, str(folder), progress, voice)
 
 
 def header_of(factory: Factory, seed: int, count: int, words: str) -> Header:
     """Return what a dataset that is made here is; `words` is the digest of what it was asked for."""
-    return Header(seed, count, factory.shard.homes, factory.shard.licence, {**factory.digests, "prompts": words}, made_with())
+    settings = factory.shard
+    return Header(seed, count, settings.homes, settings.licence, {**factory.digests, "prompts": words}, made_with(), settings.preview)
 
 
 def try_one(root: Path, seed: int, request: Request) -> int:

@@ -40,7 +40,7 @@ def again(root: Path, folder: Path, count: int, prompts: Path | None, progress: 
     from pipeline.homes.reproduction import differing, made_with, spread_indices
 
     header = read_header(folder)
-    factory = open_factory(root, header.seed)
+    factory = open_factory(root, header.seed, preview=header.preview)
     asked = asked_of(root, header, prompts)
     here = replace(header, digests={**header.digests, **factory.digests}, versions=made_with())
     for difference in header.differences(here):

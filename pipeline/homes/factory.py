@@ -92,7 +92,7 @@ def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
             "code": code_digest(root),
             "latents": sha256_file(latents_file),
             "library": library.digest(),
-            "params": digest({name: tree[name] for name in names}),
+            "params": digest({name: {k: v for k, v in tree[name].items() if k != "preview"} for name in names}),
             "relations": sha256_file(relations),
             "weights": sha256_file(weights),
         },
@@ -100,9 +100,12 @@ def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
     )
 
 
-def open_factory(root: Path, seed: int, memory: int = MEMORY) -> Factory:
-    """Return this process's factory for the checkout at `root`, loaded once; as much of the library stays read as fits into `memory` [MiB]."""
-    factory = _loaded_factory(root, seed)
+def open_factory(root: Path, seed: int, memory: int = MEMORY, preview: int | None = None) -> Factory:
+    """Return this process's factory for the checkout at `root`, loaded once; as much of the library stays read as fits into `memory` [MiB].
+
+    `preview` [px] takes the place of `shard.preview` in params.yaml; a dataset's header tells it.
+    """
+    factory = _loaded_factory(root, seed, preview)
     factory.library.kept = kept_within(memory)
     return factory
 
@@ -128,7 +131,10 @@ def _tidied_once() -> Iterator[None]:
 
 
 @functools.lru_cache(maxsize=1)
-def _loaded_factory(root: Path, seed: int) -> Factory:
-    factory = load_factory(root, params.read(root / "params.yaml"), seed)
+def _loaded_factory(root: Path, seed: int, preview: int | None) -> Factory:
+    tree = params.read(root / "params.yaml")
+    if preview is not None:
+        tree["shard"]["preview"] = preview
+    factory = load_factory(root, tree, seed)
     gc.freeze()  # modules, models and library stay: looking through them for garbage again and again costs a tenth of all time
     return factory

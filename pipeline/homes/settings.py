@@ -22,7 +22,7 @@ class ShardSettings:
     home_seconds: float = 300.0  # CPU seconds that one home may take, and seconds that a worker may keep silent [s]
     shard_seconds: float = 30.0  # CPU seconds that the homes of a shard may take in the mean: beyond it the others of it stay empty [s]
     licence: str = "CC0-1.0"  # of what is made; with research-only assets, name theirs
-    preview: int = 768  # side of the top views [px]
+    preview: int = 768  # side of the top views [px], 0: none; `sfgen shard --preview` says otherwise
 
     def __post_init__(self) -> None:
         if not 1 <= self.room_attempts <= MOST_ATTEMPTS:

@@ -14,7 +14,7 @@ from pipeline.manifest import digest, sha256
 from pipeline.shards.layout import HEADER
 from schemas.table import SCHEMA_VERSION
 
-FORMAT = "sfgen-dataset-2"
+FORMAT = "sfgen-dataset-3"
 REMEDY = "give a folder that `sfgen shard`, `sfgen generate` or `dvc repro` made"
 
 
@@ -31,7 +31,7 @@ class Header:
     Homes have the indices 0 ... count - 1; shard k holds those from k * `shard_size` on. `digests` names everything
     else that a home depends on: params, weights, library, code, prompts. `licence` is the one that binds the whole.
     `versions` are those of what computes: the last bits of a number hang on packages and on the processor's instructions.
-    `vocabulary` lists all `categories` and `room_types` that may occur, so that class numbers do not hang on what does.
+    `preview` is the side of the top views [px], 0 where there are none. `vocabulary` lists all `categories` and `room_types` that may occur, so that class numbers do not hang on what does.
     """
 
     seed: int
@@ -40,6 +40,7 @@ class Header:
     licence: str
     digests: Mapping[str, str] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=dict)
+    preview: int = 0
     vocabulary: Mapping[str, list[str]] = field(default_factory=everything)
     schema_version: str = SCHEMA_VERSION
     format: str = FORMAT

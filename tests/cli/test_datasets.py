@@ -27,7 +27,7 @@ class Paper:
 
     def __init__(self, seed, weights="w"):
         self.seed, self.seconds = seed, {}
-        self.shard = SimpleNamespace(home_seconds=300.0, shard_seconds=30.0, homes=4, licence="CC0-1.0")
+        self.shard = SimpleNamespace(home_seconds=300.0, shard_seconds=30.0, homes=4, licence="CC0-1.0", preview=768)
         self.digests = {"weights": weights}
         self.asked = []
         self.library = SimpleNamespace(rows={f"asset_{k}": {"style": ""} for k in range(2)})
@@ -70,8 +70,14 @@ def factory(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(shard, "cores", lambda: 1)
     paper = Paper(3)
-    monkeypatch.setattr(shard, "open_factory", lambda _root, seed, *_: setattr(paper, "seed", seed) or paper)
-    monkeypatch.setattr(generate, "open_factory", lambda _root, seed, *_: setattr(paper, "seed", seed) or paper)
+
+    def opened(_root, seed, _memory=0, preview=None):
+        paper.seed = seed
+        paper.shard.preview = paper.shard.preview if preview is None else preview
+        return paper
+
+    monkeypatch.setattr(shard, "open_factory", opened)
+    monkeypatch.setattr(generate, "open_factory", opened)
     return paper
 
 
@@ -287,6 +293,21 @@ def test_repair_makes_again_what_is_broken_or_gone_byte_for_byte(factory, capsys
             assert made.snapshot("d") == whole, name
     assert len(set(kinds.values())) >= 12
     assert run("verify", "--quick", "d") == 0
+
+
+def test_the_size_of_previews_is_told_by_the_header_and_kept(factory, capsys):
+    command = ("shard", "--count", 4, "--out", "d", "--seed", 3)
+    assert run(*command, "--preview", 0) == 0
+    whole = made.snapshot("d")
+    assert json.loads(Path("d/dataset.json").read_text())["preview"] == 0
+    factory.shard.preview = 768  # another process
+    assert run(*command) == 2
+    assert "preview 0, not 768" in capsys.readouterr().err
+    for broken in ("objects/shard-00000.parquet", "dataset.json"):
+        Path("d", broken).unlink()
+        factory.shard.preview = 768
+        assert run("repair", "d") == 0
+        assert (factory.shard.preview, made.snapshot("d")) == (0, whole)
 
 
 def test_repair_refuses_what_was_made_otherwise_and_leaves_it_alone(factory, tmp_path, capsys):

@@ -92,7 +92,7 @@ def test_shards_that_are_not_committed_are_not_seen(tmp_path, dataset_folder):
     assert len(sfgen.load(folder)) == 0
 
 
-@pytest.mark.parametrize("text", [None, "", "[]", json.dumps({"format": "sfgen-dataset-99"}), json.dumps({"format": "sfgen-dataset-2"})])
+@pytest.mark.parametrize("text", [None, "", "[]", json.dumps({"format": "sfgen-dataset-99"}), json.dumps({"format": "sfgen-dataset-3"})])
 def test_what_is_no_dataset_is_named(tmp_path, text):
     if text is not None:
         (tmp_path / "dataset.json").write_text(text)

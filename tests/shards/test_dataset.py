@@ -114,7 +114,7 @@ def test_a_file_in_the_place_of_the_folder_is_refused(folder):
     assert folder.read_text() == "precious"
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", "{}", '{"format": "sfgen-dataset-2"}'])
+@pytest.mark.parametrize("text", ["", "{", "[]", "{}", '{"format": "sfgen-dataset-3"}'])
 def test_a_broken_header_is_named_and_that_of_a_whole_dataset_made_again(folder, dataset_folder, text):
     made.fill(folder)
     (folder / "dataset.json").write_text(text)
