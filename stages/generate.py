@@ -19,11 +19,11 @@ from pipeline.homes.factory import open_factory
 from pipeline.homes.furniture_report import deliveries, report
 from pipeline.homes.jit_warmup import warm_up
 from pipeline.homes.outcomes import Empty
-from pipeline.homes.reproduction import made_with
+from pipeline.homes.reproduction import header_of
 from pipeline.homes.request import Request
 from pipeline.homes.soundness import require_sound
 from pipeline.manifest import digest
-from pipeline.shards import Header, add_part, commit_shard, gather, open_or_create, require_prompt
+from pipeline.shards import add_part, commit_shard, gather, open_or_create, require_prompt
 
 
 def main(
@@ -46,9 +46,7 @@ def main(
     progress = Progress(1, "home", voice=voice)
     progress.phase("reading the layout model and the library")
     factory = open_factory(root, seed)
-    asked = digest([wish.prompt, wish.program, wish.plan])
-    digests = {**factory.digests, "prompts": asked}
-    header = Header(seed, 1, factory.shard.homes, factory.shard.licence, digests, made_with(), factory.shard.preview)
+    header = header_of(factory, 1, digest([wish.prompt, wish.program, wish.plan]))
     warm_up(progress, root)
     listen(lambda note: progress.phase(note[0]))
     (outcome,) = factory.make([wish])  # before the folder is touched: a request may yet be refused

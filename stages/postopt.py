@@ -15,11 +15,11 @@ from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.furnish import HomeDraft
 from pipeline.homes.jit_warmup import warm_up_workers
 from pipeline.homes.production import Recipe, fill
-from pipeline.homes.reproduction import made_with
+from pipeline.homes.reproduction import header_of
 from pipeline.homes.request import Request
 from pipeline.homes.settings import DatasetSettings, requests_of
 from pipeline.manifest import digest, write_json
-from pipeline.shards import Header, open_or_create
+from pipeline.shards import open_or_create
 
 
 def main(root: Path) -> None:
@@ -28,8 +28,7 @@ def main(root: Path) -> None:
     seed = tree["seed"]
     asked = requests_of(params.section(DatasetSettings, tree, "dataset"), root, seed)
     factory = open_factory(root, seed)
-    named = {**factory.digests, "prompts": digest([request.prompt for request in asked])}
-    header = Header(seed, len(asked), factory.shard.homes, factory.shard.licence, named, made_with(), factory.shard.preview)
+    header = header_of(factory, len(asked), digest([request.prompt for request in asked]))
     progress = Progress(len(asked), "postopt")
     with open_or_create(root / "data" / "shards", header, factory.asset_cache, discard=True) as dataset:
         recipe = Recipe(partial(open_factory, root, seed), partial(first_drafts, root))

@@ -11,13 +11,13 @@ from typing import Any
 
 from pipeline.errors import SfgenError, UsageError
 from pipeline.execution import Progress, Voice, cores
-from pipeline.homes.factory import Factory, open_factory
+from pipeline.homes.factory import open_factory
 from pipeline.homes.jit_warmup import warm_up_workers
 from pipeline.homes.library import MEMORY
 from pipeline.homes.outcomes import Empty
 from pipeline.homes.production import FAILURES, Recipe, Tally, fill
 from pipeline.homes.prompt_mix import orders, read_order
-from pipeline.homes.reproduction import made_with
+from pipeline.homes.reproduction import header_of
 from pipeline.homes.request import Request
 from pipeline.shards import Address, Header, forget_altered, identity, open_or_create, read_header, vouches
 
@@ -52,7 +52,7 @@ def main(
     factory = opened()
     if only is not None:
         return try_one(root, seed, order.wish(only))
-    header = header_of(factory, seed, count, order.digest())
+    header = header_of(factory, count, order.digest())
     again = shlex.join(["sfgen", "shard", "--count", str(count), "--seed", str(seed), *(["--prompts", str(prompts)] if prompts else [])])
     recipe = Recipe(opened, cache_assets=scheduler is None, digests=factory.digests)
     with open_or_create(folder, header, factory.asset_cache, address=place) as dataset:
@@ -68,7 +68,7 @@ def repair(root: Path, *, folder: Path, prompts: Path | None = None, workers: in
     """Make again what is broken or missing of a dataset, its header too, by the checkout that made it; returns the exit code."""
     seed, count = identity(folder)
     factory, progress = open_factory(root, seed), Progress(count, "homes", voice=voice)
-    known = [(header_of(factory, seed, count, words), asked) for words, asked in orders(root, seed, prompts)]
+    known = [(header_of(factory, count, words), asked) for words, asked in orders(root, seed, prompts)]
     plain = [replace(header, preview=0) for header, _ in known]
     there = next((header for header in [*(header for header, _ in known), *plain] if vouches(folder, header)), None) or read_header(folder)
     asked = next((asked for header, asked in known if replace(header, preview=there.preview) == there), None)
@@ -85,12 +85,6 @@ def repair(root: Path, *, folder: Path, prompts: Path | None = None, workers: in
         tally = fill(dataset, recipe, asked, workers=workers or cores(), progress=progress)
     progress.close()
     return tell(tally, there, str(folder), progress, voice)
-
-
-def header_of(factory: Factory, seed: int, count: int, words: str) -> Header:
-    """Return what a dataset that is made here is; `words` is the digest of what it was asked for."""
-    settings = factory.shard
-    return Header(seed, count, settings.homes, settings.licence, {**factory.digests, "prompts": words}, made_with(), settings.preview)
 
 
 def try_one(root: Path, seed: int, request: Request) -> int:

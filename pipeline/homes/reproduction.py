@@ -27,6 +27,13 @@ def made_with() -> dict[str, str]:
     return {**{name: version(name) for name in PACKAGES}, "python": platform.python_version(), "instructions": instructions}
 
 
+def header_of(factory: Factory, count: int, words: str) -> Header:
+    """Return what a dataset of `count` homes is that is made here; `words` is the digest of what it was asked for."""
+    settings = factory.shard
+    digests = {**factory.digests, "prompts": words}
+    return Header(factory.seed, count, settings.homes, settings.licence, digests, made_with(), settings.preview)
+
+
 def spread_indices(header: Header, count: int) -> list[int]:
     """Return so many indices of a dataset, evenly spread."""
     return [int(i) for i in np.unique(np.linspace(0, header.count - 1, min(count, header.count)).round())]
