@@ -6,9 +6,8 @@ import dataclasses
 from collections.abc import Mapping
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language.attaching import Mention, attach, room_mentions
 from pipeline.floorplan.language.furnishing import read_furniture
-from pipeline.floorplan.language.parser import check_length, understand_rooms
+from pipeline.floorplan.language.parser import Mention, attach, check_length, room_mentions, understand_rooms
 from pipeline.floorplan.program.consistency import ImpossibleError, check_furniture
 from pipeline.floorplan.program.floor_program import Evidence, FloorProgram, RoomReq
 from pipeline.floorplan.program.furniture import allot, spread

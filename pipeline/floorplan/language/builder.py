@@ -7,12 +7,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language.facts import HALLS, Fact, Named, Reading
 from pipeline.floorplan.language.lexicon import kinds
 from pipeline.floorplan.language.marks import Mark
-from pipeline.floorplan.language.naming import ROLES
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.room_links import Draft, join
+from pipeline.floorplan.language.rooms import HALLS, ROLES, Fact, Named, Reading
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.defaults import DEFAULTS
 from pipeline.floorplan.program.floor_program import MAX_ROOMS, Evidence, FloorProgram, Style

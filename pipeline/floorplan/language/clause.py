@@ -5,10 +5,9 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable
 
-from pipeline.floorplan.language.facts import FRONT, HALLS, PRIVATE, SOCIAL, Group, Reading
 from pipeline.floorplan.language.marks import Mark
-from pipeline.floorplan.language.naming import name, point
 from pipeline.floorplan.language.phrases import Element, backward, heads
+from pipeline.floorplan.language.rooms import FRONT, HALLS, PRIVATE, SOCIAL, Group, Reading, name
 
 LIGHT = {"det", "size", "adj", "verb", "word", "flag"}  # between a relation and its room
 WIDE = {"leads", "between", "chain", "avoid", "except"}  # relations to lists
@@ -132,10 +131,36 @@ class Clause:
         """Return the rooms of the phrase at k."""
         return tuple(name(self.state, self.sentence, k, backward(self.sentence, k, self.level if self.forward else None)))
 
-    def point(self, e: Element, k: int, but: Group) -> Group:
+    def point(self, e: Element, k: int, but: Group) -> Group:  # noqa: PLR0911 - one answer per pronoun
         """Return the rooms that a pronoun stands for: after "but" the subject still, as an object what is not the subject `but`."""
-        same = self.subject if e.value == "it" and k and self.sentence[k - 1].kind == "but" else ()
-        return same or point(self.state, self.sentence[:k], e, but)
+        if e.value == "it" and self.subject and k and self.sentence[k - 1].kind == "but":
+            return self.subject
+        here = [tuple(x.ids) for x in self.sentence[:k] if x.kind in {"np", "zone", "owner"} and x.ids]
+        groups = [*self.state.past, *here]
+        if e.value == "it":
+            if but:
+                return next((g for g in reversed(groups if here else self.state.past) if not set(g) & set(but)), ())
+            return here[0] if here else (self.state.topic or (self.state.past[-1] if self.state.past else ()))
+        single = tuple(dict.fromkeys(i for g in reversed(groups) for i in g if i not in but))
+        if e.value == "both":
+            return groups[-1] if groups and len(groups[-1]) > 1 else single[:2]
+        plural: Group = next((g for g in reversed(groups) if len(g) > 1), groups[-1] if groups else ())
+        if not plural or plural[0].startswith("*"):
+            return plural
+        kind = self.stock.get(plural[0]).type
+        kind = self.state.parted if e.value == "rest" and any(r.open_slot for r in self.stock.of(self.state.parted)) else kind
+        if e.value == "group" and len(plural) == 1:
+            same = [i for g in groups for i in g if i[0] != "*" and self.stock.get(i).type == kind]
+            return tuple(dict.fromkeys(same))
+        free = [r for r in self.stock.of(kind) if r.open_slot]
+        if e.value in {"rest", "some"}:
+            return tuple(r.id for r in free) or plural
+        if e.value == "one":
+            self.state.parted = kind
+            for room in free[: int(e.number or 1)]:
+                room.open_slot = False
+            return tuple(r.id for r in free[: int(e.number or 1)])
+        return plural
 
     # who stands in front
 

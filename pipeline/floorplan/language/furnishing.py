@@ -1,7 +1,7 @@
 """Wishes for furniture in words: how many things, which, in what style, what opens, how much floor stays free.
 
 They are read before the rooms are, in all languages at once, and taken out of the prompt: what is left speaks of rooms alone. Which
-room a wish means is settled afterwards (`attaching.py`), when the rooms and their places in the prompt are known.
+room a wish means is settled afterwards (`attach`), when the rooms and their places in the prompt are known.
 """
 
 from __future__ import annotations

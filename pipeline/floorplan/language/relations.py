@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from pipeline.floorplan.language.clause import LIGHT, LISTING, Clause, ids_of, named_rooms
-from pipeline.floorplan.language.facts import HALLS, PERSONAL, SOCIAL, Group
 from pipeline.floorplan.language.lexicon import kinds
 from pipeline.floorplan.language.phrases import Element
+from pipeline.floorplan.language.rooms import HALLS, PERSONAL, SOCIAL, Group
 
 DENIED = {"near": "ban", "wall": "ban", "away": "near", "open": "not_open", "avoid": "avoid"}  # what "not" makes of a relation
 HOSTS = kinds("hosts")

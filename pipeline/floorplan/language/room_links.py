@@ -7,8 +7,8 @@ import itertools
 from collections.abc import Iterable, Sequence
 from typing import Any, NoReturn
 
-from pipeline.floorplan.language.facts import HALLS, Fact, Group, Inventory, Reading
 from pipeline.floorplan.language.marks import Words
+from pipeline.floorplan.language.rooms import HALLS, Fact, Group, Inventory, Reading
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import Evidence
 

@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from pipeline.floorplan.language.clause import LIKE, Clause, compare, factor, ids_of, level, named_rooms, wing
-from pipeline.floorplan.language.facts import PERSONAL, SOCIAL, Group, Reading
 from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.relations import complete, enter, relate
+from pipeline.floorplan.language.rooms import PERSONAL, SOCIAL, Group, Reading
 from pipeline.floorplan.program.defaults import DEFAULTS
 
 NAMED = {"doors", "corridors", "ceiling", "walls", "inner_walls", "outer_walls"}  # what a length may measure besides rooms
@@ -90,10 +90,11 @@ def _own(c: Clause, e: Element, ids: tuple[str, ...]) -> None:
 
 
 def _ban(c: Clause, e: Element) -> None:
-    c.state.understood(e.first, e.last)
     if e.role == "ensuite":
-        c.state.say("no_ensuite", tuple(r.id for r in c.stock.of("bathroom")) or ("*bathroom",), (), e)
-    elif not (e.type == "bedroom" and e.role) and not (e.type == "kitchen" and "/" in e.value):
+        e.banned = False  # nothing is made of "no en suite"
+        return
+    c.state.understood(e.first, e.last)
+    if not (e.type == "bedroom" and e.role) and not (e.type == "kitchen" and "/" in e.value):
         c.state.banned.append((e.type, e))  # "no guest room" leaves the other bedrooms, "no kitchen-diner" a kitchen
 
 

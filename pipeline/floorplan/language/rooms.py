@@ -1,16 +1,141 @@
-"""Which rooms phrases and pronouns name: those that numbers and articles introduce, and those that were named before."""
+"""The rooms of a prompt and the facts about them, and which rooms phrases name: those that numbers and articles introduce, and those named before."""
 
 from __future__ import annotations
 
-from pipeline.floorplan.language.facts import Group, Named, Reading
+import itertools
+from dataclasses import dataclass, field
+
+from pipeline.errors import RefusedError
+from pipeline.floorplan.language.marks import Mark, Words
 from pipeline.floorplan.language.phrases import Element, backward, heads
-from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import MAX_ROOMS
 
+MOST = MAX_ROOMS + 1
+SHORT = {"bedroom": "bed", "bathroom": "bath", "hallway": "hall", "staircase": "stairs"}  # ids of rooms that are not called as their type
+HALLS = {"hallway", "entry"}
+SOCIAL = {"kitchen", "dining_room", "living_room", "family_room"}
+PERSONAL = {"bathroom", "wc", "closet", "balcony", "office", "storage", "sunroom"}  # what a bedroom may have of its own
+PRIVATE = {"balcony", "garage", "bathroom", "wc", "closet", "storage", "utility", "bedroom"}  # nothing stands open to these
+ZONES = {"bedroom": ("bedroom",), "living": ("living_room", "dining_room", "family_room"), "work": ("office", "meeting_room")}
+FRONT = {"door", "near", "open", "wall", "from", "ensuite", "cmp", "via"}  # relations to one room, behind which a list begins anew
+GROUPS = {"door", "leads", "open", "near", "wall", "ban", "avoid", "away", "no_through"}  # may be said of all rooms
 ALONE = {"living_room", "kitchen", "dining_room", "hallway", "entry", "utility", "garage", "staircase", "family_room", "studio_room"}
 PLURAL_NAMES = {"staircase", "closet", "storage"}  # their plural often means one
 THEIRS = {"child", "guest", "elder", "staff", "carer"}  # who has a room of another name than just a bedroom
 ROLES = {"primary", *THEIRS, "shared", "ensuite"}
+
+
+@dataclass(slots=True)
+class Named:
+    """A room of the prompt. `open_slot`: one of several that were only counted, to be told apart by later words."""
+
+    id: str
+    type: str
+    role: str = ""
+    surface: str = ""
+    open_slot: bool = False
+    whole: bool = False  # one of a count of all such rooms: "a two-bedroom flat"
+    extra: bool = False  # "another bathroom": none of those named in front
+    index: int = 0
+    stated: bool = True
+    span: tuple[int, int] | None = None  # the words that named it first, as tokens
+    level: int | None = None
+    low: float | None = None
+    high: float | None = None
+    target: float | None = None
+    size: float = 1.0
+    functions: set[str] = field(default_factory=set)
+    exterior: str | None = None
+    exterior_length: float | None = None
+    window: str = "auto"
+    min_width: float | None = None
+
+
+class Inventory:
+    """All rooms so far, in the order of their first mention."""
+
+    def __init__(self) -> None:
+        self.rooms: list[Named] = []
+        self.belongings: set[str] = set()
+
+    def of(self, kind: str) -> list[Named]:
+        """Return the rooms of a type."""
+        return [r for r in self.rooms if r.type == kind]
+
+    def get(self, room_id: str) -> Named:
+        """Return the room of an id."""
+        return next(r for r in self.rooms if r.id == room_id)
+
+    def add(self, kind: str, role: str, surface: str, level: int | None, open_slot: bool = False) -> Named:
+        """Add a room."""
+        if len(self.rooms) >= MOST:
+            raise RefusedError(f"more than {MAX_ROOMS} rooms are asked for", f"ask for {MAX_ROOMS} at most")
+        base, known = SHORT.get(kind, kind.removesuffix("_room")), {r.id for r in self.rooms}
+        names = (base if n == 1 else f"{base}_{n}" for n in itertools.count(len(self.of(kind)) + 1))
+        room = Named(next(n for n in names if n not in known), kind, role, surface, open_slot, level=level)
+        self.rooms.append(room)
+        return room
+
+    def zone(self, name: str) -> list[str]:
+        """Return the rooms that the name of a zone means."""
+        return [r.id for r in self.rooms if r.type in ZONES.get(name, ()) or (r.type == "bedroom" and r.role == name)]
+
+
+Group = tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """Something said: `what` about rooms `a` (and `b`), read from tokens[first:last]."""
+
+    what: str
+    a: Group
+    b: Group = ()
+    value: float = 0.0
+    first: int = 0
+    last: int = 0
+
+
+@dataclass
+class Reading:
+    """State while reading."""
+
+    heard: Words
+    inventory: Inventory = field(default_factory=Inventory)
+    facts: list[Fact] = field(default_factory=list)
+    banned: list[tuple[str, Element]] = field(default_factory=list)
+    amounts: list[tuple[Mark, Group | None]] = field(default_factory=list)  # None: the whole home
+    flags: dict[str, Element] = field(default_factory=dict)
+    looks: list[Element] = field(default_factory=list)
+    zones: dict[str, tuple[Group, Element]] = field(default_factory=dict)
+    levels: list[Element] = field(default_factory=list)  # words for storeys
+    wings: tuple[str, ...] = ()  # zones that lie in parts of their own
+    heights: dict[str, int] = field(default_factory=dict)  # the storey of zones, and of all other rooms ("*")
+    entrance: tuple[str, Element] | None = None
+    outside: tuple[str, Element] | None = None  # the owner of a door of its own
+    homes: list[Element] = field(default_factory=list)
+    studio: Element | None = None
+    storeys: tuple[int, Mark] | None = None
+    rooms: tuple[int, Mark] | None = None  # "a three-room flat"
+    people: Mark | None = None  # how many live there
+    parted: str = ""  # of which type of room one was spoken of apart
+    topic: Group = ()  # what the last sentence was about
+    past: list[Group] = field(default_factory=list)  # groups named in earlier sentences, the latest last
+    used: set[int] = field(default_factory=set)
+
+    def understood(self, first: int, last: int) -> None:
+        """Mark words as understood."""
+        self.used.update(range(first, last))
+
+    def say(self, what: str, a: Group, b: Group, element: Element, value: float = 0.0) -> None:
+        """Record a fact. Whole groups ("*...") mean something to few kinds of fact only."""
+        if what not in GROUPS:
+            a, b = (tuple(i for i in g if not i.startswith("*")) for g in (a, b))
+        a, b = (("*",) if "*" in g else g for g in (a, b))  # "all rooms are off the hall: kitchen, bath ..."
+        if what in {"except", "only"}:
+            self.understood(element.first, element.last)
+        if a or b:
+            self.facts.append(Fact(what, tuple(dict.fromkeys(a)), tuple(dict.fromkeys(b)), value, element.first, element.last))
 
 
 def _role(e: Element) -> str:
@@ -61,12 +186,9 @@ def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> 
     return e.ids
 
 
-def _resolve_phrase(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per kind of phrase
+def _resolve_phrase(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:
     e, stock, role = sentence[k], state.inventory, _role(sentence[k])
     same = stock.of(e.type)
-    suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), None) if e.type == "bedroom" and not role else None
-    if suites and not e.ordinal and not e.number:
-        return [stock.get(i) for i in suites]
     halls = [r for r in stock.rooms if r.type in {"hallway", "entry"} and _word(e) in r.surface.split()]
     if e.type == "hallway" and e.definite and halls:
         return halls[:1]
@@ -221,16 +343,8 @@ def introduce(state: Reading, sentences: list[list[Element]]) -> None:
                 suites = suites or (e.kind == "np" and e.suite)
                 theirs = e.suite or (suites and e.type == "bedroom" and not e.number)
                 if e.kind == "np" and e.introduces and not e.ids and not theirs and _whole(sentence, k) == whole:
-                    _few(state, e)
                     rooms = _count_all(state, e) if whole else _introduce_rooms(state, sentence, k, backward(sentence, k, level))
                     e.ids = [r.id for r in rooms]
-
-
-def _few(state: Reading, e: Element) -> None:
-    """Refuse more rooms than a program holds, with the words."""
-    if e.number > MAX_ROOMS:
-        words = [state.heard.quote(max(e.first - 1, 0), e.last, "rooms")]
-        raise ImpossibleError(f"{e.number:g} {e.type.replace('_', ' ')}s are asked for", f"ask for {MAX_ROOMS} rooms at most", words)
 
 
 def _whole(sentence: list[Element], k: int) -> bool:
@@ -278,34 +392,3 @@ def _introduce_rooms(state: Reading, sentence: list[Element], k: int, level: int
     for room in rooms:
         room.extra, room.span = "another" in e.det, (e.first, e.last)
     return rooms
-
-
-def point(state: Reading, before: list[Element], e: Element, but: Group) -> Group:  # noqa: PLR0911 - one answer per pronoun
-    """Return the rooms that a pronoun stands for after the elements `before`; as an object it does not point at the subject `but`."""
-    here = [tuple(x.ids) for x in before if x.kind in {"np", "zone", "owner"} and x.ids]
-    groups = [*state.past, *here]
-    if e.value == "it":
-        if but:
-            return next((g for g in reversed(groups if here else state.past) if not set(g) & set(but)), ())
-        return here[0] if here else (state.topic or (state.past[-1] if state.past else ()))
-    pair: Group = next((g for g in reversed(groups) if len(g) == 2), ())
-    single = tuple(dict.fromkeys(i for g in reversed(groups) for i in g if i not in but))
-    if e.value == "both":
-        return groups[-1] if groups and len(groups[-1]) > 1 else pair if len(single) < 2 else single[:2]
-    plural: Group = next((g for g in reversed(groups) if len(g) > 1), groups[-1] if groups else ())
-    if not plural or plural[0].startswith("*"):
-        return plural
-    kind = state.inventory.get(plural[0]).type
-    kind = state.parted if e.value == "rest" and any(r.open_slot for r in state.inventory.of(state.parted)) else kind
-    if e.value == "group" and len(plural) == 1:
-        same = [i for g in groups for i in g if i[0] != "*" and state.inventory.get(i).type == kind]
-        return tuple(dict.fromkeys(same))
-    free = [r for r in state.inventory.of(kind) if r.open_slot]
-    if e.value in {"rest", "some"}:
-        return tuple(r.id for r in free) or plural
-    if e.value == "one":
-        state.parted = kind
-        for room in free[: int(e.number or 1)]:
-            room.open_slot = False
-        return tuple(r.id for r in free[: int(e.number or 1)])
-    return plural
