@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.marks import Mark, Words
 from pipeline.floorplan.language.phrases import Element, backward, heads
+from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import MAX_ROOMS
 
 MOST = MAX_ROOMS + 1
@@ -343,8 +344,16 @@ def introduce(state: Reading, sentences: list[list[Element]]) -> None:
                 suites = suites or (e.kind == "np" and e.suite)
                 theirs = e.suite or (suites and e.type == "bedroom" and not e.number)
                 if e.kind == "np" and e.introduces and not e.ids and not theirs and _whole(sentence, k) == whole:
+                    _few(state, e)
                     rooms = _count_all(state, e) if whole else _introduce_rooms(state, sentence, k, backward(sentence, k, level))
                     e.ids = [r.id for r in rooms]
+
+
+def _few(state: Reading, e: Element) -> None:
+    """Refuse more rooms than a program holds, with the words."""
+    if e.number > MAX_ROOMS:
+        words = [state.heard.quote(max(e.first - 1, 0), e.last, "rooms")]
+        raise ImpossibleError(f"{e.number:g} {e.type.replace('_', ' ')}s are asked for", f"ask for {MAX_ROOMS} rooms at most", words)
 
 
 def _whole(sentence: list[Element], k: int) -> bool:

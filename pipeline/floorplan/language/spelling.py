@@ -8,8 +8,8 @@ import re
 from collections.abc import Sequence
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language.lexicon import FARTHER, LANGUAGES, STRONG, Language, Lexicon, Meaning, kinds, lexicon, unread
-from pipeline.floorplan.language.text import HAN, Token, bare, fold, is_han, tokenize
+from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, Lexicon, Meaning, kinds, lexicon, unread
+from pipeline.floorplan.language.text import HAN, Token, fold, is_han, tokenize
 
 SHORTEST, LONG = 4, 8  # one error from SHORTEST letters on, two from LONG on
 ONE, USUAL = 1.2, 0.9  # how far a word with one error is at most, and with a usual one
@@ -24,10 +24,6 @@ def repair(tokens: Sequence[Token], texts: Sequence[str], lex: Lexicon) -> tuple
     words: list[str] = []
     for token, text in zip(tokens, texts, strict=True):
         parts = (text,) if text in lex.vocabulary or not text.replace("'", "").isalpha() else resolve(text, lex.language, every=True)
-        if (
-            text not in lex.vocabulary and parts == (text,) and text == fold(token.text) and (plain := bare(token.text)) != text
-        ):  # "Kcühe": the umlaut's two letters would count as two errors
-            parts = (plain,) if plain in lex.vocabulary else resolve(plain, lex.language, every=True)
         for part in parts:
             repaired.append(token)
             words.append(part)
@@ -43,16 +39,12 @@ def resolve(word: str, language: Language, *, every: bool = False) -> tuple[str,
     stem = _stem(word, lex)
     if stem:
         return (stem,)
-    bared = word.removesuffix("'").removesuffix("'s")
-    if bared != word:
-        return (bared,) if bared in lex.vocabulary else resolve(bared, language, every=every)
     near, cost = _nearest(word, language, every)
     if near and cost <= (ONE if near in _strong(language) else USUAL):
         return (near,)
     if parts := _split(word, lex):
         return parts
-    stems = (word.removesuffix(e) for e in lex.endings if word.endswith(e) and len(word) - len(e) > SHORTEST)  # mistyped and inflected
-    return (near or next((n for s in stems if (n := _nearest(s, language, every)[0])), word),)
+    return (near or word,)
 
 
 def uninflected_meaning(word: str, lex: Lexicon) -> Meaning | None:
@@ -81,19 +73,9 @@ def _split(word: str, lex: Lexicon) -> tuple[str, ...]:
         a, b = word[:cut], word[cut:]
         if a not in lex.vocabulary or b not in lex.vocabulary:
             continue
-        least, most = sorted((len(a), len(b)))
-        speak = all(_speaks(w, lex) for w in (a, b))
-        if (least >= SHORTEST - 1 and (a in targets or b in targets)) or (speak and most >= SHORTEST - 1):
+        if min(len(a), len(b)) >= SHORTEST - 1 and (a in targets or b in targets):
             return (a, b)
     return ()
-
-
-def _speaks(word: str, lex: Lexicon) -> bool:
-    """Whether a word builds sentences or names a room; of two letters only an article, a preposition and their like."""
-    if len(word) >= SHORTEST - 1:
-        return word in lex.targets or lex.others.get(word, 1.0) <= FARTHER[True]
-    meaning: Meaning | None = lex.trie.get(word, {}).get("")
-    return meaning is not None and meaning.kind in TINY
 
 
 @functools.cache
