@@ -290,7 +290,6 @@ CONFLICTS = {
     "conflict": ("two counts are asked for: {!r}", "keep one of them"),
 }
 RELATIONS = {"near", "door", "open", "wall", "away", "apart", "leads", "between"}
-NAMES = {"bedroom", "living_room", "kitchen"}  # what a home has, not a room that is ruled out
 
 
 def refuse(marks: Sequence[Mark], words: Words) -> None:

@@ -11,7 +11,6 @@ from pipeline.floorplan.language.phrases import Element, backward, heads
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import MAX_ROOMS
 
-MOST = MAX_ROOMS + 1
 SHORT = {"bedroom": "bed", "bathroom": "bath", "hallway": "hall", "staircase": "stairs"}  # ids of rooms that are not called as their type
 HALLS = {"hallway", "entry"}
 SOCIAL = {"kitchen", "dining_room", "living_room", "family_room"}
@@ -46,7 +45,6 @@ class Named:
     target: float | None = None
     size: float = 1.0
     functions: set[str] = field(default_factory=set)
-    exterior: str | None = None
     exterior_length: float | None = None
     window: str = "auto"
     min_width: float | None = None
@@ -69,7 +67,7 @@ class Inventory:
 
     def add(self, kind: str, role: str, surface: str, level: int | None, open_slot: bool = False) -> Named:
         """Add a room."""
-        if len(self.rooms) >= MOST:
+        if len(self.rooms) > MAX_ROOMS:
             raise RefusedError(f"more than {MAX_ROOMS} rooms are asked for", f"ask for {MAX_ROOMS} at most")
         base, known = SHORT.get(kind, kind.removesuffix("_room")), {r.id for r in self.rooms}
         names = (base if n == 1 else f"{base}_{n}" for n in itertools.count(len(self.of(kind)) + 1))
@@ -230,17 +228,6 @@ def _others(state: Reading, sentence: list[Element], k: int, role: str, level: i
         rest += [stock.add(e.type, role, e.text, level) for _ in range(int(e.number) - len(rest))]
         return rest[-int(e.number) :]
     return (rest if _many(e) else [close(r, "", e.text) for r in rest[:1]]) or [stock.add(e.type, role, e.text, level)]
-
-
-def fresh(state: Reading, e: Element, level: int | None, owner: str) -> list[str]:
-    """Return a room that somebody has of their own: one that was only counted, or a new one."""
-    same = state.inventory.of(e.type)
-    slots = [r for r in same if r.role == owner and e.type == "bedroom"] or [
-        r for r in same if r.open_slot and not r.role and (level is None or r.level in {None, level})
-    ]
-    room = close(slots[0], _role(e), e.text) if slots else state.inventory.add(e.type, _role(e), e.text, level)
-    e.ids = [room.id]
-    return e.ids
 
 
 def _indexed_room(state: Reading, e: Element, role: str, level: int | None) -> Named:

@@ -45,6 +45,9 @@ def _np(c: Clause, k: int, e: Element) -> None:
             bath.role = "ensuite"
         c.give(baths, tuple(r.id for r in hosts), e)
         return
+    if c.owner and "own" in e.det and not e.ids and e.type == "bathroom":  # "the parents have a private bathroom"
+        free = [r for r in c.stock.of(e.type) if r.open_slot and not r.role]
+        e.ids = [(free[0] if free else c.stock.add(e.type, "", e.text, None)).id]
     ids = c.rooms_at(k)
     if c.left_out and e.det & {"each", "all"} and set(ids) > set(c.left_out):
         ids, c.run = tuple(i for i in ids if i not in c.left_out), []

@@ -8,7 +8,7 @@ import re
 from collections.abc import Sequence
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG, Language, Lexicon, Meaning, kinds, lexicon, unread
+from pipeline.floorplan.language.lexicon import FARTHER, LANGUAGES, STRONG, Language, Lexicon, Meaning, kinds, lexicon, unread
 from pipeline.floorplan.language.text import HAN, Token, fold, is_han, tokenize
 
 SHORTEST, LONG = 4, 8  # one error from SHORTEST letters on, two from LONG on
@@ -39,6 +39,9 @@ def resolve(word: str, language: Language, *, every: bool = False) -> tuple[str,
     stem = _stem(word, lex)
     if stem:
         return (stem,)
+    bared = word.removesuffix("'").removesuffix("'s")
+    if bared != word:
+        return (bared,) if bared in lex.vocabulary else resolve(bared, language, every=every)
     near, cost = _nearest(word, language, every)
     if near and cost <= (ONE if near in _strong(language) else USUAL):
         return (near,)
@@ -73,9 +76,19 @@ def _split(word: str, lex: Lexicon) -> tuple[str, ...]:
         a, b = word[:cut], word[cut:]
         if a not in lex.vocabulary or b not in lex.vocabulary:
             continue
-        if min(len(a), len(b)) >= SHORTEST - 1 and (a in targets or b in targets):
+        least, most = sorted((len(a), len(b)))
+        speak = all(_speaks(w, lex) for w in (a, b))
+        if (least >= SHORTEST - 1 and (a in targets or b in targets)) or (speak and most >= SHORTEST - 1):
             return (a, b)
     return ()
+
+
+def _speaks(word: str, lex: Lexicon) -> bool:
+    """Whether a word builds sentences or names a room; of two letters only an article, a preposition and their like."""
+    if len(word) >= SHORTEST - 1:
+        return word in lex.targets or lex.others.get(word, 1.0) <= FARTHER[True]
+    meaning: Meaning | None = lex.trie.get(word, {}).get("")
+    return meaning is not None and meaning.kind in TINY
 
 
 @functools.cache

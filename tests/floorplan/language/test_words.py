@@ -73,6 +73,8 @@ def test_typing_errors_are_repaired(wrong, language, right):
 @pytest.mark.parametrize(
     ("wrong", "language", "right"),
     [
+        ("wiht", "en", ("with",)), ("betwen", "en", ("between",)), ("oposite", "en", ("opposite",)), ("conencted", "en", ("connected",)), ("kidds'", "en", ("kids",)),
+        ("intothe", "en", ("into", "the")), ("chaors", "en", ("chairs",)), ("zwichen", "de", ("zwischen",)), ("nebem", "de", ("neben",)),
         ("junot", "es", ("junto",)), ("abeirta", "es", ("abierta",)), ("bao", "es", ("bano",)), ("ono", "en", ("onto",)),
     ],
 )  # fmt: skip
