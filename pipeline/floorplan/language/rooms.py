@@ -185,9 +185,12 @@ def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> 
     return e.ids
 
 
-def _resolve_phrase(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:
+def _resolve_phrase(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per kind of phrase
     e, stock, role = sentence[k], state.inventory, _role(sentence[k])
     same = stock.of(e.type)
+    suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), None) if e.type == "bedroom" and not role else None
+    if suites and not e.ordinal and not e.number:
+        return [stock.get(i) for i in suites]
     halls = [r for r in stock.rooms if r.type in {"hallway", "entry"} and _word(e) in r.surface.split()]
     if e.type == "hallway" and e.definite and halls:
         return halls[:1]
