@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TypeVar
 
 import numpy as np
@@ -13,9 +14,16 @@ from pipeline.entities.plan import Opening, Plan
 
 Number = TypeVar("Number", np.float32, np.float64)
 
-FLOORS = {
-    name: Material(f"{name}_floor", color, roughness)
-    for name, color, roughness in (
+Look = tuple[str, tuple[float, float, float], float]  # name, linear colour, roughness
+
+
+def _materials(title: str, looks: Iterable[Look]) -> dict[str, Material]:
+    return {name: Material(title.format(name), color, roughness) for name, color, roughness in looks}
+
+
+FLOORS = _materials(
+    "{}_floor",
+    (
         ("oak", (0.42, 0.27, 0.15), 0.45),
         ("light_oak", (0.55, 0.40, 0.25), 0.5),
         ("walnut", (0.24, 0.14, 0.08), 0.4),
@@ -23,19 +31,19 @@ FLOORS = {
         ("slate", (0.25, 0.27, 0.29), 0.35),
         ("stone", (0.48, 0.44, 0.38), 0.4),
         ("concrete", (0.36, 0.36, 0.35), 0.7),
-    )
-}
-WALLS = {
-    name: Material(f"wall_{name}", color, roughness)
-    for name, color, roughness in (
+    ),
+)
+WALLS = _materials(
+    "wall_{}",
+    (
         ("bedroom", (0.70, 0.74, 0.78), 0.9),
         ("kids_room", (0.72, 0.80, 0.72), 0.9),
         ("kitchen", (0.82, 0.78, 0.66), 0.7),
         ("bathroom", (0.68, 0.80, 0.84), 0.3),
         ("study", (0.66, 0.70, 0.62), 0.9),
         ("plaster", (0.83, 0.81, 0.77), 0.9),
-    )
-}
+    ),
+)
 OAK, PLASTER = FLOORS["oak"], WALLS["plaster"]
 STEP = Material("step", (0.50, 0.36, 0.22), 0.5)
 FACADE = Material("facade", (0.62, 0.58, 0.52), 0.95)
