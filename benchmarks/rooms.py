@@ -2,10 +2,12 @@
 
     python benchmarks/rooms.py [rooms] [seeds]
 
-Needs what `make run` leaves: data/ and models/. Drafts are what the layout model draws, without constraints (no guidance, numbers and sizes
-as they come) and with them; finished rooms are what the arranger makes of either. Rates are those of all seeds together, with 95 %
+Needs what `make run` leaves: data/ and models/. Drafts are what the layout model draws: plain ones as it knows rooms, nothing asked of them
+(a shower in every bathroom, chairs at every table); unguided ones with what is asked but without guidance, numbers and sizes as they come;
+guided ones with all constraints. Finished rooms are what the arranger makes of each. Rates are those of all seeds together, with 95 %
 intervals. FID of plan views is measured on training floors, against the split: that of the rooms that stand there is its floor, and no
-other floors than theirs are in the way. R_acoll is that of the objects that open, those of the real rooms with the library's models in the
+other floors than theirs are in the way; that of the same rooms finished is what it costs that nothing may stand in another thing or in a
+wall, as in a third of the training rooms something does. R_acoll is that of the objects that open, those of the real rooms with the library's models in the
 places of theirs. At the end stand the floors of training rooms, which `part` in manifests/rooms.yaml is taken from.
 """
 
@@ -22,15 +24,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
+    from pipeline.diffusion.sampling import Sampler
     from pipeline.entities.home import Placement
     from pipeline.homes.factory import Factory
+    from pipeline.homes.furnish import Draft
     from pipeline.homes.request import RoomJob
     from pipeline.metrics.views import Features
     from pipeline.relations.arrangement import Arrangement
 
 ROOT = Path(__file__).resolve().parents[1]
 SPLIT = "test"
-SAMPLERS = {"unguided": "unguided and finished", "guided": "finished"}  # sets of drafts, and what the arranger makes of them
+# Sets of drafts, and what the arranger makes of them.
+SAMPLERS = {"plain": "plain and finished", "unguided": "unguided and finished", "guided": "finished"}
 LEAST = 10  # percentile of the training rooms' areas that `part` is
 
 Rooms = list["Arrangement"]
@@ -53,26 +58,44 @@ def rooms_of(jobs: Sequence[RoomJob], furniture: Sequence[Sequence[Placement]]) 
 
 def furnish_rooms(factory: Factory, jobs: Sequence[RoomJob], seconds: dict[str, float]) -> Furnished:
     """Furnish rooms, each set of SAMPLERS as drafted and finished; adds CPU seconds by set."""
-    from pipeline import taxonomy
     from pipeline.homes.furnish import draft_rooms
-    from pipeline.homes.room_finishing import finish
 
+    unguided = factory.sampler.baseline()
     sets: dict[str, Sequence[Sequence[Placement]]] = {}
-    for name, sampler in (("unguided", factory.sampler.baseline()), ("guided", factory.sampler)):
+    for name, sampler in zip(SAMPLERS, (unasked(unguided), unguided, factory.sampler), strict=True):
         start = time.process_time()
         drafts = draft_rooms(replace(factory, sampler=sampler), jobs)
         drafted = time.process_time()
-        results = [
-            finish(d, factory.library, factory.index, factory.learnt, factory.postopt, factory.verify, taxonomy.load()) for d in drafts
-        ]
-        sets |= {name: [d.placements for d in drafts], SAMPLERS[name]: [r.placements for r in results]}
+        sets |= {name: [d.placements for d in drafts], SAMPLERS[name]: finished(factory, drafts)}
         for part, spent in ((name, drafted - start), (SAMPLERS[name], time.process_time() - drafted)):
             seconds[part] = seconds.get(part, 0.0) + spent
     return sets
 
 
-def furnish_as_real(factory: Factory, jobs: Sequence[RoomJob], names: Sequence[str]) -> Sequence[Sequence[Placement]]:
-    """Return the furniture of real rooms, named as `scene_id/room_id`, as models of the library: each the nearest to the real one's size and shape."""
+def unasked(sampler: Sampler) -> Sampler:
+    """Return a sampler that hears of no number, no bounds and no company."""
+    from dataclasses import fields
+
+    from pipeline.diffusion.sampling import Sampler
+
+    class Unasked(Sampler):
+        def inventories(self, rooms: Any, keys: Any, floors: Any) -> Any:
+            return super().inventories([replace(room, n_target=None, category_bounds=(), company=()) for room in rooms], keys, floors)
+
+    return Unasked(*(getattr(sampler, f.name) for f in fields(Sampler)))
+
+
+def finished(factory: Factory, drafts: Sequence[Draft]) -> Sequence[Sequence[Placement]]:
+    """Return what the arranger makes of drafts."""
+    from pipeline import taxonomy
+    from pipeline.homes.room_finishing import finish
+
+    f = factory
+    return [finish(d, f.library, f.index, f.learnt, f.postopt, f.verify, taxonomy.load()).placements for d in drafts]
+
+
+def drafts_of_real(factory: Factory, jobs: Sequence[RoomJob], names: Sequence[str]) -> Sequence[Draft]:
+    """Return real rooms, named as `scene_id/room_id`, as drafts: for each thing the library's model that is nearest to its size and shape."""
     from pipeline import tables, taxonomy
     from pipeline.diffusion.context import Proposal, RoomContext
     from pipeline.homes.furnish import retrieve
@@ -88,7 +111,7 @@ def furnish_as_real(factory: Factory, jobs: Sequence[RoomJob], names: Sequence[s
             inside.setdefault(f"{row['scene_id']}/{row['room_id']}", []).append(own)
     contexts = [RoomContext.of(job.plan, job.room_id, job.layout_type) for job in jobs]
     return [
-        retrieve(job, context, inside[name], factory.index, known, factory.seed).placements
+        retrieve(job, context, inside[name], factory.index, known, factory.seed)
         for job, context, name in zip(jobs, contexts, names, strict=True)
     ]
 
@@ -110,14 +133,15 @@ def obstructed(factory: Factory, jobs: Sequence[RoomJob], furniture: Sequence[Se
 def views_apart(
     factory: Factory, truth: Rooms, train: Mapping[str, Arrangement], jobs: Mapping[str, RoomJob], features_of: Features
 ) -> dict[str, float]:
-    """Return FID of plan views against the split: of training rooms, as many of each type, and of what is made on the same floors; rooms and jobs by name."""
+    """Return FID of plan views against the split: of training rooms, as many of each type, also finished, and of what is made on the same floors; rooms and jobs by name."""
     from pipeline.experiments.realism import alike
     from pipeline.metrics.two_samples import frechet
 
     real, floors = alike(np.random.default_rng(factory.seed), truth, list(train.values()))
     own = [jobs[room.name] for room in floors]
     sets = {"train": floors}
-    for name, furniture in furnish_rooms(factory, own, {}).items():
+    as_real = {"train, finished": finished(factory, drafts_of_real(factory, own, [room.name for room in floors]))}
+    for name, furniture in {**as_real, **furnish_rooms(factory, own, {})}.items():
         rooms = zip(rooms_of(own, furniture), floors, strict=True)
         sets[name] = [replace(room, openings=floor.openings) for room, floor in rooms if room.categories]
     return {name: frechet(features_of(real), features_of(rooms)) for name, rooms in sets.items()}
@@ -204,7 +228,8 @@ def main(count: int, seeds: int) -> None:
         for name, fid in views_apart(factory, truth, train, floors, features_of).items():
             views.setdefault(name, []).append(fid)
         every = furnish_rooms(factory, jobs, seconds)
-        ways = {name: obstructed(factory, jobs, own) for name, own in {"real": furnish_as_real(factory, jobs, chosen), **every}.items()}
+        as_real = {"real": [draft.placements for draft in drafts_of_real(factory, jobs, chosen)]}
+        ways = {name: obstructed(factory, jobs, own) for name, own in {**as_real, **every}.items()}
         for name, own in every.items():
             rooms = rooms_of(jobs, own)
             sets.setdefault(name, []).extend(rooms)
