@@ -284,8 +284,8 @@ class _Place:
         before = [m for m in self.named if begin <= m.start and m.end <= claim.start]
         after = [m for m in self.named if claim.end <= m.start and m.end <= end]
         gap = after[0].start - claim.end if after else FARTHEST + 1
-        if before and claim.kind != "count" and self.scan.length(self._at(before[-1].end), "dwelling"):
-            return ()  # "a two-bedroom flat with 30 pieces": the flat's
+        if before and claim.kind != "style" and self._of_the_home(claim, before[-1]):
+            return ()
         if (claim.inward and gap <= FARTHEST and "," not in self.prompt[claim.end : after[0].start]) or (
             gap <= CLOSE and self.scan.length(self._at(claim.end), "of")
         ):  # "带淋浴的卫生间"
@@ -307,6 +307,19 @@ class _Place:
         first = self._at(begin)
         stands_for = any(self.scan.length(k, "stands_for") for k in range(first, first + 3) if k < self._at(claim.start))
         return earlier[-1].ids if earlier and begin and claim.kind != "walkable" and stands_for else ()
+
+    def _of_the_home(self, claim: Claim, room: Mention) -> bool:
+        """Whether what follows a room is the home's: "a two-bedroom flat with a sofa", "two bedrooms, a kitchen and a sofa"; but "with bunk beds"."""
+        natural, first, last = self._natural(claim, room), self._at(room.end), self._at(claim.start)
+        if self.scan.length(first, "dwelling"):
+            return claim.kind != "count" or not (claim.plural and natural)
+        if claim.kind != "count" or natural:
+            return False
+        led = any(self.scan.length(k, "with", "in", "is") or self.scan.text(k) in {":", "("} for k in range(first, last))
+        named = self._at(room.start)
+        flat = next((k for k in range(named - 1, named - 4, -1) if self.scan.length(k, "dwelling", "with", "and")), named)
+        dwelling = self.scan.length(flat, "dwelling")
+        return self._joined(room.end, claim.start) and bool(dwelling or not led)  # "un piso de dos dormitorios con un sofá"
 
     def _styled(self, claim: Claim, before: Sequence[Mention], after: Sequence[Mention]) -> tuple[str, ...]:
         """Return whose style it is: a room's where it stands in the room's list of wishes or right before its name, else the home's."""

@@ -81,11 +81,15 @@ def spread(program: FloorProgram) -> FloorProgram:
     each = everywhere.model_copy(update={"least": None, "most": None, "openable": None})
     rooms = [r.model_copy(update={"furniture": merge_wishes(each, r.furniture)}) if is_furnished(r.type) else r for r in program.rooms]
     kept: list[Things] = []
+    put: dict[str, int] = {}
     for things in (c for c in wish.counts if c.min):
         home = next((k for kind in natural(things.category) for k, r in enumerate(rooms) if r.type == kind), None)
+        if set(members(things.category)) & set(members("any_chair")):  # "a dining table for six"
+            home = next((put[name] for name in ("dining_table", "any_table") if name in put), home)
         if home is None:
             kept.append(things)
             continue
+        put[things.category] = home
         own = Furniture(counts=(things,))
         rooms[home] = rooms[home].model_copy(update={"furniture": merge_wishes(rooms[home].furniture, own)})
     return program.model_copy(

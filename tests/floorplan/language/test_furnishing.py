@@ -118,6 +118,24 @@ def test_whose_wish_it_is():
     assert {k: {c.category for c in v.counts} for k, v in found.items()} == {"living": {"any_sofa"}, "kitchen": {"oven", "refrigerator"}}
 
 
+@pytest.mark.parametrize(
+    ("prompt", "rooms"),
+    [
+        ("a 2-bedroom flat with a sofa and a big tv", {"living": {"any_sofa", "tv_stand"}}),
+        ("a three-bedroom house with a dining table for six", {"living": {"dining_table", "any_chair"}}),
+        ("a two-bedroom apartment with a desk", {"bed": {"desk"}}),
+        ("a two-bedroom apartment with bunk beds", {"bed": {"kids_bed"}, "bed_2": {"kids_bed"}}),
+        ("two bedrooms, a kitchen and a sofa", {"living": {"any_sofa"}}),
+        ("a family house with three bedrooms and a dining table", {"living": {"dining_table"}}),
+        ("un piso de dos dormitorios con un sofá", {"living": {"any_sofa"}}),
+        ("eine Dreizimmerwohnung mit einem Esstisch", {"living": {"dining_table"}}),
+        ("a flat with a bedroom with a sofa", {"bed": {"any_sofa"}}),
+    ],
+)
+def test_what_a_home_is_to_have_goes_where_it_usually_stands_and_not_into_the_bedrooms_that_name_it(prompt, rooms):
+    assert {r.id: {c.category for c in r.furniture.counts} for r in complete(parse(prompt)).rooms if r.furniture.counts} == rooms
+
+
 def test_wishes_for_the_whole_home_reach_every_furnished_room():
     program = parse("Everything nordic, no TVs, 60 % free everywhere. A two-bedroom flat with a garage.")
     assert program.furniture == Furniture(style="Nordic", walkable=0.6, counts=(Things(category="tv_stand", max=0),))
