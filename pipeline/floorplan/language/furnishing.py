@@ -307,7 +307,8 @@ class Scan:
         lead = self.length(k, "in")
         length, value = self.number(k + lead) if lead else (0, None)
         people = self.length(k + lead + length, "seated")
-        if value is None or value > MOST_SEATS or not (people or self.text(k + lead + length) in {"", *COMMAS}):
+        ends = self.text(k + lead + length) in {"", *COMMAS} or self.length(k + lead + length, "in")
+        if value is None or value > MOST_SEATS or not (people or ends):
             return 0
         return self._put("count", k, k + lead + length + people, CHAIRS, int(value))
 

@@ -284,14 +284,14 @@ class _Place:
         before = [m for m in self.named if begin <= m.start and m.end <= claim.start]
         after = [m for m in self.named if claim.end <= m.start and m.end <= end]
         gap = after[0].start - claim.end if after else FARTHEST + 1
-        if before and claim.kind != "style" and self._of_the_home(claim, before[-1]):
-            return ()
         if (claim.inward and gap <= FARTHEST and "," not in self.prompt[claim.end : after[0].start]) or (
             gap <= CLOSE and self.scan.length(self._at(claim.end), "of")
         ):  # "带淋浴的卫生间"
             return after[0].ids
         if claim.kind == "style":
             return self._styled(claim, before, after)
+        if before and self._of_the_home(claim, before[-1]):
+            return ()
         if before:
             near = self._joined(before[-1].end, claim.start) or self._natural(claim, before[-1])
             likely = [] if near else [m for m in [*reversed(before), *after, *self.named] if self._natural(claim, m)]

@@ -126,6 +126,8 @@ def test_whose_wish_it_is():
         ("a two-bedroom apartment with a desk", {"bed": {"desk"}}),
         ("a two-bedroom apartment with bunk beds", {"bed": {"kids_bed"}, "bed_2": {"kids_bed"}}),
         ("two bedrooms, a kitchen and a sofa", {"living": {"any_sofa"}}),
+        ("a two-bedroom flat with a desk in each bedroom", {"bed": {"desk"}, "bed_2": {"desk"}}),
+        ("a flat with a dining table for eight in the kitchen", {"kitchen": {"dining_table", "any_chair"}}),
         ("a family house with three bedrooms and a dining table", {"living": {"dining_table"}}),
         ("un piso de dos dormitorios con un sofá", {"living": {"any_sofa"}}),
         ("eine Dreizimmerwohnung mit einem Esstisch", {"living": {"dining_table"}}),
