@@ -54,7 +54,7 @@ def main(
         return try_one(root, seed, order.wish(only))
     header = header_of(factory, count, order.digest())
     again = shlex.join(["sfgen", "shard", "--count", str(count), "--seed", str(seed), *(["--prompts", str(prompts)] if prompts else [])])
-    recipe = Recipe(opened, cache_assets=scheduler is None, digests=factory.digests)
+    recipe = Recipe(opened, cache_assets=scheduler is None, digests=factory.digests, versions=header.versions)
     with open_or_create(folder, header, factory.asset_cache, address=place) as dataset:
         where: dict[str, Any] = {"workers": workers or cores(), "scheduler": scheduler}
         if dataset.missing() and not scheduler:

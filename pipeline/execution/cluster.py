@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import logging
+import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
+from distributed.diagnostics.plugin import Environ
+
 from pipeline.errors import ContentError, SfgenError, UsageError
-from pipeline.execution.machine import single_thread
+from pipeline.execution.machine import PINNED, single_thread
 from pipeline.execution.queue import Lost, Queue, Task
 
 J = TypeVar("J")
@@ -63,6 +66,19 @@ def run_on_cluster(step: Callable[[J], R], queue: Queue[J], scheduler: str) -> I
             raise ContentError(f"the Dask scheduler at {scheduler} is gone", "start it, then the same command again: it resumes") from error
 
 
+class SameInstructions(Environ):  # type: ignore[misc]  # distributed has no types
+    """Starts workers again that numeric libraries give other instructions than the command: NumPy is loaded before a worker's first job."""
+
+    def __init__(self) -> None:
+        super().__init__({name: os.environ[name] for name in PINNED if name in os.environ})
+
+    async def setup(self, nanny: Any) -> None:
+        """Take note of whether the worker has to be started again, and give it the command's settings. Called where a worker is, and where one joins."""
+        there = {**os.environ, **nanny.pre_spawn_env}
+        self.restart = any(there.get(name) != value for name, value in self.environ.items())
+        nanny.pre_spawn_env.update(self.environ)
+
+
 def _try_step(step: Callable[[J], R], job: J) -> R | SfgenError:
     """Run the step. Our own errors are answers: the same input fails again, so Dask shall not retry it."""
     single_thread()
@@ -98,4 +114,6 @@ def _client(scheduler: str) -> Iterator[Any]:
                 client.wait_for_workers(1, timeout=FIRST)
             except (TimeoutError, OSError) as error:
                 raise UsageError(f"the Dask scheduler at {scheduler} has no workers", "start some with `dask worker`") from error
+            client.register_plugin(SameInstructions(), name="sfgen-instructions")
+            client.wait_for_workers(1, timeout=FIRST)
             yield client

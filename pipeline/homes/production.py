@@ -21,6 +21,7 @@ from pipeline.execution import Lost, Progress, map_jobs
 from pipeline.homes.factory import Factory, forget_factory
 from pipeline.homes.furnish import HomeDraft
 from pipeline.homes.outcomes import Empty, Outcome
+from pipeline.homes.reproduction import made_with
 from pipeline.homes.request import Request
 from pipeline.homes.settings import ShardSettings
 from pipeline.shards import (
@@ -75,17 +76,23 @@ class Recipe:
     """What a worker needs to make chunks: how to open the factory, and the first drafts, where a stage has made them.
 
     With `cache_assets` it also puts the assets into its machine's cache, from which the dataset takes them. `digests` are what the dataset
-    says that homes are made of: a worker that has loaded something else loads again, or refuses.
+    says that homes are made of: a worker that has loaded something else loads again, or refuses. `versions` are those of what computes: a worker
+    with others refuses.
     """
 
     opened: Callable[[], Factory]
     drafts: Callable[[Factory, Sequence[Request]], list[HomeDraft]] | None = None
     cache_assets: bool = True
     digests: Mapping[str, str] = field(default_factory=dict)
+    versions: Mapping[str, str] = field(default_factory=dict)
 
     def factory(self) -> Factory:
         """Open the factory that the dataset is to be made with. Raises ContentError where there is another."""
-        factory = self.opened()
+        factory, here = self.opened(), made_with() if self.versions else {}
+        if other := [f"{name} {here.get(name)}, not {value}" for name, value in self.versions.items() if here.get(name) != value]:
+            raise ContentError(
+                f"a worker has other versions than the command ({'; '.join(other)})", "give it the same; workers of Dask need a nanny"
+            )
         if stale := self._others(factory):
             forget_factory()
             factory = self.opened()

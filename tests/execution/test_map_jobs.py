@@ -1,5 +1,6 @@
 """map_jobs: every mode gives the same results, errors come through, dead and silent workers and Ctrl-C cost nothing and leave nothing behind."""
 
+import asyncio
 import functools
 import json
 import os
@@ -320,3 +321,15 @@ def gone(pid):
             return True
         time.sleep(0.1)
     return False
+
+
+@pytest.mark.parametrize("capability", ["avx2", None])
+def test_workers_that_compute_with_other_instructions_are_started_again(monkeypatch, capability):
+    from pipeline.execution.cluster import SameInstructions
+
+    monkeypatch.setenv("ATEN_CPU_CAPABILITY", "avx2")
+    plugin, nanny = SameInstructions(), SimpleNamespace(pre_spawn_env={})
+    if capability is None:  # on the worker's machine
+        monkeypatch.delenv("ATEN_CPU_CAPABILITY")
+    asyncio.run(plugin.setup(nanny))
+    assert (plugin.restart, nanny.pre_spawn_env["ATEN_CPU_CAPABILITY"]) == (capability is None, "avx2")

@@ -1,10 +1,13 @@
 import re
 from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from pipeline.errors import RefusedError
+from pipeline.homes import factory as factories
 from pipeline.homes.drafts import draft_rows, drafts_of
 from pipeline.homes.request import Request
 from pipeline.verify import verify_home
@@ -98,3 +101,16 @@ def test_poses_are_rounded(outcomes):
 def test_cpu_seconds_are_counted_by_part(factory, outcomes):
     assert outcomes
     assert {"plan", "sample", "postopt", "verify"} <= factory.seconds.keys()
+
+
+def test_a_worker_without_the_commands_folder_takes_the_checkout_of_its_own_code(tmp_path, monkeypatch):
+    def loaded(root, *_):
+        roots.append(root)
+        return SimpleNamespace(library=SimpleNamespace())
+
+    roots = []
+    monkeypatch.setattr(factories, "_loaded_factory", loaded)
+    (tmp_path / "params.yaml").touch()
+    factories.open_factory(tmp_path, 0)
+    factories.open_factory(tmp_path / "of-another-machine", 0)
+    assert roots == [tmp_path, Path(factories.__file__).parents[2]]

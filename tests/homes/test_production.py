@@ -150,6 +150,8 @@ def test_a_worker_with_other_weights_loads_them_again_or_refuses(tmp_path):
         make_chunk(Recipe(opened, digests={"weights": "newer"}), Chunk(0, request))
     with pytest.raises(ContentError, match="other code"):
         make_chunk(Recipe(opened, digests={"code": "x"}), Chunk(0, request))
+    with pytest.raises(ContentError, match="not abacus"):
+        make_chunk(Recipe(opened, versions={"instructions": "abacus"}), Chunk(0, request))
 
 
 def test_several_commands_share_one_dataset_and_each_home_is_made_once(tmp_path):
