@@ -112,8 +112,8 @@ def _client(scheduler: str) -> Iterator[Any]:
         with client:
             try:
                 client.wait_for_workers(1, timeout=FIRST)
+                client.register_plugin(SameInstructions(), name="sfgen-instructions")
+                client.wait_for_workers(1, timeout=FIRST)  # which it may have started again
             except (TimeoutError, OSError) as error:
                 raise UsageError(f"the Dask scheduler at {scheduler} has no workers", "start some with `dask worker`") from error
-            client.register_plugin(SameInstructions(), name="sfgen-instructions")
-            client.wait_for_workers(1, timeout=FIRST)
             yield client

@@ -105,7 +105,8 @@ def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
 def open_factory(root: Path, seed: int, memory: int = MEMORY, preview: int | None = None) -> Factory:
     """Return this process's factory for the checkout at `root`, loaded once; as much of the library stays read as fits into `memory` [MiB].
 
-    A worker on a machine that has no such folder takes the checkout that its own code lies in; the recipe's digests tell whether it is the same. `preview` [px] takes the place of `shard.preview` in params.yaml; a dataset's header tells it.
+    A worker on a machine that has no such folder takes the checkout that its own code lies in; the recipe's digests tell whether it is the
+    same. `preview` [px] takes the place of `shard.preview` in params.yaml; a dataset's header tells it.
     """
     factory = _loaded_factory(root if (root / "params.yaml").is_file() else OWN, seed, preview)
     factory.library.kept = kept_within(memory)

@@ -151,7 +151,7 @@ def fill(
         for reason, cases in empties_of(dataset).items():
             raise ContentError(f"{cases[0][0]} stays empty ({reason}: {cases[0][1]})", "leave --strict out")
     watch = _Watch(tally, progress)
-    spent = dict.fromkeys(missing, 0.0)  # CPU seconds by shard
+    spent = dict.fromkeys(missing, 0.0)  # CPU seconds by shard, and seconds of waiting for workers that kept silent
     while missing:
         found = chunks(dataset, missing, asked, factory.chunk, workers)
         done = map_jobs(
@@ -168,6 +168,8 @@ def fill(
             for chunk, answer in done:
                 batch = lost_batch(chunk, answer, factory.seed) if isinstance(answer, Lost) else answer
                 spent[chunk.shard] += sum(batch.seconds.values())
+                if isinstance(answer, Lost) and answer.how == "hung":
+                    spent[chunk.shard] += answer.times * factory.shard.home_seconds
                 for empty in batch.empties:
                     if strict:
                         raise empty.error

@@ -18,13 +18,13 @@ from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.marks import listen, segment
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import fold, tokenize, words
-from pipeline.floorplan.program.furniture import lexicon
+from pipeline.floorplan.program.furniture import CHAIRS, TABLES, lexicon
 
 STOPS = frozenset(".;!?\n。;!?")
 COMMAS = STOPS | {",", "、"}
 MOST, MOST_WORDS = 1e6, 6  # of any amount, and of a numeral
 NEAR, FAR, OWNED = 5, 7, 14  # words in which "everywhere", "free" and an owner are looked for
-TABLES, CHAIRS, MOST_SEATS = {"dining_table", "any_table"}, "any_chair", 16
+MOST_SEATS = 16
 ENDINGS = ("en", "es", "as", "os", "em", "e", "n", "s", "a", "o")  # of plurals, cases and genders
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
 

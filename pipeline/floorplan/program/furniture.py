@@ -12,6 +12,7 @@ from pipeline.card import cards
 from pipeline.floorplan.program.floor_program import FloorProgram, Furniture, RoomReq, Things
 
 LEXICON = Path(__file__).resolve().parents[3] / "manifests" / "lexicon" / "furniture.yaml"
+TABLES, CHAIRS = ("dining_table", "any_table"), "any_chair"  # at which one eats, and on which
 LEAST_FLOOR = 0.25  # [m2] of floor that a piece takes in the mean, lamps and wall units among them
 CROWDED = 0.9  # share of a room's floor that pieces may take at most
 SLACK = 1.1  # areas may turn out this much larger than their target
@@ -84,8 +85,8 @@ def spread(program: FloorProgram) -> FloorProgram:
     put: dict[str, int] = {}
     for things in (c for c in wish.counts if c.min):
         home = next((k for kind in natural(things.category) for k, r in enumerate(rooms) if r.type == kind), None)
-        if set(members(things.category)) & set(members("any_chair")):  # "a dining table for six"
-            home = next((put[name] for name in ("dining_table", "any_table") if name in put), home)
+        if set(members(things.category)) & set(members(CHAIRS)):  # "a dining table for six"
+            home = next((put[name] for name in TABLES if name in put), home)
         if home is None:
             kept.append(things)
             continue
