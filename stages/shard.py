@@ -68,9 +68,8 @@ def repair(root: Path, *, folder: Path, prompts: Path | None = None, workers: in
     """Make again what is broken or missing of a dataset, its header too, by the checkout that made it; returns the exit code."""
     seed, count = identity(folder)
     factory, progress = open_factory(root, seed), Progress(count, "homes", voice=voice)
-    sides = dict.fromkeys((factory.shard.preview, 0))
     made = [(header_of(factory, count, words), asked) for words, asked in orders(root, seed, prompts)]
-    known = [(replace(header, preview=side), asked) for side in sides for header, asked in made]
+    known = [(replace(header, preview=side), asked) for side in (factory.shard.preview, 0) for header, asked in made]
     there = next((header for header, _ in known if vouches(folder, header)), None) or read_header(folder)
     asked = next((asked for header, asked in known if replace(header, preview=there.preview) == there), None)
     if asked is None:

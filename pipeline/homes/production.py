@@ -167,9 +167,7 @@ def fill(
         with closing(done):  # an error stops the workers at once
             for chunk, answer in done:
                 batch = lost_batch(chunk, answer, factory.seed) if isinstance(answer, Lost) else answer
-                spent[chunk.shard] += sum(batch.seconds.values())
-                if isinstance(answer, Lost) and answer.how == "hung":
-                    spent[chunk.shard] += answer.times * factory.shard.home_seconds
+                spent[chunk.shard] += sum(batch.seconds.values()) + silent_seconds(answer, factory.shard)
                 for empty in batch.empties:
                     if strict:
                         raise empty.error
@@ -214,6 +212,11 @@ def chunks(dataset: Dataset, missing: Sequence[int], asked: Callable[[int], Requ
 def allowed_seconds(dataset: Dataset, settings: ShardSettings, number: int) -> float:
     """Return the CPU seconds that a shard may take before its other homes stay empty."""
     return settings.shard_seconds * len(dataset.header.indices(number))
+
+
+def silent_seconds(answer: Batch | Lost, settings: ShardSettings) -> float:
+    """Return how long one waited for the workers that kept silent at a home [s]."""
+    return answer.times * settings.home_seconds if isinstance(answer, Lost) and answer.how == "hung" else 0.0
 
 
 def make_chunk(recipe: Recipe, chunk: Chunk) -> Batch:
