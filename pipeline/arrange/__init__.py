@@ -2,17 +2,15 @@
 
 from pipeline.arrange.hanging import Hanging, Window
 from pipeline.arrange.learnt_relations import LearntRelations
-from pipeline.arrange.postoptimisation import Arranged, post_optimise
+from pipeline.arrange.postoptimisation import post_optimise
 from pipeline.arrange.rugs import lay_rug
 from pipeline.arrange.separate import Reject, Separated, separate
 from pipeline.arrange.settings import PostoptSettings, SeparateSettings, ThingsSettings, WalkableSettings
 from pipeline.arrange.site import Site
 from pipeline.arrange.surface_placement import Laying
-from pipeline.arrange.walkable_area import Controlled, control_walkable, free_ratio, paper_ratio
+from pipeline.arrange.walkable_area import control_walkable, free_ratio
 
 __all__ = [
-    "Arranged",
-    "Controlled",
     "Hanging",
     "Laying",
     "LearntRelations",
@@ -27,7 +25,6 @@ __all__ = [
     "control_walkable",
     "free_ratio",
     "lay_rug",
-    "paper_ratio",
     "post_optimise",
     "separate",
 ]

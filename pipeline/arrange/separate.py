@@ -62,16 +62,11 @@ class Reject:
 
 @dataclass(frozen=True, slots=True)
 class Separated:
-    """The outcome for one room: `placements` in the order they came, `rejects`, how far each moved [m], `unreached`, `failed`.
-
-    `unreached` are the ids of what a robot cannot use where it stands; `failed` is set when an object had to be left out although the count was to be kept.
-    """
+    """The outcome for one room: `placements` in the order they came, `rejects`, and `unreached`, the ids of what a robot cannot use where it stands."""
 
     placements: tuple[Placement, ...]
     rejects: tuple[Reject, ...]
-    moved: tuple[float, ...]
     unreached: frozenset[str]
-    failed: bool
 
 
 def separate(
@@ -86,7 +81,7 @@ def separate(
 ) -> Separated:
     """Separate the objects of one room; `learnt` is what the training tables know of relations.
 
-    `smaller` finds smaller assets for what does not fit; with `keep_count` a room that loses an object has failed.
+    `smaller` finds smaller assets for what does not fit; with `keep_count` nothing that has a place is left out for standing astray.
     """
     settings = settings or SeparateSettings()
     asked = [make_item(p, assets, learnt, settings.access_depth) for p in placements]
@@ -133,7 +128,7 @@ def separate(
         ]
     for i in () if keep_count else astray:
         del best[i]
-    return _outcome(asked, best, unreached, keep_count=keep_count)
+    return _outcome(asked, best, unreached)
 
 
 def _only_there(items: Sequence[Item], bond: Bond | None, i: int, learnt: LearntRelations) -> bool:
@@ -167,7 +162,7 @@ def _arrange_once(
     return occupancy, unreached is not None, bonds, runs
 
 
-def _outcome(asked: Sequence[Item], best: Mapping[int, Placement], unreached: Collection[int], *, keep_count: bool) -> Separated:
+def _outcome(asked: Sequence[Item], best: Mapping[int, Placement], unreached: Collection[int]) -> Separated:
     rejects: list[Reject] = []
     for i, item in enumerate(asked):
         what = item.placement
@@ -176,9 +171,7 @@ def _outcome(asked: Sequence[Item], best: Mapping[int, Placement], unreached: Co
         elif best[i].asset_id != what.asset_id:
             rejects.append(Reject(what.object_id, "shrunk_to_fit", f"{what.asset_id} gave way to {best[i].asset_id}"))
     kept = sorted(best)
-    moved = tuple(float(np.linalg.norm(best[i].position[:2] - asked[i].wished[:2])) for i in kept)
-    out_of_reach = frozenset(best[i].object_id for i in kept if i in unreached)
-    return Separated(tuple(best[i] for i in kept), tuple(rejects), moved, out_of_reach, keep_count and len(kept) < len(asked))
+    return Separated(tuple(best[i] for i in kept), tuple(rejects), frozenset(best[i].object_id for i in kept if i in unreached))
 
 
 def _weight(items: Sequence[Item], which: Iterable[int]) -> float:

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
 
 
 @dataclass(frozen=True, slots=True)
 class WalkableSettings:
     """Algorithm 2: objects are exchanged for smaller ones until the walkable share reaches its target."""
 
-    ratio: Literal["free", "paper"] = "free"  # what is controlled: the robot's connected free floor, or the paper's formula
     top: int = 3  # k: how many of the largest objects are exchanged per iteration
     iterations: int = 20  # M: most iterations per room
-    skip_exhausted: bool = True  # the k largest that have something smaller; false: the k largest, as printed
 
 
 @dataclass(frozen=True, slots=True)

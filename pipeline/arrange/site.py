@@ -78,12 +78,6 @@ class Site:
             robot,
         )
 
-    @property
-    def area(self) -> float:
-        """Area of the room [m2] (shoelace formula)."""
-        x, y = self.polygon[:, 0], self.polygon[:, 1]
-        return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
-
     def free_space(self, obstacles: Prisms) -> FreeSpace:
         """Find where the robot can stand with these obstacles in the room."""
         return free_space(self.floor, obstacles, self.robot.radius, self.robot.band(self.elevation))

@@ -98,11 +98,11 @@ def finish(
     rejects: list[Reject] = [("object", "no_asset", category) for category in draft.lost]
     smaller = index.favouring(draft.taste.style, wished=draft.taste.wished).smaller
     counted = job.bounds[0] is not None or bool(job.furniture.counts)
-    arranged = post_optimise(site, placements, assets, learnt, settings, smaller, target=job.walkable, keep_count=counted)
+    arranged, free = post_optimise(site, placements, assets, learnt, settings, smaller, target=job.walkable, keep_count=counted)
     placements = tuple(round_placement(p) for p in arranged.placements)
     rejects += [("object", r.reason, f"{r.object_id}: {r.detail}") for r in arranged.rejects]
     openers = frozenset(p.asset_id for p in placements if assets[p.asset_id].openable)
-    result = RoomResult(draft, placements, tuple(rejects), free=arranged.ratio, openers=openers, unreached=arranged.unreached)
+    result = RoomResult(draft, placements, tuple(rejects), free=free, openers=openers, unreached=arranged.unreached)
     return result.judged(taxonomy)
 
 

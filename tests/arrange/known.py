@@ -10,6 +10,11 @@ from pipeline.relations.model import PairRelation, WallRelation, relations
 from pipeline.relations.modes import Mode, Span
 
 
+def farthest(found, wished):
+    """How far the object went that was moved farthest [m]; all that was wished is there."""
+    return max(float(np.linalg.norm(a.position[:2] - b.position[:2])) for a, b in zip(found.placements, wished, strict=True))
+
+
 def mode(side, out, along, turn, weight=0.5):
     """`out` (low, middle, high) from touching sides, `along` (reference, low, middle, high), `turn` from the anchor's."""
     return Mode(side, Span("outside", *out), Span(*along), Span("anchor", turn, turn, turn), weight)

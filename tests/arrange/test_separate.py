@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from pipeline.arrange import separate
 from pipeline.verify import Policy, verify_home
-from tests.arrange.known import LORE
+from tests.arrange.known import LORE, farthest
 from tests.geometry.furniture import LIBRARY, chest, home, one_room, placed, two_rooms
 from tests.judging import SETTINGS, site
 
@@ -60,7 +60,7 @@ def test_what_is_well_stays():
     # Backs at walls, in the gap that is usual, axis-parallel, nothing near anything.
     well = [placed("bed", 3.0, 3.49), placed("cupboard", 0.26, 2.5, math.pi / 2, number=1)]
     found = separate(site(plan, "room"), well, LIBRARY, LORE)
-    assert max(found.moved) < 0.005
+    assert farthest(found, well) < 0.005
     assert [p.yaw for p in found.placements] == pytest.approx([0, math.pi / 2], abs=1e-4)
 
 
@@ -92,7 +92,7 @@ def test_a_chair_may_stay_under_its_table():
     plan = room()
     tucked = [placed("table", 2.2, 2.2), placed("chair", 2.2 - 0.35, 2.2 - 0.4 - 0.25 + 0.14, math.pi, number=1)]
     found = separate(site(plan, "room"), tucked, LIBRARY, LORE)
-    assert max(found.moved) < 0.1
+    assert farthest(found, tucked) < 0.1
     assert abs(found.placements[1].position[1] - found.placements[0].position[1]) < 0.4 + 0.25
 
 
@@ -128,14 +128,12 @@ def test_lamps_hang_from_the_ceiling_and_the_rest_stands_on_the_floor():
     assert [p.position[2] for p in found.placements] == pytest.approx([2.4, 0.0])
 
 
-def test_what_does_not_fit_is_named_and_fails_a_kept_count():
+def test_what_does_not_fit_is_named():
     plan = room(2.2)
     many = [placed("bed", 1.1, 1.1, number=k) for k in range(3)]
     found = separate(site(plan, "room"), many, LIBRARY, LORE)
     assert {r.reason for r in found.rejects} == {"unplaceable"}
     assert len(found.placements) + len(found.rejects) == 3
-    assert not found.failed
-    assert separate(site(plan, "room"), many, LIBRARY, LORE, keep_count=True).failed
 
 
 def test_what_is_too_large_is_exchanged():
