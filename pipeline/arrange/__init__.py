@@ -1,6 +1,6 @@
 """Post-optimisation: walkable area (algorithm 2 of the paper), relations made exact, and what is left of collisions separated."""
 
-from pipeline.arrange.hanging import Hanging, Window
+from pipeline.arrange.hanging import Hanging
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.postoptimisation import post_optimise
 from pipeline.arrange.rugs import lay_rug
@@ -21,7 +21,6 @@ __all__ = [
     "Site",
     "ThingsSettings",
     "WalkableSettings",
-    "Window",
     "control_walkable",
     "free_ratio",
     "lay_rug",

@@ -10,12 +10,13 @@ import shapely
 from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import mode_poses
+from pipeline.arrange.edges import Edge
 from pipeline.arrange.item import Item, other_wall, wrap_yaw, yaw_difference
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
 from pipeline.arrange.snapping import ACROSS, FACING, height
-from pipeline.arrange.walls import Edge, at_wall, hides_window, opening_cost
+from pipeline.arrange.walls import at_wall, hides_window, opening_cost
 
 Floats = NDArray[np.float64]
 

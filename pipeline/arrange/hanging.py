@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.item import wrap_yaw
+from pipeline.arrange.edges import Edge, EdgeOpening, edges_of
 from pipeline.entities.plan import Opening
 
 Floats = NDArray[np.float64]
 
-OFF = 0.3  # an opening's segment is at most this far from the face of its wall [m]
 GAP = 0.004  # between the wall and the back of what hangs on it [m]
 ROOM = 0.06  # between what hangs and what is beside it [m]
 DEEP = 0.45  # what stands within this of the wall hides what would hang behind it [m]
@@ -24,75 +21,15 @@ LEAST = 0.35  # shorter walls stay bare [m]
 OVER = 0.1  # free wall between furniture and what hangs over it [m]
 
 
-@dataclass(frozen=True, slots=True)
-class Wall:
-    """One edge of a room polygon: `start` (2,) and the unit vector `along` (2,) [m, plan]; the room lies on its left.
-
-    `taken` (K, 5) are boxes that reach to within DEEP of it: start and end along it, distance of their near side, lower and upper edge [m].
-    """
-
-    start: Floats
-    along: Floats
-    length: float
-    taken: Floats
-
-    @property
-    def yaw(self) -> float:
-        """Yaw [rad] of what hangs on it: its front looks into the room."""
-        return wrap_yaw(math.atan2(float(self.along[1]), float(self.along[0])) + math.pi)
-
-    def point(self, s: float, off: float) -> Floats:
-        """Return the point (2,) [m] at `s` along the wall, `off` before it."""
-        position: Floats = self.start + s * self.along + off * np.array([-self.along[1], self.along[0]])
-        return position
-
-    def free(self, span: tuple[float, float], height: tuple[float, float]) -> bool:
-        """Tell whether a stretch of wall and a little around it is free."""
-        if span[0] < ROOM or span[1] > self.length - ROOM:
-            return False
-        t = self.taken
-        across = (t[:, 0] < span[1] + ROOM) & (t[:, 1] > span[0] - ROOM)
-        return not bool((across & (t[:, 3] < height[1] + ROOM) & (t[:, 4] > height[0] - ROOM)).any())
-
-
-@dataclass(frozen=True, slots=True)
-class Window:
-    """A window in wall number `wall`: `start` to `end` along it, `sill` to `head` above the floor [m]."""
-
-    wall: int
-    start: float
-    end: float
-    sill: float
-    head: float
-
-
 class Hanging:
     """The walls of a furnished room; what is hung takes its place, nothing is taken away. Heights are above the floor."""
 
     def __init__(self, polygon: Floats, openings: Sequence[Opening], corners: Floats, heights: Floats, ceiling: float) -> None:
         """`corners` (N, M, 2) and `heights` (N, 2) [m] are the prisms of all that stands or moves in the room; doors' leaves too."""
         self.ceiling = ceiling
-        self.walls: list[Wall] = []
-        self.windows: list[Window] = []
-        for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
-            length = float(np.linalg.norm(b - a))
-            along = (b - a) / max(length, 1e-9)
-            s, off = (corners - a) @ along, (corners - a) @ np.array([-along[1], along[0]])
-            standing = np.column_stack([s.min(1), s.max(1), off.min(1), heights])[off.max(1) > 0] if len(s) else np.zeros((0, 5))
-            in_wall = self._openings_of(len(self.walls), a, along, length, openings)
-            self.walls.append(Wall(a, along, length, np.concatenate([standing[standing[:, 2] < DEEP], in_wall])))
-
-    def _openings_of(self, number: int, a: Floats, along: Floats, length: float, openings: Sequence[Opening]) -> Floats:
-        rows = []
-        for o in openings:
-            s = (o.segment - a) @ along
-            off = np.abs((o.segment - a) @ np.array([-along[1], along[0]]))
-            start, end = max(float(s.min()), 0.0), min(float(s.max()), length)
-            if off.max() < OFF and end - start > 0.05:
-                rows.append([start, end, IN_WALL, o.sill, o.sill + o.height])
-                if o.kind == "window":
-                    self.windows.append(Window(number, start, end, o.sill, o.sill + o.height))
-        return np.array(rows).reshape(-1, 5)
+        self.walls = edges_of(polygon, openings)
+        self.windows = [(number, o) for number, wall in enumerate(self.walls) for o in wall.openings if o.window]
+        self.taken = [_taken(wall, corners, heights) for wall in self.walls]
 
     def hang(
         self, rng: np.random.Generator, size: Floats, middle: float, anchors: Sequence[Floats], *, beside: bool, tries: int
@@ -118,49 +55,61 @@ class Hanging:
     def _near(self, footprint: Floats, size: Floats, low: float, *, beside: bool) -> list[tuple[int, float, float]]:
         """Return (wall, s, z) over the middle of a footprint that stands at a wall, or at both its sides."""
         places = []
-        for number, wall in enumerate(self.walls):
-            s, off = (footprint - wall.start) @ wall.along, (footprint - wall.start) @ np.array([-wall.along[1], wall.along[0]])
+        for number, (wall, taken) in enumerate(zip(self.walls, self.taken, strict=True)):
+            s, off = wall.along_of(footprint), wall.off(footprint)
             if off.min() > AT_WALL or off.min() < -AT_WALL or s.min() < -AT_WALL or s.max() > wall.length + AT_WALL:
                 continue
             if beside:
                 aside = float(size[0]) / 2 + 2 * ROOM
                 places += [(number, float(s.min()) - aside, low), (number, float(s.max()) + aside, low)]
                 continue
-            mine = wall.taken[(wall.taken[:, 0] < s.max()) & (wall.taken[:, 1] > s.min())]
+            mine = taken[(taken[:, 0] < s.max()) & (taken[:, 1] > s.min())]
             tops = mine[mine[:, 3] < 1.0, 4]
             places.append((number, float(s.mean()), max(low, float(tops.max(initial=0.0)) + OVER)))
         return places
 
     def _fits(self, number: int, s: float, z: float, size: Floats) -> bool:
-        half = float(size[0]) / 2
-        height = (z, z + float(size[2]))
-        return height[1] < self.ceiling - ROOM and self.walls[number].free((s - half, s + half), height)
+        """Tell whether a stretch of wall and a little around it is free."""
+        low, high, top = s - float(size[0]) / 2, s + float(size[0]) / 2, z + float(size[2])
+        if top >= self.ceiling - ROOM or low < ROOM or high > self.walls[number].length - ROOM:
+            return False
+        t = self.taken[number]
+        across = (t[:, 0] < high + ROOM) & (t[:, 1] > low - ROOM)
+        return not bool((across & (t[:, 3] < top + ROOM) & (t[:, 4] > z - ROOM)).any())
 
     def _take(self, number: int, s: float, z: float, size: Floats) -> tuple[Floats, float]:
-        wall, half = self.walls[number], float(size[0]) / 2
-        box = [s - half, s + half, 0.0, z, z + float(size[2])]
-        self.walls[number] = Wall(wall.start, wall.along, wall.length, np.vstack([wall.taken, box]))
-        return np.array([*wall.point(s, float(size[1]) / 2 + GAP), z]), wall.yaw
+        half = float(size[0]) / 2
+        self.taken[number] = np.vstack([self.taken[number], [s - half, s + half, 0.0, z, z + float(size[2])]])
+        pose = self.walls[number].pose(s, float(size[1]) / 2 + GAP, z)
+        return pose[:3], self.walls[number].yaw
 
     def before(
-        self, window: Window, size: Floats, parts: Floats, spread: float, bottoms: Sequence[float], flat: float = 1.0
+        self, number: int, window: EdgeOpening, size: Floats, parts: Floats, spread: float, bottoms: Sequence[float], flat: float = 1.0
     ) -> tuple[Floats, float, Floats] | None:
-        """Hang something before a window: (x, y, z of its foot), yaw and its scale (3,); None where all is in the way.
+        """Hang something before a window of wall `number`: (x, y, z of its foot), yaw and its scale (3,); None where all is in the way.
 
         It reaches `spread` [m] beyond the window at either side, as far as the wall does, and is `flat` times as deep; `bottoms` [m] are the lower edges
         that are tried, in their order. `parts` (P, 4) are the boxes of its pieces seen from before: left, right, lower and upper
         edge from its middle and its foot [m]; what stands between drawn curtains is not in their way.
         """
-        wall = self.walls[window.wall]
-        low, high = max(window.start - spread, 0.01), min(window.end + spread, wall.length - 0.01)
+        taken = self.taken[number]
+        low, high = max(window.start - spread, 0.01), min(window.end + spread, self.walls[number].length - 0.01)
         top, depth = min(self.ceiling - 0.03, window.head + 0.2), flat * float(size[1]) + GAP + 0.01
-        own = (wall.taken[:, 0] >= window.start - 1e-6) & (wall.taken[:, 1] <= window.end + 1e-6) & (wall.taken[:, 2] == IN_WALL)
-        near = wall.taken[~own & (wall.taken[:, 2] < depth)][None]
+        own = (taken[:, 0] >= window.start - 1e-6) & (taken[:, 1] <= window.end + 1e-6) & (taken[:, 2] == IN_WALL)
+        near = taken[~own & (taken[:, 2] < depth)][None]
         for bottom in bottoms:
             scale = np.array([(high - low) / size[0], flat, (top - bottom) / size[2]])
             s, z = (low + high) / 2 + parts[:, None, :2] * scale[0], bottom + parts[:, None, 2:] * scale[2]
             across = (near[..., 0] < s[..., 1] + 0.01) & (near[..., 1] > s[..., 0] - 0.01)
             if not (across & (near[..., 3] < z[..., 1] + 0.01) & (near[..., 4] > z[..., 0] - 0.01)).any():
-                placed, yaw = self._take(window.wall, (low + high) / 2, bottom, size * scale)
+                placed, yaw = self._take(number, (low + high) / 2, bottom, size * scale)
                 return placed, yaw, scale
         return None
+
+
+def _taken(wall: Edge, corners: Floats, heights: Floats) -> Floats:
+    """Return boxes (K, 5) that reach to within DEEP of a wall, and its openings: start and end along it, distance of their near side, lower and upper edge [m]."""
+    s, off = wall.along_of(corners), wall.off(corners)
+    standing = np.column_stack([s.min(1), s.max(1), off.min(1), heights])[off.max(1) > 0] if len(s) else np.zeros((0, 5))
+    in_wall = np.array([[o.start, o.end, IN_WALL, o.sill, o.head] for o in wall.openings]).reshape(-1, 5)
+    return np.concatenate([standing[standing[:, 2] < DEEP], in_wall])

@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrange.edges import Edge
 from pipeline.arrange.item import Item, yaw_difference
 from pipeline.arrange.site import Site
-from pipeline.arrange.walls import Edge
 
 Floats = NDArray[np.float64]
 

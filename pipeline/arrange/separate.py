@@ -23,7 +23,6 @@ from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.settling import Draft, settle_all
 from pipeline.arrange.site import Site
 from pipeline.arrange.snapping import exact_poses
-from pipeline.arrange.walls import edges
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 
@@ -150,7 +149,7 @@ def _arrange_once(
     number: int,
 ) -> tuple[Occupancy, bool, list[Bond | None], list[list[int]]]:
     """Arrange a room once; return who stands where, whether the floor is sound (looked at for each group after round 0), the bonds, the kitchen runs."""
-    walls = edges(site)
+    walls = site.walls
     runs, laid = lay_runs(items, walls, site)
     poses, bonds = exact_poses(items, site, walls, learnt, settings, laid)
     occupancy = Occupancy(site, items, settings, distances, [i for i, bond in enumerate(bonds) if bond is not None])

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import KEPT, TURNED, Bond, at_anchor, nearest
 from pipeline.arrange.candidates import ALONE, at_anchor_poses, everywhere, hides, near_by, round_walls, steps_to_walls
+from pipeline.arrange.edges import Edge
 from pipeline.arrange.groups import Group, group_of, groups
 from pipeline.arrange.item import Item, wrap_yaw
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.occupancy import Occupancy, Place
-from pipeline.arrange.walls import Edge
 from pipeline.arrange.world import FREE, conflicts, put
 
 Floats = NDArray[np.float64]

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.entities.plan import Opening, Plan
+from pipeline.arrange.edges import Edge, edges_of
+from pipeline.entities.plan import Plan
 from pipeline.geometry.door_sweeps import leaf_sweep, shut_leaf
 from pipeline.geometry.free_space import PASSABLE, Floor, FreeSpace, bare_floor, free_space
 from pipeline.geometry.prisms import Prisms, join_prisms
@@ -17,19 +17,8 @@ from pipeline.geometry.walls import leaves
 
 Floats = NDArray[np.float64]
 
-WALL = 0.3  # an opening's segment is at most this far from the faces of its wall [m]
 PASS_WIDTH = 0.9  # of a wide opening, this much about its middle is kept passable [m]
 NEAR_DOOR = 0.15  # the robot must find a place this near to the middle of each opening, so that it gets through [m]
-
-
-@dataclass(frozen=True, slots=True)
-class EdgeOpening:
-    """An opening in one edge of a room: from `start` to `end` [m along the edge], `sill` [m above the floor]."""
-
-    start: float
-    end: float
-    sill: float
-    window: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +26,7 @@ class Site:
     """One room.
 
     `polygon` (n, 2) [m]; floor at `elevation`, ceiling at `ceiling` [m]; `swung` are the prisms that room doors sweep, `shut` those of closed ones;
-    `doors` (D, 2) [m] the middles of the openings that one walks through; `openings` are per edge of the polygon the openings
-    in it, as (start, end) [m along the edge], lower edge [m above the floor], and whether it is a window; `bare` is where the robot can stand on the empty floor.
+    `doors` (D, 2) [m] the middles of the openings that one walks through; `bare` is where the robot can stand on the empty floor.
     """
 
     room_id: str
@@ -48,7 +36,7 @@ class Site:
     swung: Prisms
     shut: Prisms
     doors: Floats
-    openings: tuple[tuple[EdgeOpening, ...], ...]
+    walls: list[Edge]
     floor: Floor
     bare: FreeSpace
     robot: Robot
@@ -72,7 +60,7 @@ class Site:
             join_prisms([leaf_sweep(leaf, elevation).prisms for leaf in doors]),
             join_prisms([shut_leaf(leaf, elevation) for leaf in doors]),
             np.array([o.segment.mean(0) for o in openings if o.kind in PASSABLE]).reshape(-1, 2),
-            _openings_by_edge(room.polygon, openings),
+            edges_of(room.polygon, openings),
             floor,
             free_space(floor, join_prisms([]), robot.radius, robot.band(elevation)),
             robot,
@@ -104,19 +92,3 @@ class Site:
     def free_share(self, space: FreeSpace) -> float:
         """Return the true walkable ratio: what the robot covers, moving about from the doors, over the floor."""
         return float(space.shares(space.swept_floor(self.gate(space)[0]), 1)[0])
-
-
-def _openings_by_edge(polygon: Floats, openings: Sequence[Opening]) -> tuple[tuple[EdgeOpening, ...], ...]:
-    """Return the openings in each edge of a polygon."""
-    by_edge = []
-    for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
-        length = float(np.linalg.norm(b - a))
-        t = (b - a) / max(length, 1e-9)
-        own = []
-        for o in openings:
-            s = (o.segment - a) @ t
-            off = np.abs((o.segment - a) @ np.array([-t[1], t[0]]))
-            if off.max() < WALL and min(length, s.max()) - max(0.0, s.min()) > 0.05:
-                own.append(EdgeOpening(float(s.min()), float(s.max()), o.sill, o.kind == "window"))
-        by_edge.append(tuple(own))
-    return tuple(by_edge)

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import Bond, at_anchor, find_bond
+from pipeline.arrange.edges import Edge
 from pipeline.arrange.item import Item
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
-from pipeline.arrange.walls import FAR, Edge, at_wall, in_corner, square
+from pipeline.arrange.walls import FAR, at_wall, in_corner, square
 
 Floats = NDArray[np.float64]
 

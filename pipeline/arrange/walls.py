@@ -1,16 +1,15 @@
-"""Standing at walls: the edges of a room, and poses with the back to them."""
+"""Standing at walls: poses with the back to them, and what openings cost there."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrange.edges import Edge, EdgeOpening
 from pipeline.arrange.item import Item, wrap_yaw, yaw_difference
-from pipeline.arrange.site import EdgeOpening, Site
 
 Floats = NDArray[np.float64]
 
@@ -23,43 +22,6 @@ TOUCHING = 0.1  # a side this near to a wall is meant to be at it [m]
 SQUARELY = 0.99  # cosine of the angle at which a side faces a wall
 ANY_WALL = math.radians(100)  # a turn that goes on to the next wall, not to the one behind
 FAR = 1.0  # what belongs to a wall is put to one that is no farther; what would rather, within the wall_reach of the settings [m]
-
-
-@dataclass(frozen=True, slots=True)
-class Edge:
-    """A wall: it starts at `start` (2,) and goes along the unit vector `along` (2,); the room lies on `inward` (2,)."""
-
-    start: Floats
-    along: Floats
-    inward: Floats
-    length: float
-    yaw: float  # of an object that has its back to it [rad]
-    openings: tuple[EdgeOpening, ...]
-
-    def pose(self, s: float, off: float, z: float) -> Floats:
-        """Return the pose of an object whose middle is `s` along the wall and `off` before it [m]."""
-        x, y = self.start + s * self.along + off * self.inward
-        return np.array([x, y, z, self.yaw])
-
-    def along_of(self, points: Floats) -> Floats:
-        """Return how far along the wall points (..., 2) lie [m]."""
-        s: Floats = (points - self.start) @ self.along
-        return s
-
-    def off(self, points: Floats) -> Floats:
-        """Return how far before the wall points (..., 2) lie [m]."""
-        off: Floats = (points - self.start) @ self.inward
-        return off
-
-
-def edges(site: Site) -> list[Edge]:
-    """Return the walls of a room."""
-    walls = []
-    for a, b, openings in zip(site.polygon, np.roll(site.polygon, -1, axis=0), site.openings, strict=True):
-        length = math.hypot(*(b - a))
-        t = (b - a) / max(length, 1e-9)
-        walls.append(Edge(a, t, np.array([-t[1], t[0]]), length, wrap_yaw(math.atan2(-t[1], -t[0])), openings))
-    return walls
 
 
 def hides_window(item: Item, opening: EdgeOpening) -> bool:

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline import taxonomy
-from pipeline.arrange import Hanging, Laying, ThingsSettings, Window, lay_rug
+from pipeline.arrange import Hanging, Laying, ThingsSettings, lay_rug
+from pipeline.arrange.edges import EdgeOpening
 from pipeline.card import Hangs, cards
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Room
@@ -175,18 +176,18 @@ class _Dressing:
         if chosen is None:
             return
         kinds = [(name, self._pick_asset(name)) for name in dict.fromkeys((chosen, "blind"))]
-        for window in hanging.windows:
+        for wall, window in hanging.windows:
             for name, asset_id in kinds:
-                if asset_id and self._dress_window(hanging, window, name, asset_id):
+                if asset_id and self._dress_window(hanging, wall, window, name, asset_id):
                     break
 
-    def _dress_window(self, hanging: Hanging, window: Window, category: str, asset_id: str) -> bool:
+    def _dress_window(self, hanging: Hanging, wall: int, window: EdgeOpening, category: str, asset_id: str) -> bool:
         """Hang a curtain to the floor or to the sill, or a blind that is half drawn up, before a window if there is room for it."""
         asset, long = self.library[asset_id], category == "curtain"
         rest = solid(asset).rest
         parts = np.concatenate([rest.boxes()[:, [0, 2]], rest.z], axis=1)
         bottoms = (FULL, max(window.sill - SHORT, FULL)) if long else (window.sill + DRAWN * (window.head - window.sill),)
-        hung = hanging.before(window, asset.size, parts, SPREAD[not long], bottoms, PLEATS if long else 1.0)
+        hung = hanging.before(wall, window, asset.size, parts, SPREAD[not long], bottoms, PLEATS if long else 1.0)
         if hung is not None:
             place, yaw, scale = hung
             self._add(category, asset_id, place + np.array([0.0, 0.0, self.floor]), yaw, scale)

@@ -7,7 +7,6 @@ from pipeline.arrange.candidates import hides, near_by
 from pipeline.arrange.item import make_item
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.settings import SeparateSettings
-from pipeline.arrange.walls import edges
 from pipeline.relations.model import relations
 from tests.arrange.known import drafted, wall
 from tests.geometry.furniture import block, one_room
@@ -20,7 +19,7 @@ def test_what_hangs_pays_for_a_door_only_at_the_wall_that_has_it():
     """Its back turned to the wall of the entrance: at that wall there is nothing to hang on, in the room's middle it costs nothing."""
     room = site(one_room(np.array([[0.0, 0.0], [5.0, 0.0], [5.0, 4.0], [0.0, 4.0]])))
     item = make_item(drafted(MIRROR, 0.75, 2.0, math.pi, z=1.4), {"mirror": MIRROR}, LearntRelations(relations([], [wall("mirror")])), 0.5)
-    walls = edges(room)
+    walls = room.walls
     middle, door = np.array([0.75, 2.0, 1.4, math.pi]), np.array([0.75, 0.03, 1.4, math.pi])
     assert not hides(item, middle, walls)
     assert hides(item, door, walls)
@@ -36,7 +35,7 @@ def test_what_belongs_to_a_wall_goes_to_a_wall_across_the_room_before_it_stands_
     target = np.array([4.5, 3.68, 0.0, 0.0])
     learnt = LearntRelations(relations([], [wall("wardrobe", share)]))
     item = make_item(drafted(closet, *target[:2]), {"closet": closet}, learnt, 0.5)
-    poses, _ = near_by(item, target, edges(room), np.zeros((0, 4, 2)), room, SeparateSettings())
+    poses, _ = near_by(item, target, room.walls, np.zeros((0, 4, 2)), room, SeparateSettings())
     depth = np.column_stack([poses[:, 0], 5.0 - poses[:, 0], poses[:, 1], 4.0 - poses[:, 1]]).min(1)
     backed = depth < 0.33
     first = int(np.argmin(backed))

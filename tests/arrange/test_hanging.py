@@ -53,12 +53,12 @@ def test_what_belongs_beside_something_hangs_there_or_nowhere():
 
 def test_curtains_reach_beyond_their_window_and_stop_above_what_stands_there():
     size, low = np.array([2.0, 0.14, 2.4]), (1.2, 2.4, 2.0, 3.0, 0.0, 0.6)
-    place, _, scale = walls().before(walls().windows[0], size, WHOLE, 0.25, (0.03, 0.8))
+    place, _, scale = walls().before(*walls().windows[0], size, WHOLE, 0.25, (0.03, 0.8))
     assert place[2] == 0.03
     assert (size * scale)[0] == pytest.approx(1.7)
-    assert walls(low).before(walls().windows[0], size, WHOLE, 0.25, (0.03, 0.8))[0][2] == 0.8
-    assert walls(low).before(walls().windows[0], size, DRAWN, 0.25, (0.03, 0.8))[0][2] == 0.03  # it stands between the two panels
-    assert walls((1.2, 2.4, 2.0, 3.0, 0.0, 2.2)).before(walls().windows[0], size, WHOLE, 0.25, (0.03, 0.8)) is None
+    assert walls(low).before(*walls().windows[0], size, WHOLE, 0.25, (0.03, 0.8))[0][2] == 0.8
+    assert walls(low).before(*walls().windows[0], size, DRAWN, 0.25, (0.03, 0.8))[0][2] == 0.03  # it stands between the two panels
+    assert walls((1.2, 2.4, 2.0, 3.0, 0.0, 2.2)).before(*walls().windows[0], size, WHOLE, 0.25, (0.03, 0.8)) is None
 
 
 def test_a_rug_lies_flat_within_the_room_and_off_cabinets():
