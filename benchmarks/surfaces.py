@@ -26,6 +26,7 @@ from pipeline import taxonomy  # noqa: E402
 from pipeline.card import Category  # noqa: E402
 from pipeline.entities.asset import Asset, Link  # noqa: E402
 from pipeline.entities.files import load_asset  # noqa: E402
+from pipeline.sources.meshes.mesh_solids import outside  # noqa: E402
 from pipeline.sources.meshes.reach import make_reach_test  # noqa: E402
 from pipeline.sources.meshes.touching import OVER  # noqa: E402
 
@@ -147,7 +148,7 @@ def _planes(link: Link) -> list[Floats]:
 
 def _outside(points: Floats, link: Link) -> Floats:
     """Return how far points (P, 3) are outside of all colliders, by the planes of their faces; negative within."""
-    away: Floats = np.min([(points @ e[:, :3].T + e[:, 3]).max(axis=1) for e in _planes(link)], axis=0)
+    away: Floats = np.min([outside(points, e) for e in _planes(link)], axis=0)
     return away
 
 
@@ -158,7 +159,7 @@ def _collider_points(link: Link, rng: np.random.Generator) -> tuple[Floats, Floa
     points, normals, which = _spread(triangles, POINTS, rng)
     free = np.ones(len(points), bool)
     for k, e in enumerate(_planes(link)):
-        free &= ((points @ e[:, :3].T + e[:, 3]).max(axis=1) > -WITHIN) | (owner[which] == k)
+        free &= (outside(points, e) > -WITHIN) | (owner[which] == k)
     return points[free], normals[free]
 
 

@@ -14,6 +14,7 @@ from scipy.spatial import ConvexHull
 
 from pipeline.entities.asset import Link
 from pipeline.sources.articulated.shape import ShapeJoint
+from pipeline.sources.meshes.mesh_solids import outside
 from pipeline.sources.meshes.reach import make_reach_test
 from pipeline.sources.meshes.touching import LEFT_ALONE, TOUCHED, UP, spread
 
@@ -46,14 +47,9 @@ def without_covered(base: Link, drawers: Sequence[Link]) -> Link:
         felt = comes(at + OFF * normals)
         at, normals = at[felt], normals[felt]
         allowed = np.where(normals[:, 2] > UP, TOUCHED, np.where(normals[:, 2] < -UP, LEFT_ALONE, BESIDE))
-        if (_away(at, [planes[i] for i in kept - {k}]) <= allowed).all():
+        if (np.min([outside(at, planes[i]) for i in kept - {k}], axis=0) <= allowed).all():
             kept.discard(k)
     return replace(base, colliders=tuple(base.colliders[k] for k in boards if k in kept))
-
-
-def _away(points: Floats, planes: Sequence[Floats]) -> Floats:
-    """Return how far points (P, 3) are from the nearest of convex pieces, by the planes (F, 4) of their faces."""
-    return np.asarray(np.min([(points @ e[:, :3].T + e[:, 3]).max(axis=1) for e in planes], axis=0))
 
 
 def _surface(points: Floats) -> tuple[Floats, Floats]:

@@ -10,10 +10,10 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from pipeline.sources.articulated.part_classes import box_of
 from pipeline.sources.articulated.shape import ShapeBody, ShapeJoint, ShapePart
+from pipeline.sources.meshes.mesh_solids import qhull_of
 
 Floats = NDArray[np.float64]
 FRONT = np.array([0.0, -1.0, 0.0])
@@ -41,10 +41,10 @@ def _sides(points: Floats, axis: Floats) -> list[Floats]:
     across = _level(axis)
     plane = np.stack([across, np.cross(axis, across)])
     flat = points @ plane.T
-    try:
-        outline = flat[ConvexHull(flat).vertices]
-    except (QhullError, ValueError):
+    hull = qhull_of(flat)
+    if hull is None:
         return []
+    outline = flat[hull.vertices]
     edges = np.roll(outline, -1, axis=0) - outline
     along = edges / np.linalg.norm(edges, axis=1)[:, None]
     normal = np.stack([-along[:, 1], along[:, 0]], axis=1)

@@ -19,9 +19,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
-from scipy.spatial import ConvexHull, QhullError
+from scipy.spatial import ConvexHull
 
-from pipeline.sources.meshes.mesh_solids import cross
+from pipeline.sources.meshes.mesh_solids import cross, qhull_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -160,9 +160,8 @@ def _samples(corners: Floats, cell: float) -> Floats:
 def _make_piece(grid: _Grid, members: Ints, enough: float) -> _Piece | None:
     """Return a piece with what its hull holds of air deeper than `enough`, None where it spans no volume."""
     points = grid.points[members]
-    try:
-        hull = ConvexHull(points if len(points) >= 4 and np.ptp(points, axis=0).min() > 0.1 * grid.cell else _thick(points, grid.cell))
-    except (QhullError, ValueError):
+    hull = qhull_of(points if len(points) >= 4 and np.ptp(points, axis=0).min() > 0.1 * grid.cell else _thick(points, grid.cell))
+    if hull is None:
         return None
     if len(hull.points) > len(points):  # thickened: no air in a sheet
         return _Piece(np.tile(members, 2), hull, 0, 0.0)
@@ -248,11 +247,8 @@ def _wall(grid: _Grid, members: Ints) -> Bools | None:
             continue
         inside = (where == k) | (where == k + 1)
         flat = np.unique(np.delete(grid.cells[members[inside]], axis, axis=1), axis=0)
-        try:
-            outline = ConvexHull((flat[:, None] + np.array([(0, 0), (0, 1), (1, 0), (1, 1)])).reshape(-1, 2)).volume
-        except QhullError:
-            continue
-        if len(flat) >= FULL * outline and not inside.all():
+        outline = qhull_of((flat[:, None] + np.array([(0, 0), (0, 1), (1, 0), (1, 1)])).reshape(-1, 2))
+        if outline is not None and len(flat) >= FULL * outline.volume and not inside.all():
             best = int(pairs[k]), inside
     return None if best is None else best[1]
 
@@ -314,11 +310,7 @@ def _volumes(blocks: list[Floats]) -> list[float]:
     for block in blocks:
         kept = np.concatenate([kept, block])
         volume = 0.0
-        if len(kept) > 3:
-            try:
-                hull = ConvexHull(kept)
-                kept, volume = kept[hull.vertices], float(hull.volume)
-            except (QhullError, ValueError):
-                pass  # flat so far
+        if len(kept) > 3 and (hull := qhull_of(kept)) is not None:  # else flat so far
+            kept, volume = kept[hull.vertices], float(hull.volume)
         volumes.append(volume)
     return volumes

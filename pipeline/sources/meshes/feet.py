@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-from pipeline.sources.meshes.mesh_solids import Part
-
-Floats = NDArray[np.float64]
+from pipeline.sources.meshes.mesh_solids import Part, outside
 
 FOOT = (0.045, 0.018)  # [m] a foot is no longer, no wider
 SEAM = 0.001  # [m] between pieces that meet
@@ -27,13 +24,8 @@ def without_feet(pieces: Sequence[Part]) -> list[Part]:
     for k in slight:
         corners = pieces[k].hull
         larger = [i for i, extent in enumerate(extents) if extent[2] >= SLIGHT * extents[k][2]]
-        ends = [i for i in larger if _outside(corners, planes[i]).min() < SEAM]
+        ends = [i for i in larger if outside(corners, planes[i]).min() < SEAM]
         edges = (corners[:, None] + corners[None]).reshape(-1, 3) / 2  # their middles too, and points within
-        if len(ends) > 1 and np.min([_outside(edges, planes[i]) for i in ends], axis=0).max() <= APART:
+        if len(ends) > 1 and np.min([outside(edges, planes[i]) for i in ends], axis=0).max() <= APART:
             feet.add(k)
     return [p for k, p in enumerate(pieces) if k not in feet]
-
-
-def _outside(points: Floats, planes: Floats) -> Floats:
-    """Return how far points (P, 3) are outside of a convex piece, by the planes (F, 4) of its faces."""
-    return np.asarray((points @ planes[:, :3].T + planes[:, 3]).max(axis=1))

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
+from scipy.spatial import ConvexHull
 
-from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, cross
+from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, normals, qhull_of
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -87,8 +87,8 @@ class _State:
         least = np.maximum(np.maximum(matter, self.matter[i]), matter + self.matter[i] - np.maximum(common, 0.0).prod(axis=1))
         hulls = [self.pieces[j].hull for j in others]
         starts = np.cumsum([0, *(len(h) for h in hulls[:-1])])
-        normals, offsets = self.planes[i]
-        above = np.maximum(np.concatenate(hulls) @ normals.T - offsets, 0.0).sum(axis=1) / 6
+        ways, offsets = self.planes[i]
+        above = np.maximum(np.concatenate(hulls) @ ways.T - offsets, 0.0).sum(axis=1) / 6
         grown = self.pieces[i].hull_volume + np.maximum.reduceat(above, starts)
         passed = np.flatnonzero((least > 0) & (grown <= least / (1 - GAIN) * (1 + 1e-9)))
         likely = passed[np.argsort((grown[passed] / least[passed]).round(9), kind="stable")[: self.few]]
@@ -123,8 +123,8 @@ class _State:
 
         A point adds a pyramid over each face that it sees.
         """
-        normals, offsets = self.planes[i]
-        above = normals @ self.pieces[j].hull.T - offsets[:, None]
+        ways, offsets = self.planes[i]
+        above = ways @ self.pieces[j].hull.T - offsets[:, None]
         return self.pieces[i].hull_volume + float(np.maximum(above, 0.0).sum(axis=0).max()) / 6
 
 
@@ -210,21 +210,17 @@ def _away(state: _State, members: Sequence[int], points: Floats) -> float:
     """Return how far the worst of points (N, 3) is from the nearest piece, by the planes of its faces."""
     away = np.full(len(points), np.inf)
     for k in members:
-        normals, offsets = state.planes[k]
-        lengths = np.maximum(np.sqrt((normals**2).sum(axis=1)), 1e-15)
-        np.minimum(away, ((normals @ points.T - offsets[:, None]) / lengths[:, None]).max(axis=0), out=away)
+        ways, offsets = state.planes[k]
+        lengths = np.maximum(np.sqrt((ways**2).sum(axis=1)), 1e-15)
+        np.minimum(away, ((ways @ points.T - offsets[:, None]) / lengths[:, None]).max(axis=0), out=away)
     return float(away.max())
 
 
 def _planes(part: Part) -> tuple[Floats, Floats]:
-    a = part.hull[part.faces[:, 0]]
-    normals = cross(part.hull[part.faces[:, 1]] - a, part.hull[part.faces[:, 2]] - a)
-    return normals, (normals * a).sum(axis=1)
+    ways = normals(part.hull, part.faces)
+    return ways, (ways * part.hull[part.faces[:, 0]]).sum(axis=1)
 
 
 def _hull(pieces: Sequence[Part]) -> ConvexHull | None:
-    try:
-        hull = ConvexHull(np.concatenate([p.hull for p in pieces]))
-    except (QhullError, ValueError):
-        return None
-    return hull if len(hull.vertices) <= MAX_HULL else None
+    hull = qhull_of(np.concatenate([p.hull for p in pieces]))
+    return hull if hull is not None and len(hull.vertices) <= MAX_HULL else None

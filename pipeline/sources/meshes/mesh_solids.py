@@ -74,10 +74,7 @@ def combine_parts(pieces: Sequence[Part]) -> Part:
     if convex_hull is None:
         msg = "the parts span no volume"
         raise ValueError(msg)
-    corners, faces, volume = convex_hull
-    _, centre, inertia = _hull_moments(corners, faces)
-    matter = min(sum(p.volume for p in pieces), volume)
-    return Part(corners, faces, volume, matter / volume, matter, sum(p.area for p in pieces), centre, inertia)
+    return _filled(convex_hull, sum(p.volume for p in pieces), sum(p.area for p in pieces))
 
 
 def convex(points: Floats, matter: float) -> Part | None:
@@ -85,10 +82,14 @@ def convex(points: Floats, matter: float) -> Part | None:
     convex_hull = hull(points)
     if convex_hull is None or convex_hull[2] <= 0:
         return None
+    return _filled(convex_hull, matter, surface(*convex_hull[:2]))
+
+
+def _filled(convex_hull: tuple[Floats, Ints, float], matter: float, area: float) -> Part:
+    """Return a hull as a part that holds `matter` [m3] at most."""
     corners, faces, volume = convex_hull
-    _, centre, inertia = _hull_moments(corners, faces)
-    solid_volume = min(matter, volume)
-    return Part(corners, faces, volume, solid_volume / volume, solid_volume, surface(corners, faces), centre, inertia)
+    inside = min(matter, volume)
+    return Part(corners, faces, volume, inside / volume, inside, area, *_hull_moments(corners, faces))
 
 
 def components(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]:
@@ -216,18 +217,14 @@ def _part(points: Floats, faces: Ints) -> Part | None:
     fill = inside / hull_volume if hull_volume > 0 else 0.0
     # An open sheet weighs what its surface does as a shell; nothing weighs more than its hull holds.
     matter = min(inside if inside > 1e-12 else area * SHELL, hull_volume)
-    _, centre, inertia = _hull_moments(corners, hull_faces)
-    return Part(corners, hull_faces, hull_volume, fill, matter, area, centre, inertia)
+    return Part(corners, hull_faces, hull_volume, fill, matter, area, *_hull_moments(corners, hull_faces))
 
 
 def _covers(points: Floats, faces: Ints, corners: Floats, hull_faces: Ints, area: float) -> bool:
     """Whether the faces are the hull's surface, whichever way round they are: a solid but for cracks, or one flat sheet."""
     if len(faces) > MAX_COVER or area < COVER * surface(corners, hull_faces):
         return _flat(points)
-    a = points[faces[:, 0]]
-    normals = cross(points[faces[:, 1]] - a, points[faces[:, 2]] - a)
-    lengths = np.maximum(np.sqrt((normals**2).sum(axis=1)), 1e-15)
-    height = (normals @ corners.T - (normals * a).sum(axis=1)[:, None]) / lengths[:, None]
+    height, _ = _heights(points, faces, corners)
     span = float(np.ptp(points, axis=0).max())
     outside = np.minimum(height.max(axis=1), -height.min(axis=1))  # of each face: how far the hull reaches past it
     return float(outside.max()) < 1e-3 * span
@@ -246,14 +243,23 @@ def _itself(points: Floats, faces: Ints, volume: float) -> tuple[Floats, Ints, f
         return None
     if signed_volume(points, faces) < 0:
         faces = faces[:, ::-1]
-    a = points[faces[:, 0]]
-    normals = cross(points[faces[:, 1]] - a, points[faces[:, 2]] - a)
-    lengths = np.sqrt((normals**2).sum(axis=1))
+    height, areas = _heights(points, faces, points)
     span = float(np.ptp(points, axis=0).max())
-    if lengths.min() < 1e-9 * span * span:
-        return None
-    height = (normals @ points.T - (normals * a).sum(axis=1)[:, None]) / lengths[:, None]
-    return (points, faces, volume) if height.max() < 1e-6 * span else None
+    return (points, faces, volume) if areas.min() >= 1e-9 * span * span and height.max() < 1e-6 * span else None
+
+
+def _heights(points: Floats, faces: Ints, corners: Floats) -> tuple[Floats, Floats]:
+    """Return how far corners (V, 3) are above the planes of faces (F, 3), (F, V), and the faces' areas, doubled (F,)."""
+    ways = normals(points, faces)
+    lengths = np.sqrt((ways**2).sum(axis=1))
+    height = ways @ corners.T - (ways * points[faces[:, 0]]).sum(axis=1)[:, None]
+    return height / np.maximum(lengths, 1e-15)[:, None], lengths
+
+
+def normals(points: Floats, faces: Ints) -> Floats:
+    """Return the normals (F, 3) of triangles, each twice as long as its area."""
+    a = points[faces[:, 0]]
+    return cross(points[faces[:, 1]] - a, points[faces[:, 2]] - a)
 
 
 def cross(a: Floats, b: Floats) -> Floats:
@@ -268,9 +274,8 @@ def hull(points: Floats) -> tuple[Floats, Ints, float] | None:
 
     A flat set gets a thickness of 2 SHEET across its plane. None where there is nothing to span.
     """
-    try:
-        qhull = ConvexHull(points)
-    except (QhullError, ValueError):
+    qhull = qhull_of(points)
+    if qhull is None:
         centre = points.mean(axis=0)
         axes = np.linalg.svd(points - centre, full_matrices=True)[2] if len(points) < 4096 else np.linalg.eigh(np.cov(points.T))[1].T[::-1]
         spans = np.ptp((points - centre) @ axes.T, axis=0)
@@ -278,26 +283,33 @@ def hull(points: Floats) -> tuple[Floats, Ints, float] | None:
         for axis, span in zip(axes, spans, strict=True):
             if span < 2 * SHEET:
                 thick = np.concatenate([thick - SHEET * axis, thick + SHEET * axis])
-        try:
-            qhull = ConvexHull(thick)
-        except (QhullError, ValueError):
-            return None
-    if len(qhull.vertices) > MAX_HULL:
-        chosen = extremes(qhull.points[qhull.vertices])
-        try:
-            qhull = ConvexHull(chosen)
-        except QhullError:
-            return None
+        qhull = qhull_of(thick)
+    if qhull is not None and len(qhull.vertices) > MAX_HULL:
+        qhull = qhull_of(extremes(qhull.points[qhull.vertices]))
+    if qhull is None:
+        return None
     index = np.sort(qhull.vertices)
     where = np.full(len(qhull.points), -1)
     where[index] = np.arange(len(index))
     faces = where[qhull.simplices]
     corners = qhull.points[index]
-    a, b, c = corners[faces[:, 0]], corners[faces[:, 1]], corners[faces[:, 2]]
-    inward = np.einsum("ij,ij->i", cross(b - a, c - a), qhull.equations[:, :3]) < 0
+    inward = np.einsum("ij,ij->i", normals(corners, faces), qhull.equations[:, :3]) < 0
     faces[inward] = faces[inward][:, ::-1]
     order = np.lexsort(np.sort(faces, axis=1).T)
     return np.asarray(corners), faces[order], float(qhull.volume)
+
+
+def qhull_of(points: Floats) -> ConvexHull | None:
+    """Return the hull of points (N, 2 or 3), None where they span nothing."""
+    try:
+        return ConvexHull(points)
+    except (QhullError, ValueError):
+        return None
+
+
+def outside(points: Floats, planes: Floats) -> Floats:
+    """Return how far points (P, 3) are outside of a convex piece, by the planes (F, 4) of its faces; negative within."""
+    return np.asarray((points @ planes[:, :3].T + planes[:, 3]).max(axis=1))
 
 
 def extremes(points: Floats, most: int = MAX_HULL) -> Floats:
@@ -317,11 +329,10 @@ def extremes(points: Floats, most: int = MAX_HULL) -> Floats:
 
 def _left_out(points: Floats, chosen: Ints) -> Ints:
     """Return of each face of the hull of chosen points the one that is furthest outside of it, the furthest of all first."""
-    try:
-        planes = ConvexHull(points[chosen]).equations
-    except QhullError:
+    chosen_hull = qhull_of(points[chosen])
+    if chosen_hull is None:
         return np.zeros(0, np.int64)
-    away = points @ planes[:, :3].T + planes[:, 3]
+    away = points @ chosen_hull.equations[:, :3].T + chosen_hull.equations[:, 3]
     furthest = np.unique(np.argmax(away, axis=0))
     outside = away[furthest].max(axis=1)
     furthest, outside = furthest[outside > LEFT_OUT], outside[outside > LEFT_OUT]
@@ -338,8 +349,7 @@ def _is_watertight(faces: Ints) -> bool:
 
 def surface(points: Floats, faces: Ints) -> float:
     """Return the area [m2] of a mesh."""
-    a = points[faces[:, 0]]
-    return 0.5 * float(np.sqrt((cross(points[faces[:, 1]] - a, points[faces[:, 2]] - a) ** 2).sum(axis=1)).sum())
+    return 0.5 * float(np.sqrt((normals(points, faces) ** 2).sum(axis=1)).sum())
 
 
 def signed_volume(points: Floats, faces: Ints) -> float:
@@ -373,17 +383,17 @@ def mass_properties(solids: list[tuple[Part, float]]) -> tuple[float, Floats, Fl
     return total, middle, (whole + whole.T) / 2
 
 
-def _hull_moments(points: Floats, faces: Ints) -> tuple[float, Floats, Floats]:
-    """Return volume, centroid and inertia at unit density about the centroid of a convex solid (sum of tetrahedra)."""
+def _hull_moments(points: Floats, faces: Ints) -> tuple[Floats, Floats]:
+    """Return centroid and inertia at unit density about the centroid of a convex solid (sum of tetrahedra)."""
     origin = points.mean(axis=0)
     a, b, c = (points[faces[:, k]] - origin for k in range(3))
     det = (a * cross(b, c)).sum(axis=1)
     volume = float(det.sum() / 6)
     if volume <= 1e-15:
-        return 0.0, origin, np.zeros((3, 3))
+        return origin, np.zeros((3, 3))
     s = a + b + c
     centroid = (det[:, None] * s).sum(axis=0) / (24 * volume)
     second = sum((p.T @ (p * (det / 120)[:, None]) for p in (a, b, c, s)), np.zeros((3, 3)))  # integral of x x^T (Blow and Binstock 2004)
     second -= volume * np.outer(centroid, centroid)
     inertia = np.trace(second) * np.eye(3) - second
-    return volume, centroid + origin, inertia
+    return centroid + origin, inertia

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
-from pipeline.sources.meshes.mesh_solids import cross
+from pipeline.sources.meshes.mesh_solids import normals
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -52,17 +52,17 @@ def simplify_to_box(hull: Floats, faces: Ints, near: float = NEAR, floor: float 
 def _axes(hull: Floats, faces: Ints) -> Iterator[Floats]:
     """Yield rotations (3, 3) to the axes that a box may have: the world's, those to which its sides are nearest on the whole, those of its two largest sides."""
     yield np.eye(3)
-    normals = cross(hull[faces[:, 1]] - hull[faces[:, 0]], hull[faces[:, 2]] - hull[faces[:, 0]])
-    areas = np.maximum(np.sqrt((normals**2).sum(axis=1)), 1e-15)
-    normals /= areas[:, None]
-    main = np.linalg.eigh(normals.T @ (normals * areas[:, None]))[1].T  # of a box: its axes, by the areas of its sides
+    ways = normals(hull, faces)
+    areas = np.maximum(np.sqrt((ways**2).sum(axis=1)), 1e-15)
+    ways /= areas[:, None]
+    main = np.linalg.eigh(ways.T @ (ways * areas[:, None]))[1].T  # of a box: its axes, by the areas of its sides
     yield main * np.linalg.det(main).round()
-    alike = np.abs(normals @ normals.T)
+    alike = np.abs(ways @ ways.T)
     together = ((alike > ALIKE) @ areas).round(12)
     first = int(np.argmax(together))
     second = int(np.argmax(np.where(alike[first] < ACROSS, together, -1.0)))
     if alike[first, second] < ACROSS:
-        x = normals[first]
-        y = normals[second] - (normals[second] @ x) * x
+        x = ways[first]
+        y = ways[second] - (ways[second] @ x) * x
         y /= np.linalg.norm(y)
         yield np.stack([x, y, np.cross(x, y)])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 
+from pipeline.sources.meshes.mesh_solids import hull
 from pipeline.sources.reasons import SourceError
 
 Floats = NDArray[np.float64]
@@ -26,9 +26,6 @@ def primitive(kind: str, values: tuple[float, ...], where: str) -> tuple[Floats,
         k = np.arange(64) + 0.5
         polar, turn = np.arccos(1 - 2 * k / 64), np.pi * (1 + 5**0.5) * k
         points = np.stack([np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1) * values[0]
-    hull = ConvexHull(points)
-    faces = hull.simplices.astype(np.int64)
-    a, b, c = points[faces[:, 0]], points[faces[:, 1]], points[faces[:, 2]]
-    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
-    faces[inward] = faces[inward][:, ::-1]
-    return points, faces
+    convex = hull(points)
+    assert convex is not None
+    return convex[:2]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
+from scipy.spatial import ConvexHull
 
-from pipeline.sources.meshes.mesh_solids import LEFT_OUT, hull
+from pipeline.sources.meshes.mesh_solids import LEFT_OUT, hull, outside, qhull_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -27,9 +27,9 @@ def with_few_sides(corners: Floats, faces: Ints, off: float) -> tuple[Floats, In
         return corners, faces
     chosen, kept, left = _outlines(corners), corners, np.inf
     while left > LEFT_OUT and (within := _within(corners[chosen])):
-        outside = (corners @ within.equations[:, :3].T + within.equations[:, 3]).max(axis=1)
-        kept, left = corners[chosen], float(outside.max())
-        chosen = np.append(chosen, int(np.argmax(outside)))
+        away = outside(corners, within.equations)
+        kept, left = corners[chosen], float(away.max())
+        chosen = np.append(chosen, int(np.argmax(away)))
     fewer = hull(kept) if left <= off else None
     return (corners, faces) if fewer is None else fewer[:2]
 
@@ -41,11 +41,8 @@ def count_sides(within: ConvexHull) -> int:
 
 def _within(points: Floats) -> ConvexHull | None:
     """Return the hull of points (N, 3) where it has no more than SIDES sides."""
-    try:
-        within = ConvexHull(points)
-    except QhullError:
-        return None
-    return within if count_sides(within) <= SIDES else None
+    within = qhull_of(points)
+    return within if within is not None and count_sides(within) <= SIDES else None
 
 
 def _outlines(corners: Floats) -> Ints:

@@ -13,12 +13,12 @@ from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
+from scipy.spatial import ConvexHull
 
 from pipeline.card import Category
 from pipeline.geometry.compiled import compiled
 from pipeline.sources.meshes.feet import without_feet
-from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, convex, extremes
+from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, convex, extremes, qhull_of
 from pipeline.sources.meshes.near_boxes import NEAR
 from pipeline.sources.meshes.reach import make_reach_test
 from pipeline.sources.meshes.rings import STAVES, is_ring, same_height, sectors
@@ -337,9 +337,8 @@ def _planes(points: Floats) -> Floats:
 
 def _deviation(points: Floats, planes: Sequence[Floats], allowed: Allowed) -> float | None:
     """Return how far the hull of points (N, 3) is from pieces (their planes), as a share of what is allowed; None beyond that."""
-    try:
-        hull = ConvexHull(points)
-    except (QhullError, ValueError):
+    hull = qhull_of(points)
+    if hull is None:
         return None
     if len(hull.vertices) > MAX_HULL:
         kept = ConvexHull(extremes(points[hull.vertices]))
