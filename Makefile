@@ -47,7 +47,7 @@ deps: $(DEV) ## write the code that each stage runs into dvc.yaml
 	python .ci/deps.py --write
 
 bench: $(READY) ## every benchmark in benchmarks/
-	python benchmarks/run.py
+	failed=; for file in benchmarks/*.py; do echo "== $$file"; PYTHONPATH=. python $$file || failed="$$failed $$file"; done; test -z "$$failed" || { echo "failed:$$failed"; exit 1; }
 
 weights: $(READY) ## train the released weights further, into weights/: an hour; a killed run goes on
 	python .ci/scratch.py build/release release

@@ -16,12 +16,17 @@ from pipeline.sources import reasons as sources
 from schemas.rejects import REJECTS
 from schemas.rooms import ROOMS
 from schemas.scenes import SCENES
+from schemas.table import Table
+
+
+def shipped_rows(folder: Path, table: Table) -> list[Row]:
+    """Return the rows of a table of all shards of the dataset in `folder`, in their order."""
+    return [row for path in sorted((folder / table.name).glob("*.parquet")) for row in tables.read(path, table)]
 
 
 def dataset_figures(folder: Path) -> dict[str, Any]:
     """Return counts and means over the homes of a dataset."""
-    scenes = [row for path in sorted((folder / "scenes").glob("*.parquet")) for row in tables.read(path, SCENES)]
-    rooms = [row for path in sorted((folder / "rooms").glob("*.parquet")) for row in tables.read(path, ROOMS)]
+    scenes, rooms = shipped_rows(folder, SCENES), shipped_rows(folder, ROOMS)
     furnished = [r for r in rooms if r["layout_type"]]
     total = {name: int(sum(s[name] for s in scenes)) for name in ("rooms", "objects", "openable", "joints", "joints_clear", "collisions")}
     return {

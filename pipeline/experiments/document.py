@@ -14,7 +14,7 @@ from pipeline.entities.home import Home
 from pipeline.errors import SfgenError
 from pipeline.execution import cores, map_jobs
 from pipeline.experiments import lineup
-from pipeline.experiments.dataset import RejectCount
+from pipeline.experiments.dataset import RejectCount, shipped_rows
 from pipeline.experiments.knobs import knob_picture, monotone
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.homes.factory import Factory, open_factory
@@ -82,8 +82,8 @@ def lineups(root: Path, folder: Path, homes: Sequence[Home], factory: Factory, s
     """Draw real rooms of the split and shipped ones beside each other, in two pictures: which is which, and the answer."""
     rows = {t.name: tables.read(root / "data" / "tables" / f"{t.name}.parquet", t) for t in (SCENES, ROOMS, OPENINGS, OBJECTS)}
     rows[SCENES.name] = [row for row in rows[SCENES.name] if row["split"] == settings.split]
-    shipped = [row for path in sorted((root / "data" / "shards" / ROOMS.name).glob("*.parquet")) for row in tables.read(path, ROOMS)]
-    types = {(row["scene_id"], row["room_id"]): row["layout_type"] for row in (*rows[ROOMS.name], *shipped)}
+    all_rooms = (*rows[ROOMS.name], *shipped_rows(root / "data" / "shards", ROOMS))
+    types = {(row["scene_id"], row["room_id"]): row["layout_type"] for row in all_rooms}
     rng = seeds.generator(factory.seed, "lineup")
     images = lineup.lineup(rng, lineup.by_type(homes_of(rows), types), lineup.by_type(homes, types), factory.library)
     pictures = []
@@ -133,11 +133,7 @@ def _reject_row(reject: RejectCount) -> list[str]:
 
 def dataset_homes(root: Path) -> list[Home]:
     """Return the homes of data/shards."""
-    folder = root / "data" / "shards"
-    rows: dict[str, list[dict[str, Any]]] = {}
-    for table in (SCENES, ROOMS, OPENINGS, OBJECTS):
-        rows[table.name] = [row for path in sorted((folder / table.name).glob("*.parquet")) for row in tables.read(path, table)]
-    return homes_of(rows)
+    return homes_of({table.name: shipped_rows(root / "data" / "shards", table) for table in (SCENES, ROOMS, OPENINGS, OBJECTS)})
 
 
 def path_traced(root: Path, folder: Path, homes: Sequence[Home], seed: int, settings: MetricsSettings) -> tuple[list[Picture], str]:

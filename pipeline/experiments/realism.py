@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from pipeline import seeds, tables, taxonomy
+from pipeline.experiments.dataset import shipped_rows
 from pipeline.experiments.rooms import FIRST
 from pipeline.features import inception, net
 from pipeline.homes.rows import Row
@@ -57,18 +58,10 @@ def beside(root: Path, split: str, drafted: Mapping[str, Mapping[str, Sequence[R
     for name, draft in drafted.items():
         rooms = [room for room in map(furniture, from_rows(draft["rooms"], draft["objects"])) if room.name in floors]
         generated[name] = [replace(room, openings=floors[room.name].openings) for room in rooms]
-    generated[SHIPPED] = [room for room in map(furniture, _shipped_rooms(root)) if room.layout_type and room.categories]
+    shipped = from_rows(*(shipped_rows(root / "data" / "shards", table) for table in (ROOMS, OBJECTS, OPENINGS)))
+    generated[SHIPPED] = [room for room in map(furniture, shipped) if room.layout_type and room.categories]
     train = [room for room in map(furniture, rooms_of(folder, "train")) if room.layout_type and room.categories]
     return Beside(list(floors.values()), train, generated)
-
-
-def _shipped_rooms(root: Path) -> Rooms:
-    rows: dict[str, list[Row]] = {}
-    for table in (ROOMS, OBJECTS, OPENINGS):
-        rows[table.name] = [
-            row for path in sorted((root / "data" / "shards" / table.name).glob("*.parquet")) for row in tables.read(path, table)
-        ]
-    return from_rows(rows[ROOMS.name], rows[OBJECTS.name], rows[OPENINGS.name])
 
 
 def realism_table(seed: int, rooms: Beside, known: Relations, nets: Mapping[str, Embed]) -> Json:

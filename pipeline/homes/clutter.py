@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Room
 from pipeline.geometry.door_sweeps import leaf_sweep
 from pipeline.geometry.prisms import join_prisms, solid
-from pipeline.geometry.walls import Leaf, leaves
+from pipeline.geometry.walls import leaves
 from pipeline.homes.library import Library
 from pipeline.homes.request import PARTS, layout_type
 from pipeline.taxonomy import Layout, Rug
@@ -43,32 +43,14 @@ def small_things(home: Home, library: Library, settings: ThingsSettings, rng: np
     """
     if settings.rate <= 0:
         return ()
-    doors = leaves(home.plan)
-    return tuple(p for room in home.plan.rooms for p in _Dressing(home, room, library, settings, rng, touch, doors).things())
+    return tuple(p for room in home.plan.rooms for p in _Dressing(home, room, library, settings, rng, touch).things())
 
 
 class _Dressing:
     """One room while it gets its small things; `found` are those that it has."""
 
-    def __init__(
-        self,
-        home: Home,
-        room: Room,
-        library: Library,
-        settings: ThingsSettings,
-        rng: np.random.Generator,
-        touch: float,
-        doors: Sequence[Leaf],
-    ) -> None:
-        self.home, self.room, self.library, self.settings, self.rng, self.touch, self.doors = (
-            home,
-            room,
-            library,
-            settings,
-            rng,
-            touch,
-            doors,
-        )
+    def __init__(self, home: Home, room: Room, library: Library, settings: ThingsSettings, rng: np.random.Generator, touch: float) -> None:
+        self.home, self.room, self.library, self.settings, self.rng, self.touch = home, room, library, settings, rng, touch
         kinds = (layout_type(room, home.plan, taxonomy.load()) or "").split(PARTS)
         self.layouts = [taxonomy.load().layouts.get(kind, Layout(())) for kind in kinds]
         self.furniture = home.in_room(room.room_id)
@@ -163,7 +145,7 @@ class _Dressing:
         """Return the room's walls with all that stands before them and all that moves there."""
         own = [o for o in self.home.plan.openings if self.room.room_id in o.rooms and o.level == self.room.level]
         ids = {o.opening_id for o in own}
-        swung = join_prisms([leaf_sweep(leaf, self.floor).prisms for leaf in self.doors if leaf.opening_id in ids])
+        swung = join_prisms([leaf_sweep(leaf, self.floor).prisms for leaf in leaves(self.home.plan) if leaf.opening_id in ids])
         boxes = laying.sweeps.boxes[np.isfinite(laying.sweeps.boxes).all(1)]
         rest = laying.rest.prisms
         corners = np.concatenate([rest.corners, swung.corners, boxes[:, [0, 1, 3, 1, 3, 4, *[0, 4] * 9]].reshape(-1, 12, 2)])

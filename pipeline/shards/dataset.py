@@ -119,11 +119,7 @@ def open_or_create(
 
 def is_committed(dataset: Dataset, number: int) -> bool:
     """Tell whether shard `number` is there: a commit that can be read, with every file at its full length."""
-    try:
-        commit = read_commit(dataset.folder, shard_name(number))
-    except ContentError:
-        return False
-    return commit is not None and not commit.first_damage(dataset.folder)
+    return not _broken(dataset.folder, shard_name(number))
 
 
 def assets_of_all(dataset: Dataset) -> set[str]:
