@@ -81,7 +81,7 @@ def shard(
     workers: Annotated[
         int | None, typer.Option(min=1, help="Processes, one thread each; 1 starts none. [default: the cores that may be used]")
     ] = None,
-    prompts: Annotated[Path | None, typer.Option(help="Text file, a prompt a line; or YAML list of {prompt, weight}.")] = None,
+    prompts: Annotated[Path | None, typer.Option(help="Text file, a prompt a line; or list of {prompt, weight} in YAML or JSON.")] = None,
     scheduler: Annotated[str | None, typer.Option(help="A Dask scheduler, tcp://host:port or its file, instead of --workers.")] = None,
     strict: Annotated[
         bool, typer.Option("--strict", help="Stop at the first home that cannot be made, instead of leaving it empty.")

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
-import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from pipeline.errors import ContentError, UsageError
+from pipeline.errors import ContentError
 from pipeline.metrics.plan_checks import CHECKS, MEASURES, NEEDS
-from pipeline.shards import require_prompt
+from pipeline.shards import read_entries, require_prompt
 
 Json = dict[str, Any]
-MOST_BYTES = 16 << 20
 REMEDY = "write a list of {prompt, graph, checks} as manifests/prompts/benchmark.yaml has them; graph and checks may be left out"
 
 
@@ -66,55 +63,8 @@ class _Case(_Loose):
 
 
 def read_prompts(path: Path) -> list[Json]:
-    """Read a text file (a prompt a line, `#` begins a comment), or a list of prompts in YAML or JSON, or a prompt or case a line (.jsonl).
-
-    Raises UsageError for a path that is no file or holds no prompt, ContentError naming the entry that is wrong.
-    """
-    if not path.is_file():
-        remedy = "give a text file with a prompt a line, or a list in YAML or JSON"
-        raise UsageError(f"{path} is {'not a file' if path.exists() else 'missing'}", remedy)
-    if path.stat().st_size > MOST_BYTES:
-        raise ContentError(f"{path} is larger than {MOST_BYTES >> 20} MiB", "give fewer prompts")
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise ContentError(f"cannot read {path} ({error})", "give a file in UTF-8") from error
-    lines = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip()]
-    match path.suffix.lower():
-        case ".yaml" | ".yml":
-            cases = _cases(path, _yaml(path, text))
-        case ".json":
-            cases = _cases(path, _json(path, text) if lines else None)
-        case ".jsonl" | ".ndjson":
-            cases = [_case(_json(f"line {n} of {path}", line), f"line {n} of {path}", f"line {n}") for n, line in lines]
-        case _:
-            prompts = [(n, line) for n, line in lines if not line.lstrip().startswith("#")]
-            cases = [{"id": f"line {n}", "prompt": require_prompt(line, f"line {n} of {path}")} for n, line in prompts]
-    if not cases:
-        raise UsageError(f"{path} holds no prompt", "write one prompt a line")
-    return cases
-
-
-def _yaml(path: Path, text: str) -> object:
-    try:
-        return yaml.safe_load(text)
-    except (yaml.YAMLError, RecursionError, ValueError) as error:
-        raise ContentError(f"{path} is not YAML ({str(error).splitlines()[0]})", REMEDY) from error
-
-
-def _json(where: object, text: str) -> object:
-    try:
-        return json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise ContentError(f"{where} is not JSON ({error})", REMEDY) from error
-
-
-def _cases(path: Path, tree: object) -> list[Json]:
-    if tree is None:
-        return []
-    if not isinstance(tree, list):
-        raise ContentError(f"{path} is not a list", REMEDY)
-    return [_case(entry, f"entry {n} of {path}", f"entry {n}") for n, entry in enumerate(tree, 1)]
+    """Read a file of prompts as `shards.read_entries` does, each with its ground truth. Raises as that does, and ContentError naming the entry that is wrong."""
+    return [_case(entry, f"{name} of {path}", name) for name, entry in read_entries(path, REMEDY)]
 
 
 def _case(entry: object, where: str, name: str) -> Json:

@@ -6,7 +6,7 @@ from pipeline.shards.dataset import Dataset, add_part, commit_shard, forget_alte
 from pipeline.shards.header import Header, code_digest, read_header
 from pipeline.shards.layout import EMPTY, TABLES, file_path, scene_id, shard_name
 from pipeline.shards.library import AssetSource
-from pipeline.shards.mix import Mix, read_mix, require_prompt
+from pipeline.shards.mix import Mix, read_entries, read_mix, require_prompt
 from pipeline.shards.seal import identity, vouches
 
 __all__ = [
@@ -27,6 +27,7 @@ __all__ = [
     "identity",
     "is_committed",
     "open_or_create",
+    "read_entries",
     "read_header",
     "read_mix",
     "require_prompt",

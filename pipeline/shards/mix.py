@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +16,8 @@ from pipeline.manifest import digest
 from pipeline.seeds import generator
 
 LONGEST = 20_000  # characters of a prompt; the longest of the paper has some 300
+MOST_BYTES = 16 << 20
+LISTS = {".yaml": "YAML", ".yml": "YAML", ".json": "JSON", ".jsonl": "JSON lines", ".ndjson": "JSON lines"}  # files that are no plain text
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,40 +59,51 @@ def require_prompt(text: str, where: str = "the prompt") -> str:
 
 
 def read_mix(path: Path) -> Mix:
-    """Read a text file (one prompt a line, `#` begins a comment) or a YAML mix (a list of {prompt, weight}).
+    """Read a file of prompts: text, whose lines are taken in turn, or a list of {prompt, weight}, which is drawn from.
 
-    Raises UsageError for a missing path, one of the wrong kind, or an empty or over-long prompt; ContentError for a
-    file that cannot be read as such.
+    Raises as `read_entries` does, and UsageError for an empty or over-long prompt.
+    """
+    remedy = "write a list of entries `- {prompt: ..., weight: 2}`"
+    drawn = [_entry(entry, f"{name} of {path}", remedy) for name, entry in read_entries(path, remedy)]
+    return Mix(tuple(prompt for prompt, _ in drawn), tuple(weight for _, weight in drawn) if path.suffix.lower() in LISTS else ())
+
+
+def read_entries(path: Path, remedy: str) -> list[tuple[str, object]]:
+    """Return the entries of a file of prompts by name: the lines of a text ("line 3"; `#` begins a comment), or what a list in YAML, JSON or JSON lines holds.
+
+    Raises UsageError for a path that is no file or holds no prompt, ContentError for a file that cannot be read; `remedy` says what a
+    list is to hold.
     """
     if not path.is_file():
-        raise UsageError(
-            f"{path} is {'not a file' if path.exists() else 'missing'}", "give a text file with a prompt a line, or a YAML mix"
-        )
+        known = "give a text file with a prompt a line, or a list in YAML or JSON"
+        raise UsageError(f"{path} is {'not a file' if path.exists() else 'missing'}", known)
+    if path.stat().st_size > MOST_BYTES:
+        raise ContentError(f"{path} is larger than {MOST_BYTES >> 20} MiB", "give fewer prompts")
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise ContentError(f"cannot read {path} ({error})", "give a text file in UTF-8") from error
-    mix = _yaml_mix(path, text) if path.suffix.lower() in {".yaml", ".yml"} else _lines(path, text)
-    if not mix.prompts:
+    lines = [(f"line {n}", line) for n, line in enumerate(text.splitlines(), 1) if line.strip()]
+    kind = LISTS.get(path.suffix.lower(), "")
+    if kind == "JSON lines":
+        entries = [(name, _parsed(f"{name} of {path}", line, "JSON", remedy)) for name, line in lines]
+    elif kind:
+        listed = _parsed(path, text, kind, remedy) if lines else None
+        if not isinstance(listed, list | None):
+            raise ContentError(f"{path} is not a list", remedy)
+        entries = [(f"entry {n}", entry) for n, entry in enumerate(listed or (), 1)]
+    else:
+        entries = [(name, line) for name, line in lines if not line.lstrip().startswith("#")]
+    if not entries:
         raise UsageError(f"{path} holds no prompt", "write one prompt a line")
-    return mix
+    return entries
 
 
-def _lines(path: Path, text: str) -> Mix:
-    kept = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip() and not line.lstrip().startswith("#")]
-    return Mix(tuple(require_prompt(line, f"line {n} of {path}") for n, line in kept))
-
-
-def _yaml_mix(path: Path, text: str) -> Mix:
-    remedy = "write a list of entries `- {prompt: ..., weight: 2}`"
+def _parsed(where: object, text: str, kind: str, remedy: str) -> Any:
     try:
-        data = yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        raise ContentError(f"{path} is not YAML ({str(error).splitlines()[0]})", remedy) from error
-    if not isinstance(data, list):
-        raise ContentError(f"{path} is not a list", remedy)
-    entries = [_entry(item, f"entry {n} of {path}", remedy) for n, item in enumerate(data, 1)]
-    return Mix(tuple(p for p, _ in entries), tuple(w for _, w in entries))
+        return yaml.safe_load(text) if kind == "YAML" else json.loads(text)
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        raise ContentError(f"{where} is not {kind} ({str(error).splitlines()[0]})", remedy) from error
 
 
 def _entry(item: Any, where: str, remedy: str) -> tuple[str, float]:
