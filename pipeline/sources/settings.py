@@ -15,6 +15,7 @@ class FrontFilters:
 
     min_room_area: float = 1.0  # m2
     min_inside: float = 0.8  # share of an object's footprint that must lie in its room
+    max_shift: float = 0.6  # m that furniture is moved at most, out of walls and of each other; 0: it stays where the file has it
     max_tilt: float = 0.0175  # rad
     max_scale: float = 5.0  # factor
     max_top: float = 4.0  # m above the floor

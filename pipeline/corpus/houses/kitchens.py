@@ -9,6 +9,10 @@ from pipeline.corpus.houses.room_occupancy import ahead, on_side
 FRONT = 0.75
 """Free floor before a run: an open door and a cook [m]."""
 SEAM = 0.002
+SMALL = 7.0
+"""Kitchens of less floor have no other wall for a refrigerator [m2]."""
+NEEDED = frozenset({"sink_cabinet", "oven", "refrigerator", "kitchen_cabinet"})
+"""Nobody cooks without one of each: their least widths are kept free until they stand."""
 HUNG_AT = 1.45
 """Underside of the wall units [m]."""
 
@@ -21,7 +25,7 @@ def furnish_kitchen(arranger: Arranger) -> None:
     middle = wanted[1:]
     arranger.rng.shuffle(middle)
     wanted = [*middle[:1], "sink_cabinet", *middle[1:], "kitchen_cabinet", "kitchen_cabinet", "kitchen_cabinet"]
-    if arranger.wants("fridge_in_run"):
+    if arranger.wants("fridge_in_run") or arranger.space.area < SMALL:
         wanted = ["refrigerator", *wanted]
     left = run(arranger, wanted)
     if any(c != "kitchen_cabinet" for c in left):
@@ -52,9 +56,11 @@ def run(arranger: Arranger, wanted: list[str]) -> list[str]:
     low_corner, high_corner = a < 0.05, b > space.sides[i].length - 0.05
     forward = low_corner if low_corner != high_corner else arranger.chance(0.5)
     at, left, placed = 0.005, [], []
-    for category in wanted:
-        model = arranger.pick(category, width=length - at, depth=0.75)
-        if model is None or (category == "kitchen_cabinet" and length - at < 0.3):
+    for number, category in enumerate(wanted):
+        later = NEEDED.intersection(wanted[number + 1 :]) - {category, *(m.category for m, _ in placed)}
+        spare = length - at - sum(arranger.stock.least(c)[0] + SEAM for c in later)
+        model = arranger.pick(category, width=spare, depth=0.75)
+        if model is None or (category == "kitchen_cabinet" and spare < 0.3):
             left.append(category)
             continue
         s = a + at + model.size[0] / 2 if forward else b - at - model.size[0] / 2

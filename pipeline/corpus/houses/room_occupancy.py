@@ -201,6 +201,11 @@ class Space:
         self.add(model, spot, z, keep=keep)
         return True
 
+    def take_back(self) -> None:
+        """Take the piece away that was put down last; what was kept free for it stays so."""
+        self.items.pop()
+        self.solids.pop()
+
     def nestle(self, model: Model, spot: Spot, *, dry: bool = False) -> bool:
         """Put down a piece that may stand where others want floor for themselves, but not before a door; `dry`: only try."""
         wanted, self.keeps = self.keeps, self.keeps[: len(self.doors)]

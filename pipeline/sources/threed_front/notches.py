@@ -74,6 +74,13 @@ def overlap_share(a: tuple[Pose, bytes], b: tuple[Pose, bytes]) -> float:
     return float(np.count_nonzero(_mask(theirs)[x, y, z]) / len(index))
 
 
+@functools.lru_cache(4096)
+def fill_columns(bits: bytes) -> bytes:
+    """Return a shape that is full from top to bottom wherever it is anything: what it covers of the floor."""
+    columns = _mask(bits).any(axis=2, keepdims=True)
+    return np.packbits(np.broadcast_to(columns, CELLS)).tobytes()
+
+
 def _mask(bits: bytes) -> Mask:
     count = int(np.prod(CELLS))
     if not bits:

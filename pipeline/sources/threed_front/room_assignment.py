@@ -11,6 +11,7 @@ import numpy as np
 
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import FrontFilters
+from pipeline.sources.threed_front.clearing import clear
 from pipeline.sources.threed_front.furniture import Model, Placed, inside, overlapping, place_furniture
 from pipeline.sources.threed_front.house_file import HouseFile, RoomRecord
 from pipeline.sources.threed_front.rows import ReadRoom
@@ -18,6 +19,7 @@ from pipeline.sources.threed_front.supports import floating, supports
 from pipeline.taxonomy import Taxonomy
 
 MAX_OBJECTS = 500  # of one room
+HALF = 0.4  # share of a footprint in a room, from which on a piece is moved into it
 
 
 @dataclass(slots=True)
@@ -70,9 +72,16 @@ def fill(
 
 
 def _home(piece: Placed, room: ReadRoom | None, rooms: list[ReadRoom], limits: FrontFilters) -> ReadRoom | None:
-    """Return the room in which a piece lies: its own, else the one that holds most of it, None where it is in none."""
+    """Return the room in which a piece lies: its own, else the one that holds most of it, None where it is in none.
+
+    Where pieces are moved out of walls, one that is half in a wall lies in the room that holds most of it.
+    """
     ordered = sorted(rooms, key=lambda r: (r is not room, -inside(piece, r.polygon)))
-    return next((r for r in ordered if inside(piece, r.polygon) >= limits.min_inside), None)
+    within = next((r for r in ordered if inside(piece, r.polygon) >= limits.min_inside), None)
+    if within is not None or not limits.max_shift:
+        return within
+    most = max(ordered, key=lambda r: inside(piece, r.polygon), default=None)
+    return most if most is not None and inside(piece, most.polygon) >= HALF else None
 
 
 def _move_to_room(piece: Placed, record: RoomRecord, home: ReadRoom) -> Placed:
@@ -92,6 +101,11 @@ def _keep(house: HouseFile, room: ReadRoom, contents: Candidates, taxonomy: Taxo
     candidates = [*contents.own, *contents.guests]
     if len(candidates) > MAX_OBJECTS:
         raise SourceError("too_large", where, f"{len(candidates)} objects in {where}")
+    if limits.max_shift:
+        candidates = clear(candidates, room.polygon, taxonomy, limits.max_shift)
+        out = [piece for piece in candidates if inside(piece, room.polygon) < limits.min_inside]
+        rejects += [reject("object", _name(house, room, piece), "outside_room", _outside(piece, room, room.record)) for piece in out]
+        candidates = [piece for piece in candidates if all(piece is not other for other in out)]
     dropped = overlapping(candidates, limits, taxonomy)
     for i, piece in enumerate(candidates):
         name = _name(house, room, piece)
