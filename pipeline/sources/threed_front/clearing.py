@@ -73,7 +73,7 @@ def clear(pieces: Sequence[Placed], floor: Polygon, taxonomy: Taxonomy, farthest
     What rests on a piece moves with it; seats stay under tables, small things and lamps where they are. A piece that finds no free
     place within reach stays too.
     """
-    bearers = supports(pieces, taxonomy)
+    bearers = [b if b >= 0 and pieces[b].pose.size[2] > FLAT else -1 for b in supports(pieces, taxonomy)]
     room = _room(pieces, floor, bearers, taxonomy)
     start = np.array([p.pose.position[:2] for p in pieces])
     centres = _separate(room, start, farthest)
@@ -88,7 +88,7 @@ def clear(pieces: Sequence[Placed], floor: Polygon, taxonomy: Taxonomy, farthest
 
 def _moved(piece: Placed, shift: Floats) -> Placed:
     pose = piece.pose
-    position = np.round(pose.position + [*shift, 0.0], 4) + 0.0
+    position = np.round(pose.position + np.append(shift, 0.0), 4) + 0.0
     note = ("moved", f"{piece.category} by {math.hypot(*shift):.2f} m")
     return replace(piece, pose=Pose(position, pose.yaw, pose.size, pose.mirrored), notes=(*piece.notes, note))
 
@@ -99,7 +99,9 @@ def _room(pieces: Sequence[Placed], floor: Polygon, bearers: Sequence[int], taxo
     size = np.array([p.pose.size[:2] for p in pieces]).reshape(-1, 2)
     low, high = np.array([p.span for p in pieces]).reshape(-1, 2).T
     cards = [taxonomy.categories[p.category] for p in pieces]
-    own = np.array([b < 0 and card.mount != "ceiling" and card.name not in taxonomy.small for b, card in zip(bearers, cards, strict=True)], bool)
+    own = np.array(
+        [b < 0 and card.mount != "ceiling" and card.name not in taxonomy.small for b, card in zip(bearers, cards, strict=True)], bool
+    )
     tuck = np.array([{"seat": 1, "table": 2}.get(card.tuck or "", 0) for card in cards])
     level = np.minimum(high[:, None], high) - np.maximum(low[:, None], low) > FLAT
     rivals = own[:, None] & own & level & (tuck[:, None] + tuck != 3)
