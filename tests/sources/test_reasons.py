@@ -297,6 +297,7 @@ CASES = {
     "duplicate": duplicate,
     "overlap": lambda t: with_stand(t, pos=(2, 0, 1.5)),
     "no_support": floating_cup,
+    "moved": lambda t: with_stand(t, pos=(0.2, 0, 3)),
     "mirrored": lambda t: with_stand(t, scale=(-1, 1, 1)),
     "centimetres": centimetres,
     "opening_unresolved": lambda t: (front(t, making.two_rooms(more_meshes=[slab("far", "Window", (50, 1, 50), (52, 2, 50.2))])), read(t))[

@@ -99,12 +99,25 @@ def test_what_lies_in_another_room_is_there(tmp_path):
 
 @pytest.mark.parametrize(("out", "there"), [(0.1, True), (0.11, False)])
 def test_a_share_at_the_limit_passes(out, there, tmp_path):
-    """A nightstand 50 cm wide that sticks 10 cm out of its room lies in it by 80 %, which is the limit."""
+    """A nightstand 50 cm wide that sticks 10 cm out of its room lies in it by 80 %, which is the limit where nothing is moved."""
+    tree = making.two_rooms(
+        extra=[child("x/model", "furniture/9", (-0.15 - out + 0.4, 0, 3))], more_furniture=[chair_record("x/model", STAND)]
+    )
+    made = read(written(tmp_path, tree), filters={"max_shift": 0.0})
+    assert ("outside_room" not in made.reasons) == there
+
+
+@pytest.mark.parametrize(("out", "moved"), [(0.11, 0.11), (0.25, 0.25), (0.32, None)])
+def test_a_piece_half_in_a_wall_is_moved_out_of_it_and_one_that_is_more_so_is_left_out(out, moved, tmp_path):
     tree = making.two_rooms(
         extra=[child("x/model", "furniture/9", (-0.15 - out + 0.4, 0, 3))], more_furniture=[chair_record("x/model", STAND)]
     )
     made = read(written(tmp_path, tree))
-    assert ("outside_room" not in made.reasons) == there
+    there = {o["source_id"].split("#")[0]: o["position"][0] for o in made.objects}
+    assert ("outside_room" in made.reasons) == (moved is None)
+    assert there.get("house-a/MasterBedroom-1/furniture/9") == (None if moved is None else pytest.approx(0.25 + 0.003, abs=2e-4))
+    notes = [r["detail"] for r in made.rejects if r["reason"] == "moved"]
+    assert notes == ([] if moved is None else [f"nightstand by {moved + 0.003:.2f} m"])
 
 
 def lamp(tmp_path, category, foot, beside=()):

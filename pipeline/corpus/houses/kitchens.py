@@ -55,7 +55,8 @@ def run(arranger: Arranger, wanted: list[str]) -> list[str]:
     length, i, a, b = good[int(rng.integers(len(good)))]
     low_corner, high_corner = a < 0.05, b > space.sides[i].length - 0.05
     forward = low_corner if low_corner != high_corner else arranger.chance(0.5)
-    at, left = 0.005, list[str]()
+    at = 0.005
+    left: list[str] = []
     placed: list[tuple[Model, float]] = []
     for number, category in enumerate(wanted):
         later = NEEDED.intersection(wanted[number + 1 :]) - {category, *(m.category for m, _ in placed)}

@@ -149,7 +149,7 @@ def _into_room(room: Room, k: int, at: Floats) -> Floats | None:
         box = room.axes[k] * room.half[k][:, None]
         reach_along, reach_off = np.abs(tangents @ box.T).sum(1), np.abs(normals @ box.T).sum(1)
         depth = reach_off - off
-        hit = (off > 0) & (depth > SLACK) & (along + reach_along > SLACK) & (along - reach_along < length - SLACK)
+        hit = (off > -reach_off / 4) & (depth > SLACK) & (along + reach_along > SLACK) & (along - reach_along < length - SLACK)
         if not hit.any():
             return None
         wall = int(np.flatnonzero(hit)[np.argmin(depth[hit])])
