@@ -1,7 +1,5 @@
 """Appliances: refrigerator, oven, dishwasher, microwave, washing machine."""
 
-# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
-
 from __future__ import annotations
 
 import math
@@ -10,17 +8,28 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
-from pipeline.corpus.furniture.finishes import DARK_GLASS, ENAMEL, GLASS, GRAPHITE, PLASTIC, PLASTIC_WHITE, STEEL, Finish, Scheme
+from pipeline.corpus.furniture.finishes import (
+    DARK_GLASS,
+    ENAMEL,
+    GLASS,
+    GRAPHITE,
+    PLASTIC,
+    PLASTIC_WHITE,
+    STEEL,
+    Finish,
+    Scheme,
+    one_of,
+    pick,
+)
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, knob, lid, reach, tray
-from pipeline.corpus.furniture.shape import Mover, Piece, Shape, pieces, staves
-from pipeline.corpus.furniture.solids import box, circle, revolve, ring, shell, slab, strips
-from pipeline.corpus.furniture.storage import Size, pick
+from pipeline.corpus.furniture.shape import Mover, Piece, Shape, Size, pieces, staves
+from pipeline.corpus.furniture.solids import around, box, circle, revolve, ring, shell, slab, standing, strips
 
 FRONTS = (ENAMEL, STEEL, GRAPHITE)
 
 
 def _finish(rng: np.random.Generator) -> Finish:
-    return FRONTS[int(rng.integers(len(FRONTS)))]
+    return one_of(rng, FRONTS)
 
 
 def refrigerator(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -79,8 +88,8 @@ def oven(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     count = 2 if form == "built_in" else 4
     xs = np.linspace(-0.38 * w, 0.38 * w, count + 1)
     movers = [knob(f"knob_{k}", (float(x), face, z), 0.019, STEEL) for k, x in enumerate(xs) if k != count // 2 or count % 2]
-    base = shape.base + pieces("display", box((-0.05, 0.05), (face - 0.002, face), (z - 0.014, z + 0.014)), DARK_GLASS, group="display")
-    movers.append(button("button_0", (0.062, 0.08), (z - 0.008, z + 0.008), face, PLASTIC))
+    base = shape.base + pieces("display", box((-0.05, 0.05), (face - 0.002, face), around(0.014, z)), DARK_GLASS, group="display")
+    movers.append(button("button_0", (0.062, 0.08), around(0.008, z), face, PLASTIC))
     if form == "range":
         zone = Finish("hob_zone", (0.10, 0.10, 0.105), 0.3, density=2500)
         rings = [
@@ -104,11 +113,11 @@ def _burners(w: float, d: float, z: float) -> tuple[Piece, ...]:
         cap = revolve([(1.2 * r, z), (1.2 * r, z + 0.006), (r, z + 0.008), (r, z + 0.014)], 14, (x, y))
         half = 0.17 * d
         bars = [
-            box((x - half, x + half), (y - 0.005, y + 0.005), (z + 0.018, z + 0.030)),
-            box((x - 0.005, x + 0.005), (y - half, y - 0.005), (z + 0.018, z + 0.030)),
+            box(around(half, x), around(0.005, y), (z + 0.018, z + 0.030)),
+            box(around(0.005, x), (y - half, y - 0.005), (z + 0.018, z + 0.030)),
         ]
-        bars.append(box((x - 0.005, x + 0.005), (y + 0.005, y + half), (z + 0.018, z + 0.030)))
-        feet = [box((x + s * half - 0.004, x + s * half + 0.004), (y - 0.005, y + 0.005), (z, z + 0.018)) for s in (-0.97, 0.97)]
+        bars.append(box(around(0.005, x), (y + 0.005, y + half), (z + 0.018, z + 0.030)))
+        feet = [box(around(0.004, x + s * half), around(0.005, y), (z, z + 0.018)) for s in (-0.97, 0.97)]
         parts += pieces("burners", cap, iron, group=f"burner_{k}") + pieces("grates", bars + feet, iron, group=f"grate_{k}")
     return parts
 
@@ -135,8 +144,8 @@ def dishwasher(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
         plate = next(p.solid.bounds() for p in base if p.name.endswith("_blank"))
         z = float(plate[:, 2].mean())
         for k, x in enumerate((0.12, 0.155, 0.19)):
-            movers.append(button(f"button_{k}", (x - 0.011, x + 0.011), (z - 0.009, z + 0.009), face, PLASTIC))
-        base += pieces("display", box((-0.05, 0.05), (face - 0.002, face), (z - 0.012, z + 0.012)), DARK_GLASS, group="display")
+            movers.append(button(f"button_{k}", around(0.011, x), around(0.009, z), face, PLASTIC))
+        base += pieces("display", box((-0.05, 0.05), (face - 0.002, face), around(0.012, z)), DARK_GLASS, group="display")
     return Shape(base, tuple(movers))
 
 
@@ -161,7 +170,7 @@ def _rack(name: str, x: tuple[float, float], y: tuple[float, float], z: float, h
 def microwave(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a glazed door hinged at the left, a panel with buttons and a dial at the right, a turntable inside."""
     w, d, _h = size
-    outside = (ENAMEL, GRAPHITE, STEEL)[int(rng.integers(3))]
+    outside = one_of(rng, (ENAMEL, GRAPHITE, STEEL))
     style = FrontStyle("dark_glass", "flat", outside, STEEL if outside is not STEEL else GRAPHITE, thickness=0.024)
     plain = replace(style, panel="slab")
     how = Case(outside, style, "none", 0.012, PLASTIC, outside, 0.014, board=0.014)
@@ -175,11 +184,7 @@ def microwave(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
         movers.append(knob("knob_1", (x, face, z0 + 0.62 * (z1 - z0)), 0.021, STEEL))
     for k in range(0 if form == "knobs" else 4):
         bx, bz = x + (-1 + 2 * (k % 2)) * 0.019, z0 + (0.52 + 0.12 * (k // 2)) * (z1 - z0)
-        movers.append(
-            button(
-                f"button_{k}", (bx - 0.012, bx + 0.012), (bz - 0.009, bz + 0.009), face, PLASTIC_WHITE if outside is GRAPHITE else PLASTIC
-            )
-        )
+        movers.append(button(f"button_{k}", around(0.012, bx), around(0.009, bz), face, PLASTIC_WHITE if outside is GRAPHITE else PLASTIC))
     feet = [revolve([(0.012, 0.0), (0.015, 0.012)], 10, (sx * 0.42 * w, sy * 0.3 * d))[0] for sx in (-1, 1) for sy in (-1, 1)]
     low = next(p.solid.bounds() for p in shape.base if p.name == "bottom")
     divider = next(p.solid.bounds() for p in shape.base if p.name.startswith("divider"))
@@ -193,7 +198,7 @@ def microwave(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     base = (
         shape.base
         + pieces("feet", feet, PLASTIC)
-        + pieces("display", box((x - 0.035, x + 0.035), (face - 0.002, face), (z1 - 0.05, z1 - 0.02)), DARK_GLASS, group="display")
+        + pieces("display", box(around(0.035, x), (face - 0.002, face), (z1 - 0.05, z1 - 0.02)), DARK_GLASS, group="display")
     )
     base += pieces("turntable", table, GLASS, group="turntable")
     return Shape(base, shape.movers + tuple(movers))
@@ -213,12 +218,9 @@ def washing_machine(rng: np.random.Generator, form: str, size: Size, scheme: Sch
     square = np.array([_on_square(a, x, (0.1, panel), zc) for a in np.arange(24) * 2 * math.pi / 24])
     hole = circle(r - 0.03, 24, (0.0, zc))
     rims = [[np.column_stack([o[:, 0], o[:, 1], np.full(24, k * t)]) for k in (0, 1)] for o in (square, hole)]
-    front = [s.turned("x", math.pi / 2).moved((0, face + t, 0)) for s in shell(rims[0], rims[1])]
+    front = standing(shell(rims[0], rims[1]), (0, face + t, 0))
     base += staves("front", front, outside) + pieces("kick", box(x, (face + 0.01, face + 0.03), (0.012, 0.1)), outside)
-    drum = [
-        s.turned("x", math.pi / 2).moved((0, 0, zc))
-        for s in ring((r - 0.025, r - 0.025), (r - 0.035, r - 0.035), (-d / 2 + 0.1, -face - t - 0.002), 24)
-    ]
+    drum = standing(ring((r - 0.025, r - 0.025), (r - 0.035, r - 0.035), (-d / 2 + 0.1, -face - t - 0.002), 24), (0, 0, zc))
     end = revolve([(r - 0.03, -d / 2 + 0.085), (r - 0.03, -d / 2 + 0.1)], 24)[0].turned("x", math.pi / 2).moved((0, 0, zc))
     base += staves("drum", drum, STEEL) + pieces("drum_end", end, STEEL)
     drawer_x = (-w / 2 + 0.03, -w / 2 + 0.2)
@@ -232,7 +234,7 @@ def washing_machine(rng: np.random.Generator, form: str, size: Size, scheme: Sch
     for k in range(2):
         bx = 0.20 + 0.032 * k
         if bx + 0.012 < w / 2 - t:
-            movers.append(button(f"button_{k}", (bx - 0.011, bx + 0.011), (h - 0.09, h - 0.07), face, PLASTIC))
+            movers.append(button(f"button_{k}", around(0.011, bx), (h - 0.09, h - 0.07), face, PLASTIC))
     return Shape(base, tuple(movers))
 
 
@@ -264,10 +266,8 @@ def _top_loader(size: Size, outside: Finish) -> Shape:
     movers = [lid("lid", lid_parts, (0.0, cover_y[1], z), math.radians(85))]
     face, at = back + 0.004, 0.5 * (z + 0.03 + h)
     movers += [knob(f"knob_{k}", (float(f) * w, face, at), 0.022, STEEL, depth=0.02) for k, f in enumerate((-0.36, -0.24))]
-    movers += [
-        button(f"button_{k}", (0.26 * w + 0.03 * k, 0.26 * w + 0.03 * k + 0.02), (at - 0.008, at + 0.008), face, PLASTIC) for k in range(3)
-    ]
-    base += pieces("display", box((-0.08, 0.08), (face - 0.002, face), (at - 0.014, at + 0.014)), DARK_GLASS, group="display")
+    movers += [button(f"button_{k}", (0.26 * w + 0.03 * k, 0.26 * w + 0.03 * k + 0.02), around(0.008, at), face, PLASTIC) for k in range(3)]
+    base += pieces("display", box((-0.08, 0.08), (face - 0.002, face), around(0.014, at)), DARK_GLASS, group="display")
     return Shape(base, tuple(movers))
 
 
@@ -299,11 +299,9 @@ def _on_square(angle: float, x: tuple[float, float], z: tuple[float, float], zc:
 
 def _porthole(r: float, zc: float, face: float, finish: Finish) -> Mover:
     """Return the round door: a rim and a bulging glass, hinged at the left."""
-    rim = [s.turned("x", math.pi / 2).moved((0, face, zc)) for s in ring((r, r - 0.012), (r - 0.055, r - 0.055), (0.003, 0.035), 24)]
-    glass = [
-        s.turned("x", math.pi / 2).moved((0, face, zc)) for s in revolve([(r - 0.055, 0.006), (r - 0.055, 0.02), (0.6 * r, 0.032)], 24)
-    ]
-    grip = box((r - 0.045, r - 0.012), (face - 0.043, face - 0.03), (zc - 0.05, zc + 0.05), 0.003)
+    rim = standing(ring((r, r - 0.012), (r - 0.055, r - 0.055), (0.003, 0.035), 24), (0, face, zc))
+    glass = standing(revolve([(r - 0.055, 0.006), (r - 0.055, 0.02), (0.6 * r, 0.032)], 24), (0, face, zc))
+    grip = box((r - 0.045, r - 0.012), (face - 0.043, face - 0.03), around(0.05, zc), 0.003)
     rim_finish = Finish("door_rim", (0.3, 0.3, 0.31), 0.3, 0.5, density=1500)
     parts: tuple[Piece, ...] = pieces("door_rim", rim, rim_finish, group="door") + pieces(
         "door_glass", glass, replace(DARK_GLASS, opacity=0.45, name="door_glass"), group="door"
@@ -320,7 +318,7 @@ def _detergent(x: tuple[float, float], z: tuple[float, float], face: float, t: f
     middle = (x[0] + x[1]) / 2
     parts += pieces(
         "handle",
-        box((middle - 0.045, middle + 0.045), (face - 0.012, face), (z[1] - 0.012, z[1] - 0.004), 0.001),
+        box(around(0.045, middle), (face - 0.012, face), (z[1] - 0.012, z[1] - 0.004), 0.001),
         PLASTIC,
         "line_fixed_handle",
     )

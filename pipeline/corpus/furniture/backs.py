@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.corpus.furniture.bent import lean, prism
 from pipeline.corpus.furniture.finishes import Finish, Scheme, cane
 from pipeline.corpus.furniture.shape import Piece, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, box, rod
+from pipeline.corpus.furniture.solids import Solid, around, beam, box, rod
 from pipeline.corpus.furniture.upholstery import upright_pad
 
 
@@ -29,7 +29,7 @@ class Frame:
         """Return a rail across between shares `a` and `b` of the height, `inset` from either side."""
         rise = self.high - self.low
         half = deep * self.thick / 2
-        return box((-self.x + inset, self.x - inset), (self.y - half, self.y + half), (self.low + a * rise, self.low + b * rise), 0.003)
+        return box(around(self.x - inset), around(half, self.y), (self.low + a * rise, self.low + b * rise), 0.003)
 
 
 def posts(frame: Frame, *, turned: bool = False) -> list[Solid]:
@@ -52,7 +52,7 @@ def back(rng: np.random.Generator, kind: str, frame: Frame, scheme: Scheme) -> t
     other: tuple[Piece, ...] = ()
     if kind == "pad":
         soft = upright_pad(
-            rng, scheme, (-frame.x, frame.x), (frame.y - 0.035, frame.y + 0.03), (frame.low + 0.08 * (frame.high - frame.low), frame.high)
+            rng, scheme, around(frame.x), (frame.y - 0.035, frame.y + 0.03), (frame.low + 0.08 * (frame.high - frame.low), frame.high)
         )
     else:
         wood = posts(frame, turned=kind in ("spindle", "ladder") and scheme.manner.ornament > 0.3)
@@ -63,9 +63,7 @@ def back(rng: np.random.Generator, kind: str, frame: Frame, scheme: Scheme) -> t
         if kind == "cane":
             rise = frame.high - frame.low
             inset = 1.0 * t
-            sheet = box(
-                (-frame.x + inset, frame.x - inset), (frame.y - 0.004, frame.y + 0.004), (frame.low + 0.3 * rise, frame.low + 0.86 * rise)
-            )
+            sheet = box(around(frame.x - inset), around(0.004, frame.y), (frame.low + 0.3 * rise, frame.low + 0.86 * rise))
             other = pieces("cane", lean([sheet], frame.low, frame.slope), cane(rng))
     tilted = lean(wood, frame.low, frame.slope)
     return pieces("back", tilted, frame.wood) + pieces("back_pad", lean(soft, frame.low, frame.slope), scheme.soft) + other
@@ -80,7 +78,7 @@ def _slats(frame: Frame) -> list[Solid]:
     count = max(3, round(2 * frame.x / 0.1))
     xs = np.linspace(-frame.x + 2.2 * t, frame.x - 2.2 * t, count)
     low, high = frame.low + 0.24 * rise, frame.low + 0.86 * rise
-    return [frame.bar(0.16, 0.24, t), *(box((x - 0.016, x + 0.016), (frame.y - 0.006, frame.y + 0.006), (low, high), 0.002) for x in xs)]
+    return [frame.bar(0.16, 0.24, t), *(box(around(0.016, x), around(0.006, frame.y), (low, high), 0.002) for x in xs)]
 
 
 def _ladder(frame: Frame) -> list[Solid]:
@@ -96,7 +94,7 @@ def _splat(frame: Frame) -> list[Solid]:
     rise = frame.high - frame.low
     low, high, middle = frame.low + 0.04 * rise, frame.low + 0.86 * rise, frame.low + 0.45 * rise
     wide = 0.42 * frame.x
-    span = (frame.y - 0.006, frame.y + 0.006)
+    span = around(0.006, frame.y)
     under = np.array([(-0.75 * wide, low), (0.75 * wide, low), (0.42 * wide, middle), (-0.42 * wide, middle)])
     over = np.array([(-0.42 * wide, middle), (0.42 * wide, middle), (wide, high), (-wide, high)])
     return [prism(under, "y", span), prism(over, "y", span)]

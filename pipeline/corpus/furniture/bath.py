@@ -1,7 +1,5 @@
 """Bathroom fixtures: toilet, bathtub, shower."""
 
-# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
-
 from __future__ import annotations
 
 import math
@@ -12,9 +10,22 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.bent import split_bent_quads
 from pipeline.corpus.furniture.finishes import CERAMIC, GLASS, PLASTIC_WHITE, STEEL, Scheme
 from pipeline.corpus.furniture.fronts import lid, top_button
-from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, hull, revolve, ring, rod, rounded_rectangle, shell, slab, stack
-from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, Size, pieces, staves
+from pipeline.corpus.furniture.solids import (
+    Solid,
+    around,
+    box,
+    circle,
+    cushion,
+    hull,
+    revolve,
+    ring,
+    rod,
+    rounded_rectangle,
+    shell,
+    slab,
+    stack,
+)
 
 
 def _oval(rx: float, y: tuple[float, float], z: float) -> NDArray[np.float64]:
@@ -33,7 +44,7 @@ def toilet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     cy, ry = (bowl_y[0] + bowl_y[1]) / 2, (bowl_y[1] - bowl_y[0]) / 2
 
     def span(share: float) -> tuple[float, float]:
-        return (cy - share * ry, cy + share * ry)
+        return around(share * ry, cy)
 
     foot = split_bent_quads(stack([_oval(0.74 * rx, span(0.80), 0.0), _oval(0.70 * rx, span(0.76), 0.10 * h)]))
     neck = split_bent_quads(stack([_oval(0.70 * rx, span(0.76), 0.10 * h), _oval(0.90 * rx, span(0.90), 0.62 * rim)]))
@@ -67,7 +78,7 @@ def toilet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     elif form == "dual":  # the large flush and the small one
         y = sum(tank_y) / 2
         for name, x in (("small", (-0.035, -0.002)), ("large", (0.002, 0.045))):
-            movers.append(top_button(name, x, (y - 0.018, y + 0.018), (h - 0.0045, h), STEEL, 0.0015))
+            movers.append(top_button(name, x, around(0.018, y), (h - 0.0045, h), STEEL, 0.0015))
     else:
         cap = pieces("button", revolve([(0.022, h - 0.0045), (0.022, h - 0.001), (0.018, h)], 16, (0.0, sum(tank_y) / 2)), STEEL)
         movers.append(Mover("button", cap, "prismatic", (0, 0, -1), (0.0, sum(tank_y) / 2, h), 0.0015, "slider_button", "button", UP))
@@ -79,7 +90,7 @@ def _lever(half: float, y: float, h: float) -> Mover:
     at = (-half, y + 0.03, h - 0.1)
     solids = [
         rod((at[0], at[1], at[2]), (at[0] - 0.012, at[1], at[2]), 0.010, n=10),
-        box((at[0] - 0.020, at[0] - 0.012), (at[1] - 0.085, at[1] + 0.008), (at[2] - 0.008, at[2] + 0.008), 0.002),
+        box((at[0] - 0.020, at[0] - 0.012), (at[1] - 0.085, at[1] + 0.008), around(0.008, at[2]), 0.002),
     ]
     parts = pieces("lever", solids, STEEL, group="lever")
     return Mover("lever", parts, "revolute", (1, 0, 0), at, 0.5, "hinge_handle", "lever", (-1.0, 0.0, 0.0))
@@ -125,7 +136,7 @@ def bathtub(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
 
     foot = 0.82 * outer if form == "free" else outer
     wall = shell([at(foot, low), at(outer, high)], [at(0.8 * inner, low), at(inner, high)])
-    floor = box((-w / 2, w / 2), (-d / 2, d / 2), (0.0, 0.14)) if form == "apron" else slab(foot, (0.0, 0.14))
+    floor = box(around(w / 2), around(d / 2), (0.0, 0.14)) if form == "apron" else slab(foot, (0.0, 0.14))
     base = pieces("tub", [*wall, floor], CERAMIC)
     if form == "apron":
         x = w / 2 - 0.035
@@ -141,24 +152,21 @@ def shower(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     tray = 0.06
     metal = scheme.handle
     rimmed = [
-        box((-w / 2, w / 2), (-d / 2, d / 2), (0, tray - 0.02), 0.003),
+        box(around(w / 2), around(d / 2), (0, tray - 0.02), 0.003),
         *(
-            box((s * w / 2 - 0.04 if s > 0 else -w / 2, w / 2 if s > 0 else -w / 2 + 0.04), (-d / 2, d / 2), (tray - 0.02, tray))
+            box((s * w / 2 - 0.04 if s > 0 else -w / 2, w / 2 if s > 0 else -w / 2 + 0.04), around(d / 2), (tray - 0.02, tray))
             for s in (-1, 1)
         ),
-        *(
-            box((-w / 2 + 0.04, w / 2 - 0.04), (-d / 2, -d / 2 + 0.04) if s < 0 else (d / 2 - 0.04, d / 2), (tray - 0.02, tray))
-            for s in (-1, 1)
-        ),
+        *(box(around(w / 2 - 0.04), (-d / 2, -d / 2 + 0.04) if s < 0 else (d / 2 - 0.04, d / 2), (tray - 0.02, tray)) for s in (-1, 1)),
     ]
     base: tuple[Piece, ...] = pieces("tray", rimmed, CERAMIC)
     side = -1 if rng.random() < 0.5 else 1
-    gx = (side * (w / 2 - 0.012) - 0.004, side * (w / 2 - 0.012) + 0.004)
+    gx = around(0.004, side * (w / 2 - 0.012))
     base += pieces("glass_side", box(gx, (-d / 2 + 0.012, d / 2 - 0.002), (tray, h)), GLASS)
     half = (side * (w / 2 - 0.018), side * (w / 2 - 0.02 - 0.42 * w))
     base += pieces("glass_front", box((min(half), max(half)), (-d / 2 + 0.008, -d / 2 + 0.016), (tray, h)), GLASS)
     posts = [
-        box((half[1] - 0.01, half[1] + 0.01), (-d / 2 + 0.002, -d / 2 + 0.022), (tray, h), 0.002),
+        box(around(0.01, half[1]), (-d / 2 + 0.002, -d / 2 + 0.022), (tray, h), 0.002),
         box((gx[0] - 0.006, gx[1] + 0.006), (-d / 2 + 0.002, -d / 2 + 0.022), (tray, h), 0.002),
     ]
     base += pieces("posts", posts, metal)

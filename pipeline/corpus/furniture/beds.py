@@ -10,9 +10,8 @@ import numpy as np
 from pipeline.corpus.furniture.bent import tube
 from pipeline.corpus.furniture.finishes import BEDDING, MATTRESS, Scheme, cane
 from pipeline.corpus.furniture.legs import leg_finish, legs
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, cushion, pillow, rod
-from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, around, box, cushion, pillow, rod
 from pipeline.corpus.furniture.upholstery import Span, channels, duvet, throw_pillow, tufted_panel
 
 SOFT = frozenset({"upholstered", "tufted", "wing"})
@@ -83,7 +82,7 @@ def bedding(rng: np.random.Generator, x: Span, y: Span, low: float, top: float, 
     pads = []
     for k in range(count):
         middle = mx[0] + share * (k + 0.5)
-        pad = pillow((middle - half, middle + half), (my[1] - deep - 0.02, my[1] - 0.02), (top, top + 0.15), 3)
+        pad = pillow(around(half, middle), (my[1] - deep - 0.02, my[1] - 0.02), (top, top + 0.15), 3)
         pads.append(pad.turned("x", 0.22, (0, my[1] - deep, top)).moved((0, 0.0, 0.012)))
         if room > 0.3 and rng.random() < 0.5 * scheme.manner.tufts + 0.35:
             front = throw_pillow(
@@ -130,7 +129,7 @@ def _head(rng: np.random.Generator, form: str, x: Span, y: Span, lift: float, h:
         rails = [box(inner, (y[0] + 0.01, y[1] - 0.01), z, 0.004) for z in ((lift + 0.14, lift + 0.21), (h - 0.09, h - 0.005))]
         return parts + pieces(
             "headboard",
-            rails + [box((a - 0.014, a + 0.014), (y[0] + 0.018, y[1] - 0.018), (lift + 0.21, h - 0.09), 0.002) for a in xs],
+            rails + [box(around(0.014, a), (y[0] + 0.018, y[1] - 0.018), (lift + 0.21, h - 0.09), 0.002) for a in xs],
             wood,
         )
     weave = rng.random() < scheme.manner.cane
@@ -183,11 +182,11 @@ def _platform(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
     parts = pieces("deck", boards, scheme.body)
     parts += pieces(
         "plinth",
-        box((-x + 0.16, x - 0.16), (-y + 0.18, y - 0.18), (0, deck - 0.035), 0.003),
+        box(around(x - 0.16), around(y - 0.18), (0, deck - 0.035), 0.003),
         scheme.accent if scheme.accent is not scheme.handle else scheme.timber,
     )
     wide = min(0.7 * w, 1.2) if rng.random() < 0.3 else w
-    board = [box((-wide / 2, wide / 2), (y - 0.045, y - 0.01), (0.06, h), 0.006)]
+    board = [box(around(wide / 2), (y - 0.045, y - 0.01), (0.06, h), 0.006)]
     parts += pieces("headboard", board, scheme.timber)
     if rng.random() < 0.5:
         half = (w - 0.06) / 2
@@ -200,6 +199,5 @@ def _platform(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
         parts += pieces("back_pads", pads, scheme.soft)
     edge = min(0.12, 0.06 * w)
     return Shape(
-        parts
-        + bedding(rng, (-x + edge, x - edge), (-y + edge, y - 0.12), deck, deck + min(0.2, 0.4 * (h - deck)), scheme, 0.6 * (h - deck))
+        parts + bedding(rng, around(x - edge), (-y + edge, y - 0.12), deck, deck + min(0.2, 0.4 * (h - deck)), scheme, 0.6 * (h - deck))
     )

@@ -13,7 +13,7 @@ import numpy as np
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.fronts import GAP, FrontStyle, Rect, Side, door, drawer, reach, sliding_door
 from pipeline.corpus.furniture.shape import Mover, Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, box, rod
+from pipeline.corpus.furniture.solids import Solid, around, beam, box, rod
 
 Feet = Literal["plinth", "tapered", "square", "sled", "none", "hairpin"]
 CellKind = Literal["drawer", "left", "right", "pair", "open", "flap", "lift", "blank", "slide"]
@@ -72,12 +72,12 @@ def case(size: Sequence[float], columns: Sequence[Column], how: Case, *, reserve
     b = how.board
     stand = reach(how.style.handle) if reserve is None else reserve
     face = -d / 2 + max(stand, how.overhang + how.nose)  # plane of the fronts
-    x = (-w / 2 + how.overhang, w / 2 - how.overhang)
+    x = around(w / 2 - how.overhang)
     y = (face if how.inset else face + how.style.thickness + 0.002, d / 2)
     top = how.top_thickness
     z = (how.feet_height, h - top)
     base: list[Piece] = []
-    base += pieces("top", box((-w / 2, w / 2), (face - how.overhang - how.nose, d / 2), (z[1], h), 0.003), how.top or how.body)
+    base += pieces("top", box(around(w / 2), (face - how.overhang - how.nose, d / 2), (z[1], h), 0.003), how.top or how.body)
     base += pieces("side_left", box((x[0], x[0] + b), y, z, 0.0015), how.body)
     base += pieces("side_right", box((x[1] - b, x[1]), y, z, 0.0015), how.body)
     inner = (x[0] + b, x[1] - b)
@@ -159,7 +159,7 @@ def _cell(
     floor = z[0] + cell.inner * (INNER + GAP) + (0.016 if cell.inner else 0.0)
     for j in range(cell.shelves):
         level = floor + (z[1] - floor) * (j + 1) / (cell.shelves + 1)
-        base += pieces(f"{name}_board_{j}", box(x, (y[0] + setback, y[1]), (level - 0.008, level + 0.008)), how.body)
+        base += pieces(f"{name}_board_{j}", box(x, (y[0] + setback, y[1]), around(0.008, level)), how.body)
     square = math.radians(90)  # no farther, so that a wardrobe can stand in a corner and a nightstand beside its bed
     sides: dict[str, Side] = {"left": "left", "right": "right", "flap": "bottom", "lift": "top"}
     if cell.kind == "drawer":
@@ -220,7 +220,7 @@ def _sliding(
     for i, (low, high) in enumerate(itertools.pairwise(cuts)):
         ends = (low + (0.009 if i else 0.0), high - (0.009 if i < len(cuts) - 2 else 0.0))
         if i:
-            base += pieces(f"{name}_upright_{i}", box((low - 0.009, low + 0.009), inside, z), how.body)
+            base += pieces(f"{name}_upright_{i}", box(around(0.009, low), inside, z), how.body)
         shelf = z[1] - 0.3
         base += pieces(f"{name}_{i}_board_0", box(ends, inside, (shelf, shelf + 0.018)), how.body)
         for j in range(cell.shelves if i % 2 else 0):
@@ -256,8 +256,8 @@ def feet(kind: Feet, x: tuple[float, float], y: tuple[float, float], height: flo
         t = 0.012
         for cx in (x[0] + inset, x[1] - inset):
             span = (y[0] + inset / 2, y[1] - inset / 2)
-            solids.append(box((cx - t, cx + t), span, (0, 2 * t), 0.002))
-            solids += [box((cx - t, cx + t), (cy - t, cy + t), (2 * t, height), 0.002) for cy in (span[0] + t, span[1] - t)]
+            solids.append(box(around(t, cx), span, (0, 2 * t), 0.002))
+            solids += [box(around(t, cx), around(t, cy), (2 * t, height), 0.002) for cy in (span[0] + t, span[1] - t)]
     if x[1] - x[0] > 1.6 and kind in ("tapered", "square"):  # long pieces stand on six
         solids += [rod((0, cy, 0), (0, cy, height), 0.014, 0.02, 10) for cy in (y[0] + inset, y[1] - inset)]
     return pieces("feet", solids, finish)

@@ -1,7 +1,5 @@
 """Pendant and ceiling lamps. The origin is the bottom of the box, as of all objects. Lengths in metres."""
 
-# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
-
 from __future__ import annotations
 
 import math
@@ -13,9 +11,8 @@ from pipeline.corpus.furniture.bent import curve, tube, turns
 from pipeline.corpus.furniture.finishes import GLOW, Scheme
 from pipeline.corpus.furniture.lamps import turned_along
 from pipeline.corpus.furniture.shades import bulb, cord, rose, shade, shade_word
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import box, circle, cushion, revolve, ring, rod, slab
-from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import around, box, circle, cushion, polar, revolve, ring, rod, slab
 
 CRYSTAL = replace(GLOW, name="crystal", color=(0.82, 0.86, 0.88), roughness=0.05, opacity=0.55, density=2500)
 THIN = 0.0035  # radius of a cord
@@ -52,13 +49,13 @@ def pendant_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
 def _linear(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
     w, d, h = size
     metal = scheme.handle
-    parts = pieces("rose", box((-0.3 * w, 0.3 * w), (-0.035, 0.035), (h - 0.024, h), 0.004), metal)
+    parts = pieces("rose", box(around(0.3 * w), (-0.035, 0.035), (h - 0.024, h), 0.004), metal)
     if rng.random() < 0.35:  # one long beam of light
         deep = min(0.05, 0.4 * d)
         parts += pieces(
-            "beam", box((-w / 2, w / 2), (-d / 2 if d < 0.12 else -deep, d / 2 if d < 0.12 else deep), (0.02, 0.075), 0.006), metal
+            "beam", box(around(w / 2), (-d / 2 if d < 0.12 else -deep, d / 2 if d < 0.12 else deep), (0.02, 0.075), 0.006), metal
         )
-        parts += pieces("light", box((-0.49 * w, 0.49 * w), (-0.8 * deep, 0.8 * deep), (0.0, 0.02), 0.003), GLOW)
+        parts += pieces("light", box(around(0.49 * w), around(0.8 * deep), (0.0, 0.02), 0.003), GLOW)
         return parts + pieces("cord", [rod((s * 0.28 * w, 0, 0.075), (s * 0.28 * w, 0, h - 0.024), THIN, n=6) for s in (-1, 1)], metal)
     z = min(0.24, 0.36 * h)
     parts += pieces("bar", rod((-0.49 * w, 0, z + 0.05), (0.49 * w, 0, z + 0.05), 0.011, n=10), metal)
@@ -138,7 +135,7 @@ def _sputnik(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
         at = out + np.array([0, 0, middle])
         unit = out / np.linalg.norm(out)
         parts += pieces("rods", rod(tuple(np.array([0, 0, middle]) + 0.85 * r * unit), tuple(at - 0.9 * r * unit), 0.005, n=6), metal)
-        globe = revolve([(r * math.cos(p), r * math.sin(p)) for p in np.linspace(-1.4, 1.4, 7)], 12)
+        globe = revolve([polar(r, p) for p in np.linspace(-1.4, 1.4, 7)], 12)
         parts += pieces("globes", [s.moved(at) for s in globe], GLOW)
     return parts + pieces("cord", cord((0, 0), (middle + 0.8 * r, h - 0.024)), metal) + pieces("rose", rose(h), metal)
 
@@ -154,20 +151,18 @@ def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         rim = min(0.4 * h, 0.05)
         parts = pieces(
             "mount",
-            [s.scaled(squash) for s in revolve([(0.5 * w, h - rim), (0.5 * w, h)], 32)],
+            revolve([(0.5 * w, h - rim), (0.5 * w, h)], 32, squash=d / w),
             metal if rng.random() < 0.6 else scheme.timber,
         )
         profile = [(0.26 * w, 0.0), (0.38 * w, 0.08 * h), (0.45 * w, 0.35 * h), (0.48 * w, h - rim)]
-        return Shape(parts + pieces("diffuser", [s.scaled(squash) for s in revolve(profile, 32)], GLOW))
+        return Shape(parts + pieces("diffuser", revolve(profile, 32, squash=d / w), GLOW))
     if form == "square":
-        parts = pieces("mount", box((-w / 2, w / 2), (-d / 2, d / 2), (0.45 * h, h), 0.004), metal if rng.random() < 0.6 else scheme.timber)
-        return Shape(
-            parts + pieces("diffuser", cushion((-0.47 * w, 0.47 * w), (-0.47 * d, 0.47 * d), (0, 0.45 * h), min(0.03, 0.2 * h), 2), GLOW)
-        )
+        parts = pieces("mount", box(around(w / 2), around(d / 2), (0.45 * h, h), 0.004), metal if rng.random() < 0.6 else scheme.timber)
+        return Shape(parts + pieces("diffuser", cushion(around(0.47 * w), around(0.47 * d), (0, 0.45 * h), min(0.03, 0.2 * h), 2), GLOW))
     if form == "frame":
         return Shape(_lattice(size, scheme))
     if form == "spots":
-        parts = pieces("bar", box((-w / 2, w / 2), (-0.03, 0.03), (h - 0.03, h), 0.003), metal)
+        parts = pieces("bar", box(around(w / 2), (-0.03, 0.03), (h - 0.03, h), 0.003), metal)
         count = max(2, round(w / 0.28))
         for x in np.linspace(-0.42 * w, 0.42 * w, count):
             r = min(0.045, 0.3 * h, 0.2 * d)
@@ -178,15 +173,15 @@ def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
             parts += pieces("heads", head, metal) + pieces(
                 "joints", rod((float(x), 0, long + 0.3 * r), (float(x), 0, h - 0.03), 0.007, n=8), metal
             )
-        parts += pieces("ends", [box((-0.08 * w, 0.08 * w), (-d / 2, d / 2), (h - 0.02, h))] if d > 0.07 else [], metal)
+        parts += pieces("ends", [box(around(0.08 * w), around(d / 2), (h - 0.02, h))] if d > 0.07 else [], metal)
         return Shape(parts)
     outer = [s.scaled(squash) for s in ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0, 0.4 * h), 32)]
     parts = pieces("ring", outer, GLOW) + pieces(
         "hoop", [s.scaled(squash) for s in ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0.4 * h, 0.6 * h), 32)], metal
     )
     bars = [
-        box((-0.42 * w, 0.42 * w), (-0.012, 0.012), (0.6 * h, 0.72 * h)),
-        box((-0.012, 0.012), (-0.42 * d, 0.42 * d), (0.72 * h, 0.84 * h)),
+        box(around(0.42 * w), (-0.012, 0.012), (0.6 * h, 0.72 * h)),
+        box((-0.012, 0.012), around(0.42 * d), (0.72 * h, 0.84 * h)),
     ]
     return Shape(parts + pieces("spokes", bars, metal) + pieces("mount", revolve([(0.08, 0.84 * h), (0.08, h)], 20), metal))
 
@@ -196,7 +191,7 @@ def _rain(form: str, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
     w, d, h = size
     squash = np.array([1.0, d / w, 1.0])
     disc = revolve([(0.5 * w, h - 0.03), (0.5 * w, h - 0.008), (0.47 * w, h)], 28)
-    panel = [box((-w / 2, w / 2), (-w / 2, w / 2), (h - 0.03, h), 0.006)]
+    panel = [box(around(w / 2), around(w / 2), (h - 0.03, h), 0.006)]
     edged = form in ("square", "frame")
     parts = pieces("plate", [s.scaled(squash) for s in (panel if edged else disc)], scheme.handle)
     rows = 3
@@ -219,11 +214,11 @@ def _lattice(size: Size, scheme: Scheme) -> tuple[Piece, ...]:
     t = 0.03
     wood = scheme.timber
     x, y = w / 2, d / 2
-    frame = [box((-x, x), (s * (y - t / 2) - t / 2, s * (y - t / 2) + t / 2), (0, h), 0.003) for s in (-1, 1)]
-    frame += [box((s * (x - t / 2) - t / 2, s * (x - t / 2) + t / 2), (-y + t, y - t), (0, h), 0.003) for s in (-1, 1)]
-    parts = pieces("frame", frame, wood) + pieces("light", box((-x + t, x - t), (-y + t, y - t), (0.02, h - 0.01)), GLOW)
+    frame = [box((-x, x), around(t / 2, s * (y - t / 2)), (0, h), 0.003) for s in (-1, 1)]
+    frame += [box(around(t / 2, s * (x - t / 2)), around(y - t), (0, h), 0.003) for s in (-1, 1)]
+    parts = pieces("frame", frame, wood) + pieces("light", box(around(x - t), around(y - t), (0.02, h - 0.01)), GLOW)
     xs, ys = np.linspace(-x + t, x - t, 5)[1:-1], np.linspace(-y + t, y - t, 5)[1:-1]
-    bars = [box((a - 0.006, a + 0.006), (-y + t, y - t), (0.011, 0.02)) for a in xs] + [
-        box((-x + t, x - t), (b - 0.006, b + 0.006), (0.002, 0.011)) for b in ys
+    bars = [box(around(0.006, a), around(y - t), (0.011, 0.02)) for a in xs] + [
+        box(around(x - t), around(0.006, b), (0.002, 0.011)) for b in ys
     ]
     return parts + pieces("lattice", bars, wood)

@@ -1,18 +1,15 @@
 """Containers that open: bins and boxes."""
 
-# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
-
 from __future__ import annotations
 
 import math
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import PLASTIC, PLASTIC_WHITE, STEEL, Finish, Scheme, shade
+from pipeline.corpus.furniture.finishes import PLASTIC, PLASTIC_WHITE, STEEL, Finish, Scheme, one_of, pick, shade
 from pipeline.corpus.furniture.fronts import Rect, lid
-from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Shape, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, slab, stack, walls
-from pipeline.corpus.furniture.storage import Size, pick
+from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Shape, Size, pieces, staves
+from pipeline.corpus.furniture.solids import Solid, around, box, circle, revolve, ring, slab, stack, walls
 
 Interval = tuple[float, float]
 CARDBOARD = Finish("cardboard", (0.40, 0.26, 0.14), 0.9, pattern="speckle", density=200)
@@ -26,7 +23,7 @@ def tray_walls(x: Interval, y: Interval, z: Interval, t: float, bevel: float = 0
 def trash_can(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a bin: round with a pedal, square, with a lid that slides, or with one that swings in a hood."""
     w, d, h = size
-    finish = (STEEL, PLASTIC, Finish("enamel_bin", shade(rng, (0.6, 0.58, 0.52), 0.3), 0.35, density=900))[int(rng.integers(3))]
+    finish = one_of(rng, (STEEL, PLASTIC, Finish("enamel_bin", shade(rng, (0.6, 0.58, 0.52), 0.3), 0.35, density=900)))
     top = h - 0.035
     cover_finish = finish if pick(rng, "same dark") == "same" else PLASTIC
     if form in ("round", "pedal"):
@@ -67,7 +64,7 @@ def _swing_bin(x: Interval, y: Interval, h: float, finish: Finish, hood: Finish)
     over.append(box((x[0] + t, x[1] - t), (y[1] - t, y[1]), (low + 0.001, h - t)))
     span = Rect((x[0] + t + 0.003, x[1] - t - 0.003), (low + 0.004, h - t - 0.003), y[0] + 0.001)
     flap = pieces("flap", box(span.x, (span.y, span.y + t), span.z, 0.002), hood, group="flap")
-    sign = box((-0.05, 0.05), (span.y - 0.001, span.y), (span.middle[1] - 0.012, span.middle[1] + 0.012))
+    sign = box((-0.05, 0.05), (span.y - 0.001, span.y), around(0.012, span.middle[1]))
     flap += pieces("flap_sign", sign, PLASTIC_WHITE, group="flap")
     hinge = (0.0, span.y, span.z[1])
     mover = Mover("flap", flap, "revolute", (-1, 0, 0), hinge, math.radians(75), "hinge_lid", "lid")
@@ -86,7 +83,7 @@ def storage_box(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
         top = h - 0.016
         base = pieces("walls", tray_walls(x, y, (0.0, top), t, 0.001), finish)
         plate = pieces("lid", box(x, y, (top + 0.002, h - 0.004), 0.002), finish, group="lid")
-        notch = box((-0.4 * w, -0.34 * w), (-0.2 * d, 0.2 * d), (h - 0.004, h), 0.001)
+        notch = box((-0.4 * w, -0.34 * w), around(0.2 * d), (h - 0.004, h), 0.001)
         plate += pieces("lid_grip", notch, finish, "line_fixed_handle")
         return Shape(base, (Mover("lid", plate, "prismatic", (1, 0, 0), (0.0, 0.0, h), 0.85 * w, "slider_lid", "lid", UP),))
     front = y[0] + 0.008  # a tab stands out
@@ -98,7 +95,7 @@ def storage_box(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
     rim += [box((x[0] + t, x[1] - t), (a, a + t), (low + 0.002, h - t)) for a in (front, y[1] - t)]
     lid_parts += pieces("lid_rim", rim, finish)
     lid_parts += pieces("tab", box((-0.025, 0.025), (y[0], front), (low - 0.012, low + 0.02), 0.002), scheme.handle, "line_fixed_handle")
-    corners = [box((sx * (w / 2 - 0.012) - 0.012, sx * (w / 2 - 0.012) + 0.012), (front - 0.001, front), (0.0, 0.03)) for sx in (-1, 1)]
+    corners = [box(around(0.012, sx * (w / 2 - 0.012)), (front - 0.001, front), (0.0, 0.03)) for sx in (-1, 1)]
     base += pieces("corners", corners, scheme.handle)
     return Shape(base, (lid("lid", lid_parts, (0.0, y[1], low + 0.002), math.radians(100)),))
 

@@ -1,7 +1,5 @@
 """What stands on a worktop: toaster, coffee machine, cooking pot."""
 
-# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
-
 from __future__ import annotations
 
 import itertools
@@ -9,11 +7,10 @@ import math
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import DARK_GLASS, ENAMEL, GLASS, GRAPHITE, PLASTIC, STEEL, Finish, Scheme, shade
+from pipeline.corpus.furniture.finishes import DARK_GLASS, ENAMEL, GLASS, GRAPHITE, PLASTIC, STEEL, Finish, Scheme, one_of, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, drawer, knob, lid
-from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, ring, rod, slab
-from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, Size, pieces, staves
+from pipeline.corpus.furniture.solids import Solid, around, box, circle, cushion, revolve, ring, rod, slab
 
 WIRE = 0.004  # radius of a bail [m]
 COFFEE = Finish("coffee", (0.03, 0.012, 0.006), 0.2, density=1000)
@@ -21,9 +18,9 @@ COFFEE = Finish("coffee", (0.03, 0.012, 0.006), 0.2, density=1000)
 
 def _enamel(rng: np.random.Generator) -> Finish:
     """Draw the colour of a small appliance."""
-    colour = ((0.55, 0.05, 0.04), (0.68, 0.60, 0.42), (0.30, 0.45, 0.42), (0.05, 0.09, 0.16))[int(rng.integers(4))]
+    colour = one_of(rng, ((0.55, 0.05, 0.04), (0.68, 0.60, 0.42), (0.30, 0.45, 0.42), (0.05, 0.09, 0.16)))
     gay = Finish("enamel", shade(rng, colour, 0.15), 0.25, density=900)
-    return (STEEL, ENAMEL, GRAPHITE, gay)[int(rng.integers(4))]
+    return one_of(rng, (STEEL, ENAMEL, GRAPHITE, gay))
 
 
 def toaster(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -46,13 +43,13 @@ def toaster(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     base += pieces("ends", [cushion((x[0], x[0] + end), y, z, 0.02), cushion((x[1] - end, x[1]), y, z, 0.02)], finish)
     base += pieces("skids", [box((a, a + 0.012), (y[0] + 0.004, y[1] - 0.004), (0.0, 0.03)) for a in (x[0] + 0.012, x[1] - 0.024)], PLASTIC)
     base += pieces("skirt", box((x[0] + 0.024, x[1] - 0.024), (y[0] + 0.004, y[0] + 0.014), (0.004, 0.03)), PLASTIC)
-    base += pieces("guide", box((0.30 * w - 0.003, 0.30 * w + 0.003), (y[0] - 0.001, y[0]), (0.3 * h, 0.82 * h)), PLASTIC, group="guide")
-    grip = box((0.30 * w - 0.022, 0.30 * w + 0.022), (y[0] - stand, y[0] - 0.002), (0.72 * h, 0.72 * h + 0.014), 0.003)
+    base += pieces("guide", box(around(0.003, 0.30 * w), (y[0] - 0.001, y[0]), (0.3 * h, 0.82 * h)), PLASTIC, group="guide")
+    grip = box(around(0.022, 0.30 * w), (y[0] - stand, y[0] - 0.002), (0.72 * h, 0.72 * h + 0.014), 0.003)
     at = (0.30 * w, y[0] - 0.5 * stand, 0.72 * h)
     movers = [Mover("lever", pieces("lever", grip, PLASTIC), "prismatic", (0, 0, -1), at, 0.36 * h, "slider_button", "lever", UP)]
     movers.append(knob("browning", (-0.30 * w, y[0], 0.34 * h), 0.017, STEEL if finish is not STEEL else PLASTIC))
     if slots == 2:
-        movers.append(button("stop", (-0.04 * w, 0.04 * w), (0.31 * h, 0.37 * h), y[0], PLASTIC))
+        movers.append(button("stop", around(0.04 * w), (0.31 * h, 0.37 * h), y[0], PLASTIC))
     tray = box((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.02, y[1] - 0.02), (0.008, 0.018))
     lip = box((-0.06, 0.06), (y[1] - 0.0195, y[1]), (0.008, 0.02))  # drawn out at the back
     crumbs = pieces("crumb_tray", [tray], STEEL) + pieces("crumb_lip", lip, PLASTIC)
@@ -68,7 +65,7 @@ def coffee_machine(rng: np.random.Generator, form: str, size: Size, scheme: Sche
     trim = PLASTIC if finish is not GRAPHITE else STEEL
     stand = 0.03
     y = (-d / 2 + stand, d / 2)
-    x = (-w / 2, w / 2)
+    x = around(w / 2)
     back = y[0] + 0.6 * (y[1] - y[0])
     foot, head, t = 0.17 * h, 0.70 * h, 0.012
     lid_z = h - 0.035
@@ -99,9 +96,9 @@ def coffee_machine(rng: np.random.Generator, form: str, size: Size, scheme: Sche
         base += pieces("cap", box((x[0] + 0.004, x[1] - 0.004), (back, y[1] - 0.002), (lid_z - 0.003, lid_z + 0.012), 0.003), trim)
         movers.append(_capsule_lever(w, (front, back - 0.03), lid_z, h))
     z = head + 0.45 * (lid_z - head)
-    base += pieces("display", box((-0.14 * w, 0.14 * w), (front - 0.0015, front), (z - 0.012, z + 0.014)), DARK_GLASS, group="display")
+    base += pieces("display", box(around(0.14 * w), (front - 0.0015, front), (z - 0.012, z + 0.014)), DARK_GLASS, group="display")
     for k, bx in enumerate((-0.34 * w, 0.16 * w)):
-        movers.append(button(f"button_{k}", (bx, bx + 0.1 * w), (z - 0.010, z + 0.010), front, PLASTIC if trim is STEEL else STEEL))
+        movers.append(button(f"button_{k}", (bx, bx + 0.1 * w), around(0.010, z), front, PLASTIC if trim is STEEL else STEEL))
     middle = (y[0] + 0.014 + back) / 2
     if form == "jug":
         base += _jug(0.0, middle, foot - 0.005, head - 0.012, min(0.38 * w, 0.44 * (back - y[0])))
@@ -120,8 +117,8 @@ def coffee_machine(rng: np.random.Generator, form: str, size: Size, scheme: Sche
 def _capsule_lever(w: float, y: tuple[float, float], z: float, h: float) -> Mover:
     """Return a hoop that lies on the head and is lifted to put a capsule in; it turns about its rear end."""
     half = 0.3 * w
-    solids = [box((s * half - 0.006, s * half + 0.006), y, (z, h - 0.008), 0.002) for s in (-1, 1)]
-    solids.append(box((-half - 0.006, half + 0.006), (y[0] - 0.014, y[0]), (z, h - 0.004), 0.003))
+    solids = [box(around(0.006, s * half), y, (z, h - 0.008), 0.002) for s in (-1, 1)]
+    solids.append(box(around(half + 0.006), (y[0] - 0.014, y[0]), (z, h - 0.004), 0.003))
     return Mover("lever", pieces("lever", solids, STEEL), "revolute", (-1, 0, 0), (0.0, y[1], z), 1.3, "hinge_handle", "lever", UP)
 
 
@@ -132,15 +129,15 @@ def _jug(x: float, y: float, low: float, high: float, r: float) -> tuple[Piece, 
     parts = staves("jug", wall, GLASS) + pieces("jug_floor", slab(circle(r, 18, (x, y)), (low, low + 0.006)), GLASS)
     parts += pieces("coffee", revolve([(r - 0.008, low + 0.007), (r - 0.014, low + 0.4 * (rim - low))], 18, (x, y)), COFFEE)
     parts += pieces("jug_lid", revolve([(0.8 * r, rim), (0.7 * r, high)], 18, (x, y)), PLASTIC)
-    grip = [box((x - 0.008, x + 0.008), (y - r - 0.026, y - r - 0.014), (low + 0.03, rim - 0.006), 0.003)]
-    grip.append(box((x - 0.008, x + 0.008), (y - r - 0.014, y - 0.8 * r), (rim - 0.018, rim - 0.006), 0.002))
+    grip = [box(around(0.008, x), (y - r - 0.026, y - r - 0.014), (low + 0.03, rim - 0.006), 0.003)]
+    grip.append(box(around(0.008, x), (y - r - 0.014, y - 0.8 * r), (rim - 0.018, rim - 0.006), 0.002))
     return parts + pieces("jug_handle", grip, PLASTIC, group="jug_handle")
 
 
 def kitchen_pot(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a pot with a lid that lifts off: two ears, a long handle, or a bail."""
     w, d, h = size
-    finish = (STEEL, _enamel(rng), Finish("cast_iron", (0.03, 0.03, 0.032), 0.6, density=5000))[int(rng.integers(3))]
+    finish = one_of(rng, (STEEL, _enamel(rng), Finish("cast_iron", (0.03, 0.03, 0.032), 0.6, density=5000)))
     grip = STEEL if finish is not STEEL or rng.random() < 0.5 else PLASTIC
     long_one = form == "stick"
     if form == "bail":  # the hoop lies level behind the pot, so that the pot is in front of the middle of its box
@@ -167,16 +164,14 @@ def kitchen_pot(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
         for s in (-1, 1):
             ear = [
                 box(
-                    (s * (r + reach - 0.006) - 0.006, s * (r + reach - 0.006) + 0.006),
+                    around(0.006, s * (r + reach - 0.006)),
                     (-0.035, 0.035),
                     (0.80 * rim, 0.80 * rim + 0.012),
                     0.003,
                 )
             ]
             span = sorted((s * (r - 0.004), s * (r + reach - 0.012)))
-            ear += [
-                box((span[0], span[1]), (sy * 0.028 - 0.006, sy * 0.028 + 0.006), (0.80 * rim, 0.80 * rim + 0.012), 0.002) for sy in (-1, 1)
-            ]
+            ear += [box((span[0], span[1]), around(0.006, sy * 0.028), (0.80 * rim, 0.80 * rim + 0.012), 0.002) for sy in (-1, 1)]
             base += pieces(f"ear_{'left' if s < 0 else 'right'}", ear, grip, "line_fixed_handle", f"ear_{s}")
     return Shape(base, tuple(movers))
 
@@ -200,5 +195,5 @@ def lugs(r: float, z: float, centre: tuple[float, float]) -> list[Solid]:
     solids = []
     for s in (-1, 1):
         x = sorted((centre[0] + s * (r - 0.006), centre[0] + s * (r + 0.008)))
-        solids.append(box((x[0], x[1]), (centre[1] - 0.01, centre[1] + 0.01), (z - 0.012, z + 0.012), 0.002))
+        solids.append(box((x[0], x[1]), around(0.01, centre[1]), around(0.012, z), 0.002))
     return solids

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 
 import numpy as np
 
@@ -11,9 +10,9 @@ from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.dining_tables import cased_table, legged_table
 from pipeline.corpus.furniture.finishes import MIRROR, Scheme
 from pipeline.corpus.furniture.panels import Rect, frame
-from pipeline.corpus.furniture.shape import Piece, Shape, join_shapes, pieces, translate
-from pipeline.corpus.furniture.solids import box, revolve, ring
-from pipeline.corpus.furniture.storage import Size, front_style
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, join_shapes, pieces, translate
+from pipeline.corpus.furniture.solids import around, box, revolve, ring, standing
+from pipeline.corpus.furniture.storage import front_style
 
 
 def desk(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -28,7 +27,7 @@ def desk(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     else:
         shape = legged_table(rng, (w, d, work), scheme, without="block bun horse")
         shape = Shape(
-            shape.base + pieces("modesty", box((-0.44 * w, 0.44 * w), (0.3 * d, 0.3 * d + 0.015), (0.4 * work, work - 0.05)), scheme.body)
+            shape.base + pieces("modesty", box(around(0.44 * w), (0.3 * d, 0.3 * d + 0.015), (0.4 * work, work - 0.05)), scheme.body)
         )
     if hutch > 0.1:
         shape = join_shapes(shape, Shape(_hutch(w, d, work, hutch, scheme)))
@@ -42,7 +41,7 @@ def _hutch(w: float, d: float, z: float, height: float, scheme: Scheme) -> tuple
     count = max(1, round(w / 0.7))
     xs = np.linspace(-w / 2 + 0.01, w / 2 - 0.01 - 0.018, count + 1)
     parts = pieces("hutch_sides", [box((x, x + 0.018), y, (z, z + height - 0.018)) for x in xs], scheme.body)
-    parts += pieces("hutch_top", box((-w / 2 + 0.01, w / 2 - 0.01), y, (z + height - 0.018, z + height), 0.002), scheme.body)
+    parts += pieces("hutch_top", box(around(w / 2 - 0.01), y, (z + height - 0.018, z + height), 0.002), scheme.body)
     middle = z + 0.55 * height
     if height > 0.3:
         boards = [box((a + 0.018, b), (y[0] + 0.01, y[1]), (middle, middle + 0.016)) for a, b in itertools.pairwise(xs)]
@@ -61,13 +60,13 @@ def _pedestal_desk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shap
     rows = int(rng.integers(2, 5))
     cells = tuple(Cell("drawer", 0.8 if k < rows - 1 else 1.3) for k in range(rows))
     chest = case((wide, d - 0.03, h - t), [Column(1, cells)], how)
-    base = pieces("top", box((-w / 2, w / 2), (-d / 2, d / 2), (h - t, h), 0.004), scheme.body)
+    base = pieces("top", box(around(w / 2), around(d / 2), (h - t, h), 0.004), scheme.body)
     x = -side * (w / 2 - 0.03)
     if rng.random() < 0.5:
-        base += pieces("panel", box((x - 0.014, x + 0.014), (-0.44 * d, 0.46 * d), (0, h - t), 0.002), scheme.body)
+        base += pieces("panel", box(around(0.014, x), (-0.44 * d, 0.46 * d), (0, h - t), 0.002), scheme.body)
     else:
-        posts = [box((x - 0.02, x + 0.02), (s * 0.42 * d - 0.02, s * 0.42 * d + 0.02), (0, h - t), 0.003) for s in (-1, 1)]
-        posts.append(box((x - 0.015, x + 0.015), (-0.42 * d + 0.02, 0.42 * d - 0.02), (0.06, 0.09), 0.003))
+        posts = [box(around(0.02, x), around(0.02, s * 0.42 * d), (0, h - t), 0.003) for s in (-1, 1)]
+        posts.append(box(around(0.015, x), around(0.42 * d - 0.02), (0.06, 0.09), 0.003))
         base += pieces("frame", posts, scheme.accent)
     inner = side * (w / 2 - 0.02 - wide)
     span = (min(inner, x), max(inner, x))
@@ -88,17 +87,17 @@ def dressing_table(rng: np.random.Generator, form: str, size: Size, scheme: Sche
     if form == "round_mirror":
         r = min(0.47 * tall, 0.4 * w)
         z = h - r
-        glass = [s.turned("x", math.pi / 2).moved((0, y, z)) for s in revolve([(0.93 * r, 0.0), (0.93 * r, 0.006)], 28)]
-        rim = [s.turned("x", math.pi / 2).moved((0, y, z)) for s in ring((r, r), (0.93 * r, 0.93 * r), (-0.008, 0.012), 28)]
+        glass = standing(revolve([(0.93 * r, 0.0), (0.93 * r, 0.006)], 28), (0, y, z))
+        rim = standing(ring((r, r), (0.93 * r, 0.93 * r), (-0.008, 0.012), 28), (0, y, z))
         stem = box((-0.02, 0.02), (y + 0.012, y + 0.03), (work, z), 0.003)
         base = pieces("mirror", glass, MIRROR, group="mirror") + pieces("mirror_frame", rim, scheme.accent, group="mirror")
         base += pieces("mirror_stem", stem, scheme.accent)
     else:
         half = min(0.4 * w, 0.45)
         outer = Rect((-half, half), (work + 0.03, h), y)
-        pane = Rect((-half + 0.035, half - 0.035), (outer.z[0] + 0.035, h - 0.035), y)
+        pane = Rect(around(half - 0.035), (outer.z[0] + 0.035, h - 0.035), y)
         rim = frame(outer, pane, (y, y + 0.024), 0.003)
-        feet = [box((s * 0.7 * half - 0.02, s * 0.7 * half + 0.02), (y + 0.004, y + 0.02), (work, work + 0.03)) for s in (-1, 1)]
+        feet = [box(around(0.02, s * 0.7 * half), (y + 0.004, y + 0.02), (work, work + 0.03)) for s in (-1, 1)]
         glass = [box(pane.x, (y + 0.006, y + 0.014), pane.z)]
         base = pieces("mirror", glass, MIRROR, group="mirror") + pieces("mirror_frame", rim, scheme.body, group="mirror")
         base += pieces("mirror_feet", feet, scheme.body)

@@ -13,9 +13,9 @@ from pipeline.corpus.furniture.bent import turns
 from pipeline.corpus.furniture.casework import Cell, Column, case
 from pipeline.corpus.furniture.finishes import Finish, Scheme
 from pipeline.corpus.furniture.legs import WIDE, draw_kind, inside, leg_finish, legs
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, box, circle, revolve, rod, rounded_rectangle, slab
-from pipeline.corpus.furniture.storage import Size, case_style, front_style
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, around, beam, box, circle, polar, revolve, rod, rounded_rectangle, slab
+from pipeline.corpus.furniture.storage import case_style, front_style
 
 
 def top_finish(rng: np.random.Generator, scheme: Scheme, *, stone: float = 1.0) -> Finish:
@@ -31,7 +31,7 @@ def outline(rng: np.random.Generator, scheme: Scheme, w: float, d: float) -> NDA
         side = np.column_stack([w / 2 * t, (0.1 * t**2 - 0.5) * d])
         return np.concatenate([side, -side])
     radius = 0.012 + scheme.manner.edge if u < 0.55 else min(0.14, 0.2 * d) if u < 0.88 else 0.499 * min(w, d)
-    return rounded_rectangle((-w / 2, w / 2), (-d / 2, d / 2), radius, 4 if radius < 0.2 else 8)
+    return rounded_rectangle(around(w / 2), around(d / 2), radius, 4 if radius < 0.2 else 8)
 
 
 def top(edge: NDArray[np.float64], z: tuple[float, float], scheme: Scheme) -> list[Solid]:
@@ -67,8 +67,8 @@ def legged_table(rng: np.random.Generator, size: Size, scheme: Scheme, *, withou
 def rails(half: tuple[float, float], z: tuple[float, float], gap: float) -> list[Solid]:
     """Return four rails between the tops of legs at (+-half), each `gap` short of a leg's middle."""
     x, y = half
-    return [box((-x + gap, x - gap), (s * y - 0.01, s * y + 0.01), z, 0.002) for s in (-1, 1)] + [
-        box((s * x - 0.01, s * x + 0.01), (-y + gap, y - gap), z, 0.002) for s in (-1, 1)
+    return [box(around(x - gap), around(0.01, s * y), z, 0.002) for s in (-1, 1)] + [
+        box(around(0.01, s * x), around(y - gap), z, 0.002) for s in (-1, 1)
     ]
 
 
@@ -76,7 +76,7 @@ def _brace(kind: str, half: tuple[float, float], h: float, finish: Finish) -> tu
     """Return what keeps side frames apart: a beam under the top, or nothing."""
     if kind not in WIDE:
         return ()
-    return pieces("beam", box((-half[0] + 0.032, half[0] - 0.032), (-0.02, 0.02), (h - 0.045, h - 0.001), 0.002), finish)
+    return pieces("beam", box(around(half[0] - 0.032), (-0.02, 0.02), (h - 0.045, h - 0.001), 0.002), finish)
 
 
 def dining_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -109,11 +109,11 @@ def dining_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
                         0.05,
                     )
                 )
-        solids.append(box((-0.33 * w, 0.33 * w), (-0.36 * d, 0.36 * d), (h - t - 0.02, h - t), 0.003))
+        solids.append(box(around(0.33 * w), around(0.36 * d), (h - t - 0.02, h - t), 0.003))
         return Shape(parts + pieces("cross", solids, scheme.handle if scheme.manner.tube > 0.3 else scheme.timber))
     thick = 0.05
-    solids += [box((s * x - thick / 2, s * x + thick / 2), (-0.4 * d, 0.4 * d), (0, h - t), 0.006) for s in (-1, 1)]
-    solids.append(box((-x + thick / 2, x - thick / 2), (-0.016, 0.016), (0.55 * h, h - t), 0.003))
+    solids += [box(around(thick / 2, s * x), around(0.4 * d), (0, h - t), 0.006) for s in (-1, 1)]
+    solids.append(box(around(x - thick / 2), (-0.016, 0.016), (0.55 * h, h - t), 0.003))
     return Shape(parts + pieces("slabs", solids, scheme.body))
 
 
@@ -141,8 +141,8 @@ def fluted_drum(radius: float, height: float, scheme: Scheme) -> tuple[Piece, ..
     r = math.pi * radius / 30
     staves = [
         rod(
-            ((radius + 0.85 * r) * math.cos(a), (radius + 0.85 * r) * math.sin(a), 0.0),
-            ((radius + 0.85 * r) * math.cos(a), (radius + 0.85 * r) * math.sin(a), height),
+            polar(radius + 0.85 * r, a, 0.0),
+            polar(radius + 0.85 * r, a, height),
             0.95 * r,
             n=6,
         )
@@ -157,11 +157,11 @@ def _bar(size: Size, t: float, scheme: Scheme) -> tuple[Piece, ...]:
     xs = np.linspace(-0.46 * w, 0.46 * w, max(5, round(w / 0.14)) + 1)
     y = -0.22 * d
     boards = [box((a + 0.001, b - 0.001), (y, y + 0.02), (0.06, h - t), 0.003) for a, b in itertools.pairwise(xs)]
-    sides = [box((s * 0.45 * w - 0.012, s * 0.45 * w + 0.012), (y + 0.02, 0.42 * d), (0.0, h - t), 0.002) for s in (-1, 1)]
-    inner = (-0.45 * w + 0.012, 0.45 * w - 0.012)
+    sides = [box(around(0.012, s * 0.45 * w), (y + 0.02, 0.42 * d), (0.0, h - t), 0.002) for s in (-1, 1)]
+    inner = around(0.45 * w - 0.012)
     parts = pieces("front", boards, scheme.front) + pieces("sides", sides, scheme.body)
     parts += pieces("shelf", [box(inner, (y + 0.02, 0.4 * d), (z, z + 0.02)) for z in (0.1, 0.48 * h)], scheme.body)
-    parts += pieces("plinth", box((-0.45 * w, 0.45 * w), (y + 0.004, y + 0.02), (0.0, 0.06)), scheme.handle)
+    parts += pieces("plinth", box(around(0.45 * w), (y + 0.004, y + 0.02), (0.0, 0.06)), scheme.handle)
     z = 0.17
     rail = [rod((-0.45 * w, y - 0.1, z), (0.45 * w, y - 0.1, z), 0.014, n=10)] + [
         rod((s * 0.36 * w, y, z), (s * 0.36 * w, y - 0.087, z), 0.009, n=8) for s in (-1, 0, 1)

@@ -7,11 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Scheme
+from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Scheme, pick
 from pipeline.corpus.furniture.panels import FrontStyle, Rect, panel
-from pipeline.corpus.furniture.shape import Axis3, Mover, Piece, Shape, group_pieces, pieces
-from pipeline.corpus.furniture.solids import box, revolve
-from pipeline.corpus.furniture.storage import Size, pick
+from pipeline.corpus.furniture.shape import Axis3, Mover, Piece, Shape, Size, group_pieces, pieces
+from pipeline.corpus.furniture.solids import around, box, revolve
 
 LEAF = 0.04  # thickness of a leaf [m]
 LEVER = 0.055  # how far a lever stands out of its leaf [m]
@@ -25,8 +24,8 @@ def room_door(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     t, stop = 0.045, 0.012
     y = (-d / 2 + LEVER, d / 2)
     jambs = [box((-w / 2, -w / 2 + t), y, (0, h), 0.003), box((w / 2 - t, w / 2), y, (0, h), 0.003)]
-    base = pieces("frame", [*jambs, box((-w / 2 + t, w / 2 - t), y, (h - t, h), 0.003)], finish)
-    inner = (-w / 2 + t, w / 2 - t)
+    base = pieces("frame", [*jambs, box(around(w / 2 - t), y, (h - t, h), 0.003)], finish)
+    inner = around(w / 2 - t)
     behind = (y[0] + LEAF + 0.004, y[1])
     stops = [box((inner[0], inner[0] + stop), behind, (0, h - t)), box((inner[1] - stop, inner[1]), behind, (0, h - t))]
     base += pieces("stops", [*stops, box((inner[0] + stop, inner[1] - stop), behind, (h - t - stop, h - t))], finish)
@@ -62,7 +61,7 @@ def _lever(name: str, at: Axis3, outwards: float, side: float, finish: Finish) -
     neck = [s.turned("x", turn).moved(at) for s in revolve([(0.010, 0.009), (0.010, LEVER - 0.004)], 10)]
     arm_y = sorted((at[1] + outwards * (LEVER - 0.016), at[1] + outwards * LEVER))
     arm_x = sorted((at[0] + side * 0.010, at[0] - side * 0.115))
-    arm = box((arm_x[0], arm_x[1]), (arm_y[0], arm_y[1]), (at[2] - 0.010, at[2] + 0.010), 0.003)
+    arm = box((arm_x[0], arm_x[1]), (arm_y[0], arm_y[1]), around(0.010, at[2]), 0.003)
     parts = pieces("rose", rose, finish) + pieces("lever", [*neck, arm], finish)
     axis = (0.0, -side, 0.0)
     return Mover(name, parts, "revolute", axis, at, math.radians(40), "hinge_handle", "handle", (0.0, outwards, 0.0), "leaf")

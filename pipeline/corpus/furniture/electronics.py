@@ -1,7 +1,5 @@
 """Electronics on desks and tables: laptop, remote control, telephone, camera, keyboard, printer."""
 
-# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
-
 from __future__ import annotations
 
 import math
@@ -9,11 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import DARK_GLASS, GRAPHITE, PLASTIC, PLASTIC_WHITE, STEEL, Finish, Scheme, shade
+from pipeline.corpus.furniture.finishes import DARK_GLASS, GRAPHITE, PLASTIC, PLASTIC_WHITE, STEEL, Finish, Scheme, one_of, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, drawer, lid, top_button, top_knob
-from pipeline.corpus.furniture.shape import Mover, Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, slab
-from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.shape import Mover, Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, around, box, circle, cushion, revolve, slab, standing
 
 SILVER = Finish("aluminium", (0.60, 0.61, 0.62), 0.3, 0.8, density=1400)
 DARK = Finish("shell_dark", (0.035, 0.036, 0.04), 0.4, density=1200)
@@ -27,13 +24,11 @@ RUBBER = Finish("rubber", (0.015, 0.015, 0.016), 0.8, density=1100)
 def laptop(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a closed laptop: a deck of keys and a touch pad under a screen that opens past the upright."""
     w, d, h = size
-    finish = (SILVER, DARK)[int(rng.integers(2))]
+    finish = one_of(rng, (SILVER, DARK))
     deck = 0.56 * h
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
     base = pieces("deck", box(x, y, (0.0015, deck), 0.002), finish, group="deck")
-    base += pieces(
-        "feet", [box((sx * 0.4 * w - 0.02, sx * 0.4 * w + 0.02), (-0.4 * d, 0.4 * d), (0, 0.0015)) for sx in (-1, 1)], RUBBER, group="deck"
-    )
+    base += pieces("feet", [box(around(0.02, sx * 0.4 * w), around(0.4 * d), (0, 0.0015)) for sx in (-1, 1)], RUBBER, group="deck")
     keys: list[Solid] = []
     rows, pitch = 5, 0.42 * d / 5
     for r in range(rows):
@@ -43,7 +38,7 @@ def laptop(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
         cells = np.linspace(-0.44 * w, 0.44 * w, count + 1)
         keys += [box((a + 0.001, b - 0.001), ky, z) for a, b in zip(cells[:-1].tolist(), cells[1:].tolist(), strict=True)]
     base += pieces("keys", keys, KEY if finish is SILVER else RUBBER, group="deck")
-    pad = box((-0.16 * w, 0.16 * w), (-0.42 * d, -0.12 * d), (deck, deck + 0.0005))
+    pad = box(around(0.16 * w), (-0.42 * d, -0.12 * d), (deck, deck + 0.0005))
     base += pieces("touch_pad", pad, Finish("touch_pad", (0.42, 0.42, 0.43), 0.35, density=1200), group="deck")
     low = deck + 0.0035
     cover = pieces("screen_back", box(x, y, (low, h), 0.002), finish, group="screen")
@@ -59,10 +54,10 @@ def remote(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     """Build a remote control: a slim body with a round pad and rows of buttons; a simple one has few."""
     w, d, h = size
     top = h - 0.003
-    finish = (DARK, DARK, PALE)[int(rng.integers(3))]
+    finish = one_of(rng, (DARK, DARK, PALE))
     cap = PLASTIC_WHITE if finish is DARK else PLASTIC
-    base = pieces("body", cushion((-w / 2, w / 2), (-d / 2, d / 2), (0, top), 0.006), finish)
-    base += pieces("window", box((-0.3 * w, 0.3 * w), (d / 2 - 0.012, d / 2 - 0.004), (top - 0.0005, top + 0.0004)), DARK_GLASS)
+    base = pieces("body", cushion(around(w / 2), around(d / 2), (0, top), 0.006), finish)
+    base += pieces("window", box(around(0.3 * w), (d / 2 - 0.012, d / 2 - 0.004), (top - 0.0005, top + 0.0004)), DARK_GLASS)
     r = 0.3 * w
     base += pieces("pad", slab(circle(r, 20, (0.0, 0.16 * d)), (top, top + 0.001)), Finish("pad", (0.10, 0.10, 0.105), 0.4, density=1000))
     rows, columns = (3, 3) if form == "grid" else (2, 2)
@@ -78,20 +73,18 @@ def remote(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
 
 def _key(name: str, x: float, y: float, half_x: float, half_y: float, top: float, finish: Finish, rise: float = 0.003) -> Mover:
     """Return a key on a level top that goes down by 1 mm."""
-    return top_button(name, (x - half_x, x + half_x), (y - half_y, y + half_y), (top + 0.0012, top + max(rise, 0.002)), finish, 0.001)
+    return top_button(name, around(half_x, x), around(half_y, y), (top + 0.0012, top + max(rise, 0.002)), finish, 0.001)
 
 
 def phone(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a telephone that lies on its back: all screen with keys at its side, a keypad, or one that flips open."""
     w, d, h = size
-    finish = (DARK, SILVER, Finish("shell_blue", shade(rng, (0.04, 0.09, 0.2), 0.3), 0.3, density=1500))[int(rng.integers(3))]
+    finish = one_of(rng, (DARK, SILVER, Finish("shell_blue", shade(rng, (0.04, 0.09, 0.2), 0.3), 0.3, density=1500)))
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
     if form == "smart":
         side = w / 2 - 0.0014
         base = pieces("body", cushion((-side, side), y, (0.0012, h - 0.0006), 0.004), finish, group="body")
-        base += pieces(
-            "glass", box((-side + 0.0025, side - 0.0025), (y[0] + 0.0025, y[1] - 0.0025), (h - 0.0008, h)), DARK_GLASS, group="body"
-        )
+        base += pieces("glass", box(around(side - 0.0025), (y[0] + 0.0025, y[1] - 0.0025), (h - 0.0008, h)), DARK_GLASS, group="body")
         base += pieces("camera", revolve([(0.008, 0.0), (0.008, 0.0012)], 12, (-side + 0.02, y[1] - 0.02)), DARK_GLASS, group="body")
         spots = (("power", 1.0, 0.16, 0.06), ("louder", -1.0, 0.22, 0.05), ("softer", -1.0, 0.08, 0.05))
         movers = []
@@ -107,7 +100,7 @@ def phone(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     top = 0.5 * h - 0.0028 if flips else h - 0.003
     base = pieces("body", box(x, y, (0, top), 0.002), finish, group="body")
     if not flips:
-        base += pieces("display", box((-0.4 * w, 0.4 * w), (0.1 * d, 0.44 * d), (top, top + 0.0006)), DARK_GLASS, group="body")
+        base += pieces("display", box(around(0.4 * w), (0.1 * d, 0.44 * d), (top, top + 0.0006)), DARK_GLASS, group="body")
     reach = (-0.45 * d, 0.04 * d if not flips else 0.4 * d)
     pitch_x, pitch_y = 0.84 * w / 3, (reach[1] - reach[0]) / 4
     keys = PLASTIC_WHITE if finish is not SILVER else PLASTIC
@@ -119,7 +112,7 @@ def phone(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
         return Shape(base, tuple(movers))
     low = top + 0.0036
     cover = pieces("cover", box(x, y, (low, h), 0.002), finish, group="cover")
-    cover += pieces("display", box((-0.4 * w, 0.4 * w), (-0.4 * d, 0.3 * d), (low - 0.0006, low)), DARK_GLASS, group="cover")
+    cover += pieces("display", box(around(0.4 * w), (-0.4 * d, 0.3 * d), (low - 0.0006, low)), DARK_GLASS, group="cover")
     return Shape(base, (lid("cover", cover, (0.0, d / 2, low), math.radians(140)), *(replace(m, after=("cover",)) for m in movers)))
 
 
@@ -130,28 +123,26 @@ def camera(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     hump = 0.78 * h
     finish = DARK if form == "reflex" or rng.random() < 0.4 else SILVER
     top_z = hump if form == "reflex" else h - 0.012
-    base = pieces("body", cushion((-w / 2, w / 2), body_y, (0, top_z), 0.008), finish)
-    wrap = box((-0.48 * w, 0.48 * w), (body_y[0] - 0.0006, body_y[0] + 0.002), (0.14 * top_z, 0.78 * top_z))
+    base = pieces("body", cushion(around(w / 2), body_y, (0, top_z), 0.008), finish)
+    wrap = box(around(0.48 * w), (body_y[0] - 0.0006, body_y[0] + 0.002), (0.14 * top_z, 0.78 * top_z))
     base += pieces("leather", wrap, RUBBER, group="leather")
     r = min(0.40 * top_z, 0.26 * w)
     front = body_y[0] + d / 2  # how far the lens stands out
     x0, z0 = (0.05 * w if form == "reflex" else 0.12 * w), 0.48 * top_z
     barrel = [(r, 0.0), (r, 0.35 * front), (0.88 * r, 0.36 * front), (0.88 * r, 0.55 * front)]
-    base += pieces("lens", [s.turned("x", math.pi / 2).moved((x0, body_y[0], z0)) for s in revolve(barrel, 16)], PLASTIC, group="lens")
-    glass = [s.turned("x", math.pi / 2).moved((x0, body_y[0], z0)) for s in revolve([(0.55 * r, 0.96 * front), (0.5 * r, front)], 16)]
-    zoom = [
-        s.turned("x", math.pi / 2).moved((x0, body_y[0], z0)) for s in revolve([(0.93 * r, 0.57 * front), (0.93 * r, 0.96 * front)], 16)
-    ]
+    base += pieces("lens", standing(revolve(barrel, 16), (x0, body_y[0], z0)), PLASTIC, group="lens")
+    glass = standing(revolve([(0.55 * r, 0.96 * front), (0.5 * r, front)], 16), (x0, body_y[0], z0))
+    zoom = standing(revolve([(0.93 * r, 0.57 * front), (0.93 * r, 0.96 * front)], 16), (x0, body_y[0], z0))
     ring_made = pieces("zoom_ring", zoom, RUBBER, group="zoom") + pieces("lens_glass", glass, DARK_GLASS, group="zoom")
     at = (x0, body_y[0] - 0.57 * front, z0)
     movers = [Mover("zoom", ring_made, "revolute", (0, 1, 0), at, 0.5 * math.pi, "hinge_knob", "knob")]
     y = (body_y[0] + body_y[1]) / 2
     movers.append(top_knob("mode", (0.36 * w, y, top_z), 0.11 * w if form == "reflex" else 0.085 * w, PLASTIC, depth=0.009))
     cap = STEEL if finish is DARK else PLASTIC
-    movers.append(top_button("release", (-0.42 * w, -0.32 * w), (y - 0.006, y + 0.006), (top_z + 0.002, top_z + 0.005), cap, 0.0015))
+    movers.append(top_button("release", (-0.42 * w, -0.32 * w), around(0.006, y), (top_z + 0.002, top_z + 0.005), cap, 0.0015))
     if form != "reflex":
         movers.append(top_knob("exposure", (0.12 * w, y, top_z), 0.07 * w, PLASTIC, depth=0.007))
-        base += pieces("shoe", box((-0.10 * w, 0.02 * w), (y - 0.008, y + 0.008), (top_z, h)), STEEL)
+        base += pieces("shoe", box((-0.10 * w, 0.02 * w), around(0.008, y), (top_z, h)), STEEL)
         window = box((-0.4 * w, -0.26 * w), (body_y[0] - 0.001, body_y[0] + 0.002), (0.8 * top_z, 0.93 * top_z))
         return Shape(base + pieces("finder", window, DARK_GLASS, group="finder"), tuple(movers))
     prism = (-0.13 * w, 0.23 * w)
@@ -165,12 +156,10 @@ def keyboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     """Build a keyboard: rows of keys with a space bar, or a block of figures."""
     w, d, h = size
     top = h - 0.006
-    finish = (DARK, SILVER, PALE)[int(rng.integers(3))]
-    cap = (KEY_PALE, PLASTIC_WHITE)[int(rng.integers(2))] if finish is not SILVER else KEY
-    base = pieces("board", box((-w / 2, w / 2), (-d / 2, d / 2), (0.002, top), 0.003), finish, group="board")
-    base += pieces(
-        "feet", [box((-0.45 * w, 0.45 * w), (s * 0.4 * d - 0.006, s * 0.4 * d + 0.006), (0, 0.002)) for s in (-1, 1)], RUBBER, group="board"
-    )
+    finish = one_of(rng, (DARK, SILVER, PALE))
+    cap = one_of(rng, (KEY_PALE, PLASTIC_WHITE)) if finish is not SILVER else KEY
+    base = pieces("board", box(around(w / 2), around(d / 2), (0.002, top), 0.003), finish, group="board")
+    base += pieces("feet", [box(around(0.45 * w), around(0.006, s * 0.4 * d), (0, 0.002)) for s in (-1, 1)], RUBBER, group="board")
     rows = [9, 9, 8, 8] if form == "rows" else [4, 4, 4, 3]
     pitch = 0.94 * d / (len(rows) + (1 if form == "rows" else 0))
     movers = []
@@ -190,7 +179,7 @@ def keyboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
 def printer(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a printer: a paper drawer below, a gap where sheets come out, a panel of buttons, a scanner's lid on top."""
     w, d, h = size
-    finish = (PALE, DARK, GRAPHITE)[int(rng.integers(3))]
+    finish = one_of(rng, (PALE, DARK, GRAPHITE))
     trim = PLASTIC if finish is PALE else Finish("trim", (0.16, 0.16, 0.17), 0.4, density=1000)
     x, y, t = (-w / 2, w / 2), (-d / 2 + 0.012, d / 2), 0.012
     tray = 0.30 * h
@@ -204,10 +193,10 @@ def printer(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     base += pieces("head", box(inner, (y[0] + 0.002, y[1] - t), (0.58 * h, top), 0.003), finish)
     base += pieces(
         "paper",
-        box((-0.36 * w, 0.36 * w), (y[0] + 0.03, y[1] - 0.08), (tray + 0.012, tray + 0.018)),
+        box(around(0.36 * w), (y[0] + 0.03, y[1] - 0.08), (tray + 0.012, tray + 0.018)),
         Finish("paper", (0.85, 0.85, 0.83), 0.9),
     )
-    base += pieces("feet", [box((s * 0.4 * w - 0.02, s * 0.4 * w + 0.02), (-0.35 * d, 0.4 * d), (0.0, 0.006)) for s in (-1, 1)], RUBBER)
+    base += pieces("feet", [box(around(0.02, s * 0.4 * w), (-0.35 * d, 0.4 * d), (0.0, 0.006)) for s in (-1, 1)], RUBBER)
     plane = y[0] + 0.002
     panel_z = (0.58 * h + 0.25 * (top - 0.58 * h), 0.58 * h + 0.75 * (top - 0.58 * h))
     base += pieces("display", box((-0.1 * w, 0.08 * w), (plane - 0.002, plane), panel_z), DARK_GLASS, group="display")
@@ -220,7 +209,7 @@ def printer(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
         "cover", box(x, (y[0], y[1] - 0.002), (top + 0.003, h - 0.5 * cover if form == "scanner" else h), 0.003), finish, group="cover"
     )
     if form == "scanner":
-        feeder = box((-0.42 * w, 0.42 * w), (y[0] + 0.1 * d, y[1] - 0.02), (h - 0.5 * cover, h), 0.006)
+        feeder = box(around(0.42 * w), (y[0] + 0.1 * d, y[1] - 0.02), (h - 0.5 * cover, h), 0.006)
         solids += pieces("feeder", feeder, trim, group="cover")
     movers.append(lid("cover", solids, (0.0, y[1] - 0.002, top + 0.003), math.radians(70)))
     return Shape(base, tuple(movers))

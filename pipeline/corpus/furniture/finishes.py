@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from pipeline import style
 from pipeline.corpus.furniture.styles import MANNERS
 from pipeline.style import Color, StyleSpec
 
+Thing = TypeVar("Thing")
 Pattern = Literal[
     "plain", "grain", "weave", "speckle", "leather", "boucle", "velvet", "brushed", "concrete", "marble", "terrazzo", "stripe", "check", "floral",
     "cane", "knit", "leaf", "rug_border", "rug_diamonds", "rug_stripes", "art_blocks", "art_hills", "art_circles", "art_lines", "dial",
@@ -90,6 +91,16 @@ STONES: Mapping[str, Finish] = {
 }
 
 
+def pick(rng: np.random.Generator, words: str) -> str:
+    """Draw one of the words."""
+    return str(rng.choice(words.split()))
+
+
+def one_of(rng: np.random.Generator, things: Sequence[Thing]) -> Thing:
+    """Draw one of the things."""
+    return things[int(rng.integers(len(things)))]
+
+
 def wood(rng: np.random.Generator, name: str) -> Finish:
     """Return a wood of that name in a shade of its own."""
     return Finish(name, shade(rng, WOODS[name]), 0.5, pattern="grain", density=620)
@@ -132,24 +143,23 @@ def shade(rng: np.random.Generator, color: Color, spread: float = 0.12) -> Color
 def scheme(rng: np.random.Generator, style: str) -> Scheme:
     """Choose the finishes of a model by its style."""
     manner = MANNERS[style]
-    draw = lambda words: str(rng.choice(words.split()))  # noqa: E731
-    timber = wood(rng, draw(manner.woods))
-    tube = metal(draw(manner.metals))
+    timber = wood(rng, pick(rng, manner.woods))
+    tube = metal(pick(rng, manner.metals))
     body = front = timber
     material = "Solid Wood"
     if timber.name in ("bamboo", "rattan"):
         material = "Bamboo Rattan"
     if manner.lacquers and rng.random() < manner.paint:
-        painted = lacquer(rng, draw(manner.lacquers))
+        painted = lacquer(rng, pick(rng, manner.lacquers))
         material = "Composite Board"
         front = painted
         body = painted if rng.random() < 0.5 else timber
     patterns: list[Pattern] = manner.cloths.split()  # type: ignore[assignment]
-    name = draw(manner.fabrics)
-    soft = cover(rng, name, patterns[int(rng.integers(len(patterns)))])
-    second = cover(rng, draw(manner.fabrics), patterns[int(rng.integers(len(patterns)))])
+    name = pick(rng, manner.fabrics)
+    soft = cover(rng, name, one_of(rng, patterns))
+    second = cover(rng, pick(rng, manner.fabrics), one_of(rng, patterns))
     if second.name == soft.name:
         second = replace(second, name=f"{second.name}_2", color=shade(rng, second.color, 0.5))
     accent = tube if rng.random() < manner.tube else timber
-    stone = STONES[draw(manner.stones)]
+    stone = STONES[pick(rng, manner.stones)]
     return Scheme(body, front, accent, tube, soft, second, material, style, manner, timber, stone)

@@ -11,7 +11,7 @@ import numpy as np
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.panels import LIP, FrontStyle, HandleStyle, PanelStyle, Rect, panel
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Piece, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, box, hull, revolve, ring, rod
+from pipeline.corpus.furniture.solids import Interval, Solid, around, box, hull, revolve, ring, rod, standing
 
 __all__ = ["FrontStyle", "HandleStyle", "PanelStyle", "Rect", "button", "door", "drawer", "handle", "knob", "lid", "panel", "sliding_door"]
 
@@ -45,7 +45,7 @@ def handle(
         return ()
     if style.handle in ("knob", "ring"):
         part = "round_fixed_handle"
-        solids = [s.turned("x", math.pi / 2).moved((x, y, z)) for s in _round_grip(style.handle)]
+        solids = standing(_round_grip(style.handle), (x, y, z))
     elif style.handle == "cup" and not upright:
         turns = np.linspace(0, math.pi / 2, 4)
         section = [(-0.022 * math.cos(t), 0.024 * math.sin(t) - 0.008) for t in turns] + [(0.0, -0.008)]
@@ -55,9 +55,9 @@ def handle(
         top = rect.z[1] - 0.001
         if upright:
             edge = rect.x[0] if x < rect.middle[0] else rect.x[1] - 0.008
-            solids = [box((edge, edge + 0.008), (y - 0.014, y), (z - half, z + half), 0.001)]
+            solids = [box((edge, edge + 0.008), (y - 0.014, y), around(half, z), 0.001)]
         else:
-            solids = [box((x - half, x + half), (y - 0.014, y), (top - 0.008, top), 0.001)]
+            solids = [box(around(half, x), (y - 0.014, y), (top - 0.008, top), 0.001)]
     else:
         solids, group = _bar(style, (x, y, z), (0.0, half) if upright else (half, 0.0)), ""
     return pieces(name, solids, style.metal, part, group)
@@ -82,10 +82,10 @@ def _bar(style: FrontStyle, at: Axis3, along: tuple[float, float]) -> list[Solid
         solids = [rod((x - along[0], centre, z - along[1]), (x + along[0], centre, z + along[1]), r)]
     else:
         half_x, half_z = max(along[0], 0.006), max(along[1], 0.006)
-        solids = [box((x - half_x, x + half_x), (y - stand, y - stand + 0.008), (z - half_z, z + half_z), 0.0015)]
+        solids = [box(around(half_x, x), (y - stand, y - stand + 0.008), around(half_z, z), 0.0015)]
     for sign in (-1, 1):
         fx, fz = x + sign * 0.75 * along[0], z + sign * 0.75 * along[1]
-        solids.append(box((fx - 0.005, fx + 0.005), (y - stand + 0.006, y), (fz - 0.005, fz + 0.005)))
+        solids.append(box(around(0.005, fx), (y - stand + 0.006, y), around(0.005, fz)))
     return solids
 
 
@@ -138,7 +138,7 @@ def sliding_door(name: str, rect: Rect, style: FrontStyle, towards: float, trave
     x = edge + (0.035 if towards > 0 else -0.035)
     z = min(max(rect.middle[1], rect.z[0] + 0.12), 1.05)
     half = min(0.09, 0.3 * rect.height)
-    plate = box((x - 0.012, x + 0.012), (rect.y - 0.003, rect.y), (z - half, z + half))
+    plate = box(around(0.012, x), (rect.y - 0.003, rect.y), around(half, z))
     parts = panel(rect, style) + pieces("handle", plate, style.metal, "line_fixed_handle")
     return Mover(name, parts, "prismatic", (towards, 0.0, 0.0), (rect.middle[0], rect.y, z), travel, "slider_lid", "door")
 
@@ -200,8 +200,8 @@ def lid(name: str, parts: tuple[Piece, ...], hinge: tuple[float, float, float], 
 def knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: float = 0.022, turn: float = 1.5 * math.pi) -> Mover:
     """Return a dial on a front plane that turns by `turn` [rad]; `at` is its middle on the plane."""
     profile = [(radius, 0.001), (radius, 0.35 * depth), (0.82 * radius, depth)]
-    dial = [s.turned("x", math.pi / 2).moved(at) for s in revolve(profile, 16)]
-    mark = box((at[0] - 0.0015, at[0] + 0.0015), (at[1] - depth - 0.002, at[1] - depth), (at[2], at[2] + 0.75 * radius))
+    dial = standing(revolve(profile, 16), at)
+    mark = box(around(0.0015, at[0]), (at[1] - depth - 0.002, at[1] - depth), (at[2], at[2] + 0.75 * radius))
     parts = pieces("knob", dial, finish, group="knob") + pieces("knob_mark", mark, MARK, group="knob")
     return Mover(name, parts, "revolute", (0, 1, 0), at, turn, "hinge_knob", "knob")
 
@@ -210,7 +210,7 @@ def top_knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: floa
     """Return a dial on a level plane, seen from above; `at` is its middle on the plane."""
     dial = revolve([(radius, at[2] + 0.001), (radius, at[2] + 0.4 * depth), (0.85 * radius, at[2] + depth)], 12, (at[0], at[1]))
     top = at[2] + depth
-    mark = box((at[0] - 0.0015, at[0] + 0.0015), (at[1] - 0.75 * radius, at[1]), (top, top + 0.002))
+    mark = box(around(0.0015, at[0]), (at[1] - 0.75 * radius, at[1]), (top, top + 0.002))
     parts = pieces("knob", dial, finish, group="knob") + pieces("knob_mark", mark, MARK, group="knob")
     return Mover(name, parts, "revolute", (0, 0, -1), at, turn, "hinge_knob", "knob", UP)
 

@@ -1,7 +1,5 @@
 """What people leave about: frames, candles, trays, bottles, jars, kettles, toys, herbs, televisions, coat hooks."""
 
-# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
-
 from __future__ import annotations
 
 import math
@@ -9,10 +7,9 @@ import math
 import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, lean, tube, turns
-from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, shade
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, pillow, revolve, ring, rod, slab
-from pipeline.corpus.furniture.storage import Size, pick
+from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, one_of, pick, shade
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, around, box, circle, cushion, pillow, polar, revolve, ring, rod, slab
 from pipeline.corpus.furniture.tableware import glaze
 from pipeline.corpus.furniture.wall_decor import INKS, frame_boards
 from pipeline.style import Color
@@ -29,32 +26,32 @@ def television(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     """Build a flat television on a foot in the middle, or on two feet."""
     w, d, h = size
     low = 0.06 * h
-    panel = box((-w / 2, w / 2), (-0.015, 0.02), (low, h), 0.003)
-    glass = box((-w / 2 + 0.008, w / 2 - 0.008), (-0.017, -0.015), (low + 0.016, h - 0.008))
-    belly = box((-0.3 * w, 0.3 * w), (0.02, 0.05), (low + 0.04, 0.6 * h), 0.01)
+    panel = box(around(w / 2), (-0.015, 0.02), (low, h), 0.003)
+    glass = box(around(w / 2 - 0.008), (-0.017, -0.015), (low + 0.016, h - 0.008))
+    belly = box(around(0.3 * w), (0.02, 0.05), (low + 0.04, 0.6 * h), 0.01)
     if form == "foot":
         feet = [
-            box((-0.2 * w, 0.2 * w), (-d / 2, d / 2), (0.0, 0.012), 0.003),
-            box((-0.04 * w, 0.04 * w), (0.0, 0.035), (0.012, low + 0.05)),
+            box(around(0.2 * w), around(d / 2), (0.0, 0.012), 0.003),
+            box(around(0.04 * w), (0.0, 0.035), (0.012, low + 0.05)),
         ]
     else:
-        feet = [box((s * 0.36 * w - 0.012, s * 0.36 * w + 0.012), (-d / 2, d / 2), (0.0, 0.012), 0.003) for s in (-1, 1)]
-        feet += [box((s * 0.36 * w - 0.01, s * 0.36 * w + 0.01), (-0.01, 0.015), (0.012, low)) for s in (-1, 1)]
+        feet = [box(around(0.012, s * 0.36 * w), around(d / 2), (0.0, 0.012), 0.003) for s in (-1, 1)]
+        feet += [box(around(0.01, s * 0.36 * w), (-0.01, 0.015), (0.012, low)) for s in (-1, 1)]
     return Shape(pieces("panel", [panel, belly], SHELL) + pieces("screen", glass, SCREEN) + pieces("feet", feet, SHELL))
 
 
 def photo_frame(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a framed photograph that leans back on a strut, upright or oblong."""
     w, d, h = size
-    paper, ink = INKS[int(rng.integers(len(INKS)))]
+    paper, ink = one_of(rng, INKS)
     art = Finish("photo", paper, 0.4, pattern=pick(rng, "art_hills art_circles art_blocks"), density=400, second=ink)  # type: ignore[arg-type]
     frame = scheme.timber if rng.random() < 0.5 else scheme.handle
     rim, front = 0.1 * w, -d / 2 + 0.006
-    face = frame_boards(w, h, rim, (front - 0.006, front + 0.006))
-    sheet = box((-w / 2 + rim, w / 2 - rim), (front - 0.001, front + 0.004), (rim, h - rim))
+    face = frame_boards(w, h, rim, around(0.006, front))
+    sheet = box(around(w / 2 - rim), (front - 0.001, front + 0.004), (rim, h - rim))
     slope = 0.5 * d / h
     leant = [lean([s], 0.0, slope)[0] for s in face]
-    strut = box((-0.1 * w, 0.1 * w), (d / 2 - 0.008, d / 2), (0.0, 0.75 * h))
+    strut = box(around(0.1 * w), (d / 2 - 0.008, d / 2), (0.0, 0.75 * h))
     strut = lean([strut], 0.0, -0.45 * d / h)[0]
     return Shape(pieces("frame", leant, frame) + pieces("photo", lean([sheet], 0.0, slope), art) + pieces("strut", strut, SHELL))
 
@@ -63,7 +60,7 @@ def candle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     """Build a pillar candle on a dish, one in a glass, or a thin one on a stick."""
     w, _, h = size
     r = w / 2
-    wax = Finish("wax", shade(rng, WAX[int(rng.integers(len(WAX)))], 0.08), 0.5, density=900)
+    wax = Finish("wax", shade(rng, one_of(rng, WAX), 0.08), 0.5, density=900)
     wick = pieces("wick", rod((0, 0, 0.93 * h), (0, 0, h), 0.0015, n=6), SHELL)
     if form == "stick":
         foot = revolve([(r, 0.0), (0.9 * r, 0.04 * h), (0.2 * r, 0.09 * h), (0.16 * r, 0.42 * h)], 16)
@@ -86,11 +83,11 @@ def tray(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
         floor = slab(circle(0.49 * w, 24), (0.0, 0.25 * h))
         return Shape(pieces("floor", floor, finish) + pieces("rim", ring((w / 2, w / 2), (0.48 * w, 0.48 * w), (0.25 * h, h), 16), finish))
     t = 0.012
-    solids = [box((-w / 2, w / 2), (-d / 2, d / 2), (0.0, 0.2 * h))]
-    solids += [box((-w / 2, w / 2), (s * (d / 2 - t / 2) - t / 2, s * (d / 2 - t / 2) + t / 2), (0.2 * h, 0.7 * h)) for s in (-1, 1)]
+    solids = [box(around(w / 2), around(d / 2), (0.0, 0.2 * h))]
+    solids += [box(around(w / 2), around(t / 2, s * (d / 2 - t / 2)), (0.2 * h, 0.7 * h)) for s in (-1, 1)]
     x = w / 2 - t / 2
-    solids += [box((s * x - t / 2, s * x + t / 2), (-d / 2 + t, d / 2 - t), (0.2 * h, 0.7 * h)) for s in (-1, 1)]
-    grips = [box((s * x - 0.006, s * x + 0.006), (-0.06, 0.06), (0.7 * h, h), 0.002) for s in (-1, 1)]
+    solids += [box(around(t / 2, s * x), around(d / 2 - t), (0.2 * h, 0.7 * h)) for s in (-1, 1)]
+    grips = [box(around(0.006, s * x), (-0.06, 0.06), (0.7 * h, h), 0.002) for s in (-1, 1)]
     return Shape(pieces("tray", solids, finish) + pieces("grips", grips, scheme.handle))
 
 
@@ -103,7 +100,7 @@ def bottle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     if form == "pump":
         body = revolve([(0.96 * r, 0.0), (r, 0.02 * h), (r, 0.6 * h), (0.4 * r, 0.7 * h)], 14)
         head = [rod((0, 0, 0.7 * h), (0, 0, 0.9 * h), 0.12 * r, n=8), slab(circle(0.34 * r, 10), (0.9 * h, h))]
-        spout = box((-0.9 * r, 0.0), (-0.1 * r, 0.1 * r), (0.93 * h, 0.98 * h))
+        spout = box((-0.9 * r, 0.0), around(0.1 * r), (0.93 * h, 0.98 * h))
         soap = Finish("soap", shade(rng, color, 0.1), 0.3, density=900)
         return Shape(pieces("body", body, soap) + pieces("pump", [*head, spout], scheme.handle))
     if form == "shampoo":
@@ -127,7 +124,7 @@ def canister(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     lid = scheme.timber if rng.random() < 0.6 else scheme.handle
     top = [slab(circle(0.96 * r, 16), (0.86 * h, 0.94 * h), 0.003), slab(circle(0.25 * r, 12), (0.94 * h, h), 0.002)]
     if form == "glass":
-        food = Finish("food", shade(rng, CONTENTS[int(rng.integers(len(CONTENTS)))], 0.15), 0.9, pattern="speckle", density=700)
+        food = Finish("food", shade(rng, one_of(rng, CONTENTS), 0.15), 0.9, pattern="speckle", density=700)
         inside = slab(circle(0.9 * r, 16), (0.02 * h, 0.86 * h * float(rng.uniform(0.45, 0.9))))
         jar = ring((r, r), (0.91 * r, 0.91 * r), (0.0, 0.86 * h), 12)
         return Shape(pieces("food", inside, food) + pieces("jar", jar, CLEAR) + pieces("lid", top, lid))
@@ -178,11 +175,11 @@ def cutting_board(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     """Build a board that lies with a knife on it, or a block of knives."""
     w, d, h = size
     timber = Finish("board", shade(rng, WOODS[pick(rng, "beech oak walnut bamboo")]), 0.5, pattern="grain", density=650)
-    board = box((-w / 2, w / 2), (-d / 2, d / 2), (0.0, 0.6 * h), 0.004)
+    board = box(around(w / 2), around(d / 2), (0.0, 0.6 * h), 0.004)
     steel = Finish("blade", (0.66, 0.66, 0.66), 0.2, 0.95, density=7800)
     y = 0.2 * d
     blade = box((-0.1 * w, 0.3 * w), (y - 0.018, y + 0.012), (0.6 * h, 0.6 * h + 0.002))
-    grip = box((-0.34 * w, -0.1 * w), (y - 0.011, y + 0.011), (0.6 * h, h), 0.003)
+    grip = box((-0.34 * w, -0.1 * w), around(0.011, y), (0.6 * h, h), 0.003)
     parts = pieces("board", board, timber) + pieces("blade", blade, steel) + pieces("grip", grip, SHELL)
     if form == "bread":
         loaf = cushion((-0.34 * w, 0.2 * w), (-0.42 * d, -0.02 * d), (0.6 * h, 0.6 * h + 0.075), 0.032, 3)
@@ -202,13 +199,13 @@ def fruit_bowl(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     q = 0.3 * r
     fruit: tuple[Piece, ...] = ()
     for k, a in enumerate(turns(5, float(rng.uniform(0, 1)))):
-        x, y, z = (0.52 * r * math.cos(a), 0.52 * r * math.sin(a), low + 0.42 * h + 0.5 * q)
+        x, y, z = polar(0.52 * r, a, low + 0.42 * h + 0.5 * q)
         fruit += _fruit(rng, (x, y, z), q, k)
     return Shape(pieces("bowl", body, finish) + fruit + _fruit(rng, (0.0, 0.0, h - q), q, 5))
 
 
 def _fruit(rng: np.random.Generator, at: tuple[float, float, float], r: float, number: int) -> tuple[Piece, ...]:
-    color = FRUIT[int(rng.integers(len(FRUIT)))]
+    color = one_of(rng, FRUIT)
     rounds = [(0.3 * r, -r), (0.75 * r, -0.75 * r), (r, -0.1 * r), (0.8 * r, 0.7 * r), (0.3 * r, r)]
     solids = [s.moved(at) for s in revolve(rounds, 10)]
     return pieces(f"fruit_{number}", solids, Finish("fruit", shade(rng, color, 0.2), 0.4, density=800))
@@ -221,30 +218,28 @@ def toy(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     if form == "ball":
         r = min(w, d, h) / 2
         profile = [(0.38 * r, -0.92 * r), (0.8 * r, -0.6 * r), (r, 0.0), (0.8 * r, 0.6 * r), (0.38 * r, 0.92 * r)]
-        return Shape(pieces("ball", [s.moved((0, 0, 0.92 * r)) for s in revolve(profile, 16)], bright[int(rng.integers(4))]))
+        return Shape(pieces("ball", [s.moved((0, 0, 0.92 * r)) for s in revolve(profile, 16)], one_of(rng, bright)))
     if form == "blocks":
         b = h / 3
         spots = [(-0.6 * b, 0.0, 0), (0.6 * b, 0.1 * b, 0), (0.0, 0.0, 1), (0.05 * b, 0.0, 2)]
         return Shape(tuple(p for k, (x, y, level) in enumerate(spots) for p in pieces(
-            f"block_{k}", box((x - b / 2, x + b / 2), (y - b / 2, y + b / 2), (level * b, (level + 1) * b - 0.0005), 0.003), bright[k])))  # fmt: skip
+            f"block_{k}", box(around(b / 2, x), around(b / 2, y), (level * b, (level + 1) * b - 0.0005), 0.003), bright[k])))  # fmt: skip
     if form == "car":
         body = [
-            cushion((-w / 2, w / 2), (-0.4 * d, 0.4 * d), (0.16 * h, 0.6 * h), 0.02, 2),
-            cushion((-0.28 * w, 0.3 * w), (-0.34 * d, 0.34 * d), (0.6 * h, h), 0.02, 2),
+            cushion(around(w / 2), around(0.4 * d), (0.16 * h, 0.6 * h), 0.02, 2),
+            cushion((-0.28 * w, 0.3 * w), around(0.34 * d), (0.6 * h, h), 0.02, 2),
         ]
-        wheel = slab(circle(0.18 * h, 12), (-0.06 * d, 0.06 * d)).turned("x", math.pi / 2)
+        wheel = slab(circle(0.18 * h, 12), around(0.06 * d)).turned("x", math.pi / 2)
         wheels = [wheel.moved((sx * 0.3 * w, sy * 0.42 * d, 0.18 * h)) for sx in (-1, 1) for sy in (-1, 1)]
-        return Shape(pieces("body", body, bright[int(rng.integers(4))]) + pieces("wheels", wheels, SHELL))
+        return Shape(pieces("body", body, one_of(rng, bright)) + pieces("wheels", wheels, SHELL))
     fur = Finish("fur", shade(rng, (0.36, 0.22, 0.10) if rng.random() < 0.6 else (0.66, 0.58, 0.48)), 0.95, pattern="boucle", density=80)
     trunk = [
-        pillow((-0.26 * w, 0.26 * w), (-0.2 * d, 0.35 * d), (0.0, 0.58 * h), 3),
-        pillow((-0.24 * w, 0.24 * w), (-0.26 * d, 0.26 * d), (0.52 * h, 0.95 * h), 3),
+        pillow(around(0.26 * w), (-0.2 * d, 0.35 * d), (0.0, 0.58 * h), 3),
+        pillow(around(0.24 * w), around(0.26 * d), (0.52 * h, 0.95 * h), 3),
     ]
-    ears = [cushion((s * 0.17 * w - 0.07 * w, s * 0.17 * w + 0.07 * w), (-0.03 * d, 0.05 * d), (0.84 * h, h), 0.012, 2) for s in (-1, 1)]
-    arms = [
-        cushion((s * 0.32 * w - 0.1 * w, s * 0.32 * w + 0.1 * w), (-0.25 * d, 0.05 * d), (0.22 * h, 0.5 * h), 0.025, 2) for s in (-1, 1)
-    ]
-    legs = [cushion((s * 0.24 * w - 0.11 * w, s * 0.24 * w + 0.11 * w), (-0.5 * d, 0.0), (0.0, 0.2 * h), 0.02, 2) for s in (-1, 1)]
+    ears = [cushion(around(0.07 * w, s * 0.17 * w), (-0.03 * d, 0.05 * d), (0.84 * h, h), 0.012, 2) for s in (-1, 1)]
+    arms = [cushion(around(0.1 * w, s * 0.32 * w), (-0.25 * d, 0.05 * d), (0.22 * h, 0.5 * h), 0.025, 2) for s in (-1, 1)]
+    legs = [cushion(around(0.11 * w, s * 0.24 * w), (-0.5 * d, 0.0), (0.0, 0.2 * h), 0.02, 2) for s in (-1, 1)]
     return Shape(pieces("bear", [*trunk, *ears, *arms, *legs], fur))
 
 
@@ -255,8 +250,8 @@ def pen_cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     cup = [slab(circle(r, 14), (0.0, tall))] if form == "round" else [box((-r, r), (-r, r), (0.0, tall), 0.003)]
     parts = pieces("cup", cup, scheme.front if rng.random() < 0.5 else scheme.handle)
     for k, a in enumerate(turns(4, float(rng.uniform(0, 1)))):
-        tip = (0.8 * r * math.cos(a), 0.8 * r * math.sin(a), h * float(rng.uniform(0.86, 1.0)))
-        pen = rod((0.4 * r * math.cos(a), 0.4 * r * math.sin(a), tall), tip, 0.0045, n=6)
+        tip = polar(0.8 * r, a, h * float(rng.uniform(0.86, 1.0)))
+        pen = rod(polar(0.4 * r, a, tall), tip, 0.0045, n=6)
         parts += pieces(
             f"pen_{k}", pen, Finish("pen", shade(rng, LACQUERS[pick(rng, "black navy coral mustard emerald")]), 0.4, density=900)
         )
@@ -268,8 +263,8 @@ def alarm_clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
     w, d, h = size
     face = Finish("dial", (0.82, 0.81, 0.78), 0.5, pattern="dial", density=900, second=(0.03, 0.03, 0.03))
     if form == "box":
-        case = box((-w / 2, w / 2), (-d / 2 + 0.002, d / 2), (0.0, h), 0.006)
-        figures = box((-0.42 * w, 0.42 * w), (-d / 2, -d / 2 + 0.002), (0.2 * h, 0.8 * h))
+        case = box(around(w / 2), (-d / 2 + 0.002, d / 2), (0.0, h), 0.006)
+        figures = box(around(0.42 * w), (-d / 2, -d / 2 + 0.002), (0.2 * h, 0.8 * h))
         return Shape(
             pieces("case", case, scheme.timber) + pieces("figures", figures, Finish("figures", (0.02, 0.10, 0.08), 0.2, density=900))
         )
@@ -290,7 +285,7 @@ def tissue_box(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
         if rng.random() < 0.4
         else Finish("card", shade(rng, LACQUERS[pick(rng, "white sage blush dusty_blue greige")]), 0.7, density=300)
     )
-    body = box((-x, x), (-d / 2, d / 2), (0.0, 0.7 * h), 0.003)
+    body = box((-x, x), around(d / 2), (0.0, 0.7 * h), 0.003)
     sheet = blades(np.array([(0, 0, 0.69 * h), (0.004, 0, 0.69 * h)]), np.array([(-0.02, 0.006, h), (0.025, -0.006, 0.94 * h)]), 0.07)
     return Shape(pieces("box", body, finish) + pieces("tissue", sheet, PAPER))
 
@@ -299,7 +294,7 @@ def coat_hooks(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     """Build a board with hooks, a coat or a bag on some of them; the back is at the wall (+y)."""
     w, d, h = size
     back = d / 2
-    board = box((-w / 2, w / 2), (back - 0.018, back), (h - 0.1, h), 0.003)
+    board = box(around(w / 2), (back - 0.018, back), (h - 0.1, h), 0.003)
     count = max(4, round(w / 0.14))
     xs = np.linspace(-w / 2 + 0.06, w / 2 - 0.06, count)
     hooks: list[Solid] = []
@@ -320,9 +315,9 @@ def coat_hooks(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
             pattern="weave",
             density=200,
         )
-        bag = cushion((x - 0.1, x + 0.1), (-d / 2, back - 0.02), (0.0, 0.55 * h), 0.03, 3)
-        strap = [box((x + s * 0.05 - 0.006, x + s * 0.05 + 0.006), (-0.005, 0.005), (0.5 * h, h - 0.06)) for s in (-1, 1)]
-        parts += pieces(f"bag_{k}", [bag, *strap, box((x - 0.056, x + 0.056), (-0.005, 0.005), (h - 0.06, h - 0.045))], cloth)
+        bag = cushion(around(0.1, x), (-d / 2, back - 0.02), (0.0, 0.55 * h), 0.03, 3)
+        strap = [box(around(0.006, x + s * 0.05), (-0.005, 0.005), (0.5 * h, h - 0.06)) for s in (-1, 1)]
+        parts += pieces(f"bag_{k}", [bag, *strap, box(around(0.056, x), (-0.005, 0.005), (h - 0.06, h - 0.045))], cloth)
     return Shape(parts)
 
 

@@ -7,9 +7,8 @@ import numpy as np
 from pipeline.corpus.furniture.beds import bedding
 from pipeline.corpus.furniture.bent import prism
 from pipeline.corpus.furniture.finishes import PLASTIC, Scheme
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, rod
-from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, around, box, rod
 
 
 def kids_bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -77,7 +76,7 @@ def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
         parts += pieces("berth", boards, scheme.front)
         parts += tuple(p for p in bedding(rng, inner_x, inner_y, z + 0.04, z + 0.19, scheme) if p.name not in ("throw", "cushion"))
     lx = (x[1] - 0.56, x[1] - 0.14)
-    ladder: list[Solid] = [box((px - 0.02, px + 0.02), (-d / 2, -d / 2 + 0.06), (0, min(h, upper + 0.45)), 0.006) for px in lx]
+    ladder: list[Solid] = [box(around(0.02, px), (-d / 2, -d / 2 + 0.06), (0, min(h, upper + 0.45)), 0.006) for px in lx]
     ladder += [
         box((lx[0] + 0.02, lx[1] - 0.02), (-d / 2 + 0.008, -d / 2 + 0.05), (z, z + 0.03), 0.004) for z in np.arange(0.25, upper, 0.27)
     ]
@@ -92,7 +91,7 @@ def _car(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
     parts: tuple[Piece, ...] = ()
     r = min(0.2, 0.24 * h)
     for s in (-1, 1):
-        span = (s * (x - 0.04) - 0.018, s * (x - 0.04) + 0.018)
+        span = around(0.018, s * (x - 0.04))
         low = np.array([(-d / 2, 0.09), (d / 2, 0.09), (d / 2, body), (-0.32 * d, 0.86 * body), (-d / 2, 0.62 * body)])
         rise = np.array([(0.12 * d, body * 0.955), (d / 2, body), (d / 2, h), (0.36 * d, h)])
         parts += pieces("sides", [prism(low, "x", span), prism(rise, "x", span)], scheme.front)
@@ -100,13 +99,13 @@ def _car(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
         for cy in (-0.3 * d, 0.3 * d):
             parts += pieces("wheels", rod((out, cy, r), (s * x, cy, r), r, n=20), PLASTIC)
             parts += pieces("hubs", rod((s * x - s * 0.001, cy, r), (s * x + s * 0.006, cy, r), 0.5 * r, n=14), scheme.handle)
-    inner = (-x + 0.06, x - 0.06)
+    inner = around(x - 0.06)
     ends = [
         box(inner, (-d / 2, -d / 2 + 0.03), (0.09, 0.6 * body), 0.01),
         box(inner, (d / 2 - 0.03, d / 2), (0.09, h), 0.01),
-        box(inner, (-d / 2 + 0.03, d / 2 - 0.03), (0.14, 0.16)),
+        box(inner, around(d / 2 - 0.03), (0.14, 0.16)),
     ]
     parts += pieces("ends", ends, scheme.front)
     lamps = [rod((px, -d / 2 - 0.012, 0.42 * body), (px, -d / 2, 0.42 * body), 0.07, n=14) for px in (-0.3 * w, 0.3 * w)]
     parts += pieces("lamps", lamps, scheme.second)
-    return Shape(parts + bedding(rng, inner, (-d / 2 + 0.035, d / 2 - 0.035), 0.16, 0.16 + 0.55 * (body - 0.16), scheme))
+    return Shape(parts + bedding(rng, inner, around(d / 2 - 0.035), 0.16, 0.16 + 0.55 * (body - 0.16), scheme))

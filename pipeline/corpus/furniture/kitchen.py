@@ -10,11 +10,11 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
-from pipeline.corpus.furniture.finishes import CERAMIC, MARBLE, PLASTIC, STEEL, STONE, Finish, Scheme
+from pipeline.corpus.furniture.finishes import CERAMIC, MARBLE, PLASTIC, STEEL, STONE, Finish, Scheme, one_of
 from pipeline.corpus.furniture.fronts import reach
-from pipeline.corpus.furniture.shape import Mover, Piece, Shape, join_shapes, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, rod, shell, strips, walls
-from pipeline.corpus.furniture.storage import Size, front_style
+from pipeline.corpus.furniture.shape import Mover, Piece, Shape, Size, join_shapes, pieces, staves
+from pipeline.corpus.furniture.solids import Solid, around, box, circle, revolve, rod, shell, strips, walls
+from pipeline.corpus.furniture.storage import front_style
 
 PLINTH = 0.1  # height of a kitchen unit's recessed plinth [m]
 NOSE = 0.018  # how far a worktop stands out over its fronts [m]
@@ -23,7 +23,7 @@ NOSE = 0.018  # how far a worktop stands out over its fronts [m]
 def unit_style(rng: np.random.Generator, scheme: Scheme, panels: str = "") -> Case:
     """Draw how a kitchen unit is made: white carcass boards, a stone or wooden counter, fronts that cover the edges."""
     style = front_style(rng, scheme, panels)
-    counter = (STONE, MARBLE, scheme.body)[int(rng.integers(3))]
+    counter = one_of(rng, (STONE, MARBLE, scheme.body))
     return Case(scheme.body, style, "plinth", PLINTH, PLASTIC, top=counter, top_thickness=0.038, nose=NOSE)
 
 
@@ -93,7 +93,7 @@ def tap(x: float, y: float, z: float, height: float, reach_out: float, finish: F
     solids += revolve([(0.024, z), (0.022, z + 0.02)], 14, (x, y))
     root = (x + r + 0.002, y, z + 0.055)
     arm = [rod(root, (root[0] + 0.014, y, root[2]), 0.010, n=10)]
-    arm.append(box((root[0] + 0.014, root[0] + 0.022), (y - 0.075, y + 0.008), (root[2] - 0.006, root[2] + 0.006), 0.002))
+    arm.append(box((root[0] + 0.014, root[0] + 0.022), (y - 0.075, y + 0.008), around(0.006, root[2]), 0.002))
     lever_parts = pieces("lever", arm, finish, group="lever")
     lever = Mover("tap_lever", lever_parts, "revolute", (-1, 0, 0), root, 1.0, "hinge_handle", "lever", (1.0, 0.0, 0.0))
     return Shape(pieces("tap", solids, finish), (lever,))
@@ -119,7 +119,7 @@ def sink_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     half = min(0.3, 0.5 * w - 0.09)
     hole_x, hole_y = (-half, half), (face + 0.09, d / 2 - 0.13)
     z = (body - how.top_thickness, body)
-    top = pieces("top", strips((-w / 2, w / 2), (face - how.nose, d / 2), hole_x, hole_y, z, 0.002), how.top or STONE)
+    top = pieces("top", strips(around(w / 2), (face - how.nose, d / 2), hole_x, hole_y, z, 0.002), how.top or STONE)
     top += bowl((hole_x[0], hole_x[1]), hole_y, body - 0.003, 0.17, STEEL)
     return join_shapes(_topless(shape, top), tap(0.0, d / 2 - 0.065, body, h - body, 0.2, scheme.handle))
 
@@ -131,7 +131,7 @@ def vanity(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     legs = rng.random() < 0.4
     how = replace(unit_style(rng, scheme), overhang=0.006, nose=0.0)
     how = replace(how, feet="square", feet_height=0.16, feet_finish=scheme.accent) if legs else replace(how, feet_height=0.08)
-    top = (CERAMIC, MARBLE, STONE)[int(rng.integers(3))]
+    top = one_of(rng, (CERAMIC, MARBLE, STONE))
     how = replace(how, top=top, top_thickness=0.03)
     vessel = rng.random() < 0.45 or form == "drawers"
     if form == "drawers":
@@ -150,7 +150,7 @@ def vanity(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     half = min(0.26, 0.5 * w - 0.07)
     hole_x, hole_y = (-half, half), (face + 0.06, d / 2 - 0.11)
     z = (body - how.top_thickness, body)
-    new = pieces("top", strips((-w / 2, w / 2), (face - how.overhang, d / 2), hole_x, hole_y, z, 0.002), top)
+    new = pieces("top", strips(around(w / 2), (face - how.overhang, d / 2), hole_x, hole_y, z, 0.002), top)
     new += bowl(hole_x, hole_y, body - 0.002, 0.13, CERAMIC)
     return join_shapes(_topless(shape, new), tap(0.0, d / 2 - 0.055, body, h - body, 0.13, scheme.handle))
 

@@ -10,9 +10,8 @@ import numpy as np
 from pipeline.corpus.furniture.bent import curve, tube, turns
 from pipeline.corpus.furniture.finishes import GLOW, Scheme
 from pipeline.corpus.furniture.shades import shade, shade_word
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import box, circle, revolve, rod, slab
-from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import around, box, circle, polar, revolve, rod, slab, standing
 
 
 def turned_along(shape: Shape) -> Shape:
@@ -37,7 +36,7 @@ def _tripod(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -
     w, _, h = size
     r, metal = w / 2, scheme.handle
     top = h - tall
-    ends = [(0.95 * r * math.cos(a), 0.95 * r * math.sin(a)) for a in turns(3, math.pi / 2)]
+    ends = [polar(0.95 * r, a) for a in turns(3, math.pi / 2)]
     parts = pieces("legs", [rod((x, y, 0), (0.03 * x / r, 0.03 * y / r, top - 0.035), 0.011, 0.015, 8) for x, y in ends], scheme.timber)
     if rng.random() < 0.5:
         parts += pieces("shelf", slab(circle(0.42 * r, 20), (0.42 * top, 0.42 * top + 0.012)), scheme.timber)
@@ -91,7 +90,7 @@ def wall_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     metal = scheme.handle
     back = d / 2
     if form == "bar":
-        plate = box((-0.5 * w, 0.5 * w), (back - 0.018, back), (0.36 * h, 0.64 * h), 0.004)
+        plate = box(around(0.5 * w), (back - 0.018, back), (0.36 * h, 0.64 * h), 0.004)
         r = min(0.16 * w, 0.3 * d)
         y = -d / 2 + r
         tube_ = [rod((0, y, 0.03 * h), (0, y, 0.97 * h), 0.85 * r, n=14)]
@@ -103,15 +102,11 @@ def wall_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
         y = -d / 2 + r
         parts = pieces(
             "plate",
-            [s.turned("x", math.pi / 2).moved((0, back, 0.5 * h)) for s in [slab(circle(0.5 * w, 20, squash=h / w), (0.0, 0.016), 0.003)]],
+            standing([slab(circle(0.5 * w, 20, squash=h / w), (0.0, 0.016), 0.003)], (0, back, 0.5 * h)),
             metal,
         )
         neck = rod((0, back - 0.016, 0.5 * h), (0, y + 0.95 * r, 0.5 * h), 0.009, n=8)
-        return Shape(
-            parts
-            + pieces("neck", neck, metal)
-            + shade(rng, scheme, "globe", r, (0.5 * h - min(r, 0.5 * h), 0.5 * h + min(r, 0.5 * h)), (0.0, y), 18)
-        )
+        return Shape(parts + pieces("neck", neck, metal) + shade(rng, scheme, "globe", r, around(min(r, 0.5 * h), 0.5 * h), (0.0, y), 18))
     r = min(w / 2, 0.4 * d) if form == "shade" else min(0.24 * w, 0.4 * d)
     wide = 0.2 * w if form != "shade" or r > 0.4 * w else 0.5 * w
     parts = pieces("plate", box((-wide, wide), (back - 0.016, back), (0.0, 0.7 * h), 0.004), metal)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import curve, tube
-from pipeline.corpus.furniture.finishes import Finish, Scheme
-from pipeline.corpus.furniture.solids import Solid, beam, box, revolve, rod, stack
+from pipeline.corpus.furniture.finishes import Finish, Scheme, one_of
+from pipeline.corpus.furniture.solids import Solid, around, beam, box, revolve, rod, stack
 
 Spot = tuple[float, float]
 METAL = frozenset({"hairpin", "pipe", "blade", "sled", "cross"})
@@ -26,7 +26,7 @@ def leg_finish(scheme: Scheme, kind: str) -> Finish:
 def draw_kind(rng: np.random.Generator, scheme: Scheme, without: str = "") -> str:
     """Draw a leg form that the style likes; `without` names forms that do not fit here."""
     kinds = [k for k in scheme.manner.legs.split() if k not in without.split()] or ["tapered"]
-    return kinds[int(rng.integers(len(kinds)))]
+    return one_of(rng, kinds)
 
 
 def legs(kind: str, half: Spot, height: float, thick: float) -> list[Solid]:
@@ -58,7 +58,7 @@ def leg(kind: str, at: Spot, out: Spot, height: float, thick: float) -> list[Sol
     t, h = thick, height
     if kind in ("square", "block"):
         r = t / 2 if kind == "square" else 0.7 * t
-        return [box((x - r, x + r), (y - r, y + r), (0, h), 0.003)]
+        return [box(around(r, x), around(r, y), (0, h), 0.003)]
     if kind == "tapered":
         return [beam((x, y, 0), (x, y, h), t, t, 0.5)]
     if kind == "splayed":
@@ -74,16 +74,16 @@ def _turned_leg(x: float, y: float, sx: float, sy: float, h: float, t: float) ->
     if h < 0.16:
         return _bun(x, y, sx, sy, h, t)
     profile = [(0.34, 0.0), (0.5, 0.05), (0.3, 0.12), (0.44, 0.42), (0.56, 0.68), (0.34, 0.76), (0.54, 0.8), (0.54, 0.84)]
-    block = box((x - 0.52 * t, x + 0.52 * t), (y - 0.52 * t, y + 0.52 * t), (0.84 * h, h), 0.002)
+    block = box(around(0.52 * t, x), around(0.52 * t, y), (0.84 * h, h), 0.002)
     return [*revolve([(r * t, z * h) for r, z in profile], 12, (x, y)), block]
 
 
-def _fluted_leg(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:  # noqa: ARG001 - one signature for all
+def _fluted_leg(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
     if h < 0.12:
         return [beam((x, y, 0), (x, y, h), t, t, 0.55)]
     column = revolve([(0.26 * t, 0.06 * h), (0.44 * t, 0.82 * h)], 8, (x, y))
     foot = revolve([(0.2 * t, 0.0), (0.34 * t, 0.03 * h), (0.3 * t, 0.06 * h)], 12, (x, y))
-    return [*foot, *column, box((x - 0.54 * t, x + 0.54 * t), (y - 0.54 * t, y + 0.54 * t), (0.82 * h, h), 0.003)]
+    return [*foot, *column, box(around(0.54 * t, x), around(0.54 * t, y), (0.82 * h, h), 0.003)]
 
 
 def _cabriole(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
@@ -104,7 +104,7 @@ def _cabriole(x: float, y: float, sx: float, sy: float, h: float, t: float) -> l
     return tube(points, radii, 8)
 
 
-def _hairpin(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:  # noqa: ARG001 - one signature for all
+def _hairpin(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
     r, spread, reach = 0.0055, 0.055 + 0.06 * h, 0.05 * h
     x0, y0 = x + sx * reach, y + sy * reach
     rods = [
@@ -134,10 +134,10 @@ def _horse(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list
         cx, cy, q = x - sx * shift, y - sy * shift, r + grow
         return np.array([(cx - q, cy - q, z), (cx + q, cy - q, z), (cx + q, cy + q, z), (cx - q, cy + q, z)])
 
-    return [stack([ring(0.12 * t, 0.3 * t, 0.0), ring(0.0, 0.0, low)]), box((x - r, x + r), (y - r, y + r), (low, h), 0.002)]
+    return [stack([ring(0.12 * t, 0.3 * t, 0.0), ring(0.0, 0.0, low)]), box(around(r, x), around(r, y), (low, h), 0.002)]
 
 
-def _bamboo(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:  # noqa: ARG001 - one signature for all
+def _bamboo(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
     count = max(1, round(h / 0.16))
     solids, node, r = [], 0.008, 0.38 * t
     edges = np.linspace(0, h, count + 1)
@@ -151,13 +151,13 @@ def _bamboo(x: float, y: float, sx: float, sy: float, h: float, t: float) -> lis
     return solids
 
 
-def _pipe(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:  # noqa: ARG001 - one signature for all
+def _pipe(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
     r = max(0.3 * t, 0.011)
     flange = [revolve([(2.1 * r, z), (2.1 * r, z + 0.005)], 12, (x, y))[0] for z in (0.0, h - 0.005)]
     return [*flange, rod((x, y, 0.005), (x, y, h - 0.005), r, n=10)]
 
 
-def _blade(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:  # noqa: ARG001 - one signature for all
+def _blade(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
     return [beam((x, y, 0), (x, y, h), 0.016, max(0.7 * t, 0.022), 0.8)]
 
 
@@ -170,16 +170,16 @@ def _frame(kind: str, x: float, y: float, h: float, t: float) -> list[Solid]:
     """Return what stands at one side: a sled, a cross, or a plank, in the plane of that x."""
     if kind == "plank":
         r = 0.4 * t
-        return [box((x - r, x + r), (-y - 0.3 * t, y + 0.3 * t), (0, h), 0.003)]
+        return [box(around(r, x), around(y + 0.3 * t), (0, h), 0.003)]
     s = min(0.5 * t, 0.012 + 0.01 * h)
     if kind == "cross":
         a = beam((x - s, -y, 0), (x - s, y, h), 2 * s, 2.2 * s)
         b = beam((x + s, y, 0), (x + s, -y, h), 2 * s, 2.2 * s)
         return [a, b]
     return [
-        box((x - s, x + s), (-y - s, y + s), (0, 1.6 * s), 0.002),
-        box((x - s, x + s), (-y - s, -y + s), (1.6 * s, h), 0.002),
-        box((x - s, x + s), (y - s, y + s), (1.6 * s, h), 0.002),
+        box(around(s, x), around(y + s), (0, 1.6 * s), 0.002),
+        box(around(s, x), around(s, -y), (1.6 * s, h), 0.002),
+        box(around(s, x), around(s, y), (1.6 * s, h), 0.002),
     ]
 
 

@@ -1,7 +1,5 @@
 """Cloth of baths and windows: towels hung and folded, throws, bath mats, blinds; and the holder of a paper roll."""
 
-# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
-
 from __future__ import annotations
 
 import math
@@ -9,18 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import FABRICS, PAPER, Finish, Scheme, shade
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, rod, rounded_rectangle, slab
-from pipeline.corpus.furniture.storage import Size, pick
-from pipeline.corpus.furniture.wall_decor import standing
+from pipeline.corpus.furniture.finishes import FABRICS, PAPER, Finish, Scheme, one_of, pick, shade
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, around, box, circle, cushion, rod, rounded_rectangle, slab, standing
 
 TERRY = ("snow_cloth", "cream_cloth", "grey_cloth", "linen", "blue_cloth", "mint_cloth", "taupe_cloth", "rust_cloth", "charcoal")
 
 
 def terry(rng: np.random.Generator, scheme: Scheme) -> Finish:
     """Draw the cloth of a towel: one in three in the colour of the style's covers."""
-    name = TERRY[int(rng.integers(len(TERRY)))]
+    name = one_of(rng, TERRY)
     color = scheme.soft.color if rng.random() < 0.33 else FABRICS[name]
     return Finish("terry", shade(rng, color, 0.08), 0.95, pattern="boucle", density=150)
 
@@ -32,10 +28,10 @@ def towel(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     if form == "ring":
         plate = box((-0.025, 0.025), (d / 2 - 0.012, d / 2), (h - 0.06, h - 0.01), 0.003)
         arm = rod((0.0, d / 2 - 0.012, h - 0.035), (0.0, 0.0, h - 0.035), 0.008)
-        hoop = [box((-0.24 * w, 0.24 * w), (-0.006, 0.006), (z, z + 0.012), 0.003) for z in (h - 0.16, h - 0.042)]
-        sides = [box((s * 0.24 * w - 0.005, s * 0.24 * w + 0.005), (-0.006, 0.006), (h - 0.148, h - 0.042), 0.002) for s in (-1, 1)]
+        hoop = [box(around(0.24 * w), (-0.006, 0.006), (z, z + 0.012), 0.003) for z in (h - 0.16, h - 0.042)]
+        sides = [box(around(0.005, s * 0.24 * w), (-0.006, 0.006), (h - 0.148, h - 0.042), 0.002) for s in (-1, 1)]
         parts = pieces("ring", [plate, arm, *hoop, *sides], metal)
-        return Shape(parts + _towel_over_bar((-0.22 * w, 0.22 * w), d, h - 0.152, h - 0.16, cloth, rng))
+        return Shape(parts + _towel_over_bar(around(0.22 * w), d, h - 0.152, h - 0.16, cloth, rng))
     z = h - 0.03
     bar = [rod((-w / 2, 0, z), (w / 2, 0, z), 0.009, n=8)]
     for s in (-1, 1):
@@ -43,7 +39,7 @@ def towel(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
         bar += [rod((x, d / 2, z), (x, 0.0, z), 0.009, n=8), rod((x, d / 2, z), (x, d / 2 - 0.01, z), 0.024, n=12)]
     parts = pieces("rail", bar, metal)
     if form == "single":
-        return Shape(parts + _towel_over_bar((-0.4 * w, 0.4 * w), d, z, z, cloth, rng))
+        return Shape(parts + _towel_over_bar(around(0.4 * w), d, z, z, cloth, rng))
     other = terry(rng, scheme)
     left = _towel_over_bar((-0.46 * w, -0.02 * w), d, z, z, cloth, rng)
     return Shape(parts + left + _towel_over_bar((0.02 * w, 0.46 * w), d, z, 0.8 * z, other, rng))
@@ -58,7 +54,7 @@ def _towel_over_bar(
     falls = [
         cushion(x, (-half - t, -half), (front, top + 0.006), 0.005),
         cushion(x, (half, half + t), (back, top + 0.006), 0.005),
-        cushion(x, (-half - t, half + t), (top + 0.004, top + 0.018), 0.006),
+        cushion(x, around(half + t), (top + 0.004, top + 0.018), 0.006),
     ]
     hem = replace(cloth, name="hem", color=tuple(0.75 * c for c in cloth.color), pattern="weave")  # type: ignore[arg-type]
     band = box((x[0] + 0.001, x[1] - 0.001), (-half - t - 0.0015, -half - t + 0.001), (front + 0.05, front + 0.085))
@@ -73,7 +69,7 @@ def folded_towels(rng: np.random.Generator, form: str, size: Size, scheme: Schem
         r = min(w / 4, h / 3.6)
         spots = [(-r, r), (r, r), (0.0, r + 1.7 * r)]
         for x, z in spots:
-            roll = slab(circle(r, 16), (-d / 2, d / 2), 0.25 * r).turned("x", math.pi / 2).moved((x, 0, z))
+            roll = slab(circle(r, 16), around(d / 2), 0.25 * r).turned("x", math.pi / 2).moved((x, 0, z))
             parts += pieces("towel", roll, terry(rng, scheme))
         return Shape(parts)
     count = max(2, round(h / 0.05))
@@ -92,7 +88,7 @@ def throw(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     w, d, h = size
     pattern = pick(rng, "knit check stripe boucle")
     cloth = Finish("throw", shade(rng, scheme.second.color, 0.1), 0.95, pattern=pattern, density=120)  # type: ignore[arg-type]
-    layers = [cushion((-w / 2, w / 2), (-d / 2 + 0.04, d / 2), (k * h / 3, (k + 1) * h / 3), 0.4 * h / 3, 2) for k in range(3)]
+    layers = [cushion(around(w / 2), (-d / 2 + 0.04, d / 2), (k * h / 3, (k + 1) * h / 3), 0.4 * h / 3, 2) for k in range(3)]
     yarn = replace(cloth, name="yarn", pattern="plain")
     ends = [
         box((float(x), float(x) + 0.012), (-d / 2, -d / 2 + 0.045), (0.35 * h, 0.42 * h))
@@ -107,12 +103,12 @@ def bath_mat(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     if form == "slats":
         count = max(5, round(w / 0.09))
         step = w / count
-        slats = [box((-w / 2 + k * step, -w / 2 + (k + 0.8) * step), (-d / 2, d / 2), (0.3 * h, h), 0.002) for k in range(count)]
-        rails = [box((-w / 2, w / 2), (s * 0.35 * d - 0.015, s * 0.35 * d + 0.015), (0.0, 0.3 * h)) for s in (-1, 1)]
+        slats = [box((-w / 2 + k * step, -w / 2 + (k + 0.8) * step), around(d / 2), (0.3 * h, h), 0.002) for k in range(count)]
+        rails = [box(around(w / 2), around(0.015, s * 0.35 * d), (0.0, 0.3 * h)) for s in (-1, 1)]
         return Shape(pieces("mat", slats + rails, scheme.timber))
     cloth = terry(rng, scheme)
-    edge = rounded_rectangle((-w / 2, w / 2), (-d / 2, d / 2), 0.03, 2)
-    inner = rounded_rectangle((-w / 2 + 0.05, w / 2 - 0.05), (-d / 2 + 0.05, d / 2 - 0.05), 0.02, 2)
+    edge = rounded_rectangle(around(w / 2), around(d / 2), 0.03, 2)
+    inner = rounded_rectangle(around(w / 2 - 0.05), around(d / 2 - 0.05), 0.02, 2)
     pile = replace(cloth, name="pile", color=tuple(0.85 * c for c in cloth.color))  # type: ignore[arg-type]
     return Shape(pieces("mat", slab(edge, (0.0, 0.75 * h)), cloth) + pieces("pile", slab(inner, (0.75 * h, h)), pile))
 
@@ -122,27 +118,24 @@ def blind(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     w, d, h = size
     color = FABRICS[pick(rng, "cream_cloth linen grey_cloth snow_cloth taupe_cloth")]
     cloth = Finish("blind", shade(rng, color, 0.06), 0.9, pattern="weave", density=300)
-    rail = box((-w / 2, w / 2), (-d / 2, d / 2), (h - 0.05, h), 0.004)
+    rail = box(around(w / 2), around(d / 2), (h - 0.05, h), 0.004)
     if form == "roller":
-        sheet = box((-w / 2 + 0.01, w / 2 - 0.01), (-0.0015, 0.0015), (0.02, h - 0.05))
+        sheet = box(around(w / 2 - 0.01), (-0.0015, 0.0015), (0.02, h - 0.05))
         hem = rod((-w / 2 + 0.01, 0, 0.012), (w / 2 - 0.01, 0, 0.012), 0.012, n=8)
         return Shape(pieces("rail", rail, scheme.handle) + pieces("cloth", [sheet, hem], cloth))
     if form == "roman":
         folds = max(3, round(h / 0.22))
         step = (h - 0.05) / folds
-        laps = [
-            cushion((-w / 2 + 0.005, w / 2 - 0.005), (-0.42 * d, 0.42 * d), (k * step, (k + 1) * step - 0.004), 0.3 * d, 2)
-            for k in range(folds)
-        ]
+        laps = [cushion(around(w / 2 - 0.005), around(0.42 * d), (k * step, (k + 1) * step - 0.004), 0.3 * d, 2) for k in range(folds)]
         return Shape(pieces("rail", rail, cloth) + pieces("cloth", laps, cloth))
     count = max(8, round((h - 0.05) / 0.05))
     timber = scheme.timber if rng.random() < 0.6 else Finish("slat", (0.78, 0.77, 0.74), 0.4, density=500)
     step = (h - 0.05) / count
     slats: list[Solid] = [
-        box((-w / 2 + 0.005, w / 2 - 0.005), (-0.4 * d, 0.4 * d), (-0.0015, 0.0015)).turned("x", 0.6).moved((0, 0, (k + 0.5) * step))
+        box(around(w / 2 - 0.005), around(0.4 * d), (-0.0015, 0.0015)).turned("x", 0.6).moved((0, 0, (k + 0.5) * step))
         for k in range(count)
     ]
-    cords = [box((s * 0.35 * w - 0.003, s * 0.35 * w + 0.003), (-0.003, 0.003), (0.0, h - 0.05)) for s in (-1, 1)]
+    cords = [box(around(0.003, s * 0.35 * w), (-0.003, 0.003), (0.0, h - 0.05)) for s in (-1, 1)]
     return Shape(pieces("rail", rail, timber) + pieces("slats", slats, timber) + pieces("cords", cords, cloth))
 
 
@@ -156,8 +149,8 @@ def paper_holder(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         box((-w / 2 + 0.014, w / 2), (d / 2 - r - 0.03, d / 2 - r - 0.018), (0.54 * h, 0.62 * h), 0.002),
     ]
     if form == "lid":
-        arm.append(box((-w / 2 + 0.01, w / 2), (-d / 2, d / 2), (h - 0.004, h)))
-    roll = standing([slab(circle(r, 20), (-0.38 * w, 0.38 * w), 0.002)], 0.0, 0.0)[0].turned("z", math.pi / 2)
-    sheet = box((-0.36 * w, 0.36 * w), (d / 2 - 2 * r - 0.024, d / 2 - 2 * r - 0.022), (0.0, 0.45 * h))
+        arm.append(box((-w / 2 + 0.01, w / 2), around(d / 2), (h - 0.004, h)))
+    roll = standing([slab(circle(r, 20), around(0.38 * w), 0.002)], (0, 0, 0))[0].turned("z", math.pi / 2)
+    sheet = box(around(0.36 * w), (d / 2 - 2 * r - 0.024, d / 2 - 2 * r - 0.022), (0.0, 0.45 * h))
     placed = roll.moved((0.005, d / 2 - r - 0.024, 0.5 * h))
     return Shape(pieces("arm", arm, scheme.handle) + pieces("roll", [placed, sheet], PAPER))

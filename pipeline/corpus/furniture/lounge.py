@@ -9,9 +9,8 @@ import numpy as np
 from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, tube, turns, upright, wall
 from pipeline.corpus.furniture.finishes import PLASTIC, Finish, Scheme, cane, shade
 from pipeline.corpus.furniture.legs import draw_kind, leg_finish, legs
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, box, cushion, revolve, rod, slab, stack
-from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, around, beam, box, cushion, polar, revolve, rod, slab, stack
 from pipeline.corpus.furniture.upholstery import seat_cushion, upright_pad
 
 
@@ -40,19 +39,19 @@ def _easy(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, 
         ]
         rest = curve([(-y + 0.005, arm - 0.012), (-0.2 * y, arm - 0.006), (0.78 * y, arm - 0.02)], 2)
         frame += [q.moved((px, 0, 0)) for q in sheet(rest, 0.02, [0.046, 0.056, 0.052, 0.046, 0.04])]
-        frame.append(box((px - 0.011, px + 0.011), (-y + 0.07, y - 0.12), (seat - 0.18, seat - 0.125), 0.003))
-    rails = [box((-x + 0.04, x - 0.04), (a - 0.011, a + 0.011), (seat - 0.18, seat - 0.13), 0.003) for a in (-y + 0.09, y - 0.2)]
+        frame.append(box(around(0.011, px), (-y + 0.07, y - 0.12), (seat - 0.18, seat - 0.125), 0.003))
+    rails = [box(around(x - 0.04), around(0.011, a), (seat - 0.18, seat - 0.13), 0.003) for a in (-y + 0.09, y - 0.2)]
     slope, back = 0.28, y - 0.14 - 0.28 * (h - seat) * 0.6
-    wide = (-x + 0.045, x - 0.045)
+    wide = around(x - 0.045)
     parts = pieces("frame", frame + rails, wood)
     parts += seat_cushion(
         (wide[0], wide[1]), (-y + 0.01, back - 0.055), (seat - 0.125, seat + 0.02), 0.04, scheme.soft, _piping(rng, scheme), 0.025
     )
     top = h - 0.012
-    pad = upright_pad(rng, scheme, wide, (back - 0.05, back + 0.05), (seat - 0.1, top))
+    pad = upright_pad(rng, scheme, wide, around(0.05, back), (seat - 0.1, top))
     parts += pieces("back_pad", lean(pad, seat - 0.1, slope), scheme.soft)
     laths = [
-        box((px - 0.013, px + 0.013), (back + 0.052, back + 0.068), (seat - 0.17, top - 0.06), 0.002)
+        box(around(0.013, px), (back + 0.052, back + 0.068), (seat - 0.17, top - 0.06), 0.002)
         for px in np.linspace(wide[0] + 0.03, wide[1] - 0.03, 5)
     ]
     return parts + pieces("laths", lean(laths, seat - 0.1, slope), wood)
@@ -65,11 +64,11 @@ def _wing(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, 
     low = 0.17
     cloth = scheme.soft
     parts = pieces("legs", legs(kind, (x - 0.07, y - 0.08), low, 0.042), leg_finish(scheme, kind))
-    parts += pieces("body", cushion((-x + 0.03, x - 0.03), (-y + 0.02, y - 0.02), (low, seat - 0.1), 0.025, 2), cloth)
+    parts += pieces("body", cushion(around(x - 0.03), around(y - 0.02), (low, seat - 0.1), 0.025, 2), cloth)
     arm = 0.13 * min(1.0, w / 0.75)
     back = y - 0.15
-    parts += seat_cushion((-x + arm, x - arm), (-y, back - 0.002), (seat - 0.098, seat + 0.035), 0.04, cloth, _piping(rng, scheme), 0.03)
-    parts += pieces("back", upright_pad(rng, scheme, (-x + arm - 0.02, x - arm + 0.02), (back, y - 0.01), (seat - 0.098, h)), cloth)
+    parts += seat_cushion(around(x - arm), (-y, back - 0.002), (seat - 0.098, seat + 0.035), 0.04, cloth, _piping(rng, scheme), 0.03)
+    parts += pieces("back", upright_pad(rng, scheme, around(x - arm + 0.02), (back, y - 0.01), (seat - 0.098, h)), cloth)
     roll = 0.5 * arm + 0.012
     top = seat + 0.22 - roll
     for s in (-1, 1):
@@ -99,7 +98,7 @@ def _office(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece
     x, y = 0.46 * w, 0.44 * d
     parts = pieces("castors", wheels, PLASTIC) + pieces("star", base, scheme.handle)
     parts += pieces("plate", box((-0.09, 0.09), (-0.11, 0.11), (seat - 0.13, seat - 0.1), 0.004), PLASTIC)
-    parts += seat_cushion((-x + 0.03, x - 0.03), (-y, y - 0.1), (seat - 0.1, seat), 0.035, scheme.soft, None, 0.018)
+    parts += seat_cushion(around(x - 0.03), (-y, y - 0.1), (seat - 0.1, seat), 0.035, scheme.soft, None, 0.018)
     rise = h - seat
     net = Finish("mesh_cloth", (0.05, 0.05, 0.055), 0.9, pattern="cane", density=300, second=(0.12, 0.12, 0.125))
     face = net if rng.random() < 0.5 else scheme.soft
@@ -114,7 +113,7 @@ def _office(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece
     arms: list[Solid] = []
     for s in (-1, 1):
         px = s * (w / 2 - 0.03)
-        arms.append(cushion((px - 0.03, px + 0.03), (-0.25 * d, 0.18 * d), (seat + 0.19, seat + 0.22), 0.012, 2))
+        arms.append(cushion(around(0.03, px), (-0.25 * d, 0.18 * d), (seat + 0.19, seat + 0.22), 0.012, 2))
         arms += tube([(s * 0.1, 0, seat - 0.115), (px, 0, seat - 0.115), (px, 0, seat + 0.19)], 0.012, 8)
     return parts + pieces("arms", arms, PLASTIC)
 
@@ -136,22 +135,22 @@ def _lounger(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
     )
     parts = pieces("shells", sheet(under, 0.014, 2 * x - 0.12) + sheet(behind, 0.014, 2 * x - 0.14), wood)
     parts += seat_cushion(
-        (-x + 0.075, x - 0.075), (-y + 0.005, 0.5 * y - 0.108), (seat - 0.05, seat + 0.065), 0.045, scheme.soft, _piping(rng, scheme), 0.02
+        around(x - 0.075), (-y + 0.005, 0.5 * y - 0.108), (seat - 0.05, seat + 0.065), 0.045, scheme.soft, _piping(rng, scheme), 0.02
     )
     slope = (0.5 * y - 0.03) / (h - seat)
     pads = [
-        cushion((-x + 0.085, x - 0.085), (0.5 * y - 0.105, 0.5 * y - 0.015), (a, b), 0.04, 3)
+        cushion(around(x - 0.085), (0.5 * y - 0.105, 0.5 * y - 0.015), (a, b), 0.04, 3)
         for a, b in ((seat - 0.02, seat + 0.53 * (h - seat)), (seat + 0.55 * (h - seat), h))
     ]
     parts += pieces("back_pads", lean(pads, seat - 0.02, slope), scheme.soft)
     for s in (-1, 1):
         px = s * (x - 0.035)
-        parts += pieces("arms", cushion((px - 0.035, px + 0.035), (-0.5 * y, 0.3 * y), (seat + 0.16, seat + 0.21), 0.022, 2), scheme.soft)
-        parts += pieces("arm_struts", box((px - 0.008, px + 0.008), (-0.12 * y, 0.1 * y), (seat - 0.05, seat + 0.16), 0.002), wood)
+        parts += pieces("arms", cushion(around(0.035, px), (-0.5 * y, 0.3 * y), (seat + 0.16, seat + 0.21), 0.022, 2), scheme.soft)
+        parts += pieces("arm_struts", box(around(0.008, px), (-0.12 * y, 0.1 * y), (seat - 0.05, seat + 0.16), 0.002), wood)
     star = [
         rod(
-            (0.03 * math.cos(a), 0.03 * math.sin(a), 0.06),
-            (0.44 * min(w, d) * math.cos(a), 0.44 * min(w, d) * math.sin(a), 0.014),
+            polar(0.03, a, 0.06),
+            polar(0.44 * min(w, d), a, 0.014),
             0.018,
             0.012,
             8,

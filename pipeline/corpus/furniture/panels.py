@@ -10,7 +10,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import DARK_GLASS, GLASS, MIRROR, Finish
 from pipeline.corpus.furniture.shape import Piece, group_pieces, pieces
-from pipeline.corpus.furniture.solids import Solid, box, slab, stack
+from pipeline.corpus.furniture.solids import Solid, around, box, slab, stack
 
 PanelStyle = Literal["slab", "shaker", "raised", "glass", "dark_glass", "slats", "reeded", "cane", "mirror"]
 HandleStyle = Literal["bar", "long", "flat", "knob", "ring", "cup", "edge", "groove", "none"]
@@ -105,7 +105,7 @@ def _filling(inner: Rect, style: FrontStyle) -> tuple[Piece, ...]:
         parts = pieces("front_glass", box(inner.x, (y + 0.006, y + 0.012), inner.z), GLASS if style.panel == "glass" else DARK_GLASS)
         if style.panel == "glass" and inner.height > 0.7:  # a glazing bar
             middle = inner.middle[1]
-            parts += pieces("front_bar", box(inner.x, (y + 0.003, y + 0.006), (middle - 0.011, middle + 0.011)), style.finish)
+            parts += pieces("front_bar", box(inner.x, (y + 0.003, y + 0.006), around(0.011, middle)), style.finish)
         return parts
     if style.panel == "cane":
         return pieces("front_cane", box(inner.x, (y + 0.006, y + 0.010), inner.z), CANE)
@@ -127,7 +127,7 @@ def _louvres(inner: Rect, thickness: float) -> list[Solid]:
     slats = []
     for i in range(count):
         z = inner.z[0] + (i + 0.5) * pitch
-        slat = box(inner.x, (middle - 0.003, middle + 0.003), (z - 0.56 * pitch, z + 0.56 * pitch))
+        slat = box(inner.x, around(0.003, middle), around(0.56 * pitch, z))
         angle = math.asin(min(0.8, max(0.0, half - 0.003) / (0.56 * pitch)))
         slats.append(slat.turned("x", -angle, (0.0, middle, z)))
     return slats

@@ -155,7 +155,7 @@ def _rug_diamonds(rng: np.random.Generator, x: Tones, y: Tones, aspect: float) -
     return np.where(np.abs(u - 0.5) < 0.06, 1.0, np.where(u < 0.16, 0.8, 0.05))
 
 
-def _rug_stripes(rng: np.random.Generator, x: Tones, y: Tones, aspect: float) -> Tones:  # noqa: ARG001 - one signature for all
+def _rug_stripes(rng: np.random.Generator, x: Tones, y: Tones, aspect: float) -> Tones:
     return np.asarray(rng.uniform(0, 1, 10)[np.searchsorted(np.sort(rng.random(9)), y)])
 
 
@@ -185,7 +185,7 @@ def _art_lines(rng: np.random.Generator, x: Tones, y: Tones, aspect: float) -> T
     return image
 
 
-def _art_blocks(rng: np.random.Generator, x: Tones, y: Tones, aspect: float) -> Tones:  # noqa: ARG001 - one signature for all
+def _art_blocks(rng: np.random.Generator, x: Tones, y: Tones, aspect: float) -> Tones:
     image = np.full(x.shape, 0.1)
     for _ in range(9):
         x0, y0, w, h = rng.uniform(-0.1, 0.9), rng.uniform(-0.1, 0.9), rng.uniform(0.1, 0.5), rng.uniform(0.1, 0.5)
@@ -193,7 +193,7 @@ def _art_blocks(rng: np.random.Generator, x: Tones, y: Tones, aspect: float) -> 
     return image
 
 
-def _dial(rng: np.random.Generator, x: Tones, y: Tones, aspect: float) -> Tones:  # noqa: ARG001 - one signature for all
+def _dial(rng: np.random.Generator, x: Tones, y: Tones, aspect: float) -> Tones:
     r, a = np.hypot(x - 0.5, y - 0.5) * 2, np.arctan2(x - 0.5, y - 0.5)
     marks = (r > 0.74) & (r < 0.88) & (np.abs((a * 6 / math.pi + 0.5) % 1 - 0.5) < 0.1)
     wide = 0.045 / np.maximum(r, 0.1)

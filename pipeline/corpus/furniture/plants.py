@@ -1,7 +1,5 @@
 """House plants: leaves of several shapes on stems in pots. Lengths in metres."""
 
-# ruff: noqa: ARG001 - all plants share one signature, whatever of it they need
-
 from __future__ import annotations
 
 import itertools
@@ -11,10 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import blades, curve, tube, turns
-from pipeline.corpus.furniture.finishes import CERAMIC, LEAF, SOIL, Finish, Scheme, shade
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, circle, ring, rod, slab
-from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.finishes import CERAMIC, LEAF, SOIL, Finish, Scheme, one_of, shade
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, circle, polar, ring, rod, slab
 
 GOLDEN = math.pi * (3 - math.sqrt(5))
 BARK = Finish("bark", (0.16, 0.10, 0.055), 0.9, pattern="speckle", density=500)
@@ -36,7 +33,7 @@ def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[
     """Return a pot with soil, and the height of the soil: tapered, cylindrical, bellied, a box, or a planter on legs."""
     clay = Finish("clay", (0.42, 0.17, 0.09), 0.8, density=1800)
     concrete = Finish("concrete_pot", (0.34, 0.34, 0.33), 0.8, pattern="concrete", density=2000)
-    finish = (CERAMIC, clay, scheme.front, concrete)[int(rng.integers(4))]
+    finish = one_of(rng, (CERAMIC, clay, scheme.front, concrete))
     kind = int(rng.integers(4))
     lift = 0.0
     parts: tuple[Piece, ...] = ()
@@ -46,8 +43,8 @@ def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[
             "stand",
             [
                 rod(
-                    (0.96 * r * math.cos(a), 0.96 * r * math.sin(a), 0),
-                    (0.96 * r * math.cos(a), 0.96 * r * math.sin(a), 0.72 * h),
+                    polar(0.96 * r, a, 0),
+                    polar(0.96 * r, a, 0.72 * h),
                     0.011,
                     n=8,
                 )
@@ -60,8 +57,8 @@ def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[
             "stand_bars",
             [
                 rod(
-                    (-bar * math.cos(0.4), -bar * math.sin(0.4), lift - 0.012),
-                    (bar * math.cos(0.4), bar * math.sin(0.4), lift - 0.012),
+                    polar(-bar, 0.4, lift - 0.012),
+                    polar(bar, 0.4, lift - 0.012),
                     0.009,
                     n=6,
                 )

@@ -1,7 +1,5 @@
 """Chairs at tables, and Chinese armchairs. The front is -y. Lengths in metres."""
 
-# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
-
 from __future__ import annotations
 
 import math
@@ -10,11 +8,10 @@ import numpy as np
 
 from pipeline.corpus.furniture.backs import Frame, back
 from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, tube
-from pipeline.corpus.furniture.finishes import Finish, Scheme, cane
+from pipeline.corpus.furniture.finishes import Finish, Scheme, cane, one_of
 from pipeline.corpus.furniture.legs import draw_kind, inside, leg_finish, legs
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, box, cushion, revolve, rod, rounded_rectangle, slab
-from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, around, beam, box, cushion, revolve, rod, rounded_rectangle, slab
 from pipeline.corpus.furniture.styles import CLASSIC, ORIENTAL
 from pipeline.corpus.furniture.upholstery import seat_cushion
 
@@ -48,7 +45,7 @@ def _frame_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     parts = pieces("legs", [s.moved((0, middle, 0)) for s in legs(kind, half, under, thick)], wood)
     parts += pieces(
         "rail",
-        slab(rounded_rectangle((-x + 0.012, x - 0.012), (-y + 0.016, back_y + 0.5 * thick), 0.02, 2), (under, under + rail), 0.004),
+        slab(rounded_rectangle(around(x - 0.012), (-y + 0.016, back_y + 0.5 * thick), 0.02, 2), (under, under + rail), 0.004),
         wood,
     )
     span_x, span_y = (-x, x), (-y, back_y - 0.55 * thick)
@@ -65,7 +62,7 @@ def _frame_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         kinds = "splat"
     elif form == "wood" and scheme.style in CLASSIC:
         kinds = "splat ladder"
-    choice = kinds.split()[int(rng.integers(len(kinds.split())))]
+    choice = one_of(rng, kinds.split())
     if choice == "pad":
         short = [
             beam((s * 0.62 * x, back_y, under + rail), (s * 0.62 * x, back_y, seat - 0.021 + 0.08 * (h - seat + 0.02)), 0.03, 0.022)
@@ -78,7 +75,7 @@ def _frame_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         z = 0.36 * under
         low = [
             box(
-                (s * half[0] - 0.009, s * half[0] + 0.009),
+                around(0.009, s * half[0]),
                 (middle - half[1] + 0.5 * thick, middle + half[1] - 0.5 * thick),
                 (z, z + 0.026),
                 0.002,
@@ -126,7 +123,7 @@ def _shell_chair(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[
         ]
         parts += pieces("arms", wings, finish)
     if not soft and rng.random() < 0.4:
-        parts += seat_cushion((-0.8 * x, 0.8 * x), (-0.7 * y, 0.4 * y), (seat + 0.008, seat + 0.04), 0.015, scheme.soft, None, 0.006)
+        parts += seat_cushion(around(0.8 * x), (-0.7 * y, 0.4 * y), (seat + 0.008, seat + 0.04), 0.015, scheme.soft, None, 0.006)
     top = seat - 0.06
     base = int(rng.integers(3))
     if base == 0:
@@ -135,7 +132,7 @@ def _shell_chair(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[
     kind = "splayed" if base == 1 else "dowel"
     finish = scheme.timber if base == 1 else scheme.handle
     feet = legs(kind, (0.3 * w, 0.3 * d), top - 0.012, 0.036 if base == 1 else 0.026)
-    plate = slab(rounded_rectangle((-0.34 * w, 0.34 * w), (-0.34 * d, 0.34 * d), 0.03, 2), (top - 0.012, top), 0.002)
+    plate = slab(rounded_rectangle(around(0.34 * w), around(0.34 * d), 0.03, 2), (top - 0.012, top), 0.002)
     return parts + pieces("legs", feet, finish) + pieces("plate", plate, scheme.handle)
 
 
@@ -184,14 +181,14 @@ def _cantilever(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[P
     frame = [s for sx in (-1, 1) for s in tube([(sx * x, a, b) for a, b in side], TUBE, 8)]
     frame += [rod((-x + TUBE, y - 0.03, TUBE), (x - TUBE, y - 0.03, TUBE), TUBE, n=8)]
     panel = scheme.soft if rng.random() < 0.6 else cane(rng)
-    inner = (-x + TUBE + 0.002, x - TUBE - 0.002)
+    inner = around(x - TUBE - 0.002)
     thick = 0.03 if panel is scheme.soft else 0.014
     parts = pieces("frame", frame, scheme.handle) + pieces(
         "seat", cushion(inner, (-y + 0.05, 0.5 * y), (seat - 0.035, seat - 0.035 + thick), 0.012, 2), panel
     )
     low = seat + 0.28 * (h - seat)
     slope = (y - 0.012 - 0.66 * y) / (h - seat - 0.03)
-    pad = cushion(inner, (0.66 * y - thick / 2, 0.66 * y + thick / 2), (low, h), 0.012, 2)
+    pad = cushion(inner, around(thick / 2, 0.66 * y), (low, h), 0.012, 2)
     return parts + pieces("back", lean([pad], seat + 0.02, slope), panel)
 
 
@@ -208,18 +205,18 @@ def chinese_chair(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     parts = pieces(
         "posts", [rod((s * x, t * y, 0), (s * x, t * y, seat - board), 0.018, 0.016, 10) for s in (-1, 1) for t in (-1, 1)] + sides, wood
     )
-    parts += pieces("seat", box((-x - 0.03, x + 0.03), (-y - 0.03, y + 0.03), (seat - board, seat), 0.006), wood)
-    apron = [box((-x + 0.02, x - 0.02), (t * y - 0.006, t * y + 0.006), (seat - 0.09, seat - board), 0.002) for t in (-1, 1)]
-    apron += [box((s * x - 0.006, s * x + 0.006), (-y + 0.02, y - 0.02), (seat - 0.08, seat - board), 0.002) for s in (-1, 1)]
+    parts += pieces("seat", box(around(x + 0.03), around(y + 0.03), (seat - board, seat), 0.006), wood)
+    apron = [box(around(x - 0.02), around(0.006, t * y), (seat - 0.09, seat - board), 0.002) for t in (-1, 1)]
+    apron += [box(around(0.006, s * x), around(y - 0.02), (seat - 0.08, seat - board), 0.002) for s in (-1, 1)]
     parts += pieces("apron", apron, wood)
     arm = seat + (0.5 if form != "rose" else 0.62) * (h - seat)
     upper, top = _yoke(form, x, y, seat, arm, h)
     parts += pieces("frame", upper, wood)
-    splat = box((-0.085, 0.085), (y - 0.007, y + 0.007), (seat, top - 0.004 if form != "rose" else seat + 0.6 * (top - seat)), 0.003)
+    splat = box((-0.085, 0.085), around(0.007, y), (seat, top - 0.004 if form != "rose" else seat + 0.6 * (top - seat)), 0.003)
     parts += pieces("splat", splat, wood)
     if rng.random() < 0.55:
         parts += seat_cushion(
-            (-0.84 * x, 0.84 * x),
+            around(0.84 * x),
             (-0.86 * y, 0.8 * y),
             (seat + 0.0005, seat + 0.045),
             0.02,

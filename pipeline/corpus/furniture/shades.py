@@ -8,10 +8,10 @@ import math
 import numpy as np
 
 from pipeline.corpus.furniture.bent import band, curve, tube, turns
-from pipeline.corpus.furniture.finishes import GLOW, Finish, Scheme, cane
+from pipeline.corpus.furniture.finishes import GLOW, Finish, Scheme, cane, one_of
 from pipeline.corpus.furniture.finishes import shade as tinted
 from pipeline.corpus.furniture.shape import Piece, pieces
-from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab
+from pipeline.corpus.furniture.solids import Solid, around, box, circle, revolve, ring, rod, slab
 
 Spot = tuple[float, float]
 Span = tuple[float, float]
@@ -22,7 +22,7 @@ WALL = 0.006
 def shade_word(rng: np.random.Generator, scheme: Scheme, without: str) -> str:
     """Draw a form of shade that the style likes."""
     words = [word for word in scheme.manner.shades.split() if word not in without.split()] or ["drum"]
-    return words[int(rng.integers(len(words)))]
+    return one_of(rng, words)
 
 
 def cord(at: Spot, z: Span) -> list[Solid]:
@@ -158,8 +158,8 @@ def _lantern(scheme: Scheme, radius: float, z: Span, at: Spot) -> tuple[Piece, .
     x, y = at
     posts = [
         box(
-            (x + a * (r - t / 2) - t / 2, x + a * (r - t / 2) + t / 2),
-            (y + b * (r - t / 2) - t / 2, y + b * (r - t / 2) + t / 2),
+            around(t / 2, x + a * (r - t / 2)),
+            around(t / 2, y + b * (r - t / 2)),
             (low + 0.012, high - 0.03),
             0.002,
         )
@@ -167,29 +167,23 @@ def _lantern(scheme: Scheme, radius: float, z: Span, at: Spot) -> tuple[Piece, .
         for b in (-1, 1)
     ]
     inner = r - t
-    panes = [
-        box((x + s * (r - 0.7 * t) - 0.002, x + s * (r - 0.7 * t) + 0.002), (y - inner, y + inner), (low + 0.012, high - 0.03))
-        for s in (-1, 1)
-    ]
-    panes += [
-        box((x - inner, x + inner), (y + s * (r - 0.7 * t) - 0.002, y + s * (r - 0.7 * t) + 0.002), (low + 0.012, high - 0.03))
-        for s in (-1, 1)
-    ]
+    panes = [box(around(0.002, x + s * (r - 0.7 * t)), around(inner, y), (low + 0.012, high - 0.03)) for s in (-1, 1)]
+    panes += [box(around(inner, x), around(0.002, y + s * (r - 0.7 * t)), (low + 0.012, high - 0.03)) for s in (-1, 1)]
     bars = [
-        box((x + s * (r - 0.3 * t) - 0.003, x + s * (r - 0.3 * t) + 0.003), (y - inner, y + inner), (q, q + 0.006))
+        box(around(0.003, x + s * (r - 0.3 * t)), around(inner, y), (q, q + 0.006))
         for s in (-1, 1)
         for q in np.linspace(low, high, 5)[1:-1]
     ]
     bars += [
-        box((x - inner, x + inner), (y + s * (r - 0.3 * t) - 0.003, y + s * (r - 0.3 * t) + 0.003), (q, q + 0.006))
+        box(around(inner, x), around(0.003, y + s * (r - 0.3 * t)), (q, q + 0.006))
         for s in (-1, 1)
         for q in np.linspace(low, high, 5)[1:-1]
     ]
     caps = [
-        box((x - radius, x + radius), (y - radius, y + radius), (high - 0.03, high - 0.015), 0.003),
-        box((x - 0.6 * radius, x + 0.6 * radius), (y - 0.6 * radius, y + 0.6 * radius), (high - 0.015, high), 0.003),
+        box(around(radius, x), around(radius, y), (high - 0.03, high - 0.015), 0.003),
+        box(around(0.6 * radius, x), around(0.6 * radius, y), (high - 0.015, high), 0.003),
     ]
-    caps.append(box((x - r, x + r), (y - r, y + r), (low, low + 0.012), 0.002))
+    caps.append(box(around(r, x), around(r, y), (low, low + 0.012), 0.002))
     return pieces("frame", posts + bars + caps, wood) + pieces("panes", panes, GLOW)
 
 

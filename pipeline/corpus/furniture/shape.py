@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.solids import Solid, Vector, box, hull
 
+Size = Sequence[float]  # (w, d, h) [m]
 Axis3 = tuple[float, float, float]
 FRONT: Axis3 = (0.0, -1.0, 0.0)
 UP: Axis3 = (0.0, 0.0, 1.0)

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.casework import Cell, Column, case
-from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Scheme
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import box
-from pipeline.corpus.furniture.storage import Size, case_style, doors_of, front_style
+from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Scheme, one_of
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import around, box
+from pipeline.corpus.furniture.storage import case_style, doors_of, front_style
 
 
 def bookshelf(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -51,9 +51,7 @@ def books(rng: np.random.Generator, shape: Shape) -> tuple[Piece, ...]:
             t, tall, deep = float(rng.uniform(0.02, 0.05)), float(rng.uniform(0.16, 0.24)), float(rng.uniform(0.12, 0.17))
             if x + t > high[0] - 0.01:
                 break
-            parts += pieces(
-                "books", box((x, x + t), (y, min(y + deep, high[1])), (high[2], high[2] + tall)), palette[int(rng.integers(len(palette)))]
-            )
+            parts += pieces("books", box((x, x + t), (y, min(y + deep, high[1])), (high[2], high[2] + tall)), one_of(rng, palette))
             x += t + 0.0015
     return tuple(parts)
 
@@ -63,11 +61,11 @@ def ladder_shelf(size: Size, scheme: Scheme, rows: int) -> Shape:
     w, d, h = size
     t = 0.028
     posts = [box((x, x + t), (y, y + t), (0, h), 0.002) for x in (-w / 2, w / 2 - t) for y in (-d / 2, d / 2 - t)]
-    rungs = [box((x + 0.004, x + t - 0.004), (-d / 2 + t, d / 2 - t), (z, z + 0.03)) for x in (-w / 2, w / 2 - t) for z in (0.08, h - 0.06)]
+    rungs = [box((x + 0.004, x + t - 0.004), around(d / 2 - t), (z, z + 0.03)) for x in (-w / 2, w / 2 - t) for z in (0.08, h - 0.06)]
     base = pieces("frame", posts + rungs, scheme.accent)
     for k in range(rows):
         z = 0.12 + (h - 0.2) * k / (rows - 1)
-        base += pieces(f"board_{k}", box((-w / 2 + t, w / 2 - t), (-d / 2 + 0.002, d / 2 - 0.002), (z, z + 0.02), 0.002), scheme.body)
+        base += pieces(f"board_{k}", box(around(w / 2 - t), around(d / 2 - 0.002), (z, z + 0.02), 0.002), scheme.body)
     return Shape(base)
 
 

@@ -10,9 +10,8 @@ from pipeline.corpus.furniture.bent import arc, band, prism, turns
 from pipeline.corpus.furniture.dining_tables import cased_table, legged_table, top, top_finish, trumpet
 from pipeline.corpus.furniture.finishes import GLASS, Scheme, cane
 from pipeline.corpus.furniture.legs import draw_kind, inside, leg_finish, legs, pedestal
-from pipeline.corpus.furniture.shape import Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, circle, ring, rod, rounded_rectangle, slab
-from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.shape import Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, around, circle, polar, ring, rod, rounded_rectangle, slab
 
 
 def coffee_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -24,7 +23,7 @@ def coffee_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     if form == "legs":
         shape = legged_table(rng, size, scheme, without="block plank")
         if h > 0.3 and rng.random() < 0.5:
-            lower = slab(rounded_rectangle((-0.36 * w, 0.36 * w), (-0.34 * d, 0.34 * d), 0.02, 2), (0.26 * h, 0.26 * h + 0.016), 0.003)
+            lower = slab(rounded_rectangle(around(0.36 * w), around(0.34 * d), 0.02, 2), (0.26 * h, 0.26 * h + 0.016), 0.003)
             return Shape(shape.base + pieces("shelf", lower, cane(rng) if rng.random() < scheme.manner.cane else scheme.body))
         return shape
     rim = ring((w / 2, w / 2), (w / 2 - 0.012, w / 2 - 0.012), (h - 0.05, h), 36)
@@ -44,7 +43,7 @@ def corner_side_table(rng: np.random.Generator, form: str, size: Size, scheme: S
     if form == "legs":
         shape = legged_table(rng, size, scheme, without="block plank")
         if rng.random() < 0.55:
-            board = slab(rounded_rectangle((-0.34 * w, 0.34 * w), (-0.32 * d, 0.32 * d), 0.02, 2), (0.3 * h, 0.3 * h + 0.014), 0.003)
+            board = slab(rounded_rectangle(around(0.34 * w), around(0.32 * d), 0.02, 2), (0.3 * h, 0.3 * h + 0.014), 0.003)
             return Shape(shape.base + pieces("shelf", board, scheme.body))
         return shape
     material = top_finish(rng, scheme, stone=1.6)
@@ -82,7 +81,7 @@ def round_end_table(rng: np.random.Generator, form: str, size: Size, scheme: Sch
         parts += pieces(
             "shelf",
             prism(
-                np.array([(0.26 * w * math.cos(a), 0.26 * w * math.sin(a)) for a in turns(3, -math.pi / 2)]),
+                np.array([polar(0.26 * w, a) for a in turns(3, -math.pi / 2)]),
                 "z",
                 (0.38 * h, 0.38 * h + 0.014),
             ),

@@ -1,7 +1,5 @@
 """Sofas, armchairs, corner sofas, chaises and bean bags. The front is -y. Lengths in metres."""
 
-# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
-
 from __future__ import annotations
 
 import itertools
@@ -10,12 +8,11 @@ import math
 import numpy as np
 
 from pipeline.corpus.furniture.bent import curve, lean, sheet, wall
-from pipeline.corpus.furniture.finishes import Finish, Scheme
+from pipeline.corpus.furniture.finishes import Finish, Scheme, one_of
 from pipeline.corpus.furniture.legs import draw_kind, leg, leg_finish, legs
 from pipeline.corpus.furniture.lounge import lounge_chair
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, box, cushion, revolve, rod
-from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, around, beam, box, cushion, revolve, rod
 from pipeline.corpus.furniture.upholstery import Span, bolster, channels, seat_cushion, throw_pillow, tufted_panel
 
 ARMS = {"track": 0.13, "legs": 0.09, "roll": 0.2, "chesterfield": 0.2, "camelback": 0.17, "cloud": 0.22, "u_shape": 0.15}
@@ -35,18 +32,18 @@ def sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     lift = LIFTS[form]
     deep = min(0.2, 0.22 * d)
     front = -d / 2 + (0.28 * d if form == "u_shape" and w > 2.2 else 0.0)
-    parts = feet(rng, scheme, (-w / 2, w / 2), (-d / 2, d / 2), lift, form)
+    parts = feet(rng, scheme, around(w / 2), around(d / 2), lift, form)
     base_top = seat - 0.14
     side = arm if form == "track" else 0.012
-    parts += pieces("frame", cushion((-w / 2 + side, w / 2 - side), (front + 0.03, d / 2 - 0.008), (lift, base_top), 0.018, 2), scheme.soft)
-    inner = (-w / 2 + arm, w / 2 - arm)
+    parts += pieces("frame", cushion(around(w / 2 - side), (front + 0.03, d / 2 - 0.008), (lift, base_top), 0.018, 2), scheme.soft)
+    inner = around(w / 2 - arm)
     if form == "u_shape":
         parts += _returns(w, d, front, lift, base_top, seat, arm, scheme)
     top = min(h - 0.04, seat + 0.2) if form != "chesterfield" else h - 0.08
     rolled = form in ("roll", "chesterfield", "camelback")
     rear = d / 2 - 0.62 * deep - 0.002 if rolled else d / 2 - 0.012
     parts += _arms(form, w, (-d / 2 + 0.012, rear), (base_top if form != "track" else lift + 0.004, top), arm, lift, scheme)
-    behind = (-w / 2 + 0.04, w / 2 - 0.04) if rolled else inner
+    behind = around(w / 2 - 0.04) if rolled else inner
     parts += _back(rng, form, behind, (d / 2 - 0.62 * deep, d / 2), (base_top, h), scheme)
     if form in ("chesterfield", "camelback"):
         xs = np.linspace(inner[0], inner[1], max(1, seats) + 1)
@@ -150,7 +147,7 @@ def _cushions(rng: np.random.Generator, x: Span, y: Span, z: Span, h: float, sea
 
 def _pillows(rng: np.random.Generator, x: float, y: float, z: Span, scheme: Scheme) -> tuple[Piece, ...]:
     pillows = []
-    for s in ([-1, 1], [-1], [1])[int(rng.integers(3))]:
+    for s in one_of(rng, ([-1, 1], [-1], [1])):
         size = min(float(rng.uniform(0.38, 0.46)), z[1] - z[0])
         pillows.append(throw_pillow((s * (x - 0.27), y - 0.12, z[0]), size, 0.32, -0.25 * s))
     return pieces("pillows", pillows, scheme.second)
@@ -184,10 +181,10 @@ def _frame_sofa(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[P
         solids += [beam((px, -y + 0.04, 0), (px, -y + 0.05, arm - 0.025), t, t), beam((px, y - 0.03, 0), (px, y - 0.06, arm - 0.025), t, t)]
         rest = curve([(-y + 0.004, arm - 0.014), (0.0, arm - 0.008), (y - 0.01, arm - 0.02)], 2)
         solids += [q.moved((px - s * 0.006, 0, 0)) for q in sheet(rest, 0.024, [1.2 * t, 1.45 * t, 1.5 * t, 1.4 * t, 1.2 * t])]
-    inner = (-x + t + 0.012, x - t - 0.012)
+    inner = around(x - t - 0.012)
     solids += [box((inner[0], inner[1]), (a, a + 0.026), (low - 0.06, low), 0.004) for a in (-y + 0.03, y - 0.17)]
     solids += [
-        box((px - 0.012, px + 0.012), (-y + 0.056, y - 0.17), (low - 0.05, low - 0.02), 0.002)
+        box(around(0.012, px), (-y + 0.056, y - 0.17), (low - 0.05, low - 0.02), 0.002)
         for px in np.linspace(inner[0] + 0.1, inner[1] - 0.1, max(2, round(w / 0.5)))
     ]
     slope = 0.2
@@ -196,7 +193,7 @@ def _frame_sofa(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[P
     laths = [box((inner[0], inner[1]), (back, back + 0.022), (z, z + 0.045), 0.004) for z in (seat - 0.02, h - 0.06)]
     count = max(4, round(span / 0.16))
     laths += [
-        box((px - 0.011, px + 0.011), (back + 0.005, back + 0.018), (seat + 0.025, h - 0.06), 0.002)
+        box(around(0.011, px), (back + 0.005, back + 0.018), (seat + 0.025, h - 0.06), 0.002)
         for px in np.linspace(inner[0] + 0.03, inner[1] - 0.03, count)
     ]
     parts = pieces("frame", solids, wood) + pieces("laths", lean(laths, seat - 0.02, slope), wood)
@@ -214,7 +211,7 @@ def _frame_sofa(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[P
 def l_shaped_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a sofa along the back and a chaise that reaches forward at one end (`form`: left or right, seen from the front)."""
     w, d, h = size
-    style = ("track", "legs", "cloud")[int(rng.integers(3))]
+    style = one_of(rng, ("track", "legs", "cloud"))
     main = min(0.98, 0.55 * d)
     lift, arm, deep = LIFTS[style], ARMS[style] * 1.1, 0.2
     seat = 0.43 * min(1.0, h / 0.78)
@@ -222,11 +219,11 @@ def l_shaped_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     long = min(1.0, 0.36 * w)
     y0 = d / 2 - main  # front of the main part
     cx = (-w / 2, -w / 2 + long)
-    parts = feet(rng, scheme, (-w / 2, w / 2), (y0, d / 2), lift, style) + feet(rng, scheme, cx, (-d / 2, y0 - 0.1), lift, style)
-    parts += pieces("frame", cushion((-w / 2 + 0.012, w / 2 - 0.012), (y0 + 0.03, d / 2 - 0.008), (lift, top), 0.018, 2), scheme.soft)
+    parts = feet(rng, scheme, around(w / 2), (y0, d / 2), lift, style) + feet(rng, scheme, cx, (-d / 2, y0 - 0.1), lift, style)
+    parts += pieces("frame", cushion(around(w / 2 - 0.012), (y0 + 0.03, d / 2 - 0.008), (lift, top), 0.018, 2), scheme.soft)
     parts += pieces("frame_chaise", cushion((cx[0] + 0.012, cx[1] - 0.01), (-d / 2 + 0.02, y0 + 0.028), (lift, top), 0.018, 2), scheme.soft)
     back = (d / 2 - 0.62 * deep, d / 2)
-    parts += _back(rng, style, (-w / 2 + arm, w / 2 - arm), back, (top, h), scheme)
+    parts += _back(rng, style, around(w / 2 - arm), back, (top, h), scheme)
     rest = seat + 0.2
     radius = 0.1 if style == "cloud" else min(scheme.manner.soft, 0.4 * arm)
     sides = [
@@ -263,7 +260,7 @@ def lazy_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     seat = min(0.38, 0.52 * h)
     parts = pieces("body", cushion((-x, x), (-y, y), (0, seat), 0.11, 4, 0.03), scheme.soft)
     parts += pieces("back", cushion((-x, x), (y - 0.3 * d, y), (seat - 0.012, h), 0.12, 4), scheme.soft)
-    return Shape(parts + pieces("bolster", bolster((-0.8 * x, 0.8 * x), y - 0.3 * d - 0.075, seat + 0.05, 0.075), scheme.second))
+    return Shape(parts + pieces("bolster", bolster(around(0.8 * x), y - 0.3 * d - 0.075, seat + 0.05, 0.075), scheme.second))
 
 
 def chaise_longue(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -273,14 +270,14 @@ def chaise_longue(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     seat = 0.42 * min(1.0, h / 0.8)
     kind = draw_kind(rng, scheme, "plank cross sled hairpin")
     parts = pieces("legs", legs(kind, (x - 0.06, y - 0.08), 0.15, 0.045), leg_finish(scheme, kind))
-    parts += pieces("frame", cushion((-x + 0.008, x - 0.008), (-y + 0.015, y - 0.015), (0.15, seat - 0.13), 0.02, 2), scheme.soft)
+    parts += pieces("frame", cushion(around(x - 0.008), around(y - 0.015), (0.15, seat - 0.13), 0.02, 2), scheme.soft)
     parts += seat_cushion(
         (-x, x), (-y, y - 0.17), (seat - 0.13, seat + 0.022), scheme.manner.soft, scheme.soft, _piping(rng, scheme), 0.025
     )
     if form == "recamier":
         pad = tufted_panel((-x, x), (y - 0.17, y - 0.06), (seat - 0.13, h - 0.16), max(2, round(w / 0.18)), 3)
         parts += pieces("back", pad, scheme.soft) + pieces("scroll", bolster((-x, x), y - 0.085, h - 0.085, 0.085), scheme.soft)
-        return Shape(parts + pieces("bolster", bolster((-0.75 * x, 0.75 * x), y - 0.255, seat + 0.105, 0.08), scheme.second))
+        return Shape(parts + pieces("bolster", bolster(around(0.75 * x), y - 0.255, seat + 0.105, 0.08), scheme.second))
     parts += pieces("back", cushion((-x, x), (y - 0.165, y), (seat - 0.13, h), 0.06, 3), scheme.soft)
     s = -1 if rng.random() < 0.5 else 1
     lo, hi = (x - 0.11, x) if s > 0 else (-x, -x + 0.11)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -137,6 +137,26 @@ def _stack_faces(n: int, rings: int) -> tuple[Face, ...]:
     return tuple(faces)
 
 
+def around(half: float, at: float = 0.0) -> Interval:
+    """Return the interval that reaches `half` to either side of `at`."""
+    return (at - half, at + half)
+
+
+def between(a: float, b: float) -> Interval:
+    """Return the interval between two numbers in either order."""
+    return (min(a, b), max(a, b))
+
+
+def polar(radius: float, angle: float, *height: float) -> tuple[float, ...]:
+    """Return the point (2,) at an angle [rad] around the origin, or with a `height` (3,)."""
+    return (radius * math.cos(angle), radius * math.sin(angle), *height)
+
+
+def standing(solids: Iterable[Solid], at: Vector) -> list[Solid]:
+    """Return solids made lying about the origin, turned upright to face the front (-y), what was the origin now `at` (3,)."""
+    return [s.turned("x", math.pi / 2).moved(at) for s in solids]
+
+
 def box(x: Interval, y: Interval, z: Interval, bevel: float = 0.0) -> Solid:
     """Return the box over three intervals; a positive `bevel` [m] cuts its twelve edges at 45 degrees."""
     bevel = min(bevel, 0.3 * min(x[1] - x[0], y[1] - y[0], z[1] - z[0]))
@@ -267,8 +287,8 @@ def beam(start: Vector, end: Vector, width: float, depth: float, taper: float = 
     return stack([a + ring * taper, b + ring])
 
 
-def revolve(profile: Sequence[Interval], n: int = 20, centre: Interval = (0.0, 0.0)) -> list[Solid]:
-    """Return solids of revolution about a vertical axis: `profile` lists (radius, height) upwards.
+def revolve(profile: Sequence[Interval], n: int = 20, centre: Interval = (0.0, 0.0), squash: float = 1.0) -> list[Solid]:
+    """Return solids of revolution about a vertical axis: `profile` lists (radius, height) upwards; `squash` scales y.
 
     Convex runs of the profile become one solid each, so that every piece is convex.
     """
@@ -279,7 +299,8 @@ def revolve(profile: Sequence[Interval], n: int = 20, centre: Interval = (0.0, 0
             runs[-1].append(point)
         else:
             runs.append([runs[-1][-1], point])
-    return [stack([_at(circle(max(r, 1e-3), n, centre), z) for r, z in run]) for run in runs]
+    solids = [stack([_at(circle(max(r, 1e-3), n, centre), z) for r, z in run]) for run in runs]
+    return solids if squash == 1 else [s.scaled(np.array([1.0, squash, 1.0])) for s in solids]
 
 
 def shell(

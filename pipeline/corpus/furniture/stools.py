@@ -10,9 +10,8 @@ import numpy as np
 from pipeline.corpus.furniture.bent import arc, tube, turns, wall
 from pipeline.corpus.furniture.finishes import Finish, Scheme
 from pipeline.corpus.furniture.legs import METAL, draw_kind, inside, leg_finish, legs
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import box, circle, cushion, revolve, rod, rounded_rectangle, slab
-from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import around, box, circle, cushion, polar, revolve, rod, rounded_rectangle, slab
 from pipeline.corpus.furniture.upholstery import seat_cushion, tufted_panel, upright_pad
 
 
@@ -20,10 +19,9 @@ def dressing_chair(rng: np.random.Generator, form: str, size: Size, scheme: Sche
     """Build a round upholstered stool, one with a low curved back, or a drum with a skirt."""
     w, d, h = size
     seat = h if h < 0.56 else min(0.48, 0.6 * h)
-    squash = np.array([1.0, d / w, 1.0])
     low = seat - 0.11
     if form == "drum":
-        parts = pieces("body", [s.scaled(squash) for s in revolve([(0.44 * w, 0.0), (0.46 * w, 0.03), (0.46 * w, low)], 28)], scheme.second)
+        parts = pieces("body", revolve([(0.44 * w, 0.0), (0.46 * w, 0.03), (0.46 * w, low)], 28, squash=d / w), scheme.second)
     else:
         kind = draw_kind(rng, scheme, "plank cross sled horse block bun pipe")
         half = 0.31 * w
@@ -41,7 +39,7 @@ def dressing_chair(rng: np.random.Generator, form: str, size: Size, scheme: Sche
     ]
     if backed:
         profile = [(0.85 * r, z) for r, z in profile]
-    parts += pieces("seat", [s.scaled(squash) for s in revolve(profile, 28)], scheme.soft)
+    parts += pieces("seat", revolve(profile, 28, squash=d / w), scheme.soft)
     if backed:
         bow = arc((0.0, 0.0), 0.467 * w, 0.06 * math.pi, 0.94 * math.pi, 10, d / w)
         rise = 0.55 + 0.45 * np.sin(np.linspace(0.1, math.pi - 0.1, 11))
@@ -71,8 +69,8 @@ def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
         ring = tube(np.column_stack([hoop, np.full(14, 0.32 * seat)]), 0.009, 6, closed=True)
         arms = [
             rod(
-                (0.028 * math.cos(a), 0.028 * math.sin(a), 0.32 * seat),
-                ((0.3 * r - 0.009) * math.cos(a), (0.3 * r - 0.009) * math.sin(a), 0.32 * seat),
+                polar(0.028, a, 0.32 * seat),
+                polar(0.3 * r - 0.009, a, 0.32 * seat),
                 0.007,
                 n=6,
             )
@@ -84,7 +82,7 @@ def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
         finish = leg_finish(scheme, kind)
         half = inside(kind, (x, y), top - 0.02, 0.036)
         parts = pieces("legs", legs(kind, half, top - 0.02, 0.036), finish) + pieces(
-            "frame", slab(rounded_rectangle((-0.46 * w, 0.46 * w), (-0.44 * d, 0.44 * d), 0.03, 2), (top - 0.02, top), 0.003), finish
+            "frame", slab(rounded_rectangle(around(0.46 * w), around(0.44 * d), 0.03, 2), (top - 0.02, top), 0.003), finish
         )
         z, out = 0.3 * seat, min(0.12 * top, 0.06) * 0.7 if kind == "splayed" else 0.0
         a, b = half[0] + out, half[1] + out
@@ -96,8 +94,8 @@ def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
         (-x, x), (-y, 0.84 * y), (top, seat), 0.03, scheme.soft, scheme.second if rng.random() < scheme.manner.piping else None
     )
     if h > seat + 0.1:
-        parts += pieces("back", upright_pad(rng, scheme, (-0.45 * w, 0.45 * w), (y - 0.055, y), (seat + 0.05, h)), scheme.soft)
-        struts = [box((s * 0.3 * w - 0.012, s * 0.3 * w + 0.012), (0.85 * y, 0.85 * y + 0.012), (top, seat + 0.05), 0.002) for s in (-1, 1)]
+        parts += pieces("back", upright_pad(rng, scheme, around(0.45 * w), (y - 0.055, y), (seat + 0.05, h)), scheme.soft)
+        struts = [box(around(0.012, s * 0.3 * w), (0.85 * y, 0.85 * y + 0.012), (top, seat + 0.05), 0.002) for s in (-1, 1)]
         parts += pieces("struts", struts, metal)
     return Shape(parts)
 
@@ -107,21 +105,19 @@ def stool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     w, d, h = size
     x, y = w / 2, d / 2
     if form == "drum":
-        squash = np.array([1.0, d / w, 1.0])
         profile = [(0.62, 0.0), (0.7, 0.06), (0.92, 0.26), (1.0, 0.5), (0.92, 0.74), (0.7, 0.94), (0.62, 1.0)]
-        body = [s.scaled(squash) for s in revolve([(a * x, b * h) for a, b in profile], 24)]
+        body = revolve([(a * x, b * h) for a, b in profile], 24, squash=d / w)
         glazed = Finish("glaze", scheme.soft.color, 0.2, density=900)
         return Shape(pieces("drum", body, glazed))
     if form == "pouf":
-        squash = np.array([1.0, d / w, 1.0])
         profile = [(0.6, 0.0), (0.86, 0.06), (0.97, 0.22), (1.0, 0.5), (0.97, 0.78), (0.86, 0.94), (0.5, 1.0)]
         wool = Finish("knit", scheme.soft.color, 0.95, pattern="knit", density=80)
-        return Shape(pieces("pouf", [s.scaled(squash) for s in revolve([(a * x, b * h) for a, b in profile], 28)], wool))
+        return Shape(pieces("pouf", revolve([(a * x, b * h) for a, b in profile], 28, squash=d / w), wool))
     piping = scheme.second if rng.random() < scheme.manner.piping else None
     if form == "ottoman":
         feet = legs("bun" if scheme.manner.ornament > 0.5 else "tapered", (x - 0.05, y - 0.05), 0.06, 0.05)
         parts = pieces("feet", feet, scheme.timber) + pieces(
-            "body", cushion((-x + 0.004, x - 0.004), (-y + 0.004, y - 0.004), (0.06, 0.66 * h), 0.02, 2), scheme.soft
+            "body", cushion(around(x - 0.004), around(y - 0.004), (0.06, 0.66 * h), 0.02, 2), scheme.soft
         )
         if rng.random() < scheme.manner.tufts and w > 0.4:
             pad = [
@@ -139,7 +135,7 @@ def stool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     parts = pieces("legs", legs(kind, half, h - thick - 0.035, 0.04), finish)
     parts += pieces(
         "frame",
-        slab(rounded_rectangle((-x + 0.008, x - 0.008), (-y + 0.008, y - 0.008), 0.02, 2), (h - thick - 0.035, h - thick), 0.004),
+        slab(rounded_rectangle(around(x - 0.008), around(y - 0.008), 0.02, 2), (h - thick - 0.035, h - thick), 0.004),
         finish,
     )
     if form == "legs" and rng.random() < 0.35:

@@ -3,23 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from pipeline.corpus.furniture.casework import Case, Cell, Column, Feet, case
-from pipeline.corpus.furniture.finishes import DARK_GLASS, LACQUERS, Finish, Scheme, shade
+from pipeline.corpus.furniture.finishes import DARK_GLASS, LACQUERS, Finish, Scheme, pick, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, HandleStyle, PanelStyle
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import rod
-
-Size = Sequence[float]
-
-
-def pick(rng: np.random.Generator, words: str) -> str:
-    """Draw one of the words."""
-    return str(rng.choice(words.split()))
 
 
 def front_style(rng: np.random.Generator, scheme: Scheme, panels: str = "") -> FrontStyle:

@@ -1,7 +1,5 @@
 """Small things that stand on furniture: cups, plates, bowls, vases, books, baskets."""
 
-# ruff: noqa: ARG001 - all builders share one signature, whatever of it they need
-
 from __future__ import annotations
 
 import itertools
@@ -10,10 +8,9 @@ import math
 import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, prism, tube
-from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, shade
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, slab, walls
-from pipeline.corpus.furniture.storage import Size
+from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, one_of, shade
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, around, box, circle, revolve, ring, slab, walls
 
 GLAZES = ("white", "ivory", "sage", "dusty_blue", "terracotta", "anthracite", "mustard", "blush", "navy", "greige")
 BINDINGS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dusty_blue", "barn_red", "emerald", "greige", "blush", "black")
@@ -21,7 +18,7 @@ BINDINGS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dus
 
 def glaze(rng: np.random.Generator) -> Finish:
     """Draw a glazed pottery."""
-    name = GLAZES[int(rng.integers(len(GLAZES)))]
+    name = one_of(rng, GLAZES)
     return Finish(f"glaze_{name}", shade(rng, LACQUERS[name], 0.06), 0.2, density=2200)
 
 
@@ -119,7 +116,7 @@ def vase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
 
 def binding(rng: np.random.Generator) -> Finish:
     """Draw a book's cover."""
-    name = BINDINGS[int(rng.integers(len(BINDINGS)))]
+    name = one_of(rng, BINDINGS)
     return Finish(f"binding_{name}", shade(rng, LACQUERS[name], 0.12), 0.6, density=700)
 
 
@@ -137,14 +134,14 @@ def book(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     if form == "open":
         parts: tuple[Piece, ...] = ()
         t = min(0.0035, 0.2 * h)
-        parts += pieces("cover", box((-w / 2, w / 2), (-d / 2, d / 2), (0.0, t)), binding(rng))
+        parts += pieces("cover", box(around(w / 2), around(d / 2), (0.0, t)), binding(rng))
         for s in (-1, 1):
             outer, inner = s * (w / 2 - 0.005), s * 0.001
             low = [(min(outer, inner), t), (max(outer, inner), t)]
             block = np.array([*low, (max(outer, inner), 0.6 * h if s > 0 else h), (min(outer, inner), h if s > 0 else 0.6 * h)])
-            parts += pieces("pages", prism(block, "y", (-d / 2 + 0.005, d / 2 - 0.005)), PAPER)
+            parts += pieces("pages", prism(block, "y", around(d / 2 - 0.005)), PAPER)
         return Shape(parts)
-    return Shape(flat_book(rng, (-w / 2, w / 2), (-d / 2, d / 2), (0.0, h)))
+    return Shape(flat_book(rng, around(w / 2), around(d / 2), (0.0, h)))
 
 
 def book_stack(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -193,12 +190,9 @@ def basket(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
         x, y = (-w / 2 + 0.006, w / 2 - 0.006), (-d / 2 + 0.006, d / 2 - 0.006)
         solids = [box(x, y, (0, t)), *walls(x, y, (t, body), t)]
         rim = [
-            box((s * w / 2 - 0.012 - 0.012 * s, s * w / 2 + 0.012 - 0.012 * s), (-d / 2, d / 2), (body, body + 0.015), 0.004)
-            for s in (-1, 1)
+            box((s * w / 2 - 0.012 - 0.012 * s, s * w / 2 + 0.012 - 0.012 * s), around(d / 2), (body, body + 0.015), 0.004) for s in (-1, 1)
         ] + [
-            box(
-                (-w / 2 + 0.024, w / 2 - 0.024), (s * d / 2 - 0.012 - 0.012 * s, s * d / 2 + 0.012 - 0.012 * s), (body, body + 0.015), 0.004
-            )
+            box(around(w / 2 - 0.024), (s * d / 2 - 0.012 - 0.012 * s, s * d / 2 + 0.012 - 0.012 * s), (body, body + 0.015), 0.004)
             for s in (-1, 1)
         ]
     top = body + 0.015

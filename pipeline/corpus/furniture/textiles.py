@@ -8,10 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.bent import band
-from pipeline.corpus.furniture.finishes import CLOTH_GROUNDS, FABRICS, Finish, Pattern, Scheme, cover, shade
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, circle, pillow, ring, rod, rounded_rectangle, slab
-from pipeline.corpus.furniture.storage import Size, pick
+from pipeline.corpus.furniture.finishes import CLOTH_GROUNDS, FABRICS, Finish, Pattern, Scheme, cover, pick, shade
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, around, box, circle, pillow, ring, rod, rounded_rectangle, slab
 from pipeline.corpus.furniture.styles import CLASSIC, ORIENTAL
 
 
@@ -30,7 +29,7 @@ def rug(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     if form == "round":
         return Shape(pieces("rug", slab(circle(w / 2, 40), (0.0, h), min(0.004, 0.3 * h)), weave))
     fringe = 0.06 if form == "fringed" else 0.0
-    edge = rounded_rectangle((-w / 2, w / 2), (-d / 2 + fringe, d / 2 - fringe), 0.012 if form != "shaggy" else 0.05, 2)
+    edge = rounded_rectangle(around(w / 2), around(d / 2 - fringe), 0.012 if form != "shaggy" else 0.05, 2)
     parts = pieces("rug", slab(edge, (0.0, h), min(0.004, 0.3 * h)), weave)
     if fringe:
         count = max(12, round(w / 0.07))
@@ -49,7 +48,7 @@ def curtain(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     bar = [rod((-w / 2 + 0.03, 0, rod_z), (w / 2 - 0.03, 0, rod_z), 0.012, n=8)]
     for s in (-1, 1):
         bar.append(rod((s * (w / 2 - 0.03), 0, rod_z), (s * w / 2, 0, rod_z), 0.02, 0.012, 8))
-        bar.append(box((s * (w / 2 - 0.06) - 0.008, s * (w / 2 - 0.06) + 0.008), (0.012, d / 2), (rod_z - 0.01, rod_z + 0.01)))
+        bar.append(box(around(0.008, s * (w / 2 - 0.06)), (0.012, d / 2), around(0.01, rod_z)))
     parts = pieces("rod", bar, scheme.handle)
     share = float(rng.uniform(0.16, 0.24)) if form == "drawn" else 0.5
     for s in (-1, 1):
@@ -79,4 +78,4 @@ def cushion_pillow(rng: np.random.Generator, form: str, size: Size, scheme: Sche
         rims += ring((0.5 * w, 0.44 * w), (0.2 * w, 0.2 * w), (0.5 * h, h), 20)
         middle = slab(circle(0.2 * w, 20), (0.06 * h, 0.94 * h), 0.01)
         return Shape(pieces("pillow", rims, cloth) + pieces("button", middle, cloth))
-    return Shape(pieces("pillow", pillow((-w / 2, w / 2), (-d / 2, d / 2), (0.0, h), 3), cloth))
+    return Shape(pieces("pillow", pillow(around(w / 2), around(d / 2), (0.0, h), 3), cloth))

@@ -8,7 +8,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import Finish, Scheme
 from pipeline.corpus.furniture.shape import Piece, pieces
-from pipeline.corpus.furniture.solids import Solid, cushion, pillow, rod, rounded_rectangle, slab
+from pipeline.corpus.furniture.solids import Solid, around, cushion, pillow, rod, rounded_rectangle, slab
 
 Span = tuple[float, float]
 SEAM = 0.007  # height of a piping
@@ -67,7 +67,7 @@ def bolster(x: Span, y: float, z: float, radius: float) -> Solid:
 
 def throw_pillow(at: tuple[float, float, float], size: float, tilt: float, yaw: float) -> Solid:
     """Return a pillow that stands on `at` and leans back by `tilt` [rad]; its lowest edge is at that height."""
-    solid = pillow((-size / 2, size / 2), (-size / 2, size / 2), (-0.15 * size, 0.15 * size), 2)
+    solid = pillow(around(size / 2), around(size / 2), around(0.15 * size), 2)
     solid = solid.turned("x", np.pi / 2 - tilt).turned("z", yaw)
     return solid.moved((at[0], at[1], at[2] - float(solid.vertices[:, 2].min())))
 

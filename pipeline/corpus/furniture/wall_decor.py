@@ -7,11 +7,10 @@ import math
 import numpy as np
 
 from pipeline.corpus.furniture.bent import turns
-from pipeline.corpus.furniture.finishes import FABRICS, MIRROR, PAPER, Finish, Pattern, Scheme, shade
+from pipeline.corpus.furniture.finishes import FABRICS, MIRROR, PAPER, Finish, Pattern, Scheme, one_of, pick, shade
 from pipeline.corpus.furniture.panels import Rect, frame
-from pipeline.corpus.furniture.shape import Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab
-from pipeline.corpus.furniture.storage import Size, pick
+from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, around, box, circle, revolve, ring, rod, slab, standing
 from pipeline.style import Color
 
 INKS: tuple[tuple[Color, Color], ...] = (
@@ -24,15 +23,10 @@ INKS: tuple[tuple[Color, Color], ...] = (
 )
 
 
-def standing(solids: list[Solid], y: float, z: float) -> list[Solid]:
-    """Return solids made lying about the origin, turned upright to face the front (-y), their base at `y`, their middle at `z`."""
-    return [s.turned("x", math.pi / 2).moved((0, y, z)) for s in solids]
-
-
 def frame_boards(w: float, h: float, wide: float, y: tuple[float, float], bevel: float = 0.002) -> list[Solid]:
     """Return four boards around a rectangle `w` x `h` whose lower edge is at z = 0."""
     x = w / 2
-    return frame(Rect((-x, x), (0.0, h), y[0]), Rect((-x + wide, x - wide), (wide, h - wide), y[0]), y, bevel)
+    return frame(Rect((-x, x), (0.0, h), y[0]), Rect(around(x - wide), (wide, h - wide), y[0]), y, bevel)
 
 
 def picture(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -40,10 +34,10 @@ def picture(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     w, d, h = size
     back = d / 2
     pattern: Pattern = pick(rng, "art_blocks art_hills art_circles art_lines")  # type: ignore[assignment]
-    ground, ink = INKS[int(rng.integers(len(INKS)))]
+    ground, ink = one_of(rng, INKS)
     art = Finish("print", ground, 0.7, pattern=pattern, density=400, second=ink)
     if form == "canvas":
-        return Shape(pieces("canvas", box((-w / 2, w / 2), (-back, back), (0.0, h), 0.003), art))
+        return Shape(pieces("canvas", box(around(w / 2), (-back, back), (0.0, h), 0.003), art))
     frame = scheme.timber if rng.random() < 0.5 else scheme.handle
     spans = [(-w / 2, w / 2)] if form == "framed" else [(-w / 2, -0.02 * w), (0.02 * w, w / 2)]
     parts: tuple[Piece, ...] = ()
@@ -52,8 +46,8 @@ def picture(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
         rim = 0.018 + 0.02 * scheme.manner.ornament
         at = np.array([(x0 + x1) / 2, 0.0, 0.0])
         mount = 0.12 * min(wide, h)
-        sheet = box((-wide / 2 + rim, wide / 2 - rim), (back - 0.008, back), (rim, h - rim))
-        inner = box((-wide / 2 + rim + mount, wide / 2 - rim - mount), (back - 0.011, back - 0.008), (rim + mount, h - rim - mount))
+        sheet = box(around(wide / 2 - rim), (back - 0.008, back), (rim, h - rim))
+        inner = box(around(wide / 2 - rim - mount), (back - 0.011, back - 0.008), (rim + mount, h - rim - mount))
         parts += pieces(f"frame_{k}", [s.moved(at) for s in frame_boards(wide, h, rim, (-back, back))], frame)
         parts += pieces(f"mount_{k}", sheet.moved(at), PAPER) + pieces(f"print_{k}", inner.moved(at), art)
     return Shape(parts)
@@ -66,17 +60,17 @@ def mirror(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     frame = scheme.handle if rng.random() < 0.55 else scheme.timber
     if form == "rectangle":
         rim = 0.02 + 0.035 * scheme.manner.ornament
-        glass = box((-w / 2 + rim, w / 2 - rim), (back - 0.012, back - 0.004), (rim, h - rim))
+        glass = box(around(w / 2 - rim), (back - 0.012, back - 0.004), (rim, h - rim))
         return Shape(pieces("frame", frame_boards(w, h, rim, (-back, back), 0.004), frame) + pieces("mirror", glass, MIRROR))
     r = min(w, h) / 2
     rim = 0.6 * r if form == "sunburst" else 0.93 * r
-    parts = pieces("mirror", standing([slab(circle(rim, 36), (0.0, 0.006))], back - 0.004, h / 2), MIRROR)
+    parts = pieces("mirror", standing([slab(circle(rim, 36), (0.0, 0.006))], (0, back - 0.004, h / 2)), MIRROR)
     if form == "sunburst":
         hoop = ring((1.06 * rim, 1.06 * rim), (rim, rim), (0.0, d), 36)
         rays = [rod((1.06 * rim * math.cos(a), back - 0.012, h / 2 + 1.06 * rim * math.sin(a)), (q * math.cos(a), back - 0.012, h / 2 + q * math.sin(a)), 0.007, 0.002, 6)
                 for k, a in enumerate(turns(24)) for q in (r if k % 2 == 0 else 0.84 * r,)]  # fmt: skip
-        return Shape(parts + pieces("frame", standing(hoop, back, h / 2), frame) + pieces("rays", rays, frame))
-    return Shape(parts + pieces("frame", standing(ring((r, r), (rim, rim), (0.0, d), 36), back, h / 2), frame))
+        return Shape(parts + pieces("frame", standing(hoop, (0, back, h / 2)), frame) + pieces("rays", rays, frame))
+    return Shape(parts + pieces("frame", standing(ring((r, r), (rim, rim), (0.0, d), 36), (0, back, h / 2)), frame))
 
 
 def clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -88,18 +82,19 @@ def clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
         face = Finish("dial", (0.82, 0.81, 0.78) if rng.random() < 0.7 else (0.04, 0.04, 0.045), 0.5, pattern="dial", density=900)
         ink: Color = (0.03, 0.03, 0.03) if face.color[0] > 0.5 else (0.85, 0.83, 0.78)
         face = Finish("dial", face.color, 0.5, pattern="dial", density=900, second=ink)
-        disc = standing([slab(circle(0.9 * r, 32), (0.0, 0.5 * d))], back, h / 2)
+        disc = standing([slab(circle(0.9 * r, 32), (0.0, 0.5 * d))], (0, back, h / 2))
         return Shape(
-            pieces("dial", disc, face) + pieces("rim", standing(ring((r, 0.97 * r), (0.9 * r, 0.9 * r), (0.0, d), 32), back, h / 2), rim)
+            pieces("dial", disc, face)
+            + pieces("rim", standing(ring((r, 0.97 * r), (0.9 * r, 0.9 * r), (0.0, d), 32), (0, back, h / 2)), rim)
         )
-    hub = standing(revolve([(0.2 * r, 0.0), (0.2 * r, 0.7 * d), (0.12 * r, d)], 20), back, h / 2)
-    parts = pieces("ring", standing(ring((0.86 * r, 0.86 * r), (0.8 * r, 0.8 * r), (0.0, 0.4 * d), 32), back, h / 2), rim) + pieces(
+    hub = standing(revolve([(0.2 * r, 0.0), (0.2 * r, 0.7 * d), (0.12 * r, d)], 20), (0, back, h / 2))
+    parts = pieces("ring", standing(ring((0.86 * r, 0.86 * r), (0.8 * r, 0.8 * r), (0.0, 0.4 * d), 32), (0, back, h / 2)), rim) + pieces(
         "hub", hub, rim
     )
     y = (back - 0.8 * d, back - 0.4 * d)
-    marks = [box((-0.02 * r, 0.02 * r), y, (0.74 * r, r)).turned("y", a).moved((0, 0, h / 2)) for a in turns(12)]
+    marks = [box(around(0.02 * r), y, (0.74 * r, r)).turned("y", a).moved((0, 0, h / 2)) for a in turns(12)]
     hands = [
-        box((-0.015 * r, 0.015 * r), (back - 0.6 * d, back - 0.45 * d), (0.2 * r, q * r)).turned("y", a).moved((0, 0, h / 2))
+        box(around(0.015 * r), (back - 0.6 * d, back - 0.45 * d), (0.2 * r, q * r)).turned("y", a).moved((0, 0, h / 2))
         for q, a in ((0.5, 1.05), (0.72, -1.05))
     ]
     bars = [rod((0.2 * r * math.cos(a), back - 0.15 * d, h / 2 + 0.2 * r * math.sin(a)), (0.8 * r * math.cos(a), back - 0.15 * d, h / 2 + 0.8 * r * math.sin(a)), 0.1 * d, n=6)
